@@ -1,0 +1,70 @@
+#pragma once
+/// The pass window of the classic method: the window around one body, everything else drawn at its present pose, the
+/// body itself left out.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "brink/core/base/work.h"
+#include "brink/core/fields/field_options.h"
+#include "brink/core/shapes/outline.h"
+
+namespace brink {
+
+/// One thing to be drawn: an outline at a pose, and the number of its owner.
+struct PlacedOutline {
+  const Outline* outline = nullptr;
+  Pose pose;
+  std::uint32_t owner = 0;
+};
+
+/// A rendered window: row-major pixels, row 0 at the bottom, pixel centres at low + (i + 1/2) * pixel.
+struct FieldImage {
+  static constexpr std::uint32_t kNone = 0xffffffffU;
+  Box window;            ///< in the world [m]
+  double pixel = 0.0;    ///< side of a (square) pixel [m]
+  int width = 0, height = 0;
+  std::vector<std::uint32_t> owner;  ///< owner of the nearest site, kNone where none lies within the band
+  std::vector<std::uint32_t> site;   ///< its site, counted inside its outline; kNone likewise
+  std::vector<float> distance;       ///< distance to it [m], radius subtracted, unsigned; infinite where none
+  std::vector<std::uint8_t> inside;  ///< 1 where the nearest site says "inside its solid" (altered interior)
+  float rounding = 0.0F;             ///< bound on |distance - true distance| from single precision [m]
+};
+
+/// What lies near one body at one moment.
+struct NearOwners {
+  std::vector<std::uint32_t> owners;  ///< ascending: every owner with a point within `margin` of the window
+  double others_at_least = 0.0;       ///< every owner not named is at least this far from the window [m]
+};
+
+/// Renders pass windows. Owns a GL context; belongs to the thread that made it.
+class PassRenderer {
+ public:
+  /// @throws IoError if no GL context opens.
+  explicit PassRenderer(const FieldOptions& options, WorkCounters* work = nullptr);
+  ~PassRenderer();
+
+  /// Nearest site and distance at every pixel of `window`, over everything but the owner `excluded` (kNone: all).
+  /// Sites farther than `band` from a pixel are not drawn there (infinite: the whole window).
+  FieldImage render(const Box& window, int width, int height, std::span<const PlacedOutline> scene,
+                    std::uint32_t excluded, double band);
+
+  /// Both layers at once: nearest site, and nearest site of a different owner (two draws). Body k reads the first where
+  /// the owner is not k, else the second.
+  std::array<FieldImage, 2> render_two_layers(const Box& window, int width, int height,
+                                              std::span<const PlacedOutline> scene, double band);
+
+  /// Every owner (but `excluded`) that comes within `margin` of `window`: complete, from the rendered candidate lists
+  /// with a rounding allowance. The exact detectors need nothing else from a pass.
+  NearOwners near_owners(const Box& window, double margin, std::span<const PlacedOutline> scene,
+                         std::uint32_t excluded);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace brink

@@ -1,0 +1,46 @@
+#include "brink/core/shapes/distance.h"
+
+namespace brink {
+
+namespace {
+
+/// Unit normal to the right of the direction of travel at the foot: outward on solid loops.
+Vec2 right_normal(const Site& site, const Nearest& nearest) {
+  if (site.kind == SiteKind::segment) return -perp((site.b - site.a).normalized());
+  const Vec2 radial = (nearest.point - site.center).normalized();
+  return site.sweep > 0 ? radial : Vec2(-radial);
+}
+
+}  // namespace
+
+double side_of(const Site& site, const Nearest& nearest, const Vec2& q) {
+  if (!site.solid || site.kind == SiteKind::point) return 1.0;
+  const Vec2 d = q - nearest.point;
+  switch (nearest.foot) {
+    case Foot::start:
+      return d.dot(site.pseudo_a) < 0.0 ? -1.0 : 1.0;
+    case Foot::end:
+      return d.dot(site.pseudo_b) < 0.0 ? -1.0 : 1.0;
+    case Foot::interior:
+      break;
+  }
+  if (site.kind == SiteKind::segment) return cross(site.b - site.a, q - site.a) > 0.0 ? -1.0 : 1.0;
+  const bool within = (q - site.center).squaredNorm() < site.arc_radius * site.arc_radius;
+  return within == (site.sweep > 0) ? -1.0 : 1.0;
+}
+
+Vec2 normal_at(const Site& site, const Nearest& nearest, const Vec2& q) {
+  const double side = side_of(site, nearest, q);
+  if (nearest.foot == Foot::interior && site.kind != SiteKind::point) {
+    const Vec2 right = right_normal(site, nearest);
+    if (site.solid) return right;
+    return (q - nearest.point).dot(right) < 0.0 ? Vec2(-right) : right;
+  }
+  if (nearest.distance > 0.0) return (q - nearest.point) * (side / nearest.distance);
+  if (site.kind == SiteKind::point) return {1.0, 0.0};
+  const Vec2& pseudo = nearest.foot == Foot::start ? site.pseudo_a : site.pseudo_b;
+  const double length = pseudo.norm();
+  return site.solid && length > 0.0 ? Vec2(pseudo / length) : right_normal(site, nearest);
+}
+
+}  // namespace brink

@@ -1,0 +1,65 @@
+#pragma once
+/// Exact distance from a point to a site, in double precision. Everything that Brink says about contact rests here.
+
+#include "brink/core/shapes/site.h"
+
+namespace brink {
+
+/// Where on a site's core the nearest point lies.
+enum class Foot : std::uint8_t { start, end, interior };
+
+/// The nearest point of a site's core (its radius left out).
+struct Nearest {
+  double distance = 0.0;  ///< to the core [m], >= 0
+  Foot foot = Foot::interior;
+  Vec2 point = Vec2::Zero();
+};
+
+/// Nearest point of the core of `site` to `q`; ~10 flops and a square root. A point on an arc's centre is answered with
+/// the arc's start (every point of the arc is equally near).
+inline Nearest nearest_on(const Site& site, const Vec2& q) {
+  switch (site.kind) {
+    case SiteKind::segment: {
+      const Vec2 d = site.b - site.a;
+      const Vec2 w = q - site.a;
+      const double along = w.dot(d), length2 = d.squaredNorm();
+      if (along <= 0.0) return {w.norm(), Foot::start, site.a};
+      if (along >= length2) return {(q - site.b).norm(), Foot::end, site.b};
+      const double offset = cross(d, w) / std::sqrt(length2);
+      return {std::abs(offset), Foot::interior, site.a + d * (along / length2)};
+    }
+    case SiteKind::arc: {
+      const Vec2 w = q - site.center;
+      const Vec2 from = site.a - site.center, to = site.b - site.center;
+      // inside the sector: counter-clockwise of its first edge and clockwise of its last (sweep <= pi/2)
+      const double turn = site.sweep > 0 ? 1.0 : -1.0;
+      if (turn * cross(from, w) > 0.0 && turn * cross(w, to) > 0.0) {
+        const double rho = w.norm();
+        return {std::abs(rho - site.arc_radius), Foot::interior, site.center + w * (site.arc_radius / rho)};
+      }
+      const double da = (q - site.a).squaredNorm(), db = (q - site.b).squaredNorm();
+      return da <= db ? Nearest{std::sqrt(da), Foot::start, site.a} : Nearest{std::sqrt(db), Foot::end, site.b};
+    }
+    case SiteKind::point:
+      break;
+  }
+  return {(q - site.a).norm(), Foot::start, site.a};
+}
+
+/// -1 if q, whose nearest point on the solid `site` is `nearest`, is inside the solid, else +1. Sites that are not
+/// solid: +1.
+///
+/// Side of the core where the foot is interior, pseudo-normal where it is a vertex (Baerentzen & Aanaes 2005).
+double side_of(const Site& site, const Nearest& nearest, const Vec2& q);
+
+/// Signed gap [m] from q to the site: > 0 outside; the site's radius is subtracted.
+inline double gap_to(const Site& site, const Vec2& q) {
+  const Nearest n = nearest_on(site, q);
+  return side_of(site, n, q) * n.distance - site.radius;
+}
+
+/// Outward unit normal at the core: from the nearest point to q when outside, the reverse inside. Where q lies on the
+/// core: the site's own left/right normal (solid: outward), for a point site (1, 0).
+Vec2 normal_at(const Site& site, const Nearest& nearest, const Vec2& q);
+
+}  // namespace brink

@@ -1,0 +1,64 @@
+#pragma once
+/// Integrators: make the motions of one component, piece after piece, from its own history alone.
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "brink/core/base/dynamics.h"
+#include "brink/core/base/work.h"
+#include "brink/integrators/motion.h"
+
+namespace brink {
+
+struct IntegratorOptions {
+  double tolerance = 1e-10;           ///< relative, adaptive integrators
+  double absolute_tolerance = 1e-12;  ///< in SI units, adaptive integrators
+  double step = 0.001;                ///< [s], fixed-step integrators
+
+  /// True if usable; else writes which option, its value and what is allowed into *error.
+  bool is_valid(std::string* error) const;
+};
+
+/// How far an extend() got.
+struct Extent {
+  enum class Status { reached, failed };
+  Status status = Status::reached;
+  double end = 0.0;  ///< motions cover up to here
+  std::string why;   ///< of a failure: step floor reached, error test failed, right-hand side not finite ...
+};
+
+/// Integrates one component (see Dynamics). Solver steps depend on start() and on the component's own dynamics alone:
+/// never on how far, or how often, extend() was asked to go. That is what makes different schedules agree.
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+
+  /// Begins afresh at time t with one state a body; motions made before stay valid for those who hold them.
+  virtual void start(double t, std::span<const BodyState> states) = 0;
+
+  /// Extends every motion to cover at least time t. Steps are the integrator's own: the end may lie beyond t.
+  virtual Extent extend(double t) = 0;
+
+  /// Motion of the component's body k, from the last start() to the last extend().
+  virtual Motion motion(int k) const = 0;
+};
+
+/// One line of `brink list integrators`.
+struct IntegratorInfo {
+  std::string_view name;
+  std::string_view summary;
+};
+/// Every integrator by name, `auto` first.
+std::span<const IntegratorInfo> integrators();
+
+/// Makes the integrator called `name` for `dynamics` (kept). `work`, if given, outlives it and is counted into.
+/// `auto` is a parabola where Dynamics::constant(), closed-form drag where linear_drag().valid, else `erk`.
+/// @throws BadInput on an unknown name (naming those allowed), bad options, or `ballistic` where the dynamics are not
+/// constant.
+std::unique_ptr<Integrator> make_integrator(std::string_view name, std::shared_ptr<const Dynamics> dynamics,
+                                            const IntegratorOptions& options, WorkCounters* work = nullptr);
+
+}  // namespace brink

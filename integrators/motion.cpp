@@ -1,0 +1,179 @@
+#include "brink/integrators/motion.h"
+
+#include <algorithm>
+
+namespace brink {
+
+namespace {
+
+/// s(t) of exponential relaxation: value and rate of x'' = drive - k x' after time s, stable as k -> 0.
+struct Relaxed {
+  double moved;  ///< displacement
+  double rate;
+};
+Relaxed relax(double rate0, double drive, double k, double s) {
+  if (k * s < 1e-8) {  // series: relative error below (k s)^2 / 6 < 2e-17
+    const double mean = 1.0 - 0.5 * k * s;
+    return {rate0 * s * mean + 0.5 * drive * s * s * (1.0 - k * s / 3.0), rate0 * (1.0 - k * s) + drive * s * mean};
+  }
+  const double faded = -std::expm1(-k * s);  // 1 - e^(-k s)
+  const double terminal = drive / k;
+  return {terminal * s + (rate0 - terminal) * faded / k, rate0 - (rate0 - terminal) * faded};
+}
+
+/// Smallest disc-like enclosure that holds both.
+void merge(Vec2& center, double& radius, const Vec2& other_center, double other_radius) {
+  const double distance = (other_center - center).norm();
+  if (distance + other_radius <= radius) return;
+  if (distance + radius <= other_radius) {
+    center = other_center;
+    radius = other_radius;
+    return;
+  }
+  const double merged = 0.5 * (distance + radius + other_radius);
+  center += (other_center - center) * ((merged - radius) / distance);
+  radius = merged * (1.0 + 1e-15);
+}
+
+void merge(MotionBounds& into, const MotionBounds& b) {
+  merge(into.velocity, into.velocity_radius, b.velocity, b.velocity_radius);
+  merge(into.acceleration, into.acceleration_radius, b.acceleration, b.acceleration_radius);
+  const double low = std::min(into.omega - into.omega_radius, b.omega - b.omega_radius);
+  const double high = std::max(into.omega + into.omega_radius, b.omega + b.omega_radius);
+  into.omega = 0.5 * (low + high);
+  into.omega_radius = 0.5 * (high - low);
+  into.alpha = std::max(into.alpha, b.alpha);
+}
+
+}  // namespace
+
+BodyState PolynomialPiece::state(double t) const {
+  const double s = t - origin;
+  Eigen::Vector3d value = c[degree], rate = Eigen::Vector3d::Zero();
+  for (int k = degree - 1; k >= 0; --k) {
+    rate = rate * s + value;
+    value = value * s + c[k];
+  }
+  return {{value.head<2>(), value.z()}, {rate.head<2>(), rate.z()}};
+}
+
+MotionBounds PolynomialPiece::bounds(double from, double to) const {
+  // Taylor coefficients about the middle by repeated synthetic division, then sums of absolute values.
+  const double h = 0.5 * (to - from), s = 0.5 * (from + to) - origin;
+  std::array<Eigen::Vector3d, kMaxDegree + 1> m = c;
+  for (int i = 0; i < degree; ++i)
+    for (int k = degree - 1; k >= i; --k) m[k] += s * m[k + 1];
+  MotionBounds b;
+  Eigen::Vector3d rate_radius = Eigen::Vector3d::Zero(), second_radius = Eigen::Vector3d::Zero();
+  double power = h;  // h^(k-1)
+  for (int k = 2; k <= degree; ++k, power *= h) {
+    rate_radius += k * power * m[k].cwiseAbs();
+    if (k >= 3) second_radius += k * (k - 1) * (power / h) * m[k].cwiseAbs();
+  }
+  const Eigen::Vector3d rate = degree >= 1 ? m[1] : Eigen::Vector3d::Zero();
+  const Eigen::Vector3d second = degree >= 2 ? Eigen::Vector3d(2.0 * m[2]) : Eigen::Vector3d::Zero();
+  b.velocity = rate.head<2>();
+  b.velocity_radius = rate_radius.head<2>().norm();
+  b.omega = rate.z();
+  b.omega_radius = rate_radius.z();
+  b.acceleration = second.head<2>();
+  b.acceleration_radius = h > 0.0 ? second_radius.head<2>().norm() : 0.0;
+  b.alpha = std::abs(second.z()) + (h > 0.0 ? second_radius.z() : 0.0);
+  return b;
+}
+
+const PolynomialPiece& Track::at(double t) const {
+  // the last piece that begins at or before t
+  auto it = std::upper_bound(pieces.begin(), pieces.end(), t,
+                             [](double time, const PolynomialPiece& p) { return time < p.begin; });
+  return it == pieces.begin() ? *it : *std::prev(it);
+}
+
+Motion Motion::still(const Pose& pose, double t0) { return ballistic(t0, {pose, {}}, {}); }
+
+Motion Motion::ballistic(double t0, const BodyState& start, const Acceleration& acceleration, double t1) {
+  Motion m;
+  m.t0_ = t0;
+  m.t1_ = t1;
+  m.start_ = start;
+  m.drive_ = acceleration;
+  return m;
+}
+
+Motion Motion::drag(double t0, const BodyState& start, const Acceleration& drive, double linear, double angular,
+                    double t1) {
+  Motion m = ballistic(t0, start, drive, t1);
+  m.kind_ = Kind::drag;
+  m.linear_ = linear;
+  m.angular_ = angular;
+  return m;
+}
+
+Motion Motion::dense(std::shared_ptr<const Track> track) {
+  Motion m;
+  m.kind_ = Kind::dense;
+  m.track_ = std::move(track);
+  return m;
+}
+
+BodyState Motion::state(double t) const {
+  const double s = t - t0_;
+  switch (kind_) {
+    case Kind::ballistic:
+      return {{start_.pose.position + s * (start_.twist.velocity + 0.5 * s * drive_.linear),
+               start_.pose.angle + s * (start_.twist.omega + 0.5 * s * drive_.angular)},
+              {start_.twist.velocity + s * drive_.linear, start_.twist.omega + s * drive_.angular}};
+    case Kind::drag: {
+      const Relaxed x = relax(start_.twist.velocity.x(), drive_.linear.x(), linear_, s);
+      const Relaxed y = relax(start_.twist.velocity.y(), drive_.linear.y(), linear_, s);
+      const Relaxed turn = relax(start_.twist.omega, drive_.angular, angular_, s);
+      return {{start_.pose.position + Vec2(x.moved, y.moved), start_.pose.angle + turn.moved},
+              {{x.rate, y.rate}, turn.rate}};
+    }
+    case Kind::dense:
+      break;
+  }
+  return track_->at(t).state(t);
+}
+
+MotionBounds Motion::bounds(double from, double to) const {
+  MotionBounds b;
+  switch (kind_) {
+    case Kind::ballistic: {
+      const double middle = 0.5 * (from + to) - t0_, half = 0.5 * (to - from);
+      b.velocity = start_.twist.velocity + middle * drive_.linear;
+      b.omega = start_.twist.omega + middle * drive_.angular;
+      const double linear2 = drive_.linear.squaredNorm();
+      if (linear2 > 0.0) b.velocity_radius = half * std::sqrt(linear2);
+      b.omega_radius = half * std::abs(drive_.angular);
+      b.acceleration = drive_.linear;
+      b.alpha = std::abs(drive_.angular);
+      return b;
+    }
+    case Kind::drag: {  // rates relax monotonically: each lies between its values at the ends
+      const Twist start = twist(from), end = twist(to);
+      const auto rate = [&](const Twist& w) -> Vec2 { return drive_.linear - linear_ * w.velocity; };
+      b.velocity = 0.5 * (start.velocity + end.velocity);
+      b.velocity_radius = 0.5 * (end.velocity - start.velocity).norm();
+      b.acceleration = 0.5 * (rate(start) + rate(end));
+      b.acceleration_radius = 0.5 * (rate(end) - rate(start)).norm();
+      b.omega = 0.5 * (start.omega + end.omega);
+      b.omega_radius = 0.5 * std::abs(end.omega - start.omega);
+      b.alpha = std::max(std::abs(drive_.angular - angular_ * start.omega),
+                         std::abs(drive_.angular - angular_ * end.omega));
+      return b;
+    }
+    case Kind::dense:
+      break;
+  }
+  const PolynomialPiece* piece = &track_->at(from);
+  const PolynomialPiece* last = &track_->at(to);
+  b = piece->bounds(from, std::min(to, piece->end));
+  while (piece != last) {
+    ++piece;
+    merge(b, piece->bounds(piece->begin, std::min(to, piece->end)));
+  }
+  return b;
+}
+
+}  // namespace brink

@@ -1,0 +1,53 @@
+#pragma once
+/// A scene: what a scene file says, parsed, checked and ready to run.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "brink/core/base/error.h"
+#include "brink/core/world/world.h"
+#include "brink/scheduler/options.h"
+
+namespace brink {
+
+struct OutputOptions {
+  double frame_interval = 0.01;  ///< [s]; 0 = events only
+  bool events = true;
+};
+
+struct Scene {
+  std::filesystem::path path;
+  World world;
+  double duration = 1.0;  ///< [s]
+  SolverOptions solver;
+  OutputOptions output;
+  std::vector<std::string> notes;  ///< for people: achieved curve deviations, sampling limits ...
+  std::string options_json;        ///< every option as used, for the run file
+};
+
+/// One fault of a scene file; line and column count from 1 (0: the command line's --set).
+struct SceneFault {
+  int line = 0, column = 0;
+  std::string message;  ///< what is wrong, what was given, what is allowed
+};
+
+/// Every fault of a file at once; what() has one "FILE:LINE:COLUMN: message" a line.
+class SceneFaults : public BadInput {
+ public:
+  SceneFaults(const std::filesystem::path& file, std::vector<SceneFault> faults);
+  const std::vector<SceneFault>& faults() const { return faults_; }
+
+ private:
+  std::vector<SceneFault> faults_;
+};
+
+/// Reads, overrides ("solver.policy=global_backup", dotted paths as in the file; arrays by index: "bodies.0.mass=2"),
+/// and validates a scene file.
+/// @throws SceneFaults with all faults; IoError if the file cannot be read.
+Scene load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+/// The same from text (for tests and tools); `name` stands for the file in messages.
+Scene parse_scene(std::string_view text, const std::string& name, const std::vector<std::string>& overrides = {});
+
+}  // namespace brink

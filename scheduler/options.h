@@ -1,0 +1,48 @@
+#pragma once
+/// Choices of the `[solver]` table: the only home of their defaults, printed from here by the program and the docs.
+
+#include <string>
+
+#include "brink/core/fields/field_options.h"
+#include "brink/integrators/integrator.h"
+
+namespace brink {
+
+struct SolverOptions {
+  std::string policy = "global_backup";  ///< see policies()
+  std::string order = "index";           ///< simultaneous contacts: index | closing_speed | depth | random
+  std::string integrator = "auto";       ///< see integrators()
+  double tolerance = 1e-10;              ///< relative, adaptive integrators
+  double absolute_tolerance = 1e-12;     ///< adaptive integrators
+  double step = 0.001;                   ///< [s], for fixed-step integrators and policy fixed_step
+  std::string response = "impulse";      ///< impulse | reflection
+  std::string detector = "field";        ///< field | pass
+  double contact_tolerance = 1e-10;      ///< of the scene's length
+  bool persistent = true;                ///< resting contacts (a later release: until then a Zeno ending stops the run)
+  std::uint64_t seed = 1;                ///< for order "random"
+  std::uint64_t max_collisions = 0;      ///< stop after this many; 0: no limit
+
+  // What may be skipped (each gives the same events on and off; see docs/architecture.md)
+  bool skip_closed_forms = true;    ///< use quadratics where a pair has them
+  bool skip_fields = true;          ///< brute force for outlines of few sites instead of a field
+  bool skip_broad_phase = true;     ///< test only pairs whose moving bounds meet
+  bool skip_shared_fields = true;   ///< one field a distinct shape, not one a body
+
+  FieldOptions field;
+
+  IntegratorOptions integrator_options() const { return {tolerance, absolute_tolerance, step}; }
+  /// True if usable; else writes which option, its value and what is allowed into *error.
+  bool is_valid(std::string* error) const;
+};
+
+/// A thing that can be chosen by name, with one line that says what it is.
+struct Choice {
+  std::string_view name;
+  std::string_view summary;
+};
+std::span<const Choice> policies();
+std::span<const Choice> orders();
+std::span<const Choice> responses();
+std::span<const Choice> detectors();
+
+}  // namespace brink

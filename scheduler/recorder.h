@@ -1,0 +1,63 @@
+#pragma once
+/// What a run tells the outside world, as it happens.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "brink/core/base/work.h"
+#include "brink/core/contacts/contact.h"
+#include "brink/core/world/world.h"
+
+namespace brink {
+
+enum class EventKind { collision, persist, lift, zeno, group, sleep, wake, undecided };
+const char* to_string(EventKind kind);
+
+struct Event {
+  std::uint64_t seq = 0;  ///< counts from 0
+  EventKind kind = EventKind::collision;
+  Contact contact;
+  double impulse_n = 0.0, impulse_t = 0.0;  ///< [N s]
+};
+
+/// How a run ended.
+enum class Termination {
+  not_run,
+  reached_end,  ///< the asked time
+  stopped,      ///< by a limit or by the user
+  failed,       ///< could not go on: see RunSummary::why
+};
+
+/// Starts as "not run", so that a stale summary cannot look good.
+struct RunSummary {
+  Termination termination = Termination::not_run;
+  std::string why;                ///< of stopped and failed: one sentence with the time and the bodies
+  double end_time = 0.0;          ///< [s]
+  std::uint64_t collisions = 0;
+  double wall_seconds = 0.0;      ///< the simulation alone
+  double energy_initial = 0.0, energy_final = 0.0;  ///< [J]
+  Vec2 momentum = Vec2::Zero();   ///< at the end [kg m/s]
+  double angular_momentum = 0.0;  ///< about the world's origin, at the end [kg m^2/s]
+  double max_overlap = 0.0;       ///< deepest gap below zero met at any event or frame [m], >= 0
+  std::uint64_t state_hash = 0;
+  WorkCounters work;
+
+  /// The run file's word: "reached_end", "stopped", "failed: why".
+  std::string termination_text() const;
+};
+
+/// Receives frames, events and checkpoints in time order. Calls come from the thread that runs the simulator.
+class Recorder {
+ public:
+  virtual ~Recorder() = default;
+  /// Every body's state at a frame time (t = 0, each frame interval, the end).
+  virtual void frame(double t, std::span<const BodyState> states) = 0;
+  virtual void event(const Event& event) = 0;
+  /// Everything needed to go on from t with the same bits (Simulator::restore). All before is complete.
+  virtual void checkpoint(double t, const std::vector<std::byte>& state) = 0;
+};
+
+}  // namespace brink
