@@ -1,0 +1,404 @@
+#include "brink/scenes/run_file.h"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "brink/core/base/error.h"
+#include "brink/core/base/hash.h"
+#include "brink/scenes/run_file_guard.h"
+#include "brink/scenes/shape_json.h"
+#include "brink/scenes/version.h"
+#include "brink/scenes/world_hash.h"
+
+namespace brink {
+namespace fs = std::filesystem;
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::int64_t kRowsPerCommit = 20'000;
+constexpr auto kTimePerCommit = std::chrono::milliseconds(250);
+constexpr int kBusyMilliseconds = 10'000;
+
+constexpr const char* kTables = R"(
+CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT);
+CREATE TABLE body (id INTEGER PRIMARY KEY, name TEXT, mass REAL, inertia REAL, shape TEXT);
+CREATE TABLE site (id INTEGER PRIMARY KEY, name TEXT, owner INTEGER, kind TEXT, shape TEXT);
+CREATE TABLE frame (t REAL, body INTEGER, x REAL, y REAL, angle REAL, vx REAL, vy REAL, omega REAL);
+CREATE TABLE event (seq INTEGER PRIMARY KEY, t REAL, kind TEXT, body INTEGER, other INTEGER, site INTEGER, px REAL, py REAL,
+  nx REAL, ny REAL, closing_speed REAL, impulse_n REAL, impulse_t REAL, gap REAL, outline_site INTEGER, sample INTEGER,
+  sample_on_body INTEGER);
+CREATE TABLE work (counter TEXT PRIMARY KEY, value REAL, unit TEXT);
+CREATE TABLE checkpoint (t REAL, state BLOB, frames INTEGER, events INTEGER, wall_seconds REAL);
+)";
+
+std::string hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
+std::string number(double x) { return fmt::format("{}", x); }
+
+/// An advisory lock on a folder; the system lets it go when the process ends, however it ends.
+class FolderLock {
+ public:
+  explicit FolderLock(const fs::path& dir) : fd_(::open(dir.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (fd_ < 0)
+      throw IoError(fmt::format("{}: cannot open the folder: {}", dir.string(), std::strerror(errno)));
+    if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) {
+      ::close(fd_);
+      throw IoError(
+          fmt::format("{}: another run is writing into this folder; choose another --out", dir.string()));
+    }
+  }
+  ~FolderLock() { ::close(fd_); }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int fd_;
+};
+
+fs::path made_folder(const fs::path& dir) {
+  std::error_code error;
+  fs::create_directories(dir, error);
+  if (error) throw IoError(fmt::format("{}: cannot make the folder: {}", dir.string(), error.message()));
+  return dir;
+}
+
+/// Moves DIR/run.db, with its write-ahead log, to the first free DIR/run-<n>.db.
+void keep_earlier(const fs::path& file) {
+  if (!fs::exists(file)) return;
+  int n = 1;
+  const auto kept = [&] { return file.parent_path() / fmt::format("run-{}.db", n); };
+  while (fs::exists(kept())) ++n;
+  std::error_code error;
+  const fs::path wal = file.string() + "-wal";
+  if (fs::exists(wal)) fs::rename(wal, kept().string() + "-wal", error);
+  if (!error) fs::rename(file, kept(), error);
+  if (error) throw IoError(fmt::format("{}: cannot be moved aside: {}", file.string(), error.message()));
+  fs::remove(file.string() + "-shm", error);
+}
+
+/// "solver.order was "index", is now "depth"" for every option that differs.
+std::string differences(const std::string& was, const std::string& is) {
+  const auto a = nlohmann::json::parse(was, nullptr, false), b = nlohmann::json::parse(is, nullptr, false);
+  if (a.is_discarded() || b.is_discarded()) return "the options differ";
+  const auto old_values = a.flatten(), new_values = b.flatten();
+  std::string text;
+  const auto value = [](const nlohmann::json& j, const std::string& key) {
+    return j.contains(key) ? j.at(key).dump() : std::string("absent");
+  };
+  auto all = old_values;
+  all.update(new_values);
+  for (const auto& [key, unused] : all.items()) {
+    const std::string before = value(old_values, key), now = value(new_values, key);
+    if (before != now)
+      text += fmt::format("{}{} was {}, is now {}", text.empty() ? "" : "; ", key, before, now);
+  }
+  return text.empty() ? "the options differ" : text;
+}
+
+}  // namespace
+
+struct RunFileRecorder::Impl {
+  fs::path file;
+  FolderLock lock;
+  SQLite::Database db;
+  std::optional<SQLite::Statement> insert_frame, insert_event;
+  std::optional<SQLite::Transaction> transaction;
+  std::int64_t rows_waiting = 0;
+  Clock::time_point waiting_since;
+  std::int64_t frames = 0, events = 0;  // rows in the file
+  double wall_before = 0.0;
+  Clock::time_point opened = Clock::now();
+  std::optional<ResumePoint> resume_point;
+
+  Impl(const fs::path& dir, Open how)
+      : file(made_folder(dir) / "run.db"), lock(dir), db(prepared(file, how), flags(), kBusyMilliseconds) {
+    db.exec("PRAGMA journal_mode = WAL");
+    db.exec(
+        "PRAGMA synchronous = NORMAL");  // a log that a crash of the machine cuts short is still consistent
+  }
+
+  static fs::path prepared(const fs::path& file, Open how) {
+    if (how == Open::fresh) keep_earlier(file);
+    return file;
+  }
+  static int flags() { return SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE; }
+
+  void begin() {
+    if (transaction) return;
+    transaction.emplace(db);
+    waiting_since = Clock::now();
+  }
+  void commit() {
+    if (!transaction) return;
+    transaction->commit();
+    transaction.reset();
+    rows_waiting = 0;
+  }
+  void commit_if_due() {
+    if (!transaction) return;
+    if (rows_waiting >= kRowsPerCommit || Clock::now() - waiting_since >= kTimePerCommit) commit();
+  }
+  double wall() const { return wall_before + std::chrono::duration<double>(Clock::now() - opened).count(); }
+
+  void set_meta(const std::string& key, const std::string& value) {
+    SQLite::Statement put(db, "INSERT OR REPLACE INTO meta VALUES (?, ?)");
+    put.bind(1, key);
+    put.bind(2, value);
+    put.exec();
+  }
+  std::string meta(const std::string& key) {
+    SQLite::Statement get(db, "SELECT value FROM meta WHERE key = ?");
+    get.bind(1, key);
+    return get.executeStep() ? get.getColumn(0).getString() : std::string();
+  }
+
+  void write_meta(const Scene& scene);
+  void write_bodies(const World& world);
+  void write_sites(const World& world);
+  void start_fresh(const Scene& scene);
+  void check_same(const Scene& scene);
+  void read_checkpoint();
+  void start_again(const Scene& scene);
+  void prepare_inserts();
+};
+
+void RunFileRecorder::Impl::write_meta(const Scene& scene) {
+  set_meta("schema_version", std::to_string(kRunFileSchema));
+  set_meta("brink_version", std::string(version()));
+  set_meta("scene", scene.path.string());
+  set_meta("title", scene.world.title);
+  set_meta("options", scene.options_json);
+  set_meta("world_hash", hex(world_hash(scene.world)));
+  set_meta("duration", number(scene.duration));
+  set_meta("termination", "running");
+  set_meta("end_time", "0");
+  set_meta("state_hash", "");
+  set_meta("wall_seconds", "0");
+}
+
+void RunFileRecorder::Impl::write_bodies(const World& world) {
+  SQLite::Statement put(db, "INSERT INTO body VALUES (?, ?, ?, ?, ?)");
+  const Outline* last = nullptr;  // copies share an outline: write its JSON once
+  std::string shape;
+  for (std::size_t id = 0; id < world.bodies.size(); ++id) {
+    const Body& body = world.bodies[id];
+    if (body.outline.get() != last) {
+      last = body.outline.get();
+      shape = outline_to_json(*last);
+    }
+    put.bind(1, static_cast<std::int64_t>(id));
+    put.bind(2, body.name);
+    put.bind(3, body.mass);
+    put.bind(4, body.inertia);
+    put.bind(5, shape);
+    put.exec();
+    put.reset();
+  }
+}
+
+void RunFileRecorder::Impl::write_sites(const World& world) {
+  SQLite::Statement put(db, "INSERT INTO site VALUES (?, ?, NULL, ?, ?)");
+  for (std::size_t id = 0; id < world.sites.size(); ++id) {
+    const FixedSite& site = world.sites[id];
+    put.bind(1, static_cast<std::int64_t>(id));
+    put.bind(2, site.name);
+    put.bind(3, site.kind);
+    put.bind(4, fixed_site_to_json(site));
+    put.exec();
+    put.reset();
+  }
+}
+
+void RunFileRecorder::Impl::start_fresh(const Scene& scene) {
+  begin();
+  db.exec(kTables);
+  write_meta(scene);
+  write_bodies(scene.world);
+  write_sites(scene.world);
+  commit();
+}
+
+void RunFileRecorder::Impl::check_same(const Scene& scene) {
+  if (meta("schema_version") != std::to_string(kRunFileSchema)) {
+    throw IoError(fmt::format("{}: schema_version '{}'; this program goes on with {} only", file.string(),
+                              meta("schema_version"), kRunFileSchema));
+  }
+  if (meta("brink_version") != version()) {
+    throw BadInput(fmt::format("{}: written by brink {}, this is {}: the bits could differ", file.string(),
+                               meta("brink_version"), version()));
+  }
+  if (const std::string was = meta("options"); was != scene.options_json) {
+    throw BadInput(fmt::format("{}: --resume needs the options it was started with: {}", file.string(),
+                               differences(was, scene.options_json)));
+  }
+  if (const std::string was = meta("world_hash"), is = hex(world_hash(scene.world)); was != is) {
+    throw BadInput(
+        fmt::format("{}: --resume needs the scene it was started with: bodies, sites, materials or forces of "
+                    "{} differ (hash was {}, is now {})",
+                    file.string(), scene.path.string(), was, is));
+  }
+}
+
+void RunFileRecorder::Impl::read_checkpoint() {
+  SQLite::Statement get(
+      db, "SELECT t, state, frames, events, wall_seconds FROM checkpoint ORDER BY rowid DESC LIMIT 1");
+  if (!get.executeStep()) return;
+  ResumePoint point;
+  point.t = get.getColumn(0).getDouble();
+  const auto blob = get.getColumn(1);
+  const auto* bytes = static_cast<const std::byte*>(blob.getBlob());
+  point.state.assign(bytes, bytes + blob.getBytes());
+  point.frames = get.getColumn(2).getInt64();
+  point.events = get.getColumn(3).getInt64();
+  point.wall_seconds = get.getColumn(4).getDouble();
+  resume_point = std::move(point);
+}
+
+void RunFileRecorder::Impl::start_again(const Scene& scene) {
+  if (!db.tableExists("meta")) return start_fresh(scene);
+  check_same(scene);
+  read_checkpoint();
+  if (resume_point) {
+    frames = resume_point->frames;
+    events = resume_point->events;
+    wall_before = resume_point->wall_seconds;
+  }
+  begin();
+  db.exec(fmt::format("DELETE FROM frame WHERE rowid > {}", frames));
+  db.exec(fmt::format("DELETE FROM event WHERE rowid >= {}", events));  // seq counts from 0
+  db.exec("DELETE FROM work");
+  set_meta("termination", "running");
+  set_meta("duration", number(scene.duration));
+  commit();
+}
+
+void RunFileRecorder::Impl::prepare_inserts() {
+  insert_frame.emplace(db, "INSERT INTO frame VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+  insert_event.emplace(db, "INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+}
+
+RunFileRecorder::RunFileRecorder(const fs::path& dir, const Scene& scene, Open how) {
+  guarded(dir / "run.db", [&] {
+    impl_ = std::make_unique<Impl>(dir, how);
+    if (how == Open::fresh) {
+      impl_->start_fresh(scene);
+    } else {
+      impl_->start_again(scene);
+    }
+    impl_->prepare_inserts();
+  });
+}
+
+RunFileRecorder::~RunFileRecorder() {
+  try {
+    impl_->commit();
+  } catch (const std::exception&) {
+    // the file stays at its last commit, which is whole; a destructor has nobody to tell
+  }
+}
+
+const fs::path& RunFileRecorder::file() const { return impl_->file; }
+const std::optional<ResumePoint>& RunFileRecorder::resume_point() const { return impl_->resume_point; }
+
+void RunFileRecorder::frame(double t, std::span<const BodyState> states) {
+  guarded(impl_->file, [&] {
+    impl_->begin();
+    SQLite::Statement& put = *impl_->insert_frame;
+    put.bind(1, t);
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      const BodyState& s = states[k];
+      put.bind(2, static_cast<std::int64_t>(k));
+      put.bind(3, s.pose.position.x());
+      put.bind(4, s.pose.position.y());
+      put.bind(5, s.pose.angle);
+      put.bind(6, s.twist.velocity.x());
+      put.bind(7, s.twist.velocity.y());
+      put.bind(8, s.twist.omega);
+      put.exec();
+      put.reset();
+    }
+    impl_->frames += static_cast<std::int64_t>(states.size());
+    impl_->rows_waiting += static_cast<std::int64_t>(states.size());
+    impl_->commit_if_due();
+  });
+}
+
+void RunFileRecorder::event(const Event& event) {
+  guarded(impl_->file, [&] {
+    impl_->begin();
+    const Contact& c = event.contact;
+    SQLite::Statement& put = *impl_->insert_event;
+    const auto id_or_null = [&put](int column, int id) { id < 0 ? put.bind(column) : put.bind(column, id); };
+    put.bind(1, static_cast<std::int64_t>(event.seq));
+    put.bind(2, c.time);
+    put.bindNoCopy(3, to_string(event.kind));
+    id_or_null(4, c.body);
+    id_or_null(5, c.other_body);
+    id_or_null(6, c.other_site);
+    const double reals[] = {c.point.x(),     c.point.y(),     c.normal.x(),    c.normal.y(),
+                            c.closing_speed, event.impulse_n, event.impulse_t, c.gap};
+    for (int i = 0; i < 8; ++i) put.bind(7 + i, reals[i]);
+    id_or_null(15, c.site);
+    id_or_null(16, c.sample);
+    put.bind(17, c.sample_on_body ? 1 : 0);
+    put.exec();
+    put.reset();
+    impl_->events = static_cast<std::int64_t>(event.seq) + 1;
+    ++impl_->rows_waiting;
+    impl_->commit_if_due();
+  });
+}
+
+void RunFileRecorder::checkpoint(double t, const std::vector<std::byte>& state) {
+  guarded(impl_->file, [&] {
+    impl_->begin();
+    impl_->db.exec("DELETE FROM checkpoint");
+    SQLite::Statement put(impl_->db, "INSERT INTO checkpoint VALUES (?, ?, ?, ?, ?)");
+    put.bind(1, t);
+    put.bindNoCopy(2, state.data(), static_cast<int>(state.size()));
+    put.bind(3, impl_->frames);
+    put.bind(4, impl_->events);
+    put.bind(5, impl_->wall());
+    put.exec();
+    impl_->set_meta("end_time", number(t));
+    impl_->set_meta("wall_seconds", number(impl_->wall()));
+    impl_->commit();
+  });
+}
+
+void RunFileRecorder::poll() {
+  guarded(impl_->file, [&] { impl_->commit_if_due(); });
+}
+
+void RunFileRecorder::finish(const RunSummary& summary, const std::string& summary_json) {
+  guarded(impl_->file, [&] {
+    impl_->begin();
+    impl_->set_meta("termination", summary.termination_text());
+    impl_->set_meta("end_time", number(summary.end_time));
+    impl_->set_meta("state_hash", hex(summary.state_hash));
+    impl_->set_meta("wall_seconds", number(summary.wall_seconds));
+    impl_->set_meta("summary", summary_json);
+    SQLite::Statement put(impl_->db, "INSERT OR REPLACE INTO work VALUES (?, ?, ?)");
+    WorkCounters::for_each(summary.work, [&](const char* name, auto value, const char* unit) {
+      put.bind(1, name);
+      put.bind(2, static_cast<double>(value));
+      put.bind(3, unit);
+      put.exec();
+      put.reset();
+    });
+    impl_->commit();
+    impl_->insert_frame.reset();
+    impl_->insert_event.reset();
+    impl_->db.tryExec(
+        "PRAGMA journal_mode = DELETE");  // one plain file; not possible while somebody reads it
+  });
+}
+
+}  // namespace brink

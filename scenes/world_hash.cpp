@@ -1,0 +1,84 @@
+#include "brink/scenes/world_hash.h"
+
+#include <string_view>
+
+#include "brink/core/base/hash.h"
+
+namespace brink {
+namespace {
+
+/// Adds the parts of a world to one state hash, in a fixed order.
+class WorldHasher {
+ public:
+  template <class... T>
+  void add(const T&... parts) {
+    (one(parts), ...);
+  }
+  std::uint64_t value() const { return hash_.value(); }
+
+ private:
+  void one(double x) { hash_.add(x); }
+  void one(const Vec2& v) { hash_.add(v); }
+  void one(const BodyState& s) { hash_.add(s); }
+  void one(int n) { hash_.add(static_cast<std::uint64_t>(n)); }
+  void one(bool b) { hash_.add(std::uint64_t{b}); }
+  void one(std::string_view text) {
+    hash_.add(static_cast<std::uint64_t>(text.size()));
+    for (const char c : text) hash_.add(static_cast<std::uint64_t>(c));
+  }
+  void one(const std::vector<int>& ids) {
+    one(static_cast<int>(ids.size()));
+    for (const int id : ids) one(id);
+  }
+  void one(const Pose& p) { add(p.position, p.angle); }
+  void one(const std::optional<Formula>& f) { one(f ? std::string_view(f->text()) : std::string_view()); }
+
+  void one(const Material& m) { add(m.restitution, m.friction, m.tangential_restitution, m.slip, m.spin); }
+  void one(const Site& s) {
+    add(static_cast<int>(s.kind), s.solid, s.radius, s.a, s.b, s.center, s.arc_radius, s.sweep);
+  }
+  void one(const Outline& o) {
+    add(o.solid, o.container, static_cast<int>(o.sites.size()));
+    for (const Site& s : o.sites) one(s);
+  }
+  void one(const Body& b) {
+    add(*b.outline, b.mass, b.inertia, b.lock_x, b.lock_y, b.lock_angle, b.material, b.initial);
+    add(static_cast<int>(b.sampling.kind), b.sampling.spacing, b.sampling.count);
+  }
+  void one(const std::monostate&) {}
+  void one(const ConstantMotion& m) { add(m.twist.velocity, m.twist.omega); }
+  void one(const FormulaMotion& m) { add(m.x, m.y, m.angle); }
+  void one(const FixedSite& s) {
+    add(*s.outline, s.pose, s.material, static_cast<int>(s.motion.index()));
+    std::visit([this](const auto& motion) { one(motion); }, s.motion);
+  }
+  void one(const SpringForce& f) {
+    add(f.body_a, f.body_b, f.at_a, f.at_b, f.stiffness, f.damping, f.rest_length);
+  }
+  void one(const DragForce& f) { add(f.bodies, f.linear, f.quadratic, f.angular); }
+  void one(const AttractForce& f) { add(f.bodies, f.center, f.strength, f.power); }
+  void one(const ThrustForce& f) { add(f.body, f.force, f.torque, f.from, f.to); }
+  void one(const FormulaForce& f) { add(f.bodies, f.fx, f.fy, f.torque); }
+  void one(const Force& f) {
+    one(static_cast<int>(f.index()));
+    std::visit([this](const auto& force) { one(force); }, f);
+  }
+
+  StateHash hash_;
+};
+
+}  // namespace
+
+std::uint64_t world_hash(const World& world) {
+  WorldHasher h;
+  h.add(world.gravity, static_cast<int>(world.restitution_rule), static_cast<int>(world.friction_rule));
+  h.add(static_cast<int>(world.materials.size()), static_cast<int>(world.bodies.size()));
+  h.add(static_cast<int>(world.sites.size()), static_cast<int>(world.forces.size()));
+  for (const Material& m : world.materials) h.add(m);
+  for (const Body& b : world.bodies) h.add(b);
+  for (const FixedSite& s : world.sites) h.add(s);
+  for (const Force& f : world.forces) h.add(f);
+  return h.value();
+}
+
+}  // namespace brink

@@ -1,0 +1,12 @@
+#pragma once
+#include <cstdint>
+
+#include "brink/core/world/world.h"
+
+namespace brink {
+
+/// Hash of everything in a world that decides its motion: shapes, masses, initial states, materials, sites,
+/// forces. Titles and names are left out. Two scenes with the same hash and the same options run alike.
+std::uint64_t world_hash(const World& world);
+
+}  // namespace brink
