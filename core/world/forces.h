@@ -1,5 +1,6 @@
 #pragma once
-/// Forces as equations of motion: which bodies they couple, the accelerations they give, the energy they store.
+/// Forces as equations of motion: which bodies they couple, the accelerations they give, the energy they
+/// store.
 
 #include <memory>
 #include <vector>
@@ -15,8 +16,9 @@ struct Component {
   std::shared_ptr<const Dynamics> dynamics;  ///< over `bodies`, in that order
 };
 
-/// Splits the world into components: bodies joined by a spring are in one; all else are alone. `world` must outlive
-/// the dynamics. Uniform gravity with constant thrusts is Dynamics::constant(); with linear drag it is linear_drag().
+/// Splits the world into components: bodies joined by a spring are in one; all else are alone. `world` must
+/// outlive the dynamics. Uniform gravity with constant thrusts is Dynamics::constant(); with linear drag it
+/// is linear_drag().
 std::vector<Component> make_components(const World& world);
 
 /// Kinetic energy of all bodies, plus the potential of gravity, springs and attractors at these states [J].
@@ -28,8 +30,8 @@ struct Momentum {
 };
 Momentum total_momentum(const World& world, std::span<const BodyState> states);
 
-/// True if every force stores energy (no drag, damping, thrust or formula): total_energy is then conserved between
-/// elastic frictionless collisions with sites that do not move.
+/// True if every force stores energy (no drag, damping, thrust or formula): total_energy is then conserved
+/// between elastic frictionless collisions with sites that do not move.
 bool conservative(const World& world);
 
 }  // namespace brink

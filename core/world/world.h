@@ -1,5 +1,6 @@
 #pragma once
-/// What exists: bodies, fixed sites, materials and forces. Plain definitions, checked once, never mutated by a run.
+/// What exists: bodies, fixed sites, materials and forces. Plain definitions, checked once, never mutated by
+/// a run.
 
 #include <limits>
 #include <memory>
@@ -39,7 +40,7 @@ struct Body {
   double mass = 1.0;                       ///< [kg], > 0
   double inertia = 1.0;                    ///< about the centre of mass [kg m^2], > 0
   bool lock_x = false, lock_y = false, lock_angle = false;  ///< held coordinates: infinite mass there
-  int material = 0;                        ///< index into World::materials
+  int material = 0;                                         ///< index into World::materials
   BodyState initial;
   Sampling sampling;
 
@@ -67,15 +68,16 @@ struct FixedSite {
   std::variant<std::monostate, ConstantMotion, FormulaMotion> motion;
 };
 
-/// Linear spring with damper between two bodies, or a body and an anchor. Conservative part: stiffness.
+/// Linear spring with damper between two bodies, or a body and an anchor. Conservative part: stiffness. Where
+/// its ends meet it has no direction: the force there is 0.
 struct SpringForce {
   int body_a = 0;
-  int body_b = -1;             ///< -1: anchored
-  Vec2 at_a = Vec2::Zero();    ///< where it is attached, in body a's frame [m]
-  Vec2 at_b = Vec2::Zero();    ///< in body b's frame; or the anchor in the world
-  double stiffness = 0.0;      ///< [N/m]
-  double damping = 0.0;        ///< [N s/m], along the spring
-  double rest_length = 0.0;    ///< [m]
+  int body_b = -1;           ///< -1: anchored
+  Vec2 at_a = Vec2::Zero();  ///< where it is attached, in body a's frame [m]
+  Vec2 at_b = Vec2::Zero();  ///< in body b's frame; or the anchor in the world
+  double stiffness = 0.0;    ///< [N/m]
+  double damping = 0.0;      ///< [N s/m], along the spring
+  double rest_length = 0.0;  ///< [m]
 };
 /// F = -linear v - quadratic |v| v, torque = -angular omega, on each of `bodies`.
 struct DragForce {
@@ -84,7 +86,8 @@ struct DragForce {
   double quadratic = 0.0;  ///< [N s^2/m^2]
   double angular = 0.0;    ///< [N m s]
 };
-/// Central force on every one of `bodies`: magnitude strength * m * r^power towards the centre (power -2: gravity).
+/// Central force on every one of `bodies`: magnitude strength * m * r^power towards the centre (power -2:
+/// gravity). At the centre itself: 0 for power >= 0; infinite below, which ends an integration.
 struct AttractForce {
   std::vector<int> bodies;
   Vec2 center = Vec2::Zero();
@@ -122,11 +125,13 @@ struct World {
   /// @throws BadInput: the first fault, naming the body, site or force, the value and what is allowed.
   void check() const;
 
-  /// The scene's length [m], by which relative tolerances are scaled: the largest body diameter.
+  /// The scene's length [m], by which relative tolerances are scaled: the largest body diameter; where every
+  /// body is a bare point, the largest site diameter; where that is 0 too, 1 m. Always > 0.
   double length() const;
 };
 
-/// The material of a pair, by the world's rules.
+/// The material of a pair: restitution and friction by the world's rules, the larger tangential restitution,
+/// the products of slip and of spin. Symmetric in its arguments but for the name.
 Material combined(const World& world, int material_a, int material_b);
 
 }  // namespace brink

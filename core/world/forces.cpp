@@ -1,0 +1,248 @@
+#include "brink/core/world/forces.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace brink {
+
+namespace {
+
+/// The accelerations of one component. Forces on single bodies are pointers into the world; springs are kept
+/// with their bodies renumbered to places in the component.
+class ForceDynamics final : public Dynamics {
+ public:
+  explicit ForceDynamics(const Vec2& gravity) : gravity_(gravity) {}
+
+  /// Adds a body; returns its place.
+  int join(const Body& body) {
+    bodies_.push_back(&body);
+    return size() - 1;
+  }
+  void take(const SpringForce& spring) { springs_.push_back(spring); }
+  void take(int place, const DragForce& drag) { drags_.push_back({place, &drag}); }
+  void take(int place, const AttractForce& attract) { attracts_.push_back({place, &attract}); }
+  void take(int place, const ThrustForce& thrust) { thrusts_.push_back({place, &thrust}); }
+  void take(int place, const FormulaForce& formula) { formulas_.push_back({place, &formula}); }
+
+  int size() const override { return static_cast<int>(bodies_.size()); }
+  void accelerations(double t, std::span<const BodyState> states, std::span<Acceleration> out) const override;
+  double next_break(double t) const override;
+  bool constant() const override {
+    return springs_.empty() && drags_.empty() && attracts_.empty() && formulas_.empty();
+  }
+  LinearDrag linear_drag(double t) const override;
+
+ private:
+  template <class Force>
+  struct On {  ///< a force on the body at `place`
+    int place;
+    const Force* force;
+  };
+  struct Load {  ///< force and torque on one body
+    Vec2 force = Vec2::Zero();
+    double torque = 0.0;
+  };
+
+  void add_springs(std::span<const BodyState> states, std::span<Acceleration> out) const;
+  void add_drags(std::span<const BodyState> states, std::span<Acceleration> out) const;
+  void add_attractors(std::span<const BodyState> states, std::span<Acceleration> out) const;
+  void add_thrusts(double t, std::span<Acceleration> out) const;
+  void add_formulas(double t, std::span<const BodyState> states, std::span<Acceleration> out) const;
+  void add(int place, const Load& load, std::span<Acceleration> out) const;
+  void hold_locked(std::span<Acceleration> out) const;
+
+  Vec2 gravity_;
+  std::vector<const Body*> bodies_;
+  std::vector<SpringForce> springs_;
+  std::vector<On<DragForce>> drags_;
+  std::vector<On<AttractForce>> attracts_;
+  std::vector<On<ThrustForce>> thrusts_;
+  std::vector<On<FormulaForce>> formulas_;
+};
+
+void ForceDynamics::accelerations(double t, std::span<const BodyState> states,
+                                  std::span<Acceleration> out) const {
+  for (Acceleration& a : out) a = {gravity_, 0.0};
+  add_springs(states, out);
+  add_drags(states, out);
+  add_attractors(states, out);
+  add_thrusts(t, out);
+  add_formulas(t, states, out);
+  hold_locked(out);
+}
+
+void ForceDynamics::add(int place, const Load& load, std::span<Acceleration> out) const {
+  out[place].linear += load.force / bodies_[place]->mass;
+  out[place].angular += load.torque / bodies_[place]->inertia;
+}
+
+void ForceDynamics::hold_locked(std::span<Acceleration> out) const {
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    if (bodies_[k]->lock_x) out[k].linear.x() = 0.0;
+    if (bodies_[k]->lock_y) out[k].linear.y() = 0.0;
+    if (bodies_[k]->lock_angle) out[k].angular = 0.0;
+  }
+}
+
+void ForceDynamics::add_springs(std::span<const BodyState> states, std::span<Acceleration> out) const {
+  for (const SpringForce& s : springs_) {
+    const BodyState& a = states[s.body_a];
+    const Vec2 arm_a = Frame(a.pose).direction_to_world(s.at_a);
+    Vec2 arm_b = Vec2::Zero(), end_b = s.at_b, velocity_b = Vec2::Zero();
+    if (s.body_b >= 0) {
+      const BodyState& b = states[s.body_b];
+      arm_b = Frame(b.pose).direction_to_world(s.at_b);
+      end_b = b.pose.position + arm_b;
+      velocity_b = b.twist.at(arm_b);
+    }
+    const Vec2 span = end_b - (a.pose.position + arm_a);
+    const double length = span.norm();
+    if (length == 0.0) continue;
+    const Vec2 along = span / length;
+    const double pull =
+        s.stiffness * (length - s.rest_length) + s.damping * along.dot(velocity_b - a.twist.at(arm_a));
+    const Vec2 force = pull * along;
+    add(s.body_a, {force, cross(arm_a, force)}, out);
+    if (s.body_b >= 0) add(s.body_b, {-force, -cross(arm_b, force)}, out);
+  }
+}
+
+void ForceDynamics::add_drags(std::span<const BodyState> states, std::span<Acceleration> out) const {
+  for (const auto& [place, drag] : drags_) {
+    const Twist& twist = states[place].twist;
+    const double factor = drag->linear + drag->quadratic * twist.velocity.norm();
+    add(place, {-factor * twist.velocity, -drag->angular * twist.omega}, out);
+  }
+}
+
+void ForceDynamics::add_attractors(std::span<const BodyState> states, std::span<Acceleration> out) const {
+  for (const auto& [place, attract] : attracts_) {
+    const Vec2 inward = attract->center - states[place].pose.position;
+    const double r = inward.norm();
+    if (r == 0.0 && attract->power >= 0.0) continue;
+    out[place].linear += attract->strength * std::pow(r, attract->power - 1.0) * inward;
+  }
+}
+
+void ForceDynamics::add_thrusts(double t, std::span<Acceleration> out) const {
+  for (const auto& [place, thrust] : thrusts_)
+    if (t >= thrust->from && t < thrust->to) add(place, {thrust->force, thrust->torque}, out);
+}
+
+void ForceDynamics::add_formulas(double t, std::span<const BodyState> states,
+                                 std::span<Acceleration> out) const {
+  for (const auto& [place, f] : formulas_) {
+    const auto& [pose, twist] = states[place];
+    // in the order of force_formula_variables()
+    const std::array<double, 8> values{t,           pose.position.x(),   pose.position.y(),
+                                       pose.angle,  twist.velocity.x(),  twist.velocity.y(),
+                                       twist.omega, bodies_[place]->mass};
+    Load load;
+    if (f->fx) load.force.x() = (*f->fx)(values);
+    if (f->fy) load.force.y() = (*f->fy)(values);
+    if (f->torque) load.torque = (*f->torque)(values);
+    add(place, load, out);
+  }
+}
+
+double ForceDynamics::next_break(double t) const {
+  double next = std::numeric_limits<double>::infinity();
+  for (const auto& [place, thrust] : thrusts_) {
+    if (thrust->from > t) next = std::min(next, thrust->from);
+    if (thrust->to > t) next = std::min(next, thrust->to);
+  }
+  return next;
+}
+
+/// One body, no spring, attractor or formula, and every drag linear. A held coordinate has no drive and, as
+/// World::check demands, no velocity: the closed form keeps it still.
+Dynamics::LinearDrag ForceDynamics::linear_drag(double t) const {
+  LinearDrag form;
+  if (size() != 1 || !springs_.empty() || !attracts_.empty() || !formulas_.empty()) return form;
+  for (const auto& [place, drag] : drags_) {
+    if (drag->quadratic != 0.0) return {};
+    form.linear += drag->linear / bodies_[place]->mass;
+    form.angular += drag->angular / bodies_[place]->inertia;
+  }
+  const BodyState at_rest;
+  accelerations(t, {&at_rest, 1}, {&form.drive, 1});
+  form.valid = true;
+  return form;
+}
+
+/// Disjoint sets with path halving (Tarjan & van Leeuwen 1984); a set is named by its smallest member.
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int find(int k) {
+    while (parent_[k] != k) k = parent_[k] = parent_[parent_[k]];
+    return k;
+  }
+  void join(int a, int b) {
+    const auto [low, high] = std::minmax({find(a), find(b)});
+    parent_[high] = low;
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+/// The dynamics under construction, and where each body of the world is in them.
+struct Assembly {
+  struct Place {
+    ForceDynamics* dynamics;
+    int place;
+  };
+  std::vector<Place> of_body;
+
+  void give(const SpringForce& spring) {
+    SpringForce placed = spring;
+    placed.body_a = of_body[spring.body_a].place;
+    if (spring.body_b >= 0) placed.body_b = of_body[spring.body_b].place;
+    of_body[spring.body_a].dynamics->take(placed);
+  }
+  void give(const ThrustForce& thrust) {
+    of_body[thrust.body].dynamics->take(of_body[thrust.body].place, thrust);
+  }
+  template <class Force>
+  void give(const Force& force) {
+    for (int body : force.bodies) of_body[body].dynamics->take(of_body[body].place, force);
+  }
+};
+
+DisjointSets coupled_bodies(const World& world) {
+  DisjointSets sets(world.bodies.size());
+  for (const Force& force : world.forces)
+    if (const auto* spring = std::get_if<SpringForce>(&force); spring && spring->body_b >= 0)
+      sets.join(spring->body_a, spring->body_b);
+  return sets;
+}
+
+}  // namespace
+
+std::vector<Component> make_components(const World& world) {
+  const int count = static_cast<int>(world.bodies.size());
+  DisjointSets sets = coupled_bodies(world);
+  std::vector<Component> components;
+  std::vector<int> component_of(world.bodies.size(), -1);
+  Assembly assembly;
+  for (int k = 0; k < count; ++k) {
+    const int root = sets.find(k);  // the smallest of its set, so met first
+    if (root == k) {
+      component_of[k] = static_cast<int>(components.size());
+      auto dynamics = std::make_shared<ForceDynamics>(world.gravity);
+      assembly.of_body.push_back({dynamics.get(), dynamics->join(world.bodies[k])});
+      components.push_back({{k}, std::move(dynamics)});
+      continue;
+    }
+    ForceDynamics* dynamics = assembly.of_body[root].dynamics;
+    assembly.of_body.push_back({dynamics, dynamics->join(world.bodies[k])});
+    components[component_of[root]].bodies.push_back(k);
+  }
+  for (const Force& force : world.forces) std::visit([&](const auto& f) { assembly.give(f); }, force);
+  return components;
+}
+
+}  // namespace brink

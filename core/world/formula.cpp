@@ -1,0 +1,107 @@
+#include "brink/core/world/formula.h"
+
+#include <muParser.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "brink/core/base/error.h"
+
+namespace brink {
+
+namespace {
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? "none" : text;
+}
+
+[[noreturn]] void fail(const std::string& text, int position, const std::string& what,
+                       const std::vector<std::string>& variables) {
+  std::string message = "formula \"" + text + "\": ";
+  if (position >= 0) message += "at character " + std::to_string(position + 1) + ": ";
+  throw BadInput(message + what + "; allowed variables: " + joined(variables) + "; constants: pi, e");
+}
+
+/// Position of a single '=' (an assignment, which would change a variable), or -1.
+int find_assignment(const std::string& text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '=') continue;
+    if (i + 1 < text.size() && text[i + 1] == '=') {
+      ++i;
+      continue;
+    }
+    if (i > 0 && (text[i - 1] == '<' || text[i - 1] == '>' || text[i - 1] == '!')) continue;
+    return static_cast<int>(i);
+  }
+  return -1;
+}
+
+std::string explain(const mu::Parser::exception_type& e) {
+  if (e.GetCode() == mu::ecUNASSIGNABLE_TOKEN) return "unknown name \"" + e.GetToken() + "\"";
+  std::string message = e.GetMsg();
+  while (!message.empty() && (message.back() == '.' || message.back() == '\n')) message.pop_back();
+  return message.empty() ? "cannot be understood" : message;
+}
+
+}  // namespace
+
+/// The parser points into `values`, so a Compiled never moves and is never shared.
+struct Formula::Compiled {
+  std::string text;
+  std::vector<std::string> variables;
+  std::vector<double> values;
+  mu::Parser parser;
+  std::mutex busy;  ///< the parser reads `values` where they are: one evaluation at a time
+
+  Compiled(std::string formula, std::vector<std::string> names)
+      : text(std::move(formula)), variables(std::move(names)), values(variables.size(), 0.0) {
+    if (text.find_first_not_of(" \t\r\n") == std::string::npos) fail(text, -1, "is empty", variables);
+    const int assignment = find_assignment(text);
+    if (assignment >= 0) fail(text, assignment, "\"=\" assigns; compare with \"==\"", variables);
+    compile();
+  }
+
+  void compile() {
+    try {
+      parser.ClearConst();
+      parser.DefineConst("pi", 3.14159265358979323846);
+      parser.DefineConst("e", 2.71828182845904523536);
+      for (std::size_t i = 0; i < variables.size(); ++i) parser.DefineVar(variables[i], &values[i]);
+      parser.SetExpr(text);
+      parser.Eval();
+    } catch (const mu::Parser::exception_type& error) {
+      fail(text, error.GetPos(), explain(error), variables);
+    }
+    if (parser.GetNumResults() != 1) fail(text, -1, "gives more than one value", variables);
+  }
+};
+
+Formula::Formula(std::string text, std::vector<std::string> variables)
+    : compiled_(std::make_unique<Compiled>(std::move(text), std::move(variables))) {}
+Formula::Formula(const Formula& other)
+    : compiled_(std::make_unique<Compiled>(other.compiled_->text, other.compiled_->variables)) {}
+Formula& Formula::operator=(const Formula& other) { return *this = Formula(other); }
+Formula::Formula(Formula&&) noexcept = default;
+Formula& Formula::operator=(Formula&&) noexcept = default;
+Formula::~Formula() = default;
+
+double Formula::operator()(std::span<const double> values) const {
+  Compiled& c = *compiled_;
+  if (values.size() != c.values.size())
+    throw BadInput("formula \"" + c.text + "\": " + std::to_string(values.size()) + " values given for " +
+                   std::to_string(c.values.size()) + " variables (" + joined(c.variables) + ")");
+  const std::lock_guard<std::mutex> lock(c.busy);
+  std::copy(values.begin(), values.end(), c.values.begin());
+  try {
+    return c.parser.Eval();
+  } catch (const mu::Parser::exception_type&) {  // a domain error that muParser reports instead of NaN
+    return std::nan("");
+  }
+}
+
+const std::string& Formula::text() const { return compiled_->text; }
+
+}  // namespace brink

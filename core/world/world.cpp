@@ -1,0 +1,56 @@
+#include "brink/core/world/world.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace brink {
+
+namespace {
+
+double combine(Combine rule, double a, double b) {
+  switch (rule) {
+    case Combine::max:
+      return std::max(a, b);
+    case Combine::min:
+      return std::min(a, b);
+    case Combine::mean:
+      return 0.5 * (a + b);
+    case Combine::geometric_mean:
+      return std::sqrt(a * b);
+    case Combine::product:
+      break;
+  }
+  return a * b;
+}
+
+}  // namespace
+
+const std::vector<std::string>& force_formula_variables() {
+  static const std::vector<std::string> names{"t", "x", "y", "angle", "vx", "vy", "omega", "m"};
+  return names;
+}
+
+double World::length() const {
+  double largest = 0.0;
+  for (const Body& body : bodies)
+    if (body.outline) largest = std::max(largest, 2.0 * body.outline->bounding_radius);
+  if (largest > 0.0) return largest;
+  for (const FixedSite& site : sites)
+    if (site.outline) largest = std::max(largest, 2.0 * site.outline->bounding_radius);
+  return largest > 0.0 ? largest : 1.0;
+}
+
+Material combined(const World& world, int material_a, int material_b) {
+  const Material& a = world.materials.at(material_a);
+  const Material& b = world.materials.at(material_b);
+  Material pair;
+  pair.name = a.name == b.name ? a.name : a.name + "/" + b.name;
+  pair.restitution = combine(world.restitution_rule, a.restitution, b.restitution);
+  pair.friction = combine(world.friction_rule, a.friction, b.friction);
+  pair.tangential_restitution = std::max(a.tangential_restitution, b.tangential_restitution);
+  pair.slip = a.slip * b.slip;
+  pair.spin = a.spin * b.spin;
+  return pair;
+}
+
+}  // namespace brink

@@ -1,0 +1,206 @@
+/// World::check: every validation of the definitions, in the order in which a reader would meet them.
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+#include "brink/core/base/error.h"
+#include "brink/core/world/world.h"
+
+namespace brink {
+
+namespace {
+
+std::string text_of(double value) {
+  std::ostringstream out;
+  out.precision(17);
+  out << value;
+  std::ostringstream brief;
+  brief << value;
+  return std::stod(std::isfinite(value) ? brief.str() : "0") == value ? brief.str() : out.str();
+}
+
+/// Checks of one thing ("body \"ball\""): each throws BadInput unless its condition holds.
+struct Checker {
+  std::string subject;
+
+  [[noreturn]] void fail(const std::string& what) const { throw BadInput(subject + ": " + what); }
+  void require(bool ok, const char* parameter, double value, const char* allowed) const {
+    if (!ok) fail(std::string(parameter) + " is " + text_of(value) + "; allowed: " + allowed);
+  }
+  void finite(const char* parameter, double value) const {
+    require(std::isfinite(value), parameter, value, "finite numbers");
+  }
+  void finite(const char* parameter, const Vec2& v) const {
+    finite(parameter, v.x());
+    finite(parameter, v.y());
+  }
+  void positive(const char* parameter, double value) const {
+    require(std::isfinite(value) && value > 0.0, parameter, value, "finite numbers > 0");
+  }
+  void not_negative(const char* parameter, double value) const {
+    require(std::isfinite(value) && value >= 0.0, parameter, value, "finite numbers >= 0");
+  }
+  void between(const char* parameter, double value, double low, double high, const char* allowed) const {
+    require(value >= low && value <= high, parameter, value, allowed);
+  }
+  void index(const char* parameter, int value, std::size_t count) const {
+    if (value < 0 || static_cast<std::size_t>(value) >= count)
+      fail(std::string(parameter) + " is " + std::to_string(value) + "; allowed: 0 to " +
+           std::to_string(static_cast<long>(count) - 1));
+  }
+};
+
+std::string called(const char* kind, std::size_t index, const std::string& name) {
+  std::string text = kind;
+  text += ' ';
+  if (name.empty()) return text += std::to_string(index);
+  return text.append("\"").append(name).append("\"");
+}
+
+template <class Things>
+void check_names(const char* kind, const Things& things) {
+  std::set<std::string> seen;
+  for (const auto& thing : things)
+    if (!thing.name.empty() && !seen.insert(thing.name).second)
+      throw BadInput(std::string(kind) + " \"" + thing.name +
+                     "\": name is used twice; allowed: unique names");
+}
+
+void check_material(const Material& material, std::size_t i) {
+  const Checker check{called("material", i, material.name)};
+  check.between("restitution", material.restitution, 0.0, 1.0, "0 to 1");
+  check.not_negative("friction", material.friction);
+  check.between("tangential_restitution", material.tangential_restitution, -1.0, 1.0, "-1 to 1");
+  check.finite("slip", material.slip);
+  check.finite("spin", material.spin);
+}
+
+void check_outline(const Checker& check, const std::shared_ptr<const Outline>& outline) {
+  if (!outline || outline->sites.empty()) check.fail("has no outline; allowed: one with at least one site");
+}
+
+void check_sampling(const Checker& check, const Sampling& sampling) {
+  check.not_negative("sampling spacing", sampling.spacing);
+  check.require(sampling.count >= 0, "sampling count", sampling.count, "integers >= 0");
+}
+
+void check_locks(const Checker& check, const Body& body) {
+  const Twist& twist = body.initial.twist;
+  const auto held = [&](bool lock, const char* parameter, double value) {
+    check.require(!lock || value == 0.0, parameter, value, "0, as lock holds this coordinate");
+  };
+  held(body.lock_x, "velocity in x", twist.velocity.x());
+  held(body.lock_y, "velocity in y", twist.velocity.y());
+  held(body.lock_angle, "angular_velocity", twist.omega);
+}
+
+void check_body(const World& world, const Body& body, std::size_t i) {
+  const Checker check{called("body", i, body.name)};
+  check_outline(check, body.outline);
+  if (body.outline->container) check.fail("is a container; allowed: containers are fixed sites only");
+  check.positive("mass", body.mass);
+  check.positive("inertia", body.inertia);
+  check.index("material", body.material, world.materials.size());
+  check.finite("position", body.initial.pose.position);
+  check.finite("angle", body.initial.pose.angle);
+  check.finite("velocity", body.initial.twist.velocity);
+  check.finite("angular_velocity", body.initial.twist.omega);
+  check_locks(check, body);
+  check_sampling(check, body.sampling);
+}
+
+void check_motion(const Checker& check, const ConstantMotion& motion) {
+  check.finite("motion velocity", motion.twist.velocity);
+  check.finite("motion angular_velocity", motion.twist.omega);
+}
+void check_motion(const Checker& check, const FormulaMotion& motion) {
+  const auto starts = [&](const char* parameter, const std::optional<Formula>& formula) {
+    if (!formula) return;
+    const double t = 0.0;
+    const double value = (*formula)({&t, 1});
+    if (!std::isfinite(value))
+      check.fail(std::string(parameter) + " = \"" + formula->text() + "\" is " + text_of(value) +
+                 " at t = 0; allowed: formulas in t that are finite throughout the run");
+  };
+  starts("motion x", motion.x);
+  starts("motion y", motion.y);
+  starts("motion angle", motion.angle);
+}
+void check_motion(const Checker&, std::monostate) {}
+
+void check_site(const World& world, const FixedSite& site, std::size_t i) {
+  const Checker check{called("site", i, site.name)};
+  check_outline(check, site.outline);
+  check.index("material", site.material, world.materials.size());
+  check.finite("position", site.pose.position);
+  check.finite("angle", site.pose.angle);
+  std::visit([&](const auto& motion) { check_motion(check, motion); }, site.motion);
+}
+
+void check_targets(const Checker& check, const std::vector<int>& bodies, std::size_t count) {
+  std::set<int> seen;
+  for (int body : bodies) {
+    check.index("a body of bodies", body, count);
+    if (!seen.insert(body).second)
+      check.fail("bodies names body " + std::to_string(body) + " twice; allowed: once each");
+  }
+}
+
+void check_force(const World& world, const SpringForce& spring, Checker check) {
+  check.subject += " (spring)";
+  const std::size_t count = world.bodies.size();
+  check.index("body_a", spring.body_a, count);
+  if (spring.body_b != -1) check.index("body_b (-1: an anchor)", spring.body_b, count);
+  if (spring.body_a == spring.body_b)
+    check.fail("joins a body to itself; allowed: two bodies, or one and an anchor");
+  check.finite("at_a", spring.at_a);
+  check.finite("at_b", spring.at_b);
+  check.not_negative("stiffness", spring.stiffness);
+  check.not_negative("damping", spring.damping);
+  check.not_negative("rest_length", spring.rest_length);
+}
+void check_force(const World& world, const DragForce& drag, Checker check) {
+  check.subject += " (drag)";
+  check_targets(check, drag.bodies, world.bodies.size());
+  check.not_negative("linear", drag.linear);
+  check.not_negative("quadratic", drag.quadratic);
+  check.not_negative("angular", drag.angular);
+}
+void check_force(const World& world, const AttractForce& attract, Checker check) {
+  check.subject += " (attract)";
+  check_targets(check, attract.bodies, world.bodies.size());
+  check.finite("center", attract.center);
+  check.finite("strength", attract.strength);
+  check.finite("power", attract.power);
+}
+void check_force(const World& world, const ThrustForce& thrust, Checker check) {
+  check.subject += " (thrust)";
+  check.index("body", thrust.body, world.bodies.size());
+  check.finite("force", thrust.force);
+  check.finite("torque", thrust.torque);
+  check.finite("from", thrust.from);
+  check.require(thrust.to > thrust.from, "to", thrust.to, "times later than from");
+}
+void check_force(const World& world, const FormulaForce& force, Checker check) {
+  check.subject += " (formula)";
+  check_targets(check, force.bodies, world.bodies.size());
+  if (!force.fx && !force.fy && !force.torque) check.fail("has no formula; allowed: any of fx, fy, torque");
+}
+
+}  // namespace
+
+void World::check() const {
+  Checker{"world"}.finite("gravity", gravity);
+  check_names("material", materials);
+  check_names("body", bodies);
+  check_names("site", sites);
+  for (std::size_t i = 0; i < materials.size(); ++i) check_material(materials[i], i);
+  for (std::size_t i = 0; i < bodies.size(); ++i) check_body(*this, bodies[i], i);
+  for (std::size_t i = 0; i < sites.size(); ++i) check_site(*this, sites[i], i);
+  for (std::size_t i = 0; i < forces.size(); ++i)
+    std::visit([&](const auto& force) { check_force(*this, force, {"force " + std::to_string(i)}); },
+               forces[i]);
+}
+
+}  // namespace brink
