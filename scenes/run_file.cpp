@@ -9,7 +9,6 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <nlohmann/json.hpp>
 
 #include "brink/core/base/error.h"
 #include "brink/core/base/hash.h"
@@ -83,25 +82,6 @@ void keep_earlier(const fs::path& file) {
   fs::remove(file.string() + "-shm", error);
 }
 
-/// "solver.order was "index", is now "depth"" for every option that differs.
-std::string differences(const std::string& was, const std::string& is) {
-  const auto a = nlohmann::json::parse(was, nullptr, false), b = nlohmann::json::parse(is, nullptr, false);
-  if (a.is_discarded() || b.is_discarded()) return "the options differ";
-  const auto old_values = a.flatten(), new_values = b.flatten();
-  std::string text;
-  const auto value = [](const nlohmann::json& j, const std::string& key) {
-    return j.contains(key) ? j.at(key).dump() : std::string("absent");
-  };
-  auto all = old_values;
-  all.update(new_values);
-  for (const auto& [key, unused] : all.items()) {
-    const std::string before = value(old_values, key), now = value(new_values, key);
-    if (before != now)
-      text += fmt::format("{}{} was {}, is now {}", text.empty() ? "" : "; ", key, before, now);
-  }
-  return text.empty() ? "the options differ" : text;
-}
-
 }  // namespace
 
 struct RunFileRecorder::Impl {
@@ -153,18 +133,11 @@ struct RunFileRecorder::Impl {
     put.bind(2, value);
     put.exec();
   }
-  std::string meta(const std::string& key) {
-    SQLite::Statement get(db, "SELECT value FROM meta WHERE key = ?");
-    get.bind(1, key);
-    return get.executeStep() ? get.getColumn(0).getString() : std::string();
-  }
 
   void write_meta(const Scene& scene);
   void write_bodies(const World& world);
   void write_sites(const World& world);
   void start_fresh(const Scene& scene);
-  void check_same(const Scene& scene);
-  void read_checkpoint();
   void start_again(const Scene& scene);
   void prepare_inserts();
 };
@@ -225,46 +198,11 @@ void RunFileRecorder::Impl::start_fresh(const Scene& scene) {
   commit();
 }
 
-void RunFileRecorder::Impl::check_same(const Scene& scene) {
-  if (meta("schema_version") != std::to_string(kRunFileSchema)) {
-    throw IoError(fmt::format("{}: schema_version '{}'; this program goes on with {} only", file.string(),
-                              meta("schema_version"), kRunFileSchema));
-  }
-  if (meta("brink_version") != version()) {
-    throw BadInput(fmt::format("{}: written by brink {}, this is {}: the bits could differ", file.string(),
-                               meta("brink_version"), version()));
-  }
-  if (const std::string was = meta("options"); was != scene.options_json) {
-    throw BadInput(fmt::format("{}: --resume needs the options it was started with: {}", file.string(),
-                               differences(was, scene.options_json)));
-  }
-  if (const std::string was = meta("world_hash"), is = hex(world_hash(scene.world)); was != is) {
-    throw BadInput(
-        fmt::format("{}: --resume needs the scene it was started with: bodies, sites, materials or forces of "
-                    "{} differ (hash was {}, is now {})",
-                    file.string(), scene.path.string(), was, is));
-  }
-}
-
-void RunFileRecorder::Impl::read_checkpoint() {
-  SQLite::Statement get(
-      db, "SELECT t, state, frames, events, wall_seconds FROM checkpoint ORDER BY rowid DESC LIMIT 1");
-  if (!get.executeStep()) return;
-  ResumePoint point;
-  point.t = get.getColumn(0).getDouble();
-  const auto blob = get.getColumn(1);
-  const auto* bytes = static_cast<const std::byte*>(blob.getBlob());
-  point.state.assign(bytes, bytes + blob.getBytes());
-  point.frames = get.getColumn(2).getInt64();
-  point.events = get.getColumn(3).getInt64();
-  point.wall_seconds = get.getColumn(4).getDouble();
-  resume_point = std::move(point);
-}
-
 void RunFileRecorder::Impl::start_again(const Scene& scene) {
   if (!db.tableExists("meta")) return start_fresh(scene);
-  check_same(scene);
-  read_checkpoint();
+  const RunFile earlier(file);
+  earlier.require_same(scene);
+  resume_point = earlier.checkpoint();
   if (resume_point) {
     frames = resume_point->frames;
     events = resume_point->events;

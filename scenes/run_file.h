@@ -83,6 +83,10 @@ class RunFileRecorder final : public Recorder {
   std::unique_ptr<Impl> impl_;
 };
 
+/// True if there is a database with a run in it. (A run killed in its first moments leaves one without.)
+/// @throws IoError if there is a file, but not one that can be read as a database.
+bool is_run_file(const std::filesystem::path& file);
+
 /// Reads a run file, of a finished, killed or going run.
 class RunFile {
  public:
@@ -114,6 +118,10 @@ class RunFile {
   std::vector<SiteRow> sites() const;
   std::vector<Event> events() const;
   std::optional<ResumePoint> checkpoint() const;
+
+  /// @throws BadInput if this run is not of `scene` with its options and of this version, naming what
+  /// differs.
+  void require_same(const Scene& scene) const;
 
   /// Times of the first and last whole frame [s]. @throws BadInput if there is none.
   std::pair<double, double> time_range() const;

@@ -1,16 +1,40 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "brink/core/base/error.h"
 #include "brink/scenes/run_file.h"
 #include "brink/scenes/run_file_guard.h"
 #include "brink/scenes/shape_json.h"
+#include "brink/scenes/version.h"
+#include "brink/scenes/world_hash.h"
 
 namespace brink {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr int kBusyMilliseconds = 10'000;
+
+/// "solver.order was "index", is now "depth"" for every option that differs.
+std::string differences(const std::string& was, const std::string& is) {
+  const auto a = nlohmann::json::parse(was, nullptr, false), b = nlohmann::json::parse(is, nullptr, false);
+  if (a.is_discarded() || b.is_discarded()) return "the options differ";
+  const auto old_values = a.flatten(), new_values = b.flatten();
+  std::string text;
+  const auto value = [](const nlohmann::json& j, const std::string& key) {
+    return j.contains(key) ? j.at(key).dump() : std::string("absent");
+  };
+  auto all = old_values;
+  all.update(new_values);
+  for (const auto& [key, unused] : all.items()) {
+    const std::string before = value(old_values, key), now = value(new_values, key);
+    if (before != now)
+      text += fmt::format("{}{} was {}, is now {}", text.empty() ? "" : "; ", key, before, now);
+  }
+  return text.empty() ? "the options differ" : text;
+}
 
 int id_or_none(const SQLite::Column& column) { return column.isNull() ? -1 : column.getInt(); }
 
@@ -46,7 +70,7 @@ struct RunFile::Impl {
   mutable SQLite::Database db;
   std::int64_t bodies = 0;
 
-  explicit Impl(const fs::path& f) : file(f), db(f, SQLite::OPEN_READONLY, 10'000) {
+  explicit Impl(const fs::path& f) : file(f), db(f, SQLite::OPEN_READONLY, kBusyMilliseconds) {
     if (!db.tableExists("meta") || !db.tableExists("frame")) {
       throw IoError(fmt::format("{}: a database, but not a run file", f.string()));
     }
@@ -182,6 +206,26 @@ std::optional<ResumePoint> RunFile::checkpoint() const {
                        get.getColumn(2).getInt64(),
                        get.getColumn(3).getInt64()};
   });
+}
+
+void RunFile::require_same(const Scene& scene) const {
+  const std::string name = impl_->file.string();
+  if (const std::string was = meta("brink_version").value_or(""); was != version()) {
+    throw BadInput(
+        fmt::format("{}: written by brink {}, this is {}: the bits could differ", name, was, version()));
+  }
+  if (const std::string was = meta("options").value_or(""); was != scene.options_json) {
+    throw BadInput(fmt::format("{}: --resume needs the options it was started with: {}", name,
+                               differences(was, scene.options_json)));
+  }
+  const std::string was = meta("world_hash").value_or(""),
+                    is = fmt::format("{:016x}", world_hash(scene.world));
+  if (was != is) {
+    throw BadInput(
+        fmt::format("{}: --resume needs the scene it was started with: bodies, sites, materials or forces of "
+                    "{} differ (hash was {}, is now {})",
+                    name, scene.path.string(), was, is));
+  }
 }
 
 std::pair<double, double> RunFile::time_range() const {

@@ -1,0 +1,75 @@
+/// brink check: parse, validate, report overlaps at the start, print the plan; runs nothing.
+
+#include <fmt/format.h>
+
+#include "brink/scenes/program/command.h"
+#include "brink/scenes/program/terminal.h"
+#include "brink/scenes/scene.h"
+#include "brink/scheduler/simulator.h"
+
+namespace brink {
+namespace {
+
+constexpr std::size_t kOverlapsShown = 20;
+
+void heading(std::string_view text) { fmt::print("{}\n", paint(stdout, Paint::heading, text)); }
+
+std::string counted(std::size_t n, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", n, n == 1 ? one : many);
+}
+
+void print_contents(const Scene& scene) {
+  const World& w = scene.world;
+  heading(w.title.empty() ? scene.path.filename().string() : w.title);
+  fmt::print("  {}, {}, {}, {} s\n", counted(w.bodies.size(), "body", "bodies"),
+             counted(w.sites.size(), "fixed site", "fixed sites"),
+             counted(w.forces.size(), "force", "forces"), scene.duration);
+  for (const std::string& note : scene.notes) fmt::print("  {}\n", note);
+}
+
+std::string other_name(const World& world, const Contact& c) {
+  return c.other_body >= 0 ? world.bodies[c.other_body].name : world.sites[c.other_site].name;
+}
+
+void print_overlaps(const World& world, const std::vector<Contact>& overlaps) {
+  heading("Overlaps at the start");
+  if (overlaps.empty()) fmt::print("  none\n");
+  for (std::size_t i = 0; i < std::min(overlaps.size(), kOverlapsShown); ++i) {
+    const Contact& c = overlaps[i];
+    fmt::print("  {} '{}' and '{}' by {:.3g} m at ({:.6g}, {:.6g})\n", paint(stdout, Paint::bad, "warning:"),
+               world.bodies[c.body].name, other_name(world, c), -c.gap, c.point.x(), c.point.y());
+  }
+  if (overlaps.size() > kOverlapsShown) fmt::print("  and {} more\n", overlaps.size() - kOverlapsShown);
+}
+
+void check(const std::string& file, const std::vector<std::string>& overrides) {
+  const Scene scene = load_scene(file, overrides);
+  const Simulator simulator(scene.world, scene.solver);
+  print_contents(scene);
+  heading("Plan");
+  for (const std::string& line : simulator.plan().lines) fmt::print("  {}\n", line);
+  print_overlaps(scene.world, simulator.overlaps());
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& program, int& status) {
+  auto scene = std::make_shared<std::string>();
+  auto overrides = std::make_shared<std::vector<std::string>>();
+  CLI::App* command = program.add_subcommand("check", "Validate a scene and print the plan; runs nothing");
+  command->add_option("SCENE", *scene, "Scene file (TOML)")->required();
+  command->add_option("--set", *overrides, "Override a key of the scene; may be repeated")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  command->footer(
+      "Every fault is one line, FILE:LINE:COLUMN: what is wrong, what was given, what is allowed.\n"
+      "Examples:\n"
+      "  brink check my_scene.toml\n"
+      "  brink check my_scene.toml --set solver.integrator=erk");
+  command->callback([scene, overrides, &status] {
+    check(*scene, *overrides);
+    status = kDone;
+  });
+}
+
+}  // namespace brink

@@ -1,0 +1,112 @@
+/// brink list: what can be chosen, one line each.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "brink/core/base/error.h"
+#include "brink/integrators/integrator.h"
+#include "brink/scenes/program/command.h"
+#include "brink/scenes/program/gallery.h"
+#include "brink/scenes/program/terminal.h"
+#include "brink/scenes/scene.h"
+#include "brink/scheduler/options.h"
+
+namespace brink {
+namespace {
+
+struct Line {
+  std::string name, text;
+};
+using Lines = std::vector<Line>;
+
+template <class Registry>
+Lines from_registry(const Registry& registry, std::string_view chosen) {
+  Lines lines;
+  for (const auto& entry : registry) {
+    const char* mark = entry.name == chosen ? " (default)" : "";
+    lines.push_back({std::string(entry.name), fmt::format("{}{}", entry.summary, mark)});
+  }
+  return lines;
+}
+
+Lines option_lines() {
+  Lines lines;
+  for (const OptionInfo& o : scene_options()) {
+    lines.push_back({o.table.empty() ? o.key : o.table + "." + o.key,
+                     fmt::format("{}; {} [{}]", o.meaning, o.type, o.default_value)});
+  }
+  return lines;
+}
+
+/// The kinds of [[forces]], each with its keys. A table of a force is one whose `kind` may be its own name.
+Lines force_lines() {
+  const std::vector<OptionInfo> options = scene_options();
+  Lines lines;
+  for (const OptionInfo& kind : options) {
+    if (kind.key != "kind" || kind.type.find(kind.table) == std::string::npos) continue;
+    std::string keys;
+    for (const OptionInfo& o : options) {
+      if (o.table == kind.table && o.key != "kind") keys += (keys.empty() ? "" : ", ") + o.key;
+    }
+    lines.push_back({kind.table, keys});
+  }
+  return lines;
+}
+
+Lines scene_lines() {
+  Lines lines;
+  for (const GalleryScene& scene : gallery_scenes()) lines.push_back({scene.path.string(), scene.title});
+  return lines;
+}
+
+struct Topic {
+  const char* name;
+  Lines (*lines)();
+};
+
+const SolverOptions kDefaults;
+const Topic kTopics[] = {
+    {"policies", [] { return from_registry(policies(), kDefaults.policy); }},
+    {"integrators", [] { return from_registry(integrators(), kDefaults.integrator); }},
+    {"responses", [] { return from_registry(responses(), kDefaults.response); }},
+    {"detectors", [] { return from_registry(detectors(), kDefaults.detector); }},
+    {"orders", [] { return from_registry(orders(), kDefaults.order); }},
+    {"forces", force_lines},
+    {"scenes", scene_lines},
+    {"options", option_lines},
+};
+
+void print(const Topic& topic) {
+  const Lines lines = topic.lines();
+  std::size_t width = 0;
+  for (const Line& line : lines) width = std::max(width, line.name.size());
+  for (const Line& line : lines) fmt::print("{:<{}}  {}\n", line.name, width, line.text);
+}
+
+void list(const std::string& wanted) {
+  for (const Topic& topic : kTopics) {
+    if (!wanted.empty() && wanted != topic.name) continue;
+    if (wanted.empty()) fmt::print("{}\n", paint(stdout, Paint::heading, topic.name));
+    print(topic);
+    if (wanted.empty()) fmt::print("\n");
+  }
+}
+
+}  // namespace
+
+void add_list_command(CLI::App& program, int& status) {
+  auto topic = std::make_shared<std::string>();
+  std::vector<std::string> names;
+  for (const Topic& t : kTopics) names.emplace_back(t.name);
+  CLI::App* command = program.add_subcommand("list", "What can be chosen, one line each, defaults shown");
+  command->add_option("TOPIC", *topic, "What to list; everything if left out")->check(CLI::IsMember(names));
+  command->footer("Examples:\n  brink list policies\n  brink list options | grep solver");
+  command->callback([topic, &status] {
+    list(*topic);
+    status = kDone;
+  });
+}
+
+}  // namespace brink

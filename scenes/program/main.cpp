@@ -1,0 +1,51 @@
+/// The command-line program `brink`.
+
+#include <fmt/format.h>
+
+#include "brink/core/base/error.h"
+#include "brink/scenes/program/command.h"
+#include "brink/scenes/program/terminal.h"
+#include "brink/scenes/version.h"
+
+namespace {
+
+int fail(brink::ExitStatus status, const char* what) {
+  fmt::print(stderr, "{} {}\n", brink::paint(stderr, brink::Paint::bad, "brink:"), what);
+  return status;
+}
+
+int run(CLI::App& program, int argc, char** argv, const int& status) {
+  try {
+    program.parse(argc, argv);
+    return status;
+  } catch (const CLI::ParseError& e) {
+    return program.exit(e) == 0 ? brink::kDone : brink::kBadInput;
+  } catch (const brink::BadInput& e) {
+    fmt::print(stderr, "{}\n", e.what());  // one line a fault, each with its place
+    return brink::kBadInput;
+  } catch (const brink::IoError& e) {
+    return fail(brink::kIoFailed, e.what());
+  } catch (const std::exception& e) {
+    return fail(brink::kEndedEarly, e.what());
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App program("Brink: many rigid bodies in the plane, exact to the contact time.", "brink");
+  program.set_version_flag("--version", std::string(brink::version()));
+  program.require_subcommand(1);
+  program.footer(
+      "Examples:\n"
+      "  brink run scenes/gallery/cradle.toml\n"
+      "  brink check my_scene.toml\n"
+      "  brink list options\n"
+      "Exit status: 0 done, 1 ended early, 2 bad usage or input, 3 could not read or write.\n"
+      "`brink COMMAND --help` says more.");
+  int status = brink::kDone;
+  brink::add_run_command(program, status);
+  brink::add_check_command(program, status);
+  brink::add_list_command(program, status);
+  return run(program, argc, argv, status);
+}

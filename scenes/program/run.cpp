@@ -1,0 +1,138 @@
+/// brink run: simulate.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+
+#include "brink/scenes/program/command.h"
+#include "brink/scenes/program/run_folder.h"
+#include "brink/scenes/program/terminal.h"
+#include "brink/scenes/run_scene.h"
+
+namespace brink {
+namespace {
+
+struct RunArguments {
+  std::string scene, out;
+  std::vector<std::string> overrides;
+  std::optional<double> until;
+  bool resume = false, quiet = false, json = false;
+};
+
+volatile std::sig_atomic_t stop_asked = 0;
+
+/// The first SIGINT or SIGTERM asks the run to stop at the next chance; a second one ends the program at
+/// once.
+void stop_on_signals() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { stop_asked = 1; };
+  action.sa_flags = SA_RESETHAND;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+std::string ending(const RunSummary& s) {
+  switch (s.termination) {
+    case Termination::reached_end:
+      return paint(stdout, Paint::good, fmt::format("reached the end at t = {} s", s.end_time));
+    case Termination::stopped:
+      return paint(stdout, Paint::bad,
+                   fmt::format("stopped at t = {} s{}{}", s.end_time, s.why.empty() ? "" : ": ", s.why));
+    case Termination::failed:
+      return paint(stdout, Paint::bad, fmt::format("failed at t = {} s: {}", s.end_time, s.why));
+    case Termination::not_run:
+      break;
+  }
+  return paint(stdout, Paint::bad, "did not run");
+}
+
+std::string change(double before, double after) {
+  const double scale = std::max(std::abs(before), std::abs(after));
+  return scale > 0 ? fmt::format("{:.3g} of it", (after - before) / scale) : std::string("none");
+}
+
+void print_summary(const Scene& scene, const RunReport& report) {
+  const RunSummary& s = report.summary;
+  const std::string title = scene.world.title.empty() ? scene.path.stem().string() : scene.world.title;
+  fmt::print("{}: {}\n", paint(stdout, Paint::heading, title), ending(s));
+  fmt::print("  collisions       {}\n", s.collisions);
+  fmt::print("  energy           {:.9g} J -> {:.9g} J (change: {})\n", s.energy_initial, s.energy_final,
+             change(s.energy_initial, s.energy_final));
+  fmt::print("  momentum         ({:.6g}, {:.6g}) kg m/s, angular {:.6g} kg m^2/s\n", s.momentum.x(),
+             s.momentum.y(), s.angular_momentum);
+  fmt::print("  deepest overlap  {:.3g} m\n", s.max_overlap);
+  fmt::print("  wall time        {:.3g} s\n", s.wall_seconds);
+  fmt::print("  state hash       {:016x}\n", s.state_hash);
+  if (report.resumed_from) fmt::print("  resumed from     t = {} s\n", *report.resumed_from);
+  fmt::print("  run file         {}\n", report.file.string());
+}
+
+void print_report(const RunArguments& arguments, const Scene& scene, const RunReport& report) {
+  if (report.finished_before && !arguments.quiet && !arguments.json) {
+    fmt::print("{}: has already reached t = {} s; nothing to do\n", report.file.string(),
+               report.summary.end_time);
+  } else if (!arguments.quiet && !arguments.json) {
+    print_summary(scene, report);
+  }
+  if (arguments.json) fmt::print("{}\n", report.json);
+}
+
+int run(const RunArguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  const Scene scene = load_scene(arguments.scene, arguments.overrides);
+  stop_on_signals();
+  RunRequest request;
+  request.dir = arguments.out.empty() ? default_run_folder(scene.path, arguments.resume)
+                                      : std::filesystem::path(arguments.out);
+  request.until = arguments.until;
+  request.resume = arguments.resume;
+  request.load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  RunReport report;
+  {
+    ProgressBar bar(0.0, arguments.until.value_or(scene.duration), on_terminal(stderr) && !arguments.quiet);
+    request.progress = [&bar](double t, std::uint64_t collisions) {
+      bar.show(t, collisions);
+      return stop_asked == 0;
+    };
+    report = run_scene(scene, request);
+  }
+  print_report(arguments, scene, report);
+  if (report.summary.termination == Termination::reached_end) return kDone;
+  if (arguments.quiet || arguments.json) fmt::print(stderr, "brink: {}\n", ending(report.summary));
+  return kEndedEarly;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& program, int& status) {
+  auto arguments = std::make_shared<RunArguments>();
+  CLI::App* command = program.add_subcommand("run", "Simulate a scene and write a run file");
+  command->add_option("SCENE", arguments->scene, "Scene file (TOML)")->required();
+  command->add_option("--out", arguments->out, "Folder for run.db; default runs/<scene>-<n>")
+      ->type_name("DIR");
+  command->add_option("--set", arguments->overrides, "Override a key of the scene; may be repeated")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--until", arguments->until, "Run up to this time [s] instead of the scene's duration")
+      ->type_name("T");
+  command->add_flag(
+      "--resume", arguments->resume,
+      "Go on with the run file that is there, with the same bits; needs the same scene and options");
+  command->add_flag("--quiet", arguments->quiet, "No progress bar and no summary");
+  command->add_flag("--json", arguments->json, "The summary as one JSON object on the last line");
+  command->footer(
+      "A run file that is already in the folder is kept as run-1.db, run-2.db ... unless --resume goes on "
+      "with it.\n"
+      "Ctrl-C stops at the next chance and leaves a whole run file, which --resume can go on with.\n"
+      "Examples:\n"
+      "  brink run scenes/gallery/cradle.toml\n"
+      "  brink run my_scene.toml --out runs/a --set solver.policy=global_backup --set bodies.0.mass=2\n"
+      "  brink run my_scene.toml --out runs/a --until 60 --resume\n"
+      "  brink run my_scene.toml --json | tail -n 1");
+  command->callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace brink

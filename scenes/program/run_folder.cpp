@@ -1,0 +1,20 @@
+#include "brink/scenes/program/run_folder.h"
+
+#include <fmt/format.h>
+
+namespace brink {
+namespace fs = std::filesystem;
+
+fs::path default_run_folder(const fs::path& scene, bool resume) {
+  const auto folder = [&scene](int n) {
+    return fs::path("runs") / fmt::format("{}-{}", scene.stem().string(), n);
+  };
+  int free = 1;
+  while (fs::exists(folder(free))) ++free;
+  if (!resume) return folder(free);
+  int last = free;
+  while (last > 1 && !fs::exists(folder(last) / "run.db")) --last;
+  return folder(last);
+}
+
+}  // namespace brink

@@ -1,0 +1,69 @@
+#include "brink/scenes/program/terminal.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace brink {
+namespace {
+
+constexpr int kBarWidth = 28;
+constexpr auto kRedraw = std::chrono::milliseconds(100);
+
+bool has_colours(std::FILE* stream) {
+  const char* term = std::getenv("TERM");
+  return on_terminal(stream) && !std::getenv("NO_COLOR") && term && std::string_view(term) != "dumb";
+}
+
+const char* code(Paint how) {
+  switch (how) {
+    case Paint::heading:
+      return "\033[1m";
+    case Paint::good:
+      return "\033[32m";
+    case Paint::bad:
+      return "\033[31m";
+    case Paint::faint:
+      return "\033[2m";
+  }
+  return "";
+}
+
+std::string remaining(double seconds) {
+  if (seconds < 100) return fmt::format("{:.0f} s left", seconds);
+  if (seconds < 6000) return fmt::format("{:.0f} min left", seconds / 60);
+  return fmt::format("{:.0f} h left", seconds / 3600);
+}
+
+}  // namespace
+
+bool on_terminal(std::FILE* stream) { return ::isatty(::fileno(stream)) != 0; }
+
+std::string paint(std::FILE* stream, Paint how, std::string_view text) {
+  return has_colours(stream) ? fmt::format("{}{}\033[0m", code(how), text) : std::string(text);
+}
+
+ProgressBar::ProgressBar(double from, double until, bool shown) : from_(from), until_(until), shown_(shown) {}
+
+ProgressBar::~ProgressBar() {
+  if (drawn_) fmt::print(stderr, "\r\033[K");
+}
+
+void ProgressBar::show(double t, std::uint64_t collisions) {
+  const auto now = Clock::now();
+  if (!shown_ || now < next_) return;
+  next_ = now + kRedraw;
+  drawn_ = true;
+  const double part = until_ > from_ ? std::clamp((t - from_) / (until_ - from_), 0.0, 1.0) : 1.0;
+  const int full = static_cast<int>(part * kBarWidth);
+  const double spent = std::chrono::duration<double>(now - start_).count();
+  const std::string left = part > 0.01 ? remaining(spent / part * (1 - part)) : std::string();
+  fmt::print(stderr, "\r\033[K[{}{}] {:3.0f}%  t = {:.4g} s  {} collisions  {}", std::string(full, '='),
+             std::string(kBarWidth - full, ' '), 100 * part, t, collisions, left);
+  std::fflush(stderr);
+}
+
+}  // namespace brink
