@@ -42,12 +42,25 @@ class SceneFaults : public BadInput {
   std::vector<SceneFault> faults_;
 };
 
-/// Reads, overrides ("solver.policy=global_backup", dotted paths as in the file; arrays by index: "bodies.0.mass=2"),
-/// and validates a scene file.
+/// Reads, overrides ("solver.policy=global_backup", dotted paths as in the file; arrays by index:
+/// "bodies.0.mass=2"), and validates a scene file.
 /// @throws SceneFaults with all faults; IoError if the file cannot be read.
 Scene load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
 /// The same from text (for tests and tools); `name` stands for the file in messages.
-Scene parse_scene(std::string_view text, const std::string& name, const std::vector<std::string>& overrides = {});
+Scene parse_scene(std::string_view text, const std::string& name,
+                  const std::vector<std::string>& overrides = {});
+
+/// One key that a scene file may hold.
+struct OptionInfo {
+  std::string table;  ///< "world", "solver", "bodies", "disc" ...
+  std::string key;
+  std::string type;           ///< what is allowed, with the unit
+  std::string default_value;  ///< as TOML, or in words; "needed" where there is none
+  std::string meaning;
+};
+
+/// Every key of the scene file, table by table, from the declarations that the reader itself uses.
+std::vector<OptionInfo> scene_options();
 
 }  // namespace brink

@@ -1,0 +1,100 @@
+#pragma once
+/// From the tables of a scene file to a Scene: one builder for each part. Internal to the scene reader.
+
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "brink/scenes/scene_tables.h"
+
+namespace brink {
+
+/// A built shape, shared by everything that asks for the same one.
+struct BuiltShape {
+  std::shared_ptr<const Outline> outline;
+  Measure measure;            ///< in the outline's frame
+  Vec2 shift = Vec2::Zero();  ///< of the outline's origin, in the frame of the file's coordinates [m]
+};
+
+/// Builds shapes, each distinct one once.
+class ShapeBuilder {
+ public:
+  ShapeBuilder(double curve_tolerance, FaultList& faults)
+      : curve_tolerance_(curve_tolerance), faults_(faults) {}
+
+  /// The outline of `thing`; empty after a fault. A body's is about its centre of mass.
+  std::optional<BuiltShape> build(const ThingTable& thing, const std::string& name, bool body);
+  /// Achieved deviations of fitted curves, for people.
+  std::vector<std::string> take_notes() { return std::move(notes_); }
+
+ private:
+  bool fits(const ThingTable& thing, const ShapeSpec& spec, bool body);
+  std::optional<BuiltShape> make(const ThingTable& thing, const ShapeSpec& spec, const ShapeContext& context,
+                                 bool about_centre);
+
+  double curve_tolerance_;
+  FaultList& faults_;
+  std::map<std::string, BuiltShape> built_;
+  std::vector<std::string> notes_;
+};
+
+/// Everything of one file entry that is the same for its copies, and the copies' poses.
+struct PlannedThing {
+  const ThingTable* table = nullptr;
+  std::string name;
+  BuiltShape shape;
+  int material = 0;
+  Pose pose;                      ///< of the outline's frame, before copying
+  std::vector<BodyState> copies;  ///< one, or one a copy; twists are zero for sites
+  std::size_t ordinal = 0;        ///< place in the file, for its random stream
+};
+
+/// Places the copies of things: grids, and scatters without overlaps.
+class Placer {
+ public:
+  Placer(std::uint64_t seed, FaultList& faults) : seed_(seed), faults_(faults) {}
+  /// Fills PlannedThing::copies of everything: first what stands where it is told, then scatters in file
+  /// order, sites before bodies.
+  void place(std::vector<PlannedThing>& sites, std::vector<PlannedThing>& bodies);
+
+ private:
+  void stand(PlannedThing& thing);
+  void scatter(PlannedThing& thing, const std::vector<PlannedThing>& sites,
+               const std::vector<PlannedThing>& bodies);
+
+  std::uint64_t seed_;
+  FaultList& faults_;
+  std::size_t total_ = 0;
+};
+
+/// Names of bodies as forces may use them.
+class BodyNames {
+ public:
+  void add(const std::string& name, int first, int count, bool copied);
+  /// Every body called `name`, or every copy of it; a fault and empty if there is none.
+  std::vector<int> find(const std::string& name, const Where& where, FaultList& faults) const;
+  /// Exactly one body; a fault and -1 otherwise.
+  int find_one(const std::string& name, const Where& where, FaultList& faults) const;
+
+ private:
+  struct Entry {
+    int first = 0, count = 1;
+    bool copied = false;
+  };
+  std::map<std::string, Entry> entries_;
+  std::vector<std::string> words_;
+};
+
+/// Turns force tables into World::forces. `origins`: where the file's frame of each body lies in its
+/// outline's frame.
+void build_forces(const std::vector<ForceTable>& tables, const BodyNames& names,
+                  const std::vector<Vec2>& origins, World& world, FaultList& faults);
+
+/// The motion of a site.
+void build_motion(const MotionTable& table, const Where& where, double duration, FixedSite& site,
+                  FaultList& faults);
+
+/// The whole scene, or faults.
+Scene build_scene(const FileTable& file, FaultList& faults);
+
+}  // namespace brink
