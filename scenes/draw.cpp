@@ -3,15 +3,13 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <fstream>
 #include <variant>
 
 #include "brink/core/base/log.h"
 #include "brink/core/shapes/distance.h"
-#include "brink/scenes/draw_canvas.h"
 #include "brink/scenes/draw_diagram.h"
+#include "brink/scenes/draw_sheet.h"
 
 namespace brink {
 namespace {
@@ -21,27 +19,14 @@ using draw::Color;
 using draw::Ink;
 using draw::Oklch;
 using draw::Palette;
+using draw::Sheet;
 using draw::Tones;
 using draw::View;
 using Kind = DrawLayer::Kind;
 
-constexpr int kFineness = 2;  // field pixels a picture pixel, each way, under bodies
-constexpr int kSmallest = 16, kLargest = 8192;
+constexpr int kFineness = 2;         // field pixels a picture pixel, each way, under bodies
 constexpr double kPassWindow = 2.4;  // half side of the pass layer's view, in bounding radii
 constexpr double kMarkFrom = 7.0;    // bodies of a smaller radius [pixels] carry no mark
-
-/// One picture in the making.
-struct Sheet {
-  const World& world;
-  std::span<const BodyState> bodies;
-  std::span<const Pose> sites;
-  const DrawOptions& options;
-  Palette palette;
-  int excluded = -1;  ///< body of a pass
-  int strip = 0;      ///< height of the caption [pixels]
-  View view;
-  double full_scale = 0.0;  ///< depth: distance at the light end of the legend [m]
-};
 
 int body_named(const World& world, const std::string& name) {
   for (std::size_t k = 0; k < world.bodies.size(); ++k)
@@ -68,11 +53,6 @@ void check(const World& world, std::span<const BodyState> bodies, std::span<cons
   for (std::size_t k = 0; k < sites.size(); ++k)
     if (!finite(sites[k]))
       throw BadInput(fmt::format("site \"{}\": its pose is not finite", world.sites[k].name));
-}
-
-int strip_height(const DrawOptions& options) {
-  if (!options.caption || options.size.height < 120 || options.size.width < 160) return 0;
-  return std::clamp(options.size.height / 20, 26, 60);
 }
 
 View view_of(const Sheet& sheet) {
@@ -214,56 +194,6 @@ void draw_edges(Canvas& canvas, const Sheet& sheet) {
     canvas.outline(*sheet.world.bodies[k].outline, sheet.bodies[k].pose, ink);
 }
 
-std::string length_text(double metres) {
-  if (metres >= 1000.0) return fmt::format("{:.3g} km", metres / 1000.0);
-  if (metres >= 1.0) return fmt::format("{:.3g} m", metres);
-  if (metres >= 0.01) return fmt::format("{:.3g} cm", metres * 100.0);
-  return fmt::format("{:.3g} mm", metres * 1000.0);
-}
-
-/// Left of x: a bar `length` metres long with its size. Returns where it begins.
-double draw_ruler(Canvas& canvas, const Sheet& sheet, double x, double y, double size) {
-  const double length = draw::round_length(0.22 * sheet.options.size.width / sheet.view.scale);
-  const double pixels = length * sheet.view.scale;
-  const Color ink = Tones::ink.rgb();
-  x -= canvas.text(x, y, length_text(length), size, ink, Canvas::Align::right) + 0.6 * size;
-  canvas.rectangle(x - pixels, y - 0.38 * size, pixels, 2.0, ink);
-  for (const double end : {x - pixels, x - 1.5})
-    canvas.rectangle(end, y - 0.65 * size, 1.5, 0.65 * size, ink);
-  return x - pixels;
-}
-
-/// Left of x: the colours of the depth layer from 0 to its largest distance. Returns where it begins.
-double draw_legend(Canvas& canvas, const Sheet& sheet, double x, double y, double size) {
-  const Color ink = Tones::ink.rgb();
-  x -= canvas.text(x, y, length_text(sheet.full_scale), size, ink, Canvas::Align::right) + 0.6 * size;
-  const int width = std::max(40, sheet.options.size.width / 5);
-  for (int k = 0; k < width; ++k)
-    canvas.rectangle(x - width + k, y - 0.85 * size, 1.5, size, draw::distance_color(k / (width - 1.0)));
-  x -= width + 0.6 * size;
-  return x - canvas.text(x, y, "0", size, ink, Canvas::Align::right);
-}
-
-void draw_caption(Canvas& canvas, const Sheet& sheet) {
-  if (sheet.strip == 0) return;
-  const DrawOptions& o = sheet.options;
-  const double size = 0.42 * sheet.strip, top = o.size.height - sheet.strip;
-  const double y = top + 0.5 * sheet.strip + 0.36 * size, edge = 0.5 * sheet.strip;
-  const Color ink = Tones::ink.rgb();
-  canvas.rectangle(0, top, o.size.width, sheet.strip, Tones::paper.rgb());
-  canvas.rectangle(0, top, o.size.width, 1.0, Oklch{0.80, 0.01, 85.0}.rgb());
-  const bool depth = o.layer.kind == Kind::depth;
-  const double right = o.size.width - edge;
-  depth ? draw_legend(canvas, sheet, right, y, size) : draw_ruler(canvas, sheet, right, y, size);
-  std::string title = o.title.empty() ? sheet.world.title : o.title;
-  if (o.layer.kind == Kind::pass)
-    title += (title.empty() ? "" : ", ") + fmt::format("pass of {}", o.layer.body);
-  const double x = edge + canvas.text(edge, y, title, size, ink, Canvas::Align::left, true);
-  if (!o.time) return;
-  canvas.text(x + (title.empty() ? 0.0 : size), y, fmt::format("t = {:.6g} s", *o.time), size,
-              Oklch{0.45, 0.02, 260.0}.rgb(), Canvas::Align::left);
-}
-
 void draw_layer(Canvas& canvas, const Sheet& sheet) {
   switch (sheet.options.layer.kind) {
     case Kind::color:
@@ -282,61 +212,17 @@ void draw_layer(Canvas& canvas, const Sheet& sheet) {
 
 }  // namespace
 
-DrawLayer parse_layer(std::string_view text) {
-  if (text == "scene") return {Kind::scene, {}};
-  if (text == "color") return {Kind::color, {}};
-  if (text == "depth") return {Kind::depth, {}};
-  if (text.starts_with("pass:") && text.size() > 5) return {Kind::pass, std::string(text.substr(5))};
-  throw BadInput(fmt::format("layer: \"{}\" is not known; allowed: scene, color, depth, pass:BODY", text));
-}
-
-PictureSize parse_size(std::string_view text) {
-  PictureSize size;
-  const char* end = text.data() + text.size();
-  const auto [cross_at, first] = std::from_chars(text.data(), end, size.width);
-  const bool crossed = first == std::errc() && cross_at != end && *cross_at == 'x';
-  const auto [stop, second] = crossed ? std::from_chars(cross_at + 1, end, size.height)
-                                      : std::from_chars_result{end, std::errc::invalid_argument};
-  DrawOptions options;
-  options.size = size;
-  std::string error;
-  if (second != std::errc() || stop != end || !options.is_valid(&error))
-    throw BadInput(
-        fmt::format("size: \"{}\" is not a size; allowed: WIDTHxHEIGHT in pixels, each {} .. {}, as 1200x900",
-                    text, kSmallest, kLargest));
-  return size;
-}
-
-bool DrawOptions::is_valid(std::string* error) const {
-  const auto fault = [&](std::string what) {
-    if (error != nullptr) *error = std::move(what);
-    return false;
-  };
-  for (const int side : {size.width, size.height})
-    if (side < kSmallest || side > kLargest)
-      return fault(fmt::format("size: {}x{} pixels; allowed: each {} .. {}", size.width, size.height,
-                               kSmallest, kLargest));
-  if (!(margin >= 0.0 && margin <= 1.0)) return fault(fmt::format("margin: {}; allowed: 0 .. 1", margin));
-  if (!(arrow_seconds >= 0.0) || std::isinf(arrow_seconds))
-    return fault(fmt::format("arrow_seconds: {}; allowed: finite, >= 0", arrow_seconds));
-  if (view && (view->empty() || !view->low.allFinite() || !view->high.allFinite()))
-    return fault("view: must be finite and hold something");
-  if (layer.kind == DrawLayer::Kind::pass && layer.body.empty())
-    return fault("layer: pass needs a body's name");
-  return field.is_valid(error);
-}
-
 Picture draw_scene(const World& world, std::span<const BodyState> bodies, std::span<const Pose> sites,
                    const DrawOptions& options) {
   check(world, bodies, sites, options);
   Sheet sheet{world, bodies, sites, options, Palette(world), -1, 0, View{}, 0.0};
   if (options.layer.kind == Kind::pass) sheet.excluded = body_named(world, options.layer.body);
-  sheet.strip = strip_height(options);
+  sheet.strip = draw::strip_height(options);
   sheet.view = view_of(sheet);
   Canvas canvas(sheet.view, options.size.width, options.size.height, Tones::paper.rgb());
   if (const std::optional<Picture> beneath = diagram(sheet)) canvas.paste(*beneath);
   draw_layer(canvas, sheet);
-  draw_caption(canvas, sheet);
+  draw::draw_caption(canvas, sheet);
   return canvas.finish();
 }
 

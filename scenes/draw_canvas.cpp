@@ -183,12 +183,12 @@ void Canvas::spring(const Vec2& from, const Vec2& to, const Color& color, double
   const Vec2 a = impl_->view.to_picture(from), b = impl_->view.to_picture(to);
   const double length = (b - a).norm();
   if (length < 4.0) return line(from, to, color, width);
-  constexpr int kTurns = 9;
-  const Vec2 side = perp(b - a) / length * std::min(0.08 * length, 4.0);
+  const int turns = std::clamp(static_cast<int>(length / 6.0), 5, 60);
+  const Vec2 side = perp(b - a) / length * std::min(0.12 * length, 3.5);
   cairo_new_path(impl_->cairo);
   cairo_move_to(impl_->cairo, a.x(), a.y());
-  for (int k = 0; k < kTurns; ++k) {
-    const Vec2 p = a + (b - a) * (0.15 + 0.7 * (k + 0.5) / kTurns) + (k % 2 == 0 ? side : Vec2(-side));
+  for (int k = 0; k < turns; ++k) {
+    const Vec2 p = a + (b - a) * (0.15 + 0.7 * (k + 0.5) / turns) + (k % 2 == 0 ? side : Vec2(-side));
     cairo_line_to(impl_->cairo, p.x(), p.y());
   }
   cairo_line_to(impl_->cairo, b.x(), b.y());

@@ -49,6 +49,14 @@ constexpr std::array<Oklch, 8> kHues{{{0.60, 0.125, 252.0},
                                       {0.70, 0.125, 140.0},
                                       {0.74, 0.095, 222.0}}};
 
+/// The distance map: lightness in equal steps, hue from violet to yellow, chroma within what sRGB can show.
+constexpr std::array<Oklch, 6> kMap{{{0.215, 0.075, 305.0},
+                                     {0.36, 0.095, 275.0},
+                                     {0.505, 0.088, 236.0},
+                                     {0.65, 0.105, 182.0},
+                                     {0.795, 0.150, 140.0},
+                                     {0.94, 0.155, 108.0}}};
+
 /// Evenly spread in -1..1 for k = 0, 1, 2 ... (multiples of the golden ratio).
 double spread(std::size_t k) {
   const double turns = 0.6180339887498949 * static_cast<double>(k) + 0.5;
@@ -76,8 +84,13 @@ Color Oklch::rgb() const {
 }
 
 Color distance_color(double fraction) {
-  const double f = std::clamp(fraction, 0.0, 1.0);
-  return Oklch{0.22 + 0.72 * f, 0.10 + 0.05 * f, 300.0 - 195.0 * f}.rgb();
+  const double x = std::clamp(fraction, 0.0, 1.0) * (kMap.size() - 1);
+  const std::size_t k = std::min(static_cast<std::size_t>(x), kMap.size() - 2);
+  const double t = x - static_cast<double>(k);
+  const Oklch low = kMap[k], high = kMap[k + 1];
+  return Oklch{low.lightness + t * (high.lightness - low.lightness),
+               low.chroma + t * (high.chroma - low.chroma), low.hue + t * (high.hue - low.hue)}
+      .rgb();
 }
 
 Palette::Palette(const World& world) {
@@ -98,6 +111,13 @@ Palette::Palette(const World& world) {
     color.hue += 9.0 * shift;
     bodies_.push_back(color);
   }
+}
+
+Oklch Palette::strong(std::size_t k) const {
+  Oklch color = bodies_[k];
+  color.lightness += 0.07 * spread(k);
+  color.hue += 14.0 * spread(k);
+  return color;
 }
 
 Oklch Palette::site(std::size_t k) const { return {0.60 + 0.08 * spread(k), 0.015, 260.0}; }

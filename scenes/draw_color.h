@@ -42,7 +42,9 @@ class Palette {
   explicit Palette(const World& world);
 
   const Oklch& body(std::size_t k) const { return bodies_[k]; }
-  /// Strong colour of a fixed site, for the raw colour layer.
+  /// The same with wider differences inside a group, for the raw colour layer.
+  Oklch strong(std::size_t k) const;
+  /// Colour of a fixed site, for the raw colour layer.
   Oklch site(std::size_t k) const;
 
   /// The same hue, almost white: the body's cell.

@@ -130,7 +130,7 @@ Picture ids_picture(const FieldImage& field, const Palette& palette, std::size_t
   return painted(field, [&](std::size_t i) {
     if (field.owner[i] == FieldImage::kNone) return kNothing.rgb();
     const std::size_t owner = field.owner[i];
-    Oklch color = owner < body_count ? palette.body(owner) : palette.site(owner - body_count);
+    Oklch color = owner < body_count ? palette.strong(owner) : palette.site(owner - body_count);
     const double turns = 0.6180339887498949 * field.site[i];
     color.lightness += 0.16 * (turns - std::floor(turns)) - 0.08;
     if (solid_at(field, i)) color.lightness *= 0.62;
