@@ -6,13 +6,13 @@
 namespace brink {
 
 struct FieldOptions {
-  int resolution = 0;                 ///< pixels along the longer side of a body field; 0: chosen by shape, 16..1024
-  double band = 0.0;                  ///< width of the rendered band around the outline [m]; 0: chosen by shape
-  std::string primitives = "exact";   ///< "exact"
-  std::string readback = "window";    ///< "full" | "window" | "pixel"
-  std::string context = "auto";       ///< "auto" | "osmesa" | "egl"
-  int brute_force_below = 16;         ///< outlines of fewer sites than this need no field (0: every outline has one)
-  int list_cap = 24;                  ///< longest candidate list kept in a pixel; longer ones are answered by a tree
+  int resolution = 0;  ///< pixels along the longer side of a body field; 0: chosen by shape, 16..1024
+  double band = 0.0;   ///< width of the rendered band around the outline [m]; 0: chosen by shape
+  std::string primitives = "exact";  ///< "exact"
+  std::string readback = "window";   ///< "full" | "window" | "pixel"
+  std::string context = "auto";      ///< "auto" | "osmesa" | "egl"
+  int brute_force_below = 16;  ///< outlines of fewer sites than this need no field (0: every outline has one)
+  int list_cap = 24;           ///< longest candidate list kept in a pixel; longer ones are answered by a tree
 
   bool is_valid(std::string* error) const;
 };

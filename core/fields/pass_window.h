@@ -1,6 +1,6 @@
 #pragma once
-/// The pass window of the classic method: the window around one body, everything else drawn at its present pose, the
-/// body itself left out.
+/// The pass window of the classic method: the window around one body, everything else drawn at its present
+/// pose, the body itself left out.
 
 #include <array>
 #include <cstdint>
@@ -24,8 +24,8 @@ struct PlacedOutline {
 /// A rendered window: row-major pixels, row 0 at the bottom, pixel centres at low + (i + 1/2) * pixel.
 struct FieldImage {
   static constexpr std::uint32_t kNone = 0xffffffffU;
-  Box window;            ///< in the world [m]
-  double pixel = 0.0;    ///< side of a (square) pixel [m]
+  Box window;          ///< in the world [m]
+  double pixel = 0.0;  ///< side of a (square) pixel [m]
   int width = 0, height = 0;
   std::vector<std::uint32_t> owner;  ///< owner of the nearest site, kNone where none lies within the band
   std::vector<std::uint32_t> site;   ///< its site, counted inside its outline; kNone likewise
@@ -47,18 +47,18 @@ class PassRenderer {
   explicit PassRenderer(const FieldOptions& options, WorkCounters* work = nullptr);
   ~PassRenderer();
 
-  /// Nearest site and distance at every pixel of `window`, over everything but the owner `excluded` (kNone: all).
-  /// Sites farther than `band` from a pixel are not drawn there (infinite: the whole window).
+  /// Nearest site and distance at every pixel of `window`, over everything but the owner `excluded` (kNone:
+  /// all). Sites farther than `band` from a pixel are not drawn there (infinite: the whole window).
   FieldImage render(const Box& window, int width, int height, std::span<const PlacedOutline> scene,
                     std::uint32_t excluded, double band);
 
-  /// Both layers at once: nearest site, and nearest site of a different owner (two draws). Body k reads the first where
-  /// the owner is not k, else the second.
+  /// Both layers at once: nearest site, and nearest site of a different owner (two draws). Body k reads the
+  /// first where the owner is not k, else the second.
   std::array<FieldImage, 2> render_two_layers(const Box& window, int width, int height,
                                               std::span<const PlacedOutline> scene, double band);
 
-  /// Every owner (but `excluded`) that comes within `margin` of `window`: complete, from the rendered candidate lists
-  /// with a rounding allowance. The exact detectors need nothing else from a pass.
+  /// Every owner (but `excluded`) that comes within `margin` of `window`: complete, from the rendered
+  /// candidate lists with a rounding allowance. The exact detectors need nothing else from a pass.
   NearOwners near_owners(const Box& window, double margin, std::span<const PlacedOutline> scene,
                          std::uint32_t excluded);
 

@@ -1,0 +1,124 @@
+#include "brink/core/fields/body_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace brink::detail {
+
+namespace {
+
+constexpr int kLeastResolution = 16, kMostResolution = 1024;
+/// Fragments that both draws together may cost when the band is chosen by shape.
+constexpr double kFragments = 4e5;
+
+double length_of(const Site& site) {
+  if (site.kind == SiteKind::point) return 0.0;
+  return site.kind == SiteKind::arc ? site.arc_radius * std::abs(site.sweep) : (site.b - site.a).norm();
+}
+
+/// Median length of the sites that have one; the size of the outline over the number of sites where none has.
+double typical_length(const Outline& outline, double size) {
+  std::vector<double> lengths;
+  for (const Site& site : outline.sites) {
+    const double length = length_of(site);
+    if (length > 0.0) lengths.push_back(length);
+  }
+  if (lengths.empty()) return size / std::max<double>(1.0, static_cast<double>(outline.sites.size()));
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return *middle;
+}
+
+/// Fragments of one draw with this band [m] at this pixel [m].
+double fragments(const Outline& outline, double pixel, double band) {
+  const double grow = band / pixel + 3.0;
+  double sum = 0.0;
+  for (const Site& site : outline.sites) {
+    const double grown = grow + site.radius / pixel;
+    sum += (length_of(site) / pixel + 2.0 * grown) * 2.0 * grown;
+  }
+  return sum;
+}
+
+}  // namespace
+
+BodyFieldPlan plan_body_field(const Outline& outline, const FieldOptions& options) {
+  const Vec2 extent = outline.bounds.extent();
+  const double size = std::max(extent.maxCoeff(), 1e-300);
+  BodyFieldPlan plan;
+  int resolution = options.resolution;
+  if (resolution == 0) {
+    const double pixels = 2.0 * 1.3 * size / typical_length(outline, size);
+    resolution =
+        static_cast<int>(std::clamp(pixels, static_cast<double>(kLeastResolution), 1.0 * kMostResolution));
+  }
+  plan.band = options.band;
+  if (plan.band == 0.0) {
+    const double pixel = size * 1.3 / resolution;
+    plan.band = size / 7.0;
+    while (plan.band > 4.0 * pixel && 2.0 * fragments(outline, pixel, plan.band) > kFragments)
+      plan.band *= 0.8;
+  }
+  // One pixel of border, so that rounding at the window's edge stays outside the band.
+  plan.grid.pixel = (size + 2.0 * plan.band) / std::max(1, resolution - 2);
+  const auto pixels = [&](double length) {
+    return static_cast<int>(std::ceil((length + 2.0 * plan.band) / plan.grid.pixel - 1e-9)) + 2;
+  };
+  plan.grid.width = pixels(extent.x());
+  plan.grid.height = pixels(extent.y());
+  plan.grid.low = outline.bounds.center() - 0.5 * plan.grid.pixel * Vec2(plan.grid.width, plan.grid.height);
+  return plan;
+}
+
+BodyField::BodyField(std::shared_ptr<const Outline> outline, CandidateLists lists)
+    : SiteIndex(std::move(outline)),
+      lists_(std::move(lists)),
+      per_pixel_(1.0 / lists_.grid.pixel),
+      tree_(*outline_) {}
+
+Candidates BodyField::candidates(const Vec2& q, double reach, Scratch& scratch) const {
+  const double x = (q.x() - lists_.grid.low.x()) * per_pixel_, y = (q.y() - lists_.grid.low.y()) * per_pixel_;
+  if (!(x >= 0.0 && x < lists_.grid.width && y >= 0.0 && y < lists_.grid.height))
+    return outside(q, reach, scratch);
+  const int i = static_cast<int>(x), j = static_cast<int>(y);
+  const CandidateLists::Cell cell =
+      lists_.cells[static_cast<std::size_t>(j) * static_cast<std::size_t>(lists_.grid.width) +
+                   static_cast<std::size_t>(i)];
+  // |v| <= max + (sqrt 2 - 1) min: no square root; 1e-9 of a pixel covers the rounding of x and y.
+  const double dx = std::abs(x - i - 0.5), dy = std::abs(y - j - 0.5);
+  const double off = std::max(dx, dy) + 0.41421357 * std::min(dx, dy) + 1e-9;
+  const double others = cell.others - off * lists_.grid.pixel;
+  const std::uint32_t count = cell.count();
+  if (count != 0 && count != CandidateLists::kTree) [[likely]] {
+    return {std::span(lists_.sites.data() + cell.first(), count), others};
+  }
+  if (count == 0 && others >= reach) return {{}, others};
+  return by_tree(q, scratch);
+}
+
+Candidates BodyField::outside(const Vec2& q, double reach, Scratch& scratch) const {
+  if (!q.allFinite()) return {{}, 0.0};
+  const Box& box = outline_->bounds;
+  const Vec2 away = (box.low - q).cwiseMax(q - box.high).cwiseMax(Vec2::Zero());
+  const double distance = away.norm() * (1.0 - 0x1.0p-48);
+  if (distance >= reach) return {{}, distance};
+  return by_tree(q, scratch);
+}
+
+Candidates BodyField::by_tree(const Vec2& q, Scratch& scratch) const {
+  ++scratch.tree_searches;
+  const double others = tree_.nearest(*outline_, q, scratch.sites);
+  return {scratch.sites, others};
+}
+
+std::unique_ptr<BodyField> render_body_field(std::shared_ptr<const Outline> outline,
+                                             const FieldOptions& options, FieldRenderer& renderer) {
+  const BodyFieldPlan plan = plan_body_field(*outline, options);
+  ListRules rules;
+  rules.band = plan.band;
+  rules.list_cap = options.list_cap;
+  CandidateLists lists = render_lists(renderer, *outline, plan.grid, rules);
+  return std::make_unique<BodyField>(std::move(outline), std::move(lists));
+}
+
+}  // namespace brink::detail

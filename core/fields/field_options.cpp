@@ -1,0 +1,52 @@
+#include "brink/core/fields/field_options.h"
+
+#include <cmath>
+#include <initializer_list>
+#include <string_view>
+
+namespace brink {
+
+namespace {
+
+bool is_one_of(std::string_view name, std::string_view value, std::initializer_list<std::string_view> allowed,
+               std::string* error) {
+  std::string list;
+  for (const std::string_view a : allowed) {
+    if (a == value) return true;
+    list += (list.empty() ? "\"" : ", \"") + std::string(a) + "\"";
+  }
+  *error = "field." + std::string(name) + " is \"" + std::string(value) + "\"; allowed: " + list;
+  return false;
+}
+
+bool fail(std::string* error, const std::string& message) {
+  *error = message;
+  return false;
+}
+
+}  // namespace
+
+bool FieldOptions::is_valid(std::string* error) const {
+  std::string ignored;
+  if (error == nullptr) error = &ignored;
+  if (resolution != 0 && (resolution < 16 || resolution > 1024)) {
+    return fail(error, "field.resolution is " + std::to_string(resolution) +
+                           "; allowed: 0 (by shape), or 16 to 1024 pixels");
+  }
+  if (!(band >= 0.0) || !std::isfinite(band)) {
+    return fail(error, "field.band is " + std::to_string(band) +
+                           " m; allowed: 0 (by shape), or a finite positive width");
+  }
+  if (brute_force_below < 0) {
+    return fail(error, "field.brute_force_below is " + std::to_string(brute_force_below) +
+                           "; allowed: 0 or more sites");
+  }
+  if (list_cap < 1 || list_cap > 254) {
+    return fail(error, "field.list_cap is " + std::to_string(list_cap) + "; allowed: 1 to 254 sites");
+  }
+  return is_one_of("primitives", primitives, {"exact"}, error) &&
+         is_one_of("readback", readback, {"full", "window", "pixel"}, error) &&
+         is_one_of("context", context, {"auto", "osmesa", "egl"}, error);
+}
+
+}  // namespace brink

@@ -1,0 +1,277 @@
+#include "brink/core/fields/field_renderer.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <map>
+#include <string>
+
+#include "brink/core/base/error.h"
+
+namespace brink::detail {
+
+namespace {
+
+constexpr int kUnitFirst = 0, kUnitNearest = 0, kUnitOwners = 1;
+
+struct Attribute {
+  int components;
+  std::size_t offset;
+  bool integer;
+};
+
+constexpr std::array<Attribute, 7> kAttributes = {{{4, offsetof(SiteInstance, frame), false},
+                                                   {4, offsetof(SiteInstance, extent), false},
+                                                   {4, offsetof(SiteInstance, ends), false},
+                                                   {4, offsetof(SiteInstance, arc), false},
+                                                   {4, offsetof(SiteInstance, pseudo), false},
+                                                   {2, offsetof(SiteInstance, shift), false},
+                                                   {2, offsetof(SiteInstance, id), true}}};
+
+}  // namespace
+
+FieldRenderer::FieldRenderer(std::unique_ptr<GlContext> context) : context_(std::move(context)) {
+  context_->make_current();
+  gl_ = load_gl_functions(*context_);
+  gl_.GenVertexArrays(1, &vertices_);
+  gl_.BindVertexArray(vertices_);
+  gl_.GenBuffers(1, &instances_);
+  gl_.BindBuffer(GL_ARRAY_BUFFER, instances_);
+  for (GLuint i = 0; i < kAttributes.size(); ++i) {
+    const Attribute& a = kAttributes[i];
+    const auto* at = reinterpret_cast<const void*>(a.offset);
+    gl_.EnableVertexAttribArray(i);
+    gl_.VertexAttribDivisor(i, 1);
+    if (a.integer) {
+      gl_.VertexAttribIPointer(i, a.components, GL_UNSIGNED_INT, sizeof(SiteInstance), at);
+    } else {
+      gl_.VertexAttribPointer(i, a.components, GL_FLOAT, GL_FALSE, sizeof(SiteInstance), at);
+    }
+  }
+  gl_.GenBuffers(1, &owner_buffer_);
+  gl_.GenTextures(1, &owner_texture_);
+  gl_.PixelStorei(GL_PACK_ALIGNMENT, 4);
+  gl_.DepthFunc(GL_LESS);
+}
+
+FieldRenderer::~FieldRenderer() {
+  context_->make_current();
+  for (Program& program : programs_) {
+    if (program.name != 0) gl_.DeleteProgram(program.name);
+  }
+  destroy(image_[0]);
+  destroy(image_[1]);
+  destroy(bound_);
+  gl_.DeleteTextures(1, &owner_texture_);
+  for (GLuint* buffer : {&owner_buffer_, &instances_, &storage_}) gl_.DeleteBuffers(1, buffer);
+  gl_.DeleteVertexArrays(1, &vertices_);
+}
+
+FieldRenderer::Program& FieldRenderer::use(FieldProgram kind, const PixelGrid& grid) {
+  Program& program = programs_[static_cast<std::size_t>(kind)];
+  if (program.name == 0) {
+    program.name = make_program(gl_, vertex_shader(kind), fragment_shader(kind));
+    gl_.UseProgram(program.name);
+    const auto at = [&](const char* name) { return gl_.GetUniformLocation(program.name, name); };
+    program.half_size = at("half_size");
+    program.depth_scale = at("depth_scale");
+    program.limit = at("limit");
+    program.offset = at("offset");
+    program.layer = at("layer");
+    program.slack = at("slack");
+    program.capacity = at("capacity");
+    program.width = at("width");
+    gl_.Uniform1i(at("first"), kUnitFirst);
+    gl_.Uniform1i(at("nearest"), kUnitNearest);
+    gl_.Uniform1i(at("owners"), kUnitOwners);
+  }
+  gl_.UseProgram(program.name);
+  gl_.Uniform2f(program.half_size, 0.5F * static_cast<float>(grid.width),
+                0.5F * static_cast<float>(grid.height));
+  return program;
+}
+
+GLuint FieldRenderer::texture(GLenum internal, GLenum format, GLenum type, int size) {
+  GLuint name = 0;
+  gl_.GenTextures(1, &name);
+  gl_.BindTexture(GL_TEXTURE_2D, name);
+  gl_.TexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internal), size, size, 0, format, type, nullptr);
+  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  return name;
+}
+
+void FieldRenderer::destroy(Target& target) {
+  for (GLuint* name : {&target.ids, &target.values, &target.depth}) {
+    if (*name != 0) gl_.DeleteTextures(1, name);
+  }
+  if (target.framebuffer != 0) gl_.DeleteFramebuffers(1, &target.framebuffer);
+  target = Target();
+}
+
+/// Makes the target at least as large as the window (a power of two) and draws into it from now on.
+void FieldRenderer::fit(Target& target, const PixelGrid& grid, bool with_ids) {
+  const int needed = std::max(grid.width, grid.height);
+  if (target.size < needed) {
+    destroy(target);
+    target.size = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max(needed, 32))));
+    gl_.ActiveTexture(GL_TEXTURE0);
+    gl_.GenFramebuffers(1, &target.framebuffer);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+    std::vector<GLenum> buffers;
+    const auto attach = [&](GLuint name) {
+      const auto slot = static_cast<GLenum>(GL_COLOR_ATTACHMENT0 + buffers.size());
+      gl_.FramebufferTexture2D(GL_FRAMEBUFFER, slot, GL_TEXTURE_2D, name, 0);
+      buffers.push_back(slot);
+    };
+    if (with_ids) attach(target.ids = texture(GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, target.size));
+    attach(target.values = texture(GL_R32F, GL_RED, GL_FLOAT, target.size));
+    target.depth = texture(GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, target.size);
+    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target.depth, 0);
+    gl_.DrawBuffers(static_cast<GLsizei>(buffers.size()), buffers.data());
+    if (gl_.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+      throw IoError("the framebuffer of a field (" + std::to_string(target.size) +
+                    " pixels a side) is incomplete on " + context_->description());
+    }
+  }
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+  gl_.Viewport(0, 0, grid.width, grid.height);
+  const GLuint none[4] = {0xffffffffU, 0, 0, 0};
+  const float far = 1.0F, infinite[4] = {std::numeric_limits<float>::infinity(), 0, 0, 0};
+  if (with_ids) gl_.ClearBufferuiv(GL_COLOR, 0, none);
+  gl_.ClearBufferfv(GL_COLOR, with_ids ? 1 : 0, infinite);
+  gl_.ClearBufferfv(GL_DEPTH, 0, &far);
+}
+
+void FieldRenderer::upload(const SiteBatch& batch) {
+  gl_.BindBuffer(GL_ARRAY_BUFFER, instances_);
+  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(batch.instances.size() * sizeof(SiteInstance)),
+                 batch.instances.data(), GL_STREAM_DRAW);
+}
+
+void FieldRenderer::draw(const PixelGrid& grid, const SiteBatch& batch) {
+  if (!batch.instances.empty()) {
+    gl_.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.instances.size()));
+  }
+  pixels_drawn_ += static_cast<std::uint64_t>(grid.width) * static_cast<std::uint64_t>(grid.height);
+}
+
+void FieldRenderer::draw_image(const PixelGrid& grid, const SiteBatch& batch, double limit, int layer,
+                               const std::vector<std::uint32_t>& owners) {
+  context_->make_current();
+  fit(image_[layer], grid, /*with_ids=*/true);
+  Program& program = use(FieldProgram::image, grid);
+  gl_.Uniform1f(program.depth_scale, static_cast<float>(batch.depth_scale));
+  gl_.Uniform1f(program.limit, static_cast<float>(limit));
+  gl_.Uniform1f(program.offset, static_cast<float>(batch.offset));
+  gl_.Uniform1i(program.layer, layer);
+  gl_.ActiveTexture(GL_TEXTURE0 + kUnitFirst);
+  gl_.BindTexture(GL_TEXTURE_2D, layer == 1 ? image_[0].ids : 0);
+  if (layer == 1) {
+    gl_.BindBuffer(GL_TEXTURE_BUFFER, owner_buffer_);
+    gl_.BufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(owners.size() * sizeof(std::uint32_t)),
+                   owners.data(), GL_STREAM_DRAW);
+    gl_.ActiveTexture(GL_TEXTURE0 + kUnitOwners);
+    gl_.BindTexture(GL_TEXTURE_BUFFER, owner_texture_);
+    gl_.TexBuffer(GL_TEXTURE_BUFFER, GL_R32UI, owner_buffer_);
+  } else {
+    upload(batch);
+  }
+  gl_.Enable(GL_DEPTH_TEST);
+  draw(grid, batch);
+}
+
+void FieldRenderer::read_image(int x, int y, int width, int height, std::uint32_t* ids, float* values) {
+  gl_.ReadBuffer(GL_COLOR_ATTACHMENT0);
+  gl_.ReadPixels(x, y, width, height, GL_RED_INTEGER, GL_UNSIGNED_INT, ids);
+  gl_.ReadBuffer(GL_COLOR_ATTACHMENT1);
+  gl_.ReadPixels(x, y, width, height, GL_RED, GL_FLOAT, values);
+  pixels_read_ += static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+}
+
+const std::vector<float>& FieldRenderer::draw_bounds(const PixelGrid& grid, const SiteBatch& batch) {
+  context_->make_current();
+  fit(bound_, grid, /*with_ids=*/false);
+  Program& program = use(FieldProgram::bound, grid);
+  gl_.Uniform1f(program.depth_scale, static_cast<float>(batch.depth_scale));
+  upload(batch);
+  gl_.Enable(GL_DEPTH_TEST);
+  draw(grid, batch);
+  bounds_.resize(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height));
+  gl_.ReadBuffer(GL_COLOR_ATTACHMENT0);
+  gl_.ReadPixels(0, 0, grid.width, grid.height, GL_RED, GL_FLOAT, bounds_.data());
+  pixels_read_ += bounds_.size();
+  return bounds_;
+}
+
+/// A storage buffer of at least this size at binding 0.
+void FieldRenderer::bind_storage(std::size_t bytes) {
+  if (storage_ == 0) gl_.GenBuffers(1, &storage_);
+  gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, storage_);
+  if (storage_bytes_ < bytes) {
+    gl_.BufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_READ);
+    storage_bytes_ = bytes;
+  }
+}
+
+const std::vector<PixelEntry>& FieldRenderer::draw_candidates(const PixelGrid& grid, const SiteBatch& batch,
+                                                              double slack, std::size_t capacity) {
+  Program& program = use(FieldProgram::append, grid);
+  gl_.Uniform1f(program.slack, static_cast<float>(slack));
+  gl_.Uniform1ui(program.width, static_cast<GLuint>(grid.width));
+  gl_.ActiveTexture(GL_TEXTURE0 + kUnitNearest);
+  gl_.BindTexture(GL_TEXTURE_2D, bound_.values);
+  gl_.Disable(GL_DEPTH_TEST);
+  gl_.DrawBuffers(0, nullptr);
+  std::array<std::uint32_t, 2> head{};
+  for (bool fits = false; !fits;) {
+    bind_storage(8 + capacity * sizeof(PixelEntry));
+    head = {0, 0};
+    gl_.BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof(head), head.data());
+    gl_.Uniform1ui(program.capacity, static_cast<GLuint>(capacity));
+    draw(grid, batch);
+    gl_.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    gl_.GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof(head), head.data());
+    fits = head[0] <= capacity;
+    if (!fits) ++redraws_;
+    capacity = std::max<std::size_t>(capacity, head[0]);
+  }
+  entries_.resize(head[0]);
+  gl_.GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 8, static_cast<GLsizeiptr>(head[0] * sizeof(PixelEntry)),
+                       entries_.data());
+  const GLenum first = GL_COLOR_ATTACHMENT0;
+  gl_.DrawBuffers(1, &first);
+  return entries_;
+}
+
+std::vector<std::uint32_t> FieldRenderer::draw_marks(const PixelGrid& grid, const SiteBatch& batch,
+                                                     double limit, std::size_t count) {
+  context_->make_current();
+  fit(bound_, grid, /*with_ids=*/false);
+  Program& program = use(FieldProgram::mark, grid);
+  gl_.Uniform1f(program.limit, static_cast<float>(limit));
+  upload(batch);
+  std::vector<std::uint32_t> marks(count, 0);
+  bind_storage(std::max<std::size_t>(count, 1) * sizeof(std::uint32_t));
+  gl_.BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(count * sizeof(std::uint32_t)),
+                    marks.data());
+  gl_.Disable(GL_DEPTH_TEST);
+  gl_.DrawBuffers(0, nullptr);
+  draw(grid, batch);
+  gl_.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  gl_.GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(count * sizeof(std::uint32_t)),
+                       marks.data());
+  const GLenum first = GL_COLOR_ATTACHMENT0;
+  gl_.DrawBuffers(1, &first);
+  pixels_read_ += count;
+  return marks;
+}
+
+FieldRenderer& thread_renderer(const std::string& backend) {
+  static thread_local std::map<std::string, std::unique_ptr<FieldRenderer>> renderers;
+  auto& renderer = renderers[backend];
+  if (!renderer) renderer = std::make_unique<FieldRenderer>(open_gl_context(backend));
+  return *renderer;
+}
+
+}  // namespace brink::detail

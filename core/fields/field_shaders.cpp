@@ -1,0 +1,159 @@
+#include "brink/core/fields/field_shaders.h"
+
+namespace brink::detail {
+
+namespace {
+
+constexpr const char* kVertex = R"(
+layout(location = 0) in vec4 frame;
+layout(location = 1) in vec4 extent;
+layout(location = 2) in vec4 ends_in;
+layout(location = 3) in vec4 arc_in;
+layout(location = 4) in vec4 pseudo_in;
+layout(location = 5) in vec2 shift_in;
+layout(location = 6) in uvec2 tag_in;
+flat out vec4 ends;
+flat out vec4 arc;
+flat out vec4 pseudo;
+flat out vec2 shift;
+flat out uvec2 tag;
+uniform vec2 half_size;
+void main() {
+  float along = (gl_VertexID & 1) == 0 ? extent.x : extent.y;
+  float across = (gl_VertexID & 2) == 0 ? extent.z : extent.w;
+  vec2 p = frame.xy + along * frame.zw + across * vec2(-frame.w, frame.z);
+  gl_Position = vec4(p / half_size, 0.0, 1.0);
+  ends = ends_in;
+  arc = arc_in;
+  pseudo = pseudo_in;
+  shift = shift_in;
+  tag = tag_in;
+}
+)";
+
+// Distance from q to the core; side < 0 where q is on the solid side. Mirrors nearest_on() and side_of() of
+// core/shapes/distance.h; its rounding is bounded in site_batch.h.
+constexpr const char* kDistance = R"(
+flat in vec4 ends;
+flat in vec4 arc;
+flat in vec4 pseudo;
+flat in vec2 shift;
+flat in uvec2 tag;
+uniform vec2 half_size;
+float cross2(vec2 a, vec2 b) { return a.x * b.y - a.y * b.x; }
+float core_distance(vec2 q, out float side) {
+  uint kind = tag.y & 3u;
+  vec2 wa = q - ends.xy;
+  side = dot(wa, pseudo.xy);
+  if (kind == 1u) {
+    vec2 d = ends.zw - ends.xy;
+    float t = dot(wa, d) * arc.x;
+    if (t >= 1.0) side = dot(q - ends.zw, pseudo.zw);
+    else if (t > 0.0) side = -cross2(d, wa);
+    return length(wa - clamp(t, 0.0, 1.0) * d);
+  }
+  float da = length(wa);
+  if (kind == 0u) return da;
+  vec2 w = q - arc.xy, wb = q - ends.zw, from = ends.xy - arc.xy, to = ends.zw - arc.xy;
+  if (arc.w * cross2(from, wa) > 0.0 && arc.w * cross2(wb, to) > 0.0 && dot(w, from + to) > 0.0) {
+    float off = length(w) - arc.z;
+    side = arc.w * off;
+    return abs(off);
+  }
+  float db = length(wb);
+  if (db < da) {
+    side = dot(wb, pseudo.zw);
+    return db;
+  }
+  return da;
+}
+)";
+
+constexpr const char* kImage = R"(
+layout(location = 0) out uint site;
+layout(location = 1) out float value;
+uniform float depth_scale;
+uniform float limit;          // values beyond it are not drawn
+uniform float offset;         // value of the site's surface
+uniform int layer;
+uniform usampler2D first;     // ids of the first layer
+uniform usamplerBuffer owners;
+void main() {
+  float side;
+  float t = core_distance(gl_FragCoord.xy - half_size, side) + shift.x;
+  if (t > limit) discard;
+  if (layer == 1) {
+    uint before = texelFetch(first, ivec2(gl_FragCoord.xy), 0).r;
+    if (before == 0xffffffffu) discard;
+    before &= 0x7fffffffu;
+    if (texelFetch(owners, int(before)).r == texelFetch(owners, int(tag.x)).r) discard;
+  }
+  bool inside = (side < 0.0 && (tag.y & 4u) != 0u) || t < offset;
+  site = inside ? tag.x | 0x80000000u : tag.x;
+  value = t;
+  gl_FragDepth = t * depth_scale;
+}
+)";
+
+constexpr const char* kBound = R"(
+layout(location = 0) out float value;
+uniform float depth_scale;
+void main() {
+  float side;
+  float t = core_distance(gl_FragCoord.xy - half_size, side) + shift.x;
+  value = t;
+  gl_FragDepth = t * depth_scale;
+}
+)";
+
+constexpr const char* kAppend = R"(
+layout(std430, binding = 0) buffer List {
+  uint count;
+  uint unused;
+  uvec2 entries[];
+};
+uniform sampler2D nearest;
+uniform float slack;
+uniform uint capacity;
+uniform uint width;
+void main() {
+  float side;
+  float t = core_distance(gl_FragCoord.xy - half_size, side) + shift.y;
+  float bound = texelFetch(nearest, ivec2(gl_FragCoord.xy), 0).r;
+  if (t <= bound + slack) {
+    uint place = atomicAdd(count, 1u);
+    if (place < capacity) {
+      entries[place] = uvec2(uint(gl_FragCoord.y) * width + uint(gl_FragCoord.x), tag.x);
+    }
+  }
+}
+)";
+
+constexpr const char* kMark = R"(
+layout(std430, binding = 0) buffer Marks { uint marks[]; };
+uniform float limit;
+void main() {
+  float side;
+  float t = core_distance(gl_FragCoord.xy - half_size, side) + shift.y;
+  if (t <= limit) marks[tag.x] = 1u;
+}
+)";
+
+std::string version(FieldProgram program) {
+  const bool storage = program == FieldProgram::append || program == FieldProgram::mark;
+  return storage ? "#version 430 core\n" : "#version 330 core\n";
+}
+
+}  // namespace
+
+std::string vertex_shader(FieldProgram program) { return version(program) + kVertex; }
+
+std::string fragment_shader(FieldProgram program) {
+  const char* body = kImage;
+  if (program == FieldProgram::bound) body = kBound;
+  if (program == FieldProgram::append) body = kAppend;
+  if (program == FieldProgram::mark) body = kMark;
+  return version(program) + kDistance + body;
+}
+
+}  // namespace brink::detail

@@ -1,0 +1,78 @@
+#include "brink/core/fields/site_index.h"
+
+#include <numeric>
+
+#include "brink/core/base/error.h"
+#include "brink/core/fields/body_field.h"
+#include "brink/core/shapes/distance.h"
+
+namespace brink {
+
+namespace {
+
+class BruteForceIndex final : public SiteIndex {
+ public:
+  explicit BruteForceIndex(std::shared_ptr<const Outline> outline) : SiteIndex(std::move(outline)) {
+    all_.resize(outline_->sites.size());
+    std::iota(all_.begin(), all_.end(), 0U);
+  }
+  Candidates candidates(const Vec2&, double, Scratch&) const override {
+    return {all_, std::numeric_limits<double>::infinity()};
+  }
+
+ private:
+  std::vector<std::uint32_t> all_;
+};
+
+}  // namespace
+
+FieldAnswer SiteIndex::query(const Vec2& q, Scratch& scratch) const {
+  const Candidates found = candidates(q, std::numeric_limits<double>::infinity(), scratch);
+  FieldAnswer answer;
+  answer.gap = answer.runner_up = found.others_at_least;
+  double best = std::numeric_limits<double>::infinity(), second = best;
+  Nearest nearest;
+  for (const std::uint32_t i : found.sites) {
+    const Site& site = outline_->sites[i];
+    const Nearest n = nearest_on(site, q);
+    const double distance = n.distance - site.radius;
+    if (distance < best) {
+      second = best;
+      best = distance;
+      nearest = n;
+      answer.site = static_cast<int>(i);
+    } else if (distance < second) {
+      second = distance;
+    }
+  }
+  if (answer.site < 0) return answer;
+  const Site& site = outline_->sites[static_cast<std::size_t>(answer.site)];
+  answer.gap = side_of(site, nearest, q) * nearest.distance - site.radius;
+  answer.closest = nearest.point;
+  answer.normal = normal_at(site, nearest, q);
+  answer.runner_up = std::min(second, found.others_at_least);
+  return answer;
+}
+
+std::unique_ptr<SiteIndex> make_brute_force_index(std::shared_ptr<const Outline> outline) {
+  return std::make_unique<BruteForceIndex>(std::move(outline));
+}
+
+std::unique_ptr<SiteIndex> make_site_index(std::shared_ptr<const Outline> outline,
+                                           const FieldOptions& options, WorkCounters* work) {
+  std::string error;
+  if (!options.is_valid(&error)) throw BadInput(error);
+  if (outline->sites.size() < static_cast<std::size_t>(options.brute_force_below) || outline->sites.empty()) {
+    return make_brute_force_index(std::move(outline));
+  }
+  detail::FieldRenderer& renderer = detail::thread_renderer(options.context);
+  const std::uint64_t drawn = renderer.pixels_drawn(), read = renderer.pixels_read();
+  auto field = detail::render_body_field(std::move(outline), options, renderer);
+  if (work != nullptr) {
+    work->pixels_drawn += renderer.pixels_drawn() - drawn;
+    work->pixels_read += renderer.pixels_read() - read;
+  }
+  return field;
+}
+
+}  // namespace brink

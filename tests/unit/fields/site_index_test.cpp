@@ -1,0 +1,88 @@
+// The index's answer is the brute-force answer: the raster only chooses which sites are looked at.
+#include "brink/core/fields/site_index.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "brink/core/fields/body_field.h"
+#include "brink/core/shapes/distance.h"
+#include "tests/unit/fields/field_shapes.h"
+
+namespace brink {
+namespace {
+
+using field_test::NamedOutline;
+
+FieldOptions always_a_field() {
+  FieldOptions options;
+  options.brute_force_below = 0;
+  return options;
+}
+
+class SiteIndexOnShapes : public testing::TestWithParam<int> {
+ protected:
+  NamedOutline shape_ = field_test::all_shapes()[static_cast<std::size_t>(GetParam())];
+};
+
+// The distance function is the same in both, so even the bits of the gap must agree, and with them its sign.
+TEST_P(SiteIndexOnShapes, RandomQueriesGiveTheBruteForceAnswer) {
+  const std::uint64_t seed = 20260 + static_cast<std::uint64_t>(GetParam());
+  std::printf("%s, %zu sites, seed %llu\n", shape_.name.c_str(), shape_.outline->sites.size(),
+              static_cast<unsigned long long>(seed));
+  const auto index = make_site_index(shape_.outline, always_a_field());
+  Random random(seed);
+  SiteIndex::Scratch scratch;
+  const double size = shape_.outline->bounds.extent().norm();
+  double largest = 0.0;
+  int wrong_sign = 0, wrong_site = 0;
+  for (int i = 0; i < 80000; ++i) {
+    const Vec2 q = field_test::query_point(*shape_.outline, random);
+    int site = -1;
+    const double expected = gap_by_brute_force(*shape_.outline, q, &site);
+    const FieldAnswer answer = index->query(q, scratch);
+    largest = std::max(largest, std::abs(answer.gap - expected));
+    wrong_sign += (answer.gap < 0.0) != (expected < 0.0) ? 1 : 0;
+    wrong_site += answer.site != site ? 1 : 0;
+  }
+  const auto* field = dynamic_cast<const detail::BodyField*>(index.get());
+  ASSERT_NE(field, nullptr);
+  const auto& lists = field->lists();
+  std::printf("  %d x %d pixels, mean list %.2f, over cap %d, by tree %llu of 80000\n", lists.grid.width,
+              lists.grid.height, static_cast<double>(lists.entries) / lists.pixels_listed,
+              lists.pixels_over_cap, static_cast<unsigned long long>(scratch.tree_searches));
+  EXPECT_LE(largest, 1e-12 * size);
+  EXPECT_EQ(wrong_sign, 0);
+  EXPECT_EQ(wrong_site, 0);
+}
+
+// What Candidates promises, checked against every site: whoever is not listed is at least others_at_least
+// away, and an empty list means that the outline is beyond the reach.
+TEST_P(SiteIndexOnShapes, UnlistedSitesAreAtLeastAsFarAsPromised) {
+  const auto index = make_site_index(shape_.outline, always_a_field());
+  Random random(77);
+  SiteIndex::Scratch scratch;
+  const double size = shape_.outline->bounds.extent().norm();
+  for (int i = 0; i < 4000; ++i) {
+    const Vec2 q = field_test::query_point(*shape_.outline, random);
+    const double reach = size * std::pow(10.0, random.uniform(-4.0, 0.5));
+    const Candidates found = index->candidates(q, reach, scratch);
+    if (found.sites.empty()) {
+      EXPECT_GE(found.others_at_least, reach);
+    }
+    std::vector<bool> listed(shape_.outline->sites.size());
+    for (const std::uint32_t s : found.sites) listed[s] = true;
+    for (std::size_t s = 0; s < listed.size(); ++s) {
+      if (listed[s]) continue;
+      const Site& site = shape_.outline->sites[s];
+      ASSERT_GE(nearest_on(site, q).distance - site.radius, found.others_at_least - 1e-15 * size)
+          << shape_.name << " site " << s << " at " << q.transpose();
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, SiteIndexOnShapes,
+                         testing::Range(0, static_cast<int>(field_test::all_shapes().size())));
+
+}  // namespace
+}  // namespace brink
