@@ -13,22 +13,6 @@ Vec2 right_normal(const Site& site, const Nearest& nearest) {
 
 }  // namespace
 
-double side_of(const Site& site, const Nearest& nearest, const Vec2& q) {
-  if (!site.solid || site.kind == SiteKind::point) return 1.0;
-  const Vec2 d = q - nearest.point;
-  switch (nearest.foot) {
-    case Foot::start:
-      return d.dot(site.pseudo_a) < 0.0 ? -1.0 : 1.0;
-    case Foot::end:
-      return d.dot(site.pseudo_b) < 0.0 ? -1.0 : 1.0;
-    case Foot::interior:
-      break;
-  }
-  if (site.kind == SiteKind::segment) return cross(site.b - site.a, q - site.a) > 0.0 ? -1.0 : 1.0;
-  const bool within = (q - site.center).squaredNorm() < site.arc_radius * site.arc_radius;
-  return within == (site.sweep > 0) ? -1.0 : 1.0;
-}
-
 Vec2 normal_at(const Site& site, const Nearest& nearest, const Vec2& q) {
   const double side = side_of(site, nearest, q);
   if (nearest.foot == Foot::interior && site.kind != SiteKind::point) {

@@ -1,5 +1,6 @@
 #pragma once
-/// Exact distance from a point to a site, in double precision. Everything that Brink says about contact rests here.
+/// Exact distance from a point to a site, in double precision. Everything that Brink says about contact rests
+/// here.
 
 #include "brink/core/shapes/site.h"
 
@@ -15,8 +16,8 @@ struct Nearest {
   Vec2 point = Vec2::Zero();
 };
 
-/// Nearest point of the core of `site` to `q`; ~10 flops and a square root. A point on an arc's centre is answered with
-/// the arc's start (every point of the arc is equally near).
+/// Nearest point of the core of `site` to `q`; ~10 flops and a square root. A point on an arc's centre is
+/// answered with the arc's start (every point of the arc is equally near).
 inline Nearest nearest_on(const Site& site, const Vec2& q) {
   switch (site.kind) {
     case SiteKind::segment: {
@@ -38,7 +39,8 @@ inline Nearest nearest_on(const Site& site, const Vec2& q) {
         return {std::abs(rho - site.arc_radius), Foot::interior, site.center + w * (site.arc_radius / rho)};
       }
       const double da = (q - site.a).squaredNorm(), db = (q - site.b).squaredNorm();
-      return da <= db ? Nearest{std::sqrt(da), Foot::start, site.a} : Nearest{std::sqrt(db), Foot::end, site.b};
+      return da <= db ? Nearest{std::sqrt(da), Foot::start, site.a}
+                      : Nearest{std::sqrt(db), Foot::end, site.b};
     }
     case SiteKind::point:
       break;
@@ -46,11 +48,21 @@ inline Nearest nearest_on(const Site& site, const Vec2& q) {
   return {(q - site.a).norm(), Foot::start, site.a};
 }
 
-/// -1 if q, whose nearest point on the solid `site` is `nearest`, is inside the solid, else +1. Sites that are not
-/// solid: +1.
+/// -1 if q, whose nearest point on the solid `site` is `nearest`, is inside the solid, else +1. Sites that
+/// are not solid: +1.
 ///
-/// Side of the core where the foot is interior, pseudo-normal where it is a vertex (Baerentzen & Aanaes 2005).
-double side_of(const Site& site, const Nearest& nearest, const Vec2& q);
+/// Side of the core where the foot is interior, pseudo-normal where it is a vertex (Baerentzen & Aanaes
+/// 2005).
+inline double side_of(const Site& site, const Nearest& nearest, const Vec2& q) {
+  if (!site.solid || site.kind == SiteKind::point) return 1.0;
+  if (nearest.foot != Foot::interior) {
+    const Vec2& pseudo = nearest.foot == Foot::start ? site.pseudo_a : site.pseudo_b;
+    return (q - nearest.point).dot(pseudo) < 0.0 ? -1.0 : 1.0;
+  }
+  if (site.kind == SiteKind::segment) return cross(site.b - site.a, q - site.a) > 0.0 ? -1.0 : 1.0;
+  const bool within = (q - site.center).squaredNorm() < site.arc_radius * site.arc_radius;
+  return within == (site.sweep > 0) ? -1.0 : 1.0;
+}
 
 /// Signed gap [m] from q to the site: > 0 outside; the site's radius is subtracted.
 inline double gap_to(const Site& site, const Vec2& q) {
@@ -58,8 +70,8 @@ inline double gap_to(const Site& site, const Vec2& q) {
   return side_of(site, n, q) * n.distance - site.radius;
 }
 
-/// Outward unit normal at the core: from the nearest point to q when outside, the reverse inside. Where q lies on the
-/// core: the site's own left/right normal (solid: outward), for a point site (1, 0).
+/// Outward unit normal at the core: from the nearest point to q when outside, the reverse inside. Where q
+/// lies on the core: the site's own left/right normal (solid: outward), for a point site (1, 0).
 Vec2 normal_at(const Site& site, const Nearest& nearest, const Vec2& q);
 
 }  // namespace brink

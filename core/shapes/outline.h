@@ -8,7 +8,8 @@
 
 namespace brink {
 
-/// One connected run of sites inside an outline: sites first .. first + count - 1, each starting where the last ended.
+/// One connected run of sites inside an outline: sites first .. first + count - 1, each starting where the
+/// last ended.
 struct Loop {
   int first = 0;
   int count = 0;
@@ -17,35 +18,39 @@ struct Loop {
 
 /// A sample of the exact two-sided set: a vertex, or an arc as (centre, radius, sector).
 ///
-/// The distance between two outlines is reached at a vertex of one of them, or at an arc, in the direction from the
-/// arc's centre (design: shapes, sites, samples). `id` is the sample's place in Outline::samples.
+/// The distance between two outlines is reached at a vertex of one of them, or at an arc, in the direction
+/// from the arc's centre (design: shapes, sites, samples). `id` is the sample's place in Outline::samples.
 struct Sample {
   Vec2 p = Vec2::Zero();  ///< vertex, or the arc's centre, in the outline's frame [m]
   double radius = 0.0;    ///< thickness; for an arc: thickness + circle radius (convex side) [m]
-  int arc_site = -1;      ///< -1: vertex (counts in every direction); else the arc's site: counts in its sector only
+  int arc_site =
+      -1;  ///< -1: vertex (counts in every direction); else the arc's site: counts in its sector only
 };
 
 /// The sites of a shape in its own frame; immutable once built, shared by every body of that shape.
 struct Outline {
   std::vector<Site> sites;
   std::vector<Loop> loops;
-  std::vector<Sample> samples;    ///< the exact two-sided sample set
-  bool solid = false;             ///< has an inside (every loop closed); distance is signed
-  bool container = false;         ///< solid outside: the loops bound a hole in an infinite solid
-  double bounding_radius = 0.0;   ///< of a disc about the frame's origin that holds every site with its radius [m]
-  Box bounds;                     ///< of every site with its radius
-  double curve_deviation = 0.0;   ///< largest distance between a fitted curve and its arcs [m]
+  std::vector<Sample> samples;  ///< the exact two-sided sample set
+  bool solid = false;           ///< has an inside (every loop closed); distance is signed
+  bool container = false;       ///< solid outside: the loops bound a hole in an infinite solid
+  double bounding_radius =
+      0.0;     ///< of a disc about the frame's origin that holds every site with its radius [m]
+  Box bounds;  ///< of every site with its radius
+  double curve_deviation = 0.0;  ///< largest distance between a fitted curve and its arcs [m]
 
   /// A disc, or anything whose core is one point.
   bool is_point() const { return sites.size() == 1 && sites[0].kind == SiteKind::point; }
 };
 
-/// Fills pseudo-normals, samples, bounds and bounding radius from sites and loops. Call once after assembling.
-/// @throws BadInput on a site of zero length, an arc over a quarter turn, a loop that does not join up, or NaN.
+/// Fills pseudo-normals, samples, bounds and bounding radius from sites and loops. Call once after
+/// assembling.
+/// @throws BadInput on a site of zero length, an arc over a quarter turn, a loop that does not join up, or
+/// NaN.
 void finish_outline(Outline& outline);
 
-/// Signed gap [m] from q to the whole outline by brute force over its sites (the reference the fields are tested
-/// against), with the nearest site in `*site` if given. Cost: all sites.
+/// Signed gap [m] from q to the whole outline by brute force over its sites (the reference the fields are
+/// tested against), with the nearest site in `*site` if given. Cost: all sites.
 double gap_by_brute_force(const Outline& outline, const Vec2& q, int* site = nullptr);
 
 /// Reverses every loop and marks the outline as a container: what was inside is now free, all else solid.

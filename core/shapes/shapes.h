@@ -1,6 +1,6 @@
 #pragma once
-/// Every shape that a scene can name, as an outline with its measure. One function a shape; all throw BadInput naming
-/// the parameter, its value and what is allowed.
+/// Every shape that a scene can name, as an outline with its measure. One function a shape; all throw
+/// BadInput naming the parameter, its value and what is allowed.
 
 #include <array>
 #include <string_view>
@@ -10,8 +10,8 @@
 
 namespace brink {
 
-/// Area (or length, for wires without thickness), centroid and second moment at unit density, by Green's theorem on
-/// segments and arcs.
+/// Area (or length, for wires without thickness), centroid and second moment at unit density, by Green's
+/// theorem on segments and arcs.
 struct Measure {
   double size = 0.0;             ///< area [m^2]; a wire without thickness: length [m]
   Vec2 centroid = Vec2::Zero();  ///< in the shape's frame [m]
@@ -35,8 +35,9 @@ Shape make_polygons(const std::vector<std::vector<Vec2>>& polygons);
 Shape make_capsule(double length, double radius);
 /// A wire through the vertices; closed means a ring, hollow: not solid.
 Shape make_chain(const std::vector<Vec2>& vertices, bool closed = false, double radius = 0.0);
-/// SVG path data (M L H V C S Q T A Z, absolute and relative), y downward as in SVG turned upward, times `scale`. All
-/// subpaths closed: solid (even-odd); else wires. Curves become arcs within `curve_tolerance` [m] (biarcs).
+/// SVG path data (M L H V C S Q T A Z, absolute and relative), y downward as in SVG turned upward, times
+/// `scale`. All subpaths closed: solid (even-odd); else wires. Curves become arcs within `curve_tolerance`
+/// [m] (biarcs).
 Shape make_path(std::string_view d, double scale, double curve_tolerance);
 
 Shape make_point(const Vec2& p, double radius = 0.0);

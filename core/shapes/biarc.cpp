@@ -1,0 +1,153 @@
+#include "brink/core/shapes/biarc.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "brink/core/shapes/curve_site.h"
+#include "brink/core/shapes/distance.h"
+
+namespace brink {
+
+namespace {
+
+constexpr double quarter = std::numbers::pi / 2;
+
+struct Piece {
+  double t0 = 0.0, t1 = 0.0;
+  Vec2 p0 = Vec2::Zero(), p1 = Vec2::Zero();
+};
+
+class Fitter {
+ public:
+  Fitter(const SmoothCurve& curve, double tolerance, double radius, std::vector<Site>& sites)
+      : curve_(curve), tolerance_(tolerance), radius_(radius), sites_(sites) {}
+
+  void fit(const Piece& piece);
+  double deviation() const { return deviation_; }
+
+ private:
+  bool try_biarc(const Piece& piece);
+  bool accept_if_near(const Piece& piece, const std::vector<Site>& fitted);
+  bool add_tangent_arc(const Vec2& a, const Vec2& direction, const Vec2& b, std::vector<Site>& fitted) const;
+  double distance_at(double t, const std::vector<Site>& fitted) const;
+  double most_bend(const std::vector<Site>& fitted) const;
+  Vec2 direction(double t, double towards) const;
+  bool is_tiny(const Piece& piece) const {
+    return curve_.speed_bound() * std::abs(piece.t1 - piece.t0) <= tolerance_;
+  }
+
+  const SmoothCurve& curve_;
+  double tolerance_, radius_;
+  std::vector<Site>& sites_;
+  double deviation_ = 0.0;
+};
+
+/// Direction of travel at t, as the limit from inside the piece where the derivative vanishes (a cusp).
+Vec2 Fitter::direction(double t, double towards) const {
+  const Vec2 d = curve_.derivative(t);
+  if (d.norm() > 1e-7 * curve_.speed_bound()) return d.normalized();
+  return curve_.derivative(t + 1e-4 * (towards - t)).normalized();
+}
+
+double Fitter::distance_at(double t, const std::vector<Site>& fitted) const {
+  const Vec2 p = curve_.point(t);
+  double least = std::numeric_limits<double>::infinity();
+  for (const Site& s : fitted) least = std::min(least, nearest_on(s, p).distance);
+  return least;
+}
+
+/// Bound on the second derivative, in t, of the distance from the curve to a line or circle: the curve's own,
+/// and speed^2 over the distance to the circle's centre.
+double Fitter::most_bend(const std::vector<Site>& fitted) const {
+  double bend = curve_.bend_bound();
+  for (const Site& s : fitted)
+    if (s.kind == SiteKind::arc) {
+      const double closest = std::max(s.arc_radius - tolerance_, s.arc_radius / 2);
+      bend = std::max(bend, curve_.bend_bound() + curve_.speed_bound() * curve_.speed_bound() / closest);
+    }
+  return bend;
+}
+
+bool Fitter::accept_if_near(const Piece& piece, const std::vector<Site>& fitted) {
+  constexpr int coarse = 8, most = 20000;
+  for (int k = 1; k < coarse; ++k)
+    if (distance_at(std::lerp(piece.t0, piece.t1, double(k) / coarse), fitted) > tolerance_) return false;
+  const double span = std::abs(piece.t1 - piece.t0), bend = most_bend(fitted);
+  const double wanted = span * std::sqrt(bend / (8 * tolerance_ / 32));
+  const int n = static_cast<int>(std::clamp(std::ceil(wanted), 2.0 * coarse, double(most)));
+  double worst = 0.0;
+  for (int k = 0; k <= n; ++k)
+    worst = std::max(worst, distance_at(std::lerp(piece.t0, piece.t1, double(k) / n), fitted));
+  worst += span / n * span / n * bend / 8;
+  if (worst > tolerance_) return false;
+  deviation_ = std::max(deviation_, worst);
+  sites_.insert(sites_.end(), fitted.begin(), fitted.end());
+  return true;
+}
+
+/// Adds the arc from a that leaves in `direction` and reaches b, a segment if it is flat. False if it turns
+/// by more than a quarter.
+bool Fitter::add_tangent_arc(const Vec2& a, const Vec2& direction, const Vec2& b,
+                             std::vector<Site>& fitted) const {
+  const Vec2 chord = b - a;
+  const double size = chord.norm();
+  if (!(size > 0.0)) return true;
+  const double half = std::atan2(cross(direction, chord), direction.dot(chord));
+  if (std::abs(half) > quarter / 2) return false;
+  const double sagitta = size / 2 * std::tan(std::abs(half) / 2);
+  if (sagitta <= std::max(0.02 * tolerance_, 1e-8 * size)) {
+    fitted.push_back(segment_site(a, b, radius_));
+    return true;
+  }
+  const double signed_radius = size / (2 * std::sin(half));
+  const Vec2 center = a + signed_radius * perp(direction);
+  add_arc(fitted, a, b, center, std::abs(signed_radius), 2 * half, radius_);
+  return true;
+}
+
+bool Fitter::try_biarc(const Piece& piece) {
+  const Vec2 d0 = direction(piece.t0, piece.t1), d1 = direction(piece.t1, piece.t0);
+  const Vec2 chord = piece.p1 - piece.p0;
+  if (!(d0.dot(d1) > 0.0) || !(chord.dot(d0) > 0.0 && chord.dot(d1) > 0.0)) return false;
+  const double along = chord.dot(d0 + d1), c2 = chord.squaredNorm();
+  const double slack = (d0 - d1).squaredNorm();  // = 2 (1 - d0 . d1)
+  const double reach = c2 / (along + std::sqrt(along * along + slack * c2));
+  const Vec2 joint = 0.5 * (piece.p0 + piece.p1) + 0.5 * reach * (d0 - d1);
+  std::vector<Site> fitted;
+  if (!add_tangent_arc(piece.p0, d0, joint, fitted)) return false;
+  // the second arc is found backwards from its far end, so that it has the curve's tangent there
+  std::vector<Site> back;
+  if (!add_tangent_arc(piece.p1, -d1, joint, back)) return false;
+  for (auto s = back.rbegin(); s != back.rend(); ++s) fitted.push_back(reversed(*s));
+  return !fitted.empty() && accept_if_near(piece, fitted);
+}
+
+void Fitter::fit(const Piece& piece) {
+  if (is_tiny(piece)) {  // shorter than the tolerance: its chord is at most half of that away
+    if (piece.p0 != piece.p1) sites_.push_back(segment_site(piece.p0, piece.p1, radius_));
+    deviation_ = std::max(deviation_, curve_.speed_bound() * std::abs(piece.t1 - piece.t0) / 2);
+    return;
+  }
+  if (try_biarc(piece)) return;
+  const double middle = std::lerp(piece.t0, piece.t1, 0.5);
+  const Vec2 p = curve_.point(middle);
+  fit({piece.t0, middle, piece.p0, p});
+  fit({middle, piece.t1, p, piece.p1});
+}
+
+}  // namespace
+
+double fit_arcs(const SmoothCurve& curve, const Vec2& start, const Vec2& end, double tolerance, double radius,
+                std::vector<Site>& sites) {
+  Fitter fitter(curve, tolerance, radius, sites);
+  const std::vector<double> ts = curve.breaks();
+  Vec2 p = start;
+  for (std::size_t k = 0; k + 1 < ts.size(); ++k) {
+    const Vec2 q = k + 2 == ts.size() ? end : curve.point(ts[k + 1]);
+    fitter.fit({ts[k], ts[k + 1], p, q});
+    p = q;
+  }
+  return fitter.deviation();
+}
+
+}  // namespace brink

@@ -1,0 +1,107 @@
+#include "brink/core/shapes/crossing.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "brink/core/base/error.h"
+#include "brink/core/shapes/curve_site.h"
+#include "brink/core/shapes/distance.h"
+#include "brink/core/shapes/text.h"
+
+namespace brink {
+
+namespace {
+
+using Points = std::vector<Vec2>;
+
+void add_line_line(const Site& s, const Site& t, Points& points) {
+  const Vec2 d = s.b - s.a, e = t.b - t.a;
+  const double turn = cross(d, e);
+  if (turn != 0.0) points.push_back(s.a + d * (cross(t.a - s.a, e) / turn));
+}
+
+/// Points on the line through `foot` along unit `u`, at +- the half chord of a circle whose centre is
+/// `offset` away. A near miss within the tolerance is tangent.
+void add_chord(const Vec2& foot, const Vec2& u, double offset, double r, double tolerance, Points& points) {
+  if (std::abs(offset) > r + tolerance) return;
+  const double half = std::sqrt(std::max(0.0, (r - offset) * (r + offset)));
+  points.push_back(foot - half * u);
+  if (half > 0.0) points.push_back(foot + half * u);
+}
+
+void add_line_circle(const Site& line, const Site& arc, double tolerance, Points& points) {
+  const Vec2 u = (line.b - line.a).normalized();
+  const Vec2 foot = line.a + u * u.dot(arc.center - line.a);
+  add_chord(foot, u, cross(u, arc.center - line.a), arc.arc_radius, tolerance, points);
+}
+
+void add_circle_circle(const Site& s, const Site& t, double tolerance, Points& points) {
+  const Vec2 w = t.center - s.center;
+  const double d = w.norm(), r = s.arc_radius, q = t.arc_radius;
+  if (d == 0.0 || d > r + q + tolerance || d < std::abs(r - q) - tolerance) return;
+  const double along = (d + (r - q) * (r + q) / d) / 2;
+  const Vec2 u = w / d;
+  const double clamped = std::clamp(along, -r, r);
+  add_chord(s.center + u * clamped, perp(u), clamped, r, tolerance, points);
+}
+
+struct BoxedSite {
+  Box box;
+  int site = 0;
+};
+
+/// Sites by the left edge of their boxes, each box grown by `margin`.
+std::vector<BoxedSite> by_left_edge(const std::vector<Site>& sites, double margin) {
+  std::vector<BoxedSite> boxed(sites.size());
+  for (std::size_t k = 0; k < sites.size(); ++k)
+    boxed[k] = {core_bounds(sites[k]).grown(margin), static_cast<int>(k)};
+  std::stable_sort(boxed.begin(), boxed.end(),
+                   [](const BoxedSite& p, const BoxedSite& q) { return p.box.low.x() < q.box.low.x(); });
+  return boxed;
+}
+
+/// Meeting points near a vertex that the two sites share are the hand-over itself: two arcs that join
+/// smoothly stay within any tolerance of each other for a while.
+bool is_hand_over(const Site& s, const Site& t, const Vec2& p) {
+  const double near = 1e-3 * std::min(length(s), length(t));
+  if (s.b == t.a && (p - s.b).norm() <= near) return true;
+  return t.b == s.a && (p - s.a).norm() <= near;
+}
+
+[[noreturn]] void report(const std::string& what, int i, int j, const Vec2& p) {
+  throw BadInput(what + ": sides " + std::to_string(std::min(i, j)) + " and " +
+                 std::to_string(std::max(i, j)) + " (from 0) cross or touch at " + text(p) +
+                 "; the outline must not meet itself");
+}
+
+}  // namespace
+
+void add_meeting_points(const Site& s, const Site& t, double tolerance, Points& points) {
+  Points candidates{s.a, s.b, t.a, t.b};
+  const bool s_is_arc = s.kind == SiteKind::arc, t_is_arc = t.kind == SiteKind::arc;
+  if (s_is_arc && t_is_arc)
+    add_circle_circle(s, t, tolerance, candidates);
+  else if (s_is_arc || t_is_arc)
+    add_line_circle(s_is_arc ? t : s, s_is_arc ? s : t, tolerance, candidates);
+  else
+    add_line_line(s, t, candidates);
+  for (const Vec2& p : candidates)
+    if (nearest_on(s, p).distance <= tolerance && nearest_on(t, p).distance <= tolerance) points.push_back(p);
+}
+
+void require_simple(const Outline& outline, const std::string& what) {
+  const double tolerance = 1e-12 * outline.bounds.extent().norm();
+  const std::vector<BoxedSite> boxed = by_left_edge(outline.sites, tolerance);
+  Points points;
+  for (std::size_t i = 0; i < boxed.size(); ++i)
+    for (std::size_t j = i + 1; j < boxed.size() && boxed[j].box.low.x() <= boxed[i].box.high.x(); ++j) {
+      if (!boxed[i].box.overlaps(boxed[j].box)) continue;
+      const Site &s = outline.sites[boxed[i].site], &t = outline.sites[boxed[j].site];
+      points.clear();
+      add_meeting_points(s, t, tolerance, points);
+      for (const Vec2& p : points)
+        if (!is_hand_over(s, t, p)) report(what, boxed[i].site, boxed[j].site, p);
+    }
+}
+
+}  // namespace brink

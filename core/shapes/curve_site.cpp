@@ -1,0 +1,120 @@
+#include "brink/core/shapes/curve_site.h"
+
+#include <array>
+#include <numbers>
+
+namespace brink {
+
+namespace {
+
+constexpr double quarter = std::numbers::pi / 2;
+
+Vec2 turned(const Vec2& v, double angle) {
+  const Vec2 u = unit_at(angle);
+  return {u.x() * v.x() - u.y() * v.y(), u.y() * v.x() + u.x() * v.y()};
+}
+
+Vec2 tangent(const Site& arc, const Vec2& p) {
+  const Vec2 left = perp((p - arc.center).normalized());
+  return arc.sweep > 0 ? left : Vec2(-left);
+}
+
+}  // namespace
+
+Vec2 unit_at(double angle) {
+  const double quarters = std::round(angle / quarter);
+  if (std::abs(angle - quarters * quarter) > 4e-16 * std::max(1.0, std::abs(angle)))
+    return {std::cos(angle), std::sin(angle)};
+  static const std::array<Vec2, 4> axes{Vec2(1, 0), Vec2(0, 1), Vec2(-1, 0), Vec2(0, -1)};
+  return axes[static_cast<int>(std::fmod(quarters, 4.0) + 4.0) % 4];
+}
+
+Site point_site(const Vec2& p, double radius) {
+  Site s;
+  s.radius = radius;
+  s.a = s.b = p;
+  return s;
+}
+
+Site segment_site(const Vec2& a, const Vec2& b, double radius) {
+  Site s;
+  s.kind = SiteKind::segment;
+  s.radius = radius;
+  s.a = a;
+  s.b = b;
+  return s;
+}
+
+void add_arc(std::vector<Site>& sites, const Vec2& a, const Vec2& b, const Vec2& center, double arc_radius,
+             double sweep, double radius) {
+  const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / quarter - 1e-9)));
+  Site s;
+  s.kind = SiteKind::arc;
+  s.radius = radius;
+  s.center = center;
+  s.arc_radius = arc_radius;
+  s.sweep = sweep / pieces;
+  Vec2 start = a;
+  for (int k = 1; k <= pieces; ++k) {
+    s.a = start;
+    s.b = k == pieces ? b : Vec2(center + turned(a - center, sweep * k / pieces));
+    sites.push_back(s);
+    start = s.b;
+  }
+}
+
+Vec2 direction_at_start(const Site& site) {
+  return site.kind == SiteKind::arc ? tangent(site, site.a) : Vec2((site.b - site.a).normalized());
+}
+
+Vec2 direction_at_end(const Site& site) {
+  return site.kind == SiteKind::arc ? tangent(site, site.b) : Vec2((site.b - site.a).normalized());
+}
+
+double curvature(const Site& site) {
+  if (site.kind != SiteKind::arc) return 0.0;
+  return site.sweep > 0 ? 1.0 / site.arc_radius : -1.0 / site.arc_radius;
+}
+
+double length(const Site& site) {
+  return site.kind == SiteKind::arc ? site.arc_radius * std::abs(site.sweep) : (site.b - site.a).norm();
+}
+
+Vec2 point_along(const Site& site, double fraction) {
+  if (site.kind == SiteKind::arc) return site.center + turned(site.a - site.center, site.sweep * fraction);
+  return site.a + fraction * (site.b - site.a);
+}
+
+bool in_sector(const Site& arc, const Vec2& direction) {
+  const Vec2 from = arc.a - arc.center, to = arc.b - arc.center;
+  const double turn = arc.sweep > 0 ? 1.0 : -1.0;
+  return turn * cross(from, direction) >= 0.0 && turn * cross(direction, to) >= 0.0 &&
+         direction.dot(from + to) > 0.0;
+}
+
+Site reversed(const Site& site) {
+  Site s = site;
+  std::swap(s.a, s.b);
+  s.sweep = -s.sweep;
+  return s;
+}
+
+Box core_bounds(const Site& site) {
+  Box box;
+  box.add(site.a);
+  box.add(site.b);
+  if (site.kind != SiteKind::arc) return box;
+  for (int k = 0; k < 4; ++k) {
+    const Vec2 axis = unit_at(k * quarter);
+    if (in_sector(site, axis)) box.add(Vec2(site.center + site.arc_radius * axis));
+  }
+  return box;
+}
+
+double farthest_from_origin(const Site& site) {
+  const double ends = std::max(site.a.norm(), site.b.norm());
+  if (site.kind != SiteKind::arc || !in_sector(site, site.center)) return ends;
+  return std::max(ends, site.center.norm() + site.arc_radius);
+}
+
+}  // namespace brink

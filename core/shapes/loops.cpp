@@ -1,0 +1,66 @@
+#include "brink/core/shapes/loops.h"
+
+#include <algorithm>
+
+#include "brink/core/base/error.h"
+#include "brink/core/shapes/curve_site.h"
+#include "brink/core/shapes/measure.h"
+#include "brink/core/shapes/text.h"
+
+namespace brink {
+
+void add_loop(Outline& outline, const std::vector<Site>& sites, bool closed) {
+  outline.loops.push_back({static_cast<int>(outline.sites.size()), static_cast<int>(sites.size()), closed});
+  outline.sites.insert(outline.sites.end(), sites.begin(), sites.end());
+}
+
+std::vector<Site> segments_through(const std::vector<Vec2>& vertices, bool closed, double radius) {
+  std::vector<Site> sites;
+  for (std::size_t k = 0; k + 1 < vertices.size(); ++k)
+    sites.push_back(segment_site(vertices[k], vertices[k + 1], radius));
+  if (closed) sites.push_back(segment_site(vertices.back(), vertices.front(), radius));
+  return sites;
+}
+
+std::vector<Vec2> without_repeats(const std::vector<Vec2>& vertices, bool closed) {
+  std::vector<Vec2> kept;
+  for (const Vec2& v : vertices)
+    if (kept.empty() || kept.back() != v) kept.push_back(v);
+  while (closed && kept.size() > 1 && kept.back() == kept.front()) kept.pop_back();
+  return kept;
+}
+
+double enclosed_area(const std::vector<Site>& sites) {
+  Moments sums;
+  for (const Site& s : sites) add_region(sums, s, sites.front().a);
+  return sums.size;
+}
+
+std::vector<Site> reversed(const std::vector<Site>& sites) {
+  std::vector<Site> back;
+  for (auto s = sites.rbegin(); s != sites.rend(); ++s) back.push_back(reversed(*s));
+  return back;
+}
+
+Shape finish_shape(Outline outline) {
+  finish_outline(outline);
+  const Measure measure = measure_of(outline);
+  return {std::move(outline), measure};
+}
+
+void require_positive(const char* name, double value) {
+  if (!(value > 0.0 && std::isfinite(value)))
+    throw BadInput(std::string(name) + " is " + text(value) + "; it must be > 0 and finite");
+}
+
+void require_radius(double value) {
+  if (!(value >= 0.0 && std::isfinite(value)))
+    throw BadInput("radius is " + text(value) + "; it must be >= 0 and finite");
+}
+
+void require_finite(const char* name, const Vec2& value) {
+  if (!value.allFinite())
+    throw BadInput(std::string(name) + " is " + text(value) + "; coordinates must be finite");
+}
+
+}  // namespace brink

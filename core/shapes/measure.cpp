@@ -1,0 +1,100 @@
+#include "brink/core/shapes/measure.h"
+
+#include <numbers>
+
+#include "brink/core/shapes/curve_site.h"
+#include "brink/core/shapes/thick_boundary.h"
+
+namespace brink {
+
+namespace {
+
+/// x - sin x, without cancellation for small x.
+double less_sine(double x) {
+  if (std::abs(x) > 0.7) return x - std::sin(x);
+  double term = x * x * x / 6, sum = 0.0;
+  for (int n = 4; std::abs(term) > 1e-18 * std::abs(sum); n += 2) {
+    sum += term;
+    term *= -x * x / (n * (n + 1));
+    if (term == 0.0) break;
+  }
+  return sum;
+}
+
+/// Adds sums taken about `center` to sums taken about `about`.
+void add_moved(Moments& sums, const Moments& part, const Vec2& center, const Vec2& about) {
+  const Vec2 shift = center - about;
+  sums.size += part.size;
+  sums.first += part.first + part.size * shift;
+  sums.second += part.second + 2 * shift.dot(part.first) + part.size * shift.squaredNorm();
+}
+
+/// Unit vector from the centre through the middle of the arc.
+Vec2 bisector(const Site& arc) { return (point_along(arc, 0.5) - arc.center).normalized(); }
+
+/// The region between an arc and its chord, about the circle's centre: sector less triangle.
+Moments between_arc_and_chord(const Site& arc) {
+  const double r = arc.arc_radius, angle = arc.sweep;
+  const double half_sine = std::sin(angle / 2);
+  Moments m;
+  m.size = r * r / 2 * less_sine(angle);
+  m.first = 2.0 / 3.0 * r * r * r * half_sine * half_sine * half_sine * bisector(arc);
+  m.second = r * r * r * r / 12 * (2 * less_sine(angle) + less_sine(2 * angle) / 2);
+  return m;
+}
+
+Measure measure_of_disc(const Site& s) {
+  const double area = std::numbers::pi * s.radius * s.radius;
+  return {area, s.a, area * s.radius * s.radius / 2};
+}
+
+}  // namespace
+
+void add_region(Moments& sums, const Site& site, const Vec2& about) {
+  const Vec2 a = site.a - about, b = site.b - about;
+  const double twice = cross(a, b);
+  sums.size += twice / 2;
+  sums.first += twice / 6 * (a + b);
+  sums.second += twice / 12 * (a.squaredNorm() + a.dot(b) + b.squaredNorm());
+  if (site.kind == SiteKind::arc) add_moved(sums, between_arc_and_chord(site), site.center, about);
+}
+
+void add_wire(Moments& sums, const Site& site, const Vec2& about) {
+  if (site.kind == SiteKind::point) return;
+  Moments m;
+  m.size = length(site);
+  if (site.kind == SiteKind::segment) {
+    m.second = m.size * m.size * m.size / 12;
+    add_moved(sums, m, 0.5 * (site.a + site.b), about);
+    return;
+  }
+  const double r = site.arc_radius;
+  m.first = 2 * r * r * std::sin(std::abs(site.sweep) / 2) * bisector(site);
+  m.second = m.size * r * r;
+  add_moved(sums, m, site.center, about);
+}
+
+Measure finish_measure(const Moments& sums, const Vec2& about) {
+  if (sums.size == 0.0) return {0.0, about, 0.0};
+  const Vec2 offset = sums.first / sums.size;
+  return {sums.size, about + offset, sums.second - sums.size * offset.squaredNorm()};
+}
+
+Measure measure_of(const Outline& outline) {
+  if (outline.is_point()) return measure_of_disc(outline.sites[0]);
+  const Vec2 about = outline.bounds.center();
+  bool thick = false;
+  for (const Site& s : outline.sites) thick |= s.radius > 0.0;
+  Moments sums;
+  if (thick) {
+    for (const Site& piece : thick_boundary(outline)) add_region(sums, piece, about);
+  } else if (outline.solid) {
+    for (const Site& s : outline.sites) add_region(sums, outline.container ? reversed(s) : s, about);
+  } else {
+    for (const Site& s : outline.sites) add_wire(sums, s, about);
+  }
+  if (thick && outline.container) sums = {-sums.size, -sums.first, -sums.second};
+  return finish_measure(sums, about);
+}
+
+}  // namespace brink

@@ -1,0 +1,183 @@
+#include "brink/core/shapes/outline.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "brink/core/base/error.h"
+#include "brink/core/shapes/curve_site.h"
+#include "brink/core/shapes/distance.h"
+#include "brink/core/shapes/text.h"
+
+namespace brink {
+
+namespace {
+
+std::string name_of(int k) { return "outline: site " + std::to_string(k); }
+
+void check_arc(const Site& s, int k) {
+  constexpr double quarter = std::numbers::pi / 2;
+  if (!(s.center.allFinite() && std::isfinite(s.arc_radius) && s.arc_radius > 0.0))
+    throw BadInput(name_of(k) + " is an arc of radius " + text(s.arc_radius) + "; it must be > 0 and finite");
+  if (!(std::abs(s.sweep) > 0.0 && std::abs(s.sweep) <= quarter * (1 + 1e-12)))
+    throw BadInput(name_of(k) + " turns by " + text(s.sweep) +
+                   " rad; an arc site turns by at most a quarter turn");
+  const double off =
+      std::max(std::abs((s.a - s.center).norm() - s.arc_radius), (point_along(s, 1.0) - s.b).norm());
+  if (!(off <= 1e-9 * (s.arc_radius + s.center.norm())))
+    throw BadInput(name_of(k) + " is an arc whose ends lie " + text(off) + " m off its circle");
+}
+
+void check_site(const Site& s, int k) {
+  if (!(s.a.allFinite() && s.b.allFinite()))
+    throw BadInput(name_of(k) + " runs from " + text(s.a) + " to " + text(s.b) +
+                   "; coordinates must be finite");
+  if (!(std::isfinite(s.radius) && s.radius >= 0.0))
+    throw BadInput(name_of(k) + " has radius " + text(s.radius) + "; it must be >= 0 and finite");
+  if (s.kind == SiteKind::point) return;
+  if (!((s.b - s.a).squaredNorm() > 0.0))
+    throw BadInput(name_of(k) + " at " + text(s.a) + " has no length (too small to square counts as none)");
+  if (s.kind == SiteKind::arc) check_arc(s, k);
+}
+
+void check_loop(const Outline& outline, const Loop& loop, int expected_first) {
+  const auto& sites = outline.sites;
+  if (loop.first != expected_first || loop.count < 1 ||
+      loop.first + loop.count > static_cast<int>(sites.size()))
+    throw BadInput("outline: a loop covers sites " + std::to_string(loop.first) + " .. " +
+                   std::to_string(loop.first + loop.count - 1) + "; loops must cover all sites in order");
+  for (int k = loop.first; k + 1 < loop.first + loop.count; ++k)
+    if (sites[k].b != sites[k + 1].a)
+      throw BadInput(name_of(k) + " ends at " + text(sites[k].b) + " but the next starts at " +
+                     text(sites[k + 1].a));
+  const Vec2 &start = sites[loop.first].a, &end = sites[loop.first + loop.count - 1].b;
+  if (loop.closed && start != end)
+    throw BadInput("outline: a closed loop starts at " + text(start) + " but ends at " + text(end));
+  if (outline.solid && !loop.closed)
+    throw BadInput("outline: a solid outline has an open chain from " + text(start) + " to " + text(end));
+}
+
+void check(const Outline& outline) {
+  for (std::size_t k = 0; k < outline.sites.size(); ++k) check_site(outline.sites[k], static_cast<int>(k));
+  int next = 0;
+  for (const Loop& loop : outline.loops) {
+    check_loop(outline, loop, next);
+    next += loop.count;
+  }
+  if (next != static_cast<int>(outline.sites.size()) || next == 0)
+    throw BadInput("outline: loops cover " + std::to_string(next) + " of " +
+                   std::to_string(outline.sites.size()) +
+                   " sites; there must be at least one, and each must be in a loop");
+  if (!outline.solid) return;
+  for (const Site& s : outline.sites)
+    if (s.kind == SiteKind::point || s.radius != outline.sites[0].radius)
+      throw BadInput("outline: the sites of a solid must be segments and arcs that share one radius");
+}
+
+/// Outward pseudo-normal where `in` hands over to `out`. At a cusp the two normals cancel; what is left of
+/// the limit is the tangent, outward at a needle's tip and inward at the end of a slot, which the curvatures
+/// tell apart.
+Vec2 pseudo_normal(const Site& in, const Site& out) {
+  const Vec2 arrive = direction_at_end(in), leave = direction_at_start(out);
+  const Vec2 sum = -perp(arrive) - perp(leave);
+  if (sum.norm() > 1e-9) return sum;
+  const bool slot = curvature(in) + curvature(out) > 0.0;
+  return slot ? leave : arrive;
+}
+
+void set_pseudo_normals(Outline& outline) {
+  for (const Loop& loop : outline.loops)
+    for (int k = 0; k < loop.count; ++k) {
+      Site& in = outline.sites[loop.first + k];
+      Site& out = outline.sites[loop.first + (k + 1) % loop.count];
+      in.pseudo_b = out.pseudo_a = pseudo_normal(in, out);
+    }
+}
+
+void add_vertex(std::vector<Sample>& samples, std::size_t loop_start, const Vec2& p, double radius) {
+  for (std::size_t k = loop_start; k < samples.size(); ++k)
+    if (samples[k].arc_site < 0 && samples[k].p == p) {
+      samples[k].radius = std::max(samples[k].radius, radius);
+      return;
+    }
+  samples.push_back({p, radius, -1});
+}
+
+/// A closed loop that joins up bit for bit meets most vertices once; the search over the loop so far is for
+/// wires and unions that come back to a vertex.
+void add_loop_samples(Outline& outline, const Loop& loop) {
+  const std::size_t start = outline.samples.size();
+  for (int k = loop.first; k < loop.first + loop.count; ++k) {
+    const Site& s = outline.sites[k];
+    add_vertex(outline.samples, start, s.a, s.radius);
+    if (!loop.closed) add_vertex(outline.samples, start, s.b, s.radius);
+  }
+  for (int k = loop.first; k < loop.first + loop.count; ++k) {
+    const Site& s = outline.sites[k];
+    const bool convex_side_is_free = !s.solid || s.sweep > 0.0;
+    if (s.kind == SiteKind::arc && convex_side_is_free)
+      outline.samples.push_back({s.center, s.arc_radius + s.radius, k});
+  }
+}
+
+void reverse_loop(std::vector<Site>& sites, const Loop& loop) {
+  std::reverse(sites.begin() + loop.first, sites.begin() + loop.first + loop.count);
+  for (int k = loop.first; k < loop.first + loop.count; ++k) sites[k] = reversed(sites[k]);
+}
+
+}  // namespace
+
+void finish_outline(Outline& outline) {
+  check(outline);
+  outline.samples.clear();
+  outline.bounds = Box();
+  outline.bounding_radius = 0.0;
+  for (Site& s : outline.sites) {
+    s.solid = outline.solid;
+    s.pseudo_a = s.pseudo_b = Vec2::Zero();
+    outline.bounds.add(core_bounds(s).grown(s.radius));
+    outline.bounding_radius = std::max(outline.bounding_radius, farthest_from_origin(s) + s.radius);
+  }
+  if (outline.solid) set_pseudo_normals(outline);
+  for (const Loop& loop : outline.loops) add_loop_samples(outline, loop);
+}
+
+double gap_by_brute_force(const Outline& outline, const Vec2& q, int* site) {
+  double least = std::numeric_limits<double>::infinity();
+  int nearest_site = 0;
+  Nearest nearest;
+  for (std::size_t k = 0; k < outline.sites.size(); ++k) {
+    const Nearest n = nearest_on(outline.sites[k], q);
+    const double unsigned_gap = n.distance - outline.sites[k].radius;
+    if (!(unsigned_gap < least)) continue;
+    least = unsigned_gap;
+    nearest_site = static_cast<int>(k);
+    nearest = n;
+  }
+  if (site) *site = nearest_site;
+  const Site& s = outline.sites[nearest_site];
+  return side_of(s, nearest, q) * nearest.distance - s.radius;
+}
+
+Outline as_container(Outline outline) {
+  if (!outline.solid)
+    throw BadInput("container: the outline has no inside; it must be a solid shape with closed loops");
+  if (outline.container) throw BadInput("container: the outline is one already");
+  for (const Loop& loop : outline.loops) reverse_loop(outline.sites, loop);
+  outline.container = true;
+  finish_outline(outline);
+  return outline;
+}
+
+Outline transformed(const Outline& outline, const Pose& pose) {
+  const Frame frame(pose);
+  Outline moved = outline;
+  for (Site& s : moved.sites) {
+    s.a = frame.to_world(s.a);
+    s.b = frame.to_world(s.b);
+    if (s.kind == SiteKind::arc) s.center = frame.to_world(s.center);
+  }
+  finish_outline(moved);
+  return moved;
+}
+
+}  // namespace brink

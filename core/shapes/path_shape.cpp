@@ -1,0 +1,166 @@
+/// make_path: subpaths to loops of segments and arcs, in the frame with y upward.
+
+#include <numbers>
+
+#include "brink/core/base/error.h"
+#include "brink/core/shapes/biarc.h"
+#include "brink/core/shapes/crossing.h"
+#include "brink/core/shapes/curve_site.h"
+#include "brink/core/shapes/loops.h"
+#include "brink/core/shapes/svg_path.h"
+#include "brink/core/shapes/text.h"
+
+namespace brink {
+
+namespace {
+
+/// From SVG's frame to ours: scaled, y upward.
+struct Upward {
+  double scale = 1.0;
+  Vec2 operator()(const Vec2& p) const { return {scale * p.x(), -scale * p.y()}; }
+};
+
+/// An SVG arc by its centre, in our frame (SVG 2, appendix B.2.4; the flip of y turns angles round).
+struct CenterArc {
+  Vec2 center = Vec2::Zero();
+  Vec2 u = Vec2::Zero(), v = Vec2::Zero();  ///< half axes; v = u turned by +90 degrees and rescaled
+  double start = 0.0, sweep = 0.0;          ///< [rad], in the parameter of c + u cos t + v sin t
+};
+
+CenterArc center_of(const PathPiece& piece, const Upward& up) {
+  const Vec2 a = up(piece.from), b = up(piece.to);
+  const double rotation = std::fmod(piece.rotation, 360.0) * std::numbers::pi / 180;
+  const Vec2 x_axis = unit_at(-rotation), y_axis = perp(x_axis);
+  double rx = up.scale * piece.rx, ry = up.scale * piece.ry;
+  const Vec2 half = 0.5 * (a - b);
+  // in units of the half axes the ellipse is the unit circle
+  Vec2 h(half.dot(x_axis) / rx, half.dot(y_axis) / ry);
+  const double reach = h.norm();
+  if (reach > 1.0) {
+    rx *= reach;
+    ry *= reach;
+    h /= reach;
+  }
+  const double offset = reach >= 1.0 ? 0.0 : std::sqrt((1 - reach) * (1 + reach)) / reach;
+  // travelling clockwise on screen is clockwise here too; the short way round keeps the centre on its right
+  const bool counter_clockwise = !piece.sweep;
+  const bool center_on_left = counter_clockwise != piece.large;
+  const Vec2 c = (center_on_left ? offset : -offset) * perp(-h);
+  CenterArc arc;
+  arc.u = rx * x_axis;
+  arc.v = ry * y_axis;
+  arc.center = 0.5 * (a + b) + c.x() * arc.u + c.y() * arc.v;
+  const Vec2 from = h - c, to = -h - c;
+  arc.start = std::atan2(from.y(), from.x());
+  double sweep = std::atan2(cross(from, to), from.dot(to));
+  if (counter_clockwise && sweep < 0.0) sweep += 2 * std::numbers::pi;
+  if (!counter_clockwise && sweep > 0.0) sweep -= 2 * std::numbers::pi;
+  arc.sweep = sweep;
+  return arc;
+}
+
+class PathBuilder {
+ public:
+  PathBuilder(double scale, double tolerance) : up_{scale}, tolerance_(tolerance) {}
+
+  std::vector<Site> sites_of(const Subpath& subpath) {
+    std::vector<Site> sites;
+    for (const PathPiece& piece : subpath.pieces) add(piece, sites);
+    return sites;
+  }
+  double deviation() const { return deviation_; }
+
+ private:
+  void add(const PathPiece& piece, std::vector<Site>& sites) {
+    const Vec2 a = up_(piece.from), b = up_(piece.to);
+    switch (piece.kind) {
+      case PathPieceKind::line:
+        sites.push_back(segment_site(a, b, 0.0));
+        return;
+      case PathPieceKind::cubic:
+        return fit(CubicBezier({a, up_(piece.control_1), up_(piece.control_2), b}), a, b, sites);
+      case PathPieceKind::arc:
+        break;
+    }
+    const CenterArc arc = center_of(piece, up_);
+    if (piece.rx == piece.ry)
+      add_arc(sites, a, b, arc.center, arc.u.norm(), arc.sweep, 0.0);
+    else
+      fit(EllipticalArc(arc.center, arc.u, arc.v, arc.start, arc.start + arc.sweep), a, b, sites);
+  }
+
+  void fit(const SmoothCurve& curve, const Vec2& a, const Vec2& b, std::vector<Site>& sites) {
+    deviation_ = std::max(deviation_, fit_arcs(curve, a, b, tolerance_, 0.0, sites));
+  }
+
+  Upward up_;
+  double tolerance_;
+  double deviation_ = 0.0;
+};
+
+/// Relative commands come back to the start only up to rounding: the last end is put onto the first start
+/// then.
+void close_rounding_gap(Subpath& subpath) {
+  Box box;
+  for (const PathPiece& piece : subpath.pieces) box.add(piece.to);
+  const Vec2 start = subpath.pieces.front().from;
+  box.add(start);
+  const double rounding = 1e-13 * (box.extent().norm() + start.norm());
+  while (subpath.pieces.size() > 2) {
+    PathPiece& last = subpath.pieces.back();
+    const bool closes = (last.to - start).norm() <= rounding;
+    if (!closes) return;
+    if (last.kind != PathPieceKind::line || (last.from - start).norm() > rounding) {
+      last.to = start;
+      subpath.closed = true;
+      return;
+    }
+    subpath.pieces.pop_back();
+  }
+}
+
+bool loop_contains(const std::vector<Site>& loop, const Vec2& p) {
+  Outline outline;
+  add_loop(outline, loop, true);
+  outline.solid = true;
+  finish_outline(outline);
+  return gap_by_brute_force(outline, p) < 0.0;
+}
+
+/// Even-odd: a loop inside an odd number of others is a hole.
+void orient_even_odd(std::vector<std::vector<Site>>& loops) {
+  for (std::vector<Site>& loop : loops)
+    if (enclosed_area(loop) < 0.0) loop = reversed(loop);
+  std::vector<bool> hole(loops.size(), false);
+  for (std::size_t k = 0; k < loops.size(); ++k)
+    for (std::size_t j = 0; j < loops.size(); ++j)
+      if (j != k && loop_contains(loops[j], loops[k].front().a)) hole[k] = !hole[k];
+  for (std::size_t k = 0; k < loops.size(); ++k)
+    if (hole[k]) loops[k] = reversed(loops[k]);
+}
+
+}  // namespace
+
+Shape make_path(std::string_view d, double scale, double curve_tolerance) {
+  require_positive("scale", scale);
+  require_positive("curve_tolerance", curve_tolerance);
+  std::vector<Subpath> subpaths = parse_svg_path(d);
+  if (subpaths.empty()) throw BadInput("path: draws nothing; at least one line, curve or arc is needed");
+  PathBuilder builder(scale, curve_tolerance);
+  std::vector<std::vector<Site>> loops;
+  Outline outline;
+  outline.solid = true;
+  for (Subpath& subpath : subpaths) {
+    close_rounding_gap(subpath);
+    loops.push_back(builder.sites_of(subpath));
+    outline.solid = outline.solid && subpath.closed;
+  }
+  if (outline.solid) orient_even_odd(loops);
+  for (std::size_t k = 0; k < loops.size(); ++k) add_loop(outline, loops[k], subpaths[k].closed);
+  outline.curve_deviation = builder.deviation();
+  finish_outline(outline);
+  if (outline.solid) require_simple(outline, "path");
+  return finish_shape(std::move(outline));
+}
+
+}  // namespace brink

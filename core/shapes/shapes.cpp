@@ -1,0 +1,166 @@
+#include "brink/core/shapes/shapes.h"
+
+#include <numbers>
+
+#include "brink/core/base/error.h"
+#include "brink/core/shapes/biarc.h"
+#include "brink/core/shapes/curve_site.h"
+#include "brink/core/shapes/loops.h"
+#include "brink/core/shapes/measure.h"
+#include "brink/core/shapes/polygon.h"
+#include "brink/core/shapes/polygon_union.h"
+#include "brink/core/shapes/text.h"
+
+namespace brink {
+
+namespace {
+
+constexpr double whole_turn = 2 * std::numbers::pi;
+
+Shape solid_of(const std::vector<std::vector<Vec2>>& loops, double radius) {
+  Outline outline;
+  outline.solid = true;
+  for (const auto& vertices : loops) add_loop(outline, segments_through(vertices, true, radius), true);
+  return finish_shape(std::move(outline));
+}
+
+Shape wire_of(const std::vector<Site>& sites, bool closed, double deviation = 0.0) {
+  Outline outline;
+  outline.curve_deviation = deviation;
+  add_loop(outline, sites, closed);
+  return finish_shape(std::move(outline));
+}
+
+/// A union is at least as large as its largest part and at most as large as all of them.
+void require_plausible_area(double area, const std::vector<std::vector<Vec2>>& parts) {
+  double largest = 0.0, sum = 0.0;
+  for (const auto& part : parts) {
+    largest = std::max(largest, signed_area(part));
+    sum += signed_area(part);
+  }
+  if (area < largest - 1e-9 * sum || area > sum * (1 + 1e-9))
+    throw BadInput("polygons: the union came out with area " + text(area) + " m^2 where the parts have " +
+                   text(sum) + "; move parts that nearly coincide apart or together");
+}
+
+}  // namespace
+
+Shape make_point(const Vec2& p, double radius) {
+  require_finite("point", p);
+  require_radius(radius);
+  return wire_of({point_site(p, radius)}, false);
+}
+
+Shape make_disc(double radius) {
+  require_positive("radius", radius);
+  return make_point(Vec2::Zero(), radius);
+}
+
+Shape make_segment(const Vec2& a, const Vec2& b, double radius) {
+  require_finite("segment", a);
+  require_finite("segment", b);
+  require_radius(radius);
+  if (a == b)
+    throw BadInput("segment: both ends are " + text(a) + "; they must differ (a point site has one place)");
+  return wire_of({segment_site(a, b, radius)}, false);
+}
+
+Shape make_capsule(double length, double radius) {
+  require_positive("length", length);
+  require_positive("radius", radius);
+  return make_segment({-length / 2, 0}, {length / 2, 0}, radius);
+}
+
+Shape make_box(double width, double height, double radius) {
+  require_positive("width", width);
+  require_positive("height", height);
+  require_radius(radius);
+  const double x = width / 2, y = height / 2;
+  return solid_of({{Vec2(-x, -y), Vec2(x, -y), Vec2(x, y), Vec2(-x, y)}}, radius);
+}
+
+Shape make_polygon(std::vector<Vec2> vertices, double radius) {
+  require_radius(radius);
+  return solid_of({checked_polygon(vertices, "polygon")}, radius);
+}
+
+Shape make_polygons(const std::vector<std::vector<Vec2>>& polygons) {
+  if (polygons.empty()) throw BadInput("polygons: the list is empty; at least one polygon is needed");
+  std::vector<std::vector<Vec2>> parts;
+  for (std::size_t k = 0; k < polygons.size(); ++k)
+    parts.push_back(checked_polygon(polygons[k], "polygons[" + std::to_string(k) + "]"));
+  if (parts.size() == 1) return solid_of(parts, 0.0);
+  Shape shape = solid_of(union_of_polygons(parts), 0.0);
+  require_plausible_area(shape.measure.size, parts);
+  return shape;
+}
+
+Shape make_chain(const std::vector<Vec2>& vertices, bool closed, double radius) {
+  for (std::size_t k = 0; k < vertices.size(); ++k)
+    require_finite(("chain: vertex " + std::to_string(k)).c_str(), vertices[k]);
+  require_radius(radius);
+  const std::vector<Vec2> kept = without_repeats(vertices, closed);
+  const std::size_t least = closed ? 3 : 2;
+  if (kept.size() < least)
+    throw BadInput("chain: has " + std::to_string(kept.size()) + " distinct vertices; a" +
+                   (closed ? " closed" : "n open") + " chain needs at least " + std::to_string(least));
+  return wire_of(segments_through(kept, closed, radius), closed);
+}
+
+Shape make_arc(const Vec2& center, double arc_radius, double from, double to, double radius) {
+  require_finite("arc center", center);
+  require_positive("arc radius", arc_radius);
+  require_radius(radius);
+  if (!std::isfinite(from) || !std::isfinite(to) || from == to)
+    throw BadInput("arc: runs from " + text(from) + " to " + text(to) +
+                   " rad; angles must be finite and differ");
+  double sweep = to - from;
+  if (sweep < 0.0) sweep += whole_turn * std::ceil(-sweep / whole_turn);
+  const bool whole = sweep == 0.0 || sweep >= whole_turn * (1 - 1e-15);
+  if (whole) sweep = whole_turn;
+  const Vec2 a = center + arc_radius * unit_at(from);
+  const Vec2 b = whole ? a : Vec2(center + arc_radius * unit_at(from + sweep));
+  std::vector<Site> sites;
+  add_arc(sites, a, b, center, arc_radius, sweep, radius);
+  return wire_of(sites, whole);
+}
+
+Shape make_bezier(const std::array<Vec2, 4>& control, double curve_tolerance, double radius) {
+  for (const Vec2& p : control) require_finite("bezier", p);
+  require_positive("curve_tolerance", curve_tolerance);
+  require_radius(radius);
+  const CubicBezier curve(control);
+  if (!(curve.speed_bound() > 0.0))
+    throw BadInput("bezier: all four control points are " + text(control[0]) + "; some must differ");
+  std::vector<Site> sites;
+  const double deviation = fit_arcs(curve, control[0], control[3], curve_tolerance, radius, sites);
+  if (sites.empty())
+    throw BadInput("bezier: the whole curve is shorter than curve_tolerance, " + text(curve_tolerance));
+  return wire_of(sites, false, deviation);
+}
+
+Shape make_disc_container(double radius) {
+  require_positive("radius", radius);
+  Outline outline;
+  outline.solid = true;
+  std::vector<Site> sites;
+  const Vec2 start(radius, 0);
+  add_arc(sites, start, start, Vec2::Zero(), radius, whole_turn, 0.0);
+  add_loop(outline, sites, true);
+  Shape shape;
+  shape.outline = std::move(outline);
+  finish_outline(shape.outline);
+  shape.outline = as_container(std::move(shape.outline));
+  shape.measure = measure_of(shape.outline);
+  return shape;
+}
+
+Shape centered(Shape shape) {
+  Pose shift;
+  shift.position = -shape.measure.centroid;
+  shape.outline = transformed(shape.outline, shift);
+  shape.measure.centroid = Vec2::Zero();
+  return shape;
+}
+
+}  // namespace brink
