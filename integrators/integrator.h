@@ -30,19 +30,25 @@ struct Extent {
   std::string why;   ///< of a failure: step floor reached, error test failed, right-hand side not finite ...
 };
 
-/// Integrates one component (see Dynamics). Solver steps depend on start() and on the component's own dynamics alone:
-/// never on how far, or how often, extend() was asked to go. That is what makes different schedules agree.
+/// Integrates one component (see Dynamics). Solver steps depend on start() and on the component's own
+/// dynamics alone: never on how far, or how often, extend() was asked to go. That is what makes different
+/// schedules agree.
 class Integrator {
  public:
   virtual ~Integrator() = default;
 
   /// Begins afresh at time t with one state a body; motions made before stay valid for those who hold them.
+  /// @throws BadInput if t or a state is not finite, or the number of states is not the number of bodies.
   virtual void start(double t, std::span<const BodyState> states) = 0;
 
   /// Extends every motion to cover at least time t. Steps are the integrator's own: the end may lie beyond t.
+  /// A failure is lasting: motions end at its time, and asking beyond it again gives the same answer until
+  /// start().
+  /// @pre start() was called. @throws BadInput if t is not finite (closed forms also reach infinity).
   virtual Extent extend(double t) = 0;
 
-  /// Motion of the component's body k, from the last start() to the last extend().
+  /// Motion of the component's body k, from the last start() to the last extend(); it grows with later
+  /// extend()s. Taken before the first, it covers the starting time alone and does not grow.
   virtual Motion motion(int k) const = 0;
 };
 
@@ -54,10 +60,11 @@ struct IntegratorInfo {
 /// Every integrator by name, `auto` first.
 std::span<const IntegratorInfo> integrators();
 
-/// Makes the integrator called `name` for `dynamics` (kept). `work`, if given, outlives it and is counted into.
-/// `auto` is a parabola where Dynamics::constant(), closed-form drag where linear_drag().valid, else `erk`.
-/// @throws BadInput on an unknown name (naming those allowed), bad options, or `ballistic` where the dynamics are not
-/// constant.
+/// Makes the integrator called `name` for `dynamics` (kept). `work`, if given, outlives it and is counted
+/// into. `auto` is a parabola where Dynamics::constant(), closed-form drag where linear_drag().valid, else
+/// `erk`.
+/// @throws BadInput on an unknown name (naming those allowed), bad options, or `ballistic` where the dynamics
+/// are not constant.
 std::unique_ptr<Integrator> make_integrator(std::string_view name, std::shared_ptr<const Dynamics> dynamics,
                                             const IntegratorOptions& options, WorkCounters* work = nullptr);
 

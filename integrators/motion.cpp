@@ -6,19 +6,26 @@ namespace brink {
 
 namespace {
 
-/// s(t) of exponential relaxation: value and rate of x'' = drive - k x' after time s, stable as k -> 0.
+/// x'' = drive - k x' after time s: displacement and rate.
 struct Relaxed {
-  double moved;  ///< displacement
+  double moved;
   double rate;
 };
+
+/// (1 - e^-z) / z.
+double mean_decay(double z) { return z < 1e-16 ? 1.0 : -std::expm1(-z) / z; }
+
+/// (z - (1 - e^-z)) / z^2; its Taylor series 1/2 - z/6 + z^2/24 - ... where the difference would cancel.
+double mean_rise(double z) {
+  if (z > 0.5) return (z + std::expm1(-z)) / (z * z);
+  double term = 0.5, sum = 0.5;
+  for (int k = 3; std::abs(term) > 1e-18; ++k) sum += term *= -z / k;
+  return sum;
+}
+
 Relaxed relax(double rate0, double drive, double k, double s) {
-  if (k * s < 1e-8) {  // series: relative error below (k s)^2 / 6 < 2e-17
-    const double mean = 1.0 - 0.5 * k * s;
-    return {rate0 * s * mean + 0.5 * drive * s * s * (1.0 - k * s / 3.0), rate0 * (1.0 - k * s) + drive * s * mean};
-  }
-  const double faded = -std::expm1(-k * s);  // 1 - e^(-k s)
-  const double terminal = drive / k;
-  return {terminal * s + (rate0 - terminal) * faded / k, rate0 - (rate0 - terminal) * faded};
+  const double z = k * s, decay = mean_decay(z);
+  return {s * (rate0 * decay + s * (drive * mean_rise(z))), rate0 * std::exp(-z) + s * (drive * decay)};
 }
 
 /// Smallest disc-like enclosure that holds both.
@@ -100,13 +107,35 @@ Motion Motion::ballistic(double t0, const BodyState& start, const Acceleration& 
   return m;
 }
 
-Motion Motion::drag(double t0, const BodyState& start, const Acceleration& drive, double linear, double angular,
-                    double t1) {
+Motion Motion::drag(double t0, const BodyState& start, const Acceleration& drive, double linear,
+                    double angular, double t1) {
   Motion m = ballistic(t0, start, drive, t1);
   m.kind_ = Kind::drag;
   m.linear_ = linear;
   m.angular_ = angular;
   return m;
+}
+
+Motion Motion::chain(std::shared_ptr<const std::vector<Motion>> pieces) {
+  Motion m;
+  m.kind_ = Kind::chain;
+  m.chain_ = std::move(pieces);
+  return m;
+}
+
+double Motion::begin() const {
+  if (kind_ == Kind::dense) return track_->begin();
+  return kind_ == Kind::chain ? chain_->front().t0_ : t0_;
+}
+double Motion::end() const {
+  if (kind_ == Kind::dense) return track_->end();
+  return kind_ == Kind::chain ? chain_->back().t1_ : t1_;
+}
+
+const Motion& Motion::link(double t) const {
+  auto it = std::upper_bound(chain_->begin(), chain_->end(), t,
+                             [](double time, const Motion& m) { return time < m.t0_; });
+  return it == chain_->begin() ? *it : *std::prev(it);
 }
 
 Motion Motion::dense(std::shared_ptr<const Track> track) {
@@ -130,6 +159,8 @@ BodyState Motion::state(double t) const {
       return {{start_.pose.position + Vec2(x.moved, y.moved), start_.pose.angle + turn.moved},
               {{x.rate, y.rate}, turn.rate}};
     }
+    case Kind::chain:
+      return link(t).state(t);
     case Kind::dense:
       break;
   }
@@ -161,6 +192,16 @@ MotionBounds Motion::bounds(double from, double to) const {
       b.omega_radius = 0.5 * std::abs(end.omega - start.omega);
       b.alpha = std::max(std::abs(drive_.angular - angular_ * start.omega),
                          std::abs(drive_.angular - angular_ * end.omega));
+      return b;
+    }
+    case Kind::chain: {
+      const Motion* piece = &link(from);
+      const Motion* last = &link(to);
+      b = piece->bounds(from, std::min(to, piece->t1_));
+      while (piece != last) {
+        ++piece;
+        merge(b, piece->bounds(piece->t0_, std::min(to, piece->t1_)));
+      }
       return b;
     }
     case Kind::dense:

@@ -1,5 +1,6 @@
 #pragma once
-/// A piece of one body's trajectory: where it is at any time of an interval, and how wild it can be inside a part of it.
+/// A piece of one body's trajectory: where it is at any time of an interval, and how wild it can be inside a
+/// part of it.
 
 #include <array>
 #include <limits>
@@ -11,7 +12,8 @@
 namespace brink {
 
 /// Enclosures of a motion's rates over a sub-interval: each rate stays within `radius` of its centre.
-/// Differences of two bodies' centres keep relative bounds tight (two falling bodies: relative acceleration 0).
+/// Differences of two bodies' centres keep relative bounds tight (two falling bodies: relative acceleration
+/// 0).
 struct MotionBounds {
   Vec2 velocity = Vec2::Zero();      ///< centre [m/s]
   double velocity_radius = 0.0;      ///< [m/s]
@@ -25,7 +27,8 @@ struct MotionBounds {
   double spin() const { return std::abs(omega) + omega_radius; }
 };
 
-/// One polynomial piece of dense output on [begin, end]: pose(t) = sum_k c[k] (t - origin)^k over (x, y, angle).
+/// One polynomial piece of dense output on [begin, end]: pose(t) = sum_k c[k] (t - origin)^k over (x, y,
+/// angle).
 struct PolynomialPiece {
   static constexpr int kMaxDegree = 13;
   double begin = 0.0, end = 0.0;
@@ -37,8 +40,8 @@ struct PolynomialPiece {
   MotionBounds bounds(double from, double to) const;
 };
 
-/// Consecutive pieces of one body, each beginning where the last ended, pose and twist continuous (C1) between them.
-/// Integrators append; motions read.
+/// Consecutive pieces of one body, each beginning where the last ended, pose and twist continuous (C1)
+/// between them. Integrators append; motions read.
 struct Track {
   std::vector<PolynomialPiece> pieces;
   double begin() const { return pieces.front().begin; }
@@ -55,19 +58,23 @@ class Motion {
   /// Constant acceleration from `start` at t0, valid to t1: closed form.
   static Motion ballistic(double t0, const BodyState& start, const Acceleration& acceleration,
                           double t1 = std::numeric_limits<double>::infinity());
-  /// Linear drag, dv/dt = drive - linear v (and the same for the angle), in closed form. @pre rates >= 0 [1/s].
-  static Motion drag(double t0, const BodyState& start, const Acceleration& drive, double linear, double angular,
-                     double t1 = std::numeric_limits<double>::infinity());
+  /// Linear drag, dv/dt = drive - linear v (and the same for the angle), in closed form. @pre rates >= 0
+  /// [1/s].
+  static Motion drag(double t0, const BodyState& start, const Acceleration& drive, double linear,
+                     double angular, double t1 = std::numeric_limits<double>::infinity());
   /// Dense output of an integrator; `track` may grow behind the motion's back. @pre not empty.
   static Motion dense(std::shared_ptr<const Track> track);
+  /// Consecutive closed-form motions, each beginning where the last ends; the chain may grow behind the
+  /// motion's back. At a join the later one answers. @pre not empty, none of them dense or a chain.
+  static Motion chain(std::shared_ptr<const std::vector<Motion>> pieces);
 
   Motion() = default;
 
-  double begin() const { return kind_ == Kind::dense ? track_->begin() : t0_; }
-  double end() const { return kind_ == Kind::dense ? track_->end() : t1_; }
+  double begin() const;
+  double end() const;
 
-  /// @pre begin() <= t <= end(). Cost: a few flops (ballistic), an exponential or two (drag), a binary search and
-  /// Horner (dense).
+  /// @pre begin() <= t <= end(). Cost: a few flops (ballistic), an exponential or two (drag), a binary search
+  /// and Horner (dense).
   BodyState state(double t) const;
   Pose pose(double t) const { return state(t).pose; }
   Twist twist(double t) const { return state(t).twist; }
@@ -75,14 +82,17 @@ class Motion {
   /// Enclosures over [from, to]. @pre begin() <= from <= to <= end().
   MotionBounds bounds(double from, double to) const;
 
-  /// True for a parabola (uniform acceleration, `still` included): closed forms may use start() and acceleration().
+  /// True for a parabola (uniform acceleration, `still` included): closed forms may use start() and
+  /// acceleration().
   bool is_ballistic() const { return kind_ == Kind::ballistic; }
   double origin() const { return begin(); }
   const BodyState& start() const { return start_; }
   const Acceleration& acceleration() const { return drive_; }
 
  private:
-  enum class Kind : unsigned char { ballistic, drag, dense };
+  enum class Kind : unsigned char { ballistic, drag, dense, chain };
+  const Motion& link(double t) const;  ///< of a chain: the last that begins at or before t
+
   Kind kind_ = Kind::ballistic;
   double t0_ = 0.0;
   double t1_ = std::numeric_limits<double>::infinity();
@@ -90,6 +100,7 @@ class Motion {
   Acceleration drive_;
   double linear_ = 0.0, angular_ = 0.0;
   std::shared_ptr<const Track> track_;
+  std::shared_ptr<const std::vector<Motion>> chain_;
 };
 
 }  // namespace brink

@@ -1,0 +1,143 @@
+#include "brink/integrators/fixed_step.h"
+
+#include "brink/integrators/dense_output.h"
+#include "brink/integrators/stepping.h"
+
+namespace brink {
+
+namespace {
+
+using States = std::vector<BodyState>;
+using Accelerations = std::vector<Acceleration>;
+
+BodyState moved(const BodyState& from, const Twist& twist, const Acceleration& a, double h) {
+  return {{from.pose.position + h * twist.velocity, from.pose.angle + h * twist.omega},
+          {from.twist.velocity + h * a.linear, from.twist.omega + h * a.angular}};
+}
+
+class FixedStep : public SteppingIntegrator {
+ protected:
+  FixedStep(std::shared_ptr<const Dynamics> dynamics, double step, WorkCounters* work)
+      : SteppingIntegrator(std::move(dynamics), work), step_(step), end_(size()), a_(size()) {}
+
+  /// Writes the states after h into `end`. False where an acceleration is not finite.
+  virtual bool advance(double t, std::span<const BodyState> from, double h, States& end) = 0;
+
+  Accelerations& scratch() { return a_; }
+
+ private:
+  bool begin_segment() final {
+    origin_ = time();
+    taken_ = 0;
+    return true;
+  }
+
+  bool step() final {
+    double t = origin_ + static_cast<double>(++taken_) * step_;
+    if (t > segment_end() - 1e-6 * step_) t = segment_end();
+    if (!(t > time())) return fail("step " + time_text(step_) + " s is lost in rounding");
+    if (!advance(time(), states(), t - time(), end_)) return fail(why());
+    for (int k = 0; k < size(); ++k) {
+      if (!is_finite(end_[k]))
+        return fail("the state of body " + std::to_string(k) + " of the component overflows");
+      append(k, cubic_piece(time(), states()[k], t, end_[k]));
+    }
+    return accept(t, end_);
+  }
+
+  double step_;
+  double origin_ = 0.0;
+  long taken_ = 0;
+  States end_;
+  Accelerations a_;
+};
+
+/// x += h v, v += h a, both from the start of the step.
+class Euler final : public FixedStep {
+ public:
+  Euler(std::shared_ptr<const Dynamics> dynamics, double step, WorkCounters* work)
+      : FixedStep(std::move(dynamics), step, work) {}
+
+ private:
+  bool advance(double t, std::span<const BodyState> from, double h, States& end) override {
+    Accelerations& a = scratch();
+    if (!accelerations(t, from, a)) return false;
+    for (std::size_t k = 0; k < end.size(); ++k) end[k] = moved(from[k], from[k].twist, a[k], h);
+    return true;
+  }
+};
+
+/// v += h a, then x += h v with the new v: symplectic (Hairer, Lubich & Wanner 2006, I.1.2).
+class SemiImplicitEuler final : public FixedStep {
+ public:
+  SemiImplicitEuler(std::shared_ptr<const Dynamics> dynamics, double step, WorkCounters* work)
+      : FixedStep(std::move(dynamics), step, work) {}
+
+ private:
+  bool advance(double t, std::span<const BodyState> from, double h, States& end) override {
+    Accelerations& a = scratch();
+    if (!accelerations(t, from, a)) return false;
+    for (std::size_t k = 0; k < end.size(); ++k) {
+      const Twist twist = moved(from[k], {}, a[k], h).twist;
+      end[k] = moved(from[k], twist, a[k], h);
+    }
+    return true;
+  }
+};
+
+/// The classic fourth-order method (Kutta 1901).
+class Rk4 final : public FixedStep {
+ public:
+  Rk4(std::shared_ptr<const Dynamics> dynamics, double step, WorkCounters* work)
+      : FixedStep(std::move(dynamics), step, work), stage_(size()), sums_(size()) {}
+
+ private:
+  struct Sum {
+    Twist twist;
+    Acceleration acceleration;
+    void add(double weight, const Twist& w, const Acceleration& a) {
+      twist.velocity += weight * w.velocity;
+      twist.omega += weight * w.omega;
+      acceleration.linear += weight * a.linear;
+      acceleration.angular += weight * a.angular;
+    }
+  };
+
+  bool advance(double t, std::span<const BodyState> from, double h, States& end) override {
+    static constexpr double nodes[] = {0.0, 0.5, 0.5, 1.0};
+    static constexpr double weights[] = {1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
+    Accelerations& a = scratch();
+    stage_.assign(from.begin(), from.end());
+    sums_.assign(end.size(), {});
+    for (int i = 0; i < 4; ++i) {
+      if (!accelerations(t + nodes[i] * h, stage_, a)) return false;
+      for (std::size_t k = 0; k < end.size(); ++k) {
+        sums_[k].add(weights[i], stage_[k].twist, a[k]);
+        if (i < 3) stage_[k] = moved(from[k], stage_[k].twist, a[k], nodes[i + 1] * h);
+      }
+    }
+    for (std::size_t k = 0; k < end.size(); ++k)
+      end[k] = moved(from[k], sums_[k].twist, sums_[k].acceleration, h);
+    return true;
+  }
+
+  States stage_;
+  std::vector<Sum> sums_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_euler(std::shared_ptr<const Dynamics> dynamics, double step,
+                                       WorkCounters* work) {
+  return std::make_unique<Euler>(std::move(dynamics), step, work);
+}
+std::unique_ptr<Integrator> make_semi_implicit_euler(std::shared_ptr<const Dynamics> dynamics, double step,
+                                                     WorkCounters* work) {
+  return std::make_unique<SemiImplicitEuler>(std::move(dynamics), step, work);
+}
+std::unique_ptr<Integrator> make_rk4(std::shared_ptr<const Dynamics> dynamics, double step,
+                                     WorkCounters* work) {
+  return std::make_unique<Rk4>(std::move(dynamics), step, work);
+}
+
+}  // namespace brink

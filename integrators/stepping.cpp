@@ -1,0 +1,100 @@
+#include "brink/integrators/stepping.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "brink/core/base/error.h"
+
+namespace brink {
+
+bool is_finite(const BodyState& s) {
+  return s.pose.position.allFinite() && std::isfinite(s.pose.angle) && s.twist.velocity.allFinite() &&
+         std::isfinite(s.twist.omega);
+}
+bool is_finite(const Acceleration& a) { return a.linear.allFinite() && std::isfinite(a.angular); }
+
+std::string time_text(double t) {
+  std::ostringstream out;
+  out.precision(12);
+  out << t;
+  return out.str();
+}
+
+void check_start(const Dynamics& dynamics, double t, std::span<const BodyState> states) {
+  if (!std::isfinite(t)) throw BadInput("integrator start: t is " + time_text(t) + "; allowed: finite times");
+  if (states.size() != static_cast<std::size_t>(dynamics.size()))
+    throw BadInput("integrator start: " + std::to_string(states.size()) + " states given for " +
+                   std::to_string(dynamics.size()) + " bodies");
+  for (std::size_t k = 0; k < states.size(); ++k)
+    if (!is_finite(states[k]))
+      throw BadInput("integrator start: the state of body " + std::to_string(k) +
+                     " of the component is not finite; allowed: finite poses and twists");
+}
+
+void check_finite_time(double t) {
+  if (!std::isfinite(t))
+    throw BadInput("integrator extend: t is " + time_text(t) + "; allowed: finite times");
+}
+
+void SteppingIntegrator::start(double t, std::span<const BodyState> states) {
+  check_start(*dynamics_, t, states);
+  time_ = t;
+  states_.assign(states.begin(), states.end());
+  tracks_.clear();
+  for (int k = 0; k < size(); ++k) tracks_.push_back(std::make_shared<Track>());
+  in_segment_ = false;
+  why_.clear();
+  failure_.clear();
+}
+
+Extent SteppingIntegrator::extend(double t) {
+  check_finite_time(t);
+  while (time_ < t && failure_.empty()) {
+    why_.clear();
+    if (in_segment_ || next_segment()) step();
+  }
+  if (time_ < t) return {Extent::Status::failed, time_, failure_};
+  return {Extent::Status::reached, time_, {}};
+}
+
+Motion SteppingIntegrator::motion(int k) const {
+  if (tracks_.at(k)->pieces.empty()) return Motion::ballistic(time_, states_[k], {}, time_);
+  return Motion::dense(tracks_[k]);
+}
+
+bool SteppingIntegrator::next_segment() {
+  segment_end_ = dynamics_->next_break(time_);
+  if (!(segment_end_ > time_)) return fail("the next break of the forces is not later than this time");
+  in_segment_ = begin_segment();
+  return in_segment_;
+}
+
+bool SteppingIntegrator::accelerations(double t, std::span<const BodyState> states,
+                                       std::span<Acceleration> out) {
+  if (work_) ++work_->right_hand_sides;
+  const double inside = t < segment_end_ ? t : std::nextafter(segment_end_, time_);
+  dynamics_->accelerations(inside, states, out);
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    if (is_finite(out[k])) continue;
+    why_ = "the acceleration of body " + std::to_string(k) +
+           " of the component is not finite at t = " + time_text(inside) + ", position (" +
+           time_text(states[k].pose.position.x()) + ", " + time_text(states[k].pose.position.y()) + ")";
+    return false;
+  }
+  return true;
+}
+
+bool SteppingIntegrator::accept(double t, std::span<const BodyState> states) {
+  states_.assign(states.begin(), states.end());
+  time_ = t;
+  if (work_) ++work_->solver_steps;
+  if (time_ >= segment_end_) in_segment_ = false;
+  return true;
+}
+
+bool SteppingIntegrator::fail(std::string why) {
+  failure_ = "integration stopped at t = " + time_text(time_) + ": " + std::move(why);
+  return false;
+}
+
+}  // namespace brink

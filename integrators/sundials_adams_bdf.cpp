@@ -1,0 +1,124 @@
+#include <cvode/cvode.h>
+#include <nvector/nvector_serial.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+
+#include "brink/integrators/dense_output.h"
+#include "brink/integrators/sundials.h"
+#include "brink/integrators/sundials_base.h"
+
+namespace brink {
+
+namespace {
+
+int evaluate(realtype t, N_Vector y, N_Vector rate, void* self) {
+  return static_cast<SundialsStepper*>(self)->right_hand_side(
+      t, N_VGetArrayPointer(y), N_VGetArrayPointer(rate), SundialsStepper::WhereNotFinite::say_so);
+}
+
+void keep_message(int, const char*, const char*, char* message, void* self) {
+  static_cast<SundialsStepper*>(self)->note(message);
+}
+
+class Cvode : public SundialsStepper {
+ protected:
+  Cvode(std::shared_ptr<const Dynamics> dynamics, const IntegratorOptions& options, WorkCounters* work,
+        int method)
+      : SundialsStepper(std::move(dynamics), options, work), method_(method) {}
+  ~Cvode() override { CVodeFree(&memory_); }
+
+  /// Gives the solver its nonlinear (and linear) solver; 0 if done.
+  virtual int attach_solvers(void* memory) = 0;
+
+ private:
+  int restart_solver(double stop_time) final {
+    const int flag = memory_ ? CVodeReInit(memory_, time(), y()) : create();
+    return flag != 0 ? flag : CVodeSetStopTime(memory_, stop_time);
+  }
+
+  int create() {
+    memory_ = CVodeCreate(method_, context());
+    if (!memory_) return -1;
+    // more trials than the defaults before giving up: forces may have corners
+    for (int flag : {CVodeSetErrHandlerFn(memory_, keep_message, static_cast<SundialsStepper*>(this)),
+                     CVodeInit(memory_, evaluate, time(), y()),
+                     CVodeSetUserData(memory_, static_cast<SundialsStepper*>(this)),
+                     CVodeSStolerances(memory_, options().tolerance, options().absolute_tolerance),
+                     CVodeSetMaxErrTestFails(memory_, 40), CVodeSetMaxConvFails(memory_, 40),
+                     CVodeSetMaxHnilWarns(memory_, -1), attach_solvers(memory_)})
+      if (flag != 0) return flag;
+    return 0;
+  }
+
+  int solver_step(double* t) final { return CVode(memory_, first_target(), y(), t, CV_ONE_STEP); }
+
+  bool append_pieces(double t, std::span<const BodyState> ends) final {
+    std::vector<PolynomialPiece> pieces(size());
+    int order = 0;
+    if (CVodeGetLastOrder(memory_, &order) != 0) return false;
+    double factorial = 1.0;
+    for (int k = 0; k <= order; ++k, factorial *= k) {
+      if (CVodeGetDky(memory_, t, k, derivative()) != 0) return false;
+      const double* d = N_VGetArrayPointer(derivative());
+      for (int body = 0; body < size(); ++body, d += kNumbersPerBody)
+        pieces[body].c[k] = Eigen::Vector3d(d[0], d[1], d[2]) / factorial;
+    }
+    for (int body = 0; body < size(); ++body) {
+      PolynomialPiece& piece = pieces[body];
+      piece.begin = time();
+      piece.end = piece.origin = t;
+      piece.degree = order;
+      move_origin(piece, time());
+      match_ends(piece, states()[body], ends[body]);
+      append(body, piece);
+    }
+    return true;
+  }
+
+  int method_;
+  void* memory_ = nullptr;
+};
+
+class Adams final : public Cvode {
+ public:
+  Adams(std::shared_ptr<const Dynamics> dynamics, const IntegratorOptions& options, WorkCounters* work)
+      : Cvode(std::move(dynamics), options, work, CV_ADAMS),
+        solver_(SUNNonlinSol_FixedPoint(y(), 0, context())) {}
+  ~Adams() override { SUNNonlinSolFree(solver_); }
+
+ private:
+  int attach_solvers(void* memory) override { return CVodeSetNonlinearSolver(memory, solver_); }
+  SUNNonlinearSolver solver_;
+};
+
+/// CVODE's default Newton iteration; the Jacobian by difference quotients.
+class Bdf final : public Cvode {
+ public:
+  Bdf(std::shared_ptr<const Dynamics> dynamics, const IntegratorOptions& options, WorkCounters* work)
+      : Cvode(std::move(dynamics), options, work, CV_BDF),
+        matrix_(SUNDenseMatrix(kNumbersPerBody * size(), kNumbersPerBody * size(), context())),
+        solver_(SUNLinSol_Dense(y(), matrix_, context())) {}
+  ~Bdf() override {
+    SUNLinSolFree(solver_);
+    SUNMatDestroy(matrix_);
+  }
+
+ private:
+  int attach_solvers(void* memory) override { return CVodeSetLinearSolver(memory, solver_, matrix_); }
+  SUNMatrix matrix_;
+  SUNLinearSolver solver_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_adams(std::shared_ptr<const Dynamics> dynamics,
+                                       const IntegratorOptions& options, WorkCounters* work) {
+  return std::make_unique<Adams>(std::move(dynamics), options, work);
+}
+std::unique_ptr<Integrator> make_bdf(std::shared_ptr<const Dynamics> dynamics,
+                                     const IntegratorOptions& options, WorkCounters* work) {
+  return std::make_unique<Bdf>(std::move(dynamics), options, work);
+}
+
+}  // namespace brink

@@ -1,0 +1,101 @@
+#include "brink/integrators/sundials_base.h"
+
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_context.h>
+
+#include <algorithm>
+#include <exception>
+#include <limits>
+#include <new>
+
+namespace brink {
+
+namespace {
+
+/// A rate that no error test passes, and whose weighted square still does not overflow.
+constexpr double kEnormous = 1e60;
+
+void pack(std::span<const BodyState> states, double* y) {
+  for (const BodyState& s : states) {
+    const double numbers[] = {s.pose.position.x(),  s.pose.position.y(),  s.pose.angle,
+                              s.twist.velocity.x(), s.twist.velocity.y(), s.twist.omega};
+    y = std::copy(std::begin(numbers), std::end(numbers), y);
+  }
+}
+
+void unpack(const double* y, std::span<BodyState> states) {
+  for (BodyState& s : states) {
+    s = {{{y[0], y[1]}, y[2]}, {{y[3], y[4]}, y[5]}};
+    y += 6;
+  }
+}
+
+}  // namespace
+
+SundialsStepper::SundialsStepper(std::shared_ptr<const Dynamics> dynamics, const IntegratorOptions& options,
+                                 WorkCounters* work)
+    : SteppingIntegrator(std::move(dynamics), work),
+      options_(options),
+      scratch_states_(size()),
+      ends_(size()),
+      scratch_accelerations_(size()),
+      first_(size()) {
+  if (SUNContext_Create(nullptr, &context_) != 0) throw std::bad_alloc();
+  y_ = N_VNew_Serial(kNumbersPerBody * size(), context_);
+  derivative_ = N_VNew_Serial(kNumbersPerBody * size(), context_);
+  if (!y_ || !derivative_) throw std::bad_alloc();
+}
+
+SundialsStepper::~SundialsStepper() {
+  N_VDestroy(y_);
+  N_VDestroy(derivative_);
+  SUNContext_Free(&context_);
+}
+
+int SundialsStepper::right_hand_side(double t, const double* y, double* rate,
+                                     WhereNotFinite where_not_finite) {
+  unpack(y, scratch_states_);
+  try {
+    if (!accelerations(t, scratch_states_, scratch_accelerations_)) {
+      if (where_not_finite == WhereNotFinite::say_so) return 1;
+      for (Acceleration& a : scratch_accelerations_) a = {Vec2::Constant(kEnormous), kEnormous};
+    }
+  } catch (const std::exception& error) {  // it must not pass through the solver's C code
+    message_ = error.what();
+    return -1;
+  }
+  for (int k = 0; k < size(); ++k, y += kNumbersPerBody) {
+    const Acceleration& a = scratch_accelerations_[k];
+    const double numbers[] = {y[3], y[4], y[5], a.linear.x(), a.linear.y(), a.angular};
+    rate = std::copy(std::begin(numbers), std::end(numbers), rate);
+  }
+  return 0;
+}
+
+bool SundialsStepper::begin_segment() {
+  pack(states(), N_VGetArrayPointer(y_));
+  message_.clear();
+  if (!accelerations(time(), states(), first_)) return fail(why());
+  // the largest number stands for "no break": it also clears a stop time left from before
+  const double stop = std::min(segment_end(), std::numeric_limits<double>::max());
+  if (restart_solver(stop) == 0) return true;
+  return fail("the solver cannot start: " + message_);
+}
+
+bool SundialsStepper::step() {
+  double t = time();
+  const int flag = solver_step(&t);
+  if (flag < 0 || !(t > time())) {
+    std::string what =
+        flag < 0 ? "the solver gave up: " + message_ : "its steps became too small to move time";
+    return fail(why().empty() ? what : why() + "; " + what);
+  }
+  unpack(N_VGetArrayPointer(y_), ends_);
+  for (int k = 0; k < size(); ++k)
+    if (!is_finite(ends_[k]))
+      return fail("the state of body " + std::to_string(k) + " of the component overflows");
+  if (!append_pieces(t, ends_)) return fail("no dense output: " + (why().empty() ? message_ : why()));
+  return accept(t, ends_);
+}
+
+}  // namespace brink

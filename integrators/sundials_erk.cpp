@@ -1,0 +1,73 @@
+#include <arkode/arkode_erkstep.h>
+#include <nvector/nvector_serial.h>
+
+#include "brink/integrators/dense_output.h"
+#include "brink/integrators/sundials.h"
+#include "brink/integrators/sundials_base.h"
+
+namespace brink {
+
+namespace {
+
+/// ERKStep (6.4) gives up where a stage says that it failed, so a stage answers with a rate that fails the
+/// error test.
+int evaluate(realtype t, N_Vector y, N_Vector rate, void* self) {
+  return static_cast<SundialsStepper*>(self)->right_hand_side(
+      t, N_VGetArrayPointer(y), N_VGetArrayPointer(rate), SundialsStepper::WhereNotFinite::answer_enormous);
+}
+
+void keep_message(int, const char*, const char*, char* message, void* self) {
+  static_cast<SundialsStepper*>(self)->note(message);
+}
+
+class Erk final : public SundialsStepper {
+ public:
+  Erk(std::shared_ptr<const Dynamics> dynamics, const IntegratorOptions& options, WorkCounters* work)
+      : SundialsStepper(std::move(dynamics), options, work), before_(size()), after_(size()) {}
+  ~Erk() override { ERKStepFree(&memory_); }
+
+ private:
+  int restart_solver(double stop_time) override {
+    const int flag = memory_ ? ERKStepReInit(memory_, evaluate, time(), y()) : create();
+    fresh_ = true;
+    return flag != 0 ? flag : ERKStepSetStopTime(memory_, stop_time);
+  }
+
+  int create() {
+    memory_ = ERKStepCreate(evaluate, time(), y(), context());
+    if (!memory_) return -1;
+    // more trials than the defaults before giving up: forces may have corners
+    for (int flag : {ERKStepSetErrHandlerFn(memory_, keep_message, static_cast<SundialsStepper*>(this)),
+                     ERKStepSetUserData(memory_, static_cast<SundialsStepper*>(this)),
+                     ERKStepSStolerances(memory_, options().tolerance, options().absolute_tolerance),
+                     ERKStepSetTableNum(memory_, ARKODE_DORMAND_PRINCE_7_4_5),
+                     ERKStepSetMaxErrTestFails(memory_, 40), ERKStepSetMaxHnilWarns(memory_, -1)})
+      if (flag != 0) return flag;
+    return 0;
+  }
+
+  int solver_step(double* t) override { return ERKStepEvolve(memory_, first_target(), y(), t, ARK_ONE_STEP); }
+
+  bool append_pieces(double t, std::span<const BodyState> ends) override {
+    if (fresh_) before_.assign(first_accelerations().begin(), first_accelerations().end());
+    if (!accelerations(t, ends, after_)) return false;
+    fresh_ = false;
+    for (int k = 0; k < size(); ++k)
+      append(k, quintic_piece(time(), states()[k], before_[k], t, ends[k], after_[k]));
+    before_.swap(after_);
+    return true;
+  }
+
+  void* memory_ = nullptr;
+  bool fresh_ = true;  ///< no step since the segment began: before_ is not known
+  std::vector<Acceleration> before_, after_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_erk(std::shared_ptr<const Dynamics> dynamics,
+                                     const IntegratorOptions& options, WorkCounters* work) {
+  return std::make_unique<Erk>(std::move(dynamics), options, work);
+}
+
+}  // namespace brink
