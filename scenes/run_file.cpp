@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 
 #include "brink/core/base/error.h"
@@ -93,6 +94,7 @@ struct RunFileRecorder::Impl {
   std::int64_t rows_waiting = 0;
   Clock::time_point waiting_since;
   std::int64_t frames = 0, events = 0;  // rows in the file
+  std::int64_t bodies = 0;
   double wall_before = 0.0;
   Clock::time_point opened = Clock::now();
   std::optional<ResumePoint> resume_point;
@@ -139,6 +141,7 @@ struct RunFileRecorder::Impl {
   void write_sites(const World& world);
   void start_fresh(const Scene& scene);
   void start_again(const Scene& scene);
+  void drop_early_end_frame(double interval);
   void prepare_inserts();
 };
 
@@ -198,6 +201,18 @@ void RunFileRecorder::Impl::start_fresh(const Scene& scene) {
   commit();
 }
 
+/// A run that was stopped recorded where it stopped. Gone on with, it has no frame there unless the frame
+/// clock says so.
+void RunFileRecorder::Impl::drop_early_end_frame(double interval) {
+  const double t = resume_point ? resume_point->t : 0.0;
+  const bool on_the_clock = t == 0.0 || (interval > 0.0 && std::round(t / interval) * interval == t);
+  if (on_the_clock) return;
+  SQLite::Statement drop(db, "DELETE FROM frame WHERE t = ? AND rowid > ?");
+  drop.bind(1, t);
+  drop.bind(2, frames - bodies);
+  frames -= drop.exec();
+}
+
 void RunFileRecorder::Impl::start_again(const Scene& scene) {
   if (!db.tableExists("meta")) return start_fresh(scene);
   const RunFile earlier(file);
@@ -208,9 +223,11 @@ void RunFileRecorder::Impl::start_again(const Scene& scene) {
     events = resume_point->events;
     wall_before = resume_point->wall_seconds;
   }
+  bodies = static_cast<std::int64_t>(scene.world.bodies.size());
   begin();
   db.exec(fmt::format("DELETE FROM frame WHERE rowid > {}", frames));
   db.exec(fmt::format("DELETE FROM event WHERE rowid >= {}", events));  // seq counts from 0
+  drop_early_end_frame(scene.output.frame_interval);
   db.exec("DELETE FROM work");
   set_meta("termination", "running");
   set_meta("duration", number(scene.duration));

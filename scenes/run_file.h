@@ -96,12 +96,6 @@ class RunFile {
     double mass = 0.0, inertia = 0.0;
     Outline outline;  ///< about the centre of mass
   };
-  struct SiteRow {
-    int id = 0;
-    std::string name, kind;
-    Outline outline;    ///< in the world at t = 0
-    std::string shape;  ///< the JSON, with `pose` and `motion`
-  };
   struct Frame {
     double t = 0.0;
     std::vector<BodyState> states;  ///< by body id
@@ -115,7 +109,10 @@ class RunFile {
   std::map<std::string, std::string> meta() const;
   std::optional<std::string> meta(const std::string& key) const;
   std::vector<BodyRow> bodies() const;
-  std::vector<SiteRow> sites() const;
+  std::vector<FixedSite> sites() const;
+  /// What pictures need of the world: title, bodies with their states in the first frame, and fixed sites.
+  /// Materials and forces are not kept in a run file.
+  World world() const;
   std::vector<Event> events() const;
   std::optional<ResumePoint> checkpoint() const;
 

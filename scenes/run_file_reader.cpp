@@ -150,17 +150,33 @@ std::vector<RunFile::BodyRow> RunFile::bodies() const {
   });
 }
 
-std::vector<RunFile::SiteRow> RunFile::sites() const {
+std::vector<FixedSite> RunFile::sites() const {
   return guarded(impl_->file, [&] {
-    std::vector<SiteRow> rows;
-    SQLite::Statement get(impl_->db, "SELECT id, name, kind, shape FROM site ORDER BY id");
+    std::vector<FixedSite> sites;
+    SQLite::Statement get(impl_->db, "SELECT name, kind, shape FROM site ORDER BY id");
     while (get.executeStep()) {
-      const std::string shape = get.getColumn(3).getString();
-      rows.push_back({get.getColumn(0).getInt(), get.getColumn(1).getString(), get.getColumn(2).getString(),
-                      outline_from_json(shape), shape});
+      FixedSite& site = sites.emplace_back(fixed_site_from_json(get.getColumn(2).getString()));
+      site.name = get.getColumn(0).getString();
+      site.kind = get.getColumn(1).getString();
     }
-    return rows;
+    return sites;
   });
+}
+
+World RunFile::world() const {
+  World world;
+  world.title = meta("title").value_or("");
+  const Frame first = frame_at(0.0);
+  for (const BodyRow& row : bodies()) {
+    Body& body = world.bodies.emplace_back();
+    body.name = row.name;
+    body.mass = row.mass;
+    body.inertia = row.inertia;
+    body.outline = std::make_shared<const Outline>(row.outline);
+    body.initial = first.states.at(row.id);
+  }
+  world.sites = sites();
+  return world;
 }
 
 std::vector<Event> RunFile::events() const {

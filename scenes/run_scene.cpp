@@ -101,6 +101,7 @@ RunReport run_scene(const Scene& scene, const RunRequest& request) {
     close_as_failed(recorder, simulator, e.what());
     throw;
   }
+  if (recorder.resume_point()) report.summary.wall_seconds += recorder.resume_point()->wall_seconds;
   report.json = summary_to_json(report.summary, load_seconds);
   recorder.finish(report.summary, report.json);
   return report;

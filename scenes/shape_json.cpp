@@ -77,6 +77,21 @@ ordered_json motion_object(const FixedSite& site) {
   return nullptr;
 }
 
+std::optional<Formula> formula_from(const nlohmann::json& j) { return Formula(j.get<std::string>(), {"t"}); }
+
+void read_motion(const nlohmann::json& motion, FixedSite& site) {
+  if (motion.contains("velocity")) {
+    site.motion =
+        ConstantMotion{{vector(motion.at("velocity")), motion.at("angular_velocity").get<double>()}};
+  } else {
+    site.motion = FormulaMotion{formula_from(motion.at("x")), formula_from(motion.at("y")),
+                                formula_from(motion.at("angle"))};
+  }
+}
+
+/// The pose that undoes `pose`.
+Pose inverse(const Pose& pose) { return {-Frame(pose).direction_to_local(pose.position), -pose.angle}; }
+
 }  // namespace
 
 std::string outline_to_json(const Outline& outline) { return outline_object(outline).dump(); }
@@ -106,6 +121,24 @@ Outline outline_from_json(const std::string& text) {
   }
   finish_outline(outline);
   return outline;
+}
+
+FixedSite fixed_site_from_json(const std::string& text) {
+  Outline in_world = outline_from_json(text);
+  FixedSite site;
+  try {
+    const auto j = nlohmann::json::parse(text);
+    if (!j.at("motion").is_null()) {
+      const auto& pose = j.at("pose");
+      site.pose = {vector(pose), pose.at(2).get<double>()};
+      read_motion(j.at("motion"), site);
+      in_world = transformed(in_world, inverse(site.pose));
+    }
+  } catch (const nlohmann::json::exception& e) {
+    throw BadInput(std::string("shape: not a fixed site in JSON: ") + e.what());
+  }
+  site.outline = std::make_shared<const Outline>(std::move(in_world));
+  return site;
 }
 
 }  // namespace brink

@@ -41,4 +41,8 @@ std::string fixed_site_to_json(const FixedSite& site);
 /// @throws BadInput if the text is not such an object.
 Outline outline_from_json(const std::string& text);
 
+/// The fixed site in such an object, without name, kind and material: about its own frame, with pose and
+/// motion, if it moves; else in the world, at the identity pose. @throws BadInput as above.
+FixedSite fixed_site_from_json(const std::string& text);
+
 }  // namespace brink

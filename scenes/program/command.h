@@ -15,6 +15,7 @@ enum ExitStatus : int {
 
 void add_run_command(CLI::App& program, int& status);
 void add_check_command(CLI::App& program, int& status);
+void add_draw_command(CLI::App& program, int& status);
 void add_list_command(CLI::App& program, int& status);
 
 }  // namespace brink

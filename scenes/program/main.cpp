@@ -38,14 +38,16 @@ int main(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer(
       "Examples:\n"
-      "  brink run scenes/gallery/cradle.toml\n"
+      "  brink run scenes/gallery/newtons_cradle.toml\n"
       "  brink check my_scene.toml\n"
+      "  brink draw my_scene.toml -o start.png\n"
       "  brink list options\n"
       "Exit status: 0 done, 1 ended early, 2 bad usage or input, 3 could not read or write.\n"
       "`brink COMMAND --help` says more.");
   int status = brink::kDone;
   brink::add_run_command(program, status);
   brink::add_check_command(program, status);
+  brink::add_draw_command(program, status);
   brink::add_list_command(program, status);
   return run(program, argc, argv, status);
 }

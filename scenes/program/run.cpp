@@ -128,7 +128,7 @@ void add_run_command(CLI::App& program, int& status) {
       "with it.\n"
       "Ctrl-C stops at the next chance and leaves a whole run file, which --resume can go on with.\n"
       "Examples:\n"
-      "  brink run scenes/gallery/cradle.toml\n"
+      "  brink run scenes/gallery/newtons_cradle.toml\n"
       "  brink run my_scene.toml --out runs/a --set solver.policy=global_backup --set bodies.0.mass=2\n"
       "  brink run my_scene.toml --out runs/a --until 60 --resume\n"
       "  brink run my_scene.toml --json | tail -n 1");

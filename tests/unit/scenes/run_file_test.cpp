@@ -230,6 +230,21 @@ TEST_F(RunFileTest, ResumeDropsExactlyTheRowsAfterTheCheckpoint) {
   EXPECT_EQ(frame_rows(file()), 6);
 }
 
+// A run stopped at t = 0.013 with frames every 0.01 s has a frame there, which a run that never stopped has
+// not.
+TEST_F(RunFileTest, ResumeDropsTheFrameOfAnEarlyEndOnly) {
+  scene_.output.frame_interval = 0.01;
+  for (const double stop : {0.013, 0.02}) {
+    {
+      RunFileRecorder recorder(dir_, scene_, Open::fresh);
+      for (const double t : {0.0, 0.01, stop}) recorder.frame(t, states_at_time(t));
+      recorder.checkpoint(stop, blob(1));
+    }
+    const RunFileRecorder recorder(dir_, scene_, Open::resume);
+    EXPECT_EQ(RunFile(file()).time_range().second, stop == 0.02 ? 0.02 : 0.01);
+  }
+}
+
 TEST_F(RunFileTest, ResumeWithoutCheckpointStartsFromNothing) {
   {
     RunFileRecorder recorder(dir_, scene_, Open::fresh);
@@ -361,6 +376,23 @@ TEST(ShapeJson, ArcsAndRadiiReadBackToTheSameOutline) {
     const std::string text = outline_to_json(shape.outline);
     EXPECT_EQ(outline_to_json(outline_from_json(text)), text);
   }
+}
+
+// A site that moves is kept about its own frame; back in the world it is where it was, to rounding.
+TEST(ShapeJson, MovingSiteReadsBackWithItsPoseAndMotion) {
+  FixedSite site;
+  site.outline = std::make_shared<const Outline>(make_segment({-1, 0}, {1, 0.5}).outline);
+  site.pose = {{3, 4}, 0.7};
+  site.motion = FormulaMotion{Formula("0.1*sin(6*t)", {"t"}), {}, Formula("t", {"t"})};
+  const FixedSite read = fixed_site_from_json(fixed_site_to_json(site));
+  EXPECT_EQ(read.pose.position, site.pose.position);
+  EXPECT_EQ(read.pose.angle, site.pose.angle);
+  EXPECT_LT((read.outline->sites[0].b - Vec2(1, 0.5)).norm(), 1e-15);
+  const auto& motion = std::get<FormulaMotion>(read.motion);
+  EXPECT_EQ(motion.x->text(), "0.1*sin(6*t)");
+  const double t[] = {2.0};
+  EXPECT_EQ((*motion.y)(t), 0.0);
+  EXPECT_EQ((*motion.angle)(t), 2.0);
 }
 
 TEST(ShapeJson, WrongTextIsBadInput) {

@@ -1,0 +1,118 @@
+/// brink draw: a picture of a scene or of a run.
+
+#include "brink/scenes/draw.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "brink/scenes/program/command.h"
+#include "brink/scenes/run_file.h"
+#include "brink/scenes/scene.h"
+#include "brink/scheduler/simulator.h"
+#include "brink/scheduler/site_motion.h"
+
+namespace brink {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DrawArguments {
+  std::string subject, out, layer = "scene", size = "1200x900";
+  std::optional<double> at;
+  std::vector<std::string> overrides;
+};
+
+/// A world at one moment.
+struct Moment {
+  double t = 0.0;
+  World world;
+  std::vector<BodyState> bodies;
+  std::vector<Pose> sites;
+};
+
+BadInput bad_time(double given, double first, double last) {
+  return BadInput(fmt::format("--at: {} given; allowed: {} .. {} s", given, first, last));
+}
+
+/// The run file that `subject` names (the file, or the folder it is in), or an empty path.
+fs::path run_file_of(const fs::path& subject) {
+  if (fs::is_directory(subject)) return subject / "run.db";
+  return subject.extension() == ".db" ? subject : fs::path();
+}
+
+Moment moment_of_run(const fs::path& file, std::optional<double> at) {
+  const RunFile run(file);
+  const auto [first, last] = run.time_range();
+  const double t = at.value_or(last);
+  if (!(t >= first && t <= last)) throw bad_time(t, first, last);
+  Moment moment{t, run.world(), run.states_at(t).states, {}};
+  for (const FixedSite& site : moment.world.sites) {
+    SiteMotion motion(site);
+    if (const std::string why = motion.extend(t); !why.empty()) throw BadInput(why);
+    moment.sites.push_back(motion.motion().pose(t));
+  }
+  return moment;
+}
+
+Moment moment_of_scene(const DrawArguments& arguments) {
+  const Scene scene = load_scene(arguments.subject, arguments.overrides);
+  const double t = arguments.at.value_or(0.0);
+  if (!(t >= 0.0 && std::isfinite(t))) throw bad_time(t, 0.0, INFINITY);
+  Simulator simulator(scene.world, scene.solver);
+  RunOptions options;
+  options.until = t;
+  options.checkpoint_seconds = -1.0;
+  if (t > 0.0) {
+    const RunSummary summary = simulator.run(options);
+    if (summary.termination != Termination::reached_end) {
+      throw BadInput(fmt::format("--at: {} given, but the scene ended at t = {} s: {}", t, summary.end_time,
+                                 summary.why));
+    }
+  }
+  Moment moment{t, scene.world, simulator.states(), {}};
+  for (std::size_t k = 0; k < scene.world.sites.size(); ++k) {
+    moment.sites.push_back(simulator.site_pose(static_cast<int>(k)));
+  }
+  return moment;
+}
+
+void draw(const DrawArguments& arguments) {
+  DrawOptions options;
+  options.layer = parse_layer(arguments.layer);
+  options.size = parse_size(arguments.size);
+  const fs::path run = run_file_of(arguments.subject);
+  const Moment moment = run.empty() ? moment_of_scene(arguments) : moment_of_run(run, arguments.at);
+  options.time = moment.t;
+  draw_png(arguments.out, moment.world, moment.bodies, moment.sites, options);
+}
+
+}  // namespace
+
+void add_draw_command(CLI::App& program, int& status) {
+  auto arguments = std::make_shared<DrawArguments>();
+  CLI::App* command = program.add_subcommand("draw", "A picture of a scene or a run as a PNG file");
+  command->add_option("SUBJECT", arguments->subject, "Scene file, run folder or run file")->required();
+  command->add_option("-o,--output", arguments->out, "Picture to write")->type_name("FILE.png")->required();
+  command->add_option("--at", arguments->at, "Time [s]; default: the start of a scene, the end of a run")
+      ->type_name("T");
+  command->add_option("--layer", arguments->layer, "scene, color, depth or pass:BODY")
+      ->type_name("LAYER");
+  command->add_option("--size", arguments->size, "Pixels")->type_name("WxH")->capture_default_str();
+  command->add_option("--set", arguments->overrides, "Override a key of the scene; may be repeated")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  command->footer(
+      "A scene is simulated up to T. A run is read: between two frames its states are interpolated.\n"
+      "Examples:\n"
+      "  brink draw scenes/gallery/newtons_cradle.toml -o start.png\n"
+      "  brink draw runs/newtons_cradle-1 --at 1.5 -o later.png\n"
+      "  brink draw my_scene.toml --layer depth --size 800x600 -o depth.png\n"
+      "  brink draw my_scene.toml --layer pass:ball -o pass.png");
+  command->callback([arguments, &status] {
+    draw(*arguments);
+    status = kDone;
+  });
+}
+
+}  // namespace brink
