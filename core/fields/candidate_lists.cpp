@@ -109,7 +109,7 @@ CandidateLists render_lists(FieldRenderer& renderer, const Outline& outline, con
   const BatchRules batch_rules{rules.band, 2.0 * kHalfDiagonal + 0.01, /*bounds=*/true};
   const SiteBatch batch = make_batch(grid, std::span(&placed, 1), FieldImage::kNone, batch_rules);
   // The sum of bound and slack is rounded to single precision in the shader: a few units in the last place.
-  const double slack = 2.0 * kHalfDiagonal + 0x1.0p-22 / batch.depth_scale;
+  const double slack = 2.0 * kHalfDiagonal + 0x1.0p-22 * batch.largest_value;
   const std::vector<float>& bounds = renderer.draw_bounds(grid, batch);
   std::vector<std::uint32_t> sorted;
   std::vector<std::uint32_t> start;

@@ -4,8 +4,10 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "brink/core/base/work.h"
@@ -30,8 +32,9 @@ struct FieldImage {
   std::vector<std::uint32_t> owner;  ///< owner of the nearest site, kNone where none lies within the band
   std::vector<std::uint32_t> site;   ///< its site, counted inside its outline; kNone likewise
   std::vector<float> distance;       ///< distance to it [m], radius subtracted, unsigned; infinite where none
-  std::vector<std::uint8_t> inside;  ///< 1 where the nearest site says "inside its solid" (altered interior)
-  float rounding = 0.0F;             ///< bound on |distance - true distance| from single precision [m]
+  std::vector<std::uint8_t> inside;  ///< 1 where the nearest site says "inside its solid" (altered interior),
+                                     ///< or where the pixel's centre is within its thickness
+  float rounding = 0.0F;  ///< bound on |distance - true distance| from single precision [m]
 };
 
 /// What lies near one body at one moment.
@@ -40,10 +43,26 @@ struct NearOwners {
   double others_at_least = 0.0;       ///< every owner not named is at least this far from the window [m]
 };
 
+/// One pixel of a pass window.
+struct PixelValue {
+  std::uint32_t owner = FieldImage::kNone;
+  std::uint32_t site = FieldImage::kNone;
+  float distance = std::numeric_limits<float>::infinity();  ///< [m], as in FieldImage
+  bool inside = false;
+};
+
 /// Renders pass windows. Owns a GL context; belongs to the thread that made it.
+///
+/// Pixels are square: the window is grown about its centre to width x height pixels of side
+/// max(window width / width, window height / height), and FieldImage::window says what was drawn.
+/// Ties are won by the outline named first, then by the lower site. Sites are drawn with the same bits
+/// whoever is excluded.
+///
+/// All calls throw BadInput on an empty or infinite window, a size outside 1 .. 8192 pixels, a band or margin
+/// that is negative or NaN, or a scene entry without an outline.
 class PassRenderer {
  public:
-  /// @throws IoError if no GL context opens.
+  /// @throws BadInput if the options are not valid; IoError if no GL context opens.
   explicit PassRenderer(const FieldOptions& options, WorkCounters* work = nullptr);
   ~PassRenderer();
 
@@ -52,15 +71,26 @@ class PassRenderer {
   FieldImage render(const Box& window, int width, int height, std::span<const PlacedOutline> scene,
                     std::uint32_t excluded, double band);
 
+  /// The same window, read only at the pixels that hold `points` [m, world] (a point outside: its nearest
+  /// pixel). FieldOptions::readback says how: "pixel" reads them one by one, "window" the window, "full" the
+  /// whole target. (The calls that return images read the window whole in mode "pixel".)
+  std::vector<PixelValue> render_at(const Box& window, int width, int height,
+                                    std::span<const PlacedOutline> scene, std::uint32_t excluded, double band,
+                                    std::span<const Vec2> points);
+
   /// Both layers at once: nearest site, and nearest site of a different owner (two draws). Body k reads the
   /// first where the owner is not k, else the second.
   std::array<FieldImage, 2> render_two_layers(const Box& window, int width, int height,
                                               std::span<const PlacedOutline> scene, double band);
 
-  /// Every owner (but `excluded`) that comes within `margin` of `window`: complete, from the rendered
-  /// candidate lists with a rounding allowance. The exact detectors need nothing else from a pass.
+  /// Every owner (but `excluded`) that comes within `margin` of `window`, its inside included: complete, from
+  /// the rendered candidates with a rounding allowance; an owner slightly beyond the margin may be named too.
+  /// The exact detectors need nothing else from a pass.
   NearOwners near_owners(const Box& window, double margin, std::span<const PlacedOutline> scene,
                          std::uint32_t excluded);
+
+  /// The context in use, for people.
+  std::string description() const;
 
  private:
   struct Impl;

@@ -34,6 +34,7 @@ class BatchMaker {
     fill(s, id, batch.offset, instance);
     batch.instances.push_back(instance);
     batch.largest_error = std::max(batch.largest_error, s.error);
+    batch.largest_value = std::max(batch.largest_value, s.error / kRounding);
   }
 
  private:

@@ -60,6 +60,7 @@ struct SiteBatch {
   std::vector<SiteInstance> instances;  ///< sites that can show in the window, ascending id
   double offset = 0.0;                  ///< drawn value = distance [pixel] - radius + offset >= 0
   double depth_scale = 1.0;             ///< power of two; drawn value * depth_scale is in [0, 1)
+  double largest_value = 0.0;           ///< no drawn value is larger [pixel]
   double largest_error = 0.0;           ///< largest rounding allowance of an instance [pixel]
 };
 
