@@ -1,0 +1,116 @@
+#include "brink/scheduler/broad_phase.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace brink {
+
+namespace {
+
+constexpr double kCellsPerBox = 2.0;     ///< a cell is this many times the median box
+constexpr int kMostCellsAcross = 4;      ///< boxes wider than this many cells are large
+constexpr std::int64_t kMostCells = 1 << 22;
+
+/// Cells of a window, counted row by row.
+struct Grid {
+  Vec2 low;
+  double cell;
+  std::int64_t columns, rows;
+
+  std::int64_t column(double x) const { return clamp((x - low.x()) / cell, columns); }
+  std::int64_t row(double y) const { return clamp((y - low.y()) / cell, rows); }
+  static std::int64_t clamp(double v, std::int64_t n) {
+    return v <= 0.0 ? 0 : v >= static_cast<double>(n) ? n - 1 : static_cast<std::int64_t>(v);
+  }
+};
+
+double median_extent(const std::vector<Box>& boxes) {
+  std::vector<double> extents;
+  for (const Box& b : boxes)
+    if (const double e = b.extent().maxCoeff(); std::isfinite(e)) extents.push_back(e);
+  if (extents.empty()) return 1.0;
+  const auto middle = extents.begin() + static_cast<std::ptrdiff_t>(extents.size() / 2);
+  std::nth_element(extents.begin(), middle, extents.end());
+  return *middle > 0.0 ? *middle : 1.0;
+}
+
+Grid make_grid(const std::vector<Box>& boxes) {
+  Box all;
+  for (const Box& b : boxes)
+    if (std::isfinite(b.extent().maxCoeff())) all.add(b);
+  Grid g{Vec2::Zero(), kCellsPerBox * median_extent(boxes), 1, 1};
+  if (all.empty()) return g;
+  g.low = all.low;
+  const auto cells = [&](double extent) { return std::floor(extent / g.cell) + 1.0; };
+  while (cells(all.extent().x()) * cells(all.extent().y()) > static_cast<double>(kMostCells)) g.cell *= 2.0;
+  g.columns = static_cast<std::int64_t>(cells(all.extent().x()));
+  g.rows = static_cast<std::int64_t>(cells(all.extent().y()));
+  return g;
+}
+
+}  // namespace
+
+Box swept_box(const Outline& outline, const Motion& motion, double from, double to) {
+  if (outline.container) {
+    constexpr double everywhere = std::numeric_limits<double>::infinity();
+    return {{-everywhere, -everywhere}, {everywhere, everywhere}};
+  }
+  Box box;
+  box.add(motion.pose(from).position);
+  box.add(motion.pose(to).position);
+  const MotionBounds b = motion.bounds(from, to);
+  const double bulge = (b.acceleration.norm() + b.acceleration_radius) * (to - from) * (to - from) / 8.0;
+  const double scale = box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
+  return box.grown(outline.bounding_radius + bulge + 1e-12 * (scale + outline.bounding_radius));
+}
+
+std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<Box>& boxes) {
+  const int n = static_cast<int>(boxes.size());
+  const Grid grid = make_grid(boxes);
+  struct Entry {
+    std::int64_t cell;
+    int box;
+  };
+  std::vector<Entry> entries;
+  std::vector<int> large;
+  std::vector<char> is_large(boxes.size(), 0);
+  for (int i = 0; i < n; ++i) {
+    const Vec2 extent = boxes[i].extent();
+    if (!(extent.maxCoeff() <= kMostCellsAcross * grid.cell)) {
+      large.push_back(i);
+      is_large[i] = 1;
+      continue;
+    }
+    for (auto r = grid.row(boxes[i].low.y()); r <= grid.row(boxes[i].high.y()); ++r)
+      for (auto c = grid.column(boxes[i].low.x()); c <= grid.column(boxes[i].high.x()); ++c)
+        entries.push_back({r * grid.columns + c, i});
+  }
+  std::sort(entries.begin(), entries.end(),
+            [](const Entry& a, const Entry& b) { return std::pair(a.cell, a.box) < std::pair(b.cell, b.box); });
+
+  std::vector<std::pair<int, int>> pairs;
+  for (std::size_t first = 0; first < entries.size();) {
+    std::size_t last = first;
+    while (last < entries.size() && entries[last].cell == entries[first].cell) ++last;
+    for (std::size_t i = first; i < last; ++i)
+      for (std::size_t j = i + 1; j < last; ++j) {
+        const Box &a = boxes[entries[i].box], &b = boxes[entries[j].box];
+        if (!a.overlaps(b)) continue;
+        // a pair that shares several cells is named in one only: where the corner of its intersection lies
+        const Vec2 corner = a.low.cwiseMax(b.low);
+        if (grid.row(corner.y()) * grid.columns + grid.column(corner.x()) == entries[i].cell)
+          pairs.emplace_back(entries[i].box, entries[j].box);
+      }
+    first = last;
+  }
+  for (const int i : large)
+    for (int j = 0; j < n; ++j) {
+      if (j == i || (is_large[j] && j < i)) continue;
+      if (boxes[i].overlaps(boxes[j])) pairs.emplace_back(std::min(i, j), std::max(i, j));
+    }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+}  // namespace brink

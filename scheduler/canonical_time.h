@@ -1,0 +1,39 @@
+#pragma once
+/// Times that depend on a function alone, not on where a search for them was begun.
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace brink {
+
+/// Distance to the next double above |t|.
+inline double ulp(double t) {
+  const double a = std::abs(t);
+  return std::nextafter(a, 2.0 * a + 1.0) - a;
+}
+
+/// The coarsest dyadic double strictly between low and high: the one with most trailing zero bits. Bisecting with it
+/// visits the same probes from every starting interval. @pre 0 <= low < high; returns low if nothing lies between.
+inline double coarsest_between(double low, double high) {
+  const auto l = std::bit_cast<std::uint64_t>(low + 0.0), h = std::bit_cast<std::uint64_t>(high);
+  if (h - l < 2) return low;
+  for (int k = 63 - std::countl_zero(h - l); k >= 0; --k) {
+    const std::uint64_t m = ((l >> k) + 1) << k;
+    if (m > l && m < h) return std::bit_cast<double>(m);
+  }
+  return low;
+}
+
+/// The last double at which `gap` is still > 0, by bisection on dyadic probes. @pre gap(low) > 0 >= gap(high), both
+/// beyond rounding noise if the answer is to be canonical; 0 <= low < high.
+template <class Gap>
+double last_clear_time(Gap&& gap, double low, double high) {
+  for (;;) {
+    const double probe = coarsest_between(low, high);
+    if (probe == low) return low;
+    (gap(probe) > 0.0 ? low : high) = probe;
+  }
+}
+
+}  // namespace brink

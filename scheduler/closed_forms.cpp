@@ -1,0 +1,199 @@
+#include "brink/scheduler/closed_forms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "brink/scheduler/canonical_time.h"
+
+namespace brink {
+
+namespace {
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr std::size_t kMostSites = 16;
+
+bool is_centred_disc(const Outline& o) { return o.is_point() && o.sites[0].a.isZero(0.0); }
+
+bool keeps_angle(const Motion& m) {
+  return m.is_ballistic() && m.start().twist.omega == 0.0 && m.acceleration().angular == 0.0;
+}
+
+bool only_segments(const Outline& o) {
+  return o.sites.size() <= kMostSites &&
+         std::all_of(o.sites.begin(), o.sites.end(), [](const Site& s) { return s.kind == SiteKind::segment; });
+}
+
+/// The pair on its common clock s = t - reference.
+struct RelativeParabola {
+  double reference;
+  BodyState a, b;
+  Vec2 offset, velocity, acceleration;  ///< a minus b
+  double noise;                         ///< rounding of relative velocities [m/s]
+
+  RelativeParabola(const Mover& ma, const Mover& mb) {
+    reference = std::max(ma.motion->origin(), mb.motion->origin());
+    a = ma.motion->state(reference);
+    b = mb.motion->state(reference);
+    offset = a.pose.position - b.pose.position;
+    velocity = a.twist.velocity - b.twist.velocity;
+    acceleration = ma.motion->acceleration().linear - mb.motion->acceleration().linear;
+    noise = ma.velocity_rounding + mb.velocity_rounding +
+            16.0 * kEpsilon * (a.twist.velocity.lpNorm<1>() + b.twist.velocity.lpNorm<1>());
+  }
+};
+
+/// When, from s_from on, a gap on the parabola g meets contact; infinity if never. `speed` scales g's slope to m/s.
+double contact_after(const Quadratic& g, double s_from, double noise, double touch) {
+  const double root = falling_root(g);
+  if (root >= s_from) return root;
+  const double now = g.at(s_from), slope = g.slope(s_from);
+  if (now > touch || slope > noise) return kForever;          // risen again, or rising: let go
+  if (slope < -noise) return now <= 0.0 ? s_from : kForever;  // through the surface and approaching: now
+  if (g.second >= 0.0) return kForever;
+  // At rest on the surface and pressed against it: contact is when it has sunk by `touch`.
+  const double sunk = falling_root({g.value + touch, g.rate, g.second});
+  return sunk > s_from ? sunk : (-2.0 * noise - g.rate) / g.second;
+}
+
+/// Steps back from a rounded root to a double at which the gap is still above zero.
+template <class Gap>
+double before_contact(Gap&& gap, double t, double from, double speed) {
+  for (int i = 0; i < 8 && t > from; ++i) {
+    const double g = gap(t);
+    if (g > 0.0) break;
+    t = std::max(from, t - std::max(ulp(t), -1.5 * g / speed));
+  }
+  return t;
+}
+
+bool discs(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits, PairAnswer& answer) {
+  const RelativeParabola rel(a, b);
+  if (!rel.acceleration.isZero(0.0)) return false;
+  const double reach = a.outline().sites[0].radius + b.outline().sites[0].radius;
+  // |offset + velocity s|^2 - reach^2, divided by 2 reach: near contact this is the gap itself
+  const double distance0 = rel.offset.norm();
+  const double scale = 1.0 / (2.0 * reach);
+  if (!(reach > 0.0)) return false;
+  const Quadratic g{(distance0 - reach) * (distance0 + reach) * scale, 2.0 * rel.offset.dot(rel.velocity) * scale,
+                    2.0 * rel.velocity.squaredNorm() * scale};
+  const double s = contact_after(g, from - rel.reference, rel.noise, limits.touch);
+  answer = {PairAnswer::Status::clear, to, {}};
+  double t = std::max(rel.reference + s, from);
+  if (!(t <= to)) return true;
+  const auto gap = [&](double time) {
+    return (a.motion->pose(time).position - b.motion->pose(time).position).norm() - reach;
+  };
+  t = before_contact(gap, t, from, std::max(-g.slope(t - rel.reference), rel.noise));
+  const BodyState sa = a.motion->state(t), sb = b.motion->state(t);
+  const Vec2 d = sa.pose.position - sb.pose.position;
+  const double distance = d.norm();
+  FeatureContact& c = answer.contact;
+  c.time = t;
+  c.sample = c.site = 0;
+  c.normal = d / distance;
+  c.gap = distance - reach;
+  c.point = sb.pose.position + c.normal * b.outline().sites[0].radius;
+  c.closing_speed = -c.normal.dot(sa.twist.velocity - sb.twist.velocity);
+  answer.status = PairAnswer::Status::contact;
+  answer.until = t;
+  return true;
+}
+
+/// True if the quadratic stays within [0, length] on [s0, s1].
+bool stays_within(const Quadratic& along, double length, double s0, double s1) {
+  const auto inside = [&](double s) {
+    const double x = along.at(s);
+    return x >= 0.0 && x <= length;
+  };
+  if (!inside(s0) || !inside(s1)) return false;
+  if (along.second == 0.0) return true;
+  const double turn = -along.rate / along.second;
+  return turn <= s0 || turn >= s1 || inside(turn);
+}
+
+bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, double from, double to,
+                       const SearchLimits& limits, PairAnswer& answer) {
+  const RelativeParabola rel(disc, other);
+  const Frame frame(rel.b.pose);
+  const Vec2 q = frame.direction_to_local(rel.offset), v = frame.direction_to_local(rel.velocity),
+             acc = frame.direction_to_local(rel.acceleration);
+  const double s_from = from - rel.reference, s_to = to - rel.reference;
+  const double disc_radius = disc.outline().sites[0].radius;
+  const std::vector<Site>& sites = other.outline().sites;
+  double earliest = kForever;
+  int touched = -1;
+  Vec2 normal = Vec2::Zero();
+  for (std::size_t j = 0; j < sites.size(); ++j) {
+    const Site& site = sites[j];
+    const Vec2 d = site.b - site.a;
+    const double length = d.norm();
+    const Vec2 tangent = d / length;
+    Vec2 n = -perp(tangent);  // right of travel: out of a solid
+    const Vec2 now = q - site.a + s_from * (v + 0.5 * s_from * acc);
+    if (!site.solid && n.dot(now) < 0.0) n = -n;
+    const Quadratic gap{n.dot(q - site.a) - disc_radius - site.radius, n.dot(v), n.dot(acc)};
+    const Quadratic along{tangent.dot(q - site.a), tangent.dot(v), tangent.dot(acc)};
+    const double s = contact_after(gap, s_from, rel.noise, limits.touch);
+    if (!stays_within(along, length, s_from, std::max(s_from, std::min(s, s_to)))) return false;
+    if (s < earliest) {
+      earliest = s;
+      touched = static_cast<int>(j);
+      normal = n;
+    }
+  }
+  answer = {PairAnswer::Status::clear, to, {}};
+  double t = std::max(rel.reference + earliest, from);
+  if (touched < 0 || !(t <= to)) return true;
+  const Site& site = sites[touched];
+  const auto gap_at = [&](double time) {
+    const Vec2 place = frame.direction_to_local(disc.motion->pose(time).position - other.motion->pose(time).position);
+    return normal.dot(place - site.a) - disc_radius - site.radius;
+  };
+  const double speed = -normal.dot(v + (t - rel.reference) * acc);
+  t = before_contact(gap_at, t, from, std::max(speed, rel.noise));
+  const BodyState sd = disc.motion->state(t), so = other.motion->state(t);
+  const Vec2 out = frame.direction_to_world(normal);
+  FeatureContact& c = answer.contact;
+  c.time = t;
+  c.sample_on_a = disc_is_a;
+  c.sample = 0;
+  c.site = touched;
+  c.gap = gap_at(t);
+  c.normal = disc_is_a ? out : Vec2(-out);
+  c.point = sd.pose.position - out * (disc_radius + c.gap);
+  c.closing_speed = -out.dot(sd.twist.velocity - so.twist.velocity);
+  answer.status = PairAnswer::Status::contact;
+  answer.until = t;
+  return true;
+}
+
+}  // namespace
+
+double falling_root(const Quadratic& g) {
+  const double discriminant = g.rate * g.rate - 2.0 * g.second * g.value;
+  if (discriminant < 0.0) return kForever;
+  const double root = std::sqrt(discriminant);
+  if (g.rate < 0.0) return 2.0 * g.value / (root - g.rate);
+  return g.second < 0.0 ? (g.rate + root) / -g.second : kForever;
+}
+
+bool has_closed_form(const Mover& a, const Mover& b) {
+  if (!a.motion->is_ballistic() || !b.motion->is_ballistic()) return false;
+  const bool disc_a = is_centred_disc(a.outline()), disc_b = is_centred_disc(b.outline());
+  if (disc_a && disc_b) return true;
+  if (disc_a) return keeps_angle(*b.motion) && only_segments(b.outline());
+  return disc_b && keeps_angle(*a.motion) && only_segments(a.outline());
+}
+
+bool first_contact_in_closed_form(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
+                                  PairAnswer& answer) {
+  if (!has_closed_form(a, b)) return false;
+  const bool disc_a = is_centred_disc(a.outline()), disc_b = is_centred_disc(b.outline());
+  if (disc_a && disc_b) return discs(a, b, from, to, limits, answer);
+  return disc_a ? disc_and_segments(a, b, true, from, to, limits, answer)
+                : disc_and_segments(b, a, false, from, to, limits, answer);
+}
+
+}  // namespace brink

@@ -1,0 +1,440 @@
+#include "brink/scheduler/first_contact.h"
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+
+#include "brink/scheduler/arc_contact.h"
+#include "brink/scheduler/canonical_time.h"
+#include "brink/scheduler/closed_forms.h"
+#include "brink/scheduler/site_step.h"
+
+namespace brink {
+
+namespace {
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+/// What the search knows about one feature pair at one moment.
+struct Feature {
+  int sample = -1;
+  int site = -1;
+  double gap = 0.0;
+  double rate = 0.0;
+  Vec2 normal = Vec2::Zero();  ///< T's frame, out of the site
+  Vec2 point = Vec2::Zero();   ///< T's frame, on the site
+};
+
+/// Samples of S against sites of T: one half of the two-sided test.
+struct Half {
+  const Mover* s;
+  const Mover* t;
+  bool s_is_a;
+  double* safe_until;  ///< one a sample of S
+
+  const Outline& samples_of() const { return s->outline(); }
+  const Outline& sites_of() const { return t->outline(); }
+  int count() const { return static_cast<int>(samples_of().samples.size()); }
+};
+
+class PairSearch {
+ public:
+  PairSearch(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
+             SearchScratch& scratch, WorkCounters& work)
+      : a_(a), b_(b), from_(from), to_(to), limits_(limits), scratch_(scratch), work_(work) {
+    const std::size_t na = a.outline().samples.size(), nb = b.outline().samples.size();
+    scratch.safe_until.assign(na + nb, from);
+    halves_[0] = {&a, &b, true, scratch.safe_until.data()};
+    halves_[1] = {&b, &a, false, scratch.safe_until.data() + na};
+    // A core of one point needs no reverse test: its one sample against the other's sites is the whole distance.
+    if (a.outline().is_point()) drop(1, nb);
+    else if (b.outline().is_point()) drop(0, na);
+  }
+
+  PairAnswer run() {
+    if (!apart_by_bounding_discs()) advance();
+    if (best_.sample >= 0) return {PairAnswer::Status::contact, best_.time, best_};
+    if (capped_) return {PairAnswer::Status::undecided, reached_, {}};
+    return {PairAnswer::Status::clear, to_, {}};
+  }
+
+  /// Every feature with a gap up to `tolerance` at time t.
+  void collect(double t, double tolerance, std::vector<FeatureContact>& found) {
+    place(t);
+    for (const Half& half : halves_)
+      for (int i = 0; i < half.count(); ++i) {
+        if (half.safe_until[i] == kForever) continue;
+        features_of(half, i, tolerance, [&](const Feature& f) { found.push_back(contact_of(half, f, t)); });
+      }
+  }
+
+  double gap(double t) {
+    place(t);
+    double least = kForever;
+    for (const Half& half : halves_)
+      for (int i = 0; i < half.count(); ++i)
+        if (half.safe_until[i] != kForever)
+          features_of(half, i, kForever, [&](const Feature& f) { least = std::min(least, f.gap); });
+    return least;
+  }
+
+ private:
+  void drop(int half, std::size_t count) { std::fill_n(halves_[half].safe_until, count, kForever); }
+
+  /// Steps the discs that hold the two outlines; true if they stay apart to the end. Moves from_ on otherwise.
+  bool apart_by_bounding_discs() {
+    const Outline &oa = a_.outline(), &ob = b_.outline();
+    if (oa.container || ob.container) return false;
+    const double reach = oa.bounding_radius + ob.bounding_radius;
+    double t = from_;
+    for (int i = 0; i < 64 && t < to_; ++i) {
+      const BodyState sa = a_.motion->state(t), sb = b_.motion->state(t);
+      const Vec2 d = sa.pose.position - sb.pose.position;
+      const double distance = d.norm(), f = distance - reach;
+      if (f <= limits_.tolerance) break;
+      const RelativeBounds bounds(a_.motion->bounds(t, to_), b_.motion->bounds(t, to_));
+      const double df = d.dot(sa.twist.velocity - sb.twist.velocity) / distance;
+      t += safe_step(f, df, bounds.acceleration) * (1.0 - 4.0 * kEpsilon);
+      if (f < 1e-3 * reach) break;  // as near as makes no difference
+    }
+    if (t >= to_) return true;
+    from_ = t;
+    for (Half& half : halves_)
+      for (int i = 0; i < half.count(); ++i)
+        if (half.safe_until[i] != kForever) half.safe_until[i] = t;
+    return false;
+  }
+
+  void advance() {
+    long_bounds_ = RelativeBounds(a_.motion->bounds(from_, to_), b_.motion->bounds(from_, to_));
+    short_window_ = to_ - from_;
+    reached_ = from_;
+    for (int iteration = 0;; ++iteration) {
+      const double t = least_safe_time();
+      if (t >= to_) return;
+      reached_ = t;
+      if (iteration >= limits_.max_iterations) {
+        capped_ = true;
+        return;
+      }
+      ++work_.search_iterations;
+      place(t);
+      short_end_ = std::min(to_, t + short_window_);
+      short_bounds_ = RelativeBounds(a_.motion->bounds(t, short_end_), b_.motion->bounds(t, short_end_));
+      const double due = t + 0.25 * std::min(short_window_, to_ - t);
+      double least = kForever;
+      for (const Half& half : halves_)
+        for (int i = 0; i < half.count(); ++i)
+          if (half.safe_until[i] <= due) {
+            // never less than the next double, or the search would stand still
+            const double until = std::max(t + step(half, i), std::nextafter(t, kForever));
+            half.safe_until[i] = until;
+            least = std::min(least, until);
+          }
+      short_window_ = std::max(4.0 * (least - t), 64.0 * ulp(t));
+    }
+  }
+
+  double least_safe_time() const {
+    double t = kForever;
+    for (const Half& half : halves_)
+      for (int i = 0; i < half.count(); ++i) t = std::min(t, half.safe_until[i]);
+    return t;
+  }
+
+  void place(double t) {
+    t_ = t;
+    placed_a_ = Placed(a_.motion->state(t));
+    placed_b_ = Placed(b_.motion->state(t));
+  }
+  const Placed& placed(const Mover* m) const { return m == &a_ ? placed_a_ : placed_b_; }
+
+  /// Safe time step of one sample from t_ [s]; records a contact if it finds one (and is then safe up to it).
+  double step(const Half& half, int i) {
+    const Sample& sample = half.samples_of().samples[i];
+    const SamplePath path = sample_path(placed(half.s), placed(half.t), sample.p);
+    const double long_window = to_ - t_, short_window = short_end_ - t_;
+    const RelativeBounds relative = half.s_is_a ? long_bounds_ : long_bounds_.swapped();
+    const PathBounds over_all = path_bounds(path, relative, long_window);
+    double safe = sample.arc_site < 0 ? vertex_step(half, i, path, over_all, long_window)
+                                      : arc_sample_step(half, i, path, relative, over_all);
+    if (safe < short_window) {
+      const RelativeBounds near = half.s_is_a ? short_bounds_ : short_bounds_.swapped();
+      const PathBounds over_short = path_bounds(path, near, short_window);
+      const double again = sample.arc_site < 0 ? vertex_step(half, i, path, over_short, short_window)
+                                               : arc_sample_step(half, i, path, near, over_short);
+      safe = std::max(safe, std::min(again, short_window));
+    }
+    return safe * (1.0 - 4.0 * kEpsilon);
+  }
+
+  double vertex_step(const Half& half, int i, const SamplePath& path, const PathBounds& bounds, double window) {
+    const Sample& sample = half.samples_of().samples[i];
+    const Outline& sites = half.sites_of();
+    ++work_.distance_queries;
+    const double reach = bounds.speed * window + sample.radius + 2.0 * limits_.tolerance;
+    const Candidates near = half.t->index->candidates(path.q, reach, scratch_.index);
+    work_.candidate_evaluations += near.sites.size();
+    const double others = near.others_at_least - sample.radius;
+    double safe = bounds.speed > 0.0 ? std::max(0.0, others) / bounds.speed : kForever;
+    for (const std::uint32_t j : near.sites) {
+      const Site& site = sites.sites[j];
+      const Nearest nearest = nearest_on(site, path.q);
+      const double radius = site.radius + sample.radius;
+      const bool touching = nearest.distance - radius <= limits_.tolerance;
+      if (touching && meets(half, i, static_cast<int>(j), nearest, path, bounds)) continue;
+      const double slack = nearest.distance - radius <= limits_.touch ? limits_.touch : 0.0;
+      safe = std::min(safe, site_step(site, nearest, path.q, path.rate, radius, slack, bounds).safe);
+    }
+    return safe;
+  }
+
+  double arc_sample_step(const Half& half, int i, const SamplePath& path, const RelativeBounds& relative,
+                         const PathBounds& bounds) {
+    const Sample& sample = half.samples_of().samples[i];
+    const Site& arc = half.samples_of().sites[sample.arc_site];
+    const Outline& sites = half.sites_of();
+    double safe = kForever;
+    for (std::size_t j = 0; j < sites.sites.size(); ++j) {
+      ++work_.candidate_evaluations;
+      ArcStep step = arc_step(arc, sites.sites[j], path, placed(half.s), placed(half.t), 0.0, relative, bounds);
+      if (step.active && step.gap <= limits_.tolerance) {
+        if (polish(half, {i, static_cast<int>(j), step.gap, step.rate, step.normal, step.point}, path, bounds))
+          continue;
+        step = arc_step(arc, sites.sites[j], path, placed(half.s), placed(half.t),
+                        step.gap <= limits_.touch ? limits_.touch : 0.0, relative, bounds);
+      }
+      safe = std::min(safe, step.safe);
+    }
+    return safe;
+  }
+
+  /// A vertex sample within tolerance of a site: true if it meets this very site and the contact is remembered.
+  bool meets(const Half& half, int i, int j, const Nearest& nearest, const SamplePath& path,
+                const PathBounds& bounds) {
+    const Feature f = vertex_feature(half, i, j, nearest, path);
+    if (nearest.foot != Foot::interior && overshadowed(half, j, nearest, path.q)) return false;
+    return polish(half, f, path, bounds);
+  }
+
+  Feature vertex_feature(const Half& half, int i, int j, const Nearest& nearest, const SamplePath& path) const {
+    const Sample& sample = half.samples_of().samples[i];
+    const Site& site = half.sites_of().sites[j];
+    Feature f{i, j, 0.0, 0.0, normal_at(site, nearest, path.q), nearest.point};
+    const double side = side_of(site, nearest, path.q);
+    f.gap = side * nearest.distance - site.radius - sample.radius;
+    if (sharp_vertex(site, sample, nearest) && path.rate.squaredNorm() > 0.0 && f.gap > -limits_.touch &&
+        nearest.distance <= limits_.tolerance && (path.q - nearest.point).dot(path.rate) < 0.0)
+      f.normal = -path.rate.normalized();  // two points that meet: the limit of their direction
+    f.rate = f.normal.dot(path.rate);
+    f.point = nearest.point + f.normal * site.radius;
+    return f;
+  }
+
+  static bool sharp_vertex(const Site& site, const Sample& sample, const Nearest& nearest) {
+    return (nearest.foot != Foot::interior || site.kind == SiteKind::point) && site.radius + sample.radius == 0.0;
+  }
+
+  /// True if a foot at site j's end is no contact of its own: another site of the outline is as near with its interior.
+  bool overshadowed(const Half& half, int j, const Nearest& nearest, const Vec2& q) const {
+    const Outline& outline = half.sites_of();
+    if (outline.sites[j].kind == SiteKind::point) return false;
+    const Candidates near = half.t->index->candidates(q, nearest.distance + limits_.touch, scratch_.neighbours);
+    for (const std::uint32_t k : near.sites) {
+      if (static_cast<int>(k) == j) continue;
+      const Nearest other = nearest_on(outline.sites[k], q);
+      if (other.distance <= nearest.distance + limits_.touch && other.foot == Foot::interior) return true;
+    }
+    return false;
+  }
+
+  bool approaching(const Feature& f, const SamplePath& path) const {
+    return f.rate < -(a_.velocity_rounding + b_.velocity_rounding + 16.0 * kEpsilon * path.magnitude);
+  }
+
+  /// Signed gap of one feature pair at another time, its side kept.
+  double gap_at(const Half& half, const Feature& f, double t, double level) const {
+    const BodyState s = half.s->motion->state(t), u = half.t->motion->state(t);
+    const Frame fs(s.pose), ft(u.pose);
+    const Sample& sample = half.samples_of().samples[f.sample];
+    const Site& site = half.sites_of().sites[f.site];
+    const Vec2 q = ft.direction_to_local(fs.direction_to_world(sample.p) + (s.pose.position - u.pose.position));
+    if (sample.arc_site >= 0) return arc_gap(half, f, q) - level;
+    const Nearest n = nearest_on(site, q);
+    const double radius = site.radius + sample.radius;
+    if (site.solid || radius > 0.0 || n.foot != Foot::interior || site.kind == SiteKind::point)
+      return side_of(site, n, q) * n.distance - radius - level;
+    const double side = f.normal.dot(q - n.point) < 0.0 ? -1.0 : 1.0;  // thin wire: stay on the side it came from
+    return side * n.distance - level;
+  }
+
+  double arc_gap(const Half& half, const Feature& f, const Vec2& c) const {
+    const Site& arc = half.samples_of().sites[half.samples_of().samples[f.sample].arc_site];
+    const Site& site = half.sites_of().sites[f.site];
+    const double reach = arc.arc_radius + arc.radius + site.radius;
+    if (site.kind == SiteKind::segment) {
+      const Vec2 d = site.b - site.a;
+      const double offset = cross(d, c - site.a) / d.norm();
+      return (perp(d).dot(f.normal) > 0.0 ? offset : -offset) - reach;
+    }
+    const double distance = (c - site.center).norm();
+    const bool hollow = f.normal.dot(c - site.center) < 0.0;
+    return hollow ? site.arc_radius - distance - reach : distance - site.arc_radius - reach;
+  }
+
+  /// The feature pair is within tolerance: if it approaches, finds the last double at which it is still apart. True if
+  /// a contact was found; false if it recedes, or passes by.
+  bool polish(const Half& half, const Feature& f, const SamplePath& path, const PathBounds& bounds) {
+    if (!approaching(f, path)) {
+      if (f.gap < -limits_.tolerance && t_ == from_ && f.rate > 0.0) ++work_.let_go;
+      return false;
+    }
+    if (t_ <= from_ && f.gap <= 0.0) return remember(half, f, t_);
+    const Sample& sample = half.samples_of().samples[f.sample];
+    const Site& site = half.sites_of().sites[f.site];
+    const bool sharp = sample.arc_site < 0 && sharp_vertex(site, sample, nearest_on(site, path.q));
+    const double level = sharp ? 0.5 * limits_.touch : 0.0;  // two sharp points never overlap: meet them just before
+    const auto gap = [&](double t) { return gap_at(half, f, t, level); };
+
+    const double speed = -f.rate;
+    const double guess = t_ + (f.gap - level) / speed;
+    const double noise = 32.0 * kEpsilon * (placed_a_.frame.origin.lpNorm<1>() + placed_b_.frame.origin.lpNorm<1>() +
+                                            path.distance + path.arm) / speed +
+                         4.0 * ulp(t_) + bounds.acceleration * f.gap * f.gap / (speed * speed * speed);
+    double low = std::max(guess - 8.0 * noise, from_), high = guess + 8.0 * noise;
+    for (double back = 8.0 * noise; gap(low) <= 0.0; back *= 4.0) {
+      if (low <= from_) return remember(half, f, from_);
+      low = std::max(low - back, from_);
+    }
+    const double last = std::min(a_.motion->end(), b_.motion->end());
+    high = std::min(high, last);
+    if (gap(high) > 0.0) {
+      high = std::min(t_ + 4.0 * std::max(0.0, f.gap - level) / speed + 64.0 * noise, last);
+      if (high <= low || gap(high) > 0.0) {  // passes by, or touches within rounding
+        return f.gap <= limits_.touch && remember(half, f, t_);
+      }
+    }
+    return remember(half, f, last_clear_time(gap, low, high));
+  }
+
+  /// Keeps the contact if it is the earliest so far (ties: lowest half, sample, site). Always true.
+  bool remember(const Half& half, const Feature& f, double t) {
+    if (t > to_) return true;
+    const bool earlier = best_.sample < 0 || t < best_.time ||
+                         (t == best_.time && std::tie(half.s_is_a, best_.sample, best_.site) >
+                                                 std::tie(best_.sample_on_a, f.sample, f.site));
+    if (!earlier) return true;
+    if (t == t_) {
+      best_ = contact_of(half, f, t);
+    } else {  // the contact's geometry is that of its own time
+      PairSearch there(a_, b_, *this, t);
+      best_ = there.contact_again(half, f, t);
+    }
+    to_ = std::min(to_, std::nextafter(t, kForever));
+    return true;
+  }
+
+  /// A view of the same pair at another time, for evaluating one feature there; shares scratch, searches nothing.
+  PairSearch(const Mover& a, const Mover& b, const PairSearch& like, double t)
+      : a_(a), b_(b), from_(t), to_(t), limits_(like.limits_), scratch_(like.scratch_), work_(like.work_) {
+    halves_[0] = like.halves_[0];
+    halves_[1] = like.halves_[1];
+    place(t);
+  }
+
+  FeatureContact contact_again(const Half& half, const Feature& f, double t) {
+    const Sample& sample = half.samples_of().samples[f.sample];
+    const SamplePath path = sample_path(placed(half.s), placed(half.t), sample.p);
+    const Site& site = half.sites_of().sites[f.site];
+    if (sample.arc_site < 0)
+      return contact_of(half, vertex_feature(half, f.sample, f.site, nearest_on(site, path.q), path), t);
+    const ArcStep step = arc_step(half.samples_of().sites[sample.arc_site], site, path, placed(half.s),
+                                  placed(half.t), 0.0, {}, {0.0, 0.0});
+    return contact_of(half, {f.sample, f.site, step.gap, step.rate, step.normal, step.point}, t);
+  }
+
+  FeatureContact contact_of(const Half& half, const Feature& f, double t) const {
+    const Placed& site_owner = placed(half.t);
+    FeatureContact c;
+    c.time = t;
+    c.sample_on_a = half.s_is_a;
+    c.sample = f.sample;
+    c.site = f.site;
+    c.point = site_owner.frame.to_world(f.point);
+    const Vec2 out = site_owner.frame.direction_to_world(f.normal);
+    c.normal = half.s_is_a ? out : Vec2(-out);
+    c.closing_speed = -f.rate;
+    c.gap = f.gap;
+    return c;
+  }
+
+  /// Calls visit for sample i's nearest feature, and every further one within `tolerance`.
+  template <class Visit>
+  void features_of(const Half& half, int i, double tolerance, Visit&& visit) {
+    const Sample& sample = half.samples_of().samples[i];
+    const SamplePath path = sample_path(placed(half.s), placed(half.t), sample.p);
+    const Outline& sites = half.sites_of();
+    if (sample.arc_site >= 0) {
+      const Site& arc = half.samples_of().sites[sample.arc_site];
+      for (std::size_t j = 0; j < sites.sites.size(); ++j) {
+        const ArcStep step =
+            arc_step(arc, sites.sites[j], path, placed(half.s), placed(half.t), 0.0, {}, {0.0, 0.0});
+        if (step.active && step.gap <= tolerance)
+          visit({i, static_cast<int>(j), step.gap, step.rate, step.normal, step.point});
+      }
+      return;
+    }
+    const FieldAnswer nearest = half.t->index->query(path.q, scratch_.index);
+    if (nearest.site >= 0 && nearest.gap - sample.radius <= tolerance) {
+      const Site& site = sites.sites[nearest.site];
+      visit(vertex_feature(half, i, nearest.site, nearest_on(site, path.q), path));
+    }
+  }
+
+  const Mover &a_, &b_;
+  double from_, to_;
+  const SearchLimits& limits_;
+  SearchScratch& scratch_;
+  WorkCounters& work_;
+  Half halves_[2];
+  RelativeBounds long_bounds_, short_bounds_;
+  double short_window_ = 0.0, short_end_ = 0.0;
+  double t_ = 0.0, reached_ = 0.0;
+  Placed placed_a_, placed_b_;
+  FeatureContact best_;
+  bool capped_ = false;
+};
+
+}  // namespace
+
+PairAnswer first_contact(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
+                         SearchScratch& scratch, WorkCounters& work) {
+  ++work.pair_searches;
+  if (limits.closed_forms) {
+    PairAnswer answer;
+    if (first_contact_in_closed_form(a, b, from, to, limits, answer)) {
+      ++work.closed_forms;
+      return answer;
+    }
+  }
+  return PairSearch(a, b, from, to, limits, scratch, work).run();
+}
+
+std::vector<FeatureContact> touching_features(const Mover& a, const Mover& b, double t, double tolerance,
+                                              SearchScratch& scratch) {
+  std::vector<FeatureContact> found;
+  WorkCounters uncounted;
+  const SearchLimits limits;
+  PairSearch(a, b, t, t, limits, scratch, uncounted).collect(t, tolerance, found);
+  std::stable_sort(found.begin(), found.end(), [](const auto& x, const auto& y) { return x.gap < y.gap; });
+  return found;
+}
+
+double pair_gap(const Mover& a, const Mover& b, double t, SearchScratch& scratch) {
+  WorkCounters uncounted;
+  const SearchLimits limits;
+  return PairSearch(a, b, t, t, limits, scratch, uncounted).gap(t);
+}
+
+}  // namespace brink

@@ -1,0 +1,162 @@
+#pragma once
+/// The simulator's kernel of verbs: advance, pass, back up, resolve, record. Policies say when; only the kernel acts.
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "brink/core/base/random.h"
+#include "brink/core/fields/pass_window.h"
+#include "brink/core/world/forces.h"
+#include "brink/scheduler/agenda.h"
+#include "brink/scheduler/options.h"
+#include "brink/scheduler/recorder.h"
+#include "brink/scheduler/simulator.h"
+#include "brink/scheduler/site_motion.h"
+#include "brink/scheduler/zeno.h"
+
+namespace brink {
+
+/// What the kernel keeps of a body beside the world's definition.
+struct BodyTrack {
+  Motion motion;
+  std::uint64_t version = 0;        ///< raised by every resolve that changes the motion
+  double velocity_rounding = 0.0;   ///< see Mover
+  double resolved_at = -1.0;        ///< time of the last resolve [s]; < 0: never
+  int component = 0;
+  int place_in_component = 0;
+};
+
+/// Why a run cannot go on, in one sentence.
+struct Halt {
+  Termination termination = Termination::failed;
+  std::string why;
+};
+
+class Kernel {
+ public:
+  /// @throws BadInput, IoError as Simulator.
+  Kernel(World world, SolverOptions options);
+  ~Kernel();
+
+  // -- what is known --
+  const World& world() const { return world_; }
+  const SolverOptions& options() const { return options_; }
+  double time() const { return time_; }
+  int body_count() const { return static_cast<int>(bodies_.size()); }
+  const BodyTrack& body(int k) const { return bodies_[k]; }
+  BodyState state(int k, double t) const { return bodies_[k].motion.state(t); }
+  std::vector<BodyState> states(double t) const;
+  const Motion& site_motion(int k) const { return sites_[k].motion(); }
+  double touch() const { return limits_.touch; }
+  double contact_tolerance() const { return limits_.tolerance; }
+  const std::optional<Halt>& halt() const { return halt_; }
+  WorkCounters& work() { return work_; }
+  const WorkCounters& work() const { return work_; }
+  Random& random() { return random_; }
+  double max_overlap() const { return max_overlap_; }
+
+  // -- verbs --
+  /// Makes sure that every motion covers [.., t]. False (and halt() says why) if an integrator cannot.
+  bool extend_motions(double t);
+  /// Takes all bodies forward to t; frames due on the way are recorded by record_frames().
+  void advance_all(double t);
+  /// Takes all bodies back to t inside their motions; nothing is integrated twice.
+  void back_up_all(double t);
+  /// Pairs of owners whose moving bounds meet during [from, to] (every pair, where the plan's broad phase is off).
+  std::vector<PairKey> near_pairs(double from, double to);
+  /// Pairs of one body with everything else: one pass.
+  std::vector<PairKey> near_pairs_of(int body, double from, double to);
+  /// Searches one pair; the certificate of a contact or an undecided end, or nothing if clear to the end.
+  std::optional<Certificate> search(const PairKey& pair, double from, double to);
+  /// True if neither body has been resolved since the certificate was issued.
+  bool fresh(const Certificate& c) const;
+  /// Contacts of a pair at the present time with gap <= `tolerance`, deepest first.
+  std::vector<FeatureContact> touching(const PairKey& pair, double tolerance);
+  /// Resolves one collision at the present time and records it. Raises versions. False on a halt.
+  /// Bodies whose motion changed are appended to `changed`.
+  bool resolve(const PairKey& pair, const FeatureContact& contact, std::vector<int>& changed);
+  /// Puts a body elsewhere, at the present time (approximate policies only).
+  void displace(int body, const Vec2& shift);
+  /// Records frames due up to and including t; checks them for overlaps.
+  void record_frames(double t);
+  /// Ends the run for a reason.
+  void stop(Termination termination, std::string why);
+  /// A place where the run may be resumed from: writes a checkpoint if one is due; asks `progress`. False to stop.
+  bool pause_point();
+
+  // -- running --
+  void begin(const RunOptions& options, Recorder* recorder);
+  /// Records the last frame, at the present time, unless the frame clock has just done so.
+  void end_frame();
+  std::uint64_t collisions() const { return work_.collisions; }
+  std::vector<Contact> overlaps();
+  Plan plan() const;
+  /// The horizon that a policy last chose; kept here so that a resumed run does the same work.
+  double& horizon() { return horizon_; }
+  std::vector<std::byte> snapshot() const;
+  void restore(std::span<const std::byte> bytes);
+
+ private:
+  friend class SnapshotCodec;
+  struct Coupled {  ///< a component and its integrator
+    Component component;
+    std::unique_ptr<Integrator> integrator;
+    double started = 0.0;
+    std::vector<BodyState> start_states;
+  };
+
+  void make_indices();
+  void start_component(Coupled& c, double t, std::vector<BodyState> states);
+  /// Extends one component to t and fetches its motions; false and halt() if its integrator cannot.
+  bool cover(Coupled& c, double t);
+  void fetch_motions(const Coupled& c);
+  Mover mover(int body) const;
+  Mover site_mover(int site) const;
+  Mover other_mover(const PairKey& pair) const;
+  void note_overlap(double gap) { max_overlap_ = std::max(max_overlap_, -gap); }
+  void check_overlaps_at(double t);
+  const Motion& motion_of(int owner) const;
+  const Outline& outline_of(int owner) const;
+  int owner_count() const { return static_cast<int>(bodies_.size() + sites_.size()); }
+  std::optional<PairKey> pair_of(int owner_a, int owner_b) const;
+  void refresh_boxes(double from, double to, bool all);
+  std::vector<PairKey> pairs_by_pass(int body, double from, double to);
+  void count_collision(const PairKey& pair);
+  bool judge_endings(const PairKey& pair, const Contact& contact);
+  void set_rounding(int body, double magnitude);
+  Contact world_contact(const PairKey& pair, const FeatureContact& f) const;
+  std::string name_of(const PairKey& pair) const;
+
+  World world_;
+  SolverOptions options_;
+  WorkCounters work_;
+  SearchLimits limits_;
+  Random random_;
+  std::vector<BodyTrack> bodies_;
+  std::vector<Coupled> components_;
+  std::vector<SiteMotion> sites_;
+  std::vector<const SiteIndex*> body_index_, site_index_;
+  std::vector<std::unique_ptr<SiteIndex>> indices_;
+  std::unique_ptr<PassRenderer> passes_;
+  mutable SearchScratch scratch_;
+  ZenoWatch zeno_;
+  std::vector<Box> boxes_;                    ///< moving bounds of every owner over the present horizon
+  std::vector<std::uint64_t> box_versions_;   ///< of the bodies, when their box was made
+  std::optional<Halt> halt_;
+  double time_ = 0.0;
+  double horizon_ = 0.0;
+  double max_overlap_ = 0.0;
+  std::uint64_t seq_ = 0;
+  std::uint64_t frame_ = 0;       ///< frames recorded by the frame clock
+  double last_frame_ = -1.0;      ///< time of the last frame recorded [s]
+  double instant_ = -1.0;    ///< time of the current group of collisions
+  std::uint64_t in_instant_ = 0;
+  RunOptions run_;
+  Recorder* recorder_ = nullptr;
+  double next_checkpoint_ = 0.0;  ///< wall clock [s]
+};
+
+}  // namespace brink

@@ -1,0 +1,83 @@
+#pragma once
+/// How one outline's sample moves in the other outline's frame, with certified bounds.
+
+#include <algorithm>
+
+#include "brink/core/base/geometry.h"
+#include "brink/integrators/motion.h"
+
+namespace brink {
+
+/// An outline at one moment.
+struct Placed {
+  Frame frame;
+  Twist twist;
+
+  Placed() = default;
+  explicit Placed(const BodyState& s) : frame(s.pose), twist(s.twist) {}
+};
+
+/// Bounds on how sample owner S and site owner T move against each other over a window of time.
+struct RelativeBounds {
+  double speed = 0.0;         ///< of S's origin against T's [m/s]
+  double acceleration = 0.0;  ///< likewise [m/s^2]
+  double spin_s = 0.0, alpha_s = 0.0;
+  double spin_t = 0.0, alpha_t = 0.0;
+
+  RelativeBounds() = default;
+  RelativeBounds(const MotionBounds& s, const MotionBounds& t)
+      : speed((s.velocity - t.velocity).norm() + s.velocity_radius + t.velocity_radius),
+        acceleration((s.acceleration - t.acceleration).norm() + s.acceleration_radius + t.acceleration_radius),
+        spin_s(s.spin()),
+        alpha_s(s.alpha),
+        spin_t(t.spin()),
+        alpha_t(t.alpha) {}
+
+  RelativeBounds swapped() const {
+    RelativeBounds r = *this;
+    std::swap(r.spin_s, r.spin_t);
+    std::swap(r.alpha_s, r.alpha_t);
+    return r;
+  }
+};
+
+/// A sample's place and velocity in T's frame at one moment.
+struct SamplePath {
+  Vec2 q;             ///< place [m]
+  Vec2 rate;          ///< dq/dt [m/s]
+  double arm;         ///< distance from S's origin [m]
+  double distance;    ///< from T's origin [m]
+  double magnitude;   ///< sum of the speeds that `rate` was computed from: its rounding error is a few eps of it
+};
+
+inline SamplePath sample_path(const Placed& s, const Placed& t, const Vec2& p_local) {
+  const Vec2 r = s.frame.direction_to_world(p_local);
+  const Vec2 rho = s.frame.origin + r - t.frame.origin;
+  const Vec2 w = s.twist.at(r) - t.twist.at(rho);
+  SamplePath path;
+  path.q = t.frame.direction_to_local(rho);
+  path.rate = t.frame.direction_to_local(w);
+  path.arm = p_local.norm();
+  path.distance = rho.norm();
+  path.magnitude = s.twist.velocity.lpNorm<1>() + std::abs(s.twist.omega) * path.arm +
+                   t.twist.velocity.lpNorm<1>() + std::abs(t.twist.omega) * path.distance;
+  return path;
+}
+
+/// Bounds on |dq/dt| and |d2q/dt2| in T's turning frame over the next `window` seconds. With rho = p - x_T and
+/// w = rho' - omega_T x rho: q'' = R_T^T (rho'' - alpha_T x rho - 2 omega_T x w - omega_T x (omega_T x rho)).
+struct PathBounds {
+  double speed;
+  double acceleration;
+};
+
+inline PathBounds path_bounds(const SamplePath& path, const RelativeBounds& b, double window) {
+  const double inertial_speed = b.speed + b.spin_s * path.arm;
+  const double inertial_acceleration = b.acceleration + (b.alpha_s + b.spin_s * b.spin_s) * path.arm;
+  if (b.spin_t == 0.0 && b.alpha_t == 0.0) return {inertial_speed, inertial_acceleration};
+  const double rho = path.distance + inertial_speed * window;
+  const double speed = inertial_speed + b.spin_t * rho;
+  return {speed, inertial_acceleration + (b.alpha_t + b.spin_t * b.spin_t) * rho + 2.0 * b.spin_t * speed};
+}
+
+}  // namespace brink

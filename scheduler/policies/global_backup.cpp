@@ -1,0 +1,116 @@
+/// Global backup (Baraff 1997; the classic method):
+///
+///   until the end
+///     choose a horizon; advance all bodies to it
+///     pass: certificates of every pair that can meet before it
+///     while the agenda has a contact before the horizon
+///       back all bodies up to the earliest; resolve that one collision
+///       pass again for the bodies it concerned; advance all to the horizon
+///
+/// The horizon changes what work is done, never what happens: motions keep their origin and contact times are
+/// canonical.
+#include <algorithm>
+
+#include "brink/scheduler/policies/order.h"
+#include "brink/scheduler/policies/policy.h"
+
+namespace brink {
+
+namespace {
+
+class GlobalBackup final : public Policy {
+ public:
+  void run(Kernel& kernel, double until) override {
+    if (kernel.horizon() <= 0.0) kernel.horizon() = first_horizon(kernel, until);
+    while (kernel.time() < until && !kernel.halt()) {
+      if (!kernel.pause_point()) return;
+      const double end = std::min(until, kernel.time() + kernel.horizon());
+      const std::uint64_t before = kernel.collisions();
+      if (!run_horizon(kernel, end)) return;
+      adapt(kernel, kernel.collisions() - before);
+    }
+  }
+
+ private:
+  /// One horizon, contact by contact. False on a halt.
+  bool run_horizon(Kernel& kernel, double end) {
+    if (!kernel.extend_motions(end)) return false;
+    const double from = kernel.time();
+    double reached = from;  // time of the last event: of contacts at the same time, one may be a rounding earlier
+    kernel.advance_all(end);
+    agenda_.clear();
+    const std::vector<PairKey> pairs = kernel.near_pairs(from, end);
+    pairs_ = pairs.size();
+    for (const PairKey& pair : pairs) test(kernel, pair, from, end);
+    while (const auto next = take_earliest(kernel, agenda_)) {
+      reached = std::max(reached, next->time);
+      kernel.record_frames(reached);
+      kernel.back_up_all(reached);
+      if (next->kind == Certificate::Kind::undecided) {
+        if (!search_on(kernel, *next, end)) return false;
+        kernel.advance_all(end);
+        continue;
+      }
+      changed_.clear();
+      if (!kernel.resolve(next->pair, next->contact, changed_)) return false;
+      if (!kernel.extend_motions(end)) return false;
+      const double now = kernel.time();
+      for (const int body : changed_)
+        for (const PairKey& pair : kernel.near_pairs_of(body, now, end))
+          if (!tested_already(pair, body)) test(kernel, pair, now, end);
+      kernel.advance_all(end);
+    }
+    kernel.record_frames(end);
+    return true;
+  }
+
+  /// A pair of two changed bodies is met from both: it is tested at the first.
+  bool tested_already(const PairKey& pair, int body) const {
+    if (pair.with_site()) return false;
+    const int other = pair.body == body ? pair.other_body : pair.body;
+    return other < body && std::find(changed_.begin(), changed_.end(), other) != changed_.end();
+  }
+
+  void test(Kernel& kernel, const PairKey& pair, double from, double end) {
+    if (const auto certificate = kernel.search(pair, from, end)) agenda_.insert(*certificate);
+  }
+
+  /// Goes on with a search that stopped at its cap; gives up where it no longer moves.
+  bool search_on(Kernel& kernel, const Certificate& c, double end) {
+    const auto again = kernel.search(c.pair, c.time, end);
+    if (again && again->kind == Certificate::Kind::undecided && again->time <= c.time) {
+      kernel.stop(Termination::failed, "a search for first contact stands still");
+      return false;
+    }
+    if (again) agenda_.insert(*again);
+    return true;
+  }
+
+  /// About the time in which the fastest body crosses itself.
+  static double first_horizon(const Kernel& kernel, double until) {
+    double horizon = until;
+    for (int k = 0; k < kernel.body_count(); ++k) {
+      const double speed = kernel.state(k, kernel.time()).twist.velocity.norm();
+      const double size = 2.0 * kernel.world().bodies[k].outline->bounding_radius;
+      if (speed > 0.0 && size > 0.0) horizon = std::min(horizon, size / speed);
+    }
+    return std::max(horizon, 1e-9 * std::max(1.0, until));
+  }
+
+  /// Longer while little happens, shorter while much does.
+  void adapt(Kernel& kernel, std::uint64_t collisions) const {
+    const auto n = static_cast<std::uint64_t>(kernel.body_count());
+    if (pairs_ > 6 * n + 16 || collisions > 2 * n + 16) kernel.horizon() *= 0.5;
+    else if (pairs_ < 3 * n + 8 && collisions < n / 2 + 4) kernel.horizon() *= 1.5;
+  }
+
+  Agenda agenda_;
+  std::size_t pairs_ = 0;
+  std::vector<int> changed_;
+};
+
+}  // namespace
+
+std::unique_ptr<Policy> make_global_backup() { return std::make_unique<GlobalBackup>(); }
+
+}  // namespace brink

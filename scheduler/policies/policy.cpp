@@ -1,0 +1,15 @@
+#include "brink/scheduler/policies/policy.h"
+
+#include <fmt/core.h>
+
+#include "brink/core/base/error.h"
+
+namespace brink {
+
+std::unique_ptr<Policy> make_policy(std::string_view name) {
+  if (name == "global_backup") return make_global_backup();
+  if (name == "fixed_step") return make_fixed_step();
+  throw BadInput(fmt::format("policy \"{}\" is not known; see policies()", name));
+}
+
+}  // namespace brink

@@ -1,0 +1,83 @@
+#include "brink/scheduler/simulator.h"
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "brink/core/base/error.h"
+#include "brink/core/base/hash.h"
+#include "brink/scheduler/kernel.h"
+#include "brink/scheduler/policies/policy.h"
+
+namespace brink {
+
+struct Simulator::Impl {
+  Impl(World world, SolverOptions options)
+      : kernel(std::move(world), options), policy(make_policy(options.policy)) {}
+  Kernel kernel;
+  std::unique_ptr<Policy> policy;
+  double energy_initial = 0.0;
+};
+
+Simulator::Simulator(World world, SolverOptions options)
+    : impl_(std::make_unique<Impl>(std::move(world), std::move(options))) {
+  impl_->energy_initial = total_energy(this->world(), states());
+}
+Simulator::~Simulator() = default;
+Simulator::Simulator(Simulator&&) noexcept = default;
+Simulator& Simulator::operator=(Simulator&&) noexcept = default;
+
+RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
+  if (!std::isfinite(options.until) || options.until < time())
+    throw BadInput(fmt::format("until = {} must be finite and >= the present time {}", options.until, time()));
+  if (!(options.frame_interval >= 0.0))
+    throw BadInput(fmt::format("frame_interval = {} must be >= 0", options.frame_interval));
+  Kernel& kernel = impl_->kernel;
+  const auto begin = std::chrono::steady_clock::now();
+  kernel.begin(options, recorder);
+  impl_->policy->run(kernel, options.until);
+  kernel.end_frame();
+
+  RunSummary summary;
+  if (const auto& halt = kernel.halt()) {
+    summary.termination = halt->termination;
+    summary.why = halt->why;
+  } else {
+    summary.termination = Termination::reached_end;
+  }
+  if (recorder) recorder->checkpoint(time(), kernel.snapshot());
+  const std::vector<BodyState> last = states();
+  const Momentum momentum = total_momentum(world(), last);
+  summary.end_time = time();
+  summary.collisions = kernel.collisions();
+  summary.energy_initial = impl_->energy_initial;
+  summary.energy_final = total_energy(world(), last);
+  summary.momentum = momentum.linear;
+  summary.angular_momentum = momentum.angular;
+  summary.max_overlap = kernel.max_overlap();
+  summary.state_hash = state_hash();
+  summary.work = kernel.work();
+  summary.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return summary;
+}
+
+double Simulator::time() const { return impl_->kernel.time(); }
+const World& Simulator::world() const { return impl_->kernel.world(); }
+BodyState Simulator::state(int k) const { return impl_->kernel.state(k, time()); }
+std::vector<BodyState> Simulator::states() const { return impl_->kernel.states(time()); }
+Pose Simulator::site_pose(int k) const { return impl_->kernel.site_motion(k).pose(time()); }
+
+std::uint64_t Simulator::state_hash() const {
+  StateHash hash;
+  hash.add(time());
+  for (const BodyState& s : states()) hash.add(s);
+  return hash.value();
+}
+
+std::vector<Contact> Simulator::overlaps() const { return impl_->kernel.overlaps(); }
+Plan Simulator::plan() const { return impl_->kernel.plan(); }
+std::vector<std::byte> Simulator::snapshot() const { return impl_->kernel.snapshot(); }
+void Simulator::restore(std::span<const std::byte> snapshot) { impl_->kernel.restore(snapshot); }
+
+}  // namespace brink

@@ -1,0 +1,60 @@
+#include "brink/scheduler/site_motion.h"
+
+#include <fmt/core.h>
+
+#include "brink/core/base/error.h"
+#include "brink/integrators/prescribed.h"
+
+namespace brink {
+
+namespace {
+
+double value(const std::optional<Formula>& formula, double t) {
+  return formula ? (*formula)(std::span<const double>(&t, 1)) : 0.0;
+}
+
+std::string description(const FixedSite& site, const FormulaMotion& m) {
+  std::string text = fmt::format("site '{}'", site.name);
+  const auto add = [&](const char* what, const std::optional<Formula>& f) {
+    if (f) text += fmt::format(", {} = \"{}\"", what, f->text());
+  };
+  add("x", m.x);
+  add("y", m.y);
+  add("angle", m.angle);
+  return text;
+}
+
+}  // namespace
+
+SiteMotion::SiteMotion(const FixedSite& site) {
+  if (const auto* constant = std::get_if<ConstantMotion>(&site.motion)) {
+    motion_ = Motion::ballistic(0.0, {site.pose, constant->twist}, {});
+    moves_ = !constant->twist.velocity.isZero(0.0) || constant->twist.omega != 0.0;
+    return;
+  }
+  motion_ = Motion::still(site.pose);
+  if (const auto* formula = std::get_if<FormulaMotion>(&site.motion)) {
+    moves_ = true;
+    const Eigen::Vector3d base(site.pose.position.x(), site.pose.position.y(), site.pose.angle);
+    prescribed_ = std::make_unique<PrescribedMotion>(
+        [base, f = *formula](double t) -> Eigen::Vector3d {
+          return base + Eigen::Vector3d(value(f.x, t), value(f.y, t), value(f.angle, t));
+        },
+        description(site, *formula));
+    const std::string why = extend(0.0);
+    if (!why.empty()) throw BadInput(why);
+  }
+}
+
+SiteMotion::~SiteMotion() = default;
+SiteMotion::SiteMotion(SiteMotion&&) noexcept = default;
+
+std::string SiteMotion::extend(double t) {
+  if (!prescribed_) return {};
+  const Extent extent = prescribed_->extend(t);
+  if (extent.status != Extent::Status::reached) return extent.why;
+  motion_ = prescribed_->motion();
+  return {};
+}
+
+}  // namespace brink

@@ -1,0 +1,55 @@
+#pragma once
+/// The certified step of one moving point against one site.
+
+#include "brink/core/shapes/distance.h"
+#include "brink/scheduler/pair_kinematics.h"
+#include "brink/scheduler/safe_step.h"
+
+namespace brink {
+
+/// Distance from q to the convex hull of an arc (the circular segment between arc and chord) and its gradient; 0 inside.
+struct HullDistance {
+  double distance = 0.0;
+  Vec2 gradient = Vec2::Zero();
+};
+HullDistance distance_to_arc_hull(const Site& arc, const Nearest& nearest, const Vec2& q);
+
+/// Gap of a point with `radius` (thickness of both sides together) to one site, and how long it cannot close.
+struct SiteStep {
+  double gap;        ///< unsigned distance - radius [m]
+  double rate;       ///< d(gap)/dt of the unsigned distance [m/s]
+  double safe;       ///< certified: the gap stays > 0 for this long [s]
+};
+
+/// @pre bounds hold for at least the time that the caller will use of `safe`.
+inline SiteStep site_step(const Site& site, const Nearest& nearest, const Vec2& q, const Vec2& rate, double radius,
+                          double slack, const PathBounds& bounds) {
+  const double gap = nearest.distance - radius;
+  const Vec2 away = q - nearest.point;
+  const double df = nearest.distance > 0.0 ? away.dot(rate) / nearest.distance : 0.0;
+  SiteStep step{gap, df, 0.0};
+  const double f = std::max(gap, 0.0) + slack;
+  if (site.kind != SiteKind::arc) {  // convex
+    step.safe = safe_step(f, df, bounds.acceleration);
+    return step;
+  }
+  // An arc is held apart by its circle, or by its convex hull: whichever is certain for longer.
+  step.safe = bounds.speed > 0.0 ? f / bounds.speed : std::numeric_limits<double>::infinity();
+  const Vec2 w = q - site.center;
+  const double rho = w.norm();
+  const double circle = std::abs(rho - site.arc_radius) - radius + slack;
+  if (circle > 0.0 && rho > 0.0) {
+    const double radial = w.dot(rate) / rho;
+    const bool inside = rho < site.arc_radius;
+    const double curvature =
+        bounds.acceleration + (inside ? bounds.speed * bounds.speed / rho : 0.0);
+    step.safe = std::max(step.safe, safe_step(circle, inside ? -radial : radial, curvature));
+  }
+  const HullDistance hull = distance_to_arc_hull(site, nearest, q);
+  if (hull.distance - radius + slack > 0.0 && hull.distance > 0.0)
+    step.safe = std::max(
+        step.safe, safe_step(hull.distance - radius + slack, hull.gradient.dot(rate), bounds.acceleration));
+  return step;
+}
+
+}  // namespace brink

@@ -1,0 +1,152 @@
+/// Snapshots: bytes from which a run goes on with the same bits.
+///
+/// Every motion is kept as what it was started from (time and states of its component); restoring starts the
+/// integrators there again and lets them run on, which gives the same pieces, since their steps depend on their own
+/// history alone.
+#include <cstring>
+
+#include "brink/core/base/error.h"
+#include "brink/core/base/hash.h"
+#include "brink/scheduler/kernel.h"
+
+namespace brink {
+
+namespace {
+
+constexpr std::uint64_t kMagic = 0x314b4e4952420002ULL;  // "\2\0BRINK1"
+
+class Writer {
+ public:
+  template <class T>
+  void put(const T& value) {
+    const auto* bytes = reinterpret_cast<const std::byte*>(&value);
+    bytes_.insert(bytes_.end(), bytes, bytes + sizeof(T));
+  }
+  std::vector<std::byte> take() { return std::move(bytes_); }
+
+ private:
+  std::vector<std::byte> bytes_;
+};
+
+class Reader {
+ public:
+  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  template <class T>
+  void get(T& value) {
+    if (bytes_.size() < sizeof(T)) throw BadInput("snapshot: it ends early");
+    std::memcpy(static_cast<void*>(&value), bytes_.data(), sizeof(T));
+    bytes_ = bytes_.subspan(sizeof(T));
+  }
+  bool done() const { return bytes_.empty(); }
+
+ private:
+  std::span<const std::byte> bytes_;
+};
+
+/// What a snapshot must agree on with the world it is restored into.
+std::uint64_t fingerprint(const World& world, const SolverOptions& options) {
+  StateHash hash;
+  hash.add(static_cast<std::uint64_t>(world.bodies.size()));
+  hash.add(static_cast<std::uint64_t>(world.sites.size()));
+  for (const Body& b : world.bodies) {
+    hash.add(b.mass);
+    hash.add(b.inertia);
+    hash.add(b.initial);
+    hash.add(static_cast<std::uint64_t>(b.outline->sites.size()));
+  }
+  hash.add(world.gravity);
+  for (const char c : options.policy + options.integrator + options.order + options.response)
+    hash.add(static_cast<std::uint64_t>(c));
+  hash.add(options.tolerance);
+  hash.add(options.absolute_tolerance);
+  hash.add(options.step);
+  hash.add(options.contact_tolerance);
+  return hash.value();
+}
+
+}  // namespace
+
+/// Reads or writes the members of a kernel in one order.
+class SnapshotCodec {
+ public:
+  template <class Archive, class K>
+  static void scalars(Archive&& each, K& k) {
+    each(k.time_);
+    each(k.horizon_);
+    each(k.max_overlap_);
+    each(k.seq_);
+    each(k.frame_);
+    each(k.last_frame_);
+    each(k.instant_);
+    each(k.in_instant_);
+  }
+};
+
+std::vector<std::byte> Kernel::snapshot() const {
+  Writer out;
+  out.put(kMagic);
+  out.put(fingerprint(world_, options_));
+  SnapshotCodec::scalars([&](const auto& v) { out.put(v); }, *this);
+  out.put(random_.state());
+  WorkCounters::for_each(work_, [&](auto, const auto& v, auto) { out.put(v); });
+  for (const BodyTrack& b : bodies_) {
+    out.put(b.version);
+    out.put(b.velocity_rounding);
+    out.put(b.resolved_at);
+  }
+  for (const Coupled& c : components_) {
+    out.put(c.started);
+    for (const BodyState& s : c.start_states) out.put(s);
+  }
+  out.put(static_cast<std::uint64_t>(zeno_.bounces().size()));
+  for (const auto& [pair, bounce] : zeno_.bounces()) {
+    out.put(pair);
+    out.put(bounce);
+  }
+  return out.take();
+}
+
+void Kernel::restore(std::span<const std::byte> bytes) {
+  Reader in(bytes);
+  std::uint64_t magic = 0, print = 0;
+  in.get(magic);
+  in.get(print);
+  if (magic != kMagic) throw BadInput("snapshot: these bytes are not a snapshot of this version");
+  if (print != fingerprint(world_, options_))
+    throw BadInput("snapshot: it was taken of another world or with other options");
+  SnapshotCodec::scalars([&](auto& v) { in.get(v); }, *this);
+  auto random = random_.state();
+  in.get(random);
+  random_.set_state(random);
+  WorkCounters counted;
+  WorkCounters::for_each(counted, [&](auto, auto& v, auto) { in.get(v); });
+  for (BodyTrack& b : bodies_) {
+    in.get(b.version);
+    in.get(b.velocity_rounding);
+    in.get(b.resolved_at);
+  }
+  halt_.reset();
+  for (Coupled& c : components_) {
+    in.get(c.started);
+    for (BodyState& s : c.start_states) in.get(s);
+    c.integrator->start(c.started, c.start_states);
+    cover(c, time_);
+  }
+  std::uint64_t pairs = 0;
+  in.get(pairs);
+  std::map<PairKey, ZenoWatch::Bounce> bounces;
+  for (std::uint64_t i = 0; i < pairs; ++i) {
+    PairKey key;
+    ZenoWatch::Bounce bounce;
+    in.get(key);
+    in.get(bounce);
+    bounces.emplace(key, bounce);
+  }
+  if (!in.done()) throw BadInput("snapshot: bytes left over");
+  zeno_.restore(std::move(bounces));
+  for (SiteMotion& s : sites_)
+    if (const std::string why = s.extend(time_); !why.empty()) throw BadInput(why);
+  work_ = counted;
+}
+
+}  // namespace brink
