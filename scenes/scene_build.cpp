@@ -267,7 +267,7 @@ Scene build_scene(const FileTable& file, FaultList& faults) { return SceneBuilde
 
 Scene parse_scene(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
   TomlDocument document(text, overrides);
-  document.faults().throw_if_any(name);
+  if (!document.readable()) document.faults().throw_if_any(name);
   FileTable file;
   file_schema().read(document.root(), {1, 1}, document, file);
   Scene scene = build_scene(file, document.faults());

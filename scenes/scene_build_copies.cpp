@@ -65,24 +65,21 @@ void Placer::scatter(PlannedThing& thing, const std::vector<PlannedThing>& sites
                                   " so far, allowed: " + std::to_string(kMostThings));
   std::vector<Obstacle> obstacles = obstacles_of(sites);
   for (const Obstacle& obstacle : obstacles_of(bodies)) obstacles.push_back(obstacle);
-  Box region;
-  for (const Vec2& corner : asked.region) region.add(corner);
+  ScatterAsk ask{thing.shape.outline.get(), {}, asked.count, thing.pose.angle, asked.random_angle};
+  for (const Vec2& corner : asked.region) ask.region.add(corner);
   Random where_to(stream(seed_, thing.ordinal, 0)), how(stream(seed_, thing.ordinal, 1));
   std::int64_t room = 0;
-  const auto places =
-      scatter_places(thing.shape.outline->bounding_radius, region, asked.count, obstacles, where_to, &room);
-  if (!places)
+  const auto poses = scatter_poses(ask, obstacles, where_to, &room);
+  if (!poses)
     return faults_.add(where, "scatter: the region is too small; given " + std::to_string(asked.count) +
-                                  " copies of bounding radius " +
-                                  number_text(thing.shape.outline->bounding_radius) + " m, allowed: about " +
-                                  std::to_string(room));
-  for (const Vec2& p : *places) {
+                                  " copies of bounding radius " + number_text(ask.outline->bounding_radius) +
+                                  " m, allowed: about " + std::to_string(room) +
+                                  " beside what is there already");
+  for (const Pose& pose : *poses) {
     BodyState state = start_of(thing);
-    const double heading = how.uniform(0.0, 2.0 * std::numbers::pi),
-                 turn = how.uniform(0.0, 2.0 * std::numbers::pi);
+    const double heading = how.uniform(0.0, 2.0 * std::numbers::pi);
     const double way = how.below(2) == 0 ? 1.0 : -1.0;
-    state.pose.position = p;
-    if (asked.random_angle) state.pose.angle += turn;
+    state.pose = pose;
     state.twist.velocity += asked.speed * Vec2{std::cos(heading), std::sin(heading)};
     state.twist.omega += asked.angular_speed * way;
     thing.copies.push_back(state);

@@ -28,7 +28,7 @@ std::optional<BuiltShape> ShapeBuilder::build(const ThingTable& thing, const std
   const ShapeSpec& spec = thing.shapes[0];
   if (!spec.build || !fits(thing, spec, body)) return std::nullopt;
   ShapeContext context{thing.curve_tolerance.given ? thing.curve_tolerance.value : curve_tolerance_,
-                       thing.radius.value};
+                       thing.radius.value, thing.inside_of.value};
   const bool about_centre = body || thing.centered.value;
   const Json key = {spec.kind,      spec.parameters,
                     context.radius, spec.takes_curve_tolerance ? context.curve_tolerance : 0.0,
@@ -74,7 +74,8 @@ std::optional<BuiltShape> ShapeBuilder::make(const ThingTable& thing, const Shap
       built.shift = shape.measure.centroid;
       shape = centered(std::move(shape));
     }
-    if (thing.inside_of.value) shape.outline = as_container(std::move(shape.outline));
+    if (thing.inside_of.value && !shape.outline.container)
+      shape.outline = as_container(std::move(shape.outline));
     built.measure = shape.measure;
     built.outline = std::make_shared<const Outline>(std::move(shape.outline));
     return built;

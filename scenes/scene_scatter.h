@@ -1,5 +1,5 @@
 #pragma once
-/// Places for equal discs in a box, at random, without overlaps. Internal to the scene reader.
+/// Places for copies of one shape in a box, at random, without overlaps. Internal to the scene reader.
 
 #include <cstdint>
 #include <optional>
@@ -10,20 +10,32 @@
 
 namespace brink {
 
+/// An outline where it stands: what a copy must keep clear of, and a copy once placed.
 struct Obstacle {
   const Outline* outline = nullptr;
   Pose pose;
 };
 
-/// `count` centres of discs of `radius`, each disc wholly inside `region`, apart from one another and from
-/// every obstacle. The same arguments give the same places.
+struct ScatterAsk {
+  const Outline* outline = nullptr;
+  Box region;  ///< holds every copy's position
+  std::int64_t count = 1;
+  double angle = 0.0;         ///< of every copy [rad]
+  bool random_angle = false;  ///< any angle instead
+};
+
+/// Poses of the copies: apart from one another and from every obstacle. The same arguments give the same
+/// poses.
 ///
-/// Random sequential insertion (Widom 1966) up to 45 % of the area; beyond that, or where it gets stuck, a
-/// random choice of places of a triangular lattice, shaken within their room. Empty if even the tightest
-/// lattice has too few places;
-/// `*room` is then how many it has.
-std::optional<std::vector<Vec2>> scatter_places(double radius, const Box& region, std::int64_t count,
-                                                const std::vector<Obstacle>& obstacles, Random& random,
-                                                std::int64_t* room);
+/// Random sequential insertion (Widom 1966) where the discs about the copies would fill less than 45 % of the
+/// region; beyond that, or where insertion gets stuck, a random choice of places of a triangular lattice,
+/// shaken within their room. Empty if even the tightest lattice has too few places; `*room` is then how many
+/// it has.
+std::optional<std::vector<Pose>> scatter_poses(const ScatterAsk& ask, const std::vector<Obstacle>& obstacles,
+                                               Random& random, std::int64_t* room);
+
+/// True if the two outlines are surely apart by more than `margin` [m]. False where they overlap or touch,
+/// and also where an arc's circle, taken as whole, would (it counts beyond its sector here).
+bool surely_apart(const Obstacle& a, const Obstacle& b, double margin);
 
 }  // namespace brink

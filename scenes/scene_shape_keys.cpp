@@ -120,7 +120,7 @@ void add_shape(Schema<ThingTable>& schema, ShapeSpec spec, const Codec<V>& codec
       spec.kind, codec.type, "", meaning, [=](const toml::node& node, TomlDocument& doc, ThingTable& out) {
         ShapeSpec made = spec;
         made.where = doc.where(node);
-        V value{};
+        V value = blank<V>();
         if (codec.read(node, doc, spec.kind, value)) {
           made.parameters = codec.write(value);
           made.build = [value, build](const ShapeContext& context) { return build(value, context); };
@@ -192,7 +192,9 @@ Shape build_polyline(const std::vector<Vec2>& vertices, const ShapeContext& cont
 
 void add_body_shapes(Schema<ThingTable>& schema) {
   add_shape(schema, shape_kind("disc"), disc_schema().codec(), "a disc",
-            [](const DiscTable& t, const ShapeContext&) { return make_disc(t.radius); });
+            [](const DiscTable& t, const ShapeContext& c) {
+              return c.inside_of ? make_disc_container(t.radius) : make_disc(t.radius);
+            });
   add_shape(schema, thick("box"), box_schema().codec(), "a rectangle, centred",
             [](const BoxTable& t, const ShapeContext& c) {
               return make_box(t.width, t.height, own_or(t.radius, c));

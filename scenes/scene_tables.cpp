@@ -33,7 +33,6 @@ Codec<std::int64_t> whole(std::int64_t low = 0,
 }
 
 Range heavy(std::string unit) { return {kLightest, kHeaviest, false, std::move(unit)}; }
-Range strong(std::string unit) { return {0.0, kHeaviest, false, std::move(unit)}; }
 
 void read_materials(const toml::node& node, TomlDocument& doc, FileTable& out) {
   const toml::table* table = node.as_table();
@@ -109,7 +108,7 @@ const Schema<ScatterTable>& scatter_schema() {
       Schema<ScatterTable>("scatter")
           .required("count", &ScatterTable::count, whole(1, 1'000'000), "number of copies")
           .required("region", &ScatterTable::region, points(2, 2),
-                    "two opposite corners of the box that holds every copy wholly")
+                    "two opposite corners of the box that holds the position of every copy")
           .key("speed", &ScatterTable::speed, number(not_negative("m/s")),
                "speed of each copy in a random direction, added to velocity")
           .key("angular_speed", &ScatterTable::angular_speed, number(not_negative("rad/s")),

@@ -24,6 +24,7 @@ struct FieldTable {
 struct ShapeContext {
   double curve_tolerance = 0.0;  ///< [m]
   double radius = 0.0;           ///< thickness given beside the shape [m]
+  bool inside_of = false;        ///< a container is asked for
 };
 
 /// One shape as asked for, not yet built.

@@ -20,6 +20,15 @@ using Json = nlohmann::ordered_json;
 /// Numbers of a scene stay within these, so that squares and products of what is given stay finite.
 inline constexpr double kLargest = 1e15;
 
+/// The starting value of a V that is read: Eigen leaves Vec2{} without a value.
+template <class V>
+V blank() {
+  if constexpr (std::is_same_v<V, Vec2>)
+    return Vec2::Zero();
+  else
+    return V{};
+}
+
 /// Reads a value; on a fault tells the document, naming `key`, and returns false.
 template <class V>
 struct Codec {

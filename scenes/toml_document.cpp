@@ -114,8 +114,8 @@ std::size_t index_of_name(const toml::array& array, const std::string& name) {
 TomlDocument::TomlDocument(std::string_view text, const std::vector<std::string>& overrides)
     : faults_(paths_of(overrides)) {
   parse(text);
-  if (!faults_.empty()) return;
-  for (std::size_t i = 0; i < overrides.size(); ++i) apply(overrides[i], static_cast<int>(i));
+  readable_ = faults_.empty();
+  for (std::size_t i = 0; readable_ && i < overrides.size(); ++i) apply(overrides[i], static_cast<int>(i));
 }
 
 void TomlDocument::parse(std::string_view text) {

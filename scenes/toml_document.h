@@ -18,6 +18,8 @@ class TomlDocument {
   /// is empty.
   TomlDocument(std::string_view text, const std::vector<std::string>& overrides);
 
+  /// False after a syntax error: nothing else can be said about the text.
+  bool readable() const { return readable_; }
   const toml::table& root() const { return root_; }
   FaultList& faults() { return faults_; }
 
@@ -35,6 +37,7 @@ class TomlDocument {
   void assign(toml::node& parent, const std::string& part, const toml::node& value, int index);
 
   FaultList faults_;
+  bool readable_ = false;
   toml::table root_;
   std::unordered_map<const toml::node*, int> override_of_;  ///< nodes that overrides brought in
 };

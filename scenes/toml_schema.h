@@ -11,7 +11,7 @@ namespace brink {
 /// A value with its place in the file; `given` is false where the file says nothing.
 template <class V>
 struct Given {
-  V value{};
+  V value = blank<V>();
   Where where;
   bool given = false;
 };
@@ -28,7 +28,7 @@ class Schema {
   Schema& key(const std::string& name, V T::*member, Codec<V> codec, const std::string& meaning) {
     return add({name, codec.type, codec.write(T{}.*member).dump(), meaning, false,
                 [=](const toml::node& node, TomlDocument& doc, T& out) {
-                  V value{};
+                  V value = blank<V>();
                   if (codec.read(node, doc, name, value)) out.*member = std::move(value);
                 },
                 [=](const T& from) { return codec.write(from.*member); }});
@@ -53,7 +53,7 @@ class Schema {
     return add(
         {name, codec.type, otherwise, meaning, false,
          [=](const toml::node& node, TomlDocument& doc, T& out) {
-           V value{};
+           V value = blank<V>();
            if (codec.read(node, doc, name, value)) out.*member = {std::move(value), doc.where(node), true};
          },
          [=](const T& from) { return (from.*member).given ? codec.write((from.*member).value) : Json(); }});
