@@ -19,33 +19,44 @@ constexpr double kFitTolerance = 1e-13;   // of the cell's largest value
 constexpr double kNoiseTolerance = 1e-9;  // the same, where halving no longer helps
 constexpr double kPi = 3.14159265358979323846;
 
-/// Chebyshev-Lobatto points on [-1, 1], the checking points between them, and the map from values at the
-/// former to monomial coefficients.
+using Matrix = Eigen::Matrix<double, kDegree + 1, kDegree + 1>;
+using Columns = Eigen::Matrix<double, kDegree + 1, 3>;  // x, y, angle
+
+/// Chebyshev-Lobatto points on [-1, 1] and the checking points between them; the maps from values at the
+/// former to Chebyshev coefficients, and from those to monomials. Two maps, because their product would
+/// cancel.
 struct Nodes {
   std::array<double, kDegree + 1> at;
   std::array<double, kDegree> check;
-  Eigen::Matrix<double, kDegree + 1, kDegree + 1> to_monomial;
+  Matrix to_chebyshev, to_monomial = Matrix::Zero();
 
   Nodes() {
-    using Matrix = Eigen::Matrix<long double, kDegree + 1, kDegree + 1>;
     for (int j = 0; j <= kDegree; ++j) at[j] = -std::cos(kPi * j / kDegree);
     at[0] = -1.0, at[kDegree / 2] = 0.0, at[kDegree] = 1.0;
     for (int j = 0; j < kDegree; ++j) check[j] = -std::cos(kPi * (j + 0.5) / kDegree);
-    // values -> Chebyshev coefficients (discrete cosine transform), then T_k in monomials by their recurrence
-    Matrix transform, monomials = Matrix::Zero();
+    const auto half_at_ends = [](int i) { return i == 0 || i == kDegree ? 0.5 : 1.0; };
     for (int k = 0; k <= kDegree; ++k)
-      for (int j = 0; j <= kDegree; ++j) {
-        const long double ends =
-            (j == 0 || j == kDegree ? 0.5L : 1.0L) * (k == 0 || k == kDegree ? 0.5L : 1.0L);
-        transform(k, j) =
-            ends * 2.0L / kDegree * std::cos(3.14159265358979323846264L * k * (kDegree - j) / kDegree);
-      }
-    monomials(0, 0) = monomials(1, 1) = 1.0L;
+      for (int j = 0; j <= kDegree; ++j)
+        to_chebyshev(k, j) =
+            half_at_ends(j) * half_at_ends(k) * 2.0 / kDegree * std::cos(kPi * (k * (kDegree - j)) / kDegree);
+    // T_k = 2 u T_(k-1) - T_(k-2)
+    to_monomial(0, 0) = to_monomial(1, 1) = 1.0;
     for (int k = 2; k <= kDegree; ++k) {
-      monomials.col(k) = -monomials.col(k - 2);
-      for (int i = 1; i <= kDegree; ++i) monomials(i, k) += 2.0L * monomials(i - 1, k - 1);
+      to_monomial.col(k) = -to_monomial.col(k - 2);
+      for (int i = 1; i <= kDegree; ++i) to_monomial(i, k) += 2.0 * to_monomial(i - 1, k - 1);
     }
-    to_monomial = (monomials * transform).cast<double>();
+  }
+
+  /// Monomial coefficients of the interpolant. Trailing Chebyshev coefficients that are rounding of the
+  /// values are dropped: they would only be amplified in the rates.
+  Columns monomials(const Columns& values) const {
+    Columns chebyshev = to_chebyshev * values;
+    for (int i = 0; i < 3; ++i) {
+      const double rounding =
+          2.0 * std::numeric_limits<double>::epsilon() * values.col(i).cwiseAbs().maxCoeff();
+      for (int k = kDegree; k > 0 && std::abs(chebyshev(k, i)) <= rounding; --k) chebyshev(k, i) = 0.0;
+    }
+    return to_monomial * chebyshev;
   }
 };
 
@@ -67,6 +78,9 @@ struct PrescribedMotion::Fitted {
   Vector3d rate_begin = Vector3d::Zero(), rate_end = Vector3d::Zero();
   Vector3d tolerance = Vector3d::Zero();  ///< of the fit
   Vector3d scale = Vector3d::Zero();      ///< largest value
+  bool fits = true;                       ///< within the tolerance at every checking point
+  double misfit = 0.0;                    ///< the worst that is beyond it, in units of the base scale
+  double worst = 0.0;                     ///< the worst, in units of the pose
 
   double width() const { return piece.end - piece.begin; }
   /// What the end rates may be off by: n^2 times the fit over the half width (Markov's inequality).
@@ -83,7 +97,7 @@ Extent PrescribedMotion::extend(double t) {
   check_finite_time(t);
   const auto end = [this] { return track_->pieces.empty() ? 0.0 : track_->end(); };
   while ((track_->pieces.empty() || end() < t) && failure_.empty()) {
-    const bool fitted = fit(next_cell_, kCellWidth, 0);
+    const bool fitted = fit(next_cell_, kCellWidth, 0, nullptr);
     next_cell_ += kCellWidth;
     if (!fitted && last_) {
       close(*last_, last_->rate_end);
@@ -94,19 +108,20 @@ Extent PrescribedMotion::extend(double t) {
   return {Extent::Status::reached, end(), {}};
 }
 
-/// Interpolates the function on the cell; *error is the worst misfit as a multiple of the tolerance. False
-/// where a value is not finite (why is then in failure_ if the cell cannot be halved).
-bool PrescribedMotion::sample(double begin, double width, Fitted& cell, double* error) {
+/// Interpolates the function on the cell, and measures the misfit at the checking points. False where a value
+/// is not finite.
+bool PrescribedMotion::sample(double begin, double width, const Vector3d* base_scale, Fitted& cell) {
   const Nodes& n = nodes();
   const double middle = begin + 0.5 * width, half = 0.5 * width;
-  Eigen::Matrix<double, kDegree + 1, 3> at;
+  Columns at;
   for (int j = 0; j <= kDegree; ++j) at.row(j) = pose_(middle + half * n.at[j]).transpose();
   if (!at.allFinite()) return false;
-  const Eigen::Matrix<double, kDegree + 1, 3> monomials = n.to_monomial * at;
+  const Columns monomials = n.monomials(at);
   cell.piece.begin = begin;
   cell.piece.end = begin + width;
   cell.piece.origin = middle;
   cell.piece.degree = kDegree;
+  while (cell.piece.degree > 1 && monomials.row(cell.piece.degree).isZero(0.0)) --cell.piece.degree;
   double power = 1.0;
   for (int k = 0; k <= kDegree; ++k, power /= half) cell.piece.c[k] = power * monomials.row(k).transpose();
   cell.value_begin = at.row(0).transpose();
@@ -118,43 +133,54 @@ bool PrescribedMotion::sample(double begin, double width, Fitted& cell, double* 
   const Vector3d slope = 3.0 / width * (at.colwise().maxCoeff() - at.colwise().minCoeff()).transpose();
   const double time_rounding = 4.0 * std::numeric_limits<double>::epsilon() * (begin + width);
   cell.tolerance = kFitTolerance * cell.scale + time_rounding * slope;
-  *error = 0.0;
+  const Vector3d scale =
+      cell.scale.cwiseMax(base_scale ? *base_scale : Vector3d(cell.scale)).cwiseMax(1e-300);
+  double& worst = cell.worst;
   for (double u : n.check) {
     const Vector3d value = pose_(middle + half * u);
     if (!value.allFinite()) return false;
     const Vector3d misfit = (value - values(cell.piece.state(middle + half * u).pose)).cwiseAbs();
-    for (int i = 0; i < 3; ++i)
-      if (misfit[i] > 0.0) *error = std::max(*error, misfit[i] / std::max(cell.tolerance[i], 1e-300));
+    for (int i = 0; i < 3; ++i) {
+      if (!(misfit[i] > cell.tolerance[i])) continue;
+      cell.fits = false;
+      cell.misfit = std::max(cell.misfit, misfit[i] / scale[i]);
+    }
+    worst = std::max(worst, misfit.maxCoeff());
   }
   return true;
 }
 
 /// True if the fit is good, or as good as the function's own noise lets it be.
-bool PrescribedMotion::settled(const Fitted&, int depth, double error) {
-  if (error <= 1.0) return true;
-  const bool halving_helps = depth < 3 || error < 0.5 * errors_[depth - 3];
-  return !halving_helps && error * kFitTolerance <= kNoiseTolerance;
+bool PrescribedMotion::settled(const Fitted& cell, int depth) const {
+  if (cell.fits) return true;
+  const bool halving_helps = depth < 3 || cell.misfit < 0.5 * misfits_[depth - 3];
+  return !halving_helps && cell.misfit <= kNoiseTolerance;
 }
 
-bool PrescribedMotion::fit(double begin, double width, int depth) {
+/// `base_scale`: of the largest cell around this one that is finite throughout; null: none yet.
+bool PrescribedMotion::fit(double begin, double width, int depth, const Vector3d* base_scale) {
   Fitted cell;
-  double error = 0.0;
-  const bool finite = sample(begin, width, cell, &error);
-  errors_[depth] = finite ? error : std::numeric_limits<double>::infinity();
-  if (finite && settled(cell, depth, error)) {
-    worst_fit_ = std::max(worst_fit_, error * cell.tolerance.maxCoeff());
+  const bool finite = sample(begin, width, base_scale, cell);
+  misfits_[depth] = finite ? cell.misfit : std::numeric_limits<double>::infinity();
+  if (finite && settled(cell, depth)) {
+    worst_fit_ = std::max(worst_fit_, cell.worst);
     join_next(cell);
     return true;
   }
+  const double half = 0.5 * width;
+  const Vector3d* scale = base_scale || !finite ? base_scale : &cell.scale;
   if (depth + 1 < kDepths)
-    return fit(begin, 0.5 * width, depth + 1) && fit(begin + 0.5 * width, 0.5 * width, depth + 1);
+    return fit(begin, half, depth + 1, scale) && fit(begin + half, half, depth + 1, scale);
   if (!finite) return fail(begin, "is not finite");
-  return take_corner(std::move(cell), depth, error);
+  return take_corner(std::move(cell), depth);
 }
 
-/// A cell too small to halve. The misfit of a corner halves with the cell; that of a jump stays.
-bool PrescribedMotion::take_corner(Fitted cell, int depth, double error) {
-  if (!(error < 0.25 * errors_[depth - 8])) return fail(cell.piece.begin, "jumps, or is infinitely fast,");
+/// A cell too small to halve. The misfit of a corner halves with the cell, a square root's falls by sqrt(2),
+/// a jump's stays. (Next to the cell's edge a corner's may stay too, but is then far below the noise.)
+bool PrescribedMotion::take_corner(Fitted cell, int depth) {
+  const bool shrinks = cell.misfit < 0.03 * misfits_[depth - 8];
+  if (!shrinks && cell.misfit > kNoiseTolerance)
+    return fail(cell.piece.begin, "jumps, or is infinitely fast,");
   cell.corner = true;
   cell.rate_begin = cell.rate_end = (cell.value_end - cell.value_begin) / cell.width();
   join_next(cell);

@@ -45,10 +45,10 @@ class PrescribedMotion {
  private:
   struct Fitted;
 
-  bool fit(double begin, double width, int depth);
-  bool sample(double begin, double width, Fitted& cell, double* error);
-  bool settled(const Fitted& cell, int depth, double error);
-  bool take_corner(Fitted cell, int depth, double error);
+  bool fit(double begin, double width, int depth, const Eigen::Vector3d* base_scale);
+  bool sample(double begin, double width, const Eigen::Vector3d* base_scale, Fitted& cell);
+  bool settled(const Fitted& cell, int depth) const;
+  bool take_corner(Fitted cell, int depth);
   void join_next(const Fitted& next);
   void close(const Fitted& piece, const Eigen::Vector3d& rate_end);
   bool fail(double t, const std::string& what);
@@ -61,7 +61,7 @@ class PrescribedMotion {
   std::shared_ptr<Track> track_ = std::make_shared<Track>();
   std::unique_ptr<Fitted> last_;  ///< fitted, not yet joined to what follows
   Eigen::Vector3d rate_begin_;    ///< the twist at which last_ begins, once joined to what came before
-  double errors_[kDepths] = {};   ///< of the cells that hold the present one
+  double misfits_[kDepths] = {};  ///< of the cells that hold the present one
   double worst_fit_ = 0.0;
   std::string failure_;
 };

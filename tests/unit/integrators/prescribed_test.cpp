@@ -1,0 +1,200 @@
+/// Prescribed motion against the functions it stands for.
+#include "brink/integrators/prescribed.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "brink/core/base/error.h"
+#include "brink/core/base/random.h"
+
+namespace brink {
+namespace {
+
+using Eigen::Vector3d;
+
+struct Deviation {
+  double pose = 0.0, twist = 0.0;
+};
+/// Largest difference from x(t), vx(t) at random times in [from, to].
+template <class X, class V>
+Deviation deviation(const Motion& motion, double from, double to, X x, V v, std::uint64_t seed = 1) {
+  Random random(seed);
+  Deviation worst;
+  for (int i = 0; i < 20000; ++i) {
+    const double t = random.uniform(from, to);
+    worst.pose = std::max(worst.pose, std::abs(motion.pose(t).position.x() - x(t)));
+    worst.twist = std::max(worst.twist, std::abs(motion.twist(t).velocity.x() - v(t)));
+  }
+  return worst;
+}
+
+// 0.1 sin(6 t): its derivative is 0.6 cos(6 t). Rounding of values of 0.1 is 1.4e-17; 1e-14 leaves room for
+// the sums.
+TEST(Prescribed, SineIsFollowedToRounding) {
+  PrescribedMotion motion([](double t) { return Vector3d(0.1 * std::sin(6 * t), 0.0, std::cos(t)); }, "test");
+  ASSERT_EQ(motion.extend(50.0).status, Extent::Status::reached);
+  const Deviation d = deviation(
+      motion.motion(), 0.0, 50.0, [](double t) { return 0.1 * std::sin(6 * t); },
+      [](double t) { return 0.6 * std::cos(6 * t); });
+  std::printf("0.1 sin(6 t) over 50 s: pose %.2e m, twist %.2e m/s\n", d.pose, d.twist);
+  EXPECT_LT(d.pose, 1e-14);
+  EXPECT_LT(d.twist, 1e-11);
+}
+
+// A thousand times faster: cells are halved until they fit; the twist is of order 1000.
+TEST(Prescribed, FastSineIsFollowedByHalvingCells) {
+  PrescribedMotion motion([](double t) { return Vector3d(std::sin(1000 * t), 0.0, 0.0); }, "test");
+  ASSERT_EQ(motion.extend(2.0).status, Extent::Status::reached);
+  const Deviation d = deviation(
+      motion.motion(), 0.0, 2.0, [](double t) { return std::sin(1000 * t); },
+      [](double t) { return 1000 * std::cos(1000 * t); });
+  std::printf("sin(1000 t) over 2 s: pose %.2e m, twist %.2e m/s\n", d.pose, d.twist);
+  EXPECT_LT(d.pose, 2e-12);
+  EXPECT_LT(d.twist, 1e-6);
+}
+
+// At t near 10000 s a double holds the time to 1e-12 s, so the function itself is known to about 6e-13 only:
+// the fit must accept that noise and not halve for ever.
+TEST(Prescribed, NoiseOfLargeTimesIsAccepted) {
+  int calls = 0;
+  PrescribedMotion motion(
+      [&](double t) {
+        ++calls;
+        return Vector3d(std::sin(6 * t), 0.0, 0.0);
+      },
+      "test");
+  ASSERT_EQ(motion.extend(10000.0).status, Extent::Status::reached);
+  EXPECT_LT(calls, 30 * 16 * 10010) << "less than 30 calls a cell of 1/16 s: hardly any was halved";
+  const Deviation d = deviation(
+      motion.motion(), 9990.0, 10000.0, [](double t) { return std::sin(6 * t); },
+      [](double t) { return 6 * std::cos(6 * t); });
+  std::printf("sin(6 t) near 10000 s: pose %.2e m, twist %.2e m/s\n", d.pose, d.twist);
+  EXPECT_LT(d.pose, 5e-11);
+  EXPECT_LT(d.twist, 1e-7);
+}
+
+// Pose and twist may not jump between neighbouring doubles; joins are at dyadic times, so those are tried one
+// by one.
+TEST(Prescribed, MotionIsContinuouslyDifferentiable) {
+  PrescribedMotion motion([](double t) { return Vector3d(std::sin(6 * t), std::abs(t - 0.3), std::exp(-t)); },
+                          "test");
+  ASSERT_EQ(motion.extend(2.0).status, Extent::Status::reached);
+  const Motion m = motion.motion();
+  for (int i = 1; i < 2 * 4096; ++i) {
+    const double t = i / 4096.0, before = std::nextafter(t, 0.0);
+    const BodyState a = m.state(before), b = m.state(t);
+    ASSERT_LT((a.pose.position - b.pose.position).norm(), 1e-14) << t;
+    ASSERT_LT((a.twist.velocity - b.twist.velocity).norm(), 1e-11) << t;
+    ASSERT_LT(std::abs(a.twist.omega - b.twist.omega), 1e-11) << t;
+  }
+}
+
+// |t - 0.3| has its corner inside a cell, |t - 0.5| on the grid. Away from 2^-30 s around it the motion is
+// exact; inside it the twist goes from -1 to 1 and the pose stays within 2^-30.
+TEST(Prescribed, CornersAreRoundedOffWithinTheSmallestCell) {
+  for (double corner : {0.3, 0.5}) {
+    PrescribedMotion motion([=](double t) { return Vector3d(std::abs(t - corner), 0.0, 0.0); }, "test");
+    ASSERT_EQ(motion.extend(1.0).status, Extent::Status::reached);
+    const Motion m = motion.motion();
+    EXPECT_NEAR(m.twist(corner - 2e-9).velocity.x(), -1.0, 1e-6);
+    EXPECT_NEAR(m.twist(corner + 2e-9).velocity.x(), 1.0, 1e-6);
+    EXPECT_NEAR(m.pose(corner).position.x(), 0.0, 1e-9);
+    const Deviation d = deviation(
+        m, 0.0, corner - 1e-8, [=](double t) { return std::abs(t - corner); }, [](double) { return -1.0; });
+    EXPECT_LT(d.pose, 1e-14);
+    EXPECT_LT(d.twist, 1e-6);
+    const MotionBounds b = m.bounds(0.0, 1.0);
+    EXPECT_GT(b.acceleration_radius + b.acceleration.norm(), 1e8)
+        << "the enclosure must own up to the corner";
+  }
+}
+
+// Pieces may not depend on how far the motion was asked, not one bit.
+TEST(Prescribed, ManySmallAsksGiveTheBitsOfOneBigAsk) {
+  const auto function = [](double t) { return Vector3d(std::sin(7 * t), std::abs(std::sin(3 * t)), t * t); };
+  PrescribedMotion big(function, "test"), small(function, "test");
+  big.extend(5.0);
+  Random random(4);
+  for (double t = 0.0; t < 5.0; t += random.uniform(0.0, 0.03)) small.extend(t);
+  small.extend(5.0);
+  EXPECT_EQ(big.motion().end(), small.motion().end());
+  for (int i = 0; i < 5000; ++i) {
+    const double t = random.uniform(0.0, 5.0);
+    const BodyState a = big.motion().state(t), b = small.motion().state(t);
+    ASSERT_EQ(a.pose.position, b.pose.position);
+    ASSERT_EQ(a.twist.velocity, b.twist.velocity);
+    ASSERT_EQ(a.pose.angle, b.pose.angle);
+  }
+}
+
+TEST(Prescribed, ConstantAndPolynomialAreExactAndCheap) {
+  int calls = 0;
+  PrescribedMotion motion(
+      [&](double t) {
+        ++calls;
+        return Vector3d(1.5, 2.0 * t, t * t);
+      },
+      "test");
+  ASSERT_EQ(motion.extend(1.0).status, Extent::Status::reached);
+  EXPECT_LE(calls, 18 * 21);
+  const Motion m = motion.motion();
+  for (double t = 0.0; t < 1.0; t += 0.01) {
+    EXPECT_NEAR(m.pose(t).position.x(), 1.5, 1e-14);
+    EXPECT_NEAR(m.twist(t).velocity.x(), 0.0, 1e-11);
+    EXPECT_NEAR(m.twist(t).velocity.y(), 2.0, 1e-11);
+    EXPECT_NEAR(m.twist(t).omega, 2.0 * t, 1e-11);
+  }
+}
+
+// 1/1 before t = 0.7, 1/0 behind: the motion ends within the smallest cell of 2^-30 s before that, and says
+// so.
+TEST(Prescribed, ValueThatIsNotFiniteFailsAndIsLocated) {
+  PrescribedMotion motion([](double t) { return Vector3d(1.0 / (t < 0.7 ? 1.0 : 0.0), 0.0, 0.0); },
+                          "site \"piston\"");
+  Extent extent = motion.extend(0.5);
+  EXPECT_EQ(extent.status, Extent::Status::reached);
+  for (int i = 0; i < 2; ++i) {
+    extent = motion.extend(2.0);
+    EXPECT_EQ(extent.status, Extent::Status::failed);
+    EXPECT_NEAR(extent.end, 0.7, 1e-8);
+    EXPECT_THAT(extent.why, testing::HasSubstr("site \"piston\" is not finite near t = 0.69999"));
+  }
+  EXPECT_NEAR(motion.motion().pose(0.69).position.x(), 1.0, 1e-14);
+}
+
+TEST(Prescribed, JumpOfTheValueFailsAndIsLocated) {
+  for (double jump : {0.25, 0.7}) {  // on the grid and between
+    PrescribedMotion motion([=](double t) { return Vector3d(t < jump ? 0.0 : 1.0, 0.0, 0.0); },
+                            "site \"step\"");
+    const Extent extent = motion.extend(2.0);
+    EXPECT_EQ(extent.status, Extent::Status::failed);
+    EXPECT_NEAR(extent.end, jump, 1e-8);
+    EXPECT_THAT(extent.why, testing::HasSubstr("jumps"));
+  }
+}
+
+// sqrt|t - 0.3| is infinitely fast at 0.3: no motion. |t - 0.3|^1.5 is not: its rate is 0 there.
+TEST(Prescribed, InfiniteSpeedFailsAndSteepCurvatureDoesNot) {
+  PrescribedMotion steep([](double t) { return Vector3d(std::sqrt(std::abs(t - 0.3)), 0.0, 0.0); }, "steep");
+  EXPECT_EQ(steep.extend(1.0).status, Extent::Status::failed);
+  PrescribedMotion curved([](double t) { return Vector3d(std::pow(std::abs(t - 0.3), 1.5), 0.0, 0.0); },
+                          "curved");
+  const Extent extent = curved.extend(1.0);
+  EXPECT_EQ(extent.status, Extent::Status::reached) << extent.why;
+  const Deviation d = deviation(
+      curved.motion(), 0.0, 1.0, [](double t) { return std::pow(std::abs(t - 0.3), 1.5); },
+      [](double t) { return std::copysign(1.5 * std::sqrt(std::abs(t - 0.3)), t - 0.3); });
+  std::printf("|t - 0.3|^1.5 over 1 s: pose %.2e m, twist %.2e m/s\n", d.pose, d.twist);
+  EXPECT_LT(d.pose, 1e-12);
+  EXPECT_LT(d.twist, 1e-5);
+}
+
+TEST(Prescribed, AskThatIsNotANumberIsRefused) {
+  PrescribedMotion motion([](double) { return Vector3d(0.0, 0.0, 0.0); }, "test");
+  EXPECT_THROW(motion.extend(std::nan("")), BadInput);
+}
+
+}  // namespace
+}  // namespace brink
