@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <numbers>
 
+#include "brink/core/base/error.h"
 #include "brink/core/shapes/curve_site.h"
 #include "brink/core/shapes/distance.h"
+#include "brink/core/shapes/text.h"
 
 namespace brink {
 
@@ -139,6 +141,10 @@ void Fitter::fit(const Piece& piece) {
 
 double fit_arcs(const SmoothCurve& curve, const Vec2& start, const Vec2& end, double tolerance, double radius,
                 std::vector<Site>& sites) {
+  const double size = curve.speed_bound() + start.cwiseAbs().maxCoeff();
+  if (!(tolerance >= 1e-10 * size))
+    throw BadInput("curve_tolerance is " + text(tolerance) +
+                   " m; for a curve of this size it must be at least " + text(1e-10 * size) + " m");
   Fitter fitter(curve, tolerance, radius, sites);
   const std::vector<double> ts = curve.breaks();
   Vec2 p = start;

@@ -19,6 +19,7 @@ namespace brink {
 /// the largest
 ///   distance at dense parameters plus the most it can grow between two of them (second derivatives are
 ///   bounded).
+/// @throws BadInput if the tolerance is below 1e-10 of the curve's coordinates: rounding would drown it.
 /// @pre tolerance > 0, start and end are the curve's ends up to rounding.
 double fit_arcs(const SmoothCurve& curve, const Vec2& start, const Vec2& end, double tolerance, double radius,
                 std::vector<Site>& sites);

@@ -60,12 +60,16 @@ std::vector<BoxedSite> by_left_edge(const std::vector<Site>& sites, double margi
   return boxed;
 }
 
-/// Meeting points near a vertex that the two sites share are the hand-over itself: two arcs that join
-/// smoothly stay within any tolerance of each other for a while.
+/// Whether p, on both sites, is where `in` hands over to `out`. Arcs that join smoothly stay within any
+/// tolerance of each other for a while, and cannot meet again as each turns by at most a quarter.
+bool is_hand_over_of(const Site& in, const Site& out, const Vec2& p) {
+  if (in.b != out.a) return false;
+  if (direction_at_end(in).dot(direction_at_start(out)) > 1 - 1e-6 && out.b != in.a) return true;
+  return (p - in.b).norm() <= 1e-3 * std::min(length(in), length(out));
+}
+
 bool is_hand_over(const Site& s, const Site& t, const Vec2& p) {
-  const double near = 1e-3 * std::min(length(s), length(t));
-  if (s.b == t.a && (p - s.b).norm() <= near) return true;
-  return t.b == s.a && (p - s.a).norm() <= near;
+  return is_hand_over_of(s, t, p) || is_hand_over_of(t, s, p);
 }
 
 [[noreturn]] void report(const std::string& what, int i, int j, const Vec2& p) {

@@ -16,6 +16,16 @@ struct Nearest {
   Vec2 point = Vec2::Zero();
 };
 
+/// |q - centre| - arc_radius for w = q - centre, signed: > 0 outside the circle.
+///
+/// Written as (|q - c|^2 - |e - c|^2) / (|q - c| + R) for the end e that is nearer, it rounds relative to the
+/// distance from that end, not to the radius: flat arcs keep their digits, and tangent arcs are told apart
+/// close to where they join.
+inline double beyond_circle(const Site& arc, const Vec2& q, const Vec2& w) {
+  const Vec2& end = w.dot(arc.a - arc.b) > 0.0 ? arc.a : arc.b;
+  return (q - end).dot(w + (end - arc.center)) / (w.norm() + arc.arc_radius);
+}
+
 /// Nearest point of the core of `site` to `q`; ~10 flops and a square root. A point on an arc's centre is
 /// answered with the arc's start (every point of the arc is equally near).
 inline Nearest nearest_on(const Site& site, const Vec2& q) {
@@ -36,7 +46,8 @@ inline Nearest nearest_on(const Site& site, const Vec2& q) {
       const double turn = site.sweep > 0 ? 1.0 : -1.0;
       if (turn * cross(from, w) > 0.0 && turn * cross(w, to) > 0.0) {
         const double rho = w.norm();
-        return {std::abs(rho - site.arc_radius), Foot::interior, site.center + w * (site.arc_radius / rho)};
+        return {std::abs(beyond_circle(site, q, w)), Foot::interior,
+                site.center + w * (site.arc_radius / rho)};
       }
       const double da = (q - site.a).squaredNorm(), db = (q - site.b).squaredNorm();
       return da <= db ? Nearest{std::sqrt(da), Foot::start, site.a}
@@ -60,7 +71,7 @@ inline double side_of(const Site& site, const Nearest& nearest, const Vec2& q) {
     return (q - nearest.point).dot(pseudo) < 0.0 ? -1.0 : 1.0;
   }
   if (site.kind == SiteKind::segment) return cross(site.b - site.a, q - site.a) > 0.0 ? -1.0 : 1.0;
-  const bool within = (q - site.center).squaredNorm() < site.arc_radius * site.arc_radius;
+  const bool within = beyond_circle(site, q, q - site.center) < 0.0;
   return within == (site.sweep > 0) ? -1.0 : 1.0;
 }
 

@@ -42,9 +42,25 @@ std::vector<Site> reversed(const std::vector<Site>& sites) {
   return back;
 }
 
+namespace {
+
+/// Mass and inertia are to come from the measure: they must be numbers > 0.
+void require_usable(const Outline& outline, const Measure& m) {
+  if (!std::isfinite(m.size) || !m.centroid.allFinite() || !std::isfinite(m.second_moment))
+    throw BadInput("shape: reaches to " + text(outline.bounding_radius) +
+                   " m, too far for its second moment to be a number; use smaller coordinates");
+  const bool bare_point = outline.is_point() && outline.sites[0].radius == 0.0;
+  if (!bare_point && !(m.size > 0.0 && m.second_moment > 0.0))
+    throw BadInput("shape: has size " + text(m.size) + " and second moment " + text(m.second_moment) +
+                   "; both must be > 0 (is it very small, or in another unit?)");
+}
+
+}  // namespace
+
 Shape finish_shape(Outline outline) {
   finish_outline(outline);
   const Measure measure = measure_of(outline);
+  require_usable(outline, measure);
   return {std::move(outline), measure};
 }
 

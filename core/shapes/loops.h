@@ -25,6 +25,8 @@ double enclosed_area(const std::vector<Site>& sites);
 std::vector<Site> reversed(const std::vector<Site>& sites);
 
 /// Finishes an outline that was put together and measures it.
+/// @throws BadInput if it is so large or small that its measure is not a number > 0 (a bare point may have
+/// 0).
 Shape finish_shape(Outline outline);
 
 /// Checks that say what is wrong, what was given and what is allowed.

@@ -1,6 +1,7 @@
 #include "brink/core/shapes/outline.h"
 
 #include <algorithm>
+#include <map>
 #include <numbers>
 
 #include "brink/core/base/error.h"
@@ -93,24 +94,24 @@ void set_pseudo_normals(Outline& outline) {
     }
 }
 
-void add_vertex(std::vector<Sample>& samples, std::size_t loop_start, const Vec2& p, double radius) {
-  for (std::size_t k = loop_start; k < samples.size(); ++k)
-    if (samples[k].arc_site < 0 && samples[k].p == p) {
-      samples[k].radius = std::max(samples[k].radius, radius);
-      return;
-    }
-  samples.push_back({p, radius, -1});
+/// One sample a vertex, however often the loop (a wire, or a union) comes back to it, in order of first
+/// meeting.
+void add_vertex_samples(Outline& outline, const Loop& loop) {
+  std::map<std::pair<double, double>, std::size_t> known;
+  const auto add = [&](const Vec2& p, double radius) {
+    const auto [place, is_new] = known.try_emplace({p.x(), p.y()}, outline.samples.size());
+    if (is_new)
+      outline.samples.push_back({p, radius, -1});
+    else
+      outline.samples[place->second].radius = std::max(outline.samples[place->second].radius, radius);
+  };
+  for (int k = loop.first; k < loop.first + loop.count; ++k) {
+    add(outline.sites[k].a, outline.sites[k].radius);
+    if (!loop.closed) add(outline.sites[k].b, outline.sites[k].radius);
+  }
 }
 
-/// A closed loop that joins up bit for bit meets most vertices once; the search over the loop so far is for
-/// wires and unions that come back to a vertex.
-void add_loop_samples(Outline& outline, const Loop& loop) {
-  const std::size_t start = outline.samples.size();
-  for (int k = loop.first; k < loop.first + loop.count; ++k) {
-    const Site& s = outline.sites[k];
-    add_vertex(outline.samples, start, s.a, s.radius);
-    if (!loop.closed) add_vertex(outline.samples, start, s.b, s.radius);
-  }
+void add_arc_samples(Outline& outline, const Loop& loop) {
   for (int k = loop.first; k < loop.first + loop.count; ++k) {
     const Site& s = outline.sites[k];
     const bool convex_side_is_free = !s.solid || s.sweep > 0.0;
@@ -138,7 +139,10 @@ void finish_outline(Outline& outline) {
     outline.bounding_radius = std::max(outline.bounding_radius, farthest_from_origin(s) + s.radius);
   }
   if (outline.solid) set_pseudo_normals(outline);
-  for (const Loop& loop : outline.loops) add_loop_samples(outline, loop);
+  for (const Loop& loop : outline.loops) {
+    add_vertex_samples(outline, loop);
+    add_arc_samples(outline, loop);
+  }
 }
 
 double gap_by_brute_force(const Outline& outline, const Vec2& q, int* site) {

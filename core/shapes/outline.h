@@ -18,8 +18,14 @@ struct Loop {
 
 /// A sample of the exact two-sided set: a vertex, or an arc as (centre, radius, sector).
 ///
-/// The distance between two outlines is reached at a vertex of one of them, or at an arc, in the direction
-/// from the arc's centre (design: shapes, sites, samples). `id` is the sample's place in Outline::samples.
+/// The distance between two outlines that are apart is reached at a vertex of one of them, or at an arc, in
+/// the direction from the arc's centre (design: shapes, sites, samples). A sample's id is its place in
+/// Outline::samples.
+///
+/// An arc sample speaks for the arc's convex side only: it counts for a nearest point of the other outline
+/// that is in the sector *and* at least arc_radius from the centre. On the concave side it is the other's
+/// vertices and arcs that come nearest. So a solid's arcs that are concave toward the free side (holes,
+/// containers) have no sample; a wire's arcs have one, as they are felt from both sides.
 struct Sample {
   Vec2 p = Vec2::Zero();  ///< vertex, or the arc's centre, in the outline's frame [m]
   double radius = 0.0;    ///< thickness; for an arc: thickness + circle radius (convex side) [m]
@@ -43,14 +49,17 @@ struct Outline {
   bool is_point() const { return sites.size() == 1 && sites[0].kind == SiteKind::point; }
 };
 
-/// Fills pseudo-normals, samples, bounds and bounding radius from sites and loops. Call once after
-/// assembling.
-/// @throws BadInput on a site of zero length, an arc over a quarter turn, a loop that does not join up, or
-/// NaN.
+/// Fills Site::solid, pseudo-normals, samples, bounds and bounding radius from sites and loops. Call once
+/// after assembling; loops must cover all sites in order and join up bit for bit. Samples: each loop's
+/// distinct vertices, then its arcs.
+/// @throws BadInput on a site of zero length, an arc over a quarter turn or off its circle, a loop that does
+/// not
+///   join up, a solid with an open chain, a point, or sites of different radii, or NaN.
 void finish_outline(Outline& outline);
 
 /// Signed gap [m] from q to the whole outline by brute force over its sites (the reference the fields are
-/// tested against), with the nearest site in `*site` if given. Cost: all sites.
+/// tested against), with the nearest site in `*site` if given. The sign is the nearest site's side; of sites
+/// equally near, as at a vertex, the first is taken (pseudo-normals make them agree). Cost: all sites.
 double gap_by_brute_force(const Outline& outline, const Vec2& q, int* site = nullptr);
 
 /// Reverses every loop and marks the outline as a container: what was inside is now free, all else solid.

@@ -63,9 +63,11 @@ Site part_of(const Site& piece, double from, double to) {
 
 /// True if an earlier piece runs along the same way at the middle of this one: the boundary is to be counted
 /// once.
-bool is_repeat(const std::vector<Site>& pieces, std::size_t k, const Site& part, double tolerance) {
+bool is_repeat(const std::vector<Site>& pieces, const std::vector<Box>& boxes, std::size_t k,
+               const Site& part, double tolerance) {
   const Vec2 middle = point_along(part, 0.5);
   for (std::size_t j = 0; j < k; ++j) {
+    if (!boxes[j].contains(middle)) continue;
     const Nearest n = nearest_on(pieces[j], middle);
     if (n.distance > tolerance || n.foot != Foot::interior) continue;
     const Site rest = part_of(pieces[j], fraction_of(pieces[j], middle), 1.0);
@@ -86,10 +88,32 @@ std::vector<double> cuts_of(const std::vector<Site>& pieces, const std::vector<B
   return cuts;
 }
 
+/// Tells covered points of candidate pieces from exposed ones.
+class Cover {
+ public:
+  Cover(const Outline& outline, double tolerance) : outline_(outline), tolerance_(tolerance) {
+    for (const Site& s : outline.sites) boxes_.push_back(core_bounds(s).grown(s.radius));
+  }
+
+  bool exposed(const Vec2& p) const {
+    for (std::size_t k = 0; k < boxes_.size(); ++k) {
+      const Site& s = outline_.sites[k];
+      if (boxes_[k].contains(p) && nearest_on(s, p).distance < s.radius - tolerance_) return false;
+    }
+    return !outline_.solid || gap_by_brute_force(outline_, p) >= -tolerance_;
+  }
+
+ private:
+  const Outline& outline_;
+  double tolerance_;
+  std::vector<Box> boxes_;
+};
+
 }  // namespace
 
 std::vector<Site> thick_boundary(const Outline& outline) {
   const double tolerance = 1e-11 * outline.bounds.extent().norm();
+  const Cover cover(outline, tolerance);
   const std::vector<Site> pieces = candidates(outline);
   std::vector<Box> boxes;
   for (const Site& piece : pieces) boxes.push_back(core_bounds(piece).grown(tolerance));
@@ -99,8 +123,8 @@ std::vector<Site> thick_boundary(const Outline& outline) {
     for (std::size_t c = 0; c + 1 < cuts.size(); ++c) {
       const Site part = part_of(pieces[k], cuts[c], cuts[c + 1]);
       if ((cuts[c + 1] - cuts[c]) * length(pieces[k]) <= tolerance) continue;
-      const bool exposed = gap_by_brute_force(outline, point_along(part, 0.5)) >= -tolerance;
-      if (exposed && !is_repeat(pieces, k, part, tolerance)) boundary.push_back(part);
+      if (cover.exposed(point_along(part, 0.5)) && !is_repeat(pieces, boxes, k, part, tolerance))
+        boundary.push_back(part);
     }
   }
   return boundary;

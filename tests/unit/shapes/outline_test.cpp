@@ -178,6 +178,13 @@ TEST(Shapes, BadPolygonsAreNamed) {
               HasSubstr("polygons[1]"));
 }
 
+TEST(Shapes, SizesWithoutAMeasureAreRefused) {
+  // r^4 overflows or underflows: there is no inertia to compute with
+  EXPECT_THAT(fault([] { make_disc(1e100); }), HasSubstr("too far"));
+  EXPECT_THAT(fault([] { make_disc(1e-100); }), HasSubstr("both must be > 0"));
+  EXPECT_EQ(fault([] { make_point({1, 2}); }), "no fault");
+}
+
 TEST(Shapes, RepeatedVerticesMerge) {
   EXPECT_EQ(make_polygon({{0, 0}, {0, 0}, {1, 0}, {1, 1}, {1, 1}, {0, 0}}).outline.sites.size(), 3u);
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <string>
 
 #include "brink/core/base/error.h"
 #include "brink/core/base/random.h"
@@ -161,6 +162,20 @@ TEST(PathShape, EllipseHasPiAB) {
   const Shape ellipse = make_path("M-3 0A3 1 0 0 1 3 0A3 1 0 0 1-3 0Z", 1, 1e-7);
   EXPECT_LE(ellipse.outline.curve_deviation, 1e-7);
   EXPECT_NEAR(ellipse.measure.size, 3 * pi, 14 * 1e-7) << "perimeter 13.4 times the deviation";
+}
+
+TEST(PathShape, NearlyRoundEllipsesAreNotTakenForCrossing) {
+  // their arcs join with almost the same radius, the hardest case for the check that sides do not meet
+  for (const char* ry : {".9", ".999", ".99999", ".9999999"}) {
+    const std::string r = std::string("A1 ") + ry + " 0 0 1 ";
+    const Shape e = make_path("M-1 0" + r + "1 0" + r + "-1 0Z", 1, 1e-9);
+    EXPECT_NEAR(e.measure.size, pi * std::stod(ry), 7e-9) << ry;
+  }
+}
+
+TEST(PathShape, TooFineAToleranceIsRefused) {
+  EXPECT_THROW(make_path("M0 0Q1 1 2 0", 1, 1e-14), BadInput);
+  EXPECT_THROW(make_path("M0 0Q1 1 2 0", 1, 1e-300), BadInput);
 }
 
 TEST(PathShape, RotatedEllipseHasTheSameArea) {
