@@ -1,0 +1,25 @@
+// An installed Brink, used by a project of its own that knows nothing but find_package(brink).
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace {
+
+// The script installs this build, builds tests/consumer against it and runs that: a ball meets the floor when
+// it should.
+TEST(Consumer, InstalledPackageBuildsAndRunsAProject) {
+  const std::filesystem::path log = std::filesystem::path(BRINK_BINARY_DIR) / "consumer.log";
+  const std::string command =
+      "'" BRINK_SOURCE_DIR "/tests/consumer/run.sh' '" BRINK_BINARY_DIR "' >'" + log.string() + "' 2>&1";
+  const int status = std::system(command.c_str());
+  std::ostringstream text;
+  text << std::ifstream(log).rdbuf();
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << text.str();
+}
+
+}  // namespace

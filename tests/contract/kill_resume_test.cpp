@@ -1,0 +1,188 @@
+// A run of the real program, killed with signal 9 at random moments and gone on with each time, must end as a
+// run that was never disturbed: same state hash, same events, same frames.
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "brink/core/base/random.h"
+#include "brink/scenes/run_file.h"
+
+namespace brink {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kKills = 20;
+
+const char* const kProgram = BRINK_BINARY_DIR "/bin/brink";
+
+// Discs and boxes in a closed box under gravity: collisions all the time, of both kinds. How long it lasts is
+// set below.
+const char* const kScene = R"(
+title = "to be killed"
+[world]
+duration = 1.0
+gravity = [0.0, -1.0]
+seed = 3
+[output]
+frame_interval = 0.05
+[[sites]]
+name = "walls"
+polygon = { vertices = [[0, 0], [4, 0], [4, 4], [0, 4]] }
+inside_of = true
+[[bodies]]
+name = "disc"
+disc = { radius = 0.15 }
+scatter = { count = 12, region = [[0.3, 0.3], [3.7, 3.7]], speed = 2.0 }
+[[bodies]]
+name = "box"
+box = { width = 0.3, height = 0.2 }
+scatter = { count = 6, region = [[0.3, 0.3], [3.7, 3.7]], speed = 2.0, random_angle = true }
+)";
+
+/// Starts the program on `scene` with its output thrown away.
+pid_t start(const fs::path& scene, const fs::path& out, double until, bool resume) {
+  const std::string time = std::to_string(until);
+  std::vector<const char*> arguments = {kProgram,    "run",     scene.c_str(), "--out",
+                                        out.c_str(), "--until", time.c_str(),  "--quiet"};
+  if (resume) arguments.push_back("--resume");
+  arguments.push_back(nullptr);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const int nowhere = ::open("/dev/null", O_WRONLY);
+    ::dup2(nowhere, STDOUT_FILENO);
+    ::execv(kProgram, const_cast<char* const*>(arguments.data()));
+    ::_exit(127);
+  }
+  return child;
+}
+
+/// Waits for the end and returns the exit status, or -signal.
+int ending(pid_t child) {
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+double run_for_seconds(const fs::path& scene, const fs::path& out, double until) {
+  const auto begin = Clock::now();
+  EXPECT_EQ(ending(start(scene, out, until, false)), 0);
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// All rows of a query, each value as its exact bits would print (SQLite's %!.17g for reals).
+std::vector<std::string> rows(const fs::path& file, const std::string& query) {
+  SQLite::Database db(file.string(), SQLite::OPEN_READONLY, 10'000);
+  SQLite::Statement get(db, query);
+  std::vector<std::string> all;
+  while (get.executeStep()) all.push_back(get.getColumn(0).getString());
+  return all;
+}
+
+std::string exact(std::initializer_list<const char*> columns) {
+  std::string format, values;
+  for (const char* c : columns) {
+    format += "%!.17g ";
+    values += std::string(", ifnull(") + c + ", -1)";
+  }
+  return "printf('" + format + "'" + values + ")";
+}
+
+std::vector<std::string> events(const fs::path& file) {
+  return rows(file, "SELECT kind || ' ' || " +
+                        exact({"seq", "t", "body", "other", "site", "px", "py", "nx", "ny", "closing_speed",
+                               "impulse_n", "impulse_t", "gap", "outline_site", "sample", "sample_on_body"}) +
+                        " FROM event ORDER BY seq");
+}
+std::vector<std::string> frames(const fs::path& file) {
+  return rows(file, "SELECT " + exact({"t", "body", "x", "y", "angle", "vx", "vy", "omega"}) +
+                        " FROM frame ORDER BY rowid");
+}
+
+class KillResume : public testing::Test {
+ protected:
+  KillResume() {
+    std::string name = (fs::temp_directory_path() / "brink-kill-XXXXXX").string();
+    dir_ = ::mkdtemp(name.data());
+    std::ofstream(scene()) << kScene;
+  }
+  ~KillResume() override { fs::remove_all(dir_); }
+  fs::path scene() const { return dir_ / "scene.toml"; }
+  fs::path out(const char* name) const { return dir_ / name; }
+
+  /// How far the scene must run to take some seconds on this machine: long enough that checkpoints, one a
+  /// second, fall between the kills.
+  double time_for(double seconds) {
+    for (double until = 5.0;; until *= 4) {
+      const double took = run_for_seconds(scene(), out("probe"), until);
+      if (took > 0.5 || until > 1e5) return until * seconds / took;
+    }
+  }
+
+  fs::path dir_;
+};
+
+TEST_F(KillResume, TwentyKillsAndOneEndGiveTheUndisturbedRun) {
+  const std::uint64_t seed = std::random_device{}();
+  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
+  Random random(seed);
+  const double until = time_for(4.0);
+  const double whole = run_for_seconds(scene(), out("whole"), until);
+  int killed = 0, between = 0;
+  for (int k = 0; k < kKills; ++k) {
+    const pid_t child = start(scene(), out("killed"), until, k > 0);
+    // the first one late, after a checkpoint or two; the others anywhere, also while the file is being opened
+    const double wait = k == 0 ? random.uniform(0.4, 0.6) : random.uniform(0.0, 0.3);
+    ::usleep(static_cast<useconds_t>(1e6 * wait * whole));
+    ::kill(child, SIGKILL);
+    if (ending(child) == -SIGKILL) ++killed;
+    const fs::path file = out("killed") / "run.db";
+    if (!fs::exists(file)) continue;  // killed before it was made
+    SQLite::Database db(file.string(), SQLite::OPEN_READWRITE, 10'000);
+    ASSERT_EQ(db.execAndGet("PRAGMA integrity_check").getString(), "ok") << "after kill " << k;
+    if (db.tableExists("checkpoint") && db.execAndGet("SELECT count(*) FROM checkpoint").getInt() > 0)
+      ++between;
+  }
+  EXPECT_GT(killed, 0);
+  EXPECT_GT(between, 0) << "no kill came after a checkpoint: nothing was gone on with";
+  ASSERT_EQ(ending(start(scene(), out("killed"), until, true)), 0);
+  const fs::path a = out("whole") / "run.db", b = out("killed") / "run.db";
+  std::printf("%d of %d kills met a running program, %d after a checkpoint; %zu events in %.2f s\n", killed,
+              kKills, between, events(a).size(), whole);
+  EXPECT_EQ(RunFile(a).meta("state_hash"), RunFile(b).meta("state_hash"));
+  EXPECT_EQ(RunFile(b).meta("termination"), "reached_end");
+  EXPECT_GT(events(a).size(), 100u);
+  EXPECT_EQ(events(a), events(b));
+  EXPECT_EQ(frames(a), frames(b));
+}
+
+// Ctrl-C: exit status 1, termination "stopped", a whole file; gone on with, it is the undisturbed run, frames
+// and all.
+TEST_F(KillResume, InterruptedRunStopsInOrderAndGoesOn) {
+  const double until = time_for(3.0);
+  const double whole = run_for_seconds(scene(), out("whole"), until);
+  const pid_t child = start(scene(), out("stopped"), until, false);
+  ::usleep(static_cast<useconds_t>(1e6 * 0.4 * whole));
+  ::kill(child, SIGINT);
+  EXPECT_EQ(ending(child), 1);
+  const fs::path a = out("whole") / "run.db", b = out("stopped") / "run.db";
+  EXPECT_EQ(RunFile(b).meta("termination"), "stopped");
+  EXPECT_LT(std::stod(*RunFile(b).meta("end_time")), until);
+  EXPECT_FALSE(fs::exists(b.string() + "-wal"));
+  EXPECT_EQ(ending(start(scene(), out("stopped"), until, true)), 0);
+  EXPECT_EQ(RunFile(a).meta("state_hash"), RunFile(b).meta("state_hash"));
+  EXPECT_EQ(events(a), events(b));
+  EXPECT_EQ(frames(a), frames(b));
+}
+
+}  // namespace
+}  // namespace brink
