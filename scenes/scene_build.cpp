@@ -19,11 +19,17 @@ class SceneBuilder {
     settings();
     materials();
     std::vector<PlannedThing> sites = plan(file_.sites, false), bodies = plan(file_.bodies, true);
+    count(bodies);
     if (faults_.empty()) Placer(file_.world.seed, faults_).place(sites, bodies);
-    if (!faults_.empty()) return std::move(scene_);  // what follows refers to what is not there
-    add_sites(sites);
-    add_bodies(bodies);
-    build_forces(file_.forces, names_, origins_, scene_.world, faults_);
+    const bool placed = faults_.empty();
+    if (placed) {
+      add_sites(sites);
+      add_bodies(bodies);
+    } else {  // the names that forces use can be checked all the same
+      scene_.world.bodies.resize(static_cast<std::size_t>(names_.count()));
+      origins_.assign(scene_.world.bodies.size(), Vec2::Zero());
+    }
+    build_forces(file_.forces, names_, origins_, placed, scene_.world, faults_);
     for (std::string& note : shapes_.take_notes()) scene_.notes.push_back(std::move(note));
     if (faults_.empty()) last_check();
     return std::move(scene_);
@@ -110,7 +116,11 @@ class SceneBuilder {
         faults_.add(table.name.where, "name: is empty; given \"\", allowed: one character or more");
       thing.material = material(table.material);
       check_pairs(table);
-      if (auto shape = shapes_.build(table, thing.name, body)) thing.shape = *shape;
+      if (const auto shape = shapes_.build(table, thing.name, body)) {
+        thing.shape = *shape;
+        if (body) thing.body = body_of(thing);
+      }
+      if (!body) thing.motion = build_motion(table.motion, file_.world.duration, faults_);
       thing.pose = pose(table, thing.shape);
       out.push_back(std::move(thing));
     }
@@ -142,9 +152,25 @@ class SceneBuilder {
     return pose;
   }
 
+  static bool is_copied(const ThingTable& table) { return table.grid.given || table.scatter.given; }
+
+  // Gives every body its place among the names.
+  void count(const std::vector<PlannedThing>& things) {
+    std::int64_t total = 0;
+    for (const PlannedThing& thing : things) {
+      const ThingTable& table = *thing.table;
+      const std::int64_t copies =
+          table.scatter.given ? table.scatter.value.count : table.grid.value.columns * table.grid.value.rows;
+      if ((total += copies) > kMostCopies)
+        return faults_.add(table.scatter.given ? table.scatter.where : table.grid.where,
+                           "too many copies; given " + std::to_string(total) +
+                               " bodies so far, allowed: " + std::to_string(kMostCopies));
+      names_.add(thing.name, static_cast<int>(copies), is_copied(table));
+    }
+  }
+
   static std::string copy_name(const PlannedThing& thing, std::size_t k) {
-    const bool copied = thing.table->grid.given || thing.table->scatter.given;
-    return copied ? thing.name + '[' + std::to_string(k) + ']' : thing.name;
+    return is_copied(*thing.table) ? thing.name + '[' + std::to_string(k) + ']' : thing.name;
   }
 
   void add_sites(const std::vector<PlannedThing>& things) {
@@ -156,20 +182,15 @@ class SceneBuilder {
         site.outline = thing.shape.outline;
         site.pose = thing.copies[k].pose;
         site.material = thing.material;
-        const auto& motion = thing.table->motion;
-        if (motion.given) build_motion(motion.value, motion.where, scene_.duration, site, faults_);
+        site.motion = thing.motion;
         scene_.world.sites.push_back(std::move(site));
       }
   }
 
   void add_bodies(const std::vector<PlannedThing>& things) {
     for (const PlannedThing& thing : things) {
-      const Body first = body_of(thing);
-      names_.add(thing.name, static_cast<int>(scene_.world.bodies.size()),
-                 static_cast<int>(thing.copies.size()),
-                 thing.table->grid.given || thing.table->scatter.given);
       for (std::size_t k = 0; k < thing.copies.size(); ++k) {
-        Body body = first;
+        Body body = thing.body;
         body.name = copy_name(thing, k);
         body.initial = thing.copies[k];
         hold(body);

@@ -9,6 +9,9 @@
 
 namespace brink {
 
+/// Bodies and sites that one scene may have.
+inline constexpr int kMostCopies = 1'000'000;
+
 /// A built shape, shared by everything that asks for the same one.
 struct BuiltShape {
   std::shared_ptr<const Outline> outline;
@@ -38,12 +41,16 @@ class ShapeBuilder {
   std::vector<std::string> notes_;
 };
 
+using SiteMotion = decltype(FixedSite::motion);
+
 /// Everything of one file entry that is the same for its copies, and the copies' poses.
 struct PlannedThing {
   const ThingTable* table = nullptr;
   std::string name;
   BuiltShape shape;
   int material = 0;
+  Body body;                      ///< bodies: all but name and state
+  SiteMotion motion;              ///< sites
   Pose pose;                      ///< of the outline's frame, before copying
   std::vector<BodyState> copies;  ///< one, or one a copy; twists are zero for sites
   std::size_t ordinal = 0;        ///< place in the file, for its random stream
@@ -70,7 +77,9 @@ class Placer {
 /// Names of bodies as forces may use them.
 class BodyNames {
  public:
-  void add(const std::string& name, int first, int count, bool copied);
+  /// The next `count` bodies. `copied`: they are called NAME[k].
+  void add(const std::string& name, int count, bool copied);
+  int count() const { return count_; }
   /// Every body called `name`, or every copy of it; a fault and empty if there is none.
   std::vector<int> find(const std::string& name, const Where& where, FaultList& faults) const;
   /// Exactly one body; a fault and -1 otherwise.
@@ -83,16 +92,16 @@ class BodyNames {
   };
   std::map<std::string, Entry> entries_;
   std::vector<std::string> words_;
+  int count_ = 0;
 };
 
 /// Turns force tables into World::forces. `origins`: where the file's frame of each body lies in its
-/// outline's frame.
+/// outline's frame. `placed` false: bodies are not where they start, and what depends on that is not checked.
 void build_forces(const std::vector<ForceTable>& tables, const BodyNames& names,
-                  const std::vector<Vec2>& origins, World& world, FaultList& faults);
+                  const std::vector<Vec2>& origins, bool placed, World& world, FaultList& faults);
 
 /// The motion of a site.
-void build_motion(const MotionTable& table, const Where& where, double duration, FixedSite& site,
-                  FaultList& faults);
+SiteMotion build_motion(const Given<MotionTable>& table, double duration, FaultList& faults);
 
 /// The whole scene, or faults.
 Scene build_scene(const FileTable& file, FaultList& faults);

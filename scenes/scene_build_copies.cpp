@@ -8,8 +8,6 @@
 namespace brink {
 namespace {
 
-constexpr std::size_t kMostThings = 1'000'000;
-
 // One random stream for each entry of the file, so that one scatter does not disturb another.
 std::uint64_t stream(std::uint64_t seed, std::size_t ordinal, std::uint64_t purpose) {
   return Random(seed ^ (0x9e3779b97f4a7c15ULL * (2 * ordinal + purpose + 1))).next();
@@ -42,10 +40,10 @@ void Placer::stand(PlannedThing& thing) {
   const GridTable grid = thing.table->grid.value;
   const auto copies = static_cast<std::size_t>(grid.columns * grid.rows);
   total_ += copies;
-  if (total_ > kMostThings)
+  if (total_ > static_cast<std::size_t>(kMostCopies))
     return faults_.add(thing.table->grid.given ? thing.table->grid.where : thing.table->place,
                        "too many copies; given " + std::to_string(total_) +
-                           " so far, allowed: " + std::to_string(kMostThings));
+                           " so far, allowed: " + std::to_string(kMostCopies));
   for (std::int64_t row = 0; row < grid.rows; ++row)
     for (std::int64_t column = 0; column < grid.columns; ++column) {
       BodyState state = start_of(thing);
@@ -60,9 +58,9 @@ void Placer::scatter(PlannedThing& thing, const std::vector<PlannedThing>& sites
   const ScatterTable& asked = thing.table->scatter.value;
   const Where& where = thing.table->scatter.where;
   total_ += static_cast<std::size_t>(asked.count);
-  if (total_ > kMostThings)
+  if (total_ > static_cast<std::size_t>(kMostCopies))
     return faults_.add(where, "too many copies; given " + std::to_string(total_) +
-                                  " so far, allowed: " + std::to_string(kMostThings));
+                                  " so far, allowed: " + std::to_string(kMostCopies));
   std::vector<Obstacle> obstacles = obstacles_of(sites);
   for (const Obstacle& obstacle : obstacles_of(bodies)) obstacles.push_back(obstacle);
   ScatterAsk ask{thing.shape.outline.get(), {}, asked.count, thing.pose.angle, asked.random_angle};

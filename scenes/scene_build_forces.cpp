@@ -29,8 +29,9 @@ void must_be_finite(double value, const Formula& f, const Where& where, const st
 
 class ForceBuilder {
  public:
-  ForceBuilder(const BodyNames& names, const std::vector<Vec2>& origins, World& world, FaultList& faults)
-      : names_(names), origins_(origins), world_(world), faults_(faults) {}
+  ForceBuilder(const BodyNames& names, const std::vector<Vec2>& origins, bool placed, World& world,
+               FaultList& faults)
+      : names_(names), origins_(origins), placed_(placed), world_(world), faults_(faults) {}
 
   void build(const ForceTable& table) {
     if (table.kind == "spring")
@@ -128,7 +129,7 @@ class ForceBuilder {
     AttractForce force = table.attract;
     force.bodies = targets(table);
     for (const int k : force.bodies)
-      if (force.power < 0.0 &&
+      if (placed_ && force.power < 0.0 &&
           world_.bodies[static_cast<std::size_t>(k)].initial.pose.position == force.center)
         faults_.add(table.place, "attract: the pull is infinite at its centre; given the body " +
                                      in_quotes(world_.bodies[static_cast<std::size_t>(k)].name) +
@@ -164,7 +165,7 @@ class ForceBuilder {
   }
 
   void check_start(const FormulaForce& force, const std::optional<Formula>& f, const Where& where) {
-    if (!f) return;
+    if (!f || !placed_) return;
     for (const int k : force.bodies) {
       const Body& body = world_.bodies[static_cast<std::size_t>(k)];
       const BodyState& s = body.initial;
@@ -184,14 +185,16 @@ class ForceBuilder {
 
   const BodyNames& names_;
   const std::vector<Vec2>& origins_;
+  bool placed_;
   World& world_;
   FaultList& faults_;
 };
 
 }  // namespace
 
-void BodyNames::add(const std::string& name, int first, int count, bool copied) {
-  if (entries_.emplace(name, Entry{first, count, copied}).second) words_.push_back(name);
+void BodyNames::add(const std::string& name, int count, bool copied) {
+  if (entries_.emplace(name, Entry{count_, count, copied}).second) words_.push_back(name);
+  count_ += count;
 }
 
 std::vector<int> BodyNames::find(const std::string& name, const Where& where, FaultList& faults) const {
@@ -227,23 +230,23 @@ int BodyNames::find_one(const std::string& name, const Where& where, FaultList& 
 }
 
 void build_forces(const std::vector<ForceTable>& tables, const BodyNames& names,
-                  const std::vector<Vec2>& origins, World& world, FaultList& faults) {
-  ForceBuilder builder(names, origins, world, faults);
+                  const std::vector<Vec2>& origins, bool placed, World& world, FaultList& faults) {
+  ForceBuilder builder(names, origins, placed, world, faults);
   for (const ForceTable& table : tables) builder.build(table);
 }
 
-void build_motion(const MotionTable& table, const Where& where, double duration, FixedSite& site,
-                  FaultList& faults) {
+SiteMotion build_motion(const Given<MotionTable>& given_motion, double duration, FaultList& faults) {
+  if (!given_motion.given) return std::monostate{};
+  const MotionTable& table = given_motion.value;
   const bool constant = table.velocity.given || table.angular_velocity.given;
   const bool formulas = table.x.given || table.y.given || table.angle.given;
-  if (constant == formulas)
-    return faults.add(where, std::string("motion: is not clear; given ") +
-                                 (constant ? "both kinds" : "nothing") +
-                                 ", allowed: velocity and angular_velocity, or formulas x, y, angle");
-  if (constant) {
-    site.motion = ConstantMotion{{table.velocity.value, table.angular_velocity.value}};
-    return;
+  if (constant == formulas) {
+    faults.add(given_motion.where, std::string("motion: is not clear; given ") +
+                                       (constant ? "both kinds" : "nothing") +
+                                       ", allowed: velocity and angular_velocity, or formulas x, y, angle");
+    return std::monostate{};
   }
+  if (constant) return ConstantMotion{{table.velocity.value, table.angular_velocity.value}};
   FormulaMotion motion{formula(table.x, {"t"}, faults), formula(table.y, {"t"}, faults),
                        formula(table.angle, {"t"}, faults)};
   const auto check = [&](const std::optional<Formula>& f, const Where& at) {
@@ -253,7 +256,7 @@ void build_motion(const MotionTable& table, const Where& where, double duration,
   check(motion.x, table.x.where);
   check(motion.y, table.y.where);
   check(motion.angle, table.angle.where);
-  site.motion = std::move(motion);
+  return motion;
 }
 
 }  // namespace brink

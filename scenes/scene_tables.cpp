@@ -40,7 +40,8 @@ void read_materials(const toml::node& node, TomlDocument& doc, FileTable& out) {
     return doc.faults().add(doc.where(node), fault_text("materials", "wrong type", given(node),
                                                         "one table a material, [materials.NAME]"));
   for (const auto& [name, value] : *table) {
-    MaterialTable entry{{}, doc.where(name, value)};
+    MaterialTable entry;
+    entry.where = doc.where(name, value);
     if (!material_schema().read_node(value, doc, entry.material)) continue;
     entry.material.name = std::string(name.str());
     out.materials.push_back(std::move(entry));

@@ -16,6 +16,12 @@ struct Given {
   bool given = false;
 };
 
+/// JSON has no word for an infinite time.
+inline std::string default_text(const Json& json) {
+  const std::string text = json.dump();
+  return text == "null" ? "no end" : text;
+}
+
 template <class T>
 class Schema {
  public:
@@ -26,7 +32,7 @@ class Schema {
   /// A key with the default that its member has in T{}.
   template <class V>
   Schema& key(const std::string& name, V T::*member, Codec<V> codec, const std::string& meaning) {
-    return add({name, codec.type, codec.write(T{}.*member).dump(), meaning, false,
+    return add({name, codec.type, default_text(codec.write(T{}.*member)), meaning, false,
                 [=](const toml::node& node, TomlDocument& doc, T& out) {
                   V value = blank<V>();
                   if (codec.read(node, doc, name, value)) out.*member = std::move(value);
@@ -111,7 +117,9 @@ class Schema {
   Codec<T> codec() const {
     return {"{" + listed(key_names()) + "}",
             [*this](const toml::node& node, TomlDocument& doc, const std::string&, T& out) {
-              return read_node(node, doc, out);
+              const std::size_t before = doc.faults().size();
+              read_node(node, doc, out);
+              return doc.faults().size() == before;
             },
             [*this](const T& from) { return json(from); }};
   }
