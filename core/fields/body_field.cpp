@@ -2,12 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace brink::detail {
 
 namespace {
 
 constexpr int kLeastResolution = 16, kMostResolution = 1024;
+/// Lists near the outline are made no shorter than this on average: vertices always have two.
+constexpr double kMeanList = 2.2;
+/// Band of the trials that choose the resolution [pixel].
+constexpr double kTrialBand = 4.0;
 /// Fragments that both draws together may cost when the band is chosen by shape.
 constexpr double kFragments = 4e5;
 
@@ -29,6 +34,13 @@ double typical_length(const Outline& outline, double size) {
   return *middle;
 }
 
+/// Where the search for a resolution starts: two pixels a typical site, and a pixel a site.
+int first_resolution(const Outline& outline, double size) {
+  const double pixels =
+      std::max(2.0 * 1.3 * size / typical_length(outline, size), static_cast<double>(outline.sites.size()));
+  return static_cast<int>(std::clamp(pixels, static_cast<double>(kLeastResolution), 1.0 * kMostResolution));
+}
+
 /// Fragments of one draw with this band [m] at this pixel [m].
 double fragments(const Outline& outline, double pixel, double band) {
   const double grow = band / pixel + 3.0;
@@ -46,12 +58,7 @@ BodyFieldPlan plan_body_field(const Outline& outline, const FieldOptions& option
   const Vec2 extent = outline.bounds.extent();
   const double size = std::max(extent.maxCoeff(), 1e-300);
   BodyFieldPlan plan;
-  int resolution = options.resolution;
-  if (resolution == 0) {
-    const double pixels = 2.0 * 1.3 * size / typical_length(outline, size);
-    resolution =
-        static_cast<int>(std::clamp(pixels, static_cast<double>(kLeastResolution), 1.0 * kMostResolution));
-  }
+  const int resolution = options.resolution != 0 ? options.resolution : first_resolution(outline, size);
   plan.band = options.band;
   if (plan.band == 0.0) {
     const double pixel = size * 1.3 / resolution;
@@ -111,12 +118,37 @@ Candidates BodyField::by_tree(const Vec2& q, Scratch& scratch) const {
   return {scratch.sites, others};
 }
 
+namespace {
+
+/// The resolution at which lists near the outline are short: tried with a narrow band, which costs little.
+int choose_resolution(const Outline& outline, const FieldOptions& options, FieldRenderer& renderer) {
+  FieldOptions trial = options;
+  const double size = std::max(outline.bounds.extent().maxCoeff(), 1e-300);
+  ListRules rules;
+  rules.list_cap = options.list_cap;
+  trial.resolution = first_resolution(outline, size);
+  for (double before = std::numeric_limits<double>::infinity(); 2 * trial.resolution <= kMostResolution;) {
+    trial.band = rules.band = kTrialBand * size / trial.resolution;
+    const double mean =
+        render_lists(renderer, outline, plan_body_field(outline, trial).grid, rules).mean_near_outline;
+    // No finer where lists are short enough, or where halving the pixels no longer shortens them.
+    if (mean <= kMeanList || mean > 0.95 * before) break;
+    before = mean;
+    trial.resolution *= 2;
+  }
+  return trial.resolution;
+}
+
+}  // namespace
+
 std::unique_ptr<BodyField> render_body_field(std::shared_ptr<const Outline> outline,
                                              const FieldOptions& options, FieldRenderer& renderer) {
-  const BodyFieldPlan plan = plan_body_field(*outline, options);
+  FieldOptions chosen = options;
+  if (chosen.resolution == 0) chosen.resolution = choose_resolution(*outline, options, renderer);
+  const BodyFieldPlan plan = plan_body_field(*outline, chosen);
   ListRules rules;
-  rules.band = plan.band;
   rules.list_cap = options.list_cap;
+  rules.band = plan.band;
   CandidateLists lists = render_lists(renderer, *outline, plan.grid, rules);
   return std::make_unique<BodyField>(std::move(outline), std::move(lists));
 }

@@ -18,8 +18,9 @@ struct BodyFieldPlan {
 
 /// Window, resolution and band for an outline: as `options` say, else by shape.
 ///
-/// Pixels are half as long as the median site, so that lists hold about two sites; the band is a seventh of
-/// the window, narrowed until both draws cost about as many fragments as a few windows.
+/// By shape, pixels are at most half as long as the median site; render_body_field() halves them until lists
+/// near the outline hold about two sites. The band is a seventh of the size, narrowed until both draws cost
+/// no more fragments than a few windows.
 BodyFieldPlan plan_body_field(const Outline& outline, const FieldOptions& options);
 
 class BodyField final : public SiteIndex {

@@ -71,6 +71,7 @@ void fill_cells(const std::vector<std::uint32_t>& start, const std::vector<std::
   const float out_of_band = round_down((band - 2.0 * batch.largest_error) * lists.grid.pixel);
   lists.cells.resize(bounds.size());
   std::uint32_t last_first = 0, last_count = 0;
+  double near_entries = 0.0, near_pixels = 0.0;
   for (std::size_t i = 0; i < bounds.size(); ++i) {
     CandidateLists::Cell& cell = lists.cells[i];
     const double nearest = bounds[i] - batch.offset;
@@ -80,6 +81,10 @@ void fill_cells(const std::vector<std::uint32_t>& start, const std::vector<std::
     }
     cell.others = round_down((nearest + 2.0 * kHalfDiagonal) * lists.grid.pixel);
     const std::uint32_t count = start[i + 1] - start[i];
+    if (nearest < 2.0) {
+      near_entries += count;
+      near_pixels += 1.0;
+    }
     if (count == 0 || count > static_cast<std::uint32_t>(rules.list_cap)) {
       cell.packed = CandidateLists::kTree;
       ++lists.pixels_over_cap;
@@ -95,6 +100,7 @@ void fill_cells(const std::vector<std::uint32_t>& start, const std::vector<std::
     }
     cell.packed = last_first << 8 | count;
   }
+  lists.mean_near_outline = near_entries / std::max(1.0, near_pixels);
   if (lists.sites.size() >= (1U << 24))
     throw IoError("the candidate lists of a field are too long; lower field.resolution");
 }

@@ -29,6 +29,7 @@ struct CandidateLists {
   std::size_t entries = 0;  ///< total length of all lists, before equal neighbours were shared
   int pixels_listed = 0;    ///< pixels with a list
   int pixels_over_cap = 0;
+  double mean_near_outline = 0.0;  ///< mean list of pixels within two pixels of the outline, whatever the cap
 };
 
 struct ListRules {

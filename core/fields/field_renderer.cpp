@@ -67,17 +67,16 @@ FieldRenderer::~FieldRenderer() {
   gl_.DeleteVertexArrays(1, &vertices_);
 }
 
-FieldRenderer::Program& FieldRenderer::use(FieldProgram kind, const PixelGrid& grid) {
-  Program& program = programs_[static_cast<std::size_t>(kind)];
+FieldRenderer::Program& FieldRenderer::use(FieldProgram kind, const PixelGrid& grid, const SiteBatch& batch) {
+  Program& program = programs_[2 * static_cast<std::size_t>(kind) + (batch.has_arcs ? 1 : 0)];
   if (program.name == 0) {
-    program.name = make_program(gl_, vertex_shader(kind), fragment_shader(kind));
+    program.name = make_program(gl_, vertex_shader(kind), fragment_shader(kind, batch.has_arcs));
     gl_.UseProgram(program.name);
     const auto at = [&](const char* name) { return gl_.GetUniformLocation(program.name, name); };
     program.half_size = at("half_size");
     program.depth_scale = at("depth_scale");
     program.limit = at("limit");
     program.offset = at("offset");
-    program.layer = at("layer");
     program.slack = at("slack");
     program.capacity = at("capacity");
     program.width = at("width");
@@ -160,14 +159,13 @@ void FieldRenderer::draw_image(const PixelGrid& grid, const SiteBatch& batch, do
                                const std::vector<std::uint32_t>& owners) {
   context_->make_current();
   fit(image_[layer], grid, /*with_ids=*/true);
-  Program& program = use(FieldProgram::image, grid);
+  Program& program = use(layer == 0 ? FieldProgram::first : FieldProgram::second, grid, batch);
   gl_.Uniform1f(program.depth_scale, static_cast<float>(batch.depth_scale));
   gl_.Uniform1f(program.limit, static_cast<float>(limit));
   gl_.Uniform1f(program.offset, static_cast<float>(batch.offset));
-  gl_.Uniform1i(program.layer, layer);
-  gl_.ActiveTexture(GL_TEXTURE0 + kUnitFirst);
-  gl_.BindTexture(GL_TEXTURE_2D, layer == 1 ? image_[0].ids : 0);
   if (layer == 1) {
+    gl_.ActiveTexture(GL_TEXTURE0 + kUnitFirst);
+    gl_.BindTexture(GL_TEXTURE_2D, image_[0].ids);
     gl_.BindBuffer(GL_TEXTURE_BUFFER, owner_buffer_);
     gl_.BufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(owners.size() * sizeof(std::uint32_t)),
                    owners.data(), GL_STREAM_DRAW);
@@ -192,7 +190,7 @@ void FieldRenderer::read_image(int x, int y, int width, int height, std::uint32_
 const std::vector<float>& FieldRenderer::draw_bounds(const PixelGrid& grid, const SiteBatch& batch) {
   context_->make_current();
   fit(bound_, grid, /*with_ids=*/false);
-  Program& program = use(FieldProgram::bound, grid);
+  Program& program = use(FieldProgram::bound, grid, batch);
   gl_.Uniform1f(program.depth_scale, static_cast<float>(batch.depth_scale));
   upload(batch);
   gl_.Enable(GL_DEPTH_TEST);
@@ -216,7 +214,7 @@ void FieldRenderer::bind_storage(std::size_t bytes) {
 
 const std::vector<PixelEntry>& FieldRenderer::draw_candidates(const PixelGrid& grid, const SiteBatch& batch,
                                                               double slack, std::size_t capacity) {
-  Program& program = use(FieldProgram::append, grid);
+  Program& program = use(FieldProgram::append, grid, batch);
   gl_.Uniform1f(program.slack, static_cast<float>(slack));
   gl_.Uniform1ui(program.width, static_cast<GLuint>(grid.width));
   gl_.ActiveTexture(GL_TEXTURE0 + kUnitNearest);
@@ -248,7 +246,7 @@ std::vector<std::uint32_t> FieldRenderer::draw_marks(const PixelGrid& grid, cons
                                                      double limit, std::size_t count) {
   context_->make_current();
   fit(bound_, grid, /*with_ids=*/false);
-  Program& program = use(FieldProgram::mark, grid);
+  Program& program = use(FieldProgram::mark, grid, batch);
   gl_.Uniform1f(program.limit, static_cast<float>(limit));
   upload(batch);
   std::vector<std::uint32_t> marks(count, 0);

@@ -62,15 +62,14 @@ class FieldRenderer {
  private:
   struct Program {
     GLuint name = 0;
-    GLint half_size = -1, depth_scale = -1, limit = -1, offset = -1, layer = -1, slack = -1, capacity = -1,
-          width = -1;
+    GLint half_size = -1, depth_scale = -1, limit = -1, offset = -1, slack = -1, capacity = -1, width = -1;
   };
   struct Target {
     GLuint framebuffer = 0, ids = 0, values = 0, depth = 0;
     int size = 0;
   };
 
-  Program& use(FieldProgram kind, const PixelGrid& grid);
+  Program& use(FieldProgram kind, const PixelGrid& grid, const SiteBatch& batch);
   void fit(Target& target, const PixelGrid& grid, bool with_ids);
   void upload(const SiteBatch& batch);
   void draw(const PixelGrid& grid, const SiteBatch& batch);
@@ -80,7 +79,7 @@ class FieldRenderer {
 
   std::unique_ptr<GlContext> context_;
   GlFunctions gl_;
-  std::array<Program, 4> programs_{};
+  std::array<Program, 2 * kFieldPrograms> programs_{};  ///< by kind, without and with arcs
   Target image_[2], bound_;
   GLuint vertices_ = 0, instances_ = 0, storage_ = 0, owner_buffer_ = 0, owner_texture_ = 0;
   std::size_t storage_bytes_ = 0;

@@ -31,9 +31,7 @@ void main() {
 }
 )";
 
-// Distance from q to the core; side < 0 where q is on the solid side. Mirrors nearest_on() and side_of() of
-// core/shapes/distance.h; its rounding is bounded in site_batch.h.
-constexpr const char* kDistance = R"(
+constexpr const char* kInputs = R"(
 flat in vec4 ends;
 flat in vec4 arc;
 flat in vec4 pseudo;
@@ -41,31 +39,37 @@ flat in vec2 shift;
 flat in uvec2 tag;
 uniform vec2 half_size;
 float cross2(vec2 a, vec2 b) { return a.x * b.y - a.y * b.x; }
+)";
+
+// Distance from q to the core; side < 0 where q is on the solid side. Mirrors nearest_on() and side_of() of
+// core/shapes/distance.h; the rounding is bounded in site_batch.h. A point is a segment without length (d =
+// 0, t = 0).
+constexpr const char* kStraight = R"(
+float straight_distance(vec2 q, out float side) {
+  vec2 wa = q - ends.xy, d = ends.zw - ends.xy;
+  float t = dot(wa, d) * arc.x;
+  side = t <= 0.0 ? dot(wa, pseudo.xy) : t >= 1.0 ? dot(q - ends.zw, pseudo.zw) : -cross2(d, wa);
+  return length(wa - clamp(t, 0.0, 1.0) * d);
+}
+)";
+
+constexpr const char* kOnlyStraight = R"(
+float core_distance(vec2 q, out float side) { return straight_distance(q, side); }
+)";
+
+// The test on dot(w, from + to) keeps rounding from taking the far side of a thin sector for the near one.
+constexpr const char* kWithArcs = R"(
 float core_distance(vec2 q, out float side) {
-  uint kind = tag.y & 3u;
-  vec2 wa = q - ends.xy;
-  side = dot(wa, pseudo.xy);
-  if (kind == 1u) {
-    vec2 d = ends.zw - ends.xy;
-    float t = dot(wa, d) * arc.x;
-    if (t >= 1.0) side = dot(q - ends.zw, pseudo.zw);
-    else if (t > 0.0) side = -cross2(d, wa);
-    return length(wa - clamp(t, 0.0, 1.0) * d);
-  }
-  float da = length(wa);
-  if (kind == 0u) return da;
-  vec2 w = q - arc.xy, wb = q - ends.zw, from = ends.xy - arc.xy, to = ends.zw - arc.xy;
+  if ((tag.y & 3u) != 2u) return straight_distance(q, side);
+  vec2 w = q - arc.xy, wa = q - ends.xy, wb = q - ends.zw, from = ends.xy - arc.xy, to = ends.zw - arc.xy;
   if (arc.w * cross2(from, wa) > 0.0 && arc.w * cross2(wb, to) > 0.0 && dot(w, from + to) > 0.0) {
     float off = length(w) - arc.z;
     side = arc.w * off;
     return abs(off);
   }
-  float db = length(wb);
-  if (db < da) {
-    side = dot(wb, pseudo.zw);
-    return db;
-  }
-  return da;
+  float da = length(wa), db = length(wb);
+  side = da <= db ? dot(wa, pseudo.xy) : dot(wb, pseudo.zw);
+  return min(da, db);
 }
 )";
 
@@ -73,25 +77,32 @@ constexpr const char* kImage = R"(
 layout(location = 0) out uint site;
 layout(location = 1) out float value;
 uniform float depth_scale;
-uniform float limit;          // values beyond it are not drawn
-uniform float offset;         // value of the site's surface
-uniform int layer;
-uniform usampler2D first;     // ids of the first layer
-uniform usamplerBuffer owners;
+uniform float limit;   // values beyond it are not drawn
+uniform float offset;  // value of the site's surface
+bool wanted();
 void main() {
   float side;
   float t = core_distance(gl_FragCoord.xy - half_size, side) + shift.x;
-  if (t > limit) discard;
-  if (layer == 1) {
-    uint before = texelFetch(first, ivec2(gl_FragCoord.xy), 0).r;
-    if (before == 0xffffffffu) discard;
-    before &= 0x7fffffffu;
-    if (texelFetch(owners, int(before)).r == texelFetch(owners, int(tag.x)).r) discard;
-  }
+  if (t > limit || !wanted()) discard;
   bool inside = (side < 0.0 && (tag.y & 4u) != 0u) || t < offset;
   site = inside ? tag.x | 0x80000000u : tag.x;
   value = t;
   gl_FragDepth = t * depth_scale;
+}
+)";
+
+constexpr const char* kFirst = R"(
+bool wanted() { return true; }
+)";
+
+constexpr const char* kSecond = R"(
+uniform usampler2D first;  // ids of the first layer
+uniform usamplerBuffer owners;
+bool wanted() {
+  uint before = texelFetch(first, ivec2(gl_FragCoord.xy), 0).r;
+  if (before == 0xffffffffu) return false;
+  uint owner = texelFetch(owners, int(before & 0x7fffffffu)).r;
+  return owner != texelFetch(owners, int(tag.x)).r;
 }
 )";
 
@@ -148,12 +159,21 @@ std::string version(FieldProgram program) {
 
 std::string vertex_shader(FieldProgram program) { return version(program) + kVertex; }
 
-std::string fragment_shader(FieldProgram program) {
-  const char* body = kImage;
-  if (program == FieldProgram::bound) body = kBound;
-  if (program == FieldProgram::append) body = kAppend;
-  if (program == FieldProgram::mark) body = kMark;
-  return version(program) + kDistance + body;
+std::string fragment_shader(FieldProgram program, bool arcs) {
+  std::string source = version(program) + kInputs + kStraight + (arcs ? kWithArcs : kOnlyStraight);
+  switch (program) {
+    case FieldProgram::first:
+      return source + kImage + kFirst;
+    case FieldProgram::second:
+      return source + kImage + kSecond;
+    case FieldProgram::bound:
+      return source + kBound;
+    case FieldProgram::append:
+      return source + kAppend;
+    case FieldProgram::mark:
+      break;
+  }
+  return source + kMark;
 }
 
 }  // namespace brink::detail

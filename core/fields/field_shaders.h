@@ -5,15 +5,19 @@
 
 namespace brink::detail {
 
-/// Which program: all share the vertex shader and the distance function.
+/// Which program: all share the vertex shader and the distance functions.
 enum class FieldProgram {
-  image,   ///< site id and distance of the nearest site (first or second layer)
+  first,   ///< site id and distance of the nearest site
+  second,  ///< the same, of the nearest site of another owner than the first layer shows
   bound,   ///< upper bound of the nearest distance only
   append,  ///< (pixel, site) of every candidate into a storage buffer; GL 4.3
-  mark     ///< a flag for every owner within a limit into a storage buffer; GL 4.3
+  mark     ///< a flag for every site within a limit into a storage buffer; GL 4.3
 };
+inline constexpr int kFieldPrograms = 5;
 
 std::string vertex_shader(FieldProgram program);
-std::string fragment_shader(FieldProgram program);
+/// `arcs`: whether the batch has any. llvmpipe runs both sides of a branch, so the code for arcs costs even
+/// where all sites are straight.
+std::string fragment_shader(FieldProgram program, bool arcs);
 
 }  // namespace brink::detail

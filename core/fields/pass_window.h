@@ -34,7 +34,7 @@ struct FieldImage {
   std::vector<float> distance;       ///< distance to it [m], radius subtracted, unsigned; infinite where none
   std::vector<std::uint8_t> inside;  ///< 1 where the nearest site says "inside its solid" (altered interior),
                                      ///< or where the pixel's centre is within its thickness
-  float rounding = 0.0F;  ///< bound on |distance - true distance| from single precision [m]
+  float rounding = 0.0F;             ///< bound on |distance - true distance| from single precision [m]
 };
 
 /// What lies near one body at one moment.

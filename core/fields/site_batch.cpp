@@ -212,8 +212,10 @@ SiteBatch make_batch(const PixelGrid& grid, std::span<const PlacedOutline> scene
   std::size_t count = 0;
   for (const PlacedOutline& item : scene) {
     count += item.outline->sites.size();
-    for (const Site& site : item.outline->sites)
+    for (const Site& site : item.outline->sites) {
       batch.offset = std::max(batch.offset, site.radius / grid.pixel);
+      batch.has_arcs = batch.has_arcs || site.kind == SiteKind::arc;
+    }
   }
   batch.offset = std::ceil(batch.offset * 1.001);
   batch.depth_scale = std::exp2(-std::ceil(std::log2(4.0 * (farthest(grid, scene) + batch.offset) + 16.0)));

@@ -58,6 +58,7 @@ static_assert(sizeof(SiteInstance) == 96);
 /// What to draw, all sites at once.
 struct SiteBatch {
   std::vector<SiteInstance> instances;  ///< sites that can show in the window, ascending id
+  bool has_arcs = false;                ///< the scene has arcs (drawn or not)
   double offset = 0.0;                  ///< drawn value = distance [pixel] - radius + offset >= 0
   double depth_scale = 1.0;             ///< power of two; drawn value * depth_scale is in [0, 1)
   double largest_value = 0.0;           ///< no drawn value is larger [pixel]

@@ -26,10 +26,18 @@ class BruteForceIndex final : public SiteIndex {
 
 }  // namespace
 
+SiteIndex::SiteIndex(std::shared_ptr<const Outline> outline) : outline_(std::move(outline)) {
+  right_.reserve(outline_->sites.size());
+  for (const Site& site : outline_->sites) {
+    const bool known = site.solid && site.kind == SiteKind::segment;
+    right_.push_back(known ? Vec2(-perp((site.b - site.a).normalized())) : Vec2(Vec2::Zero()));
+  }
+}
+
 FieldAnswer SiteIndex::query(const Vec2& q, Scratch& scratch) const {
+  if (!q.allFinite()) return FieldAnswer();
   const Candidates found = candidates(q, std::numeric_limits<double>::infinity(), scratch);
   FieldAnswer answer;
-  answer.gap = answer.runner_up = found.others_at_least;
   double best = std::numeric_limits<double>::infinity(), second = best;
   Nearest nearest;
   for (const std::uint32_t i : found.sites) {
@@ -49,7 +57,9 @@ FieldAnswer SiteIndex::query(const Vec2& q, Scratch& scratch) const {
   const Site& site = outline_->sites[static_cast<std::size_t>(answer.site)];
   answer.gap = side_of(site, nearest, q) * nearest.distance - site.radius;
   answer.closest = nearest.point;
-  answer.normal = normal_at(site, nearest, q);
+  answer.normal = nearest.foot == Foot::interior && site.solid && site.kind == SiteKind::segment
+                      ? right_[static_cast<std::size_t>(answer.site)]
+                      : normal_at(site, nearest, q);
   answer.runner_up = std::min(second, found.others_at_least);
   return answer;
 }

@@ -52,12 +52,16 @@ class SiteIndex {
 
   const Outline& outline() const { return *outline_; }
 
-  /// Exact answer at q, whatever its distance.
+  /// Exact answer at q, whatever its distance: the same bits as gap_by_brute_force(). A point that is not
+  /// finite has no answer: site -1, gap 0.
   FieldAnswer query(const Vec2& q, Scratch& scratch) const;
 
  protected:
-  explicit SiteIndex(std::shared_ptr<const Outline> outline) : outline_(std::move(outline)) {}
+  explicit SiteIndex(std::shared_ptr<const Outline> outline);
   std::shared_ptr<const Outline> outline_;
+
+ private:
+  std::vector<Vec2> right_;  ///< of every solid segment: its outward unit normal, as normal_at() gives it
 };
 
 /// Every site, always: for outlines of few sites, and the reference for the others.
