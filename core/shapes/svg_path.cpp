@@ -54,7 +54,7 @@ class Scanner {
 
   [[noreturn]] void fail(const std::string& what) const { fail_at(at_, what); }
   [[noreturn]] void fail_at(std::size_t at, const std::string& what) const {
-    const std::string got = at < d_.size() ? "'" + std::string(1, d_[at]) + "'" : "the end of the data";
+    const std::string got = at < d_.size() ? std::string{'\'', d_[at], '\''} : "the end of the data";
     throw BadInput("path: character " + std::to_string(at + 1) + ": " + what + ", got " + got);
   }
 

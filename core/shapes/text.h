@@ -15,6 +15,9 @@ inline std::string text(double x) {
   return {buffer, end};
 }
 
-inline std::string text(const Vec2& p) { return "(" + text(p.x()) + ", " + text(p.y()) + ")"; }
+inline std::string text(const Vec2& p) {
+  std::string s(1, '(');
+  return s.append(text(p.x())).append(", ").append(text(p.y())).append(")");
+}
 
 }  // namespace brink
