@@ -6,6 +6,7 @@
 
 #include "brink/core/base/error.h"
 #include "brink/core/fields/field_renderer.h"
+#include "brink/core/fields/site_tiles.h"
 #include "brink/core/shapes/distance.h"
 
 namespace brink {
@@ -143,10 +144,13 @@ struct PassRenderer::Impl {
     return out;
   }
 
+  /// Draws the first layer; with `layers` = 2 the batch is kept complete for the second.
   SiteBatch draw_first(const PixelGrid& grid, std::span<const PlacedOutline> scene, std::uint32_t excluded,
-                       double band, const SiteNames& names) {
+                       double band, const SiteNames& names, int layers) {
     check_distance("band", band);
     SiteBatch batch = detail::make_batch(grid, scene, excluded, {band, 0.0, false});
+    const bool large = std::min(grid.width, grid.height) > detail::kTile && batch.instances.size() > 1;
+    if (large) detail::cut_into_tiles(batch, grid, names.owner, band / grid.pixel, layers);
     renderer.draw_image(grid, batch, band / grid.pixel + batch.offset, 0, names.owner);
     return batch;
   }
@@ -192,7 +196,7 @@ FieldImage PassRenderer::render(const Box& window, int width, int height,
   const PixelGrid grid = make_grid(window, width, height);
   const std::uint64_t drawn = impl_->renderer.pixels_drawn(), read = impl_->renderer.pixels_read();
   const SiteNames names(scene);
-  const SiteBatch batch = impl_->draw_first(grid, scene, excluded, band, names);
+  const SiteBatch batch = impl_->draw_first(grid, scene, excluded, band, names, 1);
   FieldImage image = impl_->image(grid, batch, names);
   impl_->count(1, drawn, read);
   return image;
@@ -205,7 +209,7 @@ std::vector<PixelValue> PassRenderer::render_at(const Box& window, int width, in
   const PixelGrid grid = make_grid(window, width, height);
   const std::uint64_t drawn = impl_->renderer.pixels_drawn(), read = impl_->renderer.pixels_read();
   const SiteNames names(scene);
-  const SiteBatch batch = impl_->draw_first(grid, scene, excluded, band, names);
+  const SiteBatch batch = impl_->draw_first(grid, scene, excluded, band, names, 1);
   std::vector<PixelValue> picked = impl_->pick(grid, {names, grid, batch}, points);
   impl_->count(1, drawn, read);
   return picked;
@@ -217,7 +221,7 @@ std::array<FieldImage, 2> PassRenderer::render_two_layers(const Box& window, int
   const PixelGrid grid = make_grid(window, width, height);
   const std::uint64_t drawn = impl_->renderer.pixels_drawn(), read = impl_->renderer.pixels_read();
   const SiteNames names(scene);
-  const SiteBatch batch = impl_->draw_first(grid, scene, FieldImage::kNone, band, names);
+  const SiteBatch batch = impl_->draw_first(grid, scene, FieldImage::kNone, band, names, 2);
   std::array<FieldImage, 2> layers;
   layers[0] = impl_->image(grid, batch, names);
   impl_->renderer.draw_image(grid, batch, band / grid.pixel + batch.offset, 1, names.owner);
