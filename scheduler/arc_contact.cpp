@@ -21,12 +21,20 @@ Vec2 to_s(const Placed& s, const Placed& t, const Vec2& d) {
   return s.frame.direction_to_local(t.frame.direction_to_world(d));
 }
 
-ArcStep against_segment(const Site& arc, const Site& site, const SamplePath& path, const Placed& s, const Placed& t,
-                        double slack, const RelativeBounds& relative, const PathBounds& bounds) {
+/// True if the arc lies beyond the site, not in it: this pair touches only after its gap has risen to 0
+/// again.
+bool is_through(double gap, const Site& arc, const Site& site, double band) {
+  return gap < -(arc.radius + site.radius) - band;
+}
+
+ArcStep against_segment(const Site& arc, const Site& site, const SamplePath& path, const Placed& s,
+                        const Placed& t, double slack, double band, const RelativeBounds& relative,
+                        const PathBounds& bounds) {
   const Vec2 d = site.b - site.a, w = path.q - site.a;
   const double length = d.norm();
   const double offset = cross(d, w) / length;
-  const double side = site.solid ? -1.0 : (offset < 0.0 ? -1.0 : 1.0);  // a solid is touched from its right only
+  const double side =
+      site.solid ? -1.0 : (offset < 0.0 ? -1.0 : 1.0);  // a solid is touched from its right only
   ArcStep step;
   step.normal = perp(d) * (side / length);
   step.gap = side * offset - arc.arc_radius - arc.radius - site.radius;
@@ -34,7 +42,8 @@ ArcStep against_segment(const Site& arc, const Site& site, const SamplePath& pat
   const double along = w.dot(d) / length;
   const double beyond = std::max({0.0, -along, along - length});
   const double outside = angle_outside(arc, to_s(s, t, -step.normal));
-  step.active = beyond == 0.0 && outside == 0.0;
+  const bool through = is_through(step.gap, arc, site, band);
+  step.active = beyond == 0.0 && outside == 0.0 && !through;
   step.point = path.q - step.normal * (side * offset - site.radius);
   if (step.active || step.gap > 0.0)
     step.safe = safe_step(std::max(step.gap, 0.0) + slack, step.rate, bounds.acceleration);
@@ -42,14 +51,16 @@ ArcStep against_segment(const Site& arc, const Site& site, const SamplePath& pat
     const double spin = relative.spin_s + relative.spin_t;
     if (beyond > 0.0) step.safe = std::max(step.safe, bounds.speed > 0.0 ? beyond / bounds.speed : kForever);
     if (outside > 0.0) step.safe = std::max(step.safe, spin > 0.0 ? outside / spin : kForever);
-    if (step.gap > 0.0 && bounds.speed > 0.0) step.safe = std::max(step.safe, step.gap / bounds.speed);
+    if (step.gap > 0.0 || through)
+      step.safe = std::max(step.safe, bounds.speed > 0.0 ? std::abs(step.gap) / bounds.speed : kForever);
   }
   return step;
 }
 
 /// One of the two ways in which two arcs touch: outside against outside, or inside the other's hollow.
 ArcStep against_arc(const Site& arc, const Site& site, bool hollow, const SamplePath& path, const Placed& s,
-                    const Placed& t, double slack, const RelativeBounds& relative, const PathBounds& bounds) {
+                    const Placed& t, double slack, double band, const RelativeBounds& relative,
+                    const PathBounds& bounds) {
   const Vec2 w = path.q - site.center;
   const double distance = w.norm();
   const double thickness = arc.radius + site.radius;
@@ -61,18 +72,19 @@ ArcStep against_arc(const Site& arc, const Site& site, bool hollow, const Sample
   step.gap = hollow ? site.arc_radius - distance - arc.arc_radius - thickness
                     : distance - site.arc_radius - arc.arc_radius - thickness;
   step.rate = hollow ? -radial : radial;
-  const double outside =
-      std::max(angle_outside(arc, to_s(s, t, Vec2(-step.normal))), angle_outside(site, u));
-  step.active = outside == 0.0 && distance > 0.0;
+  const double outside = std::max(angle_outside(arc, to_s(s, t, Vec2(-step.normal))), angle_outside(site, u));
+  const bool through = is_through(step.gap, arc, site, band);
+  step.active = outside == 0.0 && distance > 0.0 && !through;
   step.point = site.center + u * (site.arc_radius + (hollow ? -site.radius : site.radius));
   const double curvature =
       bounds.acceleration + (hollow && distance > 0.0 ? bounds.speed * bounds.speed / distance : 0.0);
   if ((step.active || step.gap > 0.0) && (distance > 0.0 || !hollow))
     step.safe = safe_step(std::max(step.gap, 0.0) + slack, step.rate, curvature);
-  if (step.gap > 0.0)
-    step.safe = std::max(step.safe, bounds.speed > 0.0 ? step.gap / bounds.speed : kForever);
+  if (step.gap > 0.0 || through)
+    step.safe = std::max(step.safe, bounds.speed > 0.0 ? std::abs(step.gap) / bounds.speed : kForever);
   if (!step.active && distance > 0.0) {
-    // The direction turns at most at speed / (distance / 2) while the centres are still half their distance apart.
+    // The direction turns at most at speed / (distance / 2) while the centres are still half their distance
+    // apart.
     const double turning = 2.0 * bounds.speed / distance + relative.spin_s + relative.spin_t;
     const double held = bounds.speed > 0.0 ? 0.5 * distance / bounds.speed : kForever;
     step.safe = std::max(step.safe, std::min(held, turning > 0.0 ? outside / turning : kForever));
@@ -83,18 +95,19 @@ ArcStep against_arc(const Site& arc, const Site& site, bool hollow, const Sample
 }  // namespace
 
 ArcStep arc_step(const Site& arc, const Site& site, const SamplePath& path, const Placed& s, const Placed& t,
-                 double slack, const RelativeBounds& relative, const PathBounds& bounds) {
+                 double slack, double band, const RelativeBounds& relative, const PathBounds& bounds) {
   ArcStep none;
   none.safe = kForever;
   if (!touches_convex(arc) || site.kind == SiteKind::point) return none;
-  if (site.kind == SiteKind::segment) return against_segment(arc, site, path, s, t, slack, relative, bounds);
+  if (site.kind == SiteKind::segment)
+    return against_segment(arc, site, path, s, t, slack, band, relative, bounds);
   ArcStep outer = none, inner = none;
-  if (touches_convex(site)) outer = against_arc(arc, site, false, path, s, t, slack, relative, bounds);
+  if (touches_convex(site)) outer = against_arc(arc, site, false, path, s, t, slack, band, relative, bounds);
   if (touches_concave(site) && arc.arc_radius < site.arc_radius)
-    inner = against_arc(arc, site, true, path, s, t, slack, relative, bounds);
+    inner = against_arc(arc, site, true, path, s, t, slack, band, relative, bounds);
   ArcStep& first = outer.active && (!inner.active || outer.gap <= inner.gap) ? outer
-                   : inner.active                                           ? inner
-                                                                            : outer;
+                   : inner.active                                            ? inner
+                                                                             : outer;
   first.safe = std::min(outer.safe, inner.safe);
   return first;
 }

@@ -42,14 +42,17 @@ class PairSearch {
  public:
   PairSearch(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
              SearchScratch& scratch, WorkCounters& work)
-      : a_(a), b_(b), from_(from), to_(to), limits_(limits), scratch_(scratch), work_(work) {
+      : a_(a), b_(b), from_(from), to_(to), window_end_(to), limits_(limits), scratch_(scratch), work_(work) {
     const std::size_t na = a.outline().samples.size(), nb = b.outline().samples.size();
     scratch.safe_until.assign(na + nb, from);
     halves_[0] = {&a, &b, true, scratch.safe_until.data()};
     halves_[1] = {&b, &a, false, scratch.safe_until.data() + na};
-    // A core of one point needs no reverse test: its one sample against the other's sites is the whole distance.
-    if (a.outline().is_point()) drop(1, nb);
-    else if (b.outline().is_point()) drop(0, na);
+    // A core of one point needs no reverse test: its one sample against the other's sites is the whole
+    // distance.
+    if (a.outline().is_point())
+      drop(1, nb);
+    else if (b.outline().is_point())
+      drop(0, na);
   }
 
   PairAnswer run() {
@@ -69,6 +72,15 @@ class PairSearch {
       }
   }
 
+  /// The features of `like`, with both outlines placed in the given states.
+  FeatureContact in_states(const BodyState& state_a, const BodyState& state_b, const FeatureContact& like) {
+    placed_a_ = Placed(state_a);
+    placed_b_ = Placed(state_b);
+    FeatureContact c = contact_again(halves_[like.sample_on_a ? 0 : 1], {like.sample, like.site}, like.time);
+    if (!(c.normal.dot(like.normal) > 1.0 - 1e-6)) c.normal = like.normal;
+    return c;
+  }
+
   double gap(double t) {
     place(t);
     double least = kForever;
@@ -82,7 +94,8 @@ class PairSearch {
  private:
   void drop(int half, std::size_t count) { std::fill_n(halves_[half].safe_until, count, kForever); }
 
-  /// Steps the discs that hold the two outlines; true if they stay apart to the end. Moves from_ on otherwise.
+  /// Steps the discs that hold the two outlines; true if they stay apart to the end. Moves from_ on
+  /// otherwise.
   bool apart_by_bounding_discs() {
     const Outline &oa = a_.outline(), &ob = b_.outline();
     if (oa.container || ob.container) return false;
@@ -169,25 +182,38 @@ class PairSearch {
     return safe * (1.0 - 4.0 * kEpsilon);
   }
 
-  double vertex_step(const Half& half, int i, const SamplePath& path, const PathBounds& bounds, double window) {
+  double vertex_step(const Half& half, int i, const SamplePath& path, const PathBounds& bounds,
+                     double window) {
     const Sample& sample = half.samples_of().samples[i];
     const Outline& sites = half.sites_of();
     ++work_.distance_queries;
-    const double reach = bounds.speed * window + sample.radius + 2.0 * limits_.tolerance;
+    const double band = touching_band(bounds);
+    const double reach = bounds.speed * window + sample.radius + 2.0 * band;
     const Candidates near = half.t->index->candidates(path.q, reach, scratch_.index);
     work_.candidate_evaluations += near.sites.size();
-    const double others = near.others_at_least - sample.radius;
+    const double others = near.others_at_least - sample.radius - 0.5 * band;
     double safe = bounds.speed > 0.0 ? std::max(0.0, others) / bounds.speed : kForever;
     for (const std::uint32_t j : near.sites) {
       const Site& site = sites.sites[j];
       const Nearest nearest = nearest_on(site, path.q);
       const double radius = site.radius + sample.radius;
-      const bool touching = nearest.distance - radius <= limits_.tolerance;
-      if (touching && meets(half, i, static_cast<int>(j), nearest, path, bounds)) continue;
-      const double slack = nearest.distance - radius <= limits_.touch ? limits_.touch : 0.0;
-      safe = std::min(safe, site_step(site, nearest, path.q, path.rate, radius, slack, bounds).safe);
+      const double gap = nearest.distance - radius;
+      if (gap <= band && meets(half, i, static_cast<int>(j), nearest, path, bounds)) continue;
+      safe = std::min(safe,
+                      site_step(site, nearest, path.q, path.rate, radius, slack_at(gap, band), bounds).safe);
     }
     return safe;
+  }
+
+  /// Gaps up to this are touching [m]: the tolerance, or what the point moves in a few roundings of the time.
+  double touching_band(const PathBounds& bounds) const {
+    return std::max(limits_.tolerance, 8.0 * bounds.speed * ulp(t_));
+  }
+
+  /// Added to a gap before stepping. A step leads into the band, never onto the surface: beyond a thin wire
+  /// by a rounding error the point would seem to recede.
+  double slack_at(double gap, double band) const {
+    return gap <= limits_.touch ? limits_.touch : -0.5 * std::min(gap, band);
   }
 
   double arc_sample_step(const Half& half, int i, const SamplePath& path, const RelativeBounds& relative,
@@ -195,30 +221,35 @@ class PairSearch {
     const Sample& sample = half.samples_of().samples[i];
     const Site& arc = half.samples_of().sites[sample.arc_site];
     const Outline& sites = half.sites_of();
+    const double band = touching_band(bounds);
     double safe = kForever;
     for (std::size_t j = 0; j < sites.sites.size(); ++j) {
       ++work_.candidate_evaluations;
-      ArcStep step = arc_step(arc, sites.sites[j], path, placed(half.s), placed(half.t), 0.0, relative, bounds);
-      if (step.active && step.gap <= limits_.tolerance) {
-        if (polish(half, {i, static_cast<int>(j), step.gap, step.rate, step.normal, step.point}, path, bounds))
+      ArcStep step =
+          arc_step(arc, sites.sites[j], path, placed(half.s), placed(half.t), 0.0, band, relative, bounds);
+      if (step.active && step.gap <= band) {
+        if (polish(half, {i, static_cast<int>(j), step.gap, step.rate, step.normal, step.point}, path,
+                   bounds))
           continue;
         step = arc_step(arc, sites.sites[j], path, placed(half.s), placed(half.t),
-                        step.gap <= limits_.touch ? limits_.touch : 0.0, relative, bounds);
+                        step.gap <= limits_.touch ? limits_.touch : 0.0, band, relative, bounds);
       }
       safe = std::min(safe, step.safe);
     }
     return safe;
   }
 
-  /// A vertex sample within tolerance of a site: true if it meets this very site and the contact is remembered.
+  /// A vertex sample within tolerance of a site: true if it meets this very site and the contact is
+  /// remembered.
   bool meets(const Half& half, int i, int j, const Nearest& nearest, const SamplePath& path,
-                const PathBounds& bounds) {
+             const PathBounds& bounds) {
     const Feature f = vertex_feature(half, i, j, nearest, path);
     if (nearest.foot != Foot::interior && overshadowed(half, j, nearest, path.q)) return false;
     return polish(half, f, path, bounds);
   }
 
-  Feature vertex_feature(const Half& half, int i, int j, const Nearest& nearest, const SamplePath& path) const {
+  Feature vertex_feature(const Half& half, int i, int j, const Nearest& nearest,
+                         const SamplePath& path) const {
     const Sample& sample = half.samples_of().samples[i];
     const Site& site = half.sites_of().sites[j];
     Feature f{i, j, 0.0, 0.0, normal_at(site, nearest, path.q), nearest.point};
@@ -233,14 +264,17 @@ class PairSearch {
   }
 
   static bool sharp_vertex(const Site& site, const Sample& sample, const Nearest& nearest) {
-    return (nearest.foot != Foot::interior || site.kind == SiteKind::point) && site.radius + sample.radius == 0.0;
+    return (nearest.foot != Foot::interior || site.kind == SiteKind::point) &&
+           site.radius + sample.radius == 0.0;
   }
 
-  /// True if a foot at site j's end is no contact of its own: another site of the outline is as near with its interior.
+  /// True if a foot at site j's end is no contact of its own: another site of the outline is as near with its
+  /// interior.
   bool overshadowed(const Half& half, int j, const Nearest& nearest, const Vec2& q) const {
     const Outline& outline = half.sites_of();
     if (outline.sites[j].kind == SiteKind::point) return false;
-    const Candidates near = half.t->index->candidates(q, nearest.distance + limits_.touch, scratch_.neighbours);
+    const Candidates near =
+        half.t->index->candidates(q, nearest.distance + limits_.touch, scratch_.neighbours);
     for (const std::uint32_t k : near.sites) {
       if (static_cast<int>(k) == j) continue;
       const Nearest other = nearest_on(outline.sites[k], q);
@@ -259,13 +293,15 @@ class PairSearch {
     const Frame fs(s.pose), ft(u.pose);
     const Sample& sample = half.samples_of().samples[f.sample];
     const Site& site = half.sites_of().sites[f.site];
-    const Vec2 q = ft.direction_to_local(fs.direction_to_world(sample.p) + (s.pose.position - u.pose.position));
+    const Vec2 q =
+        ft.direction_to_local(fs.direction_to_world(sample.p) + (s.pose.position - u.pose.position));
     if (sample.arc_site >= 0) return arc_gap(half, f, q) - level;
     const Nearest n = nearest_on(site, q);
     const double radius = site.radius + sample.radius;
     if (site.solid || radius > 0.0 || n.foot != Foot::interior || site.kind == SiteKind::point)
       return side_of(site, n, q) * n.distance - radius - level;
-    const double side = f.normal.dot(q - n.point) < 0.0 ? -1.0 : 1.0;  // thin wire: stay on the side it came from
+    const double side =
+        f.normal.dot(q - n.point) < 0.0 ? -1.0 : 1.0;  // thin wire: stay on the side it came from
     return side * n.distance - level;
   }
 
@@ -283,8 +319,8 @@ class PairSearch {
     return hollow ? site.arc_radius - distance - reach : distance - site.arc_radius - reach;
   }
 
-  /// The feature pair is within tolerance: if it approaches, finds the last double at which it is still apart. True if
-  /// a contact was found; false if it recedes, or passes by.
+  /// The feature pair is within tolerance: if it approaches, finds the last double at which it is still
+  /// apart. True if a contact was found; false if it recedes, or passes by.
   bool polish(const Half& half, const Feature& f, const SamplePath& path, const PathBounds& bounds) {
     if (!approaching(f, path)) {
       if (f.gap < -limits_.tolerance && t_ == from_ && f.rate > 0.0) ++work_.let_go;
@@ -294,13 +330,16 @@ class PairSearch {
     const Sample& sample = half.samples_of().samples[f.sample];
     const Site& site = half.sites_of().sites[f.site];
     const bool sharp = sample.arc_site < 0 && sharp_vertex(site, sample, nearest_on(site, path.q));
-    const double level = sharp ? 0.5 * limits_.touch : 0.0;  // two sharp points never overlap: meet them just before
+    const double level =
+        sharp ? 0.5 * limits_.touch : 0.0;  // two sharp points never overlap: meet them just before
     const auto gap = [&](double t) { return gap_at(half, f, t, level); };
 
     const double speed = -f.rate;
     const double guess = t_ + (f.gap - level) / speed;
-    const double noise = 32.0 * kEpsilon * (placed_a_.frame.origin.lpNorm<1>() + placed_b_.frame.origin.lpNorm<1>() +
-                                            path.distance + path.arm) / speed +
+    const double noise = 32.0 * kEpsilon *
+                             (placed_a_.frame.origin.lpNorm<1>() + placed_b_.frame.origin.lpNorm<1>() +
+                              path.distance + path.arm) /
+                             speed +
                          4.0 * ulp(t_) + bounds.acceleration * f.gap * f.gap / (speed * speed * speed);
     double low = std::max(guess - 8.0 * noise, from_), high = guess + 8.0 * noise;
     for (double back = 8.0 * noise; gap(low) <= 0.0; back *= 4.0) {
@@ -315,12 +354,14 @@ class PairSearch {
         return f.gap <= limits_.touch && remember(half, f, t_);
       }
     }
-    return remember(half, f, last_clear_time(gap, low, high));
+    return remember(half, f, last_clear_time(gap, low, high), 8.0 * noise);
   }
 
-  /// Keeps the contact if it is the earliest so far (ties: lowest half, sample, site). Always true.
-  bool remember(const Half& half, const Feature& f, double t) {
-    if (t > to_) return true;
+  /// Keeps the contact if it is the earliest so far (ties: lowest half, sample, site). Always true. The
+  /// search goes on for `noise` longer: another feature may seem to touch later only by the rounding of its
+  /// steps.
+  bool remember(const Half& half, const Feature& f, double t, double noise = 0.0) {
+    if (t > window_end_) return true;
     const bool earlier = best_.sample < 0 || t < best_.time ||
                          (t == best_.time && std::tie(half.s_is_a, best_.sample, best_.site) >
                                                  std::tie(best_.sample_on_a, f.sample, f.site));
@@ -331,13 +372,21 @@ class PairSearch {
       PairSearch there(a_, b_, *this, t);
       best_ = there.contact_again(half, f, t);
     }
-    to_ = std::min(to_, std::nextafter(t, kForever));
+    to_ = std::min(to_, std::nextafter(t + noise, kForever));
     return true;
   }
 
-  /// A view of the same pair at another time, for evaluating one feature there; shares scratch, searches nothing.
+  /// A view of the same pair at another time, for evaluating one feature there; shares scratch, searches
+  /// nothing.
   PairSearch(const Mover& a, const Mover& b, const PairSearch& like, double t)
-      : a_(a), b_(b), from_(t), to_(t), limits_(like.limits_), scratch_(like.scratch_), work_(like.work_) {
+      : a_(a),
+        b_(b),
+        from_(t),
+        to_(t),
+        window_end_(t),
+        limits_(like.limits_),
+        scratch_(like.scratch_),
+        work_(like.work_) {
     halves_[0] = like.halves_[0];
     halves_[1] = like.halves_[1];
     place(t);
@@ -350,7 +399,7 @@ class PairSearch {
     if (sample.arc_site < 0)
       return contact_of(half, vertex_feature(half, f.sample, f.site, nearest_on(site, path.q), path), t);
     const ArcStep step = arc_step(half.samples_of().sites[sample.arc_site], site, path, placed(half.s),
-                                  placed(half.t), 0.0, {}, {0.0, 0.0});
+                                  placed(half.t), 0.0, limits_.tolerance, {}, {0.0, 0.0});
     return contact_of(half, {f.sample, f.site, step.gap, step.rate, step.normal, step.point}, t);
   }
 
@@ -378,8 +427,8 @@ class PairSearch {
     if (sample.arc_site >= 0) {
       const Site& arc = half.samples_of().sites[sample.arc_site];
       for (std::size_t j = 0; j < sites.sites.size(); ++j) {
-        const ArcStep step =
-            arc_step(arc, sites.sites[j], path, placed(half.s), placed(half.t), 0.0, {}, {0.0, 0.0});
+        const ArcStep step = arc_step(arc, sites.sites[j], path, placed(half.s), placed(half.t), 0.0,
+                                      limits_.tolerance, {}, {0.0, 0.0});
         if (step.active && step.gap <= tolerance)
           visit({i, static_cast<int>(j), step.gap, step.rate, step.normal, step.point});
       }
@@ -394,6 +443,7 @@ class PairSearch {
 
   const Mover &a_, &b_;
   double from_, to_;
+  double window_end_;  ///< to_ as it was given
   const SearchLimits& limits_;
   SearchScratch& scratch_;
   WorkCounters& work_;
@@ -429,6 +479,13 @@ std::vector<FeatureContact> touching_features(const Mover& a, const Mover& b, do
   PairSearch(a, b, t, t, limits, scratch, uncounted).collect(t, tolerance, found);
   std::stable_sort(found.begin(), found.end(), [](const auto& x, const auto& y) { return x.gap < y.gap; });
   return found;
+}
+
+FeatureContact contact_in(const Mover& a, const Mover& b, const BodyState& state_a, const BodyState& state_b,
+                          const FeatureContact& like, SearchScratch& scratch) {
+  WorkCounters uncounted;
+  const SearchLimits limits;
+  return PairSearch(a, b, like.time, like.time, limits, scratch, uncounted).in_states(state_a, state_b, like);
 }
 
 double pair_gap(const Mover& a, const Mover& b, double t, SearchScratch& scratch) {

@@ -1,0 +1,25 @@
+// First contact against a slow reference on random flights of every kind of outline and motion.
+#include <gtest/gtest.h>
+
+#include "first_contact_flights.h"
+
+namespace brink {
+namespace {
+
+// Every answer is compared with distances and speed bounds that share no code with the search. BRINK_SEED moves the
+// seeds, BRINK_FLIGHTS their number.
+TEST(FirstContactFuzz, RandomFlightsAgreeWithTheSlowReference) {
+  const char* given = std::getenv("BRINK_SEED");
+  const char* many = std::getenv("BRINK_FLIGHTS");
+  const std::uint64_t first = given ? std::strtoull(given, nullptr, 10) : 1;
+  const std::uint64_t count = many ? std::strtoull(many, nullptr, 10) : 20000;
+  flights::Checker checker;
+  for (std::uint64_t k = 0; k < count; ++k) checker.check(first + k);
+  std::cout << "seeds " << first << " .. " << first + count - 1 << "\n" << checker.tally;
+  EXPECT_EQ(checker.tally.failures(), 0);
+  EXPECT_GT(checker.tally.contacts, static_cast<long>(count) / 4);
+  EXPECT_EQ(checker.tally.given_up, 0);
+}
+
+}  // namespace
+}  // namespace brink
