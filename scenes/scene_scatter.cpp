@@ -147,6 +147,7 @@ bool surely_apart(const Obstacle& a, const Obstacle& b, double margin) {
 std::optional<std::vector<Pose>> scatter_poses(const ScatterAsk& ask, const std::vector<Obstacle>& obstacles,
                                                Random& random, std::int64_t* room) {
   const double radius = ask.outline->bounding_radius, tightest = 2.0 * radius * (1.0 + 1e-8);
+  *room = 0;
   const Vec2 extent = ask.region.grown(radius).extent();
   const double area = extent.x() * extent.y(), disc = std::numbers::pi * radius * radius;
   const double wanted = static_cast<double>(ask.count) * disc;
@@ -160,7 +161,9 @@ std::optional<std::vector<Pose>> scatter_poses(const ScatterAsk& ask, const std:
   Room shelf = empty;
   double spacing =
       std::max(tightest, std::sqrt(2.0 / std::numbers::sqrt3 * area / static_cast<double>(ask.count)));
-  while (true) {
+  // a region that is nearly all taken is not searched to its last corner
+  const double most = 4.0 * static_cast<double>(ask.count) + 2e5;
+  while (area < most * spacing * spacing) {
     std::vector<Pose> places = lattice(ask, shelf, spacing, random);
     if (places.size() >= static_cast<std::size_t>(ask.count))
       return choose_and_shake(shelf, std::move(places), static_cast<std::size_t>(ask.count),
@@ -169,6 +172,7 @@ std::optional<std::vector<Pose>> scatter_poses(const ScatterAsk& ask, const std:
     if (spacing <= tightest) return std::nullopt;
     spacing = std::max(tightest, 0.97 * spacing);
   }
+  return std::nullopt;
 }
 
 }  // namespace brink
