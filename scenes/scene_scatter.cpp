@@ -163,7 +163,7 @@ std::optional<std::vector<Pose>> scatter_poses(const ScatterAsk& ask, const std:
       std::max(tightest, std::sqrt(2.0 / std::numbers::sqrt3 * area / static_cast<double>(ask.count)));
   // a region that is nearly all taken is not searched to its last corner
   const double most = 4.0 * static_cast<double>(ask.count) + 2e5;
-  while (area < most * spacing * spacing) {
+  while ((extent.x() / spacing + 1.0) * (extent.y() / spacing + 1.0) < most) {
     std::vector<Pose> places = lattice(ask, shelf, spacing, random);
     if (places.size() >= static_cast<std::size_t>(ask.count))
       return choose_and_shake(shelf, std::move(places), static_cast<std::size_t>(ask.count),
