@@ -94,22 +94,22 @@ class PairSearch {
  private:
   void drop(int half, std::size_t count) { std::fill_n(halves_[half].safe_until, count, kForever); }
 
-  /// Steps the discs that hold the two outlines; true if they stay apart to the end. Moves from_ on
-  /// otherwise.
+  /// Steps the discs that hold the two outlines; true if they stay apart to the end. Else moves from_ on, but
+  /// not onto the discs' contact: it may be the pair's, and wants polishing from before.
   bool apart_by_bounding_discs() {
     const Outline &oa = a_.outline(), &ob = b_.outline();
     if (oa.container || ob.container) return false;
     const double reach = oa.bounding_radius + ob.bounding_radius;
+    const double near = 1e-3 * reach + limits_.tolerance;  // as near as makes no difference
     double t = from_;
     for (int i = 0; i < 64 && t < to_; ++i) {
       const BodyState sa = a_.motion->state(t), sb = b_.motion->state(t);
       const Vec2 d = sa.pose.position - sb.pose.position;
       const double distance = d.norm(), f = distance - reach;
-      if (f <= limits_.tolerance) break;
+      if (f <= near) break;
       const RelativeBounds bounds(a_.motion->bounds(t, to_), b_.motion->bounds(t, to_));
       const double df = d.dot(sa.twist.velocity - sb.twist.velocity) / distance;
-      t += safe_step(f, df, bounds.acceleration) * (1.0 - 4.0 * kEpsilon);
-      if (f < 1e-3 * reach) break;  // as near as makes no difference
+      t += safe_step(f - 0.5 * near, df, bounds.acceleration) * (1.0 - 4.0 * kEpsilon);
     }
     if (t >= to_) return true;
     from_ = t;
@@ -329,9 +329,10 @@ class PairSearch {
     if (t_ <= from_ && f.gap <= 0.0) return remember(half, f, t_);
     const Sample& sample = half.samples_of().samples[f.sample];
     const Site& site = half.sites_of().sites[f.site];
+    // two sharp points never overlap, and a thin wire has no inside to tell that it was met: stop just before
     const bool sharp = sample.arc_site < 0 && sharp_vertex(site, sample, nearest_on(site, path.q));
-    const double level =
-        sharp ? 0.5 * limits_.touch : 0.0;  // two sharp points never overlap: meet them just before
+    const bool thin = sample.arc_site < 0 && !site.solid && site.radius + sample.radius == 0.0;
+    const double level = sharp || thin ? 0.5 * limits_.touch : 0.0;
     const auto gap = [&](double t) { return gap_at(half, f, t, level); };
 
     const double speed = -f.rate;

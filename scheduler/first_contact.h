@@ -76,6 +76,11 @@ PairAnswer first_contact(const Mover& a, const Mover& b, double from, double to,
 std::vector<FeatureContact> touching_features(const Mover& a, const Mover& b, double t, double tolerance,
                                               SearchScratch& scratch);
 
+/// The same two features, looked at with the pair in other states close by (a fraction of a rounding of the clock away):
+/// their point, normal, closing speed and gap there. Keeps `like`'s normal where the new one is lost in rounding.
+FeatureContact contact_in(const Mover& a, const Mover& b, const BodyState& state_a, const BodyState& state_b,
+                          const FeatureContact& like, SearchScratch& scratch);
+
 /// Signed gap of the pair at time t: the least over both sample sets [m]; touching features' exactness.
 double pair_gap(const Mover& a, const Mover& b, double t, SearchScratch& scratch);
 

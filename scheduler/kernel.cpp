@@ -10,6 +10,7 @@
 #include "brink/core/base/error.h"
 #include "brink/core/contacts/impulse.h"
 #include "brink/scheduler/broad_phase.h"
+#include "brink/scheduler/canonical_time.h"
 #include "brink/scheduler/closed_forms.h"
 
 namespace brink {
@@ -27,6 +28,21 @@ ImpulseSide body_side(const Body& body, const BodyState& state, const Vec2& poin
 
 ImpulseSide site_side(const BodyState& state, const Vec2& point) {
   return {state.twist, point - state.pose.position, 0.0, 0.0, 0.0};
+}
+
+/// The state now of a motion that has twist `after` and meets the old one `delay` from now.
+BodyState deflected(BodyState s, const Twist& after, double delay) {
+  s.pose.position += delay * (s.twist.velocity - after.velocity);
+  s.pose.angle += delay * (s.twist.omega - after.omega);
+  s.twist = after;
+  return s;
+}
+
+/// The state a moment later, to first order: for moments shorter than a rounding of the clock.
+BodyState moved(BodyState s, double moment) {
+  s.pose.position += moment * s.twist.velocity;
+  s.pose.angle += moment * s.twist.omega;
+  return s;
 }
 
 BodyState held(const Body& body, BodyState s) {
@@ -305,11 +321,18 @@ void Kernel::set_rounding(int k, double magnitude) {
   b.resolved_at = time_;
 }
 
-bool Kernel::resolve(const PairKey& pair, const FeatureContact& f, std::vector<int>& changed) {
+bool Kernel::resolve(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed) {
+  // The exact moment of contact lies a fraction of a rounding of the clock away. The collision is resolved there, and
+  // the new motion is the one that passes through that moment, so that long runs do not drift by roundings of time.
+  const double late = 4.0 * ulp(time_);
+  const double left = found.gap - found.closing_speed * (time_ - found.time);
+  const double delay = found.closing_speed > 0.0 ? std::clamp(left / found.closing_speed, -late, late) : 0.0;
   const Body& body = world_.bodies[pair.body];
-  const BodyState state = this->state(pair.body, time_);
-  const BodyState other_state =
-      pair.with_site() ? site_motion(pair.other_site).state(time_) : this->state(pair.other_body, time_);
+  const BodyState state = moved(this->state(pair.body, time_), delay);
+  const BodyState other_state = moved(
+      pair.with_site() ? site_motion(pair.other_site).state(time_) : this->state(pair.other_body, time_), delay);
+  const FeatureContact f =
+      delay == 0.0 ? found : contact_in(mover(pair.body), other_mover(pair), state, other_state, found, scratch_);
   const ImpulseSide side = body_side(body, state, f.point);
   const ImpulseSide other_side = pair.with_site() ? site_side(other_state, f.point)
                                                   : body_side(world_.bodies[pair.other_body], other_state, f.point);
@@ -337,7 +360,7 @@ bool Kernel::resolve(const PairKey& pair, const FeatureContact& f, std::vector<i
     for (const int j : c.component.bodies) {
       states.push_back(this->state(j, time_));
       for (const auto& [i, after] : touched)
-        if (i == j) states.back().twist = after;
+        if (i == j) states.back() = deflected(states.back(), after, delay);
     }
     set_rounding(k, magnitude);
     if (std::find(restarted.begin(), restarted.end(), bodies_[k].component) != restarted.end()) continue;
@@ -353,11 +376,11 @@ bool Kernel::resolve(const PairKey& pair, const FeatureContact& f, std::vector<i
 
   Event event;
   event.seq = seq_++;
-  event.contact = world_contact(pair, f);
+  event.contact = world_contact(pair, found);
   event.contact.time = time_;
   event.impulse_n = result.normal;
   event.impulse_t = result.tangential;
-  note_overlap(f.gap);
+  note_overlap(found.gap);
   count_collision(pair);
   if (recorder_ && run_.record_events) recorder_->event(event);
   return judge_endings(pair, event.contact);

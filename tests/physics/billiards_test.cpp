@@ -1,0 +1,89 @@
+/// Billiards with closed forms: a circle's chords, a rectangle's unfolding, plates hit fast.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/worlds.h"
+
+namespace brink {
+namespace {
+
+using testing::Events;
+
+// A disc in a circular container, no forces: the angle between chord and wall stays, so foot n of the bounces is at
+// th0 + n (pi - 2 b), b the angle between the path and the inward normal.
+TEST(CircularContainer, FeetOfTenThousandBouncesAreEquallySpaced) {
+  const double wall = 2.0, radius = 0.25, b = 0.7, free = wall - radius;
+  World world;
+  testing::add(world, testing::body(make_disc(radius), {free - 0.8, 0.0}, {1.0, 0.0}));
+  // start on a chord that meets the inner circle (radius `free`) at angle 0 with angle b to the normal
+  world.bodies[0].initial.pose.position = Vec2(free, 0.0) - 0.5 * Vec2(std::cos(b), std::sin(b));
+  world.bodies[0].initial.twist.velocity = Vec2(std::cos(b), std::sin(b));
+  testing::add(world, testing::site(make_disc_container(wall)));
+  Simulator simulator(world, {});
+  Events events;
+  const int bounces = 10000;
+  const double chord = 2.0 * free * std::cos(b);
+  const RunSummary summary = simulator.run(testing::until(0.5 + chord * (bounces - 0.5)), &events);
+  ASSERT_EQ(summary.termination, Termination::reached_end) << summary.why;
+  const auto hits = events.collisions();
+  ASSERT_EQ(hits.size(), static_cast<std::size_t>(bounces));
+  double worst_angle = 0.0, worst_time = 0.0;
+  for (int n = 0; n < bounces; ++n) {
+    const Vec2 p = hits[n].contact.point;
+    const double expected = n * (M_PI - 2.0 * b);
+    worst_angle = std::max(worst_angle, std::abs(std::remainder(std::atan2(p.y(), p.x()) - expected, 2.0 * M_PI)));
+    worst_time = std::max(worst_time, std::abs(hits[n].contact.time - (0.5 + n * chord)));
+  }
+  printf("circle: %d hits, worst foot angle error %.2e rad, worst time error %.2e s\n", bounces, worst_angle, worst_time);
+  EXPECT_LE(worst_angle, 1e-10);
+}
+
+// A disc in a rectangle: each coordinate is a triangular wave.
+double triangular(double x0, double v, double low, double high, double t) {
+  const double width = high - low;
+  const double u = std::fmod(std::abs(std::remainder(x0 - low + v * t, 2.0 * width)), 2.0 * width);
+  return low + u;
+}
+
+TEST(Rectangle, DiscFollowsTheUnfoldedTriangularWave) {
+  const double radius = 0.25, w = 2.0, h = 1.5;
+  World world;
+  const Vec2 p0(0.3, 0.2), v0(1.0, std::sqrt(2.0) / 1.7);
+  testing::add(world, testing::body(make_disc(radius), p0, v0));
+  const Vec2 c[] = {{-w, -h}, {w, -h}, {w, h}, {-w, h}};
+  for (int i = 0; i < 4; ++i) testing::add(world, testing::site(make_segment(c[i], c[(i + 1) % 4])));
+  Simulator simulator(world, {});
+  const double end = 3.0e4;
+  const RunSummary summary = simulator.run(testing::until(end));
+  ASSERT_EQ(summary.termination, Termination::reached_end) << summary.why;
+  const Vec2 p = simulator.state(0).pose.position;
+  const double ex = std::abs(p.x() - triangular(p0.x(), v0.x(), -w + radius, w - radius, end));
+  const double ey = std::abs(p.y() - triangular(p0.y(), v0.y(), -h + radius, h - radius, end));
+  printf("rectangle: %llu hits, error %.2e m\n", static_cast<unsigned long long>(summary.collisions), std::max(ex, ey));
+  EXPECT_GT(summary.collisions, 15000U);
+  EXPECT_LE(std::max(ex, ey), 1e-10);
+}
+
+// Thin plates hit at 1e2 .. 1e4 m/s: nothing overlaps and nothing passes through.
+TEST(ThinPlates, FastShotNeverPassesThrough) {
+  for (const double speed : {1e2, 1e3, 1e4}) {
+    World world;
+    const Shape plate = make_box(0.01, 1.0);
+    testing::add(world, testing::body(make_box(0.02, 0.02), {-1.0, 0.013}, {speed, 0.0}, 2.0, 0.3, 40.0));
+    for (int i = 0; i < 10; ++i) testing::add(world, testing::body(plate, {0.05 * i, 0.0}, {0.0, 0.0}, 1.0));
+    Simulator simulator(world, {});
+    RunOptions options = testing::until(20.0 / speed);
+    options.frame_interval = 0.05 / speed;
+    const RunSummary summary = simulator.run(options);
+    ASSERT_EQ(summary.termination, Termination::reached_end) << summary.why;
+    EXPECT_GT(summary.collisions, 5U);
+    EXPECT_LE(summary.max_overlap, 1e-12) << "speed " << speed;
+    EXPECT_NEAR(summary.energy_final / summary.energy_initial, 1.0, 1e-12);
+    // the shot starts left of every plate and no plate can have been jumped: order along x is kept at the middle plate
+    EXPECT_LT(simulator.state(0).pose.position.x(), simulator.state(10).pose.position.x());
+  }
+}
+
+}  // namespace
+}  // namespace brink
