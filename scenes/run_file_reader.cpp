@@ -113,6 +113,13 @@ struct RunFile::Impl {
   }
 };
 
+bool is_run_file(const fs::path& file) {
+  if (!fs::exists(file)) return false;
+  return guarded(file, [&] {
+    return SQLite::Database(file, SQLite::OPEN_READONLY, kBusyMilliseconds).tableExists("meta");
+  });
+}
+
 RunFile::RunFile(const fs::path& file) : impl_(guarded(file, [&] { return std::make_unique<Impl>(file); })) {
   const std::string schema = meta("schema_version").value_or("");
   if (schema != std::to_string(kRunFileSchema)) {
