@@ -81,6 +81,7 @@ BodyField::BodyField(std::shared_ptr<const Outline> outline, CandidateLists list
     : SiteIndex(std::move(outline)),
       lists_(std::move(lists)),
       per_pixel_(1.0 / lists_.grid.pixel),
+      snap_(lists_.grid.snap()),
       tree_(*outline_) {}
 
 Candidates BodyField::candidates(const Vec2& q, double reach, Scratch& scratch) const {
@@ -91,9 +92,9 @@ Candidates BodyField::candidates(const Vec2& q, double reach, Scratch& scratch) 
   const CandidateLists::Cell cell =
       lists_.cells[static_cast<std::size_t>(j) * static_cast<std::size_t>(lists_.grid.width) +
                    static_cast<std::size_t>(i)];
-  // |v| <= max + (sqrt 2 - 1) min: no square root; 1e-9 of a pixel covers the rounding of x and y.
+  // |v| <= max + (sqrt 2 - 1) min: no square root.
   const double dx = std::abs(x - i - 0.5), dy = std::abs(y - j - 0.5);
-  const double off = std::max(dx, dy) + 0.41421357 * std::min(dx, dy) + 1e-9;
+  const double off = std::max(dx, dy) + 0.41421357 * std::min(dx, dy) + snap_;
   const double others = cell.others - off * lists_.grid.pixel;
   const std::uint32_t count = cell.count();
   if (count != 0 && count != CandidateLists::kTree) [[likely]] {
@@ -107,7 +108,8 @@ Candidates BodyField::outside(const Vec2& q, double reach, Scratch& scratch) con
   if (!q.allFinite()) return {{}, 0.0};
   const Box& box = outline_->bounds;
   const Vec2 away = (box.low - q).cwiseMax(q - box.high).cwiseMax(Vec2::Zero());
-  const double distance = away.norm() * (1.0 - 0x1.0p-48);
+  const double rounding = 0x1.0p-50 * (box.low.cwiseAbs().maxCoeff() + box.high.cwiseAbs().maxCoeff());
+  const double distance = away.norm() * (1.0 - 0x1.0p-48) - rounding;
   if (distance >= reach) return {{}, distance};
   return by_tree(q, scratch);
 }

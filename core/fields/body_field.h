@@ -37,6 +37,7 @@ class BodyField final : public SiteIndex {
 
   CandidateLists lists_;
   double per_pixel_;  ///< 1 / pixel
+  double snap_;       ///< PixelGrid::snap()
   SiteTree tree_;
 };
 

@@ -112,10 +112,10 @@ CandidateLists render_lists(FieldRenderer& renderer, const Outline& outline, con
   CandidateLists lists;
   lists.grid = grid;
   const PlacedOutline placed{&outline, Pose(), 0};
-  const BatchRules batch_rules{rules.band, 2.0 * kHalfDiagonal + 0.01, /*bounds=*/true};
+  const BatchRules batch_rules{rules.band, 2.0 * (kHalfDiagonal + grid.snap()) + 0.01, /*bounds=*/true};
   const SiteBatch batch = make_batch(grid, std::span(&placed, 1), FieldImage::kNone, batch_rules);
   // The sum of bound and slack is rounded to single precision in the shader: a few units in the last place.
-  const double slack = 2.0 * kHalfDiagonal + 0x1.0p-22 * batch.largest_value;
+  const double slack = 2.0 * (kHalfDiagonal + grid.snap()) + 0x1.0p-22 * batch.largest_value;
   const std::vector<float>& bounds = renderer.draw_bounds(grid, batch);
   std::vector<std::uint32_t> sorted;
   std::vector<std::uint32_t> start;

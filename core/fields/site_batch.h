@@ -11,7 +11,9 @@
 /// on the sector's edges and are 1-Lipschitz. `kRounding` = 64 u covers both with room. An arc so flat that
 /// its circle is large beside the window is drawn as its chord where its sagitta is the smaller error.
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -27,6 +29,12 @@ struct PixelGrid {
   double pixel = 1.0;       ///< [m]
   int width = 0, height = 0;
 
+  /// How far rounding can put a point's pixel beside the true one [pixel]: its coordinates may be large
+  /// beside a pixel.
+  double snap() const {
+    const double farthest = low.cwiseAbs().maxCoeff() + pixel * std::max(width, height);
+    return 1e-9 + 0x1.0p-50 * farthest / pixel;
+  }
   Vec2 center() const { return low + 0.5 * pixel * Vec2(width, height); }
   double half_diagonal() const { return 0.5 * std::hypot(width, height); }  ///< [pixel]
   Box box() const {

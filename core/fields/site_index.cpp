@@ -24,6 +24,15 @@ class BruteForceIndex final : public SiteIndex {
   std::vector<std::uint32_t> all_;
 };
 
+/// A raster needs an outline of some size, also beside its distance from the frame's origin.
+bool can_be_drawn(const Outline& outline) {
+  if (outline.sites.empty()) return false;
+  const double size = outline.bounds.extent().maxCoeff();
+  const double farthest =
+      std::max(outline.bounds.low.cwiseAbs().maxCoeff(), outline.bounds.high.cwiseAbs().maxCoeff());
+  return size > 1e-100 && size > 1e-9 * farthest && farthest < 1e100;
+}
+
 }  // namespace
 
 SiteIndex::SiteIndex(std::shared_ptr<const Outline> outline) : outline_(std::move(outline)) {
@@ -72,9 +81,8 @@ std::unique_ptr<SiteIndex> make_site_index(std::shared_ptr<const Outline> outlin
                                            const FieldOptions& options, WorkCounters* work) {
   std::string error;
   if (!options.is_valid(&error)) throw BadInput(error);
-  if (outline->sites.size() < static_cast<std::size_t>(options.brute_force_below) || outline->sites.empty()) {
-    return make_brute_force_index(std::move(outline));
-  }
+  const bool few = outline->sites.size() < static_cast<std::size_t>(options.brute_force_below);
+  if (few || !can_be_drawn(*outline)) return make_brute_force_index(std::move(outline));
   detail::FieldRenderer& renderer = detail::thread_renderer(options.context);
   const std::uint64_t drawn = renderer.pixels_drawn(), read = renderer.pixels_read();
   auto field = detail::render_body_field(std::move(outline), options, renderer);

@@ -100,6 +100,9 @@ inline std::vector<NamedOutline> all_shapes() {
   shapes.push_back(named("thick spiral", make_chain(spiral(120), false, 0.02)));
   shapes.push_back(named("circle container", make_disc_container(2.0)));
   shapes.push_back(named("flat lens", flat_lens()));
+  std::vector<Vec2> far = star(16, 1.0, 0.4);
+  for (Vec2& p : far) p += Vec2(1e6, -2e6);
+  shapes.push_back(named("star far from its origin", make_polygon(far)));
   return shapes;
 }
 
