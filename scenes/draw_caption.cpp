@@ -7,6 +7,9 @@
 namespace brink::draw {
 namespace {
 
+/// Words longer than this share of the width leave no room for the ruler or legend.
+constexpr double kRoomForWords = 0.6;
+
 std::string length_text(double metres) {
   if (metres >= 1000.0) return fmt::format("{:.3g} km", metres / 1000.0);
   if (metres >= 1.0) return fmt::format("{:.3g} m", metres);
@@ -53,15 +56,16 @@ void draw_caption(Canvas& canvas, const Sheet& sheet) {
   canvas.rectangle(0, top, o.size.width, sheet.strip, Tones::paper.rgb());
   canvas.rectangle(0, top, o.size.width, 1.0, Oklch{0.80, 0.01, 85.0}.rgb());
   const bool depth = o.layer.kind == DrawLayer::Kind::depth;
-  const double right = o.size.width - edge;
-  depth ? draw_legend(canvas, sheet, right, y, size) : draw_ruler(canvas, sheet, right, y, size);
   std::string title = o.title.empty() ? sheet.world.title : o.title;
   if (o.layer.kind == DrawLayer::Kind::pass)
     title += (title.empty() ? "" : ", ") + fmt::format("pass of {}", o.layer.body);
-  const double x = edge + canvas.text(edge, y, title, size, ink, Canvas::Align::left, true);
-  if (!o.time) return;
-  canvas.text(x + (title.empty() ? 0.0 : size), y, fmt::format("t = {:.6g} s", *o.time), size,
-              Oklch{0.45, 0.02, 260.0}.rgb(), Canvas::Align::left);
+  double x = edge + canvas.text(edge, y, title, size, ink, Canvas::Align::left, true);
+  if (o.time)
+    x += size + canvas.text(x + (title.empty() ? 0.0 : size), y, fmt::format("t = {:.6g} s", *o.time), size,
+                            Oklch{0.45, 0.02, 260.0}.rgb(), Canvas::Align::left);
+  if (x > kRoomForWords * o.size.width) return;
+  depth ? draw_legend(canvas, sheet, o.size.width - edge, y, size)
+        : draw_ruler(canvas, sheet, o.size.width - edge, y, size);
 }
 
 }  // namespace brink::draw
