@@ -35,5 +35,6 @@ position = [0.0, 10.0]
   const double expected = std::sqrt(2.0 * 9.5 / 9.81);
   std::printf("first contact at %.12f s, expected %.12f s; %s\n", recorder.t, expected,
               summary.termination_text().c_str());
-  return std::abs(recorder.t - expected) < 1e-9 && summary.termination == brink::Termination::reached_end ? 0 : 1;
+  return std::abs(recorder.t - expected) < 1e-9 && summary.termination == brink::Termination::reached_end ? 0
+                                                                                                          : 1;
 }
