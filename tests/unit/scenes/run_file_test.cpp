@@ -366,7 +366,7 @@ TEST_F(RunFileTest, BodiesAndSitesReadBackWithTheirShapes) {
   EXPECT_EQ(bodies[1].outline.solid, box.solid);
   ASSERT_EQ(run.sites().size(), 1u);
   EXPECT_EQ(run.sites()[0].kind, "segment");
-  EXPECT_EQ(run.sites()[0].outline.sites[0].a,
+  EXPECT_EQ(run.sites()[0].outline->sites[0].a,
             Vec2(-1, -1));  // given at (-1, 0), the site is shifted by (0, -1)
 }
 
