@@ -59,9 +59,9 @@ FieldRenderer::~FieldRenderer() {
   for (Program& program : programs_) {
     if (program.name != 0) gl_.DeleteProgram(program.name);
   }
-  destroy(image_[0]);
-  destroy(image_[1]);
-  destroy(bound_);
+  for (Targets* targets : {&image_[0], &image_[1], &bound_}) {
+    for (Target& target : *targets) destroy(target);
+  }
   gl_.DeleteTextures(1, &owner_texture_);
   for (GLuint* buffer : {&owner_buffer_, &instances_, &storage_}) gl_.DeleteBuffers(1, buffer);
   gl_.DeleteVertexArrays(1, &vertices_);
@@ -108,31 +108,34 @@ void FieldRenderer::destroy(Target& target) {
   target = Target();
 }
 
-/// Makes the target at least as large as the window (a power of two) and draws into it from now on.
-void FieldRenderer::fit(Target& target, const PixelGrid& grid, bool with_ids) {
-  const int needed = std::max(grid.width, grid.height);
-  if (target.size < needed) {
-    destroy(target);
-    target.size = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max(needed, 32))));
-    gl_.ActiveTexture(GL_TEXTURE0);
-    gl_.GenFramebuffers(1, &target.framebuffer);
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
-    std::vector<GLenum> buffers;
-    const auto attach = [&](GLuint name) {
-      const auto slot = static_cast<GLenum>(GL_COLOR_ATTACHMENT0 + buffers.size());
-      gl_.FramebufferTexture2D(GL_FRAMEBUFFER, slot, GL_TEXTURE_2D, name, 0);
-      buffers.push_back(slot);
-    };
-    if (with_ids) attach(target.ids = texture(GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, target.size));
-    attach(target.values = texture(GL_R32F, GL_RED, GL_FLOAT, target.size));
-    target.depth = texture(GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, target.size);
-    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target.depth, 0);
-    gl_.DrawBuffers(static_cast<GLsizei>(buffers.size()), buffers.data());
-    if (gl_.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-      throw IoError("the framebuffer of a field (" + std::to_string(target.size) +
-                    " pixels a side) is incomplete on " + context_->description());
-    }
+void FieldRenderer::make_target(Target& target, int size, bool with_ids) {
+  target.size = size;
+  gl_.ActiveTexture(GL_TEXTURE0);
+  gl_.GenFramebuffers(1, &target.framebuffer);
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+  std::vector<GLenum> buffers;
+  const auto attach = [&](GLuint name) {
+    const auto slot = static_cast<GLenum>(GL_COLOR_ATTACHMENT0 + buffers.size());
+    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, slot, GL_TEXTURE_2D, name, 0);
+    buffers.push_back(slot);
+  };
+  if (with_ids) attach(target.ids = texture(GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, target.size));
+  attach(target.values = texture(GL_R32F, GL_RED, GL_FLOAT, target.size));
+  target.depth = texture(GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, target.size);
+  gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target.depth, 0);
+  gl_.DrawBuffers(static_cast<GLsizei>(buffers.size()), buffers.data());
+  if (gl_.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    throw IoError("the framebuffer of a field (" + std::to_string(target.size) +
+                  " pixels a side) is incomplete on " + context_->description());
   }
+}
+
+/// Draws from now on into a target at least as large as the window, cleared.
+void FieldRenderer::fit(Targets& targets, const PixelGrid& grid, bool with_ids) {
+  const auto size = std::bit_ceil(static_cast<unsigned>(std::max({grid.width, grid.height, 32})));
+  Target& target = targets[static_cast<std::size_t>(std::bit_width(size)) - 1];
+  if (target.framebuffer == 0) make_target(target, static_cast<int>(size), with_ids);
+  current_ = &target;
   gl_.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
   gl_.Viewport(0, 0, grid.width, grid.height);
   const GLuint none[4] = {0xffffffffU, 0, 0, 0};
@@ -158,6 +161,7 @@ void FieldRenderer::draw(const PixelGrid& grid, const SiteBatch& batch) {
 void FieldRenderer::draw_image(const PixelGrid& grid, const SiteBatch& batch, double limit, int layer,
                                const std::vector<std::uint32_t>& owners) {
   context_->make_current();
+  const GLuint first_ids = layer == 1 ? current_->ids : 0;
   fit(image_[layer], grid, /*with_ids=*/true);
   Program& program = use(layer == 0 ? FieldProgram::first : FieldProgram::second, grid, batch);
   gl_.Uniform1f(program.depth_scale, static_cast<float>(batch.depth_scale));
@@ -165,7 +169,7 @@ void FieldRenderer::draw_image(const PixelGrid& grid, const SiteBatch& batch, do
   gl_.Uniform1f(program.offset, static_cast<float>(batch.offset));
   if (layer == 1) {
     gl_.ActiveTexture(GL_TEXTURE0 + kUnitFirst);
-    gl_.BindTexture(GL_TEXTURE_2D, image_[0].ids);
+    gl_.BindTexture(GL_TEXTURE_2D, first_ids);
     gl_.BindBuffer(GL_TEXTURE_BUFFER, owner_buffer_);
     gl_.BufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(owners.size() * sizeof(std::uint32_t)),
                    owners.data(), GL_STREAM_DRAW);
@@ -218,7 +222,7 @@ const std::vector<PixelEntry>& FieldRenderer::draw_candidates(const PixelGrid& g
   gl_.Uniform1f(program.slack, static_cast<float>(slack));
   gl_.Uniform1ui(program.width, static_cast<GLuint>(grid.width));
   gl_.ActiveTexture(GL_TEXTURE0 + kUnitNearest);
-  gl_.BindTexture(GL_TEXTURE_2D, bound_.values);
+  gl_.BindTexture(GL_TEXTURE_2D, current_->values);
   gl_.Disable(GL_DEPTH_TEST);
   gl_.DrawBuffers(0, nullptr);
   std::array<std::uint32_t, 2> head{};

@@ -42,7 +42,7 @@ class FieldRenderer {
   /// Reads a rectangle of the layer drawn last, row-major from the bottom.
   void read_image(int x, int y, int width, int height, std::uint32_t* ids, float* values);
   /// Side of the square target that holds the image (at least the window).
-  int target_size() const { return image_[0].size; }
+  int target_size() const { return current_->size; }
 
   /// Draws the nearest upper bounds; infinity where nothing is drawn. The result lives until the next call.
   const std::vector<float>& draw_bounds(const PixelGrid& grid, const SiteBatch& batch);
@@ -70,7 +70,12 @@ class FieldRenderer {
   };
 
   Program& use(FieldProgram kind, const PixelGrid& grid, const SiteBatch& batch);
-  void fit(Target& target, const PixelGrid& grid, bool with_ids);
+  /// Targets of one use by size: powers of two. A clear costs the whole target, so a small window gets a
+  /// small one.
+  using Targets = std::array<Target, 14>;
+
+  void fit(Targets& targets, const PixelGrid& grid, bool with_ids);
+  void make_target(Target& target, int size, bool with_ids);
   void upload(const SiteBatch& batch);
   void draw(const PixelGrid& grid, const SiteBatch& batch);
   GLuint texture(GLenum internal, GLenum format, GLenum type, int size);
@@ -80,7 +85,8 @@ class FieldRenderer {
   std::unique_ptr<GlContext> context_;
   GlFunctions gl_;
   std::array<Program, 2 * kFieldPrograms> programs_{};  ///< by kind, without and with arcs
-  Target image_[2], bound_;
+  Targets image_[2], bound_;
+  Target* current_ = nullptr;  ///< the target drawn into last
   GLuint vertices_ = 0, instances_ = 0, storage_ = 0, owner_buffer_ = 0, owner_texture_ = 0;
   std::size_t storage_bytes_ = 0;
   std::vector<float> bounds_;
