@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "brink/core/shapes/distance.h"
 #include "brink/scheduler/canonical_time.h"
 
 namespace brink {
@@ -21,8 +22,9 @@ bool keeps_angle(const Motion& m) {
 }
 
 bool only_segments(const Outline& o) {
-  return o.sites.size() <= kMostSites &&
-         std::all_of(o.sites.begin(), o.sites.end(), [](const Site& s) { return s.kind == SiteKind::segment; });
+  return o.sites.size() <= kMostSites && std::all_of(o.sites.begin(), o.sites.end(), [](const Site& s) {
+           return s.kind == SiteKind::segment;
+         });
 }
 
 /// The pair on its common clock s = t - reference.
@@ -44,12 +46,14 @@ struct RelativeParabola {
   }
 };
 
-/// When, from s_from on, a gap on the parabola g meets contact; infinity if never. `speed` scales g's slope to m/s.
-double contact_after(const Quadratic& g, double s_from, double noise, double touch) {
+/// When, from s_from on, a gap on the parabola g meets contact; infinity if never. `noise`: rounding of g's
+/// slope [m/s]; `deepest`: a gap below -deepest is no overlap but the far side of a body [m].
+double contact_after(const Quadratic& g, double s_from, double noise, double touch, double deepest) {
   const double root = falling_root(g);
   if (root >= s_from) return root;
   const double now = g.at(s_from), slope = g.slope(s_from);
-  if (now > touch || slope > noise) return kForever;          // risen again, or rising: let go
+  if (now > touch || now < -deepest || slope > noise)
+    return kForever;                                          // risen again, beyond, or rising: let go
   if (slope < -noise) return now <= 0.0 ? s_from : kForever;  // through the surface and approaching: now
   if (g.second >= 0.0) return kForever;
   // At rest on the surface and pressed against it: contact is when it has sunk by `touch`.
@@ -68,7 +72,25 @@ double before_contact(Gap&& gap, double t, double from, double speed) {
   return t;
 }
 
-bool discs(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits, PairAnswer& answer) {
+/// Rounding of a gap at time t [m].
+double place_noise(const Mover& a, const Mover& b, double t) {
+  const Vec2 pa = a.motion->pose(t).position, pb = b.motion->pose(t).position;
+  const double arm = a.outline().bounding_radius + b.outline().bounding_radius;
+  return 32.0 * kEpsilon * (pa.lpNorm<1>() + pb.lpNorm<1>() + (pa - pb).norm() + arm);
+}
+
+/// The general search's time near the root t, so that it does not matter which of the two a window was given
+/// to.
+template <class Gap>
+double canonical_root(Gap&& gap, double t, double from, double noise, double speed) {
+  const double low = t - 8.0 * noise, high = t + 8.0 * noise;
+  if (low > from && gap(low) > 0.0 && gap(high) <= 0.0) return last_clear_time(gap, low, high);
+  if (t > from && gap(from) > 0.0 && gap(high) <= 0.0) return last_clear_time(gap, from, high);
+  return before_contact(gap, t, from, speed);
+}
+
+bool discs(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
+           PairAnswer& answer) {
   const RelativeParabola rel(a, b);
   if (!rel.acceleration.isZero(0.0)) return false;
   const double reach = a.outline().sites[0].radius + b.outline().sites[0].radius;
@@ -76,9 +98,9 @@ bool discs(const Mover& a, const Mover& b, double from, double to, const SearchL
   const double distance0 = rel.offset.norm();
   const double scale = 1.0 / (2.0 * reach);
   if (!(reach > 0.0)) return false;
-  const Quadratic g{(distance0 - reach) * (distance0 + reach) * scale, 2.0 * rel.offset.dot(rel.velocity) * scale,
-                    2.0 * rel.velocity.squaredNorm() * scale};
-  const double s = contact_after(g, from - rel.reference, rel.noise, limits.touch);
+  const Quadratic g{(distance0 - reach) * (distance0 + reach) * scale,
+                    2.0 * rel.offset.dot(rel.velocity) * scale, 2.0 * rel.velocity.squaredNorm() * scale};
+  const double s = contact_after(g, from - rel.reference, rel.noise, limits.touch, kForever);
   answer = {PairAnswer::Status::clear, to, {}};
   double t = std::max(rel.reference + s, from);
   if (!(t <= to)) return true;
@@ -122,6 +144,10 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
   const double s_from = from - rel.reference, s_to = to - rel.reference;
   const double disc_radius = disc.outline().sites[0].radius;
   const std::vector<Site>& sites = other.outline().sites;
+  // as in the general search: a thin wire is met just before it, so that the side stays known
+  const auto level_of = [&](const Site& site) {
+    return !site.solid && site.radius + disc_radius == 0.0 ? 0.5 * limits.touch : 0.0;
+  };
   double earliest = kForever;
   int touched = -1;
   Vec2 normal = Vec2::Zero();
@@ -133,9 +159,11 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
     Vec2 n = -perp(tangent);  // right of travel: out of a solid
     const Vec2 now = q - site.a + s_from * (v + 0.5 * s_from * acc);
     if (!site.solid && n.dot(now) < 0.0) n = -n;
-    const Quadratic gap{n.dot(q - site.a) - disc_radius - site.radius, n.dot(v), n.dot(acc)};
+    const double level = level_of(site);
+    const Quadratic gap{n.dot(q - site.a) - disc_radius - site.radius - level, n.dot(v), n.dot(acc)};
     const Quadratic along{tangent.dot(q - site.a), tangent.dot(v), tangent.dot(acc)};
-    const double s = contact_after(gap, s_from, rel.noise, limits.touch);
+    const double s = contact_after(gap, s_from, rel.noise, limits.touch - 1.5 * level,
+                                   disc_radius + site.radius + limits.tolerance);
     if (!stays_within(along, length, s_from, std::max(s_from, std::min(s, s_to)))) return false;
     if (s < earliest) {
       earliest = s;
@@ -147,12 +175,19 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
   double t = std::max(rel.reference + earliest, from);
   if (touched < 0 || !(t <= to)) return true;
   const Site& site = sites[touched];
-  const auto gap_at = [&](double time) {
-    const Vec2 place = frame.direction_to_local(disc.motion->pose(time).position - other.motion->pose(time).position);
-    return normal.dot(place - site.a) - disc_radius - site.radius;
+  const double level = level_of(site);
+  const auto gap_at = [&](double time) {  // bit for bit the gap of the general search
+    const Vec2 place =
+        frame.direction_to_local(disc.motion->pose(time).position - other.motion->pose(time).position);
+    const Nearest nearest = nearest_on(site, place);
+    const bool sided = site.solid || site.radius + disc_radius > 0.0;
+    const double side = sided                                     ? side_of(site, nearest, place)
+                        : normal.dot(place - nearest.point) < 0.0 ? -1.0
+                                                                  : 1.0;
+    return side * nearest.distance - (site.radius + disc_radius) - level;
   };
-  const double speed = -normal.dot(v + (t - rel.reference) * acc);
-  t = before_contact(gap_at, t, from, std::max(speed, rel.noise));
+  const double speed = std::max(-normal.dot(v + (t - rel.reference) * acc), rel.noise);
+  t = canonical_root(gap_at, t, from, place_noise(disc, other, t) / speed + 4.0 * ulp(t), speed);
   const BodyState sd = disc.motion->state(t), so = other.motion->state(t);
   const Vec2 out = frame.direction_to_world(normal);
   FeatureContact& c = answer.contact;
@@ -160,7 +195,7 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
   c.sample_on_a = disc_is_a;
   c.sample = 0;
   c.site = touched;
-  c.gap = gap_at(t);
+  c.gap = gap_at(t) + level;
   c.normal = disc_is_a ? out : Vec2(-out);
   c.point = sd.pose.position - out * (disc_radius + c.gap);
   c.closing_speed = -out.dot(sd.twist.velocity - so.twist.velocity);
@@ -187,8 +222,8 @@ bool has_closed_form(const Mover& a, const Mover& b) {
   return disc_b && keeps_angle(*a.motion) && only_segments(a.outline());
 }
 
-bool first_contact_in_closed_form(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
-                                  PairAnswer& answer) {
+bool first_contact_in_closed_form(const Mover& a, const Mover& b, double from, double to,
+                                  const SearchLimits& limits, PairAnswer& answer) {
   if (!has_closed_form(a, b)) return false;
   const bool disc_a = is_centred_disc(a.outline()), disc_b = is_centred_disc(b.outline());
   if (disc_a && disc_b) return discs(a, b, from, to, limits, answer);

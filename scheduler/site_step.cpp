@@ -14,9 +14,11 @@ HullDistance distance_to_arc_hull(const Site& arc, const Nearest& nearest, const
       const double length = std::sqrt(length2);
       return {behind / length, Vec2(perp(chord) * (turn / length))};
     }
-  } else if (nearest.foot == Foot::interior && (q - arc.center).squaredNorm() <= arc.arc_radius * arc.arc_radius) {
+  } else if (nearest.foot == Foot::interior &&
+             (q - arc.center).squaredNorm() <= arc.arc_radius * arc.arc_radius) {
     return {};  // between chord and arc
   }
+  if (nearest.foot == Foot::interior) return {nearest.distance, (q - arc.center).normalized()};
   if (nearest.distance == 0.0) return {};
   return {nearest.distance, Vec2((q - nearest.point) / nearest.distance)};
 }

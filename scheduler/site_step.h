@@ -7,7 +7,8 @@
 
 namespace brink {
 
-/// Distance from q to the convex hull of an arc (the circular segment between arc and chord) and its gradient; 0 inside.
+/// Distance from q to the convex hull of an arc (the circular segment between arc and chord) and its
+/// gradient; 0 inside.
 struct HullDistance {
   double distance = 0.0;
   Vec2 gradient = Vec2::Zero();
@@ -16,17 +17,32 @@ HullDistance distance_to_arc_hull(const Site& arc, const Nearest& nearest, const
 
 /// Gap of a point with `radius` (thickness of both sides together) to one site, and how long it cannot close.
 struct SiteStep {
-  double gap;        ///< unsigned distance - radius [m]
-  double rate;       ///< d(gap)/dt of the unsigned distance [m/s]
-  double safe;       ///< certified: the gap stays > 0 for this long [s]
+  double gap;   ///< unsigned distance - radius [m]
+  double rate;  ///< d(gap)/dt of the unsigned distance [m/s]
+  double safe;  ///< certified: the gap stays > 0 for this long [s]
 };
 
+/// d(distance)/dt of q from the site's core. Close to the core the foot's rounding would turn the direction,
+/// so there it is the site's own normal.
+inline double distance_rate(const Site& site, const Nearest& nearest, const Vec2& q, const Vec2& rate) {
+  if (nearest.foot == Foot::interior && nearest.distance < 1e-4 * q.lpNorm<1>()) {
+    if (site.kind == SiteKind::segment) {
+      const Vec2 d = site.b - site.a;
+      return cross(d, rate) / (cross(d, q - site.a) < 0.0 ? -d.norm() : d.norm());
+    }
+    if (site.kind == SiteKind::arc) {
+      const Vec2 w = q - site.center;
+      return w.dot(rate) / (beyond_circle(site, q, w) < 0.0 ? -w.norm() : w.norm());
+    }
+  }
+  return nearest.distance > 0.0 ? (q - nearest.point).dot(rate) / nearest.distance : 0.0;
+}
+
 /// @pre bounds hold for at least the time that the caller will use of `safe`.
-inline SiteStep site_step(const Site& site, const Nearest& nearest, const Vec2& q, const Vec2& rate, double radius,
-                          double slack, const PathBounds& bounds) {
+inline SiteStep site_step(const Site& site, const Nearest& nearest, const Vec2& q, const Vec2& rate,
+                          double radius, double slack, const PathBounds& bounds) {
   const double gap = nearest.distance - radius;
-  const Vec2 away = q - nearest.point;
-  const double df = nearest.distance > 0.0 ? away.dot(rate) / nearest.distance : 0.0;
+  const double df = distance_rate(site, nearest, q, rate);
   SiteStep step{gap, df, 0.0};
   const double f = std::max(gap, 0.0) + slack;
   if (site.kind != SiteKind::arc) {  // convex
@@ -41,8 +57,7 @@ inline SiteStep site_step(const Site& site, const Nearest& nearest, const Vec2& 
   if (circle > 0.0 && rho > 0.0) {
     const double radial = w.dot(rate) / rho;
     const bool inside = rho < site.arc_radius;
-    const double curvature =
-        bounds.acceleration + (inside ? bounds.speed * bounds.speed / rho : 0.0);
+    const double curvature = bounds.acceleration + (inside ? bounds.speed * bounds.speed / rho : 0.0);
     step.safe = std::max(step.safe, safe_step(circle, inside ? -radial : radial, curvature));
   }
   const HullDistance hull = distance_to_arc_hull(site, nearest, q);

@@ -1,11 +1,11 @@
 #pragma once
-/// A slow reference for first contact that shares no code with the scheduler: exact distances of all pairs of sites, and
-/// steps by a bound on the speed.
+/// A slow reference for first contact that shares no code with the scheduler: exact distances of all pairs of
+/// sites, and steps by a bound on the speed.
 ///
-/// The distance of two curves is the least over finitely many pairs of points: ends against curves, points on a line
-/// through a centre, crossings. It changes no faster than any point of one body moves against any of the other (V), so
-/// from t the pair stays apart until t + distance / V. Each pair of sites is stepped alone until it touches, leaves the
-/// window, or is later than the earliest contact found.
+/// The distance of two curves is the least over finitely many pairs of points: ends against curves, points on
+/// a line through a centre, crossings. It changes no faster than any point of one body moves against any of
+/// the other (V), so from t the pair stays apart until t + distance / V. Each pair of sites is stepped alone
+/// until it touches, leaves the window, or is later than the earliest contact found.
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +23,9 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 struct Curve {
   SiteKind kind = SiteKind::point;
   Vec2 a = Vec2::Zero(), b = Vec2::Zero();  ///< ends
-  Vec2 center = Vec2::Zero(), middle = Vec2::Zero();  ///< arcs: centre, unit direction to the middle of the arc
-  double circle = 0.0, half_cosine = 0.0;   ///< arcs: radius, cosine of half the sweep
+  Vec2 center = Vec2::Zero(),
+       middle = Vec2::Zero();              ///< arcs: centre, unit direction to the middle of the arc
+  double circle = 0.0, half_cosine = 0.0;  ///< arcs: radius, cosine of half the sweep
 };
 
 struct Turn {
@@ -47,7 +48,9 @@ inline Curve placed(const Site& site, const Turn& turn, const Vec2& shift) {
   return curve;
 }
 
-inline bool in_sector(const Curve& arc, const Vec2& d) { return d.dot(arc.middle) >= d.norm() * arc.half_cosine; }
+inline bool in_sector(const Curve& arc, const Vec2& d) {
+  return d.dot(arc.middle) >= d.norm() * arc.half_cosine;
+}
 
 inline double point_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
   const Vec2 d = b - a;
@@ -113,8 +116,8 @@ inline double arc_to_arc(const Curve& s, const Curve& t) {
 
 /// Distance of two cores: 0 where they cross.
 inline double core_distance(const Curve& s, const Curve& t) {
-  double best = std::min({point_to_curve(s.a, t), point_to_curve(s.b, t), point_to_curve(t.a, s),
-                          point_to_curve(t.b, s)});
+  double best = std::min(
+      {point_to_curve(s.a, t), point_to_curve(s.b, t), point_to_curve(t.a, s), point_to_curve(t.b, s)});
   if (s.kind == SiteKind::point || t.kind == SiteKind::point) return best;
   if (s.kind == SiteKind::segment && t.kind == SiteKind::segment) return segments_cross(s, t) ? 0.0 : best;
   if (s.kind == SiteKind::segment) return std::min(best, segment_to_arc(s, t));
@@ -128,7 +131,8 @@ inline double reach_of(const Site& site) {
   return site.kind == SiteKind::arc ? std::max(ends, site.center.norm() + site.arc_radius) : ends;
 }
 
-/// How fast a body can be over the window of a flight: |velocity - drift| and |omega| (drift: of both bodies alike).
+/// How fast a body can be over the window of a flight: |velocity - drift| and |omega| (drift: of both bodies
+/// alike).
 struct SpeedBound {
   double linear = 0.0, spin = 0.0;
 };
@@ -137,8 +141,8 @@ struct SpeedBound {
 struct Pair {
   const Outline *a, *b;
   const Motion *motion_a, *motion_b;
-  double relative_speed;    ///< bound on the speed of a's origin against b's [m/s]
-  double spin_a, spin_b;    ///< bounds on |omega| [rad/s]
+  double relative_speed;  ///< bound on the speed of a's origin against b's [m/s]
+  double spin_a, spin_b;  ///< bounds on |omega| [rad/s]
 
   double site_distance(std::size_t i, std::size_t j, double t, const Vec2& shift_a = Vec2::Zero()) const {
     const Pose pa = motion_a->pose(t), pb = motion_b->pose(t);
@@ -167,7 +171,7 @@ struct Pair {
 };
 
 struct FirstTouch {
-  double time = kNever;   ///< a time at which the distance is <= tiny, none before; kNever: apart to the end
+  double time = kNever;  ///< a time at which the distance is <= tiny, none before; kNever: apart to the end
   std::size_t i = 0, j = 0;
   double least = kNever;  ///< least distance seen
   long evaluations = 0;

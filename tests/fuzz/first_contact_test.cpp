@@ -6,8 +6,8 @@
 namespace brink {
 namespace {
 
-// Every answer is compared with distances and speed bounds that share no code with the search. BRINK_SEED moves the
-// seeds, BRINK_FLIGHTS their number.
+// Every answer is compared with distances and speed bounds that share no code with the search. BRINK_SEED
+// moves the seeds, BRINK_FLIGHTS their number.
 TEST(FirstContactFuzz, RandomFlightsAgreeWithTheSlowReference) {
   const char* given = std::getenv("BRINK_SEED");
   const char* many = std::getenv("BRINK_FLIGHTS");
