@@ -200,7 +200,7 @@ class PairSearch {
       const double gap = nearest.distance - radius;
       if (gap <= band && meets(half, i, static_cast<int>(j), nearest, path, bounds)) continue;
       safe = std::min(safe,
-                      site_step(site, nearest, path.q, path.rate, radius, slack_at(gap, band), bounds).safe);
+                      site_step(site, nearest, path.q, path.rate, radius, slack_at(gap, band, !site.solid && radius == 0.0), bounds).safe);
     }
     return safe;
   }
@@ -210,10 +210,11 @@ class PairSearch {
     return std::max(limits_.tolerance, 8.0 * bounds.speed * ulp(t_));
   }
 
-  /// Added to a gap before stepping. A step leads into the band, never onto the surface: beyond a thin wire
-  /// by a rounding error the point would seem to recede.
-  double slack_at(double gap, double band) const {
-    return gap <= limits_.touch ? limits_.touch : -0.5 * std::min(gap, band);
+  /// Added to a gap before stepping. A step leads into the band, never onto the surface: beyond a thin wire by a
+  /// rounding error the point would seem to recede. In contact the gap may sink by `touch`, but not through a wire.
+  double slack_at(double gap, double band, bool thin) const {
+    const bool may_sink = gap <= (thin ? 0.1 : 1.0) * limits_.touch;
+    return may_sink ? limits_.touch : -0.5 * std::min(gap, band);
   }
 
   double arc_sample_step(const Half& half, int i, const SamplePath& path, const RelativeBounds& relative,
@@ -344,7 +345,7 @@ class PairSearch {
                          4.0 * ulp(t_) + bounds.acceleration * f.gap * f.gap / (speed * speed * speed);
     double low = std::max(guess - 8.0 * noise, from_), high = guess + 8.0 * noise;
     for (double back = 8.0 * noise; gap(low) <= 0.0; back *= 4.0) {
-      if (low <= from_) return remember(half, f, from_);
+      if (low <= from_) return remember(half, f, t_);  // in each other from the start, and now going deeper
       low = std::max(low - back, from_);
     }
     const double last = std::min(a_.motion->end(), b_.motion->end());

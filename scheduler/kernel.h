@@ -93,6 +93,8 @@ class Kernel {
   void end_frame();
   std::uint64_t collisions() const { return work_.collisions; }
   std::vector<Contact> overlaps();
+  /// False, and the deepest overlap in *why, if pairs overlap at the present time by more than rounding of a file.
+  bool may_start(std::string* why);
   Plan plan() const;
   /// The horizon that a policy last chose; kept here so that a resumed run does the same work.
   double& horizon() { return horizon_; }
@@ -117,6 +119,7 @@ class Kernel {
   Mover site_mover(int site) const;
   Mover other_mover(const PairKey& pair) const;
   void note_overlap(double gap) { max_overlap_ = std::max(max_overlap_, -gap); }
+  std::vector<PairKey> neighbours_at(double t) const;
   void check_overlaps_at(double t);
   const Motion& motion_of(int owner) const;
   const Outline& outline_of(int owner) const;

@@ -1,14 +1,20 @@
 /// The kernel's records: frames on the frame clock, checkpoints, overlaps.
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "brink/scheduler/broad_phase.h"
+#include "brink/scheduler/crossing_outlines.h"
 #include "brink/scheduler/kernel.h"
 
 namespace brink {
 
 namespace {
+
+/// Overlaps at the start up to this part of the scene's length are let go: coordinates written with few digits.
+constexpr double kStartOverlap = 1e-6;
 
 double wall_clock() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -46,24 +52,44 @@ void Kernel::end_frame() {
   check_overlaps_at(time_);
 }
 
-void Kernel::check_overlaps_at(double t) {
+std::vector<PairKey> Kernel::neighbours_at(double t) const {
   std::vector<Box> now;
-  for (int k = 0; k < owner_count(); ++k)
-    now.push_back(swept_box(outline_of(k), motion_of(k), t, t));
+  for (int k = 0; k < owner_count(); ++k) now.push_back(swept_box(outline_of(k), motion_of(k), t, t));
+  std::vector<PairKey> pairs;
   for (const auto& [a, b] : overlapping_pairs(now))
-    if (const auto pair = pair_of(a, b)) note_overlap(pair_gap(mover(pair->body), other_mover(*pair), t, scratch_));
+    if (const auto pair = pair_of(a, b)) pairs.push_back(*pair);
+  return pairs;
+}
+
+void Kernel::check_overlaps_at(double t) {
+  for (const PairKey& pair : neighbours_at(t))
+    note_overlap(pair_gap(mover(pair.body), other_mover(pair), t, scratch_));
 }
 
 std::vector<Contact> Kernel::overlaps() {
   std::vector<Contact> found;
-  for (int a = 0; a < body_count(); ++a)
-    for (int b = a + 1; b < owner_count(); ++b) {
-      const PairKey pair = *pair_of(a, b);
-      const auto contacts = touching(pair, 0.0);
-      if (!contacts.empty() && contacts.front().gap < 0.0) found.push_back(world_contact(pair, contacts.front()));
+  for (const PairKey& pair : neighbours_at(time_)) {
+    const auto contacts = touching(pair, 0.0);
+    if (!contacts.empty() && contacts.front().gap < 0.0) {
+      found.push_back(world_contact(pair, contacts.front()));
+    } else if (const auto crossing = crossing_of(mover(pair.body), other_mover(pair), time_)) {
+      found.push_back(world_contact(pair, *crossing));
     }
+  }
   std::stable_sort(found.begin(), found.end(), [](const Contact& x, const Contact& y) { return x.gap < y.gap; });
   return found;
+}
+
+bool Kernel::may_start(std::string* why) {
+  const std::vector<Contact> found = overlaps();
+  if (found.empty() || found.front().gap >= -kStartOverlap * world_.length()) return true;
+  const Contact& c = found.front();
+  const std::string& other = c.other_body >= 0 ? world_.bodies[c.other_body].name : world_.sites[c.other_site].name;
+  *why = fmt::format("'{}' and '{}' overlap by {:.3g} m at the start, near ({:.4g}, {:.4g}); at most {:.1g} m is allowed"
+                     " ({} overlapping pair(s) in all)",
+                     world_.bodies[c.body].name, other, -c.gap, c.point.x(), c.point.y(),
+                     kStartOverlap * world_.length(), found.size());
+  return false;
 }
 
 bool Kernel::pause_point() {

@@ -34,6 +34,7 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
   if (!(options.frame_interval >= 0.0))
     throw BadInput(fmt::format("frame_interval = {} must be >= 0", options.frame_interval));
   Kernel& kernel = impl_->kernel;
+  if (std::string why; time() == 0.0 && !kernel.may_start(&why)) throw BadInput(why);
   const auto begin = std::chrono::steady_clock::now();
   kernel.begin(options, recorder);
   impl_->policy->run(kernel, options.until);

@@ -38,6 +38,8 @@ class Simulator {
   Simulator& operator=(Simulator&&) noexcept;
 
   /// Runs on to options.until, telling `recorder` (may be null). May be called again to go further.
+  /// @throws BadInput if `until` lies in the past, or if at t = 0 bodies overlap by more than 1e-6 of the scene's length
+  /// (naming the deepest pair).
   RunSummary run(const RunOptions& options, Recorder* recorder = nullptr);
 
   double time() const;
