@@ -199,8 +199,9 @@ class PairSearch {
       const double radius = site.radius + sample.radius;
       const double gap = nearest.distance - radius;
       if (gap <= band && meets(half, i, static_cast<int>(j), nearest, path, bounds)) continue;
-      safe = std::min(safe,
-                      site_step(site, nearest, path.q, path.rate, radius, slack_at(gap, band, !site.solid && radius == 0.0), bounds).safe);
+      safe = std::min(safe, site_step(site, nearest, path.q, path.rate, radius,
+                                      slack_at(gap, band, !site.solid && radius == 0.0), bounds)
+                                .safe);
     }
     return safe;
   }
@@ -210,8 +211,9 @@ class PairSearch {
     return std::max(limits_.tolerance, 8.0 * bounds.speed * ulp(t_));
   }
 
-  /// Added to a gap before stepping. A step leads into the band, never onto the surface: beyond a thin wire by a
-  /// rounding error the point would seem to recede. In contact the gap may sink by `touch`, but not through a wire.
+  /// Added to a gap before stepping. A step leads into the band, never onto the surface: beyond a thin wire
+  /// by a rounding error the point would seem to recede. In contact the gap may sink by `touch`, but not
+  /// through a wire.
   double slack_at(double gap, double band, bool thin) const {
     const bool may_sink = gap <= (thin ? 0.1 : 1.0) * limits_.touch;
     return may_sink ? limits_.touch : -0.5 * std::min(gap, band);

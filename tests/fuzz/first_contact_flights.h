@@ -464,7 +464,7 @@ class Checker {
         f.motion_a.pose(f.from).position.norm() + f.motion_b.pose(f.from).position.norm() +
         f.a->bounding_radius + f.b->bounding_radius +
         std::max(f.motion_a.pose(f.to).position.norm(), f.motion_b.pose(f.to).position.norm());
-    return 8e-16 * touch.time + 64 * 2.2e-16 * extent / std::max(touch.closing, 1e-300);
+    return 8e-16 * touch.time + 16 * 2.2e-16 * extent / std::max(touch.closing, 1e-300);
   }
 
   void compare(const Flight& f, const reference::Pair& pair, const PairAnswer& answer, const Touch& truth) {

@@ -1,0 +1,32 @@
+// First contact against the slow reference, a million flights and more: run by hand (ctest -L stress). On
+// failure the seeds are printed; BRINK_SEED and BRINK_FLIGHTS repeat any of them.
+#include <gtest/gtest.h>
+
+#include "first_contact_flights.h"
+
+namespace brink {
+namespace {
+
+std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
+  const char* text = std::getenv(name);
+  return text ? std::strtoull(text, nullptr, 10) : otherwise;
+}
+
+// As in first_contact_test.cpp: search and reference share no code, so agreement means that both are right.
+TEST(FirstContactStress, MillionFlightsAgreeWithTheSlowReference) {
+  const std::uint64_t first = from_environment("BRINK_SEED", 1000001);
+  const std::uint64_t count = from_environment("BRINK_FLIGHTS", 1000000);
+  flights::Checker checker;
+  for (std::uint64_t k = 0; k < count; ++k) {
+    checker.check(first + k);
+    if ((k + 1) % 100000 == 0)
+      std::cout << "seeds " << first << " .. " << first + k << "\n" << checker.tally << std::flush;
+  }
+  std::cout << "seeds " << first << " .. " << first + count - 1 << "\n" << checker.tally;
+  EXPECT_EQ(checker.tally.failures(), 0);
+  EXPECT_EQ(checker.tally.given_up, 0);
+  EXPECT_EQ(checker.tally.not_canonical + checker.tally.not_canonical_closed, 0);
+}
+
+}  // namespace
+}  // namespace brink
