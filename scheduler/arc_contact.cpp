@@ -50,7 +50,15 @@ ArcStep against_segment(const Site& arc, const Site& site, const SamplePath& pat
   if (!step.active) {
     const double spin = relative.spin_s + relative.spin_t;
     if (beyond > 0.0) step.safe = std::max(step.safe, bounds.speed > 0.0 ? beyond / bounds.speed : kForever);
-    if (outside > 0.0) step.safe = std::max(step.safe, spin > 0.0 ? outside / spin : kForever);
+    if (outside > 0.0) {
+      // a wire may come to be touched from its other side, in the opposite direction
+      const double other = site.solid ? outside : angle_outside(arc, to_s(s, t, step.normal));
+      const double stays = bounds.speed > 0.0 ? std::abs(offset) / bounds.speed : kForever;
+      const auto turned = [&](double angle) {
+        return spin > 0.0 ? angle / spin : angle > 0.0 ? kForever : 0.0;
+      };
+      step.safe = std::max({step.safe, turned(std::min(outside, other)), std::min(turned(outside), stays)});
+    }
     if (step.gap > 0.0 || through)
       step.safe = std::max(step.safe, bounds.speed > 0.0 ? std::abs(step.gap) / bounds.speed : kForever);
   }
