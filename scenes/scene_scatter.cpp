@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "brink/core/shapes/outline_crossing.h"
+
 namespace brink {
 namespace {
 
@@ -141,7 +143,8 @@ std::vector<Pose> choose_and_shake(Room& room, std::vector<Pose> places, std::si
 }  // namespace
 
 bool surely_apart(const Obstacle& a, const Obstacle& b, double margin) {
-  return samples_clear(a, b, margin) && samples_clear(b, a, margin);
+  return samples_clear(a, b, margin) && samples_clear(b, a, margin) &&
+         deepest_crossing(*a.outline, a.pose, *b.outline, b.pose).depth == 0.0;
 }
 
 std::optional<std::vector<Pose>> scatter_poses(const ScatterAsk& ask, const std::vector<Obstacle>& obstacles,

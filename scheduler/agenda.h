@@ -22,8 +22,8 @@ struct PairKey {
   bool operator==(const PairKey& k) const { return order() == k.order(); }
 };
 
-/// What a pass found out about one pair: a contact, or where the search had to stop. It speaks of bodies at the
-/// versions it names; a resolve raises those, and the certificate is stale.
+/// What a pass found out about one pair: a contact, or where the search had to stop. It speaks of bodies at
+/// the versions it names; a resolve raises those, and the certificate is stale.
 struct Certificate {
   enum class Kind : std::uint8_t { contact, undecided };
   double time = 0.0;
@@ -33,7 +33,9 @@ struct Certificate {
   FeatureContact contact;
 
   /// The total order of events: (time, kind, body, other, site, sample).
-  auto order() const { return std::tuple(time, kind, pair.order(), contact.site, contact.sample, contact.sample_on_a); }
+  auto order() const {
+    return std::tuple(time, kind, pair.order(), contact.site, contact.sample, contact.sample_on_a);
+  }
 };
 
 /// A binary heap of certificates. Insert and pop cost O(log n).

@@ -8,8 +8,8 @@ namespace brink {
 
 namespace {
 
-constexpr double kCellsPerBox = 2.0;     ///< a cell is this many times the median box
-constexpr int kMostCellsAcross = 4;      ///< boxes wider than this many cells are large
+constexpr double kCellsPerBox = 2.0;  ///< a cell is this many times the median box
+constexpr int kMostCellsAcross = 4;   ///< boxes wider than this many cells are large
 constexpr std::int64_t kMostCells = 1 << 22;
 
 /// Cells of a window, counted row by row.
@@ -86,8 +86,9 @@ std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<Box>& boxes
       for (auto c = grid.column(boxes[i].low.x()); c <= grid.column(boxes[i].high.x()); ++c)
         entries.push_back({r * grid.columns + c, i});
   }
-  std::sort(entries.begin(), entries.end(),
-            [](const Entry& a, const Entry& b) { return std::pair(a.cell, a.box) < std::pair(b.cell, b.box); });
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return std::pair(a.cell, a.box) < std::pair(b.cell, b.box);
+  });
 
   std::vector<std::pair<int, int>> pairs;
   for (std::size_t first = 0; first < entries.size();) {

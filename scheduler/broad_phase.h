@@ -9,12 +9,13 @@
 
 namespace brink {
 
-/// The box that holds an outline during [from, to]: its path's chord, bulged by acceleration, grown by its bounding
-/// radius; containers hold everything. @pre the motion covers [from, to].
+/// The box that holds an outline during [from, to]: its path's chord, bulged by acceleration, grown by its
+/// bounding radius; containers hold everything. @pre the motion covers [from, to].
 Box swept_box(const Outline& outline, const Motion& motion, double from, double to);
 
-/// Pairs (i, j), i < j, of boxes that overlap, ascending. A uniform grid with cells sized to the typical box; boxes of
-/// many cells are kept apart and met by everyone. Cost: O(n) for boxes of like size, plus n for every large one.
+/// Pairs (i, j), i < j, of boxes that overlap, ascending. A uniform grid with cells sized to the typical box;
+/// boxes of many cells are kept apart and met by everyone. Cost: O(n) for boxes of like size, plus n for
+/// every large one.
 std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<Box>& boxes);
 
 }  // namespace brink

@@ -13,8 +13,9 @@ inline double ulp(double t) {
   return std::nextafter(a, 2.0 * a + 1.0) - a;
 }
 
-/// The coarsest dyadic double strictly between low and high: the one with most trailing zero bits. Bisecting with it
-/// visits the same probes from every starting interval. @pre 0 <= low < high; returns low if nothing lies between.
+/// The coarsest dyadic double strictly between low and high: the one with most trailing zero bits. Bisecting
+/// with it visits the same probes from every starting interval. @pre 0 <= low < high; returns low if nothing
+/// lies between.
 inline double coarsest_between(double low, double high) {
   const auto l = std::bit_cast<std::uint64_t>(low + 0.0), h = std::bit_cast<std::uint64_t>(high);
   if (h - l < 2) return low;
@@ -25,8 +26,8 @@ inline double coarsest_between(double low, double high) {
   return low;
 }
 
-/// The last double at which `gap` is still > 0, by bisection on dyadic probes. @pre gap(low) > 0 >= gap(high), both
-/// beyond rounding noise if the answer is to be canonical; 0 <= low < high.
+/// The last double at which `gap` is still > 0, by bisection on dyadic probes. @pre gap(low) > 0 >=
+/// gap(high), both beyond rounding noise if the answer is to be canonical; 0 <= low < high.
 template <class Gap>
 double last_clear_time(Gap&& gap, double low, double high) {
   for (;;) {

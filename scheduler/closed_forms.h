@@ -1,5 +1,6 @@
 #pragma once
-/// First contact by a quadratic: a disc against a disc, or against segments that do not turn, both on parabolas.
+/// First contact by a quadratic: a disc against a disc, or against segments that do not turn, both on
+/// parabolas.
 
 #include "brink/scheduler/first_contact.h"
 
@@ -12,15 +13,16 @@ struct Quadratic {
   double slope(double s) const { return rate + s * second; }
 };
 
-/// The s at which g falls through zero, or infinity. It is unique: on a parabola open downward the later root, on one
-/// open upward the earlier. Free of cancellation. May lie in the past (s < 0) where g is already below zero.
+/// The s at which g falls through zero, or infinity. It is unique: on a parabola open downward the later
+/// root, on one open upward the earlier. Free of cancellation. May lie in the past (s < 0) where g is already
+/// below zero.
 double falling_root(const Quadratic& g);
 
 /// True if the pair has a closed form and `answer` was filled; false: ask the general search.
-/// Cases: discs under equal acceleration; a disc against an outline of segments that does not turn, while the disc's
-/// centre stays abreast of each segment that it could reach.
-bool first_contact_in_closed_form(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
-                                  PairAnswer& answer);
+/// Cases: discs under equal acceleration; a disc against an outline of segments that does not turn, while the
+/// disc's centre stays abreast of each segment that it could reach.
+bool first_contact_in_closed_form(const Mover& a, const Mover& b, double from, double to,
+                                  const SearchLimits& limits, PairAnswer& answer);
 
 /// True if first_contact_in_closed_form may succeed for these outlines and motions (the plan's question).
 bool has_closed_form(const Mover& a, const Mover& b);

@@ -4,24 +4,36 @@ namespace brink {
 
 const char* to_string(EventKind kind) {
   switch (kind) {
-    case EventKind::collision: return "collision";
-    case EventKind::persist: return "persist";
-    case EventKind::lift: return "lift";
-    case EventKind::zeno: return "zeno";
-    case EventKind::group: return "group";
-    case EventKind::sleep: return "sleep";
-    case EventKind::wake: return "wake";
-    case EventKind::undecided: return "undecided";
+    case EventKind::collision:
+      return "collision";
+    case EventKind::persist:
+      return "persist";
+    case EventKind::lift:
+      return "lift";
+    case EventKind::zeno:
+      return "zeno";
+    case EventKind::group:
+      return "group";
+    case EventKind::sleep:
+      return "sleep";
+    case EventKind::wake:
+      return "wake";
+    case EventKind::undecided:
+      return "undecided";
   }
   return "unknown";
 }
 
 std::string RunSummary::termination_text() const {
   switch (termination) {
-    case Termination::not_run: return "not run";
-    case Termination::reached_end: return "reached_end";
-    case Termination::stopped: return "stopped";
-    case Termination::failed: return "failed: " + why;
+    case Termination::not_run:
+      return "not run";
+    case Termination::reached_end:
+      return "reached_end";
+    case Termination::stopped:
+      return "stopped";
+    case Termination::failed:
+      return "failed: " + why;
   }
   return "unknown";
 }

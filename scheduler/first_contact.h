@@ -8,10 +8,11 @@
 ///       touching and approaching -> polish the root, remember the earliest contact, end the search there
 ///       else safe until t + h: no site of the other outline can be reached before (safe_step.h)
 ///
-/// For a site with convex distance, f(q(t+h)) >= f + f' h - a h^2 / 2 with a >= |q''| in the other outline's turning
-/// frame; arcs seen from inside add v^2 / rho. Two-sided sampling makes it complete: every vertex and every arc of both
-/// outlines. Starts in contact: separating pairs are stepped by the same formula; approaching ones collide now.
-/// Sources: Mirtich 1996 (conservative advancement), Zhang et al. 2006 (bounds under rotation); docs/first-contact.md.
+/// For a site with convex distance, f(q(t+h)) >= f + f' h - a h^2 / 2 with a >= |q''| in the other outline's
+/// turning frame; arcs seen from inside add v^2 / rho. Two-sided sampling makes it complete: every vertex and
+/// every arc of both outlines. Starts in contact: separating pairs are stepped by the same formula;
+/// approaching ones collide now. Sources: Mirtich 1996 (conservative advancement), Zhang et al. 2006 (bounds
+/// under rotation); docs/first-contact.md.
 
 #include <vector>
 
@@ -32,10 +33,10 @@ struct Mover {
 };
 
 struct SearchLimits {
-  double touch = 1e-13;        ///< gaps below this count as touching [m]
-  double tolerance = 1e-10;    ///< gap at which Newton steps give way to polishing the root [m]
-  int max_iterations = 100000; ///< then the answer is "clear until" where the search stood
-  bool closed_forms = true;    ///< use quadratics where the pair has them
+  double touch = 1e-13;         ///< gaps below this count as touching [m]
+  double tolerance = 1e-10;     ///< gap at which Newton steps give way to polishing the root [m]
+  int max_iterations = 100000;  ///< then the answer is "clear until" where the search stood
+  bool closed_forms = true;     ///< use quadratics where the pair has them
 };
 
 /// Which features touch, and how.
@@ -72,12 +73,14 @@ struct SearchScratch {
 PairAnswer first_contact(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
                          SearchScratch& scratch, WorkCounters& work);
 
-/// Every feature pair with gap <= `tolerance` at time t, nearest first; receding ones too. Brute force over samples.
+/// Every feature pair with gap <= `tolerance` at time t, nearest first; receding ones too. Brute force over
+/// samples.
 std::vector<FeatureContact> touching_features(const Mover& a, const Mover& b, double t, double tolerance,
                                               SearchScratch& scratch);
 
-/// The same two features, looked at with the pair in other states close by (a fraction of a rounding of the clock away):
-/// their point, normal, closing speed and gap there. Keeps `like`'s normal where the new one is lost in rounding.
+/// The same two features, looked at with the pair in other states close by (a fraction of a rounding of the
+/// clock away): their point, normal, closing speed and gap there. Keeps `like`'s normal where the new one is
+/// lost in rounding.
 FeatureContact contact_in(const Mover& a, const Mover& b, const BodyState& state_a, const BodyState& state_b,
                           const FeatureContact& like, SearchScratch& scratch);
 

@@ -18,8 +18,12 @@ namespace brink {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kTouchOfTolerance = 1e-3;          ///< touch / contact tolerance
-constexpr std::uint64_t kGroupCollisions = 100000;  ///< collisions of one instant that are taken to be without end
+constexpr double kTouchOfTolerance = 1e-3;  ///< touch / contact tolerance
+
+/// Collisions of one instant that are taken to be without end: a row of n touching bodies can need n^2 / 2.
+std::uint64_t endless_group(std::size_t bodies) {
+  return 2000 + 10 * static_cast<std::uint64_t>(bodies) * bodies;
+}
 
 ImpulseSide body_side(const Body& body, const BodyState& state, const Vec2& point) {
   return {state.twist, point - state.pose.position, body.inverse_mass_x(), body.inverse_mass_y(),
@@ -106,7 +110,8 @@ void Kernel::make_indices() {
   for (const FixedSite& s : world_.sites) site_index_.push_back(index_of(s.outline));
 }
 
-// -- motions --------------------------------------------------------------------------------------------------------
+// -- motions
+// --------------------------------------------------------------------------------------------------------
 
 void Kernel::start_component(Coupled& c, double t, std::vector<BodyState> states) {
   c.started = t;
@@ -126,8 +131,9 @@ bool Kernel::cover(Coupled& c, double t) {
     fetch_motions(c);
     return true;
   }
-  stop(Termination::failed, fmt::format("motion of '{}' stopped at t = {:.17g}: {}",
-                                        world_.bodies[c.component.bodies.front()].name, extent.end, extent.why));
+  stop(Termination::failed,
+       fmt::format("motion of '{}' stopped at t = {:.17g}: {}",
+                   world_.bodies[c.component.bodies.front()].name, extent.end, extent.why));
   return false;
 }
 
@@ -162,7 +168,8 @@ void Kernel::back_up_all(double t) {
   time_ = t;
 }
 
-// -- passes ---------------------------------------------------------------------------------------------------------
+// -- passes
+// ---------------------------------------------------------------------------------------------------------
 
 const Motion& Kernel::motion_of(int owner) const {
   const int n = body_count();
@@ -253,19 +260,22 @@ std::vector<PairKey> Kernel::pairs_by_pass(int body, double from, double to) {
     scene.push_back({&outline_of(k), motion_of(k).pose(from), static_cast<std::uint32_t>(k)});
     if (k == body) continue;
     const MotionBounds b = motion_of(k).bounds(from, to);
-    const double reach = outline_of(k).container ? outline_of(k).bounds.extent().norm() : outline_of(k).bounding_radius;
+    const double reach =
+        outline_of(k).container ? outline_of(k).bounds.extent().norm() : outline_of(k).bounding_radius;
     travel = std::max(travel, (b.speed() + b.spin() * reach) * (to - from));
   }
   const Box window = swept_box(outline_of(body), motion_of(body), from, to);
   std::vector<PairKey> pairs;
   for (const std::uint32_t owner :
-       passes_->near_owners(window, travel + limits_.tolerance, scene, static_cast<std::uint32_t>(body)).owners)
+       passes_->near_owners(window, travel + limits_.tolerance, scene, static_cast<std::uint32_t>(body))
+           .owners)
     if (const auto pair = pair_of(body, static_cast<int>(owner))) pairs.push_back(*pair);
   return pairs;
 }
 
 std::optional<Certificate> Kernel::search(const PairKey& pair, double from, double to) {
-  const PairAnswer answer = first_contact(mover(pair.body), other_mover(pair), from, to, limits_, scratch_, work_);
+  const PairAnswer answer =
+      first_contact(mover(pair.body), other_mover(pair), from, to, limits_, scratch_, work_);
   if (answer.status == PairAnswer::Status::clear) return std::nullopt;
   Certificate c;
   c.time = answer.until;
@@ -290,7 +300,8 @@ std::vector<FeatureContact> Kernel::touching(const PairKey& pair, double toleran
   return touching_features(mover(pair.body), other_mover(pair), time_, tolerance, scratch_);
 }
 
-// -- resolving ------------------------------------------------------------------------------------------------------
+// -- resolving
+// ------------------------------------------------------------------------------------------------------
 
 Contact Kernel::world_contact(const PairKey& pair, const FeatureContact& f) const {
   Contact c;
@@ -309,8 +320,9 @@ Contact Kernel::world_contact(const PairKey& pair, const FeatureContact& f) cons
 }
 
 std::string Kernel::name_of(const PairKey& pair) const {
-  return fmt::format("'{}' on '{}'", world_.bodies[pair.body].name,
-                     pair.with_site() ? world_.sites[pair.other_site].name : world_.bodies[pair.other_body].name);
+  return fmt::format(
+      "'{}' on '{}'", world_.bodies[pair.body].name,
+      pair.with_site() ? world_.sites[pair.other_site].name : world_.bodies[pair.other_body].name);
 }
 
 void Kernel::set_rounding(int k, double magnitude) {
@@ -322,23 +334,27 @@ void Kernel::set_rounding(int k, double magnitude) {
 }
 
 bool Kernel::resolve(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed) {
-  // The exact moment of contact lies a fraction of a rounding of the clock away. The collision is resolved there, and
-  // the new motion is the one that passes through that moment, so that long runs do not drift by roundings of time.
+  // The exact moment of contact lies a fraction of a rounding of the clock away. The collision is resolved
+  // there, and the new motion is the one that passes through that moment, so that long runs do not drift by
+  // roundings of time.
   const double late = 4.0 * ulp(time_);
   const double left = found.gap - found.closing_speed * (time_ - found.time);
   const double delay = found.closing_speed > 0.0 ? std::clamp(left / found.closing_speed, -late, late) : 0.0;
   const Body& body = world_.bodies[pair.body];
   const BodyState state = moved(this->state(pair.body, time_), delay);
   const BodyState other_state = moved(
-      pair.with_site() ? site_motion(pair.other_site).state(time_) : this->state(pair.other_body, time_), delay);
+      pair.with_site() ? site_motion(pair.other_site).state(time_) : this->state(pair.other_body, time_),
+      delay);
   const FeatureContact f =
-      delay == 0.0 ? found : contact_in(mover(pair.body), other_mover(pair), state, other_state, found, scratch_);
+      delay == 0.0 ? found
+                   : contact_in(mover(pair.body), other_mover(pair), state, other_state, found, scratch_);
   const ImpulseSide side = body_side(body, state, f.point);
-  const ImpulseSide other_side = pair.with_site() ? site_side(other_state, f.point)
-                                                  : body_side(world_.bodies[pair.other_body], other_state, f.point);
-  const Material material =
-      combined(world_, body.material,
-               pair.with_site() ? world_.sites[pair.other_site].material : world_.bodies[pair.other_body].material);
+  const ImpulseSide other_side = pair.with_site()
+                                     ? site_side(other_state, f.point)
+                                     : body_side(world_.bodies[pair.other_body], other_state, f.point);
+  const Material material = combined(
+      world_, body.material,
+      pair.with_site() ? world_.sites[pair.other_site].material : world_.bodies[pair.other_body].material);
   const auto respond = options_.response == "reflection" ? resolve_reflection : resolve_impulse;
   const ImpulseResult result = respond(side, other_side, f.normal, material);
   if (result.kind == ImpulseKind::jam) {
@@ -400,26 +416,29 @@ bool Kernel::judge_endings(const PairKey& pair, const Contact& contact) {
     event.contact.time = zeno->limit_time;
     if (recorder_ && run_.record_events) recorder_->event(event);
     stop(Termination::failed,
-         fmt::format("Zeno at t = {:.15g} after {} bounces of {}: a contact that lasts begins, and those are not in "
-                     "this release",
-                     zeno->limit_time, zeno->bounces, name_of(pair)));
+         fmt::format(
+             "Zeno at t = {:.15g} after {} bounces of {}: a contact that lasts begins, and those are not in "
+             "this release",
+             zeno->limit_time, zeno->bounces, name_of(pair)));
     return false;
   }
   if (time_ - instant_ > 64.0 * kEpsilon * std::max(1.0, time_)) {
     instant_ = time_;
     in_instant_ = 0;
   }
-  if (++in_instant_ > kGroupCollisions) {
-    stop(Termination::failed, fmt::format("a group of collisions at t = {:.15g} does not end ({} so far, the last {})",
-                                          time_, in_instant_, name_of(pair)));
+  if (++in_instant_ > endless_group(bodies_.size())) {
+    stop(Termination::failed,
+         fmt::format("a group of collisions at t = {:.15g} does not end ({} so far, the last {})", time_,
+                     in_instant_, name_of(pair)));
     return false;
   }
   if (options_.max_collisions > 0 && work_.collisions >= options_.max_collisions) {
-    stop(Termination::stopped, fmt::format("max_collisions = {} reached at t = {:.15g}", options_.max_collisions, time_));
+    stop(Termination::stopped,
+         fmt::format("max_collisions = {} reached at t = {:.15g}", options_.max_collisions, time_));
     return false;
   }
   if (run_.progress && work_.collisions % 1024 == 0 && !run_.progress(time_, work_.collisions)) {
-    stop(Termination::stopped, fmt::format("stopped on request at t = {:.15g}", time_));
+    stop(Termination::stopped, "on request");
     return false;
   }
   return true;

@@ -1,5 +1,6 @@
 #pragma once
-/// The simulator's kernel of verbs: advance, pass, back up, resolve, record. Policies say when; only the kernel acts.
+/// The simulator's kernel of verbs: advance, pass, back up, resolve, record. Policies say when; only the
+/// kernel acts.
 
 #include <map>
 #include <memory>
@@ -22,9 +23,9 @@ namespace brink {
 /// What the kernel keeps of a body beside the world's definition.
 struct BodyTrack {
   Motion motion;
-  std::uint64_t version = 0;        ///< raised by every resolve that changes the motion
-  double velocity_rounding = 0.0;   ///< see Mover
-  double resolved_at = -1.0;        ///< time of the last resolve [s]; < 0: never
+  std::uint64_t version = 0;       ///< raised by every resolve that changes the motion
+  double velocity_rounding = 0.0;  ///< see Mover
+  double resolved_at = -1.0;       ///< time of the last resolve [s]; < 0: never
   int component = 0;
   int place_in_component = 0;
 };
@@ -65,7 +66,8 @@ class Kernel {
   void advance_all(double t);
   /// Takes all bodies back to t inside their motions; nothing is integrated twice.
   void back_up_all(double t);
-  /// Pairs of owners whose moving bounds meet during [from, to] (every pair, where the plan's broad phase is off).
+  /// Pairs of owners whose moving bounds meet during [from, to] (every pair, where the plan's broad phase is
+  /// off).
   std::vector<PairKey> near_pairs(double from, double to);
   /// Pairs of one body with everything else: one pass.
   std::vector<PairKey> near_pairs_of(int body, double from, double to);
@@ -84,7 +86,8 @@ class Kernel {
   void record_frames(double t);
   /// Ends the run for a reason.
   void stop(Termination termination, std::string why);
-  /// A place where the run may be resumed from: writes a checkpoint if one is due; asks `progress`. False to stop.
+  /// A place where the run may be resumed from: writes a checkpoint if one is due; asks `progress`. False to
+  /// stop.
   bool pause_point();
 
   // -- running --
@@ -93,7 +96,8 @@ class Kernel {
   void end_frame();
   std::uint64_t collisions() const { return work_.collisions; }
   std::vector<Contact> overlaps();
-  /// False, and the deepest overlap in *why, if pairs overlap at the present time by more than rounding of a file.
+  /// False, and the deepest overlap in *why, if pairs overlap at the present time by more than rounding of a
+  /// file.
   bool may_start(std::string* why);
   Plan plan() const;
   /// The horizon that a policy last chose; kept here so that a resumed run does the same work.
@@ -121,6 +125,7 @@ class Kernel {
   void note_overlap(double gap) { max_overlap_ = std::max(max_overlap_, -gap); }
   std::vector<PairKey> neighbours_at(double t) const;
   void check_overlaps_at(double t);
+  std::optional<Contact> crossing_at(const PairKey& pair, double t) const;
   const Motion& motion_of(int owner) const;
   const Outline& outline_of(int owner) const;
   int owner_count() const { return static_cast<int>(bodies_.size() + sites_.size()); }
@@ -146,16 +151,16 @@ class Kernel {
   std::unique_ptr<PassRenderer> passes_;
   mutable SearchScratch scratch_;
   ZenoWatch zeno_;
-  std::vector<Box> boxes_;                    ///< moving bounds of every owner over the present horizon
-  std::vector<std::uint64_t> box_versions_;   ///< of the bodies, when their box was made
+  std::vector<Box> boxes_;                   ///< moving bounds of every owner over the present horizon
+  std::vector<std::uint64_t> box_versions_;  ///< of the bodies, when their box was made
   std::optional<Halt> halt_;
   double time_ = 0.0;
   double horizon_ = 0.0;
   double max_overlap_ = 0.0;
   std::uint64_t seq_ = 0;
-  std::uint64_t frame_ = 0;       ///< frames recorded by the frame clock
-  double last_frame_ = -1.0;      ///< time of the last frame recorded [s]
-  double instant_ = -1.0;    ///< time of the current group of collisions
+  std::uint64_t frame_ = 0;   ///< frames recorded by the frame clock
+  double last_frame_ = -1.0;  ///< time of the last frame recorded [s]
+  double instant_ = -1.0;     ///< time of the current group of collisions
   std::uint64_t in_instant_ = 0;
   RunOptions run_;
   Recorder* recorder_ = nullptr;

@@ -5,15 +5,16 @@
 #include <chrono>
 #include <cmath>
 
+#include "brink/core/shapes/outline_crossing.h"
 #include "brink/scheduler/broad_phase.h"
-#include "brink/scheduler/crossing_outlines.h"
 #include "brink/scheduler/kernel.h"
 
 namespace brink {
 
 namespace {
 
-/// Overlaps at the start up to this part of the scene's length are let go: coordinates written with few digits.
+/// Overlaps at the start up to this part of the scene's length are let go: coordinates written with few
+/// digits.
 constexpr double kStartOverlap = 1e-6;
 
 double wall_clock() {
@@ -66,17 +67,30 @@ void Kernel::check_overlaps_at(double t) {
     note_overlap(pair_gap(mover(pair.body), other_mover(pair), t, scratch_));
 }
 
+std::optional<Contact> Kernel::crossing_at(const PairKey& pair, double t) const {
+  const Mover a = mover(pair.body), b = other_mover(pair);
+  const OutlineCrossing crossing =
+      deepest_crossing(a.outline(), a.motion->pose(t), b.outline(), b.motion->pose(t));
+  if (crossing.depth <= 0.0) return std::nullopt;
+  FeatureContact f;
+  f.time = t;
+  f.point = crossing.point;
+  f.normal = crossing.normal;
+  f.gap = -crossing.depth;
+  return world_contact(pair, f);
+}
+
 std::vector<Contact> Kernel::overlaps() {
   std::vector<Contact> found;
   for (const PairKey& pair : neighbours_at(time_)) {
     const auto contacts = touching(pair, 0.0);
-    if (!contacts.empty() && contacts.front().gap < 0.0) {
+    if (!contacts.empty() && contacts.front().gap < 0.0)
       found.push_back(world_contact(pair, contacts.front()));
-    } else if (const auto crossing = crossing_of(mover(pair.body), other_mover(pair), time_)) {
-      found.push_back(world_contact(pair, *crossing));
-    }
+    else if (const auto crossing = crossing_at(pair, time_))
+      found.push_back(*crossing);
   }
-  std::stable_sort(found.begin(), found.end(), [](const Contact& x, const Contact& y) { return x.gap < y.gap; });
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Contact& x, const Contact& y) { return x.gap < y.gap; });
   return found;
 }
 
@@ -84,18 +98,20 @@ bool Kernel::may_start(std::string* why) {
   const std::vector<Contact> found = overlaps();
   if (found.empty() || found.front().gap >= -kStartOverlap * world_.length()) return true;
   const Contact& c = found.front();
-  const std::string& other = c.other_body >= 0 ? world_.bodies[c.other_body].name : world_.sites[c.other_site].name;
-  *why = fmt::format("'{}' and '{}' overlap by {:.3g} m at the start, near ({:.4g}, {:.4g}); at most {:.1g} m is allowed"
-                     " ({} overlapping pair(s) in all)",
-                     world_.bodies[c.body].name, other, -c.gap, c.point.x(), c.point.y(),
-                     kStartOverlap * world_.length(), found.size());
+  const std::string& other =
+      c.other_body >= 0 ? world_.bodies[c.other_body].name : world_.sites[c.other_site].name;
+  *why = fmt::format(
+      "'{}' and '{}' overlap by {:.3g} m at the start, near ({:.4g}, {:.4g}); at most {:.1g} m is allowed"
+      " ({} overlapping pair(s) in all)",
+      world_.bodies[c.body].name, other, -c.gap, c.point.x(), c.point.y(), kStartOverlap * world_.length(),
+      found.size());
   return false;
 }
 
 bool Kernel::pause_point() {
   if (halt_) return false;
   if (run_.progress && !run_.progress(time_, work_.collisions)) {
-    stop(Termination::stopped, "stopped on request");
+    stop(Termination::stopped, "on request");
     return false;
   }
   if (recorder_ && run_.checkpoint_seconds >= 0.0 && wall_clock() >= next_checkpoint_) {

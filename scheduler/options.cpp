@@ -10,8 +10,10 @@ namespace brink {
 namespace {
 
 constexpr std::array kPolicies{
-    Choice{"global_backup", "all advance together to a horizon, all back up to the earliest contact (Baraff 1997)"},
-    Choice{"fixed_step", "no backing up: step, push overlaps apart, resolve; approximate (the naive baseline)"},
+    Choice{"global_backup",
+           "all advance together to a horizon, all back up to the earliest contact (Baraff 1997)"},
+    Choice{"fixed_step",
+           "no backing up: step, push overlaps apart, resolve; approximate (the naive baseline)"},
 };
 constexpr std::array kOrders{
     Choice{"index", "lowest body, other, site and sample first"},
@@ -34,7 +36,8 @@ std::string names_of(std::span<const Choice> choices) {
   return text;
 }
 
-bool known(std::span<const Choice> choices, const std::string& given, const char* option, std::string* error) {
+bool known(std::span<const Choice> choices, const std::string& given, const char* option,
+           std::string* error) {
   for (const Choice& c : choices)
     if (c.name == given) return true;
   *error = fmt::format("{} = \"{}\" is not known; allowed: {}", option, given, names_of(choices));

@@ -1,5 +1,6 @@
 #pragma once
-/// Choices of the `[solver]` table: the only home of their defaults, printed from here by the program and the docs.
+/// Choices of the `[solver]` table: the only home of their defaults, printed from here by the program and the
+/// docs.
 
 #include <string>
 
@@ -18,15 +19,15 @@ struct SolverOptions {
   std::string response = "impulse";      ///< impulse | reflection
   std::string detector = "field";        ///< field | pass
   double contact_tolerance = 1e-10;      ///< of the scene's length
-  bool persistent = true;                ///< resting contacts (a later release: until then a Zeno ending stops the run)
-  std::uint64_t seed = 1;                ///< for order "random"
-  std::uint64_t max_collisions = 0;      ///< stop after this many; 0: no limit
+  bool persistent = true;  ///< resting contacts (a later release: until then a Zeno ending stops the run)
+  std::uint64_t seed = 1;  ///< for order "random"
+  std::uint64_t max_collisions = 0;  ///< stop after this many; 0: no limit
 
   // What may be skipped (each gives the same events on and off; see docs/architecture.md)
-  bool skip_closed_forms = true;    ///< use quadratics where a pair has them
-  bool skip_fields = true;          ///< brute force for outlines of few sites instead of a field
-  bool skip_broad_phase = true;     ///< test only pairs whose moving bounds meet
-  bool skip_shared_fields = true;   ///< one field a distinct shape, not one a body
+  bool skip_closed_forms = true;   ///< use quadratics where a pair has them
+  bool skip_fields = true;         ///< brute force for outlines of few sites instead of a field
+  bool skip_broad_phase = true;    ///< test only pairs whose moving bounds meet
+  bool skip_shared_fields = true;  ///< one field a distinct shape, not one a body
 
   FieldOptions field;
 

@@ -27,7 +27,8 @@ struct RelativeBounds {
   RelativeBounds() = default;
   RelativeBounds(const MotionBounds& s, const MotionBounds& t)
       : speed((s.velocity - t.velocity).norm() + s.velocity_radius + t.velocity_radius),
-        acceleration((s.acceleration - t.acceleration).norm() + s.acceleration_radius + t.acceleration_radius),
+        acceleration((s.acceleration - t.acceleration).norm() + s.acceleration_radius +
+                     t.acceleration_radius),
         spin_s(s.spin()),
         alpha_s(s.alpha),
         spin_t(t.spin()),
@@ -43,11 +44,12 @@ struct RelativeBounds {
 
 /// A sample's place and velocity in T's frame at one moment.
 struct SamplePath {
-  Vec2 q;             ///< place [m]
-  Vec2 rate;          ///< dq/dt [m/s]
-  double arm;         ///< distance from S's origin [m]
-  double distance;    ///< from T's origin [m]
-  double magnitude;   ///< sum of the speeds that `rate` was computed from: its rounding error is a few eps of it
+  Vec2 q;           ///< place [m]
+  Vec2 rate;        ///< dq/dt [m/s]
+  double arm;       ///< distance from S's origin [m]
+  double distance;  ///< from T's origin [m]
+  double
+      magnitude;  ///< sum of the speeds that `rate` was computed from: its rounding error is a few eps of it
 };
 
 inline SamplePath sample_path(const Placed& s, const Placed& t, const Vec2& p_local) {
@@ -64,8 +66,9 @@ inline SamplePath sample_path(const Placed& s, const Placed& t, const Vec2& p_lo
   return path;
 }
 
-/// Bounds on |dq/dt| and |d2q/dt2| in T's turning frame over the next `window` seconds. With rho = p - x_T and
-/// w = rho' - omega_T x rho: q'' = R_T^T (rho'' - alpha_T x rho - 2 omega_T x w - omega_T x (omega_T x rho)).
+/// Bounds on |dq/dt| and |d2q/dt2| in T's turning frame over the next `window` seconds. With rho = p - x_T
+/// and w = rho' - omega_T x rho: q'' = R_T^T (rho'' - alpha_T x rho - 2 omega_T x w - omega_T x (omega_T x
+/// rho)).
 struct PathBounds {
   double speed;
   double acceleration;

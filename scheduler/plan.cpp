@@ -21,12 +21,13 @@ std::string switched(bool on, const char* option, std::string text) {
 Plan Kernel::plan() const {
   Plan plan;
   auto& lines = plan.lines;
-  lines.push_back(fmt::format("policy {}, order {}, response {}, detector {}", options_.policy, options_.order,
-                              options_.response, options_.detector));
+  lines.push_back(fmt::format("policy {}, order {}, response {}, detector {}", options_.policy,
+                              options_.order, options_.response, options_.detector));
   const auto ballistic = std::count_if(bodies_.begin(), bodies_.end(),
                                        [](const BodyTrack& b) { return b.motion.is_ballistic(); });
-  lines.push_back(fmt::format("motion: {} of {} bodies ballistic in closed form, {} component(s), integrator {}",
-                              ballistic, bodies_.size(), components_.size(), options_.integrator));
+  lines.push_back(
+      fmt::format("motion: {} of {} bodies ballistic in closed form, {} component(s), integrator {}",
+                  ballistic, bodies_.size(), components_.size(), options_.integrator));
 
   std::uint64_t closed = 0, pairs = 0;
   for (int a = 0; a < body_count(); ++a)
@@ -35,8 +36,9 @@ Plan Kernel::plan() const {
       ++pairs;
       closed += has_closed_form(mover(pair.body), other_mover(pair));
     }
-  lines.push_back(switched(options_.skip_closed_forms, "solver.skip_closed_forms",
-                           fmt::format("pairs: {} of {} have a first contact in closed form", closed, pairs)));
+  lines.push_back(
+      switched(options_.skip_closed_forms, "solver.skip_closed_forms",
+               fmt::format("pairs: {} of {} have a first contact in closed form", closed, pairs)));
 
   std::set<const Outline*> shapes, with_field;
   const auto look = [&](const Outline* o) {
@@ -48,9 +50,10 @@ Plan Kernel::plan() const {
   for (const FixedSite& s : world_.sites) look(s.outline.get());
   lines.push_back(switched(
       options_.skip_fields, "solver.skip_fields",
-      fmt::format("fields: {} distinct shape(s), {} with a rendered field, {} of fewer than {} sites by brute force",
-                  shapes.size(), with_field.size(), shapes.size() - with_field.size(),
-                  options_.field.brute_force_below)));
+      fmt::format(
+          "fields: {} distinct shape(s), {} with a rendered field, {} of fewer than {} sites by brute force",
+          shapes.size(), with_field.size(), shapes.size() - with_field.size(),
+          options_.field.brute_force_below)));
   const bool context = !with_field.empty() || passes_;
   lines.push_back(context ? "GL context: needed (" + options_.field.context + ")" : "GL context: not needed");
   const bool friction = std::any_of(world_.materials.begin(), world_.materials.end(),

@@ -34,14 +34,14 @@ enum class Termination {
 /// Starts as "not run", so that a stale summary cannot look good.
 struct RunSummary {
   Termination termination = Termination::not_run;
-  std::string why;                ///< of stopped and failed: one sentence with the time and the bodies
-  double end_time = 0.0;          ///< [s]
+  std::string why;        ///< of stopped and failed: one sentence with the time and the bodies
+  double end_time = 0.0;  ///< [s]
   std::uint64_t collisions = 0;
-  double wall_seconds = 0.0;      ///< the simulation alone
+  double wall_seconds = 0.0;                        ///< the simulation alone
   double energy_initial = 0.0, energy_final = 0.0;  ///< [J]
-  Vec2 momentum = Vec2::Zero();   ///< at the end [kg m/s]
-  double angular_momentum = 0.0;  ///< about the world's origin, at the end [kg m^2/s]
-  double max_overlap = 0.0;       ///< deepest gap below zero met at any event or frame [m], >= 0
+  Vec2 momentum = Vec2::Zero();                     ///< at the end [kg m/s]
+  double angular_momentum = 0.0;                    ///< about the world's origin, at the end [kg m^2/s]
+  double max_overlap = 0.0;  ///< deepest gap below zero met at any event or frame [m], >= 0
   std::uint64_t state_hash = 0;
   WorkCounters work;
 

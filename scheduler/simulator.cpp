@@ -30,7 +30,8 @@ Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 
 RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
   if (!std::isfinite(options.until) || options.until < time())
-    throw BadInput(fmt::format("until = {} must be finite and >= the present time {}", options.until, time()));
+    throw BadInput(
+        fmt::format("until = {} must be finite and >= the present time {}", options.until, time()));
   if (!(options.frame_interval >= 0.0))
     throw BadInput(fmt::format("frame_interval = {} must be >= 0", options.frame_interval));
   Kernel& kernel = impl_->kernel;

@@ -15,10 +15,10 @@ namespace brink {
 
 /// When frames, checkpoints and progress reports are due.
 struct RunOptions {
-  double until = 1.0;                  ///< [s]
-  double frame_interval = 0.0;         ///< [s]; 0: only at the start and the end
-  double checkpoint_seconds = 1.0;     ///< wall-clock seconds between checkpoints; < 0: none, 0: at every chance
-  bool first_frame = true;             ///< record the frame at the starting time (false when resuming)
+  double until = 1.0;               ///< [s]
+  double frame_interval = 0.0;      ///< [s]; 0: only at the start and the end
+  double checkpoint_seconds = 1.0;  ///< wall-clock seconds between checkpoints; < 0: none, 0: at every chance
+  bool first_frame = true;          ///< record the frame at the starting time (false when resuming)
   bool record_events = true;
   /// Called now and then with the time reached; return false to stop the run. May be empty.
   std::function<bool(double t, std::uint64_t collisions)> progress;
@@ -38,8 +38,8 @@ class Simulator {
   Simulator& operator=(Simulator&&) noexcept;
 
   /// Runs on to options.until, telling `recorder` (may be null). May be called again to go further.
-  /// @throws BadInput if `until` lies in the past, or if at t = 0 bodies overlap by more than 1e-6 of the scene's length
-  /// (naming the deepest pair).
+  /// @throws BadInput if `until` lies in the past, or if at t = 0 bodies overlap by more than 1e-6 of the
+  /// scene's length (naming the deepest pair).
   RunSummary run(const RunOptions& options, Recorder* recorder = nullptr);
 
   double time() const;

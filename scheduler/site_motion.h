@@ -11,7 +11,8 @@ namespace brink {
 
 class PrescribedMotion;
 
-/// Extends a site's motion as far as it is asked; the site is never resolved, so its motion depends on time alone.
+/// Extends a site's motion as far as it is asked; the site is never resolved, so its motion depends on time
+/// alone.
 class SiteMotion {
  public:
   explicit SiteMotion(const FixedSite& site);

@@ -1,8 +1,8 @@
 /// Snapshots: bytes from which a run goes on with the same bits.
 ///
 /// Every motion is kept as what it was started from (time and states of its component); restoring starts the
-/// integrators there again and lets them run on, which gives the same pieces, since their steps depend on their own
-/// history alone.
+/// integrators there again and lets them run on, which gives the same pieces, since their steps depend on
+/// their own history alone.
 #include <cstring>
 
 #include "brink/core/base/error.h"

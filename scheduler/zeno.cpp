@@ -7,7 +7,8 @@ std::optional<ZenoEnding> ZenoWatch::collided(const PairKey& pair, double time, 
   const bool first = b.count++ == 0;
   const double interval = time - b.last_time;
   b.last_time = time;
-  if (first || interval <= 0.0) return std::nullopt;  // further impacts of one instant say nothing about flights
+  if (first || interval <= 0.0)
+    return std::nullopt;  // further impacts of one instant say nothing about flights
   const double ratio = b.last_interval > 0.0 ? interval / b.last_interval : 1.0;
   b.last_interval = interval;
   b.low_flights = 0.25 * closing_speed * interval < tolerance_ ? b.low_flights + 1 : 0;

@@ -1,5 +1,6 @@
 #pragma once
-/// Endings that a one-at-a-time scheduler cannot pass: bounces that shrink to nothing, and groups that never finish.
+/// Endings that a one-at-a-time scheduler cannot pass: bounces that shrink to nothing, and groups that never
+/// finish.
 
 #include <cstdint>
 #include <map>
@@ -12,12 +13,12 @@ namespace brink {
 /// Bounces of one pair whose flights no longer rise above the contact tolerance.
 struct ZenoEnding {
   PairKey pair;
-  double limit_time = 0.0;     ///< sum of the geometric series of intervals [s]
-  std::uint64_t bounces = 0;   ///< collisions of the pair so far
+  double limit_time = 0.0;    ///< sum of the geometric series of intervals [s]
+  std::uint64_t bounces = 0;  ///< collisions of the pair so far
 };
 
-/// Watches the collisions of every pair. A pair is at its Zeno ending when ten flights in a row, each longer than no
-/// time at all, rose less than the contact tolerance: closing speed * duration / 4 on a parabola.
+/// Watches the collisions of every pair. A pair is at its Zeno ending when ten flights in a row, each longer
+/// than no time at all, rose less than the contact tolerance: closing speed * duration / 4 on a parabola.
 class ZenoWatch {
  public:
   explicit ZenoWatch(double contact_tolerance = 1e-10) : tolerance_(contact_tolerance) {}

@@ -28,12 +28,12 @@ class Dynamics {
     return std::numeric_limits<double>::infinity();
   }
 
-  /// True if, between breaks, accelerations do not depend on the states or on time (uniform gravity, a constant
-  /// thrust): motion is then a parabola in closed form.
+  /// True if, between breaks, accelerations do not depend on the states or on time (uniform gravity, a
+  /// constant thrust): motion is then a parabola in closed form.
   virtual bool constant() const { return false; }
 
-  /// The closed form of linear drag: dv/dt = g - linear v, d(omega)/dt = a - angular omega, for a component of one
-  /// body, valid between breaks from time t on.
+  /// The closed form of linear drag: dv/dt = g - linear v, d(omega)/dt = a - angular omega, for a component
+  /// of one body, valid between breaks from time t on.
   struct LinearDrag {
     bool valid = false;
     double linear = 0.0;   ///< [1/s]

@@ -1,6 +1,7 @@
 #pragma once
 /// Brink's own random generator, so that a seed means the same numbers on every machine.
-/// xoshiro256++ (Blackman & Vigna 2021, "Scrambled linear pseudorandom number generators"), seeded by splitmix64.
+/// xoshiro256++ (Blackman & Vigna 2021, "Scrambled linear pseudorandom number generators"), seeded by
+/// splitmix64.
 
 #include <array>
 #include <cstdint>

@@ -18,16 +18,16 @@ struct WorkCounters {
   std::uint64_t solver_steps = 0;      ///< accepted integrator steps
   std::uint64_t component_resets = 0;  ///< integrators restarted after a resolve
   // scheduling
-  std::uint64_t advances = 0;                ///< bodies taken forward
-  std::uint64_t backups = 0;                 ///< bodies taken back inside their motion
-  double body_seconds_thrown_away = 0.0;     ///< simulated time undone by backups [s]
+  std::uint64_t advances = 0;             ///< bodies taken forward
+  std::uint64_t backups = 0;              ///< bodies taken back inside their motion
+  double body_seconds_thrown_away = 0.0;  ///< simulated time undone by backups [s]
   std::uint64_t certificates_issued = 0;
   std::uint64_t certificates_stale = 0;
   std::uint64_t certificates_undecided = 0;
-  std::uint64_t pair_searches = 0;       ///< first-contact searches of one pair
-  std::uint64_t search_iterations = 0;   ///< certified Newton steps
-  std::uint64_t closed_forms = 0;        ///< searches answered by a quadratic
-  std::uint64_t horizons = 0;            ///< broad-phase rebuilds
+  std::uint64_t pair_searches = 0;      ///< first-contact searches of one pair
+  std::uint64_t search_iterations = 0;  ///< certified Newton steps
+  std::uint64_t closed_forms = 0;       ///< searches answered by a quadratic
+  std::uint64_t horizons = 0;           ///< broad-phase rebuilds
   // resolving
   std::uint64_t collisions = 0;
   std::uint64_t collisions_body_body = 0;

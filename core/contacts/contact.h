@@ -8,11 +8,11 @@ namespace brink {
 /// Ids as used in every result: body index; site index into World::sites.
 struct Contact {
   double time = 0.0;
-  int body = -1;             ///< the body into which the normal points
-  int other_body = -1;       ///< -1: a fixed site
-  int other_site = -1;       ///< index into World::sites, or -1
-  int site = -1;             ///< Voronoi site in the outline that carries it
-  int sample = -1;           ///< sample in the outline that carries it
+  int body = -1;               ///< the body into which the normal points
+  int other_body = -1;         ///< -1: a fixed site
+  int other_site = -1;         ///< index into World::sites, or -1
+  int site = -1;               ///< Voronoi site in the outline that carries it
+  int sample = -1;             ///< sample in the outline that carries it
   bool sample_on_body = true;  ///< true: sample on `body`, site on the other; false: the reverse
   Vec2 point = Vec2::Zero();   ///< in the world [m]
   Vec2 normal = Vec2::Zero();  ///< unit, out of the other owner, into `body`

@@ -7,15 +7,15 @@ namespace brink {
 
 namespace {
 
-/// Impulses are computed in extended precision and rounded once: in double, the rounding of the effective mass is biased
-/// and shows as a drift of energy (measured: -2.5e-17 a hit in a circular container).
+/// Impulses are computed in extended precision and rounded once: in double, the rounding of the effective
+/// mass is biased and shows as a drift of energy (measured: -2.5e-17 a hit in a circular container).
 using Real = long double;
 using RealVec = Eigen::Matrix<Real, 2, 1>;
 
 Real cross(const RealVec& a, const RealVec& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// The contact seen by impulses: relative velocity of the two contact points in (normal, tangent) axes, and the
-/// symmetric 2x2 matrix that maps an impulse to its change (the inverse of the effective mass).
+/// The contact seen by impulses: relative velocity of the two contact points in (normal, tangent) axes, and
+/// the symmetric 2x2 matrix that maps an impulse to its change (the inverse of the effective mass).
 struct ContactSpace {
   RealVec n, t;
   Real vn = 0, vt = 0;             ///< relative velocity, body minus other
@@ -50,14 +50,16 @@ ContactSpace contact_space(const ImpulseSide& body, const ImpulseSide& other, co
 Twist pushed(const ImpulseSide& side, const RealVec& impulse) {
   const RealVec mobility(side.inverse_mass_x, side.inverse_mass_y);
   const RealVec velocity = side.twist.velocity.cast<Real>() + mobility.cwiseProduct(impulse);
-  return {velocity.cast<double>(),
-          static_cast<double>(side.twist.omega + side.inverse_inertia * cross(side.arm.cast<Real>(), impulse))};
+  return {
+      velocity.cast<double>(),
+      static_cast<double>(side.twist.omega + side.inverse_inertia * cross(side.arm.cast<Real>(), impulse))};
 }
 
-ImpulseResult apply(ImpulseKind kind, const ContactSpace& c, const ImpulseSide& body, const ImpulseSide& other, Real pn,
-                    Real pt) {
+ImpulseResult apply(ImpulseKind kind, const ContactSpace& c, const ImpulseSide& body,
+                    const ImpulseSide& other, Real pn, Real pt) {
   const RealVec impulse = pn * c.n + pt * c.t;
-  return {kind, static_cast<double>(pn), static_cast<double>(pt), pushed(body, impulse), pushed(other, -impulse)};
+  return {kind, static_cast<double>(pn), static_cast<double>(pt), pushed(body, impulse),
+          pushed(other, -impulse)};
 }
 
 }  // namespace
@@ -79,17 +81,20 @@ ImpulseResult resolve_impulse(const ImpulseSide& body, const ImpulseSide& other,
   if (determinant > 1e-14 * c.knn * c.ktt) {
     const Real pn = (c.ktt * dn - c.knt * dt) / determinant;
     const Real pt = (c.knn * dt - c.knt * dn) / determinant;
-    if (pn >= 0.0 && std::abs(pt) <= material.friction * pn) return apply(ImpulseKind::stick, c, body, other, pn, pt);
+    if (pn >= 0.0 && std::abs(pt) <= material.friction * pn)
+      return apply(ImpulseKind::stick, c, body, other, pn, pt);
   } else {  // no tangential freedom apart from the normal's: nothing to stick with
     return apply(ImpulseKind::slip, c, body, other, frictionless, 0);
   }
 
-  // Sliding at the bound: pt = s mu pn with s = +-1, knn pn + knt pt = dn. The sign that opposes the sliding at the end:
-  // it slides still in the first direction (slip), or has come to rest on the way and slid off the other way (reverse).
+  // Sliding at the bound: pt = s mu pn with s = +-1, knn pn + knt pt = dn. The sign that opposes the sliding
+  // at the end: it slides still in the first direction (slip), or has come to rest on the way and slid off
+  // the other way (reverse).
   const Real opposing = c.vt > 0.0 ? -1.0 : 1.0;
   for (const Real s : {opposing, -opposing}) {
     const Real denominator = c.knn + s * material.friction * c.knt;
-    if (denominator <= 0.0) continue;  // the wedge of Painleve's paradox: friction would push faster than it yields
+    if (denominator <= 0.0)
+      continue;  // the wedge of Painleve's paradox: friction would push faster than it yields
     const Real pn = dn / denominator, pt = s * material.friction * pn;
     const Real wanted = c.ktt * pt + c.knt * pn - dt;  // what is left of the wanted tangential change
     if (s * wanted <= 0.0 || s != opposing)
@@ -103,8 +108,8 @@ ImpulseResult resolve_reflection(const ImpulseSide& body, const ImpulseSide& oth
   const ContactSpace c = contact_space(body, other, normal);
   if (c.vn >= 0.0) return {ImpulseKind::separating, 0.0, 0.0, body.twist, other.twist};
   if (!(c.knn > 0.0)) return {ImpulseKind::jam, 0.0, 0.0, body.twist, other.twist};
-  // Mirror: the relative velocity's normal part turns round. The impulse that does so is shared between linear and
-  // angular parts by the inertia; `slip` scales the tangential rest, `spin` the angular rebound.
+  // Mirror: the relative velocity's normal part turns round. The impulse that does so is shared between
+  // linear and angular parts by the inertia; `slip` scales the tangential rest, `spin` the angular rebound.
   const Real pn = -2.0 * c.vn / c.knn;
   const Real pt = c.ktt > 0.0 ? (material.slip - 1.0) * c.vt / c.ktt : Real(0);
   ImpulseResult result = apply(ImpulseKind::slip, c, body, other, pn, pt);

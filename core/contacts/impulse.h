@@ -28,14 +28,15 @@ struct ImpulseResult {
   Twist body, other;        ///< twists after
 };
 
-/// Resolves one collision at one point; `normal` points into `body`. Restitution is met exactly at every speed:
-/// v_n' = -e v_n. Without tangential restitution the tangential impulse is the one that ends sliding, bounded by
-/// friction * normal impulse; with it, the tangential velocity is reversed by that factor, within the same bound.
+/// Resolves one collision at one point; `normal` points into `body`. Restitution is met exactly at every
+/// speed: v_n' = -e v_n. Without tangential restitution the tangential impulse is the one that ends sliding,
+/// bounded by friction * normal impulse; with it, the tangential velocity is reversed by that factor, within
+/// the same bound.
 ImpulseResult resolve_impulse(const ImpulseSide& body, const ImpulseSide& other, const Vec2& normal,
                               const Material& material);
 
-/// The classic cheap rebound: the point velocity is mirrored about the normal, v - 2 (n.v) n, and shared between linear
-/// and angular parts, scaled by the material's slip and spin. Not exact; see docs.
+/// The classic cheap rebound: the point velocity is mirrored about the normal, v - 2 (n.v) n, and shared
+/// between linear and angular parts, scaled by the material's slip and spin. Not exact; see docs.
 ImpulseResult resolve_reflection(const ImpulseSide& body, const ImpulseSide& other, const Vec2& normal,
                                  const Material& material);
 

@@ -2,7 +2,8 @@
 ///
 ///   until the end
 ///     advance all bodies by one step
-///     for each pair that overlaps: resolve its deepest approaching contact, push the two apart by the overlap
+///     for each pair that overlaps: resolve its deepest approaching contact, push the two apart by the
+///     overlap
 ///
 /// What passes through another body inside a step is missed.
 #include <algorithm>

@@ -36,7 +36,8 @@ class GlobalBackup final : public Policy {
   bool run_horizon(Kernel& kernel, double end) {
     if (!kernel.extend_motions(end)) return false;
     const double from = kernel.time();
-    double reached = from;  // time of the last event: of contacts at the same time, one may be a rounding earlier
+    double reached =
+        from;  // time of the last event: of contacts at the same time, one may be a rounding earlier
     kernel.advance_all(end);
     agenda_.clear();
     const std::vector<PairKey> pairs = kernel.near_pairs(from, end);
@@ -100,8 +101,10 @@ class GlobalBackup final : public Policy {
   /// Longer while little happens, shorter while much does.
   void adapt(Kernel& kernel, std::uint64_t collisions) const {
     const auto n = static_cast<std::uint64_t>(kernel.body_count());
-    if (pairs_ > 6 * n + 16 || collisions > 2 * n + 16) kernel.horizon() *= 0.5;
-    else if (pairs_ < 3 * n + 8 && collisions < n / 2 + 4) kernel.horizon() *= 1.5;
+    if (pairs_ > 6 * n + 16 || collisions > 2 * n + 16)
+      kernel.horizon() *= 0.5;
+    else if (pairs_ < 3 * n + 8 && collisions < n / 2 + 4)
+      kernel.horizon() *= 1.5;
   }
 
   Agenda agenda_;

@@ -6,7 +6,8 @@ namespace brink {
 
 namespace {
 
-/// Times closer than this are the same time: contacts that are simultaneous in exact arithmetic differ by roundings.
+/// Times closer than this are the same time: contacts that are simultaneous in exact arithmetic differ by
+/// roundings.
 double same_time(double t) { return 32.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, t); }
 
 std::size_t first_by(const std::string& order, std::vector<Certificate>& group, Random& random) {
@@ -19,7 +20,8 @@ std::size_t first_by(const std::string& order, std::vector<Certificate>& group, 
   const auto by_index = [](const Certificate& c) {
     return std::tuple(c.kind, c.pair.order(), c.contact.site, c.contact.sample);
   };
-  if (order == "closing_speed") return least([&](const auto& c) { return std::tuple(-c.contact.closing_speed, by_index(c)); });
+  if (order == "closing_speed")
+    return least([&](const auto& c) { return std::tuple(-c.contact.closing_speed, by_index(c)); });
   if (order == "depth") return least([&](const auto& c) { return std::tuple(c.contact.gap, by_index(c)); });
   if (order == "random") return random.below(group.size());
   return least(by_index);
@@ -32,8 +34,10 @@ std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda) {
   while (!agenda.empty()) {
     if (!group.empty() && agenda.earliest().time > group.front().time + same_time(group.front().time)) break;
     const Certificate c = agenda.pop();
-    if (kernel.fresh(c)) group.push_back(c);
-    else ++kernel.work().certificates_stale;
+    if (kernel.fresh(c))
+      group.push_back(c);
+    else
+      ++kernel.work().certificates_stale;
   }
   if (group.empty()) return std::nullopt;
   const std::size_t chosen = group.size() == 1 ? 0 : first_by(kernel.options().order, group, kernel.random());

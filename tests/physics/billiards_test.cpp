@@ -10,8 +10,8 @@ namespace {
 
 using testing::Events;
 
-// A disc in a circular container, no forces: the angle between chord and wall stays, so foot n of the bounces is at
-// th0 + n (pi - 2 b), b the angle between the path and the inward normal.
+// A disc in a circular container, no forces: the angle between chord and wall stays, so foot n of the bounces
+// is at th0 + n (pi - 2 b), b the angle between the path and the inward normal.
 class CircularContainer : public ::testing::TestWithParam<double> {};
 
 TEST_P(CircularContainer, FeetOfTenThousandBouncesAreEquallySpaced) {
@@ -33,7 +33,8 @@ TEST_P(CircularContainer, FeetOfTenThousandBouncesAreEquallySpaced) {
   for (int n = 0; n < bounces; ++n) {
     const Vec2 p = hits[n].contact.point;
     const double expected = n * (M_PI - 2.0 * b);
-    worst_angle = std::max(worst_angle, std::abs(std::remainder(std::atan2(p.y(), p.x()) - expected, 2.0 * M_PI)));
+    worst_angle =
+        std::max(worst_angle, std::abs(std::remainder(std::atan2(p.y(), p.x()) - expected, 2.0 * M_PI)));
     worst_time = std::max(worst_time, std::abs(hits[n].contact.time - (0.25 + n * chord)));
   }
   printf("circle, b = %.1f: %d hits, worst foot angle error %.2e rad, worst time error %.2e s\n", b, bounces,
@@ -65,7 +66,8 @@ TEST(Rectangle, DiscFollowsTheUnfoldedTriangularWave) {
   const Vec2 p = simulator.state(0).pose.position;
   const double ex = std::abs(p.x() - triangular(p0.x(), v0.x(), -w + radius, w - radius, end));
   const double ey = std::abs(p.y() - triangular(p0.y(), v0.y(), -h + radius, h - radius, end));
-  printf("rectangle: %llu hits, error %.2e m\n", static_cast<unsigned long long>(summary.collisions), std::max(ex, ey));
+  printf("rectangle: %llu hits, error %.2e m\n", static_cast<unsigned long long>(summary.collisions),
+         std::max(ex, ey));
   EXPECT_GT(summary.collisions, 15000U);
   EXPECT_LE(std::max(ex, ey), 1e-10);
 }
@@ -85,7 +87,8 @@ TEST(ThinPlates, FastShotNeverPassesThrough) {
     EXPECT_GT(summary.collisions, 5U);
     EXPECT_LE(summary.max_overlap, 1e-12) << "speed " << speed;
     EXPECT_NEAR(summary.energy_final / summary.energy_initial, 1.0, 1e-12);
-    // the shot starts left of every plate and no plate can have been jumped: order along x is kept at the middle plate
+    // the shot starts left of every plate and no plate can have been jumped: order along x is kept at the
+    // middle plate
     EXPECT_LT(simulator.state(0).pose.position.x(), simulator.state(10).pose.position.x());
   }
 }

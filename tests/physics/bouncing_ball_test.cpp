@@ -1,4 +1,5 @@
-/// A ball dropped from height h on a floor, restitution e: impact n at t1 (1 + 2 sum_{k=1}^{n-1} e^k), t1 = sqrt(2h/g).
+/// A ball dropped from height h on a floor, restitution e: impact n at t1 (1 + 2 sum_{k=1}^{n-1} e^k), t1 =
+/// sqrt(2h/g).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -54,8 +55,9 @@ TEST_P(BouncingBall, EveryImpactBeforeTheZenoTimeIsWhereTheGeometricSeriesPutsIt
 }
 
 INSTANTIATE_TEST_SUITE_P(Restitutions, BouncingBall,
-                         ::testing::Values(Case{0.5, "ballistic"}, Case{0.8, "ballistic"}, Case{0.9, "ballistic"},
-                                           Case{0.5, "erk"}, Case{0.8, "erk"}, Case{0.9, "erk"}));
+                         ::testing::Values(Case{0.5, "ballistic"}, Case{0.8, "ballistic"},
+                                           Case{0.9, "ballistic"}, Case{0.5, "erk"}, Case{0.8, "erk"},
+                                           Case{0.9, "erk"}));
 
 TEST(BouncingBall, DroppedFromTenMetresElasticStaysOnTheClosedFormForFiveSeconds) {
   const double height = 9.5, t1 = std::sqrt(2.0 * height / kGravity);

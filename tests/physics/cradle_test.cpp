@@ -15,7 +15,8 @@ World cradle(int n, double gap, double v) {
   World world;
   const Shape disc = make_disc(0.5);
   for (int i = 0; i < n; ++i)
-    testing::add(world, testing::body(disc, {i * (1.0 + gap) - (i == 0 ? 0.25 : 0.0), 0.0}, {i == 0 ? v : 0.0, 0.0}));
+    testing::add(
+        world, testing::body(disc, {i * (1.0 + gap) - (i == 0 ? 0.25 : 0.0), 0.0}, {i == 0 ? v : 0.0, 0.0}));
   return world;
 }
 
@@ -38,8 +39,8 @@ INSTANTIATE_TEST_SUITE_P(RowsWithAndWithoutGaps, Cradle,
                          ::testing::Values(std::pair{2, 0.01}, std::pair{5, 0.01}, std::pair{20, 0.001},
                                            std::pair{3, 0.0}, std::pair{5, 0.0}, std::pair{10, 0.0}));
 
-// Disc v = (1, 0) on two touching equal discs at +-30 degrees, upper first (index order): the first collision leaves
-// v0 = (1/4, -sqrt3/4), the second (-1/8, -sqrt3/8); speeds sqrt3/2 and sqrt3/4; energy is kept.
+// Disc v = (1, 0) on two touching equal discs at +-30 degrees, upper first (index order): the first collision
+// leaves v0 = (1/4, -sqrt3/4), the second (-1/8, -sqrt3/8); speeds sqrt3/2 and sqrt3/4; energy is kept.
 TEST(DiscOnTwo, UpperFirstOneAtATimeGivesTheClosedForm) {
   World world;
   const Shape disc = make_disc(0.5);

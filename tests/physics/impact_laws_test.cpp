@@ -10,8 +10,9 @@ namespace {
 
 using testing::Events;
 
-// Garwin 1969: an elastic rough disc, I = m R^2 / 2, bouncing between floor and ceiling. Tangential velocity reverses
-// at each hit; with v the speed along the floor and R omega the spin: 1, 1/3, -7/9, -23/27 and 0, 4/3, -8/9, -20/27.
+// Garwin 1969: an elastic rough disc, I = m R^2 / 2, bouncing between floor and ceiling. Tangential velocity
+// reverses at each hit; with v the speed along the floor and R omega the spin: 1, 1/3, -7/9, -23/27 and 0,
+// 4/3, -8/9, -20/27.
 TEST(Superball, ThreeHitsBetweenFloorAndCeilingGiveTheClosedForm) {
   const double radius = 0.5;
   World world;
@@ -30,7 +31,8 @@ TEST(Superball, ThreeHitsBetweenFloorAndCeilingGiveTheClosedForm) {
   }
 }
 
-// A disc with normal speed vn and slip u at the contact: sticking needs a tangential impulse m u / 3 <= mu m (1+e) vn.
+// A disc with normal speed vn and slip u at the contact: sticking needs a tangential impulse m u / 3 <= mu m
+// (1+e) vn.
 TEST(CoulombBounce, DiscSticksJustBelowTheBoundAndSlipsJustAboveIt) {
   const double mu = 0.2, e = 0.6, vn = 1.3, radius = 0.4;
   for (const double factor : {1.0 - 1e-12, 1.0 + 1e-12, 0.3, 2.5}) {
@@ -59,8 +61,8 @@ TEST(Rod, LandingOnOneEndTurnsAtTheClosedFormRate) {
       const double length = 1.6, v = 2.0;
       World world;
       world.materials[0].restitution = e;
-      testing::add(world, testing::body(make_chain({{-length / 2, 0.0}, {length / 2, 0.0}}), {0.0, 2.0}, {0.0, -v}, 1.3,
-                                        angle));
+      testing::add(world, testing::body(make_chain({{-length / 2, 0.0}, {length / 2, 0.0}}), {0.0, 2.0},
+                                        {0.0, -v}, 1.3, angle));
       testing::add(world, testing::site(make_segment({-50.0, 0.0}, {50.0, 0.0})));
       Simulator simulator(world, {});
       const double landing = (2.0 - 0.5 * length * std::sin(angle)) / v;
@@ -68,7 +70,8 @@ TEST(Rod, LandingOnOneEndTurnsAtTheClosedFormRate) {
       const double c = std::cos(angle);
       const double expected = 6.0 * (1.0 + e) * v * c / (length * (1.0 + 3.0 * c * c));
       // the lower end is the left one: the impulse up on it turns the rod clockwise
-      EXPECT_NEAR(simulator.state(0).twist.omega, -expected, 1e-12 * expected) << "angle " << angle << " e " << e;
+      EXPECT_NEAR(simulator.state(0).twist.omega, -expected, 1e-12 * expected)
+          << "angle " << angle << " e " << e;
     }
 }
 
