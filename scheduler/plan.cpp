@@ -23,8 +23,12 @@ Plan Kernel::plan() const {
   auto& lines = plan.lines;
   lines.push_back(fmt::format("policy {}, order {}, response {}, detector {}", options_.policy,
                               options_.order, options_.response, options_.detector));
-  const auto ballistic = std::count_if(bodies_.begin(), bodies_.end(),
-                                       [](const BodyTrack& b) { return b.motion.is_ballistic(); });
+  const bool closed_motion = options_.integrator == "auto" || options_.integrator == "ballistic";
+  const auto is_ballistic = [&](int k) {
+    return closed_motion && components_[bodies_[k].component].component.dynamics->constant();
+  };
+  int ballistic = 0;
+  for (int k = 0; k < body_count(); ++k) ballistic += is_ballistic(k);
   lines.push_back(
       fmt::format("motion: {} of {} bodies ballistic in closed form, {} component(s), integrator {}",
                   ballistic, bodies_.size(), components_.size(), options_.integrator));
@@ -34,7 +38,8 @@ Plan Kernel::plan() const {
     for (int b = a + 1; b < owner_count(); ++b) {
       const PairKey pair = *pair_of(a, b);
       ++pairs;
-      closed += has_closed_form(mover(pair.body), other_mover(pair));
+      closed += is_ballistic(a) && (b >= body_count() || is_ballistic(b)) &&
+                has_closed_form(mover(pair.body), other_mover(pair));
     }
   lines.push_back(
       switched(options_.skip_closed_forms, "solver.skip_closed_forms",

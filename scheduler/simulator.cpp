@@ -35,7 +35,8 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
   if (!(options.frame_interval >= 0.0))
     throw BadInput(fmt::format("frame_interval = {} must be >= 0", options.frame_interval));
   Kernel& kernel = impl_->kernel;
-  if (std::string why; time() == 0.0 && !kernel.may_start(&why)) throw BadInput(why);
+  if (time() == 0.0)
+    if (const std::string why = start_fault(); !why.empty()) throw BadInput(why);
   const auto begin = std::chrono::steady_clock::now();
   kernel.begin(options, recorder);
   impl_->policy->run(kernel, options.until);
@@ -75,6 +76,12 @@ std::uint64_t Simulator::state_hash() const {
   hash.add(time());
   for (const BodyState& s : states()) hash.add(s);
   return hash.value();
+}
+
+std::string Simulator::start_fault() const {
+  std::string why;
+  impl_->kernel.may_start(&why);
+  return why;
 }
 
 std::vector<Contact> Simulator::overlaps() const { return impl_->kernel.overlaps(); }
