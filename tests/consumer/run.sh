@@ -9,5 +9,6 @@ cmake --install "$1" --prefix "$work/prefix" >/dev/null
 cmake -S "$here" -B "$work/build" -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/prefix"
 cmake --build "$work/build"
 "$work/build/consumer"
+"$work/build/readme_example"
 "$work/prefix/bin/brink" --version
 "$work/prefix/bin/brink" list scenes | grep -q .
