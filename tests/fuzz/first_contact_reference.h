@@ -211,7 +211,7 @@ inline FirstTouch first_touch(const Pair& pair, double from, double to, double t
       if (next > end) break;
       t = std::max(next, std::nextafter(t, kNever));
       if (t > end) break;
-      if (n > cap) {
+      if (found.evaluations > cap) {
         found.given_up = true;
         break;
       }

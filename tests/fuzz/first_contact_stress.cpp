@@ -2,7 +2,7 @@
 // failure the seeds are printed; BRINK_SEED and BRINK_FLIGHTS repeat any of them.
 #include <gtest/gtest.h>
 
-#include "first_contact_flights.h"
+#include "first_contact_checks.h"
 
 namespace brink {
 namespace {

@@ -1,7 +1,7 @@
 // First contact against a slow reference on random flights of every kind of outline and motion.
 #include <gtest/gtest.h>
 
-#include "first_contact_flights.h"
+#include "first_contact_checks.h"
 
 namespace brink {
 namespace {

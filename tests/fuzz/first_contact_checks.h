@@ -1,0 +1,448 @@
+#pragma once
+/// Everything that is checked about the first contact of a flight, and the tally of it.
+
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+
+#include "brink/scheduler/first_contact.h"
+#include "first_contact_flights.h"
+
+namespace brink::flights {
+
+struct Tally {
+  long flights = 0, skipped = 0, contacts = 0, slow = 0, clear = 0, grazing = 0, near_misses = 0,
+       given_up = 0, undecided = 0;
+  long missed = 0, invented = 0, late = 0, below = 0, bad_normal = 0, bad_speed = 0;
+  long closed_forms = 0, closed_form_differs = 0;
+  long restarts = 0, not_canonical = 0, restarts_closed = 0, not_canonical_closed = 0;
+  long rebounds = 0, rebound_wrong = 0, pressed = 0, pressed_wrong = 0;
+  double worst_time_error = 0.0;      ///< [s]
+  double worst_relative_error = 0.0;  ///< of the time since `from`
+  std::uint64_t worst_seed = 0;
+  long reported = 0;
+
+  long failures() const {
+    return undecided + missed + invented + late + below + bad_normal + bad_speed + closed_form_differs +
+           rebound_wrong + pressed_wrong;
+  }
+};
+
+inline std::ostream& operator<<(std::ostream& out, const Tally& t) {
+  return out << "flights " << t.flights << " (near misses " << t.near_misses << ", skipped " << t.skipped
+             << "), contacts " << t.contacts << ", clear " << t.clear << ", grazing " << t.grazing
+             << ", reference gave up " << t.given_up << "\nmissed " << t.missed << ", invented " << t.invented
+             << ", time wrong " << t.late << ", undecided " << t.undecided << ", gap below zero " << t.below
+             << ", normal wrong " << t.bad_normal << ", closing speed wrong " << t.bad_speed
+             << "\nclosed forms " << t.closed_forms << ", differ from the search " << t.closed_form_differs
+             << "\nrestarts " << t.restarts << ", other bits " << t.not_canonical << "; with closed forms "
+             << t.restarts_closed << ", other bits " << t.not_canonical_closed << "\nrebounds " << t.rebounds
+             << ", wrong " << t.rebound_wrong << "; pressed on " << t.pressed << ", wrong " << t.pressed_wrong
+             << "\nworst time error " << t.worst_time_error << " s (seed " << t.worst_seed
+             << "), relative to the flight " << t.worst_relative_error << "\n";
+}
+
+class Checker {
+ public:
+  Tally tally;
+  bool verbose = true;
+
+  void check(std::uint64_t seed) {
+    const Flight f = random_flight(seed);
+    check(f, seed);
+    if (seed % 256 == 0) check_near_misses(f, seed);
+  }
+
+  /// b's path moved sideways to where it only just touches a, then by ever smaller steps to either side of
+  /// that.
+  void check_near_misses(const Flight& f, std::uint64_t seed) {
+    if (f.a->container || f.b->container || !f.motion_a.is_ballistic() || !f.motion_b.is_ballistic()) return;
+    const Vec2 v = f.motion_b.twist(f.from).velocity - f.motion_a.twist(f.from).velocity;
+    const Vec2 d = f.motion_b.pose(f.from).position - f.motion_a.pose(f.from).position;
+    const Vec2 side =
+        perp(v.normalized()) * (cross(v, d) < 0.0 ? -1.0 : 1.0);  // moves b away from a at the start
+    const auto hits = [&](double x) {
+      const Flight g = shifted(f, x * side);
+      return reference::first_touch(g.pair(), g.from, g.to, 1e-12 * std::max(1.0, g.size), 20000).time <=
+             g.to;
+    };
+    double hit = 0.0, miss = 2.5 * (f.a->bounding_radius + f.b->bounding_radius);
+    if (!hits(hit) || hits(miss)) return;
+    while (miss - hit > 1e-10 * f.size) {
+      const double middle = 0.5 * (hit + miss);
+      if (middle <= hit || middle >= miss) break;
+      (hits(middle) ? hit : miss) = middle;
+    }
+    for (const double off : {1e-3, 1e-5, 1e-7, 1e-8}) {
+      check(shifted(f, (hit - off * f.size) * side), seed);
+      check(shifted(f, (miss + off * f.size) * side), seed);
+      tally.near_misses += 2;
+    }
+  }
+
+  void check(const Flight& f, std::uint64_t seed) {
+    seed_ = seed;
+    ++tally.flights;
+    const reference::Pair pair = f.pair();
+    if (!(pair.distance(f.from) > 1e-6 * f.size)) {
+      ++tally.skipped;
+      return;
+    }
+    const Sides sides(f);
+    SearchLimits limits;
+    limits.closed_forms = false;
+    const PairAnswer answer = search(sides, f.from, f.to, limits);
+    if (answer.status == PairAnswer::Status::undecided) {
+      fail(f, tally.undecided, "undecided", answer, {});
+      return;
+    }
+    const Touch truth = true_touch(f, pair, f.from, f.to);
+    if (truth.given_up) {
+      ++tally.given_up;
+      return;
+    }
+    compare(f, pair, answer, truth);
+    compare_closed_form(f, pair, sides, answer, limits);
+  }
+
+ private:
+  struct Sides {
+    std::unique_ptr<SiteIndex> index_a, index_b;
+    Mover a, b;
+    explicit Sides(const Flight& f)
+        : index_a(make_brute_force_index(f.a)),
+          index_b(make_brute_force_index(f.b)),
+          a{index_a.get(), &f.motion_a, 0.0},
+          b{index_b.get(), &f.motion_b, 0.0} {}
+  };
+
+  struct Touch {
+    double time = reference::kNever;
+    double closing = 0.0;  ///< mean closing speed shortly before [m/s]
+    bool real = false;     ///< the outlines come to cross, not only near
+    bool passed = false;   ///< a point went through a wire
+    bool given_up = false;
+    double least = reference::kNever;
+  };
+
+  PairAnswer search(const Sides& s, double from, double to, const SearchLimits& limits) {
+    return first_contact(s.a, s.b, from, to, limits, scratch_, work_);
+  }
+
+  /// Bound on the speed of any point of one body against the other.
+  static double body_speed(const Flight& f) {
+    return f.relative_speed + f.spin_a * f.a->bounding_radius + f.spin_b * f.b->bounding_radius;
+  }
+
+  /// The reference's answer, polished: first time of crossing, after the first time within `tiny`.
+  Touch true_touch(const Flight& f, const reference::Pair& pair, double from, double to) {
+    Touch touch;
+    // not less than two bodies move in a rounding of the time
+    const double tiny = std::max(1e-13 * std::max(1.0, f.size), 4.0 * 2.2e-16 * to * body_speed(f));
+    const reference::FirstTouch near = reference::first_touch(pair, from, to, tiny);
+    touch.given_up = near.given_up;
+    touch.least = near.least;
+    if (!(near.time <= to)) return touch;
+    const double speed = std::max(body_speed(f), 1e-300);
+    touch.time = near.time;
+    double low = near.time, high = near.time;
+    bool crossed = pair.distance(high) <= 0.0;
+    for (double step = tiny / speed; !crossed && high < to; step *= 2.0) {
+      low = high;
+      high = std::min(to, std::max(near.time + step, std::nextafter(high, reference::kNever)));
+      const double d = pair.distance(high);
+      crossed = d <= 0.0;
+      if (d > 1e-9 * f.size + 10.0 * tiny) break;
+    }
+    touch.real = crossed;
+    if (!crossed) pass_through(pair, from, to, touch);
+    if (crossed) {
+      while (std::nextafter(low, reference::kNever) < high) {
+        const double middle = low + 0.5 * (high - low);
+        if (middle <= low || middle >= high) break;
+        (pair.distance(middle) <= 0.0 ? high : low) = middle;
+      }
+      touch.time = low;
+    }
+    const double h = std::min(1e-6 * (f.to - f.from), touch.time - from);
+    if (h > 0.0) touch.closing = pair.distance(touch.time - h) / h;
+    return touch;
+  }
+
+  /// A point has no extent to cross a thin wire with: it goes through where its distance falls to nothing and
+  /// rises again as fast.
+  static void pass_through(const reference::Pair& pair, double from, double to, Touch& touch) {
+    const double h = std::min({1e-7 * (to - from), touch.time - from, to - touch.time});
+    if (!(h > 0.0)) return;
+    const double before = pair.distance(touch.time - h), after = pair.distance(touch.time + h);
+    const double now = pair.distance(touch.time);
+    if (now > 1e-3 * before || after < 0.9 * before || after > 1.1 * before) return;
+    touch.real = touch.passed = true;
+    touch.time += h * now / before;
+  }
+
+  /// Estimate of how deep the crossing that begins at t gets, from how long it lasts: gap(t - duration) / 8,
+  /// for a parabola whose falling side is continued backward.
+  static double depth_of(const Flight& f, const reference::Pair& pair, const Touch& truth) {
+    return truth.passed ? reference::kNever : depth_after(f, pair, truth.time);
+  }
+  static double depth_after(const Flight& f, const reference::Pair& pair, double t) {
+    const double length = f.to - f.from;
+    double lasts = 1e-12 * length;
+    while (t + lasts < f.to && pair.distance(t + lasts) <= 0.0) lasts *= 1.5;
+    const double back = std::min(lasts, t - f.from);
+    return back > 0.0 ? pair.distance(t - back) / 8.0 : 0.0;
+  }
+
+  /// Rounding of places over speed: how well this contact's time is known at all.
+  static double time_tolerance(const Flight& f, const Touch& touch) {
+    const double extent =
+        f.motion_a.pose(f.from).position.norm() + f.motion_b.pose(f.from).position.norm() +
+        f.a->bounding_radius + f.b->bounding_radius +
+        std::max(f.motion_a.pose(f.to).position.norm(), f.motion_b.pose(f.to).position.norm());
+    return 8e-16 * touch.time + 16 * 2.2e-16 * extent / std::max(touch.closing, 1e-300);
+  }
+
+  void compare(const Flight& f, const reference::Pair& pair, const PairAnswer& answer, const Touch& truth) {
+    const bool says_contact = answer.status == PairAnswer::Status::contact;
+    if (!says_contact && truth.time > f.to) {
+      ++tally.clear;
+      return;
+    }
+    if (!says_contact) {
+      const bool shallow = !truth.real || depth_of(f, pair, truth) < 1e-10 * f.size ||
+                           truth.time > f.to - 1e-12 * (f.to - f.from);
+      if (shallow)
+        ++tally.grazing;
+      else
+        fail(f, tally.missed, "missed", answer, truth);
+      return;
+    }
+    const double d = pair.distance(answer.contact.time);
+    const double touch_band = 1e-12 * std::max(1.0, f.size) + 4.0 * 2.2e-16 * f.to * body_speed(f);
+    if (truth.time > f.to || !truth.real) {
+      if (d <= touch_band || truth.time > f.to - 1e-12 * (f.to - f.from))
+        ++tally.grazing;
+      else
+        fail(f, tally.invented, "invented", answer, truth);
+      return;
+    }
+    const double error = std::abs(answer.contact.time - truth.time);
+    const double tolerance = time_tolerance(f, truth);
+    if (depth_of(f, pair, truth) < 1e-10 * f.size) {
+      const bool near = d <= touch_band || error <= tolerance;
+      if (near)
+        ++tally.grazing;
+      else
+        fail(f, answer.contact.time < truth.time ? tally.invented : tally.missed, "grazing, but apart",
+             answer, truth);
+      return;
+    }
+    ++tally.contacts;
+    // what the search calls touching: a wire is met half of it before, and below 1 mm/s that is longer than
+    // 1e-10 s
+    const double touching = 1e-13 / truth.closing;
+    const bool slow = touching + tolerance > 1e-10;
+    if (slow) ++tally.slow;
+    if (!slow && error > tally.worst_time_error) {
+      tally.worst_time_error = error;
+      tally.worst_seed = seed_;
+    }
+    tally.worst_relative_error = std::max(tally.worst_relative_error, error / (f.to - f.from));
+    if (error > std::max(1e-10, touching + tolerance) ||
+        error > touching + std::max(16.0 * tolerance, 1e-11 * (f.to - f.from)))
+      fail(f, answer.contact.time < truth.time ? tally.invented : tally.late, "time", answer, truth);
+    else
+      check_contact(f, pair, answer, truth);
+  }
+
+  void check_contact(const Flight& f, const reference::Pair& pair, const PairAnswer& answer,
+                     const Touch& truth) {
+    const FeatureContact& c = answer.contact;
+    const double rounding = 64 * 2.2e-16 *
+                            (f.size + f.motion_a.pose(c.time).position.norm() +
+                             f.motion_b.pose(c.time).position.norm() + f.a->bounding_radius);
+    const double d = pair.distance(c.time);
+    if (c.gap < -rounding || d < -rounding || answer.until != c.time)
+      fail(f, tally.below, "gap", answer, truth);
+    check_normal(f, pair, answer, truth, rounding);
+    check_speed(f, pair, answer, truth, rounding);
+    check_restarts(f, answer, truth);
+    if (f.motion_a.is_ballistic() && f.motion_b.is_ballistic()) check_rebound(f, answer, truth);
+  }
+
+  /// A small shift of a along the normal is a gap of that size; against it, none.
+  void check_normal(const Flight& f, const reference::Pair& pair, const PairAnswer& answer,
+                    const Touch& truth, double rounding) {
+    const FeatureContact& c = answer.contact;
+    const double shift = std::max(1e-8 * f.size, 1e4 * (rounding + std::abs(c.gap)));
+    if (shift > 1e-5 * f.size) return;
+    const double apart = pair.distance(c.time, shift * c.normal);
+    const double pushed = pair.distance(c.time, -shift * c.normal);
+    const bool unit = std::abs(c.normal.norm() - 1.0) < 1e-14;
+    // the shift may bring another feature near, in a notch or with an arc as small as the shift: then less
+    // than all of it
+    if (!unit || apart < 0.5 * shift || (!truth.passed && pushed > 0.5 * shift))
+      fail(f, tally.bad_normal, "normal", answer, truth);
+  }
+
+  /// The speed along the normal of the two points that touch, and how fast the distance falls just before.
+  void check_speed(const Flight& f, const reference::Pair& pair, const PairAnswer& answer, const Touch& truth,
+                   double rounding) {
+    const FeatureContact& c = answer.contact;
+    const BodyState sa = f.motion_a.state(c.time), sb = f.motion_b.state(c.time);
+    const Vec2 va = sa.twist.at(c.point - sa.pose.position), vb = sb.twist.at(c.point - sb.pose.position);
+    bool wrong = !(c.closing_speed >= 0.0) ||
+                 std::abs(-c.normal.dot(va - vb) - c.closing_speed) > 1e-7 * (body_speed(f) + vb.norm());
+    const double spin = f.spin_a + f.spin_b;
+    const double bend =
+        f.relative_acceleration +
+        4.0 * spin * (spin * (f.a->bounding_radius + f.b->bounding_radius) + pair.relative_speed) +
+        4.0 * body_speed(f) * body_speed(f) / (1e-6 * f.size);
+    const double h = 1e-2 * c.closing_speed / bend;
+    if (h < c.time - f.from && h * c.closing_speed > 1e4 * rounding && h > 1e4 * 2.2e-16 * c.time) {
+      // into a notch the distance to its flanks falls slower than that to its bottom: the closing speed is a
+      // bound
+      const double measured = (pair.distance(c.time - h) - pair.distance(c.time)) / h;
+      wrong = wrong || measured > 1.05 * c.closing_speed;
+    }
+    if (wrong) fail(f, tally.bad_speed, "closing speed", answer, truth);
+  }
+
+  /// The same contact from other starts, and with the window cut in pieces.
+  void check_restarts(const Flight& f, const PairAnswer& answer, const Touch& truth) {
+    const Sides sides(f);
+    SearchLimits limits;
+    const double t = answer.contact.time;
+    for (const bool closed : {false, true}) {
+      limits.closed_forms = closed;
+      const PairAnswer whole = closed ? search(sides, f.from, f.to, limits) : answer;
+      const double expected = whole.contact.time;
+      long& count = closed ? tally.restarts_closed : tally.restarts;
+      long& other = closed ? tally.not_canonical_closed : tally.not_canonical;
+      const auto same = [&](const PairAnswer& again, const char* what) {
+        ++count;
+        const bool contact = again.status == PairAnswer::Status::contact;
+        if (contact && again.contact.time == expected) return;
+        fail(f, other, what, again, truth);
+        if (!contact || std::abs(again.contact.time - expected) > 2 * time_tolerance(f, truth))
+          fail(f, tally.late, "restart", again, truth);
+      };
+      for (const double part : {0.37, 0.9, 0.999999, 0.999999999})
+        if (const double from = f.from + part * (t - f.from);
+            from < std::min(t, expected) - 1e-12 * (f.to - f.from) - 100 * time_tolerance(f, truth))
+          same(search(sides, from, f.to, limits), closed ? "later start, closed form" : "later start");
+      Random r(seed_ + 77);
+      double from = f.from;
+      PairAnswer piece;
+      for (int k = 0; k < 6 && from < f.to; ++k) {
+        const double end = k == 5 ? f.to : std::min(f.to, from + r.uniform(0.05, 0.4) * (f.to - f.from));
+        piece = search(sides, from, end, limits);
+        if (piece.status == PairAnswer::Status::contact) break;
+        from = end;
+      }
+      same(piece, closed ? "window in pieces, closed form" : "window in pieces");
+    }
+  }
+
+  void compare_closed_form(const Flight& f, const reference::Pair& pair, const Sides& sides,
+                           const PairAnswer& plain, SearchLimits limits) {
+    limits.closed_forms = true;
+    const std::uint64_t before = work_.closed_forms;
+    const PairAnswer quick = search(sides, f.from, f.to, limits);
+    if (work_.closed_forms == before) return;
+    ++tally.closed_forms;
+    const Touch none;
+    const bool both = quick.status == plain.status;
+    const PairAnswer& said = quick.status == PairAnswer::Status::contact ? quick : plain;
+    if (both && quick.status != PairAnswer::Status::contact) return;
+    const double d = pair.distance(said.contact.time);
+    const bool shallow = depth_after(f, pair, said.contact.time) < 1e-10 * f.size;
+    if (!both) {
+      if (!shallow && said.contact.time < f.to - 1e-12 * (f.to - f.from))
+        fail(f, tally.closed_form_differs, "closed form: another status", quick, none);
+      return;
+    }
+    Touch touch;
+    touch.time = quick.contact.time;
+    touch.closing = std::max(quick.contact.closing_speed, 1e-300);
+    const double apart = std::abs(quick.contact.time - plain.contact.time);
+    const bool close =
+        apart <= 4.0 * time_tolerance(f, touch) || (shallow && d < 1e-12 * std::max(1.0, f.size));
+    if (!close)
+      fail(f, tally.closed_form_differs, "closed form: another time", quick, none);
+    else if (!shallow && (quick.contact.normal - plain.contact.normal).norm() > 1e-5)
+      fail(f, tally.closed_form_differs, "closed form: another normal", quick, none);
+  }
+
+  /// Starts in contact: thrown back along the normal (separating), and going on as before (approaching).
+  void check_rebound(const Flight& f, const PairAnswer& answer, const Touch& truth) {
+    const FeatureContact& c = answer.contact;
+    const double t = c.time;
+    const Sides sides(f);
+    const PairAnswer pressed = search(sides, t, f.to, SearchLimits());
+    ++tally.pressed;
+    if (pressed.status != PairAnswer::Status::contact ||
+        pressed.contact.time > t + 2 * time_tolerance(f, truth))
+      fail(f, tally.pressed_wrong, "approaching from contact", pressed, truth);
+
+    Flight back = f;
+    BodyState sa = f.motion_a.state(t);
+    const double kick = 1.5 * c.closing_speed;
+    sa.twist.velocity += kick * c.normal;
+    back.motion_a = Motion::ballistic(t, sa, f.motion_a.acceleration());
+    back.motion_b = Motion::ballistic(t, f.motion_b.state(t), f.motion_b.acceleration());
+    back.from = t;
+    back.relative_speed += kick;
+    const reference::Pair pair = back.pair();
+    double gone = 1e-9 * (f.to - f.from);  // by then it must have left, or this is no clean rebound
+    while (t + gone < f.to && pair.distance(t + gone) < 1e-7 * f.size) gone *= 2.0;
+    if (gone > 1e-3 * (f.to - f.from) || t + gone >= f.to) return;
+    for (double s = gone; s > 1e-3 * gone; s *= 0.7)
+      if (pair.distance(t + s) <= 0.2 * kick / 3.0 * s) return;
+    ++tally.rebounds;
+    Sides sides_back(back);
+    sides_back.a.velocity_rounding = sides_back.b.velocity_rounding = 16 * 2.2e-16 * pair.relative_speed;
+    SearchLimits limits;
+    const Touch next = true_touch(back, pair, t + gone, f.to);
+    for (const bool closed : {false, true}) {
+      limits.closed_forms = closed;
+      const PairAnswer again = search(sides_back, t, f.to, limits);
+      const bool says = again.status == PairAnswer::Status::contact;
+      const bool clean = next.real && next.closing > 1e-3 * c.closing_speed;
+      const double error = says ? std::abs(again.contact.time - next.time) : 0.0;
+      bool wrong = false;
+      if (again.status == PairAnswer::Status::undecided)
+        wrong = true;
+      else if (next.time > f.to)
+        wrong = says && pair.distance(again.contact.time) > 1e-12 * std::max(1.0, f.size);
+      else if (!says)
+        wrong = clean && depth_after(back, pair, next.time) > 1e-10 * f.size;
+      else
+        wrong = again.contact.time <= t ||
+                (clean && error > 1e-10 + 1e-13 / next.closing && error > 16 * time_tolerance(back, next));
+      if (says && again.contact.time <= t + 1e-3 * gone) wrong = true;
+      if (wrong && !next.given_up)
+        fail(back, tally.rebound_wrong, closed ? "rebound, closed form" : "rebound", again, next);
+    }
+  }
+
+  void fail(const Flight& f, long& count, const char* what, const PairAnswer& answer, const Touch& truth) {
+    ++count;
+    if (!verbose || ++tally.reported > 40) return;
+    const FeatureContact& c = answer.contact;
+    std::cout << std::setprecision(17) << "seed " << seed_ << ": " << what << " (" << f.story << ") window "
+              << f.from << " .. " << f.to << "\n  answer " << static_cast<int>(answer.status) << " time "
+              << c.time << " gap " << c.gap << " closing " << c.closing_speed << " sample "
+              << (c.sample_on_a ? "a" : "b") << c.sample << " site " << c.site << " normal "
+              << c.normal.transpose() << "\n  reference " << truth.time << " closing " << truth.closing
+              << " least " << truth.least << " distance at answer "
+              << (c.sample >= 0 ? f.pair().distance(c.time) : 0.0) << std::setprecision(6) << "\n";
+  }
+
+  std::uint64_t seed_ = 0;
+  SearchScratch scratch_;
+  WorkCounters work_;
+};
+
+}  // namespace brink::flights
