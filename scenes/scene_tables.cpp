@@ -199,7 +199,7 @@ const Schema<SolverOptions>& solver_schema() {
                "which of several simultaneous contacts is resolved first")
           .key("integrator", &S::integrator, choice(names_of(integrators())),
                "how bodies move between contacts")
-          .key("tolerance", &S::tolerance, number({1e-15, 1.0, false, ""}), "relative, adaptive integrators")
+          .key("tolerance", &S::tolerance, number({1e-14, 0.1, false, ""}), "relative, adaptive integrators")
           .key("absolute_tolerance", &S::absolute_tolerance, number({1e-18, 1.0, false, ""}),
                "in SI units, adaptive integrators")
           .key("step", &S::step, number({1e-9, 1e6, false, "s"}),
@@ -222,7 +222,7 @@ const Schema<FieldTable>& field_schema() {
   using F = FieldOptions;
   static const Schema<F> options =
       Schema<F>("field")
-          .count("resolution", &F::resolution, whole(0, 4096),
+          .count("resolution", &F::resolution, whole(0, 1024),
                  "pixels along the longer side of a body field; 0: chosen by shape")
           .key("band", &F::band, number(not_negative("m")),
                "width of the band drawn around a shape; 0: chosen by shape")
@@ -231,7 +231,7 @@ const Schema<FieldTable>& field_schema() {
           .key("context", &F::context, choice({"auto", "osmesa", "egl"}), "who renders")
           .count("brute_force_below", &F::brute_force_below, whole(0, 1'000'000),
                  "shapes of fewer sites need no field")
-          .count("list_cap", &F::list_cap, whole(1, 1'000'000), "longest candidate list of a pixel");
+          .count("list_cap", &F::list_cap, whole(1, 254), "longest candidate list of a pixel");
   static const Schema<FieldTable> schema =
       Schema<FieldTable>("field")
           .nested(&FieldTable::options, options)

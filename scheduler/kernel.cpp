@@ -12,6 +12,7 @@
 #include "brink/scheduler/broad_phase.h"
 #include "brink/scheduler/canonical_time.h"
 #include "brink/scheduler/closed_forms.h"
+#include "brink/scheduler/stage_clock.h"
 
 namespace brink {
 
@@ -138,6 +139,7 @@ bool Kernel::cover(Coupled& c, double t) {
 }
 
 bool Kernel::extend_motions(double t) {
+  const StageClock clock(work_.seconds_motion);
   for (Coupled& c : components_)
     if (bodies_[c.component.bodies.front()].motion.end() < t && !cover(c, t)) return false;
   for (std::size_t s = 0; s < sites_.size(); ++s)
@@ -289,6 +291,19 @@ std::optional<Certificate> Kernel::search(const PairKey& pair, double from, doub
     ++work_.certificates_undecided;
   }
   return c;
+}
+
+std::vector<Certificate> Kernel::simultaneous(const Certificate& c) {
+  std::vector<Certificate> others;
+  const auto features =
+      touching_features(mover(c.pair.body), other_mover(c.pair), c.time, limits_.touch, scratch_);
+  for (const FeatureContact& f : features) {
+    if (f.sample == c.contact.sample && f.sample_on_a == c.contact.sample_on_a) continue;
+    if (f.closing_speed <= 1e-12 * c.contact.closing_speed) continue;
+    others.push_back(c);
+    others.back().contact = f;
+  }
+  return others;
 }
 
 bool Kernel::fresh(const Certificate& c) const {

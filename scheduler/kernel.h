@@ -73,6 +73,9 @@ class Kernel {
   std::vector<PairKey> near_pairs_of(int body, double from, double to);
   /// Searches one pair; the certificate of a contact or an undecided end, or nothing if clear to the end.
   std::optional<Certificate> search(const PairKey& pair, double from, double to);
+  /// The other features of the certificate's pair that touch and approach at its time, each as a certificate
+  /// of its own (two corners of a box that lands flat): what an order other than `index` chooses from.
+  std::vector<Certificate> simultaneous(const Certificate& c);
   /// True if neither body has been resolved since the certificate was issued.
   bool fresh(const Certificate& c) const;
   /// Contacts of a pair at the present time with gap <= `tolerance`, deepest first.

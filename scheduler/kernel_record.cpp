@@ -8,6 +8,7 @@
 #include "brink/core/shapes/outline_crossing.h"
 #include "brink/scheduler/broad_phase.h"
 #include "brink/scheduler/kernel.h"
+#include "brink/scheduler/stage_clock.h"
 
 namespace brink {
 
@@ -39,6 +40,7 @@ void Kernel::record_frames(double t) {
   for (;;) {
     const double due = static_cast<double>(frame_ + 1) * run_.frame_interval;
     if (due > t) return;
+    const StageClock clock(work_.seconds_record);
     ++frame_;
     last_frame_ = due;
     if (recorder_) recorder_->frame(due, states(due));

@@ -52,8 +52,8 @@ class Simulator {
   /// Hash of the present time and all states.
   std::uint64_t state_hash() const;
 
-  /// Why a run cannot start from the present state: bodies overlap by more than 1e-6 of the scene's length (the deepest
-  /// pair is named). Empty if it can.
+  /// Why a run cannot start from the present state: bodies overlap by more than 1e-6 of the scene's length
+  /// (the deepest pair is named). Empty if it can.
   std::string start_fault() const;
   /// Overlaps at the present time, deepest first: contacts with gap < 0.
   std::vector<Contact> overlaps() const;

@@ -13,6 +13,7 @@
 
 #include "brink/scheduler/policies/order.h"
 #include "brink/scheduler/policies/policy.h"
+#include "brink/scheduler/stage_clock.h"
 
 namespace brink {
 
@@ -39,10 +40,7 @@ class GlobalBackup final : public Policy {
     double reached =
         from;  // time of the last event: of contacts at the same time, one may be a rounding earlier
     kernel.advance_all(end);
-    agenda_.clear();
-    const std::vector<PairKey> pairs = kernel.near_pairs(from, end);
-    pairs_ = pairs.size();
-    for (const PairKey& pair : pairs) test(kernel, pair, from, end);
+    pass(kernel, from, end);
     while (const auto next = take_earliest(kernel, agenda_)) {
       reached = std::max(reached, next->time);
       kernel.record_frames(reached);
@@ -55,14 +53,29 @@ class GlobalBackup final : public Policy {
       changed_.clear();
       if (!kernel.resolve(next->pair, next->contact, changed_)) return false;
       if (!kernel.extend_motions(end)) return false;
-      const double now = kernel.time();
-      for (const int body : changed_)
-        for (const PairKey& pair : kernel.near_pairs_of(body, now, end))
-          if (!tested_already(pair, body)) test(kernel, pair, now, end);
+      pass_again(kernel, end);
       kernel.advance_all(end);
     }
     kernel.record_frames(end);
     return true;
+  }
+
+  /// Certificates of every pair that can meet before the end.
+  void pass(Kernel& kernel, double from, double end) {
+    const StageClock clock(kernel.work().seconds_search);
+    agenda_.clear();
+    const std::vector<PairKey> pairs = kernel.near_pairs(from, end);
+    pairs_ = pairs.size();
+    for (const PairKey& pair : pairs) test(kernel, pair, from, end);
+  }
+
+  /// The same for the bodies whose motion a resolve has changed.
+  void pass_again(Kernel& kernel, double end) {
+    const StageClock clock(kernel.work().seconds_search);
+    const double now = kernel.time();
+    for (const int body : changed_)
+      for (const PairKey& pair : kernel.near_pairs_of(body, now, end))
+        if (!tested_already(pair, body)) test(kernel, pair, now, end);
   }
 
   /// A pair of two changed bodies is met from both: it is tested at the first.
@@ -73,7 +86,11 @@ class GlobalBackup final : public Policy {
   }
 
   void test(Kernel& kernel, const PairKey& pair, double from, double end) {
-    if (const auto certificate = kernel.search(pair, from, end)) agenda_.insert(*certificate);
+    const auto certificate = kernel.search(pair, from, end);
+    if (!certificate) return;
+    agenda_.insert(*certificate);
+    if (certificate->kind != Certificate::Kind::contact || kernel.options().order == "index") return;
+    for (const Certificate& other : kernel.simultaneous(*certificate)) agenda_.insert(other);
   }
 
   /// Goes on with a search that stopped at its cap; gives up where it no longer moves.

@@ -1,0 +1,129 @@
+#include "brink/core/contacts/impulse.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "brink/core/base/random.h"
+
+namespace brink {
+namespace {
+
+Vec2 relative_velocity(const ImpulseSide& a, const Twist& wa, const ImpulseSide& b, const Twist& wb) {
+  return wa.at(a.arm) - wb.at(b.arm);
+}
+
+double energy(const ImpulseSide& s, const Twist& w) {
+  return 0.5 * (w.velocity.squaredNorm() / s.inverse_mass_x + w.omega * w.omega / s.inverse_inertia);
+}
+
+ImpulseSide random_side(Random& r) {
+  ImpulseSide s;
+  s.twist = {{r.uniform(-2, 2), r.uniform(-2, 2)}, r.uniform(-3, 3)};
+  s.arm = {r.uniform(-1, 1), r.uniform(-1, 1)};
+  s.inverse_mass_x = s.inverse_mass_y = r.uniform(0.2, 3.0);
+  s.inverse_inertia = r.uniform(0.2, 6.0);
+  return s;
+}
+
+// Newton: v_n' = -e v_n at every speed; momentum is exchanged, none made; friction stays in its cone and
+// opposes what sliding is left, or there is none left.
+TEST(Impulse, RandomCollisionsMeetRestitutionMomentumAndCoulombsLaw) {
+  Random r(11);
+  int sticks = 0, slips = 0, reverses = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const ImpulseSide a = random_side(r), b = random_side(r);
+    const double angle = r.uniform(0.0, 2.0 * M_PI);
+    const Vec2 n(std::cos(angle), std::sin(angle)), t = perp(n);
+    Material m;
+    m.restitution = r.uniform();
+    m.friction = r.uniform(0.0, 0.6);
+    const Vec2 before = relative_velocity(a, a.twist, b, b.twist);
+    const ImpulseResult result = resolve_impulse(a, b, n, m);
+    if (before.dot(n) >= 0.0) {
+      ASSERT_EQ(result.kind, ImpulseKind::separating);
+      continue;
+    }
+    const Vec2 after = relative_velocity(a, result.body, b, result.other);
+    const double scale = 10.0 + std::abs(result.normal);
+    ASSERT_NEAR(after.dot(n), -m.restitution * before.dot(n), 1e-14 * scale) << "case " << i << " of seed 11";
+    const Vec2 momentum = (result.body.velocity - a.twist.velocity) / a.inverse_mass_x +
+                          (result.other.velocity - b.twist.velocity) / b.inverse_mass_x;
+    ASSERT_LE(momentum.norm(), 1e-14 * scale);
+    ASSERT_LE(std::abs(result.tangential), m.friction * result.normal * (1.0 + 1e-14));
+    const double sliding = after.dot(t);
+    if (result.kind == ImpulseKind::stick)
+      ASSERT_NEAR(sliding, 0.0, 1e-13 * scale);
+    else
+      ASSERT_LE(sliding * result.tangential, 1e-13 * scale) << "friction pushes along the sliding";
+    sticks += result.kind == ImpulseKind::stick;
+    slips += result.kind == ImpulseKind::slip;
+    reverses += result.kind == ImpulseKind::reverse;
+  }
+  EXPECT_GT(sticks, 1000);
+  EXPECT_GT(slips, 1000);
+  EXPECT_GT(reverses, 10);
+}
+
+TEST(Impulse, ElasticAndFrictionlessKeepsEnergy) {
+  Random r(12);
+  for (int i = 0; i < 20000; ++i) {
+    const ImpulseSide a = random_side(r), b = random_side(r);
+    const double angle = r.uniform(0.0, 2.0 * M_PI);
+    const ImpulseResult result = resolve_impulse(a, b, {std::cos(angle), std::sin(angle)}, Material{});
+    const double before = energy(a, a.twist) + energy(b, b.twist);
+    ASSERT_NEAR(energy(a, result.body) + energy(b, result.other), before, 2e-14 * before) << "case " << i;
+  }
+}
+
+// A tiny approach is met with restitution like any other: there is no threshold.
+TEST(Impulse, RestitutionHasNoThreshold) {
+  for (const double v : {1e-3, 1e-9, 1e-15, 1e-100}) {
+    const ImpulseSide ball{{{0.0, -v}, 0.0}, Vec2::Zero(), 1.0, 1.0, 1.0};
+    const ImpulseSide floor{{}, Vec2::Zero(), 0.0, 0.0, 0.0};
+    Material m;
+    m.restitution = 0.7;
+    EXPECT_DOUBLE_EQ(resolve_impulse(ball, floor, {0.0, 1.0}, m).body.velocity.y(), 0.7 * v);
+  }
+}
+
+TEST(Impulse, TwoHeldSidesJam) {
+  const ImpulseSide held{{{0.0, -1.0}, 0.0}, Vec2::Zero(), 0.0, 0.0, 0.0};
+  const ImpulseSide floor{{}, Vec2::Zero(), 0.0, 0.0, 0.0};
+  EXPECT_EQ(resolve_impulse(held, floor, {0.0, 1.0}, Material{}).kind, ImpulseKind::jam);
+}
+
+// A rod at tan th = 2 with friction beyond Painleve's 4/3: the answer stays finite and leaves the floor.
+TEST(Impulse, PainleveRodGivesAFiniteSeparatingAnswer) {
+  const double th = std::atan(2.0), length = 2.0;
+  for (const double mu : {1.0, 4.0 / 3.0, 2.0, 10.0})
+    for (const double slide : {-5.0, -0.1, 0.1, 5.0}) {
+      ImpulseSide rod;
+      rod.twist = {{slide, -1.0}, 0.0};
+      rod.arm = Vec2(-std::cos(th), -std::sin(th)) * (0.5 * length);
+      rod.inverse_mass_x = rod.inverse_mass_y = 1.0;
+      rod.inverse_inertia = 12.0 / (length * length);
+      Material m;
+      m.restitution = 0.0;
+      m.friction = mu;
+      const ImpulseResult result = resolve_impulse(rod, {}, {0.0, 1.0}, m);
+      EXPECT_TRUE(std::isfinite(result.body.omega) && result.body.velocity.allFinite());
+      EXPECT_GE(result.normal, 0.0);
+      EXPECT_NEAR(result.body.at(rod.arm).y(), 0.0, 1e-13);
+    }
+}
+
+// The mirror keeps its factor 2: a head-on bounce returns with the speed it came with; slip scales the
+// tangent.
+TEST(Reflection, MirrorsTheNormalAndScalesTheTangent) {
+  const ImpulseSide ball{{{3.0, -2.0}, 0.0}, {0.0, -0.5}, 1.0, 1.0, 0.0};
+  const ImpulseSide floor{{}, Vec2::Zero(), 0.0, 0.0, 0.0};
+  Material m;
+  m.slip = 0.5;
+  const ImpulseResult result = resolve_reflection(ball, floor, {0.0, 1.0}, m);
+  EXPECT_DOUBLE_EQ(result.body.velocity.y(), 2.0);
+  EXPECT_DOUBLE_EQ(result.body.velocity.x(), 1.5);
+}
+
+}  // namespace
+}  // namespace brink

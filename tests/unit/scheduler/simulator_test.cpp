@@ -1,0 +1,174 @@
+/// The simulator as users see it: snapshots, limits, faults at the start, orders, the fixed-step baseline.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "brink/core/base/error.h"
+#include "brink/core/base/random.h"
+#include "tests/support/worlds.h"
+
+namespace brink {
+namespace {
+
+using testing::Events;
+
+/// Boxes and discs in a square room, nothing touching.
+World crowd(std::uint64_t seed, bool springs = false) {
+  World world;
+  Random r(seed);
+  const Shape box = make_box(0.5, 0.3), disc = make_disc(0.2);
+  for (int i = 0; i < 5; ++i)
+    for (int j = 0; j < 5; ++j)
+      testing::add(
+          world, testing::body((i + j) % 2 ? box : disc, {i - 2.0, j - 2.0},
+                               {r.uniform(-1, 1), r.uniform(-1, 1)}, 1.0, r.uniform(0, 6), r.uniform(-2, 2)));
+  const Vec2 c[] = {{-3, -3}, {3, -3}, {3, 3}, {-3, 3}};
+  for (int i = 0; i < 4; ++i) testing::add(world, testing::site(make_segment(c[i], c[(i + 1) % 4])));
+  if (springs) {
+    SpringForce spring;
+    spring.body_a = 0;
+    spring.body_b = 6;
+    spring.stiffness = 3.0;
+    spring.rest_length = 1.0;
+    world.forces.push_back(spring);
+  }
+  return world;
+}
+
+TEST(Simulator, SnapshotGoesOnWithTheSameBits) {
+  for (const bool springs : {false, true}) {
+    Simulator whole(crowd(1, springs), {});
+    whole.run(testing::until(6.0));
+    Simulator first(crowd(1, springs), {});
+    Events events;
+    first.run(testing::until(2.5), &events);
+    Simulator second(crowd(1, springs), {});
+    second.restore(events.last_checkpoint);
+    EXPECT_EQ(second.time(), 2.5);
+    EXPECT_EQ(second.state_hash(), first.state_hash());
+    second.run(testing::until(6.0));
+    EXPECT_EQ(second.state_hash(), whole.state_hash()) << "springs " << springs;
+  }
+}
+
+TEST(Simulator, SnapshotOfAnotherWorldIsRefused) {
+  Simulator a(crowd(1), {}), b(crowd(2), {});
+  EXPECT_THROW(b.restore(a.snapshot()), BadInput);
+  const std::vector<std::byte> rubbish(40);
+  EXPECT_THROW(b.restore(rubbish), BadInput);
+}
+
+TEST(Simulator, ElasticCrowdKeepsEnergyAndNeverOverlaps) {
+  Simulator simulator(crowd(3), {});
+  RunOptions options = testing::until(20.0);
+  options.frame_interval = 0.05;
+  const RunSummary s = simulator.run(options);
+  ASSERT_EQ(s.termination, Termination::reached_end) << s.why;
+  EXPECT_GT(s.collisions, 300U);
+  EXPECT_NEAR(s.energy_final / s.energy_initial, 1.0, 1e-13);
+  EXPECT_LE(s.max_overlap, 1e-13);
+}
+
+TEST(Simulator, EveryOrderEndsAFlatLandingWithTheSameEnergyAndRepeats) {
+  for (const char* order : {"index", "closing_speed", "depth", "random"}) {
+    const auto run = [&] {
+      World world;
+      world.gravity = {0.0, -9.81};
+      testing::add(world, testing::body(make_box(1.0, 0.5), {0.0, 2.0}, {0.3, 0.0}));
+      testing::add(world, testing::body(make_box(1.0, 0.5), {3.0, 2.0}, {-0.3, 0.0}));
+      testing::add(world, testing::site(make_segment({-20.0, 0.0}, {20.0, 0.0})));
+      SolverOptions options;
+      options.order = order;
+      Simulator simulator(world, options);
+      return simulator.run(testing::until(3.0));
+    };
+    const RunSummary a = run(), b = run();
+    EXPECT_EQ(a.termination, Termination::reached_end) << order << ": " << a.why;
+    EXPECT_NEAR(a.energy_final / a.energy_initial, 1.0, 1e-12) << order;
+    EXPECT_EQ(a.state_hash, b.state_hash) << order;
+  }
+}
+
+TEST(Simulator, OverlapAtTheStartIsRefusedByName) {
+  World world;
+  testing::add(world, testing::body(make_box(2.0, 0.1), {0.0, 0.0}, {0.0, 0.0}));
+  testing::add(world, testing::body(make_box(0.1, 2.0), {0.0, 0.0},
+                                    {0.0, 0.0}));  // a plus: no vertex inside the other
+  Simulator simulator(world, {});
+  EXPECT_NE(simulator.start_fault().find("'body0' and 'body1' overlap"), std::string::npos)
+      << simulator.start_fault();
+  EXPECT_THROW(simulator.run(testing::until(1.0)), BadInput);
+}
+
+TEST(Simulator, StopsAtTheLimitOfCollisionsAndGoesOn) {
+  SolverOptions options;
+  options.max_collisions = 10;
+  Simulator simulator(crowd(4), options);
+  const RunSummary s = simulator.run(testing::until(20.0));
+  EXPECT_EQ(s.termination, Termination::stopped);
+  EXPECT_EQ(s.collisions, 10U);
+  EXPECT_LT(s.end_time, 20.0);
+}
+
+TEST(Simulator, FramesComeOnTheFrameClockAndAtTheEnd) {
+  Simulator simulator(crowd(5), {});
+  Events events;
+  RunOptions options = testing::until(1.05);
+  options.frame_interval = 0.25;
+  simulator.run(options, &events);
+  EXPECT_EQ(events.frame_times, (std::vector<double>{0.0, 0.25, 0.5, 0.75, 1.0, 1.05}));
+}
+
+// Bodies of infinite mass along x and in angle fall straight down whatever they hit.
+TEST(Simulator, LockedCoordinatesStay) {
+  World world = crowd(6);
+  for (Body& b : world.bodies) {
+    b.lock_x = b.lock_angle = true;
+    b.initial.twist.velocity.x() = 0.0;
+    b.initial.twist.omega = 0.0;
+  }
+  Simulator simulator(world, {});
+  const RunSummary s = simulator.run(testing::until(5.0));
+  ASSERT_EQ(s.termination, Termination::reached_end) << s.why;
+  EXPECT_GT(s.collisions, 20U);
+  for (int k = 0; k < 25; ++k) {
+    EXPECT_EQ(simulator.state(k).pose.position.x(), world.bodies[k].initial.pose.position.x());
+    EXPECT_EQ(simulator.state(k).pose.angle, world.bodies[k].initial.pose.angle);
+  }
+}
+
+// The naive baseline errs by its step: a drop's bounce is late by up to a step, and a fast disc passes a thin
+// plate.
+TEST(FixedStep, ErrsByItsStepAndMissesThinPlates) {
+  World drop;
+  drop.gravity = {0.0, -9.81};
+  testing::add(drop, testing::body(make_disc(0.5), {0.0, 10.0}, {0.0, 0.0}));
+  testing::add(drop, testing::site(make_segment({-10, 0}, {10, 0})));
+  Simulator exact(drop, {});
+  exact.run(testing::until(2.0));
+  double last = 1e9;
+  for (const double step : {1e-2, 1e-3, 1e-4}) {
+    SolverOptions options;
+    options.policy = "fixed_step";
+    options.step = step;
+    Simulator naive(drop, options);
+    naive.run(testing::until(2.0));
+    const double error = std::abs(naive.state(0).pose.position.y() - exact.state(0).pose.position.y());
+    EXPECT_LT(error, 20.0 * step);
+    EXPECT_LT(error, last);
+    last = error;
+  }
+
+  World shot;
+  testing::add(shot, testing::body(make_disc(0.01), {-1.0, 0.0}, {1000.0, 0.0}));
+  testing::add(shot, testing::body(make_box(0.01, 1.0), {0.0, 0.0}, {0.0, 0.0}));
+  SolverOptions options;
+  options.policy = "fixed_step";
+  options.step = 0.0007;
+  Simulator naive(shot, options);
+  EXPECT_EQ(naive.run(testing::until(0.01)).collisions, 0U);
+  EXPECT_EQ(Simulator(shot, {}).run(testing::until(0.01)).collisions, 1U);
+}
+
+}  // namespace
+}  // namespace brink
