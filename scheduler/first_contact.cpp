@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "brink/scheduler/arc_contact.h"
 #include "brink/scheduler/canonical_time.h"
@@ -169,41 +170,48 @@ class PairSearch {
     const SamplePath path = sample_path(placed(half.s), placed(half.t), sample.p);
     const double long_window = to_ - t_, short_window = short_end_ - t_;
     const RelativeBounds relative = half.s_is_a ? long_bounds_ : long_bounds_.swapped();
+    const RelativeBounds near = half.s_is_a ? short_bounds_ : short_bounds_.swapped();
     const PathBounds over_all = path_bounds(path, relative, long_window);
-    double safe = sample.arc_site < 0 ? vertex_step(half, i, path, over_all, long_window)
-                                      : arc_sample_step(half, i, path, relative, over_all);
-    if (safe < short_window) {
-      const RelativeBounds near = half.s_is_a ? short_bounds_ : short_bounds_.swapped();
-      const PathBounds over_short = path_bounds(path, near, short_window);
-      const double again = sample.arc_site < 0 ? vertex_step(half, i, path, over_short, short_window)
-                                               : arc_sample_step(half, i, path, near, over_short);
-      safe = std::max(safe, std::min(again, short_window));
+    const PathBounds over_short = path_bounds(path, near, short_window);
+    double safe = 0.0, again = 0.0;
+    if (sample.arc_site < 0) {
+      std::tie(safe, again) = vertex_steps(half, i, path, over_all, over_short, long_window);
+    } else {
+      safe = arc_sample_step(half, i, path, relative, over_all);
+      if (safe < short_window) again = arc_sample_step(half, i, path, near, over_short);
     }
+    if (safe < short_window) safe = std::max(safe, std::min(again, short_window));
     return safe * (1.0 - 4.0 * kEpsilon);
   }
 
-  double vertex_step(const Half& half, int i, const SamplePath& path, const PathBounds& bounds,
-                     double window) {
+  /// Safe steps by the bounds over the whole window and by those over the short one; every site is looked at
+  /// once.
+  std::pair<double, double> vertex_steps(const Half& half, int i, const SamplePath& path,
+                                         const PathBounds& over_all, const PathBounds& over_short,
+                                         double window) {
     const Sample& sample = half.samples_of().samples[i];
     const Outline& sites = half.sites_of();
     ++work_.distance_queries;
-    const double band = touching_band(bounds);
-    const double reach = bounds.speed * window + sample.radius + 2.0 * band;
+    const double band = touching_band(over_all);
+    const double reach = over_all.speed * window + sample.radius + 2.0 * band;
     const Candidates near = half.t->index->candidates(path.q, reach, scratch_.index);
     work_.candidate_evaluations += near.sites.size();
-    const double others = near.others_at_least - sample.radius - 0.5 * band;
-    double safe = bounds.speed > 0.0 ? std::max(0.0, others) / bounds.speed : kForever;
+    const double others = std::max(0.0, near.others_at_least - sample.radius - 0.5 * band);
+    double safe = over_all.speed > 0.0 ? others / over_all.speed : kForever;
+    double again = over_short.speed > 0.0 ? others / over_short.speed : kForever;
     for (const std::uint32_t j : near.sites) {
       const Site& site = sites.sites[j];
       const Nearest nearest = nearest_on(site, path.q);
       const double radius = site.radius + sample.radius;
       const double gap = nearest.distance - radius;
-      if (gap <= band && meets(half, i, static_cast<int>(j), nearest, path, bounds)) continue;
-      safe = std::min(safe, site_step(site, nearest, path.q, path.rate, radius,
-                                      slack_at(gap, band, !site.solid && radius == 0.0), bounds)
-                                .safe);
+      if (gap <= band && meets(half, i, static_cast<int>(j), nearest, path, over_all)) continue;
+      const double slack = slack_at(gap, band, !site.solid && radius == 0.0);
+      const double rate = distance_rate(site, nearest, path.q, path.rate);
+      safe = std::min(safe, site_step(site, nearest, path.q, path.rate, rate, radius, slack, over_all).safe);
+      again =
+          std::min(again, site_step(site, nearest, path.q, path.rate, rate, radius, slack, over_short).safe);
     }
-    return safe;
+    return {safe, again};
   }
 
   /// Gaps up to this are touching [m]: the tolerance, or what the point moves in a few roundings of the time.

@@ -38,11 +38,11 @@ inline double distance_rate(const Site& site, const Nearest& nearest, const Vec2
   return nearest.distance > 0.0 ? (q - nearest.point).dot(rate) / nearest.distance : 0.0;
 }
 
-/// @pre bounds hold for at least the time that the caller will use of `safe`.
+/// `df` is distance_rate() of the same place. @pre bounds hold for at least the time that the caller will use
+/// of `safe`.
 inline SiteStep site_step(const Site& site, const Nearest& nearest, const Vec2& q, const Vec2& rate,
-                          double radius, double slack, const PathBounds& bounds) {
+                          double df, double radius, double slack, const PathBounds& bounds) {
   const double gap = nearest.distance - radius;
-  const double df = distance_rate(site, nearest, q, rate);
   SiteStep step{gap, df, 0.0};
   const double f = std::max(gap, 0.0) + slack;
   if (site.kind != SiteKind::arc) {  // convex
