@@ -19,7 +19,7 @@ inline double ulp(double t) {
 inline double coarsest_between(double low, double high) {
   const auto l = std::bit_cast<std::uint64_t>(low + 0.0), h = std::bit_cast<std::uint64_t>(high);
   if (h - l < 2) return low;
-  for (int k = 63 - std::countl_zero(h - l); k >= 0; --k) {
+  for (int k = 63 - std::countl_zero(l ^ h); k >= 0; --k) {
     const std::uint64_t m = ((l >> k) + 1) << k;
     if (m > l && m < h) return std::bit_cast<double>(m);
   }

@@ -135,6 +135,8 @@ class Kernel {
   std::optional<PairKey> pair_of(int owner_a, int owner_b) const;
   void refresh_boxes(double from, double to, bool all);
   std::vector<PairKey> pairs_by_pass(int body, double from, double to);
+  /// True if the contact is of a sharp sample with a wire without thickness.
+  bool thin(const PairKey& pair, const FeatureContact& f) const;
   void count_collision(const PairKey& pair);
   bool judge_endings(const PairKey& pair, const Contact& contact);
   void set_rounding(int body, double magnitude);
@@ -163,6 +165,7 @@ class Kernel {
   std::uint64_t seq_ = 0;
   std::uint64_t frame_ = 0;   ///< frames recorded by the frame clock
   double last_frame_ = -1.0;  ///< time of the last frame recorded [s]
+  double last_event_ = 0.0;       ///< time of the last event recorded [s]
   double instant_ = -1.0;     ///< time of the current group of collisions
   std::uint64_t in_instant_ = 0;
   RunOptions run_;

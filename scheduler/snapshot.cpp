@@ -77,6 +77,7 @@ class SnapshotCodec {
     each(k.seq_);
     each(k.frame_);
     each(k.last_frame_);
+    each(k.last_event_);
     each(k.instant_);
     each(k.in_instant_);
   }

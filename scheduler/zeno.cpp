@@ -1,5 +1,7 @@
 #include "brink/scheduler/zeno.h"
 
+#include <algorithm>
+
 namespace brink {
 
 std::optional<ZenoEnding> ZenoWatch::collided(const PairKey& pair, double time, double closing_speed) {
@@ -12,9 +14,9 @@ std::optional<ZenoEnding> ZenoWatch::collided(const PairKey& pair, double time, 
   const double ratio = b.last_interval > 0.0 ? interval / b.last_interval : 1.0;
   b.last_interval = interval;
   b.low_flights = 0.25 * closing_speed * interval < tolerance_ ? b.low_flights + 1 : 0;
+  if (b.low_flights == 1) b.limit_time = ratio < 1.0 ? time + interval * ratio / (1.0 - ratio) : time;
   if (b.low_flights < kLowFlights) return std::nullopt;
-  const double rest = ratio < 1.0 ? interval * ratio / (1.0 - ratio) : 0.0;
-  return ZenoEnding{pair, time + rest, b.count};
+  return ZenoEnding{pair, std::max(b.limit_time, time), b.count};
 }
 
 }  // namespace brink

@@ -19,6 +19,9 @@ namespace brink {
 
 namespace {
 
+/// A horizon below this would only repeat broad phases [s].
+constexpr double kShortest = 1e-9;
+
 class GlobalBackup final : public Policy {
  public:
   void run(Kernel& kernel, double until) override {
@@ -37,14 +40,13 @@ class GlobalBackup final : public Policy {
   bool run_horizon(Kernel& kernel, double end) {
     if (!kernel.extend_motions(end)) return false;
     const double from = kernel.time();
-    double reached =
-        from;  // time of the last event: of contacts at the same time, one may be a rounding earlier
     kernel.advance_all(end);
     pass(kernel, from, end);
     while (const auto next = take_earliest(kernel, agenda_)) {
-      reached = std::max(reached, next->time);
-      kernel.record_frames(reached);
-      kernel.back_up_all(reached);
+      // Of contacts at the same time, the one that an order puts first may be a rounding later than the next: each is
+      // resolved at its own time, which its two bodies' motions still cover.
+      kernel.record_frames(next->time);
+      kernel.back_up_all(next->time);
       if (next->kind == Certificate::Kind::undecided) {
         if (!search_on(kernel, *next, end)) return false;
         kernel.advance_all(end);
@@ -65,7 +67,7 @@ class GlobalBackup final : public Policy {
     const StageClock clock(kernel.work().seconds_search);
     agenda_.clear();
     const std::vector<PairKey> pairs = kernel.near_pairs(from, end);
-    pairs_ = pairs.size();
+    pairs_ = kernel.options().skip_broad_phase ? pairs.size() : 0;  // without it every pair is met at any horizon
     for (const PairKey& pair : pairs) test(kernel, pair, from, end);
   }
 
@@ -119,7 +121,7 @@ class GlobalBackup final : public Policy {
   void adapt(Kernel& kernel, std::uint64_t collisions) const {
     const auto n = static_cast<std::uint64_t>(kernel.body_count());
     if (pairs_ > 6 * n + 16 || collisions > 2 * n + 16)
-      kernel.horizon() *= 0.5;
+      kernel.horizon() = std::max(0.5 * kernel.horizon(), kShortest);
     else if (pairs_ < 3 * n + 8 && collisions < n / 2 + 4)
       kernel.horizon() *= 1.5;
   }
