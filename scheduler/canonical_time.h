@@ -1,9 +1,11 @@
 #pragma once
 /// Times that depend on a function alone, not on where a search for them was begun.
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace brink {
 
@@ -11,6 +13,12 @@ namespace brink {
 inline double ulp(double t) {
   const double a = std::abs(t);
   return std::nextafter(a, 2.0 * a + 1.0) - a;
+}
+
+/// Times closer than this [s] are one instant: contacts that are simultaneous in exact arithmetic differ by
+/// roundings.
+inline double same_instant(double t) {
+  return 32.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, std::abs(t));
 }
 
 /// The coarsest dyadic double strictly between low and high: the one with most trailing zero bits. Bisecting

@@ -6,6 +6,7 @@
 
 #include "brink/core/shapes/distance.h"
 #include "brink/scheduler/canonical_time.h"
+#include "brink/scheduler/pair_kinematics.h"
 
 namespace brink {
 
@@ -14,8 +15,6 @@ namespace {
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr std::size_t kMostSites = 16;
-
-bool is_centred_disc(const Outline& o) { return o.is_point() && o.sites[0].a.isZero(0.0); }
 
 bool keeps_angle(const Motion& m) {
   return m.is_ballistic() && m.start().twist.omega == 0.0 && m.acceleration().angular == 0.0;
@@ -107,7 +106,8 @@ bool discs(const Mover& a, const Mover& b, double from, double to, const SearchL
   const auto gap = [&](double time) {
     return (a.motion->pose(time).position - b.motion->pose(time).position).norm() - reach;
   };
-  t = before_contact(gap, t, from, std::max(-g.slope(t - rel.reference), rel.noise));
+  const double speed = std::max(-g.slope(t - rel.reference), rel.noise);
+  t = canonical_root(gap, t, from, place_noise(a, b, t) / speed + 4.0 * ulp(t), speed);
   const BodyState sa = a.motion->state(t), sb = b.motion->state(t);
   const Vec2 d = sa.pose.position - sb.pose.position;
   const double distance = d.norm();

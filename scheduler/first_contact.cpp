@@ -75,8 +75,8 @@ class PairSearch {
 
   /// The features of `like`, with both outlines placed in the given states.
   FeatureContact in_states(const BodyState& state_a, const BodyState& state_b, const FeatureContact& like) {
-    placed_a_ = Placed(state_a);
-    placed_b_ = Placed(state_b);
+    placed_a_ = Placed(a_.outline(), state_a);
+    placed_b_ = Placed(b_.outline(), state_b);
     FeatureContact c = contact_again(halves_[like.sample_on_a ? 0 : 1], {like.sample, like.site}, like.time);
     if (!(c.normal.dot(like.normal) > 1.0 - 1e-6)) c.normal = like.normal;
     return c;
@@ -159,8 +159,8 @@ class PairSearch {
 
   void place(double t) {
     t_ = t;
-    placed_a_ = Placed(a_.motion->state(t));
-    placed_b_ = Placed(b_.motion->state(t));
+    placed_a_ = Placed(a_.outline(), a_.motion->state(t));
+    placed_b_ = Placed(b_.outline(), b_.motion->state(t));
   }
   const Placed& placed(const Mover* m) const { return m == &a_ ? placed_a_ : placed_b_; }
 
@@ -301,7 +301,7 @@ class PairSearch {
   /// Signed gap of one feature pair at another time, its side kept.
   double gap_at(const Half& half, const Feature& f, double t, double level) const {
     const BodyState s = half.s->motion->state(t), u = half.t->motion->state(t);
-    const Frame fs(s.pose), ft(u.pose);
+    const Frame fs = frame_of(half.s->outline(), s.pose), ft = frame_of(half.t->outline(), u.pose);
     const Sample& sample = half.samples_of().samples[f.sample];
     const Site& site = half.sites_of().sites[f.site];
     const Vec2 q =
@@ -477,6 +477,11 @@ PairAnswer first_contact(const Mover& a, const Mover& b, double from, double to,
     PairAnswer answer;
     if (first_contact_in_closed_form(a, b, from, to, limits, answer)) {
       ++work.closed_forms;
+      if (answer.status ==
+          PairAnswer::Status::contact) {  // seen through the same eyes as the general search's
+        const double t = answer.contact.time;
+        answer.contact = contact_in(a, b, a.motion->state(t), b.motion->state(t), answer.contact, scratch);
+      }
       return answer;
     }
   }

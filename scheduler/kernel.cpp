@@ -347,7 +347,9 @@ void Kernel::set_rounding(int k, double magnitude) {
   BodyTrack& b = bodies_[k];
   const double rounding = 16.0 * kEpsilon * magnitude;
   // within one instant velocities are differences of larger ones: the largest rounding stays
-  b.velocity_rounding = b.resolved_at == time_ ? std::max(b.velocity_rounding, rounding) : rounding;
+  b.velocity_rounding = std::abs(time_ - b.resolved_at) <= same_instant(time_)
+                            ? std::max(b.velocity_rounding, rounding)
+                            : rounding;
   b.resolved_at = time_;
 }
 
@@ -358,11 +360,13 @@ bool Kernel::thin(const PairKey& pair, const FeatureContact& f) const {
 }
 
 bool Kernel::resolve(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed) {
-  // The exact moment of contact lies a fraction of a rounding of the clock away. The collision is resolved there, and
-  // the new motion is the one that passes through that moment, so that long runs do not drift by roundings of time.
-  // Not at a wire without thickness: it is met a little before, and must not be found on its other side.
+  // The exact moment of contact lies a fraction of a rounding of the clock away. The collision is resolved
+  // there, and the new motion is the one that passes through that moment, so that long runs do not drift by
+  // roundings of time. Not at a wire without thickness: it is met a little before, and must not be found on
+  // its other side.
   const double late = thin(pair, found) ? 0.0 : 4.0 * ulp(time_);
-  const double delay = found.closing_speed > 0.0 ? std::clamp(found.gap / found.closing_speed, -late, late) : 0.0;
+  const double delay =
+      found.closing_speed > 0.0 ? std::clamp(found.gap / found.closing_speed, -late, late) : 0.0;
   const Body& body = world_.bodies[pair.body];
   const BodyState state = moved(this->state(pair.body, time_), delay);
   const BodyState other_state = moved(
@@ -445,7 +449,7 @@ bool Kernel::judge_endings(const PairKey& pair, const Contact& contact) {
              zeno->limit_time, zeno->bounces, name_of(pair)));
     return false;
   }
-  if (time_ - instant_ > 64.0 * kEpsilon * std::max(1.0, time_)) {
+  if (time_ - instant_ > 2.0 * same_instant(time_)) {
     instant_ = time_;
     in_instant_ = 0;
   }

@@ -165,7 +165,7 @@ class Kernel {
   std::uint64_t seq_ = 0;
   std::uint64_t frame_ = 0;   ///< frames recorded by the frame clock
   double last_frame_ = -1.0;  ///< time of the last frame recorded [s]
-  double last_event_ = 0.0;       ///< time of the last event recorded [s]
+  double last_event_ = 0.0;   ///< time of the last event recorded [s]
   double instant_ = -1.0;     ///< time of the current group of collisions
   std::uint64_t in_instant_ = 0;
   RunOptions run_;

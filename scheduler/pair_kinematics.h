@@ -4,9 +4,19 @@
 #include <algorithm>
 
 #include "brink/core/base/geometry.h"
+#include "brink/core/shapes/outline.h"
 #include "brink/integrators/motion.h"
 
 namespace brink {
+
+/// A disc about its owner's origin: it looks the same at any angle, so its angle is left out of every
+/// computation.
+inline bool is_centred_disc(const Outline& o) { return o.is_point() && o.sites[0].a.isZero(0.0); }
+
+/// The frame in which an outline is looked at.
+inline Frame frame_of(const Outline& outline, const Pose& pose) {
+  return Frame(is_centred_disc(outline) ? Pose{pose.position, 0.0} : pose);
+}
 
 /// An outline at one moment.
 struct Placed {
@@ -14,7 +24,7 @@ struct Placed {
   Twist twist;
 
   Placed() = default;
-  explicit Placed(const BodyState& s) : frame(s.pose), twist(s.twist) {}
+  Placed(const Outline& outline, const BodyState& s) : frame(frame_of(outline, s.pose)), twist(s.twist) {}
 };
 
 /// Bounds on how sample owner S and site owner T move against each other over a window of time.

@@ -30,7 +30,8 @@ class ZenoWatch {
     double last_time = 0.0;
     double last_interval = 0.0;
     std::uint32_t low_flights = 0;
-    double limit_time = 0.0;  ///< foreseen at the first low flight, where intervals are still far above rounding
+    double limit_time =
+        0.0;  ///< foreseen at the first low flight, where intervals are still far above rounding
     std::uint64_t count = 0;
   };
   const std::map<PairKey, Bounce>& bounces() const { return bounces_; }

@@ -43,8 +43,8 @@ class GlobalBackup final : public Policy {
     kernel.advance_all(end);
     pass(kernel, from, end);
     while (const auto next = take_earliest(kernel, agenda_)) {
-      // Of contacts at the same time, the one that an order puts first may be a rounding later than the next: each is
-      // resolved at its own time, which its two bodies' motions still cover.
+      // Of contacts at the same time, the one that an order puts first may be a rounding later than the next:
+      // each is resolved at its own time, which its two bodies' motions still cover.
       kernel.record_frames(next->time);
       kernel.back_up_all(next->time);
       if (next->kind == Certificate::Kind::undecided) {
@@ -67,7 +67,8 @@ class GlobalBackup final : public Policy {
     const StageClock clock(kernel.work().seconds_search);
     agenda_.clear();
     const std::vector<PairKey> pairs = kernel.near_pairs(from, end);
-    pairs_ = kernel.options().skip_broad_phase ? pairs.size() : 0;  // without it every pair is met at any horizon
+    pairs_ =
+        kernel.options().skip_broad_phase ? pairs.size() : 0;  // without it every pair is met at any horizon
     for (const PairKey& pair : pairs) test(kernel, pair, from, end);
   }
 

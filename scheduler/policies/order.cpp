@@ -2,13 +2,11 @@
 
 #include <algorithm>
 
+#include "brink/scheduler/canonical_time.h"
+
 namespace brink {
 
 namespace {
-
-/// Times closer than this are the same time: contacts that are simultaneous in exact arithmetic differ by
-/// roundings.
-double same_time(double t) { return 32.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, t); }
 
 std::size_t first_by(const std::string& order, std::vector<Certificate>& group, Random& random) {
   const auto least = [&](auto key) {
@@ -32,7 +30,8 @@ std::size_t first_by(const std::string& order, std::vector<Certificate>& group, 
 std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda) {
   std::vector<Certificate> group;
   while (!agenda.empty()) {
-    if (!group.empty() && agenda.earliest().time > group.front().time + same_time(group.front().time)) break;
+    if (!group.empty() && agenda.earliest().time > group.front().time + same_instant(group.front().time))
+      break;
     const Certificate c = agenda.pop();
     if (kernel.fresh(c))
       group.push_back(c);

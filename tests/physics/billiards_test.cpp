@@ -49,7 +49,8 @@ INSTANTIATE_TEST_SUITE_P(Chords, CircularContainer, ::testing::Values(0.1, 0.3, 
 // A disc in a rectangle: each coordinate is a triangular wave.
 long double triangular(double x0, double v, double low, double high, double t) {
   const long double width = static_cast<long double>(high) - low;  // v t is some 1e6 m: too long for double
-  return low + std::abs(std::remainder(static_cast<long double>(x0) - low + static_cast<long double>(v) * t, 2.0L * width));
+  return low + std::abs(std::remainder(static_cast<long double>(x0) - low + static_cast<long double>(v) * t,
+                                       2.0L * width));
 }
 
 TEST(Rectangle, DiscFollowsTheUnfoldedTriangularWave) {
