@@ -49,8 +49,9 @@ struct RelativeParabola {
 /// slope [m/s]; `deepest`: a gap below -deepest is no overlap but the far side of a body [m].
 double contact_after(const Quadratic& g, double s_from, double noise, double touch, double deepest) {
   const double root = falling_root(g);
-  if (root >= s_from) return root;
   const double now = g.at(s_from), slope = g.slope(s_from);
+  const bool resting = now <= touch && std::abs(slope) <= noise;  // a slope that is all rounding is no approach
+  if (root >= s_from && !resting) return root;
   if (now > touch || now < -deepest || slope > noise)
     return kForever;                                          // risen again, beyond, or rising: let go
   if (slope < -noise) return now <= 0.0 ? s_from : kForever;  // through the surface and approaching: now
