@@ -50,7 +50,8 @@ struct RelativeParabola {
 double contact_after(const Quadratic& g, double s_from, double noise, double touch, double deepest) {
   const double root = falling_root(g);
   const double now = g.at(s_from), slope = g.slope(s_from);
-  const bool resting = now <= touch && std::abs(slope) <= noise;  // a slope that is all rounding is no approach
+  const bool resting =
+      now <= touch && std::abs(slope) <= noise;  // a slope that is all rounding is no approach
   if (root >= s_from && !resting) return root;
   if (now > touch || now < -deepest || slope > noise)
     return kForever;                                          // risen again, beyond, or rising: let go

@@ -33,10 +33,10 @@ struct Mover {
 };
 
 struct SearchLimits {
-  double touch = 1e-13;         ///< gaps below this count as touching [m]
-  double tolerance = 1e-10;     ///< gap at which Newton steps give way to polishing the root [m]
-  int max_iterations = 100000;  ///< then the answer is "clear until" where the search stood
-  bool closed_forms = true;     ///< use quadratics where the pair has them
+  double touch = 1e-13;        ///< gaps below this count as touching [m]
+  double tolerance = 1e-10;    ///< gap at which Newton steps give way to polishing the root [m]
+  int max_iterations = 10000;  ///< then the answer is "clear until" where the search stood
+  bool closed_forms = true;    ///< use quadratics where the pair has them
 };
 
 /// Which features touch, and how.

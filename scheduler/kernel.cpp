@@ -464,11 +464,29 @@ bool Kernel::judge_endings(const PairKey& pair, const Contact& contact) {
          fmt::format("max_collisions = {} reached at t = {:.15g}", options_.max_collisions, time_));
     return false;
   }
-  if (run_.progress && work_.collisions % 1024 == 0 && !run_.progress(time_, work_.collisions)) {
-    stop(Termination::stopped, "on request");
-    return false;
-  }
-  return true;
+  return poll();
+}
+
+bool Kernel::poll() {
+  constexpr std::uint64_t between = 4096;
+  const std::uint64_t done = work_.search_iterations + 4 * work_.collisions;
+  if (halt_ || done - polled_ < between) return !halt_;
+  polled_ = done;
+  if (run_.progress && !run_.progress(time_, work_.collisions)) stop(Termination::stopped, "on request");
+  return !halt_;
+}
+
+void Kernel::give_up(const Certificate& c) {
+  Event event;
+  event.seq = seq_++;
+  event.kind = EventKind::undecided;
+  event.contact = world_contact(c.pair, c.contact);
+  event.contact.time = c.time;
+  if (recorder_ && run_.record_events) recorder_->event(event);
+  stop(Termination::failed,
+       fmt::format("undecided at t = {:.17g}: the search for first contact of {} makes no headway "
+                   "(is something too fast for the clock?)",
+                   c.time, name_of(c.pair)));
 }
 
 void Kernel::displace(int k, const Vec2& shift) {

@@ -87,6 +87,10 @@ class Kernel {
   void displace(int body, const Vec2& shift);
   /// Records frames due up to and including t; checks them for overlaps.
   void record_frames(double t);
+  /// Asks `progress` whether to go on, each few thousand search iterations or collisions. False on a halt.
+  bool poll();
+  /// Records that a pair's search cannot tell, and ends the run.
+  void give_up(const Certificate& c);
   /// Ends the run for a reason.
   void stop(Termination termination, std::string why);
   /// A place where the run may be resumed from: writes a checkpoint if one is due; asks `progress`. False to
@@ -169,6 +173,7 @@ class Kernel {
   double instant_ = -1.0;     ///< time of the current group of collisions
   std::uint64_t in_instant_ = 0;
   RunOptions run_;
+  std::uint64_t polled_ = 0;  ///< work done when `progress` was last asked
   Recorder* recorder_ = nullptr;
   double next_checkpoint_ = 0.0;  ///< wall clock [s]
 };

@@ -1,8 +1,8 @@
 /// Global backup (Baraff 1997; the classic method):
 ///
 ///   until the end
-///     choose a horizon; advance all bodies to it
-///     pass: certificates of every pair that can meet before it
+///     choose a horizon
+///     pass: certificates of every pair that can meet before it; advance all bodies to it
 ///     while the agenda has a contact before the horizon
 ///       back all bodies up to the earliest; resolve that one collision
 ///       pass again for the bodies it concerned; advance all to the horizon
@@ -40,8 +40,8 @@ class GlobalBackup final : public Policy {
   bool run_horizon(Kernel& kernel, double end) {
     if (!kernel.extend_motions(end)) return false;
     const double from = kernel.time();
+    if (!pass(kernel, from, end)) return false;
     kernel.advance_all(end);
-    pass(kernel, from, end);
     while (const auto next = take_earliest(kernel, agenda_)) {
       // Of contacts at the same time, the one that an order puts first may be a rounding later than the next:
       // each is resolved at its own time, which its two bodies' motions still cover.
@@ -55,30 +55,32 @@ class GlobalBackup final : public Policy {
       changed_.clear();
       if (!kernel.resolve(next->pair, next->contact, changed_)) return false;
       if (!kernel.extend_motions(end)) return false;
-      pass_again(kernel, end);
+      if (!pass_again(kernel, end)) return false;
       kernel.advance_all(end);
     }
     kernel.record_frames(end);
     return true;
   }
 
-  /// Certificates of every pair that can meet before the end.
-  void pass(Kernel& kernel, double from, double end) {
+  /// Certificates of every pair that can meet before the end. False on a halt.
+  bool pass(Kernel& kernel, double from, double end) {
     const StageClock clock(kernel.work().seconds_search);
     agenda_.clear();
     const std::vector<PairKey> pairs = kernel.near_pairs(from, end);
     pairs_ =
         kernel.options().skip_broad_phase ? pairs.size() : 0;  // without it every pair is met at any horizon
     for (const PairKey& pair : pairs) test(kernel, pair, from, end);
+    return kernel.poll();
   }
 
-  /// The same for the bodies whose motion a resolve has changed.
-  void pass_again(Kernel& kernel, double end) {
+  /// The same for the bodies whose motion a resolve has changed. False on a halt.
+  bool pass_again(Kernel& kernel, double end) {
     const StageClock clock(kernel.work().seconds_search);
     const double now = kernel.time();
     for (const int body : changed_)
       for (const PairKey& pair : kernel.near_pairs_of(body, now, end))
         if (!tested_already(pair, body)) test(kernel, pair, now, end);
+    return kernel.poll();
   }
 
   /// A pair of two changed bodies is met from both: it is tested at the first.
@@ -96,15 +98,14 @@ class GlobalBackup final : public Policy {
     for (const Certificate& other : kernel.simultaneous(*certificate)) agenda_.insert(other);
   }
 
-  /// Goes on with a search that stopped at its cap; gives up where it no longer moves.
+  /// Goes on with a search that stopped at its cap; gives up where a hundred such in a row led nowhere.
   bool search_on(Kernel& kernel, const Certificate& c, double end) {
     const auto again = kernel.search(c.pair, c.time, end);
-    if (again && again->kind == Certificate::Kind::undecided && again->time <= c.time) {
-      kernel.stop(Termination::failed, "a search for first contact stands still");
-      return false;
-    }
+    const bool undecided = again && again->kind == Certificate::Kind::undecided;
+    undecided_ = undecided ? undecided_ + 1 : 0;
+    if (undecided && (again->time <= c.time || undecided_ > 100)) kernel.give_up(*again);
     if (again) agenda_.insert(*again);
-    return true;
+    return kernel.poll();
   }
 
   /// About the time in which the fastest body crosses itself.
@@ -129,6 +130,7 @@ class GlobalBackup final : public Policy {
 
   Agenda agenda_;
   std::size_t pairs_ = 0;
+  int undecided_ = 0;  ///< searches in a row that met their cap
   std::vector<int> changed_;
 };
 
