@@ -15,7 +15,7 @@ HullDistance distance_to_arc_hull(const Site& arc, const Nearest& nearest, const
       return {behind / length, Vec2(perp(chord) * (turn / length))};
     }
   } else if (nearest.foot == Foot::interior &&
-             (q - arc.center).squaredNorm() <= arc.arc_radius * arc.arc_radius) {
+             beyond_circle(arc, q, q - arc.center) <= 0.0) {
     return {};  // between chord and arc
   }
   if (nearest.foot == Foot::interior) return {nearest.distance, (q - arc.center).normalized()};

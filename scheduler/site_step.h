@@ -53,10 +53,11 @@ inline SiteStep site_step(const Site& site, const Nearest& nearest, const Vec2& 
   step.safe = bounds.speed > 0.0 ? f / bounds.speed : std::numeric_limits<double>::infinity();
   const Vec2 w = q - site.center;
   const double rho = w.norm();
-  const double circle = std::abs(rho - site.arc_radius) - radius + slack;
+  const double beyond = beyond_circle(site, q, w);
+  const double circle = std::abs(beyond) - radius + slack;
   if (circle > 0.0 && rho > 0.0) {
     const double radial = w.dot(rate) / rho;
-    const bool inside = rho < site.arc_radius;
+    const bool inside = beyond < 0.0;
     const double curvature = bounds.acceleration + (inside ? bounds.speed * bounds.speed / rho : 0.0);
     step.safe = std::max(step.safe, safe_step(circle, inside ? -radial : radial, curvature));
   }

@@ -46,8 +46,8 @@ inline Nearest nearest_on(const Site& site, const Vec2& q) {
       const double turn = site.sweep > 0 ? 1.0 : -1.0;
       if (turn * cross(from, w) > 0.0 && turn * cross(w, to) > 0.0) {
         const double rho = w.norm();
-        return {std::abs(beyond_circle(site, q, w)), Foot::interior,
-                site.center + w * (site.arc_radius / rho)};
+        const double beyond = beyond_circle(site, q, w);
+        return {std::abs(beyond), Foot::interior, q - w * (beyond / rho)};
       }
       const double da = (q - site.a).squaredNorm(), db = (q - site.b).squaredNorm();
       return da <= db ? Nearest{std::sqrt(da), Foot::start, site.a}
