@@ -88,7 +88,8 @@ RunReport run_scene(const Scene& scene, const RunRequest& request) {
     if (auto report = finished_report(scene, request.dir / "run.db", until)) return *report;
   }
   Simulator simulator(scene.world, scene.solver);
-  if (const std::string why = simulator.start_fault(); !why.empty()) throw SceneFaults(scene.path, {{1, 1, why}});
+  if (const std::string why = simulator.start_fault(); !why.empty())
+    throw SceneFaults(scene.path, {{1, 1, why}});
   RunFileRecorder recorder(request.dir, scene,
                            request.resume ? RunFileRecorder::Open::resume : RunFileRecorder::Open::fresh);
   restore(simulator, recorder, until);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "brink/core/base/random.h"
+#include "brink/core/contacts/impulse.h"
 #include "brink/core/fields/pass_window.h"
 #include "brink/core/world/forces.h"
 #include "brink/scheduler/agenda.h"
@@ -141,6 +142,15 @@ class Kernel {
   std::vector<PairKey> pairs_by_pass(int body, double from, double to);
   /// True if the contact is of a sharp sample with a wire without thickness.
   bool thin(const PairKey& pair, const FeatureContact& f) const;
+  /// From the clock's present double to the exact moment of contact: a fraction of a rounding [s]. The
+  /// collision is resolved there, and the new motion is the one that passes through that moment, so that long
+  /// runs do not drift by roundings of time. Not at a wire without thickness: it is met a little before, and
+  /// must stay on its side.
+  double delay_to_contact(const PairKey& pair, const FeatureContact& found) const;
+  /// The response at that moment; `magnitude` gets the largest speed that took part.
+  ImpulseResult respond(const PairKey& pair, const FeatureContact& found, double delay, double& magnitude);
+  /// Starts the touched components afresh with the twists after. False on a halt.
+  bool deflect(const PairKey& pair, const ImpulseResult& result, double delay, std::vector<int>& changed);
   void count_collision(const PairKey& pair);
   bool judge_endings(const PairKey& pair, const Contact& contact);
   void set_rounding(int body, double magnitude);

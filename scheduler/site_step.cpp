@@ -14,8 +14,7 @@ HullDistance distance_to_arc_hull(const Site& arc, const Nearest& nearest, const
       const double length = std::sqrt(length2);
       return {behind / length, Vec2(perp(chord) * (turn / length))};
     }
-  } else if (nearest.foot == Foot::interior &&
-             beyond_circle(arc, q, q - arc.center) <= 0.0) {
+  } else if (nearest.foot == Foot::interior && beyond_circle(arc, q, q - arc.center) <= 0.0) {
     return {};  // between chord and arc
   }
   if (nearest.foot == Foot::interior) return {nearest.distance, (q - arc.center).normalized()};

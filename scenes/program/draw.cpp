@@ -96,8 +96,7 @@ void add_draw_command(CLI::App& program, int& status) {
   command->add_option("-o,--output", arguments->out, "Picture to write")->type_name("FILE.png")->required();
   command->add_option("--at", arguments->at, "Time [s]; default: the start of a scene, the end of a run")
       ->type_name("T");
-  command->add_option("--layer", arguments->layer, "scene, color, depth or pass:BODY")
-      ->type_name("LAYER");
+  command->add_option("--layer", arguments->layer, "scene, color, depth or pass:BODY")->type_name("LAYER");
   command->add_option("--size", arguments->size, "Pixels")->type_name("WxH")->capture_default_str();
   command->add_option("--set", arguments->overrides, "Override a key of the scene; may be repeated")
       ->type_name("PATH=VALUE")

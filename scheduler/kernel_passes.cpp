@@ -1,0 +1,154 @@
+/// The kernel's passes: who can meet whom, and when.
+#include <algorithm>
+
+#include "brink/scheduler/broad_phase.h"
+#include "brink/scheduler/kernel.h"
+
+namespace brink {
+
+const Motion& Kernel::motion_of(int owner) const {
+  const int n = body_count();
+  return owner < n ? bodies_[owner].motion : sites_[owner - n].motion();
+}
+
+const Outline& Kernel::outline_of(int owner) const {
+  const int n = body_count();
+  return owner < n ? *world_.bodies[owner].outline : *world_.sites[owner - n].outline;
+}
+
+std::optional<PairKey> Kernel::pair_of(int a, int b) const {
+  const int n = body_count();
+  if (a > b) std::swap(a, b);
+  if (a >= n || a == b) return std::nullopt;
+  return b < n ? PairKey{a, b, -1} : PairKey{a, -1, b - n};
+}
+
+Mover Kernel::mover(int body) const {
+  return {body_index_[body], &bodies_[body].motion, bodies_[body].velocity_rounding};
+}
+Mover Kernel::site_mover(int site) const { return {site_index_[site], &sites_[site].motion(), 0.0}; }
+Mover Kernel::other_mover(const PairKey& pair) const {
+  return pair.with_site() ? site_mover(pair.other_site) : mover(pair.other_body);
+}
+
+void Kernel::refresh_boxes(double from, double to, bool all) {
+  const int n = body_count();
+  if (all) {
+    boxes_.resize(owner_count());
+    box_versions_.assign(n, 0);
+    for (int k = n; k < owner_count(); ++k) {
+      const SiteMotion& site = sites_[k - n];
+      if (site.moves() || outline_of(k).container) {
+        boxes_[k] = swept_box(outline_of(k), site.motion(), from, to);
+      } else {  // a still site: its own box, not a disc's
+        const Outline placed = transformed(outline_of(k), site.motion().pose(from));
+        boxes_[k] = placed.bounds.grown(1e-12 * (placed.bounds.low.norm() + placed.bounds.high.norm()));
+      }
+    }
+  }
+  for (int k = 0; k < n; ++k) {
+    if (!all && box_versions_[k] == bodies_[k].version) continue;
+    boxes_[k] = swept_box(outline_of(k), bodies_[k].motion, from, to);
+    box_versions_[k] = bodies_[k].version;
+  }
+}
+
+std::vector<PairKey> Kernel::near_pairs(double from, double to) {
+  ++work_.horizons;
+  work_.passes += bodies_.size();
+  refresh_boxes(from, to, true);
+  std::vector<PairKey> pairs;
+  const auto add = [&](int a, int b) {
+    if (const auto pair = pair_of(a, b)) pairs.push_back(*pair);
+  };
+  if (passes_) {
+    for (int k = 0; k < body_count(); ++k) {
+      const auto seen = pairs_by_pass(k, from, to);
+      pairs.insert(pairs.end(), seen.begin(), seen.end());
+    }
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  } else if (options_.skip_broad_phase) {
+    for (const auto& [a, b] : overlapping_pairs(boxes_)) add(a, b);
+  } else {
+    for (int a = 0; a < body_count(); ++a)
+      for (int b = a + 1; b < owner_count(); ++b) add(a, b);
+  }
+  return pairs;
+}
+
+std::vector<PairKey> Kernel::near_pairs_of(int body, double from, double to) {
+  ++work_.passes;
+  if (passes_) return pairs_by_pass(body, from, to);
+  refresh_boxes(from, to, false);
+  std::vector<PairKey> pairs;
+  for (int other = 0; other < owner_count(); ++other)
+    if (!options_.skip_broad_phase || boxes_[other].overlaps(boxes_[body]))
+      if (const auto pair = pair_of(body, other)) pairs.push_back(*pair);
+  return pairs;
+}
+
+std::vector<PairKey> Kernel::pairs_by_pass(int body, double from, double to) {
+  std::vector<PlacedOutline> scene;
+  double travel = 0.0;  // of any point of anything else before `to`
+  for (int k = 0; k < owner_count(); ++k) {
+    scene.push_back({&outline_of(k), motion_of(k).pose(from), static_cast<std::uint32_t>(k)});
+    if (k == body) continue;
+    const MotionBounds b = motion_of(k).bounds(from, to);
+    const double reach =
+        outline_of(k).container ? outline_of(k).bounds.extent().norm() : outline_of(k).bounding_radius;
+    travel = std::max(travel, (b.speed() + b.spin() * reach) * (to - from));
+  }
+  const Box window = swept_box(outline_of(body), motion_of(body), from, to);
+  std::vector<PairKey> pairs;
+  for (const std::uint32_t owner :
+       passes_->near_owners(window, travel + limits_.tolerance, scene, static_cast<std::uint32_t>(body))
+           .owners)
+    if (const auto pair = pair_of(body, static_cast<int>(owner))) pairs.push_back(*pair);
+  return pairs;
+}
+
+std::optional<Certificate> Kernel::search(const PairKey& pair, double from, double to) {
+  const Mover a = mover(pair.body), b = other_mover(pair);
+  // of simultaneous resolves one may be a rounding ahead
+  from = std::max({from, a.motion->begin(), b.motion->begin()});
+  if (from > to) return std::nullopt;
+  const PairAnswer answer = first_contact(a, b, from, to, limits_, scratch_, work_);
+  if (answer.status == PairAnswer::Status::clear) return std::nullopt;
+  Certificate c;
+  c.time = answer.until;
+  c.pair = pair;
+  c.version_body = bodies_[pair.body].version;
+  c.version_other = pair.with_site() ? 0 : bodies_[pair.other_body].version;
+  c.contact = answer.contact;
+  ++work_.certificates_issued;
+  if (answer.status == PairAnswer::Status::undecided) {
+    c.kind = Certificate::Kind::undecided;
+    ++work_.certificates_undecided;
+  }
+  return c;
+}
+
+std::vector<Certificate> Kernel::simultaneous(const Certificate& c) {
+  std::vector<Certificate> others;
+  const auto features =
+      touching_features(mover(c.pair.body), other_mover(c.pair), c.time, limits_.touch, scratch_);
+  for (const FeatureContact& f : features) {
+    if (f.sample == c.contact.sample && f.sample_on_a == c.contact.sample_on_a) continue;
+    if (f.closing_speed <= 1e-12 * c.contact.closing_speed) continue;
+    others.push_back(c);
+    others.back().contact = f;
+  }
+  return others;
+}
+
+bool Kernel::fresh(const Certificate& c) const {
+  return c.version_body == bodies_[c.pair.body].version &&
+         (c.pair.with_site() || c.version_other == bodies_[c.pair.other_body].version);
+}
+
+std::vector<FeatureContact> Kernel::touching(const PairKey& pair, double tolerance) {
+  return touching_features(mover(pair.body), other_mover(pair), time_, tolerance, scratch_);
+}
+
+}  // namespace brink
