@@ -270,7 +270,8 @@ class PairSearch {
         nearest.distance <= limits_.tolerance && (path.q - nearest.point).dot(path.rate) < 0.0)
       f.normal = -path.rate.normalized();  // two points that meet: the limit of their direction
     f.rate = f.normal.dot(path.rate);
-    f.point = path.q - f.normal * (f.gap + sample.radius);  // from the sample: a long site's foot has lost digits
+    f.point =
+        path.q - f.normal * (f.gap + sample.radius);  // from the sample: a long site's foot has lost digits
     return f;
   }
 

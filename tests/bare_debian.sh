@@ -23,9 +23,9 @@ let_go() { umount "$folder/proc" 2>/dev/null || true; }
   [ -e "$folder/etc/debian_version" ] || debootstrap --variant=minbase bookworm "$folder" "$mirror"
   # inside, packages come from where they come from here, if this machine has a place of its own
   for conf in /etc/apt/apt.conf.d/*proxy* /etc/resolv.conf; do [ ! -e "$conf" ] || cp -L "$conf" "$folder$conf"; done
-  rm -rf "$folder/root/brink"
-  mkdir -p "$folder/root/brink"
-  git -C "$root" archive HEAD | tar -x -C "$folder/root/brink"
+  rm -rf "$folder/srv/brink"
+  mkdir -p "$folder/srv/brink"
+  git -C "$root" archive HEAD | tar -x -C "$folder/srv/brink"
   mount -t proc proc "$folder/proc" 2>/dev/null || true
   trap let_go EXIT
   echo "== cat /etc/debian_version; dpkg -l | wc -l"
@@ -34,7 +34,7 @@ let_go() { umount "$folder/proc" 2>/dev/null || true; }
     echo "== $command"
     start=$(date +%s)
     status=0
-    inside "cd /root/brink && $command" || status=$?
+    inside "cd /srv/brink && $command" || status=$?
     echo "== exit status $status after $(($(date +%s) - start)) s"
     [ "$status" = 0 ] || exit "$status"
   done

@@ -39,8 +39,9 @@ TEST_P(CircularContainer, FeetOfTenThousandBouncesAreEquallySpaced) {
   }
   printf("circle, b = %.1f: %d hits, worst foot angle error %.2e rad, worst time error %.2e s\n", b, bounces,
          worst_angle, worst_time);
-  // One rounding of position and velocity a hit (1.5e-16 of the angular momentum) turns the chord by that / cos b, and
-  // n chords add up a random walk of turns: 2 / sqrt(3) n^1.5 1.5e-16 = 1.7e-10 is its standard error; five of them.
+  // One rounding of position and velocity a hit (1.5e-16 of the angular momentum) turns the chord by that /
+  // cos b, and n chords add up a random walk of turns: 2 / sqrt(3) n^1.5 1.5e-16 = 1.7e-10 is its standard
+  // error; five of them.
   EXPECT_LE(worst_angle, 8.5e-10);
 }
 
