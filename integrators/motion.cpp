@@ -98,8 +98,10 @@ const PolynomialPiece& Track::at(double t) const {
 
 Motion Motion::still(const Pose& pose, double t0) { return ballistic(t0, {pose, {}}, {}); }
 
-Motion Motion::ballistic(double t0, const BodyState& start, const Acceleration& acceleration, double t1) {
+Motion Motion::ballistic(double t0, const BodyState& start, const Acceleration& acceleration, double t1,
+                         const BodyState& low) {
   Motion m;
+  m.low_ = low;
   m.t0_ = t0;
   m.t1_ = t1;
   m.start_ = start;
@@ -165,6 +167,23 @@ BodyState Motion::state(double t) const {
       break;
   }
   return track_->at(t).state(t);
+}
+
+ExtendedState Motion::extended_state(double t) const {
+  if (kind_ != Kind::ballistic) return state(t);
+  const Real s = static_cast<Real>(t) - t0_;
+  ExtendedState e(start_);
+  e.position += low_.pose.position.cast<Real>();
+  e.angle += low_.pose.angle;
+  e.twist.velocity += low_.twist.velocity.cast<Real>();
+  e.twist.omega += low_.twist.omega;
+  const RealVec a = drive_.linear.cast<Real>();
+  const Real alpha = drive_.angular;
+  e.position += s * (e.twist.velocity + Real(0.5) * s * a);
+  e.angle += s * (e.twist.omega + Real(0.5) * s * alpha);
+  e.twist.velocity += s * a;
+  e.twist.omega += s * alpha;
+  return e;
 }
 
 MotionBounds Motion::bounds(double from, double to) const {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "brink/core/base/extended.h"
 #include "brink/core/base/geometry.h"
 
 namespace brink {
@@ -55,9 +56,10 @@ class Motion {
  public:
   /// A body that stays where it is, for ever.
   static Motion still(const Pose& pose, double t0 = 0.0);
-  /// Constant acceleration from `start` at t0, valid to t1: closed form.
+  /// Constant acceleration from `start` at t0, valid to t1: closed form. `low` is what start's rounding left
+  /// over: only extended_state() sees it.
   static Motion ballistic(double t0, const BodyState& start, const Acceleration& acceleration,
-                          double t1 = std::numeric_limits<double>::infinity());
+                          double t1 = std::numeric_limits<double>::infinity(), const BodyState& low = {});
   /// Linear drag, dv/dt = drive - linear v (and the same for the angle), in closed form. @pre rates >= 0
   /// [1/s].
   static Motion drag(double t0, const BodyState& start, const Acceleration& drive, double linear,
@@ -79,6 +81,10 @@ class Motion {
   Pose pose(double t) const { return state(t).pose; }
   Twist twist(double t) const { return state(t).twist; }
 
+  /// The state in extended precision: of a parabola with the low-order part of its start, of anything else
+  /// state(t) widened.
+  ExtendedState extended_state(double t) const;
+
   /// Enclosures over [from, to]. @pre begin() <= from <= to <= end().
   MotionBounds bounds(double from, double to) const;
 
@@ -87,6 +93,7 @@ class Motion {
   bool is_ballistic() const { return kind_ == Kind::ballistic; }
   double origin() const { return begin(); }
   const BodyState& start() const { return start_; }
+  const BodyState& start_low() const { return low_; }
   const Acceleration& acceleration() const { return drive_; }
 
  private:
@@ -96,7 +103,7 @@ class Motion {
   Kind kind_ = Kind::ballistic;
   double t0_ = 0.0;
   double t1_ = std::numeric_limits<double>::infinity();
-  BodyState start_;
+  BodyState start_, low_;
   Acceleration drive_;
   double linear_ = 0.0, angular_ = 0.0;
   std::shared_ptr<const Track> track_;

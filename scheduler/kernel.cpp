@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
 #include <map>
 
 #include "brink/core/base/error.h"
@@ -34,23 +35,7 @@ Kernel::Kernel(World world, SolverOptions options)
   zeno_ = ZenoWatch(limits_.tolerance);
 
   bodies_.resize(world_.bodies.size());
-  for (Component& c : make_components(world_)) {
-    Coupled coupled{std::move(c), nullptr, 0.0, {}};
-    const int index = static_cast<int>(components_.size());
-    std::vector<BodyState> states;
-    for (std::size_t i = 0; i < coupled.component.bodies.size(); ++i) {
-      BodyTrack& track = bodies_[coupled.component.bodies[i]];
-      track.component = index;
-      track.place_in_component = static_cast<int>(i);
-      const Body& body = world_.bodies[coupled.component.bodies[i]];
-      states.push_back(held(body, body.initial));
-    }
-    coupled.integrator = make_integrator(options_.integrator, coupled.component.dynamics,
-                                         options_.integrator_options(), &work_);
-    components_.push_back(std::move(coupled));
-    start_component(components_.back(), 0.0, std::move(states));
-    cover(components_.back(), 0.0);
-  }
+  for (Component& c : make_components(world_)) add_component(std::move(c));
   work_.component_resets = 0;  // first starts are no resets
   for (const FixedSite& site : world_.sites) sites_.emplace_back(site);
   make_indices();
@@ -58,6 +43,32 @@ Kernel::Kernel(World world, SolverOptions options)
 }
 
 Kernel::~Kernel() = default;
+
+void Kernel::add_component(Component component) {
+  const auto initial = [&](int k) { return held(world_.bodies[k], world_.bodies[k].initial); };
+  const Dynamics& dynamics = *component.dynamics;
+  const bool closed = options_.integrator == "auto" || options_.integrator == "ballistic";
+  if (closed && dynamics.size() == 1 && dynamics.constant() && std::isinf(dynamics.next_break(0.0))) {
+    const int k = component.bodies.front();
+    const BodyState state = initial(k);
+    Acceleration acceleration;
+    dynamics.accelerations(0.0, {&state, 1}, {&acceleration, 1});
+    bodies_[k].motion = Motion::ballistic(0.0, state, acceleration);
+    return;
+  }
+  std::vector<BodyState> states;
+  for (const int k : component.bodies) {
+    bodies_[k].component = static_cast<int>(components_.size());
+    bodies_[k].place_in_component = static_cast<int>(states.size());
+    states.push_back(initial(k));
+  }
+  Coupled coupled{std::move(component), nullptr, 0.0, {}};
+  coupled.integrator =
+      make_integrator(options_.integrator, coupled.component.dynamics, options_.integrator_options(), &work_);
+  components_.push_back(std::move(coupled));
+  start_component(components_.back(), 0.0, std::move(states));
+  cover(components_.back(), 0.0);
+}
 
 void Kernel::make_indices() {
   FieldOptions field = options_.field;
@@ -131,16 +142,30 @@ void Kernel::back_up_all(double t) {
   time_ = t;
 }
 
-void Kernel::displace(int k, const Vec2& shift) {
-  Coupled& c = components_[bodies_[k].component];
+bool Kernel::restart(std::span<const Restart> touched) {
+  BodyTrack& first = bodies_[touched.front().body];
+  if (first.component < 0) {
+    const ExtendedState& s = touched.front().state;
+    first.motion =
+        Motion::ballistic(time_, s.rounded(), first.motion.acceleration(), first.motion.end(), s.low());
+    ++first.version;
+    ++work_.component_resets;
+    return true;
+  }
+  Coupled& c = components_[first.component];
   std::vector<BodyState> states;
   for (const int j : c.component.bodies) {
     states.push_back(state(j, time_));
-    if (j == k) states.back().pose.position += shift;
+    ++bodies_[j].version;
   }
+  for (const Restart& r : touched) states[bodies_[r.body].place_in_component] = r.state.rounded();
   start_component(c, time_, std::move(states));
-  cover(c, time_);
-  for (const int j : c.component.bodies) ++bodies_[j].version;
+  return cover(c, time_);
+}
+
+void Kernel::displace(int k, const Vec2& shift) {
+  const Restart moved{k, bodies_[k].motion.extended_state(time_).shifted(shift)};
+  restart({&moved, 1});
 }
 
 void Kernel::stop(Termination termination, std::string why) {

@@ -27,8 +27,12 @@ struct BodyTrack {
   std::uint64_t version = 0;       ///< raised by every resolve that changes the motion
   double velocity_rounding = 0.0;  ///< see Mover
   double resolved_at = -1.0;       ///< time of the last resolve [s]; < 0: never
-  int component = 0;
+  /// Of the component that drives it; -1: free, under the constant acceleration of its motion for ever. A
+  /// free body needs no integrator.
+  int component = -1;
   int place_in_component = 0;
+  int last_partner = -1;     ///< owner met in its last collision
+  std::uint32_t streak = 0;  ///< collisions in a row with that owner
 };
 
 /// Why a run cannot go on, in one sentence.
@@ -36,6 +40,8 @@ struct Halt {
   Termination termination = Termination::failed;
   std::string why;
 };
+
+struct ExtendedContact;
 
 class Kernel {
  public:
@@ -123,13 +129,24 @@ class Kernel {
   };
 
   void make_indices();
+  void add_component(Component component);
   void start_component(Coupled& c, double t, std::vector<BodyState> states);
+  struct Restart {
+    int body;
+    ExtendedState state;
+  };
+  /// Starts bodies of one component, or one free body, afresh at the present time. False on a halt.
+  bool restart(std::span<const Restart> touched);
   /// Extends one component to t and fetches its motions; false and halt() if its integrator cannot.
   bool cover(Coupled& c, double t);
   void fetch_motions(const Coupled& c);
   Mover mover(int body) const;
   Mover site_mover(int site) const;
   Mover other_mover(const PairKey& pair) const;
+  /// Index of the pair's other owner: bodies first, then sites.
+  int other_owner(const PairKey& pair) const {
+    return pair.with_site() ? body_count() + pair.other_site : pair.other_body;
+  }
   void note_overlap(double gap) { max_overlap_ = std::max(max_overlap_, -gap); }
   std::vector<PairKey> neighbours_at(double t) const;
   void check_overlaps_at(double t);
@@ -146,14 +163,16 @@ class Kernel {
   /// collision is resolved there, and the new motion is the one that passes through that moment, so that long
   /// runs do not drift by roundings of time. Not at a wire without thickness: it is met a little before, and
   /// must stay on its side.
-  double delay_to_contact(const PairKey& pair, const FeatureContact& found) const;
-  /// The response at that moment; `magnitude` gets the largest speed that took part.
-  ImpulseResult respond(const PairKey& pair, const FeatureContact& found, double delay, double& magnitude);
+  Real delay_to_contact(const PairKey& pair, const FeatureContact& found, const ExtendedContact& c) const;
+  struct Response;
+  /// The response at that moment.
+  Response respond(const PairKey& pair, const FeatureContact& found) const;
   /// Starts the touched components afresh with the twists after. False on a halt.
-  bool deflect(const PairKey& pair, const ImpulseResult& result, double delay, std::vector<int>& changed);
+  bool deflect(const PairKey& pair, const Response& response, std::vector<int>& changed);
   void count_collision(const PairKey& pair);
-  bool judge_endings(const PairKey& pair, const Contact& contact);
-  void set_rounding(int body, double magnitude);
+  bool judge_endings(const PairKey& pair, const Contact& contact, double rest);
+  /// Notes that a body has been resolved now, with owner `partner`; returns the time since its last [s].
+  double note_resolve(int body, int partner, double magnitude);
   Contact world_contact(const PairKey& pair, const FeatureContact& f) const;
   std::string name_of(const PairKey& pair) const;
 

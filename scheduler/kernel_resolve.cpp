@@ -7,6 +7,7 @@
 
 #include "brink/core/contacts/impulse.h"
 #include "brink/scheduler/canonical_time.h"
+#include "brink/scheduler/extended_contact.h"
 #include "brink/scheduler/kernel.h"
 
 namespace brink {
@@ -20,32 +21,25 @@ std::uint64_t endless_group(std::size_t bodies) {
   return 2000 + 10 * static_cast<std::uint64_t>(bodies) * bodies;
 }
 
-ImpulseSide body_side(const Body& body, const BodyState& state, const Vec2& point) {
-  return {state.twist, point - state.pose.position, body.inverse_mass_x(), body.inverse_mass_y(),
+ImpulseSide body_side(const Body& body, const ExtendedState& state, const RealVec& point) {
+  return {state.twist, point - state.position, body.inverse_mass_x(), body.inverse_mass_y(),
           body.inverse_inertia()};
 }
 
-ImpulseSide site_side(const BodyState& state, const Vec2& point) {
-  return {state.twist, point - state.pose.position, 0.0, 0.0, 0.0};
+ImpulseSide site_side(const ExtendedState& state, const RealVec& point) {
+  return {state.twist, point - state.position, 0.0, 0.0, 0.0};
 }
 
 /// Sum of the speeds that a side's velocity at the contact is made of [m/s].
 double speed_of(const ImpulseSide& side) {
-  return side.twist.velocity.lpNorm<1>() + std::abs(side.twist.omega) * side.arm.norm();
+  return static_cast<double>(side.twist.velocity.lpNorm<1>() + std::abs(side.twist.omega) * side.arm.norm());
 }
 
-/// The state now of a motion that has twist `after` and meets the old one `delay` from now.
-BodyState deflected(BodyState s, const Twist& after, double delay) {
-  s.pose.position += delay * (s.twist.velocity - after.velocity);
-  s.pose.angle += delay * (s.twist.omega - after.omega);
+/// The state now of a motion that has twist `after` and meets the old one, now in `s`, `delay` from now.
+ExtendedState deflected(ExtendedState s, const ExtendedTwist& after, Real delay) {
+  s.position += delay * (s.twist.velocity - after.velocity);
+  s.angle += delay * (s.twist.omega - after.omega);
   s.twist = after;
-  return s;
-}
-
-/// The state a moment later, to first order: for moments shorter than a rounding of the clock.
-BodyState moved(BodyState s, double moment) {
-  s.pose.position += moment * s.twist.velocity;
-  s.pose.angle += moment * s.twist.omega;
   return s;
 }
 
@@ -73,14 +67,25 @@ std::string Kernel::name_of(const PairKey& pair) const {
       pair.with_site() ? world_.sites[pair.other_site].name : world_.bodies[pair.other_body].name);
 }
 
-void Kernel::set_rounding(int k, double magnitude) {
+/// How a collision is resolved.
+struct Kernel::Response {
+  ImpulseResult impulse;
+  Real delay = 0;             ///< from now to the moment of contact [s]
+  ExtendedState body, other;  ///< states now
+  double magnitude = 0.0;     ///< the largest speed that took part [m/s]
+};
+
+double Kernel::note_resolve(int k, int partner, double magnitude) {
   BodyTrack& b = bodies_[k];
+  const double rest = b.resolved_at < 0.0 ? std::numeric_limits<double>::infinity() : time_ - b.resolved_at;
   const double rounding = 16.0 * kEpsilon * magnitude;
   // within one instant velocities are differences of larger ones: the largest rounding stays
-  b.velocity_rounding = std::abs(time_ - b.resolved_at) <= same_instant(time_)
-                            ? std::max(b.velocity_rounding, rounding)
-                            : rounding;
+  b.velocity_rounding =
+      std::abs(rest) <= same_instant(time_) ? std::max(b.velocity_rounding, rounding) : rounding;
   b.resolved_at = time_;
+  b.streak = b.last_partner == partner ? b.streak + 1 : 1;
+  b.last_partner = partner;
+  return rest;
 }
 
 bool Kernel::thin(const PairKey& pair, const FeatureContact& f) const {
@@ -89,84 +94,75 @@ bool Kernel::thin(const PairKey& pair, const FeatureContact& f) const {
   return !sites.sites[f.site].solid && sites.sites[f.site].radius + samples.samples[f.sample].radius == 0.0;
 }
 
-double Kernel::delay_to_contact(const PairKey& pair, const FeatureContact& found) const {
-  const double late = thin(pair, found) ? 0.0 : 4.0 * ulp(time_);
-  return found.closing_speed > 0.0 ? std::clamp(found.gap / found.closing_speed, -late, late) : 0.0;
+Real Kernel::delay_to_contact(const PairKey& pair, const FeatureContact& found,
+                              const ExtendedContact& c) const {
+  const Real late = thin(pair, found) ? 0.0 : 4.0 * ulp(time_);
+  return c.closing > 0 ? std::clamp(c.gap / c.closing, -late, late) : Real(0);
 }
 
-ImpulseResult Kernel::respond(const PairKey& pair, const FeatureContact& found, double delay,
-                              double& magnitude) {
-  const Body& body = world_.bodies[pair.body];
-  const BodyState state = moved(this->state(pair.body, time_), delay);
-  const BodyState other_state = moved(
-      pair.with_site() ? site_motion(pair.other_site).state(time_) : this->state(pair.other_body, time_),
-      delay);
-  const FeatureContact f =
-      delay == 0.0 ? found
-                   : contact_in(mover(pair.body), other_mover(pair), state, other_state, found, scratch_);
-  const ImpulseSide side = body_side(body, state, f.point);
-  const ImpulseSide other_side = pair.with_site()
-                                     ? site_side(other_state, f.point)
-                                     : body_side(world_.bodies[pair.other_body], other_state, f.point);
+Kernel::Response Kernel::respond(const PairKey& pair, const FeatureContact& found) const {
+  Response r;
+  r.body = bodies_[pair.body].motion.extended_state(time_);
+  r.other = motion_of(other_owner(pair)).extended_state(time_);
+  const Outline &outline = outline_of(pair.body), &other_outline = outline_of(other_owner(pair));
+  ExtendedContact c = contact_in(outline, other_outline, r.body, r.other, found);
+  r.delay = delay_to_contact(pair, found, c);
+  const ExtendedState body = r.body.moved(r.delay), other = r.other.moved(r.delay);
+  c = contact_in(outline, other_outline, body, other, found);
+  const Body& definition = world_.bodies[pair.body];
+  const ImpulseSide side = body_side(definition, body, c.point);
+  const ImpulseSide other_side = pair.with_site() ? site_side(other, c.point)
+                                                  : body_side(world_.bodies[pair.other_body], other, c.point);
   const Material material = combined(
-      world_, body.material,
+      world_, definition.material,
       pair.with_site() ? world_.sites[pair.other_site].material : world_.bodies[pair.other_body].material);
   const auto law = options_.response == "reflection" ? resolve_reflection : resolve_impulse;
-  const ImpulseResult result = law(side, other_side, f.normal, material);
-  magnitude = std::max(speed_of(side), speed_of(other_side));
+  r.impulse = law(side, other_side, c.normal, material);
+  r.magnitude = std::max(speed_of(side), speed_of(other_side));
   // an approach that the law does not see was rounding, all of it
-  if (result.kind == ImpulseKind::separating) magnitude += f.closing_speed / kEpsilon;
-  return result;
+  if (r.impulse.kind == ImpulseKind::separating) r.magnitude += found.closing_speed / kEpsilon;
+  return r;
 }
 
-bool Kernel::deflect(const PairKey& pair, const ImpulseResult& result, double delay,
-                     std::vector<int>& changed) {
-  std::vector<std::pair<int, Twist>> touched{{pair.body, result.body}};
-  if (!pair.with_site()) touched.emplace_back(pair.other_body, result.other);
-  std::vector<int> components;
-  for (const auto& [k, twist] : touched)
-    if (components.empty() || components.front() != bodies_[k].component)
-      components.push_back(bodies_[k].component);
-  for (const int index : components) {
-    Coupled& c = components_[index];
-    std::vector<BodyState> states;
-    for (const int j : c.component.bodies) {
-      states.push_back(this->state(j, time_));
-      for (const auto& [k, after] : touched)
-        if (k == j) states.back() = deflected(states.back(), after, delay);
+bool Kernel::deflect(const PairKey& pair, const Response& r, std::vector<int>& changed) {
+  const Restart both[] = {{pair.body, deflected(r.body, r.impulse.body, r.delay)},
+                          {pair.other_body, deflected(r.other, r.impulse.other, r.delay)}};
+  const auto start = [&](std::span<const Restart> touched) {
+    const int k = touched.front().body, component = bodies_[k].component;
+    if (component < 0) {
+      changed.push_back(k);
+    } else {
+      const std::vector<int>& members = components_[component].component.bodies;
+      changed.insert(changed.end(), members.begin(), members.end());
     }
-    start_component(c, time_, std::move(states));
-    if (!cover(c, time_)) return false;
-    for (const int j : c.component.bodies) {
-      ++bodies_[j].version;
-      changed.push_back(j);
-    }
-  }
-  return true;
+    return restart(touched);
+  };
+  if (pair.with_site()) return start({both, 1});
+  const int component = bodies_[pair.body].component;
+  if (component >= 0 && component == bodies_[pair.other_body].component) return start(both);
+  return start({both, 1}) && start({both + 1, 1});
 }
 
 bool Kernel::resolve(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed) {
-  const double delay = delay_to_contact(pair, found);
-  double magnitude = 0.0;
-  const ImpulseResult result = respond(pair, found, delay, magnitude);
-  if (result.kind == ImpulseKind::jam) {
+  const Response response = respond(pair, found);
+  if (response.impulse.kind == ImpulseKind::jam) {
     stop(Termination::failed, fmt::format("{} at t = {:.17g}: neither side can move", name_of(pair), time_));
     return false;
   }
-  set_rounding(pair.body, magnitude);
-  if (!pair.with_site()) set_rounding(pair.other_body, magnitude);
-  if (!deflect(pair, result, delay, changed)) return false;
+  double rest = note_resolve(pair.body, other_owner(pair), response.magnitude);
+  if (!pair.with_site()) rest = std::min(rest, note_resolve(pair.other_body, pair.body, response.magnitude));
+  if (!deflect(pair, response, changed)) return false;
 
   Event event;
   event.seq = seq_++;
   event.contact = world_contact(pair, found);
   event.contact.time = last_event_ = std::max(last_event_, time_);
-  event.impulse_n = result.normal;
-  event.impulse_t = result.tangential;
+  event.impulse_n = response.impulse.normal;
+  event.impulse_t = response.impulse.tangential;
   note_overlap(found.gap);
   count_collision(pair);
   if (recorder_ && run_.record_events) recorder_->event(event);
-  return judge_endings(pair, event.contact);
+  return judge_endings(pair, event.contact, rest);
 }
 
 void Kernel::count_collision(const PairKey& pair) {
@@ -174,8 +170,8 @@ void Kernel::count_collision(const PairKey& pair) {
   ++(pair.with_site() ? work_.collisions_body_site : work_.collisions_body_body);
 }
 
-bool Kernel::judge_endings(const PairKey& pair, const Contact& contact) {
-  if (const auto zeno = zeno_.collided(pair, time_, contact.closing_speed)) {
+bool Kernel::judge_endings(const PairKey& pair, const Contact& contact, double rest) {
+  if (const auto zeno = zeno_.collided(pair, time_, contact.closing_speed, rest)) {
     Event event;
     event.seq = seq_++;
     event.kind = EventKind::zeno;
@@ -186,7 +182,8 @@ bool Kernel::judge_endings(const PairKey& pair, const Contact& contact) {
          fmt::format(
              "Zeno at t = {:.15g} after {} bounces of {}: a contact that lasts begins, and those are not in "
              "this release",
-             zeno->limit_time, zeno->bounces, name_of(pair)));
+             zeno->limit_time, std::max<std::uint64_t>(zeno->bounces, bodies_[pair.body].streak),
+             name_of(pair)));
     return false;
   }
   if (time_ - instant_ > 2.0 * same_instant(time_)) {

@@ -25,12 +25,13 @@ Plan Kernel::plan() const {
                               options_.order, options_.response, options_.detector));
   const bool closed_motion = options_.integrator == "auto" || options_.integrator == "ballistic";
   const auto is_ballistic = [&](int k) {
-    return closed_motion && components_[bodies_[k].component].component.dynamics->constant();
+    return bodies_[k].component < 0 ||
+           (closed_motion && components_[bodies_[k].component].component.dynamics->constant());
   };
   int ballistic = 0;
   for (int k = 0; k < body_count(); ++k) ballistic += is_ballistic(k);
   lines.push_back(
-      fmt::format("motion: {} of {} bodies ballistic in closed form, {} component(s), integrator {}",
+      fmt::format("motion: {} of {} bodies ballistic in closed form, {} component(s) with an integrator, {}",
                   ballistic, bodies_.size(), components_.size(), options_.integrator));
 
   std::uint64_t closed = 0, pairs = 0;

@@ -13,7 +13,7 @@ namespace brink {
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x314b4e4952420002ULL;  // "\2\0BRINK1"
+constexpr std::uint64_t kMagic = 0x314b4e4952420003ULL;  // "\3\0BRINK1"
 
 class Writer {
  public:
@@ -94,6 +94,12 @@ std::vector<std::byte> Kernel::snapshot() const {
     out.put(b.version);
     out.put(b.velocity_rounding);
     out.put(b.resolved_at);
+    out.put(b.last_partner);
+    out.put(b.streak);
+    if (b.component >= 0) continue;
+    out.put(b.motion.origin());
+    out.put(b.motion.start());
+    out.put(b.motion.start_low());
   }
   for (const Coupled& c : components_) {
     out.put(c.started);
@@ -125,6 +131,15 @@ void Kernel::restore(std::span<const std::byte> bytes) {
     in.get(b.version);
     in.get(b.velocity_rounding);
     in.get(b.resolved_at);
+    in.get(b.last_partner);
+    in.get(b.streak);
+    if (b.component >= 0) continue;
+    double origin = 0.0;
+    BodyState start, low;
+    in.get(origin);
+    in.get(start);
+    in.get(low);
+    b.motion = Motion::ballistic(origin, start, b.motion.acceleration(), b.motion.end(), low);
   }
   halt_.reset();
   for (Coupled& c : components_) {

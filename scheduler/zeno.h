@@ -23,8 +23,11 @@ class ZenoWatch {
  public:
   explicit ZenoWatch(double contact_tolerance = 1e-10) : tolerance_(contact_tolerance) {}
 
-  /// To be told of every collision, in order.
-  std::optional<ZenoEnding> collided(const PairKey& pair, double time, double closing_speed);
+  /// To be told of every collision, in order. `rest`: a time that the pair's flight has lasted at least [s]
+  /// (since either side was last resolved): flights that rise a million tolerances are not remembered, which
+  /// keeps a gas out of the memory. ZenoEnding::bounces counts the remembered ones.
+  std::optional<ZenoEnding> collided(const PairKey& pair, double time, double closing_speed,
+                                     double rest = 0.0);
 
   struct Bounce {
     double last_time = 0.0;
@@ -39,6 +42,7 @@ class ZenoWatch {
 
  private:
   static constexpr std::uint32_t kLowFlights = 10;
+  static constexpr double kHighFlight = 1e6;  ///< in tolerances
   double tolerance_;
   std::map<PairKey, Bounce> bounces_;
 };

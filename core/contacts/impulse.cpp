@@ -7,13 +7,6 @@ namespace brink {
 
 namespace {
 
-/// Impulses are computed in extended precision and rounded once: in double, the rounding of the effective
-/// mass is biased and shows as a drift of energy (measured: -2.5e-17 a hit in a circular container).
-using Real = long double;
-using RealVec = Eigen::Matrix<Real, 2, 1>;
-
-Real cross(const RealVec& a, const RealVec& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 /// The contact seen by impulses: relative velocity of the two contact points in (normal, tangent) axes, and
 /// the symmetric 2x2 matrix that maps an impulse to its change (the inverse of the effective mass).
 struct ContactSpace {
@@ -22,24 +15,20 @@ struct ContactSpace {
   Real knn = 0, knt = 0, ktt = 0;  ///< velocity change per unit impulse [1/kg]
 };
 
-RealVec velocity_at_contact(const ImpulseSide& side) {
-  const RealVec arm = side.arm.cast<Real>();
-  return side.twist.velocity.cast<Real>() + static_cast<Real>(side.twist.omega) * RealVec(-arm.y(), arm.x());
-}
-
 void add_side(ContactSpace& c, const ImpulseSide& side) {
-  const RealVec arm = side.arm.cast<Real>(), mobility(side.inverse_mass_x, side.inverse_mass_y);
-  const Real rn = cross(arm, c.n), rt = cross(arm, c.t), turn = side.inverse_inertia;
+  const RealVec mobility(side.inverse_mass_x, side.inverse_mass_y);
+  const Real rn = extended::cross(side.arm, c.n), rt = extended::cross(side.arm, c.t),
+             turn = side.inverse_inertia;
   c.knn += mobility.dot(c.n.cwiseProduct(c.n)) + turn * rn * rn;
   c.knt += mobility.dot(c.n.cwiseProduct(c.t)) + turn * rn * rt;
   c.ktt += mobility.dot(c.t.cwiseProduct(c.t)) + turn * rt * rt;
 }
 
-ContactSpace contact_space(const ImpulseSide& body, const ImpulseSide& other, const Vec2& normal) {
+ContactSpace contact_space(const ImpulseSide& body, const ImpulseSide& other, const RealVec& normal) {
   ContactSpace c;
-  c.n = normal.cast<Real>();
-  c.t = RealVec(-c.n.y(), c.n.x());
-  const RealVec v = velocity_at_contact(body) - velocity_at_contact(other);
+  c.n = normal;
+  c.t = extended::perp(normal);
+  const RealVec v = body.twist.at(body.arm) - other.twist.at(other.arm);
   c.vn = v.dot(c.n);
   c.vt = v.dot(c.t);
   add_side(c, body);
@@ -47,12 +36,10 @@ ContactSpace contact_space(const ImpulseSide& body, const ImpulseSide& other, co
   return c;
 }
 
-Twist pushed(const ImpulseSide& side, const RealVec& impulse) {
+ExtendedTwist pushed(const ImpulseSide& side, const RealVec& impulse) {
   const RealVec mobility(side.inverse_mass_x, side.inverse_mass_y);
-  const RealVec velocity = side.twist.velocity.cast<Real>() + mobility.cwiseProduct(impulse);
-  return {
-      velocity.cast<double>(),
-      static_cast<double>(side.twist.omega + side.inverse_inertia * cross(side.arm.cast<Real>(), impulse))};
+  return {side.twist.velocity + mobility.cwiseProduct(impulse),
+          side.twist.omega + side.inverse_inertia * extended::cross(side.arm, impulse)};
 }
 
 ImpulseResult apply(ImpulseKind kind, const ContactSpace& c, const ImpulseSide& body,
@@ -64,7 +51,7 @@ ImpulseResult apply(ImpulseKind kind, const ContactSpace& c, const ImpulseSide& 
 
 }  // namespace
 
-ImpulseResult resolve_impulse(const ImpulseSide& body, const ImpulseSide& other, const Vec2& normal,
+ImpulseResult resolve_impulse(const ImpulseSide& body, const ImpulseSide& other, const RealVec& normal,
                               const Material& material) {
   const ContactSpace c = contact_space(body, other, normal);
   if (c.vn >= 0.0) return {ImpulseKind::separating, 0.0, 0.0, body.twist, other.twist};
@@ -103,7 +90,7 @@ ImpulseResult resolve_impulse(const ImpulseSide& body, const ImpulseSide& other,
   return apply(ImpulseKind::slip, c, body, other, frictionless, 0);
 }
 
-ImpulseResult resolve_reflection(const ImpulseSide& body, const ImpulseSide& other, const Vec2& normal,
+ImpulseResult resolve_reflection(const ImpulseSide& body, const ImpulseSide& other, const RealVec& normal,
                                  const Material& material) {
   const ContactSpace c = contact_space(body, other, normal);
   if (c.vn >= 0.0) return {ImpulseKind::separating, 0.0, 0.0, body.twist, other.twist};

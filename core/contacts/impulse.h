@@ -1,15 +1,15 @@
 #pragma once
 /// The impulse law: Newton restitution with Coulomb friction, in closed form in the plane.
 
-#include "brink/core/base/geometry.h"
+#include "brink/core/base/extended.h"
 #include "brink/core/world/world.h"
 
 namespace brink {
 
 /// One side of a collision.
 struct ImpulseSide {
-  Twist twist;
-  Vec2 arm = Vec2::Zero();  ///< contact point minus centre of mass [m]
+  ExtendedTwist twist;
+  RealVec arm = RealVec::Zero();  ///< contact point minus centre of mass [m]
   double inverse_mass_x = 0.0, inverse_mass_y = 0.0, inverse_inertia = 0.0;  ///< 0: held
 };
 
@@ -23,21 +23,21 @@ enum class ImpulseKind {
 
 struct ImpulseResult {
   ImpulseKind kind = ImpulseKind::separating;
-  double normal = 0.0;      ///< impulse along the normal, on the body [N s], >= 0
-  double tangential = 0.0;  ///< along perp(normal) [N s]
-  Twist body, other;        ///< twists after
+  double normal = 0.0;        ///< impulse along the normal, on the body [N s], >= 0
+  double tangential = 0.0;    ///< along perp(normal) [N s]
+  ExtendedTwist body, other;  ///< twists after
 };
 
 /// Resolves one collision at one point; `normal` points into `body`. Restitution is met exactly at every
 /// speed: v_n' = -e v_n. Without tangential restitution the tangential impulse is the one that ends sliding,
 /// bounded by friction * normal impulse; with it, the tangential velocity is reversed by that factor, within
 /// the same bound.
-ImpulseResult resolve_impulse(const ImpulseSide& body, const ImpulseSide& other, const Vec2& normal,
+ImpulseResult resolve_impulse(const ImpulseSide& body, const ImpulseSide& other, const RealVec& normal,
                               const Material& material);
 
 /// The classic cheap rebound: the point velocity is mirrored about the normal, v - 2 (n.v) n, and shared
 /// between linear and angular parts, scaled by the material's slip and spin. Not exact; see docs.
-ImpulseResult resolve_reflection(const ImpulseSide& body, const ImpulseSide& other, const Vec2& normal,
+ImpulseResult resolve_reflection(const ImpulseSide& body, const ImpulseSide& other, const RealVec& normal,
                                  const Material& material);
 
 }  // namespace brink

@@ -9,11 +9,12 @@
 namespace brink {
 namespace {
 
-Vec2 relative_velocity(const ImpulseSide& a, const Twist& wa, const ImpulseSide& b, const Twist& wb) {
+RealVec relative_velocity(const ImpulseSide& a, const ExtendedTwist& wa, const ImpulseSide& b,
+                          const ExtendedTwist& wb) {
   return wa.at(a.arm) - wb.at(b.arm);
 }
 
-double energy(const ImpulseSide& s, const Twist& w) {
+Real energy(const ImpulseSide& s, const ExtendedTwist& w) {
   return 0.5 * (w.velocity.squaredNorm() / s.inverse_mass_x + w.omega * w.omega / s.inverse_inertia);
 }
 
@@ -34,24 +35,24 @@ TEST(Impulse, RandomCollisionsMeetRestitutionMomentumAndCoulombsLaw) {
   for (int i = 0; i < 100000; ++i) {
     const ImpulseSide a = random_side(r), b = random_side(r);
     const double angle = r.uniform(0.0, 2.0 * M_PI);
-    const Vec2 n(std::cos(angle), std::sin(angle)), t = perp(n);
+    const RealVec n(std::cos(angle), std::sin(angle)), t = extended::perp(n);
     Material m;
     m.restitution = r.uniform();
     m.friction = r.uniform(0.0, 0.6);
-    const Vec2 before = relative_velocity(a, a.twist, b, b.twist);
+    const RealVec before = relative_velocity(a, a.twist, b, b.twist);
     const ImpulseResult result = resolve_impulse(a, b, n, m);
     if (before.dot(n) >= 0.0) {
       ASSERT_EQ(result.kind, ImpulseKind::separating);
       continue;
     }
-    const Vec2 after = relative_velocity(a, result.body, b, result.other);
-    const double scale = 10.0 + std::abs(result.normal);
+    const RealVec after = relative_velocity(a, result.body, b, result.other);
+    const Real scale = 10.0 + std::abs(result.normal);
     ASSERT_NEAR(after.dot(n), -m.restitution * before.dot(n), 1e-14 * scale) << "case " << i << " of seed 11";
-    const Vec2 momentum = (result.body.velocity - a.twist.velocity) / a.inverse_mass_x +
-                          (result.other.velocity - b.twist.velocity) / b.inverse_mass_x;
+    const RealVec momentum = (result.body.velocity - a.twist.velocity) / a.inverse_mass_x +
+                             (result.other.velocity - b.twist.velocity) / b.inverse_mass_x;
     ASSERT_LE(momentum.norm(), 1e-14 * scale);
     ASSERT_LE(std::abs(result.tangential), m.friction * result.normal * (1.0 + 1e-14));
-    const double sliding = after.dot(t);
+    const Real sliding = after.dot(t);
     if (result.kind == ImpulseKind::stick)
       ASSERT_NEAR(sliding, 0.0, 1e-13 * scale);
     else
@@ -71,7 +72,7 @@ TEST(Impulse, ElasticAndFrictionlessKeepsEnergy) {
     const ImpulseSide a = random_side(r), b = random_side(r);
     const double angle = r.uniform(0.0, 2.0 * M_PI);
     const ImpulseResult result = resolve_impulse(a, b, {std::cos(angle), std::sin(angle)}, Material{});
-    const double before = energy(a, a.twist) + energy(b, b.twist);
+    const Real before = energy(a, a.twist) + energy(b, b.twist);
     ASSERT_NEAR(energy(a, result.body) + energy(b, result.other), before, 2e-14 * before) << "case " << i;
   }
 }
@@ -79,8 +80,8 @@ TEST(Impulse, ElasticAndFrictionlessKeepsEnergy) {
 // A tiny approach is met with restitution like any other: there is no threshold.
 TEST(Impulse, RestitutionHasNoThreshold) {
   for (const double v : {1e-3, 1e-9, 1e-15, 1e-100}) {
-    const ImpulseSide ball{{{0.0, -v}, 0.0}, Vec2::Zero(), 1.0, 1.0, 1.0};
-    const ImpulseSide floor{{}, Vec2::Zero(), 0.0, 0.0, 0.0};
+    const ImpulseSide ball{{{0.0, -v}, 0.0}, RealVec::Zero(), 1.0, 1.0, 1.0};
+    const ImpulseSide floor{{}, RealVec::Zero(), 0.0, 0.0, 0.0};
     Material m;
     m.restitution = 0.7;
     EXPECT_DOUBLE_EQ(resolve_impulse(ball, floor, {0.0, 1.0}, m).body.velocity.y(), 0.7 * v);
@@ -88,8 +89,8 @@ TEST(Impulse, RestitutionHasNoThreshold) {
 }
 
 TEST(Impulse, TwoHeldSidesJam) {
-  const ImpulseSide held{{{0.0, -1.0}, 0.0}, Vec2::Zero(), 0.0, 0.0, 0.0};
-  const ImpulseSide floor{{}, Vec2::Zero(), 0.0, 0.0, 0.0};
+  const ImpulseSide held{{{0.0, -1.0}, 0.0}, RealVec::Zero(), 0.0, 0.0, 0.0};
+  const ImpulseSide floor{{}, RealVec::Zero(), 0.0, 0.0, 0.0};
   EXPECT_EQ(resolve_impulse(held, floor, {0.0, 1.0}, Material{}).kind, ImpulseKind::jam);
 }
 
@@ -100,7 +101,7 @@ TEST(Impulse, PainleveRodGivesAFiniteSeparatingAnswer) {
     for (const double slide : {-5.0, -0.1, 0.1, 5.0}) {
       ImpulseSide rod;
       rod.twist = {{slide, -1.0}, 0.0};
-      rod.arm = Vec2(-std::cos(th), -std::sin(th)) * (0.5 * length);
+      rod.arm = RealVec(-std::cos(th), -std::sin(th)) * (0.5 * length);
       rod.inverse_mass_x = rod.inverse_mass_y = 1.0;
       rod.inverse_inertia = 12.0 / (length * length);
       Material m;
@@ -117,7 +118,7 @@ TEST(Impulse, PainleveRodGivesAFiniteSeparatingAnswer) {
 // tangent.
 TEST(Reflection, MirrorsTheNormalAndScalesTheTangent) {
   const ImpulseSide ball{{{3.0, -2.0}, 0.0}, {0.0, -0.5}, 1.0, 1.0, 0.0};
-  const ImpulseSide floor{{}, Vec2::Zero(), 0.0, 0.0, 0.0};
+  const ImpulseSide floor{{}, RealVec::Zero(), 0.0, 0.0, 0.0};
   Material m;
   m.slip = 0.5;
   const ImpulseResult result = resolve_reflection(ball, floor, {0.0, 1.0}, m);

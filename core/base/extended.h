@@ -1,0 +1,69 @@
+#pragma once
+/// States beyond double precision: 64 bits of mantissa (x87), carried as a double and its low-order part.
+///
+/// A collision rounds a body's state once. In long runs between curved walls those roundings add up like a
+/// random walk that the chords amplify (n^1.5 roundings after n hits); so motions start from states kept to
+/// 64 bits, and collisions are resolved in them. Where long double is double, nothing is lost but this.
+
+#include "brink/core/base/geometry.h"
+
+namespace brink {
+
+using Real = long double;
+using RealVec = Eigen::Matrix<Real, 2, 1>;
+
+/// The plane's products once more, in a namespace of their own: expressions of doubles must not come here.
+namespace extended {
+inline Real cross(const RealVec& a, const RealVec& b) { return a.x() * b.y() - a.y() * b.x(); }
+inline RealVec perp(const RealVec& v) { return {-v.y(), v.x()}; }
+inline RealVec cross(Real omega, const RealVec& r) { return {-omega * r.y(), omega * r.x()}; }
+}  // namespace extended
+
+/// A twist in extended precision; see Twist.
+struct ExtendedTwist {
+  RealVec velocity = RealVec::Zero();
+  Real omega = 0;
+
+  ExtendedTwist() = default;
+  ExtendedTwist(const RealVec& v, Real w) : velocity(v), omega(w) {}
+  ExtendedTwist(const Twist& t) : velocity(t.velocity.cast<Real>()), omega(t.omega) {}  // NOLINT: widening
+
+  Twist rounded() const { return {velocity.cast<double>(), static_cast<double>(omega)}; }
+  RealVec at(const RealVec& r) const { return velocity + extended::cross(omega, r); }
+};
+
+/// A body's state in extended precision; see BodyState.
+struct ExtendedState {
+  RealVec position = RealVec::Zero();
+  Real angle = 0;
+  ExtendedTwist twist;
+
+  ExtendedState() = default;
+  ExtendedState(const BodyState& s)  // NOLINT: widening
+      : position(s.pose.position.cast<Real>()), angle(s.pose.angle), twist(s.twist) {}
+
+  BodyState rounded() const {
+    return {{position.cast<double>(), static_cast<double>(angle)}, twist.rounded()};
+  }
+  /// What rounding leaves over: *this == rounded() + low().
+  BodyState low() const {
+    const ExtendedState r(rounded());
+    return {{(position - r.position).cast<double>(), static_cast<double>(angle - r.angle)},
+            {(twist.velocity - r.twist.velocity).cast<double>(),
+             static_cast<double>(twist.omega - r.twist.omega)}};
+  }
+  ExtendedState shifted(const Vec2& by) const {
+    ExtendedState s = *this;
+    s.position += by.cast<Real>();
+    return s;
+  }
+  /// The state `moment` later, to first order: for moments as short as a rounding of the clock.
+  ExtendedState moved(Real moment) const {
+    ExtendedState s = *this;
+    s.position += moment * twist.velocity;
+    s.angle += moment * twist.omega;
+    return s;
+  }
+};
+
+}  // namespace brink
