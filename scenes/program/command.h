@@ -18,5 +18,6 @@ void add_check_command(CLI::App& program, int& status);
 void add_draw_command(CLI::App& program, int& status);
 void add_list_command(CLI::App& program, int& status);
 void add_bench_command(CLI::App& program, int& status);
+void add_sweep_command(CLI::App& program, int& status);
 
 }  // namespace brink

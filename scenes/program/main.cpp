@@ -43,6 +43,7 @@ int main(int argc, char** argv) {
       "  brink draw my_scene.toml -o start.png\n"
       "  brink list options\n"
       "  brink bench bouncing_ball\n"
+      "  brink sweep scenes/experiments/policies_and_orders.toml\n"
       "Exit status: 0 done, 1 ended early, 2 bad usage or input, 3 could not read or write.\n"
       "`brink COMMAND --help` says more.");
   int status = brink::kDone;
@@ -51,5 +52,6 @@ int main(int argc, char** argv) {
   brink::add_draw_command(program, status);
   brink::add_list_command(program, status);
   brink::add_bench_command(program, status);
+  brink::add_sweep_command(program, status);
   return run(program, argc, argv, status);
 }

@@ -1,0 +1,137 @@
+/// brink sweep: many runs over options.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <csignal>
+
+#include "brink/core/base/error.h"
+#include "brink/scenes/program/command.h"
+#include "brink/scenes/program/terminal.h"
+#include "brink/scenes/sweep/plot.h"
+#include "brink/scenes/sweep/sweep.h"
+
+namespace brink {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SweepArguments {
+  std::string experiment, out;
+  int jobs = 0;
+  bool quiet = false, dry = false;
+};
+
+volatile std::sig_atomic_t stop_asked = 0;
+
+void stop_on_signals() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { stop_asked = 1; };
+  action.sa_flags = SA_RESETHAND;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+std::size_t waiting(const SweepResults& results) {
+  return static_cast<std::size_t>(
+      std::count_if(results.begin(), results.end(), [](const auto& r) { return !r; }));
+}
+
+/// Says on a terminal how far the sweep is, on one line that is wiped at the end.
+class Tally {
+ public:
+  Tally(std::size_t done, std::size_t all, bool shown) : done_(done), all_(all), shown_(shown) { show(); }
+  ~Tally() {
+    if (shown_) fmt::print(stderr, "\r\033[K");
+  }
+  Tally(const Tally&) = delete;
+  Tally& operator=(const Tally&) = delete;
+  void one_more() {
+    ++done_;
+    show();
+  }
+
+ private:
+  void show() const {
+    if (shown_) fmt::print(stderr, "\r\033[K{} of {} runs", done_, all_);
+  }
+  std::size_t done_, all_;
+  bool shown_;
+};
+
+void list_runs(const Experiment& experiment) {
+  for (const SweepRun& run : experiment.runs) {
+    std::string line = "brink run " + run.scene.string();
+    for (const std::string& o : run.overrides) line += " --set '" + o + "'";
+    if (experiment.until) line += fmt::format(" --until {}", *experiment.until);
+    fmt::print("{}\n", line);
+  }
+}
+
+/// Tables, CSV and plot of what is done. Returns how many runs are not.
+std::size_t report(const Experiment& experiment, SweepStore& store, const fs::path& folder, bool quiet) {
+  const SweepResults results = store.results(experiment);
+  write_sweep_csv(folder / "sweep.csv", experiment, results);
+  write_png(folder / "sweep.png", sweep_picture(experiment, results));
+  if (quiet) return waiting(results);
+  fmt::print("{}\n{}", paint(stdout, Paint::heading, experiment.title), sweep_table(experiment, results));
+  if (const std::string agreement = policy_agreement(experiment, results); !agreement.empty())
+    fmt::print("{}\n", agreement);
+  fmt::print("table {}, plot {}, database {}\n", (folder / "sweep.csv").string(),
+             (folder / "sweep.png").string(), store.file().string());
+  return waiting(results);
+}
+
+int run(const SweepArguments& arguments) {
+  const Experiment experiment = load_experiment(arguments.experiment);
+  if (arguments.dry) return list_runs(experiment), kDone;
+  const fs::path folder =
+      arguments.out.empty() ? fs::path("runs") / experiment.path.stem() : fs::path(arguments.out);
+  stop_on_signals();
+  SweepStore store(folder, experiment);
+  {
+    const std::size_t left = waiting(store.results(experiment));
+    Tally tally(experiment.runs.size() - left, experiment.runs.size(),
+                on_terminal(stderr) && !arguments.quiet);
+    SweepRequest request;
+    request.jobs = arguments.jobs;
+    request.stop = [] { return stop_asked != 0; };
+    request.done = [&](const SweepRun&, const SweepResult&) { tally.one_more(); };
+    run_sweep(experiment, store, request);
+  }
+  const std::size_t left = report(experiment, store, folder, arguments.quiet);
+  if (left == 0) return kDone;
+  fmt::print(stderr, "brink: {} of {} runs are not done{}; the same command goes on\n", left,
+             experiment.runs.size(), stop_asked ? "" : " (another process has taken them)");
+  return kEndedEarly;
+}
+
+}  // namespace
+
+void add_sweep_command(CLI::App& program, int& status) {
+  auto arguments = std::make_shared<SweepArguments>();
+  CLI::App* command = program.add_subcommand("sweep", "Many runs over options, on all cores; resumable");
+  command->add_option("EXPERIMENT", arguments->experiment, "Experiment file (TOML); see docs/sweep.md")
+      ->required();
+  command
+      ->add_option("--out", arguments->out,
+                   "Folder for sweep.db, sweep.csv and sweep.png; default runs/<experiment>")
+      ->type_name("DIR");
+  command->add_option("--jobs", arguments->jobs, "Runs at the same time; 0: one a core")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  command->add_flag("--list", arguments->dry, "Print every run as a `brink run` command; runs nothing");
+  command->add_flag("--quiet", arguments->quiet, "No progress and no table");
+  command->footer(
+      "The same command again goes on where a sweep was stopped or killed; runs that are done are not made "
+      "again.\n"
+      "Several processes may share one folder: each run is made once.\n"
+      "Wall seconds are clean with --jobs 1.\n"
+      "Examples:\n"
+      "  brink sweep scenes/experiments/policies_and_orders.toml\n"
+      "  brink sweep my_experiment.toml --out runs/a --jobs 1");
+  command->callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace brink

@@ -1,0 +1,430 @@
+#include "brink/scenes/sweep/experiment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "brink/core/base/hash.h"
+#include "brink/scenes/sweep/results.h"
+#include "brink/scenes/toml_schema.h"
+#include "brink/scenes/version.h"
+#include "brink/scenes/world_hash.h"
+
+namespace brink {
+namespace fs = std::filesystem;
+namespace {
+
+struct Value {
+  std::string text;  ///< for people
+  std::string toml;  ///< for an override
+  Where where;
+};
+struct Axis {
+  std::string name, path;
+  std::vector<Value> values;
+  Where where;
+};
+struct Setting {
+  std::string path;
+  Value value;
+};
+struct PlotTable {
+  Given<std::string> x, series;
+  Given<std::vector<std::string>> y;
+};
+struct ExperimentTable {
+  std::string title;
+  Axis scenes{"scene", "", {}, {}};
+  std::vector<Axis> policies, orders, seeds, axes;  ///< none or one; axes: any number
+  std::vector<Setting> settings;
+  Given<double> until;
+  double seconds_limit = 0.0;
+  PlotTable plot;
+};
+
+std::string toml_text(const toml::node& node) {
+  if (const auto* number = node.as_floating_point()) {
+    const std::string text = number_text(number->get());
+    // a float stays one: "2" would read back as an integer
+    return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
+  }
+  if (const toml::array* array = node.as_array()) {
+    std::string text;
+    for (const toml::node& element : *array) text += (text.empty() ? "" : ", ") + toml_text(element);
+    return "[" + text + "]";
+  }
+  if (const toml::table* table = node.as_table()) {
+    std::string text;
+    for (const auto& [key, value] : *table)
+      text += (text.empty() ? "" : ", ") + Json(std::string(key.str())).dump() + " = " + toml_text(value);
+    return "{" + text + "}";
+  }
+  std::ostringstream out;
+  node.visit([&](const auto& value) {
+    if constexpr (toml::is_value<decltype(value)>) out << toml::default_formatter{value};
+  });
+  return out.str();
+}
+
+Value value_of(const toml::node& node, const TomlDocument& doc) {
+  const auto* string = node.as_string();
+  const std::string toml = string ? Json(string->get()).dump() : toml_text(node);
+  return {string ? string->get() : toml, toml, doc.where(node)};
+}
+
+void fault(TomlDocument& doc, const Where& where, const std::string& key, const std::string& wrong,
+           const std::string& what_was_given, const std::string& allowed) {
+  doc.faults().add(where, fault_text(key, wrong, what_was_given, allowed));
+}
+
+/// An array of one value or more, none twice; nothing after a fault.
+std::vector<Value> values_of(const toml::node& node, TomlDocument& doc, const std::string& key) {
+  const toml::array* array = node.as_array();
+  if (array == nullptr || array->empty()) {
+    fault(doc, doc.where(node), key, array ? "no values" : "wrong type", given(node),
+          "an array of one value or more");
+    return {};
+  }
+  std::vector<Value> values;
+  for (const toml::node& element : *array) {
+    Value value = value_of(element, doc);
+    if (std::any_of(values.begin(), values.end(), [&](const Value& v) { return v.toml == value.toml; }))
+      fault(doc, value.where, key, "twice the same value", value.toml, "each value once");
+    values.push_back(std::move(value));
+  }
+  return values;
+}
+
+std::function<void(const toml::node&, TomlDocument&, ExperimentTable&)> axis_reader(
+    std::vector<Axis> ExperimentTable::*member, const std::string& key, const std::string& name,
+    const std::string& path) {
+  return [=](const toml::node& node, TomlDocument& doc, ExperimentTable& out) {
+    std::vector<Value> values = values_of(node, doc, key);
+    if (!values.empty()) (out.*member).push_back({name, path, std::move(values), doc.where(node)});
+  };
+}
+
+void read_seeds(const toml::node& node, TomlDocument& doc, ExperimentTable& out) {
+  if (!node.is_integer())
+    return axis_reader(&ExperimentTable::seeds, "seeds", "seed", "world.seed")(node, doc, out);
+  const std::int64_t count = node.as_integer()->get();
+  if (count < 1 || count > static_cast<std::int64_t>(kMostSweepRuns))
+    return fault(doc, doc.where(node), "seeds", "out of range", given(node),
+                 "a count >= 1, for the seeds 1, 2 ... , or an array of seeds");
+  Axis axis{"seed", "world.seed", {}, doc.where(node)};
+  for (std::int64_t k = 1; k <= count; ++k)
+    axis.values.push_back({std::to_string(k), std::to_string(k), doc.where(node)});
+  out.seeds.push_back(std::move(axis));
+}
+
+/// Base scenes: `toml` is the path, `text` the file's stem, or the path where two have one stem.
+void read_scenes(const toml::node& node, TomlDocument& doc, ExperimentTable& out) {
+  out.scenes.where = doc.where(node);
+  if (const auto* one = node.as_string())
+    out.scenes.values = {value_of(*one, doc)};
+  else
+    out.scenes.values = values_of(node, doc, "scenes");
+  std::set<std::string> stems;
+  for (Value& scene : out.scenes.values) {
+    if (!scene.toml.starts_with('"'))
+      fault(doc, scene.where, "scenes", "wrong type", scene.toml,
+            "the path of a scene file, from the experiment's folder");
+    scene.toml = scene.text;
+    stems.insert(fs::path(scene.toml).stem().string());
+  }
+  if (stems.size() == out.scenes.values.size())
+    for (Value& scene : out.scenes.values) scene.text = fs::path(scene.toml).stem().string();
+}
+
+/// Calls visit(path, node) for everything below `table` that `is_leaf`, in the file's order; tables on the
+/// way are parts of a dotted path.
+template <class Leaf, class Visit>
+void walk(const toml::table& table, const std::string& path, const Leaf& is_leaf, const Visit& visit) {
+  for (const auto& [key, node] : table) {
+    const std::string here = (path.empty() ? "" : path + ".") + std::string(key.str());
+    if (const toml::table* inner = node.as_table(); inner != nullptr && !is_leaf(node))
+      walk(*inner, here, is_leaf, visit);
+    else
+      visit(here, node);
+  }
+}
+
+bool earlier(const Where& a, const Where& b) {
+  return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+}
+
+void read_axes(const toml::node& node, TomlDocument& doc, ExperimentTable& out) {
+  const toml::table* table = node.as_table();
+  if (table == nullptr)
+    return fault(doc, doc.where(node), "axes", "wrong type", given(node),
+                 "a table of dotted paths of the scene file, each with an array of values");
+  walk(
+      *table, "", [](const toml::node&) { return false; },
+      [&](const std::string& path, const toml::node& values) {
+        axis_reader(&ExperimentTable::axes, "axes." + path, path, path)(values, doc, out);
+      });
+  std::sort(out.axes.begin(), out.axes.end(),
+            [](const Axis& a, const Axis& b) { return earlier(a.where, b.where); });
+}
+
+void read_settings(const toml::node& node, TomlDocument& doc, ExperimentTable& out) {
+  const toml::table* table = node.as_table();
+  if (table == nullptr)
+    return fault(doc, doc.where(node), "set", "wrong type", given(node),
+                 "a table of dotted paths of the scene file, each with its value");
+  walk(
+      *table, "", [](const toml::node& inner) { return inner.as_table()->is_inline(); },
+      [&](const std::string& path, const toml::node& value) {
+        out.settings.push_back({path, value_of(value, doc)});
+      });
+  std::sort(out.settings.begin(), out.settings.end(),
+            [](const Setting& a, const Setting& b) { return earlier(a.value.where, b.value.where); });
+}
+
+const Schema<PlotTable>& plot_schema() {
+  static const Schema<PlotTable> schema =
+      Schema<PlotTable>("plot")
+          .optional("x", &PlotTable::x, text("axis"), "the first axis of numbers", "along the plot")
+          .optional("series", &PlotTable::series, text("axis"), "the first other axis", "one line a value")
+          .optional("y", &PlotTable::y, names(), "wall_seconds, energy_drift",
+                    "columns of the table, one panel each");
+  return schema;
+}
+
+const Schema<ExperimentTable>& experiment_schema() {
+  using T = ExperimentTable;
+  static const Schema<T> schema =
+      Schema<T>("experiment")
+          .key("title", &T::title, text(), "what people call it")
+          .custom("scenes", "path or array of paths", "needed", "base scenes, from the experiment's folder",
+                  read_scenes)
+          .custom("policies", "array of policies", "the scene's", "the axis solver.policy",
+                  axis_reader(&T::policies, "policies", "policy", "solver.policy"))
+          .custom("orders", "array of orders", "the scene's", "the axis solver.order",
+                  axis_reader(&T::orders, "orders", "order", "solver.order"))
+          .custom("seeds", "count, or array of seeds", "the scene's", "the axis world.seed", read_seeds)
+          .custom("axes", "table of arrays", "none", "any other keys of the scene file, by dotted path",
+                  read_axes)
+          .custom("set", "table", "none", "keys of the scene file that are the same in every run",
+                  read_settings)
+          .optional("until", &T::until, number(positive("s")), "the scene's duration", "end of every run")
+          .key("seconds_limit", &T::seconds_limit, number(not_negative("s")),
+               "wall-clock time after which a run is stopped; 0: none")
+          .custom("plot", "table", "", "what the plot shows",
+                  [](const toml::node& node, TomlDocument& doc, T& out) {
+                    plot_schema().read_node(node, doc, out.plot);
+                  });
+  return schema;
+}
+
+std::vector<Axis> all_axes(ExperimentTable& table) {
+  std::vector<Axis> axes{table.scenes};
+  for (auto* group : {&table.policies, &table.orders, &table.axes, &table.seeds})
+    axes.insert(axes.end(), group->begin(), group->end());
+  return axes;
+}
+
+/// Faults of axes and settings among themselves.
+void check_paths(const std::vector<Axis>& axes, const ExperimentTable& table, TomlDocument& doc) {
+  for (std::size_t k = 1; k < axes.size(); ++k)
+    for (std::size_t j = 1; j < k; ++j)
+      if (axes[j].path == axes[k].path)
+        fault(doc, axes[k].where, "axes", "twice the same option", axes[k].path, "each option on one axis");
+  for (const Setting& s : table.settings)
+    for (const Axis& axis : axes)
+      if (axis.path == s.path)
+        fault(doc, s.value.where, "set", "the option is on an axis too", s.path,
+              "options that are not on an axis");
+}
+
+void check_count(const std::vector<Axis>& axes, TomlDocument& doc) {
+  double runs = 1.0;
+  for (const Axis& axis : axes) runs *= static_cast<double>(axis.values.size());
+  if (runs > static_cast<double>(kMostSweepRuns))
+    fault(doc, {1, 1}, "experiment", "too many runs", number_text(runs),
+          "at most " + std::to_string(kMostSweepRuns));
+}
+
+/// The same plot with what was left out chosen, or faults.
+SweepPlot plot_of(const PlotTable& table, const std::vector<Axis>& axes, TomlDocument& doc) {
+  std::vector<std::string> names, useful;
+  for (const Axis& axis : axes) names.push_back(axis.name);
+  const auto numeric = [](const Axis& axis) {
+    return std::all_of(axis.values.begin(), axis.values.end(), [](const Value& v) {
+      double x = 0.0;
+      std::istringstream in(v.text);
+      return (in >> x) && in.eof();
+    });
+  };
+  for (const bool numbers : {true, false})
+    for (const Axis& axis : axes)
+      if (axis.values.size() > 1 && axis.path != "world.seed" && numeric(axis) == numbers)
+        useful.push_back(axis.name);
+  const auto chosen = [&](const Given<std::string>& asked, const char* key, const std::string& otherwise) {
+    if (!asked.given) return otherwise;
+    if (std::find(names.begin(), names.end(), asked.value) == names.end())
+      fault(doc, asked.where, key, "not an axis of this experiment", in_quotes(asked.value), listed(names));
+    return asked.value;
+  };
+  SweepPlot plot;
+  plot.x = chosen(table.x, "plot.x", useful.empty() ? names.front() : useful.front());
+  std::erase(useful, plot.x);
+  plot.series = chosen(table.series, "plot.series", useful.empty() ? "" : useful.front());
+  plot.y = table.y.given ? table.y.value : std::vector<std::string>{"wall_seconds", "energy_drift"};
+  for (const std::string& y : plot.y)
+    if (std::find(sweep_columns().begin(), sweep_columns().end(), y) == sweep_columns().end())
+      fault(doc, table.y.where, "plot.y", "not a column", in_quotes(y),
+            "a column, the nearest is " + in_quotes(nearest_word(y, sweep_columns())));
+  return plot;
+}
+
+std::string override_text(const std::string& path, const Value& value) { return path + "=" + value.toml; }
+
+/// Loads base scenes with one value of each axis after another; says of a fault in an override where the
+/// experiment file asked for it.
+class SceneTrial {
+ public:
+  SceneTrial(const fs::path& folder, const std::vector<Setting>& settings, TomlDocument& doc)
+      : folder_(folder), settings_(settings), doc_(doc) {
+    for (const Setting& s : settings) common_.push_back(override_text(s.path, s.value));
+  }
+
+  /// The identity of the base scene with all settings, or nothing after a fault.
+  std::optional<std::uint64_t> base(const Value& scene) {
+    try {
+      const Scene loaded = load_scene(folder_ / scene.toml, common_);
+      StateHash hash;
+      hash.add(world_hash(loaded.world));
+      for (const char c : loaded.options_json) hash.add(static_cast<std::uint64_t>(c));
+      return hash.value();
+    } catch (const SceneFaults& faults) {
+      for (const Setting& s : settings_) tell(faults, s.path, s.value.where, "set." + s.path);
+      if (doc_.faults().empty()) throw;  // the scene file's own faults, with their places there
+    } catch (const IoError& e) {
+      doc_.faults().add(scene.where, std::string("scenes: ") + e.what());
+    }
+    return std::nullopt;
+  }
+
+  void value(const Value& scene, const Axis& axis, const Value& value) {
+    std::vector<std::string> overrides = common_;
+    overrides.push_back(override_text(axis.path, value));
+    try {
+      load_scene(folder_ / scene.toml, overrides);
+    } catch (const SceneFaults& faults) {
+      // what is wrong elsewhere may be right in combination with other axes: it is told of the run, if it
+      // comes to it
+      tell(faults, axis.path, value.where, axis.name + " = " + value.toml);
+    }
+  }
+
+ private:
+  void tell(const SceneFaults& faults, const std::string& path, const Where& where, const std::string& what) {
+    const std::string mark = "--set " + path + ": ";
+    for (const SceneFault& f : faults.faults())
+      if (f.line == 0 && f.message.starts_with(mark))
+        doc_.faults().add(where, what + ": " + f.message.substr(mark.size()));
+  }
+
+  fs::path folder_;
+  const std::vector<Setting>& settings_;
+  TomlDocument& doc_;
+  std::vector<std::string> common_;
+};
+
+/// Every base scene's identity. Adds faults of values.
+std::vector<std::uint64_t> try_scenes(const std::vector<Axis>& axes, const ExperimentTable& table,
+                                      const fs::path& folder, TomlDocument& doc) {
+  SceneTrial trial(folder, table.settings, doc);
+  std::vector<std::uint64_t> identities;
+  for (const Value& scene : axes.front().values) {
+    const auto identity = trial.base(scene);
+    if (!identity) continue;
+    identities.push_back(*identity);
+    for (std::size_t k = 1; k < axes.size(); ++k)
+      if (axes[k].path != "world.seed")
+        for (const Value& value : axes[k].values) trial.value(scene, axes[k], value);
+  }
+  return identities;
+}
+
+std::string key_of(std::uint64_t identity, const SweepRun& run, const ExperimentTable& table) {
+  StateHash hash;
+  hash.add(identity);
+  std::string text(version());
+  for (const std::string& o : run.overrides) text += '\n' + o;
+  for (const char c : text) hash.add(static_cast<std::uint64_t>(c));
+  hash.add(table.until.given ? table.until.value : -1.0);
+  hash.add(table.seconds_limit);
+  return hash.text();
+}
+
+std::vector<SweepRun> product(const std::vector<Axis>& axes, const ExperimentTable& table,
+                              const fs::path& folder, const std::vector<std::uint64_t>& identities) {
+  std::vector<SweepRun> runs;
+  std::vector<std::size_t> at(axes.size(), 0);
+  for (;;) {
+    SweepRun run;
+    run.scene = folder / axes.front().values[at.front()].toml;
+    for (const Setting& s : table.settings) run.overrides.push_back(override_text(s.path, s.value));
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+      const Value& value = axes[k].values[at[k]];
+      run.values.push_back(value.text);
+      if (k > 0) run.overrides.push_back(override_text(axes[k].path, value));
+    }
+    run.key = key_of(identities[at.front()], run, table);
+    runs.push_back(std::move(run));
+    std::size_t k = axes.size();
+    while (k > 0 && ++at[k - 1] == axes[k - 1].values.size()) at[--k] = 0;
+    if (k == 0) return runs;
+  }
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!in || fs::is_directory(file)) throw IoError(file.string() + ": cannot be read");
+  return text;
+}
+
+}  // namespace
+
+Experiment load_experiment(const fs::path& file) {
+  TomlDocument doc(text_of(file), {});
+  const auto stop_on_faults = [&] { doc.faults().throw_if_any(file.string()); };
+  stop_on_faults();
+  ExperimentTable table;
+  experiment_schema().read(doc.root(), {1, 1}, doc, table);
+  if (!doc.root().contains("scenes"))
+    fault(doc, {1, 1}, "scenes", "missing", "nothing", "a scene file or an array of them");
+  stop_on_faults();
+  const std::vector<Axis> axes = all_axes(table);
+  check_paths(axes, table, doc);
+  check_count(axes, doc);
+  Experiment experiment;
+  experiment.plot = plot_of(table.plot, axes, doc);
+  stop_on_faults();
+  const auto identities = try_scenes(axes, table, file.parent_path(), doc);
+  stop_on_faults();
+  experiment.path = file;
+  experiment.title = table.title.empty() ? file.stem().string() : table.title;
+  if (table.until.given) experiment.until = table.until.value;
+  experiment.seconds_limit = table.seconds_limit;
+  experiment.runs = product(axes, table, file.parent_path(), identities);
+  for (const Axis& axis : axes) {
+    SweepAxis& made = experiment.axes.emplace_back(SweepAxis{axis.name, axis.path, {}});
+    for (const Value& v : axis.values) made.values.push_back(v.text);
+  }
+  return experiment;
+}
+
+std::vector<OptionInfo> experiment_options() {
+  std::vector<OptionInfo> out;
+  experiment_schema().list(out);
+  plot_schema().list(out);
+  return out;
+}
+
+}  // namespace brink

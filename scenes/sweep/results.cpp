@@ -1,0 +1,58 @@
+#include "brink/scenes/sweep/results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace brink {
+namespace {
+
+/// Visits every number of a summary by name, each name once.
+template <class Visit>
+void for_each_number(const RunSummary& s, Visit&& visit) {
+  const double scale = std::max(std::abs(s.energy_initial), std::abs(s.energy_final));
+  visit("end_time", s.end_time);
+  visit("collisions", static_cast<double>(s.collisions));
+  visit("wall_seconds", s.wall_seconds);
+  visit("energy_initial", s.energy_initial);
+  visit("energy_final", s.energy_final);
+  visit("energy_drift", scale > 0.0 ? (s.energy_final - s.energy_initial) / scale : 0.0);
+  visit("momentum_x", s.momentum.x());
+  visit("momentum_y", s.momentum.y());
+  visit("angular_momentum", s.angular_momentum);
+  visit("max_overlap", s.max_overlap);
+  WorkCounters::for_each(s.work, [&](const char* name, auto value, const char*) {
+    if (std::string_view(name) != "collisions") visit(name, static_cast<double>(value));
+  });
+}
+
+}  // namespace
+
+const std::vector<std::string>& sweep_columns() {
+  static const std::vector<std::string> columns = [] {
+    std::vector<std::string> names;
+    for_each_number(RunSummary{}, [&](const char* name, double) { names.emplace_back(name); });
+    return names;
+  }();
+  return columns;
+}
+
+SweepResult sweep_result(const RunSummary& summary) {
+  SweepResult result;
+  result.termination = summary.termination_text();
+  if (summary.termination == Termination::stopped) result.termination += ": " + summary.why;
+  result.state_hash = fmt::format("{:016x}", summary.state_hash);
+  for_each_number(summary, [&](const char* name, double value) { result.numbers[name] = value; });
+  return result;
+}
+
+SweepResult sweep_failure(const std::string& why) {
+  SweepResult result;
+  result.termination = "failed: " + why;
+  std::replace(result.termination.begin(), result.termination.end(), '\n', ' ');
+  for (const std::string& name : sweep_columns()) result.numbers[name] = std::nan("");
+  return result;
+}
+
+}  // namespace brink

@@ -1,0 +1,26 @@
+#pragma once
+/// What is kept of one run of a sweep.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "brink/scheduler/recorder.h"
+
+namespace brink {
+
+struct SweepResult {
+  std::string termination;                ///< "reached_end", "stopped: why", "failed: why"
+  std::string state_hash;                 ///< 16 hexadecimal digits; empty if the run could not start
+  std::map<std::string, double> numbers;  ///< by column; NaN where there is none
+};
+
+/// Names of the numbers: end_time, collisions, wall_seconds, energy_initial, energy_final, energy_drift
+/// (relative), momentum_x, momentum_y, angular_momentum, max_overlap, and every work counter.
+const std::vector<std::string>& sweep_columns();
+
+SweepResult sweep_result(const RunSummary& summary);
+/// Of a run that could not start.
+SweepResult sweep_failure(const std::string& why);
+
+}  // namespace brink

@@ -1,0 +1,242 @@
+#include "brink/scenes/sweep/store.h"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "brink/core/base/error.h"
+#include "brink/scenes/run_file_guard.h"
+
+namespace brink {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kBusyMilliseconds = 60'000;
+constexpr const char* kWhat = "results of a sweep";
+
+constexpr const char* kTables = R"(
+CREATE TABLE IF NOT EXISTS worker (id INTEGER PRIMARY KEY AUTOINCREMENT, started TEXT);
+CREATE TABLE IF NOT EXISTS run (id INTEGER PRIMARY KEY, key TEXT UNIQUE, scene TEXT, settings TEXT, overrides TEXT,
+  state TEXT, worker INTEGER, termination TEXT, state_hash TEXT);
+)";
+
+constexpr std::int64_t kOpening = 0;  ///< the byte of whoever opens the file; workers count from 1
+
+/// Which workers are alive: one byte of a file each, locked while its process lives.
+class WorkerLocks {
+ public:
+  explicit WorkerLocks(const fs::path& file) : fd_(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+    if (fd_ < 0) throw IoError(fmt::format("{}: cannot be opened: {}", file.string(), std::strerror(errno)));
+  }
+  ~WorkerLocks() { ::close(fd_); }
+  WorkerLocks(const WorkerLocks&) = delete;
+  WorkerLocks& operator=(const WorkerLocks&) = delete;
+
+  /// Waits until the byte is free.
+  void hold(std::int64_t worker) const { set(worker, F_WRLCK); }
+  void let_go(std::int64_t worker) const { set(worker, F_UNLCK); }
+  /// @pre not this process's own worker.
+  bool held_by_another(std::int64_t worker) const {
+    struct flock lock = byte(worker, F_WRLCK);
+    return ::fcntl(fd_, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+  }
+
+ private:
+  void set(std::int64_t worker, short type) const {
+    struct flock lock = byte(worker, type);
+    if (::fcntl(fd_, F_OFD_SETLKW, &lock) != 0)
+      throw IoError(fmt::format("sweep.lock: byte {} cannot be locked: {}", worker, std::strerror(errno)));
+  }
+  static struct flock byte(std::int64_t worker, short type) {
+    struct flock lock {};
+    lock.l_type = type;
+    lock.l_whence = SEEK_SET;
+    lock.l_start = worker;
+    lock.l_len = 1;
+    return lock;
+  }
+  int fd_;
+};
+
+fs::path made_folder(const fs::path& dir) {
+  std::error_code error;
+  fs::create_directories(dir, error);
+  if (error) throw IoError(fmt::format("{}: cannot make the folder: {}", dir.string(), error.message()));
+  return dir;
+}
+
+std::string settings_json(const Experiment& experiment, const SweepRun& run) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (std::size_t k = 0; k < experiment.axes.size(); ++k) json[experiment.axes[k].name] = run.values[k];
+  return json.dump();
+}
+
+}  // namespace
+
+struct SweepStore::Impl {
+  fs::path file;
+  WorkerLocks locks;
+  SQLite::Database db;
+  std::int64_t worker = 0;
+  std::mutex mutex;
+
+  explicit Impl(const fs::path& dir)
+      : file(made_folder(dir) / "sweep.db"),
+        locks(dir / "sweep.lock"),
+        db(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyMilliseconds) {
+    locks.hold(kOpening);  // turning the write-ahead log on does not wait for others
+    db.exec("PRAGMA journal_mode = WAL");
+    db.exec("PRAGMA synchronous = NORMAL");
+    locks.let_go(kOpening);
+  }
+
+  void make_tables() {
+    db.exec(kTables);
+    std::set<std::string> present;
+    for (SQLite::Statement info(db, "SELECT name FROM pragma_table_info('run')"); info.executeStep();)
+      present.insert(info.getColumn(0).getString());
+    for (const std::string& name : sweep_columns())
+      if (!present.contains(name)) db.exec(fmt::format("ALTER TABLE run ADD COLUMN {} REAL", name));
+  }
+
+  void add_worker() {
+    db.exec("INSERT INTO worker (started) VALUES (datetime('now'))");
+    worker = db.getLastInsertRowid();
+    locks.hold(worker);
+  }
+
+  void add_runs(const Experiment& experiment) {
+    SQLite::Statement insert(db,
+                             "INSERT OR IGNORE INTO run (key, scene, settings, overrides, state) "
+                             "VALUES (?, ?, ?, ?, 'waiting')");
+    for (const SweepRun& run : experiment.runs) {
+      insert.bind(1, run.key);
+      insert.bind(2, run.scene.string());
+      insert.bind(3, settings_json(experiment, run));
+      insert.bind(4, nlohmann::json(run.overrides).dump());
+      insert.exec();
+      insert.reset();
+    }
+  }
+
+  template <class F>
+  auto locked(F&& f) {
+    const std::lock_guard lock(mutex);
+    return guarded(file, f, kWhat);
+  }
+
+  int reclaim() {
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    std::vector<std::int64_t> gone;
+    SQLite::Statement workers(db, "SELECT DISTINCT worker FROM run WHERE state = 'running'");
+    while (workers.executeStep()) {
+      const std::int64_t other = workers.getColumn(0).getInt64();
+      if (other != worker && !locks.held_by_another(other)) gone.push_back(other);
+    }
+    int freed = 0;
+    for (const std::int64_t other : gone) {
+      SQLite::Statement free(
+          db, "UPDATE run SET state = 'waiting', worker = NULL WHERE state = 'running' AND worker = ?");
+      free.bind(1, other);
+      freed += free.exec();
+    }
+    transaction.commit();
+    return freed;
+  }
+
+  std::optional<SweepResult> result(SQLite::Statement& select, const SweepRun& run) {
+    select.bind(1, run.key);
+    std::optional<SweepResult> found;
+    if (select.executeStep()) {
+      found.emplace();
+      found->termination = select.getColumn(0).getString();
+      found->state_hash = select.getColumn(1).getString();
+      int column = 2;
+      for (const std::string& name : sweep_columns()) {
+        const SQLite::Column value = select.getColumn(column++);
+        found->numbers[name] = value.isNull() ? std::nan("") : value.getDouble();
+      }
+    }
+    select.reset();
+    return found;
+  }
+};
+
+SweepStore::SweepStore(const fs::path& dir, const Experiment& experiment) {
+  const auto open = [&] {
+    impl_ = std::make_unique<Impl>(dir);
+    SQLite::Transaction transaction(impl_->db, SQLite::TransactionBehavior::IMMEDIATE);
+    impl_->make_tables();
+    impl_->add_worker();
+    impl_->add_runs(experiment);
+    transaction.commit();
+  };
+  guarded(dir / "sweep.db", open, kWhat);
+  reclaim();
+}
+
+SweepStore::~SweepStore() = default;
+
+bool SweepStore::take(const SweepRun& run) {
+  return impl_->locked([&] {
+    SQLite::Statement update(
+        impl_->db, "UPDATE run SET state = 'running', worker = ? WHERE key = ? AND state = 'waiting'");
+    update.bind(1, impl_->worker);
+    update.bind(2, run.key);
+    return update.exec() == 1;
+  });
+}
+
+void SweepStore::finish(const SweepRun& run, const SweepResult& result) {
+  impl_->locked([&] {
+    std::string columns;
+    for (const std::string& name : sweep_columns()) columns += ", " + name + " = ?";
+    SQLite::Statement update(impl_->db, "UPDATE run SET state = 'done', termination = ?, state_hash = ?" +
+                                            columns + " WHERE key = ?");
+    int at = 0;
+    update.bind(++at, result.termination);
+    update.bind(++at, result.state_hash);
+    for (const std::string& name : sweep_columns()) update.bind(++at, result.numbers.at(name));
+    update.bind(++at, run.key);
+    update.exec();
+  });
+}
+
+void SweepStore::let_go(const SweepRun& run) {
+  impl_->locked([&] {
+    SQLite::Statement update(impl_->db,
+                             "UPDATE run SET state = 'waiting', worker = NULL WHERE key = ? AND worker = ? "
+                             "AND state = 'running'");
+    update.bind(1, run.key);
+    update.bind(2, impl_->worker);
+    update.exec();
+  });
+}
+
+int SweepStore::reclaim() {
+  return impl_->locked([&] { return impl_->reclaim(); });
+}
+
+std::vector<std::optional<SweepResult>> SweepStore::results(const Experiment& experiment) {
+  return impl_->locked([&] {
+    std::string columns;
+    for (const std::string& name : sweep_columns()) columns += ", " + name;
+    SQLite::Statement select(
+        impl_->db, "SELECT termination, state_hash" + columns + " FROM run WHERE key = ? AND state = 'done'");
+    std::vector<std::optional<SweepResult>> all;
+    for (const SweepRun& run : experiment.runs) all.push_back(impl_->result(select, run));
+    return all;
+  });
+}
+
+const fs::path& SweepStore::file() const { return impl_->file; }
+
+}  // namespace brink

@@ -1,0 +1,103 @@
+#include "brink/scenes/sweep/sweep.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "brink/scheduler/simulator.h"
+
+namespace brink {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Threads of one process at work on one list of runs.
+class Crew {
+ public:
+  Crew(const Experiment& experiment, SweepStore& store, const SweepRequest& request)
+      : experiment_(experiment), store_(store), request_(request) {}
+
+  /// Goes through the list once. Returns how many runs were made.
+  std::size_t work() {
+    next_ = 0;
+    made_ = 0;
+    const auto cores = static_cast<std::size_t>(std::max(1U, std::thread::hardware_concurrency()));
+    const std::size_t jobs = request_.jobs > 0 ? static_cast<std::size_t>(request_.jobs) : cores;
+    std::vector<std::thread> threads;
+    for (std::size_t k = 0; k < std::min(jobs, experiment_.runs.size()); ++k)
+      threads.emplace_back([this] { serve(); });
+    for (std::thread& thread : threads) thread.join();
+    if (error_) std::rethrow_exception(error_);
+    return made_;
+  }
+  bool stopped() const { return failed_ || (request_.stop && request_.stop()); }
+
+ private:
+  void serve() {
+    for (std::size_t k = next_++; k < experiment_.runs.size() && !stopped(); k = next_++)
+      if (store_.take(experiment_.runs[k])) make(experiment_.runs[k]);
+  }
+
+  void make(const SweepRun& run) {
+    try {
+      const SweepResult result = make_sweep_run(experiment_, run, [this] { return stopped(); });
+      if (stopped()) return store_.let_go(run);
+      store_.finish(run, result);
+      ++made_;
+      const std::lock_guard lock(mutex_);
+      if (request_.done) request_.done(run, result);
+    } catch (...) {
+      store_.let_go(run);
+      const std::lock_guard lock(mutex_);
+      if (!error_) error_ = std::current_exception();
+      failed_ = true;
+    }
+  }
+
+  const Experiment& experiment_;
+  SweepStore& store_;
+  const SweepRequest& request_;
+  std::atomic<std::size_t> next_ = 0, made_ = 0;
+  std::atomic<bool> failed_ = false;
+  std::mutex mutex_;
+  std::exception_ptr error_;
+};
+
+}  // namespace
+
+SweepResult make_sweep_run(const Experiment& experiment, const SweepRun& run,
+                           const std::function<bool()>& stop) {
+  try {
+    const Scene scene = load_scene(run.scene, run.overrides);
+    Simulator simulator(scene.world, scene.solver);
+    const auto begin = Clock::now();
+    bool late = false;
+    RunOptions options;
+    options.until = experiment.until.value_or(scene.duration);
+    options.frame_interval = scene.output.frame_interval;
+    options.checkpoint_seconds = -1.0;
+    options.record_events = false;
+    options.progress = [&](double, std::uint64_t) {
+      const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+      late = experiment.seconds_limit > 0.0 && seconds > experiment.seconds_limit;
+      return !late && !(stop && stop());
+    };
+    RunSummary summary = simulator.run(options);
+    if (late) summary.why = fmt::format("seconds_limit = {} s", experiment.seconds_limit);
+    return sweep_result(summary);
+  } catch (const BadInput& e) {
+    return sweep_failure(e.what());
+  }
+}
+
+void run_sweep(const Experiment& experiment, SweepStore& store, const SweepRequest& request) {
+  Crew crew(experiment, store, request);
+  do store.reclaim();
+  while (crew.work() > 0 && !crew.stopped());
+}
+
+}  // namespace brink

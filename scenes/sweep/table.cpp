@@ -1,0 +1,192 @@
+#include "brink/scenes/sweep/table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "brink/scheduler/policies/policy.h"
+
+namespace brink {
+namespace {
+
+std::string bare_ending(const SweepResult& result) {
+  return result.termination.substr(0, result.termination.find(':'));
+}
+
+std::string time_text(double seconds) {
+  if (seconds < 1e-3) return fmt::format("{:.3g} \u00b5s", 1e6 * seconds);
+  return seconds < 1.0 ? fmt::format("{:.3g} ms", 1e3 * seconds) : fmt::format("{:.3g} s", seconds);
+}
+
+/// "5 reached_end", "3 reached_end, 2 failed", "4 waiting".
+std::string endings(const SweepGroup& group, const SweepResults& results) {
+  std::map<std::string, std::size_t> count;
+  for (const std::size_t k : group.runs) ++count[bare_ending(*results[k])];
+  if (group.waiting > 0) count["waiting"] = group.waiting;
+  std::string text;
+  for (const auto& [ending, n] : count) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", n, ending);
+  return text;
+}
+
+std::string hash_text(const SweepGroup& group, const SweepResults& results) {
+  std::set<std::string> hashes;
+  for (const std::size_t k : group.runs) hashes.insert(results[k]->state_hash);
+  if (hashes.size() == 1) return hashes.begin()->empty() ? "-" : *hashes.begin();
+  return hashes.empty() ? "-" : fmt::format("{} hashes", hashes.size());
+}
+
+/// Lines of cells, each column as wide as its widest; the first line is the heading.
+std::string aligned(const std::vector<std::vector<std::string>>& lines) {
+  // counts code points, as a terminal does
+  const auto width = [](const std::string& s) {
+    return static_cast<std::size_t>(
+        std::count_if(s.begin(), s.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+  };
+  std::vector<std::size_t> widths(lines.front().size(), 0);
+  for (const auto& line : lines)
+    for (std::size_t k = 0; k < line.size(); ++k) widths[k] = std::max(widths[k], width(line[k]));
+  std::string text;
+  for (const auto& line : lines) {
+    std::string row;
+    for (std::size_t k = 0; k < line.size(); ++k)
+      row += "  " + line[k] + std::string(widths[k] - width(line[k]), ' ');
+    row.erase(row.find_last_not_of(' ') + 1);
+    text += row + '\n';
+  }
+  return text;
+}
+
+/// Axes that tell groups apart: more than one value, and not the seed.
+std::vector<std::size_t> telling_axes(const Experiment& experiment) {
+  std::vector<std::size_t> axes;
+  for (std::size_t k = 0; k < experiment.axes.size(); ++k)
+    if (experiment.axes[k].path != "world.seed" && (k == 0 || experiment.axes[k].values.size() > 1))
+      axes.push_back(k);
+  return axes;
+}
+
+/// Those that are to give the same events: not known to be approximate.
+bool exact(const std::string& policy) {
+  for (const Choice& choice : policies())
+    if (choice.name == policy) return !make_policy(policy)->approximate();
+  return true;
+}
+
+std::string in_csv(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
+  quoted += '"';
+  return quoted;
+}
+
+}  // namespace
+
+double median(std::vector<double> values) {
+  std::erase_if(values, [](double x) { return std::isnan(x); });
+  if (values.empty()) return std::nan("");
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::vector<SweepGroup> sweep_groups(const Experiment& experiment, const SweepResults& results) {
+  std::map<std::vector<std::string>, std::size_t> index;
+  std::vector<SweepGroup> groups;
+  for (std::size_t k = 0; k < experiment.runs.size(); ++k) {
+    std::vector<std::string> values = experiment.runs[k].values;
+    for (std::size_t a = 0; a < values.size(); ++a)
+      if (experiment.axes[a].path == "world.seed") values[a].clear();
+    const auto [at, fresh] = index.try_emplace(values, groups.size());
+    if (fresh) groups.push_back({values, {}, 0});
+    SweepGroup& group = groups[at->second];
+    if (results[k])
+      group.runs.push_back(k);
+    else
+      ++group.waiting;
+  }
+  return groups;
+}
+
+std::string sweep_table(const Experiment& experiment, const SweepResults& results) {
+  const std::vector<std::size_t> axes = telling_axes(experiment);
+  std::vector<std::vector<std::string>> lines(1);
+  for (const std::size_t k : axes) lines[0].push_back(experiment.axes[k].name);
+  for (const char* heading : {"runs", "collisions", "wall", "energy drift", "overlap", "state hash"})
+    lines[0].emplace_back(heading);
+  for (const SweepGroup& group : sweep_groups(experiment, results)) {
+    const auto middle = [&](const char* column) {
+      std::vector<double> values;
+      for (const std::size_t k : group.runs) values.push_back(results[k]->numbers.at(column));
+      return median(values);
+    };
+    std::vector<std::string>& line = lines.emplace_back();
+    for (const std::size_t k : axes) line.push_back(group.values[k]);
+    line.push_back(endings(group, results));
+    line.push_back(fmt::format("{}", middle("collisions")));
+    line.push_back(time_text(middle("wall_seconds")));
+    line.push_back(fmt::format("{:.1e}", middle("energy_drift")));
+    line.push_back(fmt::format("{:.1e} m", middle("max_overlap")));
+    line.push_back(hash_text(group, results));
+  }
+  return aligned(lines);
+}
+
+std::string policy_agreement(const Experiment& experiment, const SweepResults& results) {
+  std::size_t policy = 0;
+  while (policy < experiment.axes.size() && experiment.axes[policy].path != "solver.policy") ++policy;
+  if (policy == experiment.axes.size()) return "";
+  std::map<std::vector<std::string>, std::map<std::string, std::string>> hashes;  // of exact policies
+  std::set<std::string> compared;
+  for (std::size_t k = 0; k < experiment.runs.size(); ++k) {
+    std::vector<std::string> rest = experiment.runs[k].values;
+    const std::string name = std::exchange(rest[policy], "");
+    if (!results[k] || !exact(name)) continue;
+    hashes[rest][name] = results[k]->state_hash;
+    compared.insert(name);
+  }
+  if (compared.size() < 2) return "";
+  std::size_t same = 0;
+  std::string others;
+  for (const auto& [rest, by_policy] : hashes) {
+    std::set<std::string> distinct;
+    for (const auto& [name, hash] : by_policy) distinct.insert(hash);
+    if (distinct.size() == 1) {
+      ++same;
+      continue;
+    }
+    std::string where;
+    for (const std::string& value : rest)
+      if (!value.empty()) where += (where.empty() ? "" : ", ") + value;
+    others += "\n  not the same: " + where;
+  }
+  return fmt::format("same bits from all exact policies: {} of {}{}", same, hashes.size(), others);
+}
+
+void write_sweep_csv(const std::filesystem::path& file, const Experiment& experiment,
+                     const SweepResults& results) {
+  std::ofstream out(file);
+  for (const SweepAxis& axis : experiment.axes) out << in_csv(axis.name) << ',';
+  out << "termination,state_hash";
+  for (const std::string& name : sweep_columns()) out << ',' << name;
+  out << '\n';
+  for (std::size_t k = 0; k < experiment.runs.size(); ++k) {
+    for (const std::string& value : experiment.runs[k].values) out << in_csv(value) << ',';
+    out << (results[k] ? in_csv(results[k]->termination) + ',' + results[k]->state_hash : "waiting,");
+    for (const std::string& name : sweep_columns()) {
+      out << ',';
+      if (results[k] && !std::isnan(results[k]->numbers.at(name)))
+        out << fmt::format("{}", results[k]->numbers.at(name));
+    }
+    out << '\n';
+  }
+  out.close();
+  if (!out) throw IoError(fmt::format("{}: could not be written", file.string()));
+}
+
+}  // namespace brink
