@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -199,12 +200,17 @@ class PairSearch {
     const double others = std::max(0.0, near.others_at_least - sample.radius - 0.5 * band);
     double safe = over_all.speed > 0.0 ? others / over_all.speed : kForever;
     double again = over_short.speed > 0.0 ? others / over_short.speed : kForever;
+    bool neighbours_known = false;
     for (const std::uint32_t j : near.sites) {
       const Site& site = sites.sites[j];
       const Nearest nearest = nearest_on(site, path.q);
       const double radius = site.radius + sample.radius;
       const double gap = nearest.distance - radius;
-      if (gap <= band && meets(half, i, static_cast<int>(j), nearest, path, over_all)) continue;
+      if (gap <= band) {
+        if (!neighbours_known) find_neighbours(half, i, near.sites, path, 4.0 * band);
+        neighbours_known = true;
+        if (meets(half, i, static_cast<int>(j), nearest, path, over_all)) continue;
+      }
       const double slack = slack_at(gap, band, !site.solid && radius == 0.0);
       const double rate = distance_rate(site, nearest, path.q, path.rate);
       safe = std::min(safe, site_step(site, nearest, path.q, path.rate, rate, radius, slack, over_all).safe);
@@ -250,13 +256,27 @@ class PairSearch {
     return safe;
   }
 
+  /// Keeps those of `sites` that lie within `reach` of vertex sample i, and how it stands to them now.
+  void find_neighbours(const Half& half, int i, std::span<const std::uint32_t> sites, const SamplePath& path,
+                       double reach) {
+    const double radius = half.samples_of().samples[i].radius;
+    scratch_.neighbours.clear();
+    for (const std::uint32_t k : sites) {
+      const Site& site = half.sites_of().sites[k];
+      const Nearest nearest = nearest_on(site, path.q);
+      if (nearest.distance - site.radius - radius > reach) continue;
+      const Feature f = vertex_feature(half, i, static_cast<int>(k), nearest, path);
+      const bool leaving = f.gap <= limits_.touch && !approaching(f, path);
+      scratch_.neighbours.push_back({f.site, f.normal, leaving});
+    }
+  }
+
   /// A vertex sample within tolerance of a site: true if it meets this very site and the contact is
   /// remembered.
   bool meets(const Half& half, int i, int j, const Nearest& nearest, const SamplePath& path,
              const PathBounds& bounds) {
-    const Feature f = vertex_feature(half, i, j, nearest, path);
-    if (nearest.foot != Foot::interior && overshadowed(half, j, nearest, path.q)) return false;
-    return polish(half, f, path, bounds);
+    if (belongs_to_a_neighbour(half, j, nearest, path.q)) return false;
+    return polish(half, vertex_feature(half, i, j, nearest, path), path, bounds);
   }
 
   Feature vertex_feature(const Half& half, int i, int j, const Nearest& nearest,
@@ -280,17 +300,26 @@ class PairSearch {
            site.radius + sample.radius == 0.0;
   }
 
-  /// True if a foot at site j's end is no contact of its own: another site of the outline is as near with its
-  /// interior.
-  bool overshadowed(const Half& half, int j, const Nearest& nearest, const Vec2& q) const {
+  /// True if site j is near q, but what q would touch is another site. At a joint: one that is as near with
+  /// its interior. Behind a solid: j is the far side of a sliver, whose near side q has in front of it, or is
+  /// deeper in.
+  bool belongs_to_a_neighbour(const Half& half, int j, const Nearest& nearest, const Vec2& q) const {
     const Outline& outline = half.sites_of();
-    if (outline.sites[j].kind == SiteKind::point) return false;
-    const Candidates near =
-        half.t->index->candidates(q, nearest.distance + limits_.touch, scratch_.neighbours);
-    for (const std::uint32_t k : near.sites) {
-      if (static_cast<int>(k) == j) continue;
-      const Nearest other = nearest_on(outline.sites[k], q);
-      if (other.distance <= nearest.distance + limits_.touch && other.foot == Foot::interior) return true;
+    const Site& site = outline.sites[j];
+    if (site.kind == SiteKind::point) return false;
+    const double distance = nearest.distance - site.radius;
+    const bool at_end = nearest.foot != Foot::interior, behind = side_of(site, nearest, q) < 0.0;
+    if (!at_end && !behind) return false;
+    const Vec2 normal = normal_at(site, nearest, q);
+    for (const SearchScratch::Neighbour& other : scratch_.neighbours) {
+      if (other.site == j) continue;
+      const Site& other_site = outline.sites[other.site];
+      const Nearest n = nearest_on(other_site, q);
+      const double further = n.distance - other_site.radius - distance;
+      if (further > limits_.touch) continue;
+      if (at_end && n.foot == Foot::interior) return true;
+      if (behind && other.normal.dot(normal) < 0.0 && (further < 0.0 || side_of(other_site, n, q) > 0.0))
+        return true;
     }
     return false;
   }
@@ -299,22 +328,46 @@ class PairSearch {
     return f.rate < -(a_.velocity_rounding + b_.velocity_rounding + 16.0 * kEpsilon * path.magnitude);
   }
 
-  /// Signed gap of one feature pair at another time, its side kept.
-  double gap_at(const Half& half, const Feature& f, double t, double level) const {
+  /// Where sample i of this half is at time t, in the other outline's frame.
+  static Vec2 place_of(const Half& half, int i, double t) {
     const BodyState s = half.s->motion->state(t), u = half.t->motion->state(t);
     const Frame fs = frame_of(half.s->outline(), s.pose), ft = frame_of(half.t->outline(), u.pose);
-    const Sample& sample = half.samples_of().samples[f.sample];
-    const Site& site = half.sites_of().sites[f.site];
-    const Vec2 q =
-        ft.direction_to_local(fs.direction_to_world(sample.p) + (s.pose.position - u.pose.position));
-    if (sample.arc_site >= 0) return arc_gap(half, f, q) - level;
-    const Nearest n = nearest_on(site, q);
-    const double radius = site.radius + sample.radius;
-    if (site.solid || radius > 0.0 || n.foot != Foot::interior || site.kind == SiteKind::point)
-      return side_of(site, n, q) * n.distance - radius - level;
-    const double side =
-        f.normal.dot(q - n.point) < 0.0 ? -1.0 : 1.0;  // thin wire: stay on the side it came from
-    return side * n.distance - level;
+    return ft.direction_to_local(fs.direction_to_world(half.samples_of().samples[i].p) +
+                                 (s.pose.position - u.pose.position));
+  }
+
+  /// What is taken off a gap: two sharp points never overlap, and a thin wire has no inside to tell that it
+  /// was met, so there the gap counts from half the touching distance.
+  double level_at(const Site& site, double sample_radius, const Nearest& nearest) const {
+    const bool sharp = site.radius + sample_radius == 0.0 && (!site.solid || nearest.foot != Foot::interior);
+    return sharp ? 0.5 * limits_.touch : 0.0;
+  }
+
+  /// A vertex sample's signed gap to the neighbours together, and which of them it is nearest to: it does not
+  /// matter from which of them, or when, one began to look. Those that it touches and leaves are left out.
+  struct OutlineGap {
+    double gap = kForever;
+    int site = -1;
+  };
+  OutlineGap gap_to_neighbours(const Half& half, int i, const Vec2& q) const {
+    const double sample_radius = half.samples_of().samples[i].radius;
+    OutlineGap found;
+    double least = kForever;
+    for (const SearchScratch::Neighbour& neighbour : scratch_.neighbours) {
+      if (neighbour.leaving) continue;
+      const Site& site = half.sites_of().sites[neighbour.site];
+      const Nearest n = nearest_on(site, q);
+      const bool interior = n.foot == Foot::interior && site.kind != SiteKind::point;
+      // an interior foot comes before an end that is as near
+      const double rank = n.distance - site.radius - (interior ? limits_.touch : 0.0);
+      if (!(rank < least)) continue;
+      least = rank;
+      const double radius = site.radius + sample_radius;
+      const bool thin = radius == 0.0 && !site.solid && interior;  // then stay on the side it came from
+      const double side = !thin ? side_of(site, n, q) : neighbour.normal.dot(q - n.point) < 0.0 ? -1.0 : 1.0;
+      found = {side * n.distance - radius - level_at(site, sample_radius, n), neighbour.site};
+    }
+    return found;
   }
 
   double arc_gap(const Half& half, const Feature& f, const Vec2& c) const {
@@ -341,14 +394,14 @@ class PairSearch {
     if (t_ <= from_ && f.gap <= 0.0) return remember(half, f, t_);
     const Sample& sample = half.samples_of().samples[f.sample];
     const Site& site = half.sites_of().sites[f.site];
-    // two sharp points never overlap, and a thin wire has no inside to tell that it was met: stop just before
-    const bool sharp = sample.arc_site < 0 && sharp_vertex(site, sample, nearest_on(site, path.q));
-    const bool thin = sample.arc_site < 0 && !site.solid && site.radius + sample.radius == 0.0;
-    const double level = sharp || thin ? 0.5 * limits_.touch : 0.0;
-    const auto gap = [&](double t) { return gap_at(half, f, t, level); };
-
+    const bool vertex = sample.arc_site < 0;
+    const auto gap = [&](double t) {
+      const Vec2 q = place_of(half, f.sample, t);
+      return vertex ? gap_to_neighbours(half, f.sample, q).gap : arc_gap(half, f, q);
+    };
     const double speed = -f.rate;
-    const double guess = t_ + (f.gap - level) / speed;
+    const double now = f.gap - (vertex ? level_at(site, sample.radius, nearest_on(site, path.q)) : 0.0);
+    const double guess = t_ + now / speed;
     const double noise = 32.0 * kEpsilon *
                              (placed_a_.frame.origin.lpNorm<1>() + placed_b_.frame.origin.lpNorm<1>() +
                               path.distance + path.arm) /
@@ -360,14 +413,19 @@ class PairSearch {
       low = std::max(low - back, from_);
     }
     const double last = std::min(a_.motion->end(), b_.motion->end());
-    high = std::min(high, last);
-    if (gap(high) > 0.0) {
-      high = std::min(t_ + 4.0 * std::max(0.0, f.gap - level) / speed + 64.0 * noise, last);
-      if (high <= low || gap(high) > 0.0) {  // passes by, or touches within rounding
-        return f.gap <= limits_.touch && remember(half, f, t_);
-      }
+    // beyond the surface; or, where two points meet, when they are nearest; or where a bent path meets it
+    // later
+    const double nearest = t_ + f.gap / speed, later = t_ + 4.0 * std::max(0.0, now) / speed + 64.0 * noise;
+    for (const double beyond : {high, nearest, later}) {
+      high = std::min(beyond, last);
+      if (high > low && gap(high) <= 0.0) break;
     }
-    return remember(half, f, last_clear_time(gap, low, high), 8.0 * noise);
+    if (high <= low || gap(high) > 0.0)  // passes by, or touches within rounding
+      return f.gap <= limits_.touch && remember(half, f, t_);
+    const double t = last_clear_time(gap, low, high);
+    Feature met = f;
+    if (vertex) met.site = gap_to_neighbours(half, f.sample, place_of(half, f.sample, t)).site;
+    return remember(half, met, t, 8.0 * noise);
   }
 
   /// Keeps the contact if it is the earliest so far (ties: lowest half, sample, site). Always true. The

@@ -64,8 +64,14 @@ struct PairAnswer {
 
 /// Reused memory of searches; one a thread.
 struct SearchScratch {
+  /// A site close to the sample that is being looked at, and its normal there (out of it, to the sample).
+  struct Neighbour {
+    int site = -1;
+    Vec2 normal = Vec2::Zero();
+    bool leaving = false;  ///< touching, but not approaching
+  };
   SiteIndex::Scratch index;
-  SiteIndex::Scratch neighbours;
+  std::vector<Neighbour> neighbours;
   std::vector<double> safe_until;
 };
 

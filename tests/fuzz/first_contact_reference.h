@@ -168,6 +168,31 @@ struct Pair {
     }
     return best;
   }
+
+  /// True if one outline is a bare point: it has no extent to cross the other's boundary with, only a path.
+  bool has_bare_point() const { return is_bare_point(*a) || is_bare_point(*b); }
+
+  /// How many sites of the other outline the bare point crosses between t0 and t1, its path taken as
+  /// straight.
+  int crossings(double t0, double t1) const {
+    const bool of_a = is_bare_point(*a);
+    const Outline& other = of_a ? *b : *a;
+    Curve path;
+    path.kind = SiteKind::segment;
+    path.a = point_in_other(of_a, t0);
+    path.b = point_in_other(of_a, t1);
+    if (path.a == path.b) return 0;
+    return static_cast<int>(std::count_if(other.sites.begin(), other.sites.end(), [&](const Site& site) {
+      return core_distance(path, placed(site, Turn(0.0), Vec2::Zero())) == 0.0;
+    }));
+  }
+
+ private:
+  static bool is_bare_point(const Outline& o) { return o.is_point() && o.sites[0].radius == 0.0; }
+  Vec2 point_in_other(bool of_a, double t) const {
+    const Pose p = (of_a ? motion_a : motion_b)->pose(t), o = (of_a ? motion_b : motion_a)->pose(t);
+    return Turn(-o.angle)(Turn(p.angle)((of_a ? a : b)->sites[0].a) + (p.position - o.position));
+  }
 };
 
 struct FirstTouch {
