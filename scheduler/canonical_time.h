@@ -25,13 +25,11 @@ inline double same_instant(double t) {
 /// with it visits the same probes from every starting interval. @pre 0 <= low < high; returns low if nothing
 /// lies between.
 inline double coarsest_between(double low, double high) {
-  const auto l = std::bit_cast<std::uint64_t>(low + 0.0), h = std::bit_cast<std::uint64_t>(high);
-  if (h - l < 2) return low;
-  for (int k = 63 - std::countl_zero(l ^ h); k >= 0; --k) {
-    const std::uint64_t m = ((l >> k) + 1) << k;
-    if (m > l && m < h) return std::bit_cast<double>(m);
-  }
-  return low;
+  const auto l = std::bit_cast<std::uint64_t>(low + 0.0), last = std::bit_cast<std::uint64_t>(high) - 1;
+  if (last <= l) return low;
+  // below the highest bit in which they differ, `last` may be cleared and is still above l
+  const int k = 63 - std::countl_zero(l ^ last);
+  return std::bit_cast<double>(last >> k << k);
 }
 
 /// The last double at which `gap` is still > 0, by bisection on dyadic probes. @pre gap(low) > 0 >=
@@ -41,7 +39,9 @@ double last_clear_time(Gap&& gap, double low, double high) {
   for (;;) {
     const double probe = coarsest_between(low, high);
     if (probe == low) return low;
-    (gap(probe) > 0.0 ? low : high) = probe;
+    const bool clear = gap(probe) > 0.0;  // two selects: the sign cannot be predicted
+    low = clear ? probe : low;
+    high = clear ? high : probe;
   }
 }
 

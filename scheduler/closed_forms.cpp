@@ -26,6 +26,22 @@ bool only_segments(const Outline& o) {
          });
 }
 
+/// A ballistic motion's places, with Motion::state's own bits, at hand in a loop.
+struct Parabola {
+  double origin;
+  Vec2 place, velocity, acceleration;
+
+  explicit Parabola(const Motion& m)
+      : origin(m.origin()),
+        place(m.start().pose.position),
+        velocity(m.start().twist.velocity),
+        acceleration(m.acceleration().linear) {}
+  Vec2 at(double t) const {
+    const double s = t - origin;
+    return place + s * (velocity + 0.5 * s * acceleration);
+  }
+};
+
 /// The pair on its common clock s = t - reference.
 struct RelativeParabola {
   double reference;
@@ -73,55 +89,59 @@ double before_contact(Gap&& gap, double t, double from, double speed) {
   return t;
 }
 
-/// Rounding of a gap at time t [m].
-double place_noise(const Mover& a, const Mover& b, double t) {
-  const Vec2 pa = a.motion->pose(t).position, pb = b.motion->pose(t).position;
-  const double arm = a.outline().bounding_radius + b.outline().bounding_radius;
+/// Rounding of a gap [m] between outlines at pa and pb that reach as far as `arm` together.
+double place_noise(const Vec2& pa, const Vec2& pb, double arm) {
   return 32.0 * kEpsilon * (pa.lpNorm<1>() + pb.lpNorm<1>() + (pa - pb).norm() + arm);
 }
 
 /// The general search's time near the root t, so that it does not matter which of the two a window was given
-/// to.
+/// to. Any interval will do that has the crossing and whose ends are beyond rounding: the narrowest first.
 template <class Gap>
 double canonical_root(Gap&& gap, double t, double from, double noise, double speed) {
-  const double low = t - 8.0 * noise, high = t + 8.0 * noise;
-  if (low > from && gap(low) > 0.0 && gap(high) <= 0.0) return last_clear_time(gap, low, high);
-  if (t > from && gap(from) > 0.0 && gap(high) <= 0.0) return last_clear_time(gap, from, high);
+  for (const double reach : {0.25 * noise, 8.0 * noise})
+    if (t - reach > from && gap(t - reach) > 0.0 && gap(t + reach) <= 0.0)
+      return last_clear_time(gap, t - reach, t + reach);
+  if (t > from && gap(from) > 0.0 && gap(t + 8.0 * noise) <= 0.0)
+    return last_clear_time(gap, from, t + 8.0 * noise);
   return before_contact(gap, t, from, speed);
+}
+
+/// Two centred discs as the general search sees them at time t: the same operations in the same order.
+FeatureContact disc_contact(const Mover& a, const Mover& b, double t) {
+  const BodyState sa = a.motion->state(t), sb = b.motion->state(t);
+  const double radius_a = a.outline().sites[0].radius, radius_b = b.outline().sites[0].radius;
+  const Vec2 offset = sa.pose.position - sb.pose.position;
+  const double distance = offset.norm();
+  FeatureContact c;
+  c.time = t;
+  c.sample = c.site = 0;
+  c.gap = distance - radius_b - radius_a;
+  c.normal = offset * (1.0 / distance);
+  c.point = sb.pose.position + (offset - c.normal * (c.gap + radius_a));
+  c.closing_speed = -c.normal.dot(sa.twist.velocity - sb.twist.at(offset));
+  return c;
 }
 
 bool discs(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
            PairAnswer& answer) {
+  const double reach = b.outline().sites[0].radius + a.outline().sites[0].radius;
+  if (!(reach > 0.0) || a.motion->acceleration().linear != b.motion->acceleration().linear) return false;
   const RelativeParabola rel(a, b);
-  if (!rel.acceleration.isZero(0.0)) return false;
-  const double reach = a.outline().sites[0].radius + b.outline().sites[0].radius;
   // |offset + velocity s|^2 - reach^2, divided by 2 reach: near contact this is the gap itself
   const double distance0 = rel.offset.norm();
   const double scale = 1.0 / (2.0 * reach);
-  if (!(reach > 0.0)) return false;
   const Quadratic g{(distance0 - reach) * (distance0 + reach) * scale,
                     2.0 * rel.offset.dot(rel.velocity) * scale, 2.0 * rel.velocity.squaredNorm() * scale};
-  const double s = contact_after(g, from - rel.reference, rel.noise, limits.touch, kForever);
   answer = {PairAnswer::Status::clear, to, {}};
+  const double s = contact_after(g, from - rel.reference, rel.noise, limits.touch, kForever);
   double t = std::max(rel.reference + s, from);
   if (!(t <= to)) return true;
-  const auto gap = [&](double time) {
-    return (a.motion->pose(time).position - b.motion->pose(time).position).norm() - reach;
-  };
+  const Parabola path_a(*a.motion), path_b(*b.motion);
+  const auto gap = [=](double time) { return (path_a.at(time) - path_b.at(time)).norm() - reach; };
   const double speed = std::max(-g.slope(t - rel.reference), rel.noise);
-  t = canonical_root(gap, t, from, place_noise(a, b, t) / speed + 4.0 * ulp(t), speed);
-  const BodyState sa = a.motion->state(t), sb = b.motion->state(t);
-  const Vec2 d = sa.pose.position - sb.pose.position;
-  const double distance = d.norm();
-  FeatureContact& c = answer.contact;
-  c.time = t;
-  c.sample = c.site = 0;
-  c.normal = d / distance;
-  c.gap = distance - reach;
-  c.point = sb.pose.position + c.normal * b.outline().sites[0].radius;
-  c.closing_speed = -c.normal.dot(sa.twist.velocity - sb.twist.velocity);
-  answer.status = PairAnswer::Status::contact;
-  answer.until = t;
+  t = canonical_root(gap, t, from, place_noise(path_a.at(t), path_b.at(t), reach) / speed + 4.0 * ulp(t),
+                     speed);
+  answer = {PairAnswer::Status::contact, t, disc_contact(a, b, t)};
   return true;
 }
 
@@ -178,9 +198,9 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
   if (touched < 0 || !(t <= to)) return true;
   const Site& site = sites[touched];
   const double level = level_of(site);
+  const Parabola path(*disc.motion), path_of_other(*other.motion);
   const auto gap_at = [&](double time) {  // bit for bit the gap of the general search
-    const Vec2 place =
-        frame.direction_to_local(disc.motion->pose(time).position - other.motion->pose(time).position);
+    const Vec2 place = frame.direction_to_local(path.at(time) - path_of_other.at(time));
     const Nearest nearest = nearest_on(site, place);
     const bool sided = site.solid || site.radius + disc_radius > 0.0;
     const double side = sided                                     ? side_of(site, nearest, place)
@@ -189,7 +209,9 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
     return side * nearest.distance - (site.radius + disc_radius) - level;
   };
   const double speed = std::max(-normal.dot(v + (t - rel.reference) * acc), rel.noise);
-  t = canonical_root(gap_at, t, from, place_noise(disc, other, t) / speed + 4.0 * ulp(t), speed);
+  const double arm = disc.outline().bounding_radius + other.outline().bounding_radius;
+  t = canonical_root(gap_at, t, from,
+                     place_noise(path.at(t), path_of_other.at(t), arm) / speed + 4.0 * ulp(t), speed);
   const BodyState sd = disc.motion->state(t), so = other.motion->state(t);
   const Vec2 out = frame.direction_to_world(normal);
   FeatureContact& c = answer.contact;

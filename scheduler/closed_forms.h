@@ -21,6 +21,11 @@ double falling_root(const Quadratic& g);
 /// True if the pair has a closed form and `answer` was filled; false: ask the general search.
 /// Cases: discs under equal acceleration; a disc against an outline of segments that does not turn, while the
 /// disc's centre stays abreast of each segment that it could reach.
+///
+/// A contact's time is the general search's, to the last bit; two discs' contact is so in every field, a
+/// segment's place and normal are those of the quadratic (first_contact() looks again). Cost: two discs that
+/// do not meet before `to` a square root or none; two that do a dozen gaps more, to find the canonical time
+/// (brink_bench_first_contact: search/discs_that_miss, search/discs).
 bool first_contact_in_closed_form(const Mover& a, const Mover& b, double from, double to,
                                   const SearchLimits& limits, PairAnswer& answer);
 

@@ -109,7 +109,7 @@ class PairSearch {
       const Vec2 d = sa.pose.position - sb.pose.position;
       const double distance = d.norm(), f = distance - reach;
       if (f <= near) break;
-      const RelativeBounds bounds(a_.motion->bounds(t, to_), b_.motion->bounds(t, to_));
+      const RelativeBounds bounds = bounds_over(t, to_);
       const double df = d.dot(sa.twist.velocity - sb.twist.velocity) / distance;
       t += safe_step(f - 0.5 * near, df, bounds.acceleration) * (1.0 - 4.0 * kEpsilon);
     }
@@ -122,7 +122,7 @@ class PairSearch {
   }
 
   void advance() {
-    long_bounds_ = RelativeBounds(a_.motion->bounds(from_, to_), b_.motion->bounds(from_, to_));
+    long_bounds_ = bounds_over(from_, to_);
     short_window_ = to_ - from_;
     reached_ = from_;
     for (int iteration = 0;; ++iteration) {
@@ -136,7 +136,7 @@ class PairSearch {
       ++work_.search_iterations;
       place(t);
       short_end_ = std::min(to_, t + short_window_);
-      short_bounds_ = RelativeBounds(a_.motion->bounds(t, short_end_), b_.motion->bounds(t, short_end_));
+      short_bounds_ = bounds_over(t, short_end_);
       const double due = t + 0.25 * std::min(short_window_, to_ - t);
       double least = kForever;
       for (const Half& half : halves_)
@@ -149,6 +149,10 @@ class PairSearch {
           }
       short_window_ = std::max(4.0 * (least - t), 64.0 * ulp(t));
     }
+  }
+
+  RelativeBounds bounds_over(double from, double to) const {
+    return RelativeBounds::over(a_.outline(), *a_.motion, b_.outline(), *b_.motion, from, to);
   }
 
   double least_safe_time() const {
@@ -406,7 +410,8 @@ class PairSearch {
                              (placed_a_.frame.origin.lpNorm<1>() + placed_b_.frame.origin.lpNorm<1>() +
                               path.distance + path.arm) /
                              speed +
-                         4.0 * ulp(t_) + bounds.acceleration * f.gap * f.gap / (speed * speed * speed);
+                         4.0 * ulp(t_) +
+                         std::min(1.0, bounds.acceleration * f.gap / (speed * speed)) * f.gap / speed;
     double low = std::max(guess - 8.0 * noise, from_), high = guess + 8.0 * noise;
     for (double back = 8.0 * noise; gap(low) <= 0.0; back *= 4.0) {
       if (low <= from_) return remember(half, f, t_);  // in each other from the start, and now going deeper
@@ -536,8 +541,9 @@ PairAnswer first_contact(const Mover& a, const Mover& b, double from, double to,
     PairAnswer answer;
     if (first_contact_in_closed_form(a, b, from, to, limits, answer)) {
       ++work.closed_forms;
-      if (answer.status ==
-          PairAnswer::Status::contact) {  // seen through the same eyes as the general search's
+      // seen through the same eyes as the general search's; two discs' is already
+      const bool discs = a.outline().is_point() && b.outline().is_point();
+      if (answer.status == PairAnswer::Status::contact && !discs) {
         const double t = answer.contact.time;
         answer.contact = contact_in(a, b, a.motion->state(t), b.motion->state(t), answer.contact, scratch);
       }

@@ -44,6 +44,20 @@ struct RelativeBounds {
         spin_t(t.spin()),
         alpha_t(t.alpha) {}
 
+  /// Of two outlines on their motions over [from, to].
+  static RelativeBounds over(const Outline& s, const Motion& motion_s, const Outline& t,
+                             const Motion& motion_t, double from, double to) {
+    RelativeBounds b(motion_s.bounds(from, to), motion_t.bounds(from, to));
+    if (motion_s.is_ballistic() && motion_t.is_ballistic()) {  // bodies that fall together do not part
+      const double middle = 0.5 * (from + to);
+      b.speed = (motion_s.twist(middle).velocity - motion_t.twist(middle).velocity).norm() +
+                0.5 * (to - from) * b.acceleration;
+    }
+    if (is_centred_disc(s)) b.spin_s = b.alpha_s = 0.0;
+    if (is_centred_disc(t)) b.spin_t = b.alpha_t = 0.0;
+    return b;
+  }
+
   RelativeBounds swapped() const {
     RelativeBounds r = *this;
     std::swap(r.spin_s, r.spin_t);

@@ -67,6 +67,16 @@ Pair discs() {
   come_together(pair, 3.0);
   return pair;
 }
+/// The same discs, kept from meeting by 2 m to the side.
+Pair discs_that_miss() {
+  Pair pair = discs();
+  for (Meeting& m : pair.meetings) {
+    BodyState start = m.motion_a.start();
+    start.pose.position.y() += 2.0;
+    m.motion_a = Motion::ballistic(0.0, start, {});
+  }
+  return pair;
+}
 /// Discs that fall on a floor.
 Pair disc_and_segment() {
   Pair pair(make_disc(0.5), make_segment({-10.0, 0.0}, {10.0, 0.0}));
@@ -132,6 +142,7 @@ void search(benchmark::State& state, Pair (*make)(), bool closed_forms) {
 BENCHMARK_CAPTURE(search, spinning_boxes, spinning_boxes, true);
 BENCHMARK_CAPTURE(search, boxes_that_do_not_turn, boxes_that_do_not_turn, true);
 BENCHMARK_CAPTURE(search, discs, discs, true);
+BENCHMARK_CAPTURE(search, discs_that_miss, discs_that_miss, true);
 BENCHMARK_CAPTURE(search, discs_by_the_general_search, discs, false);
 BENCHMARK_CAPTURE(search, disc_and_segment, disc_and_segment, true);
 BENCHMARK_CAPTURE(search, disc_and_segment_by_the_general_search, disc_and_segment, false);
