@@ -1,8 +1,10 @@
 #include "brink/scheduler/closed_forms.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "brink/core/shapes/distance.h"
 #include "brink/scheduler/canonical_time.h"
@@ -157,71 +159,119 @@ bool stays_within(const Quadratic& along, double length, double s0, double s1) {
   return turn <= s0 || turn >= s1 || inside(turn);
 }
 
+/// A disc on a parabola in the frame of an outline that does not turn, on the clock of RelativeParabola.
+struct DiscPath {
+  Vec2 q, velocity, acceleration;
+  double radius;
+  double s_from, s_to;
+  double slope_noise;
+
+  Vec2 at(double s) const { return q + s * (velocity + 0.5 * s * acceleration); }
+};
+
+/// A segment and when the disc meets it.
+struct Meeting {
+  const Site* site;
+  int index;
+  Vec2 normal;   ///< towards the disc
+  double level;  ///< taken off the gap, as in the general search: a thin wire is met just before it
+  double s;      ///< infinite: never
+
+  /// Bit for bit what the general search sees of a disc of the given radius at q: the gap, and how near the
+  /// segment is for choosing among several.
+  struct Seen {
+    double gap, rank;
+  };
+  Seen seen(const Vec2& q, double disc_radius, double touch) const {
+    const Nearest nearest = nearest_on(*site, q);
+    const double radius = site->radius + disc_radius;
+    const bool sided = site->solid || radius > 0.0;
+    const double side = sided ? side_of(*site, nearest, q) : normal.dot(q - nearest.point) < 0.0 ? -1.0 : 1.0;
+    const double rank = nearest.distance - site->radius - (nearest.foot == Foot::interior ? touch : 0.0);
+    return {side * nearest.distance - radius - level, rank};
+  }
+};
+
+/// False if the disc's centre does not stay abreast of the segment until it meets it or the window ends.
+bool meet(const DiscPath& disc, const SearchLimits& limits, Meeting& m) {
+  const Site& site = *m.site;
+  const Vec2 d = site.b - site.a;
+  const double length = d.norm();
+  const Vec2 tangent = d / length;
+  m.normal = -perp(tangent);  // right of travel: out of a solid
+  if (!site.solid && m.normal.dot(disc.at(disc.s_from) - site.a) < 0.0) m.normal = -m.normal;
+  const double radius = site.radius + disc.radius;
+  m.level = !site.solid && radius == 0.0 ? 0.5 * limits.touch : 0.0;
+  const Quadratic gap{m.normal.dot(disc.q - site.a) - disc.radius - site.radius - m.level,
+                      m.normal.dot(disc.velocity), m.normal.dot(disc.acceleration)};
+  const Quadratic along{tangent.dot(disc.q - site.a), tangent.dot(disc.velocity),
+                        tangent.dot(disc.acceleration)};
+  m.s = contact_after(gap, disc.s_from, disc.slope_noise, limits.touch - 1.5 * m.level,
+                      radius + limits.tolerance);
+  return stays_within(along, length, disc.s_from, std::max(disc.s_from, std::min(m.s, disc.s_to)));
+}
+
 bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, double from, double to,
                        const SearchLimits& limits, PairAnswer& answer) {
   const RelativeParabola rel(disc, other);
   const Frame frame(rel.b.pose);
-  const Vec2 q = frame.direction_to_local(rel.offset), v = frame.direction_to_local(rel.velocity),
-             acc = frame.direction_to_local(rel.acceleration);
-  const double s_from = from - rel.reference, s_to = to - rel.reference;
-  const double disc_radius = disc.outline().sites[0].radius;
-  const std::vector<Site>& sites = other.outline().sites;
-  // as in the general search: a thin wire is met just before it, so that the side stays known
-  const auto level_of = [&](const Site& site) {
-    return !site.solid && site.radius + disc_radius == 0.0 ? 0.5 * limits.touch : 0.0;
-  };
+  const double radius = disc.outline().sites[0].radius;
+  const DiscPath path{frame.direction_to_local(rel.offset),
+                      frame.direction_to_local(rel.velocity),
+                      frame.direction_to_local(rel.acceleration),
+                      radius,
+                      from - rel.reference,
+                      to - rel.reference,
+                      rel.noise};
+  std::array<Meeting, kMostSites> meetings;
+  int count = 0;
   double earliest = kForever;
-  int touched = -1;
   Vec2 normal = Vec2::Zero();
-  for (std::size_t j = 0; j < sites.size(); ++j) {
-    const Site& site = sites[j];
-    const Vec2 d = site.b - site.a;
-    const double length = d.norm();
-    const Vec2 tangent = d / length;
-    Vec2 n = -perp(tangent);  // right of travel: out of a solid
-    const Vec2 now = q - site.a + s_from * (v + 0.5 * s_from * acc);
-    if (!site.solid && n.dot(now) < 0.0) n = -n;
-    const double level = level_of(site);
-    const Quadratic gap{n.dot(q - site.a) - disc_radius - site.radius - level, n.dot(v), n.dot(acc)};
-    const Quadratic along{tangent.dot(q - site.a), tangent.dot(v), tangent.dot(acc)};
-    const double s = contact_after(gap, s_from, rel.noise, limits.touch - 1.5 * level,
-                                   disc_radius + site.radius + limits.tolerance);
-    if (!stays_within(along, length, s_from, std::max(s_from, std::min(s, s_to)))) return false;
-    if (s < earliest) {
-      earliest = s;
-      touched = static_cast<int>(j);
-      normal = n;
+  for (const Site& site : other.outline().sites) {
+    Meeting& m = meetings[static_cast<std::size_t>(count)];
+    m.site = &site;
+    m.index = count++;
+    if (!meet(path, limits, m)) return false;
+    if (m.s < earliest) {
+      earliest = m.s;
+      normal = m.normal;
     }
   }
   answer = {PairAnswer::Status::clear, to, {}};
   double t = std::max(rel.reference + earliest, from);
-  if (touched < 0 || !(t <= to)) return true;
-  const Site& site = sites[touched];
-  const double level = level_of(site);
-  const Parabola path(*disc.motion), path_of_other(*other.motion);
-  const auto gap_at = [&](double time) {  // bit for bit the gap of the general search
-    const Vec2 place = frame.direction_to_local(path.at(time) - path_of_other.at(time));
-    const Nearest nearest = nearest_on(site, place);
-    const bool sided = site.solid || site.radius + disc_radius > 0.0;
-    const double side = sided                                     ? side_of(site, nearest, place)
-                        : normal.dot(place - nearest.point) < 0.0 ? -1.0
-                                                                  : 1.0;
-    return side * nearest.distance - (site.radius + disc_radius) - level;
-  };
-  const double speed = std::max(-normal.dot(v + (t - rel.reference) * acc), rel.noise);
+  if (!(t <= to)) return true;
+  const Parabola parabola(*disc.motion), parabola_of_other(*other.motion);
+  const double speed =
+      std::max(-normal.dot(path.velocity + (t - rel.reference) * path.acceleration), rel.noise);
   const double arm = disc.outline().bounding_radius + other.outline().bounding_radius;
-  t = canonical_root(gap_at, t, from,
-                     place_noise(path.at(t), path_of_other.at(t), arm) / speed + 4.0 * ulp(t), speed);
+  const double noise = place_noise(parabola.at(t), parabola_of_other.at(t), arm) / speed + 4.0 * ulp(t);
+  // segments that are met at the same time to rounding (a notch) count together, as in the general search
+  const auto nearest_at = [&](double time) {
+    const Vec2 q = frame.direction_to_local(parabola.at(time) - parabola_of_other.at(time));
+    double least = kForever;
+    std::pair<double, const Meeting*> nearest{kForever, nullptr};
+    for (int k = 0; k < count; ++k) {
+      const Meeting& m = meetings[static_cast<std::size_t>(k)];
+      if (!(m.s <= earliest + 16.0 * noise)) continue;
+      const Meeting::Seen seen = m.seen(q, radius, limits.touch);
+      if (!(seen.rank < least)) continue;
+      least = seen.rank;
+      nearest = {seen.gap, &m};
+    }
+    return nearest;
+  };
+  t = canonical_root([&](double time) { return nearest_at(time).first; }, t, from, noise, speed);
+  const auto [gap, met] = nearest_at(t);
   const BodyState sd = disc.motion->state(t), so = other.motion->state(t);
-  const Vec2 out = frame.direction_to_world(normal);
+  const Vec2 out = frame.direction_to_world(met->normal);
   FeatureContact& c = answer.contact;
   c.time = t;
   c.sample_on_a = disc_is_a;
   c.sample = 0;
-  c.site = touched;
-  c.gap = gap_at(t) + level;
+  c.site = met->index;
+  c.gap = gap + met->level;
   c.normal = disc_is_a ? out : Vec2(-out);
-  c.point = sd.pose.position - out * (disc_radius + c.gap);
+  c.point = sd.pose.position - out * (radius + c.gap);
   c.closing_speed = -out.dot(sd.twist.velocity - so.twist.velocity);
   answer.status = PairAnswer::Status::contact;
   answer.until = t;
