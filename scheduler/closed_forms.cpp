@@ -72,8 +72,8 @@ double contact_after(const Quadratic& g, double s_from, double noise, double tou
       now <= touch && std::abs(slope) <= noise;  // a slope that is all rounding is no approach
   if (root >= s_from && !resting) return root;
   if (now > touch || now < -deepest || slope > noise)
-    return kForever;                                          // risen again, beyond, or rising: let go
-  if (slope < -noise) return now <= 0.0 ? s_from : kForever;  // through the surface and approaching: now
+    return kForever;                  // risen again, beyond, or rising: let go
+  if (slope < -noise) return s_from;  // on the surface to rounding, or through it, and approaching: now
   if (g.second >= 0.0) return kForever;
   // At rest on the surface and pressed against it: contact is when it has sunk by `touch`.
   const double sunk = falling_root({g.value + touch, g.rate, g.second});

@@ -303,12 +303,13 @@ class Checker {
     if (shift > 1e-5 * f.size) return;
     const double apart = pair.distance(c.time, shift * c.normal);
     // a wire's end may stand out by less than the shift, and be pushed through: then a smaller one tells
-    double part = 1.0;
-    while (part > 0.01 && pair.distance(c.time, -part * shift * c.normal) > 0.5 * part * shift) part *= 0.5;
+    const double smallest = 8.0 * (rounding + std::abs(c.gap));
+    double push = shift;
+    while (push > smallest && pair.distance(c.time, -push * c.normal) > 0.5 * push) push *= 0.5;
     const bool unit = std::abs(c.normal.norm() - 1.0) < 1e-14;
     // the shift may bring another feature near, in a notch or with an arc as small as the shift: then less
     // than all of it
-    if (!unit || apart < 0.5 * shift || (!truth.passed && part <= 0.01))
+    if (!unit || apart < 0.5 * shift || (!truth.passed && push <= smallest))
       fail(f, tally.bad_normal, "normal", answer, truth);
   }
 
@@ -451,7 +452,11 @@ class Checker {
       else
         wrong = again.contact.time <= t ||
                 (clean && error > 1e-10 + 1e-13 / next.closing && error > 16 * time_tolerance(back, next));
-      if (says && again.contact.time <= t + 1e-3 * gone) wrong = true;
+      if (says && again.contact.time <= t + gone) {
+        // before the reference looks: the same contact once more is wrong, another one (in a notch) is not
+        const bool another = again.contact.normal.dot(c.normal) < 0.999;
+        wrong = !another || pair.distance(again.contact.time) > 1e-12 * std::max(1.0, f.size);
+      }
       if (wrong && !next.given_up)
         fail(back, tally.rebound_wrong, closed ? "rebound, closed form" : "rebound", again, next);
     }
