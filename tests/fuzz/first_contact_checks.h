@@ -301,7 +301,9 @@ class Checker {
     const FeatureContact& c = answer.contact;
     const double shift = std::max(1e-8 * f.size, 1e4 * (rounding + std::abs(c.gap)));
     if (shift > 1e-5 * f.size) return;
-    const double apart = pair.distance(c.time, shift * c.normal);
+    double apart = pair.distance(c.time, shift * c.normal);
+    if (apart < 0.5 * shift)
+      apart = distance_of_contact(f, pair, c, shift * c.normal);  // two contacts at once
     // a wire's end may stand out by less than the shift, and be pushed through: then a smaller one tells
     const double smallest = 8.0 * (rounding + std::abs(c.gap));
     double push = shift;
@@ -311,6 +313,24 @@ class Checker {
     // than all of it
     if (!unit || apart < 0.5 * shift || (!truth.passed && push <= smallest))
       fail(f, tally.bad_normal, "normal", answer, truth);
+  }
+
+  /// Distance of the two features in contact alone, a shifted: the site, and those at whose joint the sample
+  /// is.
+  static double distance_of_contact(const Flight& f, const reference::Pair& pair, const FeatureContact& c,
+                                    const Vec2& shift) {
+    const Outline& carrier = c.sample_on_a ? *f.a : *f.b;
+    const Sample& sample = carrier.samples[static_cast<std::size_t>(c.sample)];
+    const auto site = static_cast<std::size_t>(c.site);
+    double least = reference::kNever;
+    for (std::size_t k = 0; k < carrier.sites.size(); ++k) {
+      const bool here = sample.arc_site < 0 ? carrier.sites[k].a == sample.p || carrier.sites[k].b == sample.p
+                                            : sample.arc_site == static_cast<int>(k);
+      if (here)
+        least = std::min(least, c.sample_on_a ? pair.site_distance(k, site, c.time, shift)
+                                              : pair.site_distance(site, k, c.time, shift));
+    }
+    return least;
   }
 
   /// The speed along the normal of the two points that touch, and how fast the distance falls just before.
