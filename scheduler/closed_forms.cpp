@@ -91,16 +91,17 @@ double before_contact(Gap&& gap, double t, double from, double speed) {
   return t;
 }
 
-/// Rounding of a gap [m] between outlines at pa and pb that reach as far as `arm` together.
-double place_noise(const Vec2& pa, const Vec2& pb, double arm) {
-  return 32.0 * kEpsilon * (pa.lpNorm<1>() + pb.lpNorm<1>() + (pa - pb).norm() + arm);
+/// Rounding of a gap [m] at time t between outlines that reach as far as `arm` together.
+double place_noise(const Parabola& a, const Parabola& b, double t, double arm) {
+  return 32.0 * kEpsilon *
+         (a.place.lpNorm<1>() + a.at(t).lpNorm<1>() + b.place.lpNorm<1>() + b.at(t).lpNorm<1>() + arm);
 }
 
 /// The general search's time near the root t, so that it does not matter which of the two a window was given
 /// to. Any interval will do that has the crossing and whose ends are beyond rounding: the narrowest first.
 template <class Gap>
 double canonical_root(Gap&& gap, double t, double from, double noise, double speed) {
-  for (const double reach : {0.25 * noise, 8.0 * noise})
+  for (const double reach : {0.125 * noise, 8.0 * noise})
     if (t - reach > from && gap(t - reach) > 0.0 && gap(t + reach) <= 0.0)
       return last_clear_time(gap, t - reach, t + reach);
   if (t > from && gap(from) > 0.0 && gap(t + 8.0 * noise) <= 0.0)
@@ -141,8 +142,7 @@ bool discs(const Mover& a, const Mover& b, double from, double to, const SearchL
   const Parabola path_a(*a.motion), path_b(*b.motion);
   const auto gap = [=](double time) { return (path_a.at(time) - path_b.at(time)).norm() - reach; };
   const double speed = std::max(-g.slope(t - rel.reference), rel.noise);
-  t = canonical_root(gap, t, from, place_noise(path_a.at(t), path_b.at(t), reach) / speed + 4.0 * ulp(t),
-                     speed);
+  t = canonical_root(gap, t, from, place_noise(path_a, path_b, t, reach) / speed + 4.0 * ulp(t), speed);
   answer = {PairAnswer::Status::contact, t, disc_contact(a, b, t)};
   return true;
 }
@@ -244,7 +244,7 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
   const double speed =
       std::max(-normal.dot(path.velocity + (t - rel.reference) * path.acceleration), rel.noise);
   const double arm = disc.outline().bounding_radius + other.outline().bounding_radius;
-  const double noise = place_noise(parabola.at(t), parabola_of_other.at(t), arm) / speed + 4.0 * ulp(t);
+  const double noise = place_noise(parabola, parabola_of_other, t, arm) / speed + 4.0 * ulp(t);
   // segments that are met at the same time to rounding (a notch) count together, as in the general search
   const auto nearest_at = [&](double time) {
     const Vec2 q = frame.direction_to_local(parabola.at(time) - parabola_of_other.at(time));

@@ -103,14 +103,21 @@ class PairSearch {
     if (oa.container || ob.container) return false;
     const double reach = oa.bounding_radius + ob.bounding_radius;
     const double near = 1e-3 * reach + limits_.tolerance;  // as near as makes no difference
+    const bool straight = a_.motion->is_ballistic() && b_.motion->is_ballistic() &&
+                          a_.motion->acceleration().linear == b_.motion->acceleration().linear;
     double t = from_;
     for (int i = 0; i < 64 && t < to_; ++i) {
       const BodyState sa = a_.motion->state(t), sb = b_.motion->state(t);
-      const Vec2 d = sa.pose.position - sb.pose.position;
+      const Vec2 d = sa.pose.position - sb.pose.position, v = sa.twist.velocity - sb.twist.velocity;
       const double distance = d.norm(), f = distance - reach;
       if (f <= near) break;
+      if (straight) {  // no curvature: there at once
+        const double held = reach + 0.5 * near;
+        t += falling_root({(distance - held) * (distance + held), 2.0 * d.dot(v), 2.0 * v.squaredNorm()});
+        break;
+      }
       const RelativeBounds bounds = bounds_over(t, to_);
-      const double df = d.dot(sa.twist.velocity - sb.twist.velocity) / distance;
+      const double df = d.dot(v) / distance;
       t += safe_step(f - 0.5 * near, df, bounds.acceleration) * (1.0 - 4.0 * kEpsilon);
     }
     if (t >= to_) return true;
@@ -138,17 +145,37 @@ class PairSearch {
       short_end_ = std::min(to_, t + short_window_);
       short_bounds_ = bounds_over(t, short_end_);
       const double due = t + 0.25 * std::min(short_window_, to_ - t);
-      double least = kForever;
-      for (const Half& half : halves_)
-        for (int i = 0; i < half.count(); ++i)
-          if (half.safe_until[i] <= due) {
-            // never less than the next double, or the search would stand still
-            const double until = std::max(t + step(half, i), std::nextafter(t, kForever));
-            half.safe_until[i] = until;
-            least = std::min(least, until);
-          }
-      short_window_ = std::max(4.0 * (least - t), 64.0 * ulp(t));
+      least_ = kForever;
+      // the nearest ones first: beside their steps most others are seen to be far at a glance
+      const int first[2] = {nearest_due(halves_[0], due), nearest_due(halves_[1], due)};
+      for (int h = 0; h < 2; ++h)
+        if (first[h] >= 0) advance_sample(halves_[h], first[h]);
+      for (int h = 0; h < 2; ++h)
+        for (int i = 0; i < halves_[h].count(); ++i)
+          if (i != first[h] && halves_[h].safe_until[i] <= due) advance_sample(halves_[h], i);
+      short_window_ = std::max(4.0 * (least_ - t), 64.0 * ulp(t));
     }
+  }
+
+  /// Of the samples due, the one nearest to the other outline's origin; -1 if none is.
+  int nearest_due(const Half& half, double due) const {
+    const Vec2 origin = placed(half.s).frame.to_local(placed(half.t).frame.origin);
+    int nearest = -1;
+    double least = kForever;
+    for (int i = 0; i < half.count(); ++i) {
+      if (half.safe_until[i] > due) continue;
+      const double distance2 = (half.samples_of().samples[i].p - origin).squaredNorm();
+      if (nearest >= 0 && distance2 >= least) continue;
+      least = distance2;
+      nearest = i;
+    }
+    return nearest;
+  }
+
+  void advance_sample(const Half& half, int i) {
+    // never less than the next double, or the search would stand still
+    half.safe_until[i] = std::max(t_ + step(half, i), std::nextafter(t_, kForever));
+    least_ = std::min(least_, half.safe_until[i]);
   }
 
   RelativeBounds bounds_over(double from, double to) const {
@@ -164,8 +191,8 @@ class PairSearch {
 
   void place(double t) {
     t_ = t;
-    placed_a_ = Placed(a_.outline(), a_.motion->state(t));
-    placed_b_ = Placed(b_.outline(), b_.motion->state(t));
+    placed_a_.move(a_.outline(), a_.motion->state(t));
+    placed_b_.move(b_.outline(), b_.motion->state(t));
   }
   const Placed& placed(const Mover* m) const { return m == &a_ ? placed_a_ : placed_b_; }
 
@@ -177,10 +204,12 @@ class PairSearch {
     const RelativeBounds relative = half.s_is_a ? long_bounds_ : long_bounds_.swapped();
     const RelativeBounds near = half.s_is_a ? short_bounds_ : short_bounds_.swapped();
     const PathBounds over_all = path_bounds(path, relative, long_window);
+    const double apart = clear_of_disc(half, sample, path, over_all);
+    if (apart >= long_window || apart > 2.0 * (least_ - t_)) return apart * (1.0 - 4.0 * kEpsilon);
     const PathBounds over_short = path_bounds(path, near, short_window);
     double safe = 0.0, again = 0.0;
     if (sample.arc_site < 0) {
-      std::tie(safe, again) = vertex_steps(half, i, path, over_all, over_short, long_window);
+      std::tie(safe, again) = vertex_steps(half, i, path, over_all, over_short, long_window, short_window);
     } else {
       safe = arc_sample_step(half, i, path, relative, over_all);
       if (safe < short_window) again = arc_sample_step(half, i, path, near, over_short);
@@ -189,11 +218,20 @@ class PairSearch {
     return safe * (1.0 - 4.0 * kEpsilon);
   }
 
+  /// How long a sample is sure to stay out of the disc that holds the other outline; 0 if it is in it.
+  static double clear_of_disc(const Half& half, const Sample& sample, const SamplePath& path,
+                              const PathBounds& bounds) {
+    const Outline& outline = half.sites_of();
+    const double f = path.distance - outline.bounding_radius - sample.radius;
+    if (outline.container || outline.is_point() || !(f > 0.0)) return 0.0;
+    return safe_step(f, path.q.dot(path.rate) / path.distance, bounds.acceleration);
+  }
+
   /// Safe steps by the bounds over the whole window and by those over the short one; every site is looked at
   /// once.
   std::pair<double, double> vertex_steps(const Half& half, int i, const SamplePath& path,
                                          const PathBounds& over_all, const PathBounds& over_short,
-                                         double window) {
+                                         double window, double short_window) {
     const Sample& sample = half.samples_of().samples[i];
     const Outline& sites = half.sites_of();
     ++work_.distance_queries;
@@ -215,6 +253,10 @@ class PairSearch {
         neighbours_known = true;
         if (meets(half, i, static_cast<int>(j), nearest, path, over_all)) continue;
       }
+      const double beyond = gap - 0.5 * band;  // too far to matter at any speed?
+      if (beyond > band && beyond >= safe * over_all.speed &&
+          beyond >= std::min(again, short_window) * over_short.speed)
+        continue;
       const double slack = slack_at(gap, band, !site.solid && radius == 0.0);
       const double rate = distance_rate(site, nearest, path.q, path.rate);
       safe = std::min(safe, site_step(site, nearest, path.q, path.rate, rate, radius, slack, over_all).safe);
@@ -333,11 +375,12 @@ class PairSearch {
   }
 
   /// Where sample i of this half is at time t, in the other outline's frame.
-  static Vec2 place_of(const Half& half, int i, double t) {
-    const BodyState s = half.s->motion->state(t), u = half.t->motion->state(t);
-    const Frame fs = frame_of(half.s->outline(), s.pose), ft = frame_of(half.t->outline(), u.pose);
-    return ft.direction_to_local(fs.direction_to_world(half.samples_of().samples[i].p) +
-                                 (s.pose.position - u.pose.position));
+  Vec2 place_of(const Half& half, int i, double t) const {
+    Placed s = placed(half.s), u = placed(half.t);
+    s.move(half.s->outline(), half.s->motion->state(t));
+    u.move(half.t->outline(), half.t->motion->state(t));
+    return u.frame.direction_to_local(s.frame.direction_to_world(half.samples_of().samples[i].p) +
+                                      (s.frame.origin - u.frame.origin));
   }
 
   /// What is taken off a gap: two sharp points never overlap, and a thin wire has no inside to tell that it
@@ -388,6 +431,13 @@ class PairSearch {
     return hollow ? site.arc_radius - distance - reach : distance - site.arc_radius - reach;
   }
 
+  /// Bound on the rounding of the places of a mover's points [m].
+  static double place_rounding(const Mover& m, const Placed& placed) {
+    double reach = placed.frame.origin.lpNorm<1>();
+    if (m.motion->is_ballistic()) reach += m.motion->start().pose.position.lpNorm<1>();
+    return 32.0 * kEpsilon * (reach + m.outline().bounding_radius * (1.0 + 0.125 * std::abs(placed.angle)));
+  }
+
   /// The feature pair is within tolerance: if it approaches, finds the last double at which it is still
   /// apart. True if a contact was found; false if it recedes, or passes by.
   bool polish(const Half& half, const Feature& f, const SamplePath& path, const PathBounds& bounds) {
@@ -406,27 +456,29 @@ class PairSearch {
     const double speed = -f.rate;
     const double now = f.gap - (vertex ? level_at(site, sample.radius, nearest_on(site, path.q)) : 0.0);
     const double guess = t_ + now / speed;
-    const double noise = 32.0 * kEpsilon *
-                             (placed_a_.frame.origin.lpNorm<1>() + placed_b_.frame.origin.lpNorm<1>() +
-                              path.distance + path.arm) /
-                             speed +
-                         4.0 * ulp(t_) +
-                         std::min(1.0, bounds.acceleration * f.gap / (speed * speed)) * f.gap / speed;
-    double low = std::max(guess - 8.0 * noise, from_), high = guess + 8.0 * noise;
-    for (double back = 8.0 * noise; gap(low) <= 0.0; back *= 4.0) {
-      if (low <= from_) return remember(half, f, t_);  // in each other from the start, and now going deeper
-      low = std::max(low - back, from_);
-    }
+    const double rounding =
+        (place_rounding(a_, placed_a_) + place_rounding(b_, placed_b_)) / speed + 4.0 * ulp(t_);
+    const double bend = std::min(1.0, bounds.acceleration * f.gap / (speed * speed)) * f.gap / speed;
+    const double noise = rounding + bend;
     const double last = std::min(a_.motion->end(), b_.motion->end());
-    // beyond the surface; or, where two points meet, when they are nearest; or where a bent path meets it
-    // later
-    const double nearest = t_ + f.gap / speed, later = t_ + 4.0 * std::max(0.0, now) / speed + 64.0 * noise;
-    for (const double beyond : {high, nearest, later}) {
-      high = std::min(beyond, last);
-      if (high > low && gap(high) <= 0.0) break;
+    // the narrowest bracket whose ends are beyond rounding, and beyond what the path bends on the way
+    double low = guess - (0.125 * rounding + bend), high = guess + (0.125 * rounding + bend);
+    if (!(low > from_ && high <= last && gap(low) > 0.0 && gap(high) <= 0.0)) {
+      low = std::max(guess - 8.0 * noise, from_);
+      for (double back = 8.0 * noise; gap(low) <= 0.0; back *= 4.0) {
+        if (low <= from_) return remember(half, f, t_);  // in each other from the start, and now going deeper
+        low = std::max(low - back, from_);
+      }
+      // beyond the surface; or, where two points meet, when they are nearest; or where a bent path meets it
+      // later
+      const double nearest = t_ + f.gap / speed, later = t_ + 4.0 * std::max(0.0, now) / speed + 64.0 * noise;
+      for (const double beyond : {guess + 8.0 * noise, nearest, later}) {
+        high = std::min(beyond, last);
+        if (high > low && gap(high) <= 0.0) break;
+      }
+      if (high <= low || gap(high) > 0.0)  // passes by, or touches within rounding
+        return f.gap <= limits_.touch && remember(half, f, t_);
     }
-    if (high <= low || gap(high) > 0.0)  // passes by, or touches within rounding
-      return f.gap <= limits_.touch && remember(half, f, t_);
     const double t = last_clear_time(gap, low, high);
     Feature met = f;
     if (vertex) met.site = gap_to_neighbours(half, f.sample, place_of(half, f.sample, t)).site;
@@ -527,6 +579,7 @@ class PairSearch {
   RelativeBounds long_bounds_, short_bounds_;
   double short_window_ = 0.0, short_end_ = 0.0;
   double t_ = 0.0, reached_ = 0.0;
+  double least_ = kForever;  ///< of the samples looked at from t_, how long all are safe
   Placed placed_a_, placed_b_;
   FeatureContact best_;
   bool capped_ = false;

@@ -2,6 +2,7 @@
 /// How one outline's sample moves in the other outline's frame, with certified bounds.
 
 #include <algorithm>
+#include <limits>
 
 #include "brink/core/base/geometry.h"
 #include "brink/core/shapes/outline.h"
@@ -13,18 +14,25 @@ namespace brink {
 /// computation.
 inline bool is_centred_disc(const Outline& o) { return o.is_point() && o.sites[0].a.isZero(0.0); }
 
-/// The frame in which an outline is looked at.
-inline Frame frame_of(const Outline& outline, const Pose& pose) {
-  return Frame(is_centred_disc(outline) ? Pose{pose.position, 0.0} : pose);
-}
-
-/// An outline at one moment.
+/// An outline at one moment, and the frame in which it is looked at.
 struct Placed {
   Frame frame;
   Twist twist;
+  double angle = std::numeric_limits<double>::quiet_NaN();  ///< of the frame [rad]
 
   Placed() = default;
-  Placed(const Outline& outline, const BodyState& s) : frame(frame_of(outline, s.pose)), twist(s.twist) {}
+  Placed(const Outline& outline, const BodyState& s) { move(outline, s); }
+
+  /// To another moment. Sine and cosine are taken only if the angle has changed.
+  void move(const Outline& outline, const BodyState& s) {
+    const double now = is_centred_disc(outline) ? 0.0 : s.pose.angle;
+    if (now == angle)
+      frame.origin = s.pose.position;
+    else
+      frame = Frame(Pose{s.pose.position, now});
+    angle = now;
+    twist = s.twist;
+  }
 };
 
 /// Bounds on how sample owner S and site owner T move against each other over a window of time.
@@ -47,14 +55,28 @@ struct RelativeBounds {
   /// Of two outlines on their motions over [from, to].
   static RelativeBounds over(const Outline& s, const Motion& motion_s, const Outline& t,
                              const Motion& motion_t, double from, double to) {
-    RelativeBounds b(motion_s.bounds(from, to), motion_t.bounds(from, to));
-    if (motion_s.is_ballistic() && motion_t.is_ballistic()) {  // bodies that fall together do not part
-      const double middle = 0.5 * (from + to);
-      b.speed = (motion_s.twist(middle).velocity - motion_t.twist(middle).velocity).norm() +
-                0.5 * (to - from) * b.acceleration;
-    }
+    const bool parabolas = motion_s.is_ballistic() && motion_t.is_ballistic();
+    RelativeBounds b = parabolas ? of_parabolas(motion_s, motion_t, from, to)
+                                 : RelativeBounds(motion_s.bounds(from, to), motion_t.bounds(from, to));
     if (is_centred_disc(s)) b.spin_s = b.alpha_s = 0.0;
     if (is_centred_disc(t)) b.spin_t = b.alpha_t = 0.0;
+    return b;
+  }
+
+  /// Bodies that fall together do not part: tighter than the difference of their bounds, and quick.
+  static RelativeBounds of_parabolas(const Motion& s, const Motion& t, double from, double to) {
+    const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
+    const double since_s = middle - s.origin(), since_t = middle - t.origin();
+    const Acceleration &as = s.acceleration(), &at = t.acceleration();
+    const Twist &ws = s.start().twist, &wt = t.start().twist;
+    RelativeBounds b;
+    b.acceleration = (as.linear - at.linear).norm();
+    b.speed = ((ws.velocity + since_s * as.linear) - (wt.velocity + since_t * at.linear)).norm() +
+              half * b.acceleration;
+    b.alpha_s = std::abs(as.angular);
+    b.alpha_t = std::abs(at.angular);
+    b.spin_s = std::abs(ws.omega + since_s * as.angular) + half * b.alpha_s;
+    b.spin_t = std::abs(wt.omega + since_t * at.angular) + half * b.alpha_t;
     return b;
   }
 
