@@ -110,16 +110,32 @@ bool Kernel::cover(Coupled& c, double t) {
   return false;
 }
 
-bool Kernel::extend_motions(double t) {
+bool Kernel::extend_motion(int k, double t) {
+  const BodyTrack& b = bodies_[k];
+  if (b.component < 0 || b.motion.end() >= t) return true;
   const StageClock clock(work_.seconds_motion);
-  for (Coupled& c : components_)
-    if (bodies_[c.component.bodies.front()].motion.end() < t && !cover(c, t)) return false;
+  return cover(components_[b.component], t);
+}
+
+bool Kernel::extend_sites(double t) {
   for (std::size_t s = 0; s < sites_.size(); ++s)
     if (const std::string why = sites_[s].extend(t); !why.empty()) {
       stop(Termination::failed, fmt::format("motion of site '{}': {}", world_.sites[s].name, why));
       return false;
     }
   return true;
+}
+
+bool Kernel::extend_motions(double t) {
+  const StageClock clock(work_.seconds_motion);
+  for (Coupled& c : components_)
+    if (bodies_[c.component.bodies.front()].motion.end() < t && !cover(c, t)) return false;
+  return extend_sites(t);
+}
+
+void Kernel::advance_pair(const PairKey& pair, double t) {
+  work_.advances += pair.with_site() ? 1 : 2;
+  time_ = t;
 }
 
 std::vector<BodyState> Kernel::states(double t) const {

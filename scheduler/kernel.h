@@ -58,6 +58,16 @@ class Kernel {
   BodyState state(int k, double t) const { return bodies_[k].motion.state(t); }
   std::vector<BodyState> states(double t) const;
   const Motion& site_motion(int k) const { return sites_[k].motion(); }
+  /// Body or site (owners count bodies first, then sites).
+  const Outline& outline_of(int owner) const;
+  std::optional<PairKey> pair_of(int owner_a, int owner_b) const;
+  /// True if the body is on a parabola for as long as it meets nothing.
+  bool is_free(int k) const { return bodies_[k].component < 0; }
+  bool site_moves(int k) const { return sites_[k].moves(); }
+  /// True if pairs are found by rendered passes (detector "pass").
+  bool by_passes() const { return passes_ != nullptr; }
+  /// Raised whenever the state was changed from outside the verbs: what a policy knows is void.
+  std::uint64_t revision() const { return revision_; }
   double touch() const { return limits_.touch; }
   double contact_tolerance() const { return limits_.tolerance; }
   const std::optional<Halt>& halt() const { return halt_; }
@@ -71,6 +81,13 @@ class Kernel {
   bool extend_motions(double t);
   /// Takes all bodies forward to t; frames due on the way are recorded by record_frames().
   void advance_all(double t);
+  /// Makes sure that one body's motion covers [.., t]. False (and halt() says why) if its integrator cannot.
+  bool extend_motion(int body, double t);
+  /// Likewise every moving site's.
+  bool extend_sites(double t);
+  /// Takes the bodies of one pair to t, and the clock with them; others stay at their own times. Within an
+  /// instant t may lie a rounding before the clock.
+  void advance_pair(const PairKey& pair, double t);
   /// Takes all bodies back to t inside their motions; nothing is integrated twice.
   void back_up_all(double t);
   /// Pairs of owners whose moving bounds meet during [from, to] (every pair, where the plan's broad phase is
@@ -152,9 +169,7 @@ class Kernel {
   void check_overlaps_at(double t);
   std::optional<Contact> crossing_at(const PairKey& pair, double t) const;
   const Motion& motion_of(int owner) const;
-  const Outline& outline_of(int owner) const;
   int owner_count() const { return static_cast<int>(bodies_.size() + sites_.size()); }
-  std::optional<PairKey> pair_of(int owner_a, int owner_b) const;
   void refresh_boxes(double from, double to, bool all);
   std::vector<PairKey> pairs_by_pass(int body, double from, double to);
   /// True if the contact is of a sharp sample with a wire without thickness.
@@ -192,6 +207,7 @@ class Kernel {
   std::vector<Box> boxes_;                   ///< moving bounds of every owner over the present horizon
   std::vector<std::uint64_t> box_versions_;  ///< of the bodies, when their box was made
   std::optional<Halt> halt_;
+  std::uint64_t revision_ = 0;
   double time_ = 0.0;
   double horizon_ = 0.0;
   double max_overlap_ = 0.0;

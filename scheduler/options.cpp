@@ -10,6 +10,8 @@ namespace brink {
 namespace {
 
 constexpr std::array kPolicies{
+    Choice{"body_clocks",
+           "every body keeps its own time; a collision advances two (Lubachevsky 1991; Mirtich & Canny 1995)"},
     Choice{"global_backup",
            "all advance together to a horizon, all back up to the earliest contact (Baraff 1997)"},
     Choice{"fixed_step",

@@ -163,6 +163,7 @@ void Kernel::restore(std::span<const std::byte> bytes) {
   for (SiteMotion& s : sites_)
     if (const std::string why = s.extend(time_); !why.empty()) throw BadInput(why);
   work_ = counted;
+  ++revision_;
 }
 
 }  // namespace brink

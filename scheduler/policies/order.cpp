@@ -8,7 +8,7 @@ namespace brink {
 
 namespace {
 
-std::size_t first_by(const std::string& order, std::vector<Certificate>& group, Random& random) {
+std::size_t first_by(const std::string& order, const std::vector<Certificate>& group, Random& random) {
   const auto least = [&](auto key) {
     return static_cast<std::size_t>(
         std::min_element(group.begin(), group.end(),
@@ -27,6 +27,10 @@ std::size_t first_by(const std::string& order, std::vector<Certificate>& group, 
 
 }  // namespace
 
+std::size_t first_by_order(Kernel& kernel, const std::vector<Certificate>& group) {
+  return group.size() == 1 ? 0 : first_by(kernel.options().order, group, kernel.random());
+}
+
 std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda) {
   std::vector<Certificate> group;
   while (!agenda.empty()) {
@@ -39,7 +43,7 @@ std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda) {
       ++kernel.work().certificates_stale;
   }
   if (group.empty()) return std::nullopt;
-  const std::size_t chosen = group.size() == 1 ? 0 : first_by(kernel.options().order, group, kernel.random());
+  const std::size_t chosen = first_by_order(kernel, group);
   const Certificate first = group[chosen];
   for (std::size_t i = 0; i < group.size(); ++i)
     if (i != chosen) agenda.insert(group[i]);

@@ -11,4 +11,8 @@ namespace brink {
 /// few roundings) picks by the option `order`. Nothing if the agenda is empty.
 std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda);
 
+/// Of contacts of one instant, in the total order of events, the one that the option `order` puts first; its
+/// place in the group. @pre not empty.
+std::size_t first_by_order(Kernel& kernel, const std::vector<Certificate>& group);
+
 }  // namespace brink

@@ -7,6 +7,7 @@
 namespace brink {
 
 std::unique_ptr<Policy> make_policy(std::string_view name) {
+  if (name == "body_clocks") return make_body_clocks();
   if (name == "global_backup") return make_global_backup();
   if (name == "fixed_step") return make_fixed_step();
   throw BadInput(fmt::format("policy \"{}\" is not known; see policies()", name));

@@ -18,6 +18,7 @@ class Policy {
   virtual bool approximate() const { return false; }
 };
 
+std::unique_ptr<Policy> make_body_clocks();
 std::unique_ptr<Policy> make_global_backup();
 std::unique_ptr<Policy> make_fixed_step();
 

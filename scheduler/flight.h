@@ -1,0 +1,119 @@
+#pragma once
+/// Bounding discs in free flight: cheap, certified bounds on when two can meet at all.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "brink/core/base/geometry.h"
+
+namespace brink {
+
+/// A bounding disc about a body's centre on its parabola, all under the same gravity; one cache line.
+struct alignas(64) Flight {
+  double x = 0.0, y = 0.0;    ///< place at `start` [m]
+  double vx = 0.0, vy = 0.0;  ///< velocity at `start` [m/s]
+  double start = 0.0;         ///< [s]
+  double radius = 0.0;        ///< [m]
+  int next = -1;              ///< in the list of its cell
+  unsigned version = 0;       ///< raised when the motion changes
+  bool free = false;          ///< a parabola under the common gravity for ever
+  bool disc = false;          ///< the bounding disc is the body
+};
+
+/// A span of time in which two outlines may touch; never: begin = infinity.
+struct Meeting {
+  double begin = std::numeric_limits<double>::infinity();
+  double end = std::numeric_limits<double>::infinity();
+};
+
+/// Bounding discs are taken larger by this part of their size, which holds the rounding of these formulas.
+inline constexpr double kFlightMargin = 1e-9;
+
+/// When the discs of two flights overlap, from `now` on. Two bare discs that recede never meet. About 15
+/// flops for a pair that does not.
+inline Meeting meeting(const Flight& a, const Flight& b, const Vec2& gravity, double now) {
+  const double sa = now - a.start, sb = now - b.start;
+  const double dv = sa - sb, dp = 0.5 * dv * (sa + sb);
+  const double dx = (a.x + sa * a.vx) - (b.x + sb * b.vx) + dp * gravity.x();
+  const double dy = (a.y + sa * a.vy) - (b.y + sb * b.vy) + dp * gravity.y();
+  const double wx = a.vx - b.vx + dv * gravity.x(), wy = a.vy - b.vy + dv * gravity.y();
+  const double approach = dx * wx + dy * wy;  // half the rate of the squared distance
+  const double reach = (a.radius + b.radius) * (1.0 + kFlightMargin);
+  const double beyond = dx * dx + dy * dy - reach * reach;
+  if (approach >= 0.0 && (beyond > 0.0 || (a.disc && b.disc))) return {};
+  const double speed2 = wx * wx + wy * wy;
+  const double discriminant = approach * approach - speed2 * beyond;
+  if (discriminant < 0.0) return {};
+  const double root = std::sqrt(discriminant);
+  const double begin = beyond <= 0.0 ? now : now + beyond / (root - approach);
+  return {begin, speed2 > 0.0 ? now + (root - approach) / speed2 : std::numeric_limits<double>::infinity()};
+}
+
+/// Times s >= 0, ascending, at which p + s (v + s a / 2) == 0; infinity where there are fewer than two.
+inline std::array<double, 2> zeros(double p, double v, double a) {
+  constexpr double never = std::numeric_limits<double>::infinity();
+  std::array<double, 2> s{never, never};
+  if (a == 0.0) {
+    if (v != 0.0) s[0] = -p / v;
+  } else {
+    const double discriminant = v * v - 2.0 * a * p;
+    if (discriminant < 0.0) return s;
+    const double q = -(v + std::copysign(std::sqrt(discriminant), v));  // free of cancellation
+    if (q == 0.0) {
+      s[0] = 0.0;
+    } else {
+      s[0] = q / a;
+      s[1] = 2.0 * p / q;
+    }
+  }
+  for (double& x : s)
+    if (!(x >= 0.0)) x = never;
+  if (s[1] < s[0]) std::swap(s[0], s[1]);
+  return s;
+}
+
+/// A centre in flight, seen from the present.
+struct Course {
+  Vec2 place, velocity, gravity;
+
+  Course(const Flight& f, const Vec2& g, double now) : gravity(g) {
+    const double s = now - f.start;
+    place = Vec2(f.x + s * (f.vx + 0.5 * s * g.x()), f.y + s * (f.vy + 0.5 * s * g.y()));
+    velocity = Vec2(f.vx + s * g.x(), f.vy + s * g.y());
+  }
+  Vec2 after(double s) const { return place + s * (velocity + 0.5 * s * gravity); }
+};
+
+/// How long from now the centre stays in the box; infinity: for ever. 0 if it is outside.
+inline double stay_in(const Box& box, const Course& c) {
+  if (!box.contains(c.place)) return 0.0;
+  double stay = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 2; ++axis)
+    for (const double edge : {box.low[axis], box.high[axis]}) {
+      if (!std::isfinite(edge)) continue;
+      const auto s = zeros(c.place[axis] - edge, c.velocity[axis], c.gravity[axis]);
+      const bool outward = edge == box.high[axis] ? c.velocity[axis] > 0.0 : c.velocity[axis] < 0.0;
+      // on the edge and going in, the root at 0 is no exit
+      stay = std::min(stay, s[0] == 0.0 && !outward ? s[1] : s[0]);
+    }
+  return stay;
+}
+
+/// How long from now until the centre can be in the box; infinity: never.
+inline double time_to(const Box& box, const Course& c) {
+  if (box.contains(c.place)) return 0.0;
+  double first = std::numeric_limits<double>::infinity();
+  const double margin = kFlightMargin * (box.extent().lpNorm<1>() + c.place.lpNorm<1>());
+  for (int axis = 0; axis < 2; ++axis)
+    for (const double edge : {box.low[axis], box.high[axis]})
+      for (const double s : zeros(c.place[axis] - edge, c.velocity[axis], c.gravity[axis])) {
+        if (s >= first) continue;
+        const double across = c.after(s)[1 - axis];
+        if (across >= box.low[1 - axis] - margin && across <= box.high[1 - axis] + margin) first = s;
+      }
+  return first;
+}
+
+}  // namespace brink

@@ -1,0 +1,69 @@
+#pragma once
+/// Bodies and still sites by place: levels of cell grids, one a class of size.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "brink/scheduler/body_clock.h"
+#include "brink/scheduler/flight.h"
+#include "brink/scheduler/site_lists.h"
+
+namespace brink {
+
+/// Keeps every body in a cell of its level. Two bodies that are not in each other's blocks cannot touch
+/// before one of them leaves its cell.
+class Neighbourhood {
+ public:
+  /// Chooses levels and cell sizes for these bodies: a level holds radii up to four times the last one's, its
+  /// cells hold one body each where there is room and are never smaller than a body. `by_place` false: one
+  /// cell for all.
+  Neighbourhood(std::span<Flight> flights, std::span<BodyClock> clocks, std::span<const Vec2> places,
+                std::vector<SiteLists::Placed> still_sites, bool by_place);
+
+  /// Puts body k into the cell at p; true if that is a new one.
+  bool settle(int k, const Vec2& p);
+  /// The box in which body k's centre stays as long as it is in its cell.
+  Box box_of(int k) const { return grid(k).box_of(clocks_[k].cell); }
+  double cell_size(int k) const { return grid(k).size(); }
+
+  /// Calls visit(j) for every other body that k can meet while both stay in their cells; with `except`,
+  /// without those of its former cell's blocks.
+  template <class Visit>
+  void near(int k, Visit&& visit, const Cell* except = nullptr) const {
+    for (std::size_t m = 0; m < levels_.size(); ++m) {
+      const CellBlock block = block_of(k, clocks_[k].cell, m);
+      constexpr CellBlock none{{1, 1}, {0, 0}};
+      const CellBlock former = except && !levels_[m].grid.wraps(block) ? block_of(k, *except, m) : none;
+      levels_[m].grid.lists(block, [&](const Cell& c, int first) {
+        if (former.contains(c)) return;
+        for (int j = first; j != CellGrid::kNone; j = flights_[j].next)
+          if (j != k) visit(j);
+      });
+    }
+  }
+
+ private:
+  struct Level {
+    CellGrid grid;
+    double radius = 0.0;  ///< the largest of its bodies' [m]
+    std::unique_ptr<SiteLists> sites;
+  };
+  const CellGrid& grid(int k) const { return levels_[clocks_[k].level].grid; }
+  CellBlock block_of(int k, const Cell& cell, std::size_t level) const {
+    const Level& own = levels_[clocks_[k].level];
+    // by the level's radius, not the body's: then the blocks of two bodies hold each other
+    const double reach = (own.radius + levels_[level].radius) * (1.0 + 4.0 * kFlightMargin);
+    return levels_[level].grid.block_of(own.grid.box_of(cell).grown(reach));
+  }
+  void make_levels(std::span<const Vec2> places, bool by_place);
+  void unlink(int k);
+  void link(int k);
+
+  std::span<Flight> flights_;
+  std::span<BodyClock> clocks_;
+  std::vector<SiteLists::Placed> still_sites_;
+  std::vector<Level> levels_;
+};
+
+}  // namespace brink

@@ -1,0 +1,217 @@
+/// Local clocks (Lubachevsky 1991; Mirtich & Canny 1995): every body keeps its own time.
+///
+///   until the end
+///     serve the body whose view expires first:
+///       it leaves its cell             -> look at what came near
+///       its view ends                  -> look at everything near it again
+///       it may meet something          -> search that pair; clear: forget it, or ask again later
+///       it meets something, and nothing else comes first
+///                                      -> advance these two alone, resolve; both look around anew
+///
+/// A pair is in view of one of its bodies (body_clock.h). Two bodies in free flight are bounded by a
+/// quadratic (flight.h) and searched only when their bounding discs meet; so a body that is resolved makes no
+/// work for its neighbours, whose candidates are found stale when they are met. Cost: O(log N) a collision.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "brink/scheduler/canonical_time.h"
+#include "brink/scheduler/event_queue.h"
+#include "brink/scheduler/policies/order.h"
+#include "brink/scheduler/policies/policy.h"
+#include "brink/scheduler/policies/views.h"
+
+namespace brink {
+
+namespace {
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr std::uint64_t kBetweenPauses = 2048;  ///< servings between places where a run may be resumed from
+constexpr unsigned kMostUndecided = 100;
+
+class BodyClocks final : public Policy {
+ public:
+  void run(Kernel& kernel, double until) override {
+    kernel_ = &kernel;
+    until_ = until;
+    if (!views_ || revision_ != kernel.revision()) look_around_all();
+    views_->set_end(until);
+    while (!kernel.halt() && queue_.time() <= until) {
+      if (++served_ % kBetweenPauses == 0) pause();
+      serve(queue_.body());
+    }
+    if (kernel.halt()) return;
+    kernel.record_frames(until);
+    kernel.advance_all(until);
+  }
+
+ private:
+  void look_around_all() {
+    views_.emplace(*kernel_);
+    views_->set_end(until_);
+    revision_ = kernel_->revision();
+    found_.assign(kernel_->body_count(), {});
+    queue_.reset(kernel_->body_count(), kernel_->time());
+    for (int k = 0; k < kernel_->body_count() && !kernel_->halt(); ++k) {
+      views_->look_around(k, kernel_->time());
+      wait_for(k);
+    }
+  }
+
+  void wait_for(int k) {
+    ++kernel_->work().certificates_issued;
+    queue_.update(k, views_->clock(k).expiry());
+  }
+
+  /// A run may be resumed from between two instants only: within one, bodies may be a rounding past each
+  /// other.
+  void pause() {
+    const double now = kernel_->time();
+    if (queue_.time() > now + 2.0 * same_instant(now)) kernel_->pause_point();
+  }
+
+  /// A little later: a search that ends on a contact's instant may miss it by the rounding of its first
+  /// guess.
+  static double beyond(double t) { return t + 64.0 * same_instant(t); }
+
+  void serve(int k) {
+    BodyClock& clock = views_->clock(k);
+    const double now = clock.expiry();
+    if (!clock.candidates.empty() && clock.candidates.front().time == now) {
+      if (const Candidate& c = clock.candidates.front(); c.exact && !views_->stale(c)) return meet(k);
+      sharpen(k);
+    } else if (now == clock.exit) {
+      views_->look_ahead(k, now);
+    } else {
+      views_->look_around(k, now);
+    }
+    wait_for(k);
+  }
+
+  /// The first candidate of body k is dropped if it is stale, and searched if it is not.
+  void sharpen(int k) {
+    BodyClock& clock = views_->clock(k);
+    Candidate c = clock.candidates.front();
+    clock.forget(0);
+    if (views_->stale(c)) {
+      ++kernel_->work().certificates_stale;
+      return;
+    }
+    const double now = c.time, to = std::min(beyond(c.end), std::max(now, until_));
+    const auto found = kernel_->search(*kernel_->pair_of(k, c.other), c.clear, to);
+    const bool undecided = found && found->kind == Certificate::Kind::undecided;
+    clock.undecided = undecided ? clock.undecided + 1 : 0;
+    if (undecided && (found->time <= c.clear || clock.undecided > kMostUndecided))
+      return kernel_->give_up(*found);
+    if (found) {
+      c.time = found->time;
+      c.exact = !undecided;
+      if (undecided) c.clear = c.time;
+    } else if (to < c.end) {
+      c.time = c.clear = std::nextafter(to, kForever);  // not before the end of this run
+    } else {
+      return;
+    }
+    if (c.exact) {
+      for (Candidate& other : clock.candidates) other.exact = false;
+      found_[k] = *found;
+    }
+    clock.see(c, now);
+  }
+
+  /// Body k's first candidate is a contact, and nothing is due before it.
+  void meet(int k) {
+    const BodyClock& clock = views_->clock(k);
+    const double now = found_[k].time, instant = now + same_instant(now);
+    const bool alone = kernel_->options().order == "index" && queue_.second_time() > instant &&
+                       clock.exit > instant && clock.horizon > instant &&
+                       (clock.candidates.size() == 1 || clock.candidates[1].time > instant);
+    if (alone) return collide(Certificate(found_[k]));
+    const std::vector<Certificate> group = contacts_until(instant);
+    if (!kernel_->halt()) collide(group[first_by_order(*kernel_, group)]);
+  }
+
+  /// Every contact of the present instant, in the total order of events.
+  std::vector<Certificate> contacts_until(double instant) {
+    std::vector<Certificate> group;
+    std::vector<int> asked;
+    while (queue_.time() <= instant && !kernel_->halt()) {
+      const int k = queue_.body();
+      const BodyClock& clock = views_->clock(k);
+      const bool settled = clock.exit > instant && clock.horizon > instant;
+      if (settled && clock.candidates.front().exact && !views_->stale(clock.candidates.front())) {
+        add_contacts(k, instant, group);
+        asked.push_back(k);
+        queue_.update(k, kForever);
+      } else {
+        take_next_step(k);
+      }
+    }
+    for (const int k : asked) queue_.update(k, views_->clock(k).expiry());
+    const auto before = [](const Certificate& a, const Certificate& b) { return a.order() < b.order(); };
+    std::sort(group.begin(), group.end(), before);
+    const auto same = [](const Certificate& a, const Certificate& b) { return a.order() == b.order(); };
+    group.erase(std::unique(group.begin(), group.end(), same), group.end());
+    return group;
+  }
+
+  /// What is due first for body k, short of meeting.
+  void take_next_step(int k) {
+    const BodyClock& clock = views_->clock(k);
+    const double view = std::min(clock.exit, clock.horizon);
+    if (!clock.candidates.empty() && clock.candidates.front().time <= view &&
+        !(clock.candidates.front().exact && !views_->stale(clock.candidates.front())))
+      sharpen(k);
+    else if (view == clock.exit)
+      views_->look_ahead(k, view);
+    else
+      views_->look_around(k, view);
+    wait_for(k);
+  }
+
+  /// Contacts of body k that are in its view and due by `instant`.
+  void add_contacts(int k, double instant, std::vector<Certificate>& group) {
+    const bool features = kernel_->options().order != "index";
+    const auto add = [&](const Certificate& c) {
+      group.push_back(c);
+      if (!features || c.kind != Certificate::Kind::contact) return;
+      for (const Certificate& other : kernel_->simultaneous(c)) group.push_back(other);
+    };
+    add(found_[k]);
+    const auto& candidates = views_->clock(k).candidates;
+    for (std::size_t i = 1; i < candidates.size() && candidates[i].time <= instant; ++i) {
+      const Candidate& c = candidates[i];
+      if (views_->stale(c)) continue;
+      const auto found =
+          kernel_->search(*kernel_->pair_of(k, c.other), c.clear, std::min(c.end, beyond(instant)));
+      if (found && found->kind == Certificate::Kind::contact && found->time <= instant) add(*found);
+    }
+  }
+
+  void collide(const Certificate& c) {
+    kernel_->record_frames(c.time);
+    kernel_->advance_pair(c.pair, c.time);
+    changed_.clear();
+    if (!kernel_->resolve(c.pair, c.contact, changed_)) return;
+    for (const int k : changed_) views_->take_up(k);
+    for (std::size_t i = 0; i < changed_.size() && !kernel_->halt(); ++i) {
+      views_->look_around(changed_[i], kernel_->time(), {changed_.data(), i});
+      wait_for(changed_[i]);
+    }
+  }
+
+  Kernel* kernel_ = nullptr;
+  double until_ = 0.0;
+  std::uint64_t revision_ = 0;
+  std::uint64_t served_ = 0;
+  std::optional<Views> views_;
+  EventQueue queue_;
+  std::vector<Certificate> found_;  ///< of each body's exact candidate
+  std::vector<int> changed_;
+};
+
+}  // namespace
+
+std::unique_ptr<Policy> make_body_clocks() { return std::make_unique<BodyClocks>(); }
+
+}  // namespace brink

@@ -1,0 +1,196 @@
+#include "brink/scheduler/policies/views.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brink/scheduler/pair_kinematics.h"
+
+namespace brink {
+
+namespace {
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr std::size_t kMostBoxes = 16;
+
+/// Boxes of an outline's sites; empty where they would not narrow anything down.
+std::vector<Box> boxes_of(const Outline& outline) {
+  if (outline.sites.size() > kMostBoxes)
+    return outline.container ? std::vector<Box>{} : std::vector<Box>{outline.bounds};
+  std::vector<Box> boxes;
+  for (const Site& site : outline.sites) {
+    Box box;
+    box.add(site.a);
+    box.add(site.b);
+    if (site.kind == SiteKind::arc) box = box.grown(site.arc_radius);
+    boxes.push_back(box.grown(site.radius));
+  }
+  return boxes;
+}
+
+/// A lower bound of the time in which two owners' bounding discs can come together before `end` [s].
+double gap_over_speed(const Motion& a, double radius, const Motion& b, const Outline& other, double now,
+                      double end) {
+  if (other.container) return 0.0;
+  const double distance = (a.pose(now).position - b.pose(now).position).norm();
+  const double gap = distance - (radius + other.bounding_radius) * (1.0 + kFlightMargin);
+  const MotionBounds x = a.bounds(now, end), y = b.bounds(now, end);
+  const double closing = (x.velocity - y.velocity).norm() + x.velocity_radius + y.velocity_radius;
+  return gap <= 0.0 ? 0.0 : gap / closing;
+}
+
+}  // namespace
+
+Views::Views(Kernel& kernel)
+    : kernel_(&kernel),
+      gravity_(kernel.world().gravity),
+      flights_(kernel.body_count()),
+      clocks_(kernel.body_count()) {
+  std::vector<Vec2> places;
+  for (int k = 0; k < body_count(); ++k) {
+    flights_[k].radius = kernel.outline_of(k).bounding_radius;
+    take_up(k);
+    places.push_back(kernel.state(k, kernel.time()).pose.position);
+  }
+  std::vector<SiteLists::Placed> still;
+  for (int s = 0; s < static_cast<int>(kernel.world().sites.size()); ++s) {
+    site_boxes_.emplace_back();
+    if (kernel.site_moves(s)) {
+      moving_.push_back(s);
+      continue;
+    }
+    const Outline& outline = kernel.outline_of(body_count() + s);
+    still.push_back({s, transformed(outline, kernel.site_motion(s).pose(0.0))});
+    site_boxes_.back() = boxes_of(still.back().outline);
+  }
+  const bool by_place = kernel.options().skip_broad_phase && !kernel.by_passes();
+  near_.emplace(flights_, clocks_, places, std::move(still), by_place);
+}
+
+void Views::take_up(int k) {
+  Flight& f = flights_[k];
+  const Motion& motion = kernel_->body(k).motion;
+  ++f.version;
+  f.free = kernel_->is_free(k) && motion.acceleration().linear == gravity_ && !kernel_->by_passes();
+  f.disc = f.free && is_centred_disc(kernel_->outline_of(k));
+  if (!f.free) return;
+  const BodyState& s = motion.start();
+  f.x = s.pose.position.x();
+  f.y = s.pose.position.y();
+  f.vx = s.twist.velocity.x();
+  f.vy = s.twist.velocity.y();
+  f.start = motion.origin();
+}
+
+void Views::look_around(int k, double now, std::span<const int> except) {
+  BodyClock& clock = clocks_[k];
+  ++kernel_->work().passes;
+  clock.forget_all();
+  if (flights_[k].free) {
+    const Course course(flights_[k], gravity_, now);
+    near_->settle(k, course.place);
+    clock.exit = now + stay_in(near_->box_of(k), course);
+  } else if (!begin_window(k, now)) {
+    return;
+  }
+  if (kernel_->by_passes()) return see_by_pass(k, now);
+  near_->near(k, [&](int j) {
+    if (std::find(except.begin(), except.end(), j) == except.end()) see_body(k, j, now);
+  });
+  for (const int s : *clock.sites) see_site(k, s, now);
+  for (const int s : moving_) see_moving_site(k, s, now);
+}
+
+void Views::look_ahead(int k, double now) {
+  BodyClock& clock = clocks_[k];
+  const Course course(flights_[k], gravity_, now);
+  const Cell former = clock.cell;
+  const bool moved = near_->settle(k, course.place);
+  clock.exit = now + stay_in(near_->box_of(k), course);
+  if (moved)
+    near_->near(
+        k, [&](int j) { see_body(k, j, now); }, &former);
+  for (const int s : *clock.sites) see_site(k, s, now);
+}
+
+void Views::see_body(int k, int j, double now) {
+  const Flight &a = flights_[k], &b = flights_[j];
+  const Meeting m = a.free && b.free ? meeting(a, b, gravity_, now) : bounded_meeting(k, j, now);
+  if (m.begin < clocks_[k].horizon) clocks_[k].see({m.begin, m.end, j, b.version, false, m.begin}, now);
+}
+
+/// Still sites are in view until body k leaves its cell.
+void Views::see_site(int k, int s, double now) {
+  BodyClock& clock = clocks_[k];
+  const double end = std::min(clock.exit, clock.horizon);
+  double wait = flights_[k].free && !site_boxes_[s].empty() ? kForever : 0.0;
+  if (wait > 0.0) {
+    const Course course(flights_[k], gravity_, now);
+    const double reach = flights_[k].radius * (1.0 + kFlightMargin) + kernel_->contact_tolerance();
+    for (const Box& box : site_boxes_[s]) wait = std::min(wait, time_to(box.grown(reach), course));
+  }
+  if (now + wait <= end && wait < kForever)
+    clock.see({now + wait, end, body_count() + s, 0, false, now + wait}, now);
+}
+
+void Views::see_moving_site(int k, int s, double now) {
+  const Meeting m = bounded_meeting(k, body_count() + s, now);
+  if (m.begin < clocks_[k].horizon)
+    clocks_[k].see({m.begin, m.end, body_count() + s, 0, false, m.begin}, now);
+}
+
+void Views::see_by_pass(int k, double now) {
+  const double end = std::min(clocks_[k].horizon, until_);
+  if (!kernel_->extend_motions(end)) return;
+  for (const PairKey& pair : kernel_->near_pairs_of(k, now, end)) {
+    const int second = pair.with_site() ? body_count() + pair.other_site : pair.other_body;
+    const int other = second == k ? pair.body : second;
+    clocks_[k].see({now, end, other, version_of(other), false, now}, now);
+  }
+}
+
+/// When the bounding discs of body k and another owner can meet at the soonest, from bounds of speed; ends
+/// k's view about where the two could have crossed a cell.
+Meeting Views::bounded_meeting(int k, int owner, double now) {
+  const bool is_body = owner < body_count();
+  const auto speed_of = [&](int s) { return kernel_->site_motion(s).twist(now).velocity.norm(); };
+  if (is_body ? !kernel_->extend_motion(owner, now) : !kernel_->extend_sites(now)) return {};
+  limit_view(k, now, speed(k, now) + (is_body ? speed(owner, now) : speed_of(owner - body_count())));
+  const double end = std::max(now, std::min(clocks_[k].horizon, until_));
+  if (!kernel_->extend_motion(k, end)) return {};
+  if (is_body ? !kernel_->extend_motion(owner, end) : !kernel_->extend_sites(end)) return {};
+  const Motion& other = is_body ? kernel_->body(owner).motion : kernel_->site_motion(owner - body_count());
+  const double wait = gap_over_speed(kernel_->body(k).motion, flights_[k].radius, other,
+                                     kernel_->outline_of(owner), now, end);
+  return now + wait <= end ? Meeting{now + wait, end} : Meeting{};
+}
+
+double Views::speed(int k, double now) const { return kernel_->body(k).motion.twist(now).velocity.norm(); }
+
+/// Ends body k's view about when something that closes in at that speed could have crossed a cell.
+void Views::limit_view(int k, double now, double closing) {
+  const double cell = near_->cell_size(k),
+               length = std::isfinite(cell) ? cell : 4.0 * kernel_->world().length();
+  const double end = now + length / (closing + 1e-2 * length);
+  // a view that holds to the end of the run ends just after it
+  clocks_[k].horizon = std::min(clocks_[k].horizon, end >= until_ ? std::nextafter(until_, kForever) : end);
+}
+
+/// The view of a body that is not in free flight: it ends before the body can leave its cell. False on a
+/// halt.
+bool Views::begin_window(int k, double now) {
+  BodyClock& clock = clocks_[k];
+  if (!kernel_->extend_motion(k, now)) return false;
+  const Vec2 place = kernel_->body(k).motion.pose(now).position;
+  near_->settle(k, place);
+  clock.exit = kForever;
+  limit_view(k, now, speed(k, now));
+  const double end = std::max(now, std::min(clock.horizon, until_));
+  if (!kernel_->extend_motion(k, end) || !kernel_->extend_sites(end)) return false;
+  const Box box = near_->box_of(k);
+  const double room = std::min((place - box.low).minCoeff(), (box.high - place).minCoeff());
+  const double fastest = kernel_->body(k).motion.bounds(now, end).speed();
+  if (room < fastest * (end - now)) clock.horizon = now + room / fastest;
+  return true;
+}
+
+}  // namespace brink

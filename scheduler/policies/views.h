@@ -1,0 +1,56 @@
+#pragma once
+/// What every body has in view, from which policies with local clocks know whom to look at next.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "brink/scheduler/kernel.h"
+#include "brink/scheduler/neighbourhood.h"
+
+namespace brink {
+
+/// The views of all bodies of a kernel's world. After look_around(k), every pair of k is clear until k's
+/// clock expires, or is in the view of the other; look_ahead() keeps that up as k changes cells.
+class Views {
+ public:
+  /// Places all bodies at the kernel's present time; looks at nothing yet.
+  explicit Views(Kernel& kernel);
+
+  BodyClock& clock(int k) { return clocks_[k]; }
+  bool stale(const Candidate& c) const { return c.version != version_of(c.other); }
+  /// The end of the present run: views of bodies that are not in free flight end just after it at the latest.
+  void set_end(double until) { until_ = until; }
+
+  /// Reads body k's motion anew; candidates that others have of it are stale.
+  void take_up(int k);
+  /// Fills body k's view with everything that it may meet from now on, but for bodies of `except`. May halt
+  /// the kernel (an integrator that fails).
+  void look_around(int k, double now, std::span<const int> except = {});
+  /// Adds what comes near as body k, in free flight, leaves its cell.
+  void look_ahead(int k, double now);
+
+ private:
+  int body_count() const { return static_cast<int>(clocks_.size()); }
+  unsigned version_of(int owner) const { return owner < body_count() ? flights_[owner].version : 0; }
+  void sort_sites();
+  void see_body(int k, int j, double now);
+  void see_site(int k, int site, double now);
+  void see_moving_site(int k, int site, double now);
+  void see_by_pass(int k, double now);
+  bool begin_window(int k, double now);
+  double speed(int k, double now) const;
+  void limit_view(int k, double now, double closing);
+  Meeting bounded_meeting(int k, int owner, double now);
+
+  Kernel* kernel_;
+  Vec2 gravity_;
+  double until_ = 0.0;
+  std::vector<Flight> flights_;
+  std::vector<BodyClock> clocks_;
+  std::vector<std::vector<Box>> site_boxes_;  ///< what must be reached to touch a still site; empty: anywhere
+  std::vector<int> moving_;
+  std::optional<Neighbourhood> near_;
+};
+
+}  // namespace brink

@@ -1,0 +1,145 @@
+// The exact policies give the same events, bit for bit, on every scene of the gallery and on gases.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <filesystem>
+
+#include "brink/core/base/random.h"
+#include "brink/scenes/scene.h"
+#include "tests/support/worlds.h"
+
+namespace brink {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Events;
+
+const char* const kOthers[] = {"body_clocks"};
+
+std::string text(const Event& e) {
+  return std::string(to_string(e.kind)) + " at " + std::to_string(e.contact.time) + " of " +
+         std::to_string(e.contact.body) + " on body " + std::to_string(e.contact.other_body) + " / site " +
+         std::to_string(e.contact.other_site);
+}
+
+bool same_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+bool same(const Event& a, const Event& b) {
+  const Contact &x = a.contact, &y = b.contact;
+  return a.kind == b.kind && a.seq == b.seq && same_bits(x.time, y.time) && x.body == y.body &&
+         x.other_body == y.other_body && x.other_site == y.other_site && x.site == y.site &&
+         x.sample == y.sample && x.sample_on_body == y.sample_on_body &&
+         same_bits(x.point.x(), y.point.x()) && same_bits(x.point.y(), y.point.y()) &&
+         same_bits(x.normal.x(), y.normal.x()) && same_bits(x.normal.y(), y.normal.y()) &&
+         same_bits(x.closing_speed, y.closing_speed) && same_bits(x.gap, y.gap) &&
+         same_bits(a.impulse_n, b.impulse_n) && same_bits(a.impulse_t, b.impulse_t);
+}
+
+struct Run {
+  Events events;
+  RunSummary summary;
+};
+
+Run run(const World& world, SolverOptions options, const std::string& policy, double until) {
+  options.policy = policy;
+  Simulator simulator(world, options);
+  Run r;
+  RunOptions run_options = testing::until(until);
+  run_options.frame_interval = until / 7.0;
+  r.summary = simulator.run(run_options, &r.events);
+  return r;
+}
+
+/// Runs the world with every exact policy; returns the number of collisions.
+std::uint64_t expect_same_events(const World& world, const SolverOptions& options, double until) {
+  const Run reference = run(world, options, "global_backup", until);
+  for (const char* policy : kOthers) {
+    const Run other = run(world, options, policy, until);
+    EXPECT_EQ(other.summary.termination_text(), reference.summary.termination_text()) << policy;
+    const auto &a = reference.events.events, &b = other.events.events;
+    EXPECT_EQ(a.size(), b.size()) << policy;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+      if (!same(a[i], b[i])) {
+        ADD_FAILURE() << policy << ", event " << i << " of " << a.size() << ": " << text(b[i])
+                      << ", but global_backup: " << text(a[i]);
+        break;
+      }
+    EXPECT_EQ(other.summary.state_hash, reference.summary.state_hash) << policy;
+    EXPECT_EQ(other.events.frame_times, reference.events.frame_times) << policy;
+  }
+  return reference.summary.collisions;
+}
+
+std::vector<fs::path> gallery() {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(fs::path(BRINK_SOURCE_DIR) / "scenes" / "gallery"))
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+class PoliciesOnTheGallery : public ::testing::TestWithParam<fs::path> {};
+
+TEST_P(PoliciesOnTheGallery, GiveTheSameEvents) {
+  const Scene scene = load_scene(GetParam());
+  if (scene.solver.policy == "fixed_step" || scene.solver.detector == "depth")
+    GTEST_SKIP() << "an approximate scene";
+  EXPECT_GT(expect_same_events(scene.world, scene.solver, 0.2 * scene.duration), 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, PoliciesOnTheGallery, ::testing::ValuesIn(gallery()),
+                         [](const auto& info) { return info.param.stem().string(); });
+
+/// Bodies on a grid in a box with random speeds.
+World gas(int side, double pitch, double gravity, std::uint64_t seed, const std::vector<Shape>& shapes,
+          double spin) {
+  World world;
+  world.gravity = {0.0, -gravity};
+  Random random(seed);
+  const double half = 0.5 * pitch * side;
+  for (int k = 0; k < side * side; ++k) {
+    const Vec2 at(pitch * (k % side + 0.5) - half, pitch * (k / side + 0.5) - half);
+    const Vec2 v(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+    testing::add(world, testing::body(shapes[random.below(shapes.size())], at, v, random.uniform(0.5, 2.0),
+                                      0.0, random.uniform(-spin, spin)));
+  }
+  const Vec2 corners[] = {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
+  for (int k = 0; k < 4; ++k)
+    testing::add(world, testing::site(make_segment(corners[k], corners[(k + 1) % 4])));
+  return world;
+}
+
+TEST(PoliciesOnGases, DiscsOfManySizesGiveTheSameEvents) {
+  const std::vector<Shape> discs{make_disc(0.45), make_disc(0.3), make_disc(0.1), make_disc(0.02)};
+  EXPECT_GT(expect_same_events(gas(20, 1.0, 0.0, 5, discs, 0.0), {}, 4.0), 1000U);
+}
+
+TEST(PoliciesOnGases, DiscsUnderGravityGiveTheSameEvents) {
+  EXPECT_GT(expect_same_events(gas(15, 1.0, 3.0, 6, {make_disc(0.4)}, 0.0), {}, 4.0), 500U);
+}
+
+TEST(PoliciesOnGases, SpinningBoxesGiveTheSameEvents) {
+  EXPECT_GT(expect_same_events(gas(10, 1.1, 1.0, 7, {make_box(0.7, 0.5), make_disc(0.3)}, 2.0), {}, 3.0),
+            300U);
+}
+
+// A lattice of equal discs that all start towards the middle: hundreds of contacts at the same instants.
+TEST(PoliciesOnGases, SimultaneousContactsGiveTheSameEventsInEveryOrder) {
+  for (const char* order : {"index", "closing_speed", "depth", "random"}) {
+    World world;
+    for (int k = 0; k < 81; ++k) {
+      const Vec2 at(k % 9 - 4.0, k / 9 - 4.0);
+      testing::add(world, testing::body(make_disc(0.25), at, -0.5 * at));
+    }
+    testing::add(world, testing::body(make_box(30.0, 0.5), {0.0, -6.0}, {0.0, 1.0}, 100.0));
+    SolverOptions options;
+    options.order = order;
+    EXPECT_GT(expect_same_events(world, options, 4.0), 100U) << order;
+  }
+}
+
+}  // namespace
+}  // namespace brink
