@@ -39,8 +39,8 @@ struct BodyClock {
     const double t = std::min(exit, horizon);
     return candidates.empty() ? t : std::min(t, candidates.front().time);
   }
-  /// Takes a candidate into view. Where there is no room the latest falls out, and the view ends with it; but
-  /// what is due by `now` stays, so that a view never ends as it begins.
+  /// Takes a candidate into view. Where there is no room the latest falls out, and the view ends where a search
+  /// for it must begin; but what must be searched from `now` on stays, so that a view never ends as it begins.
   void see(const Candidate& c, double now) {
     if (c.time >= horizon) return;
     auto place = candidates.end();
@@ -49,8 +49,8 @@ struct BodyClock {
            (c.time < std::prev(place)->time || (c.exact && c.time == std::prev(place)->time)))
       --place;
     candidates.insert(place, c);
-    if (candidates.size() <= kCandidates || candidates.back().time <= now) return;
-    horizon = candidates.back().time;
+    if (candidates.size() <= kCandidates || candidates.back().clear <= now) return;
+    horizon = candidates.back().clear;
     candidates.pop_back();
   }
   void forget(std::size_t k) { candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(k)); }
