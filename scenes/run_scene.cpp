@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "brink/scenes/run_file.h"
+#include "brink/scenes/trace_file.h"
 #include "brink/scheduler/simulator.h"
 
 namespace brink {
@@ -97,8 +98,12 @@ RunReport run_scene(const Scene& scene, const RunRequest& request) {
   report.file = recorder.file();
   if (recorder.resume_point()) report.resumed_from = recorder.resume_point()->t;
   const double load_seconds = request.load_seconds + seconds_since(start);
+  std::optional<TraceFile> trace;
+  if (!request.trace.empty()) trace.emplace(request.trace, simulator.world());
+  RunOptions options = run_options(scene, request, until, recorder);
+  options.trace = trace ? &*trace : nullptr;
   try {
-    report.summary = simulator.run(run_options(scene, request, until, recorder), &recorder);
+    report.summary = simulator.run(options, &recorder);
   } catch (const std::exception& e) {
     close_as_failed(recorder, simulator, e.what());
     throw;
@@ -106,6 +111,7 @@ RunReport run_scene(const Scene& scene, const RunRequest& request) {
   if (recorder.resume_point()) report.summary.wall_seconds += recorder.resume_point()->wall_seconds;
   report.json = summary_to_json(report.summary, load_seconds);
   recorder.finish(report.summary, report.json);
+  if (trace) trace->finish();
   return report;
 }
 

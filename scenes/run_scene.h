@@ -16,6 +16,7 @@ struct RunRequest {
   std::optional<double> until;      ///< [s]; else the scene's duration
   bool resume = false;              ///< go on with DIR/run.db from its last checkpoint
   double checkpoint_seconds = 1.0;  ///< wall-clock seconds between checkpoints
+  std::filesystem::path trace;      ///< write the scheduler's timeline there; empty: none
   double load_seconds = 0.0;  ///< spent on reading the scene; what run_scene itself takes to plan is added
   /// Called now and then; return false to stop. May be empty.
   std::function<bool(double t, std::uint64_t collisions)> progress;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "brink/scheduler/first_contact.h"
@@ -46,19 +47,25 @@ class Agenda {
   std::size_t size() const { return heap_.size(); }
   const Certificate& earliest() const { return heap_.front(); }
   void insert(const Certificate& c) {
+    ++operations_;
     heap_.push_back(c);
     std::push_heap(heap_.begin(), heap_.end(), later);
   }
   Certificate pop() {
+    ++operations_;
     std::pop_heap(heap_.begin(), heap_.end(), later);
     Certificate c = heap_.back();
     heap_.pop_back();
     return c;
   }
 
+  /// Inserts and pops since this was last asked.
+  std::uint64_t take_operations() { return std::exchange(operations_, 0); }
+
  private:
   static bool later(const Certificate& a, const Certificate& b) { return b.order() < a.order(); }
   std::vector<Certificate> heap_;
+  std::uint64_t operations_ = 0;
 };
 
 }  // namespace brink

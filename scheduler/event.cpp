@@ -1,4 +1,5 @@
 #include "brink/scheduler/recorder.h"
+#include "brink/scheduler/trace.h"
 
 namespace brink {
 
@@ -20,6 +21,24 @@ const char* to_string(EventKind kind) {
       return "wake";
     case EventKind::undecided:
       return "undecided";
+  }
+  return "unknown";
+}
+
+const char* to_string(TraceKind kind) {
+  switch (kind) {
+    case TraceKind::advance:
+      return "advance";
+    case TraceKind::back_up:
+      return "back up";
+    case TraceKind::roll_back:
+      return "roll back";
+    case TraceKind::pass:
+      return "pass";
+    case TraceKind::search:
+      return "search";
+    case TraceKind::collision:
+      return "collision";
   }
   return "unknown";
 }

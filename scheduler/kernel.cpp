@@ -146,14 +146,23 @@ std::vector<BodyState> Kernel::states(double t) const {
 }
 
 void Kernel::advance_all(double t) {
-  if (t > time_) work_.advances += bodies_.size();
+  if (t > time_) {
+    work_.advances += bodies_.size();
+    trace_all(TraceKind::advance, time_, t);
+  }
   time_ = t;
+}
+
+void Kernel::trace_all(TraceKind kind, double from, double to) const {
+  if (!run_.trace) return;
+  for (int k = 0; k < body_count(); ++k) run_.trace->mark({kind, k, -1, from, to});
 }
 
 void Kernel::back_up_all(double t) {
   if (t < time_) {
     work_.backups += bodies_.size();
     work_.body_seconds_thrown_away += (time_ - t) * static_cast<double>(bodies_.size());
+    trace_all(TraceKind::back_up, time_, t);
   }
   time_ = t;
 }

@@ -74,6 +74,8 @@ class Kernel {
   WorkCounters& work() { return work_; }
   const WorkCounters& work() const { return work_; }
   Random& random() { return random_; }
+  /// Null, or who is to be told what is done with a body.
+  TraceSink* trace() const { return run_.trace; }
   double max_overlap() const { return max_overlap_; }
 
   // -- verbs --
@@ -164,6 +166,8 @@ class Kernel {
   int other_owner(const PairKey& pair) const {
     return pair.with_site() ? body_count() + pair.other_site : pair.other_body;
   }
+  /// Marks every body, if there is a trace.
+  void trace_all(TraceKind kind, double from, double to) const;
   void note_overlap(double gap) { max_overlap_ = std::max(max_overlap_, -gap); }
   std::vector<PairKey> neighbours_at(double t) const;
   void check_overlaps_at(double t);

@@ -56,6 +56,7 @@ void Kernel::refresh_boxes(double from, double to, bool all) {
 std::vector<PairKey> Kernel::near_pairs(double from, double to) {
   ++work_.horizons;
   work_.passes += bodies_.size();
+  trace_all(TraceKind::pass, from, to);
   refresh_boxes(from, to, true);
   std::vector<PairKey> pairs;
   const auto add = [&](int a, int b) {
@@ -79,6 +80,7 @@ std::vector<PairKey> Kernel::near_pairs(double from, double to) {
 
 std::vector<PairKey> Kernel::near_pairs_of(int body, double from, double to) {
   ++work_.passes;
+  const TraceScope scope(run_.trace, {TraceKind::pass, body, -1, from, to});
   if (passes_) return pairs_by_pass(body, from, to);
   refresh_boxes(from, to, false);
   std::vector<PairKey> pairs;
@@ -113,6 +115,7 @@ std::optional<Certificate> Kernel::search(const PairKey& pair, double from, doub
   // of simultaneous resolves one may be a rounding ahead
   from = std::max({from, a.motion->begin(), b.motion->begin()});
   if (from > to) return std::nullopt;
+  const TraceScope scope(run_.trace, {TraceKind::search, pair.body, other_owner(pair), from, to});
   const PairAnswer answer = first_contact(a, b, from, to, limits_, scratch_, work_);
   if (answer.status == PairAnswer::Status::clear) return std::nullopt;
   Certificate c;

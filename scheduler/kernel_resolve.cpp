@@ -168,6 +168,9 @@ bool Kernel::resolve(const PairKey& pair, const FeatureContact& found, std::vect
 void Kernel::count_collision(const PairKey& pair) {
   ++work_.collisions;
   ++(pair.with_site() ? work_.collisions_body_site : work_.collisions_body_body);
+  if (!run_.trace) return;
+  run_.trace->mark({TraceKind::collision, pair.body, other_owner(pair), time_, time_});
+  if (!pair.with_site()) run_.trace->mark({TraceKind::collision, pair.other_body, pair.body, time_, time_});
 }
 
 bool Kernel::judge_endings(const PairKey& pair, const Contact& contact, double rest) {

@@ -10,6 +10,7 @@
 #include "brink/core/world/world.h"
 #include "brink/scheduler/options.h"
 #include "brink/scheduler/recorder.h"
+#include "brink/scheduler/trace.h"
 
 namespace brink {
 
@@ -20,6 +21,7 @@ struct RunOptions {
   double checkpoint_seconds = 1.0;  ///< wall-clock seconds between checkpoints; < 0: none, 0: at every chance
   bool first_frame = true;          ///< record the frame at the starting time (false when resuming)
   bool record_events = true;
+  TraceSink* trace = nullptr;  ///< told what the scheduler does; may be null
   /// Called now and then with the time reached; return false to stop the run. May be empty.
   std::function<bool(double t, std::uint64_t collisions)> progress;
 };

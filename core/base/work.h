@@ -18,12 +18,14 @@ struct WorkCounters {
   std::uint64_t solver_steps = 0;      ///< accepted integrator steps
   std::uint64_t component_resets = 0;  ///< integrators restarted after a resolve
   // scheduling
-  std::uint64_t advances = 0;             ///< bodies taken forward
-  std::uint64_t backups = 0;              ///< bodies taken back inside their motion
-  double body_seconds_thrown_away = 0.0;  ///< simulated time undone by backups [s]
+  std::uint64_t advances = 0;   ///< bodies taken forward
+  std::uint64_t backups = 0;    ///< bodies taken back inside their motion
+  std::uint64_t rollbacks = 0;  ///< bodies whose motion was undone because of a contact that came late
+  double body_seconds_thrown_away = 0.0;  ///< simulated time undone by backups and rollbacks [s]
   std::uint64_t certificates_issued = 0;
   std::uint64_t certificates_stale = 0;
   std::uint64_t certificates_undecided = 0;
+  std::uint64_t queue_operations = 0;   ///< certificates put into the agenda or taken out
   std::uint64_t pair_searches = 0;      ///< first-contact searches of one pair
   std::uint64_t search_iterations = 0;  ///< certified Newton steps
   std::uint64_t closed_forms = 0;       ///< searches answered by a quadratic
@@ -51,10 +53,12 @@ struct WorkCounters {
     visit("component_resets", w.component_resets, "1");
     visit("advances", w.advances, "1");
     visit("backups", w.backups, "1");
+    visit("rollbacks", w.rollbacks, "1");
     visit("body_seconds_thrown_away", w.body_seconds_thrown_away, "s");
     visit("certificates_issued", w.certificates_issued, "1");
     visit("certificates_stale", w.certificates_stale, "1");
     visit("certificates_undecided", w.certificates_undecided, "1");
+    visit("queue_operations", w.queue_operations, "1");
     visit("pair_searches", w.pair_searches, "1");
     visit("search_iterations", w.search_iterations, "1");
     visit("closed_forms", w.closed_forms, "1");

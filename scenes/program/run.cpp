@@ -16,7 +16,7 @@ namespace brink {
 namespace {
 
 struct RunArguments {
-  std::string scene, out;
+  std::string scene, out, trace;
   std::vector<std::string> overrides;
   std::optional<double> until;
   bool resume = false, quiet = false, json = false;
@@ -54,6 +54,15 @@ std::string change(double before, double after) {
   return scale > 0 ? fmt::format("{:.3g} of it", (after - before) / scale) : std::string("none");
 }
 
+/// What the policy did and what of it was in vain.
+void print_work(const WorkCounters& w) {
+  fmt::print("  work             {} passes, {} searches, {} distance queries, {} queue operations\n",
+             w.passes, w.pair_searches, w.distance_queries, w.queue_operations);
+  fmt::print(
+      "  in vain          {} bodies backed up, {} rolled back ({:.3g} body-seconds), {} certificates stale\n",
+      w.backups, w.rollbacks, w.body_seconds_thrown_away, w.certificates_stale);
+}
+
 void print_summary(const Scene& scene, const RunReport& report) {
   const RunSummary& s = report.summary;
   const std::string title = scene.world.title.empty() ? scene.path.stem().string() : scene.world.title;
@@ -65,6 +74,7 @@ void print_summary(const Scene& scene, const RunReport& report) {
              s.momentum.y(), s.angular_momentum);
   fmt::print("  deepest overlap  {:.3g} m\n", s.max_overlap);
   fmt::print("  wall time        {:.3g} s\n", s.wall_seconds);
+  print_work(s.work);
   fmt::print("  state hash       {:016x}\n", s.state_hash);
   if (report.resumed_from) fmt::print("  resumed from     t = {} s\n", *report.resumed_from);
   fmt::print("  run file         {}\n", report.file.string());
@@ -88,6 +98,7 @@ int run(const RunArguments& arguments) {
   request.dir = arguments.out.empty() ? default_run_folder(scene.path, arguments.resume)
                                       : std::filesystem::path(arguments.out);
   request.until = arguments.until;
+  request.trace = arguments.trace;
   request.resume = arguments.resume;
   request.load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   RunReport report;
@@ -121,6 +132,10 @@ void add_run_command(CLI::App& program, int& status) {
   command->add_flag(
       "--resume", arguments->resume,
       "Go on with the run file that is there, with the same bits; needs the same scene and options");
+  command
+      ->add_option("--trace", arguments->trace,
+                   "Write what the scheduler does, as a Chrome trace (opens in ui.perfetto.dev)")
+      ->type_name("FILE");
   command->add_flag("--quiet", arguments->quiet, "No progress bar and no summary");
   command->add_flag("--json", arguments->json, "The summary as one JSON object on the last line");
   command->footer(

@@ -42,6 +42,7 @@ std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda) {
     else
       ++kernel.work().certificates_stale;
   }
+  kernel.work().queue_operations += agenda.take_operations();
   if (group.empty()) return std::nullopt;
   const std::size_t chosen = first_by_order(kernel, group);
   const Certificate first = group[chosen];
