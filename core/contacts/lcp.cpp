@@ -1,0 +1,136 @@
+#include "brink/core/contacts/lcp.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace brink {
+
+namespace {
+
+constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
+
+/// Lemke's tableau: every row is one equation of w - A z - d z0 = q, solved for its basic variable. Columns
+/// are w, z, z0, and the right-hand side.
+class Tableau {
+ public:
+  Tableau(const RealMatrix& A, const RealVector& q) : n_(static_cast<int>(q.size())), rows_(n_, 2 * n_ + 2) {
+    rows_.setZero();
+    rows_.leftCols(n_).setIdentity();
+    rows_.middleCols(n_, n_) = -A;
+    rows_.col(z0()).setConstant(-1);
+    rows_.col(right()) = q;
+    for (int k = 0; k < n_; ++k) basic_.push_back(k);
+  }
+
+  /// Brings z0 in where q is most negative: from there on the right-hand side is >= 0.
+  int begin() {
+    int row = 0;
+    for (int k = 1; k < n_; ++k)
+      if (rows_(k, right()) < rows_(row, right())) row = k;
+    return pivot(row, z0());
+  }
+
+  /// The row whose basic variable reaches 0 first as variable `entering` grows; -1: none does.
+  int leaving_row(int entering) const {
+    int best = -1;
+    for (int k = 0; k < n_; ++k) {
+      if (rows_(k, entering) <= kPivot) continue;
+      if (best < 0 || first(k, best, entering)) best = k;
+    }
+    return best;
+  }
+
+  /// Exchanges; returns the variable that left.
+  int pivot(int row, int entering) {
+    rows_.row(row) /= rows_(row, entering);
+    for (int k = 0; k < n_; ++k)
+      if (k != row && rows_(k, entering) != 0) rows_.row(k) -= rows_(k, entering) * rows_.row(row);
+    std::swap(basic_[row], entering);
+    return entering;
+  }
+
+  int complement(int variable) const { return variable < n_ ? variable + n_ : variable - n_; }
+  int z0() const { return 2 * n_; }
+
+  /// 0 at a solution.
+  Real z0_value() const {
+    for (int k = 0; k < n_; ++k)
+      if (basic_[k] == z0()) return rows_(k, right());
+    return 0;
+  }
+
+  RealVector solution() const {
+    RealVector z = RealVector::Zero(n_);
+    for (int k = 0; k < n_; ++k)
+      if (basic_[k] >= n_ && basic_[k] < z0()) z[basic_[k] - n_] = std::max(Real(0), rows_(k, right()));
+    return z;
+  }
+
+ private:
+  static constexpr Real kPivot = 1e-13;  ///< of entries that begin at 1: below is rounding
+  static constexpr Real kTie = 1e3 * kEpsilon;
+
+  int right() const { return 2 * n_ + 1; }
+
+  /// True if row a comes before row b in the lexicographic order of (right-hand side, inverse basis) / pivot.
+  /// Of rows alike in the right-hand side, z0's comes first: it ends the method.
+  bool first(int a, int b, int entering) const {
+    const Real pa = rows_(a, entering), pb = rows_(b, entering);
+    const auto compare = [&](int column) {
+      const Real x = rows_(a, column) / pa, y = rows_(b, column) / pb;
+      return std::abs(x - y) <= kTie * std::max({Real(1), std::abs(x), std::abs(y)}) ? 0 : (x < y ? -1 : 1);
+    };
+    if (const int order = compare(right()); order != 0) return order < 0;
+    if (basic_[a] == z0() || basic_[b] == z0()) return basic_[a] == z0();
+    for (int column = 0; column < n_; ++column)
+      if (const int order = compare(column); order != 0) return order < 0;
+    return false;
+  }
+
+  int n_;
+  RealMatrix rows_;
+  std::vector<int> basic_;  ///< variable of each row
+};
+
+/// z0 below this is 0, where |q| <= 1.
+constexpr Real kRounding = 1e5 * kEpsilon;
+
+LcpAnswer lemke(const RealMatrix& A, const RealVector& q) {
+  const int n = static_cast<int>(q.size()), most = 50 * n + 100;
+  LcpAnswer answer;
+  Tableau tableau(A, q);
+  int entering = tableau.complement(tableau.begin());
+  for (answer.pivots = 1; answer.pivots < most; ++answer.pivots) {
+    const int row = tableau.leaving_row(entering);
+    const bool ray = row < 0;
+    const int left = ray ? tableau.z0() : tableau.pivot(row, entering);
+    if (ray && tableau.z0_value() > kRounding) {
+      answer.status = LcpAnswer::Status::none;
+      return answer;
+    }
+    if (left == tableau.z0()) {
+      answer.z = tableau.solution();
+      return answer;
+    }
+    entering = tableau.complement(left);
+  }
+  answer.status = LcpAnswer::Status::capped;
+  return answer;
+}
+
+}  // namespace
+
+LcpAnswer solve_lcp(const RealMatrix& A, const RealVector& q) {
+  if (q.size() == 0 || q.minCoeff() >= 0) return {LcpAnswer::Status::solved, RealVector::Zero(q.size()), 0};
+  // scaled to a diagonal of ones and |q| <= 1
+  const RealVector scale = A.diagonal().cwiseSqrt().cwiseInverse();
+  const RealVector scaled_q = scale.cwiseProduct(q);
+  const Real q_size = scaled_q.cwiseAbs().maxCoeff();
+  LcpAnswer answer = lemke(scale.asDiagonal() * A * scale.asDiagonal(), scaled_q / q_size);
+  if (answer.status == LcpAnswer::Status::solved) answer.z = q_size * scale.cwiseProduct(answer.z);
+  return answer;
+}
+
+}  // namespace brink

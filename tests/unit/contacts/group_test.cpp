@@ -1,0 +1,301 @@
+// Contacts of one instant taken together: what Smith et al. 2012 ask of such a law, on known answers and at
+// random.
+#include "brink/core/contacts/group.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "brink/core/base/random.h"
+#include "brink/core/contacts/lcp.h"
+
+namespace brink {
+namespace {
+
+using Bodies = std::vector<GroupBody>;
+using Contacts = std::vector<GroupContact>;
+using Law = GroupResult (*)(const Bodies&, const Contacts&);
+
+GroupBody disc(const RealVec& velocity, double mass = 1.0, double radius = 0.5) {
+  return {{velocity, 0}, 1.0 / mass, 1.0 / mass, 2.0 / (mass * radius * radius)};
+}
+
+/// Discs of radius 1/2 at `body` and `other` touch; the normal points from `other` to `body`.
+GroupContact touch(int body, const RealVec& at_body, int other, const RealVec& at_other, double e = 1.0) {
+  GroupContact c;
+  c.body = body;
+  c.other = other;
+  c.normal = (at_body - at_other).normalized();
+  c.arm = -c.normal / 2;
+  c.other_arm = c.normal / 2;
+  c.material.restitution = e;
+  return c;
+}
+
+/// n equal discs in a row along x, all touching; the first comes with velocity 1.
+std::pair<Bodies, Contacts> row(int n, double e) {
+  Bodies bodies;
+  Contacts contacts;
+  for (int k = 0; k < n; ++k) {
+    bodies.push_back(disc({k == 0 ? 1 : 0, 0}));
+    if (k > 0) contacts.push_back(touch(k - 1, RealVec(k - 1, 0), k, RealVec(k, 0), e));
+  }
+  return {bodies, contacts};
+}
+
+std::vector<Real> speeds_along_x(const GroupResult& result) {
+  std::vector<Real> v;
+  for (const ExtendedTwist& t : result.twists) v.push_back(t.velocity.x());
+  return v;
+}
+
+void expect_near(const std::vector<Real>& got, const std::vector<Real>& wanted, Real precision) {
+  ASSERT_EQ(got.size(), wanted.size());
+  for (std::size_t k = 0; k < got.size(); ++k) EXPECT_NEAR(got[k], wanted[k], precision) << "body " << k;
+}
+
+// Newton's law at all contacts at once: the first disc rebounds at its neighbour's speed less its own, -1;
+// the others stay together at u; momentum v0 + (n-1) u = 1 with u - v0 = 1 gives v0 = 2/n - 1, u = 2/n.
+TEST(ResolveTogether, ElasticRowSpreadsOut) {
+  for (const int n : {2, 3, 5, 12}) {
+    const auto [bodies, contacts] = row(n, 1.0);
+    std::vector<Real> wanted(n, Real(2) / n);
+    wanted[0] -= 1;
+    expect_near(speeds_along_x(resolve_together(bodies, contacts)), wanted, 1e-17);
+  }
+}
+
+TEST(ResolveTogether, InelasticRowMovesAsOne) {
+  for (const int n : {2, 5, 40}) {
+    const auto [bodies, contacts] = row(n, 0.0);
+    expect_near(speeds_along_x(resolve_together(bodies, contacts)), std::vector<Real>(n, Real(1) / n), 1e-17);
+    expect_near(speeds_along_x(resolve_reflections(bodies, contacts)), std::vector<Real>(n, Real(1) / n),
+                1e-17);
+  }
+}
+
+// Break-away: reflections hand the velocity on, and the last disc leaves alone.
+TEST(ResolveReflections, ElasticRowLetsTheLastGo) {
+  for (const int n : {2, 3, 5, 12}) {
+    const auto [bodies, contacts] = row(n, 1.0);
+    std::vector<Real> wanted(n, 0);
+    wanted.back() = 1;
+    const GroupResult result = resolve_reflections(bodies, contacts);
+    expect_near(speeds_along_x(result), wanted, 1e-17);
+    EXPECT_EQ(result.reflections, n - 1);
+  }
+}
+
+// Two balls let go at each end meet in the middle and leave as they came: the row is symmetric at every step.
+TEST(ResolveReflections, SymmetricRowStaysSymmetric) {
+  auto [bodies, contacts] = row(5, 1.0);
+  bodies[4].twist.velocity.x() = -1;
+  expect_near(speeds_along_x(resolve_reflections(bodies, contacts)), {-1, 0, 0, 0, 1}, 1e-17);
+  const auto v = speeds_along_x(resolve_together(bodies, contacts));
+  for (int k = 0; k < 5; ++k) EXPECT_NEAR(v[k], -v[4 - k], 1e-17);
+}
+
+// Disc v = (1, 0) on two at +-30 degrees, all at once: v0 = (-1/5, 0), the others leave at 2 sqrt3 / 5 along
+// the normals (momentum 1 = v0 + 2 u cos 30, energy 1 = v0^2 + 2 u^2).
+TEST(GroupLaws, DiscOnTwoIsSymmetric) {
+  const Real c = std::sqrt(Real(3)) / 2;
+  const RealVec at0(0, 0), at1(c, 0.5), at2(c, -0.5);
+  const Bodies bodies{disc({1, 0}), disc({0, 0}), disc({0, 0})};
+  const Contacts contacts{touch(0, at0, 1, at1), touch(0, at0, 2, at2)};
+  for (const Law law : {resolve_together, resolve_reflections}) {
+    const GroupResult result = law(bodies, contacts);
+    EXPECT_NEAR(result.twists[0].velocity.x(), -0.2L, 1e-17);
+    EXPECT_NEAR(result.twists[0].velocity.y(), 0, 1e-17);
+    for (const int k : {1, 2})
+      EXPECT_NEAR(result.twists[k].velocity.norm(), 2 * std::sqrt(Real(3)) / 5, 1e-17);
+    EXPECT_NEAR(result.twists[1].velocity.y(), -result.twists[2].velocity.y(), 1e-18);
+  }
+}
+
+// One contact: both laws are the impulse law, v_n' = -e v_n, with the tangential impulse that Coulomb's law
+// gives to a disc (knt = 0: stick needs vt / 3 per mass, bounded by mu times the normal impulse).
+TEST(GroupLaws, OneContactIsTheImpulseLaw) {
+  GroupContact floor;
+  floor.normal = {0, 1};
+  floor.arm = {0, -0.5};
+  floor.material.restitution = 0.5;
+  floor.material.friction = 0.1;
+  for (const Law law : {resolve_together, resolve_reflections}) {
+    const GroupResult slip = law({disc({3, -2})}, {floor});
+    EXPECT_NEAR(slip.normal[0], 3, 1e-17);  // (1 + e) v_n
+    EXPECT_NEAR(slip.tangential[0], 0.3L,
+                1e-16);  // at the bound; along perp(normal) = -x, against the sliding
+    EXPECT_NEAR(slip.twists[0].velocity.y(), 1, 1e-17);
+    const GroupResult stick = law({disc({0.6, -2})}, {floor});
+    EXPECT_NEAR(stick.tangential[0], 0.2L, 1e-16);
+    EXPECT_NEAR(stick.twists[0].at(floor.arm).x(), 0, 1e-17);
+  }
+}
+
+TEST(GroupLaws, SqueezedBetweenWhatCannotMoveIsAJam) {
+  GroupContact left, right;
+  left.normal = {1, 0};
+  left.arm = {-0.5, 0};
+  left.other_point_velocity = {1, 0};
+  right.normal = {-1, 0};
+  right.arm = {0.5, 0};
+  right.other_point_velocity = {-1, 0};
+  for (const Law law : {resolve_together, resolve_reflections}) {
+    EXPECT_NE(law({disc({0, 0})}, {left, right}).status, GroupResult::Status::resolved);
+    EXPECT_EQ(law({GroupBody{}}, {left}).status, GroupResult::Status::jam);  // held altogether
+  }
+}
+
+/// Many discs on a triangular lattice with random masses, velocities and spins; each pair of neighbours
+/// touches.
+struct RandomGroup {
+  Bodies bodies;
+  Contacts contacts;
+  explicit RandomGroup(Random& r, double e_low, double e_high, double friction, bool equal_e) {
+    const int columns = 2 + static_cast<int>(r.below(4)), lines = 1 + static_cast<int>(r.below(4));
+    const double common = r.uniform(e_low, e_high);
+    std::vector<RealVec> at;
+    for (int j = 0; j < lines; ++j)
+      for (int i = 0; i < columns; ++i) {
+        at.emplace_back(i + Real(j % 2) / 2, j * std::sqrt(Real(3)) / 2);
+        bodies.push_back(disc({r.uniform(-1, 1), r.uniform(-1, 1)}, r.uniform(0.3, 3.0)));
+        bodies.back().twist.omega = r.uniform(-2, 2);
+      }
+    for (std::size_t i = 0; i < at.size(); ++i)
+      for (std::size_t j = i + 1; j < at.size(); ++j)
+        if ((at[i] - at[j]).norm() < 1 + 1e-12) {
+          contacts.push_back(touch(static_cast<int>(i), at[i], static_cast<int>(j), at[j],
+                                   equal_e ? common : r.uniform(e_low, e_high)));
+          contacts.back().material.friction = friction;
+        }
+  }
+};
+
+struct Sums {
+  RealVec momentum = RealVec::Zero();
+  Real energy = 0;
+  Sums(const Bodies& bodies, const std::vector<ExtendedTwist>& twists) {
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      momentum += twists[k].velocity / bodies[k].inverse_mass_x;
+      energy += (twists[k].velocity.squaredNorm() / bodies[k].inverse_mass_x +
+                 twists[k].omega * twists[k].omega / bodies[k].inverse_inertia) /
+                2;
+    }
+  }
+};
+
+std::vector<ExtendedTwist> twists_of(const Bodies& bodies) {
+  std::vector<ExtendedTwist> twists;
+  for (const GroupBody& b : bodies) twists.push_back(b.twist);
+  return twists;
+}
+
+Real normal_velocity(const GroupContact& c, const std::vector<ExtendedTwist>& twists) {
+  return (twists[c.body].at(c.arm) - twists[c.other].at(c.other_arm)).dot(c.normal);
+}
+
+// Elastic, frictionless: momentum and energy to rounding; impulses only push (one-sidedness); what Newton's
+// law demands of every contact holds, with equality where it pushes; reflections leave nothing approaching
+// (feasibility) after few (termination). Lattices of 16 discs have up to 33 contacts for 32 velocities:
+// redundant ones are met.
+TEST(GroupLaws, RandomElasticGroupsKeepEverything) {
+  Random r(5);
+  int most = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const RandomGroup g(r, 1.0, 1.0, 0.0, true);
+    const auto before_twists = twists_of(g.bodies);
+    const Sums before(g.bodies, before_twists);
+    for (const Law law : {resolve_together, resolve_reflections}) {
+      const GroupResult result = law(g.bodies, g.contacts);
+      ASSERT_EQ(result.status, GroupResult::Status::resolved) << "case " << i << " of seed 5";
+      const Sums after(g.bodies, result.twists);
+      ASSERT_LE((after.momentum - before.momentum).norm(), 1e-16L) << i;
+      ASSERT_LE(std::abs(after.energy - before.energy), 1e-16L * (1 + before.energy)) << i;
+      for (std::size_t k = 0; k < g.contacts.size(); ++k) {
+        ASSERT_GE(result.normal[k], 0) << i;
+        const Real v = normal_velocity(g.contacts[k], result.twists);
+        if (law == resolve_reflections) {
+          ASSERT_GE(v, -1e-16) << i;
+          continue;
+        }
+        const Real slack = v + normal_velocity(g.contacts[k], before_twists);
+        ASSERT_GE(slack, -1e-15) << i;
+        ASSERT_LE(slack * result.normal[k], 1e-15) << i;
+      }
+      most = std::max(most, result.reflections);
+    }
+  }
+  EXPECT_GT(most, 3);
+  EXPECT_LT(most, 300);
+}
+
+// With friction and restitutions of all kinds energy only goes, momentum stays, friction keeps within its
+// cone.
+TEST(GroupLaws, RandomLossyGroupsNeverGainEnergy) {
+  Random r(6);
+  for (int i = 0; i < 2000; ++i) {
+    const RandomGroup g(r, 0.0, 1.0, i % 2 == 0 ? 0.0 : 0.4, i % 3 == 0);
+    const Sums before(g.bodies, twists_of(g.bodies));
+    for (const Law law : {resolve_together, resolve_reflections}) {
+      const GroupResult result = law(g.bodies, g.contacts);
+      ASSERT_EQ(result.status, GroupResult::Status::resolved) << "case " << i << " of seed 6";
+      const Sums after(g.bodies, result.twists);
+      ASSERT_LE((after.momentum - before.momentum).norm(), 1e-16L) << i;
+      ASSERT_LE(after.energy, before.energy + 1e-16L) << i;
+      for (std::size_t k = 0; k < g.contacts.size(); ++k)
+        ASSERT_LE(std::abs(result.tangential[k]), g.contacts[k].material.friction * result.normal[k] + 1e-18L)
+            << i;
+    }
+  }
+}
+
+// The order in which contacts are listed is no matter (without friction).
+TEST(GroupLaws, NumberingIsNoMatter) {
+  Random r(7);
+  for (int i = 0; i < 500; ++i) {
+    RandomGroup g(r, 0.5, 0.5, 0.0, true);
+    const GroupResult together = resolve_together(g.bodies, g.contacts);
+    const GroupResult reflected = resolve_reflections(g.bodies, g.contacts);
+    std::reverse(g.contacts.begin(), g.contacts.end());
+    const GroupResult together2 = resolve_together(g.bodies, g.contacts);
+    const GroupResult reflected2 = resolve_reflections(g.bodies, g.contacts);
+    for (std::size_t k = 0; k < g.bodies.size(); ++k) {
+      ASSERT_LE((together.twists[k].velocity - together2.twists[k].velocity).norm(), 1e-15)
+          << i << " of seed 7";
+      ASSERT_LE((reflected.twists[k].velocity - reflected2.twists[k].velocity).norm(), 1e-15) << i;
+    }
+  }
+}
+
+// Against the definition: z >= 0, A z + q >= 0, complementary. A = B B^T of less than full rank is what
+// redundant contacts give; q in its range has a solution.
+TEST(Lcp, RandomSemidefiniteProblemsMeetTheDefinition) {
+  Random r(8);
+  for (int i = 0; i < 2000; ++i) {
+    const int n = 1 + static_cast<int>(r.below(20)), rank = 1 + static_cast<int>(r.below(n));
+    RealMatrix B(n, rank);
+    RealVector u(rank);
+    for (int j = 0; j < rank; ++j) {
+      u[j] = r.uniform(-1, 1);
+      for (int k = 0; k < n; ++k) B(k, j) = r.uniform(-1, 1);
+    }
+    const RealMatrix A = B * B.transpose();
+    const RealVector q = B * u;
+    const LcpAnswer answer = solve_lcp(A, q);
+    ASSERT_EQ(answer.status, LcpAnswer::Status::solved) << "case " << i << " of seed 8";
+    const RealVector w = A * answer.z + q;
+    ASSERT_GE(answer.z.minCoeff(), 0) << i;
+    ASSERT_GE(w.minCoeff(), -1e-12) << i;
+    ASSERT_LE(std::abs(w.dot(answer.z)), 1e-10) << i;
+  }
+}
+
+TEST(Lcp, WithoutSolutionSaysSo) {
+  RealMatrix A(2, 2);
+  A << 1, -1, -1, 1;  // z0 - z1 >= 1 and z1 - z0 >= 1
+  EXPECT_EQ(solve_lcp(A, RealVector::Constant(2, -1)).status, LcpAnswer::Status::none);
+}
+
+}  // namespace
+}  // namespace brink
