@@ -1,0 +1,125 @@
+#pragma once
+/// A pair of outlines at one moment: which features are close, their gaps and rates. What first_contact's
+/// search looks through.
+
+#include <span>
+#include <vector>
+
+#include "brink/core/shapes/distance.h"
+#include "brink/scheduler/arc_contact.h"
+#include "brink/scheduler/first_contact.h"
+#include "brink/scheduler/pair_kinematics.h"
+
+namespace brink::detail {
+
+/// One sample of S against one site of T at one moment.
+struct Feature {
+  int sample = -1;
+  int site = -1;
+  double gap = 0.0;            ///< [m]
+  double rate = 0.0;           ///< of the gap [m/s]
+  Vec2 normal = Vec2::Zero();  ///< T's frame, out of the site
+  Vec2 point = Vec2::Zero();   ///< T's frame, on the site
+};
+
+/// Samples of S against sites of T: one half of the two-sided test.
+struct Half {
+  const Mover* s = nullptr;
+  const Mover* t = nullptr;
+  bool s_is_a = true;
+  int count = 0;  ///< samples to be looked at: all, or none where the other half is the whole distance
+
+  const Outline& samples_of() const { return s->outline(); }
+  const Outline& sites_of() const { return t->outline(); }
+  const Sample& sample(int i) const { return samples_of().samples[static_cast<std::size_t>(i)]; }
+  const Site& site(int j) const { return sites_of().sites[static_cast<std::size_t>(j)]; }
+};
+
+class PairView {
+ public:
+  PairView(const Mover& a, const Mover& b, const SearchLimits& limits, SearchScratch& scratch);
+
+  /// The half whose samples are a's (true) or b's.
+  const Half& half(bool samples_on_a) const { return halves_[samples_on_a ? 0 : 1]; }
+
+  /// Looks at the pair at time t from now on.
+  void place(double t) { place(a_.motion->state(t), b_.motion->state(t)); }
+  void place(const BodyState& state_a, const BodyState& state_b) {
+    placed_a_.move(a_.outline(), state_a);
+    placed_b_.move(b_.outline(), state_b);
+  }
+  const Placed& placed(const Mover* m) const { return m == &a_ ? placed_a_ : placed_b_; }
+  SamplePath path(const Half& half, int i) const {
+    return sample_path(placed(half.s), placed(half.t), half.sample(i).p);
+  }
+
+  /// Calls visit(half, feature) for every feature with a gap up to `tolerance`: of each vertex the nearest,
+  /// of arcs all. Brute force over samples.
+  template <class Visit>
+  void each_feature(double tolerance, Visit&& visit) const {
+    for (const Half& half : halves_)
+      for (int i = 0; i < half.count; ++i)
+        if (half.sample(i).arc_site >= 0)
+          each_arc_feature(half, i, tolerance, visit);
+        else if (const Feature f = nearest_feature(half, i); f.site >= 0 && f.gap <= tolerance)
+          visit(half, f);
+  }
+
+  /// Vertex sample i against site j, whose nearest point is given.
+  Feature vertex_feature(const Half& half, int i, int j, const Nearest& nearest,
+                         const SamplePath& path) const;
+  /// The same two features as `f`, looked at now; `time` is noted in the answer.
+  FeatureContact look_again(const Half& half, const Feature& f, double time) const;
+  FeatureContact contact_of(const Half& half, const Feature& f, double time) const;
+
+  /// True if the gap falls faster than the rounding of the velocities it is computed from.
+  bool approaching(const Feature& f, const SamplePath& path) const;
+
+  /// Keeps those of `sites` that lie within `reach` of vertex sample i, and how it stands to them now.
+  void find_neighbours(const Half& half, int i, std::span<const std::uint32_t> sites, const SamplePath& path,
+                       double reach);
+  /// True if site j is near q, but what q would touch is another of the neighbours. At a joint: one that is
+  /// as near with its interior. Behind a solid: j is the far side of a sliver, whose near side q has in front
+  /// of it, or is deeper in.
+  bool belongs_to_a_neighbour(const Half& half, int j, const Nearest& nearest, const Vec2& q) const;
+
+  /// What is taken off a gap: two sharp points never overlap, and a thin wire has no inside to tell that it
+  /// was met, so there the gap counts from half the touching distance.
+  double level_at(const Site& site, double sample_radius, const Nearest& nearest) const;
+
+  struct GapAndSite {
+    double gap = std::numeric_limits<double>::infinity();  ///< [m], less level_at()
+    int site = -1;
+  };
+  /// The gap of f's sample at time t, wherever the pair is placed now. A vertex: signed, to the neighbours
+  /// together, so that it does not matter from which of them, or when, one began to look; those that it
+  /// touches and leaves are left out. An arc: to f's site, on the side that f has.
+  GapAndSite gap_at(const Half& half, const Feature& f, double t) const;
+
+  /// Bound on the rounding of a gap now [m].
+  double gap_rounding() const;
+
+ private:
+  template <class Visit>
+  void each_arc_feature(const Half& half, int i, double tolerance, Visit&& visit) const {
+    for (std::size_t j = 0; j < half.sites_of().sites.size(); ++j) {
+      const ArcStep step = arc_now(half, i, static_cast<int>(j));
+      if (step.active && step.gap <= tolerance)
+        visit(half, Feature{i, static_cast<int>(j), step.gap, step.rate, step.normal, step.point});
+    }
+  }
+  Feature nearest_feature(const Half& half, int i) const;
+  ArcStep arc_now(const Half& half, int i, int j) const;
+  Vec2 place_at(const Half& half, int i, double t) const;
+  GapAndSite gap_to_neighbours(const Half& half, int i, const Vec2& q) const;
+  double arc_gap(const Half& half, const Feature& f, const Vec2& center) const;
+  double place_rounding(const Mover& m) const;
+
+  const Mover &a_, &b_;
+  const SearchLimits& limits_;
+  SearchScratch& scratch_;
+  Half halves_[2];
+  Placed placed_a_, placed_b_;
+};
+
+}  // namespace brink::detail
