@@ -90,7 +90,7 @@ RunReport run_scene(const Scene& scene, const RunRequest& request) {
   }
   Simulator simulator(scene.world, scene.solver);
   if (const std::string why = simulator.start_fault(); !why.empty())
-    throw SceneFaults(scene.path, {{1, 1, why}});
+    throw SceneFaults(scene.path, {{1, 1, why, {}}});
   RunFileRecorder recorder(request.dir, scene,
                            request.resume ? RunFileRecorder::Open::resume : RunFileRecorder::Open::fresh);
   restore(simulator, recorder, until);

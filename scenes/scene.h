@@ -30,6 +30,7 @@ struct Scene {
 struct SceneFault {
   int line = 0, column = 0;
   std::string message;  ///< what is wrong, what was given, what is allowed
+  std::string file;     ///< a data file that the scene names; empty: the scene file itself
 };
 
 /// Every fault of a file at once; what() has one "FILE:LINE:COLUMN: message" a line.

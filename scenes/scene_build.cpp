@@ -215,7 +215,8 @@ class SceneBuilder {
     for (const std::string& word : table.lock.value) {
       (word == "x" ? body.lock_x : word == "y" ? body.lock_y : body.lock_angle) = true;
     }
-    body.sampling = sampling(table.sampling);
+    body.sampling = sampling(thing);
+    check_sampling(body, table);
     check_inertia(body, table, thing.name);
     check_locks(body, table);
     return body;
@@ -251,10 +252,29 @@ class SceneBuilder {
     if (body.lock_angle) twist.omega = 0.0;
   }
 
-  static Sampling sampling(const Given<SamplingTable>& table) {
+  Sampling sampling(const PlannedThing& thing) const {
     static const std::vector<std::string> kinds{"vertices", "boundary", "volume", "random", "raster"};
-    const auto kind = std::find(kinds.begin(), kinds.end(), table.value.kind) - kinds.begin();
-    return {static_cast<Sampling::Kind>(kind), table.value.spacing, static_cast<int>(table.value.count)};
+    const SamplingTable& table = thing.table->sampling.value;
+    Sampling sampling;
+    sampling.kind =
+        static_cast<Sampling::Kind>(std::find(kinds.begin(), kinds.end(), table.kind) - kinds.begin());
+    sampling.spacing = table.spacing;
+    sampling.count = static_cast<int>(table.count);
+    sampling.seed = file_.world.seed + 0x9e3779b97f4a7c15ULL * thing.ordinal;  // a stream of its own
+    if (thing.table->sampling.given) return sampling;
+    sampling.points = thing.table->shapes[0].samples;
+    if (!sampling.points.empty()) sampling.kind = Sampling::Kind::file;
+    for (Vec2& p : sampling.points) p -= thing.shape.shift;
+    return sampling;
+  }
+
+  void check_sampling(const Body& body, const ThingTable& table) {
+    if (!table.sampling.given) return;
+    try {
+      make_particles(*body.outline, body.sampling);
+    } catch (const BadInput& error) {
+      faults_.add(table.sampling.where, error.what());
+    }
   }
 
   // Whatever the tables did not catch: placed at the entry that the message names.
@@ -291,6 +311,7 @@ Scene parse_scene(std::string_view text, const std::string& name, const std::vec
   if (!document.readable()) document.faults().throw_if_any(name);
   FileTable file;
   file_schema().read(document.root(), {1, 1}, document, file);
+  take_sample_files(file, std::filesystem::path(name).parent_path(), document.faults());
   Scene scene = build_scene(file, document.faults());
   document.faults().throw_if_any(name);
   scene.path = name;

@@ -103,6 +103,11 @@ void build_forces(const std::vector<ForceTable>& tables, const BodyNames& names,
 /// The motion of a site.
 SiteMotion build_motion(const Given<MotionTable>& table, double duration, FaultList& faults);
 
+/// Reads the classic text data files that shapes name, from `folder`: each becomes its thing's shape, and
+/// gives mass, position, angle and velocities where the thing itself says nothing. Faults in a file name that
+/// file.
+void take_sample_files(FileTable& file, const std::filesystem::path& folder, FaultList& faults);
+
 /// The whole scene, or faults.
 Scene build_scene(const FileTable& file, FaultList& faults);
 

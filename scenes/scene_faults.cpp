@@ -13,10 +13,17 @@ std::string joined(const std::filesystem::path& file, const std::vector<SceneFau
   std::string text;
   for (const SceneFault& fault : faults) {
     if (!text.empty()) text += '\n';
-    text += file.string() + ':' + std::to_string(fault.line) + ':' + std::to_string(fault.column) + ": " +
-            fault.message;
+    text += (fault.file.empty() ? file.string() : fault.file) + ':' + std::to_string(fault.line) + ':' +
+            std::to_string(fault.column) + ": " + fault.message;
   }
   return text;
+}
+
+// One fault, one line: whatever was given may hold line breaks.
+std::string one_line(std::string message) {
+  std::replace_if(
+      message.begin(), message.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return message;
 }
 
 // Levenshtein distance, two rows.
@@ -43,16 +50,17 @@ SceneFaults::SceneFaults(const std::filesystem::path& file, std::vector<SceneFau
 void FaultList::add(const Where& where, std::string message) {
   if (where.override_index >= 0)
     message = "--set " + paths_[static_cast<std::size_t>(where.override_index)] + ": " + message;
-  // one fault, one line: whatever was given may hold line breaks
-  std::replace_if(
-      message.begin(), message.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  faults_.push_back({where.line, where.column, std::move(message)});
+  faults_.push_back({where.line, where.column, one_line(std::move(message)), {}});
+}
+
+void FaultList::add_elsewhere(const std::string& file, int line, int column, const std::string& message) {
+  faults_.push_back({line, column, one_line(message), file});
 }
 
 void FaultList::throw_if_any(const std::string& file) {
   if (faults_.empty()) return;
   std::stable_sort(faults_.begin(), faults_.end(), [](const SceneFault& a, const SceneFault& b) {
-    return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+    return std::tie(a.file, a.line, a.column) < std::tie(b.file, b.line, b.column);
   });
   throw SceneFaults(file, std::move(faults_));
 }

@@ -21,6 +21,8 @@ class FaultList {
   explicit FaultList(std::vector<std::string> override_paths = {}) : paths_(std::move(override_paths)) {}
 
   void add(const Where& where, std::string message);
+  /// A fault in another file that the scene names.
+  void add_elsewhere(const std::string& file, int line, int column, const std::string& message);
   bool empty() const { return faults_.empty(); }
   std::size_t size() const { return faults_.size(); }
   /// @throws SceneFaults if there are any.

@@ -89,9 +89,8 @@ const Schema<PathTable>& path_schema() {
   return schema;
 }
 const Schema<SamplesTable>& samples_schema() {
-  static const Schema<SamplesTable> schema =
-      Schema<SamplesTable>("samples").required("file", &SamplesTable::file, text("file name"),
-                                               "the classic text data file (not available in this release)");
+  static const Schema<SamplesTable> schema = Schema<SamplesTable>("samples").required(
+      "file", &SamplesTable::file, text("file name"), "the classic text data file, beside the scene file");
   return schema;
 }
 const Schema<ArcTable>& arc_schema() {
@@ -215,13 +214,14 @@ void add_body_shapes(Schema<ThingTable>& schema) {
   add_shape(
       schema, curved(shape_kind("path")), path_schema().codec(), "an outline from SVG path data",
       [](const PathTable& t, const ShapeContext& c) { return make_path(t.d, t.scale, c.curve_tolerance); });
-  add_shape(
-      schema, shape_kind("samples"), samples_schema().codec(), "the classic text data file",
-      [](const SamplesTable&, const ShapeContext&) -> Shape {
-        throw BadInput(
-            "samples: not available in this release; given a file, allowed: disc, box, polygon, polygons, "
-            "capsule, chain, path");
-      });
+  schema.custom("samples", samples_schema().codec().type, "", "the classic text data file",
+                [](const toml::node& node, TomlDocument& doc, ThingTable& out) {
+                  ShapeSpec made = shape_kind("samples");
+                  made.where = doc.where(node);
+                  SamplesTable table;
+                  if (samples_schema().codec().read(node, doc, "samples", table)) made.data_file = table.file;
+                  out.shapes.push_back(std::move(made));  // its build comes with the file: take_sample_files
+                });
 }
 
 void add_site_shapes(Schema<ThingTable>& schema) {

@@ -123,8 +123,11 @@ const Schema<SamplingTable>& sampling_schema() {
       Schema<SamplingTable>("sampling")
           .key("kind", &SamplingTable::kind, choice({"vertices", "boundary", "volume", "random", "raster"}),
                "where the classic detector puts its samples; the exact detectors do not use it")
-          .key("spacing", &SamplingTable::spacing, number(not_negative("m")), "distance between samples")
-          .key("count", &SamplingTable::count, whole(0, 10'000'000), "number of samples, for random");
+          .key("spacing", &SamplingTable::spacing, number(not_negative("m")),
+               "distance between samples; raster: side of a pixel")
+          .key(
+              "count", &SamplingTable::count, whole(0, kMostParticles),
+              "in place of spacing: samples along the boundary; volume, raster: cells along the longer side");
   return schema;
 }
 
@@ -203,9 +206,9 @@ const Schema<SolverOptions>& solver_schema() {
           .key("absolute_tolerance", &S::absolute_tolerance, number({1e-18, 1.0, false, ""}),
                "in SI units, adaptive integrators")
           .key("step", &S::step, number({1e-9, 1e6, false, "s"}),
-               "step of fixed-step integrators and of policy fixed_step")
+               "step of fixed-step integrators, of policy fixed_step and of detector depth")
           .key("response", &S::response, choice(names_of(responses())), "what a collision does")
-          .key("detector", &S::detector, choice(names_of(detectors()), {"depth"}), "how contacts are found")
+          .key("detector", &S::detector, choice(names_of(detectors())), "how contacts are found")
           .key("contact_tolerance", &S::contact_tolerance, number({1e-14, 1e-2, false, ""}),
                "gap that counts as contact, of the scene's length")
           .key("persistent", &S::persistent, flag(), "contacts may last; false: collisions only")
@@ -228,6 +231,10 @@ const Schema<FieldTable>& field_schema() {
                "width of the band drawn around a shape; 0: chosen by shape")
           .key("primitives", &F::primitives, choice({"exact"}, {"mesh"}), "what is drawn for a site")
           .key("readback", &F::readback, choice({"full", "window", "pixel"}), "what is read of a pass window")
+          .key("passes", &F::passes, choice({"each", "two_layers"}),
+               "detector depth: a picture for each body, or two for all")
+          .key("truncated", &F::truncated, flag(),
+               "detector depth: draw sites only as far as a contact can be; false: everywhere")
           .key("context", &F::context, choice({"auto", "osmesa", "egl"}), "who renders")
           .count("brute_force_below", &F::brute_force_below, whole(0, 1'000'000),
                  "shapes of fewer sites need no field")

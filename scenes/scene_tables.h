@@ -34,7 +34,9 @@ struct ShapeSpec {
   Json parameters;            ///< as given: equal parameters make equal shapes
   bool takes_radius = false;  ///< a thickness beside the shape has a meaning
   bool takes_curve_tolerance = false;
-  bool for_bodies = true;  ///< false: sites only
+  bool for_bodies = true;                ///< false: sites only
+  std::optional<std::string> data_file;  ///< samples: as named in the scene
+  std::vector<Vec2> samples;             ///< samples: what the file holds, in the shape's frame
   std::function<Shape(const ShapeContext&)> build;
 };
 

@@ -44,6 +44,8 @@ class WorldHasher {
   void one(const Body& b) {
     add(*b.outline, b.mass, b.inertia, b.lock_x, b.lock_y, b.lock_angle, b.material, b.initial);
     add(static_cast<int>(b.sampling.kind), b.sampling.spacing, b.sampling.count);
+    one(static_cast<double>(b.sampling.seed));
+    for (const Vec2& p : b.sampling.points) one(p);
   }
   void one(const std::monostate&) {}
   void one(const ConstantMotion& m) { add(m.twist.velocity, m.twist.omega); }

@@ -40,6 +40,7 @@ Kernel::Kernel(World world, SolverOptions options)
   for (const FixedSite& site : world_.sites) sites_.emplace_back(site);
   make_indices();
   if (options_.detector == "pass") passes_ = std::make_unique<PassRenderer>(options_.field, &work_);
+  if (options_.detector == "depth") depth_ = std::make_unique<DepthDetector>(world_, options_, &work_);
 }
 
 Kernel::~Kernel() = default;

@@ -13,6 +13,7 @@
 #include "brink/core/fields/pass_window.h"
 #include "brink/core/world/forces.h"
 #include "brink/scheduler/agenda.h"
+#include "brink/scheduler/depth_detector.h"
 #include "brink/scheduler/options.h"
 #include "brink/scheduler/recorder.h"
 #include "brink/scheduler/simulator.h"
@@ -106,6 +107,9 @@ class Kernel {
   bool fresh(const Certificate& c) const;
   /// Contacts of a pair at the present time with gap <= `tolerance`, deepest first.
   std::vector<FeatureContact> touching(const PairKey& pair, double tolerance);
+  /// What the particles see at time t (detector `depth` alone), `from` being when they looked last. @pre the
+  /// motions cover t. Valid until the next look.
+  const DepthSight& look(double from, double t);
   /// Resolves one collision at the present time and records it. Raises versions. False on a halt.
   /// Bodies whose motion changed are appended to `changed`.
   bool resolve(const PairKey& pair, const FeatureContact& contact, std::vector<int>& changed);
@@ -206,6 +210,7 @@ class Kernel {
   std::vector<const SiteIndex*> body_index_, site_index_;
   std::vector<std::unique_ptr<SiteIndex>> indices_;
   std::unique_ptr<PassRenderer> passes_;
+  std::unique_ptr<DepthDetector> depth_;  ///< detector `depth` alone
   mutable SearchScratch scratch_;
   ZenoWatch zeno_;
   std::vector<Box> boxes_;                   ///< moving bounds of every owner over the present horizon

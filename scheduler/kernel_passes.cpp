@@ -110,6 +110,22 @@ std::vector<PairKey> Kernel::pairs_by_pass(int body, double from, double to) {
   return pairs;
 }
 
+const DepthSight& Kernel::look(double from, double t) {
+  std::vector<OwnerMoment> owners;
+  double fastest = 0.0;
+  for (int k = 0; k < owner_count(); ++k) {
+    const Motion& motion = motion_of(k);
+    const double before = std::clamp(from, std::min(motion.begin(), t), t);
+    owners.push_back({motion.state(t), motion.state(before)});
+    const double reach =
+        outline_of(k).container ? outline_of(k).bounds.extent().norm() : outline_of(k).bounding_radius;
+    for (const Twist& twist : {owners.back().now.twist, owners.back().before.twist})
+      fastest = std::max(fastest, twist.velocity.norm() + std::abs(twist.omega) * reach);
+  }
+  // two owners come nearer at twice the fastest speed at most; as much again for what accelerates
+  return depth_->look(owners, 4.0 * fastest * std::max(t - from, options_.step));
+}
+
 std::optional<Certificate> Kernel::search(const PairKey& pair, double from, double to) {
   const Mover a = mover(pair.body), b = other_mover(pair);
   // of simultaneous resolves one may be a rounding ahead

@@ -43,6 +43,11 @@ ExtendedState deflected(ExtendedState s, const ExtendedTwist& after, Real delay)
   return s;
 }
 
+/// A contact that a picture shows: its particle is no feature of the outlines, to be looked at more closely.
+ExtendedContact as_seen(const FeatureContact& f) {
+  return {f.point.cast<Real>(), f.normal.cast<Real>(), f.gap, f.closing_speed};
+}
+
 }  // namespace
 
 Contact Kernel::world_contact(const PairKey& pair, const FeatureContact& f) const {
@@ -105,10 +110,10 @@ Kernel::Response Kernel::respond(const PairKey& pair, const FeatureContact& foun
   r.body = bodies_[pair.body].motion.extended_state(time_);
   r.other = motion_of(other_owner(pair)).extended_state(time_);
   const Outline &outline = outline_of(pair.body), &other_outline = outline_of(other_owner(pair));
-  ExtendedContact c = contact_in(outline, other_outline, r.body, r.other, found);
-  r.delay = delay_to_contact(pair, found, c);
+  ExtendedContact c = depth_ ? as_seen(found) : contact_in(outline, other_outline, r.body, r.other, found);
+  r.delay = depth_ ? Real(0) : delay_to_contact(pair, found, c);
   const ExtendedState body = r.body.moved(r.delay), other = r.other.moved(r.delay);
-  c = contact_in(outline, other_outline, body, other, found);
+  if (!depth_) c = contact_in(outline, other_outline, body, other, found);
   const Body& definition = world_.bodies[pair.body];
   const ImpulseSide side = body_side(definition, body, c.point);
   const ImpulseSide other_side = pair.with_site() ? site_side(other, c.point)
@@ -174,7 +179,9 @@ void Kernel::count_collision(const PairKey& pair) {
 }
 
 bool Kernel::judge_endings(const PairKey& pair, const Contact& contact, double rest) {
-  if (const auto zeno = zeno_.collided(pair, time_, contact.closing_speed, rest)) {
+  // flights lower than a pixel say nothing about a Zeno limit
+  if (const auto zeno =
+          depth_ ? std::nullopt : zeno_.collided(pair, time_, contact.closing_speed, rest)) {
     Event event;
     event.seq = seq_++;
     event.kind = EventKind::zeno;

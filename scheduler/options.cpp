@@ -30,6 +30,7 @@ constexpr std::array kResponses{
 constexpr std::array kDetectors{
     Choice{"field", "candidates from each body's own rendered Voronoi field, answers in double precision"},
     Choice{"pass", "near owners from rendered pass windows, then the same exact search"},
+    Choice{"depth", "the classic method: particles read rendered depth; approximate, with steps of `step`"},
 };
 
 std::string names_of(std::span<const Choice> choices) {

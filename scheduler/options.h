@@ -15,10 +15,10 @@ struct SolverOptions {
   std::string integrator = "auto";       ///< see integrators()
   double tolerance = 1e-10;              ///< relative, adaptive integrators
   double absolute_tolerance = 1e-12;     ///< adaptive integrators
-  double step = 0.001;                   ///< [s], for fixed-step integrators and policy fixed_step
-  std::string response = "impulse";      ///< impulse | reflection
-  std::string detector = "field";        ///< field | pass
-  double contact_tolerance = 1e-10;      ///< of the scene's length
+  double step = 0.001;  ///< [s], for fixed-step integrators, policy fixed_step and detector depth
+  std::string response = "impulse";  ///< impulse | reflection
+  std::string detector = "field";    ///< field | pass | depth
+  double contact_tolerance = 1e-10;  ///< of the scene's length
   bool persistent = true;  ///< resting contacts (a later release: until then a Zeno ending stops the run)
   std::uint64_t seed = 1;  ///< for order "random"
   std::uint64_t max_collisions = 0;  ///< stop after this many; 0: no limit

@@ -60,7 +60,9 @@ Plan Kernel::plan() const {
           "fields: {} distinct shape(s), {} with a rendered field, {} of fewer than {} sites by brute force",
           shapes.size(), with_field.size(), shapes.size() - with_field.size(),
           options_.field.brute_force_below)));
-  const bool context = !with_field.empty() || passes_;
+  if (depth_)
+    for (std::string& line : depth_->describe()) lines.push_back(std::move(line));
+  const bool context = !with_field.empty() || passes_ || depth_;
   lines.push_back(context ? "GL context: needed (" + options_.field.context + ")" : "GL context: not needed");
   const bool friction = std::any_of(world_.materials.begin(), world_.materials.end(),
                                     [](const Material& m) { return m.friction > 0.0; });

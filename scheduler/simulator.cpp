@@ -14,7 +14,7 @@ namespace brink {
 
 struct Simulator::Impl {
   Impl(World world, SolverOptions options)
-      : kernel(std::move(world), options), policy(make_policy(options.policy)) {}
+      : kernel(std::move(world), options), policy(make_policy(options.policy, options.detector)) {}
   Kernel kernel;
   std::unique_ptr<Policy> policy;
   double energy_initial = 0.0;

@@ -46,6 +46,7 @@ bool FieldOptions::is_valid(std::string* error) const {
   }
   return is_one_of("primitives", primitives, {"exact"}, error) &&
          is_one_of("readback", readback, {"full", "window", "pixel"}, error) &&
+         is_one_of("passes", passes, {"each", "two_layers"}, error) &&
          is_one_of("context", context, {"auto", "osmesa", "egl"}, error);
 }
 

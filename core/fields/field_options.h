@@ -10,7 +10,9 @@ struct FieldOptions {
   double band = 0.0;   ///< width of the rendered band around the outline [m]; 0: chosen by shape
   std::string primitives = "exact";  ///< "exact"
   std::string readback = "window";   ///< "full" | "window" | "pixel"
-  std::string context = "auto";      ///< "auto" | "osmesa" | "egl"
+  std::string passes = "each";       ///< detector depth: "each" body's window | "two_layers" for all bodies
+  bool truncated = true;  ///< detector depth: draw sites only as far as a contact can be (false: everywhere)
+  std::string context = "auto";  ///< "auto" | "osmesa" | "egl"
   int brute_force_below = 16;  ///< outlines of fewer sites than this need no field (0: every outline has one)
   int list_cap = 24;           ///< longest candidate list kept in a pixel; longer ones are answered by a tree
 

@@ -95,6 +95,14 @@ struct PassRenderer::Impl {
   std::vector<std::uint32_t> ids;
   std::vector<float> values;
 
+  /// What draw() has drawn last, and whether `ids` and `values` hold it.
+  struct Drawn {
+    PixelGrid grid;
+    SiteBatch batch;
+    SiteNames names{{}};
+    bool was_read = false;
+  } drawn;
+
   Impl(const FieldOptions& o, WorkCounters* w) : options(o), work(w), renderer(open_gl_context(o.context)) {}
 
   void count(std::uint64_t passes, std::uint64_t drawn_before, std::uint64_t read_before) const {
@@ -155,9 +163,13 @@ struct PassRenderer::Impl {
     return batch;
   }
 
-  std::vector<PixelValue> pick(const PixelGrid& grid, const Decoder& decoder, std::span<const Vec2> points) {
+  std::vector<PixelValue> pick(std::span<const Vec2> points) {
+    const PixelGrid& grid = drawn.grid;
+    const Decoder decoder{drawn.names, grid, drawn.batch};
     const bool one_by_one = options.readback == "pixel";
-    const int row = one_by_one ? 0 : read(grid);
+    if (!one_by_one && !drawn.was_read) read(grid);
+    drawn.was_read = !one_by_one;
+    const std::size_t row = options.readback == "full" ? renderer.target_size() : grid.width;
     std::vector<PixelValue> picked;
     picked.reserve(points.size());
     for (const Vec2& p : points) {
@@ -169,8 +181,7 @@ struct PassRenderer::Impl {
       if (one_by_one) {
         renderer.read_image(i, j, 1, 1, &id, &value);
       } else {
-        const std::size_t place =
-            static_cast<std::size_t>(j) * static_cast<std::size_t>(row) + static_cast<std::size_t>(i);
+        const std::size_t place = static_cast<std::size_t>(j) * row + static_cast<std::size_t>(i);
         id = ids[place];
         value = values[place];
       }
@@ -202,17 +213,30 @@ FieldImage PassRenderer::render(const Box& window, int width, int height,
   return image;
 }
 
+void PassRenderer::draw(const Box& window, int width, int height, std::span<const PlacedOutline> scene,
+                        std::uint32_t excluded, double band) {
+  check_window(window, scene);
+  Impl::Drawn& drawn = impl_->drawn;
+  const std::uint64_t drawn_before = impl_->renderer.pixels_drawn(), read = impl_->renderer.pixels_read();
+  drawn.grid = make_grid(window, width, height);
+  drawn.names = SiteNames(scene);
+  drawn.batch = impl_->draw_first(drawn.grid, scene, excluded, band, drawn.names, 1);
+  drawn.was_read = false;
+  impl_->count(1, drawn_before, read);
+}
+
+std::vector<PixelValue> PassRenderer::read(std::span<const Vec2> points) {
+  const std::uint64_t drawn = impl_->renderer.pixels_drawn(), read = impl_->renderer.pixels_read();
+  std::vector<PixelValue> picked = impl_->pick(points);
+  impl_->count(0, drawn, read);
+  return picked;
+}
+
 std::vector<PixelValue> PassRenderer::render_at(const Box& window, int width, int height,
                                                 std::span<const PlacedOutline> scene, std::uint32_t excluded,
                                                 double band, std::span<const Vec2> points) {
-  check_window(window, scene);
-  const PixelGrid grid = make_grid(window, width, height);
-  const std::uint64_t drawn = impl_->renderer.pixels_drawn(), read = impl_->renderer.pixels_read();
-  const SiteNames names(scene);
-  const SiteBatch batch = impl_->draw_first(grid, scene, excluded, band, names, 1);
-  std::vector<PixelValue> picked = impl_->pick(grid, {names, grid, batch}, points);
-  impl_->count(1, drawn, read);
-  return picked;
+  draw(window, width, height, scene, excluded, band);
+  return read(points);
 }
 
 std::array<FieldImage, 2> PassRenderer::render_two_layers(const Box& window, int width, int height,

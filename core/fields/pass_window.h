@@ -21,6 +21,7 @@ struct PlacedOutline {
   const Outline* outline = nullptr;
   Pose pose;
   std::uint32_t owner = 0;
+  bool drawn = true;  ///< false: left out, but the rest is drawn with the same bits as with it
 };
 
 /// A rendered window: row-major pixels, row 0 at the bottom, pixel centres at low + (i + 1/2) * pixel.
@@ -70,6 +71,13 @@ class PassRenderer {
   /// all). Sites farther than `band` from a pixel are not drawn there (infinite: the whole window).
   FieldImage render(const Box& window, int width, int height, std::span<const PlacedOutline> scene,
                     std::uint32_t excluded, double band);
+
+  /// Draws the same, to be read by read(). The outlines and `scene` are not kept.
+  void draw(const Box& window, int width, int height, std::span<const PlacedOutline> scene,
+            std::uint32_t excluded, double band);
+  /// The pixels that hold `points` (as render_at) of what draw() has drawn last. @pre nothing else has been
+  /// drawn since.
+  std::vector<PixelValue> read(std::span<const Vec2> points);
 
   /// The same window, read only at the pixels that hold `points` [m, world] (a point outside: its nearest
   /// pixel). FieldOptions::readback says how: "pixel" reads them one by one, "window" the window, "full" the

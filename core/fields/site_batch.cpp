@@ -225,7 +225,7 @@ SiteBatch make_batch(const PixelGrid& grid, std::span<const PlacedOutline> scene
   for (const PlacedOutline& item : scene) {
     const Frame frame(item.pose);
     for (const Site& site : item.outline->sites) {
-      if (item.owner != excluded) maker.add(site, frame, id, batch);
+      if (item.drawn && item.owner != excluded) maker.add(site, frame, id, batch);
       ++id;
     }
   }

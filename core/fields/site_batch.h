@@ -81,7 +81,8 @@ struct BatchRules {
       false;  ///< shift distances by the error bound (upper and lower bounds instead of the plain value)
 };
 
-/// Sites of `scene` numbered from 0 in order; the owner `excluded` keeps its numbers but is not drawn.
+/// Sites of `scene` numbered from 0 in order; the owner `excluded`, and whatever is not to be drawn,
+/// keeps its numbers.
 SiteBatch make_batch(const PixelGrid& grid, std::span<const PlacedOutline> scene, std::uint32_t excluded,
                      const BatchRules& rules);
 

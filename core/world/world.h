@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "brink/core/shapes/outline.h"
+#include "brink/core/shapes/sampling.h"
 #include "brink/core/world/formula.h"
 
 namespace brink {
@@ -26,14 +27,6 @@ struct Material {
 /// How two materials make one pair.
 enum class Combine { max, min, mean, geometric_mean, product };
 
-/// How an outline is sampled by the classic detector; the exact detectors always use Outline::samples.
-struct Sampling {
-  enum class Kind { vertices, boundary, volume, random, raster };
-  Kind kind = Kind::vertices;
-  double spacing = 0.0;  ///< [m]
-  int count = 0;
-};
-
 struct Body {
   std::string name;
   std::shared_ptr<const Outline> outline;  ///< about the centre of mass, which is the body's position
@@ -42,7 +35,7 @@ struct Body {
   bool lock_x = false, lock_y = false, lock_angle = false;  ///< held coordinates: infinite mass there
   int material = 0;                                         ///< index into World::materials
   BodyState initial;
-  Sampling sampling;
+  Sampling sampling;  ///< of detector `depth` alone
 
   double inverse_mass_x() const { return lock_x ? 0.0 : 1.0 / mass; }
   double inverse_mass_y() const { return lock_y ? 0.0 : 1.0 / mass; }

@@ -83,6 +83,7 @@ void check_outline(const Checker& check, const std::shared_ptr<const Outline>& o
 void check_sampling(const Checker& check, const Sampling& sampling) {
   check.not_negative("sampling spacing", sampling.spacing);
   check.require(sampling.count >= 0, "sampling count", sampling.count, "integers >= 0");
+  for (const Vec2& p : sampling.points) check.finite("sampling point", p);
 }
 
 void check_locks(const Checker& check, const Body& body) {

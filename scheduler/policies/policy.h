@@ -22,7 +22,13 @@ std::unique_ptr<Policy> make_body_clocks();
 std::unique_ptr<Policy> make_global_backup();
 std::unique_ptr<Policy> make_fixed_step();
 
+std::unique_ptr<Policy> make_classic_backup();
+std::unique_ptr<Policy> make_classic_fixed_step();
+
+/// The policy of that name. Detector `depth` cannot tell when two bodies will meet, only that they do: it has
+/// two policies of its own, one that steps and pushes apart (for fixed_step), and one that steps and backs up
+/// by looking again (for all others).
 /// @throws BadInput on a name that is not in policies().
-std::unique_ptr<Policy> make_policy(std::string_view name);
+std::unique_ptr<Policy> make_policy(std::string_view name, std::string_view detector = "field");
 
 }  // namespace brink

@@ -1,0 +1,78 @@
+#include "brink/core/shapes/boundary_walk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "brink/core/shapes/curve_site.h"
+#include "brink/core/shapes/thick_boundary.h"
+
+namespace brink {
+
+namespace {
+
+/// Points nearer to each other than this, of the spacing, are one.
+constexpr double kSame = 1e-6;
+
+/// Keeps points that are not kept already.
+class Distinct {
+ public:
+  explicit Distinct(double size) : size_(size) {}
+
+  bool take(const Vec2& p) {
+    const Vec2 at = (p / size_).array().round();
+    for (int dx = -1; dx <= 1; ++dx)
+      for (int dy = -1; dy <= 1; ++dy)
+        if (cells_.contains({at.x() + dx, at.y() + dy})) return false;
+    cells_.insert({at.x(), at.y()});
+    return true;
+  }
+
+ private:
+  double size_;
+  std::set<std::pair<double, double>> cells_;
+};
+
+double length_of(const Site& piece) { return piece.kind == SiteKind::point ? 0.0 : length(piece); }
+
+Vec2 along(const Site& piece, double fraction) {
+  return piece.kind == SiteKind::point ? piece.a : point_along(piece, fraction);
+}
+
+}  // namespace
+
+std::vector<Site> boundary_pieces(const Outline& outline) {
+  const bool thick =
+      std::any_of(outline.sites.begin(), outline.sites.end(), [](const Site& s) { return s.radius > 0.0; });
+  return thick ? thick_boundary(outline) : outline.sites;
+}
+
+double total_length(const std::vector<Site>& pieces) {
+  double sum = 0.0;
+  for (const Site& piece : pieces) sum += length_of(piece);
+  return sum;
+}
+
+std::vector<Vec2> walk(const std::vector<Site>& pieces, double spacing) {
+  std::vector<Vec2> points;
+  Distinct distinct(kSame * spacing);
+  for (const Site& piece : pieces) {
+    const int parts = std::max(1, static_cast<int>(std::ceil(length_of(piece) / spacing - kSame)));
+    for (int k = 0; k <= parts; ++k) {
+      const Vec2 p = along(piece, static_cast<double>(k) / parts);
+      if (distinct.take(p)) points.push_back(p);
+    }
+  }
+  return points;
+}
+
+Vec2 point_at(const std::vector<Site>& pieces, double way) {
+  for (const Site& piece : pieces) {
+    const double own = length_of(piece);
+    if (way <= own && own > 0.0) return along(piece, way / own);
+    way -= own;
+  }
+  return along(pieces.back(), 1.0);
+}
+
+}  // namespace brink

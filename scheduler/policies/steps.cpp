@@ -1,0 +1,28 @@
+#include "brink/scheduler/policies/steps.h"
+
+#include <cmath>
+
+namespace brink {
+
+double step_end(double from, double step) {
+  const double end = (std::floor(from / step + 1e-9) + 1.0) * step;
+  return end > from ? end : from + step;
+}
+
+void push_apart(Kernel& kernel, const PairKey& pair, const Vec2& way) {
+  const auto mobility = [&](int k) {
+    const Body& b = kernel.world().bodies[k];
+    return Vec2(b.inverse_mass_x(), b.inverse_mass_y());
+  };
+  const double length = way.norm();
+  if (!(length > 0.0)) return;
+  const Vec2 a = mobility(pair.body), b = pair.with_site() ? Vec2(0.0, 0.0) : mobility(pair.other_body);
+  const Vec2 normal = way / length;
+  const double yield = normal.cwiseAbs2().dot(a + b);
+  if (!(yield > 0.0)) return;
+  const Vec2 push = way / yield;
+  kernel.displace(pair.body, push.cwiseProduct(a));
+  if (!pair.with_site()) kernel.displace(pair.other_body, -push.cwiseProduct(b));
+}
+
+}  // namespace brink
