@@ -101,7 +101,7 @@ double place_noise(const Parabola& a, const Parabola& b, double t, double arm) {
 /// to. Any interval will do that has the crossing and whose ends are beyond rounding: the narrowest first.
 template <class Gap>
 double canonical_root(Gap&& gap, double t, double from, double noise, double speed) {
-  for (const double reach : {0.125 * noise, 8.0 * noise})
+  for (const double reach : {0.25 * noise, 8.0 * noise})
     if (t - reach > from && gap(t - reach) > 0.0 && gap(t + reach) <= 0.0)
       return last_clear_time(gap, t - reach, t + reach);
   if (t > from && gap(from) > 0.0 && gap(t + 8.0 * noise) <= 0.0)

@@ -278,32 +278,26 @@ class PairSearch {
     const double speed = -f.rate;
     const double now = f.gap - (vertex ? view_.level_at(site, sample.radius, nearest_on(site, path.q)) : 0.0);
     const double guess = t_ + now / speed;
-    const double rounding = view_.gap_rounding() / speed + 4.0 * ulp(t_);
     const double bend = std::min(1.0, bounds.acceleration * f.gap / (speed * speed)) * f.gap / speed;
-    const double noise = rounding + bend;
+    const double noise = view_.gap_rounding() / speed + 4.0 * ulp(t_) + bend;
     const double last = std::min(a_.motion->end(), b_.motion->end());
-    // the narrowest bracket whose ends are beyond rounding, and beyond what the path bends on the way
-    double low = guess - (0.125 * rounding + bend), high = guess + (0.125 * rounding + bend);
-    if (!(low > from_ && high <= last && gap(low) > 0.0 && gap(high) <= 0.0)) {
-      low = std::max(guess - 8.0 * noise, from_);
-      for (double back = 8.0 * noise; gap(low) <= 0.0; back *= 4.0) {
-        if (low <= from_) return remember(half, f, t_);  // in each other from the start, and now going deeper
-        low = std::max(low - back, from_);
-      }
-      // beyond the surface; or, where two points meet, when they are nearest; or where a bent path meets it
-      // later
-      const double nearest = t_ + f.gap / speed, later = t_ + 4.0 * std::max(0.0, now) / speed + 64.0 * noise;
-      for (const double beyond : {guess + 8.0 * noise, nearest, later}) {
-        high = std::min(beyond, last);
-        if (high > low && gap(high) <= 0.0) break;
-      }
-      if (high <= low || gap(high) > 0.0)  // passes by, or touches within rounding
-        return f.gap <= limits_.touch && remember(half, f, t_);
+    double low = std::max(guess - 8.0 * noise, from_), high = guess + 8.0 * noise;
+    for (double back = 8.0 * noise; gap(low) <= 0.0; back *= 4.0) {
+      if (low <= from_) return remember(half, f, t_);  // in each other from the start, and now going deeper
+      low = std::max(low - back, from_);
     }
+    // beyond the surface; where two points meet, when they are nearest; where a bent path meets it later; and
+    // where a tip is grazed, for less than a rounding
+    const double nearest = t_ + f.gap / speed, later = t_ + 4.0 * std::max(0.0, now) / speed + 64.0 * noise;
+    for (const double beyond : {high, nearest, later, nearest + 0.125 * noise, nearest + 0.25 * noise,
+                                nearest + 0.5 * noise, nearest + noise}) {
+      high = std::min(beyond, last);
+      if (high > low && gap(high) <= 0.0) break;
+    }
+    if (high <= low || gap(high) > 0.0)  // passes by, or touches within rounding
+      return f.gap <= limits_.touch && remember(half, f, t_);
     const double t = last_clear_time(gap, low, high);
-    Feature met = f;
-    met.site = view_.gap_at(half, f, t).site;
-    return remember(half, met, t, 8.0 * noise);
+    return remember(half, f, t, 8.0 * noise);
   }
 
   /// Keeps the contact if it is the earliest so far (ties: lowest half, sample, site). Always true. The
@@ -311,19 +305,24 @@ class PairSearch {
   /// steps.
   bool remember(const Half& half, const Feature& f, double t, double noise = 0.0) {
     if (t > window_end_) return true;
+    const FeatureContact contact = t == t_ ? view_.contact_of(half, f, t) : contact_then(half, f, t);
     const bool earlier = best_.sample < 0 || t < best_.time ||
                          (t == best_.time && std::tie(half.s_is_a, best_.sample, best_.site) >
-                                                 std::tie(best_.sample_on_a, f.sample, f.site));
+                                                 std::tie(best_.sample_on_a, contact.sample, contact.site));
     if (!earlier) return true;
-    if (t == t_) {
-      best_ = view_.contact_of(half, f, t);
-    } else {  // the contact's geometry is that of its own time
-      PairView there = view_;
-      there.place(t);
-      best_ = there.look_again(half, f, t);
-    }
+    best_ = contact;
     to_ = std::min(to_, std::nextafter(t + noise, kForever));
     return true;
+  }
+
+  /// The contact's geometry is that of its own time, and its site the nearest then, unless it leaves that.
+  FeatureContact contact_then(const Half& half, const Feature& f, double t) const {
+    PairView there = view_;
+    there.place(t);
+    Feature met = f;
+    met.site = view_.gap_at(half, f, t).site;
+    const FeatureContact contact = there.look_again(half, met, t);
+    return contact.closing_speed > 0.0 || met.site == f.site ? contact : there.look_again(half, f, t);
   }
 
   PairView view_;
