@@ -198,8 +198,8 @@ const Schema<SolverOptions>& solver_schema() {
       Schema<S>("solver")
           .key("policy", &S::policy, choice(accepted_policies()),
                "who is tested next, advanced and backed up")
-          .key("order", &S::order, choice(names_of(orders()), {"lcp", "reflections"}),
-               "which of several simultaneous contacts is resolved first")
+          .key("order", &S::order, choice(names_of(orders())),
+               "which of several simultaneous contacts is resolved first, or that they are taken together")
           .key("integrator", &S::integrator, choice(names_of(integrators())),
                "how bodies move between contacts")
           .key("tolerance", &S::tolerance, number({1e-14, 0.1, false, ""}), "relative, adaptive integrators")

@@ -11,6 +11,9 @@ namespace {
 /// Below this part of the bounding radius a difference of points has no direction worth its digits.
 constexpr double kNoDirection = 1e-6;
 
+/// Two unit normals with this cosine or more are one, but for rounding.
+constexpr double kSameDirection = 1.0 - 1e-12;
+
 /// An outline's frame in extended precision; a centred disc looks the same at any angle.
 struct Turn {
   Real cosine = 1, sine = 0;
@@ -48,6 +51,8 @@ Away away_from(const Site& site, const Turn& turn, const RealVec& origin, const 
     if (along <= 0) return from_point(site.a);
     if (along >= length2) return from_point(site.b);
     const RealVec n = aligned(extended::perp(d) / std::sqrt(length2), out);
+    // a contact with an end, seen a rounding inside: its normal is not the segment's
+    if (n.dot(out) < kSameDirection) return from_point(2 * along <= length2 ? site.a : site.b);
     return {n, n.dot(w)};
   }
   if (site.kind == SiteKind::arc) {
@@ -56,7 +61,8 @@ Away away_from(const Site& site, const Turn& turn, const RealVec& origin, const 
     const Real sense = site.sweep > 0 ? 1 : -1, length = w.norm();
     if (sense * extended::cross(from, w) > 0 && sense * extended::cross(w, to) > 0 && length > least) {
       const RealVec radial = w / length, n = aligned(radial, out);
-      return {n, n.dot(radial) * (length - static_cast<Real>(site.arc_radius))};
+      if (n.dot(out) >= kSameDirection)
+        return {n, n.dot(radial) * (length - static_cast<Real>(site.arc_radius))};
     }
     return (p - place(site.a)).squaredNorm() <= (p - place(site.b)).squaredNorm() ? from_point(site.a)
                                                                                   : from_point(site.b);

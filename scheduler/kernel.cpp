@@ -137,6 +137,9 @@ bool Kernel::extend_motions(double t) {
 void Kernel::advance_pair(const PairKey& pair, double t) {
   work_.advances += pair.with_site() ? 1 : 2;
   time_ = t;
+  if (!run_.trace) return;
+  for (const int k : {pair.body, pair.other_body})
+    if (k >= 0) run_.trace->mark({TraceKind::advance, k, -1, std::min(bodies_[k].motion.begin(), t), t});
 }
 
 std::vector<BodyState> Kernel::states(double t) const {

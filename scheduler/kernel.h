@@ -110,8 +110,9 @@ class Kernel {
   /// What the particles see at time t (detector `depth` alone), `from` being when they looked last. @pre the
   /// motions cover t. Valid until the next look.
   const DepthSight& look(double from, double t);
-  /// Resolves one collision at the present time and records it. Raises versions. False on a halt.
-  /// Bodies whose motion changed are appended to `changed`.
+  /// Resolves one collision at the present time and records it; with an order that takes contacts together,
+  /// every contact of this instant that hangs together with it through touching bodies, one event for each
+  /// that pushed. Raises versions. False on a halt. Bodies whose motion changed are appended to `changed`.
   bool resolve(const PairKey& pair, const FeatureContact& contact, std::vector<int>& changed);
   /// Puts a body elsewhere, at the present time (approximate policies only).
   void displace(int body, const Vec2& shift);
@@ -160,6 +161,8 @@ class Kernel {
   };
   /// Starts bodies of one component, or one free body, afresh at the present time. False on a halt.
   bool restart(std::span<const Restart> touched);
+  /// The same; bodies whose motion changed are appended to `changed`.
+  bool restart_noted(std::span<const Restart> touched, std::vector<int>& changed);
   /// Extends one component to t and fetches its motions; false and halt() if its integrator cannot.
   bool cover(Coupled& c, double t);
   void fetch_motions(const Coupled& c);
@@ -192,6 +195,12 @@ class Kernel {
   Response respond(const PairKey& pair, const FeatureContact& found) const;
   /// Starts the touched components afresh with the twists after. False on a halt.
   bool deflect(const PairKey& pair, const Response& response, std::vector<int>& changed);
+  /// Collisions of one instant that are taken to be without end: a row of n touching bodies can need n^2 / 2.
+  std::uint64_t endless_group() const;
+  /// True if the present instant has had so many: its contacts are then taken together, without a rebound.
+  bool collapsed() const;
+  class GroupResolve;
+  bool resolve_group(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed);
   void count_collision(const PairKey& pair);
   bool judge_endings(const PairKey& pair, const Contact& contact, double rest);
   /// Notes that a body has been resolved now, with owner `partner`; returns the time since its last [s].

@@ -16,11 +16,6 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// Collisions of one instant that are taken to be without end: a row of n touching bodies can need n^2 / 2.
-std::uint64_t endless_group(std::size_t bodies) {
-  return 2000 + 10 * static_cast<std::uint64_t>(bodies) * bodies;
-}
-
 ImpulseSide body_side(const Body& body, const ExtendedState& state, const RealVec& point) {
   return {state.twist, point - state.position, body.inverse_mass_x(), body.inverse_mass_y(),
           body.inverse_inertia()};
@@ -132,23 +127,33 @@ Kernel::Response Kernel::respond(const PairKey& pair, const FeatureContact& foun
 bool Kernel::deflect(const PairKey& pair, const Response& r, std::vector<int>& changed) {
   const Restart both[] = {{pair.body, deflected(r.body, r.impulse.body, r.delay)},
                           {pair.other_body, deflected(r.other, r.impulse.other, r.delay)}};
-  const auto start = [&](std::span<const Restart> touched) {
-    const int k = touched.front().body, component = bodies_[k].component;
-    if (component < 0) {
-      changed.push_back(k);
-    } else {
-      const std::vector<int>& members = components_[component].component.bodies;
-      changed.insert(changed.end(), members.begin(), members.end());
-    }
-    return restart(touched);
-  };
-  if (pair.with_site()) return start({both, 1});
+  if (pair.with_site()) return restart_noted({both, 1}, changed);
   const int component = bodies_[pair.body].component;
-  if (component >= 0 && component == bodies_[pair.other_body].component) return start(both);
-  return start({both, 1}) && start({both + 1, 1});
+  if (component >= 0 && component == bodies_[pair.other_body].component) return restart_noted(both, changed);
+  return restart_noted({both, 1}, changed) && restart_noted({both + 1, 1}, changed);
+}
+
+bool Kernel::restart_noted(std::span<const Restart> touched, std::vector<int>& changed) {
+  const int k = touched.front().body, component = bodies_[k].component;
+  if (component < 0) {
+    changed.push_back(k);
+  } else {
+    const std::vector<int>& members = components_[component].component.bodies;
+    changed.insert(changed.end(), members.begin(), members.end());
+  }
+  return restart(touched);
+}
+
+std::uint64_t Kernel::endless_group() const {
+  return 2000 + 10 * static_cast<std::uint64_t>(bodies_.size()) * bodies_.size();
+}
+
+bool Kernel::collapsed() const {
+  return !depth_ && in_instant_ > endless_group() && time_ - instant_ <= 2.0 * same_instant(time_);
 }
 
 bool Kernel::resolve(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed) {
+  if (options_.takes_together() || collapsed()) return resolve_group(pair, found, changed);
   const Response response = respond(pair, found);
   if (response.impulse.kind == ImpulseKind::jam) {
     stop(Termination::failed, fmt::format("{} at t = {:.17g}: neither side can move", name_of(pair), time_));
@@ -180,8 +185,7 @@ void Kernel::count_collision(const PairKey& pair) {
 
 bool Kernel::judge_endings(const PairKey& pair, const Contact& contact, double rest) {
   // flights lower than a pixel say nothing about a Zeno limit
-  if (const auto zeno =
-          depth_ ? std::nullopt : zeno_.collided(pair, time_, contact.closing_speed, rest)) {
+  if (const auto zeno = depth_ ? std::nullopt : zeno_.collided(pair, time_, contact.closing_speed, rest)) {
     Event event;
     event.seq = seq_++;
     event.kind = EventKind::zeno;
@@ -200,7 +204,13 @@ bool Kernel::judge_endings(const PairKey& pair, const Contact& contact, double r
     instant_ = time_;
     in_instant_ = 0;
   }
-  if (++in_instant_ > endless_group(bodies_.size())) {
+  if (++in_instant_ == endless_group() + 1) {
+    Event event;
+    event.seq = seq_++;
+    event.kind = EventKind::group;
+    event.contact = contact;
+    if (recorder_ && run_.record_events) recorder_->event(event);
+  } else if (in_instant_ > 2 * endless_group()) {
     stop(Termination::failed,
          fmt::format("a group of collisions at t = {:.15g} does not end ({} so far, the last {})", time_,
                      in_instant_, name_of(pair)));

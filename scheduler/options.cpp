@@ -10,8 +10,9 @@ namespace brink {
 namespace {
 
 constexpr std::array kPolicies{
-    Choice{"body_clocks",
-           "every body keeps its own time; a collision advances two (Lubachevsky 1991; Mirtich & Canny 1995)"},
+    Choice{
+        "body_clocks",
+        "every body keeps its own time; a collision advances two (Lubachevsky 1991; Mirtich & Canny 1995)"},
     Choice{"global_backup",
            "all advance together to a horizon, all back up to the earliest contact (Baraff 1997)"},
     Choice{"fixed_step",
@@ -22,6 +23,10 @@ constexpr std::array kOrders{
     Choice{"closing_speed", "fastest approach first"},
     Choice{"depth", "smallest gap first"},
     Choice{"random", "drawn with the scene's seed"},
+    Choice{"lcp",
+           "all that hang together at once: Newton's law at every contact (a complementarity problem)"},
+    Choice{"reflections",
+           "all that hang together: generalized reflections until none approaches (Smith et al. 2012)"},
 };
 constexpr std::array kResponses{
     Choice{"impulse", "Newton restitution and Coulomb friction in closed form"},
@@ -61,6 +66,14 @@ std::span<const Choice> responses() { return kResponses; }
 std::span<const Choice> detectors() { return kDetectors; }
 
 bool SolverOptions::is_valid(std::string* error) const {
+  if (takes_together() && (response == "reflection" || detector == "depth")) {
+    *error = fmt::format(
+        "order = \"{}\" needs response = \"impulse\" and an exact detector (field, pass); given response = "
+        "\"{}\", "
+        "detector = \"{}\"; allowed with these: index, closing_speed, depth, random",
+        order, response, detector);
+    return false;
+  }
   return known(policies(), policy, "policy", error) && known(orders(), order, "order", error) &&
          known(responses(), response, "response", error) && known(detectors(), detector, "detector", error) &&
          positive(contact_tolerance, "contact_tolerance", error) && positive(step, "step", error) &&

@@ -11,7 +11,7 @@ namespace brink {
 
 struct SolverOptions {
   std::string policy = "global_backup";  ///< see policies()
-  std::string order = "index";           ///< simultaneous contacts: index | closing_speed | depth | random
+  std::string order = "index";           ///< simultaneous contacts: see orders()
   std::string integrator = "auto";       ///< see integrators()
   double tolerance = 1e-10;              ///< relative, adaptive integrators
   double absolute_tolerance = 1e-12;     ///< adaptive integrators
@@ -31,6 +31,10 @@ struct SolverOptions {
 
   FieldOptions field;
 
+  /// True if the order resolves all contacts of one instant together; else it picks one after another.
+  bool takes_together() const { return order == "lcp" || order == "reflections"; }
+  /// True if the order must see all contacts of an instant to pick one.
+  bool picks_among_all() const { return order != "index" && !takes_together(); }
   IntegratorOptions integrator_options() const { return {tolerance, absolute_tolerance, step}; }
   /// True if usable; else writes which option, its value and what is allowed into *error.
   bool is_valid(std::string* error) const;

@@ -123,7 +123,7 @@ class BodyClocks final : public Policy {
   void meet(int k) {
     const BodyClock& clock = views_->clock(k);
     const double now = found_[k].time, instant = now + same_instant(now);
-    const bool alone = kernel_->options().order == "index" && queue_.second_time() > instant &&
+    const bool alone = !kernel_->options().picks_among_all() && queue_.second_time() > instant &&
                        clock.exit > instant && clock.horizon > instant &&
                        (clock.candidates.size() == 1 || clock.candidates[1].time > instant);
     if (alone) return collide(Certificate(found_[k]));
@@ -171,7 +171,7 @@ class BodyClocks final : public Policy {
 
   /// Contacts of body k that are in its view and due by `instant`.
   void add_contacts(int k, double instant, std::vector<Certificate>& group) {
-    const bool features = kernel_->options().order != "index";
+    const bool features = kernel_->options().picks_among_all();
     const auto add = [&](const Certificate& c) {
       group.push_back(c);
       if (!features || c.kind != Certificate::Kind::contact) return;

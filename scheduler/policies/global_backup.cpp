@@ -94,7 +94,7 @@ class GlobalBackup final : public Policy {
     const auto certificate = kernel.search(pair, from, end);
     if (!certificate) return;
     agenda_.insert(*certificate);
-    if (certificate->kind != Certificate::Kind::contact || kernel.options().order == "index") return;
+    if (certificate->kind != Certificate::Kind::contact || !kernel.options().picks_among_all()) return;
     for (const Certificate& other : kernel.simultaneous(*certificate)) agenda_.insert(other);
   }
 

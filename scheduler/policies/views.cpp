@@ -84,6 +84,7 @@ void Views::take_up(int k) {
 void Views::look_around(int k, double now, std::span<const int> except) {
   BodyClock& clock = clocks_[k];
   ++kernel_->work().passes;
+  if (TraceSink* trace = kernel_->trace()) trace->mark({TraceKind::pass, k, -1, now, now});
   clock.forget_all();
   if (flights_[k].free) {
     const Course course(flights_[k], gravity_, now);

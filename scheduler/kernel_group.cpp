@@ -1,0 +1,258 @@
+/// The kernel's resolves of groups: every contact of one instant that hangs together, taken at once (orders
+/// `lcp` and `reflections`, and whatever the order, groups that do not end).
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "brink/core/contacts/group.h"
+#include "brink/scheduler/canonical_time.h"
+#include "brink/scheduler/extended_contact.h"
+#include "brink/scheduler/kernel.h"
+
+namespace brink {
+
+namespace {
+
+/// Two features closer than this many contact tolerances, with one normal, are one contact: a disc on a disc
+/// is found from both sides.
+constexpr double kSamePlace = 10.0;
+constexpr double kSameNormal = 1e-6;
+
+struct Touch {
+  PairKey pair;
+  FeatureContact contact;
+
+  auto order() const { return std::tuple(pair.order(), contact.site, contact.sample, contact.sample_on_a); }
+};
+
+}  // namespace
+
+/// One group, from the contact that was found to its events:
+///
+///   collect   the contacts that touch now, from body to body
+///   place     everything at the exact moment of contact
+///   the law   impulses at all contacts
+///   restart   the bodies that were pushed
+///   record    one event for each contact that pushed
+class Kernel::GroupResolve {
+ public:
+  GroupResolve(Kernel& kernel, const PairKey& pair, const FeatureContact& found)
+      : kernel_(kernel), found_{pair, found} {}
+
+  bool run(std::vector<int>& changed) {
+    if (!collect()) return false;
+    place();
+    result_ = law()(members_, contacts_);
+    if (result_.status == GroupResult::Status::jam) {
+      kernel_.stop(Termination::failed,
+                   fmt::format("{} at t = {:.17g}: a group of {} contact(s) that no finite impulses can part",
+                               kernel_.name_of(found_.pair), kernel_.time_, group_.size()));
+      return false;
+    }
+    note_touched();
+    return restart(changed) && record();
+  }
+
+ private:
+  double now() const { return kernel_.time_; }
+
+  /// Of a group that does not end, what endless rebounds with losses come to: none.
+  auto law() -> GroupResult (*)(const std::vector<GroupBody>&, const std::vector<GroupContact>&) {
+    if (!kernel_.collapsed()) return kernel_.options_.order == "lcp" ? resolve_together : resolve_reflections;
+    for (GroupContact& c : contacts_) c.material.restitution = 0.0;
+    return resolve_together;
+  }
+
+  /// False on a halt.
+  bool collect() {
+    group_ = {found_};
+    std::vector<int> reached;
+    std::set<PairKey> seen;
+    reach(found_.pair, reached);
+    for (std::size_t i = 0; i < reached.size(); ++i)
+      for (int owner = 0; owner < kernel_.owner_count(); ++owner) {
+        const auto pair = kernel_.pair_of(reached[i], owner);
+        if (!pair) continue;
+        // of bodies with clocks of their own, some may not have come so far
+        if (owner < kernel_.body_count() && !kernel_.extend_motion(owner, now())) return false;
+        if (near(reached[i], owner) && seen.insert(*pair).second && add_touching(*pair))
+          reach(*pair, reached);
+      }
+    // one order, whichever contact was found first
+    std::sort(group_.begin(), group_.end(),
+              [](const Touch& a, const Touch& b) { return a.order() < b.order(); });
+    return true;
+  }
+
+  static void reach(const PairKey& pair, std::vector<int>& reached) {
+    for (const int k : {pair.body, pair.other_body})
+      if (k >= 0 && std::find(reached.begin(), reached.end(), k) == reached.end()) reached.push_back(k);
+  }
+
+  bool near(int a, int b) const {
+    const Outline &first = kernel_.outline_of(a), &second = kernel_.outline_of(b);
+    if (first.container || second.container) return true;
+    const double reach = first.bounding_radius + second.bounding_radius + kernel_.limits_.tolerance;
+    const Vec2 between =
+        kernel_.motion_of(a).pose(now()).position - kernel_.motion_of(b).pose(now()).position;
+    return between.squaredNorm() <= reach * reach;
+  }
+
+  /// Adds the pair's contacts; true if it has any.
+  bool add_touching(const PairKey& pair) {
+    const SearchLimits& limits = kernel_.limits_;
+    bool any = pair == found_.pair;
+    for (const FeatureContact& f : kernel_.touching(pair, limits.tolerance)) {
+      if (f.gap > limits.touch && f.gap > f.closing_speed * same_instant(now())) continue;
+      any = true;
+      const auto same = [&](const Touch& t) {
+        return t.pair == pair && (t.contact.point - f.point).norm() <= kSamePlace * limits.tolerance &&
+               t.contact.normal.dot(f.normal) >= 1.0 - kSameNormal;
+      };
+      if (std::none_of(group_.begin(), group_.end(), same)) group_.push_back({pair, f});
+    }
+    return any;
+  }
+
+  void place() {
+    std::set<int> bodies;
+    for (const Touch& t : group_)
+      for (const int k : {t.pair.body, t.pair.other_body})
+        if (k >= 0) bodies.insert(k);
+    bodies_.assign(bodies.begin(), bodies.end());
+    delay_ = kernel_.delay_to_contact(found_.pair, found_.contact, geometry(found_));
+    for (const int k : bodies_) {
+      const Body& b = kernel_.world_.bodies[k];
+      members_.push_back({state(k).twist, b.inverse_mass_x(), b.inverse_mass_y(), b.inverse_inertia()});
+    }
+    for (const Touch& t : group_) contacts_.push_back(contact(t));
+  }
+
+  ExtendedState state(int owner) const {
+    return kernel_.motion_of(owner).extended_state(now()).moved(delay_);
+  }
+  ExtendedContact geometry(const Touch& t) const {
+    const int other = kernel_.other_owner(t.pair);
+    return contact_in(kernel_.outline_of(t.pair.body), kernel_.outline_of(other), state(t.pair.body),
+                      state(other), t.contact);
+  }
+  int index_of(int body) const {
+    return static_cast<int>(std::lower_bound(bodies_.begin(), bodies_.end(), body) - bodies_.begin());
+  }
+
+  GroupContact contact(const Touch& t) const {
+    const World& world = kernel_.world_;
+    const ExtendedContact c = geometry(t);
+    const ExtendedState other = state(kernel_.other_owner(t.pair));
+    const RealVec other_arm = c.point - other.position;
+    GroupContact made;
+    made.body = index_of(t.pair.body);
+    made.normal = c.normal;
+    made.arm = c.point - state(t.pair.body).position;
+    if (t.pair.with_site()) {
+      made.other_point_velocity = other.twist.at(other_arm);
+    } else {
+      made.other = index_of(t.pair.other_body);
+      made.other_arm = other_arm;
+    }
+    made.material = combined(world, world.bodies[t.pair.body].material,
+                             t.pair.with_site() ? world.sites[t.pair.other_site].material
+                                                : world.bodies[t.pair.other_body].material);
+    return made;
+  }
+
+  /// What one body is resolved by: its contact, and since when it flew.
+  void note_touched() {
+    rest_.assign(bodies_.size(), std::numeric_limits<double>::infinity());
+    touched_.assign(bodies_.size(), false);
+    double speed = 0.0;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      const ExtendedTwist& t = members_[k].twist;
+      speed = std::max(
+          speed, static_cast<double>(t.velocity.lpNorm<1>() +
+                                     std::abs(t.omega) * kernel_.outline_of(bodies_[k]).bounding_radius));
+    }
+    const bool pushed =
+        std::any_of(result_.normal.begin(), result_.normal.end(), [](Real p) { return p > 0; });
+    // an approach that the law does not see was rounding, all of it
+    if (!pushed) speed += found_.contact.closing_speed / std::numeric_limits<double>::epsilon();
+    for (std::size_t k = 0; k < group_.size(); ++k) {
+      if (result_.normal[k] > 0 || (!pushed && group_[k].pair == found_.pair)) events_.push_back(k);
+    }
+    for (const std::size_t k : events_) {
+      const PairKey& pair = group_[k].pair;
+      touch(pair.body, kernel_.other_owner(pair), speed);
+      if (!pair.with_site()) touch(pair.other_body, pair.body, speed);
+    }
+  }
+
+  void touch(int body, int partner, double speed) {
+    const int k = index_of(body);
+    if (!touched_[k]) rest_[k] = kernel_.note_resolve(body, partner, speed);
+    touched_[k] = true;
+  }
+
+  bool restart(std::vector<int>& changed) {
+    std::map<int, std::vector<Restart>> by_component;  // a free body is one of its own
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      if (!touched_[i]) continue;
+      const int body = bodies_[i], component = kernel_.bodies_[body].component;
+      ExtendedState after = state(body);
+      after.twist = result_.twists[i];
+      // a motion from now that passes through the moment of contact
+      by_component[component < 0 ? -1 - body : component].push_back({body, after.moved(-delay_)});
+    }
+    for (const auto& [component, touched] : by_component)
+      if (!kernel_.restart_noted(touched, changed)) return false;
+    return true;
+  }
+
+  bool record() {
+    const double time = kernel_.last_event_ = std::max(kernel_.last_event_, now());
+    if (result_.status == GroupResult::Status::endless) tell(EventKind::group, found_, 0, 0, time);
+    for (const std::size_t k : events_) {
+      kernel_.note_overlap(group_[k].contact.gap);
+      kernel_.count_collision(group_[k].pair);
+      tell(EventKind::collision, group_[k], result_.normal[k], result_.tangential[k], time);
+    }
+    for (const std::size_t k : events_) {
+      const PairKey& pair = group_[k].pair;
+      double rest = rest_[index_of(pair.body)];
+      if (!pair.with_site()) rest = std::min(rest, rest_[index_of(pair.other_body)]);
+      if (!kernel_.judge_endings(pair, kernel_.world_contact(pair, group_[k].contact), rest)) return false;
+    }
+    return true;
+  }
+
+  void tell(EventKind kind, const Touch& t, Real normal, Real tangential, double time) {
+    Event event;
+    event.seq = kernel_.seq_++;
+    event.kind = kind;
+    event.contact = kernel_.world_contact(t.pair, t.contact);
+    event.contact.time = time;
+    event.impulse_n = static_cast<double>(normal);
+    event.impulse_t = static_cast<double>(tangential);
+    if (kernel_.recorder_ && kernel_.run_.record_events) kernel_.recorder_->event(event);
+  }
+
+  Kernel& kernel_;
+  Touch found_;
+  std::vector<Touch> group_;
+  std::vector<int> bodies_;  ///< ascending
+  Real delay_ = 0;           ///< from now to the moment of contact [s]
+  std::vector<GroupBody> members_;
+  std::vector<GroupContact> contacts_;
+  GroupResult result_;
+  std::vector<std::size_t> events_;  ///< contacts that are told of, as indices into group_
+  std::vector<bool> touched_;
+  std::vector<double> rest_;  ///< time since each touched body was last resolved [s]
+};
+
+bool Kernel::resolve_group(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed) {
+  return GroupResolve(*this, pair, found).run(changed);
+}
+
+}  // namespace brink
