@@ -2,7 +2,8 @@
 /// What one body has in view: who it may meet next, and until when that view holds.
 
 #include <algorithm>
-#include <boost/container/small_vector.hpp>
+#include <array>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -14,21 +15,56 @@ namespace brink {
 /// first, then fixed sites.
 struct Candidate {
   double time = std::numeric_limits<double>::infinity();
-  double end = std::numeric_limits<double>::infinity();  ///< they cannot meet later than this either
+  double clear = 0.0;  ///< a search must begin here: from closer to the contact roundings would show
   int other = -1;
-  unsigned version = 0;  ///< of the other body, when this was found
-  bool exact = false;    ///< `time` is the contact itself ...
-  double clear = 0.0;    ///< ... and a search for it must begin here: from closer by, roundings would show
+  unsigned version : 31 = 0;  ///< of the other body, when this was found
+  unsigned exact : 1 = 0;     ///< `time` is the contact itself
+};
+
+/// Candidates, earliest first; of equal times the exact one. The first few lie in place.
+class CandidateList {
+ public:
+  static constexpr std::size_t kInPlace = 4;
+
+  bool empty() const { return count_ == 0; }
+  std::size_t size() const { return count_; }
+  Candidate& operator[](std::size_t k) { return k < kInPlace ? first_[k] : more_[k - kInPlace]; }
+  const Candidate& operator[](std::size_t k) const { return k < kInPlace ? first_[k] : more_[k - kInPlace]; }
+  const Candidate& front() const { return first_[0]; }
+  const Candidate& back() const { return (*this)[count_ - 1]; }
+  void clear() {
+    count_ = 0;
+    more_.clear();
+  }
+  void insert(const Candidate& c) {
+    if (count_ >= kInPlace) more_.emplace_back();
+    std::size_t k = count_++;
+    for (; k > 0 && before(c, (*this)[k - 1]); --k) (*this)[k] = (*this)[k - 1];
+    (*this)[k] = c;
+  }
+  void pop_front() {
+    for (std::size_t k = 1; k < count_; ++k) (*this)[k - 1] = (*this)[k];
+    pop_back();
+  }
+  void pop_back() {
+    if (count_-- > kInPlace) more_.pop_back();
+  }
+
+ private:
+  static bool before(const Candidate& a, const Candidate& b) {
+    return a.time < b.time || (a.time == b.time && a.exact && !b.exact);
+  }
+  std::array<Candidate, kInPlace> first_;
+  std::uint32_t count_ = 0;
+  std::vector<Candidate> more_;
 };
 
 /// A body's own clock. Every pair of bodies that may meet is in view of one of the two: clear until that
 /// one's expiry(). So the body whose view expires first is the only one that must be looked at.
 struct BodyClock {
-  static constexpr std::size_t kCandidates = 4;  ///< kept in view; more only where they are due at once
-
   double exit = std::numeric_limits<double>::infinity();     ///< leaves its cell
   double horizon = std::numeric_limits<double>::infinity();  ///< the view ends: look at everything again
-  boost::container::small_vector<Candidate, kCandidates> candidates;  ///< earliest first
+  CandidateList candidates;
   Cell cell;
   int level = 0;
   int previous = CellGrid::kNone;  ///< in the list of its cell
@@ -43,17 +79,11 @@ struct BodyClock {
   /// for it must begin; but what must be searched from `now` on stays, so that a view never ends as it begins.
   void see(const Candidate& c, double now) {
     if (c.time >= horizon) return;
-    auto place = candidates.end();
-    // of equal times the exact one goes first: what is known needs no second search
-    while (place != candidates.begin() &&
-           (c.time < std::prev(place)->time || (c.exact && c.time == std::prev(place)->time)))
-      --place;
-    candidates.insert(place, c);
-    if (candidates.size() <= kCandidates || candidates.back().clear <= now) return;
+    candidates.insert(c);
+    if (candidates.size() <= CandidateList::kInPlace || candidates.back().clear <= now) return;
     horizon = candidates.back().clear;
     candidates.pop_back();
   }
-  void forget(std::size_t k) { candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(k)); }
   void forget_all() {
     candidates.clear();
     horizon = std::numeric_limits<double>::infinity();

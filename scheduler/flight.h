@@ -17,7 +17,7 @@ struct alignas(64) Flight {
   double start = 0.0;         ///< [s]
   double radius = 0.0;        ///< [m]
   int next = -1;              ///< in the list of its cell
-  unsigned version = 0;       ///< raised when the motion changes
+  unsigned version = 0;       ///< raised when the motion changes; 31 bits
   bool free = false;          ///< a parabola under the common gravity for ever
   bool disc = false;          ///< the bounding disc is the body
 };

@@ -34,6 +34,11 @@ Kernel::Kernel(World world, SolverOptions options)
   limits_.closed_forms = options_.skip_closed_forms;
   zeno_ = ZenoWatch(limits_.tolerance);
 
+  for (const Body& b : world_.bodies) outlines_.push_back(b.outline.get());
+  for (const FixedSite& s : world_.sites) outlines_.push_back(s.outline.get());
+  const int materials = static_cast<int>(world_.materials.size());
+  for (int i = 0; i < materials; ++i)
+    for (int j = 0; j < materials; ++j) pair_materials_.push_back(combined(world_, i, j));
   bodies_.resize(world_.bodies.size());
   for (Component& c : make_components(world_)) add_component(std::move(c));
   work_.component_resets = 0;  // first starts are no resets

@@ -60,7 +60,7 @@ class Kernel {
   std::vector<BodyState> states(double t) const;
   const Motion& site_motion(int k) const { return sites_[k].motion(); }
   /// Body or site (owners count bodies first, then sites).
-  const Outline& outline_of(int owner) const;
+  const Outline& outline_of(int owner) const { return *outlines_[owner]; }
   std::optional<PairKey> pair_of(int owner_a, int owner_b) const;
   /// True if the body is on a parabola for as long as it meets nothing.
   bool is_free(int k) const { return bodies_[k].component < 0; }
@@ -166,8 +166,10 @@ class Kernel {
   /// Extends one component to t and fetches its motions; false and halt() if its integrator cannot.
   bool cover(Coupled& c, double t);
   void fetch_motions(const Coupled& c);
-  Mover mover(int body) const;
-  Mover site_mover(int site) const;
+  Mover mover(int body) const {
+    return {body_index_[body], &bodies_[body].motion, bodies_[body].velocity_rounding};
+  }
+  Mover site_mover(int site) const { return {site_index_[site], &sites_[site].motion(), 0.0}; }
   Mover other_mover(const PairKey& pair) const;
   /// Index of the pair's other owner: bodies first, then sites.
   int other_owner(const PairKey& pair) const {
@@ -216,6 +218,8 @@ class Kernel {
   std::vector<BodyTrack> bodies_;
   std::vector<Coupled> components_;
   std::vector<SiteMotion> sites_;
+  std::vector<const Outline*> outlines_;  ///< of every owner
+  std::vector<Material> pair_materials_;  ///< of material i on material j, at i n + j
   std::vector<const SiteIndex*> body_index_, site_index_;
   std::vector<std::unique_ptr<SiteIndex>> indices_;
   std::unique_ptr<PassRenderer> passes_;

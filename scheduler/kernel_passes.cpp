@@ -11,11 +11,6 @@ const Motion& Kernel::motion_of(int owner) const {
   return owner < n ? bodies_[owner].motion : sites_[owner - n].motion();
 }
 
-const Outline& Kernel::outline_of(int owner) const {
-  const int n = body_count();
-  return owner < n ? *world_.bodies[owner].outline : *world_.sites[owner - n].outline;
-}
-
 std::optional<PairKey> Kernel::pair_of(int a, int b) const {
   const int n = body_count();
   if (a > b) std::swap(a, b);
@@ -23,10 +18,6 @@ std::optional<PairKey> Kernel::pair_of(int a, int b) const {
   return b < n ? PairKey{a, b, -1} : PairKey{a, -1, b - n};
 }
 
-Mover Kernel::mover(int body) const {
-  return {body_index_[body], &bodies_[body].motion, bodies_[body].velocity_rounding};
-}
-Mover Kernel::site_mover(int site) const { return {site_index_[site], &sites_[site].motion(), 0.0}; }
 Mover Kernel::other_mover(const PairKey& pair) const {
   return pair.with_site() ? site_mover(pair.other_site) : mover(pair.other_body);
 }

@@ -113,9 +113,9 @@ Kernel::Response Kernel::respond(const PairKey& pair, const FeatureContact& foun
   const ImpulseSide side = body_side(definition, body, c.point);
   const ImpulseSide other_side = pair.with_site() ? site_side(other, c.point)
                                                   : body_side(world_.bodies[pair.other_body], other, c.point);
-  const Material material = combined(
-      world_, definition.material,
-      pair.with_site() ? world_.sites[pair.other_site].material : world_.bodies[pair.other_body].material);
+  const int other_material =
+      pair.with_site() ? world_.sites[pair.other_site].material : world_.bodies[pair.other_body].material;
+  const Material& material = pair_materials_[definition.material * world_.materials.size() + other_material];
   const auto law = options_.response == "reflection" ? resolve_reflection : resolve_impulse;
   r.impulse = law(side, other_side, c.normal, material);
   r.magnitude = std::max(speed_of(side), speed_of(other_side));

@@ -52,6 +52,8 @@ class Neighbourhood {
   const CellGrid& grid(int k) const { return levels_[clocks_[k].level].grid; }
   CellBlock block_of(int k, const Cell& cell, std::size_t level) const {
     const Level& own = levels_[clocks_[k].level];
+    if (static_cast<int>(level) == clocks_[k].level && !own.grid.one_cell())  // as the cells' size was chosen
+      return {{cell.column - 1, cell.row - 1}, {cell.column + 1, cell.row + 1}};
     // by the level's radius, not the body's: then the blocks of two bodies hold each other
     const double reach = (own.radius + levels_[level].radius) * (1.0 + 4.0 * kFlightMargin);
     return levels_[level].grid.block_of(own.grid.box_of(cell).grown(reach));

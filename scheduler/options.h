@@ -10,7 +10,7 @@
 namespace brink {
 
 struct SolverOptions {
-  std::string policy = "global_backup";  ///< see policies()
+  std::string policy = "body_clocks";    ///< see policies()
   std::string order = "index";           ///< simultaneous contacts: see orders()
   std::string integrator = "auto";       ///< see integrators()
   double tolerance = 1e-10;              ///< relative, adaptive integrators

@@ -6,10 +6,7 @@ namespace brink {
 
 std::optional<ZenoEnding> ZenoWatch::collided(const PairKey& pair, double time, double closing_speed,
                                               double rest) {
-  if (0.25 * closing_speed * rest > kHighFlight * tolerance_) {
-    if (!bounces_.empty()) bounces_.erase(pair);
-    return std::nullopt;
-  }
+  if (0.25 * closing_speed * rest > kHighFlight * tolerance_) return std::nullopt;
   Bounce& b = bounces_[pair];
   const bool first = b.count++ == 0;
   const double interval = time - b.last_time;

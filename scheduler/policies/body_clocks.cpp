@@ -80,6 +80,7 @@ class BodyClocks final : public Policy {
     if (!clock.candidates.empty() && clock.candidates.front().time == now) {
       if (const Candidate& c = clock.candidates.front(); c.exact && !views_->stale(c)) return meet(k);
       sharpen(k);
+      if (is_next(k)) return meet(k);
     } else if (now == clock.exit) {
       views_->look_ahead(k, now);
     } else {
@@ -88,16 +89,24 @@ class BodyClocks final : public Policy {
     wait_for(k);
   }
 
+  /// True if body k's first candidate is a contact and comes before everything else, without asking the queue.
+  bool is_next(int k) const {
+    const BodyClock& clock = views_->clock(k);
+    if (clock.candidates.empty() || !clock.candidates.front().exact || kernel_->halt()) return false;
+    const double time = clock.candidates.front().time;
+    return time <= until_ && time < queue_.second_time() && time < std::min(clock.exit, clock.horizon);
+  }
+
   /// The first candidate of body k is dropped if it is stale, and searched if it is not.
   void sharpen(int k) {
     BodyClock& clock = views_->clock(k);
     Candidate c = clock.candidates.front();
-    clock.forget(0);
+    clock.candidates.pop_front();
     if (views_->stale(c)) {
       ++kernel_->work().certificates_stale;
       return;
     }
-    const double now = c.time, to = std::min(beyond(c.end), std::max(now, until_));
+    const double now = c.time, end = views_->end_of(k, c), to = std::min(beyond(end), std::max(now, until_));
     const auto found = kernel_->search(*kernel_->pair_of(k, c.other), c.clear, to);
     const bool undecided = found && found->kind == Certificate::Kind::undecided;
     clock.undecided = undecided ? clock.undecided + 1 : 0;
@@ -107,13 +116,13 @@ class BodyClocks final : public Policy {
       c.time = found->time;
       c.exact = !undecided;
       if (undecided) c.clear = c.time;
-    } else if (to < c.end) {
+    } else if (to < end) {
       c.time = c.clear = std::nextafter(to, kForever);  // not before the end of this run
     } else {
       return;
     }
     if (c.exact) {
-      for (Candidate& other : clock.candidates) other.exact = false;
+      for (std::size_t i = 0; i < clock.candidates.size(); ++i) clock.candidates[i].exact = 0;
       found_[k] = *found;
     }
     clock.see(c, now);
@@ -183,7 +192,7 @@ class BodyClocks final : public Policy {
       const Candidate& c = candidates[i];
       if (views_->stale(c)) continue;
       const auto found =
-          kernel_->search(*kernel_->pair_of(k, c.other), c.clear, std::min(c.end, beyond(instant)));
+          kernel_->search(*kernel_->pair_of(k, c.other), c.clear, std::min(views_->end_of(k, c), beyond(instant)));
       if (found && found->kind == Certificate::Kind::contact && found->time <= instant) add(*found);
     }
   }

@@ -69,7 +69,7 @@ Views::Views(Kernel& kernel)
 void Views::take_up(int k) {
   Flight& f = flights_[k];
   const Motion& motion = kernel_->body(k).motion;
-  ++f.version;
+  f.version = (f.version + 1) & 0x7fffffffU;
   f.free = kernel_->is_free(k) && motion.acceleration().linear == gravity_ && !kernel_->by_passes();
   f.disc = f.free && is_centred_disc(kernel_->outline_of(k));
   if (!f.free) return;
@@ -116,7 +116,7 @@ void Views::look_ahead(int k, double now) {
 void Views::see_body(int k, int j, double now) {
   const Flight &a = flights_[k], &b = flights_[j];
   const Meeting m = a.free && b.free ? meeting(a, b, gravity_, now) : bounded_meeting(k, j, now);
-  if (m.begin < clocks_[k].horizon) clocks_[k].see({m.begin, m.end, j, b.version, false, m.begin}, now);
+  if (m.begin < clocks_[k].horizon) clocks_[k].see({m.begin, m.begin, j, b.version, 0}, now);
 }
 
 /// Still sites are in view until body k leaves its cell.
@@ -130,13 +130,13 @@ void Views::see_site(int k, int s, double now) {
     for (const Box& box : site_boxes_[s]) wait = std::min(wait, time_to(box.grown(reach), course));
   }
   if (now + wait <= end && wait < kForever)
-    clock.see({now + wait, end, body_count() + s, 0, false, now + wait}, now);
+    clock.see({now + wait, now + wait, body_count() + s, 0, 0}, now);
 }
 
 void Views::see_moving_site(int k, int s, double now) {
   const Meeting m = bounded_meeting(k, body_count() + s, now);
   if (m.begin < clocks_[k].horizon)
-    clocks_[k].see({m.begin, m.end, body_count() + s, 0, false, m.begin}, now);
+    clocks_[k].see({m.begin, m.begin, body_count() + s, 0, 0}, now);
 }
 
 void Views::see_by_pass(int k, double now) {
@@ -145,7 +145,7 @@ void Views::see_by_pass(int k, double now) {
   for (const PairKey& pair : kernel_->near_pairs_of(k, now, end)) {
     const int second = pair.with_site() ? body_count() + pair.other_site : pair.other_body;
     const int other = second == k ? pair.body : second;
-    clocks_[k].see({now, end, other, version_of(other), false, now}, now);
+    clocks_[k].see({now, now, other, version_of(other), 0}, now);
   }
 }
 

@@ -18,7 +18,15 @@ class Views {
   explicit Views(Kernel& kernel);
 
   BodyClock& clock(int k) { return clocks_[k]; }
+  const BodyClock& clock(int k) const { return clocks_[k]; }
   bool stale(const Candidate& c) const { return c.version != version_of(c.other); }
+  /// Until when a search of body k's candidate must go: they cannot meet later, or k's view ends.
+  double end_of(int k, const Candidate& c) const {
+    const BodyClock& clock = clocks_[k];
+    if (c.other < body_count() && flights_[k].free && flights_[c.other].free)
+      return meeting(flights_[k], flights_[c.other], gravity_, c.clear).end;
+    return std::min(clock.exit, clock.horizon);
+  }
   /// The end of the present run: views of bodies that are not in free flight end just after it at the latest.
   void set_end(double until) { until_ = until; }
 
