@@ -92,8 +92,10 @@ class BodyClocks final : public Policy {
   /// True if body k's first candidate is a contact and comes before everything else, without asking the queue.
   bool is_next(int k) const {
     const BodyClock& clock = views_->clock(k);
-    if (clock.candidates.empty() || !clock.candidates.front().exact || kernel_->halt()) return false;
-    const double time = clock.candidates.front().time;
+    if (clock.candidates.empty() || kernel_->halt()) return false;
+    const Candidate& c = clock.candidates.front();
+    if (!c.exact || views_->stale(c)) return false;
+    const double time = c.time;
     return time <= until_ && time < queue_.second_time() && time < std::min(clock.exit, clock.horizon);
   }
 
