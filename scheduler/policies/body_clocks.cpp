@@ -59,7 +59,7 @@ class BodyClocks final : public Policy {
   }
 
   void wait_for(int k) {
-    ++kernel_->work().certificates_issued;
+    ++kernel_->work().queue_operations;
     queue_.update(k, views_->clock(k).expiry());
   }
 
