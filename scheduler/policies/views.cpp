@@ -81,6 +81,26 @@ void Views::take_up(int k) {
   f.start = motion.origin();
 }
 
+/// The same flight, started at `now`.
+Flight Views::from_now(const Flight& f, double now) const {
+  if (!f.free) return f;
+  const Course course(f, gravity_, now);
+  Flight here = f;
+  here.x = course.place.x();
+  here.y = course.place.y();
+  here.vx = course.velocity.x();
+  here.vy = course.velocity.y();
+  here.start = now;
+  return here;
+}
+
+/// `here`: body k's flight, started at `now`.
+inline void Views::see_body(int k, const Flight& here, int j, double now) {
+  const Flight& b = flights_[j];
+  const Meeting m = here.free && b.free ? meeting(here, b, gravity_, now) : bounded_meeting(k, j, now);
+  if (m.begin < clocks_[k].horizon) clocks_[k].see({m.begin, m.begin, j, b.version, 0}, now);
+}
+
 void Views::look_around(int k, double now, std::span<const int> except) {
   BodyClock& clock = clocks_[k];
   ++kernel_->work().passes;
@@ -94,8 +114,9 @@ void Views::look_around(int k, double now, std::span<const int> except) {
     return;
   }
   if (kernel_->by_passes()) return see_by_pass(k, now);
+  const Flight here = from_now(flights_[k], now);
   near_->near(k, [&](int j) {
-    if (std::find(except.begin(), except.end(), j) == except.end()) see_body(k, j, now);
+    if (std::find(except.begin(), except.end(), j) == except.end()) see_body(k, here, j, now);
   });
   for (const int s : *clock.sites) see_site(k, s, now);
   for (const int s : moving_) see_moving_site(k, s, now);
@@ -107,16 +128,10 @@ void Views::look_ahead(int k, double now) {
   const Cell former = clock.cell;
   const bool moved = near_->settle(k, course.place);
   clock.exit = now + stay_in(near_->box_of(k), course);
-  if (moved)
-    near_->near(
-        k, [&](int j) { see_body(k, j, now); }, &former);
+  const Flight here = from_now(flights_[k], now);
+  const auto see = [&](int j) { see_body(k, here, j, now); };
+  if (moved) near_->near(k, see, &former);
   for (const int s : *clock.sites) see_site(k, s, now);
-}
-
-void Views::see_body(int k, int j, double now) {
-  const Flight &a = flights_[k], &b = flights_[j];
-  const Meeting m = a.free && b.free ? meeting(a, b, gravity_, now) : bounded_meeting(k, j, now);
-  if (m.begin < clocks_[k].horizon) clocks_[k].see({m.begin, m.begin, j, b.version, 0}, now);
 }
 
 /// Still sites are in view until body k leaves its cell.
@@ -129,14 +144,12 @@ void Views::see_site(int k, int s, double now) {
     const double reach = flights_[k].radius * (1.0 + kFlightMargin) + kernel_->contact_tolerance();
     for (const Box& box : site_boxes_[s]) wait = std::min(wait, time_to(box.grown(reach), course));
   }
-  if (now + wait <= end && wait < kForever)
-    clock.see({now + wait, now + wait, body_count() + s, 0, 0}, now);
+  if (now + wait <= end && wait < kForever) clock.see({now + wait, now + wait, body_count() + s, 0, 0}, now);
 }
 
 void Views::see_moving_site(int k, int s, double now) {
   const Meeting m = bounded_meeting(k, body_count() + s, now);
-  if (m.begin < clocks_[k].horizon)
-    clocks_[k].see({m.begin, m.begin, body_count() + s, 0, 0}, now);
+  if (m.begin < clocks_[k].horizon) clocks_[k].see({m.begin, m.begin, body_count() + s, 0, 0}, now);
 }
 
 void Views::see_by_pass(int k, double now) {

@@ -42,7 +42,8 @@ class Views {
   int body_count() const { return static_cast<int>(clocks_.size()); }
   unsigned version_of(int owner) const { return owner < body_count() ? flights_[owner].version : 0; }
   void sort_sites();
-  void see_body(int k, int j, double now);
+  Flight from_now(const Flight& f, double now) const;
+  void see_body(int k, const Flight& here, int j, double now);
   void see_site(int k, int site, double now);
   void see_moving_site(int k, int site, double now);
   void see_by_pass(int k, double now);
