@@ -229,7 +229,10 @@ const Schema<FieldTable>& field_schema() {
                  "pixels along the longer side of a body field; 0: chosen by shape")
           .key("band", &F::band, number(not_negative("m")),
                "width of the band drawn around a shape; 0: chosen by shape")
-          .key("primitives", &F::primitives, choice({"exact"}, {"mesh"}), "what is drawn for a site")
+          .key("primitives", &F::primitives, choice({"exact", "mesh"}),
+               "what is drawn for a site of a pass window: its distance, or cones and tents")
+          .key("mesh_error", &F::mesh_error, number({1e-4, 10.0, false, "pixels"}),
+               "mesh: how far a cone or tent may be off the distance")
           .key("readback", &F::readback, choice({"full", "window", "pixel"}), "what is read of a pass window")
           .key("passes", &F::passes, choice({"each", "two_layers"}),
                "detector depth: a picture for each body, or two for all")

@@ -44,7 +44,10 @@ bool FieldOptions::is_valid(std::string* error) const {
   if (list_cap < 1 || list_cap > 254) {
     return fail(error, "field.list_cap is " + std::to_string(list_cap) + "; allowed: 1 to 254 sites");
   }
-  return is_one_of("primitives", primitives, {"exact"}, error) &&
+  if (!(mesh_error >= 1e-4 && mesh_error <= 10.0)) {
+    return fail(error, "field.mesh_error is " + std::to_string(mesh_error) + "; allowed: 1e-4 to 10 pixels");
+  }
+  return is_one_of("primitives", primitives, {"exact", "mesh"}, error) &&
          is_one_of("readback", readback, {"full", "window", "pixel"}, error) &&
          is_one_of("passes", passes, {"each", "two_layers"}, error) &&
          is_one_of("context", context, {"auto", "osmesa", "egl"}, error);

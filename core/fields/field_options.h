@@ -8,7 +8,8 @@ namespace brink {
 struct FieldOptions {
   int resolution = 0;  ///< pixels along the longer side of a body field; 0: chosen by shape, 16..1024
   double band = 0.0;   ///< width of the rendered band around the outline [m]; 0: chosen by shape
-  std::string primitives = "exact";  ///< "exact"
+  std::string primitives = "exact";  ///< pass windows: "exact" distances | "mesh" of cones and tents
+  double mesh_error = 0.1;           ///< mesh: how far a cone or tent may be off its site's distance [pixel]
   std::string readback = "window";   ///< "full" | "window" | "pixel"
   std::string passes = "each";       ///< detector depth: "each" body's window | "two_layers" for all bodies
   bool truncated = true;  ///< detector depth: draw sites only as far as a contact can be (false: everywhere)

@@ -28,26 +28,45 @@ constexpr std::array<Attribute, 7> kAttributes = {{{4, offsetof(SiteInstance, fr
                                                    {2, offsetof(SiteInstance, shift), false},
                                                    {2, offsetof(SiteInstance, id), true}}};
 
+constexpr std::array<Attribute, 3> kMeshAttributes = {{{2, offsetof(MeshVertex, place), false},
+                                                       {2, offsetof(MeshVertex, value), false},
+                                                       {2, offsetof(MeshVertex, id), true}}};
+
+FieldPrimitives primitives_of(const SiteBatch& batch) {
+  return batch.is_mesh    ? FieldPrimitives::mesh
+         : batch.has_arcs ? FieldPrimitives::with_arcs
+                          : FieldPrimitives::straight;
+}
+
 }  // namespace
+
+/// Makes a vertex array and its buffer. `step`: instances between two entries (0: one a vertex).
+template <class Attributes>
+void FieldRenderer::make_array(const Attributes& attributes, std::size_t stride, GLuint step, GLuint& array,
+                               GLuint& buffer) {
+  gl_.GenVertexArrays(1, &array);
+  gl_.BindVertexArray(array);
+  gl_.GenBuffers(1, &buffer);
+  gl_.BindBuffer(GL_ARRAY_BUFFER, buffer);
+  for (GLuint i = 0; i < attributes.size(); ++i) {
+    const Attribute& a = attributes[i];
+    const auto* at = reinterpret_cast<const void*>(a.offset);
+    gl_.EnableVertexAttribArray(i);
+    gl_.VertexAttribDivisor(i, step);
+    const auto size = static_cast<GLsizei>(stride);
+    if (a.integer) {
+      gl_.VertexAttribIPointer(i, a.components, GL_UNSIGNED_INT, size, at);
+    } else {
+      gl_.VertexAttribPointer(i, a.components, GL_FLOAT, GL_FALSE, size, at);
+    }
+  }
+}
 
 FieldRenderer::FieldRenderer(std::unique_ptr<GlContext> context) : context_(std::move(context)) {
   context_->make_current();
   gl_ = load_gl_functions(*context_);
-  gl_.GenVertexArrays(1, &vertices_);
-  gl_.BindVertexArray(vertices_);
-  gl_.GenBuffers(1, &instances_);
-  gl_.BindBuffer(GL_ARRAY_BUFFER, instances_);
-  for (GLuint i = 0; i < kAttributes.size(); ++i) {
-    const Attribute& a = kAttributes[i];
-    const auto* at = reinterpret_cast<const void*>(a.offset);
-    gl_.EnableVertexAttribArray(i);
-    gl_.VertexAttribDivisor(i, 1);
-    if (a.integer) {
-      gl_.VertexAttribIPointer(i, a.components, GL_UNSIGNED_INT, sizeof(SiteInstance), at);
-    } else {
-      gl_.VertexAttribPointer(i, a.components, GL_FLOAT, GL_FALSE, sizeof(SiteInstance), at);
-    }
-  }
+  make_array(kMeshAttributes, sizeof(MeshVertex), 0, mesh_vertices_, mesh_);
+  make_array(kAttributes, sizeof(SiteInstance), 1, vertices_, instances_);
   gl_.GenBuffers(1, &owner_buffer_);
   gl_.GenTextures(1, &owner_texture_);
   gl_.PixelStorei(GL_PACK_ALIGNMENT, 4);
@@ -63,14 +82,17 @@ FieldRenderer::~FieldRenderer() {
     for (Target& target : *targets) destroy(target);
   }
   gl_.DeleteTextures(1, &owner_texture_);
-  for (GLuint* buffer : {&owner_buffer_, &instances_, &storage_}) gl_.DeleteBuffers(1, buffer);
+  for (GLuint* buffer : {&owner_buffer_, &instances_, &mesh_, &storage_}) gl_.DeleteBuffers(1, buffer);
   gl_.DeleteVertexArrays(1, &vertices_);
+  gl_.DeleteVertexArrays(1, &mesh_vertices_);
 }
 
 FieldRenderer::Program& FieldRenderer::use(FieldProgram kind, const PixelGrid& grid, const SiteBatch& batch) {
-  Program& program = programs_[2 * static_cast<std::size_t>(kind) + (batch.has_arcs ? 1 : 0)];
+  const FieldPrimitives primitives = primitives_of(batch);
+  Program& program =
+      programs_[kFieldPrimitives * static_cast<std::size_t>(kind) + static_cast<std::size_t>(primitives)];
   if (program.name == 0) {
-    program.name = make_program(gl_, vertex_shader(kind), fragment_shader(kind, batch.has_arcs));
+    program.name = make_program(gl_, vertex_shader(kind, primitives), fragment_shader(kind, primitives));
     gl_.UseProgram(program.name);
     const auto at = [&](const char* name) { return gl_.GetUniformLocation(program.name, name); };
     program.half_size = at("half_size");
@@ -146,13 +168,19 @@ void FieldRenderer::fit(Targets& targets, const PixelGrid& grid, bool with_ids) 
 }
 
 void FieldRenderer::upload(const SiteBatch& batch) {
-  gl_.BindBuffer(GL_ARRAY_BUFFER, instances_);
-  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(batch.instances.size() * sizeof(SiteInstance)),
-                 batch.instances.data(), GL_STREAM_DRAW);
+  const auto send = [&](GLuint buffer, const auto& entries) {
+    gl_.BindBuffer(GL_ARRAY_BUFFER, buffer);
+    gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(entries.size() * sizeof(entries[0])),
+                   entries.data(), GL_STREAM_DRAW);
+  };
+  batch.is_mesh ? send(mesh_, batch.triangles) : send(instances_, batch.instances);
 }
 
 void FieldRenderer::draw(const PixelGrid& grid, const SiteBatch& batch) {
-  if (!batch.instances.empty()) {
+  gl_.BindVertexArray(batch.is_mesh ? mesh_vertices_ : vertices_);
+  if (!batch.triangles.empty()) {
+    gl_.DrawArraysInstanced(GL_TRIANGLES, 0, static_cast<GLsizei>(batch.triangles.size()), 1);
+  } else if (!batch.instances.empty()) {
     gl_.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.instances.size()));
   }
   pixels_drawn_ += static_cast<std::uint64_t>(grid.width) * static_cast<std::uint64_t>(grid.height);

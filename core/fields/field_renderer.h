@@ -69,6 +69,9 @@ class FieldRenderer {
     int size = 0;
   };
 
+  template <class Attributes>
+  void make_array(const Attributes& attributes, std::size_t stride, GLuint step, GLuint& array,
+                  GLuint& buffer);
   Program& use(FieldProgram kind, const PixelGrid& grid, const SiteBatch& batch);
   /// Targets of one use by size: powers of two. A clear costs the whole target, so a small window gets a
   /// small one.
@@ -84,10 +87,11 @@ class FieldRenderer {
 
   std::unique_ptr<GlContext> context_;
   GlFunctions gl_;
-  std::array<Program, 2 * kFieldPrograms> programs_{};  ///< by kind, without and with arcs
+  std::array<Program, kFieldPrimitives * kFieldPrograms> programs_{};  ///< by kind and primitives
   Targets image_[2], bound_;
   Target* current_ = nullptr;  ///< the target drawn into last
-  GLuint vertices_ = 0, instances_ = 0, storage_ = 0, owner_buffer_ = 0, owner_texture_ = 0;
+  GLuint vertices_ = 0, instances_ = 0, mesh_vertices_ = 0, mesh_ = 0, storage_ = 0, owner_buffer_ = 0,
+         owner_texture_ = 0;
   std::size_t storage_bytes_ = 0;
   std::vector<float> bounds_;
   std::vector<PixelEntry> entries_;

@@ -31,6 +31,29 @@ void main() {
 }
 )";
 
+constexpr const char* kMeshVertex = R"(
+layout(location = 0) in vec2 place;
+layout(location = 1) in vec2 height_in;
+layout(location = 2) in uvec2 tag_in;
+noperspective out vec2 height;  // drawn value, side
+flat out uvec2 tag;
+uniform vec2 half_size;
+uniform float depth_scale;
+void main() {
+  gl_Position = vec4(place / half_size, 2.0 * height_in.x * depth_scale - 1.0, 1.0);
+  height = height_in;
+  tag = tag_in;
+}
+)";
+
+// The rasteriser has interpolated the value, and writes the depth.
+constexpr const char* kMesh = R"(
+noperspective in vec2 height;
+flat in uvec2 tag;
+float drawn_value(out float side) { side = height.y; return height.x; }
+void write_depth(float t) {}
+)";
+
 constexpr const char* kInputs = R"(
 flat in vec4 ends;
 flat in vec4 arc;
@@ -76,19 +99,24 @@ float core_distance(vec2 q, out float side) {
 constexpr const char* kImage = R"(
 layout(location = 0) out uint site;
 layout(location = 1) out float value;
-uniform float depth_scale;
 uniform float limit;   // values beyond it are not drawn
 uniform float offset;  // value of the site's surface
 bool wanted();
 void main() {
   float side;
-  float t = core_distance(gl_FragCoord.xy - half_size, side) + shift.x;
+  float t = drawn_value(side);
   if (t > limit || !wanted()) discard;
   bool inside = (side < 0.0 && (tag.y & 4u) != 0u) || t < offset;
   site = inside ? tag.x | 0x80000000u : tag.x;
   value = t;
-  gl_FragDepth = t * depth_scale;
+  write_depth(t);
 }
+)";
+
+constexpr const char* kExactValue = R"(
+uniform float depth_scale;
+float drawn_value(out float side) { return core_distance(gl_FragCoord.xy - half_size, side) + shift.x; }
+void write_depth(float t) { gl_FragDepth = t * depth_scale; }
 )";
 
 constexpr const char* kFirst = R"(
@@ -157,23 +185,28 @@ std::string version(FieldProgram program) {
 
 }  // namespace
 
-std::string vertex_shader(FieldProgram program) { return version(program) + kVertex; }
+std::string vertex_shader(FieldProgram program, FieldPrimitives primitives) {
+  return version(program) + (primitives == FieldPrimitives::mesh ? kMeshVertex : kVertex);
+}
 
-std::string fragment_shader(FieldProgram program, bool arcs) {
-  std::string source = version(program) + kInputs + kStraight + (arcs ? kWithArcs : kOnlyStraight);
+std::string fragment_shader(FieldProgram program, FieldPrimitives primitives) {
+  const bool mesh = primitives == FieldPrimitives::mesh, arcs = primitives == FieldPrimitives::with_arcs;
+  const std::string distance =
+      mesh ? kMesh : std::string(kInputs) + kStraight + (arcs ? kWithArcs : kOnlyStraight);
+  const std::string image = version(program) + distance + (mesh ? "" : kExactValue) + kImage;
   switch (program) {
     case FieldProgram::first:
-      return source + kImage + kFirst;
+      return image + kFirst;
     case FieldProgram::second:
-      return source + kImage + kSecond;
+      return image + kSecond;
     case FieldProgram::bound:
-      return source + kBound;
+      return version(program) + distance + kBound;
     case FieldProgram::append:
-      return source + kAppend;
+      return version(program) + distance + kAppend;
     case FieldProgram::mark:
       break;
   }
-  return source + kMark;
+  return version(program) + distance + kMark;
 }
 
 }  // namespace brink::detail

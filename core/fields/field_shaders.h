@@ -15,9 +15,13 @@ enum class FieldProgram {
 };
 inline constexpr int kFieldPrograms = 5;
 
-std::string vertex_shader(FieldProgram program);
-/// `arcs`: whether the batch has any. llvmpipe runs both sides of a branch, so the code for arcs costs even
-/// where all sites are straight.
-std::string fragment_shader(FieldProgram program, bool arcs);
+/// What the sites are drawn as. llvmpipe runs both sides of a branch, so the code for arcs costs even where
+/// all sites are straight: they have a program of their own.
+enum class FieldPrimitives { straight, with_arcs, mesh };
+inline constexpr int kFieldPrimitives = 3;
+
+/// @pre mesh: `first` or `second`.
+std::string vertex_shader(FieldProgram program, FieldPrimitives primitives);
+std::string fragment_shader(FieldProgram program, FieldPrimitives primitives);
 
 }  // namespace brink::detail

@@ -6,6 +6,7 @@
 
 #include "brink/core/base/error.h"
 #include "brink/core/fields/field_renderer.h"
+#include "brink/core/fields/site_mesh.h"
 #include "brink/core/fields/site_tiles.h"
 #include "brink/core/shapes/distance.h"
 
@@ -148,6 +149,7 @@ struct PassRenderer::Impl {
         if (value.owner != FieldImage::kNone) farthest = std::max(farthest, value.distance);
       }
     }
+    out.tessellation = static_cast<float>(1.001 * batch.tessellation * grid.pixel);
     out.rounding = static_cast<float>(1.001 * batch.largest_error * grid.pixel + 0x1.0p-23 * farthest);
     return out;
   }
@@ -156,8 +158,11 @@ struct PassRenderer::Impl {
   SiteBatch draw_first(const PixelGrid& grid, std::span<const PlacedOutline> scene, std::uint32_t excluded,
                        double band, const SiteNames& names, int layers) {
     check_distance("band", band);
-    SiteBatch batch = detail::make_batch(grid, scene, excluded, {band, 0.0, false});
-    const bool large = std::min(grid.width, grid.height) > detail::kTile && batch.instances.size() > 1;
+    const bool mesh = options.primitives == "mesh";
+    SiteBatch batch = mesh ? detail::make_mesh_batch(grid, scene, excluded, band, options.mesh_error)
+                           : detail::make_batch(grid, scene, excluded, {band, 0.0, false});
+    const bool large =
+        !mesh && std::min(grid.width, grid.height) > detail::kTile && batch.instances.size() > 1;
     if (large) detail::cut_into_tiles(batch, grid, names.owner, band / grid.pixel, layers);
     renderer.draw_image(grid, batch, band / grid.pixel + batch.offset, 0, names.owner);
     return batch;

@@ -36,6 +36,7 @@ struct FieldImage {
   std::vector<std::uint8_t> inside;  ///< 1 where the nearest site says "inside its solid" (altered interior),
                                      ///< or where the pixel's centre is within its thickness
   float rounding = 0.0F;             ///< bound on |distance - true distance| from single precision [m]
+  float tessellation = 0.0F;         ///< the same from primitives that are cones and tents; else 0 [m]
 };
 
 /// What lies near one body at one moment.

@@ -63,9 +63,21 @@ struct SiteInstance {
 };
 static_assert(sizeof(SiteInstance) == 96);
 
-/// What to draw, all sites at once.
+/// One corner of a triangle of cones and tents: the layout of the vertex attributes.
+struct MeshVertex {
+  std::array<float, 2> place{};    ///< [pixel, from the window's centre]
+  float value = 0.0F;              ///< drawn value there
+  float side = 0.0F;               ///< < 0 on the solid side
+  std::uint32_t id = 0, kind = 0;  ///< as in SiteInstance
+};
+static_assert(sizeof(MeshVertex) == 24);
+
+/// What to draw, all sites at once: as instances, or as triangles.
 struct SiteBatch {
   std::vector<SiteInstance> instances;  ///< sites that can show in the window, ascending id
+  std::vector<MeshVertex> triangles;    ///< the same as cones and tents (site_mesh.h), three a triangle
+  bool is_mesh = false;                 ///< triangles are drawn, no instances
+  double tessellation = 0.0;            ///< how far a triangle is off the site's distance at most [pixel]
   bool has_arcs = false;                ///< the scene has arcs (drawn or not)
   double offset = 0.0;                  ///< drawn value = distance [pixel] - radius + offset >= 0
   double depth_scale = 1.0;             ///< power of two; drawn value * depth_scale is in [0, 1)
@@ -80,6 +92,10 @@ struct BatchRules {
   bool bounds =
       false;  ///< shift distances by the error bound (upper and lower bounds instead of the plain value)
 };
+
+/// A batch with nothing to draw. Offset and depth scale come from the whole scene, excluded owner and all, so
+/// that a site is drawn with the same bits whoever is left out.
+SiteBatch empty_batch(const PixelGrid& grid, std::span<const PlacedOutline> scene);
 
 /// Sites of `scene` numbered from 0 in order; the owner `excluded`, and whatever is not to be drawn,
 /// keeps its numbers.
