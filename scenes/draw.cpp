@@ -194,18 +194,43 @@ void draw_edges(Canvas& canvas, const Sheet& sheet) {
     canvas.outline(*sheet.world.bodies[k].outline, sheet.bodies[k].pose, ink);
 }
 
+/// Fixed wires over the colour layer, where they show as the middle of their cells alone.
+void draw_wires(Canvas& canvas, const Sheet& sheet) {
+  const Color line = Tones::ink.rgb();
+  for (std::size_t k = 0; k < sheet.world.sites.size(); ++k)
+    if (!sheet.world.sites[k].outline->solid)
+      canvas.outline(*sheet.world.sites[k].outline, sheet.sites[k], {line, line, 1.6, 0.0, false});
+}
+
+/// Particles of the classic detector, where a sampling is asked for: those inside paler.
+void draw_particles(Canvas& canvas, const Sheet& sheet) {
+  const Color rim = Tones::ink.rgb(), inner = Oklch{0.99, 0.0, 0.0}.rgb();
+  for (std::size_t k = 0; k < sheet.world.bodies.size(); ++k) {
+    const Body& body = sheet.world.bodies[k];
+    if (body.sampling.kind == Sampling::Kind::vertices || static_cast<int>(k) == sheet.excluded) continue;
+    const Frame frame(sheet.bodies[k].pose);
+    for (const Particle& particle : make_particles(*body.outline, body.sampling)) {
+      canvas.dot(frame.to_world(particle.p), 3.4, rim);
+      if (particle.area > 0.0) canvas.dot(frame.to_world(particle.p), 2.2, inner);
+    }
+  }
+}
+
 void draw_layer(Canvas& canvas, const Sheet& sheet) {
   switch (sheet.options.layer.kind) {
     case Kind::color:
-      return;
+      draw_wires(canvas, sheet);
+      return draw_particles(canvas, sheet);
     case Kind::depth:
-      return draw_edges(canvas, sheet);
+      draw_edges(canvas, sheet);
+      return draw_particles(canvas, sheet);
     case Kind::scene:
     case Kind::pass:
       draw_sites(canvas, sheet);
       draw_springs(canvas, sheet);
       draw_bodies(canvas, sheet);
       draw_arrows(canvas, sheet);
+      draw_particles(canvas, sheet);
       if (sheet.excluded >= 0) draw_excluded(canvas, sheet);
   }
 }

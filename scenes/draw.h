@@ -47,7 +47,7 @@ struct DrawOptions {
   std::optional<double> time;  ///< shown in the caption [s]
   double arrow_seconds = 0.0;  ///< > 0: velocity arrows, as long as the way made in this time [s]
   bool diagram = true;         ///< scene and pass: draw the cells beneath
-  FieldOptions field;          ///< how the diagram's GL context is opened
+  FieldOptions field;          ///< context, primitives; a band > 0 truncates the diagram to it
 
   /// True if usable; else writes which option, its value and what is allowed into *error.
   bool is_valid(std::string* error) const;
@@ -68,9 +68,10 @@ struct Picture {
 /// @pre bodies and sites have one entry each for every body and site of the world.
 Box automatic_view(const World& world, std::span<const BodyState> bodies, std::span<const Pose> sites);
 
-/// Draws the world with its bodies and sites at the given states and poses.
-/// The diagram is rendered by PassRenderer at twice the resolution. Layer `scene` does without it (and says
-/// so in the log) where no GL context opens; the others need it.
+/// Draws the world with its bodies and sites at the given states and poses. Bodies whose sampling is asked
+/// for (any kind but `vertices`) show their particles as dots. The diagram is rendered by PassRenderer at
+/// twice the resolution. Layer `scene` does without it (and says so in the log) where no GL context opens;
+/// the others need it.
 /// @throws BadInput on invalid options, an unknown body, or counts or poses that do not fit; IoError without
 /// a context.
 Picture draw_scene(const World& world, std::span<const BodyState> bodies, std::span<const Pose> sites,

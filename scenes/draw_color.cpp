@@ -120,6 +120,8 @@ Oklch Palette::strong(std::size_t k) const {
   return color;
 }
 
-Oklch Palette::site(std::size_t k) const { return {0.60 + 0.08 * spread(k), 0.015, 260.0}; }
+Oklch Palette::site(std::size_t k) const {
+  return {0.60 + 0.08 * spread(k), 0.05, 260.0 + 137.5 * static_cast<double>(k)};
+}
 
 }  // namespace brink::draw

@@ -76,6 +76,9 @@ std::vector<PlacedOutline> placed_outlines(const World& world, std::span<const B
 FieldImage render_field(std::span<const PlacedOutline> placed, const View& view, int fineness,
                         std::uint32_t excluded, const FieldOptions& options) {
   PassRenderer renderer(options);
+  if (options.band > 0.0)
+    return renderer.render(view.window, view.width * fineness, view.height * fineness, placed, excluded,
+                           options.band);
   const int coarse = std::max(1, std::max(view.width, view.height) / 64);
   View small = view;
   small.width = (view.width + coarse - 1) / coarse;

@@ -35,7 +35,7 @@ constexpr const char* kMeshVertex = R"(
 layout(location = 0) in vec2 place;
 layout(location = 1) in vec2 height_in;
 layout(location = 2) in uvec2 tag_in;
-noperspective out vec2 height;  // drawn value, side
+out vec2 height;  // drawn value, side; linear, as w is 1 everywhere
 flat out uvec2 tag;
 uniform vec2 half_size;
 uniform float depth_scale;
@@ -48,7 +48,7 @@ void main() {
 
 // The rasteriser has interpolated the value, and writes the depth.
 constexpr const char* kMesh = R"(
-noperspective in vec2 height;
+in vec2 height;
 flat in uvec2 tag;
 float drawn_value(out float side) { side = height.y; return height.x; }
 void write_depth(float t) {}

@@ -17,7 +17,7 @@ constexpr double kWidest = kPi / 8;
 constexpr double kRim = 1.5;
 /// Bound on the rounding of interpolated values, as a share of all lengths that take part: corners are
 /// rounded once, and the rasteriser's plane through three of them errs by a few roundings of its values over
-/// the window. Measured on a million pixels: a sixth of this.
+/// the window. Measured on a million pixels: a fifth of this at most.
 constexpr double kMeshRounding = 256.0 / (1 << 24);
 
 /// Half the angle for which radius (1 - cos) is the error.
@@ -30,7 +30,7 @@ class MeshMaker {
   MeshMaker(const PixelGrid& grid, double band, double error, SiteBatch& batch)
       : grid_(grid), band_(band / grid.pixel), error_(error), corners_(corners_of(grid)), batch_(batch) {}
 
-  /// `ends`: whether the site's first and last point get cones; in a loop the next site brings the last.
+  /// `last_point`: its end gets a cone, too; inside a chain or loop that is the next site's start.
   void add(const Site& site, const Frame& frame, std::uint32_t id, bool last_point) {
     const PixelSite s = pixel_site(site, frame, grid_);
     id_ = id;

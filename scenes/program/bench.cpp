@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "brink/core/base/error.h"
+#include "brink/scenes/program/bench_classic.h"
 #include "brink/scenes/program/bench_plot.h"
 #include "brink/scenes/program/command.h"
 #include "brink/scenes/program/run_folder.h"
@@ -25,13 +26,18 @@ struct BenchArguments {
   bool list = false;
 };
 
+/// The sweep of the classic detector: not a problem, but asked for like one, and only by name.
+constexpr const char* kClassic = "classic";
+
 /// Those asked for, in the list's order; all if none is. @throws BadInput on unknown names, one line each.
 std::vector<Problem> chosen(std::vector<Problem> all, const std::vector<std::string>& names) {
   if (names.empty()) return all;
   std::string known, faults;
   for (const Problem& p : all) known += (known.empty() ? "" : ", ") + p.name;
+  known += fmt::format(", {}", kClassic);
   for (const std::string& name : names)
-    if (std::none_of(all.begin(), all.end(), [&](const Problem& p) { return p.name == name; }))
+    if (name != kClassic &&
+        std::none_of(all.begin(), all.end(), [&](const Problem& p) { return p.name == name; }))
       faults +=
           fmt::format("{}bench: '{}' is not a problem; allowed: {}", faults.empty() ? "" : "\n", name, known);
   if (!faults.empty()) throw BadInput(faults);
@@ -92,11 +98,16 @@ int run(const BenchArguments& arguments) {
   const std::vector<Problem> problems = chosen(bench::problems(), arguments.names);
   if (arguments.list) {
     for (const Problem& p : problems) fmt::print("{:<14} {}; error: {}\n", p.name, p.title, p.error_of);
+    fmt::print("{:<14} the classic detector on these, over spacing, resolution, step and options; minutes\n",
+               kClassic);
     return kDone;
   }
   const fs::path folder = make_folder(arguments.out);
+  const std::vector<std::string>& names = arguments.names;
+  const bool classic = std::find(names.begin(), names.end(), kClassic) != names.end();
+  bool good = !classic || bench::run_classic(folder);
+  if (problems.empty()) return good ? kDone : kEndedEarly;
   std::vector<Row> rows;
-  bool good = true;
   for (const Problem& problem : problems) {
     print_heading(problem);
     for (const bench::Setting& setting : bench::settings(problem)) {
@@ -132,7 +143,8 @@ void add_bench_command(CLI::App& program, int& status) {
       "the same bits. Ends with 1 if an exact run ends early or repeats differ.\n"
       "Examples:\n"
       "  brink bench\n"
-      "  brink bench bouncing_ball two_boxes --out runs/mine");
+      "  brink bench bouncing_ball two_boxes --out runs/mine\n"
+      "  brink bench classic");
   command->callback([arguments, &status] { status = run(*arguments); });
 }
 

@@ -29,6 +29,7 @@ struct Moment {
   World world;
   std::vector<BodyState> bodies;
   std::vector<Pose> sites;
+  FieldOptions field;
 };
 
 BadInput bad_time(double given, double first, double last) {
@@ -46,7 +47,7 @@ Moment moment_of_run(const fs::path& file, std::optional<double> at) {
   const auto [first, last] = run.time_range();
   const double t = at.value_or(last);
   if (!(t >= first && t <= last)) throw bad_time(t, first, last);
-  Moment moment{t, run.world(), run.states_at(t).states, {}};
+  Moment moment{t, run.world(), run.states_at(t).states, {}, {}};
   for (const FixedSite& site : moment.world.sites) {
     SiteMotion motion(site);
     if (const std::string why = motion.extend(t); !why.empty()) throw BadInput(why);
@@ -70,7 +71,7 @@ Moment moment_of_scene(const DrawArguments& arguments) {
                                  summary.why));
     }
   }
-  Moment moment{t, scene.world, simulator.states(), {}};
+  Moment moment{t, scene.world, simulator.states(), {}, scene.solver.field};
   for (std::size_t k = 0; k < scene.world.sites.size(); ++k) {
     moment.sites.push_back(simulator.site_pose(static_cast<int>(k)));
   }
@@ -84,6 +85,7 @@ void draw(const DrawArguments& arguments) {
   const fs::path run = run_file_of(arguments.subject);
   const Moment moment = run.empty() ? moment_of_scene(arguments) : moment_of_run(run, arguments.at);
   options.time = moment.t;
+  options.field = moment.field;
   draw_png(arguments.out, moment.world, moment.bodies, moment.sites, options);
 }
 

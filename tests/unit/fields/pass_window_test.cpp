@@ -142,6 +142,29 @@ TEST_P(PassWindow, TwoLayersGiveEveryBodyItsLiteralPassPixelForPixel) {
   }
 }
 
+// The same on two hundred scenes, exact and mesh in turn, over windows that cut the bodies.
+TEST_P(PassWindow, TwoLayersAreTheLiteralPassesOnTwoHundredScenes) {
+  std::size_t different = 0, pixels = 0;
+  FieldOptions mesh = options_;
+  mesh.primitives = "mesh";
+  PassRenderer by_mesh(mesh);
+  for (std::uint64_t seed = 1000; seed < 1200; ++seed) {
+    const RandomScene scene(seed, 6);
+    PassRenderer& renderer = seed % 2 == 0 ? *renderer_ : by_mesh;
+    const double band = seed % 3 == 0 ? 0.5 : kInfinite;
+    const auto layers = renderer.render_two_layers(square(1, 9), 40, 40, scene.placed, band);
+    for (std::uint32_t k = 0; k < 6; ++k) {
+      const FieldImage literal = renderer.render(square(1, 9), 40, 40, scene.placed, k, band);
+      for (std::size_t i = 0; i < literal.owner.size(); ++i, ++pixels) {
+        const FieldImage& layer = layers[layers[0].owner[i] == k ? 1 : 0];
+        different += layer.owner[i] != literal.owner[i] || layer.site[i] != literal.site[i] ||
+                     layer.distance[i] != literal.distance[i] || layer.inside[i] != literal.inside[i];
+      }
+    }
+  }
+  EXPECT_EQ(different, 0U) << "of " << pixels << " pixels";
+}
+
 // Complete: whoever has a point within the margin of the window is named (sampled densely, exact gaps), and
 // whoever is not named is at least others_at_least away.
 TEST_P(PassWindow, NearOwnersNamesEveryOwnerWithinTheMargin) {

@@ -1,0 +1,166 @@
+#include "brink/scenes/program/bench_classic.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "brink/core/base/error.h"
+#include "brink/scenes/program/bench_plot.h"
+#include "brink/scenes/program/terminal.h"
+
+namespace brink::bench {
+namespace {
+
+/// One point of the sweep.
+struct Classic {
+  double spacing = 0.0;  ///< of the largest body's diameter; 0: exact detectors
+  int resolution = 0;
+  double step = 0.0;
+  std::string primitives = "exact", readback = "window", policy = "global_backup";
+};
+
+struct ClassicRow {
+  Classic at;
+  Row row;
+};
+
+constexpr double kSpacings[] = {0.25, 0.0625, 0.015625};
+constexpr int kResolutions[] = {16, 64, 256};
+constexpr double kSteps[] = {0.01, 0.001};
+
+/// The same problem up to an earlier end.
+Problem shortened(Problem problem, double until) {
+  problem.until = until;
+  std::erase_if(problem.hits, [until](double t) { return t >= until; });
+  return problem;
+}
+
+/// Problems of the sweep with ends that keep it to minutes. two_boxes and cradle know their answers at their
+/// own ends only.
+std::vector<Problem> classic_problems() {
+  std::vector<Problem> all;
+  for (const Problem& p : problems()) {
+    const bool whole = p.name == "two_boxes" || p.name == "cradle";
+    all.push_back(whole ? p : shortened(p, std::min(p.until, p.name == "rectangle" ? 4.0 : 2.0)));
+  }
+  return all;
+}
+
+Problem sampled(Problem problem, double spacing) {
+  for (Body& body : problem.world.bodies) {
+    body.sampling.kind = Sampling::Kind::boundary;
+    body.sampling.spacing = spacing * 2.0 * body.outline->bounding_radius;
+  }
+  return problem;
+}
+
+ClassicRow measure_at(const Problem& problem, const Classic& at, const std::string& series) {
+  Setting setting{
+      series, fmt::format("1/{:g} {} px {:g} s", 1.0 / at.spacing, at.resolution, at.step), true, {}};
+  setting.options.detector = "depth";
+  setting.options.policy = at.policy;
+  setting.options.step = at.step;
+  setting.options.field.resolution = at.resolution;
+  setting.options.field.primitives = at.primitives;
+  setting.options.field.readback = at.readback;
+  return {at, measure(sampled(problem, at.spacing), setting, 1)};
+}
+
+std::vector<ClassicRow> exact_rows(const Problem& problem) {
+  std::vector<ClassicRow> rows;
+  for (const char* detector : {"field", "pass"}) {
+    Setting setting{detector, "exact", false, {}};
+    setting.options.policy = "global_backup";
+    setting.options.detector = detector;
+    rows.push_back({{}, measure(problem, setting, 3)});
+  }
+  return rows;
+}
+
+/// Everything by everything; series name what the plot joins by lines.
+std::vector<ClassicRow> sweep(const Problem& problem) {
+  std::vector<ClassicRow> rows = exact_rows(problem);
+  for (const char* primitives : {"exact", "mesh"})
+    for (const char* readback : {"window", "full", "pixel"})
+      for (const int resolution : kResolutions)
+        for (const double step : kSteps)
+          for (const double spacing : kSpacings)
+            rows.push_back(measure_at(problem, {spacing, resolution, step, primitives, readback},
+                                      fmt::format("depth {} px", resolution)));
+  for (const double step : {0.02, 0.01, 0.005, 0.002, 0.001})
+    rows.push_back(measure_at(problem, {kSpacings[1], kResolutions[1], step, "exact", "window", "fixed_step"},
+                              "fixed_step"));
+  return rows;
+}
+
+/// One line in eighteen and the ends: what fits a screen.
+bool shown(const ClassicRow& r) {
+  return r.at.spacing == 0.0 || r.at.policy == "fixed_step" ||
+         (r.at.primitives == "exact" && r.at.readback == "window");
+}
+
+void print(const ClassicRow& r) {
+  const std::string words = r.at.spacing == 0.0
+                                ? r.row.setting.series
+                                : fmt::format("{:<13} 1/{:<4g} {:>4} px  step {:<6g}", r.at.policy,
+                                              1.0 / r.at.spacing, r.at.resolution, r.at.step);
+  fmt::print("  {:<44} error {:>8.1e}  {:>8.2f} ms  missed {}/{}\n", words, r.row.error,
+             1e3 * r.row.wall_seconds, r.row.missed, r.row.expected);
+  std::fflush(stdout);
+}
+
+void write_csv(const std::filesystem::path& file, const std::vector<ClassicRow>& rows) {
+  std::ofstream out(file);
+  out << "problem,detector,policy,spacing,resolution,step,primitives,readback,error,wall_seconds,expected,"
+         "collisions,missed,pixels_drawn,pixels_read,passes,termination,state_hash\n";
+  for (const ClassicRow& r : rows) {
+    const RunSummary& s = r.row.summary;
+    out << fmt::format("{},{},{},{:g},{},{:g},{},{},{:.6g},{:.6g},{},{},{},{},{},{},{},{:016x}\n",
+                       r.row.problem, r.row.setting.options.detector, r.row.setting.options.policy,
+                       r.at.spacing, r.at.resolution, r.at.step, r.at.primitives, r.at.readback, r.row.error,
+                       r.row.wall_seconds, r.row.expected, r.row.collisions, r.row.missed,
+                       s.work.pixels_drawn, s.work.pixels_read, s.work.passes,
+                       s.termination == Termination::reached_end ? "reached_end" : "early", s.state_hash);
+  }
+  out.close();
+  if (!out) throw IoError(fmt::format("{}: could not be written", file.string()));
+}
+
+/// Of the sweep, what a plot can show: the short step, read back by window.
+std::vector<Row> plotted(const std::vector<ClassicRow>& rows) {
+  std::vector<Row> out;
+  for (const ClassicRow& r : rows) {
+    const bool of_sweep = r.at.spacing > 0.0 && r.at.policy != "fixed_step";
+    if (of_sweep && (r.at.step != kSteps[1] || r.at.readback != "window")) continue;
+    out.push_back(r.row);
+    if (r.at.primitives == "mesh") out.back().setting.series += " mesh";
+  }
+  return out;
+}
+
+}  // namespace
+
+bool run_classic(const std::filesystem::path& folder) {
+  std::vector<ClassicRow> rows;
+  const std::vector<Problem> all = classic_problems();
+  for (const Problem& problem : all) {
+    fmt::print("{}  {}, up to {:g} s; error: {}\n", paint(stdout, Paint::heading, problem.name),
+               problem.title, problem.until, problem.error_of);
+    for (ClassicRow& r : sweep(problem)) {
+      if (shown(r)) print(r);
+      rows.push_back(std::move(r));
+    }
+  }
+  write_csv(folder / "classic.csv", rows);
+  write_plot(folder / "classic.png", all, plotted(rows));
+  fmt::print("table {}, plot {}\n\n", (folder / "classic.csv").string(), (folder / "classic.png").string());
+  measure_missed(folder);
+  measure_orders(folder);
+  measure_options(folder);
+  return std::all_of(rows.begin(), rows.end(), [](const ClassicRow& r) {
+    return r.at.spacing > 0.0 || r.row.summary.termination == Termination::reached_end;
+  });
+}
+
+}  // namespace brink::bench
