@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <functional>
 
 #include "brink/core/base/error.h"
 #include "brink/scenes/program/bench_plot.h"
@@ -27,7 +28,7 @@ struct ClassicRow {
 
 constexpr double kSpacings[] = {0.25, 0.0625, 0.015625};
 constexpr int kResolutions[] = {16, 64, 256};
-constexpr double kSteps[] = {0.01, 0.001};
+constexpr double kSteps[] = {0.01, 0.002};
 
 /// The same problem up to an earlier end.
 Problem shortened(Problem problem, double until) {
@@ -42,7 +43,7 @@ std::vector<Problem> classic_problems() {
   std::vector<Problem> all;
   for (const Problem& p : problems()) {
     const bool whole = p.name == "two_boxes" || p.name == "cradle";
-    all.push_back(whole ? p : shortened(p, std::min(p.until, p.name == "rectangle" ? 4.0 : 2.0)));
+    all.push_back(whole ? p : shortened(p, std::min(p.until, p.name == "rectangle" ? 4.0 : 1.5)));
   }
   return all;
 }
@@ -79,22 +80,21 @@ std::vector<ClassicRow> exact_rows(const Problem& problem) {
 }
 
 /// Everything by everything; series name what the plot joins by lines.
-std::vector<ClassicRow> sweep(const Problem& problem) {
-  std::vector<ClassicRow> rows = exact_rows(problem);
+void sweep(const Problem& problem, const std::function<void(ClassicRow)>& take) {
+  for (ClassicRow& row : exact_rows(problem)) take(std::move(row));
   for (const char* primitives : {"exact", "mesh"})
     for (const char* readback : {"window", "full", "pixel"})
       for (const int resolution : kResolutions)
         for (const double step : kSteps)
           for (const double spacing : kSpacings)
-            rows.push_back(measure_at(problem, {spacing, resolution, step, primitives, readback},
-                                      fmt::format("depth {} px", resolution)));
-  for (const double step : {0.02, 0.01, 0.005, 0.002, 0.001})
-    rows.push_back(measure_at(problem, {kSpacings[1], kResolutions[1], step, "exact", "window", "fixed_step"},
-                              "fixed_step"));
-  return rows;
+            take(measure_at(problem, {spacing, resolution, step, primitives, readback, "global_backup"},
+                            fmt::format("depth {} px", resolution)));
+  for (const double step : {0.02, 0.01, 0.005, 0.002})
+    take(measure_at(problem, {kSpacings[1], kResolutions[1], step, "exact", "window", "fixed_step"},
+                    "fixed_step"));
 }
 
-/// One line in eighteen and the ends: what fits a screen.
+/// What fits a screen: exact primitives, read back by window.
 bool shown(const ClassicRow& r) {
   return r.at.spacing == 0.0 || r.at.policy == "fixed_step" ||
          (r.at.primitives == "exact" && r.at.readback == "window");
@@ -147,10 +147,10 @@ bool run_classic(const std::filesystem::path& folder) {
   for (const Problem& problem : all) {
     fmt::print("{}  {}, up to {:g} s; error: {}\n", paint(stdout, Paint::heading, problem.name),
                problem.title, problem.until, problem.error_of);
-    for (ClassicRow& r : sweep(problem)) {
+    sweep(problem, [&](ClassicRow r) {
       if (shown(r)) print(r);
       rows.push_back(std::move(r));
-    }
+    });
   }
   write_csv(folder / "classic.csv", rows);
   write_plot(folder / "classic.png", all, plotted(rows));

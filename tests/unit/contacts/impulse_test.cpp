@@ -126,5 +126,20 @@ TEST(Reflection, MirrorsTheNormalAndScalesTheTangent) {
   EXPECT_DOUBLE_EQ(result.body.velocity.x(), 1.5);
 }
 
+// The angular change is the impulse's moment divided by the inertia, times the pair's spin scalar: a rod's
+// end (arm (1, 0), I = 1/3, m = 1) on a floor has effective mass 1 / (1 + 3) and takes 2 m_eff v = v / 2.
+TEST(Reflection, AngularChangeIsDividedByTheInertiaAndScaledBySpin) {
+  const ImpulseSide rod{Twist{{0.0, -2.0}, 0.0}, RealVec(-1.0, 0.0), 1.0, 1.0, 3.0};
+  const ImpulseSide floor{Twist{}, RealVec::Zero(), 0.0, 0.0, 0.0};
+  for (const double spin : {1.0, 0.25, 0.0}) {
+    Material m;
+    m.spin = spin;
+    const ImpulseResult result = resolve_reflection(rod, floor, RealVec(0.0, 1.0), m);
+    EXPECT_DOUBLE_EQ(result.normal, 1.0);
+    EXPECT_DOUBLE_EQ(static_cast<double>(result.body.velocity.y()), -1.0);
+    EXPECT_DOUBLE_EQ(static_cast<double>(result.body.omega), -3.0 * spin);
+  }
+}
+
 }  // namespace
 }  // namespace brink
