@@ -23,8 +23,9 @@ class EventQueue {
       place_[k] = static_cast<int>(k);
     }
   }
-  bool empty() const { return heap_.empty(); }
-  double time() const { return heap_.front().time; }
+  /// The least time of all bodies; infinite where there are none.
+  double time() const { return heap_.empty() ? std::numeric_limits<double>::infinity() : heap_.front().time; }
+  /// The body whose time that is. @pre there are bodies.
   int body() const { return heap_.front().body; }
 
   /// The least time of all bodies but the first.

@@ -8,8 +8,10 @@ namespace {
 
 constexpr int kFew = 6;            ///< bodies that need no cells
 constexpr double kLevelRatio = 4;  ///< of radii, from level to level
+constexpr double kTopLevel = 24;   ///< holds all that is larger still
 
 double median_radius(std::span<const Flight> flights) {
+  if (flights.empty()) return 0.0;
   std::vector<double> radii;
   for (const Flight& f : flights) radii.push_back(f.radius);
   const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
@@ -19,7 +21,7 @@ double median_radius(std::span<const Flight> flights) {
 
 int level_of(double radius, double median) {
   if (!(radius > 2.0 * median) || median == 0.0) return 0;
-  return 1 + static_cast<int>(std::log(radius / (2.0 * median)) / std::log(kLevelRatio));
+  return 1 + static_cast<int>(std::min(std::log(radius / (2.0 * median)) / std::log(kLevelRatio), kTopLevel));
 }
 
 }  // namespace

@@ -10,7 +10,11 @@
 namespace brink {
 namespace {
 
+using testing::add;
+using testing::body;
 using testing::Events;
+using testing::site;
+using testing::until;
 
 /// Boxes and discs in a square room, nothing touching.
 World crowd(std::uint64_t seed, bool springs = false) {
@@ -98,6 +102,30 @@ TEST(Simulator, OverlapAtTheStartIsRefusedByName) {
   EXPECT_NE(simulator.start_fault().find("'body0' and 'body1' overlap"), std::string::npos)
       << simulator.start_fault();
   EXPECT_THROW(simulator.run(testing::until(1.0)), BadInput);
+}
+
+TEST(Simulator, WorldWithoutBodiesReachesItsEnd) {
+  World world;
+  add(world, site(make_segment({0, 0}, {1, 0})));
+  for (const char* policy : {"body_clocks", "global_backup", "fixed_step"}) {
+    SolverOptions options;
+    options.policy = policy;
+    const RunSummary summary = Simulator(world, options).run(until(1.0));
+    EXPECT_EQ(summary.termination, Termination::reached_end) << policy;
+    EXPECT_EQ(summary.collisions, 0U) << policy;
+  }
+}
+
+TEST(Simulator, BodiesOfAllSizesMeet) {  // on every level of the cells
+  World world;
+  for (const double r : {1e-3, 1e-2, 1.0, 1.0, 1.0, 1.0, 1e2, 1e3}) {
+    const bool first = world.bodies.empty();
+    const double x = first ? 0.0 : world.bodies.back().initial.pose.position.x() + 2e3 + r;
+    add(world, body(make_disc(r), {x, 0.0}, {first ? 1e3 : 0.0, 0.0}));
+  }
+  SolverOptions options;
+  options.policy = "body_clocks";
+  EXPECT_EQ(Simulator(world, options).run(until(100.0)).collisions, 7U);
 }
 
 TEST(Simulator, StopsAtTheLimitOfCollisionsAndGoesOn) {
