@@ -162,21 +162,30 @@ BodyState Motion::state(double t) const {
               {{x.rate, y.rate}, turn.rate}};
     }
     case Kind::chain:
-      return link(t).state(t);
     case Kind::dense:
       break;
   }
-  return track_->at(t).state(t);
+  BodyState state = kind_ == Kind::chain ? link(t).state(t) : track_->at(t).state(t);
+  state.pose.position += offset_;
+  return state;
+}
+
+Motion Motion::displaced(const Vec2& by) const {
+  Motion m = *this;
+  if (track_ || chain_) {
+    m.offset_ += by;
+    return m;
+  }
+  const ExtendedState moved = ExtendedState(start_, low_).shifted(by);
+  m.start_ = moved.rounded();
+  m.low_ = moved.low();
+  return m;
 }
 
 ExtendedState Motion::extended_state(double t) const {
   if (kind_ != Kind::ballistic) return state(t);
   const Real s = static_cast<Real>(t) - t0_;
-  ExtendedState e(start_);
-  e.position += low_.pose.position.cast<Real>();
-  e.angle += low_.pose.angle;
-  e.twist.velocity += low_.twist.velocity.cast<Real>();
-  e.twist.omega += low_.twist.omega;
+  ExtendedState e(start_, low_);
   const RealVec a = drive_.linear.cast<Real>();
   const Real alpha = drive_.angular;
   e.position += s * (e.twist.velocity + Real(0.5) * s * a);

@@ -70,6 +70,9 @@ class Motion {
   /// motion's back. At a join the later one answers. @pre not empty, none of them dense or a chain.
   static Motion chain(std::shared_ptr<const std::vector<Motion>> pieces);
 
+  /// The same motion elsewhere: every pose moved by `by` [m]. Of a parabola, moved in extended precision.
+  Motion displaced(const Vec2& by) const;
+
   Motion() = default;
 
   double begin() const;
@@ -108,6 +111,7 @@ class Motion {
   double linear_ = 0.0, angular_ = 0.0;
   std::shared_ptr<const Track> track_;
   std::shared_ptr<const std::vector<Motion>> chain_;
+  Vec2 offset_ = Vec2::Zero();  ///< of a track or chain that is displaced [m]
 };
 
 }  // namespace brink

@@ -40,6 +40,7 @@ class SceneBuilder {
     World& world = scene_.world;
     world.title = file_.title;
     world.gravity = file_.world.gravity;
+    world.periods.size = file_.world.periodic;
     world.restitution_rule = combine_rule(file_.world.restitution_rule);
     world.friction_rule = combine_rule(file_.world.friction_rule);
     scene_.duration = file_.world.duration;

@@ -184,6 +184,8 @@ const Schema<WorldTable>& world_schema() {
       Schema<WorldTable>("world")
           .key("duration", &WorldTable::duration, number({kShortest, 1e12, false, "s"}), "simulated time")
           .key("gravity", &WorldTable::gravity, point("m/s^2"), "uniform acceleration")
+          .key("periodic", &WorldTable::periodic, point("m"),
+               "the plane repeats after so much to the right and up; 0: never")
           .count("seed", &WorldTable::seed, whole(), "of everything that is drawn at random")
           .key("restitution_rule", &WorldTable::restitution_rule, choice(kCombineRules),
                "how the restitutions of two materials make one")

@@ -10,6 +10,7 @@ namespace brink {
 struct WorldTable {
   double duration = Scene{}.duration;
   Vec2 gravity = World{}.gravity;
+  Vec2 periodic = World{}.periods.size;
   std::uint64_t seed = SolverOptions{}.seed;
   std::string restitution_rule = "max";
   std::string friction_rule = "geometric_mean";

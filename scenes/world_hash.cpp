@@ -73,6 +73,7 @@ class WorldHasher {
 
 std::uint64_t world_hash(const World& world) {
   WorldHasher h;
+  if (world.periods.any()) h.add(world.periods.size);
   h.add(world.gravity, static_cast<int>(world.restitution_rule), static_cast<int>(world.friction_rule));
   h.add(static_cast<int>(world.materials.size()), static_cast<int>(world.bodies.size()));
   h.add(static_cast<int>(world.sites.size()), static_cast<int>(world.forces.size()));

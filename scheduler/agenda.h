@@ -7,18 +7,20 @@
 #include <utility>
 #include <vector>
 
+#include "brink/core/base/periodic.h"
 #include "brink/scheduler/first_contact.h"
 
 namespace brink {
 
-/// Two owners that may meet: a body, and another body or a fixed site.
+/// Two owners that may meet: a body, and another body or a fixed site; in a periodic world one image of it.
 struct PairKey {
   int body = -1;
   int other_body = -1;  ///< > body; -1: a fixed site
   int other_site = -1;
+  Image image{};  ///< of the other that the body meets
 
   bool with_site() const { return other_body < 0; }
-  auto order() const { return std::tuple(body, other_body < 0, other_body, other_site); }
+  auto order() const { return std::tuple(body, other_body < 0, other_body, other_site, image); }
   bool operator<(const PairKey& k) const { return order() < k.order(); }
   bool operator==(const PairKey& k) const { return order() == k.order(); }
 };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "brink/scheduler/cell_grid.h"
+#include "brink/scheduler/site_lists.h"
 
 namespace brink {
 
@@ -17,6 +18,7 @@ struct Candidate {
   double time = std::numeric_limits<double>::infinity();
   double clear = 0.0;  ///< a search must begin here: from closer to the contact roundings would show
   int other = -1;
+  Image image{};              ///< of the other
   unsigned version : 31 = 0;  ///< of the other body, when this was found
   unsigned exact : 1 = 0;     ///< `time` is the contact itself
 };
@@ -67,16 +69,17 @@ struct BodyClock {
   CandidateList candidates;
   Cell cell;
   int level = 0;
-  int previous = CellGrid::kNone;  ///< in the list of its cell
-  const std::vector<int>* sites = nullptr;
-  unsigned undecided = 0;  ///< searches in a row that met their cap
+  int previous = CellGrid::kNone;                 ///< in the list of its cell
+  const std::vector<SiteImage>* sites = nullptr;  ///< of its cell, in the first period
+  unsigned undecided = 0;                         ///< searches in a row that met their cap
 
   double expiry() const {
     const double t = std::min(exit, horizon);
     return candidates.empty() ? t : std::min(t, candidates.front().time);
   }
-  /// Takes a candidate into view. Where there is no room the latest falls out, and the view ends where a search
-  /// for it must begin; but what must be searched from `now` on stays, so that a view never ends as it begins.
+  /// Takes a candidate into view. Where there is no room the latest falls out, and the view ends where a
+  /// search for it must begin; but what must be searched from `now` on stays, so that a view never ends as it
+  /// begins.
   void see(const Candidate& c, double now) {
     if (c.time >= horizon) return;
     candidates.insert(c);

@@ -49,6 +49,21 @@ Grid make_grid(const std::vector<Box>& boxes) {
   return g;
 }
 
+/// Which image of the box has its centre in the first period.
+Image image_at_home(const Box& box, const Periods& periods) {
+  const auto along = [&](int axis) {
+    const double size = periods.size[axis];
+    return size > 0.0 ? -static_cast<int>(std::floor(box.center()[axis] / size)) : 0;
+  };
+  return {along(0), along(1)};
+}
+
+Box moved(Box box, const Vec2& by) {
+  box.low += by;
+  box.high += by;
+  return box;
+}
+
 }  // namespace
 
 Box swept_box(const Outline& outline, const Motion& motion, double from, double to) {
@@ -111,6 +126,37 @@ std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<Box>& boxes
       if (boxes[i].overlaps(boxes[j])) pairs.emplace_back(std::min(i, j), std::max(i, j));
     }
   std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+std::vector<ImagePair> overlapping_pairs(const std::vector<Box>& boxes, const Periods& periods) {
+  const int n = static_cast<int>(boxes.size());
+  std::vector<Image> images;
+  std::vector<Box> copies;  // every box at home, then those images that reach into the homes
+  std::vector<int> owner(n);
+  Box homes;
+  for (int k = 0; k < n; ++k) {
+    images.push_back(periods.any() ? image_at_home(boxes[k], periods) : Image{});
+    copies.push_back(moved(boxes[k], periods.shift(images[k])));
+    owner[k] = k;
+    if (periods.any()) homes.add(copies[k]);
+  }
+  for (int k = 0; k < n && periods.any(); ++k)
+    periods.overlaps(homes, boxes[k], [&](const Image& image) {
+      if (image == images[k]) return;
+      images.push_back(image);
+      copies.push_back(moved(boxes[k], periods.shift(image)));
+      owner.push_back(k);
+    });
+  std::vector<ImagePair> pairs;
+  for (const auto& [i, j] : overlapping_pairs(copies)) {
+    if (i >= n || owner[i] == owner[j]) continue;  // one of the two at home
+    const Image between = images[j] + -images[i];
+    pairs.push_back(owner[i] < owner[j] ? ImagePair{owner[i], owner[j], between}
+                                        : ImagePair{owner[j], owner[i], -between});
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   return pairs;
 }
 

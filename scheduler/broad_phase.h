@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "brink/core/base/periodic.h"
 #include "brink/core/shapes/outline.h"
 #include "brink/integrators/motion.h"
 
@@ -17,5 +18,16 @@ Box swept_box(const Outline& outline, const Motion& motion, double from, double 
 /// boxes of many cells are kept apart and met by everyone. Cost: O(n) for boxes of like size, plus n for
 /// every large one.
 std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<Box>& boxes);
+
+/// Box a, and that image of box b which it overlaps.
+struct ImagePair {
+  int a, b;
+  Image image;
+  auto operator<=>(const ImagePair&) const = default;
+};
+
+/// The same in a plane that repeats: pairs with a < b, ascending. Costs as many boxes more as reach over the
+/// edges of the period. @pre finite boxes along axes that repeat.
+std::vector<ImagePair> overlapping_pairs(const std::vector<Box>& boxes, const Periods& periods);
 
 }  // namespace brink

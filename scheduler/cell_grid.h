@@ -1,5 +1,6 @@
 #pragma once
-/// Who is near whom: bodies in the cells of a uniform grid, wrapped on a torus so that the plane has no edge.
+/// Who is near whom: bodies in the cells of a uniform grid, wrapped on a torus so that the plane has no edge;
+/// where the plane repeats, on the torus that it is.
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "brink/core/base/geometry.h"
+#include "brink/core/base/periodic.h"
 
 namespace brink {
 
@@ -25,81 +26,111 @@ struct CellBlock {
   }
 };
 
-/// One level of the grid: square cells of one size for bodies of like size. A body stays in its cell while
-/// its centre is in the cell's box grown by slack(): it does not flutter on a border.
+/// One level of the grid: cells of one size for bodies of like size. A body stays in its cell while its
+/// centre is in the cell's box grown by slack(): it does not flutter on a border.
 class CellGrid {
  public:
   static constexpr int kNone = -1;
   static constexpr double kSlack = 0.05;  ///< of a cell's size
 
   CellGrid() = default;
-  /// @pre size > 0, may be infinite (one cell); `across`, `down`: cells that the bodies spread over.
-  CellGrid(double size, double across, double down) : size_(size) {
-    columns_ = power_of_two(across);
-    rows_ = power_of_two(down);
-    heads_.assign(static_cast<std::size_t>(columns_) * rows_, kNone);
+  /// @pre size > 0, may be infinite (one cell) along axes that do not repeat; `spread`: of the bodies [m].
+  /// Along an axis that repeats, cells are as much larger as they must be to divide the period.
+  CellGrid(double size, const Vec2& spread, const Periods& periods)
+      : x_(size, spread.x(), periods.size.x()), y_(size, spread.y(), periods.size.y()) {
+    slack_ = kSlack * std::min(x_.size, y_.size);
+    heads_.assign(static_cast<std::size_t>(x_.count) * y_.count, kNone);
   }
 
-  double size() const { return size_; }
-  double slack() const { return kSlack * size_; }
-  bool one_cell() const { return std::isinf(size_); }
-  Cell cell_of(const Vec2& p) const {
-    if (one_cell()) return {};
-    return {index(p.x()), index(p.y())};
-  }
+  double size() const { return std::min(x_.size, y_.size); }
+  double slack() const { return slack_; }
+  bool one_cell() const { return std::isinf(size()); }
+  Cell cell_of(const Vec2& p) const { return {x_.index(p.x()), y_.index(p.y())}; }
   /// The box in which a body of that cell has its centre.
   Box box_of(const Cell& c) const {
-    if (one_cell()) {
-      const double all = std::numeric_limits<double>::infinity();
-      return {{-all, -all}, {all, all}};
-    }
-    return Box{{edge(c.column), edge(c.row)}, {edge(c.column + 1), edge(c.row + 1)}}.grown(slack());
+    return Box{{x_.edge(c.column), y_.edge(c.row)}, {x_.edge(c.column + 1), y_.edge(c.row + 1)}}.grown(
+        slack_);
   }
   /// Cells whose bodies can have their centres in the box.
   CellBlock block_of(const Box& box) const {
-    if (one_cell()) return {};
-    return {cell_of(box.low.array() - slack()), cell_of(box.high.array() + slack())};
+    return {cell_of(box.low.array() - slack_), cell_of(box.high.array() + slack_)};
   }
 
-  /// Calls visit(cell, first body of its list) for the cells of the block, each list once. Lists hold bodies
-  /// of cells a torus away too.
+  /// Calls visit(cell, first body of its list) for the cells of the block. Where the plane does not repeat,
+  /// each list once; they hold bodies of cells a torus away too. Where it does, a list once for each of its
+  /// cells in the block.
   template <class Visit>
   void lists(const CellBlock& block, Visit&& visit) const {
-    const int columns = std::min(block.high.column - block.low.column + 1, columns_);
-    const int rows = std::min(block.high.row - block.low.row + 1, rows_);
-    for (int r = 0; r < rows; ++r)
-      for (int c = 0; c < columns; ++c)
-        visit(Cell{block.low.column + c, block.low.row + r},
-              heads_[place({block.low.column + c, block.low.row + r})]);
+    const int columns = x_.lists(block.low.column, block.high.column);
+    const int rows = y_.lists(block.low.row, block.high.row);
+    const int first = x_.wrapped(block.low.column);
+    int row = y_.wrapped(block.low.row);
+    for (int r = 0; r < rows; ++r) {
+      const int* heads = heads_.data() + static_cast<std::size_t>(row) * x_.count;
+      int column = first;
+      for (int c = 0; c < columns; ++c) {
+        visit(Cell{block.low.column + c, block.low.row + r}, heads[column]);
+        if (++column == x_.count) column = 0;
+      }
+      if (++row == y_.count) row = 0;
+    }
   }
 
-  /// True if the block is so wide that one list holds several of its cells.
+  /// True if the block is so wide that one list holds several of its cells, and is visited once.
   bool wraps(const CellBlock& b) const {
-    return b.high.column - b.low.column >= columns_ || b.high.row - b.low.row >= rows_;
+    return x_.wraps(b.low.column, b.high.column) || y_.wraps(b.low.row, b.high.row);
   }
 
-  int& head(const Cell& c) { return heads_[place(c)]; }
+  int& head(const Cell& c) {
+    return heads_[static_cast<std::size_t>(y_.wrapped(c.row)) * x_.count + x_.wrapped(c.column)];
+  }
+
+  /// Where a plane repeats: the cell's image in the first period, and how many periods it is from there.
+  Cell home(const Cell& c) const { return {x_.home(c.column), y_.home(c.row)}; }
+  Image periods_between(const Cell& from, const Cell& to) const {
+    return {x_.periods(to.column - from.column), y_.periods(to.row - from.row)};
+  }
 
  private:
-  static constexpr double kFar = 1e9;  ///< cells from the origin; all beyond is one
+  struct Axis {
+    double size = 1.0;
+    int count = 1;  ///< lists
+    bool repeats = false;
 
-  static int power_of_two(double n) {
-    int p = 1;
-    while (p < n && p < (1 << 14)) p *= 2;
-    return p;
-  }
-  int index(double x) const { return static_cast<int>(std::clamp(std::floor(x / size_), -kFar, kFar)); }
-  /// Where column c begins; the outermost columns have no end.
-  double edge(int c) const {
-    if (c <= -kFar) return -std::numeric_limits<double>::infinity();
-    return c > kFar ? std::numeric_limits<double>::infinity() : c * size_;
-  }
-  std::size_t place(const Cell& c) const {
-    return static_cast<std::size_t>(c.row & (rows_ - 1)) * columns_ + (c.column & (columns_ - 1));
-  }
+    Axis() = default;
+    Axis(double least, double spread, double period) : size(least), repeats(period > 0.0) {
+      if (std::isinf(least) && !repeats) return;
+      if (repeats) {
+        count = std::max(1, static_cast<int>(std::min(period / least, kMost)));
+        size = period / count;
+      } else {
+        count = static_cast<int>(std::min(spread / least + 2.0, kMost));
+      }
+    }
+    int index(double x) const {
+      return std::isinf(size) ? 0 : static_cast<int>(std::clamp(std::floor(x / size), -kFar, kFar));
+    }
+    /// Where cell c begins; the outermost cells have no end, an only cell has neither end.
+    double edge(int c) const {
+      constexpr double everywhere = std::numeric_limits<double>::infinity();
+      if (std::isinf(size)) return c > 0 ? everywhere : -everywhere;
+      if (c <= -kFar) return -everywhere;
+      return c > kFar ? everywhere : c * size;
+    }
+    int wrapped(int c) const {
+      const int rest = c % count;
+      return rest < 0 ? rest + count : rest;
+    }
+    int lists(int low, int high) const { return repeats ? high - low + 1 : std::min(high - low + 1, count); }
+    bool wraps(int low, int high) const { return !repeats && high - low >= count; }
+    int home(int c) const { return repeats ? wrapped(c) : c; }
+    int periods(int cells) const { return repeats ? cells / count : 0; }
+  };
+  static constexpr double kFar = 1e9;     ///< cells from the origin; all beyond is one
+  static constexpr double kMost = 16384;  ///< lists along an axis
 
-  double size_ = 1.0;
-  int columns_ = 1, rows_ = 1;
+  Axis x_, y_;
+  double slack_ = 0.0;
   std::vector<int> heads_;
 };
 

@@ -297,6 +297,8 @@ class PairSearch {
     if (high <= low || gap(high) > 0.0)  // passes by, or touches within rounding
       return f.gap <= limits_.touch && remember(half, f, t_);
     const double t = last_clear_time(gap, low, high);
+    // at the end of its neighbourhood a sample changes sides without having come near
+    if (gap(t) > touching_band(bounds)) return false;
     return remember(half, f, t, 8.0 * noise);
   }
 

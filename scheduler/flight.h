@@ -20,6 +20,13 @@ struct alignas(64) Flight {
   unsigned version = 0;       ///< raised when the motion changes; 31 bits
   bool free = false;          ///< a parabola under the common gravity for ever
   bool disc = false;          ///< the bounding disc is the body
+
+  Flight displaced(const Vec2& by) const {
+    Flight f = *this;
+    f.x += by.x();
+    f.y += by.y();
+    return f;
+  }
 };
 
 /// A span of time in which two outlines may touch; never: begin = infinity.

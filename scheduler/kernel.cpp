@@ -29,6 +29,9 @@ Kernel::Kernel(World world, SolverOptions options)
   world_.check();
   std::string error;
   if (!options_.is_valid(&error)) throw BadInput(error);
+  if (world_.periods.any() && options_.detector != "field")
+    throw BadInput("solver: detector = \"" + options_.detector +
+                   "\" in a periodic world; allowed there: \"field\"");
   limits_.tolerance = options_.contact_tolerance * world_.length();
   limits_.touch = kTouchOfTolerance * limits_.tolerance;
   limits_.closed_forms = options_.skip_closed_forms;

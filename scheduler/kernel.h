@@ -61,7 +61,8 @@ class Kernel {
   const Motion& site_motion(int k) const { return sites_[k].motion(); }
   /// Body or site (owners count bodies first, then sites).
   const Outline& outline_of(int owner) const { return *outlines_[owner]; }
-  std::optional<PairKey> pair_of(int owner_a, int owner_b) const;
+  /// The pair of owner a with that image of owner b; nothing if they are one, or two sites.
+  std::optional<PairKey> pair_of(int owner_a, int owner_b, const Image& image = {}) const;
   /// True if the body is on a parabola for as long as it meets nothing.
   bool is_free(int k) const { return bodies_[k].component < 0; }
   bool site_moves(int k) const { return sites_[k].moves(); }
@@ -170,7 +171,12 @@ class Kernel {
     return {body_index_[body], &bodies_[body].motion, bodies_[body].velocity_rounding};
   }
   Mover site_mover(int site) const { return {site_index_[site], &sites_[site].motion(), 0.0}; }
+  /// The pair's other owner, where its image is. Valid until the next call.
   Mover other_mover(const PairKey& pair) const;
+  /// From the other owner to its image [m].
+  Vec2 shift_of(const PairKey& pair) const { return world_.periods.shift(pair.image); }
+  /// The state at t of the pair's other owner, where its image is.
+  ExtendedState other_state(const PairKey& pair, double t) const;
   /// Index of the pair's other owner: bodies first, then sites.
   int other_owner(const PairKey& pair) const {
     return pair.with_site() ? body_count() + pair.other_site : pair.other_body;
@@ -179,11 +185,13 @@ class Kernel {
   void trace_all(TraceKind kind, double from, double to) const;
   void note_overlap(double gap) { max_overlap_ = std::max(max_overlap_, -gap); }
   std::vector<PairKey> neighbours_at(double t) const;
+  std::vector<PairKey> overlapping(const std::vector<Box>& boxes) const;
   void check_overlaps_at(double t);
   std::optional<Contact> crossing_at(const PairKey& pair, double t) const;
   const Motion& motion_of(int owner) const;
   int owner_count() const { return static_cast<int>(bodies_.size() + sites_.size()); }
   void refresh_boxes(double from, double to, bool all);
+  void add_images(int a, int b, std::vector<PairKey>& pairs) const;
   std::vector<PairKey> pairs_by_pass(int body, double from, double to);
   /// True if the contact is of a sharp sample with a wire without thickness.
   bool thin(const PairKey& pair, const FeatureContact& f) const;
@@ -225,6 +233,7 @@ class Kernel {
   std::unique_ptr<PassRenderer> passes_;
   std::unique_ptr<DepthDetector> depth_;  ///< detector `depth` alone
   mutable SearchScratch scratch_;
+  mutable Motion image_motion_;  ///< of the last other_mover() that was an image
   ZenoWatch zeno_;
   std::vector<Box> boxes_;                   ///< moving bounds of every owner over the present horizon
   std::vector<std::uint64_t> box_versions_;  ///< of the bodies, when their box was made

@@ -74,12 +74,12 @@ class Kernel::GroupResolve {
     reach(found_.pair, reached);
     for (std::size_t i = 0; i < reached.size(); ++i)
       for (int owner = 0; owner < kernel_.owner_count(); ++owner) {
-        const auto pair = kernel_.pair_of(reached[i], owner);
-        if (!pair) continue;
         // of bodies with clocks of their own, some may not have come so far
         if (owner < kernel_.body_count() && !kernel_.extend_motion(owner, now())) return false;
-        if (near(reached[i], owner) && seen.insert(*pair).second && add_touching(*pair))
-          reach(*pair, reached);
+        each_image_near(reached[i], owner, [&](const Image& image) {
+          const auto pair = kernel_.pair_of(reached[i], owner, image);
+          if (pair && seen.insert(*pair).second && add_touching(*pair)) reach(*pair, reached);
+        });
       }
     // one order, whichever contact was found first
     std::sort(group_.begin(), group_.end(),
@@ -92,13 +92,16 @@ class Kernel::GroupResolve {
       if (k >= 0 && std::find(reached.begin(), reached.end(), k) == reached.end()) reached.push_back(k);
   }
 
-  bool near(int a, int b) const {
+  template <class Visit>
+  void each_image_near(int a, int b, Visit&& visit) const {
     const Outline &first = kernel_.outline_of(a), &second = kernel_.outline_of(b);
-    if (first.container || second.container) return true;
-    const double reach = first.bounding_radius + second.bounding_radius + kernel_.limits_.tolerance;
-    const Vec2 between =
-        kernel_.motion_of(a).pose(now()).position - kernel_.motion_of(b).pose(now()).position;
-    return between.squaredNorm() <= reach * reach;
+    if (first.container || second.container) return visit(Image{});
+    const auto box_of = [&](int owner, double margin) {
+      Box place;
+      place.add(kernel_.motion_of(owner).pose(now()).position);
+      return place.grown(kernel_.outline_of(owner).bounding_radius + margin);
+    };
+    kernel_.world_.periods.overlaps(box_of(a, kernel_.limits_.tolerance), box_of(b, 0.0), visit);
   }
 
   /// Adds the pair's contacts; true if it has any.
@@ -131,13 +134,11 @@ class Kernel::GroupResolve {
     for (const Touch& t : group_) contacts_.push_back(contact(t));
   }
 
-  ExtendedState state(int owner) const {
-    return kernel_.motion_of(owner).extended_state(now()).moved(delay_);
-  }
+  ExtendedState state(int body) const { return kernel_.motion_of(body).extended_state(now()).moved(delay_); }
+  ExtendedState other_state(const Touch& t) const { return kernel_.other_state(t.pair, now()).moved(delay_); }
   ExtendedContact geometry(const Touch& t) const {
-    const int other = kernel_.other_owner(t.pair);
-    return contact_in(kernel_.outline_of(t.pair.body), kernel_.outline_of(other), state(t.pair.body),
-                      state(other), t.contact);
+    return contact_in(kernel_.outline_of(t.pair.body), kernel_.outline_of(kernel_.other_owner(t.pair)),
+                      state(t.pair.body), other_state(t), t.contact);
   }
   int index_of(int body) const {
     return static_cast<int>(std::lower_bound(bodies_.begin(), bodies_.end(), body) - bodies_.begin());
@@ -146,7 +147,7 @@ class Kernel::GroupResolve {
   GroupContact contact(const Touch& t) const {
     const World& world = kernel_.world_;
     const ExtendedContact c = geometry(t);
-    const ExtendedState other = state(kernel_.other_owner(t.pair));
+    const ExtendedState other = other_state(t);
     const RealVec other_arm = c.point - other.position;
     GroupContact made;
     made.body = index_of(t.pair.body);

@@ -11,15 +11,32 @@ const Motion& Kernel::motion_of(int owner) const {
   return owner < n ? bodies_[owner].motion : sites_[owner - n].motion();
 }
 
-std::optional<PairKey> Kernel::pair_of(int a, int b) const {
+std::optional<PairKey> Kernel::pair_of(int a, int b, const Image& image) const {
   const int n = body_count();
-  if (a > b) std::swap(a, b);
+  if (a > b) return pair_of(b, a, -image);
   if (a >= n || a == b) return std::nullopt;
-  return b < n ? PairKey{a, b, -1} : PairKey{a, -1, b - n};
+  return b < n ? PairKey{a, b, -1, image} : PairKey{a, -1, b - n, image};
 }
 
 Mover Kernel::other_mover(const PairKey& pair) const {
-  return pair.with_site() ? site_mover(pair.other_site) : mover(pair.other_body);
+  Mover other = pair.with_site() ? site_mover(pair.other_site) : mover(pair.other_body);
+  if (pair.image == Image{}) return other;
+  image_motion_ = other.motion->displaced(shift_of(pair));
+  other.motion = &image_motion_;
+  return other;
+}
+
+ExtendedState Kernel::other_state(const PairKey& pair, double t) const {
+  const ExtendedState state = motion_of(other_owner(pair)).extended_state(t);
+  return pair.image == Image{} ? state : state.shifted(shift_of(pair));
+}
+
+/// Pairs whose boxes overlap, ascending.
+std::vector<PairKey> Kernel::overlapping(const std::vector<Box>& boxes) const {
+  std::vector<PairKey> pairs;
+  for (const ImagePair& p : overlapping_pairs(boxes, world_.periods))
+    if (const auto pair = pair_of(p.a, p.b, p.image)) pairs.push_back(*pair);
+  return pairs;
 }
 
 void Kernel::refresh_boxes(double from, double to, bool all) {
@@ -44,15 +61,24 @@ void Kernel::refresh_boxes(double from, double to, bool all) {
   }
 }
 
+/// Pairs of a with those images of b whose moving bounds meet its own; with the broad phase off, with b
+/// whatever its bounds, but in a plane that repeats there is no end of images.
+void Kernel::add_images(int a, int b, std::vector<PairKey>& pairs) const {
+  const auto add = [&](const Image& image) {
+    if (const auto pair = pair_of(a, b, image)) pairs.push_back(*pair);
+  };
+  if (!options_.skip_broad_phase && !world_.periods.any())
+    add({});
+  else
+    world_.periods.overlaps(boxes_[a], boxes_[b], add);
+}
+
 std::vector<PairKey> Kernel::near_pairs(double from, double to) {
   ++work_.horizons;
   work_.passes += bodies_.size();
   trace_all(TraceKind::pass, from, to);
   refresh_boxes(from, to, true);
   std::vector<PairKey> pairs;
-  const auto add = [&](int a, int b) {
-    if (const auto pair = pair_of(a, b)) pairs.push_back(*pair);
-  };
   if (passes_) {
     for (int k = 0; k < body_count(); ++k) {
       const auto seen = pairs_by_pass(k, from, to);
@@ -61,10 +87,10 @@ std::vector<PairKey> Kernel::near_pairs(double from, double to) {
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   } else if (options_.skip_broad_phase) {
-    for (const auto& [a, b] : overlapping_pairs(boxes_)) add(a, b);
+    pairs = overlapping(boxes_);
   } else {
     for (int a = 0; a < body_count(); ++a)
-      for (int b = a + 1; b < owner_count(); ++b) add(a, b);
+      for (int b = a + 1; b < owner_count(); ++b) add_images(a, b, pairs);
   }
   return pairs;
 }
@@ -75,9 +101,7 @@ std::vector<PairKey> Kernel::near_pairs_of(int body, double from, double to) {
   if (passes_) return pairs_by_pass(body, from, to);
   refresh_boxes(from, to, false);
   std::vector<PairKey> pairs;
-  for (int other = 0; other < owner_count(); ++other)
-    if (!options_.skip_broad_phase || boxes_[other].overlaps(boxes_[body]))
-      if (const auto pair = pair_of(body, other)) pairs.push_back(*pair);
+  for (int other = 0; other < owner_count(); ++other) add_images(body, other, pairs);
   return pairs;
 }
 

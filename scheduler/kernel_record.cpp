@@ -58,10 +58,7 @@ void Kernel::end_frame() {
 std::vector<PairKey> Kernel::neighbours_at(double t) const {
   std::vector<Box> now;
   for (int k = 0; k < owner_count(); ++k) now.push_back(swept_box(outline_of(k), motion_of(k), t, t));
-  std::vector<PairKey> pairs;
-  for (const auto& [a, b] : overlapping_pairs(now))
-    if (const auto pair = pair_of(a, b)) pairs.push_back(*pair);
-  return pairs;
+  return overlapping(now);
 }
 
 void Kernel::check_overlaps_at(double t) {

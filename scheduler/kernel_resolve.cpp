@@ -71,7 +71,7 @@ std::string Kernel::name_of(const PairKey& pair) const {
 struct Kernel::Response {
   ImpulseResult impulse;
   Real delay = 0;             ///< from now to the moment of contact [s]
-  ExtendedState body, other;  ///< states now
+  ExtendedState body, other;  ///< states now; of the other where its image is
   double magnitude = 0.0;     ///< the largest speed that took part [m/s]
 };
 
@@ -103,7 +103,7 @@ Real Kernel::delay_to_contact(const PairKey& pair, const FeatureContact& found,
 Kernel::Response Kernel::respond(const PairKey& pair, const FeatureContact& found) const {
   Response r;
   r.body = bodies_[pair.body].motion.extended_state(time_);
-  r.other = motion_of(other_owner(pair)).extended_state(time_);
+  r.other = other_state(pair, time_);
   const Outline &outline = outline_of(pair.body), &other_outline = outline_of(other_owner(pair));
   ExtendedContact c = depth_ ? as_seen(found) : contact_in(outline, other_outline, r.body, r.other, found);
   r.delay = depth_ ? Real(0) : delay_to_contact(pair, found, c);
@@ -125,8 +125,9 @@ Kernel::Response Kernel::respond(const PairKey& pair, const FeatureContact& foun
 }
 
 bool Kernel::deflect(const PairKey& pair, const Response& r, std::vector<int>& changed) {
-  const Restart both[] = {{pair.body, deflected(r.body, r.impulse.body, r.delay)},
-                          {pair.other_body, deflected(r.other, r.impulse.other, r.delay)}};
+  const Restart both[] = {
+      {pair.body, deflected(r.body, r.impulse.body, r.delay)},
+      {pair.other_body, deflected(r.other, r.impulse.other, r.delay).shifted(-shift_of(pair))}};
   if (pair.with_site()) return restart_noted({both, 1}, changed);
   const int component = bodies_[pair.body].component;
   if (component >= 0 && component == bodies_[pair.other_body].component) return restart_noted(both, changed);

@@ -28,8 +28,12 @@ int level_of(double radius, double median) {
 
 Neighbourhood::Neighbourhood(std::span<Flight> flights, std::span<BodyClock> clocks,
                              std::span<const Vec2> places, std::vector<SiteLists::Placed> still_sites,
-                             bool by_place)
-    : flights_(flights), clocks_(clocks), still_sites_(std::move(still_sites)) {
+                             const Periods& periods, bool by_place)
+    : flights_(flights),
+      clocks_(clocks),
+      still_sites_(std::move(still_sites)),
+      periods_(periods),
+      repeats_(periods.any()) {
   make_levels(places, by_place && flights.size() > kFew);
   for (int k = 0; k < static_cast<int>(flights.size()); ++k) {
     clocks_[k].cell = grid(k).cell_of(places[k]);
@@ -55,15 +59,17 @@ void Neighbourhood::make_levels(std::span<const Vec2> places, bool by_place) {
   for (std::size_t m = 0; m < levels_.size(); ++m) {
     Level& level = levels_[m];
     const double tightest = 2.0 * level.radius * (1.0 + 8.0 * kFlightMargin) / (1.0 - 2.0 * CellGrid::kSlack);
-    const Vec2 extent = all.extent().cwiseMax(tightest);
+    Vec2 extent = all.extent().cwiseMax(tightest);
+    for (int axis = 0; axis < 2; ++axis)
+      if (periods_.size[axis] > 0.0) extent[axis] = periods_.size[axis];
     const double roomy =
         std::sqrt(extent.x() * extent.y() / static_cast<double>(std::max<std::size_t>(counts[m], 1)));
     double size = std::max(tightest, roomy);
     if (!by_place || !(size > 0.0)) size = std::numeric_limits<double>::infinity();
-    level.grid = CellGrid(size, extent.x() / size + 2.0, extent.y() / size + 2.0);
+    level.grid = CellGrid(size, extent, periods_);
   }
   for (Level& level : levels_)
-    level.sites = std::make_unique<SiteLists>(still_sites_, level.grid, level.radius);
+    level.sites = std::make_unique<SiteLists>(still_sites_, level.grid, periods_, level.radius);
 }
 
 bool Neighbourhood::settle(int k, const Vec2& p) {

@@ -19,7 +19,7 @@ class Neighbourhood {
   /// cells hold one body each where there is room and are never smaller than a body. `by_place` false: one
   /// cell for all.
   Neighbourhood(std::span<Flight> flights, std::span<BodyClock> clocks, std::span<const Vec2> places,
-                std::vector<SiteLists::Placed> still_sites, bool by_place);
+                std::vector<SiteLists::Placed> still_sites, const Periods& periods, bool by_place);
 
   /// Puts body k into the cell at p; true if that is a new one.
   bool settle(int k, const Vec2& p);
@@ -27,8 +27,8 @@ class Neighbourhood {
   Box box_of(int k) const { return grid(k).box_of(clocks_[k].cell); }
   double cell_size(int k) const { return grid(k).size(); }
 
-  /// Calls visit(j) for every other body that k can meet while both stay in their cells; with `except`,
-  /// without those of its former cell's blocks.
+  /// Calls visit(j, image) for every other body, and that image of it, that k can meet while both stay in
+  /// their cells; with `except`, without those of its former cell's blocks.
   template <class Visit>
   void near(int k, Visit&& visit, const Cell* except = nullptr) const {
     for (std::size_t m = 0; m < levels_.size(); ++m) {
@@ -38,9 +38,17 @@ class Neighbourhood {
       levels_[m].grid.lists(block, [&](const Cell& c, int first) {
         if (former.contains(c)) return;
         for (int j = first; j != CellGrid::kNone; j = flights_[j].next)
-          if (j != k) visit(j);
+          if (j != k) visit(j, repeats_ ? levels_[m].grid.periods_between(clocks_[j].cell, c) : Image{});
       });
     }
+  }
+
+  /// Calls visit(site, image) for every still site, and that image of it, that k can meet in its cell.
+  template <class Visit>
+  void sites_near(int k, Visit&& visit) const {
+    const BodyClock& clock = clocks_[k];
+    const Image away = repeats_ ? grid(k).periods_between(grid(k).home(clock.cell), clock.cell) : Image{};
+    for (const SiteImage& s : *clock.sites) visit(s.site, s.image + away);
   }
 
  private:
@@ -65,6 +73,8 @@ class Neighbourhood {
   std::span<Flight> flights_;
   std::span<BodyClock> clocks_;
   std::vector<SiteLists::Placed> still_sites_;
+  Periods periods_;
+  bool repeats_;
   std::vector<Level> levels_;
 };
 

@@ -9,6 +9,12 @@
 
 namespace brink {
 
+/// A still site where it stands, or where one of its images does.
+struct SiteImage {
+  int site;
+  Image image;
+};
+
 /// For every cell of one grid level, the still sites within `reach` of the cell's box; found when first asked
 /// for. Lists stay where they are.
 class SiteLists {
@@ -18,19 +24,22 @@ class SiteLists {
     int site;
     Outline outline;
   };
-  SiteLists(const std::vector<Placed>& sites, const CellGrid& grid, double reach)
-      : sites_(&sites), grid_(&grid), reach_(reach) {}
+  SiteLists(const std::vector<Placed>& sites, const CellGrid& grid, const Periods& periods, double reach)
+      : sites_(&sites), grid_(&grid), periods_(periods), reach_(reach) {}
 
-  /// Sites of that cell, ascending. Cost: all sites when first asked, then a look-up.
-  const std::vector<int>& of(const Cell& cell);
+  /// Sites of the cell's image in the first period, ascending. Cost: all sites when first asked, then a
+  /// look-up.
+  const std::vector<SiteImage>& of(const Cell& cell);
 
  private:
+  void find(const Placed& placed, const Box& box, std::vector<SiteImage>& found) const;
   bool reaches(const Outline& outline, const Box& box) const;
 
   const std::vector<Placed>* sites_;
   const CellGrid* grid_;
+  Periods periods_;
   double reach_;
-  std::unordered_map<std::uint64_t, std::vector<int>> lists_;
+  std::unordered_map<std::uint64_t, std::vector<SiteImage>> lists_;
 };
 
 }  // namespace brink

@@ -42,6 +42,14 @@ struct ExtendedState {
   ExtendedState(const BodyState& s)  // NOLINT: widening
       : position(s.pose.position.cast<Real>()), angle(s.pose.angle), twist(s.twist) {}
 
+  /// With what its rounding left over.
+  ExtendedState(const BodyState& s, const BodyState& low) : ExtendedState(s) {
+    position += low.pose.position.cast<Real>();
+    angle += low.pose.angle;
+    twist.velocity += low.twist.velocity.cast<Real>();
+    twist.omega += low.twist.omega;
+  }
+
   BodyState rounded() const {
     return {{position.cast<double>(), static_cast<double>(angle)}, twist.rounded()};
   }

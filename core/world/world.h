@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "brink/core/base/periodic.h"
 #include "brink/core/shapes/outline.h"
 #include "brink/core/shapes/sampling.h"
 #include "brink/core/world/formula.h"
@@ -108,6 +109,7 @@ const std::vector<std::string>& force_formula_variables();
 struct World {
   std::string title;
   Vec2 gravity = Vec2::Zero();  ///< [m/s^2]
+  Periods periods;              ///< [m]; none: the plane does not repeat
   std::vector<Material> materials{Material{}};
   Combine restitution_rule = Combine::max;
   Combine friction_rule = Combine::geometric_mean;

@@ -111,6 +111,26 @@ void check_body(const World& world, const Body& body, std::size_t i) {
   check_sampling(check, body.sampling);
 }
 
+void check_periods(const World& world) {
+  for (const double period : world.periods.size)
+    if (!(period >= 0.0) || !std::isfinite(period))
+      throw BadInput("world: periodic = " + text_of(period) +
+                     "; allowed: a finite length > 0 [m], or 0 along an axis that does not repeat");
+  if (!world.periods.any()) return;
+  const double least = world.periods.least();
+  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+    const double size = 2.0 * world.bodies[i].outline->bounding_radius;
+    if (size > 0.5 * least)
+      Checker{called("body", i, world.bodies[i].name)}.fail(
+          "is " + text_of(size) + " m across; allowed in a " + "periodic world: up to half a period, " +
+          text_of(0.5 * least) + " m");
+  }
+  for (std::size_t i = 0; i < world.sites.size(); ++i)
+    if (world.sites[i].outline->container)
+      Checker{called("site", i, world.sites[i].name)}.fail(
+          "is a container; allowed in a periodic world: sites of finite size");
+}
+
 void check_motion(const Checker& check, const ConstantMotion& motion) {
   check.finite("motion velocity", motion.twist.velocity);
   check.finite("motion angular_velocity", motion.twist.omega);
@@ -199,6 +219,7 @@ void World::check() const {
   for (std::size_t i = 0; i < materials.size(); ++i) check_material(materials[i], i);
   for (std::size_t i = 0; i < bodies.size(); ++i) check_body(*this, bodies[i], i);
   for (std::size_t i = 0; i < sites.size(); ++i) check_site(*this, sites[i], i);
+  check_periods(*this);
   for (std::size_t i = 0; i < forces.size(); ++i)
     std::visit([&](const auto& force) { check_force(*this, force, {"force " + std::to_string(i)}); },
                forces[i]);

@@ -89,7 +89,8 @@ class BodyClocks final : public Policy {
     wait_for(k);
   }
 
-  /// True if body k's first candidate is a contact and comes before everything else, without asking the queue.
+  /// True if body k's first candidate is a contact and comes before everything else, without asking the
+  /// queue.
   bool is_next(int k) const {
     const BodyClock& clock = views_->clock(k);
     if (clock.candidates.empty() || kernel_->halt()) return false;
@@ -109,7 +110,7 @@ class BodyClocks final : public Policy {
       return;
     }
     const double now = c.time, end = views_->end_of(k, c), to = std::min(beyond(end), std::max(now, until_));
-    const auto found = kernel_->search(*kernel_->pair_of(k, c.other), c.clear, to);
+    const auto found = kernel_->search(*kernel_->pair_of(k, c.other, c.image), c.clear, to);
     const bool undecided = found && found->kind == Certificate::Kind::undecided;
     clock.undecided = undecided ? clock.undecided + 1 : 0;
     if (undecided && (found->time <= c.clear || clock.undecided > kMostUndecided))
@@ -193,8 +194,8 @@ class BodyClocks final : public Policy {
     for (std::size_t i = 1; i < candidates.size() && candidates[i].time <= instant; ++i) {
       const Candidate& c = candidates[i];
       if (views_->stale(c)) continue;
-      const auto found =
-          kernel_->search(*kernel_->pair_of(k, c.other), c.clear, std::min(views_->end_of(k, c), beyond(instant)));
+      const auto found = kernel_->search(*kernel_->pair_of(k, c.other, c.image), c.clear,
+                                         std::min(views_->end_of(k, c), beyond(instant)));
       if (found && found->kind == Certificate::Kind::contact && found->time <= instant) add(*found);
     }
   }

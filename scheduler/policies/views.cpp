@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brink/scheduler/broad_phase.h"
 #include "brink/scheduler/pair_kinematics.h"
 
 namespace brink {
@@ -27,11 +28,12 @@ std::vector<Box> boxes_of(const Outline& outline) {
   return boxes;
 }
 
-/// A lower bound of the time in which two owners' bounding discs can come together before `end` [s].
-double gap_over_speed(const Motion& a, double radius, const Motion& b, const Outline& other, double now,
-                      double end) {
+/// A lower bound of the time in which the bounding discs of a and b, displaced by `shift`, can come together
+/// before `end` [s].
+double gap_over_speed(const Motion& a, double radius, const Motion& b, const Vec2& shift,
+                      const Outline& other, double now, double end) {
   if (other.container) return 0.0;
-  const double distance = (a.pose(now).position - b.pose(now).position).norm();
+  const double distance = (a.pose(now).position - b.pose(now).position - shift).norm();
   const double gap = distance - (radius + other.bounding_radius) * (1.0 + kFlightMargin);
   const MotionBounds x = a.bounds(now, end), y = b.bounds(now, end);
   const double closing = (x.velocity - y.velocity).norm() + x.velocity_radius + y.velocity_radius;
@@ -43,6 +45,7 @@ double gap_over_speed(const Motion& a, double radius, const Motion& b, const Out
 Views::Views(Kernel& kernel)
     : kernel_(&kernel),
       gravity_(kernel.world().gravity),
+      periods_(kernel.world().periods),
       flights_(kernel.body_count()),
       clocks_(kernel.body_count()) {
   std::vector<Vec2> places;
@@ -63,7 +66,7 @@ Views::Views(Kernel& kernel)
     site_boxes_.back() = boxes_of(still.back().outline);
   }
   const bool by_place = kernel.options().skip_broad_phase && !kernel.by_passes();
-  near_.emplace(flights_, clocks_, places, std::move(still), by_place);
+  near_.emplace(flights_, clocks_, places, std::move(still), periods_, by_place);
 }
 
 void Views::take_up(int k) {
@@ -95,10 +98,12 @@ Flight Views::from_now(const Flight& f, double now) const {
 }
 
 /// `here`: body k's flight, started at `now`.
-inline void Views::see_body(int k, const Flight& here, int j, double now) {
+inline void Views::see_body(int k, const Flight& here, int j, const Image& image, double now) {
   const Flight& b = flights_[j];
-  const Meeting m = here.free && b.free ? meeting(here, b, gravity_, now) : bounded_meeting(k, j, now);
-  if (m.begin < clocks_[k].horizon) clocks_[k].see({m.begin, m.begin, j, b.version, 0}, now);
+  const Meeting m = !(here.free && b.free) ? bounded_meeting(k, j, image, now)
+                    : image == Image{}     ? meeting(here, b, gravity_, now)
+                                           : meeting(here, image_of(j, image), gravity_, now);
+  if (m.begin < clocks_[k].horizon) clocks_[k].see({m.begin, m.begin, j, image, b.version, 0}, now);
 }
 
 void Views::look_around(int k, double now, std::span<const int> except) {
@@ -115,10 +120,10 @@ void Views::look_around(int k, double now, std::span<const int> except) {
   }
   if (kernel_->by_passes()) return see_by_pass(k, now);
   const Flight here = from_now(flights_[k], now);
-  near_->near(k, [&](int j) {
-    if (std::find(except.begin(), except.end(), j) == except.end()) see_body(k, here, j, now);
+  near_->near(k, [&](int j, const Image& image) {
+    if (std::find(except.begin(), except.end(), j) == except.end()) see_body(k, here, j, image, now);
   });
-  for (const int s : *clock.sites) see_site(k, s, now);
+  near_->sites_near(k, [&](int s, const Image& image) { see_site(k, s, image, now); });
   for (const int s : moving_) see_moving_site(k, s, now);
 }
 
@@ -129,27 +134,39 @@ void Views::look_ahead(int k, double now) {
   const bool moved = near_->settle(k, course.place);
   clock.exit = now + stay_in(near_->box_of(k), course);
   const Flight here = from_now(flights_[k], now);
-  const auto see = [&](int j) { see_body(k, here, j, now); };
+  const auto see = [&](int j, const Image& image) { see_body(k, here, j, image, now); };
   if (moved) near_->near(k, see, &former);
-  for (const int s : *clock.sites) see_site(k, s, now);
+  near_->sites_near(k, [&](int s, const Image& image) { see_site(k, s, image, now); });
 }
 
 /// Still sites are in view until body k leaves its cell.
-void Views::see_site(int k, int s, double now) {
+void Views::see_site(int k, int s, const Image& image, double now) {
   BodyClock& clock = clocks_[k];
   const double end = std::min(clock.exit, clock.horizon);
   double wait = flights_[k].free && !site_boxes_[s].empty() ? kForever : 0.0;
   if (wait > 0.0) {
-    const Course course(flights_[k], gravity_, now);
+    const Course course(flights_[k].displaced(-periods_.shift(image)), gravity_, now);
     const double reach = flights_[k].radius * (1.0 + kFlightMargin) + kernel_->contact_tolerance();
     for (const Box& box : site_boxes_[s]) wait = std::min(wait, time_to(box.grown(reach), course));
   }
-  if (now + wait <= end && wait < kForever) clock.see({now + wait, now + wait, body_count() + s, 0, 0}, now);
+  if (now + wait <= end && wait < kForever)
+    clock.see({now + wait, now + wait, body_count() + s, image, 0, 0}, now);
 }
 
 void Views::see_moving_site(int k, int s, double now) {
-  const Meeting m = bounded_meeting(k, body_count() + s, now);
-  if (m.begin < clocks_[k].horizon) clocks_[k].see({m.begin, m.begin, body_count() + s, 0, 0}, now);
+  const auto see = [&](const Image& image) {
+    const Meeting m = bounded_meeting(k, body_count() + s, image, now);
+    if (m.begin < clocks_[k].horizon) clocks_[k].see({m.begin, m.begin, body_count() + s, image, 0, 0}, now);
+  };
+  see({});
+  if (!periods_.any() || kernel_->halt()) return;
+  // the view has an end now, to which both can be followed
+  const double end = std::max(now, std::min(clocks_[k].horizon, until_));
+  const Box here = swept_box(kernel_->outline_of(k), kernel_->body(k).motion, now, end);
+  const Box there = swept_box(kernel_->outline_of(body_count() + s), kernel_->site_motion(s), now, end);
+  periods_.overlaps(here, there, [&](const Image& image) {
+    if (image != Image{}) see(image);
+  });
 }
 
 void Views::see_by_pass(int k, double now) {
@@ -158,13 +175,13 @@ void Views::see_by_pass(int k, double now) {
   for (const PairKey& pair : kernel_->near_pairs_of(k, now, end)) {
     const int second = pair.with_site() ? body_count() + pair.other_site : pair.other_body;
     const int other = second == k ? pair.body : second;
-    clocks_[k].see({now, now, other, version_of(other), 0}, now);
+    clocks_[k].see({now, now, other, {}, version_of(other), 0}, now);
   }
 }
 
 /// When the bounding discs of body k and another owner can meet at the soonest, from bounds of speed; ends
 /// k's view about where the two could have crossed a cell.
-Meeting Views::bounded_meeting(int k, int owner, double now) {
+Meeting Views::bounded_meeting(int k, int owner, const Image& image, double now) {
   const bool is_body = owner < body_count();
   const auto speed_of = [&](int s) { return kernel_->site_motion(s).twist(now).velocity.norm(); };
   if (is_body ? !kernel_->extend_motion(owner, now) : !kernel_->extend_sites(now)) return {};
@@ -174,7 +191,7 @@ Meeting Views::bounded_meeting(int k, int owner, double now) {
   if (is_body ? !kernel_->extend_motion(owner, end) : !kernel_->extend_sites(end)) return {};
   const Motion& other = is_body ? kernel_->body(owner).motion : kernel_->site_motion(owner - body_count());
   const double wait = gap_over_speed(kernel_->body(k).motion, flights_[k].radius, other,
-                                     kernel_->outline_of(owner), now, end);
+                                     periods_.shift(image), kernel_->outline_of(owner), now, end);
   return now + wait <= end ? Meeting{now + wait, end} : Meeting{};
 }
 

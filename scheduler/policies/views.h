@@ -20,12 +20,16 @@ class Views {
   BodyClock& clock(int k) { return clocks_[k]; }
   const BodyClock& clock(int k) const { return clocks_[k]; }
   bool stale(const Candidate& c) const { return c.version != version_of(c.other); }
-  /// Until when a search of body k's candidate must go: they cannot meet later, or k's view ends.
+  /// Until when a search of body k's candidate must go: they cannot meet later, or k's view of it ends. Still
+  /// sites are looked at again as k leaves its cell; whatever moves is not.
   double end_of(int k, const Candidate& c) const {
     const BodyClock& clock = clocks_[k];
-    if (c.other < body_count() && flights_[k].free && flights_[c.other].free)
-      return meeting(flights_[k], flights_[c.other], gravity_, c.clear).end;
-    return std::min(clock.exit, clock.horizon);
+    if (c.other >= body_count())
+      return kernel_->site_moves(c.other - body_count()) ? clock.horizon
+                                                         : std::min(clock.exit, clock.horizon);
+    if (flights_[k].free && flights_[c.other].free)
+      return meeting(flights_[k], image_of(c.other, c.image), gravity_, c.clear).end;
+    return clock.horizon;
   }
   /// The end of the present run: views of bodies that are not in free flight end just after it at the latest.
   void set_end(double until) { until_ = until; }
@@ -43,17 +47,21 @@ class Views {
   unsigned version_of(int owner) const { return owner < body_count() ? flights_[owner].version : 0; }
   void sort_sites();
   Flight from_now(const Flight& f, double now) const;
-  void see_body(int k, const Flight& here, int j, double now);
-  void see_site(int k, int site, double now);
+  Flight image_of(int k, const Image& image) const {
+    return image == Image{} ? flights_[k] : flights_[k].displaced(periods_.shift(image));
+  }
+  void see_body(int k, const Flight& here, int j, const Image& image, double now);
+  void see_site(int k, int site, const Image& image, double now);
   void see_moving_site(int k, int site, double now);
   void see_by_pass(int k, double now);
   bool begin_window(int k, double now);
   double speed(int k, double now) const;
   void limit_view(int k, double now, double closing);
-  Meeting bounded_meeting(int k, int owner, double now);
+  Meeting bounded_meeting(int k, int owner, const Image& image, double now);
 
   Kernel* kernel_;
   Vec2 gravity_;
+  Periods periods_;
   double until_ = 0.0;
   std::vector<Flight> flights_;
   std::vector<BodyClock> clocks_;

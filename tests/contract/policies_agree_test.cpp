@@ -91,7 +91,7 @@ TEST_P(PoliciesOnTheGallery, GiveTheSameEvents) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, PoliciesOnTheGallery, ::testing::ValuesIn(gallery()),
-                         [](const auto& info) { return info.param.stem().string(); });
+                         [](const auto& scene) { return scene.param.stem().string(); });
 
 /// Bodies on a grid in a box with random speeds.
 World gas(int side, double pitch, double gravity, std::uint64_t seed, const std::vector<Shape>& shapes,
@@ -124,6 +124,20 @@ TEST(PoliciesOnGases, DiscsUnderGravityGiveTheSameEvents) {
 TEST(PoliciesOnGases, SpinningBoxesGiveTheSameEvents) {
   EXPECT_GT(expect_same_events(gas(10, 1.1, 1.0, 7, {make_box(0.7, 0.5), make_disc(0.3)}, 2.0), {}, 3.0),
             300U);
+}
+
+// Free bodies cross many cells while those on springs, which are integrated, are in their view.
+TEST(PoliciesOnGases, BodiesOnSpringsAmongFreeOnesGiveTheSameEvents) {
+  World world = gas(8, 1.2, 0.0, 8, {make_disc(0.3), make_box(0.5, 0.3)}, 1.0);
+  for (int k = 0; k < 12; ++k) {
+    SpringForce spring;
+    spring.body_a = 5 * k;
+    spring.body_b = 5 * k + 1;
+    spring.stiffness = 2.0;
+    spring.rest_length = 1.2;
+    world.forces.push_back(spring);
+  }
+  EXPECT_GT(expect_same_events(world, {}, 5.0), 200U);
 }
 
 // A lattice of equal discs that all start towards the middle: hundreds of contacts at the same instants.

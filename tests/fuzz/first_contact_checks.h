@@ -255,7 +255,9 @@ class Checker {
     const double error = std::abs(answer.contact.time - truth.time);
     const double tolerance = time_tolerance(f, truth);
     const bool early = answer.contact.time < truth.time - tolerance;
-    if (truth.time > f.to || !truth.real || (truth.grazed && early)) {
+    // what passes within the touching distance is met there, before any deeper contact
+    const bool touched_before = early && d <= SearchLimits{}.touch;
+    if (truth.time > f.to || !truth.real || (truth.grazed && early) || touched_before) {
       if (d <= touch_band || error <= tolerance || truth.time > f.to - 1e-12 * (f.to - f.from))
         ++tally.grazing;
       else

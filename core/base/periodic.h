@@ -1,0 +1,57 @@
+#pragma once
+/// A plane that repeats: every place stands for all its images, whole periods away. Coordinates are never
+/// wrapped; who meets whom is told with the image of the one that the other meets.
+
+#include <cmath>
+#include <compare>
+
+#include "brink/core/base/geometry.h"
+
+namespace brink {
+
+/// Whole periods to the right and up.
+struct Image {
+  int right = 0, up = 0;
+  auto operator<=>(const Image&) const = default;
+  Image operator-() const { return {-right, -up}; }
+  Image operator+(const Image& other) const { return {right + other.right, up + other.up}; }
+};
+
+/// The periods of a world [m]; 0: the plane goes on for ever along that axis.
+struct Periods {
+  Vec2 size = Vec2::Zero();
+
+  bool any() const { return size.x() > 0.0 || size.y() > 0.0; }
+  /// The least of them; infinite where nothing repeats.
+  double least() const {
+    const auto along = [&](int axis) {
+      return size[axis] > 0.0 ? size[axis] : std::numeric_limits<double>::infinity();
+    };
+    return std::min(along(0), along(1));
+  }
+  Vec2 shift(const Image& image) const { return {image.right * size.x(), image.up * size.y()}; }
+
+  /// Calls visit(image) for every image of b that overlaps a, row by row; in a plane that does not repeat for
+  /// b itself. @pre finite boxes along axes that repeat.
+  template <class Visit>
+  void overlaps(const Box& a, const Box& b, Visit&& visit) const {
+    const Span right = span(a, b, 0), up = span(a, b, 1);
+    for (int j = up.first; j <= up.last; ++j)
+      for (int i = right.first; i <= right.last; ++i) visit(Image{i, j});
+  }
+
+ private:
+  struct Span {
+    int first, last;
+  };
+  /// Of images along one axis.
+  Span span(const Box& a, const Box& b, int axis) const {
+    const double least = a.low[axis] - b.high[axis], most = a.high[axis] - b.low[axis];
+    if (size[axis] > 0.0)
+      return {static_cast<int>(std::ceil(least / size[axis])),
+              static_cast<int>(std::floor(most / size[axis]))};
+    return least <= 0.0 && most >= 0.0 ? Span{0, 0} : Span{0, -1};
+  }
+};
+
+}  // namespace brink
