@@ -212,7 +212,8 @@ double Canvas::text(double x, double y, const std::string& words, double size, c
   cairo_text_extents_t extents;
   cairo_text_extents(cairo, words.c_str(), &extents);
   set_color(cairo, color);
-  cairo_move_to(cairo, align == Align::left ? x : x - extents.x_advance, y);
+  const double share = align == Align::left ? 0.0 : align == Align::middle ? 0.5 : 1.0;
+  cairo_move_to(cairo, x - share * extents.x_advance, y);
   cairo_show_text(cairo, words.c_str());
   cairo_new_path(cairo);
   return extents.x_advance;

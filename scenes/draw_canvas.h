@@ -39,7 +39,7 @@ class Canvas {
   void spring(const Vec2& from, const Vec2& to, const Color& color, double width);
 
   // below the picture, in pixels from the top left corner
-  enum class Align { left, right };
+  enum class Align { left, middle, right };
   void rectangle(double x, double y, double width, double height, const Color& color);
   /// One line of text with its baseline at y. Returns its width.
   double text(double x, double y, const std::string& words, double size, const Color& color, Align align,

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 
 #include "brink/core/base/error.h"
 #include "brink/scenes/program/bench_classic.h"
+#include "brink/scenes/program/bench_csv.h"
 #include "brink/scenes/program/bench_plot.h"
 #include "brink/scenes/program/command.h"
 #include "brink/scenes/program/run_folder.h"
@@ -71,19 +71,19 @@ void print(const Row& row) {
 }
 
 void write_csv(const fs::path& file, const std::vector<Row>& rows) {
-  std::ofstream out(file);
-  out << "problem,series,setting,approximate,error,wall_seconds,repeats,expected,collisions,missed,end_time,"
-         "termination,state_hash,right_hand_sides\n";
+  bench::Csv csv(
+      file,
+      "problem,series,setting,approximate,error,wall_seconds,repeats,expected,collisions,missed,end_time,"
+      "termination,state_hash,right_hand_sides");
   for (const Row& r : rows) {
     std::string ending = r.summary.termination_text();
     std::replace(ending.begin(), ending.end(), '"', '\'');
-    out << fmt::format("{},{},{},{:d},{:.17g},{:.6g},{},{},{},{},{:.17g},\"{}\",{:016x},{}\n", r.problem,
-                       r.setting.series, r.setting.label, r.setting.approximate, r.error, r.wall_seconds,
-                       r.repeats, r.expected, r.collisions, r.missed, r.summary.end_time, ending,
-                       r.summary.state_hash, r.summary.work.right_hand_sides);
+    csv.row("{},{},{},{:d},{:.17g},{:.6g},{},{},{},{},{:.17g},\"{}\",{:016x},{}", r.problem, r.setting.series,
+            r.setting.label, r.setting.approximate, r.error, r.wall_seconds, r.repeats, r.expected,
+            r.collisions, r.missed, r.summary.end_time, ending, r.summary.state_hash,
+            r.summary.work.right_hand_sides);
   }
-  out.close();
-  if (!out) throw IoError(fmt::format("{}: could not be written", file.string()));
+  csv.close();
 }
 
 fs::path make_folder(const std::string& given) {
@@ -118,7 +118,7 @@ int run(const BenchArguments& arguments) {
     fmt::print("\n");
   }
   write_csv(folder / "bench.csv", rows);
-  bench::write_plot(folder / "bench.png", problems, rows);
+  bench::write_plot(folder / "bench.png", "Error against run time", problems, rows);
   fmt::print("table {}, plot {}\n", (folder / "bench.csv").string(), (folder / "bench.png").string());
   return good ? kDone : kEndedEarly;
 }

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <functional>
+#include <limits>
 
-#include "brink/core/base/error.h"
+#include "brink/scenes/program/bench_csv.h"
 #include "brink/scenes/program/bench_plot.h"
 #include "brink/scenes/program/terminal.h"
 
@@ -27,11 +27,12 @@ struct ClassicRow {
 };
 
 constexpr double kSpacings[] = {0.25, 0.0625, 0.015625};
-constexpr int kResolutions[] = {16, 64, 256};
+constexpr int kResolutions[] = {16, 48, 144};
 constexpr double kSteps[] = {0.01, 0.002};
 
 /// The same problem up to an earlier end.
 Problem shortened(Problem problem, double until) {
+  if (until < problem.until) problem.title += fmt::format(" (the first {:g} s)", until);
   problem.until = until;
   std::erase_if(problem.hits, [until](double t) { return t >= until; });
   return problem;
@@ -56,16 +57,24 @@ Problem sampled(Problem problem, double spacing) {
   return problem;
 }
 
+/// Collisions after which a run has gone astray: a body caught in a wall rattles there for ever.
+std::uint64_t most_collisions(const Problem& problem) { return 20 + 5 * problem.hits.size(); }
+
+bool astray(const Row& row) { return row.summary.termination != Termination::reached_end; }
+
 ClassicRow measure_at(const Problem& problem, const Classic& at, const std::string& series) {
   Setting setting{
       series, fmt::format("1/{:g} {} px {:g} s", 1.0 / at.spacing, at.resolution, at.step), true, {}};
   setting.options.detector = "depth";
   setting.options.policy = at.policy;
   setting.options.step = at.step;
+  setting.options.max_collisions = most_collisions(problem);
   setting.options.field.resolution = at.resolution;
   setting.options.field.primitives = at.primitives;
   setting.options.field.readback = at.readback;
-  return {at, measure(sampled(problem, at.spacing), setting, 1)};
+  ClassicRow row{at, measure(sampled(problem, at.spacing), setting, 1)};
+  if (astray(row.row)) row.row.error = std::numeric_limits<double>::infinity();
+  return row;
 }
 
 std::vector<ClassicRow> exact_rows(const Problem& problem) {
@@ -105,38 +114,47 @@ void print(const ClassicRow& r) {
                                 ? r.row.setting.series
                                 : fmt::format("{:<13} 1/{:<4g} {:>4} px  step {:<6g}", r.at.policy,
                                               1.0 / r.at.spacing, r.at.resolution, r.at.step);
-  fmt::print("  {:<44} error {:>8.1e}  {:>8.2f} ms  missed {}/{}\n", words, r.row.error,
-             1e3 * r.row.wall_seconds, r.row.missed, r.row.expected);
+  fmt::print("  {:<44} error {:>8.1e}  {:>8.2f} ms  missed {}/{}{}\n", words, r.row.error,
+             1e3 * r.row.wall_seconds, r.row.missed, r.row.expected, astray(r.row) ? "  astray" : "");
   std::fflush(stdout);
 }
 
 void write_csv(const std::filesystem::path& file, const std::vector<ClassicRow>& rows) {
-  std::ofstream out(file);
-  out << "problem,detector,policy,spacing,resolution,step,primitives,readback,error,wall_seconds,expected,"
-         "collisions,missed,pixels_drawn,pixels_read,passes,termination,state_hash\n";
+  Csv csv(file,
+          "problem,detector,policy,spacing,resolution,step,primitives,readback,error,wall_seconds,expected,"
+          "collisions,missed,pixels_drawn,pixels_read,passes,termination,state_hash");
   for (const ClassicRow& r : rows) {
     const RunSummary& s = r.row.summary;
-    out << fmt::format("{},{},{},{:g},{},{:g},{},{},{:.6g},{:.6g},{},{},{},{},{},{},{},{:016x}\n",
-                       r.row.problem, r.row.setting.options.detector, r.row.setting.options.policy,
-                       r.at.spacing, r.at.resolution, r.at.step, r.at.primitives, r.at.readback, r.row.error,
-                       r.row.wall_seconds, r.row.expected, r.row.collisions, r.row.missed,
-                       s.work.pixels_drawn, s.work.pixels_read, s.work.passes,
-                       s.termination == Termination::reached_end ? "reached_end" : "early", s.state_hash);
+    csv.row("{},{},{},{:g},{},{:g},{},{},{:.6g},{:.6g},{},{},{},{},{},{},{},{:016x}", r.row.problem,
+            r.row.setting.options.detector, r.row.setting.options.policy, r.at.spacing, r.at.resolution,
+            r.at.step, r.at.primitives, r.at.readback, r.row.error, r.row.wall_seconds, r.row.expected,
+            r.row.collisions, r.row.missed, s.work.pixels_drawn, s.work.pixels_read, s.work.passes,
+            astray(r.row) ? "astray" : "reached_end", s.state_hash);
   }
-  out.close();
-  if (!out) throw IoError(fmt::format("{}: could not be written", file.string()));
+  csv.close();
 }
 
-/// Of the sweep, what a plot can show: the short step, read back by window.
+/// Of the sweep, what a plot can show: read back by window.
 std::vector<Row> plotted(const std::vector<ClassicRow>& rows) {
   std::vector<Row> out;
   for (const ClassicRow& r : rows) {
-    const bool of_sweep = r.at.spacing > 0.0 && r.at.policy != "fixed_step";
-    if (of_sweep && (r.at.step != kSteps[1] || r.at.readback != "window")) continue;
+    if (r.at.spacing > 0.0 && r.at.readback != "window") continue;
     out.push_back(r.row);
-    if (r.at.primitives == "mesh") out.back().setting.series += " mesh";
+    if (r.at.primitives == "mesh") out.back().setting.series += ", mesh";
   }
   return out;
+}
+
+/// Finer pictures are darker, meshes the same in another hue.
+std::vector<Look> looks() {
+  std::vector<Look> all{{"field", {0.30, 0.02, 260.0}}, {"pass", {0.62, 0.17, 145.0}}};
+  for (const auto& [suffix, hue] : {std::pair("", 255.0), std::pair(", mesh", 30.0)})
+    for (std::size_t k = 0; k < std::size(kResolutions); ++k)
+      all.push_back({fmt::format("depth {} px{}", kResolutions[k], suffix),
+                     {0.80 - 0.15 * static_cast<double>(k), 0.14, hue},
+                     false});
+  all.push_back({"fixed_step", {0.70, 0.16, 85.0}});
+  return all;
 }
 
 }  // namespace
@@ -145,15 +163,16 @@ bool run_classic(const std::filesystem::path& folder) {
   std::vector<ClassicRow> rows;
   const std::vector<Problem> all = classic_problems();
   for (const Problem& problem : all) {
-    fmt::print("{}  {}, up to {:g} s; error: {}\n", paint(stdout, Paint::heading, problem.name),
-               problem.title, problem.until, problem.error_of);
+    fmt::print("{}  {}; error: {}\n", paint(stdout, Paint::heading, problem.name), problem.title,
+               problem.error_of);
     sweep(problem, [&](ClassicRow r) {
       if (shown(r)) print(r);
       rows.push_back(std::move(r));
     });
   }
   write_csv(folder / "classic.csv", rows);
-  write_plot(folder / "classic.png", all, plotted(rows));
+  write_plot(folder / "classic.png", "The classic detector: error against run time", all, plotted(rows),
+             looks());
   fmt::print("table {}, plot {}\n\n", (folder / "classic.csv").string(), (folder / "classic.png").string());
   measure_missed(folder);
   measure_orders(folder);

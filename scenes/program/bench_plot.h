@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "brink/scenes/chart.h"
 #include "brink/scenes/program/bench_run.h"
 
 namespace brink::bench {
@@ -10,9 +11,17 @@ namespace brink::bench {
 /// Errors below this are drawn on it: a run that gives every digit has no logarithm [the error's unit].
 inline constexpr double kLeastError = 1e-17;
 
-/// Rows of one problem follow each other. Marks are filled, or rings where contacts were missed; the points
-/// of a series are joined. @pre rows is not empty. @throws IoError.
-void write_plot(const std::filesystem::path& file, const std::vector<Problem>& problems,
-                const std::vector<Row>& rows);
+/// How a series is shown; one that has no look is joined, in a colour of its own.
+struct Look {
+  std::string series;
+  draw::Oklch color;
+  bool joined = true;
+};
+
+/// Rows of one problem follow each other. Marks are filled, rings where contacts were missed, crosses on the
+/// upper rim where the error is infinite. @pre rows is not empty. @throws IoError.
+void write_plot(const std::filesystem::path& file, const std::string& title,
+                const std::vector<Problem>& problems, const std::vector<Row>& rows,
+                const std::vector<Look>& looks = {});
 
 }  // namespace brink::bench

@@ -40,11 +40,13 @@ World ball_over_floor(double height, double radius, double restitution) {
   return world;
 }
 
-/// Over the impacts that came, taken in order; those that did not are counted apart.
+/// Impacts taken in order. One that never came is late by what was left of the run, at least.
 double worst_impact_time(const Problem& problem, const Outcome& outcome) {
   double worst = 0.0;
-  for (std::size_t k = 0; k < std::min(problem.hits.size(), outcome.hits.size()); ++k)
-    worst = std::max(worst, std::abs(outcome.hits[k] - problem.hits[k]));
+  for (std::size_t k = 0; k < problem.hits.size(); ++k) {
+    const double hit = k < outcome.hits.size() ? outcome.hits[k] : problem.until;
+    worst = std::max(worst, std::abs(hit - problem.hits[k]));
+  }
   return worst;
 }
 

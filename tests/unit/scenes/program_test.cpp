@@ -187,6 +187,26 @@ TEST_F(ProgramTest, CheckPrintsContentsPlanAndOverlaps) {
   EXPECT_THAT(low.out, HasSubstr("'ball' and 'floor' by 0.1 m"));
 }
 
+// Two unit boxes shifted by (0.75, 0.5) m share 0.25 x 0.5 m.
+TEST_F(ProgramTest, CheckCountsTheAreaOfOverlaps) {
+  write("two.toml",
+        "[[bodies]]\nname = \"a\"\nbox = { width = 1, height = 1 }\n"
+        "[[bodies]]\nname = \"b\"\nbox = { width = 1, height = 1 }\nposition = [0.75, 0.5]\n");
+  const Outcome check = brink("check two.toml");
+  EXPECT_EQ(check.status, 0) << check.error;
+  EXPECT_THAT(check.out, HasSubstr("'a' and 'b' by 0.25 m, 0.125 +- 0.00"));
+  EXPECT_THAT(check.out, HasSubstr("pixels counted"));
+}
+
+TEST_F(ProgramTest, FaultsOfASampleFileNameItsOwnLineAndColumn) {
+  write("square.rb", "2\n1 0 0 0 0 0 0   // the state\n0 0\n  1 x\n");
+  write("square.toml", "[[bodies]]\nsamples = { file = \"square.rb\" }\n");
+  const Outcome check = brink("check square.toml");
+  EXPECT_EQ(check.status, 2);
+  EXPECT_THAT(check.error, HasSubstr("square.rb:4:5: "));
+  EXPECT_THAT(check.error, HasSubstr("given \"x\""));
+}
+
 TEST_F(ProgramTest, ListShowsEveryTopicWithItsDefault) {
   const Outcome all = brink("list");
   ASSERT_EQ(all.status, 0);

@@ -4,9 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "brink/core/shapes/distance.h"
 #include "brink/scheduler/depth_normal.h"
 #include "tests/support/worlds.h"
 
@@ -124,6 +126,45 @@ TEST(DepthNormal, WiresFlipForWhatGoesThroughAlone) {
   EXPECT_FALSE(normal(0.01, 0.005, 1.0).crossed);
 }
 
+// The same for an arc that is a wire: whichever side the particle came from, the normal points back there,
+// and on its own side the picture's slope is taken.
+TEST(DepthNormal, ArcsThatAreWiresFlipForWhatGoesThroughAlone) {
+  const Outline outline = make_arc({0, 0}, 1.0, 0.0, std::numbers::pi).outline;
+  const auto normal = [&](double y, double before, double speed) {
+    const auto slope = [&] { return Vec2(0.02, y > 1.0 ? 0.9 : -0.9); };  // of the distance, askew
+    const Vec2 now(0.0, y);
+    const Site& site = *std::min_element(outline.sites.begin(), outline.sites.end(), [&](auto& a, auto& b) {
+      return nearest_on(a, now).distance < nearest_on(b, now).distance;
+    });
+    return normal_of(site, {now, {0.0, before}, {0.0, speed}}, slope);
+  };
+  EXPECT_LT((normal(1.01, 1.02, -1.0).normal - Vec2(0.02, 0.9).normalized()).norm(), 1e-12);  // from outside
+  EXPECT_LT((normal(0.99, 0.98, 1.0).normal - Vec2(0.02, -0.9).normalized()).norm(), 1e-12);  // from inside
+  EXPECT_GT(normal(0.99, 1.01, -1.0).normal.y(), 0.99);  // gone in: back out
+  EXPECT_TRUE(normal(0.99, 1.01, -1.0).crossed);
+  EXPECT_LT(normal(1.01, 0.99, 1.0).normal.y(), -0.99);  // gone out: back in
+  EXPECT_TRUE(normal(1.01, 0.99, 1.0).crossed);
+  EXPECT_FALSE(normal(0.99, 0.995, -1.0).crossed);  // leaving inward, never through
+}
+
+// A solid's normal points out of it whichever side the particle is on, however it moves: a particle that has
+// gone in is shown the way out.
+TEST(DepthNormal, SolidsPointOutwardFromBothSides) {
+  const Outline box = make_box(2.0, 2.0).outline;
+  const auto none = [] { return Vec2(0, 0); };
+  for (const Vec2& out : {Vec2(1, 0), Vec2(0, 1), Vec2(-1, 0), Vec2(0, -1)})
+    for (const double distance : {0.99, 1.01})
+      for (const double speed : {-1.0, 1.0}) {
+        const Vec2 now = distance * out + 0.3 * Vec2(-out.y(), out.x());
+        const Site& site = *std::min_element(box.sites.begin(), box.sites.end(), [&](auto& a, auto& b) {
+          return nearest_on(a, now).distance < nearest_on(b, now).distance;
+        });
+        const DepthNormal found = normal_of(site, {now, now - 0.1 * speed * out, speed * out}, none);
+        EXPECT_LT((found.normal - out).norm(), 1e-12) << distance << ' ' << speed;
+        EXPECT_FALSE(found.crossed);
+      }
+}
+
 double first_hit(const World& world, const SolverOptions& options, double end) {
   Simulator simulator(world, options);
   Events events;
@@ -145,7 +186,7 @@ TEST(ClassicBackup, FindsTheFirstTouchWithinAPixelForEveryIntegratorAndOption) {
     EXPECT_GT(t, truth - diagonal / 4.42 - integration);
     EXPECT_LT(t, truth + 0.5 * diagonal / 4.42 + integration);
   };
-  for (const char* integrator : {"auto", "rk4", "erk", "adams"}) {
+  for (const char* integrator : {"auto", "rk4", "erk", "adams", "bdf"}) {
     SolverOptions options = depth_options();
     options.integrator = integrator;
     check(options);
@@ -164,6 +205,73 @@ TEST(ClassicBackup, FindsTheFirstTouchWithinAPixelForEveryIntegratorAndOption) {
         options.field.truncated = truncated;
         check(options);
       }
+}
+
+// A disc at 4.4 m/s that falls onto a block is found at the end of the step in which it touches: late by a
+// step (and a pixel) at most, early by the tolerance; integrators of first order add a step's error of their
+// own.
+TEST(ClassicFixedStep, FindsTheFirstTouchWithinAStepForEveryIntegrator) {
+  World world;
+  world.gravity = {0.0, -9.81};
+  add(world, body(make_disc(0.5), {0.0, 1.5}, {0.0, 0.0}));
+  add(world, site(make_box(4, 1), {0.0, -0.5}));
+  const double truth = std::sqrt(2.0 / 9.81), diagonal = std::sqrt(2.0) / 64;
+  for (const char* integrator : {"auto", "euler", "semi_implicit_euler", "rk4", "erk", "adams", "bdf"}) {
+    SolverOptions options = depth_options("fixed_step");
+    options.integrator = integrator;
+    const double own = std::string(integrator).ends_with("euler") ? options.step : 0.0;
+    const double t = first_hit(world, options, 0.6);
+    EXPECT_GT(t, truth - diagonal / 4.42 - own) << integrator;
+    EXPECT_LT(t, truth + options.step + diagonal / 4.42 + own) << integrator;
+  }
+}
+
+// The wire is 0.02 m away when the step begins and 0.02 m behind when it ends, within the tolerance (half a
+// diagonal of pixels of 1/32 m): the particle has come out on the wrong side, and is thrown back.
+TEST(ClassicFixedStep, WhatWentThroughAWireIsThrownBack) {
+  World world;
+  add(world, body(make_box(1, 1), {0.52, 0.0}, {-4.0, 0.0}));
+  add(world, site(make_segment({0, -2}, {0, 2})));
+  SolverOptions options = depth_options("fixed_step");
+  options.field.resolution = 32;
+  Simulator simulator(world, options);
+  simulator.run(until(0.01));
+  EXPECT_NEAR(simulator.state(0).twist.velocity.x(), 4.0, 1e-9);
+  EXPECT_GT(simulator.state(0).pose.position.x(), 0.5 - 1e-6);  // pushed out by its depth
+}
+
+// The mirror rebound without slip or spin of a disc on a floor turns its normal velocity round and keeps the
+// rest; with spin 0 a box that lands on a corner does not begin to turn, by the impulse law it does.
+TEST(ClassicBackup, ReflectionMirrorsWithSlipAndSpinOfTheSite) {
+  const auto after = [](const char* response, double slip, double spin) {
+    World world;
+    Material rough;
+    rough.name = "rough";
+    rough.slip = slip;
+    rough.spin = spin;
+    world.materials.push_back(rough);
+    Body b = body(make_box(0.4, 0.2), {0.0, 0.3}, {1.0, -2.0}, 1.0, 0.3);
+    b.sampling = sampled(Sampling::Kind::boundary, 0.05);
+    add(world, b);
+    FixedSite floor = site(make_segment({-5, 0}, {5, 0}));
+    floor.material = static_cast<int>(world.materials.size()) - 1;
+    add(world, floor);
+    SolverOptions options = depth_options();
+    options.response = response;
+    options.max_collisions = 1;
+    Simulator simulator(world, options);
+    simulator.run(until(0.5));
+    return simulator.state(0).twist;
+  };
+  const Twist impulse = after("impulse", 1.0, 1.0), mirrored = after("reflection", 1.0, 1.0);
+  // elastic and frictionless: both laws are the same there, factor 2 and division by the inertia included
+  EXPECT_NEAR(mirrored.velocity.y(), impulse.velocity.y(), 1e-12);
+  EXPECT_NEAR(mirrored.omega, impulse.omega, 1e-12);
+  EXPECT_GT(std::abs(mirrored.omega), 1.0);
+  EXPECT_NEAR(after("reflection", 1.0, 0.5).omega, 0.5 * mirrored.omega, 1e-12);
+  EXPECT_EQ(after("reflection", 1.0, 0.0).omega, 0.0);
+  EXPECT_EQ(mirrored.velocity.x(), 1.0);
+  EXPECT_LT(after("reflection", 0.5, 1.0).velocity.x(), 1.0);
 }
 
 // Without friction or loss a box in a box keeps its energy in every rebound, however early it is found.
