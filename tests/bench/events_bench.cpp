@@ -1,38 +1,20 @@
-// Collisions a second of the event engine: hard discs at packing 0.5 in a box, boxes and stars at 0.4, beside a
-// minimal loop that can do nothing but equal discs (single_purpose.h). Same initial state, same number of collisions.
+// Collisions a second of the event engine: hard discs at packing 0.5 in a box, boxes and stars at 0.4, beside
+// a minimal loop that can do nothing but equal discs (single_purpose.h). Same initial state, same number of
+// collisions.
 #include <benchmark/benchmark.h>
+
+#include <malloc.h>
 
 #include <cmath>
 
-#include "brink/core/base/random.h"
 #include "tests/bench/single_purpose.h"
-#include "tests/support/worlds.h"
+#include "tests/support/gases.h"
 
 namespace brink {
 namespace {
 
-double gaussian(Random& r) {
-  return std::sqrt(-2.0 * std::log(1.0 - r.uniform())) * std::cos(2.0 * M_PI * r.uniform());
-}
-
-/// `count` equal bodies on a square lattice in a box, so that they fill `packing` of it; Maxwellian velocities.
-World gas(int count, const Shape& shape, double packing, double spin) {
-  World world;
-  Random random(9);
-  const int side = static_cast<int>(std::ceil(std::sqrt(count)));
-  const double pitch = std::sqrt(shape.measure.size / packing), half = 0.5 * pitch * side;
-  const Body like = testing::body(shape, {0.0, 0.0}, {0.0, 0.0});
-  for (int k = 0; k < count; ++k) {
-    Body b = like;
-    b.initial.pose.position = {pitch * (k % side + 0.5) - half, pitch * (k / side + 0.5) - half};
-    b.initial.twist = {{gaussian(random), gaussian(random)}, spin * gaussian(random)};
-    testing::add(world, std::move(b));
-  }
-  const Vec2 corners[] = {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
-  for (int k = 0; k < 4; ++k)
-    testing::add(world, testing::site(make_segment(corners[k], corners[(k + 1) % 4])));
-  return world;
-}
+/// Bytes that are allocated now.
+double heap() { return static_cast<double>(mallinfo2().uordblks) + static_cast<double>(mallinfo2().hblkhd); }
 
 /// Rate over `collisions`, after as many again to forget the lattice.
 void run_for(benchmark::State& state, const World& world, const char* policy, std::uint64_t collisions) {
@@ -44,34 +26,89 @@ void run_for(benchmark::State& state, const World& world, const char* policy, st
     Simulator warm(world, options);
     warm.run(testing::until(1e9));
     World later = world;
-    for (std::size_t k = 0; k < later.bodies.size(); ++k) later.bodies[k].initial = warm.state(static_cast<int>(k));
+    for (std::size_t k = 0; k < later.bodies.size(); ++k)
+      later.bodies[k].initial = warm.state(static_cast<int>(k));
+    const double held = heap();
     Simulator simulator(later, options);
     state.ResumeTiming();
     const RunSummary summary = simulator.run(testing::until(1e9));
     state.PauseTiming();
+    state.counters["bytes_a_body"] = (heap() - held) / static_cast<double>(world.bodies.size());
     if (summary.collisions != collisions) state.SkipWithError(summary.why.c_str());
     state.counters["drift"] = std::abs(summary.energy_final / summary.energy_initial - 1.0);
     state.counters["overlap"] = summary.max_overlap;
-    state.counters["searches"] = static_cast<double>(summary.work.pair_searches) / static_cast<double>(collisions);
+    state.counters["searches"] =
+        static_cast<double>(summary.work.pair_searches) / static_cast<double>(collisions);
     state.counters["passes"] = static_cast<double>(summary.work.passes) / static_cast<double>(collisions);
-    state.counters["served"] = static_cast<double>(summary.work.queue_operations) / static_cast<double>(collisions);
+    state.counters["served"] =
+        static_cast<double>(summary.work.queue_operations) / static_cast<double>(collisions);
     state.ResumeTiming();
   }
-  state.counters["rate"] = benchmark::Counter(static_cast<double>(collisions) * static_cast<double>(state.iterations()),
-                                              benchmark::Counter::kIsRate);
+  state.counters["rate"] = benchmark::Counter(
+      static_cast<double>(collisions) * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
+
+std::uint64_t collisions_for(int n) { return static_cast<std::uint64_t>(20 * n + 200000); }
 
 void discs(benchmark::State& state) {
   const int n = static_cast<int>(state.range(0));
-  run_for(state, gas(n, make_disc(0.5), 0.5, 0.0), "body_clocks", static_cast<std::uint64_t>(20 * n + 200000));
+  run_for(state, testing::boxed(testing::lattice_gas(n, make_disc(0.5), 0.5)), "body_clocks",
+          collisions_for(n));
 }
 BENCHMARK(discs)->Arg(100)->Arg(1000)->Arg(10000)->Arg(100000)->Unit(benchmark::kMillisecond)->Iterations(1);
 
+void discs_periodic(benchmark::State& state) {
+  const int n = static_cast<int>(state.range(0));
+  run_for(state, testing::lattice_gas(n, make_disc(0.5), 0.5), "body_clocks", collisions_for(n));
+}
+BENCHMARK(discs_periodic)
+    ->Arg(100)
+    ->Arg(1000)
+    ->Arg(10000)
+    ->Arg(100000)
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
+
+void boxes(benchmark::State& state) {
+  run_for(state, testing::boxed(testing::lattice_gas(1000, make_box(1.0, 0.6), 0.4, 1.0)), "body_clocks",
+          50000);
+}
+BENCHMARK(boxes)->Unit(benchmark::kMillisecond)->Iterations(1);
+
+void stars(benchmark::State& state) {
+  run_for(state, testing::boxed(testing::lattice_gas(200, testing::star(10, 0.5), 0.4, 1.0)), "body_clocks",
+          20000);
+}
+BENCHMARK(stars)->Unit(benchmark::kMillisecond)->Iterations(1);
+
+/// A thousand slow discs, and beside them a closed box in which eight are a thousand times as fast.
+World two_speeds() {
+  World world = testing::boxed(testing::lattice_gas(1024, make_disc(0.5), 0.3));
+  for (Body& b : world.bodies) b.initial.twist.velocity *= 1e-3;
+  World fast = testing::boxed(testing::lattice_gas(9, make_disc(0.5), 0.3));
+  const Vec2 beside(60.0, 0.0);
+  for (Body b : fast.bodies) {
+    b.name.clear();
+    b.initial.pose.position += beside;
+    testing::add(world, std::move(b));
+  }
+  for (FixedSite s : fast.sites) {
+    s.name.clear();
+    s.pose.position = beside;
+    testing::add(world, std::move(s));
+  }
+  return world;
+}
+
+void two_speeds(benchmark::State& state) {
+  run_for(state, two_speeds(), state.range(0) ? "global_backup" : "body_clocks", 4000);
+}
+BENCHMARK(two_speeds)->ArgName("global_backup")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->Iterations(1);
 
 void discs_single_purpose(benchmark::State& state) {
   const int n = static_cast<int>(state.range(0));
-  const World world = gas(n, make_disc(0.5), 0.5, 0.0);
-  const auto collisions = static_cast<std::uint64_t>(20 * n + 200000);
+  const World world = testing::boxed(testing::lattice_gas(n, make_disc(0.5), 0.5));
+  const std::uint64_t collisions = collisions_for(n);
   for (auto _ : state) {
     state.PauseTiming();
     bench::SinglePurposeDiscs discs(0.5, world.sites[0].outline->sites[0].b.x());
@@ -84,11 +121,16 @@ void discs_single_purpose(benchmark::State& state) {
     discs.run(2 * collisions);
     state.counters["drift"] = std::abs(discs.energy() / energy - 1.0);
   }
-  state.counters["rate"] = benchmark::Counter(static_cast<double>(collisions) * static_cast<double>(state.iterations()),
-                                              benchmark::Counter::kIsRate);
+  state.counters["rate"] = benchmark::Counter(
+      static_cast<double>(collisions) * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
 BENCHMARK(discs_single_purpose)
-    ->Arg(100)->Arg(1000)->Arg(10000)->Arg(100000)->Unit(benchmark::kMillisecond)->Iterations(1);
+    ->Arg(100)
+    ->Arg(1000)
+    ->Arg(10000)
+    ->Arg(100000)
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
 
 }  // namespace
 }  // namespace brink

@@ -2,76 +2,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <filesystem>
 
 #include "brink/core/base/random.h"
 #include "brink/scenes/scene.h"
-#include "tests/support/worlds.h"
+#include "tests/support/same_events.h"
 
 namespace brink {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::Events;
-
-const char* const kOthers[] = {"body_clocks"};
-
-std::string text(const Event& e) {
-  return std::string(to_string(e.kind)) + " at " + std::to_string(e.contact.time) + " of " +
-         std::to_string(e.contact.body) + " on body " + std::to_string(e.contact.other_body) + " / site " +
-         std::to_string(e.contact.other_site);
-}
-
-bool same_bits(double a, double b) {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
-
-bool same(const Event& a, const Event& b) {
-  const Contact &x = a.contact, &y = b.contact;
-  return a.kind == b.kind && a.seq == b.seq && same_bits(x.time, y.time) && x.body == y.body &&
-         x.other_body == y.other_body && x.other_site == y.other_site && x.site == y.site &&
-         x.sample == y.sample && x.sample_on_body == y.sample_on_body &&
-         same_bits(x.point.x(), y.point.x()) && same_bits(x.point.y(), y.point.y()) &&
-         same_bits(x.normal.x(), y.normal.x()) && same_bits(x.normal.y(), y.normal.y()) &&
-         same_bits(x.closing_speed, y.closing_speed) && same_bits(x.gap, y.gap) &&
-         same_bits(a.impulse_n, b.impulse_n) && same_bits(a.impulse_t, b.impulse_t);
-}
-
-struct Run {
-  Events events;
-  RunSummary summary;
-};
-
-Run run(const World& world, SolverOptions options, const std::string& policy, double until) {
-  options.policy = policy;
-  Simulator simulator(world, options);
-  Run r;
-  RunOptions run_options = testing::until(until);
-  run_options.frame_interval = until / 7.0;
-  r.summary = simulator.run(run_options, &r.events);
-  return r;
-}
-
-/// Runs the world with every exact policy; returns the number of collisions.
-std::uint64_t expect_same_events(const World& world, const SolverOptions& options, double until) {
-  const Run reference = run(world, options, "global_backup", until);
-  for (const char* policy : kOthers) {
-    const Run other = run(world, options, policy, until);
-    EXPECT_EQ(other.summary.termination_text(), reference.summary.termination_text()) << policy;
-    const auto &a = reference.events.events, &b = other.events.events;
-    EXPECT_EQ(a.size(), b.size()) << policy;
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-      if (!same(a[i], b[i])) {
-        ADD_FAILURE() << policy << ", event " << i << " of " << a.size() << ": " << text(b[i])
-                      << ", but global_backup: " << text(a[i]);
-        break;
-      }
-    EXPECT_EQ(other.summary.state_hash, reference.summary.state_hash) << policy;
-    EXPECT_EQ(other.events.frame_times, reference.events.frame_times) << policy;
-  }
-  return reference.summary.collisions;
-}
+using testing::expect_same_events;
 
 std::vector<fs::path> gallery() {
   std::vector<fs::path> files;
