@@ -15,6 +15,9 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kWidest = kPi / 8;
 /// Beyond the band, so that every pixel centre within it is covered [pixel].
 constexpr double kRim = 1.5;
+/// By so much a sector of a cone reaches over the tents beside it, at its rim [pixel]: rasterisers round corners
+/// to 1/256 of a pixel, and where edges only met, pixels between them would be left out.
+constexpr double kOverlap = 1.0 / 32;
 /// Bound on the rounding of interpolated values, as a share of all lengths that take part: corners are
 /// rounded once, and the rasteriser's plane through three of them errs by a few roundings of its values over
 /// the window. Measured on a million pixels: a fifth of this at most.
@@ -78,8 +81,10 @@ class MeshMaker {
     sector(p, pseudo, from, to, error);
   }
 
+  double rim_about(const Vec2& p) const { return std::min(reach_, farthest_corner(p) + kRim); }
+
   void sector(const Vec2& p, const Vec2& pseudo, double from, double to, double error) {
-    const double rim = std::min(reach_, farthest_corner(p) + kRim);
+    const double rim = rim_about(p);
     if (p.norm() - rim > grid_.half_diagonal()) return;
     const int facets = std::max(1, static_cast<int>(std::ceil((to - from) / (2.0 * half_angle(rim, error)))));
     const double length = rim / std::cos(0.5 * (to - from) / facets);
@@ -120,7 +125,7 @@ class MeshMaker {
     for (int k = 0; k < chords; ++k) {
       add_tent(at(k), at(k + 1));
       if (k == 0) continue;
-      const double middle = start + k * step, wide = 0.5 * std::abs(step) * 1.001;
+      const double middle = start + k * step, wide = 0.5 * std::abs(step) + kOverlap / rim_about(at(k));
       sector(at(k), turn * (at(k) - s.center).normalized(), middle - wide, middle + wide, 0.5 * error_);
     }
   }

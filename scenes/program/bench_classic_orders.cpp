@@ -86,7 +86,9 @@ void measure_orders(const std::filesystem::path& folder) {
   Csv csv(folder / "classic_orders.csv", "what,unit,value,error,order");
   add_order(csv, "pixel 1/32 .. 1/256 m", "m", {1.0 / 32, 1.0 / 64, 1.0 / 128, 1.0 / 256},
             [](double pixel) { return error_with("global_backup", 0.01, pixel); });
-  add_order(csv, "spacing 0.8 .. 0.4 m of the disc's boundary", "m", {0.8, 0.6, 0.4}, error_at_spacing);
+  // whole parts of a quarter of the boundary, pi / 4 m, which the arcs are cut into
+  add_order(csv, "spacing 0.79 .. 0.26 m of the disc's boundary", "m", {0.786, 0.393, 0.262},
+            error_at_spacing);
   const std::vector<double> steps{0.04, 0.02, 0.01, 0.005};
   add_order(csv, "step 40 .. 5 ms, fixed_step", "s", steps,
             [](double step) { return error_with("fixed_step", step, kFine); });

@@ -1,0 +1,13 @@
+// Cones and tents, the long way: a million pixels of every primitive at every resolution.
+#include "tests/unit/fields/mesh_errors.h"
+
+namespace brink {
+namespace {
+
+// From the smallest resolution that an option allows to nearly the largest.
+TEST(SiteMesh, EveryDepthIsWithinTheStatedBoundOnAMillionPixelsOfEveryPrimitiveAndResolution) {
+  mesh_test::expect_bounds(1'000'000, {16, 64, 250, 1000}, 77);
+}
+
+}  // namespace
+}  // namespace brink
