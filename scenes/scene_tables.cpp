@@ -21,7 +21,7 @@ const std::vector<std::string> kExactPolicies{"body_clocks", "global_backup", "i
 const std::vector<std::string> kCombineRules{"max", "min", "mean", "geometric_mean", "product"};
 
 std::vector<std::string> accepted_policies() {
-  std::vector<std::string> out = names_of(policies());
+  std::vector<std::string> out = names_of<Choice>(policies());
   for (const std::string& name : kExactPolicies)
     if (std::find(out.begin(), out.end(), name) == out.end()) out.push_back(name);
   return out;
@@ -198,7 +198,7 @@ const Schema<SolverOptions>& solver_schema() {
   using S = SolverOptions;
   static const Schema<S> schema =
       Schema<S>("solver")
-          .key("policy", &S::policy, choice(accepted_policies()),
+          .key("policy", &S::policy, open_choice(accepted_policies),
                "who is tested next, advanced and backed up")
           .key("order", &S::order, choice(names_of(orders())),
                "which of several simultaneous contacts is resolved first, or that they are taken together")

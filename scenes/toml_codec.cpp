@@ -126,6 +126,14 @@ Codec<std::string> choice(std::vector<std::string> allowed, std::vector<std::str
           [](const std::string& x) { return Json(x); }};
 }
 
+Codec<std::string> open_choice(std::function<std::vector<std::string>()> allowed) {
+  return {listed(allowed()),
+          [=](const toml::node& node, TomlDocument& doc, const std::string& key, std::string& out) {
+            return read_name(node, doc, key, allowed(), {}, out);
+          },
+          [](const std::string& x) { return Json(x); }};
+}
+
 Codec<std::string> formula_text() {
   return {"a formula in a string, or a number",
           [](const toml::node& node, TomlDocument& doc, const std::string& key, std::string& out) {

@@ -56,6 +56,8 @@ Codec<bool> flag();
 Codec<std::string> text(std::string type = "string");
 /// One of `allowed`; those of `later` are known to the format but not available yet, and the fault says so.
 Codec<std::string> choice(std::vector<std::string> allowed, std::vector<std::string> later = {});
+/// One of what `allowed()` gives when the file is read.
+Codec<std::string> open_choice(std::function<std::vector<std::string>()> allowed);
 /// A formula: a string, or a number meaning itself.
 Codec<std::string> formula_text();
 Codec<Vec2> point(std::string unit = "m");

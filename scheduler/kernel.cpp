@@ -179,6 +179,21 @@ void Kernel::back_up_all(double t) {
   time_ = t;
 }
 
+void Kernel::advance(std::span<const int> bodies, double from, double t) {
+  work_.advances += bodies.size();
+  time_ = t;
+  if (!run_.trace) return;
+  for (const int k : bodies) run_.trace->mark({TraceKind::advance, k, -1, from, t});
+}
+
+void Kernel::back_up(std::span<const int> bodies, double from, double t) {
+  work_.backups += bodies.size();
+  work_.body_seconds_thrown_away += (from - t) * static_cast<double>(bodies.size());
+  time_ = t;
+  if (!run_.trace) return;
+  for (const int k : bodies) run_.trace->mark({TraceKind::back_up, k, -1, from, t});
+}
+
 bool Kernel::restart(std::span<const Restart> touched) {
   BodyTrack& first = bodies_[touched.front().body];
   if (first.component < 0) {

@@ -94,6 +94,11 @@ class Kernel {
   void advance_pair(const PairKey& pair, double t);
   /// Takes all bodies back to t inside their motions; nothing is integrated twice.
   void back_up_all(double t);
+  /// Takes some bodies, which are at `from`, forward to t, and the clock with them; others stay where they
+  /// are.
+  void advance(std::span<const int> bodies, double from, double t);
+  /// Takes some bodies, which are at `from`, back to t inside their motions, and the clock with them.
+  void back_up(std::span<const int> bodies, double from, double t);
   /// Pairs of owners whose moving bounds meet during [from, to] (every pair, where the plan's broad phase is
   /// off).
   std::vector<PairKey> near_pairs(double from, double to);

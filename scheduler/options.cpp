@@ -9,15 +9,6 @@ namespace brink {
 
 namespace {
 
-constexpr std::array kPolicies{
-    Choice{
-        "body_clocks",
-        "every body keeps its own time; a collision advances two (Lubachevsky 1991; Mirtich & Canny 1995)"},
-    Choice{"global_backup",
-           "all advance together to a horizon, all back up to the earliest contact (Baraff 1997)"},
-    Choice{"fixed_step",
-           "no backing up: step, push overlaps apart, resolve; approximate (the naive baseline)"},
-};
 constexpr std::array kOrders{
     Choice{"index", "lowest body, other, site and sample first"},
     Choice{"closing_speed", "fastest approach first"},
@@ -60,7 +51,6 @@ bool positive(double value, const char* option, std::string* error) {
 
 }  // namespace
 
-std::span<const Choice> policies() { return kPolicies; }
 std::span<const Choice> orders() { return kOrders; }
 std::span<const Choice> responses() { return kResponses; }
 std::span<const Choice> detectors() { return kDetectors; }

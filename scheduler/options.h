@@ -2,7 +2,10 @@
 /// Choices of the `[solver]` table: the only home of their defaults, printed from here by the program and the
 /// docs.
 
+#include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "brink/core/fields/field_options.h"
 #include "brink/integrators/integrator.h"
@@ -10,11 +13,11 @@
 namespace brink {
 
 struct SolverOptions {
-  std::string policy = "body_clocks";    ///< see policies()
-  std::string order = "index";           ///< simultaneous contacts: see orders()
-  std::string integrator = "auto";       ///< see integrators()
-  double tolerance = 1e-10;              ///< relative, adaptive integrators
-  double absolute_tolerance = 1e-12;     ///< adaptive integrators
+  std::string policy = "body_clocks";  ///< see policies()
+  std::string order = "index";         ///< simultaneous contacts: see orders()
+  std::string integrator = "auto";     ///< see integrators()
+  double tolerance = 1e-10;            ///< relative, adaptive integrators
+  double absolute_tolerance = 1e-12;   ///< adaptive integrators
   double step = 0.001;  ///< [s], for fixed-step integrators, policy fixed_step and detector depth
   std::string response = "impulse";  ///< impulse | reflection
   std::string detector = "field";    ///< field | pass | depth
@@ -45,7 +48,8 @@ struct Choice {
   std::string_view name;
   std::string_view summary;
 };
-std::span<const Choice> policies();
+/// Those of Brink, and those that the program has added (register_policy in scheduler/policies/policy.h).
+std::vector<Choice> policies();
 std::span<const Choice> orders();
 std::span<const Choice> responses();
 std::span<const Choice> detectors();

@@ -2,16 +2,84 @@
 
 #include <fmt/core.h>
 
+#include <deque>
+#include <mutex>
+
 #include "brink/core/base/error.h"
 
 namespace brink {
 
+namespace {
+
+struct Entry {
+  std::string name, summary;
+  PolicyMaker make;
+};
+
+/// Every policy, Brink's own first. Entries stay where they are and are never taken out.
+class Registry {
+ public:
+  static Registry& get() {
+    static Registry registry;
+    return registry;
+  }
+
+  void add(Entry entry) {
+    const std::lock_guard lock(mutex_);
+    if (entry.name.empty()) throw BadInput("register_policy: a policy needs a name");
+    if (!entry.make) throw BadInput(fmt::format("register_policy: \"{}\" has no maker", entry.name));
+    if (find(entry.name)) throw BadInput(fmt::format("register_policy: \"{}\" is taken", entry.name));
+    entries_.push_back(std::move(entry));
+  }
+
+  PolicyMaker maker(std::string_view name) {
+    const std::lock_guard lock(mutex_);
+    const Entry* entry = find(name);
+    return entry ? entry->make : PolicyMaker();
+  }
+
+  std::vector<Choice> choices() {
+    const std::lock_guard lock(mutex_);
+    std::vector<Choice> all;
+    for (const Entry& e : entries_) all.push_back({e.name, e.summary});
+    return all;
+  }
+
+ private:
+  const Entry* find(std::string_view name) const {
+    for (const Entry& e : entries_)
+      if (e.name == name) return &e;
+    return nullptr;
+  }
+
+  std::mutex mutex_;
+  std::deque<Entry> entries_{
+      {"body_clocks",
+       "every body keeps its own time; a collision advances two (Lubachevsky 1991; Mirtich & Canny 1995)",
+       make_body_clocks},
+      {"global_backup",
+       "all advance together to a horizon, all back up to the earliest contact (Baraff 1997)",
+       make_global_backup},
+      {"island_backup", "the same inside each group of bodies that could meet before the horizon",
+       make_island_backup},
+      {"fixed_step", "no backing up: step, push overlaps apart, resolve; approximate (the naive baseline)",
+       make_fixed_step},
+  };
+};
+
+}  // namespace
+
+std::vector<Choice> policies() { return Registry::get().choices(); }
+
+void register_policy(const std::string& name, const std::string& summary, PolicyMaker make) {
+  Registry::get().add({name, summary, std::move(make)});
+}
+
 std::unique_ptr<Policy> make_policy(std::string_view name, std::string_view detector) {
+  const PolicyMaker make = Registry::get().maker(name);
+  if (!make) throw BadInput(fmt::format("policy \"{}\" is not known; see policies()", name));
   if (detector == "depth") return name == "fixed_step" ? make_classic_fixed_step() : make_classic_backup();
-  if (name == "body_clocks") return make_body_clocks();
-  if (name == "global_backup") return make_global_backup();
-  if (name == "fixed_step") return make_fixed_step();
-  throw BadInput(fmt::format("policy \"{}\" is not known; see policies()", name));
+  return make();
 }
 
 }  // namespace brink

@@ -1,0 +1,86 @@
+#include "brink/scheduler/policies/horizon.h"
+
+#include <algorithm>
+
+#include "brink/scheduler/policies/order.h"
+#include "brink/scheduler/stage_clock.h"
+
+namespace brink {
+
+namespace {
+
+/// A horizon below this would only repeat broad phases [s].
+constexpr double kShortest = 1e-9;
+constexpr int kMostUndecided = 100;
+
+/// About the time in which the fastest body crosses itself.
+double first_length(const Kernel& kernel, double until) {
+  double horizon = until;
+  for (int k = 0; k < kernel.body_count(); ++k) {
+    const double speed = kernel.state(k, kernel.time()).twist.velocity.norm();
+    const double size = 2.0 * kernel.world().bodies[k].outline->bounding_radius;
+    if (speed > 0.0 && size > 0.0) horizon = std::min(horizon, size / speed);
+  }
+  return std::max(horizon, kShortest * std::max(1.0, until));
+}
+
+}  // namespace
+
+double HorizonLength::next_end(Kernel& kernel, double until) {
+  if (kernel.horizon() <= 0.0) kernel.horizon() = first_length(kernel, until);
+  return std::min(until, kernel.time() + kernel.horizon());
+}
+
+void HorizonLength::adapt(Kernel& kernel, std::size_t pairs, std::uint64_t collisions) {
+  const auto n = static_cast<std::uint64_t>(kernel.body_count());
+  if (!kernel.options().skip_broad_phase) pairs = 0;  // every pair is met at any horizon
+  if (pairs > 6 * n + 16 || collisions > 2 * n + 16)
+    kernel.horizon() = std::max(0.5 * kernel.horizon(), kShortest);
+  else if (pairs < 3 * n + 8 && collisions < n / 2 + 4)
+    kernel.horizon() *= 1.5;
+}
+
+bool HorizonAgenda::pass(Kernel& kernel, double from, double end) {
+  const StageClock clock(kernel.work().seconds_search);
+  agenda_.clear();
+  pairs_ = kernel.near_pairs(from, end);
+  for (const PairKey& pair : pairs_) test(kernel, pair, from, end);
+  return kernel.poll();
+}
+
+bool HorizonAgenda::pass_again(Kernel& kernel, std::span<const int> changed, double end) {
+  const StageClock clock(kernel.work().seconds_search);
+  const double now = kernel.time();
+  pairs_.clear();
+  for (const int body : changed) {
+    const std::vector<PairKey> near = kernel.near_pairs_of(body, now, end);
+    pairs_.insert(pairs_.end(), near.begin(), near.end());
+  }
+  std::sort(pairs_.begin(), pairs_.end());  // a pair of two changed bodies is met from both
+  pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+  for (const PairKey& pair : pairs_) test(kernel, pair, now, end);
+  return kernel.poll();
+}
+
+void HorizonAgenda::test(Kernel& kernel, const PairKey& pair, double from, double end) {
+  const auto certificate = kernel.search(pair, from, end);
+  if (!certificate) return;
+  agenda_.insert(*certificate);
+  if (certificate->kind != Certificate::Kind::contact || !kernel.options().picks_among_all()) return;
+  for (const Certificate& other : kernel.simultaneous(*certificate)) agenda_.insert(other);
+}
+
+std::optional<Certificate> HorizonAgenda::take_earliest(Kernel& kernel) {
+  return brink::take_earliest(kernel, agenda_);
+}
+
+bool HorizonAgenda::search_on(Kernel& kernel, const Certificate& c, double end) {
+  const auto again = kernel.search(c.pair, c.time, end);
+  const bool undecided = again && again->kind == Certificate::Kind::undecided;
+  undecided_ = undecided ? undecided_ + 1 : 0;
+  if (undecided && (again->time <= c.time || undecided_ > kMostUndecided)) kernel.give_up(*again);
+  if (again) agenda_.insert(*again);
+  return kernel.poll();
+}
+
+}  // namespace brink

@@ -1,0 +1,90 @@
+/// Island backup: global backup inside each island, a group of bodies that could meet before the horizon.
+///
+///   until the end
+///     choose a horizon
+///     pass: certificates of every pair that can meet before it; those pairs, and bodies that a force
+///     couples, make islands; advance all bodies to the horizon while the agenda has a contact before the
+///     horizon
+///       back up the island of the earliest; resolve that one collision
+///       pass again for the bodies it concerned: islands that they may now reach become one
+///       advance the island to the horizon again
+///
+/// Contacts are taken in the order of time over all islands, so that an island that another one grows into
+/// has not done anything too early.
+#include "brink/scheduler/policies/horizon.h"
+#include "brink/scheduler/policies/islands.h"
+#include "brink/scheduler/policies/policy.h"
+
+namespace brink {
+
+namespace {
+
+class IslandBackup final : public Policy {
+ public:
+  void run(Kernel& kernel, double until) override {
+    while (kernel.time() < until && !kernel.halt()) {
+      if (!kernel.pause_point()) return;
+      const std::uint64_t before = kernel.collisions();
+      if (!run_horizon(kernel, HorizonLength::next_end(kernel, until))) return;
+      HorizonLength::adapt(kernel, near_, kernel.collisions() - before);
+    }
+  }
+
+ private:
+  /// One horizon, contact by contact. False on a halt.
+  bool run_horizon(Kernel& kernel, double end) {
+    if (!kernel.extend_motions(end) || !agenda_.pass(kernel, kernel.time(), end)) return false;
+    near_ = agenda_.pairs().size();
+    make_islands(kernel);
+    kernel.advance_all(end);
+    while (const auto next = agenda_.take_earliest(kernel)) {
+      kernel.record_frames(next->time);
+      island_.assign(islands_.of(next->pair.body).begin(), islands_.of(next->pair.body).end());
+      kernel.back_up(island_, end, next->time);
+      if (!deal_with(kernel, *next, end)) return false;
+      kernel.advance(island_, next->time, end);
+    }
+    kernel.record_frames(end);
+    return true;
+  }
+
+  /// False on a halt.
+  bool deal_with(Kernel& kernel, const Certificate& next, double end) {
+    if (next.kind == Certificate::Kind::undecided) return agenda_.search_on(kernel, next, end);
+    changed_.clear();
+    if (!kernel.resolve(next.pair, next.contact, changed_) || !kernel.extend_motions(end) ||
+        !agenda_.pass_again(kernel, changed_, end))
+      return false;
+    unite_near();
+    return true;
+  }
+
+  void make_islands(const Kernel& kernel) {
+    islands_.reset(kernel.body_count());
+    std::vector<int> first;  // body of every component
+    for (int k = 0; k < kernel.body_count(); ++k) {
+      const int component = kernel.body(k).component;
+      if (component < 0) continue;
+      if (component >= static_cast<int>(first.size())) first.resize(component + 1, k);
+      islands_.unite(first[component], k);
+    }
+    unite_near();
+  }
+
+  void unite_near() {
+    for (const PairKey& pair : agenda_.pairs())
+      if (!pair.with_site()) islands_.unite(pair.body, pair.other_body);
+  }
+
+  HorizonAgenda agenda_;
+  Islands islands_;
+  std::size_t near_ = 0;     ///< pairs that could meet before the horizon
+  std::vector<int> island_;  ///< that is backed up
+  std::vector<int> changed_;
+};
+
+}  // namespace
+
+std::unique_ptr<Policy> make_island_backup() { return std::make_unique<IslandBackup>(); }
+
+}  // namespace brink
