@@ -202,16 +202,17 @@ void draw_wires(Canvas& canvas, const Sheet& sheet) {
       canvas.outline(*sheet.world.sites[k].outline, sheet.sites[k], {line, line, 1.6, 0.0, false});
 }
 
-/// Particles of the classic detector, where a sampling is asked for: those inside paler.
+/// Particles of the classic detector, where a sampling is asked for: dark on the boundary, pale inside.
 void draw_particles(Canvas& canvas, const Sheet& sheet) {
-  const Color rim = Tones::ink.rgb(), inner = Oklch{0.99, 0.0, 0.0}.rgb();
+  const Color dark = Tones::ink.rgb(), pale = Oklch{0.99, 0.0, 0.0}.rgb();
   for (std::size_t k = 0; k < sheet.world.bodies.size(); ++k) {
     const Body& body = sheet.world.bodies[k];
     if (body.sampling.kind == Sampling::Kind::vertices || static_cast<int>(k) == sheet.excluded) continue;
     const Frame frame(sheet.bodies[k].pose);
     for (const Particle& particle : make_particles(*body.outline, body.sampling)) {
-      canvas.dot(frame.to_world(particle.p), 3.4, rim);
-      if (particle.area > 0.0) canvas.dot(frame.to_world(particle.p), 2.2, inner);
+      const bool inside = particle.area > 0.0;
+      canvas.dot(frame.to_world(particle.p), 3.8, inside ? dark : pale);
+      canvas.dot(frame.to_world(particle.p), 2.6, inside ? pale : dark);
     }
   }
 }

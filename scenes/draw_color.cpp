@@ -121,7 +121,7 @@ Oklch Palette::strong(std::size_t k) const {
 }
 
 Oklch Palette::site(std::size_t k) const {
-  return {0.60 + 0.08 * spread(k), 0.05, 260.0 + 137.5 * static_cast<double>(k)};
+  return {0.66 + 0.06 * spread(k), 0.085, 165.0 + 137.5 * static_cast<double>(k)};
 }
 
 }  // namespace brink::draw

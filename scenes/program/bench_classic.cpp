@@ -32,7 +32,7 @@ constexpr double kSteps[] = {0.01, 0.002};
 
 /// The same problem up to an earlier end.
 Problem shortened(Problem problem, double until) {
-  if (until < problem.until) problem.title += fmt::format(" (the first {:g} s)", until);
+  if (until < problem.until) problem.error_of += fmt::format(", in the first {:g} s", until);
   problem.until = until;
   std::erase_if(problem.hits, [until](double t) { return t >= until; });
   return problem;
