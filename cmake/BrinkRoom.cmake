@@ -15,6 +15,7 @@ endfunction()
 # The flags of every target: warnings, and floating point that means the same bits everywhere.
 function(brink_flags target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -ffp-contract=off
+    -fno-math-errno -fno-trapping-math  # change no bit of a result
     $<$<BOOL:${BRINK_WERROR}>:-Werror>)
   if(BRINK_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=undefined

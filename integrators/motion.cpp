@@ -113,37 +113,43 @@ Motion Motion::drag(double t0, const BodyState& start, const Acceleration& drive
                     double angular, double t1) {
   Motion m = ballistic(t0, start, drive, t1);
   m.kind_ = Kind::drag;
-  m.linear_ = linear;
-  m.angular_ = angular;
+  Other other;
+  other.linear = linear;
+  other.angular = angular;
+  m.other_ = std::make_shared<const Other>(std::move(other));
   return m;
 }
 
 Motion Motion::chain(std::shared_ptr<const std::vector<Motion>> pieces) {
   Motion m;
   m.kind_ = Kind::chain;
-  m.chain_ = std::move(pieces);
+  Other other;
+  other.chain = std::move(pieces);
+  m.other_ = std::make_shared<const Other>(std::move(other));
   return m;
 }
 
 double Motion::begin() const {
-  if (kind_ == Kind::dense) return track_->begin();
-  return kind_ == Kind::chain ? chain_->front().t0_ : t0_;
+  if (kind_ == Kind::dense) return other_->track->begin();
+  return kind_ == Kind::chain ? other_->chain->front().t0_ : t0_;
 }
 double Motion::end() const {
-  if (kind_ == Kind::dense) return track_->end();
-  return kind_ == Kind::chain ? chain_->back().t1_ : t1_;
+  if (kind_ == Kind::dense) return other_->track->end();
+  return kind_ == Kind::chain ? other_->chain->back().t1_ : t1_;
 }
 
 const Motion& Motion::link(double t) const {
-  auto it = std::upper_bound(chain_->begin(), chain_->end(), t,
+  auto it = std::upper_bound(other_->chain->begin(), other_->chain->end(), t,
                              [](double time, const Motion& m) { return time < m.t0_; });
-  return it == chain_->begin() ? *it : *std::prev(it);
+  return it == other_->chain->begin() ? *it : *std::prev(it);
 }
 
 Motion Motion::dense(std::shared_ptr<const Track> track) {
   Motion m;
   m.kind_ = Kind::dense;
-  m.track_ = std::move(track);
+  Other other;
+  other.track = std::move(track);
+  m.other_ = std::make_shared<const Other>(std::move(other));
   return m;
 }
 
@@ -155,9 +161,9 @@ BodyState Motion::state(double t) const {
                start_.pose.angle + s * (start_.twist.omega + 0.5 * s * drive_.angular)},
               {start_.twist.velocity + s * drive_.linear, start_.twist.omega + s * drive_.angular}};
     case Kind::drag: {
-      const Relaxed x = relax(start_.twist.velocity.x(), drive_.linear.x(), linear_, s);
-      const Relaxed y = relax(start_.twist.velocity.y(), drive_.linear.y(), linear_, s);
-      const Relaxed turn = relax(start_.twist.omega, drive_.angular, angular_, s);
+      const Relaxed x = relax(start_.twist.velocity.x(), drive_.linear.x(), other_->linear, s);
+      const Relaxed y = relax(start_.twist.velocity.y(), drive_.linear.y(), other_->linear, s);
+      const Relaxed turn = relax(start_.twist.omega, drive_.angular, other_->angular, s);
       return {{start_.pose.position + Vec2(x.moved, y.moved), start_.pose.angle + turn.moved},
               {{x.rate, y.rate}, turn.rate}};
     }
@@ -165,15 +171,17 @@ BodyState Motion::state(double t) const {
     case Kind::dense:
       break;
   }
-  BodyState state = kind_ == Kind::chain ? link(t).state(t) : track_->at(t).state(t);
-  state.pose.position += offset_;
+  BodyState state = kind_ == Kind::chain ? link(t).state(t) : other_->track->at(t).state(t);
+  state.pose.position += other_->offset;
   return state;
 }
 
 Motion Motion::displaced(const Vec2& by) const {
   Motion m = *this;
-  if (track_ || chain_) {
-    m.offset_ += by;
+  if (kind_ == Kind::dense || kind_ == Kind::chain) {
+    Other other = *other_;
+    other.offset += by;
+    m.other_ = std::make_shared<const Other>(std::move(other));
     return m;
   }
   const ExtendedState moved = ExtendedState(start_, low_).shifted(by);
@@ -211,15 +219,15 @@ MotionBounds Motion::bounds(double from, double to) const {
     }
     case Kind::drag: {  // rates relax monotonically: each lies between its values at the ends
       const Twist start = twist(from), end = twist(to);
-      const auto rate = [&](const Twist& w) -> Vec2 { return drive_.linear - linear_ * w.velocity; };
+      const auto rate = [&](const Twist& w) -> Vec2 { return drive_.linear - other_->linear * w.velocity; };
       b.velocity = 0.5 * (start.velocity + end.velocity);
       b.velocity_radius = 0.5 * (end.velocity - start.velocity).norm();
       b.acceleration = 0.5 * (rate(start) + rate(end));
       b.acceleration_radius = 0.5 * (rate(end) - rate(start)).norm();
       b.omega = 0.5 * (start.omega + end.omega);
       b.omega_radius = 0.5 * std::abs(end.omega - start.omega);
-      b.alpha = std::max(std::abs(drive_.angular - angular_ * start.omega),
-                         std::abs(drive_.angular - angular_ * end.omega));
+      b.alpha = std::max(std::abs(drive_.angular - other_->angular * start.omega),
+                         std::abs(drive_.angular - other_->angular * end.omega));
       return b;
     }
     case Kind::chain: {
@@ -235,8 +243,8 @@ MotionBounds Motion::bounds(double from, double to) const {
     case Kind::dense:
       break;
   }
-  const PolynomialPiece* piece = &track_->at(from);
-  const PolynomialPiece* last = &track_->at(to);
+  const PolynomialPiece* piece = &other_->track->at(from);
+  const PolynomialPiece* last = &other_->track->at(to);
   b = piece->bounds(from, std::min(to, piece->end));
   while (piece != last) {
     ++piece;

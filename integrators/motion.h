@@ -108,10 +108,14 @@ class Motion {
   double t1_ = std::numeric_limits<double>::infinity();
   BodyState start_, low_;
   Acceleration drive_;
-  double linear_ = 0.0, angular_ = 0.0;
-  std::shared_ptr<const Track> track_;
-  std::shared_ptr<const std::vector<Motion>> chain_;
-  Vec2 offset_ = Vec2::Zero();  ///< of a track or chain that is displaced [m]
+  /// What a parabola does without.
+  struct Other {
+    double linear = 0.0, angular = 0.0;  ///< rates of drag [1/s]
+    std::shared_ptr<const Track> track;
+    std::shared_ptr<const std::vector<Motion>> chain;
+    Vec2 offset = Vec2::Zero();  ///< of a track or chain that is displaced [m]
+  };
+  std::shared_ptr<const Other> other_;
 };
 
 }  // namespace brink

@@ -34,7 +34,7 @@ CREATE TABLE site (id INTEGER PRIMARY KEY, name TEXT, owner INTEGER, kind TEXT, 
 CREATE TABLE frame (t REAL, body INTEGER, x REAL, y REAL, angle REAL, vx REAL, vy REAL, omega REAL);
 CREATE TABLE event (seq INTEGER PRIMARY KEY, t REAL, kind TEXT, body INTEGER, other INTEGER, site INTEGER, px REAL, py REAL,
   nx REAL, ny REAL, closing_speed REAL, impulse_n REAL, impulse_t REAL, gap REAL, outline_site INTEGER, sample INTEGER,
-  sample_on_body INTEGER);
+  sample_on_body INTEGER, t_low REAL);
 CREATE TABLE work (counter TEXT PRIMARY KEY, value REAL, unit TEXT);
 CREATE TABLE checkpoint (t REAL, state BLOB, frames INTEGER, events INTEGER, wall_seconds REAL);
 )";
@@ -236,7 +236,7 @@ void RunFileRecorder::Impl::start_again(const Scene& scene) {
 
 void RunFileRecorder::Impl::prepare_inserts() {
   insert_frame.emplace(db, "INSERT INTO frame VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
-  insert_event.emplace(db, "INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  insert_event.emplace(db, "INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
 }
 
 RunFileRecorder::RunFileRecorder(const fs::path& dir, const Scene& scene, Open how) {
@@ -303,6 +303,7 @@ void RunFileRecorder::event(const Event& event) {
     id_or_null(15, c.site);
     id_or_null(16, c.sample);
     put.bind(17, c.sample_on_body ? 1 : 0);
+    put.bind(18, c.time_low);
     put.exec();
     put.reset();
     impl_->events = static_cast<std::int64_t>(event.seq) + 1;

@@ -192,13 +192,14 @@ std::vector<Event> RunFile::events() const {
     SQLite::Statement get(
         impl_->db,
         "SELECT seq, t, kind, body, other, site, px, py, nx, ny, closing_speed, impulse_n, impulse_t, "
-        "gap, outline_site, sample, sample_on_body FROM event ORDER BY seq");
+        "gap, outline_site, sample, sample_on_body, t_low FROM event ORDER BY seq");
     while (get.executeStep()) {
       const auto real = [&get](int column) { return get.getColumn(column).getDouble(); };
       Event e;
       e.seq = static_cast<std::uint64_t>(get.getColumn(0).getInt64());
       e.kind = kind_from(get.getColumn(2).getString(), impl_->file);
       e.contact = {real(1),
+                   real(17),
                    id_or_none(get.getColumn(3)),
                    id_or_none(get.getColumn(4)),
                    id_or_none(get.getColumn(5)),

@@ -96,6 +96,7 @@ class PairSearch {
       }
       ++work_.search_iterations;
       t_ = t;
+      next_ = std::nextafter(t, kForever);
       view_.place(t);
       short_end_ = std::min(to_, t + short_window_);
       short_bounds_ = bounds_over(t, short_end_);
@@ -134,7 +135,7 @@ class PairSearch {
 
   void advance_sample(const Half& half, int i) {
     // never less than the next double, or the search would stand still
-    safe_until(half, i) = std::max(t_ + step(half, i), std::nextafter(t_, kForever));
+    safe_until(half, i) = std::max(t_ + step(half, i), next_);
     least_ = std::min(least_, safe_until(half, i));
   }
 
@@ -337,7 +338,7 @@ class PairSearch {
   double* safe_until_[2];  ///< one a sample of each half
   RelativeBounds long_bounds_, short_bounds_;
   double short_window_ = 0.0, short_end_ = 0.0;
-  double t_ = 0.0, reached_ = 0.0;
+  double t_ = 0.0, next_ = 0.0, reached_ = 0.0;
   double least_ = kForever;  ///< of the samples looked at from t_, how long all are safe
   FeatureContact best_;
   bool capped_ = false;

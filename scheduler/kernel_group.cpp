@@ -234,6 +234,7 @@ class Kernel::GroupResolve {
     event.kind = kind;
     event.contact = kernel_.world_contact(t.pair, t.contact);
     event.contact.time = time;
+    event.contact.time_low = static_cast<double>(now() - time + delay_);
     event.impulse_n = static_cast<double>(normal);
     event.impulse_t = static_cast<double>(tangential);
     if (kernel_.recorder_ && kernel_.run_.record_events) kernel_.recorder_->event(event);

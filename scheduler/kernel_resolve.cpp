@@ -168,6 +168,7 @@ bool Kernel::resolve(const PairKey& pair, const FeatureContact& found, std::vect
   event.seq = seq_++;
   event.contact = world_contact(pair, found);
   event.contact.time = last_event_ = std::max(last_event_, time_);
+  event.contact.time_low = static_cast<double>(time_ - last_event_ + response.delay);
   event.impulse_n = response.impulse.normal;
   event.impulse_t = response.impulse.tangential;
   note_overlap(found.gap);

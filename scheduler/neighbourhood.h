@@ -35,6 +35,10 @@ class Neighbourhood {
       const CellBlock block = block_of(k, clocks_[k].cell, m);
       constexpr CellBlock none{{1, 1}, {0, 0}};
       const CellBlock former = except && !levels_[m].grid.wraps(block) ? block_of(k, *except, m) : none;
+      // at many bodies, waiting for their memory is what looking costs
+      levels_[m].grid.lists(block, [&](const Cell&, int first) {
+        if (first != CellGrid::kNone) __builtin_prefetch(&flights_[first]);
+      });
       levels_[m].grid.lists(block, [&](const Cell& c, int first) {
         if (former.contains(c)) return;
         for (int j = first; j != CellGrid::kNone; j = flights_[j].next)

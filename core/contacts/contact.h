@@ -7,7 +7,10 @@ namespace brink {
 
 /// Ids as used in every result: body index; site index into World::sites.
 struct Contact {
-  double time = 0.0;
+  double time = 0.0;  ///< [s]
+  /// What `time`, one double, leaves over: the moment at which the collision is resolved is time + time_low,
+  /// so that at 1e6 s, where doubles are 1e-10 s apart, it is still known to 1e-16 s [s].
+  double time_low = 0.0;
   int body = -1;               ///< the body into which the normal points
   int other_body = -1;         ///< -1: a fixed site
   int other_site = -1;         ///< index into World::sites, or -1

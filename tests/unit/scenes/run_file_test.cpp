@@ -63,6 +63,7 @@ Event event(std::uint64_t seq, double t) {
   e.contact.site = 2;
   e.contact.sample = 3;
   e.contact.sample_on_body = false;
+  e.contact.time_low = 1e-17;
   e.contact.point = {t, 0.1};
   e.contact.normal = {0.6, 0.8};
   e.contact.closing_speed = t / 7;
@@ -137,6 +138,7 @@ TEST_F(RunFileTest, FramesAndEventsReadBackToTheSameBits) {
     EXPECT_EQ(events[i].seq, e.seq);
     EXPECT_EQ(events[i].kind, e.kind);
     EXPECT_EQ(events[i].contact.time, e.contact.time);
+    EXPECT_EQ(events[i].contact.time_low, e.contact.time_low);
     EXPECT_EQ(events[i].contact.body, e.contact.body);
     EXPECT_EQ(events[i].contact.other_body, e.contact.other_body);
     EXPECT_EQ(events[i].contact.other_site, e.contact.other_site);
