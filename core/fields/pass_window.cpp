@@ -161,8 +161,9 @@ struct PassRenderer::Impl {
     const bool mesh = options.primitives == "mesh";
     SiteBatch batch = mesh ? detail::make_mesh_batch(grid, scene, excluded, band, options.mesh_error)
                            : detail::make_batch(grid, scene, excluded, {band, 0.0, false});
-    const bool large =
-        !mesh && std::min(grid.width, grid.height) > detail::kTile && batch.instances.size() > 1;
+    // a band narrower than a tile cuts sites closer than tiles would
+    const bool large = !mesh && std::min(grid.width, grid.height) > detail::kTile &&
+                       batch.instances.size() > 1 && band / grid.pixel > detail::kTile;
     if (large) detail::cut_into_tiles(batch, grid, names.owner, band / grid.pixel, layers);
     renderer.draw_image(grid, batch, band / grid.pixel + batch.offset, 0, names.owner);
     return batch;
