@@ -302,6 +302,26 @@ TEST(ClassicFixedStep, PushesApartByTheDepthOfTheDeepestParticle) {
   EXPECT_NEAR(simulator.state(0).twist.velocity.y(), 6.0, 1e-9);
 }
 
+// Boxes of 1 and 3 kg run 0.08 m into each other in one step: they share the way apart by their inverse
+// masses, and their velocities are those of an elastic collision in one dimension.
+TEST(ClassicFixedStep, BodiesWithVolumeParticlesSharePushingByInverseMass) {
+  World world;
+  for (const double mass : {1.0, 3.0}) {
+    const double side = mass == 1.0 ? -1.0 : 1.0;
+    Body b = body(make_box(1, 1), {side * 0.5, 0.0}, {-side * 4.0, 0.0}, mass);
+    b.sampling = sampled(Sampling::Kind::volume, 0.1);
+    add(world, b);
+  }
+  Simulator simulator(world, depth_options("fixed_step"));
+  simulator.run(until(0.01));
+  const BodyState light = simulator.state(0), heavy = simulator.state(1);
+  const double moved_light = -0.46 - light.pose.position.x(), moved_heavy = heavy.pose.position.x() - 0.46;
+  EXPECT_NEAR(moved_light + moved_heavy, 0.08, 1.0 / 64);
+  EXPECT_NEAR(moved_light, 3.0 * moved_heavy, 1e-9);
+  EXPECT_NEAR(light.twist.velocity.x(), -8.0, 1e-9);  // (m - M) / (m + M) 4 - 2 M / (m + M) 4
+  EXPECT_NEAR(heavy.twist.velocity.x(), 0.0, 1e-9);
+}
+
 // A resting box is bounced and pushed for ever; it neither sinks in nor stops the run.
 TEST(Classic, BodiesAtRestNeitherSinkNorStopTheRun) {
   for (const char* policy : {"global_backup", "fixed_step"}) {
