@@ -255,9 +255,7 @@ class Checker {
     const double error = std::abs(answer.contact.time - truth.time);
     const double tolerance = time_tolerance(f, truth);
     const bool early = answer.contact.time < truth.time - tolerance;
-    // what passes within the touching distance is met there, before any deeper contact
-    const bool touched_before = early && d <= SearchLimits{}.touch;
-    if (truth.time > f.to || !truth.real || (truth.grazed && early) || touched_before) {
+    if (truth.time > f.to || !truth.real || (truth.grazed && early)) {
       if (d <= touch_band || error <= tolerance || truth.time > f.to - 1e-12 * (f.to - f.from))
         ++tally.grazing;
       else
@@ -276,10 +274,15 @@ class Checker {
     }
     tally.worst_relative_error = std::max(tally.worst_relative_error, error / (f.to - f.from));
     if (error > std::max(1e-10, touching + tolerance) ||
-        error > touching + std::max(16.0 * tolerance, 1e-11 * (f.to - f.from)))
-      fail(f, answer.contact.time < truth.time ? tally.invented : tally.late, "time", answer, truth);
-    else
+        error > touching + std::max(16.0 * tolerance, 1e-11 * (f.to - f.from))) {
+      // what passes within the touching distance is met there, before any deeper contact
+      if (early && d <= SearchLimits{}.touch)
+        ++tally.grazing;
+      else
+        fail(f, answer.contact.time < truth.time ? tally.invented : tally.late, "time", answer, truth);
+    } else {
       check_contact(f, pair, answer, truth);
+    }
   }
 
   void check_contact(const Flight& f, const reference::Pair& pair, const PairAnswer& answer,
