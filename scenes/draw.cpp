@@ -238,10 +238,22 @@ void draw_layer(Canvas& canvas, const Sheet& sheet) {
 
 }  // namespace
 
+/// The bodies' images whose centres are in the period that begins at the origin; in a plane that does not
+/// repeat the bodies themselves.
+std::vector<BodyState> at_home(const Periods& periods, std::span<const BodyState> bodies) {
+  std::vector<BodyState> home(bodies.begin(), bodies.end());
+  for (BodyState& state : home)
+    for (int axis = 0; axis < 2; ++axis)
+      if (const double size = periods.size[axis]; size > 0.0)
+        state.pose.position[axis] -= size * std::floor(state.pose.position[axis] / size);
+  return home;
+}
+
 Picture draw_scene(const World& world, std::span<const BodyState> bodies, std::span<const Pose> sites,
                    const DrawOptions& options) {
   check(world, bodies, sites, options);
-  Sheet sheet{world, bodies, sites, options, Palette(world), -1, 0, View{}, 0.0};
+  const std::vector<BodyState> home = at_home(world.periods, bodies);
+  Sheet sheet{world, home, sites, options, Palette(world), -1, 0, View{}, 0.0};
   if (options.layer.kind == Kind::pass) sheet.excluded = body_named(world, options.layer.body);
   sheet.strip = draw::strip_height(options);
   sheet.view = view_of(sheet);
