@@ -183,6 +183,10 @@ World RunFile::world() const {
     body.initial = first.states.at(row.id);
   }
   world.sites = sites();
+  const auto options = nlohmann::json::parse(meta("options").value_or("{}"), nullptr, false);
+  const nlohmann::json::json_pointer periodic("/world/periodic");
+  if (options.is_object() && options.contains(periodic))
+    world.periods.size = {options.at(periodic).at(0).get<double>(), options.at(periodic).at(1).get<double>()};
   return world;
 }
 
