@@ -52,29 +52,15 @@ class SceneBuilder {
       faults_.add({1, 1}, "frame_interval: too short for the duration; given " +
                               number_text(scene_.output.frame_interval) +
                               " s, allowed: 0, or at most 1e8 frames");
-    policy();
     std::string error;
     if (faults_.empty() && !scene_.solver.is_valid(&error)) faults_.add(file_.solver_place, error);
     options_json();
-  }
-
-  // Exact policies give the same events: one that is not there yet is stood in for by the default.
-  void policy() {
-    std::string& asked = scene_.solver.policy;
-    for (const Choice& choice : policies())
-      if (choice.name == asked) return;
-    if (!is_exact_policy(asked)) return;
-    const std::string used = SolverOptions{}.policy;
-    scene_.notes.push_back("policy " + asked + " is not available in this release; " + used +
-                           " is used, which gives the same events");
-    asked = used;
   }
 
   void options_json() {
     Json json;
     json["world"] = world_schema().json(file_.world);
     json["solver"] = solver_schema().json(scene_.solver);
-    if (file_.solver.policy != scene_.solver.policy) json["solver"]["policy_asked"] = file_.solver.policy;
     json["field"] = field_schema().json(file_.field);
     json["output"] = output_schema().json(scene_.output);
     scene_.options_json = json.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -17,15 +17,7 @@ std::vector<std::string> names_of(std::span<const Info> infos) {
   return out;
 }
 
-const std::vector<std::string> kExactPolicies{"body_clocks", "global_backup", "island_backup", "timewarp"};
 const std::vector<std::string> kCombineRules{"max", "min", "mean", "geometric_mean", "product"};
-
-std::vector<std::string> accepted_policies() {
-  std::vector<std::string> out = names_of<Choice>(policies());
-  for (const std::string& name : kExactPolicies)
-    if (std::find(out.begin(), out.end(), name) == out.end()) out.push_back(name);
-  return out;
-}
 
 Codec<std::int64_t> whole(std::int64_t low = 0,
                           std::int64_t high = std::numeric_limits<std::int64_t>::max()) {
@@ -170,10 +162,6 @@ Schema<ThingTable> thing_schema(const std::string& table, bool site) {
 
 }  // namespace
 
-bool is_exact_policy(const std::string& name) {
-  return std::find(kExactPolicies.begin(), kExactPolicies.end(), name) != kExactPolicies.end();
-}
-
 Combine combine_rule(const std::string& name) {
   const auto found = std::find(kCombineRules.begin(), kCombineRules.end(), name);
   return static_cast<Combine>(found - kCombineRules.begin());  // kCombineRules is in the order of Combine
@@ -198,7 +186,7 @@ const Schema<SolverOptions>& solver_schema() {
   using S = SolverOptions;
   static const Schema<S> schema =
       Schema<S>("solver")
-          .key("policy", &S::policy, open_choice(accepted_policies),
+          .key("policy", &S::policy, open_choice([] { return names_of<Choice>(policies()); }),
                "who is tested next, advanced and backed up")
           .key("order", &S::order, choice(names_of(orders())),
                "which of several simultaneous contacts is resolved first, or that they are taken together")
@@ -214,6 +202,8 @@ const Schema<SolverOptions>& solver_schema() {
           .key("contact_tolerance", &S::contact_tolerance, number({1e-14, 1e-2, false, ""}),
                "gap that counts as contact, of the scene's length")
           .key("persistent", &S::persistent, flag(), "contacts may last; false: collisions only")
+          .count("kept_states", &S::kept_states, whole(),
+                 "policy timewarp: former states of bodies that are kept to go back to, at most")
           .count("max_collisions", &S::max_collisions, whole(), "stop after this many; 0: no limit")
           .key("skip_closed_forms", &S::skip_closed_forms, flag(), "use closed forms where a pair has them")
           .key("skip_fields", &S::skip_fields, flag(), "no field for shapes of few sites")

@@ -129,9 +129,6 @@ void add_shape_keys(Schema<ThingTable>& schema, bool site);
 /// The keys inside the shapes' own tables.
 void list_shape_keys(std::vector<OptionInfo>& out);
 
-/// Policies of the whole plan that are exact: until a release has them, the default gives the same events.
-bool is_exact_policy(const std::string& name);
-
 /// "max", "min" ... as the rule it names.
 Combine combine_rule(const std::string& name);
 

@@ -22,6 +22,8 @@ BodyState held(const Body& body, BodyState s) {
   return s;
 }
 
+void raise_version(BodyTrack& b) { b.version = std::max(b.version, b.last_undone) + 1; }
+
 }  // namespace
 
 Kernel::Kernel(World world, SolverOptions options)
@@ -200,7 +202,7 @@ bool Kernel::restart(std::span<const Restart> touched) {
     const ExtendedState& s = touched.front().state;
     first.motion =
         Motion::ballistic(time_, s.rounded(), first.motion.acceleration(), first.motion.end(), s.low());
-    ++first.version;
+    raise_version(first);
     ++work_.component_resets;
     return true;
   }
@@ -208,7 +210,7 @@ bool Kernel::restart(std::span<const Restart> touched) {
   std::vector<BodyState> states;
   for (const int j : c.component.bodies) {
     states.push_back(state(j, time_));
-    ++bodies_[j].version;
+    raise_version(bodies_[j]);
   }
   for (const Restart& r : touched) states[bodies_[r.body].place_in_component] = r.state.rounded();
   start_component(c, time_, std::move(states));

@@ -13,6 +13,8 @@
 #include "brink/core/fields/pass_window.h"
 #include "brink/core/world/forces.h"
 #include "brink/scheduler/agenda.h"
+#include "brink/scheduler/ahead.h"
+#include "brink/scheduler/body_track.h"
 #include "brink/scheduler/depth_detector.h"
 #include "brink/scheduler/options.h"
 #include "brink/scheduler/recorder.h"
@@ -21,20 +23,6 @@
 #include "brink/scheduler/zeno.h"
 
 namespace brink {
-
-/// What the kernel keeps of a body beside the world's definition.
-struct BodyTrack {
-  Motion motion;
-  std::uint64_t version = 0;       ///< raised by every resolve that changes the motion
-  double velocity_rounding = 0.0;  ///< see Mover
-  double resolved_at = -1.0;       ///< time of the last resolve [s]; < 0: never
-  /// Of the component that drives it; -1: free, under the constant acceleration of its motion for ever. A
-  /// free body needs no integrator.
-  int component = -1;
-  int place_in_component = 0;
-  int last_partner = -1;     ///< owner met in its last collision
-  std::uint32_t streak = 0;  ///< collisions in a row with that owner
-};
 
 /// Why a run cannot go on, in one sentence.
 struct Halt {
@@ -109,7 +97,8 @@ class Kernel {
   /// The other features of the certificate's pair that touch and approach at its time, each as a certificate
   /// of its own (two corners of a box that lands flat): what an order other than `index` chooses from.
   std::vector<Certificate> simultaneous(const Certificate& c);
-  /// True if neither body has been resolved since the certificate was issued.
+  /// True if neither body has been resolved since the certificate was issued (what is only resolved ahead of
+  /// time does not count).
   bool fresh(const Certificate& c) const;
   /// Contacts of a pair at the present time with gap <= `tolerance`, deepest first.
   std::vector<FeatureContact> touching(const PairKey& pair, double tolerance);
@@ -133,6 +122,33 @@ class Kernel {
   /// A place where the run may be resumed from: writes a checkpoint if one is due; asks `progress`. False to
   /// stop.
   bool pause_point();
+
+  // -- verbs ahead of time: what is done with them may be undone --
+  /// Resolves a contact of two newest motions, whatever the present time, and takes the bodies that it
+  /// changes on to `end`; nobody is told yet. They are appended to `changed`. False, and nothing has changed,
+  /// where that cannot be done.
+  bool resolve_ahead(const Certificate& c, double end, std::vector<int>& changed);
+  /// True if the contact is the first that its bodies have had ahead of time.
+  bool is_resolved_ahead(const Certificate& c) const;
+  /// Makes that collision certain, takes the clock to it and records it. False on a halt. @pre
+  /// is_resolved_ahead(c), and nothing earlier is left.
+  bool confirm(const Certificate& c, std::vector<int>& changed);
+  /// Takes a body back to its motion of that version and to time t, and everyone whose collisions hang on
+  /// what is undone; they are appended to `undone`. @pre one of versions(body).
+  void roll_back(int body, std::uint64_t version, double t, std::vector<int>& undone);
+  /// Takes everyone back to what is certain.
+  void roll_back_all();
+  /// Motions that body k certainly has now, and after collisions ahead of time, in order; the last is the
+  /// newest.
+  std::vector<std::uint64_t> versions(int k) const;
+  /// When that motion ends in a collision ahead of time; infinity: it is the newest. Nothing if it was
+  /// undone, or has ended for certain.
+  std::optional<double> end_of_version(int k, std::uint64_t version) const;
+  /// As search(pair, from, to), with motions of those versions. @pre among versions() of the two.
+  std::optional<Certificate> search(const PairKey& pair, std::uint64_t version, std::uint64_t other_version,
+                                    double from, double to);
+  /// Former states of bodies that are kept to go back to.
+  std::size_t states_kept() const { return ahead_.kept(); }
 
   // -- running --
   void begin(const RunOptions& options, Recorder* recorder);
@@ -172,12 +188,31 @@ class Kernel {
   /// Extends one component to t and fetches its motions; false and halt() if its integrator cannot.
   bool cover(Coupled& c, double t);
   void fetch_motions(const Coupled& c);
-  Mover mover(int body) const {
-    return {body_index_[body], &bodies_[body].motion, bodies_[body].velocity_rounding};
+  Mover mover(int body) const { return mover(body, bodies_[body]); }
+  Mover mover(int body, const BodyTrack& track) const {
+    return {body_index_[body], &track.motion, track.velocity_rounding};
   }
   Mover site_mover(int site) const { return {site_index_[site], &sites_[site].motion(), 0.0}; }
   /// The pair's other owner, where its image is. Valid until the next call.
-  Mover other_mover(const PairKey& pair) const;
+  Mover other_mover(const PairKey& pair) const {
+    return other_mover(pair, pair.with_site() ? nullptr : &bodies_[pair.other_body]);
+  }
+  /// The same with a motion that the other body has or had (null: a site).
+  Mover other_mover(const PairKey& pair, const BodyTrack* other) const;
+  std::optional<Certificate> search_between(const PairKey& pair, const BodyTrack& body,
+                                            const BodyTrack* other, double from, double to);
+  /// The body as of its last collision that is certain.
+  const BodyTrack& certain(int k) const;
+  /// The body with its motion of that version; null if there is none.
+  const BodyTrack* track(int k, std::uint64_t version) const;
+  AheadLog::Entry before(const PairKey& pair) const;
+  struct Undone {  ///< a body and the times between which it is undone
+    int body;
+    double from, to;
+  };
+  void undo_last(int body, std::vector<Undone>& taken_back);
+  void undo(const AheadLog::Entry& entry);
+  void swap_with_certain();
   /// From the other owner to its image [m].
   Vec2 shift_of(const PairKey& pair) const { return world_.periods.shift(pair.image); }
   /// The state at t of the pair's other owner, where its image is.
@@ -205,6 +240,10 @@ class Kernel {
   /// runs do not drift by roundings of time. Not at a wire without thickness: it is met a little before, and
   /// must stay on its side.
   Real delay_to_contact(const PairKey& pair, const FeatureContact& found, const ExtendedContact& c) const;
+  /// Works out a collision at the present time and changes the motions; nothing if neither side can move.
+  std::optional<Outcome> settle(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed);
+  /// Counts and records it, and judges what it may be the end of. False on a halt.
+  bool tell(const Outcome& outcome);
   struct Response;
   /// The response at that moment.
   Response respond(const PairKey& pair, const FeatureContact& found) const;
@@ -229,6 +268,7 @@ class Kernel {
   SearchLimits limits_;
   Random random_;
   std::vector<BodyTrack> bodies_;
+  AheadLog ahead_;
   std::vector<Coupled> components_;
   std::vector<SiteMotion> sites_;
   std::vector<const Outline*> outlines_;  ///< of every owner
@@ -241,6 +281,7 @@ class Kernel {
   mutable Motion image_motion_;  ///< of the last other_mover() that was an image
   ZenoWatch zeno_;
   std::vector<Box> boxes_;                   ///< moving bounds of every owner over the present horizon
+  double boxes_from_ = 0.0;                  ///< where that horizon began [s]
   std::vector<std::uint64_t> box_versions_;  ///< of the bodies, when their box was made
   std::optional<Halt> halt_;
   std::uint64_t revision_ = 0;

@@ -18,8 +18,8 @@ std::optional<PairKey> Kernel::pair_of(int a, int b, const Image& image) const {
   return b < n ? PairKey{a, b, -1, image} : PairKey{a, -1, b - n, image};
 }
 
-Mover Kernel::other_mover(const PairKey& pair) const {
-  Mover other = pair.with_site() ? site_mover(pair.other_site) : mover(pair.other_body);
+Mover Kernel::other_mover(const PairKey& pair, const BodyTrack* track) const {
+  Mover other = track ? mover(pair.other_body, *track) : site_mover(pair.other_site);
   if (pair.image == Image{}) return other;
   image_motion_ = other.motion->displaced(shift_of(pair));
   other.motion = &image_motion_;
@@ -42,6 +42,7 @@ std::vector<PairKey> Kernel::overlapping(const std::vector<Box>& boxes) const {
 void Kernel::refresh_boxes(double from, double to, bool all) {
   const int n = body_count();
   if (all) {
+    boxes_from_ = from;
     boxes_.resize(owner_count());
     box_versions_.assign(n, 0);
     for (int k = n; k < owner_count(); ++k) {
@@ -56,7 +57,13 @@ void Kernel::refresh_boxes(double from, double to, bool all) {
   }
   for (int k = 0; k < n; ++k) {
     if (!all && box_versions_[k] == bodies_[k].version) continue;
-    boxes_[k] = swept_box(outline_of(k), bodies_[k].motion, from, to);
+    // in front of what is certain, bodies have several motions at a time, which begin when they begin
+    const double begin = all ? from : std::max(bodies_[k].motion.begin(), boxes_from_);
+    const Box box = swept_box(outline_of(k), bodies_[k].motion, begin, to);
+    if (all || ahead_.empty())
+      boxes_[k] = box;
+    else
+      boxes_[k].add(box);
     box_versions_[k] = bodies_[k].version;
   }
 }
@@ -142,7 +149,13 @@ const DepthSight& Kernel::look(double from, double t) {
 }
 
 std::optional<Certificate> Kernel::search(const PairKey& pair, double from, double to) {
-  const Mover a = mover(pair.body), b = other_mover(pair);
+  return search_between(pair, bodies_[pair.body], pair.with_site() ? nullptr : &bodies_[pair.other_body],
+                        from, to);
+}
+
+std::optional<Certificate> Kernel::search_between(const PairKey& pair, const BodyTrack& body,
+                                                  const BodyTrack* other, double from, double to) {
+  const Mover a = mover(pair.body, body), b = other_mover(pair, other);
   // of simultaneous resolves one may be a rounding ahead
   from = std::max({from, a.motion->begin(), b.motion->begin()});
   if (from > to) return std::nullopt;
@@ -152,8 +165,8 @@ std::optional<Certificate> Kernel::search(const PairKey& pair, double from, doub
   Certificate c;
   c.time = answer.until;
   c.pair = pair;
-  c.version_body = bodies_[pair.body].version;
-  c.version_other = pair.with_site() ? 0 : bodies_[pair.other_body].version;
+  c.version_body = body.version;
+  c.version_other = other ? other->version : 0;
   c.contact = answer.contact;
   ++work_.certificates_issued;
   if (answer.status == PairAnswer::Status::undecided) {
@@ -165,8 +178,10 @@ std::optional<Certificate> Kernel::search(const PairKey& pair, double from, doub
 
 std::vector<Certificate> Kernel::simultaneous(const Certificate& c) {
   std::vector<Certificate> others;
-  const auto features =
-      touching_features(mover(c.pair.body), other_mover(c.pair), c.time, limits_.touch, scratch_);
+  const Mover a = mover(c.pair.body, *track(c.pair.body, c.version_body));
+  const Mover b =
+      other_mover(c.pair, c.pair.with_site() ? nullptr : track(c.pair.other_body, c.version_other));
+  const auto features = touching_features(a, b, c.time, limits_.touch, scratch_);
   for (const FeatureContact& f : features) {
     if (f.sample == c.contact.sample && f.sample_on_a == c.contact.sample_on_a) continue;
     if (f.closing_speed <= 1e-12 * c.contact.closing_speed) continue;
@@ -177,8 +192,8 @@ std::vector<Certificate> Kernel::simultaneous(const Certificate& c) {
 }
 
 bool Kernel::fresh(const Certificate& c) const {
-  return c.version_body == bodies_[c.pair.body].version &&
-         (c.pair.with_site() || c.version_other == bodies_[c.pair.other_body].version);
+  return c.version_body == certain(c.pair.body).version &&
+         (c.pair.with_site() || c.version_other == certain(c.pair.other_body).version);
 }
 
 std::vector<FeatureContact> Kernel::touching(const PairKey& pair, double tolerance) {

@@ -43,12 +43,15 @@ void Kernel::record_frames(double t) {
     const StageClock clock(work_.seconds_record);
     ++frame_;
     last_frame_ = due;
+    swap_with_certain();
     if (recorder_) recorder_->frame(due, states(due));
     check_overlaps_at(due);
+    swap_with_certain();
   }
 }
 
 void Kernel::end_frame() {
+  roll_back_all();
   if (last_frame_ == time_) return;
   last_frame_ = time_;
   if (recorder_) recorder_->frame(time_, states(time_));

@@ -154,27 +154,39 @@ bool Kernel::collapsed() const {
 }
 
 bool Kernel::resolve(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed) {
-  if (options_.takes_together() || collapsed()) return resolve_group(pair, found, changed);
+  if (options_.takes_together() || collapsed()) {
+    roll_back_all();
+    return resolve_group(pair, found, changed);
+  }
+  const auto outcome = settle(pair, found, changed);
+  return outcome && tell(*outcome);
+}
+
+std::optional<Outcome> Kernel::settle(const PairKey& pair, const FeatureContact& found,
+                                      std::vector<int>& changed) {
   const Response response = respond(pair, found);
   if (response.impulse.kind == ImpulseKind::jam) {
     stop(Termination::failed, fmt::format("{} at t = {:.17g}: neither side can move", name_of(pair), time_));
-    return false;
+    return std::nullopt;
   }
   double rest = note_resolve(pair.body, other_owner(pair), response.magnitude);
   if (!pair.with_site()) rest = std::min(rest, note_resolve(pair.other_body, pair.body, response.magnitude));
-  if (!deflect(pair, response, changed)) return false;
+  if (!deflect(pair, response, changed)) return std::nullopt;
+  return Outcome{pair, found, response.impulse.normal, response.impulse.tangential, response.delay, rest};
+}
 
+bool Kernel::tell(const Outcome& outcome) {
   Event event;
   event.seq = seq_++;
-  event.contact = world_contact(pair, found);
+  event.contact = world_contact(outcome.pair, outcome.contact);
   event.contact.time = last_event_ = std::max(last_event_, time_);
-  event.contact.time_low = static_cast<double>(time_ - last_event_ + response.delay);
-  event.impulse_n = response.impulse.normal;
-  event.impulse_t = response.impulse.tangential;
-  note_overlap(found.gap);
-  count_collision(pair);
+  event.contact.time_low = static_cast<double>(time_ - last_event_ + outcome.delay);
+  event.impulse_n = outcome.impulse_n;
+  event.impulse_t = outcome.impulse_t;
+  note_overlap(outcome.contact.gap);
+  count_collision(outcome.pair);
   if (recorder_ && run_.record_events) recorder_->event(event);
-  return judge_endings(pair, event.contact, rest);
+  return judge_endings(outcome.pair, event.contact, outcome.rest);
 }
 
 void Kernel::count_collision(const PairKey& pair) {
@@ -198,7 +210,7 @@ bool Kernel::judge_endings(const PairKey& pair, const Contact& contact, double r
          fmt::format(
              "Zeno at t = {:.15g} after {} bounces of {}: a contact that lasts begins, and those are not in "
              "this release",
-             zeno->limit_time, std::max<std::uint64_t>(zeno->bounces, bodies_[pair.body].streak),
+             zeno->limit_time, std::max<std::uint64_t>(zeno->bounces, certain(pair.body).streak),
              name_of(pair)));
     return false;
   }

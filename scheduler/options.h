@@ -24,7 +24,8 @@ struct SolverOptions {
   double contact_tolerance = 1e-10;  ///< of the scene's length
   bool persistent = true;  ///< resting contacts (a later release: until then a Zeno ending stops the run)
   std::uint64_t seed = 1;  ///< for order "random"
-  std::uint64_t max_collisions = 0;  ///< stop after this many; 0: no limit
+  std::uint64_t kept_states = 10000;  ///< policy timewarp: former states of bodies kept at most
+  std::uint64_t max_collisions = 0;   ///< stop after this many; 0: no limit
 
   // What may be skipped (each gives the same events on and off; see docs/architecture.md)
   bool skip_closed_forms = true;   ///< use quadratics where a pair has them

@@ -18,9 +18,10 @@ struct WorkCounters {
   std::uint64_t solver_steps = 0;      ///< accepted integrator steps
   std::uint64_t component_resets = 0;  ///< integrators restarted after a resolve
   // scheduling
-  std::uint64_t advances = 0;   ///< bodies taken forward
-  std::uint64_t backups = 0;    ///< bodies taken back inside their motion
-  std::uint64_t rollbacks = 0;  ///< bodies whose motion was undone because of a contact that came late
+  std::uint64_t advances = 0;     ///< bodies taken forward
+  std::uint64_t backups = 0;      ///< bodies taken back inside their motion
+  std::uint64_t rollbacks = 0;    ///< bodies whose motion was undone because of a contact that came late
+  std::uint64_t states_kept = 0;  ///< former states of bodies kept to roll back to: the most at once
   double body_seconds_thrown_away = 0.0;  ///< simulated time undone by backups and rollbacks [s]
   std::uint64_t certificates_issued = 0;
   std::uint64_t certificates_stale = 0;
@@ -54,6 +55,7 @@ struct WorkCounters {
     visit("advances", w.advances, "1");
     visit("backups", w.backups, "1");
     visit("rollbacks", w.rollbacks, "1");
+    visit("states_kept", w.states_kept, "1");
     visit("body_seconds_thrown_away", w.body_seconds_thrown_away, "s");
     visit("certificates_issued", w.certificates_issued, "1");
     visit("certificates_stale", w.certificates_stale, "1");

@@ -62,6 +62,9 @@ class Registry {
        make_global_backup},
       {"island_backup", "the same inside each group of bodies that could meet before the horizon",
        make_island_backup},
+      {"timewarp",
+       "bodies run ahead of what is certain; a late contact rolls back only what it touched (Mirtich 2000)",
+       make_timewarp},
       {"fixed_step", "no backing up: step, push overlaps apart, resolve; approximate (the naive baseline)",
        make_fixed_step},
   };

@@ -37,6 +37,7 @@ std::unique_ptr<Policy> make_policy(std::string_view name, std::string_view dete
 std::unique_ptr<Policy> make_body_clocks();
 std::unique_ptr<Policy> make_global_backup();
 std::unique_ptr<Policy> make_island_backup();
+std::unique_ptr<Policy> make_timewarp();
 std::unique_ptr<Policy> make_fixed_step();
 
 std::unique_ptr<Policy> make_classic_backup();

@@ -12,7 +12,7 @@
 namespace brink::testing {
 
 /// Every exact policy but global_backup, with which they are compared.
-inline const char* const kOthers[] = {"body_clocks", "island_backup"};
+inline const char* const kOthers[] = {"body_clocks", "island_backup", "timewarp"};
 
 inline std::string text(const Event& e) {
   return std::string(to_string(e.kind)) + " at " + std::to_string(e.contact.time) + " of " +

@@ -93,12 +93,11 @@ material = "steel"
   EXPECT_THAT(scene.options_json, HasSubstr("\"tolerance\":1e-09"));
 }
 
-TEST(SceneFile, ExactPolicyOfAnotherReleaseIsStoodInForByTheDefault) {
-  const Scene scene = parse_scene("[solver]\npolicy = \"timewarp\"\n", "test.toml");
-  bool known = false;
-  for (const Choice& choice : policies()) known = known || choice.name == "timewarp";
-  EXPECT_EQ(scene.solver.policy, known ? "timewarp" : SolverOptions{}.policy);
-  EXPECT_EQ(scene.notes.size(), known ? 0U : 1U);
+TEST(SceneFile, UnknownPolicyIsAFaultThatNamesWhatThereIs) {
+  const auto faults = faults_of("[solver]\npolicy = \"timewrap\"\n");
+  ASSERT_EQ(faults.size(), 1U);
+  for (const char* part : {"2:10 ", "timewrap", "body_clocks", "island_backup", "timewarp", "fixed_step"})
+    EXPECT_THAT(faults.front(), HasSubstr(part));
 }
 
 TEST(SceneFile, OffCentrePolygonIsCentredUnlessTold) {

@@ -1,0 +1,310 @@
+/// Timewarp (Jefferson 1985; of rigid bodies Mirtich 2000): bodies run ahead of what is certain.
+///
+///   until the end
+///     choose a horizon; certificates of every pair that can meet before it
+///     until nothing is left before the horizon
+///       every body that something is new to has a turn:
+///         its first contact is also the first of the other    -> resolve it ahead of time; both look around
+///         the other has already gone on from there: it is late -> roll the other back, and what hangs on
+///         that
+///       take the earliest contact of what is certain
+///         it was resolved ahead of time -> confirm it
+///         it was not                    -> roll its bodies back to it, resolve it
+///
+/// A body's motions since the last that is certain are all kept until the horizon, or until they are undone;
+/// certificates speak of two motions, not of the present, and so hold whatever is undone and done again.
+/// Contacts of one body at one instant wait until they are the earliest, and so does everything where an
+/// order takes contacts together: what is certain is decided as by every other policy, so that the events are
+/// the same. No more former states than the option `kept_states` are kept; then nobody goes further ahead.
+#include <algorithm>
+#include <deque>
+
+#include "brink/scheduler/canonical_time.h"
+#include "brink/scheduler/policies/horizon.h"
+#include "brink/scheduler/policies/order.h"
+#include "brink/scheduler/policies/policy.h"
+
+namespace brink {
+
+namespace {
+
+constexpr int kMostUndecided = 100;
+
+/// Contacts closer than this in time are left to the order [s].
+double too_close(double t) { return 4.0 * same_instant(t); }
+
+class Timewarp final : public Policy {
+ public:
+  void run(Kernel& kernel, double until) override {
+    kernel_ = &kernel;
+    group_bodies();
+    while (kernel.time() < until && !kernel.halt()) {
+      if (!kernel.pause_point()) return;
+      const std::uint64_t before = kernel.collisions();
+      end_ = HorizonLength::next_end(kernel, until);
+      if (!run_horizon()) return;
+      HorizonLength::adapt(kernel, near_, kernel.collisions() - before);
+    }
+  }
+
+ private:
+  /// One horizon, contact by contact. False on a halt.
+  bool run_horizon() {
+    if (!kernel_->extend_motions(end_) || !look_at_all()) return false;
+    for (;;) {
+      run_ahead();
+      if (kernel_->halt()) return false;
+      const auto next = take_earliest(*kernel_, agenda_);
+      if (!next) break;
+      kernel_->record_frames(next->time);
+      if (!make_certain(*next)) return false;
+    }
+    kernel_->record_frames(end_);
+    kernel_->advance_all(end_);
+    return !kernel_->halt();
+  }
+
+  // -- what is certain --
+
+  /// False on a halt.
+  bool make_certain(const Certificate& next) {
+    if (next.kind == Certificate::Kind::undecided) return search_on(next);
+    changed_.clear();
+    if (kernel_->is_resolved_ahead(next)) {
+      if (!kernel_->confirm(next, changed_)) return false;
+      count_from_now_on();
+      return true;
+    }
+    for (const int k : {next.pair.body, next.pair.other_body})
+      if (k >= 0) roll_back(k, kernel_->versions(k).front(), next.time);
+    kernel_->advance_pair(next.pair, next.time);
+    return kernel_->resolve(next.pair, next.contact, changed_) && kernel_->extend_motions(end_) &&
+           look_around(next.time);
+  }
+
+  /// Certificates of motions that have just become certain join the agenda.
+  void count_from_now_on() {
+    for (const int k : changed_)
+      for (const Certificate& c : known_[k]) {
+        const int other = other_body(c, k);
+        const bool twice = other >= 0 && other < k && is_changed(other);
+        if (!twice && kernel_->fresh(c)) put_on_agenda(c);
+      }
+  }
+
+  /// Goes on with a search that stopped at its cap. False on a halt.
+  bool search_on(const Certificate& c) {
+    const auto again = kernel_->search(c.pair, c.version_body, c.version_other, c.time, end_);
+    const bool undecided = again && again->kind == Certificate::Kind::undecided;
+    undecided_ = undecided ? undecided_ + 1 : 0;
+    if (undecided && (again->time <= c.time || undecided_ > kMostUndecided)) kernel_->give_up(*again);
+    searched_on_ = c.time;
+    if (again) note(*again);
+    return kernel_->poll();
+  }
+
+  // -- what is known --
+
+  /// Certificates of every pair that can meet before the horizon. False on a halt.
+  bool look_at_all() {
+    agenda_.clear();
+    known_.assign(kernel_->body_count(), {});
+    restless_.clear();
+    is_restless_.assign(kernel_->body_count(), false);
+    const double from = kernel_->time();
+    const std::vector<PairKey> pairs = kernel_->near_pairs(from, end_);
+    near_ = pairs.size();
+    for (const PairKey& pair : pairs)
+      if (const auto c = kernel_->search(pair, from, end_)) note(*c);
+    for (int k = 0; k < kernel_->body_count(); ++k) give_a_turn_to(k);
+    return kernel_->poll();
+  }
+
+  /// Certificates of the newest motions of bodies that have changed, with every motion of others that may
+  /// come to be. False on a halt.
+  bool look_around(double now) {
+    std::vector<PairKey> pairs;
+    for (const int k : changed_) {
+      const std::vector<PairKey> near = kernel_->near_pairs_of(k, now, end_);
+      pairs.insert(pairs.end(), near.begin(), near.end());
+    }
+    std::sort(pairs.begin(), pairs.end());  // a pair of two changed bodies is met from both
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    for (const PairKey& pair : pairs)
+      for (const std::uint64_t version : concerned(pair.body))
+        for (const std::uint64_t other : concerned(pair.other_body))
+          if (const auto c = kernel_->search(pair, version, other, now, end_)) note(*c);
+    for (const int k : changed_) wake(k);
+    return kernel_->poll();
+  }
+
+  /// Versions of a body (< 0: a site) that a new search must look at.
+  std::vector<std::uint64_t> concerned(int k) const {
+    if (k < 0) return {0};
+    if (is_changed(k)) return {kernel_->body(k).version};
+    return kernel_->versions(k);
+  }
+  bool is_changed(int k) const { return std::find(changed_.begin(), changed_.end(), k) != changed_.end(); }
+
+  void note(const Certificate& c) {
+    known_[c.pair.body].push_back(c);
+    if (!c.pair.with_site()) known_[c.pair.other_body].push_back(c);
+    if (kernel_->fresh(c)) put_on_agenda(c);
+  }
+
+  void put_on_agenda(const Certificate& c) {
+    agenda_.insert(c);
+    if (c.kind != Certificate::Kind::contact || !kernel_->options().picks_among_all()) return;
+    for (const Certificate& other : kernel_->simultaneous(c)) agenda_.insert(other);
+  }
+
+  // -- what is ahead --
+
+  /// Everyone to whom something is new has a turn.
+  void run_ahead() {
+    if (kernel_->options().takes_together() || kernel_->by_passes()) return;
+    for (std::size_t turns = restless_.size(); turns > 0 && !kernel_->halt(); --turns) {
+      const int k = restless_.front();
+      restless_.pop_front();
+      is_restless_[k] = false;
+      take_turn(k);
+    }
+  }
+
+  void take_turn(int k) {
+    const auto c = first_of(k);
+    if (!c || c->kind != Certificate::Kind::contact) return;
+    if (roll_back_late(*c, k)) return give_a_turn_to(k);
+    if (!is_first_of_all(*c)) return;
+    changed_.clear();
+    if (kernel_->resolve_ahead(*c, end_, changed_)) look_around(c->time);
+  }
+
+  /// True if the contact comes late for body k's other, which then is rolled back to it.
+  bool roll_back_late(const Certificate& c, int k) {
+    const int other = other_body(c, k);
+    if (other < 0) return false;
+    const std::uint64_t version = other == c.pair.body ? c.version_body : c.version_other;
+    if (*kernel_->end_of_version(other, version) <= c.time + too_close(c.time)) return false;
+    if (kernel_->body(other).version == version) return false;
+    roll_back(other, version, c.time);
+    return true;
+  }
+
+  void roll_back(int body, std::uint64_t version, double t) {
+    undone_.clear();
+    kernel_->roll_back(body, version, t, undone_);
+    for (const int k : undone_) wake(k);
+  }
+
+  /// True if the contact comes first, clearly, for everyone whom it concerns, and there is room to keep what
+  /// they were.
+  bool is_first_of_all(const Certificate& c) {
+    std::size_t concerned = 0;
+    for (const int body : {c.pair.body, c.pair.other_body}) {
+      if (body < 0) continue;
+      for (const int k : group_of(body)) {
+        ++concerned;
+        if (kernel_->body(k).motion.begin() + too_close(c.time) >= c.time) return false;
+        if (!is_clear_of_others(k, c)) return false;
+      }
+    }
+    return kernel_->states_kept() + concerned <= kernel_->options().kept_states;
+  }
+
+  bool is_clear_of_others(int k, const Certificate& c) {
+    for (const Certificate& other : known_[k])
+      if (other.time <= c.time + too_close(c.time) && other.order() != c.order() && may_be(k, other))
+        return false;
+    const int other = other_body(c, k);  // k itself is in c, or is only coupled to one that is
+    return other == kNobody || is_newest(c);
+  }
+
+  /// The first contact of body k as far as it has come, with motions that others have, or had then.
+  std::optional<Certificate> first_of(int k) {
+    std::vector<Certificate>& known = known_[k];
+    std::erase_if(known, [&](const Certificate& c) { return is_void(c); });
+    std::optional<Certificate> first;
+    for (const Certificate& c : known)
+      if (may_be(k, c) && (!first || c.order() < first->order())) first = c;
+    return first;
+  }
+
+  /// True if one of its motions has been undone, or has ended for certain.
+  bool is_void(const Certificate& c) const {
+    return !kernel_->end_of_version(c.pair.body, c.version_body) ||
+           (!c.pair.with_site() && !kernel_->end_of_version(c.pair.other_body, c.version_other));
+  }
+
+  /// True if it speaks of body k's newest motion, and of one that the other has not left before.
+  bool may_be(int k, const Certificate& c) const {
+    const auto end = kernel_->end_of_version(c.pair.body, c.version_body);
+    const auto other_end = c.pair.with_site() ? std::optional<double>(std::numeric_limits<double>::infinity())
+                                              : kernel_->end_of_version(c.pair.other_body, c.version_other);
+    if (!end || !other_end || c.time > *end || c.time > *other_end) return false;
+    if (c.kind == Certificate::Kind::undecided && c.time <= searched_on_) return false;
+    return kernel_->body(k).version == (k == c.pair.body ? c.version_body : c.version_other);
+  }
+
+  bool is_newest(const Certificate& c) const {
+    return kernel_->body(c.pair.body).version == c.version_body &&
+           (c.pair.with_site() || kernel_->body(c.pair.other_body).version == c.version_other);
+  }
+
+  static constexpr int kNobody = -2;
+  /// The other body of a certificate that speaks of body k; -1: a site; kNobody: it does not speak of k.
+  static int other_body(const Certificate& c, int k) {
+    if (c.pair.body == k) return c.pair.other_body;
+    return c.pair.other_body == k ? c.pair.body : kNobody;
+  }
+
+  // -- who has a turn --
+
+  void give_a_turn_to(int k) {
+    if (is_restless_[k]) return;
+    is_restless_[k] = true;
+    restless_.push_back(k);
+  }
+  /// Body k has a new motion, or an old one again: that is news to everyone whom it may meet, too.
+  void wake(int k) {
+    give_a_turn_to(k);
+    for (const Certificate& c : known_[k])
+      if (const int other = other_body(c, k); other >= 0) give_a_turn_to(other);
+  }
+
+  /// Bodies that change together with body k.
+  std::span<const int> group_of(int k) const { return groups_[group_[k]]; }
+  void group_bodies() {
+    groups_.clear();
+    group_.assign(kernel_->body_count(), -1);
+    std::vector<int> of_component;
+    for (int k = 0; k < kernel_->body_count(); ++k) {
+      const int component = kernel_->body(k).component;
+      if (component >= static_cast<int>(of_component.size())) of_component.resize(component + 1, -1);
+      const bool known = component >= 0 && of_component[component] >= 0;
+      group_[k] = known ? of_component[component] : static_cast<int>(groups_.size());
+      if (!known) groups_.emplace_back();
+      if (component >= 0) of_component[component] = group_[k];
+      groups_[group_[k]].push_back(k);
+    }
+  }
+
+  Kernel* kernel_ = nullptr;
+  double end_ = 0.0;                             ///< of the present horizon
+  Agenda agenda_;                                ///< of what is certain
+  std::vector<std::vector<Certificate>> known_;  ///< of every body, certain or not
+  std::deque<int> restless_;                     ///< bodies to whom something is new
+  std::vector<bool> is_restless_;
+  std::vector<int> group_;  ///< of every body
+  std::vector<std::vector<int>> groups_;
+  std::vector<int> changed_, undone_;
+  std::size_t near_ = 0;       ///< pairs that could meet before the horizon
+  int undecided_ = 0;          ///< searches in a row that met their cap
+  double searched_on_ = -1.0;  ///< where the last of them was taken up again
+};
+
+}  // namespace
+
+std::unique_ptr<Policy> make_timewarp() { return std::make_unique<Timewarp>(); }
+
+}  // namespace brink
