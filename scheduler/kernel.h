@@ -150,6 +150,16 @@ class Kernel {
   /// Former states of bodies that are kept to go back to.
   std::size_t states_kept() const { return ahead_.kept(); }
 
+  // -- watching a policy --
+  /// From now on every contact that a search finds is remembered until one of its bodies is resolved. Costs
+  /// about as much as an agenda; off for Brink's own policies.
+  void watch();
+  /// Nothing at all if watch() was not called. @throws BadInput, naming the pair and both times, if a contact
+  /// that is known and still holds comes before t.
+  void hold_to_known(double t);
+  /// The same for the end of a run. @throws BadInput also if the policy came back too early.
+  void hold_to_end(double until);
+
   // -- running --
   void begin(const RunOptions& options, Recorder* recorder);
   /// Records the last frame, at the present time, unless the frame clock has just done so.
@@ -283,6 +293,7 @@ class Kernel {
   std::vector<Box> boxes_;                   ///< moving bounds of every owner over the present horizon
   double boxes_from_ = 0.0;                  ///< where that horizon began [s]
   std::vector<std::uint64_t> box_versions_;  ///< of the bodies, when their box was made
+  std::unique_ptr<Agenda> watched_;          ///< contacts that a policy must not skip; null: not watched
   std::optional<Halt> halt_;
   std::uint64_t revision_ = 0;
   double time_ = 0.0;

@@ -88,6 +88,7 @@ bool Kernel::confirm(const Certificate& c, std::vector<int>& changed) {
   const AheadLog::Entry entry = ahead_.of(c.pair.body).front();
   ahead_.remove(entry);
   time_ = entry->time;
+  if (watched_) hold_to_known(time_);
   for (const AheadCollision::Former& f : entry->former) changed.push_back(f.body);
   return tell(entry->outcome);
 }

@@ -172,6 +172,8 @@ std::optional<Certificate> Kernel::search_between(const PairKey& pair, const Bod
   if (answer.status == PairAnswer::Status::undecided) {
     c.kind = Certificate::Kind::undecided;
     ++work_.certificates_undecided;
+  } else if (watched_) {
+    watched_->insert(c);
   }
   return c;
 }

@@ -36,6 +36,7 @@ void Kernel::begin(const RunOptions& options, Recorder* recorder) {
 }
 
 void Kernel::record_frames(double t) {
+  if (watched_) hold_to_known(t);
   if (run_.frame_interval <= 0.0) return;
   for (;;) {
     const double due = static_cast<double>(frame_ + 1) * run_.frame_interval;

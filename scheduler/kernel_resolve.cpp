@@ -154,6 +154,7 @@ bool Kernel::collapsed() const {
 }
 
 bool Kernel::resolve(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed) {
+  if (watched_) hold_to_known(time_);
   if (options_.takes_together() || collapsed()) {
     roll_back_all();
     return resolve_group(pair, found, changed);

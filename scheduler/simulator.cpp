@@ -14,7 +14,9 @@ namespace brink {
 
 struct Simulator::Impl {
   Impl(World world, SolverOptions options)
-      : kernel(std::move(world), options), policy(make_policy(options.policy, options.detector)) {}
+      : kernel(std::move(world), options), policy(make_policy(options.policy, options.detector)) {
+    if (is_added_policy(options.policy) && !policy->approximate()) kernel.watch();
+  }
   Kernel kernel;
   std::unique_ptr<Policy> policy;
   double energy_initial = 0.0;
@@ -40,6 +42,7 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
   const auto begin = std::chrono::steady_clock::now();
   kernel.begin(options, recorder);
   impl_->policy->run(kernel, options.until);
+  kernel.hold_to_end(options.until);
   kernel.end_frame();
 
   RunSummary summary;

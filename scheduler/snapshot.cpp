@@ -13,7 +13,7 @@ namespace brink {
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x314b4e4952420003ULL;  // "\3\0BRINK1"
+constexpr std::uint64_t kMagic = 0x314b4e4952420004ULL;  // "\4\0BRINK1"
 
 class Writer {
  public:
@@ -163,6 +163,7 @@ void Kernel::restore(std::span<const std::byte> bytes) {
   for (SiteMotion& s : sites_)
     if (const std::string why = s.extend(time_); !why.empty()) throw BadInput(why);
   work_ = counted;
+  if (watched_) watched_->clear();
   ++revision_;
 }
 

@@ -14,6 +14,7 @@ namespace {
 struct Entry {
   std::string name, summary;
   PolicyMaker make;
+  bool added = false;
 };
 
 /// Every policy, Brink's own first. Entries stay where they are and are never taken out.
@@ -36,6 +37,12 @@ class Registry {
     const std::lock_guard lock(mutex_);
     const Entry* entry = find(name);
     return entry ? entry->make : PolicyMaker();
+  }
+
+  bool is_added(std::string_view name) {
+    const std::lock_guard lock(mutex_);
+    const Entry* entry = find(name);
+    return entry && entry->added;
   }
 
   std::vector<Choice> choices() {
@@ -75,8 +82,10 @@ class Registry {
 std::vector<Choice> policies() { return Registry::get().choices(); }
 
 void register_policy(const std::string& name, const std::string& summary, PolicyMaker make) {
-  Registry::get().add({name, summary, std::move(make)});
+  Registry::get().add({name, summary, std::move(make), true});
 }
+
+bool is_added_policy(std::string_view name) { return Registry::get().is_added(name); }
 
 std::unique_ptr<Policy> make_policy(std::string_view name, std::string_view detector) {
   const PolicyMaker make = Registry::get().maker(name);

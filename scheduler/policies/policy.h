@@ -28,6 +28,10 @@ using PolicyMaker = std::function<std::unique_ptr<Policy>()>;
 /// @throws BadInput on a name that is empty or taken, or an empty maker.
 void register_policy(const std::string& name, const std::string& summary, PolicyMaker make);
 
+/// True for a name that register_policy() was given. Such a policy is held to the contacts that it has been
+/// told of, unless it is approximate: going past one throws (Kernel::watch).
+bool is_added_policy(std::string_view name);
+
 /// The policy of that name. Detector `depth` cannot tell when two bodies will meet, only that they do: it has
 /// two policies of its own, one that steps and pushes apart (for fixed_step), and one that steps and backs up
 /// by looking again (for all others).

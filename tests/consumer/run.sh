@@ -10,5 +10,6 @@ cmake -S "$here" -B "$work/build" -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH
 cmake --build "$work/build"
 "$work/build/consumer"
 "$work/build/readme_example"
+"$work/build/own_policy"
 "$work/prefix/bin/brink" --version
 "$work/prefix/bin/brink" list scenes | grep -q .

@@ -58,6 +58,16 @@ TEST(ReadmeExample, IsTheProgramThatTheConsumerTestBuildsAndRuns) {
   EXPECT_NE(text_of(kRoot / "tests/consumer/run.sh").find("build/readme_example"), std::string::npos);
 }
 
+// The page on scheduling shows a policy of one's own and the program that adds it, which the consumer test
+// builds and runs too.
+TEST(SchedulingPage, ShowsThePolicyThatTheConsumerTestBuildsAndRuns) {
+  const auto shown = blocks(text_of(kRoot / "docs/scheduling.md"), "cpp");
+  ASSERT_EQ(shown.size(), 2U);
+  EXPECT_EQ(shown[0], text_of(kRoot / "tests/consumer/earliest_first.h"));
+  EXPECT_EQ(shown[1], text_of(kRoot / "tests/consumer/own_policy.cpp"));
+  EXPECT_NE(text_of(kRoot / "tests/consumer/run.sh").find("build/own_policy"), std::string::npos);
+}
+
 TEST(Readme, ItsTwoCommandsAreARunOfASceneThatIsThereAndTheTests) {
   const std::string page = text_of(kRoot / "README.md");
   const auto scenes = matches(page, R"(\n\./brink run (\S+\.toml))");

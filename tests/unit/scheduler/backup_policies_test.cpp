@@ -45,6 +45,28 @@ TEST(Timewarp, LateContactsAreRolledBackAndCounted) {
   EXPECT_EQ(run.work.backups, 0U);
 }
 
+// The trace tells of every body that is rolled back, and how far: as the counters do.
+TEST(Timewarp, TraceShowsWhatWasRolledBack) {
+  struct RollBacks : TraceSink {
+    void mark(const TraceMark& m) override {
+      if (m.kind != TraceKind::roll_back) return;
+      ++count;
+      seconds += m.from - m.to;
+    }
+    std::uint64_t count = 0;
+    double seconds = 0.0;
+  } seen;
+  SolverOptions options;
+  options.policy = "timewarp";
+  Simulator simulator(small_gas(), options);
+  RunOptions run = testing::until(10.0);
+  run.trace = &seen;
+  const RunSummary summary = simulator.run(run);
+  EXPECT_GT(seen.count, 0U);
+  EXPECT_EQ(seen.count, summary.work.rollbacks);
+  EXPECT_NEAR(seen.seconds, summary.work.body_seconds_thrown_away, 1e-9 * seen.seconds);
+}
+
 // With room for no former state nobody can run ahead, so that nothing is ever rolled back.
 TEST(Timewarp, KeepsNoMoreStatesThanItMay) {
   for (const std::uint64_t most : {0, 3, 8}) {
