@@ -141,7 +141,8 @@ TEST_P(Together, BreakKeepsEnergyOrLosesIt) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Policies, Together, ::testing::Values("global_backup", "body_clocks"));
+INSTANTIATE_TEST_SUITE_P(Policies, Together,
+                         ::testing::Values("global_backup", "body_clocks", "island_backup", "timewarp"));
 
 // Twenty touching discs, the left half running into the right one at 2 m/s, e = 0.7: one at a time they
 // collide within the instant until nothing is left of their speeds (inelastic collapse; McNamara & Young
@@ -151,7 +152,7 @@ TEST(Collapse, RowThatCollidesWithoutEndIsTakenTogetherAndReported) {
   world.materials[0].restitution = 0.7;
   for (int i = 0; i < 20; ++i)
     testing::add(world, testing::body(make_disc(0.5), {1.0 * i, 0.0}, {i < 10 ? 1.0 : -1.0, 0.0}));
-  for (const char* policy : {"global_backup", "body_clocks"}) {
+  for (const char* policy : {"global_backup", "body_clocks", "island_backup", "timewarp"}) {
     SolverOptions options;
     options.policy = policy;
     Simulator simulator(world, options);
@@ -168,19 +169,20 @@ TEST(Collapse, RowThatCollidesWithoutEndIsTakenTogetherAndReported) {
   }
 }
 
-// What the group is does not depend on who found it: both exact policies give the same bits.
+// What the group is does not depend on who found it: all exact policies give the same bits.
 TEST(TogetherPolicies, GiveTheSameEvents) {
   for (const char* order : {"lcp", "reflections"})
     for (const double friction : {0.0, 0.3}) {
       std::vector<std::uint64_t> hashes;
-      for (const char* policy : {"global_backup", "body_clocks"}) {
+      for (const char* policy : {"global_backup", "body_clocks", "island_backup", "timewarp"}) {
         SolverOptions options;
         options.policy = policy;
         options.order = order;
         Simulator simulator(rack(0.95, friction), options);
         hashes.push_back(simulator.run(testing::until(2.0)).state_hash);
       }
-      EXPECT_EQ(hashes[0], hashes[1]) << order << ", friction " << friction;
+      for (const std::uint64_t hash : hashes)
+        EXPECT_EQ(hash, hashes[0]) << order << ", friction " << friction;
     }
 }
 

@@ -40,19 +40,22 @@ World crowd(std::uint64_t seed, bool springs = false) {
 }
 
 TEST(Simulator, SnapshotGoesOnWithTheSameBits) {
-  for (const bool springs : {false, true}) {
-    Simulator whole(crowd(1, springs), {});
-    whole.run(testing::until(6.0));
-    Simulator first(crowd(1, springs), {});
-    Events events;
-    first.run(testing::until(2.5), &events);
-    Simulator second(crowd(1, springs), {});
-    second.restore(events.last_checkpoint);
-    EXPECT_EQ(second.time(), 2.5);
-    EXPECT_EQ(second.state_hash(), first.state_hash());
-    second.run(testing::until(6.0));
-    EXPECT_EQ(second.state_hash(), whole.state_hash()) << "springs " << springs;
-  }
+  for (const char* policy : {"body_clocks", "global_backup", "island_backup", "timewarp"})
+    for (const bool springs : {false, true}) {
+      SolverOptions options;
+      options.policy = policy;
+      Simulator whole(crowd(1, springs), options);
+      whole.run(testing::until(6.0));
+      Simulator first(crowd(1, springs), options);
+      Events events;
+      first.run(testing::until(2.5), &events);
+      Simulator second(crowd(1, springs), options);
+      second.restore(events.last_checkpoint);
+      EXPECT_EQ(second.time(), 2.5);
+      EXPECT_EQ(second.state_hash(), first.state_hash());
+      second.run(testing::until(6.0));
+      EXPECT_EQ(second.state_hash(), whole.state_hash()) << policy << ", springs " << springs;
+    }
 }
 
 TEST(Simulator, SnapshotOfAnotherWorldIsRefused) {
@@ -107,7 +110,8 @@ TEST(Simulator, OverlapAtTheStartIsRefusedByName) {
 TEST(Simulator, WorldWithoutBodiesReachesItsEnd) {
   World world;
   add(world, site(make_segment({0, 0}, {1, 0})));
-  for (const char* policy : {"body_clocks", "global_backup", "fixed_step"}) {
+  for (const Choice& choice : policies()) {
+    const std::string policy(choice.name);
     SolverOptions options;
     options.policy = policy;
     const RunSummary summary = Simulator(world, options).run(until(1.0));
