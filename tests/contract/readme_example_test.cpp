@@ -6,6 +6,7 @@
 #include <fstream>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,19 @@ std::vector<std::string> blocks(const std::string& page, const std::string& lang
     at = end + 3;
   }
   return found;
+}
+
+/// The page without its fenced blocks.
+std::string prose_of(const fs::path& page) {
+  std::string prose;
+  bool fenced = false;
+  std::istringstream lines(text_of(page));
+  for (std::string line; std::getline(lines, line);) {
+    const bool fence = line.rfind("```", 0) == 0;
+    if (!fenced && !fence) prose += line + '\n';
+    fenced = fenced != fence;
+  }
+  return prose;
 }
 
 std::vector<fs::path> pages() {
@@ -78,7 +92,7 @@ TEST(Readme, ItsTwoCommandsAreARunOfASceneThatIsThereAndTheTests) {
 
 TEST(Pages, LinksLeadToFilesThatAreThere) {
   for (const fs::path& page : pages())
-    for (const std::string& link : matches(text_of(page), R"(\]\(([^)#\s]+))"))
+    for (const std::string& link : matches(prose_of(page), R"(\]\(([^)#\s]+))"))
       if (link.find("://") == std::string::npos) {
         EXPECT_TRUE(fs::exists(page.parent_path() / link)) << page.filename() << " links to " << link;
       }
