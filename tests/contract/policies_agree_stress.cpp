@@ -16,7 +16,7 @@ TEST(PoliciesOnLongRuns, DiscsInABoxGiveTheSameEvents) {
 }
 
 TEST(PoliciesOnLongRuns, PeriodicDiscsGiveTheSameEvents) {
-  EXPECT_GE(testing::expect_same_events(testing::lattice_gas(100, make_disc(0.5), 0.5), {}, 270.0),
+  EXPECT_GE(testing::expect_same_events(testing::lattice_gas(100, make_disc(0.5), 0.5), {}, 285.0),
             kCollisions);
 }
 
