@@ -152,6 +152,30 @@ TEST(Simulator, FramesComeOnTheFrameClockAndAtTheEnd) {
 }
 
 // Bodies of infinite mass along x and in angle fall straight down whatever they hit.
+// Two pairs on springs far apart, and a free disc that hits one of them once: what is started afresh is the disc
+// and the pair that it hit.
+TEST(Simulator, CollisionResetsTheTouchedComponentsAlone) {
+  for (const char* policy : {"body_clocks", "global_backup", "island_backup", "timewarp"}) {
+    World world;
+    for (const double y : {0.0, 10.0})
+      for (const double x : {0.0, 1.0}) add(world, body(make_disc(0.3), {x, y}, {0.0, 0.0}));
+    for (const int k : {0, 2}) {
+      SpringForce spring;
+      spring.body_a = k;
+      spring.body_b = k + 1;
+      spring.stiffness = 1.0;
+      spring.rest_length = 1.0;
+      world.forces.push_back(spring);
+    }
+    add(world, body(make_disc(0.3), {-2.0, 0.0}, {1.0, 0.0}));
+    SolverOptions options;
+    options.policy = policy;
+    const RunSummary summary = Simulator(world, options).run(until(1.6));
+    EXPECT_EQ(summary.collisions, 1U) << policy;
+    EXPECT_EQ(summary.work.component_resets, 2U) << policy;
+  }
+}
+
 TEST(Simulator, LockedCoordinatesStay) {
   World world = crowd(6);
   for (Body& b : world.bodies) {
