@@ -8,9 +8,9 @@
 ///     site        id, name, owner, kind, shape           the scene's fixed sites; owner NULL: the scene
 ///     frame       t, body, x, y, angle, vx, vy, omega    rows in time order; within a time by body
 ///     event       seq, t, kind, body, other, site, px, py, nx, ny, closing_speed, impulse_n, impulse_t, gap,
-///                 outline_site, sample, sample_on_body, t_low   other NULL: a fixed site, and `site` is its id in
-///                 the site table; else `site` is NULL. outline_site and sample say which Voronoi site and
-///                 which sample of the two outlines met
+///                 outline_site, sample, sample_on_body, t_low   other NULL: a fixed site, and `site` is its
+///                 id in the site table; else `site` is NULL. outline_site and sample say which Voronoi site
+///                 and which sample of the two outlines met
 ///     work        counter, value, unit                   written at the end
 ///     checkpoint  t, state, frames, events, wall_seconds one row, the last one: the simulator's snapshot,
 ///     and how many

@@ -65,9 +65,9 @@ float cross2(vec2 a, vec2 b) { return a.x * b.y - a.y * b.x; }
 )";
 
 // Distance from q to the core; side < 0 where q is on the solid side. Mirrors nearest_on() and side_of() of
-// core/shapes/distance.h; the rounding is bounded in site_batch.h. Beyond an end the distance is computed from
-// that end alone, so that two sites which share it tie there bit for bit. A point is a segment without length
-// (d = 0, t = 0).
+// core/shapes/distance.h; the rounding is bounded in site_batch.h. Beyond an end the distance is computed
+// from that end alone, so that two sites which share it tie there bit for bit. A point is a segment without
+// length (d = 0, t = 0).
 constexpr const char* kStraight = R"(
 float straight_distance(vec2 q, out float side) {
   vec2 wa = q - ends.xy, d = ends.zw - ends.xy;

@@ -15,8 +15,8 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kWidest = kPi / 8;
 /// Beyond the band, so that every pixel centre within it is covered [pixel].
 constexpr double kRim = 1.5;
-/// By so much a sector of a cone reaches over the tents beside it, at its rim [pixel]: rasterisers round corners
-/// to 1/256 of a pixel, and where edges only met, pixels between them would be left out.
+/// By so much a sector of a cone reaches over the tents beside it, at its rim [pixel]: rasterisers round
+/// corners to 1/256 of a pixel, and where edges only met, pixels between them would be left out.
 constexpr double kOverlap = 1.0 / 32;
 /// Bound on the rounding of interpolated values, as a share of all lengths that take part: corners are
 /// rounded once, and the rasteriser's plane through three of them errs by a few roundings of its values over

@@ -76,8 +76,8 @@ void boxes(benchmark::State& state) {
 BENCHMARK(boxes)->Unit(benchmark::kMillisecond)->Iterations(1);
 
 void stars(benchmark::State& state) {
-  run_for(state, testing::boxed(testing::lattice_gas(200, testing::star(10, 0.5, 0.7), 0.4, 1.0)), "body_clocks",
-          20000);
+  run_for(state, testing::boxed(testing::lattice_gas(200, testing::star(10, 0.5, 0.7), 0.4, 1.0)),
+          "body_clocks", 20000);
 }
 BENCHMARK(stars)->Unit(benchmark::kMillisecond)->Iterations(1);
 

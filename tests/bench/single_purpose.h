@@ -1,6 +1,6 @@
 #pragma once
-/// A minimal event loop for equal elastic discs in a box, and nothing else: what the general engine's rate is held
-/// against. One event a disc, cells of about a diameter, lazy deletion by counters, a binary heap.
+/// A minimal event loop for equal elastic discs in a box, and nothing else: what the general engine's rate is
+/// held against. One event a disc, cells of about a diameter, lazy deletion by counters, a binary heap.
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,8 @@ class SinglePurposeDiscs {
  public:
   struct Disc {
     double x, y, vx, vy, time;
-    double next;     ///< time of its next event
-    int partner;     ///< >= 0: disc; -1: cell crossing or wall, by axis
+    double next;      ///< time of its next event
+    int partner;      ///< >= 0: disc; -1: cell crossing or wall, by axis
     int axis, sense;  ///< of the crossing
     unsigned count, partner_count;
     int cell_x, cell_y, cell_next, cell_previous;
@@ -25,7 +25,9 @@ class SinglePurposeDiscs {
     size_ = 2.0 * half / cells_;
     heads_.assign(static_cast<std::size_t>(cells_) * cells_, -1);
   }
-  void add(double x, double y, double vx, double vy) { discs_.push_back({x, y, vx, vy, 0, 0, -1, 0, 0, 0, 0, 0, 0, -1, -1}); }
+  void add(double x, double y, double vx, double vy) {
+    discs_.push_back({x, y, vx, vy, 0, 0, -1, 0, 0, 0, 0, 0, 0, -1, -1});
+  }
 
   /// Runs until so many collisions between discs or with walls are done.
   void run(std::uint64_t collisions) {

@@ -100,7 +100,8 @@ std::string exact(std::initializer_list<const char*> columns) {
 std::vector<std::string> events(const fs::path& file) {
   return rows(file, "SELECT kind || ' ' || " +
                         exact({"seq", "t", "body", "other", "site", "px", "py", "nx", "ny", "closing_speed",
-                               "impulse_n", "impulse_t", "gap", "outline_site", "sample", "sample_on_body", "t_low"}) +
+                               "impulse_n", "impulse_t", "gap", "outline_site", "sample", "sample_on_body",
+                               "t_low"}) +
                         " FROM event ORDER BY seq");
 }
 std::vector<std::string> frames(const fs::path& file) {

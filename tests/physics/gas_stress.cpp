@@ -67,8 +67,8 @@ TEST(Drift, OfThousandBoxesAfterAMillionCollisions) {
 }
 
 TEST(Drift, OfTwoHundredStarsAfterAMillionCollisions) {
-  expect_no_drift("200 stars", testing::lattice_gas(200, testing::star(10, 0.5, 0.7), 0.4, 1.0), 1000000, 1e-11,
-                  1e-12);
+  expect_no_drift("200 stars", testing::lattice_gas(200, testing::star(10, 0.5, 0.7), 0.4, 1.0), 1000000,
+                  1e-11, 1e-12);
 }
 
 class LorentzGas : public ::testing::TestWithParam<double> {};

@@ -26,13 +26,14 @@ inline bool same_bits(double a, double b) {
 
 inline bool same(const Event& a, const Event& b) {
   const Contact &x = a.contact, &y = b.contact;
-  return a.kind == b.kind && a.seq == b.seq && same_bits(x.time, y.time) && same_bits(x.time_low, y.time_low) && x.body == y.body &&
-         x.other_body == y.other_body && x.other_site == y.other_site && x.site == y.site &&
-         x.sample == y.sample && x.sample_on_body == y.sample_on_body &&
-         same_bits(x.point.x(), y.point.x()) && same_bits(x.point.y(), y.point.y()) &&
-         same_bits(x.normal.x(), y.normal.x()) && same_bits(x.normal.y(), y.normal.y()) &&
-         same_bits(x.closing_speed, y.closing_speed) && same_bits(x.gap, y.gap) &&
-         same_bits(a.impulse_n, b.impulse_n) && same_bits(a.impulse_t, b.impulse_t);
+  return a.kind == b.kind && a.seq == b.seq && same_bits(x.time, y.time) &&
+         same_bits(x.time_low, y.time_low) && x.body == y.body && x.other_body == y.other_body &&
+         x.other_site == y.other_site && x.site == y.site && x.sample == y.sample &&
+         x.sample_on_body == y.sample_on_body && same_bits(x.point.x(), y.point.x()) &&
+         same_bits(x.point.y(), y.point.y()) && same_bits(x.normal.x(), y.normal.x()) &&
+         same_bits(x.normal.y(), y.normal.y()) && same_bits(x.closing_speed, y.closing_speed) &&
+         same_bits(x.gap, y.gap) && same_bits(a.impulse_n, b.impulse_n) &&
+         same_bits(a.impulse_t, b.impulse_t);
 }
 
 struct Ran {
