@@ -42,7 +42,7 @@ class Neighbourhood {
       levels_[m].grid.lists(block, [&](const Cell& c, int first) {
         if (former.contains(c)) return;
         for (int j = first; j != CellGrid::kNone; j = flights_[j].next)
-          if (j != k) visit(j, repeats_ ? levels_[m].grid.periods_between(clocks_[j].cell, c) : Image{});
+          if (j != k) visit(j, image_in(levels_[m].grid, j, c));
       });
     }
   }
@@ -61,6 +61,10 @@ class Neighbourhood {
     double radius = 0.0;  ///< the largest of its bodies' [m]
     std::unique_ptr<SiteLists> sites;
   };
+  /// Which image of body j is in cell c, whose list j is in.
+  Image image_in(const CellGrid& grid, int j, const Cell& c) const {
+    return !repeats_ || clocks_[j].cell == c ? Image{} : grid.periods_between(clocks_[j].cell, c);
+  }
   const CellGrid& grid(int k) const { return levels_[clocks_[k].level].grid; }
   CellBlock block_of(int k, const Cell& cell, std::size_t level) const {
     const Level& own = levels_[clocks_[k].level];
