@@ -89,8 +89,9 @@ TEST_P(LorentzGas, MeanFreePathAfterTenMillionCollisions) {
   const double expected = (1.0 - std::numbers::pi * radius * radius) / (2.0 * radius);
   std::printf("R = %.1f: mean free path %.6f, expected %.6f (off %.3f %%)\n", radius, path, expected,
               100.0 * (path / expected - 1.0));
-  // small discs leave corridors without end: the paths' variance diverges, and 1e7 of them scatter by .1 %
-  EXPECT_NEAR(path, expected, (radius < 0.15 ? 3e-3 : 1e-3) * expected);
+  // At R = .1 corridors without end make the paths' variance diverge, and 1e7 of them scatter by about .1 %:
+  // there this start misses the bound by a little (-.113 %).
+  EXPECT_NEAR(path, expected, 1e-3 * expected);
 }
 
 INSTANTIATE_TEST_SUITE_P(Radii, LorentzGas, ::testing::Values(0.1, 0.2, 0.3));

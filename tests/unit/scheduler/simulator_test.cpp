@@ -152,8 +152,8 @@ TEST(Simulator, FramesComeOnTheFrameClockAndAtTheEnd) {
 }
 
 // Bodies of infinite mass along x and in angle fall straight down whatever they hit.
-// Two pairs on springs far apart, and a free disc that hits one of them once: what is started afresh is the disc
-// and the pair that it hit.
+// Two pairs on springs far apart, and a free disc that hits one of them once: what is started afresh is the
+// disc and the pair that it hit.
 TEST(Simulator, CollisionResetsTheTouchedComponentsAlone) {
   for (const char* policy : {"body_clocks", "global_backup", "island_backup", "timewarp"}) {
     World world;
