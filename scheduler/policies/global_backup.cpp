@@ -19,30 +19,25 @@ namespace {
 class GlobalBackup final : public Policy {
  public:
   void run(Kernel& kernel, double until) override {
-    while (kernel.time() < until && !kernel.halt()) {
-      if (!kernel.pause_point()) return;
-      const std::uint64_t before = kernel.collisions();
-      if (!run_horizon(kernel, HorizonLength::next_end(kernel, until))) return;
-      HorizonLength::adapt(kernel, near_, kernel.collisions() - before);
-    }
+    run_horizons(kernel, until, [&](double end) { return run_horizon(kernel, end); });
   }
 
  private:
-  /// One horizon, contact by contact. False on a halt.
-  bool run_horizon(Kernel& kernel, double end) {
-    if (!kernel.extend_motions(end) || !agenda_.pass(kernel, kernel.time(), end)) return false;
-    near_ = agenda_.pairs().size();
+  /// One horizon, contact by contact: the number of pairs that could meet before it; nothing on a halt.
+  std::optional<std::size_t> run_horizon(Kernel& kernel, double end) {
+    if (!kernel.extend_motions(end) || !agenda_.pass(kernel, kernel.time(), end)) return std::nullopt;
+    const std::size_t near = agenda_.pairs().size();
     kernel.advance_all(end);
     while (const auto next = agenda_.take_earliest(kernel)) {
       // Of contacts at the same time, the one that an order puts first may be a rounding later than the next:
       // each is resolved at its own time, which its two bodies' motions still cover.
       kernel.record_frames(next->time);
       kernel.back_up_all(next->time);
-      if (!deal_with(kernel, *next, end)) return false;
+      if (!deal_with(kernel, *next, end)) return std::nullopt;
       kernel.advance_all(end);
     }
     kernel.record_frames(end);
-    return true;
+    return near;
   }
 
   /// False on a halt.
@@ -54,7 +49,6 @@ class GlobalBackup final : public Policy {
   }
 
   HorizonAgenda agenda_;
-  std::size_t near_ = 0;  ///< pairs that could meet before the horizon
   std::vector<int> changed_;
 };
 

@@ -24,20 +24,33 @@ double first_length(const Kernel& kernel, double until) {
   return std::max(horizon, kShortest * std::max(1.0, until));
 }
 
-}  // namespace
-
-double HorizonLength::next_end(Kernel& kernel, double until) {
+/// The end of the next horizon from the present time [s].
+double next_end(Kernel& kernel, double until) {
   if (kernel.horizon() <= 0.0) kernel.horizon() = first_length(kernel, until);
   return std::min(until, kernel.time() + kernel.horizon());
 }
 
-void HorizonLength::adapt(Kernel& kernel, std::size_t pairs, std::uint64_t collisions) {
+/// Learns from a horizon that had so many near pairs and collisions.
+void adapt(Kernel& kernel, std::size_t pairs, std::uint64_t collisions) {
   const auto n = static_cast<std::uint64_t>(kernel.body_count());
   if (!kernel.options().skip_broad_phase) pairs = 0;  // every pair is met at any horizon
   if (pairs > 6 * n + 16 || collisions > 2 * n + 16)
     kernel.horizon() = std::max(0.5 * kernel.horizon(), kShortest);
   else if (pairs < 3 * n + 8 && collisions < n / 2 + 4)
     kernel.horizon() *= 1.5;
+}
+
+}  // namespace
+
+void run_horizons(Kernel& kernel, double until,
+                  const std::function<std::optional<std::size_t>(double end)>& run_one) {
+  while (kernel.time() < until && !kernel.halt()) {
+    if (!kernel.pause_point()) return;
+    const std::uint64_t before = kernel.collisions();
+    const std::optional<std::size_t> pairs = run_one(next_end(kernel, until));
+    if (!pairs) return;
+    adapt(kernel, *pairs, kernel.collisions() - before);
+  }
 }
 
 bool HorizonAgenda::pass(Kernel& kernel, double from, double end) {

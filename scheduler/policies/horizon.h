@@ -1,6 +1,7 @@
 #pragma once
 /// What policies share that look at everything up to a common horizon and then deal with what they found.
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -9,15 +10,11 @@
 
 namespace brink {
 
-/// The length of horizons: longer while little happens, shorter while much does. It changes what work is
-/// done, never what happens.
-class HorizonLength {
- public:
-  /// The end of the next horizon from the present time [s].
-  static double next_end(Kernel& kernel, double until);
-  /// Learns from a horizon that had so many near pairs and collisions.
-  static void adapt(Kernel& kernel, std::size_t pairs, std::uint64_t collisions);
-};
+/// Horizon after horizon to `until`, longer while little happens, shorter while much does: that changes what
+/// work is done, never what happens. `run_one` takes the kernel to a horizon's end and returns how many pairs
+/// could meet in it; nothing on a halt.
+void run_horizons(Kernel& kernel, double until,
+                  const std::function<std::optional<std::size_t>(double end)>& run_one);
 
 /// Certificates of one horizon: who meets whom before its end.
 class HorizonAgenda {

@@ -38,13 +38,10 @@ class Timewarp final : public Policy {
   void run(Kernel& kernel, double until) override {
     kernel_ = &kernel;
     group_bodies();
-    while (kernel.time() < until && !kernel.halt()) {
-      if (!kernel.pause_point()) return;
-      const std::uint64_t before = kernel.collisions();
-      end_ = HorizonLength::next_end(kernel, until);
-      if (!run_horizon()) return;
-      HorizonLength::adapt(kernel, near_, kernel.collisions() - before);
-    }
+    run_horizons(kernel, until, [&](double end) {
+      end_ = end;
+      return run_horizon() ? std::optional(near_) : std::nullopt;
+    });
   }
 
  private:
