@@ -75,6 +75,13 @@ class Motion {
 
   Motion() = default;
 
+  /// Begins again at t0, under the acceleration it has. @pre is_ballistic().
+  void start_anew(double t0, const BodyState& start, const BodyState& low) {
+    t0_ = t0;
+    start_ = start;
+    low_ = low;
+  }
+
   double begin() const;
   double end() const;
 

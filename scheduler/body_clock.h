@@ -7,7 +7,6 @@
 #include <limits>
 #include <vector>
 
-#include "brink/scheduler/cell_grid.h"
 #include "brink/scheduler/site_lists.h"
 
 namespace brink {
@@ -19,7 +18,7 @@ struct Candidate {
   double clear = 0.0;  ///< a search must begin here: from closer to the contact roundings would show
   int other = -1;
   Image image{};              ///< of the other
-  unsigned version : 31 = 0;  ///< of the other body, when this was found
+  unsigned version : 30 = 0;  ///< of the other body, when this was found
   unsigned exact : 1 = 0;     ///< `time` is the contact itself
 };
 
@@ -67,9 +66,7 @@ struct BodyClock {
   double exit = std::numeric_limits<double>::infinity();     ///< leaves its cell
   double horizon = std::numeric_limits<double>::infinity();  ///< the view ends: look at everything again
   CandidateList candidates;
-  Cell cell;
-  int level = 0;
-  int previous = CellGrid::kNone;                 ///< in the list of its cell
+  int level = 0;                                  ///< of cells
   const std::vector<SiteImage>* sites = nullptr;  ///< of its cell, in the first period
   unsigned undecided = 0;                         ///< searches in a row that met their cap
 

@@ -3,6 +3,7 @@
 /// where the plane repeats, on the torus that it is.
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -94,7 +95,8 @@ class CellGrid {
  private:
   struct Axis {
     double size = 1.0;
-    int count = 1;  ///< lists
+    double per_metre = 0.0;  ///< cells; 0: an only one
+    int count = 1;           ///< lists; a power of two where the axis does not repeat
     bool repeats = false;
 
     Axis() = default;
@@ -104,11 +106,12 @@ class CellGrid {
         count = std::max(1, static_cast<int>(std::min(period / least, kMost)));
         size = period / count;
       } else {
-        count = static_cast<int>(std::min(spread / least + 2.0, kMost));
+        count = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::min(spread / least + 2.0, kMost))));
       }
+      per_metre = 1.0 / size;
     }
     int index(double x) const {
-      return std::isinf(size) ? 0 : static_cast<int>(std::clamp(std::floor(x / size), -kFar, kFar));
+      return per_metre == 0.0 ? 0 : static_cast<int>(std::clamp(std::floor(x * per_metre), -kFar, kFar));
     }
     /// Where cell c begins; the outermost cells have no end, an only cell has neither end.
     double edge(int c) const {
@@ -118,6 +121,8 @@ class CellGrid {
       return c > kFar ? everywhere : c * size;
     }
     int wrapped(int c) const {
+      if (static_cast<unsigned>(c) < static_cast<unsigned>(count)) return c;
+      if (!repeats) return c & (count - 1);
       const int rest = c % count;
       return rest < 0 ? rest + count : rest;
     }

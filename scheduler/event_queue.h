@@ -28,6 +28,13 @@ class EventQueue {
   /// The body whose time that is. @pre there are bodies.
   int body() const { return heap_.front().body; }
 
+  /// The body whose time is the least but the first's, or the first where there is no other.
+  int second() const {
+    std::size_t least = 1;
+    for (std::size_t k = 2; k < 5 && k < heap_.size(); ++k)
+      if (heap_[k] < heap_[least]) least = k;
+    return heap_.size() > 1 ? heap_[least].body : heap_.front().body;
+  }
   /// The least time of all bodies but the first.
   double second_time() const {
     double least = std::numeric_limits<double>::infinity();
@@ -46,7 +53,8 @@ class EventQueue {
   struct Entry {
     double time;
     int body;
-    bool operator<(const Entry& e) const { return time < e.time || (time == e.time && body < e.body); }
+    /// Without a branch: which of two comes first cannot be foreseen.
+    bool operator<(const Entry& e) const { return (time < e.time) | ((time == e.time) & (body < e.body)); }
   };
 
   void up(std::size_t k) {
@@ -66,8 +74,7 @@ class EventQueue {
       if (first >= heap_.size()) break;
       const std::size_t last = std::min(first + 4, heap_.size());
       std::size_t least = first;
-      for (std::size_t c = first + 1; c < last; ++c)
-        if (heap_[c] < heap_[least]) least = c;
+      for (std::size_t c = first + 1; c < last; ++c) least = heap_[c] < heap_[least] ? c : least;
       if (!(heap_[least] < e)) break;
       set(k, heap_[least]);
       k = least;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "brink/core/base/geometry.h"
+#include "brink/scheduler/cell_grid.h"
 
 namespace brink {
 
@@ -16,17 +17,11 @@ struct alignas(64) Flight {
   double vx = 0.0, vy = 0.0;  ///< velocity at `start` [m/s]
   double start = 0.0;         ///< [s]
   double radius = 0.0;        ///< [m]
+  Cell cell;
   int next = -1;              ///< in the list of its cell
-  unsigned version = 0;       ///< raised when the motion changes; 31 bits
-  bool free = false;          ///< a parabola under the common gravity for ever
-  bool disc = false;          ///< the bounding disc is the body
-
-  Flight displaced(const Vec2& by) const {
-    Flight f = *this;
-    f.x += by.x();
-    f.y += by.y();
-    return f;
-  }
+  unsigned version : 30 = 0;  ///< raised when the motion changes
+  unsigned free : 1 = 0;      ///< a parabola under the common gravity for ever
+  unsigned disc : 1 = 0;      ///< the bounding disc is the body
 };
 
 /// A span of time in which two outlines may touch; never: begin = infinity.
@@ -38,14 +33,28 @@ struct Meeting {
 /// Bounding discs are taken larger by this part of their size, which holds the rounding of these formulas.
 inline constexpr double kFlightMargin = 1e-9;
 
-/// When the discs of two flights overlap, from `now` on. Two bare discs that recede never meet. About 15
-/// flops for a pair that does not.
-inline Meeting meeting(const Flight& a, const Flight& b, const Vec2& gravity, double now) {
-  const double sa = now - a.start, sb = now - b.start;
-  const double dv = sa - sb, dp = 0.5 * dv * (sa + sb);
-  const double dx = (a.x + sa * a.vx) - (b.x + sb * b.vx) + dp * gravity.x();
-  const double dy = (a.y + sa * a.vy) - (b.y + sb * b.vy) + dp * gravity.y();
-  const double wx = a.vx - b.vx + dv * gravity.x(), wy = a.vy - b.vy + dv * gravity.y();
+/// A flight seen from the present: where its centre is now.
+struct Course {
+  Vec2 place, velocity, gravity;
+  double radius;
+  bool disc;
+
+  Course(const Flight& f, const Vec2& g, double now) : gravity(g), radius(f.radius), disc(f.disc) {
+    const double s = now - f.start;
+    place = Vec2(f.x + s * (f.vx + 0.5 * s * g.x()), f.y + s * (f.vy + 0.5 * s * g.y()));
+    velocity = Vec2(f.vx + s * g.x(), f.vy + s * g.y());
+  }
+  void displace(const Vec2& by) { place += by; }
+  Vec2 after(double s) const { return place + s * (velocity + 0.5 * s * gravity); }
+};
+
+/// When the discs of two flights overlap, from `now` on: of a, seen from now, and of b moved by `shift`. Two
+/// bare discs that recede never meet. About 15 flops for a pair that does not.
+inline Meeting meeting(const Course& a, const Flight& b, const Vec2& shift, double now) {
+  const double s = now - b.start, gx = s * a.gravity.x(), gy = s * a.gravity.y();
+  const double dx = a.place.x() - shift.x() - (b.x + s * (b.vx + 0.5 * gx));
+  const double dy = a.place.y() - shift.y() - (b.y + s * (b.vy + 0.5 * gy));
+  const double wx = a.velocity.x() - (b.vx + gx), wy = a.velocity.y() - (b.vy + gy);
   const double approach = dx * wx + dy * wy;  // half the rate of the squared distance
   const double reach = (a.radius + b.radius) * (1.0 + kFlightMargin);
   const double beyond = dx * dx + dy * dy - reach * reach;
@@ -81,23 +90,15 @@ inline std::array<double, 2> zeros(double p, double v, double a) {
   return s;
 }
 
-/// A centre in flight, seen from the present.
-struct Course {
-  Vec2 place, velocity, gravity;
-
-  Course(const Flight& f, const Vec2& g, double now) : gravity(g) {
-    const double s = now - f.start;
-    place = Vec2(f.x + s * (f.vx + 0.5 * s * g.x()), f.y + s * (f.vy + 0.5 * s * g.y()));
-    velocity = Vec2(f.vx + s * g.x(), f.vy + s * g.y());
-  }
-  Vec2 after(double s) const { return place + s * (velocity + 0.5 * s * gravity); }
-};
-
-/// How long from now the centre stays in the box; infinity: for ever. 0 if it is outside.
+/// How long from now the centre stays in the box; infinity: for ever. @pre it is in it.
 inline double stay_in(const Box& box, const Course& c) {
-  if (!box.contains(c.place)) return 0.0;
   double stay = std::numeric_limits<double>::infinity();
-  for (int axis = 0; axis < 2; ++axis)
+  for (int axis = 0; axis < 2; ++axis) {
+    if (c.gravity[axis] == 0.0) {  // straight on, to the edge ahead
+      const double v = c.velocity[axis];
+      if (v != 0.0) stay = std::min(stay, ((v > 0.0 ? box.high : box.low)[axis] - c.place[axis]) / v);
+      continue;
+    }
     for (const double edge : {box.low[axis], box.high[axis]}) {
       if (!std::isfinite(edge)) continue;
       const auto s = zeros(c.place[axis] - edge, c.velocity[axis], c.gravity[axis]);
@@ -105,6 +106,7 @@ inline double stay_in(const Box& box, const Course& c) {
       // on the edge and going in, the root at 0 is no exit
       stay = std::min(stay, s[0] == 0.0 && !outward ? s[1] : s[0]);
     }
+  }
   return stay;
 }
 

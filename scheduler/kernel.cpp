@@ -36,6 +36,7 @@ Kernel::Kernel(World world, SolverOptions options)
                    "\" in a periodic world; allowed there: \"field\"");
   limits_.tolerance = options_.contact_tolerance * world_.length();
   limits_.touch = kTouchOfTolerance * limits_.tolerance;
+  reflects_ = options_.response == "reflection";
   limits_.closed_forms = options_.skip_closed_forms;
   zeno_ = ZenoWatch(limits_.tolerance);
 
@@ -196,14 +197,16 @@ void Kernel::back_up(std::span<const int> bodies, double from, double t) {
   for (const int k : bodies) run_.trace->mark({TraceKind::back_up, k, -1, from, t});
 }
 
+void Kernel::restart_free(int k, const BodyState& start, const BodyState& low) {
+  bodies_[k].motion.start_anew(time_, start, low);
+  raise_version(bodies_[k]);
+  ++work_.component_resets;
+}
+
 bool Kernel::restart(std::span<const Restart> touched) {
-  BodyTrack& first = bodies_[touched.front().body];
+  const BodyTrack& first = bodies_[touched.front().body];
   if (first.component < 0) {
-    const ExtendedState& s = touched.front().state;
-    first.motion =
-        Motion::ballistic(time_, s.rounded(), first.motion.acceleration(), first.motion.end(), s.low());
-    raise_version(first);
-    ++work_.component_resets;
+    restart_free(touched.front().body, touched.front().state.rounded(), touched.front().state.low());
     return true;
   }
   Coupled& c = components_[first.component];

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "brink/core/base/large_vector.h"
 #include "brink/core/base/random.h"
 #include "brink/core/contacts/impulse.h"
 #include "brink/core/fields/pass_window.h"
@@ -30,6 +31,7 @@ struct Halt {
   std::string why;
 };
 
+struct DiscRebound;
 struct ExtendedContact;
 
 class Kernel {
@@ -92,6 +94,13 @@ class Kernel {
   std::vector<PairKey> near_pairs(double from, double to);
   /// Pairs of one body with everything else: one pass.
   std::vector<PairKey> near_pairs_of(int body, double from, double to);
+  /// Starts to fetch what a search or a resolve of the body reads.
+  void expect(int k) const {
+    prefetch(&bodies_[k]);
+    prefetch(&world_.bodies[k]);
+    prefetch(&outlines_[k]);
+    prefetch(&body_index_[k]);
+  }
   /// Searches one pair; the certificate of a contact or an undecided end, or nothing if clear to the end.
   std::optional<Certificate> search(const PairKey& pair, double from, double to);
   /// The other features of the certificate's pair that touch and approach at its time, each as a certificate
@@ -193,7 +202,9 @@ class Kernel {
   };
   /// Starts bodies of one component, or one free body, afresh at the present time. False on a halt.
   bool restart(std::span<const Restart> touched);
-  /// The same; bodies whose motion changed are appended to `changed`.
+  /// A free body alone.
+  void restart_free(int body, const BodyState& start, const BodyState& low);
+  /// As restart(); bodies whose motion changed are appended to `changed`.
   bool restart_noted(std::span<const Restart> touched, std::vector<int>& changed);
   /// Extends one component to t and fetches its motions; false and halt() if its integrator cannot.
   bool cover(Coupled& c, double t);
@@ -250,6 +261,9 @@ class Kernel {
   /// runs do not drift by roundings of time. Not at a wire without thickness: it is met a little before, and
   /// must stay on its side.
   Real delay_to_contact(const PairKey& pair, const FeatureContact& found, const ExtendedContact& c) const;
+  const Material& material_of(const PairKey& pair) const;
+  /// The response now if the pair are two free discs without friction (a quick way to what respond() says).
+  std::optional<DiscRebound> disc_rebound(const PairKey& pair) const;
   /// Works out a collision at the present time and changes the motions; nothing if neither side can move.
   std::optional<Outcome> settle(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed);
   /// Counts and records it, and judges what it may be the end of. False on a halt.
@@ -266,7 +280,9 @@ class Kernel {
   class GroupResolve;
   bool resolve_group(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed);
   void count_collision(const PairKey& pair);
-  bool judge_endings(const PairKey& pair, const Contact& contact, double rest);
+  bool records_events() const { return recorder_ && run_.record_events; }
+  void record_ending(EventKind kind, const Outcome& outcome, double time);
+  bool judge_endings(const Outcome& outcome);
   /// Notes that a body has been resolved now, with owner `partner`; returns the time since its last [s].
   double note_resolve(int body, int partner, double magnitude);
   Contact world_contact(const PairKey& pair, const FeatureContact& f) const;
@@ -276,8 +292,9 @@ class Kernel {
   SolverOptions options_;
   WorkCounters work_;
   SearchLimits limits_;
+  bool reflects_ = false;  ///< response "reflection"
   Random random_;
-  std::vector<BodyTrack> bodies_;
+  LargeVector<BodyTrack> bodies_;
   AheadLog ahead_;
   std::vector<Coupled> components_;
   std::vector<SiteMotion> sites_;

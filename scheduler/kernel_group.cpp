@@ -223,7 +223,7 @@ class Kernel::GroupResolve {
       const PairKey& pair = group_[k].pair;
       double rest = rest_[index_of(pair.body)];
       if (!pair.with_site()) rest = std::min(rest, rest_[index_of(pair.other_body)]);
-      if (!kernel_.judge_endings(pair, kernel_.world_contact(pair, group_[k].contact), rest)) return false;
+      if (!kernel_.judge_endings({pair, group_[k].contact, 0.0, 0.0, Real(0), rest})) return false;
     }
     return true;
   }

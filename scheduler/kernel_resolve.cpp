@@ -7,8 +7,10 @@
 
 #include "brink/core/contacts/impulse.h"
 #include "brink/scheduler/canonical_time.h"
+#include "brink/scheduler/disc_rebound.h"
 #include "brink/scheduler/extended_contact.h"
 #include "brink/scheduler/kernel.h"
+#include "brink/scheduler/pair_kinematics.h"
 
 namespace brink {
 
@@ -113,10 +115,8 @@ Kernel::Response Kernel::respond(const PairKey& pair, const FeatureContact& foun
   const ImpulseSide side = body_side(definition, body, c.point);
   const ImpulseSide other_side = pair.with_site() ? site_side(other, c.point)
                                                   : body_side(world_.bodies[pair.other_body], other, c.point);
-  const int other_material =
-      pair.with_site() ? world_.sites[pair.other_site].material : world_.bodies[pair.other_body].material;
-  const Material& material = pair_materials_[definition.material * world_.materials.size() + other_material];
-  const auto law = options_.response == "reflection" ? resolve_reflection : resolve_impulse;
+  const Material& material = material_of(pair);
+  const auto law = reflects_ ? resolve_reflection : resolve_impulse;
   r.impulse = law(side, other_side, c.normal, material);
   r.magnitude = std::max(speed_of(side), speed_of(other_side));
   // an approach that the law does not see was rounding, all of it
@@ -163,8 +163,36 @@ bool Kernel::resolve(const PairKey& pair, const FeatureContact& found, std::vect
   return outcome && tell(*outcome);
 }
 
+const Material& Kernel::material_of(const PairKey& pair) const {
+  const int other =
+      pair.with_site() ? world_.sites[pair.other_site].material : world_.bodies[pair.other_body].material;
+  return pair_materials_[world_.bodies[pair.body].material * world_.materials.size() + other];
+}
+
+std::optional<DiscRebound> Kernel::disc_rebound(const PairKey& pair) const {
+  if (pair.with_site() || depth_ || reflects_) return std::nullopt;
+  const auto side = [&](int k) {
+    const Body& body = world_.bodies[k];
+    const bool bare = is_free(k) && is_centred_disc(outline_of(k)) && !body.lock_x && !body.lock_y;
+    return DiscSide{bare ? &bodies_[k].motion : nullptr, body.outline->bounding_radius, 1.0 / body.mass};
+  };
+  const DiscSide a = side(pair.body), b = side(pair.other_body);
+  const Material& material = material_of(pair);
+  if (!a.motion || !b.motion || a.radius + b.radius == 0.0 || material.friction != 0.0) return std::nullopt;
+  return rebound(a, b, shift_of(pair), time_, 4.0 * ulp(time_), material.restitution);
+}
+
 std::optional<Outcome> Kernel::settle(const PairKey& pair, const FeatureContact& found,
                                       std::vector<int>& changed) {
+  if (const auto discs = disc_rebound(pair)) {
+    double rest = note_resolve(pair.body, pair.other_body, discs->magnitude);
+    rest = std::min(rest, note_resolve(pair.other_body, pair.body, discs->magnitude));
+    restart_free(pair.body, discs->a.state, discs->a.low);
+    restart_free(pair.other_body, discs->b.state, discs->b.low);
+    changed.push_back(pair.body);
+    changed.push_back(pair.other_body);
+    return Outcome{pair, found, discs->impulse, 0.0, discs->delay, rest};
+  }
   const Response response = respond(pair, found);
   if (response.impulse.kind == ImpulseKind::jam) {
     stop(Termination::failed, fmt::format("{} at t = {:.17g}: neither side can move", name_of(pair), time_));
@@ -177,17 +205,32 @@ std::optional<Outcome> Kernel::settle(const PairKey& pair, const FeatureContact&
 }
 
 bool Kernel::tell(const Outcome& outcome) {
-  Event event;
-  event.seq = seq_++;
-  event.contact = world_contact(outcome.pair, outcome.contact);
-  event.contact.time = last_event_ = std::max(last_event_, time_);
-  event.contact.time_low = static_cast<double>(time_ - last_event_ + outcome.delay);
-  event.impulse_n = outcome.impulse_n;
-  event.impulse_t = outcome.impulse_t;
+  const std::uint64_t seq = seq_++;
+  last_event_ = std::max(last_event_, time_);
   note_overlap(outcome.contact.gap);
   count_collision(outcome.pair);
-  if (recorder_ && run_.record_events) recorder_->event(event);
-  return judge_endings(outcome.pair, event.contact, outcome.rest);
+  if (records_events()) {
+    Event event;
+    event.seq = seq;
+    event.contact = world_contact(outcome.pair, outcome.contact);
+    event.contact.time = last_event_;
+    event.contact.time_low = static_cast<double>(time_ - last_event_ + outcome.delay);
+    event.impulse_n = outcome.impulse_n;
+    event.impulse_t = outcome.impulse_t;
+    recorder_->event(event);
+  }
+  return judge_endings(outcome);
+}
+
+void Kernel::record_ending(EventKind kind, const Outcome& outcome, double time) {
+  const std::uint64_t seq = seq_++;
+  if (!records_events()) return;
+  Event event;
+  event.seq = seq;
+  event.kind = kind;
+  event.contact = world_contact(outcome.pair, outcome.contact);
+  event.contact.time = time;
+  recorder_->event(event);
 }
 
 void Kernel::count_collision(const PairKey& pair) {
@@ -198,15 +241,12 @@ void Kernel::count_collision(const PairKey& pair) {
   if (!pair.with_site()) run_.trace->mark({TraceKind::collision, pair.other_body, pair.body, time_, time_});
 }
 
-bool Kernel::judge_endings(const PairKey& pair, const Contact& contact, double rest) {
+bool Kernel::judge_endings(const Outcome& outcome) {
+  const PairKey& pair = outcome.pair;
   // flights lower than a pixel say nothing about a Zeno limit
-  if (const auto zeno = depth_ ? std::nullopt : zeno_.collided(pair, time_, contact.closing_speed, rest)) {
-    Event event;
-    event.seq = seq_++;
-    event.kind = EventKind::zeno;
-    event.contact = contact;
-    event.contact.time = zeno->limit_time;
-    if (recorder_ && run_.record_events) recorder_->event(event);
+  const double closing = outcome.contact.closing_speed;
+  if (const auto zeno = depth_ ? std::nullopt : zeno_.collided(pair, time_, closing, outcome.rest)) {
+    record_ending(EventKind::zeno, outcome, zeno->limit_time);
     stop(Termination::failed,
          fmt::format(
              "Zeno at t = {:.15g} after {} bounces of {}: a contact that lasts begins, and those are not in "
@@ -220,11 +260,7 @@ bool Kernel::judge_endings(const PairKey& pair, const Contact& contact, double r
     in_instant_ = 0;
   }
   if (++in_instant_ == endless_group() + 1) {
-    Event event;
-    event.seq = seq_++;
-    event.kind = EventKind::group;
-    event.contact = contact;
-    if (recorder_ && run_.record_events) recorder_->event(event);
+    record_ending(EventKind::group, outcome, last_event_);
   } else if (in_instant_ > 2 * endless_group()) {
     stop(Termination::failed,
          fmt::format("a group of collisions at t = {:.15g} does not end ({} so far, the last {})", time_,
@@ -254,7 +290,7 @@ void Kernel::give_up(const Certificate& c) {
   event.kind = EventKind::undecided;
   event.contact = world_contact(c.pair, c.contact);
   event.contact.time = c.time;
-  if (recorder_ && run_.record_events) recorder_->event(event);
+  if (records_events()) recorder_->event(event);
   stop(Termination::failed,
        fmt::format("undecided at t = {:.17g}: the search for first contact of {} makes no headway "
                    "(is something too fast for the clock?)",

@@ -36,7 +36,7 @@ Neighbourhood::Neighbourhood(std::span<Flight> flights, std::span<BodyClock> clo
       repeats_(periods.any()) {
   make_levels(places, by_place && flights.size() > kFew);
   for (int k = 0; k < static_cast<int>(flights.size()); ++k) {
-    clocks_[k].cell = grid(k).cell_of(places[k]);
+    flights_[k].cell = grid(k).cell_of(places[k]);
     link(k);
   }
 }
@@ -64,7 +64,7 @@ void Neighbourhood::make_levels(std::span<const Vec2> places, bool by_place) {
       if (periods_.size[axis] > 0.0) extent[axis] = periods_.size[axis];
     const double roomy =
         std::sqrt(extent.x() * extent.y() / static_cast<double>(std::max<std::size_t>(counts[m], 1)));
-    double size = std::max(tightest, roomy);
+    double size = std::max(tightest, 0.8 * roomy);
     if (!by_place || !(size > 0.0)) size = std::numeric_limits<double>::infinity();
     level.grid = CellGrid(size, extent, periods_);
   }
@@ -73,32 +73,26 @@ void Neighbourhood::make_levels(std::span<const Vec2> places, bool by_place) {
 }
 
 bool Neighbourhood::settle(int k, const Vec2& p) {
-  BodyClock& clock = clocks_[k];
   const Cell cell = grid(k).cell_of(p);
-  if (clock.sites && cell == clock.cell) return false;
+  if (clocks_[k].sites && cell == flights_[k].cell) return false;
   unlink(k);
-  clock.cell = cell;
+  flights_[k].cell = cell;
   link(k);
   return true;
 }
 
 void Neighbourhood::unlink(int k) {
-  const int next = flights_[k].next, previous = clocks_[k].previous;
-  if (next != CellGrid::kNone) clocks_[next].previous = previous;
-  if (previous != CellGrid::kNone)
-    flights_[previous].next = next;
-  else
-    levels_[clocks_[k].level].grid.head(clocks_[k].cell) = next;
+  int* from = &grid(k).head(flights_[k].cell);
+  while (*from != k) from = &flights_[*from].next;
+  *from = flights_[k].next;
 }
 
 void Neighbourhood::link(int k) {
   Level& level = levels_[clocks_[k].level];
-  int& head = level.grid.head(clocks_[k].cell);
+  int& head = level.grid.head(flights_[k].cell);
   flights_[k].next = head;
-  clocks_[k].previous = CellGrid::kNone;
-  if (head != CellGrid::kNone) clocks_[head].previous = k;
   head = k;
-  clocks_[k].sites = &level.sites->of(clocks_[k].cell);
+  clocks_[k].sites = &level.sites->of(flights_[k].cell);
 }
 
 }  // namespace brink

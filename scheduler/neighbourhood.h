@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "brink/core/base/large_vector.h"
 #include "brink/scheduler/body_clock.h"
 #include "brink/scheduler/flight.h"
 #include "brink/scheduler/site_lists.h"
@@ -24,7 +25,7 @@ class Neighbourhood {
   /// Puts body k into the cell at p; true if that is a new one.
   bool settle(int k, const Vec2& p);
   /// The box in which body k's centre stays as long as it is in its cell.
-  Box box_of(int k) const { return grid(k).box_of(clocks_[k].cell); }
+  Box box_of(int k) const { return grid(k).box_of(flights_[k].cell); }
   double cell_size(int k) const { return grid(k).size(); }
 
   /// Calls visit(j, image) for every other body, and that image of it, that k can meet while both stay in
@@ -32,27 +33,32 @@ class Neighbourhood {
   template <class Visit>
   void near(int k, Visit&& visit, const Cell* except = nullptr) const {
     for (std::size_t m = 0; m < levels_.size(); ++m) {
-      const CellBlock block = block_of(k, clocks_[k].cell, m);
+      const CellBlock block = block_of(k, flights_[k].cell, m);
       constexpr CellBlock none{{1, 1}, {0, 0}};
       const CellBlock former = except && !levels_[m].grid.wraps(block) ? block_of(k, *except, m) : none;
-      // at many bodies, waiting for their memory is what looking costs
-      levels_[m].grid.lists(block, [&](const Cell&, int first) {
-        if (first != CellGrid::kNone) __builtin_prefetch(&flights_[first]);
-      });
       levels_[m].grid.lists(block, [&](const Cell& c, int first) {
-        if (former.contains(c)) return;
+        if (first == CellGrid::kNone || former.contains(c)) return;
         for (int j = first; j != CellGrid::kNone; j = flights_[j].next)
           if (j != k) visit(j, image_in(levels_[m].grid, j, c));
       });
     }
   }
 
+  /// Starts to fetch what near(k) will visit: at many bodies, waiting for their memory is what looking costs.
+  void expect(int k) const {
+    for (std::size_t m = 0; m < levels_.size(); ++m)
+      levels_[m].grid.lists(block_of(k, flights_[k].cell, m), [&](const Cell&, int first) {
+        if (first != CellGrid::kNone) prefetch(&flights_[first]);
+      });
+  }
+
   /// Calls visit(site, image) for every still site, and that image of it, that k can meet in its cell.
   template <class Visit>
   void sites_near(int k, Visit&& visit) const {
-    const BodyClock& clock = clocks_[k];
-    const Image away = repeats_ ? grid(k).periods_between(grid(k).home(clock.cell), clock.cell) : Image{};
-    for (const SiteImage& s : *clock.sites) visit(s.site, s.image + away);
+    if (clocks_[k].sites->empty()) return;
+    const Cell& cell = flights_[k].cell;
+    const Image away = repeats_ ? grid(k).periods_between(grid(k).home(cell), cell) : Image{};
+    for (const SiteImage& s : *clocks_[k].sites) visit(s.site, s.image + away);
   }
 
  private:
@@ -63,9 +69,10 @@ class Neighbourhood {
   };
   /// Which image of body j is in cell c, whose list j is in.
   Image image_in(const CellGrid& grid, int j, const Cell& c) const {
-    return !repeats_ || clocks_[j].cell == c ? Image{} : grid.periods_between(clocks_[j].cell, c);
+    return !repeats_ || flights_[j].cell == c ? Image{} : grid.periods_between(flights_[j].cell, c);
   }
   const CellGrid& grid(int k) const { return levels_[clocks_[k].level].grid; }
+  CellGrid& grid(int k) { return levels_[clocks_[k].level].grid; }
   CellBlock block_of(int k, const Cell& cell, std::size_t level) const {
     const Level& own = levels_[clocks_[k].level];
     if (static_cast<int>(level) == clocks_[k].level && !own.grid.one_cell())  // as the cells' size was chosen

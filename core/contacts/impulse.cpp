@@ -58,12 +58,12 @@ ImpulseResult resolve_impulse(const ImpulseSide& body, const ImpulseSide& other,
   if (!(c.knn > 0.0)) return {ImpulseKind::jam, 0.0, 0.0, body.twist, other.twist};
 
   // Wanted changes of the relative velocity: -(1 + e) vn along the normal, -(1 + et) vt along the tangent.
-  const Real dn = -(1.0 + material.restitution) * c.vn;
+  const Real dn = -(Real(1) + material.restitution) * c.vn;
   const Real frictionless = dn / c.knn;
   if (material.friction == 0.0) return apply(ImpulseKind::slip, c, body, other, frictionless, 0);
 
   // Sticking: both components are met at once; a 2x2 solve.
-  const Real dt = -(1.0 + material.tangential_restitution) * c.vt;
+  const Real dt = -(Real(1) + material.tangential_restitution) * c.vt;
   const Real determinant = c.knn * c.ktt - c.knt * c.knt;
   if (determinant > 1e-14 * c.knn * c.ktt) {
     const Real pn = (c.ktt * dn - c.knt * dt) / determinant;

@@ -77,6 +77,7 @@ class BodyClocks final : public Policy {
   void serve(int k) {
     BodyClock& clock = views_->clock(k);
     const double now = clock.expiry();
+    expect(k);
     if (!clock.candidates.empty() && clock.candidates.front().time == now) {
       if (const Candidate& c = clock.candidates.front(); c.exact && !views_->stale(c)) return meet(k);
       sharpen(k);
@@ -87,6 +88,19 @@ class BodyClocks final : public Policy {
       views_->look_around(k, now);
     }
     wait_for(k);
+  }
+
+  /// Waiting for the memory of bodies that are met in no order is much of what an event costs.
+  void expect(int k) const {
+    views_->expect(queue_.second());
+    const BodyClock& clock = views_->clock(k);
+    if (clock.candidates.empty()) return;
+    prefetch(&found_[k]);
+    kernel_->expect(k);
+    const int other = clock.candidates.front().other;
+    if (other >= kernel_->body_count()) return;
+    kernel_->expect(other);
+    views_->expect(other);
   }
 
   /// True if body k's first candidate is a contact and comes before everything else, without asking the
@@ -203,6 +217,8 @@ class BodyClocks final : public Policy {
   void collide(const Certificate& c) {
     kernel_->record_frames(c.time);
     kernel_->advance_pair(c.pair, c.time);
+    views_->expect_look(c.pair.body);
+    if (!c.pair.with_site()) views_->expect_look(c.pair.other_body);
     changed_.clear();
     if (!kernel_->resolve(c.pair, c.contact, changed_)) return;
     for (const int k : changed_) views_->take_up(k);
@@ -218,7 +234,7 @@ class BodyClocks final : public Policy {
   std::uint64_t served_ = 0;
   std::optional<Views> views_;
   EventQueue queue_;
-  std::vector<Certificate> found_;  ///< of each body's exact candidate
+  LargeVector<Certificate> found_;  ///< of each body's exact candidate
   std::vector<int> changed_;
 };
 

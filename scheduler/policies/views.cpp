@@ -72,7 +72,7 @@ Views::Views(Kernel& kernel)
 void Views::take_up(int k) {
   Flight& f = flights_[k];
   const Motion& motion = kernel_->body(k).motion;
-  f.version = (f.version + 1) & 0x7fffffffU;
+  f.version = f.version + 1U;
   f.free = kernel_->is_free(k) && motion.acceleration().linear == gravity_ && !kernel_->by_passes();
   f.disc = f.free && is_centred_disc(kernel_->outline_of(k));
   if (!f.free) return;
@@ -84,26 +84,42 @@ void Views::take_up(int k) {
   f.start = motion.origin();
 }
 
-/// The same flight, started at `now`.
-Flight Views::from_now(const Flight& f, double now) const {
-  if (!f.free) return f;
-  const Course course(f, gravity_, now);
-  Flight here = f;
-  here.x = course.place.x();
-  here.y = course.place.y();
-  here.vx = course.velocity.x();
-  here.vy = course.velocity.y();
-  here.start = now;
-  return here;
+namespace {
+
+bool holds(std::span<const int> bodies, int k) {
+  return std::find(bodies.begin(), bodies.end(), k) != bodies.end();
 }
 
-/// `here`: body k's flight, started at `now`.
-inline void Views::see_body(int k, const Flight& here, int j, const Image& image, double now) {
-  const Flight& b = flights_[j];
-  const Meeting m = !(here.free && b.free) ? bounded_meeting(k, j, image, now)
-                    : image == Image{}     ? meeting(here, b, gravity_, now)
-                                           : meeting(here, image_of(j, image), gravity_, now);
-  if (m.begin < clocks_[k].horizon) clocks_[k].see({m.begin, m.begin, j, image, b.version, 0}, now);
+}  // namespace
+
+void Views::see_bounded(int k, int j, const Image& image, double now) {
+  const Meeting m = bounded_meeting(k, j, image, now);
+  if (m.begin < clocks_[k].horizon) clocks_[k].see({m.begin, m.begin, j, image, flights_[j].version, 0}, now);
+}
+
+/// Bodies near body k, which is not in free flight.
+void Views::see_bodies(int k, double now, std::span<const int> except) {
+  near_->near(k, [&](int j, const Image& image) {
+    if (!holds(except, j)) see_bounded(k, j, image, now);
+  });
+}
+
+/// Bodies near body k in free flight; with `former`, its former cell, those alone that were not near it
+/// there.
+void Views::see_bodies(int k, const Course& here, double now, std::span<const int> except,
+                       const Cell* former) {
+  BodyClock& clock = clocks_[k];
+  const auto see = [&](int j, const Image& image) {
+    const Flight& b = flights_[j];
+    if (!b.free) {
+      if (!holds(except, j)) see_bounded(k, j, image, now);
+      return;
+    }
+    const Meeting m = meeting(here, b, periods_.shift(image), now);
+    if (m.begin < clock.horizon && !holds(except, j))
+      clock.see({m.begin, m.begin, j, image, b.version, 0}, now);
+  };
+  near_->near(k, see, former);
 }
 
 void Views::look_around(int k, double now, std::span<const int> except) {
@@ -113,16 +129,15 @@ void Views::look_around(int k, double now, std::span<const int> except) {
   clock.forget_all();
   if (flights_[k].free) {
     const Course course(flights_[k], gravity_, now);
-    near_->settle(k, course.place);
+    if (!near_->box_of(k).contains(course.place)) near_->settle(k, course.place);
     clock.exit = now + stay_in(near_->box_of(k), course);
-  } else if (!begin_window(k, now)) {
-    return;
+    if (kernel_->by_passes()) return see_by_pass(k, now);
+    see_bodies(k, course, now, except);
+  } else {
+    if (!begin_window(k, now)) return;
+    if (kernel_->by_passes()) return see_by_pass(k, now);
+    see_bodies(k, now, except);
   }
-  if (kernel_->by_passes()) return see_by_pass(k, now);
-  const Flight here = from_now(flights_[k], now);
-  near_->near(k, [&](int j, const Image& image) {
-    if (std::find(except.begin(), except.end(), j) == except.end()) see_body(k, here, j, image, now);
-  });
   near_->sites_near(k, [&](int s, const Image& image) { see_site(k, s, image, now); });
   for (const int s : moving_) see_moving_site(k, s, now);
 }
@@ -130,12 +145,10 @@ void Views::look_around(int k, double now, std::span<const int> except) {
 void Views::look_ahead(int k, double now) {
   BodyClock& clock = clocks_[k];
   const Course course(flights_[k], gravity_, now);
-  const Cell former = clock.cell;
+  const Cell former = flights_[k].cell;
   const bool moved = near_->settle(k, course.place);
   clock.exit = now + stay_in(near_->box_of(k), course);
-  const Flight here = from_now(flights_[k], now);
-  const auto see = [&](int j, const Image& image) { see_body(k, here, j, image, now); };
-  if (moved) near_->near(k, see, &former);
+  if (moved) see_bodies(k, course, now, {}, &former);
   near_->sites_near(k, [&](int s, const Image& image) { see_site(k, s, image, now); });
 }
 
@@ -145,7 +158,8 @@ void Views::see_site(int k, int s, const Image& image, double now) {
   const double end = std::min(clock.exit, clock.horizon);
   double wait = flights_[k].free && !site_boxes_[s].empty() ? kForever : 0.0;
   if (wait > 0.0) {
-    const Course course(flights_[k].displaced(-periods_.shift(image)), gravity_, now);
+    Course course(flights_[k], gravity_, now);
+    course.displace(-periods_.shift(image));
     const double reach = flights_[k].radius * (1.0 + kFlightMargin) + kernel_->contact_tolerance();
     for (const Box& box : site_boxes_[s]) wait = std::min(wait, time_to(box.grown(reach), course));
   }

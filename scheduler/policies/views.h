@@ -20,6 +20,13 @@ class Views {
   BodyClock& clock(int k) { return clocks_[k]; }
   const BodyClock& clock(int k) const { return clocks_[k]; }
   bool stale(const Candidate& c) const { return c.version != version_of(c.other); }
+  /// Starts to fetch body k's clock and flight.
+  void expect(int k) const {
+    prefetch(&clocks_[k]);
+    prefetch(&flights_[k]);
+  }
+  /// Starts to fetch what looking around body k reads. Slow if its own flight is not at hand.
+  void expect_look(int k) const { near_->expect(k); }
   /// Until when a search of body k's candidate must go: they cannot meet later, or k's view of it ends. Still
   /// sites are looked at again as k leaves its cell; whatever moves is not.
   double end_of(int k, const Candidate& c) const {
@@ -28,7 +35,9 @@ class Views {
       return kernel_->site_moves(c.other - body_count()) ? clock.horizon
                                                          : std::min(clock.exit, clock.horizon);
     if (flights_[k].free && flights_[c.other].free)
-      return meeting(flights_[k], image_of(c.other, c.image), gravity_, c.clear).end;
+      return meeting(Course(flights_[k], gravity_, c.clear), flights_[c.other], periods_.shift(c.image),
+                     c.clear)
+          .end;
     return clock.horizon;
   }
   /// The end of the present run: views of bodies that are not in free flight end just after it at the latest.
@@ -46,11 +55,10 @@ class Views {
   int body_count() const { return static_cast<int>(clocks_.size()); }
   unsigned version_of(int owner) const { return owner < body_count() ? flights_[owner].version : 0; }
   void sort_sites();
-  Flight from_now(const Flight& f, double now) const;
-  Flight image_of(int k, const Image& image) const {
-    return image == Image{} ? flights_[k] : flights_[k].displaced(periods_.shift(image));
-  }
-  void see_body(int k, const Flight& here, int j, const Image& image, double now);
+  void see_bodies(int k, double now, std::span<const int> except);
+  void see_bodies(int k, const Course& here, double now, std::span<const int> except,
+                  const Cell* former = nullptr);
+  void see_bounded(int k, int j, const Image& image, double now);
   void see_site(int k, int site, const Image& image, double now);
   void see_moving_site(int k, int site, double now);
   void see_by_pass(int k, double now);
@@ -63,8 +71,8 @@ class Views {
   Vec2 gravity_;
   Periods periods_;
   double until_ = 0.0;
-  std::vector<Flight> flights_;
-  std::vector<BodyClock> clocks_;
+  LargeVector<Flight> flights_;
+  LargeVector<BodyClock> clocks_;
   std::vector<std::vector<Box>> site_boxes_;  ///< what must be reached to touch a still site; empty: anywhere
   std::vector<int> moving_;
   std::optional<Neighbourhood> near_;
