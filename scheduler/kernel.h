@@ -97,7 +97,8 @@ class Kernel {
   /// Starts to fetch what a search or a resolve of the body reads.
   void expect(int k) const {
     prefetch(&bodies_[k]);
-    prefetch(&world_.bodies[k]);
+    prefetch(&world_.bodies[k].outline);
+    prefetch(&world_.bodies[k].material);
     prefetch(&outlines_[k]);
     prefetch(&body_index_[k]);
   }

@@ -17,6 +17,7 @@
 
 #include "brink/scheduler/canonical_time.h"
 #include "brink/scheduler/event_queue.h"
+#include "brink/scheduler/policies/found_contacts.h"
 #include "brink/scheduler/policies/order.h"
 #include "brink/scheduler/policies/policy.h"
 #include "brink/scheduler/policies/views.h"
@@ -50,7 +51,7 @@ class BodyClocks final : public Policy {
     views_.emplace(*kernel_);
     views_->set_end(until_);
     revision_ = kernel_->revision();
-    found_.assign(kernel_->body_count(), {});
+    found_.emplace(kernel_->body_count());
     queue_.reset(kernel_->body_count(), kernel_->time());
     for (int k = 0; k < kernel_->body_count() && !kernel_->halt(); ++k) {
       views_->look_around(k, kernel_->time());
@@ -85,9 +86,14 @@ class BodyClocks final : public Policy {
     } else if (now == clock.exit) {
       views_->look_ahead(k, now);
     } else {
-      views_->look_around(k, now);
+      look_around(k, now);
     }
     wait_for(k);
+  }
+
+  void look_around(int k, double now, std::span<const int> except = {}) {
+    found_->forget(k);
+    views_->look_around(k, now, except);
   }
 
   /// Waiting for the memory of bodies that are met in no order is much of what an event costs.
@@ -95,7 +101,6 @@ class BodyClocks final : public Policy {
     views_->expect(queue_.second());
     const BodyClock& clock = views_->clock(k);
     if (clock.candidates.empty()) return;
-    prefetch(&found_[k]);
     kernel_->expect(k);
     const int other = clock.candidates.front().other;
     if (other >= kernel_->body_count()) return;
@@ -140,7 +145,7 @@ class BodyClocks final : public Policy {
     }
     if (c.exact) {
       for (std::size_t i = 0; i < clock.candidates.size(); ++i) clock.candidates[i].exact = 0;
-      found_[k] = *found;
+      found_->set(k, *found);
     }
     clock.see(c, now);
   }
@@ -148,11 +153,11 @@ class BodyClocks final : public Policy {
   /// Body k's first candidate is a contact, and nothing is due before it.
   void meet(int k) {
     const BodyClock& clock = views_->clock(k);
-    const double now = found_[k].time, instant = now + same_instant(now);
+    const double now = found_->of(k).time, instant = now + same_instant(now);
     const bool alone = !kernel_->options().picks_among_all() && queue_.second_time() > instant &&
                        clock.exit > instant && clock.horizon > instant &&
                        (clock.candidates.size() == 1 || clock.candidates[1].time > instant);
-    if (alone) return collide(Certificate(found_[k]));
+    if (alone) return collide(Certificate(found_->of(k)));
     const std::vector<Certificate> group = contacts_until(instant);
     if (!kernel_->halt()) collide(group[first_by_order(*kernel_, group)]);
   }
@@ -191,7 +196,7 @@ class BodyClocks final : public Policy {
     else if (view == clock.exit)
       views_->look_ahead(k, view);
     else
-      views_->look_around(k, view);
+      look_around(k, view);
     wait_for(k);
   }
 
@@ -203,7 +208,7 @@ class BodyClocks final : public Policy {
       if (!features || c.kind != Certificate::Kind::contact) return;
       for (const Certificate& other : kernel_->simultaneous(c)) group.push_back(other);
     };
-    add(found_[k]);
+    add(found_->of(k));
     const auto& candidates = views_->clock(k).candidates;
     for (std::size_t i = 1; i < candidates.size() && candidates[i].time <= instant; ++i) {
       const Candidate& c = candidates[i];
@@ -223,7 +228,7 @@ class BodyClocks final : public Policy {
     if (!kernel_->resolve(c.pair, c.contact, changed_)) return;
     for (const int k : changed_) views_->take_up(k);
     for (std::size_t i = 0; i < changed_.size() && !kernel_->halt(); ++i) {
-      views_->look_around(changed_[i], kernel_->time(), {changed_.data(), i});
+      look_around(changed_[i], kernel_->time(), {changed_.data(), i});
       wait_for(changed_[i]);
     }
   }
@@ -234,7 +239,7 @@ class BodyClocks final : public Policy {
   std::uint64_t served_ = 0;
   std::optional<Views> views_;
   EventQueue queue_;
-  LargeVector<Certificate> found_;  ///< of each body's exact candidate
+  std::optional<FoundContacts> found_;  ///< of each body's exact candidate
   std::vector<int> changed_;
 };
 
