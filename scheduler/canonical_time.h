@@ -9,11 +9,13 @@
 
 namespace brink {
 
-/// Distance to the next double above |t|.
-inline double ulp(double t) {
-  const double a = std::abs(t);
-  return std::nextafter(a, 2.0 * a + 1.0) - a;
+/// The next double above t. @pre 0 <= t, finite.
+inline double next_after(double t) {
+  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(t + 0.0) + 1);
 }
+
+/// Distance to the next double above |t|. @pre finite.
+inline double ulp(double t) { return next_after(std::abs(t)) - std::abs(t); }
 
 /// Times closer than this [s] are one instant: contacts that are simultaneous in exact arithmetic differ by
 /// roundings.

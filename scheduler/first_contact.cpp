@@ -96,7 +96,7 @@ class PairSearch {
       }
       ++work_.search_iterations;
       t_ = t;
-      next_ = std::nextafter(t, kForever);
+      next_ = next_after(t);
       view_.place(t);
       short_end_ = std::min(to_, t + short_window_);
       short_bounds_ = bounds_over(t, short_end_);
@@ -157,11 +157,15 @@ class PairSearch {
     const RelativeBounds relative = half.s_is_a ? long_bounds_ : long_bounds_.swapped();
     const RelativeBounds near = half.s_is_a ? short_bounds_ : short_bounds_.swapped();
     const PathBounds over_all = path_bounds(path, relative, long_window);
-    const double apart = clear_of_disc(half, sample, path, over_all);
+    const Facing line = line_between(half, sample, path, over_all);
+    const double apart = line.gap > 0.0 ? safe_step(line.gap, line.rate, over_all.acceleration)
+                                        : clear_of_disc(half, sample, path, over_all);
     if (apart >= long_window || apart > 2.0 * (least_ - t_)) return apart * (1.0 - 4.0 * kEpsilon);
     const PathBounds over_short = path_bounds(path, near, short_window);
-    double safe = 0.0, again = 0.0;
-    if (sample.arc_site < 0) {
+    double safe = apart, again = 0.0;
+    if (line.gap > 0.0) {
+      if (safe < short_window) again = safe_step(line.gap, line.rate, over_short.acceleration);
+    } else if (sample.arc_site < 0) {
       std::tie(safe, again) = vertex_steps(half, i, path, over_all, over_short, long_window, short_window);
     } else {
       safe = arc_sample_step(half, i, path, relative, over_all);
@@ -179,6 +183,21 @@ class PairSearch {
     const double f = path.distance - outline.bounding_radius - sample.radius - touching_band(bounds);
     if (outline.container || outline.is_point() || !(f > 0.0)) return 0.0;
     return safe_step(f, path.q.dot(path.rate) / path.distance, bounds.acceleration);
+  }
+
+  /// The line between a vertex sample and a convex outline, as far out as a step may lead; gap 0 where there
+  /// is none, or the sample is so near that its features must be told apart.
+  Facing line_between(const Half& half, const Sample& sample, const SamplePath& path,
+                      const PathBounds& bounds) {
+    const Outline& outline = half.sites_of();
+    if (outline.facets.empty() || sample.arc_site >= 0) return {};
+    ++work_.distance_queries;
+    ++work_.candidate_evaluations;
+    Facing line = facing_convex(outline, path.q, path.rate);
+    line.gap -= outline.sites[0].radius + sample.radius;
+    const double band = touching_band(bounds);
+    line.gap = line.gap > 2.0 * band ? line.gap - 0.5 * band : 0.0;
+    return line;
   }
 
   /// Safe steps by the bounds over the whole window and by those over the short one; every site is looked at

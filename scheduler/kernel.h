@@ -103,7 +103,9 @@ class Kernel {
     prefetch(&body_index_[k]);
   }
   /// Searches one pair; the certificate of a contact or an undecided end, or nothing if clear to the end.
-  std::optional<Certificate> search(const PairKey& pair, double from, double to);
+  /// With `most_steps` > 0 the search stops after so many of its steps, undecided: to go on later, if it then
+  /// still matters.
+  std::optional<Certificate> search(const PairKey& pair, double from, double to, int most_steps = 0);
   /// The other features of the certificate's pair that touch and approach at its time, each as a certificate
   /// of its own (two corners of a box that lands flat): what an order other than `index` chooses from.
   std::vector<Certificate> simultaneous(const Certificate& c);
@@ -222,7 +224,8 @@ class Kernel {
   /// The same with a motion that the other body has or had (null: a site).
   Mover other_mover(const PairKey& pair, const BodyTrack* other) const;
   std::optional<Certificate> search_between(const PairKey& pair, const BodyTrack& body,
-                                            const BodyTrack* other, double from, double to);
+                                            const BodyTrack* other, double from, double to,
+                                            int most_steps = 0);
   /// The body as of its last collision that is certain.
   const BodyTrack& certain(int k) const;
   /// The body with its motion of that version; null if there is none.

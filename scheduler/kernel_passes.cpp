@@ -148,19 +148,22 @@ const DepthSight& Kernel::look(double from, double t) {
   return depth_->look(owners, 4.0 * fastest * std::max(t - from, options_.step));
 }
 
-std::optional<Certificate> Kernel::search(const PairKey& pair, double from, double to) {
+std::optional<Certificate> Kernel::search(const PairKey& pair, double from, double to, int most_steps) {
   return search_between(pair, bodies_[pair.body], pair.with_site() ? nullptr : &bodies_[pair.other_body],
-                        from, to);
+                        from, to, most_steps);
 }
 
 std::optional<Certificate> Kernel::search_between(const PairKey& pair, const BodyTrack& body,
-                                                  const BodyTrack* other, double from, double to) {
+                                                  const BodyTrack* other, double from, double to,
+                                                  int most_steps) {
   const Mover a = mover(pair.body, body), b = other_mover(pair, other);
   // of simultaneous resolves one may be a rounding ahead
   from = std::max({from, a.motion->begin(), b.motion->begin()});
   if (from > to) return std::nullopt;
   const TraceScope scope(run_.trace, {TraceKind::search, pair.body, other_owner(pair), from, to});
-  const PairAnswer answer = first_contact(a, b, from, to, limits_, scratch_, work_);
+  SearchLimits limits = limits_;
+  if (most_steps > 0) limits.max_iterations = most_steps;
+  const PairAnswer answer = first_contact(a, b, from, to, limits, scratch_, work_);
   if (answer.status == PairAnswer::Status::clear) return std::nullopt;
   Certificate c;
   c.time = answer.until;

@@ -2,6 +2,7 @@
 /// The certified step of one moving point against one site.
 
 #include "brink/core/shapes/distance.h"
+#include "brink/core/shapes/outline.h"
 #include "brink/scheduler/pair_kinematics.h"
 #include "brink/scheduler/safe_step.h"
 
@@ -21,6 +22,18 @@ struct SiteStep {
   double rate;  ///< d(gap)/dt of the unsigned distance [m/s]
   double safe;  ///< certified: the gap stays > 0 for this long [s]
 };
+
+/// How far a point is outside a line that has all of an outline behind it, and how that changes.
+struct Facing {
+  double gap = 0.0;   ///< [m]
+  double rate = 0.0;  ///< [m/s]
+};
+
+/// The line between q and the core of a convex polygon: at the nearest point where that is seen at a glance
+/// (the foot on the side that q is farthest outside of, or its corner), else along that side. A step that is
+/// safe for the line is safe for every site, so one stands for all. Cost: one dot product a side.
+/// @pre outline.facets is not empty.
+Facing facing_convex(const Outline& outline, const Vec2& q, const Vec2& rate);
 
 /// d(distance)/dt of q from the site's core. Close to the core the foot's rounding would turn the direction,
 /// so there it is the site's own normal.

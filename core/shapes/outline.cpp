@@ -125,6 +125,23 @@ void reverse_loop(std::vector<Site>& sites, const Loop& loop) {
   for (int k = loop.first; k < loop.first + loop.count; ++k) sites[k] = reversed(sites[k]);
 }
 
+/// Outward normals of the sides; none if the outline is anything but one convex polygon.
+std::vector<Vec2> facets_of(const Outline& outline) {
+  if (!outline.solid || outline.container || outline.loops.size() != 1) return {};
+  std::vector<Vec2> facets;
+  double turned = 0.0;
+  for (std::size_t k = 0; k < outline.sites.size(); ++k) {
+    const Site &site = outline.sites[k], &next = outline.sites[(k + 1) % outline.sites.size()];
+    if (site.kind != SiteKind::segment || next.kind != SiteKind::segment) return {};
+    const Vec2 along = site.b - site.a, then = next.b - next.a;
+    if (!(cross(along, then) >= 0.0)) return {};
+    turned += std::atan2(cross(along, then), along.dot(then));
+    facets.push_back(-perp(along).normalized());
+  }
+  constexpr double once_round = 6.283185307179586;
+  return turned < 1.5 * once_round ? facets : std::vector<Vec2>{};
+}
+
 }  // namespace
 
 void finish_outline(Outline& outline) {
@@ -143,6 +160,7 @@ void finish_outline(Outline& outline) {
     add_vertex_samples(outline, loop);
     add_arc_samples(outline, loop);
   }
+  outline.facets = facets_of(outline);
 }
 
 double gap_by_brute_force(const Outline& outline, const Vec2& q, int* site) {

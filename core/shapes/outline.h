@@ -38,8 +38,9 @@ struct Outline {
   std::vector<Site> sites;
   std::vector<Loop> loops;
   std::vector<Sample> samples;  ///< the exact two-sided sample set
-  bool solid = false;           ///< has an inside (every loop closed); distance is signed
-  bool container = false;       ///< solid outside: the loops bound a hole in an infinite solid
+  std::vector<Vec2> facets;  ///< of a convex polygon, rounded or not: its sites' outward normals; else none
+  bool solid = false;        ///< has an inside (every loop closed); distance is signed
+  bool container = false;    ///< solid outside: the loops bound a hole in an infinite solid
   double bounding_radius =
       0.0;     ///< of a disc about the frame's origin that holds every site with its radius [m]
   Box bounds;  ///< of every site with its radius
@@ -49,8 +50,8 @@ struct Outline {
   bool is_point() const { return sites.size() == 1 && sites[0].kind == SiteKind::point; }
 };
 
-/// Fills Site::solid, pseudo-normals, samples, bounds and bounding radius from sites and loops. Call once
-/// after assembling; loops must cover all sites in order and join up bit for bit. Samples: each loop's
+/// Fills Site::solid, pseudo-normals, samples, facets, bounds and bounding radius from sites and loops. Call
+/// once after assembling; loops must cover all sites in order and join up bit for bit. Samples: each loop's
 /// distinct vertices, then its arcs.
 /// @throws BadInput on a site of zero length, an arc over a quarter turn or off its circle, a loop that does
 /// not

@@ -28,7 +28,8 @@ namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kBetweenPauses = 2048;  ///< servings between places where a run may be resumed from
-constexpr unsigned kMostUndecided = 100;
+constexpr int kInstalment = 3;  ///< search steps at a time: most contacts ahead are overtaken by others
+constexpr unsigned kMostUndecided = 1000000 / kInstalment;
 
 class BodyClocks final : public Policy {
  public:
@@ -129,7 +130,7 @@ class BodyClocks final : public Policy {
       return;
     }
     const double now = c.time, end = views_->end_of(k, c), to = std::min(beyond(end), std::max(now, until_));
-    const auto found = kernel_->search(*kernel_->pair_of(k, c.other, c.image), c.clear, to);
+    const auto found = kernel_->search(*kernel_->pair_of(k, c.other, c.image), c.clear, to, kInstalment);
     const bool undecided = found && found->kind == Certificate::Kind::undecided;
     clock.undecided = undecided ? clock.undecided + 1 : 0;
     if (undecided && (found->time <= c.clear || clock.undecided > kMostUndecided))

@@ -39,6 +39,10 @@ void run_for(benchmark::State& state, const World& world, const char* policy, st
     state.counters["overlap"] = summary.max_overlap;
     state.counters["searches"] =
         static_cast<double>(summary.work.pair_searches) / static_cast<double>(collisions);
+    state.counters["iterations"] =
+        static_cast<double>(summary.work.search_iterations) / static_cast<double>(collisions);
+    state.counters["evaluations"] =
+        static_cast<double>(summary.work.candidate_evaluations) / static_cast<double>(collisions);
     state.counters["passes"] = static_cast<double>(summary.work.passes) / static_cast<double>(collisions);
     state.counters["served"] =
         static_cast<double>(summary.work.queue_operations) / static_cast<double>(collisions);

@@ -55,6 +55,22 @@ TEST(Outline, BoxHasFourSamplesAndOutwardPseudoNormals) {
   EXPECT_EQ(box.bounding_radius, std::sqrt(5) + 0.5);
 }
 
+TEST(Outline, ConvexPolygonsAloneHaveFacets) {
+  const Outline box = make_box(4, 2, 0.1).outline;
+  ASSERT_EQ(box.facets.size(), 4u);
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_NEAR(box.facets[k].norm(), 1.0, 1e-15);
+    EXPECT_GT(box.facets[k].dot(0.5 * (box.sites[k].a + box.sites[k].b)), 0.9);  // outward
+    EXPECT_NEAR(box.facets[k].dot(box.sites[k].b - box.sites[k].a), 0.0, 1e-15);
+  }
+  EXPECT_EQ(make_polygon({{0, 0}, {1, 0}, {0.5, 1}}).outline.facets.size(), 3u);
+  const auto facets_of = [](const Outline& outline) { return outline.facets.size(); };
+  EXPECT_EQ(facets_of(make_polygon({{0, 0}, {2, 0}, {2, 2}, {1, 0.5}}).outline), 0u);  // a notch
+  EXPECT_EQ(facets_of(as_container(make_box(4, 2).outline)), 0u);
+  EXPECT_EQ(facets_of(make_disc(1).outline), 0u);
+  EXPECT_EQ(facets_of(make_chain({{0, 0}, {1, 0}, {1, 1}}, true).outline), 0u);  // a wire
+}
+
 TEST(Outline, ArcSamplesStandForTheConvexSide) {
   // a wire arc and the outer arcs of a solid count; the inner side of a hole or container has its convex side
   // in the solid
