@@ -75,6 +75,7 @@ void Views::take_up(int k) {
   f.version = f.version + 1U;
   f.free = kernel_->is_free(k) && motion.acceleration().linear == gravity_ && !kernel_->by_passes();
   f.disc = f.free && is_centred_disc(kernel_->outline_of(k));
+  if (const int component = kernel_->body(k).component; component >= 0) note_start(component, motion.begin());
   if (!f.free) return;
   const BodyState& s = motion.start();
   f.x = s.pose.position.x();
@@ -199,7 +200,8 @@ Meeting Views::bounded_meeting(int k, int owner, const Image& image, double now)
   const bool is_body = owner < body_count();
   const auto speed_of = [&](int s) { return kernel_->site_motion(s).twist(now).velocity.norm(); };
   if (is_body ? !kernel_->extend_motion(owner, now) : !kernel_->extend_sites(now)) return {};
-  limit_view(k, now, speed(k, now) + (is_body ? speed(owner, now) : speed_of(owner - body_count())));
+  limit_view(k, now, speed(k, now) + (is_body ? speed(owner, now) : speed_of(owner - body_count())),
+             is_body ? stride(owner, now) : kForever);
   const double end = std::max(now, std::min(clocks_[k].horizon, until_));
   if (!kernel_->extend_motion(k, end)) return {};
   if (is_body ? !kernel_->extend_motion(owner, end) : !kernel_->extend_sites(end)) return {};
@@ -211,11 +213,31 @@ Meeting Views::bounded_meeting(int k, int owner, const Image& image, double now)
 
 double Views::speed(int k, double now) const { return kernel_->body(k).motion.twist(now).velocity.norm(); }
 
-/// Ends body k's view about when something that closes in at that speed could have crossed a cell.
-void Views::limit_view(int k, double now, double closing) {
+void Views::note_start(int component, double start) {
+  if (static_cast<std::size_t>(component) >= paces_.size()) paces_.resize(component + 1);
+  Pace& pace = paces_[component];
+  if (start <= pace.start) return;
+  const double time = start - pace.start;
+  pace.typical = std::isinf(pace.typical) ? time : 0.5 * (pace.typical + time);
+  pace.start = start;
+}
+
+/// How far ahead to look at a body from now [s]: what an integrator has done is thrown away when a collision
+/// starts its component afresh, so no farther than it has come since, or a part of what it typically comes.
+double Views::stride(int k, double now) const {
+  const int component = kernel_->body(k).component;
+  if (component < 0) return kForever;
+  const Pace& pace = paces_[component];
+  return std::max(now - pace.start, 0.25 * pace.typical);
+}
+
+/// Ends body k's view about when something that closes in at that speed could have crossed a cell, or after
+/// the stride, if that is not next to nothing.
+void Views::limit_view(int k, double now, double closing, double stride) {
   const double cell = near_->cell_size(k),
                length = std::isfinite(cell) ? cell : 4.0 * kernel_->world().length();
-  const double end = now + length / (closing + 1e-2 * length);
+  const double window = length / (closing + 1e-2 * length);
+  const double end = now + std::max(std::min(window, stride), 1e-3 * window);
   // a view that holds to the end of the run ends just after it
   clocks_[k].horizon = std::min(clocks_[k].horizon, end >= until_ ? std::nextafter(until_, kForever) : end);
 }
@@ -228,7 +250,7 @@ bool Views::begin_window(int k, double now) {
   const Vec2 place = kernel_->body(k).motion.pose(now).position;
   near_->settle(k, place);
   clock.exit = kForever;
-  limit_view(k, now, speed(k, now));
+  limit_view(k, now, speed(k, now), stride(k, now));
   const double end = std::max(now, std::min(clock.horizon, until_));
   if (!kernel_->extend_motion(k, end) || !kernel_->extend_sites(end)) return false;
   const Box box = near_->box_of(k);

@@ -64,7 +64,9 @@ class Views {
   void see_by_pass(int k, double now);
   bool begin_window(int k, double now);
   double speed(int k, double now) const;
-  void limit_view(int k, double now, double closing);
+  void limit_view(int k, double now, double closing, double stride);
+  void note_start(int component, double start);
+  double stride(int k, double now) const;
   Meeting bounded_meeting(int k, int owner, const Image& image, double now);
 
   Kernel* kernel_;
@@ -73,6 +75,11 @@ class Views {
   double until_ = 0.0;
   LargeVector<Flight> flights_;
   LargeVector<BodyClock> clocks_;
+  struct Pace {                                                ///< of a component that an integrator drives
+    double start = 0.0;                                        ///< of its motions [s]
+    double typical = std::numeric_limits<double>::infinity();  ///< time from start to start [s]
+  };
+  std::vector<Pace> paces_;                   ///< of every component
   std::vector<std::vector<Box>> site_boxes_;  ///< what must be reached to touch a still site; empty: anywhere
   std::vector<int> moving_;
   std::optional<Neighbourhood> near_;
