@@ -109,6 +109,32 @@ void two_speeds(benchmark::State& state) {
 }
 BENCHMARK(two_speeds)->ArgName("global_backup")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->Iterations(1);
 
+/// The same on springs, each body on its own: nobody's motion is closed.
+World two_speeds_on_springs() {
+  World world = two_speeds();
+  for (int k = 0; k < static_cast<int>(world.bodies.size()); ++k) {
+    SpringForce spring;
+    spring.body_a = k;
+    spring.at_b = world.bodies[k].initial.pose.position;
+    const bool slow = k < 1024;
+    spring.stiffness = slow ? 1e-6 : 1.0;
+    world.forces.emplace_back(spring);
+  }
+  return world;
+}
+
+void two_speeds_on_springs(benchmark::State& state) {
+  // the first look at everybody counts too: as many collisions as make that little
+  const bool all = state.range(0) != 0;
+  run_for(state, two_speeds_on_springs(), all ? "global_backup" : "body_clocks", all ? 400 : 10000);
+}
+BENCHMARK(two_speeds_on_springs)
+    ->ArgName("global_backup")
+    ->Arg(0)
+    ->Arg(1)
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
+
 void discs_single_purpose(benchmark::State& state) {
   const int n = static_cast<int>(state.range(0));
   const World world = testing::boxed(testing::lattice_gas(n, make_disc(0.5), 0.5));
