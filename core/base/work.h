@@ -25,7 +25,8 @@ struct WorkCounters {
   double body_seconds_thrown_away = 0.0;  ///< simulated time undone by backups and rollbacks [s]
   std::uint64_t certificates_issued = 0;
   std::uint64_t certificates_stale = 0;
-  std::uint64_t certificates_undecided = 0;  ///< searches that stopped short, of an instalment or of their cap
+  std::uint64_t certificates_undecided =
+      0;                                ///< searches that stopped short, of an instalment or of their cap
   std::uint64_t queue_operations = 0;   ///< certificates put into the agenda or taken out
   std::uint64_t pair_searches = 0;      ///< first-contact searches of one pair
   std::uint64_t search_iterations = 0;  ///< certified Newton steps
