@@ -19,8 +19,9 @@ TEST(RandomWorlds, AreSoundAndTheSameInEveryWay) {
   for (std::uint64_t k = 0; k < count; ++k)
     if (!worlds::examine_seed(first + k, {}, tally)) ADD_FAILURE() << "seed " << first + k;
   std::cout << "seeds " << first << " .. " << first + count - 1 << ": " << tally;
+  if (count < 100) return;  // too few to say what most do
   EXPECT_GT(tally.reached_end, static_cast<long>(count) / 4);
-  EXPECT_LT(tally.refused, static_cast<long>(count) / 10 + 1);
+  EXPECT_LT(tally.refused, static_cast<long>(count) / 10);
 }
 
 }  // namespace
