@@ -41,7 +41,15 @@ inline std::string kind_of(const std::string& ending) {
   return kind;
 }
 
-/// Examines the world of a seed; on a fault its scene is written to `BRINK_KEEP` (a folder), if set.
+/// Writes a scene that failed to the folder `BRINK_KEEP`, if that is set.
+inline void keep(const std::string& name, const std::string& text) {
+  const char* folder = std::getenv("BRINK_KEEP");
+  if (!folder) return;
+  std::filesystem::create_directories(folder);
+  std::ofstream(std::filesystem::path(folder) / name) << text;
+}
+
+/// Examines the world of a seed; on a fault its scene is kept.
 inline bool examine_seed(std::uint64_t seed, const Taste& taste, Tally& tally) {
   const std::string text = random_world(seed, taste), name = "seed_" + std::to_string(seed) + ".toml";
   ++tally.worlds;
@@ -63,10 +71,7 @@ inline bool examine_seed(std::uint64_t seed, const Taste& taste, Tally& tally) {
   std::cout << "seed " << seed << " (" << verdict.collisions << " collisions, " << verdict.ending << ")\n";
   for (const std::string& f : verdict.faults) std::cout << "  " << f << "\n";
   std::cout << std::flush;
-  if (const char* keep = std::getenv("BRINK_KEEP")) {
-    std::filesystem::create_directories(keep);
-    std::ofstream(std::filesystem::path(keep) / name) << text;
-  }
+  keep(name, text);
   return false;
 }
 

@@ -12,8 +12,8 @@ using worlds::from_environment;
 // A body that keeps its energy hits its walls for ever; the walls are wires, so the side that it is on is all
 // that holds it. BRINK_SEED moves the seeds.
 TEST(RoomsOfWires, NobodyLeaves) {
-  const std::uint64_t first = from_environment("BRINK_SEED", 1), count = from_environment("BRINK_ROOMS", 40);
-  const std::uint64_t hits = from_environment("BRINK_HITS", 1000);
+  const std::uint64_t first = from_environment("BRINK_SEED", 1), count = from_environment("BRINK_ROOMS", 30);
+  const std::uint64_t hits = from_environment("BRINK_HITS", 500);
   rooms::Tally tally;
   for (std::uint64_t k = 0; k < count; ++k) rooms::stay(first + k, hits, tally);
   std::cout << "seeds " << first << " .. " << first + count - 1 << ": " << tally;

@@ -53,20 +53,18 @@ struct Impact {
   Vec normal;              ///< into the body
   Vec before, after;       ///< velocity of the body's touching point against the other's
   Real push = 0, rub = 0;  ///< impulses along the normal and along left_of(normal)
-  Real speed = 0;          ///< what these velocities are made of: their roundings are relative to it
-  Real slack = 1e-9L;      ///< how large those are
+  Real noise = 0;          ///< how well these velocities are known [m/s]
   Surface surface;
 };
 
 /// What is wrong with it, in words; empty: nothing.
 inline std::string wrong_with(const Impact& i) {
-  const Real small = i.slack * i.speed, closing = -dot(i.normal, i.before);
+  const Real small = i.noise, closing = -dot(i.normal, i.before);
   const Real leaving = dot(i.normal, i.after), slides = dot(left_of(i.normal), i.after);
   if (!(i.push >= 0)) return "pulls";
   if (std::abs(i.rub) > i.surface.friction * i.push * (1 + 1e-9L)) return "friction outside its cone";
   if (i.push > 0 && closing < -small)
-    return "was parting already, at " + std::to_string(static_cast<double>(-closing / i.speed)) +
-           " of the speeds";
+    return "was parting already, at " + std::to_string(static_cast<double>(-closing)) + " m/s";
   if (i.push > 0 && std::abs(leaving - i.surface.restitution * closing) > small)
     return "parts at " + std::to_string(static_cast<double>(leaving)) + " m/s, came at " +
            std::to_string(static_cast<double>(closing)) + ": not as restitution says";

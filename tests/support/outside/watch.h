@@ -156,7 +156,8 @@ class Watch : public Recorder {
     if (off > 1e-8L * length_ + rounding(static_cast<int>(k), t) * 64)
       fault(t, "is " + text(off) + " m from where free flight and the recorded impulses take it",
             static_cast<int>(k), -1);
-    body.astray = 0;
+    body.astray =
+        8 * kUlp * (norm(own.velocity) + std::abs(own.omega) * body.shape.reach + norm(body.flight.pull) * t);
     body.frame = t;
     if (off > rounding(static_cast<int>(k), t)) body.flight = {t, told, body.flight.pull};
   }
@@ -195,19 +196,20 @@ class Watch : public Recorder {
     impact.before = velocity_at(body, arm) - velocity_at(partner, other_arm);
     impact.push = e.impulse_n;
     impact.rub = e.impulse_t;
-    impact.slack = 1e-9L + 8 * rounding(k, t) / norm(arm);
-    if (is_body(other)) impact.slack += 8 * rounding(other, t) / norm(other_arm);
-    impact.speed = norm(body.velocity) + norm(partner.velocity) + std::abs(body.omega) * norm(arm) +
-                   std::abs(partner.omega) * norm(other_arm) + norm(bodies_[k].flight.pull) * t * 1e-6L +
-                   (std::abs(body.omega) + std::abs(partner.omega)) * touching * 1e6L;
+    const Real speed = norm(body.velocity) + norm(partner.velocity) + std::abs(body.omega) * norm(arm) +
+                       std::abs(partner.omega) * norm(other_arm);
+    const Real blur =
+        8 * (kUlp + of_place(k, t) / norm(arm) + (is_body(other) ? of_place(other, t) / norm(other_arm) : 0));
+    impact.noise = (1e-9L + blur) * speed + (std::abs(body.omega) + std::abs(partner.omega)) * touching +
+                   astray(k) + astray(other);
     const Vec impulse = normal * impact.push + left_of(normal) * impact.rub;
     body = pushed(body, bodies_[k].inertia, arm, impulse);
     if (is_body(other)) partner = pushed(partner, bodies_[other].inertia, other_arm, -impulse);
     impact.after = velocity_at(body, arm) - velocity_at(partner, other_arm);
     bodies_[k].flight = {t, body, bodies_[k].flight.pull};
     if (is_body(other)) bodies_[other].flight = {t, partner, bodies_[other].flight.pull};
-    bodies_[k].astray += (impact.slack - 1e-9L) * impact.speed;
-    if (is_body(other)) bodies_[other].astray += (impact.slack - 1e-9L) * impact.speed;
+    bodies_[k].astray += blur * speed;
+    if (is_body(other)) bodies_[other].astray += blur * speed;
     look_at_law(e, impact, k, other, t);
   }
 
@@ -224,8 +226,7 @@ class Watch : public Recorder {
     impact.surface = surface_of(world_, world_.bodies[a].material, other);
     const std::string wrong = wrong_with(impact);
     if (!wrong.empty() && told_.insert({a, b}).second) fault(t, wrong, a, b);
-    if (std::abs(-dot(impact.normal, impact.before) - e.contact.closing_speed) >
-            100 * impact.slack * impact.speed &&
+    if (std::abs(-dot(impact.normal, impact.before) - e.contact.closing_speed) > 100 * impact.noise &&
         told_.insert({a, b}).second)
       fault(t, "another closing speed than recorded", a, b);
   }
@@ -237,13 +238,17 @@ class Watch : public Recorder {
 
   // ---- pairs
 
-  /// What the place of a body at time t is rounded by [m].
-  Real rounding(int k, Real t) const {
+  /// What the place of an owner at time t is rounded by [m].
+  Real of_place(int k, Real t) const {
     const State s = state(k, t);
-    const Real of_place = 4 * kUlp *
-                          (norm(s.place.at) + shape(k).reach * (1 + std::abs(s.place.angle)) +
-                           t * (norm(s.velocity) + std::abs(s.omega) * shape(k).reach));
-    return is_body(k) ? of_place + bodies_[k].astray * (t - bodies_[k].frame) : of_place;
+    return 4 * kUlp *
+           (norm(s.place.at) + shape(k).reach * (1 + std::abs(s.place.angle)) +
+            t * (norm(s.velocity) + std::abs(s.omega) * shape(k).reach));
+  }
+  Real astray(int k) const { return is_body(k) ? bodies_[k].astray : 0; }
+  /// That, and how far its own flight may be off by now [m].
+  Real rounding(int k, Real t) const {
+    return of_place(k, t) + (is_body(k) ? astray(k) * std::max<Real>(0, t - bodies_[k].frame) : 0);
   }
   Real tolerance(int a, int b, Real t) const {
     return 2 * options_.contact_tolerance * length_ + rounding(a, t) + rounding(b, t);
