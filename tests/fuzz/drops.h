@@ -58,10 +58,13 @@ class Maker {
       case 2:
         out_ << "polygon = { vertices = [[-30, -1], [30, -1], [30, 0], [-30, 0]] }" << where;
         break;
-      case 3:  // a bowl of wire, or of something
-        out_ << "arc = { center = [0, 30], radius = 30, from_deg = 180, to_deg = 360 }"
-             << (random_.below(2) ? "\nradius = " + std::to_string(0.5 * w) : "") << where;
+      case 3: {  // a bowl of wire, or of something thick
+        const double thick = random_.below(2) ? 0.5 * w : 0.0;
+        out_ << "arc = { center = [0, " << 30.0 + thick << "], radius = 30, from_deg = 180, to_deg = 360 }";
+        if (thick > 0.0) out_ << "\nradius = " << thick;
+        out_ << where;
         break;
+      }
       case 4:  // a hill
         out_ << "arc = { center = [0, -30], radius = 30, from_deg = 0, to_deg = 180 }" << where;
         break;
