@@ -1,0 +1,78 @@
+#pragma once
+/// Many random worlds, and the tally of them.
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <map>
+
+#include "random_worlds.h"
+#include "world_runs.h"
+
+namespace brink::worlds {
+
+inline std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
+  const char* text = std::getenv(name);
+  return text ? std::strtoull(text, nullptr, 10) : otherwise;
+}
+
+struct Tally {
+  long worlds = 0, runs = 0, looks = 0, reached_end = 0, wrong = 0, refused = 0;
+  std::uint64_t collisions = 0;
+  std::map<std::string, long> endings;
+};
+
+inline std::ostream& operator<<(std::ostream& out, const Tally& t) {
+  out << t.worlds << " worlds, " << t.runs << " runs, " << t.collisions << " collisions, " << t.looks
+      << " looks from outside; " << t.reached_end << " reached the end, " << t.refused << " refused, "
+      << t.wrong << " wrong\n";
+  for (const auto& [what, count] : t.endings) out << "  " << count << " x " << what << "\n";
+  return out;
+}
+
+/// The first words of an ending, without its numbers and names.
+inline std::string kind_of(const std::string& ending) {
+  std::string kind;
+  for (const char c : ending.substr(0, 60)) {
+    if (std::isdigit(static_cast<unsigned char>(c))) break;
+    kind += c;
+  }
+  return kind;
+}
+
+/// Writes a scene that failed to the folder `BRINK_KEEP`, if that is set.
+inline void keep(const std::string& name, const std::string& text) {
+  const char* folder = std::getenv("BRINK_KEEP");
+  if (!folder) return;
+  std::filesystem::create_directories(folder);
+  std::ofstream(std::filesystem::path(folder) / name) << text;
+}
+
+/// Examines the world of a seed; on a fault its scene is kept.
+inline bool examine_seed(std::uint64_t seed, const Taste& taste, Tally& tally) {
+  const std::string text = random_world(seed, taste), name = "seed_" + std::to_string(seed) + ".toml";
+  ++tally.worlds;
+  Verdict verdict;
+  try {
+    verdict = Examiner().examine(text, name);
+  } catch (const BadInput& e) {
+    ++tally.refused;
+    ++tally.endings["refused: " + kind_of(e.what())];
+    return true;
+  }
+  tally.runs += verdict.runs;
+  tally.looks += verdict.looks;
+  tally.collisions += verdict.collisions;
+  tally.reached_end += verdict.reached_end;
+  ++tally.endings[kind_of(verdict.ending)];
+  if (verdict.faults.empty()) return true;
+  ++tally.wrong;
+  std::cout << "seed " << seed << " (" << verdict.collisions << " collisions, " << verdict.ending << ")\n";
+  for (const std::string& f : verdict.faults) std::cout << "  " << f << "\n";
+  std::cout << std::flush;
+  keep(name, text);
+  return false;
+}
+
+}  // namespace brink::worlds

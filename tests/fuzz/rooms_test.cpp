@@ -1,0 +1,26 @@
+// Elastic bodies in rooms of wires, near and far: nobody leaves.
+#include <gtest/gtest.h>
+
+#include "random_worlds_checks.h"
+#include "rooms.h"
+
+namespace brink {
+namespace {
+
+using worlds::from_environment;
+
+// A body that keeps its energy hits its walls for ever; the walls are wires, so the side that it is on is all
+// that holds it. BRINK_SEED moves the seeds.
+TEST(RoomsOfWires, NobodyLeaves) {
+  const std::uint64_t first = from_environment("BRINK_SEED", 1), count = from_environment("BRINK_ROOMS", 30);
+  const std::uint64_t hits = from_environment("BRINK_HITS", 500);
+  rooms::Tally tally;
+  for (std::uint64_t k = 0; k < count; ++k) rooms::stay(first + k, hits, tally);
+  std::cout << "seeds " << first << " .. " << first + count - 1 << ": " << tally;
+  EXPECT_EQ(tally.escaped, 0);
+  EXPECT_EQ(tally.energy_lost, 0);
+  EXPECT_EQ(tally.ended, 0);
+}
+
+}  // namespace
+}  // namespace brink
