@@ -365,7 +365,7 @@ class PairSearch {
   /// steps.
   bool remember(const Half& half, const Feature& f, double t, double noise = 0.0) {
     if (t > window_end_) return true;
-    const FeatureContact contact = t == t_ ? view_.contact_of(half, f, t) : contact_then(half, f, t);
+    const FeatureContact contact = contact_then(half, f, t);
     const bool earlier = best_.sample < 0 || t < best_.time ||
                          (t == best_.time && std::tie(half.s_is_a, best_.sample, best_.site) >
                                                  std::tie(best_.sample_on_a, contact.sample, contact.site));

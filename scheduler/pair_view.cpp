@@ -45,7 +45,7 @@ Feature PairView::vertex_feature(const Half& half, int i, int j, const Nearest& 
 
 Feature PairView::nearest_feature(const Half& half, int i) const {
   const SamplePath now = path(half, i);
-  const FieldAnswer nearest = half.t->index->query(now.q, scratch_.index);
+  const FieldAnswer nearest = half.t->index->query(now.q, scratch_.nearest);
   if (nearest.site < 0) return {};
   return vertex_feature(half, i, nearest.site, nearest_on(half.site(nearest.site), now.q), now);
 }
@@ -131,8 +131,11 @@ void PairView::put(Placing& p, double t) const {
   const BodyState sa = a_.motion->state(t), sb = b_.motion->state(t);
   p.place_noise =
       place_rounding(*a_.motion, sa.pose.position) + place_rounding(*b_.motion, sb.pose.position);
-  p.angle_noise_a = angle_rounding(*a_.motion, sa.pose.angle);
-  p.angle_noise_b = angle_rounding(*b_.motion, sb.pose.angle);
+  const auto turned = [](const Mover& m, double angle) {
+    return is_centred_disc(m.outline()) ? 0.0 : angle_rounding(*m.motion, angle);
+  };
+  p.angle_noise_a = turned(a_, sa.pose.angle);
+  p.angle_noise_b = turned(b_, sb.pose.angle);
   const double noise = p.place_noise + p.angle_noise_a * a_.outline().bounding_radius +
                        p.angle_noise_b * b_.outline().bounding_radius;
   if (noise > kFarOfTolerance * limits_.tolerance) return put_relative(p, t);
