@@ -174,20 +174,21 @@ void PairView::put_relative(Placing& p, double t) const {
   p.angle_noise_b *= finer(*b_.motion);
 }
 
-double PairView::gap_rounding(const Placing& p, const Half& half, int i, const Site& site,
+double PairView::gap_rounding(const Placing& p, const Half& half, int i, double site_distance,
                               const Vec2& q) const {
   const double arm = half.sample(i).p.lpNorm<1>(), distance = q.lpNorm<1>();
   const double of_s = half.s_is_a ? p.angle_noise_a : p.angle_noise_b;
   const double of_t = half.s_is_a ? p.angle_noise_b : p.angle_noise_a;
   // angles once more for their sines; then the roundings of turning, and of the distance to a site as far off
   return p.place_noise + (of_s + 4.0 * kRoundoff) * arm +
-         (of_t + 6.0 * kRoundoff) * distance + 2.0 * kRoundoff * site.a.lpNorm<1>();
+         (of_t + 6.0 * kRoundoff) * distance + 2.0 * kRoundoff * site_distance;
 }
 
 double PairView::nominal_level(const Placing& p, const Half& half, int i, const Site& site,
                                const Vec2& q) const {
   const bool thin = !site.solid && site.radius + half.sample(i).radius == 0.0;
-  return brink::nominal_level(limits_.touch, limits_.tolerance, gap_rounding(p, half, i, site, q), thin);
+  return brink::nominal_level(limits_.touch, limits_.tolerance,
+                              gap_rounding(p, half, i, site.a.lpNorm<1>(), q), thin);
 }
 
 PairView::Doubt PairView::doubt(const Half& half, const Feature& f) const {
