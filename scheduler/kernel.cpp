@@ -22,6 +22,13 @@ BodyState held(const Body& body, BodyState s) {
   return s;
 }
 
+/// The box of a still site where it stands; empty if it moves, or is everywhere.
+Box still_box(const FixedSite& site, bool moves) {
+  if (moves || site.outline->container) return {};
+  const Box box = transformed(*site.outline, site.pose).bounds;
+  return box.grown(1e-12 * (box.low.norm() + box.high.norm()));
+}
+
 void raise_version(BodyTrack& b) { b.version = std::max(b.version, b.last_undone) + 1; }
 
 }  // namespace
@@ -42,13 +49,13 @@ Kernel::Kernel(World world, SolverOptions options)
 
   for (const Body& b : world_.bodies) outlines_.push_back(b.outline.get());
   for (const FixedSite& s : world_.sites) outlines_.push_back(s.outline.get());
-  const int materials = static_cast<int>(world_.materials.size());
-  for (int i = 0; i < materials; ++i)
-    for (int j = 0; j < materials; ++j) pair_materials_.push_back(combined(world_, i, j));
   bodies_.resize(world_.bodies.size());
   for (Component& c : make_components(world_)) add_component(std::move(c));
   work_.component_resets = 0;  // first starts are no resets
-  for (const FixedSite& site : world_.sites) sites_.emplace_back(site);
+  for (const FixedSite& site : world_.sites) {
+    sites_.emplace_back(site);
+    still_boxes_.push_back(still_box(site, sites_.back().moves()));
+  }
   make_indices();
   if (options_.detector == "pass") passes_ = std::make_unique<PassRenderer>(options_.field, &work_);
   if (options_.detector == "depth") depth_ = std::make_unique<DepthDetector>(world_, options_, &work_);

@@ -45,7 +45,10 @@ class Kernel::GroupResolve {
   bool run(std::vector<int>& changed) {
     if (!collect()) return false;
     place();
-    result_ = law()(members_, contacts_);
+    const bool newton = kernel_.options_.order == "lcp" && !kernel_.collapsed();
+    result_ = (newton ? resolve_together : resolve_reflections)(members_, contacts_,
+                                                                [this] { return kernel_.poll(); });
+    if (result_.status == GroupResult::Status::stopped) return false;
     if (result_.status == GroupResult::Status::jam) {
       kernel_.stop(Termination::failed,
                    fmt::format("{} at t = {:.17g}: a group of {} contact(s) that no finite impulses can part",
@@ -59,63 +62,66 @@ class Kernel::GroupResolve {
  private:
   double now() const { return kernel_.time_; }
 
-  /// Of a group that does not end, what endless rebounds with losses come to: none.
-  auto law() -> GroupResult (*)(const std::vector<GroupBody>&, const std::vector<GroupContact>&) {
-    if (!kernel_.collapsed()) return kernel_.options_.order == "lcp" ? resolve_together : resolve_reflections;
-    for (GroupContact& c : contacts_) c.material.restitution = 0.0;
-    return resolve_together;
-  }
-
   /// False on a halt.
   bool collect() {
     group_ = {found_};
+    if (!place_boxes()) return false;
     std::vector<int> reached;
+    std::vector<bool> is_reached(kernel_.body_count(), false);
+    const auto reach = [&](const PairKey& pair) {
+      for (const int k : {pair.body, pair.other_body}) {
+        if (k < 0 || is_reached[k]) continue;
+        is_reached[k] = true;
+        reached.push_back(k);
+      }
+    };
     std::set<PairKey> seen;
-    reach(found_.pair, reached);
-    for (std::size_t i = 0; i < reached.size(); ++i)
-      for (int owner = 0; owner < kernel_.owner_count(); ++owner) {
-        // of bodies with clocks of their own, some may not have come so far
-        if (owner < kernel_.body_count() && !kernel_.extend_motion(owner, now())) return false;
+    reach(found_.pair);
+    for (std::size_t i = 0; i < reached.size(); ++i) {
+      if (!kernel_.poll()) return false;
+      for (int owner = 0; owner < kernel_.owner_count(); ++owner)
         each_image_near(reached[i], owner, [&](const Image& image) {
           const auto pair = kernel_.pair_of(reached[i], owner, image);
-          if (pair && seen.insert(*pair).second && add_touching(*pair)) reach(*pair, reached);
+          if (pair && seen.insert(*pair).second && add_touching(*pair)) reach(*pair);
         });
-      }
+    }
     // one order, whichever contact was found first
     std::sort(group_.begin(), group_.end(),
               [](const Touch& a, const Touch& b) { return a.order() < b.order(); });
     return true;
   }
 
-  static void reach(const PairKey& pair, std::vector<int>& reached) {
-    for (const int k : {pair.body, pair.other_body})
-      if (k >= 0 && std::find(reached.begin(), reached.end(), k) == reached.end()) reached.push_back(k);
+  /// Where every owner is now. False on a halt: of bodies with clocks of their own, some may not have come so
+  /// far.
+  bool place_boxes() {
+    for (int owner = 0; owner < kernel_.owner_count(); ++owner) {
+      if (owner < kernel_.body_count() && !kernel_.extend_motion(owner, now())) return false;
+      boxes_.push_back(kernel_.box_at(owner, now()));
+    }
+    return true;
   }
 
   template <class Visit>
   void each_image_near(int a, int b, Visit&& visit) const {
-    const Outline &first = kernel_.outline_of(a), &second = kernel_.outline_of(b);
-    if (first.container || second.container) return visit(Image{});
-    const auto box_of = [&](int owner, double margin) {
-      Box place;
-      place.add(kernel_.motion_of(owner).pose(now()).position);
-      return place.grown(kernel_.outline_of(owner).bounding_radius + margin);
-    };
-    kernel_.world_.periods.overlaps(box_of(a, kernel_.limits_.tolerance), box_of(b, 0.0), visit);
+    if (kernel_.outline_of(b).container) return visit(Image{});
+    kernel_.world_.periods.overlaps(boxes_[a].grown(kernel_.limits_.tolerance), boxes_[b], visit);
   }
 
   /// Adds the pair's contacts; true if it has any.
   bool add_touching(const PairKey& pair) {
     const SearchLimits& limits = kernel_.limits_;
     bool any = pair == found_.pair;
+    const std::size_t first = group_.size();
     for (const FeatureContact& f : kernel_.touching(pair, limits.tolerance)) {
       if (f.gap > limits.touch && f.gap > f.closing_speed * same_instant(now())) continue;
       any = true;
       const auto same = [&](const Touch& t) {
-        return t.pair == pair && (t.contact.point - f.point).norm() <= kSamePlace * limits.tolerance &&
+        return (t.contact.point - f.point).norm() <= kSamePlace * limits.tolerance &&
                t.contact.normal.dot(f.normal) >= 1.0 - kSameNormal;
       };
-      if (std::none_of(group_.begin(), group_.end(), same)) group_.push_back({pair, f});
+      if (pair == found_.pair && same(found_)) continue;
+      if (std::none_of(group_.begin() + static_cast<std::ptrdiff_t>(first), group_.end(), same))
+        group_.push_back({pair, f});
     }
     return any;
   }
@@ -145,7 +151,6 @@ class Kernel::GroupResolve {
   }
 
   GroupContact contact(const Touch& t) const {
-    const World& world = kernel_.world_;
     const ExtendedContact c = geometry(t);
     const ExtendedState other = other_state(t);
     const RealVec other_arm = c.point - other.position;
@@ -159,9 +164,7 @@ class Kernel::GroupResolve {
       made.other = index_of(t.pair.other_body);
       made.other_arm = other_arm;
     }
-    made.material = combined(world, world.bodies[t.pair.body].material,
-                             t.pair.with_site() ? world.sites[t.pair.other_site].material
-                                                : world.bodies[t.pair.other_body].material);
+    made.material = kernel_.material_of(t.pair);
     return made;
   }
 
@@ -213,7 +216,10 @@ class Kernel::GroupResolve {
 
   bool record() {
     const double time = kernel_.last_event_ = std::max(kernel_.last_event_, now());
-    if (result_.status == GroupResult::Status::endless) tell(EventKind::group, found_, 0, 0, time);
+    if (result_.status == GroupResult::Status::endless) {
+      tell(EventKind::group, found_, 0, 0, time);
+      kernel_.note_taken(found_.pair, static_cast<double>(result_.lost));
+    }
     for (const std::size_t k : events_) {
       kernel_.note_overlap(group_[k].contact.gap);
       kernel_.count_collision(group_[k].pair);
@@ -242,6 +248,7 @@ class Kernel::GroupResolve {
 
   Kernel& kernel_;
   Touch found_;
+  std::vector<Box> boxes_;  ///< of every owner
   std::vector<Touch> group_;
   std::vector<int> bodies_;  ///< ascending
   Real delay_ = 0;           ///< from now to the moment of contact [s]

@@ -13,14 +13,15 @@ namespace brink {
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x314b4e4952420004ULL;  // "\4\0BRINK1"
+constexpr std::uint64_t kMagic = 0x314b4e4952420005ULL;  // "\5\0BRINK1"
 
 class Writer {
  public:
   template <class T>
   void put(const T& value) {
-    const auto* bytes = reinterpret_cast<const std::byte*>(&value);
-    bytes_.insert(bytes_.end(), bytes, bytes + sizeof(T));
+    const std::size_t place = bytes_.size();
+    bytes_.resize(place + sizeof(T));
+    std::memcpy(bytes_.data() + place, &value, sizeof(T));
   }
   std::vector<std::byte> take() { return std::move(bytes_); }
 
@@ -80,6 +81,7 @@ class SnapshotCodec {
     each(k.last_event_);
     each(k.instant_);
     each(k.in_instant_);
+    each(k.taken_);
   }
 };
 
@@ -105,9 +107,11 @@ std::vector<std::byte> Kernel::snapshot() const {
     out.put(c.started);
     for (const BodyState& s : c.start_states) out.put(s);
   }
+  out.put(static_cast<std::uint64_t>(bodies_in_instant_.size()));
+  for (const int k : bodies_in_instant_) out.put(k);
   out.put(static_cast<std::uint64_t>(zeno_.bounces().size()));
-  for (const auto& [pair, bounce] : zeno_.bounces()) {
-    out.put(pair);
+  for (const auto& [feature, bounce] : zeno_.bounces()) {
+    out.put(feature);
     out.put(bounce);
   }
   return out.take();
@@ -148,11 +152,18 @@ void Kernel::restore(std::span<const std::byte> bytes) {
     c.integrator->start(c.started, c.start_states);
     cover(c, time_);
   }
-  std::uint64_t pairs = 0;
-  in.get(pairs);
-  std::map<PairKey, ZenoWatch::Bounce> bounces;
-  for (std::uint64_t i = 0; i < pairs; ++i) {
-    PairKey key;
+  std::uint64_t bodies = 0, features = 0;
+  in.get(bodies);
+  bodies_in_instant_.clear();
+  for (std::uint64_t i = 0; i < bodies; ++i) {
+    int k = 0;
+    in.get(k);
+    bodies_in_instant_.insert(k);
+  }
+  in.get(features);
+  ZenoWatch::Bounces bounces;
+  for (std::uint64_t i = 0; i < features; ++i) {
+    ZenoWatch::Feature key;
     ZenoWatch::Bounce bounce;
     in.get(key);
     in.get(bounce);

@@ -111,8 +111,10 @@ class Timewarp final : public Policy {
     const double from = kernel_->time();
     const std::vector<PairKey> pairs = kernel_->near_pairs(from, end_);
     near_ = pairs.size();
-    for (const PairKey& pair : pairs)
+    for (const PairKey& pair : pairs) {
+      if (!kernel_->poll()) return false;
       if (const auto c = kernel_->search(pair, from, end_)) note(*c);
+    }
     for (int k = 0; k < kernel_->body_count(); ++k) give_a_turn_to(k);
     return kernel_->poll();
   }
