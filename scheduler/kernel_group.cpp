@@ -10,6 +10,7 @@
 #include "brink/core/contacts/group.h"
 #include "brink/scheduler/canonical_time.h"
 #include "brink/scheduler/extended_contact.h"
+#include "brink/scheduler/joint_contacts.h"
 #include "brink/scheduler/kernel.h"
 
 namespace brink {
@@ -20,6 +21,7 @@ namespace {
 /// is found from both sides.
 constexpr double kSamePlace = 10.0;
 constexpr double kSameNormal = 1e-6;
+constexpr double kParting = 1e-6;  ///< of the speed at which a contact was found: more is parting
 
 struct Touch {
   PairKey pair;
@@ -64,8 +66,8 @@ class Kernel::GroupResolve {
 
   /// False on a halt.
   bool collect() {
-    group_ = {found_};
     if (!place_boxes()) return false;
+    add_found();
     std::vector<int> reached;
     std::vector<bool> is_reached(kernel_.body_count(), false);
     const auto reach = [&](const PairKey& pair) {
@@ -85,6 +87,7 @@ class Kernel::GroupResolve {
           if (pair && seen.insert(*pair).second && add_touching(*pair)) reach(*pair);
         });
     }
+    add_found_corner();
     // one order, whichever contact was found first
     std::sort(group_.begin(), group_.end(),
               [](const Touch& a, const Touch& b) { return a.order() < b.order(); });
@@ -115,15 +118,44 @@ class Kernel::GroupResolve {
     for (const FeatureContact& f : kernel_.touching(pair, limits.tolerance)) {
       if (f.gap > limits.touch && f.gap > f.closing_speed * same_instant(now())) continue;
       any = true;
-      const auto same = [&](const Touch& t) {
-        return (t.contact.point - f.point).norm() <= kSamePlace * limits.tolerance &&
-               t.contact.normal.dot(f.normal) >= 1.0 - kSameNormal;
-      };
-      if (pair == found_.pair && same(found_)) continue;
-      if (std::none_of(group_.begin() + static_cast<std::ptrdiff_t>(first), group_.end(), same))
-        group_.push_back({pair, f});
+      for (const FeatureContact& joint : joint(pair, f)) add_unless_there(pair, joint, first);
     }
     return any;
+  }
+
+  std::vector<FeatureContact> joint(const PairKey& pair, const FeatureContact& f) const {
+    BodyState other = kernel_.motion_of(kernel_.other_owner(pair)).state(now());
+    other.pose.position += kernel_.shift_of(pair);
+    return joint_contacts(kernel_.outline_of(pair.body), kernel_.motion_of(pair.body).state(now()),
+                          kernel_.outline_of(kernel_.other_owner(pair)), other, f, kernel_.limits_.tolerance);
+  }
+
+  /// What the contact that was found is made of.
+  void add_found() {
+    for (const FeatureContact& f : joint(found_.pair, found_.contact)) group_.push_back({found_.pair, f});
+  }
+
+  /// Corners that meet can be found where no face is approached. Then the contact is taken as it was found,
+  /// unless the pair is parting anyway.
+  void add_found_corner() {
+    const double speed = found_.contact.closing_speed;
+    const auto of_pair = [&](const Touch& t) { return t.pair == found_.pair; };
+    const auto approaches = [&](const Touch& t) { return of_pair(t) && t.contact.closing_speed > 0.0; };
+    const auto parts = [&](const Touch& t) {
+      return !of_pair(t) || t.contact.closing_speed < -kParting * speed;
+    };
+    if (std::any_of(group_.begin(), group_.end(), approaches)) return;
+    if (!std::all_of(group_.begin(), group_.end(), parts)) group_.push_back(found_);
+  }
+
+  /// Contacts of the pair are those from `first` on, and those of the found one.
+  void add_unless_there(const PairKey& pair, const FeatureContact& f, std::size_t first) {
+    const auto same = [&](const Touch& t) {
+      return t.pair == pair && (t.contact.point - f.point).norm() <= kSamePlace * kernel_.limits_.tolerance &&
+             t.contact.normal.dot(f.normal) >= 1.0 - kSameNormal;
+    };
+    const auto from = group_.begin() + static_cast<std::ptrdiff_t>(pair == found_.pair ? 0 : first);
+    if (std::none_of(from, group_.end(), same)) group_.push_back({pair, f});
   }
 
   void place() {
