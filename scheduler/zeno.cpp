@@ -30,8 +30,9 @@ std::optional<ZenoEnding> ZenoWatch::collided(const Feature& feature, double tim
     end_run(b);
     return std::nullopt;
   }
-  if (b.limit_time == 0.0 && ratio < 1.0) b.limit_time = time + interval * ratio / (1.0 - ratio);
-  const bool pressed = loss == BounceLoss::all || (rest >= interval && ratio <= kNoLonger);
+  if (b.limit_time == 0.0 && loss != BounceLoss::all && ratio < 1.0 - kAlike)
+    b.limit_time = time + interval * ratio / (1.0 - ratio);
+  const bool pressed = loss == BounceLoss::all || (rest >= interval && ratio <= 1.0 + kAlike);
   if (interval < b.shortest || pressed) ++b.low_flights;
   b.shortest = std::min(b.shortest, interval);
   if (b.low_flights < kLowFlights) return std::nullopt;

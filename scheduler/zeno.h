@@ -67,8 +67,8 @@ class ZenoWatch {
 
  private:
   static constexpr std::uint64_t kLowFlights = 10;
-  static constexpr double kHighFlight = 1e6;     ///< in tolerances
-  static constexpr double kNoLonger = 1 + 1e-6;  ///< times the last interval
+  static constexpr double kHighFlight = 1e6;  ///< in tolerances
+  static constexpr double kAlike = 1e-6;      ///< intervals with a ratio so near to 1 are of one length
   double tolerance_;
   Bounces bounces_;
 };
