@@ -14,6 +14,19 @@ namespace brink {
 namespace {
 
 constexpr double kTouchOfTolerance = 1e-3;  ///< touch / contact tolerance
+constexpr double kMostPairs = 1e7;          ///< that are kept at once: 400 MB
+
+/// @throws BadInput where every pair is to be looked at, and there are too many to keep.
+void check_pairs(const World& world, const SolverOptions& options) {
+  const auto bodies = static_cast<double>(world.bodies.size()),
+             sites = static_cast<double>(world.sites.size());
+  const double pairs = bodies * (0.5 * bodies + sites);
+  if (options.skip_broad_phase || options.policy == "body_clocks" || pairs <= kMostPairs) return;
+  throw BadInput(
+      fmt::format("solver: skip_broad_phase = false, and {} bodies and {} sites make {:.3g} pairs; allowed "
+                  "without a broad phase: up to {:.0e}",
+                  bodies, sites, pairs, kMostPairs));
+}
 
 BodyState held(const Body& body, BodyState s) {
   if (body.lock_x) s.twist.velocity.x() = 0.0;
@@ -41,6 +54,7 @@ Kernel::Kernel(World world, SolverOptions options)
   if (world_.periods.any() && options_.detector != "field")
     throw BadInput("solver: detector = \"" + options_.detector +
                    "\" in a periodic world; allowed there: \"field\"");
+  check_pairs(world_, options_);
   limits_.tolerance = options_.contact_tolerance * world_.length();
   limits_.touch = kTouchOfTolerance * limits_.tolerance;
   reflects_ = options_.response == "reflection";

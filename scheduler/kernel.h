@@ -6,7 +6,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -20,6 +19,7 @@
 #include "brink/scheduler/ask_clock.h"
 #include "brink/scheduler/body_track.h"
 #include "brink/scheduler/depth_detector.h"
+#include "brink/scheduler/instant_bodies.h"
 #include "brink/scheduler/options.h"
 #include "brink/scheduler/pair_materials.h"
 #include "brink/scheduler/recorder.h"
@@ -137,8 +137,9 @@ class Kernel {
   bool resolve(const PairKey& pair, const FeatureContact& contact, std::vector<int>& changed);
   /// Puts a body elsewhere, at the present time (approximate policies only).
   void displace(int body, const Vec2& shift);
-  /// Records frames due up to and including t; checks them for overlaps.
-  void record_frames(double t);
+  /// Records frames due up to and including t; checks them for overlaps. False on a halt: the clock is then
+  /// at the last of them.
+  bool record_frames(double t);
   /// Asks `progress` whether to go on, each few thousand search iterations or collisions, and ten times a
   /// second in loops that do neither. Cheap: to be called in every loop that may take long. False on a halt.
   bool poll();
@@ -350,7 +351,7 @@ class Kernel {
   double last_event_ = 0.0;   ///< time of the last event recorded [s]
   double instant_ = -1.0;     ///< time of the current group of collisions
   std::uint64_t in_instant_ = 0;
-  std::set<int> bodies_in_instant_;  ///< of those collisions, but for the first few
+  InstantBodies bodies_in_instant_;
   TakenGroups taken_;
   RunOptions run_;
   std::uint64_t polled_ = 0;  ///< work done when `progress` was last asked

@@ -47,9 +47,7 @@ class Kernel::GroupResolve {
   bool run(std::vector<int>& changed) {
     if (!collect()) return false;
     place();
-    const bool newton = kernel_.options_.order == "lcp" && !kernel_.collapsed();
-    result_ = (newton ? resolve_together : resolve_reflections)(members_, contacts_,
-                                                                [this] { return kernel_.poll(); });
+    result_ = ask_the_law();
     if (result_.status == GroupResult::Status::stopped) return false;
     if (result_.status == GroupResult::Status::jam) {
       kernel_.stop(Termination::failed,
@@ -63,6 +61,18 @@ class Kernel::GroupResolve {
 
  private:
   double now() const { return kernel_.time_; }
+
+  /// Of a group that does not end one by one: where every contact loses, what endless rebounds with losses
+  /// come to, no rebound; else reflections, after which nothing approaches.
+  GroupResult ask_the_law() {
+    const GoOn go_on = [this] { return kernel_.poll(); };
+    const auto loses = [](const GroupContact& c) { return c.material.restitution < 1.0; };
+    const bool collapsed = kernel_.collapsed();
+    if (collapsed && std::all_of(contacts_.begin(), contacts_.end(), loses))
+      for (GroupContact& c : contacts_) c.material.restitution = 0.0;
+    return kernel_.options_.order == "lcp" && !collapsed ? resolve_together(members_, contacts_, go_on)
+                                                         : resolve_reflections(members_, contacts_, go_on);
+  }
 
   /// False on a halt.
   bool collect() {

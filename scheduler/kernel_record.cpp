@@ -38,12 +38,11 @@ void Kernel::begin(const RunOptions& options, Recorder* recorder) {
   check_overlaps_at(time_);
 }
 
-void Kernel::record_frames(double t) {
+bool Kernel::record_frames(double t) {
   if (watched_) hold_to_known(t);
-  if (run_.frame_interval <= 0.0) return;
-  for (;;) {
+  while (run_.frame_interval > 0.0 && !halt_) {
     const double due = static_cast<double>(frame_ + 1) * run_.frame_interval;
-    if (due > t) return;
+    if (due > t) break;
     const StageClock clock(work_.seconds_record);
     ++frame_;
     last_frame_ = due;
@@ -51,7 +50,9 @@ void Kernel::record_frames(double t) {
     if (recorder_) recorder_->frame(due, states(due));
     check_overlaps_at(due);
     swap_with_certain();
+    if (!poll()) time_ = due;  // all is clear up to t, and so up to here
   }
+  return !halt_;
 }
 
 void Kernel::end_frame() {

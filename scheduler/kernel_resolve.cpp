@@ -17,8 +17,6 @@ namespace brink {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-/// Collisions of an instant after which it is worth counting whose they are.
-constexpr std::uint64_t kLongInstant = 64;
 /// In an instant of so many the next are taken together, however many bodies there are: it takes seconds.
 constexpr std::uint64_t kLongestInstant = 200000;
 
@@ -150,7 +148,7 @@ bool Kernel::restart_noted(std::span<const Restart> touched, std::vector<int>& c
 }
 
 std::uint64_t Kernel::endless_group() const {
-  const std::uint64_t bodies = bodies_in_instant_.size();
+  const std::uint64_t bodies = bodies_in_instant_.count();
   return 2000 + std::min(10 * bodies * bodies, kLongestInstant);
 }
 
@@ -160,9 +158,8 @@ void Kernel::count_in_instant(const PairKey& pair) {
     in_instant_ = 0;
     bodies_in_instant_.clear();
   }
-  if (++in_instant_ <= kLongInstant) return;
-  bodies_in_instant_.insert(pair.body);
-  if (!pair.with_site()) bodies_in_instant_.insert(pair.other_body);
+  ++in_instant_;
+  bodies_in_instant_.add(pair);
 }
 
 void Kernel::note_taken(const PairKey& pair, double lost) {

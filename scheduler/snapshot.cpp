@@ -107,8 +107,10 @@ std::vector<std::byte> Kernel::snapshot() const {
     out.put(c.started);
     for (const BodyState& s : c.start_states) out.put(s);
   }
-  out.put(static_cast<std::uint64_t>(bodies_in_instant_.size()));
-  for (const int k : bodies_in_instant_) out.put(k);
+  const std::vector<int> in_instant = bodies_in_instant_.list();
+  out.put(bodies_in_instant_.often());
+  out.put(static_cast<std::uint64_t>(in_instant.size()));
+  for (const int k : in_instant) out.put(k);
   out.put(static_cast<std::uint64_t>(zeno_.bounces().size()));
   for (const auto& [feature, bounce] : zeno_.bounces()) {
     out.put(feature);
@@ -152,14 +154,16 @@ void Kernel::restore(std::span<const std::byte> bytes) {
     c.integrator->start(c.started, c.start_states);
     cover(c, time_);
   }
+  bool often = false;
   std::uint64_t bodies = 0, features = 0;
+  in.get(often);
   in.get(bodies);
-  bodies_in_instant_.clear();
+  std::vector<int> in_instant;
   for (std::uint64_t i = 0; i < bodies; ++i) {
-    int k = 0;
-    in.get(k);
-    bodies_in_instant_.insert(k);
+    in_instant.emplace_back();
+    in.get(in_instant.back());
   }
+  bodies_in_instant_.restore(in_instant, often);
   in.get(features);
   ZenoWatch::Bounces bounces;
   for (std::uint64_t i = 0; i < features; ++i) {

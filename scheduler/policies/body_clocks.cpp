@@ -45,8 +45,10 @@ class BodyClocks final : public Policy {
       serve(queue_.body());
     }
     if (kernel.halt()) return views_.reset();  // in the middle of something: to go on, look at all anew
-    kernel.record_frames(until);
-    kernel.advance_all(until);
+    if (kernel.record_frames(until))
+      kernel.advance_all(until);
+    else
+      views_.reset();
   }
 
  private:
@@ -224,7 +226,7 @@ class BodyClocks final : public Policy {
   }
 
   void collide(const Certificate& c) {
-    kernel_->record_frames(c.time);
+    if (!kernel_->record_frames(c.time)) return;
     kernel_->advance_pair(c.pair, c.time);
     views_->expect_look(c.pair.body);
     if (!c.pair.with_site()) views_->expect_look(c.pair.other_body);

@@ -53,12 +53,12 @@ class Timewarp final : public Policy {
       if (kernel_->halt()) return false;
       const auto next = take_earliest(*kernel_, agenda_);
       if (!next) break;
-      kernel_->record_frames(next->time);
+      if (!kernel_->record_frames(next->time)) return false;
       if (!make_certain(*next)) return false;
     }
-    kernel_->record_frames(end_);
+    if (!kernel_->record_frames(end_)) return false;
     kernel_->advance_all(end_);
-    return !kernel_->halt();
+    return true;
   }
 
   // -- what is certain --

@@ -1,6 +1,7 @@
 /// Endings: what looks like the end of a series and is not one, groups without end, starts that cannot be.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -120,6 +121,36 @@ TEST(Instants, SiteThatTurnsWithinARoundingOfTheClockDoesNotCrash) {
       };
       EXPECT_NE(simulator.run(options).termination, Termination::not_run) << policy << ", " << order;
     }
+}
+
+// Stopped again and again, wherever it asks, and gone on with: every frame once and in order, and the state
+// of the undisturbed run.
+TEST(Stops, LeaveNoGapAndNothingTwiceInTheFrames) {
+  World world;
+  for (int k = 0; k < 12; ++k)
+    add(world,
+        body(make_box(0.3, 0.2), {0.6 * (k % 4), 0.6 * (k / 4)}, {std::cos(k), std::sin(k)}, 1.0, k, 1.0));
+  FixedSite room = site(make_box(6, 6), {1, 1});
+  room.outline = std::make_shared<Outline>(as_container(make_box(6, 6).outline));
+  add(world, room);
+  RunOptions whole = until(4.0);
+  whole.frame_interval = 1.0 / 128.0;
+  for (const char* policy : kPolicies) {
+    Simulator undisturbed(world, by(policy)), stopped(world, by(policy));
+    Events all, pieces;
+    undisturbed.run(whole, &all);
+    RunOptions piece = whole;
+    int asked = 0, stops = 0;
+    piece.progress = [&](double, std::uint64_t) { return ++asked % 7 != 0; };
+    while (stopped.run(piece, &pieces).termination == Termination::stopped && ++stops < 10000)
+      piece.first_frame = false;
+    EXPECT_GT(stops, 0) << policy;
+    EXPECT_EQ(stopped.state_hash(), undisturbed.state_hash()) << policy << ", " << stops << " stops";
+    EXPECT_TRUE(std::is_sorted(pieces.frame_times.begin(), pieces.frame_times.end())) << policy;
+    for (const double t : all.frame_times)
+      EXPECT_EQ(std::count(pieces.frame_times.begin(), pieces.frame_times.end(), t), 1)
+          << policy << " at " << t;
+  }
 }
 
 // Fifty million overlapping pairs: the first are named.
