@@ -100,11 +100,15 @@ OutlineCrossing deepest_crossing(const Outline& a, const Pose& pose_a, const Out
       const double depth = reach_through(s, t, point);
       if (depth > deepest.depth) deepest = {depth, point, perp((t.b - t.a).normalized())};
     }
-  if (deepest.depth > 0.0 || !is_sharp_solid(a) || !is_sharp_solid(b)) return deepest;
+  // edges that coincide may cross by a rounding
+  const bool is_clear = deepest.depth > kBelow * std::min(a.bounding_radius, b.bounding_radius);
+  if (is_clear || !is_sharp_solid(a) || !is_sharp_solid(b)) return deepest;
   const PlacedSolid solid_a{a, pose_a}, solid_b{b, pose_b};
   const OutlineCrossing below_a = shared_below_edges(solid_a, of_a, solid_b, of_b);
   const OutlineCrossing below_b = shared_below_edges(solid_b, of_b, solid_a, of_a);
-  return below_b.depth > below_a.depth ? below_b : below_a;
+  for (const OutlineCrossing& c : {below_a, below_b})
+    if (c.depth > deepest.depth) deepest = c;
+  return deepest;
 }
 
 }  // namespace brink

@@ -12,10 +12,10 @@ struct OutlineCrossing {
 };
 
 /// The deepest crossing of a segment of `a` with one of `b`: how far the nearer end reaches through. Where
-/// none cross, two solids may still share an inside, along edges that coincide or from vertex on edge to
-/// vertex on edge (boxes of one height in one row; a shape on itself): then a place in both, and how deep it
-/// lies in the one that has it less deep. Arcs are left out: an arc that crosses has an end, or its own
-/// sample, inside. Cost: all pairs of segments.
+/// none cross by more than rounding, two solids may still share an inside, along edges that coincide or from
+/// vertex on edge to vertex on edge (boxes of one height in one row; a shape on itself): then a place in
+/// both, and how deep it lies in the one that has it less deep. Arcs are left out: an arc that crosses has an
+/// end, or its own sample, inside. Cost: all pairs of segments.
 OutlineCrossing deepest_crossing(const Outline& a, const Pose& pose_a, const Outline& b, const Pose& pose_b);
 
 }  // namespace brink

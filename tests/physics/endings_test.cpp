@@ -19,6 +19,8 @@ using testing::until;
 
 constexpr const char* kPolicies[] = {"body_clocks", "global_backup", "island_backup", "timewarp"};
 
+std::string numbered(std::string name, int k) { return name.append(std::to_string(k)); }
+
 SolverOptions by(const char* policy, const char* order = "index") {
   SolverOptions options;
   options.policy = policy;
@@ -133,15 +135,15 @@ TEST(Stops, LeaveNoGapAndNothingTwiceInTheFrames) {
   FixedSite room = site(make_box(6, 6), {1, 1});
   room.outline = std::make_shared<Outline>(as_container(make_box(6, 6).outline));
   add(world, room);
-  RunOptions whole = until(4.0);
-  whole.frame_interval = 1.0 / 128.0;
+  RunOptions whole = until(20.0);
+  whole.frame_interval = 1.0 / 32.0;
   for (const char* policy : kPolicies) {
     Simulator undisturbed(world, by(policy)), stopped(world, by(policy));
     Events all, pieces;
     undisturbed.run(whole, &all);
     RunOptions piece = whole;
     int asked = 0, stops = 0;
-    piece.progress = [&](double, std::uint64_t) { return ++asked % 7 != 0; };
+    piece.progress = [&](double, std::uint64_t) { return ++asked % 2 != 0; };
     while (stopped.run(piece, &pieces).termination == Termination::stopped && ++stops < 10000)
       piece.first_frame = false;
     EXPECT_GT(stops, 0) << policy;
@@ -159,7 +161,7 @@ TEST(Starts, TenThousandBodiesInOnePlaceAreRefusedByTheFirstFew) {
   const Body disc = body(make_disc(0.1), {0, 0}, {1, 0});
   for (int k = 0; k < 10000; ++k) {
     add(world, disc);
-    world.bodies.back().name = "b" + std::to_string(k);
+    world.bodies.back().name = numbered("b", k);
   }
   Simulator simulator(world, {});
   EXPECT_NE(simulator.start_fault().find("overlap by 0.2 m"), std::string::npos) << simulator.start_fault();
@@ -195,6 +197,7 @@ TEST(Starts, SitesFarAwayAndHugeInAPeriodicWorld) {
 TEST(Starts, MaterialsAreCombinedWhereTheyMeet) {
   World world;
   world.materials.assign(10000, Material{});
+  for (int k = 0; k < 10000; ++k) world.materials[k].name = numbered("m", k);
   world.materials[7].restitution = 0.5;
   world.restitution_rule = Combine::min;
   add(world, body(make_disc(0.5), {0, 0}, {1, 0}));

@@ -43,7 +43,7 @@ TEST(OutlineCrossing, NeighboursThatTouchAreNone) {
     EXPECT_EQ(depth(box, {{along, 1.0}, 0.0}, wide, {}), 0.0) << along;
     EXPECT_EQ(depth(box, {{along, 0.0}, 0.0}, room, {}), 0.0) << along;
   }
-  EXPECT_GT(depth(box, {{1.2, 0.0}, 0.0}, room, {}), 0.1);  // in the wall
+  EXPECT_GT(depth(box, {{1.2, 0.0}, 0.0}, room, {}), 0.05);  // in the wall
 }
 
 }  // namespace
