@@ -130,8 +130,8 @@ TEST(Instants, SiteThatTurnsWithinARoundingOfTheClockDoesNotCrash) {
 TEST(Stops, LeaveNoGapAndNothingTwiceInTheFrames) {
   World world;
   for (int k = 0; k < 12; ++k)
-    add(world,
-        body(make_box(0.3, 0.2), {0.6 * (k % 4), 0.6 * (k / 4)}, {std::cos(k), std::sin(k)}, 1.0, k, 1.0));
+    add(world, body(make_box(0.3, 0.2), {0.6 * (k % 4), 0.6 * (k / 4)}, {10 * std::cos(k), 10 * std::sin(k)},
+                    1.0, k, 1.0));
   FixedSite room = site(make_box(6, 6), {1, 1});
   room.outline = std::make_shared<Outline>(as_container(make_box(6, 6).outline));
   add(world, room);
