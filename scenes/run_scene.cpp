@@ -39,6 +39,8 @@ std::optional<RunReport> finished_report(const Scene& scene, const std::filesyst
   if (report.summary.end_time < until) return std::nullopt;
   report.summary.termination = Termination::reached_end;
   report.json = run.meta("summary").value_or("{}");
+  if (const auto j = nlohmann::json::parse(report.json, nullptr, false); j.is_object())
+    report.summary.groups_taken = j.value("groups_taken", std::uint64_t{0});
   report.file = file;
   report.finished_before = true;
   return report;
@@ -102,6 +104,7 @@ RunReport run_scene(const Scene& scene, const RunRequest& request) {
   if (!request.trace.empty()) trace.emplace(request.trace, simulator.world());
   RunOptions options = run_options(scene, request, until, recorder);
   options.trace = trace ? &*trace : nullptr;
+  if (request.begins) request.begins();
   try {
     report.summary = simulator.run(options, &recorder);
   } catch (const std::exception& e) {
@@ -130,6 +133,8 @@ std::string summary_to_json(const RunSummary& summary, double load_seconds) {
                                     {"momentum_y", summary.momentum.y()},
                                     {"angular_momentum", summary.angular_momentum},
                                     {"max_overlap", summary.max_overlap},
+                                    {"groups_taken", summary.groups_taken},
+                                    {"energy_taken", summary.energy_taken},
                                     {"state_hash", fmt::format("{:016x}", summary.state_hash)},
                                     {"work", std::move(work)}};
   return j.dump();

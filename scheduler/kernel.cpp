@@ -14,11 +14,32 @@ namespace brink {
 
 namespace {
 
+constexpr double kMostPairs = 1e7;          ///< that are kept at once: 400 MB
+
+/// @throws BadInput where every pair is to be looked at, and there are too many to keep.
+void check_pairs(const World& world, const SolverOptions& options) {
+  const auto bodies = static_cast<double>(world.bodies.size()),
+             sites = static_cast<double>(world.sites.size());
+  const double pairs = bodies * (0.5 * bodies + sites);
+  if (options.skip_broad_phase || options.policy == "body_clocks" || pairs <= kMostPairs) return;
+  throw BadInput(
+      fmt::format("solver: skip_broad_phase = false, and {} bodies and {} sites make {:.3g} pairs; allowed "
+                  "without a broad phase: up to {:.0e}",
+                  bodies, sites, pairs, kMostPairs));
+}
+
 BodyState held(const Body& body, BodyState s) {
   if (body.lock_x) s.twist.velocity.x() = 0.0;
   if (body.lock_y) s.twist.velocity.y() = 0.0;
   if (body.lock_angle) s.twist.omega = 0.0;
   return s;
+}
+
+/// The box of a still site where it stands; empty if it moves, or is everywhere.
+Box still_box(const FixedSite& site, bool moves) {
+  if (moves || site.outline->container) return {};
+  const Box box = transformed(*site.outline, site.pose).bounds;
+  return box.grown(1e-12 * (box.low.norm() + box.high.norm()));
 }
 
 void raise_version(BodyTrack& b) { b.version = std::max(b.version, b.last_undone) + 1; }
@@ -33,6 +54,7 @@ Kernel::Kernel(World world, SolverOptions options)
   if (world_.periods.any() && options_.detector != "field")
     throw BadInput("solver: detector = \"" + options_.detector +
                    "\" in a periodic world; allowed there: \"field\"");
+  check_pairs(world_, options_);
   limits_.tolerance = options_.contact_tolerance * world_.length();
   limits_.touch = kTouchOfTolerance * limits_.tolerance;
   reflects_ = options_.response == "reflection";
@@ -41,13 +63,13 @@ Kernel::Kernel(World world, SolverOptions options)
 
   for (const Body& b : world_.bodies) outlines_.push_back(b.outline.get());
   for (const FixedSite& s : world_.sites) outlines_.push_back(s.outline.get());
-  const int materials = static_cast<int>(world_.materials.size());
-  for (int i = 0; i < materials; ++i)
-    for (int j = 0; j < materials; ++j) pair_materials_.push_back(combined(world_, i, j));
   bodies_.resize(world_.bodies.size());
   for (Component& c : make_components(world_)) add_component(std::move(c));
   work_.component_resets = 0;  // first starts are no resets
-  for (const FixedSite& site : world_.sites) sites_.emplace_back(site);
+  for (const FixedSite& site : world_.sites) {
+    sites_.emplace_back(site);
+    still_boxes_.push_back(still_box(site, sites_.back().moves()));
+  }
   make_indices();
   if (options_.detector == "pass") passes_ = std::make_unique<PassRenderer>(options_.field, &work_);
   if (options_.detector == "depth") depth_ = std::make_unique<DepthDetector>(world_, options_, &work_);

@@ -2,6 +2,7 @@
 /// The simulator's kernel of verbs: advance, pass, back up, resolve, record. Policies say when; only the
 /// kernel acts.
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -15,9 +16,12 @@
 #include "brink/core/world/forces.h"
 #include "brink/scheduler/agenda.h"
 #include "brink/scheduler/ahead.h"
+#include "brink/scheduler/ask_clock.h"
 #include "brink/scheduler/body_track.h"
 #include "brink/scheduler/depth_detector.h"
+#include "brink/scheduler/instant_bodies.h"
 #include "brink/scheduler/options.h"
+#include "brink/scheduler/pair_materials.h"
 #include "brink/scheduler/recorder.h"
 #include "brink/scheduler/simulator.h"
 #include "brink/scheduler/site_motion.h"
@@ -30,6 +34,14 @@ namespace brink {
 struct Halt {
   Termination termination = Termination::failed;
   std::string why;
+};
+
+/// Groups of contacts that had to be taken together with a loss that their materials do not have.
+struct TakenGroups {
+  std::uint64_t count = 0;
+  double energy = 0.0;  ///< that it took [J]
+  PairKey first;        ///< the first group was found at this pair ...
+  double time = 0.0;    ///< ... at this time [s]
 };
 
 struct DiscRebound;
@@ -70,6 +82,8 @@ class Kernel {
   /// Null, or who is to be told what is done with a body.
   TraceSink* trace() const { return run_.trace; }
   double max_overlap() const { return max_overlap_; }
+  const TakenGroups& taken() const { return taken_; }
+  std::string name_of(const PairKey& pair) const;
 
   // -- verbs --
   /// Makes sure that every motion covers [.., t]. False (and halt() says why) if an integrator cannot.
@@ -124,9 +138,11 @@ class Kernel {
   bool resolve(const PairKey& pair, const FeatureContact& contact, std::vector<int>& changed);
   /// Puts a body elsewhere, at the present time (approximate policies only).
   void displace(int body, const Vec2& shift);
-  /// Records frames due up to and including t; checks them for overlaps.
-  void record_frames(double t);
-  /// Asks `progress` whether to go on, each few thousand search iterations or collisions. False on a halt.
+  /// Records frames due up to and including t; checks them for overlaps. False on a halt: the clock is then
+  /// at the last of them.
+  bool record_frames(double t);
+  /// Asks `progress` whether to go on, each few thousand search iterations or collisions, and ten times a
+  /// second in loops that do neither. Cheap: to be called in every loop that may take long. False on a halt.
   bool poll();
   /// Records that a pair's search cannot tell, and ends the run.
   void give_up(const Certificate& c);
@@ -184,9 +200,10 @@ class Kernel {
   /// Records the last frame, at the present time, unless the frame clock has just done so.
   void end_frame();
   std::uint64_t collisions() const { return work_.collisions; }
-  std::vector<Contact> overlaps();
-  /// False, and the deepest overlap in *why, if pairs overlap at the present time by more than rounding of a
-  /// file.
+  /// See Simulator.
+  std::vector<Contact> overlaps(std::size_t most);
+  /// False, and the deepest of the first overlaps in *why, if pairs overlap at the present time by more than
+  /// rounding of a file.
   bool may_start(std::string* why);
   Plan plan() const;
   /// The horizon that a policy last chose; kept here so that a resumed run does the same work.
@@ -256,11 +273,15 @@ class Kernel {
   /// Marks every body, if there is a trace.
   void trace_all(TraceKind kind, double from, double to) const;
   void note_overlap(double gap) { max_overlap_ = std::max(max_overlap_, -gap); }
-  std::vector<PairKey> neighbours_at(double t) const;
+  /// Calls visit for each pair whose boxes at t overlap, until it returns false.
+  void each_near_at(double t, const std::function<bool(const PairKey&)>& visit) const;
+  /// What holds an owner at t; a still site's own box, not a disc's: it may lie far from its frame's origin.
+  Box box_at(int owner, double t) const;
   std::vector<PairKey> overlapping(const std::vector<Box>& boxes) const;
   void check_overlaps_at(double t);
   /// The deepest overlap that is none [m]: the contact tolerance, or what the world started with.
   double allowed_overlap() const { return std::max(limits_.tolerance, start_overlap_); }
+  bool check_overlap(const PairKey& pair, double t);
   /// After a resolve at the present time. False on a halt.
   bool check_resolved(const PairKey& pair, const FeatureContact& found);
   /// Before body k is resolved at time `to`. False on a halt.
@@ -291,18 +312,22 @@ class Kernel {
   bool deflect(const PairKey& pair, const Response& response, std::vector<int>& changed);
   /// Collisions of one instant that are taken to be without end: a row of n touching bodies can need n^2 / 2.
   std::uint64_t endless_group() const;
-  /// True if the present instant has had so many: its contacts are then taken together, without a rebound.
+  /// True if the present instant has had so many: its contacts are then taken together.
   bool collapsed() const;
+  /// Counts a collision of the present instant, or the first of a new one.
+  void count_in_instant(const PairKey& pair);
+  /// Notes that a group was taken with a loss [J] that its materials do not have.
+  void note_taken(const PairKey& pair, double lost);
   class GroupResolve;
   bool resolve_group(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed);
   void count_collision(const PairKey& pair);
   bool records_events() const { return recorder_ && run_.record_events; }
   void record_ending(EventKind kind, const Outcome& outcome, double time);
   bool judge_endings(const Outcome& outcome);
+  BounceLoss loss_of(const PairKey& pair) const;
   /// Notes that a body has been resolved now, with owner `partner`; returns the time since its last [s].
   double note_resolve(int body, int partner, double magnitude);
   Contact world_contact(const PairKey& pair, const FeatureContact& f) const;
-  std::string name_of(const PairKey& pair) const;
 
   World world_;
   SolverOptions options_;
@@ -314,8 +339,9 @@ class Kernel {
   AheadLog ahead_;
   std::vector<Coupled> components_;
   std::vector<SiteMotion> sites_;
+  std::vector<Box> still_boxes_;          ///< of every site where it stands; empty if it moves
   std::vector<const Outline*> outlines_;  ///< of every owner
-  std::vector<Material> pair_materials_;  ///< of material i on material j, at i n + j
+  mutable PairMaterials pair_materials_;
   std::vector<const SiteIndex*> body_index_, site_index_;
   std::vector<std::unique_ptr<SiteIndex>> indices_;
   std::unique_ptr<PassRenderer> passes_;
@@ -344,8 +370,11 @@ class Kernel {
   double last_event_ = 0.0;   ///< time of the last event recorded [s]
   double instant_ = -1.0;     ///< time of the current group of collisions
   std::uint64_t in_instant_ = 0;
+  InstantBodies bodies_in_instant_;
+  TakenGroups taken_;
   RunOptions run_;
   std::uint64_t polled_ = 0;  ///< work done when `progress` was last asked
+  AskClock ask_;
   Recorder* recorder_ = nullptr;
   double next_checkpoint_ = 0.0;  ///< wall clock [s]
 };

@@ -17,6 +17,8 @@ namespace brink {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+/// In an instant of so many the next are taken together, however many bodies there are: it takes seconds.
+constexpr std::uint64_t kLongestInstant = 200000;
 
 ImpulseSide body_side(const Body& body, const ExtendedState& state, const RealVec& point) {
   return {state.twist, point - state.position, body.inverse_mass_x(), body.inverse_mass_y(),
@@ -160,7 +162,27 @@ bool Kernel::restart_noted(std::span<const Restart> touched, std::vector<int>& c
 }
 
 std::uint64_t Kernel::endless_group() const {
-  return 2000 + 10 * static_cast<std::uint64_t>(bodies_.size()) * bodies_.size();
+  const std::uint64_t bodies = bodies_in_instant_.count() + 2;  // a row may have ends yet to be reached
+  return 2000 + std::min(10 * bodies * bodies, kLongestInstant);
+}
+
+void Kernel::count_in_instant(const PairKey& pair) {
+  if (time_ - instant_ > 2.0 * same_instant(time_)) {
+    instant_ = time_;
+    in_instant_ = 0;
+    bodies_in_instant_.clear();
+  }
+  ++in_instant_;
+  bodies_in_instant_.add(pair);
+}
+
+void Kernel::note_taken(const PairKey& pair, double lost) {
+  if (!(lost > 0.0)) return;
+  if (taken_.count++ == 0) {
+    taken_.first = pair;
+    taken_.time = time_;
+  }
+  taken_.energy += lost;
 }
 
 bool Kernel::collapsed() const {
@@ -180,7 +202,7 @@ bool Kernel::resolve(const PairKey& pair, const FeatureContact& found, std::vect
 const Material& Kernel::material_of(const PairKey& pair) const {
   const int other =
       pair.with_site() ? world_.sites[pair.other_site].material : world_.bodies[pair.other_body].material;
-  return pair_materials_[world_.bodies[pair.body].material * world_.materials.size() + other];
+  return pair_materials_.of(world_, world_.bodies[pair.body].material, other);
 }
 
 std::optional<DiscRebound> Kernel::disc_rebound(const PairKey& pair, double level) const {
@@ -261,11 +283,21 @@ void Kernel::count_collision(const PairKey& pair) {
   if (!pair.with_site()) run_.trace->mark({TraceKind::collision, pair.other_body, pair.body, time_, time_});
 }
 
+BounceLoss Kernel::loss_of(const PairKey& pair) const {
+  const Material& m = material_of(pair);
+  if (reflects_) return m.slip == 1.0 && m.spin == 1.0 ? BounceLoss::none : BounceLoss::some;
+  if (m.restitution == 0.0) return BounceLoss::all;
+  const bool rubs = m.friction > 0.0 && m.tangential_restitution < 1.0;
+  return m.restitution < 1.0 || rubs ? BounceLoss::some : BounceLoss::none;
+}
+
 bool Kernel::judge_endings(const Outcome& outcome) {
   const PairKey& pair = outcome.pair;
   // flights lower than a pixel say nothing about a Zeno limit
   const double closing = outcome.contact.closing_speed;
-  if (const auto zeno = depth_ ? std::nullopt : zeno_.collided(pair, time_, closing, outcome.rest)) {
+  if (const auto zeno =
+          depth_ ? std::nullopt
+                 : zeno_.collided({pair, outcome.contact}, time_, closing, loss_of(pair), outcome.rest)) {
     record_ending(EventKind::zeno, outcome, zeno->limit_time);
     stop(Termination::failed,
          fmt::format(
@@ -275,11 +307,8 @@ bool Kernel::judge_endings(const Outcome& outcome) {
              name_of(pair)));
     return false;
   }
-  if (time_ - instant_ > 2.0 * same_instant(time_)) {
-    instant_ = time_;
-    in_instant_ = 0;
-  }
-  if (++in_instant_ == endless_group() + 1) {
+  count_in_instant(pair);
+  if (in_instant_ == endless_group() + 1) {
     record_ending(EventKind::group, outcome, last_event_);
   } else if (in_instant_ > 2 * endless_group()) {
     stop(Termination::failed,
@@ -298,7 +327,7 @@ bool Kernel::judge_endings(const Outcome& outcome) {
 bool Kernel::poll() {
   constexpr std::uint64_t between = 4096;
   const std::uint64_t done = work_.search_iterations + 4 * work_.collisions;
-  if (halt_ || done - polled_ < between) return !halt_;
+  if (halt_ || (done - polled_ < between && !ask_.due())) return !halt_;
   polled_ = done;
   if (run_.progress && !run_.progress(time_, work_.collisions)) stop(Termination::stopped, "on request");
   return !halt_;

@@ -219,7 +219,7 @@ double PairView::sink_at_start() const {
     const double rounding = then.gap_rounding(half, f.sample, site, path.q);
     const double own_step = sink_step(limits_.touch, rounding);
     const double above = f.gap - then.nominal_level(then.now_, half, f.sample, site, path.q);
-    if (!(above < own_step) || above < -kStartOverlap * limits_.tolerance) return;
+    if (!(above < own_step) || above < -kOverlapAtStart * limits_.tolerance) return;
     now = now || (above <= 0.0 && then.approaching(f, path));
     const PathBounds bounds = path_bounds(path, half.s_is_a ? at_once : at_once.swapped(), 0.0);
     const double hollow =

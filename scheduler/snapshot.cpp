@@ -13,14 +13,15 @@ namespace brink {
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x314b4e4952420005ULL;  // "\5\0BRINK1"
+constexpr std::uint64_t kMagic = 0x314b4e4952420006ULL;  // "\6\0BRINK1"
 
 class Writer {
  public:
   template <class T>
   void put(const T& value) {
-    const auto* bytes = reinterpret_cast<const std::byte*>(&value);
-    bytes_.insert(bytes_.end(), bytes, bytes + sizeof(T));
+    const std::size_t place = bytes_.size();
+    bytes_.resize(place + sizeof(T));
+    std::memcpy(bytes_.data() + place, &value, sizeof(T));
   }
   std::vector<std::byte> take() { return std::move(bytes_); }
 
@@ -81,6 +82,7 @@ class SnapshotCodec {
     each(k.last_event_);
     each(k.instant_);
     each(k.in_instant_);
+    each(k.taken_);
   }
 };
 
@@ -106,9 +108,13 @@ std::vector<std::byte> Kernel::snapshot() const {
     out.put(c.started);
     for (const BodyState& s : c.start_states) out.put(s);
   }
+  const std::vector<int> in_instant = bodies_in_instant_.list();
+  out.put(bodies_in_instant_.often());
+  out.put(static_cast<std::uint64_t>(in_instant.size()));
+  for (const int k : in_instant) out.put(k);
   out.put(static_cast<std::uint64_t>(zeno_.bounces().size()));
-  for (const auto& [pair, bounce] : zeno_.bounces()) {
-    out.put(pair);
+  for (const auto& [feature, bounce] : zeno_.bounces()) {
+    out.put(feature);
     out.put(bounce);
   }
   return out.take();
@@ -149,11 +155,20 @@ void Kernel::restore(std::span<const std::byte> bytes) {
     c.integrator->start(c.started, c.start_states);
     cover(c, time_);
   }
-  std::uint64_t pairs = 0;
-  in.get(pairs);
-  std::map<PairKey, ZenoWatch::Bounce> bounces;
-  for (std::uint64_t i = 0; i < pairs; ++i) {
-    PairKey key;
+  bool often = false;
+  std::uint64_t bodies = 0, features = 0;
+  in.get(often);
+  in.get(bodies);
+  std::vector<int> in_instant;
+  for (std::uint64_t i = 0; i < bodies; ++i) {
+    in_instant.emplace_back();
+    in.get(in_instant.back());
+  }
+  bodies_in_instant_.restore(in_instant, often);
+  in.get(features);
+  ZenoWatch::Bounces bounces;
+  for (std::uint64_t i = 0; i < features; ++i) {
+    ZenoWatch::Feature key;
     ZenoWatch::Bounce bounce;
     in.get(key);
     in.get(bounce);

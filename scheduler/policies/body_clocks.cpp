@@ -28,6 +28,7 @@ namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kBetweenPauses = 2048;  ///< servings between places where a run may be resumed from
+constexpr std::uint64_t kBetweenPolls = 64;
 constexpr int kInstalment = 3;  ///< search steps at a time: most contacts ahead are overtaken by others
 constexpr unsigned kMostUndecided = 1000000 / kInstalment;
 
@@ -40,11 +41,14 @@ class BodyClocks final : public Policy {
     views_->set_end(until);
     while (!kernel.halt() && queue_.time() <= until) {
       if (++served_ % kBetweenPauses == 0) pause();
+      if (served_ % kBetweenPolls == 0 && !kernel.poll()) break;
       serve(queue_.body());
     }
-    if (kernel.halt()) return;
-    kernel.record_frames(until);
-    kernel.advance_all(until);
+    if (kernel.halt()) return views_.reset();  // in the middle of something: to go on, look at all anew
+    if (kernel.record_frames(until))
+      kernel.advance_all(until);
+    else
+      views_.reset();
   }
 
  private:
@@ -54,7 +58,7 @@ class BodyClocks final : public Policy {
     revision_ = kernel_->revision();
     found_.emplace(kernel_->body_count());
     queue_.reset(kernel_->body_count(), kernel_->time());
-    for (int k = 0; k < kernel_->body_count() && !kernel_->halt(); ++k) {
+    for (int k = 0; k < kernel_->body_count() && kernel_->poll(); ++k) {
       views_->look_around(k, kernel_->time());
       wait_for(k);
     }
@@ -160,14 +164,15 @@ class BodyClocks final : public Policy {
                        (clock.candidates.size() == 1 || clock.candidates[1].time > instant);
     if (alone) return collide(Certificate(found_->of(k)));
     const std::vector<Certificate> group = contacts_until(instant);
-    if (!kernel_->halt()) collide(group[first_by_order(*kernel_, group)]);
+    // none: what was found by a view that has ended, the next view does not find by the end of the instant
+    if (!kernel_->halt() && !group.empty()) collide(group[first_by_order(*kernel_, group)]);
   }
 
   /// Every contact of the present instant, in the total order of events.
   std::vector<Certificate> contacts_until(double instant) {
     std::vector<Certificate> group;
     std::vector<int> asked;
-    while (queue_.time() <= instant && !kernel_->halt()) {
+    while (queue_.time() <= instant && kernel_->poll()) {
       const int k = queue_.body();
       const BodyClock& clock = views_->clock(k);
       const bool settled = clock.exit > instant && clock.horizon > instant;
@@ -221,7 +226,7 @@ class BodyClocks final : public Policy {
   }
 
   void collide(const Certificate& c) {
-    kernel_->record_frames(c.time);
+    if (!kernel_->record_frames(c.time)) return;
     kernel_->advance_pair(c.pair, c.time);
     views_->expect_look(c.pair.body);
     if (!c.pair.with_site()) views_->expect_look(c.pair.other_body);

@@ -44,15 +44,14 @@ class ClassicBackup final : public Policy {
       kernel.advance_all(end);
       if (!any_approaches(kernel.look(clear, end))) break;
       const double touch = backups > 0 ? first_touch(kernel, clear, end) : end;
-      kernel.record_frames(std::nextafter(touch, 0.0));
+      if (!kernel.record_frames(std::nextafter(touch, 0.0))) return false;
       kernel.back_up_all(touch);
       const DepthSight sight = kernel.look(clear, touch);
       if (!resolve_all(kernel, sight.contacts)) return false;
       if (backups <= 0) push_all_apart(kernel, sight.overlaps);
       clear = touch;
     }
-    kernel.record_frames(end);
-    return kernel.poll();
+    return kernel.record_frames(end) && kernel.poll();
   }
 
   /// The first time in (clear, touching] at which something touches and approaches, within kHalvings.

@@ -27,11 +27,11 @@ class FixedStep final : public Policy {
       const double end = std::min(until, step_end(from, step));
       if (!kernel.extend_motions(end)) return;
       const std::vector<PairKey> pairs = kernel.near_pairs(from, end);
-      kernel.record_frames(std::nextafter(end, 0.0));
+      if (kernel.halt() || !kernel.record_frames(std::nextafter(end, 0.0))) return;
       kernel.advance_all(end);
       for (const PairKey& pair : pairs)
         if (!separate(kernel, pair)) return;
-      kernel.record_frames(end);
+      if (!kernel.record_frames(end)) return;
     }
   }
 

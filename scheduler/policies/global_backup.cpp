@@ -31,13 +31,12 @@ class GlobalBackup final : public Policy {
     while (const auto next = agenda_.take_earliest(kernel)) {
       // Of contacts at the same time, the one that an order puts first may be a rounding later than the next:
       // each is resolved at its own time, which its two bodies' motions still cover.
-      kernel.record_frames(next->time);
+      if (!kernel.record_frames(next->time)) return std::nullopt;
       kernel.back_up_all(next->time);
       if (!deal_with(kernel, *next, end)) return std::nullopt;
       kernel.advance_all(end);
     }
-    kernel.record_frames(end);
-    return near;
+    return kernel.record_frames(end) ? std::optional(near) : std::nullopt;
   }
 
   /// False on a halt.

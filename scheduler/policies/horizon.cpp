@@ -57,7 +57,10 @@ bool HorizonAgenda::pass(Kernel& kernel, double from, double end) {
   const StageClock clock(kernel.work().seconds_search);
   agenda_.clear();
   pairs_ = kernel.near_pairs(from, end);
-  for (const PairKey& pair : pairs_) test(kernel, pair, from, end);
+  for (const PairKey& pair : pairs_) {
+    if (!kernel.poll()) return false;
+    test(kernel, pair, from, end);
+  }
   return kernel.poll();
 }
 
@@ -71,7 +74,10 @@ bool HorizonAgenda::pass_again(Kernel& kernel, std::span<const int> changed, dou
   }
   std::sort(pairs_.begin(), pairs_.end());  // a pair of two changed bodies is met from both
   pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
-  for (const PairKey& pair : pairs_) test(kernel, pair, now, end);
+  for (const PairKey& pair : pairs_) {
+    if (!kernel.poll()) return false;
+    test(kernel, pair, now, end);
+  }
   return kernel.poll();
 }
 

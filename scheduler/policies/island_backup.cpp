@@ -33,14 +33,13 @@ class IslandBackup final : public Policy {
     make_islands(kernel);
     kernel.advance_all(end);
     while (const auto next = agenda_.take_earliest(kernel)) {
-      kernel.record_frames(next->time);
+      if (!kernel.record_frames(next->time)) return std::nullopt;
       island_.assign(islands_.of(next->pair.body).begin(), islands_.of(next->pair.body).end());
       kernel.back_up(island_, end, next->time);
       if (!deal_with(kernel, *next, end)) return std::nullopt;
       kernel.advance(island_, next->time, end);
     }
-    kernel.record_frames(end);
-    return near;
+    return kernel.record_frames(end) ? std::optional(near) : std::nullopt;
   }
 
   /// False on a halt.

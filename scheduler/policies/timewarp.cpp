@@ -53,12 +53,12 @@ class Timewarp final : public Policy {
       if (kernel_->halt()) return false;
       const auto next = take_earliest(*kernel_, agenda_);
       if (!next) break;
-      kernel_->record_frames(next->time);
+      if (!kernel_->record_frames(next->time)) return false;
       if (!make_certain(*next)) return false;
     }
-    kernel_->record_frames(end_);
+    if (!kernel_->record_frames(end_)) return false;
     kernel_->advance_all(end_);
-    return !kernel_->halt();
+    return true;
   }
 
   // -- what is certain --
@@ -111,8 +111,10 @@ class Timewarp final : public Policy {
     const double from = kernel_->time();
     const std::vector<PairKey> pairs = kernel_->near_pairs(from, end_);
     near_ = pairs.size();
-    for (const PairKey& pair : pairs)
+    for (const PairKey& pair : pairs) {
+      if (!kernel_->poll()) return false;
       if (const auto c = kernel_->search(pair, from, end_)) note(*c);
+    }
     for (int k = 0; k < kernel_->body_count(); ++k) give_a_turn_to(k);
     return kernel_->poll();
   }
