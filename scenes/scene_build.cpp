@@ -20,7 +20,7 @@ class SceneBuilder {
     materials();
     std::vector<PlannedThing> sites = plan(file_.sites, false), bodies = plan(file_.bodies, true);
     count(bodies);
-    if (faults_.empty()) Placer(file_.world.seed, faults_).place(sites, bodies);
+    if (faults_.empty()) Placer(file_.world.seed, scene_.world.periods, faults_).place(sites, bodies);
     const bool placed = faults_.empty();
     if (placed) {
       add_sites(sites);
@@ -32,6 +32,7 @@ class SceneBuilder {
     build_forces(file_.forces, names_, origins_, placed, scene_.world, faults_);
     for (std::string& note : shapes_.take_notes()) scene_.notes.push_back(std::move(note));
     if (faults_.empty()) last_check();
+    if (faults_.empty()) check_frames();
     return std::move(scene_);
   }
 
@@ -48,13 +49,15 @@ class SceneBuilder {
     scene_.solver = file_.solver;
     scene_.solver.seed = file_.world.seed;
     scene_.solver.field = file_.field.options;
-    if (scene_.output.frame_interval > 0.0 && scene_.duration / scene_.output.frame_interval > 1e8)
-      faults_.add({1, 1}, "frame_interval: too short for the duration; given " +
-                              number_text(scene_.output.frame_interval) +
-                              " s, allowed: 0, or at most 1e8 frames");
     std::string error;
     if (faults_.empty() && !scene_.solver.is_valid(&error)) faults_.add(file_.solver_place, error);
     options_json();
+  }
+
+  void check_frames() {
+    const std::size_t bodies = scene_.world.bodies.size();
+    if (const std::string why = too_many_frames(scene_.output, scene_.duration, bodies); !why.empty())
+      faults_.add(file_.output_place, "output: " + why);
   }
 
   void options_json() {
