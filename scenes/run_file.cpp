@@ -10,11 +10,11 @@
 
 #include "brink/core/base/error.h"
 #include "brink/core/base/hash.h"
+#include "brink/core/world/world_hash.h"
 #include "brink/scenes/checkpoint_seal.h"
 #include "brink/scenes/database.h"
 #include "brink/scenes/shape_json.h"
 #include "brink/scenes/version.h"
-#include "brink/core/world/world_hash.h"
 
 namespace brink {
 namespace fs = std::filesystem;

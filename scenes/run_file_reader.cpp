@@ -8,12 +8,12 @@
 #include <tuple>
 
 #include "brink/core/base/error.h"
+#include "brink/core/world/world_hash.h"
 #include "brink/scenes/checkpoint_seal.h"
 #include "brink/scenes/database.h"
 #include "brink/scenes/run_file.h"
 #include "brink/scenes/shape_json.h"
 #include "brink/scenes/version.h"
-#include "brink/core/world/world_hash.h"
 
 namespace brink {
 namespace fs = std::filesystem;

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <set>
-#include <sstream>
+
+#include "brink/scenes/text_file.h"
 
 namespace brink {
 namespace {
@@ -309,15 +309,7 @@ Scene parse_scene(std::string_view text, const std::string& name, const std::vec
 }
 
 Scene load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error))
-    throw IoError(file.string() + ": is a directory, not a scene file");
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw IoError(file.string() + ": cannot be opened for reading");
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (in.bad()) throw IoError(file.string() + ": could not be read");
-  return parse_scene(text.str(), file.string(), overrides);
+  return parse_scene(text_of_file(file), file.string(), overrides);
 }
 
 }  // namespace brink

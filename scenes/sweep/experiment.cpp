@@ -2,17 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <set>
 #include <sstream>
 
 #include "brink/core/base/hash.h"
 #include "brink/core/base/printable.h"
+#include "brink/core/world/world_hash.h"
 #include "brink/scenes/scene_tables.h"
 #include "brink/scenes/sweep/results.h"
+#include "brink/scenes/text_file.h"
 #include "brink/scenes/toml_schema.h"
 #include "brink/scenes/version.h"
-#include "brink/core/world/world_hash.h"
 
 namespace brink {
 namespace fs = std::filesystem;
@@ -384,17 +384,10 @@ std::vector<SweepRun> product(const std::vector<Axis>& axes, const ExperimentTab
   }
 }
 
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in || fs::is_directory(file)) throw IoError(file.string() + ": cannot be read");
-  return text;
-}
-
 }  // namespace
 
 Experiment load_experiment(const fs::path& file) {
-  TomlDocument doc(text_of(file), {});
+  TomlDocument doc(text_of_file(file), {});
   const auto stop_on_faults = [&] { doc.faults().throw_if_any(file.string()); };
   stop_on_faults();
   ExperimentTable table;

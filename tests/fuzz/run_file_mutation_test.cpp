@@ -3,7 +3,8 @@
 // nothing; one that is not refused ends in the state of an undisturbed run.
 //
 // BRINK_FUZZ_COUNT, BRINK_FUZZ_SEED: how many mutants (default 100 of each kind), and which.
-// BRINK_FUZZ_KEEP: a folder for the mutants with findings.
+// BRINK_FUZZ_KEEP: a folder for the mutants with findings. BRINK_FUZZ_DIAGRAM=1: draw the cells too (opens an
+// OpenGL context for each).
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -202,10 +203,9 @@ class DatabaseMutator {
                                          "'1e999'",
                                          "'{\"world\":{\"periodic\":[\"a\"]}}'"};
     const auto columns = column(db, fmt::format("SELECT name FROM pragma_table_info('{}')", table));
-    const std::string name = pick(columns);
     const auto rows = column(db, fmt::format("SELECT rowid FROM {}", table));
-    if (rows.empty()) return;
-    const std::string row = pick(rows);
+    if (rows.empty() || columns.empty()) return;
+    const std::string name = pick(columns), row = pick(rows);
     if (random_.below(3) > 0)
       return db.exec(fmt::format("UPDATE OR REPLACE {} SET {} = {} WHERE rowid = {}", table, name,
                                  pick(values), row)),
@@ -274,7 +274,7 @@ bool reads(const fs::path& file) {
     const RunMoment moment = moment_of_run(file, std::nullopt);
     DrawOptions options;
     options.size = {64, 48};
-    options.diagram = false;  // needs a context
+    options.diagram = fuzz::asked("BRINK_FUZZ_DIAGRAM", 0) != 0;
     draw_scene(moment.world, moment.bodies, moment.sites, options);
   });
   return good;
@@ -329,7 +329,8 @@ class Mutants : public testing::Test {
       fs::remove_all(at);
       fs::create_directory(at);
       fs::copy_file(file, at / file.filename());
-      DatabaseMutator(seed_ + k).mutate(at / file.filename());
+      // apart too: SQLite at work on a broken file, with its guards off
+      fuzz::finding([&] { return DatabaseMutator(seed_ + k).mutate(at / file.filename()), true; }, kSeconds);
       const fs::path kept = dir_ / "kept";
       fs::remove_all(kept);
       fs::copy(at, kept);
