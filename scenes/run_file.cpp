@@ -13,6 +13,7 @@
 #include "brink/core/world/world_hash.h"
 #include "brink/scenes/checkpoint_seal.h"
 #include "brink/scenes/database.h"
+#include "brink/scenes/run_file_tables.h"
 #include "brink/scenes/shape_json.h"
 #include "brink/scenes/version.h"
 
@@ -24,18 +25,6 @@ using Clock = std::chrono::steady_clock;
 constexpr std::int64_t kRowsPerCommit = 20'000;
 constexpr auto kTimePerCommit = std::chrono::milliseconds(250);
 constexpr int kBusyMilliseconds = 10'000;
-
-constexpr const char* kTables = R"(
-CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT);
-CREATE TABLE body (id INTEGER PRIMARY KEY, name TEXT, mass REAL, inertia REAL, shape TEXT);
-CREATE TABLE site (id INTEGER PRIMARY KEY, name TEXT, owner INTEGER, kind TEXT, shape TEXT);
-CREATE TABLE frame (t REAL, body INTEGER, x REAL, y REAL, angle REAL, vx REAL, vy REAL, omega REAL);
-CREATE TABLE event (seq INTEGER PRIMARY KEY, t REAL, kind TEXT, body INTEGER, other INTEGER, site INTEGER, px REAL, py REAL,
-  nx REAL, ny REAL, closing_speed REAL, impulse_n REAL, impulse_t REAL, gap REAL, outline_site INTEGER, sample INTEGER,
-  sample_on_body INTEGER, t_low REAL);
-CREATE TABLE work (counter TEXT PRIMARY KEY, value REAL, unit TEXT);
-CREATE TABLE checkpoint (t REAL, state BLOB, frames INTEGER, events INTEGER, wall_seconds REAL);
-)";
 
 std::string hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
 std::string number(double x) { return fmt::format("{}", x); }
@@ -179,7 +168,7 @@ void RunFileRecorder::Impl::write_sites(const World& world) {
 
 void RunFileRecorder::Impl::start_fresh(const Scene& scene) {
   begin();
-  db.exec(kTables);
+  db.exec(kRunFileTables);
   write_meta(scene);
   write_bodies(scene.world);
   write_sites(scene.world);

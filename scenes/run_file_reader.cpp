@@ -12,6 +12,7 @@
 #include "brink/scenes/checkpoint_seal.h"
 #include "brink/scenes/database.h"
 #include "brink/scenes/run_file.h"
+#include "brink/scenes/run_file_tables.h"
 #include "brink/scenes/shape_json.h"
 #include "brink/scenes/version.h"
 
@@ -357,10 +358,30 @@ void RunFile::require_same(const Scene& scene) const {
   }
 }
 
+namespace {
+
+/// Every table is made as Brink makes it: what is inserted finds its columns.
+void require_tables(const fs::path& file, SQLite::Database& db) {
+  SQLite::Database made(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  made.exec(kRunFileTables);
+  SQLite::Statement wanted(made, "SELECT name, sql FROM sqlite_master WHERE type = 'table'");
+  SQLite::Statement found(db, "SELECT sql FROM sqlite_master WHERE type = 'table' AND name = ?");
+  while (wanted.executeStep()) {
+    const std::string name = wanted.getColumn(0).getString();
+    found.reset();
+    found.bind(1, name);
+    if (!found.executeStep() || found.getColumn(0).getString() != wanted.getColumn(1).getString())
+      throw IoError(fmt::format("{}: table {}: is not as a run makes it", file.string(), name));
+  }
+}
+
+}  // namespace
+
 void RunFile::require_sound() const {
-  const auto pages = [&] { return impl_->db.execAndGet("PRAGMA quick_check(1)").getString(); };
+  const auto pages = [&] { return impl_->db.execAndGet("PRAGMA integrity_check(1)").getString(); };
   if (const std::string found = guarded(impl_->file, pages, kWhat); found != "ok")
     throw IoError(fmt::format("{}: the database is damaged: {}", impl_->file.string(), found));
+  guarded(impl_->file, [&] { require_tables(impl_->file, impl_->db); });
   const auto point = checkpoint();
   const auto require = [&](const char* table, std::int64_t first, std::int64_t counted) {
     reading(impl_->file, table, [&] {

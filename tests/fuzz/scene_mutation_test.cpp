@@ -337,7 +337,7 @@ void try_mutant(const std::string& text, bool running_too, Tally& tally) {
 /// hide the next. Mutants with findings are kept in the folder BRINK_FUZZ_KEEP.
 void try_mutants_apart(Mutator& mutator, std::uint64_t seed, std::uint64_t count, unsigned seconds) {
   const char* keep = std::getenv("BRINK_FUZZ_KEEP");
-  std::uint64_t findings = 0;
+  std::vector<std::string> findings;  // told at the end: a child would take them for its own
   for (std::uint64_t k = 0; k < count; ++k) {
     const std::string text = mutator.next();
     const std::string how = fuzz::finding(
@@ -348,13 +348,13 @@ void try_mutants_apart(Mutator& mutator, std::uint64_t seed, std::uint64_t count
         },
         seconds);
     if (how.empty()) continue;
-    ++findings;
-    ADD_FAILURE() << "mutant " << k << " of seed " << seed << ": " << how;
+    findings.push_back("mutant " + std::to_string(k) + ": " + how);
     if (keep != nullptr)
       std::ofstream(std::filesystem::path(keep) / ("mutant-" + std::to_string(k) + ".toml"), std::ios::binary)
           << text;
   }
-  std::cout << count << " mutants, " << findings << " findings\n";
+  for (const std::string& f : findings) ADD_FAILURE() << f << ", seed " << seed;
+  std::cout << count << " mutants, " << findings.size() << " findings\n";
 }
 
 // Reads mutants, and if `running_too` lets those accepted run for a moment.
