@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 
 #include "brink/core/base/error.h"
@@ -35,6 +37,11 @@ void refuse_overwriting(const fs::path& file, const std::string& option, const s
   for (const fs::path& k : kept)
     if (!k.empty() && same_file(file, k)) refuse("read or kept by this command");
   if (is_database(file)) refuse("a database");
+}
+
+void throw_not_written(const fs::path& file) {
+  const std::string why = errno == ENOSPC ? "disk full" : std::strerror(errno);
+  throw IoError(fmt::format("{}: could not be written: {}", file.string(), why));
 }
 
 }  // namespace brink

@@ -13,4 +13,8 @@ namespace brink {
 void refuse_overwriting(const std::filesystem::path& file, const std::string& option,
                         const std::vector<std::filesystem::path>& kept);
 
+/// After a write that went wrong: @throws IoError naming the file and what the system says of it ("disk
+/// full").
+[[noreturn]] void throw_not_written(const std::filesystem::path& file);
+
 }  // namespace brink

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <csignal>
 #include <cstdio>
 #include <system_error>
 
@@ -49,6 +50,7 @@ int run(CLI::App& program, int argc, char** argv, const int& status) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit of file size is then an error of the write, which is told
   CLI::App program("Brink: many rigid bodies in the plane, exact to the contact time.", "brink");
   program.set_version_flag("--version", std::string(brink::version()));
   program.require_subcommand(1);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "brink/core/base/printable.h"
+#include "brink/scenes/written_file.h"
 #include "brink/scheduler/policies/policy.h"
 
 namespace brink {
@@ -187,7 +188,7 @@ void write_sweep_csv(const std::filesystem::path& file, const Experiment& experi
     out << '\n';
   }
   out.close();
-  if (!out) throw IoError(fmt::format("{}: could not be written", file.string()));
+  if (!out) throw_not_written(file);
 }
 
 }  // namespace brink

@@ -1,6 +1,7 @@
 #pragma once
 // Trying what may crash or never end, in a process of its own.
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,8 +13,9 @@
 
 namespace brink::fuzz {
 
-/// Calls f() in a child, which is ended after so many seconds. Empty if f came back with true; else how it
-/// went. What f prints goes to the standard error of the test.
+/// Calls f() in a child, which is ended after so many seconds of the processor (ten times as many of the
+/// clock: a busy machine is no finding). Empty if f came back with true; else how it went. What f prints goes
+/// to the standard error of the test.
 template <class F>
 std::string finding(F&& f, unsigned seconds) {
   std::fflush(nullptr);
@@ -21,7 +23,9 @@ std::string finding(F&& f, unsigned seconds) {
   if (child < 0) return "no process could be started";
   if (child == 0) {
     ::signal(SIGALRM, SIG_DFL);
-    ::alarm(seconds);
+    ::alarm(10 * seconds);
+    const rlimit limit{seconds, seconds + 1};
+    ::setrlimit(RLIMIT_CPU, &limit);
     bool good = false;
     try {
       good = f();
@@ -33,7 +37,7 @@ std::string finding(F&& f, unsigned seconds) {
   }
   int status = 0;
   ::waitpid(child, &status, 0);
-  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM)
+  if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGALRM || WTERMSIG(status) == SIGXCPU))
     return "no end in " + std::to_string(seconds) + " s";
   if (WIFSIGNALED(status)) return "signal " + std::to_string(WTERMSIG(status));
   return WEXITSTATUS(status) == 0 ? "" : "exit " + std::to_string(WEXITSTATUS(status));

@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr unsigned kSeconds = 30;  // for one mutant, on a machine that is busy
+constexpr unsigned kSeconds = 10;  // for one mutant
 
 // Arcs, a wire, a container, a site that moves by formulas, and a spring: every kind of JSON in the file.
 constexpr const char* kScene = R"toml(
