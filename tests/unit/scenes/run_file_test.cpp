@@ -12,8 +12,8 @@
 #include <set>
 
 #include "brink/core/shapes/shapes.h"
-#include "brink/scenes/shape_json.h"
 #include "brink/core/world/world_hash.h"
+#include "brink/scenes/shape_json.h"
 
 namespace brink {
 namespace {
