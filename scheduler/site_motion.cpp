@@ -49,6 +49,18 @@ SiteMotion::SiteMotion(const FixedSite& site) {
 SiteMotion::~SiteMotion() = default;
 SiteMotion::SiteMotion(SiteMotion&&) noexcept = default;
 
+Pose told_pose(const FixedSite& site, double t) {
+  Pose pose = site.pose;
+  if (const auto* constant = std::get_if<ConstantMotion>(&site.motion)) {
+    pose.position += t * constant->twist.velocity;
+    pose.angle += t * constant->twist.omega;
+  } else if (const auto* formula = std::get_if<FormulaMotion>(&site.motion)) {
+    pose.position += Vec2(value(formula->x, t), value(formula->y, t));
+    pose.angle += value(formula->angle, t);
+  }
+  return pose;
+}
+
 std::string SiteMotion::extend(double t) {
   if (!prescribed_) return {};
   const Extent extent = prescribed_->extend(t);

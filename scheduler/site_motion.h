@@ -31,4 +31,8 @@ class SiteMotion {
   std::unique_ptr<PrescribedMotion> prescribed_;
 };
 
+/// Where a fixed site is told to be at time t: its formulas themselves, without a motion made of them (within
+/// rounding the same place, at the cost of one evaluation). May be inf or NaN where a formula is.
+Pose told_pose(const FixedSite& site, double t);
+
 }  // namespace brink

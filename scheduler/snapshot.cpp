@@ -7,6 +7,7 @@
 
 #include "brink/core/base/error.h"
 #include "brink/core/base/hash.h"
+#include "brink/core/world/world_hash.h"
 #include "brink/scheduler/kernel.h"
 
 namespace brink {
@@ -44,24 +45,20 @@ class Reader {
   std::span<const std::byte> bytes_;
 };
 
-/// What a snapshot must agree on with the world it is restored into.
+/// What a snapshot must agree on with the world it is restored into: everything that decides the motion.
 std::uint64_t fingerprint(const World& world, const SolverOptions& options) {
   StateHash hash;
-  hash.add(static_cast<std::uint64_t>(world.bodies.size()));
-  hash.add(static_cast<std::uint64_t>(world.sites.size()));
-  for (const Body& b : world.bodies) {
-    hash.add(b.mass);
-    hash.add(b.inertia);
-    hash.add(b.initial);
-    hash.add(static_cast<std::uint64_t>(b.outline->sites.size()));
+  hash.add(world_hash(world));
+  for (const std::string* word :
+       {&options.policy, &options.integrator, &options.order, &options.response, &options.detector}) {
+    hash.add(static_cast<std::uint64_t>(word->size()));
+    for (const char c : *word) hash.add(static_cast<std::uint64_t>(c));
   }
-  hash.add(world.gravity);
-  for (const char c : options.policy + options.integrator + options.order + options.response)
-    hash.add(static_cast<std::uint64_t>(c));
   hash.add(options.tolerance);
   hash.add(options.absolute_tolerance);
   hash.add(options.step);
   hash.add(options.contact_tolerance);
+  hash.add(options.seed);
   return hash.value();
 }
 

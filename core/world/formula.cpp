@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "brink/core/base/error.h"
+#include "brink/core/base/printable.h"
 
 namespace brink {
 
@@ -20,7 +21,7 @@ std::string joined(const std::vector<std::string>& names) {
 
 [[noreturn]] void fail(const std::string& text, int position, const std::string& what,
                        const std::vector<std::string>& variables) {
-  std::string message = "formula \"" + text + "\": ";
+  std::string message = "formula \"" + printable(text) + "\": ";
   if (position >= 0) message += "at character " + std::to_string(position + 1) + ": ";
   throw BadInput(message + what + "; allowed variables: " + joined(variables) + "; constants: pi, e");
 }
@@ -59,6 +60,8 @@ struct Formula::Compiled {
   Compiled(std::string formula, std::vector<std::string> names)
       : text(std::move(formula)), variables(std::move(names)), values(variables.size(), 0.0) {
     if (text.find_first_not_of(" \t\r\n") == std::string::npos) fail(text, -1, "is empty", variables);
+    if (const std::size_t nul = text.find('\0'); nul != std::string::npos)
+      fail(text, static_cast<int>(nul), "holds a NUL character", variables);
     const int assignment = find_assignment(text);
     if (assignment >= 0) fail(text, assignment, "\"=\" assigns; compare with \"==\"", variables);
     compile();

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <csignal>
 
+#include "brink/core/base/printable.h"
 #include "brink/scenes/program/command.h"
 #include "brink/scenes/program/run_folder.h"
 #include "brink/scenes/program/terminal.h"
@@ -84,12 +85,12 @@ void print_summary(const Scene& scene, const RunReport& report) {
   print_work(s.work);
   fmt::print("  state hash       {:016x}\n", s.state_hash);
   if (report.resumed_from) fmt::print("  resumed from     t = {} s\n", *report.resumed_from);
-  fmt::print("  run file         {}\n", report.file.string());
+  fmt::print("  run file         {}\n", printable(report.file.string()));
 }
 
 void print_report(const RunArguments& arguments, const Scene& scene, const RunReport& report) {
   if (report.finished_before && !arguments.quiet && !arguments.json) {
-    fmt::print("{}: has already reached t = {} s; nothing to do\n", report.file.string(),
+    fmt::print("{}: has already reached t = {} s; nothing to do\n", printable(report.file.string()),
                report.summary.end_time);
   } else if (!arguments.quiet && !arguments.json) {
     print_summary(scene, report);
