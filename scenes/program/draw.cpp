@@ -50,7 +50,7 @@ Moment moment_of_run(const fs::path& file, std::optional<double> at) {
   Moment moment{t, run.world(), run.states_at(t).states, {}, {}};
   for (const FixedSite& site : moment.world.sites) {
     SiteMotion motion(site);
-    if (const std::string why = motion.extend(t); !why.empty()) throw BadInput(why);
+    if (const Extent extent = motion.extend(t); extent.end < t) throw BadInput(extent.why);
     moment.sites.push_back(motion.motion().pose(t));
   }
   return moment;
