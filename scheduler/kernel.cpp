@@ -7,7 +7,6 @@
 #include <map>
 
 #include "brink/core/base/error.h"
-#include "brink/scheduler/stage_clock.h"
 #include "brink/scheduler/tolerances.h"
 
 namespace brink {
@@ -70,6 +69,7 @@ Kernel::Kernel(World world, SolverOptions options)
     sites_.emplace_back(site);
     still_boxes_.push_back(still_box(site, sites_.back().moves()));
   }
+  site_failures_.resize(sites_.size());
   make_indices();
   if (options_.detector == "pass") passes_ = std::make_unique<PassRenderer>(options_.field, &work_);
   if (options_.detector == "depth") depth_ = std::make_unique<DepthDetector>(world_, options_, &work_);
@@ -95,12 +95,11 @@ void Kernel::add_component(Component component) {
     bodies_[k].place_in_component = static_cast<int>(states.size());
     states.push_back(initial(k));
   }
-  Coupled coupled{std::move(component), nullptr, 0.0, {}};
+  Coupled coupled{std::move(component), nullptr, 0.0, {}, {}};
   coupled.integrator =
       make_integrator(options_.integrator, coupled.component.dynamics, options_.integrator_options(), &work_);
   components_.push_back(std::move(coupled));
   start_component(components_.back(), 0.0, std::move(states));
-  cover(components_.back(), 0.0);
 }
 
 void Kernel::make_indices() {
@@ -123,47 +122,12 @@ void Kernel::start_component(Coupled& c, double t, std::vector<BodyState> states
   c.started = t;
   c.start_states = std::move(states);
   c.integrator->start(t, c.start_states);
-  ++work_.component_resets;
-}
-
-void Kernel::fetch_motions(const Coupled& c) {
-  for (std::size_t i = 0; i < c.component.bodies.size(); ++i)
-    bodies_[c.component.bodies[i]].motion = c.integrator->motion(static_cast<int>(i));
-}
-
-bool Kernel::cover(Coupled& c, double t) {
-  const Extent extent = c.integrator->extend(t);
-  if (extent.status == Extent::Status::reached) {
-    fetch_motions(c);
-    return true;
+  fetch_motions(c);
+  if (std::isfinite(c.failure.time)) {
+    c.failure = {};
+    find_reach();
   }
-  stop(Termination::failed,
-       fmt::format("motion of '{}' stopped at t = {:.17g}: {}",
-                   world_.bodies[c.component.bodies.front()].name, extent.end, extent.why));
-  return false;
-}
-
-bool Kernel::extend_motion(int k, double t) {
-  const BodyTrack& b = bodies_[k];
-  if (b.component < 0 || b.motion.end() >= t) return true;
-  const StageClock clock(work_.seconds_motion);
-  return cover(components_[b.component], t);
-}
-
-bool Kernel::extend_sites(double t) {
-  for (std::size_t s = 0; s < sites_.size(); ++s)
-    if (const std::string why = sites_[s].extend(t); !why.empty()) {
-      stop(Termination::failed, fmt::format("motion of site '{}': {}", world_.sites[s].name, why));
-      return false;
-    }
-  return true;
-}
-
-bool Kernel::extend_motions(double t) {
-  const StageClock clock(work_.seconds_motion);
-  for (Coupled& c : components_)
-    if (bodies_[c.component.bodies.front()].motion.end() < t && !cover(c, t)) return false;
-  return extend_sites(t);
+  ++work_.component_resets;
 }
 
 void Kernel::advance_pair(const PairKey& pair, double t) {
@@ -238,7 +202,7 @@ bool Kernel::restart(std::span<const Restart> touched) {
   }
   for (const Restart& r : touched) states[bodies_[r.body].place_in_component] = r.state.rounded();
   start_component(c, time_, std::move(states));
-  return cover(c, time_);
+  return true;
 }
 
 void Kernel::displace(int k, const Vec2& shift) {

@@ -3,6 +3,7 @@
 /// kernel acts.
 
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -76,6 +77,9 @@ class Kernel {
   double touch() const { return limits_.touch; }
   double contact_tolerance() const { return limits_.tolerance; }
   const std::optional<Halt>& halt() const { return halt_; }
+  /// Where the first of the motions ends that cannot go on [s]; infinity: none that is known. A collision
+  /// before may start it afresh, so a policy goes on to there, and then calls fail_before().
+  double reach() const { return reach_; }
   WorkCounters& work() { return work_; }
   const WorkCounters& work() const { return work_; }
   Random& random() { return random_; }
@@ -86,14 +90,28 @@ class Kernel {
   std::string name_of(const PairKey& pair) const;
 
   // -- verbs --
-  /// Makes sure that every motion covers [.., t]. False (and halt() says why) if an integrator cannot.
+  /// Makes sure that every motion covers [.., t]. False (and halt() says why) if an integrator cannot: the
+  /// run then ends where it is. What runs on to the failure, and needs little memory, uses follow_motions().
   bool extend_motions(double t);
+  /// Lets every motion go on towards t, each by no more than an instalment of steps. Returns how far all of
+  /// them cover, <= t: the policy goes on to there and asks again. Asks `progress`: halt() may be set.
+  double follow_motions(double t);
+  /// The same in as many instalments as it takes: less than t at reach() alone, or on a halt.
+  double follow_motions_all_the_way(double t);
   /// Takes all bodies forward to t; frames due on the way are recorded by record_frames().
   void advance_all(double t);
   /// Makes sure that one body's motion covers [.., t]. False (and halt() says why) if its integrator cannot.
   bool extend_motion(int body, double t);
+  double follow_motion(int body, double t);
   /// Likewise every moving site's.
   bool extend_sites(double t);
+  double follow_sites(double t);
+  /// Ends the run as failed if it has come to reach(), and that lies before `until`; true if so.
+  bool fail_before(double until);
+  /// Nobody will ask a motion for a time before t any more.
+  void forget_before(double t);
+  /// True if motions have grown so much since the last forget_before() that it is worth a call.
+  bool much_to_forget() const;
   /// Takes the bodies of one pair to t, and the clock with them; others stay at their own times. Within an
   /// instant t may lie a rounding before the clock.
   void advance_pair(const PairKey& pair, double t);
@@ -213,11 +231,16 @@ class Kernel {
 
  private:
   friend class SnapshotCodec;
+  struct Failure {  ///< of a motion that cannot go on
+    double time = std::numeric_limits<double>::infinity();
+    std::string why;
+  };
   struct Coupled {  ///< a component and its integrator
     Component component;
     std::unique_ptr<Integrator> integrator;
     double started = 0.0;
     std::vector<BodyState> start_states;
+    Failure failure;
   };
 
   void make_indices();
@@ -233,8 +256,18 @@ class Kernel {
   void restart_free(int body, const BodyState& start, const BodyState& low);
   /// As restart(); bodies whose motion changed are appended to `changed`.
   bool restart_noted(std::span<const Restart> touched, std::vector<int>& changed);
-  /// Extends one component to t and fetches its motions; false and halt() if its integrator cannot.
+  /// Extends one component towards t by an instalment and fetches its motions; how far they cover, <= t.
+  double follow(Coupled& c, double t);
+  double follow_site(int site, double t);
+  void integrate_again(Coupled& c);
+  /// The same all the way. False and halt() if its integrator cannot.
   bool cover(Coupled& c, double t);
+  bool cover_site(int site, double t);
+  /// Steps of one instalment for a component or a moving site.
+  std::uint64_t instalment() const;
+  void note_failure(Failure& of, double end, const std::string& name, const std::string& why);
+  void find_reach();
+  bool stop_at(const Failure& failure);
   void fetch_motions(const Coupled& c);
   Mover mover(int body) const { return mover(body, bodies_[body]); }
   Mover mover(int body, const BodyTrack& track) const {
@@ -340,6 +373,8 @@ class Kernel {
   std::vector<Coupled> components_;
   std::vector<SiteMotion> sites_;
   std::vector<Box> still_boxes_;          ///< of every site where it stands; empty if it moves
+  std::vector<Failure> site_failures_;
+  double reach_ = std::numeric_limits<double>::infinity();
   std::vector<const Outline*> outlines_;  ///< of every owner
   mutable PairMaterials pair_materials_;
   std::vector<const SiteIndex*> body_index_, site_index_;
@@ -373,8 +408,10 @@ class Kernel {
   InstantBodies bodies_in_instant_;
   TakenGroups taken_;
   RunOptions run_;
-  std::uint64_t polled_ = 0;  ///< work done when `progress` was last asked
+  std::uint64_t polled_ = 0;      ///< work done when `progress` was last asked
   AskClock ask_;
+  std::uint64_t integrated_ = 0;  ///< body-steps of integrators, and pieces of moving sites
+  std::uint64_t forgotten_ = 0;   ///< the same when forget_before() was last called
   Recorder* recorder_ = nullptr;
   double next_checkpoint_ = 0.0;  ///< wall clock [s]
 };

@@ -326,7 +326,7 @@ bool Kernel::judge_endings(const Outcome& outcome) {
 
 bool Kernel::poll() {
   constexpr std::uint64_t between = 4096;
-  const std::uint64_t done = work_.search_iterations + 4 * work_.collisions;
+  const std::uint64_t done = work_.search_iterations + 4 * work_.collisions + 64 * work_.passes + integrated_;
   if (halt_ || (done - polled_ < between && !ask_.due())) return !halt_;
   polled_ = done;
   if (run_.progress && !run_.progress(time_, work_.collisions)) stop(Termination::stopped, "on request");

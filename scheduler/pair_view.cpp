@@ -207,6 +207,8 @@ bool PairView::out_of_reach(const Half& half, int i, double reach) const {
 }
 
 double PairView::sink_at_start() const {
+  // what was pressed then has met since; of thousands of steps ago nothing is left to tell
+  if (!a_.motion->remembers(start()) || !b_.motion->remembers(start())) return 0.0;
   PairView then = *this;
   then.place(start());
   const RelativeBounds at_once =

@@ -3,6 +3,7 @@
 /// Every motion is kept as what it was started from (time and states of its component); restoring starts the
 /// integrators there again and lets them run on, which gives the same pieces, since their steps depend on
 /// their own history alone.
+#include <cmath>
 #include <cstring>
 
 #include "brink/core/base/error.h"
@@ -117,6 +118,14 @@ std::vector<std::byte> Kernel::snapshot() const {
   return out.take();
 }
 
+/// From its start to the present time.
+void Kernel::integrate_again(Coupled& c) {
+  while (follow(c, time_) < time_) {
+    if (std::isfinite(c.failure.time)) throw BadInput("snapshot: " + c.failure.why);
+    c.integrator->forget_before(time_);
+  }
+}
+
 void Kernel::restore(std::span<const std::byte> bytes) {
   Reader in(bytes);
   std::uint64_t magic = 0, print = 0;
@@ -149,8 +158,8 @@ void Kernel::restore(std::span<const std::byte> bytes) {
   for (Coupled& c : components_) {
     in.get(c.started);
     for (BodyState& s : c.start_states) in.get(s);
-    c.integrator->start(c.started, c.start_states);
-    cover(c, time_);
+    start_component(c, c.started, std::vector<BodyState>(c.start_states));
+    integrate_again(c);
   }
   bool often = false;
   std::uint64_t bodies = 0, features = 0;
@@ -173,8 +182,12 @@ void Kernel::restore(std::span<const std::byte> bytes) {
   }
   if (!in.done()) throw BadInput("snapshot: bytes left over");
   zeno_.restore(std::move(bounces));
-  for (SiteMotion& s : sites_)
-    if (const std::string why = s.extend(time_); !why.empty()) throw BadInput(why);
+  for (SiteMotion& s : sites_) {
+    Extent extent = s.extend(time_, instalment());
+    for (; extent.status == Extent::Status::unfinished; extent = s.extend(time_, instalment()))
+      s.forget_before(time_);
+    if (extent.end < time_) throw BadInput(extent.why);
+  }
   work_ = counted;
   if (watched_) watched_->clear();
   ++revision_;

@@ -46,9 +46,10 @@ void run_horizons(Kernel& kernel, double until,
                   const std::function<std::optional<std::size_t>(double end)>& run_one) {
   while (kernel.time() < until && !kernel.halt()) {
     if (!kernel.pause_point()) return;
+    kernel.forget_before(kernel.time());
     const std::uint64_t before = kernel.collisions();
     const std::optional<std::size_t> pairs = run_one(next_end(kernel, until));
-    if (!pairs) return;
+    if (!pairs || kernel.fail_before(until)) return;
     adapt(kernel, *pairs, kernel.collisions() - before);
   }
 }
@@ -89,8 +90,8 @@ void HorizonAgenda::test(Kernel& kernel, const PairKey& pair, double from, doubl
   for (const Certificate& other : kernel.simultaneous(*certificate)) agenda_.insert(other);
 }
 
-std::optional<Certificate> HorizonAgenda::take_earliest(Kernel& kernel) {
-  return brink::take_earliest(kernel, agenda_);
+std::optional<Certificate> HorizonAgenda::take_earliest(Kernel& kernel, double end) {
+  return brink::take_earliest(kernel, agenda_, end);
 }
 
 bool HorizonAgenda::search_on(Kernel& kernel, const Certificate& c, double end) {
