@@ -34,6 +34,7 @@ struct Certificate {
   PairKey pair;
   std::uint64_t version_body = 0, version_other = 0;
   FeatureContact contact;
+  PairAnswer::Why why = PairAnswer::Why::steps;  ///< of an undecided one
 
   /// The total order of events: (time, kind, body, other, site, sample).
   auto order() const {

@@ -21,6 +21,11 @@ Vec2 to_s(const Placed& s, const Placed& t, const Vec2& d) {
   return s.frame.direction_to_local(t.frame.direction_to_world(d));
 }
 
+/// What a step may use of a gap: it leads into the band, never onto the surface.
+double short_of(double gap, double band) { return gap > 0.0 ? gap - 0.5 * std::min(gap, band) : 0.0; }
+/// Likewise of a distance that may be one from behind.
+double held(double gap, double band) { return gap > 0.0 ? short_of(gap, band) : -gap; }
+
 /// True if the arc lies beyond the site, not in it: this pair touches only after its gap has risen to 0
 /// again.
 bool is_through(double gap, const Site& arc, const Site& site, double band) {
@@ -28,7 +33,7 @@ bool is_through(double gap, const Site& arc, const Site& site, double band) {
 }
 
 ArcStep against_segment(const Site& arc, const Site& site, const SamplePath& path, const Placed& s,
-                        const Placed& t, double slack, double band, const RelativeBounds& relative,
+                        const Placed& t, double band, const RelativeBounds& relative,
                         const PathBounds& bounds) {
   const Vec2 d = site.b - site.a, w = path.q - site.a;
   const double length = d.norm();
@@ -45,8 +50,9 @@ ArcStep against_segment(const Site& arc, const Site& site, const SamplePath& pat
   const bool through = is_through(step.gap, arc, site, band);
   step.active = beyond == 0.0 && outside == 0.0 && !through;
   step.point = path.q - step.normal * (side * offset - site.radius);
+  step.curvature = bounds.acceleration;
   if (step.active || step.gap > 0.0)
-    step.safe = safe_step(std::max(step.gap, 0.0) + slack, step.rate, bounds.acceleration);
+    step.safe = safe_step(short_of(step.gap, band), step.rate, step.curvature);
   if (!step.active) {
     const double spin = relative.spin_s + relative.spin_t;
     if (beyond > 0.0) step.safe = std::max(step.safe, bounds.speed > 0.0 ? beyond / bounds.speed : kForever);
@@ -60,14 +66,14 @@ ArcStep against_segment(const Site& arc, const Site& site, const SamplePath& pat
       step.safe = std::max({step.safe, turned(std::min(outside, other)), std::min(turned(outside), stays)});
     }
     if (step.gap > 0.0 || through)
-      step.safe = std::max(step.safe, bounds.speed > 0.0 ? std::abs(step.gap) / bounds.speed : kForever);
+      step.safe = std::max(step.safe, bounds.speed > 0.0 ? held(step.gap, band) / bounds.speed : kForever);
   }
   return step;
 }
 
 /// One of the two ways in which two arcs touch: outside against outside, or inside the other's hollow.
 ArcStep against_arc(const Site& arc, const Site& site, bool hollow, const SamplePath& path, const Placed& s,
-                    const Placed& t, double slack, double band, const RelativeBounds& relative,
+                    const Placed& t, double band, const RelativeBounds& relative,
                     const PathBounds& bounds) {
   const Vec2 w = path.q - site.center;
   const double distance = w.norm();
@@ -84,18 +90,18 @@ ArcStep against_arc(const Site& arc, const Site& site, bool hollow, const Sample
   const bool through = is_through(step.gap, arc, site, band);
   step.active = outside == 0.0 && distance > 0.0 && !through;
   step.point = site.center + u * (site.arc_radius + (hollow ? -site.radius : site.radius));
-  const double curvature =
+  step.curvature =
       bounds.acceleration + (hollow && distance > 0.0 ? bounds.speed * bounds.speed / distance : 0.0);
   if ((step.active || step.gap > 0.0) && (distance > 0.0 || !hollow))
-    step.safe = safe_step(std::max(step.gap, 0.0) + slack, step.rate, curvature);
+    step.safe = safe_step(short_of(step.gap, band), step.rate, step.curvature);
   if (step.gap > 0.0 || through)
-    step.safe = std::max(step.safe, bounds.speed > 0.0 ? std::abs(step.gap) / bounds.speed : kForever);
+    step.safe = std::max(step.safe, bounds.speed > 0.0 ? held(step.gap, band) / bounds.speed : kForever);
   if (!step.active && distance > 0.0) {
     // The direction turns at most at speed / (distance / 2) while the centres are still half their distance
     // apart.
     const double turning = 2.0 * bounds.speed / distance + relative.spin_s + relative.spin_t;
-    const double held = bounds.speed > 0.0 ? 0.5 * distance / bounds.speed : kForever;
-    step.safe = std::max(step.safe, std::min(held, turning > 0.0 ? outside / turning : kForever));
+    const double half_way = bounds.speed > 0.0 ? 0.5 * distance / bounds.speed : kForever;
+    step.safe = std::max(step.safe, std::min(half_way, turning > 0.0 ? outside / turning : kForever));
   }
   return step;
 }
@@ -103,16 +109,16 @@ ArcStep against_arc(const Site& arc, const Site& site, bool hollow, const Sample
 }  // namespace
 
 ArcStep arc_step(const Site& arc, const Site& site, const SamplePath& path, const Placed& s, const Placed& t,
-                 double slack, double band, const RelativeBounds& relative, const PathBounds& bounds) {
+                 double band, const RelativeBounds& relative, const PathBounds& bounds) {
   ArcStep none;
   none.safe = kForever;
   if (!touches_convex(arc) || site.kind == SiteKind::point) return none;
   if (site.kind == SiteKind::segment)
-    return against_segment(arc, site, path, s, t, slack, band, relative, bounds);
+    return against_segment(arc, site, path, s, t, band, relative, bounds);
   ArcStep outer = none, inner = none;
-  if (touches_convex(site)) outer = against_arc(arc, site, false, path, s, t, slack, band, relative, bounds);
+  if (touches_convex(site)) outer = against_arc(arc, site, false, path, s, t, band, relative, bounds);
   if (touches_concave(site) && arc.arc_radius < site.arc_radius)
-    inner = against_arc(arc, site, true, path, s, t, slack, band, relative, bounds);
+    inner = against_arc(arc, site, true, path, s, t, band, relative, bounds);
   ArcStep& first = outer.active && (!inner.active || outer.gap <= inner.gap) ? outer
                    : inner.active                                            ? inner
                                                                              : outer;

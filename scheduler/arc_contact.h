@@ -15,7 +15,8 @@ struct ArcStep {
   bool active = false;  ///< the touching direction is in every sector: gap and rate are those of the pair
   double gap = 0.0;     ///< [m]
   double rate = 0.0;    ///< [m/s]
-  double safe = 0.0;    ///< certified: no contact of this pair for this long [s]
+  double safe = 0.0;    ///< certified: the gap stays above half of `band` (or of itself) for this long [s]
+  double curvature = 0.0;  ///< bound on how the gap bends towards zero [m/s^2]
   Vec2 normal = Vec2::Zero();  ///< in T's frame, out of the site, into the arc
   Vec2 point = Vec2::Zero();   ///< in T's frame, on the site's surface
 };
@@ -26,9 +27,9 @@ inline bool touches_convex(const Site& arc) { return !arc.solid || arc.sweep > 0
 inline bool touches_concave(const Site& arc) { return !arc.solid || arc.sweep < 0.0; }
 
 /// `arc` is a site of S, placed; `path` is the path of its centre in T's frame; `site` is of T.
-/// `slack` is added to gaps when stepping. A gap below minus both thicknesses and `band` [m] is no overlap:
+/// A gap below minus both thicknesses and `band` [m] is no overlap:
 /// the arc's facing side lies beyond the site, as at the far side of a body; such a pair is not active.
 ArcStep arc_step(const Site& arc, const Site& site, const SamplePath& path, const Placed& s, const Placed& t,
-                 double slack, double band, const RelativeBounds& relative, const PathBounds& bounds);
+                 double band, const RelativeBounds& relative, const PathBounds& bounds);
 
 }  // namespace brink

@@ -9,6 +9,7 @@
 #include "brink/core/shapes/distance.h"
 #include "brink/scheduler/canonical_time.h"
 #include "brink/scheduler/pair_kinematics.h"
+#include "brink/scheduler/tolerances.h"
 
 namespace brink {
 
@@ -63,21 +64,27 @@ struct RelativeParabola {
   }
 };
 
-/// When, from s_from on, a gap on the parabola g meets contact; infinity if never. `noise`: rounding of g's
-/// slope [m/s]; `deepest`: a gap below -deepest is no overlap but the far side of a body [m].
-double contact_after(const Quadratic& g, double s_from, double noise, double touch, double deepest) {
+/// When, from s_from on, a gap above its level, on the parabola g, meets it; infinity if never. `noise`:
+/// rounding of g's slope [m/s]; `deepest`: below -deepest it is no overlap but the far side of a body [m].
+double contact_after(const Quadratic& g, double s_from, double noise, double deepest) {
   const double root = falling_root(g);
-  const double now = g.at(s_from), slope = g.slope(s_from);
-  const bool resting =
-      now <= touch && std::abs(slope) <= noise;  // a slope that is all rounding is no approach
-  if (root >= s_from && !resting) return root;
-  if (now > touch || now < -deepest || slope > noise)
-    return kForever;                  // risen again, beyond, or rising: let go
-  if (slope < -noise) return s_from;  // on the surface to rounding, or through it, and approaching: now
-  if (g.second >= 0.0) return kForever;
-  // At rest on the surface and pressed against it: contact is when it has sunk by `touch`.
-  const double sunk = falling_root({g.value + touch, g.rate, g.second});
-  return sunk > s_from ? sunk : (-2.0 * noise - g.rate) / g.second;
+  // a slope that is all rounding is no approach, unless it grows
+  if (root >= s_from) return g.second < 0.0 || g.slope(root) < -noise ? root : kForever;
+  const double now = g.at(s_from);
+  if (now > 0.0 || now < -deepest) return kForever;  // risen again, or beyond
+  return g.slope(s_from) < -noise ? s_from : kForever;
+}
+
+/// True if a gap that starts at `gap` with the given rate is sure to need no sink_at_start().
+bool starts_clear(double gap, double rate, double acceleration, double noise, double tolerance) {
+  return gap >= tolerance || (rate > noise && rate * rate >= 4.0 * acceleration * tolerance);
+}
+
+/// True if places at time t are told well enough in doubles for what is computed here.
+bool near_enough(const Mover& a, const Mover& b, const Vec2& place_a, const Vec2& place_b,
+                 const SearchLimits& limits) {
+  return place_rounding(*a.motion, place_a) + place_rounding(*b.motion, place_b) <=
+         kFarOfTolerance * limits.tolerance;
 }
 
 /// Steps back from a rounded root to a double at which the gap is still above zero.
@@ -126,24 +133,38 @@ FeatureContact disc_contact(const Mover& a, const Mover& b, double t) {
 }
 
 bool discs(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
-           PairAnswer& answer) {
+           SearchScratch& scratch, PairAnswer& answer) {
   const double reach = b.outline().sites[0].radius + a.outline().sites[0].radius;
   if (!(reach > 0.0) || a.motion->acceleration().linear != b.motion->acceleration().linear) return false;
   const RelativeParabola rel(a, b);
-  // |offset + velocity s|^2 - reach^2, divided by 2 reach: near contact this is the gap itself
-  const double distance0 = rel.offset.norm();
-  const double scale = 1.0 / (2.0 * reach);
-  const Quadratic g{(distance0 - reach) * (distance0 + reach) * scale,
-                    2.0 * rel.offset.dot(rel.velocity) * scale, 2.0 * rel.velocity.squaredNorm() * scale};
   answer = {PairAnswer::Status::clear, to, {}};
-  const double s = contact_after(g, from - rel.reference, rel.noise, limits.touch, kForever);
-  double t = std::max(rel.reference + s, from);
-  if (!(t <= to)) return true;
+  const double speed2 = rel.velocity.squaredNorm(), way = rel.offset.dot(rel.velocity);
+  const double distance0 = rel.offset.norm(), s_from = from - rel.reference;
+  if (way > rel.noise * distance0 && distance0 >= 0.5 * reach) return true;  // they part
+  double level = 0.0;
+  if (!starts_clear(distance0 - reach, way / distance0, 0.0, rel.noise, limits.tolerance))
+    level = sink_at_start(a, b, limits, scratch);
+  const double met = reach + level;
+  double s = time_until_within(rel.offset, rel.velocity, met);
+  if (!(s >= s_from)) {  // touching at the start, and approaching; or past
+    const Vec2 now = rel.offset + s_from * rel.velocity;
+    s = now.dot(rel.velocity) < -rel.noise * met ? s_from : kForever;
+  }
   const Parabola path_a(*a.motion), path_b(*b.motion);
-  const auto gap = [=](double time) { return (path_a.at(time) - path_b.at(time)).norm() - reach; };
-  const double speed = std::max(-g.slope(t - rel.reference), rel.noise);
-  t = canonical_root(gap, t, from, place_noise(path_a, path_b, t, reach) / speed + 4.0 * ulp(t), speed);
+  double t = std::max(rel.reference + s, from);
+  const double nearest = t <= to                        ? t
+                         : rel.velocity.isZero(0.0) ? from
+                                                    : std::clamp(rel.reference - way / speed2, from, to);
+  if (!near_enough(a, b, path_a.at(nearest), path_b.at(nearest), limits)) return false;
+  if (!(t <= to)) return true;
+  const Vec2 then = rel.offset + s * rel.velocity;
+  const double closing = -then.dot(rel.velocity) / then.norm();
+  if (!(closing > rel.noise)) return true;
+  const auto gap = [=](double time) { return (path_a.at(time) - path_b.at(time)).norm() - reach - level; };
+  t = canonical_root(gap, t, std::max(rel.reference, 0.0),
+                     place_noise(path_a, path_b, t, reach) / closing + 4.0 * ulp(t), closing);
   answer = {PairAnswer::Status::contact, t, disc_contact(a, b, t)};
+  answer.contact.level = answer.contact.sink = level;
   return true;
 }
 
@@ -174,8 +195,8 @@ struct Meeting {
   const Site* site;
   int index;
   Vec2 normal;   ///< towards the disc
-  double level;  ///< taken off the gap, as in the general search: a thin wire is met just before it
-  double s;      ///< infinite: never
+  Quadratic gap;  ///< [m]
+  double s;       ///< infinite: never
 
   /// Bit for bit what the general search sees of a disc of the given radius at q: the gap, and how near the
   /// segment is for choosing among several.
@@ -184,35 +205,37 @@ struct Meeting {
   };
   Seen seen(const Vec2& q, double disc_radius, double touch) const {
     const Nearest nearest = nearest_on(*site, q);
-    const double radius = site->radius + disc_radius;
-    const bool sided = site->solid || radius > 0.0;
-    const double side = sided ? side_of(*site, nearest, q) : normal.dot(q - nearest.point) < 0.0 ? -1.0 : 1.0;
+    const double side = side_of(*site, nearest, q);
     const double rank = nearest.distance - site->radius - (nearest.foot == Foot::interior ? touch : 0.0);
-    return {side * nearest.distance - radius - level, rank};
+    return {side * nearest.distance - (site->radius + disc_radius), rank};
   }
 };
 
+/// The gap of the disc to a segment.
+void measure(const DiscPath& disc, Meeting& m) {
+  const Site& site = *m.site;
+  const Vec2 d = site.b - site.a;
+  m.normal = -perp(d / d.norm());  // right of travel: out of a solid
+  if (!site.solid && m.normal.dot(disc.at(disc.s_from) - site.a) < 0.0) m.normal = -m.normal;
+  m.gap = {m.normal.dot(disc.q - site.a) - disc.radius - site.radius, m.normal.dot(disc.velocity),
+           m.normal.dot(disc.acceleration)};
+}
+
 /// False if the disc's centre does not stay abreast of the segment until it meets it or the window ends.
-bool meet(const DiscPath& disc, const SearchLimits& limits, Meeting& m) {
+bool meet(const DiscPath& disc, const SearchLimits& limits, double level, Meeting& m) {
   const Site& site = *m.site;
   const Vec2 d = site.b - site.a;
   const double length = d.norm();
   const Vec2 tangent = d / length;
-  m.normal = -perp(tangent);  // right of travel: out of a solid
-  if (!site.solid && m.normal.dot(disc.at(disc.s_from) - site.a) < 0.0) m.normal = -m.normal;
-  const double radius = site.radius + disc.radius;
-  m.level = !site.solid && radius == 0.0 ? 0.5 * limits.touch : 0.0;
-  const Quadratic gap{m.normal.dot(disc.q - site.a) - disc.radius - site.radius - m.level,
-                      m.normal.dot(disc.velocity), m.normal.dot(disc.acceleration)};
   const Quadratic along{tangent.dot(disc.q - site.a), tangent.dot(disc.velocity),
                         tangent.dot(disc.acceleration)};
-  m.s = contact_after(gap, disc.s_from, disc.slope_noise, limits.touch - 1.5 * m.level,
-                      radius + limits.tolerance);
+  const Quadratic above{m.gap.value - level, m.gap.rate, m.gap.second};
+  m.s = contact_after(above, disc.s_from, disc.slope_noise, disc.radius + site.radius + limits.tolerance);
   return stays_within(along, length, disc.s_from, std::max(disc.s_from, std::min(m.s, disc.s_to)));
 }
 
 bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, double from, double to,
-                       const SearchLimits& limits, PairAnswer& answer) {
+                       const SearchLimits& limits, SearchScratch& scratch, PairAnswer& answer) {
   const RelativeParabola rel(disc, other);
   const Frame frame(rel.b.pose);
   const double radius = disc.outline().sites[0].radius;
@@ -227,20 +250,33 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
   int count = 0;
   double earliest = kForever;
   Vec2 normal = Vec2::Zero();
+  bool clear = true;
   for (const Site& site : other.outline().sites) {
+    if (radius + site.radius == 0.0) return false;  // a point on a wire: the search knows its level
     Meeting& m = meetings[static_cast<std::size_t>(count)];
     m.site = &site;
     m.index = count++;
-    if (!meet(path, limits, m)) return false;
+    measure(path, m);
+    clear = clear && starts_clear(std::abs(m.gap.value), m.gap.rate, std::abs(m.gap.second), rel.noise,
+                                  limits.tolerance);
+  }
+  const double level = clear ? 0.0
+                       : disc_is_a ? sink_at_start(disc, other, limits, scratch)
+                                   : sink_at_start(other, disc, limits, scratch);
+  for (int k = 0; k < count; ++k) {
+    Meeting& m = meetings[static_cast<std::size_t>(k)];
+    if (!meet(path, limits, level, m)) return false;
     if (m.s < earliest) {
       earliest = m.s;
       normal = m.normal;
     }
   }
   answer = {PairAnswer::Status::clear, to, {}};
-  double t = std::max(rel.reference + earliest, from);
-  if (!(t <= to)) return true;
   const Parabola parabola(*disc.motion), parabola_of_other(*other.motion);
+  double t = std::max(rel.reference + earliest, from);
+  for (const double time : {from, std::min(t, to)})
+    if (!near_enough(disc, other, parabola.at(time), parabola_of_other.at(time), limits)) return false;
+  if (!(t <= to)) return true;
   const double speed =
       std::max(-normal.dot(path.velocity + (t - rel.reference) * path.acceleration), rel.noise);
   const double arm = disc.outline().bounding_radius + other.outline().bounding_radius;
@@ -256,12 +292,12 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
       const Meeting::Seen seen = m.seen(q, radius, limits.touch);
       if (!(seen.rank < least)) continue;
       least = seen.rank;
-      nearest = {seen.gap, &m};
+      nearest = {seen.gap - level, &m};
     }
     return nearest;
   };
-  t = canonical_root([&](double time) { return nearest_at(time).first; }, t, from, noise, speed);
-  const auto [gap, met] = nearest_at(t);
+  t = canonical_root([&](double time) { return nearest_at(time).first; }, t, rel.reference, noise, speed);
+  const auto [above, met] = nearest_at(t);
   const BodyState sd = disc.motion->state(t), so = other.motion->state(t);
   const Vec2 out = frame.direction_to_world(met->normal);
   FeatureContact& c = answer.contact;
@@ -269,7 +305,8 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
   c.sample_on_a = disc_is_a;
   c.sample = 0;
   c.site = met->index;
-  c.gap = gap + met->level;
+  c.gap = above + level;
+  c.level = c.sink = level;
   c.normal = disc_is_a ? out : Vec2(-out);
   c.point = sd.pose.position - out * (radius + c.gap);
   c.closing_speed = -out.dot(sd.twist.velocity - so.twist.velocity);
@@ -297,12 +334,12 @@ bool has_closed_form(const Mover& a, const Mover& b) {
 }
 
 bool first_contact_in_closed_form(const Mover& a, const Mover& b, double from, double to,
-                                  const SearchLimits& limits, PairAnswer& answer) {
+                                  const SearchLimits& limits, SearchScratch& scratch, PairAnswer& answer) {
   if (!has_closed_form(a, b)) return false;
   const bool disc_a = is_centred_disc(a.outline()), disc_b = is_centred_disc(b.outline());
-  if (disc_a && disc_b) return discs(a, b, from, to, limits, answer);
-  return disc_a ? disc_and_segments(a, b, true, from, to, limits, answer)
-                : disc_and_segments(b, a, false, from, to, limits, answer);
+  if (disc_a && disc_b) return discs(a, b, from, to, limits, scratch, answer);
+  return disc_a ? disc_and_segments(a, b, true, from, to, limits, scratch, answer)
+                : disc_and_segments(b, a, false, from, to, limits, scratch, answer);
 }
 
 }  // namespace brink

@@ -27,7 +27,7 @@ double falling_root(const Quadratic& g);
 /// do not meet before `to` a square root or none; two that do a dozen gaps more, to find the canonical time
 /// (brink_bench_first_contact: search/discs_that_miss, search/discs).
 bool first_contact_in_closed_form(const Mover& a, const Mover& b, double from, double to,
-                                  const SearchLimits& limits, PairAnswer& answer);
+                                  const SearchLimits& limits, SearchScratch& scratch, PairAnswer& answer);
 
 /// True if first_contact_in_closed_form may succeed for these outlines and motions (the plan's question).
 bool has_closed_form(const Mover& a, const Mover& b);

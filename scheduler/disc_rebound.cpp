@@ -66,7 +66,7 @@ double speed_of(const DiscRebound::Start& s, const Moving& before, double radius
 }  // namespace
 
 std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const Vec2& shift, double time,
-                                   double latest, double restitution) {
+                                   double latest, double level, double restitution) {
   const Moving disc_a(*a.motion, time), disc_b(*b.motion, time);
   Real dx = disc_a.x - (disc_b.x + shift.x()), dy = disc_a.y - (disc_b.y + shift.y());
   const Real wx = disc_a.vx - disc_b.vx, wy = disc_a.vy - disc_b.vy;
@@ -74,7 +74,7 @@ std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const V
   const Real closing = -(dx * wx + dy * wy) / length;
   if (!(closing > 0) || !(a.inverse_mass + b.inverse_mass > 0.0)) return std::nullopt;
   DiscRebound r;
-  r.delay = std::clamp((length - b.radius - a.radius) / closing, Real(-latest), Real(latest));
+  r.delay = std::clamp((length - b.radius - a.radius - level) / closing, Real(-latest), Real(latest));
   dx += r.delay * wx;
   dy += r.delay * wy;
   length = std::sqrt(dx * dx + dy * dy);

@@ -22,6 +22,9 @@ using detail::PairView;
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
+/// What moves more than this part of its radius in a few roundings of the clock is too fast to be resolved.
+constexpr double kSlowOfSize = 1e-3;
+
 class PairSearch {
  public:
   PairSearch(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
@@ -43,8 +46,10 @@ class PairSearch {
 
   PairAnswer run() {
     if (!apart_by_bounding_discs()) advance();
-    if (best_.sample >= 0) return {PairAnswer::Status::contact, best_.time, best_};
-    if (capped_) return {PairAnswer::Status::undecided, reached_, {}};
+    // what stopped before the contact that it had found may have passed an earlier one
+    if (best_.sample >= 0 && !(stopped_ && reached_ < best_.time))
+      return {PairAnswer::Status::contact, best_.time, best_};
+    if (stopped_) return {PairAnswer::Status::undecided, reached_, {}, why_};
     return {PairAnswer::Status::clear, to_, {}};
   }
 
@@ -68,8 +73,7 @@ class PairSearch {
       const double distance = d.norm(), f = distance - reach;
       if (f <= near) break;
       if (straight) {  // no curvature: there at once
-        const double held = reach + 0.5 * near;
-        t += falling_root({(distance - held) * (distance + held), 2.0 * d.dot(v), 2.0 * v.squaredNorm()});
+        t += time_until_within(d, v, reach + 0.5 * near);
         break;
       }
       const RelativeBounds bounds = bounds_over(t, to_);
@@ -90,10 +94,7 @@ class PairSearch {
       const double t = least_safe_time();
       if (t >= to_) return;
       reached_ = t;
-      if (iteration >= limits_.max_iterations) {
-        capped_ = true;
-        return;
-      }
+      if (iteration >= limits_.max_iterations) return stop(PairAnswer::Why::steps);
       ++work_.search_iterations;
       t_ = t;
       next_ = next_after(t);
@@ -109,8 +110,36 @@ class PairSearch {
       if (first_b >= 0) advance_sample(of_b, first_b);
       advance_due(of_a, due, first_a);
       advance_due(of_b, due, first_b);
+      if (stopped_) return;
       short_window_ = std::max(4.0 * (least_ - t), 64.0 * ulp(t));
     }
+  }
+
+  /// Ends the search, undecided at reached_.
+  void stop(PairAnswer::Why why) {
+    stopped_ = true;
+    why_ = why;
+  }
+
+  /// Features have come close: from now on levels count. False, and the search ends undecided, if the gap of
+  /// this sample cannot be held to the tolerance.
+  bool look_closely(const Half& half, int i, const Site& site, const SamplePath& path, double band) {
+    if (!sink_known_) {
+      view_.set_sink(view_.sink_at_start());
+      sink_known_ = true;
+    }
+    const bool thin = !site.solid && site.radius + half.sample(i).radius == 0.0;
+    if (!can_hold(view_.gap_rounding(half, i, site, path.q), limits_.tolerance, thin))
+      stop(PairAnswer::Why::place);
+    else if (band > limits_.tolerance && band > kSlowOfSize * smallest_radius())
+      stop(PairAnswer::Why::speed);
+    return !stopped_;
+  }
+
+  /// Of the two outlines' bounding discs; of a mere point, of the other's [m].
+  double smallest_radius() const {
+    const double ra = a_.outline().bounding_radius, rb = b_.outline().bounding_radius;
+    return ra > 0.0 && rb > 0.0 ? std::min(ra, rb) : std::max(ra, rb);
   }
 
   /// Of the samples due, the one nearest to the other outline's origin; -1 if none is.
@@ -157,7 +186,7 @@ class PairSearch {
     const RelativeBounds relative = half.s_is_a ? long_bounds_ : long_bounds_.swapped();
     const RelativeBounds near = half.s_is_a ? short_bounds_ : short_bounds_.swapped();
     const PathBounds over_all = path_bounds(path, relative, long_window);
-    const Facing line = line_between(half, sample, path, over_all);
+    const Facing line = line_between(half, sample, path);
     const double apart = line.gap > 0.0 ? safe_step(line.gap, line.rate, over_all.acceleration)
                                         : clear_of_disc(half, sample, path, over_all);
     if (apart >= long_window || apart > 2.0 * (least_ - t_)) return apart * (1.0 - 4.0 * kEpsilon);
@@ -176,26 +205,25 @@ class PairSearch {
   }
 
   /// How long a sample is sure to stay out of the disc that holds the other outline; 0 if it is in it. As
-  /// other steps (slack_at), this one does not lead onto the surface.
+  /// other steps, this one does not lead onto the surface.
   double clear_of_disc(const Half& half, const Sample& sample, const SamplePath& path,
                        const PathBounds& bounds) const {
     const Outline& outline = half.sites_of();
-    const double f = path.distance - outline.bounding_radius - sample.radius - touching_band(bounds);
+    const double f = path.distance - outline.bounding_radius - sample.radius - touching_band(path);
     if (outline.container || outline.is_point() || !(f > 0.0)) return 0.0;
     return safe_step(f, path.q.dot(path.rate) / path.distance, bounds.acceleration);
   }
 
   /// The line between a vertex sample and a convex outline, as far out as a step may lead; gap 0 where there
   /// is none, or the sample is so near that its features must be told apart.
-  Facing line_between(const Half& half, const Sample& sample, const SamplePath& path,
-                      const PathBounds& bounds) {
+  Facing line_between(const Half& half, const Sample& sample, const SamplePath& path) {
     const Outline& outline = half.sites_of();
     if (outline.facets.empty() || sample.arc_site >= 0) return {};
     ++work_.distance_queries;
     ++work_.candidate_evaluations;
     Facing line = facing_convex(outline, path.q, path.rate);
     line.gap -= outline.sites[0].radius + sample.radius;
-    const double band = touching_band(bounds);
+    const double band = touching_band(path);
     line.gap = line.gap > 2.0 * band ? line.gap - 0.5 * band : 0.0;
     return line;
   }
@@ -208,7 +236,7 @@ class PairSearch {
     const Sample& sample = half.sample(i);
     const Outline& sites = half.sites_of();
     ++work_.distance_queries;
-    const double band = touching_band(over_all);
+    const double band = touching_band(path);
     const double reach = over_all.speed * window + sample.radius + 2.0 * band;
     const Candidates near = half.t->index->candidates(path.q, reach, scratch_.index);
     work_.candidate_evaluations += near.sites.size();
@@ -222,15 +250,23 @@ class PairSearch {
       const double radius = site.radius + sample.radius;
       const double gap = nearest.distance - radius;
       if (gap <= band) {
+        if (!look_closely(half, i, site, path, band)) return {0.0, 0.0};
         if (!neighbours_known) view_.find_neighbours(half, i, near.sites, path, 4.0 * band);
         neighbours_known = true;
-        if (meets(half, i, static_cast<int>(j), nearest, path, over_all)) continue;
+        const Feature f = view_.vertex_feature(half, i, static_cast<int>(j), nearest, path);
+        if (!view_.belongs_to_a_neighbour(half, static_cast<int>(j), nearest, path.q) &&
+            polish(half, f, path, over_all))
+          continue;
+        const double above = f.gap - view_.level(half, i, site, path.q);
+        safe = std::min(safe, close_step(site, nearest, f, above, path, band, over_all));
+        again = std::min(again, close_step(site, nearest, f, above, path, band, over_short));
+        continue;
       }
       const double beyond = gap - 0.5 * band;  // too far to matter at any speed?
       if (beyond > band && beyond >= safe * over_all.speed &&
           beyond >= std::min(again, short_window) * over_short.speed)
         continue;
-      const double slack = slack_at(gap, band, !site.solid && radius == 0.0);
+      const double slack = -0.5 * band;
       const double rate = distance_rate(site, nearest, path.q, path.rate);
       safe = std::min(safe, site_step(site, nearest, path.q, path.rate, rate, radius, slack, over_all).safe);
       again =
@@ -239,17 +275,30 @@ class PairSearch {
     return {safe, again};
   }
 
-  /// Gaps up to this are touching [m]: the tolerance, or what the point moves in a few roundings of the time.
-  double touching_band(const PathBounds& bounds) const {
-    return std::max(limits_.tolerance, 8.0 * bounds.speed * ulp(t_));
+  /// The step of a vertex that is within the band of a site and does not meet it, `above` its level: by the
+  /// signed distance to the site's line or circle where the foot is inside the site, which holds behind its
+  /// surface as in front of it; else by the site's distance.
+  double close_step(const Site& site, const Nearest& nearest, const Feature& f, double above,
+                    const SamplePath& path, double band, const PathBounds& bounds) const {
+    const double allowed = 0.25 * sink_step(limits_.touch, 0.0);
+    if (site.kind == SiteKind::segment || site.kind == SiteKind::point)
+      return band_step(above, f.rate, bounds.acceleration, band, allowed);
+    const bool hollow = f.normal.dot(path.q - site.center) < 0.0;  // f's normal points to the centre
+    const double bend = hollow ? bounds.speed * bounds.speed / site.arc_radius * 1.01 : 0.0;
+    if (nearest.foot == Foot::interior)
+      return band_step(above, f.rate, bounds.acceleration + bend, band, allowed);
+    const HullDistance hull = distance_to_arc_hull(site, nearest, path.q);
+    const double outside = hull.distance - (nearest.distance - above);
+    const double by_hull = hull.distance > 0.0 ? band_step(outside, hull.gradient.dot(path.rate),
+                                                           bounds.acceleration, band, allowed)
+                                               : 0.0;
+    const double by_speed = bounds.speed > 0.0 ? 0.5 * std::max(above, allowed) / bounds.speed : kForever;
+    return std::max(by_hull, by_speed);
   }
 
-  /// Added to a gap before stepping. A step leads into the band, never onto the surface: beyond a thin wire
-  /// by a rounding error the point would seem to recede. In contact the gap may sink by `touch`, but not
-  /// through a wire.
-  double slack_at(double gap, double band, bool thin) const {
-    const bool may_sink = gap <= (thin ? 0.1 : 1.0) * limits_.touch;
-    return may_sink ? limits_.touch : -0.5 * std::min(gap, band);
+  /// Gaps up to this are close [m]: the tolerance, or what the point moves in a few roundings of the time.
+  double touching_band(const SamplePath& path) const {
+    return std::max(limits_.tolerance, 8.0 * path.rate.norm() * ulp(t_));
   }
 
   double arc_sample_step(const Half& half, int i, const SamplePath& path, const RelativeBounds& relative,
@@ -257,30 +306,25 @@ class PairSearch {
     const Sample& sample = half.sample(i);
     const Site& arc = half.samples_of().sites[sample.arc_site];
     const Outline& sites = half.sites_of();
-    const double band = touching_band(bounds);
+    const double band = touching_band(path);
     double safe = kForever;
     for (std::size_t j = 0; j < sites.sites.size(); ++j) {
       ++work_.candidate_evaluations;
-      ArcStep step = arc_step(arc, sites.sites[j], path, view_.placed(half.s), view_.placed(half.t), 0.0,
-                              band, relative, bounds);
+      const ArcStep step =
+          arc_step(arc, sites.sites[j], path, view_.placed(half.s), view_.placed(half.t), band, relative,
+                   bounds);
       if (step.active && step.gap <= band) {
-        if (polish(half, {i, static_cast<int>(j), step.gap, step.rate, step.normal, step.point}, path,
-                   bounds))
-          continue;
-        step = arc_step(arc, sites.sites[j], path, view_.placed(half.s), view_.placed(half.t),
-                        step.gap <= limits_.touch ? limits_.touch : 0.0, band, relative, bounds);
+        if (!look_closely(half, i, sites.sites[j], path, band)) return 0.0;
+        const Feature f{i, static_cast<int>(j), step.gap, step.rate, step.normal, step.point};
+        if (polish(half, f, path, bounds)) continue;
+        const double own = band_step(step.gap - view_.arc_level(), step.rate, step.curvature, band,
+                                     0.25 * sink_step(limits_.touch, 0.0));
+        safe = std::min(safe, own);
+        continue;
       }
       safe = std::min(safe, step.safe);
     }
     return safe;
-  }
-
-  /// A vertex sample within tolerance of a site: true if it meets this very site and the contact is
-  /// remembered.
-  bool meets(const Half& half, int i, int j, const Nearest& nearest, const SamplePath& path,
-             const PathBounds& bounds) {
-    if (view_.belongs_to_a_neighbour(half, j, nearest, path.q)) return false;
-    return polish(half, view_.vertex_feature(half, i, j, nearest, path), path, bounds);
   }
 
   /// The feature pair is within tolerance: if it approaches, finds the last double at which it is still
@@ -290,35 +334,38 @@ class PairSearch {
       if (f.gap < -limits_.tolerance && t_ == from_ && f.rate > 0.0) ++work_.let_go;
       return false;
     }
-    if (t_ <= from_ && f.gap <= 0.0) return remember(half, f, t_);
-    const Sample& sample = half.sample(f.sample);
-    const Site& site = half.site(f.site);
-    const bool vertex = sample.arc_site < 0;
     const auto gap = [&](double t) { return view_.gap_at(half, f, t).gap; };
+    const Site& site = half.site(f.site);
+    const bool vertex = half.sample(f.sample).arc_site < 0;
     const double speed = -f.rate;
-    const double now = f.gap - (vertex ? view_.level_at(site, sample.radius, nearest_on(site, path.q)) : 0.0);
+    const double now =
+        f.gap - (vertex ? view_.level(half, f.sample, site, path.q) : view_.arc_level());
+    const double begin = view_.start();
+    if (t_ <= begin && now <= 0.0) return remember(half, f, t_);  // touching from the start, and approaching
     const double guess = t_ + now / speed;
-    const double bend = std::min(1.0, bounds.acceleration * f.gap / (speed * speed)) * f.gap / speed;
-    const double noise = view_.gap_rounding() / speed + 4.0 * ulp(t_) + bend;
+    const double off = std::abs(now) / speed;
+    const double bend = std::min(1.0, bounds.acceleration * off / speed) * off;
+    const double noise = view_.gap_rounding(half, f.sample, site, path.q) / speed + 4.0 * ulp(t_) + bend;
     const double last = std::min(a_.motion->end(), b_.motion->end());
-    double low = std::max(guess - 8.0 * noise, from_), high = guess + 8.0 * noise;
+    // it was clear until the search began, but for roundings
+    const double floor = std::max(begin, from_ - 1024.0 * noise);
+    double low = std::max(std::min(guess, t_) - 8.0 * noise, floor), high = guess + 8.0 * noise;
     for (double back = 8.0 * noise; gap(low) <= 0.0; back *= 4.0) {
-      if (low <= from_) return remember(half, f, t_);  // in each other from the start, and now going deeper
-      low = std::max(low - back, from_);
+      if (low <= floor) return remember(half, f, t_);  // in each other from the start, and now going deeper
+      low = std::max(low - back, floor);
     }
     // beyond the surface; where two points meet, when they are nearest; where a bent path meets it later; and
     // where a tip is grazed, for less than a rounding
-    const double nearest = t_ + f.gap / speed, later = t_ + 4.0 * std::max(0.0, now) / speed + 64.0 * noise;
+    const double nearest = t_ + now / speed, later = t_ + 4.0 * std::max(0.0, now) / speed + 64.0 * noise;
     for (const double beyond : {high, nearest, later, nearest + 0.125 * noise, nearest + 0.25 * noise,
                                 nearest + 0.5 * noise, nearest + noise}) {
       high = std::min(beyond, last);
       if (high > low && gap(high) <= 0.0) break;
     }
-    if (high <= low || gap(high) > 0.0)  // passes by, or touches within rounding
-      return f.gap <= limits_.touch && remember(half, f, t_);
+    if (high <= low || gap(high) > 0.0) return false;  // passes by
     const double t = last_clear_time(gap, low, high);
     // at the end of its neighbourhood a sample changes sides without having come near
-    if (gap(t) > touching_band(bounds)) return false;
+    if (gap(t) > touching_band(path)) return false;
     return remember(half, f, t, 8.0 * noise);
   }
 
@@ -360,7 +407,9 @@ class PairSearch {
   double t_ = 0.0, next_ = 0.0, reached_ = 0.0;
   double least_ = kForever;  ///< of the samples looked at from t_, how long all are safe
   FeatureContact best_;
-  bool capped_ = false;
+  bool sink_known_ = false;
+  bool stopped_ = false;
+  PairAnswer::Why why_ = PairAnswer::Why::steps;
 };
 
 }  // namespace
@@ -370,13 +419,13 @@ PairAnswer first_contact(const Mover& a, const Mover& b, double from, double to,
   ++work.pair_searches;
   if (limits.closed_forms) {
     PairAnswer answer;
-    if (first_contact_in_closed_form(a, b, from, to, limits, answer)) {
+    if (first_contact_in_closed_form(a, b, from, to, limits, scratch, answer)) {
       ++work.closed_forms;
       // seen through the same eyes as the general search's; two discs' is already
       const bool discs = a.outline().is_point() && b.outline().is_point();
       if (answer.status == PairAnswer::Status::contact && !discs) {
         const double t = answer.contact.time;
-        answer.contact = contact_in(a, b, a.motion->state(t), b.motion->state(t), answer.contact, scratch);
+        answer.contact = contact_at(a, b, t, answer.contact, limits, scratch);
       }
       return answer;
     }
@@ -385,22 +434,23 @@ PairAnswer first_contact(const Mover& a, const Mover& b, double from, double to,
 }
 
 std::vector<FeatureContact> touching_features(const Mover& a, const Mover& b, double t, double tolerance,
-                                              SearchScratch& scratch) {
+                                              const SearchLimits& limits, SearchScratch& scratch) {
   std::vector<FeatureContact> found;
-  const SearchLimits limits;
   PairView view(a, b, limits, scratch);
   view.place(t);
-  view.each_feature(
-      tolerance, [&](const Half& half, const Feature& f) { found.push_back(view.contact_of(half, f, t)); });
+  view.each_feature(tolerance + limits.tolerance, [&](const Half& half, const Feature& f) {
+    const FeatureContact c = view.contact_of(half, f, t);
+    if (c.gap - c.level <= tolerance) found.push_back(c);
+  });
   std::stable_sort(found.begin(), found.end(), [](const auto& x, const auto& y) { return x.gap < y.gap; });
   return found;
 }
 
-FeatureContact contact_in(const Mover& a, const Mover& b, const BodyState& state_a, const BodyState& state_b,
-                          const FeatureContact& like, SearchScratch& scratch) {
-  const SearchLimits limits;
+FeatureContact contact_at(const Mover& a, const Mover& b, double t, const FeatureContact& like,
+                          const SearchLimits& limits, SearchScratch& scratch) {
   PairView view(a, b, limits, scratch);
-  view.place(state_a, state_b);
+  view.set_sink(like.sink);
+  view.place(t);
   Feature same;
   same.sample = like.sample;
   same.site = like.site;
@@ -409,13 +459,17 @@ FeatureContact contact_in(const Mover& a, const Mover& b, const BodyState& state
   return c;
 }
 
-double pair_gap(const Mover& a, const Mover& b, double t, SearchScratch& scratch) {
-  const SearchLimits limits;
+double pair_gap(const Mover& a, const Mover& b, double t, const SearchLimits& limits,
+                SearchScratch& scratch) {
   PairView view(a, b, limits, scratch);
   view.place(t);
   double least = kForever;
   view.each_feature(kForever, [&](const Half&, const Feature& f) { least = std::min(least, f.gap); });
   return least;
+}
+
+double sink_at_start(const Mover& a, const Mover& b, const SearchLimits& limits, SearchScratch& scratch) {
+  return PairView(a, b, limits, scratch).sink_at_start();
 }
 
 }  // namespace brink

@@ -49,17 +49,29 @@ struct FeatureContact {
   Vec2 normal = Vec2::Zero();  ///< world, unit, from b into a
   double closing_speed = 0.0;  ///< [m/s], > 0 approaching
   double gap = 0.0;            ///< [m] at `time`
+  double level = 0.0;          ///< the gap at which these features meet [m] (tolerances.h)
+  double sink = 0.0;           ///< what of the level is sink_at_start() [m], <= 0
+
+  /// How far these features have sunk into each other beyond their nominal level [m].
+  double sunk() const { return -sink; }
 };
 
 struct PairAnswer {
   enum class Status {
     clear,      ///< no contact before `until`
     contact,    ///< see `contact`; until == contact.time
-    undecided,  ///< the iteration cap was met at `until`: clear so far
+    undecided,  ///< the search stopped at `until`: clear so far
+  };
+  /// Why it is undecided.
+  enum class Why : unsigned char {
+    steps,  ///< the iteration cap was met: ask again from `until`
+    place,  ///< they are close, and too far away for their gap to be told to the contact tolerance
+    speed,  ///< they are close, and too fast for the clock: they move a part of their size between two doubles
   };
   Status status = Status::clear;
   double until = 0.0;
   FeatureContact contact;
+  Why why = Why::steps;
 };
 
 /// Reused memory of searches; one a thread.
@@ -79,18 +91,21 @@ struct SearchScratch {
 PairAnswer first_contact(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
                          SearchScratch& scratch, WorkCounters& work);
 
-/// Every feature pair with gap <= `tolerance` at time t, nearest first; receding ones too. Brute force over
-/// samples.
+/// Every feature pair that is within `tolerance` of its level at time t, nearest first; receding ones too.
+/// Brute force over samples.
 std::vector<FeatureContact> touching_features(const Mover& a, const Mover& b, double t, double tolerance,
-                                              SearchScratch& scratch);
+                                              const SearchLimits& limits, SearchScratch& scratch);
 
-/// The same two features, looked at with the pair in other states close by (a fraction of a rounding of the
-/// clock away): their point, normal, closing speed and gap there. Keeps `like`'s normal where the new one is
-/// lost in rounding.
-FeatureContact contact_in(const Mover& a, const Mover& b, const BodyState& state_a, const BodyState& state_b,
-                          const FeatureContact& like, SearchScratch& scratch);
+/// The same two features, looked at at time t: their point, normal, closing speed, gap and level. Keeps
+/// `like`'s normal where the new one is lost in rounding.
+FeatureContact contact_at(const Mover& a, const Mover& b, double t, const FeatureContact& like,
+                          const SearchLimits& limits, SearchScratch& scratch);
 
 /// Signed gap of the pair at time t: the least over both sample sets [m]; touching features' exactness.
-double pair_gap(const Mover& a, const Mover& b, double t, SearchScratch& scratch);
+double pair_gap(const Mover& a, const Mover& b, double t, const SearchLimits& limits, SearchScratch& scratch);
+
+/// How far below its level a pair that starts touching is met [m], <= 0: see start_sink() in tolerances.h. A
+/// function of the two motions alone.
+double sink_at_start(const Mover& a, const Mover& b, const SearchLimits& limits, SearchScratch& scratch);
 
 }  // namespace brink

@@ -22,6 +22,11 @@ struct alignas(64) Flight {
   unsigned version : 30 = 0;  ///< raised when the motion changes
   unsigned free : 1 = 0;      ///< a parabola under the common gravity for ever
   unsigned disc : 1 = 0;      ///< the bounding disc is the body
+
+  /// Size of the numbers from which the place after s is computed [m].
+  double magnitude(double s) const {
+    return std::abs(x) + std::abs(y) + std::abs(s) * (std::abs(vx) + std::abs(vy));
+  }
 };
 
 /// A span of time in which two outlines may touch; never: begin = infinity.
@@ -30,19 +35,23 @@ struct Meeting {
   double end = std::numeric_limits<double>::infinity();
 };
 
-/// Bounding discs are taken larger by this part of their size, which holds the rounding of these formulas.
+/// Bounding discs are taken larger by this part of their size, which holds the rounding of these formulas
+/// but for that of places, and by kFlightRounding of the places' size (in both, of their ways as well).
 inline constexpr double kFlightMargin = 1e-9;
+inline constexpr double kFlightRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 /// A flight seen from the present: where its centre is now.
 struct Course {
   Vec2 place, velocity, gravity;
-  double radius;
+  double radius;  ///< with the rounding of the place
   bool disc;
 
-  Course(const Flight& f, const Vec2& g, double now) : gravity(g), radius(f.radius), disc(f.disc) {
+  Course(const Flight& f, const Vec2& g, double now) : gravity(g), disc(f.disc) {
     const double s = now - f.start;
     place = Vec2(f.x + s * (f.vx + 0.5 * s * g.x()), f.y + s * (f.vy + 0.5 * s * g.y()));
     velocity = Vec2(f.vx + s * g.x(), f.vy + s * g.y());
+    const double ways = s * s * g.lpNorm<1>();
+    radius = f.radius * (1.0 + kFlightMargin) + kFlightRounding * (f.magnitude(s) + ways);
   }
   void displace(const Vec2& by) { place += by; }
   Vec2 after(double s) const { return place + s * (velocity + 0.5 * s * gravity); }
@@ -56,14 +65,17 @@ inline Meeting meeting(const Course& a, const Flight& b, const Vec2& shift, doub
   const double dy = a.place.y() - shift.y() - (b.y + s * (b.vy + 0.5 * gy));
   const double wx = a.velocity.x() - (b.vx + gx), wy = a.velocity.y() - (b.vy + gy);
   const double approach = dx * wx + dy * wy;  // half the rate of the squared distance
-  const double reach = (a.radius + b.radius) * (1.0 + kFlightMargin);
-  const double beyond = dx * dx + dy * dy - reach * reach;
+  const double reach = a.radius + b.radius * (1.0 + kFlightMargin) +
+                       kFlightRounding * (b.magnitude(s) + std::abs(s) * (std::abs(gx) + std::abs(gy)));
+  const double distance2 = dx * dx + dy * dy, beyond = distance2 - reach * reach;
   if (approach >= 0.0 && (beyond > 0.0 || (a.disc && b.disc))) return {};
-  const double speed2 = wx * wx + wy * wy;
-  const double discriminant = approach * approach - speed2 * beyond;
-  if (discriminant < 0.0) return {};
-  const double root = std::sqrt(discriminant);
-  const double begin = beyond <= 0.0 ? now : now + beyond / (root - approach);
+  const double speed2 = wx * wx + wy * wy, offset = dx * wy - dy * wx;
+  const double square = speed2 * reach * reach - offset * offset;  // free of cancellation
+  if (square < 0.0) return {};
+  const double root = std::sqrt(square);
+  const double wait = beyond <= 0.0 ? 0.0 : beyond / (root - approach);
+  // never later than it is, by a rounding of the clock
+  const double begin = std::max(now, now + wait - kFlightRounding * (now + wait));
   return {begin, speed2 > 0.0 ? now + (root - approach) / speed2 : std::numeric_limits<double>::infinity()};
 }
 

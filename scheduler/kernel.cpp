@@ -8,12 +8,11 @@
 
 #include "brink/core/base/error.h"
 #include "brink/scheduler/stage_clock.h"
+#include "brink/scheduler/tolerances.h"
 
 namespace brink {
 
 namespace {
-
-constexpr double kTouchOfTolerance = 1e-3;  ///< touch / contact tolerance
 
 BodyState held(const Body& body, BodyState s) {
   if (body.lock_x) s.twist.velocity.x() = 0.0;

@@ -258,16 +258,13 @@ class Kernel {
   void refresh_boxes(double from, double to, bool all);
   void add_images(int a, int b, std::vector<PairKey>& pairs) const;
   std::vector<PairKey> pairs_by_pass(int body, double from, double to);
-  /// True if the contact is of a sharp sample with a wire without thickness.
-  bool thin(const PairKey& pair, const FeatureContact& f) const;
   /// From the clock's present double to the exact moment of contact: a fraction of a rounding [s]. The
   /// collision is resolved there, and the new motion is the one that passes through that moment, so that long
-  /// runs do not drift by roundings of time. Not at a wire without thickness: it is met a little before, and
-  /// must stay on its side.
-  Real delay_to_contact(const PairKey& pair, const FeatureContact& found, const ExtendedContact& c) const;
+  /// runs do not drift by roundings of time.
+  Real delay_to_contact(const FeatureContact& found, const ExtendedContact& c) const;
   const Material& material_of(const PairKey& pair) const;
   /// The response now if the pair are two free discs without friction (a quick way to what respond() says).
-  std::optional<DiscRebound> disc_rebound(const PairKey& pair) const;
+  std::optional<DiscRebound> disc_rebound(const PairKey& pair, double level) const;
   /// Works out a collision at the present time and changes the motions; nothing if neither side can move.
   std::optional<Outcome> settle(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed);
   /// Counts and records it, and judges what it may be the end of. False on a halt.
@@ -275,6 +272,7 @@ class Kernel {
   struct Response;
   /// The response at that moment.
   Response respond(const PairKey& pair, const FeatureContact& found) const;
+  static void push_apart(const ImpulseSide& a, const ImpulseSide& b, const RealVec& n, Real by, Response& r);
   /// Starts the touched components afresh with the twists after. False on a halt.
   bool deflect(const PairKey& pair, const Response& response, std::vector<int>& changed);
   /// Collisions of one instant that are taken to be without end: a row of n touching bodies can need n^2 / 2.

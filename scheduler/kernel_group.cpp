@@ -109,7 +109,8 @@ class Kernel::GroupResolve {
     const SearchLimits& limits = kernel_.limits_;
     bool any = pair == found_.pair;
     for (const FeatureContact& f : kernel_.touching(pair, limits.tolerance)) {
-      if (f.gap > limits.touch && f.gap > f.closing_speed * same_instant(now())) continue;
+      const double above = f.gap - f.level;
+      if (above > limits.touch && above > f.closing_speed * same_instant(now())) continue;
       any = true;
       const auto same = [&](const Touch& t) {
         return t.pair == pair && (t.contact.point - f.point).norm() <= kSamePlace * limits.tolerance &&
@@ -126,7 +127,7 @@ class Kernel::GroupResolve {
       for (const int k : {t.pair.body, t.pair.other_body})
         if (k >= 0) bodies.insert(k);
     bodies_.assign(bodies.begin(), bodies.end());
-    delay_ = kernel_.delay_to_contact(found_.pair, found_.contact, geometry(found_));
+    delay_ = kernel_.delay_to_contact(found_.contact, geometry(found_));
     for (const int k : bodies_) {
       const Body& b = kernel_.world_.bodies[k];
       members_.push_back({state(k).twist, b.inverse_mass_x(), b.inverse_mass_y(), b.inverse_inertia()});

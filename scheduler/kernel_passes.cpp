@@ -174,6 +174,7 @@ std::optional<Certificate> Kernel::search_between(const PairKey& pair, const Bod
   ++work_.certificates_issued;
   if (answer.status == PairAnswer::Status::undecided) {
     c.kind = Certificate::Kind::undecided;
+    c.why = answer.why;
     ++work_.certificates_undecided;
   } else if (watched_) {
     watched_->insert(c);
@@ -186,7 +187,7 @@ std::vector<Certificate> Kernel::simultaneous(const Certificate& c) {
   const Mover a = mover(c.pair.body, *track(c.pair.body, c.version_body));
   const Mover b =
       other_mover(c.pair, c.pair.with_site() ? nullptr : track(c.pair.other_body, c.version_other));
-  const auto features = touching_features(a, b, c.time, limits_.touch, scratch_);
+  const auto features = touching_features(a, b, c.time, limits_.touch, limits_, scratch_);
   for (const FeatureContact& f : features) {
     if (f.sample == c.contact.sample && f.sample_on_a == c.contact.sample_on_a) continue;
     if (f.closing_speed <= 1e-12 * c.contact.closing_speed) continue;
@@ -202,7 +203,7 @@ bool Kernel::fresh(const Certificate& c) const {
 }
 
 std::vector<FeatureContact> Kernel::touching(const PairKey& pair, double tolerance) {
-  return touching_features(mover(pair.body), other_mover(pair), time_, tolerance, scratch_);
+  return touching_features(mover(pair.body), other_mover(pair), time_, tolerance, limits_, scratch_);
 }
 
 }  // namespace brink

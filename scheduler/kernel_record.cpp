@@ -67,7 +67,7 @@ std::vector<PairKey> Kernel::neighbours_at(double t) const {
 
 void Kernel::check_overlaps_at(double t) {
   for (const PairKey& pair : neighbours_at(t))
-    note_overlap(pair_gap(mover(pair.body), other_mover(pair), t, scratch_));
+    note_overlap(pair_gap(mover(pair.body), other_mover(pair), t, limits_, scratch_));
 }
 
 std::optional<Contact> Kernel::crossing_at(const PairKey& pair, double t) const {

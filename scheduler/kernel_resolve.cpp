@@ -90,16 +90,9 @@ double Kernel::note_resolve(int k, int partner, double magnitude) {
   return rest;
 }
 
-bool Kernel::thin(const PairKey& pair, const FeatureContact& f) const {
-  const Outline &a = mover(pair.body).outline(), &b = other_mover(pair).outline();
-  const Outline &samples = f.sample_on_a ? a : b, &sites = f.sample_on_a ? b : a;
-  return !sites.sites[f.site].solid && sites.sites[f.site].radius + samples.samples[f.sample].radius == 0.0;
-}
-
-Real Kernel::delay_to_contact(const PairKey& pair, const FeatureContact& found,
-                              const ExtendedContact& c) const {
-  const Real late = thin(pair, found) ? 0.0 : 4.0 * ulp(time_);
-  return c.closing > 0 ? std::clamp(c.gap / c.closing, -late, late) : Real(0);
+Real Kernel::delay_to_contact(const FeatureContact& found, const ExtendedContact& c) const {
+  const Real late = 4.0 * ulp(time_);
+  return c.closing > 0 ? std::clamp((c.gap - found.level) / c.closing, -late, late) : Real(0);
 }
 
 Kernel::Response Kernel::respond(const PairKey& pair, const FeatureContact& found) const {
@@ -108,7 +101,7 @@ Kernel::Response Kernel::respond(const PairKey& pair, const FeatureContact& foun
   r.other = other_state(pair, time_);
   const Outline &outline = outline_of(pair.body), &other_outline = outline_of(other_owner(pair));
   ExtendedContact c = depth_ ? as_seen(found) : contact_in(outline, other_outline, r.body, r.other, found);
-  r.delay = depth_ ? Real(0) : delay_to_contact(pair, found, c);
+  r.delay = depth_ ? Real(0) : delay_to_contact(found, c);
   const ExtendedState body = r.body.moved(r.delay), other = r.other.moved(r.delay);
   if (!depth_) c = contact_in(outline, other_outline, body, other, found);
   const Body& definition = world_.bodies[pair.body];
@@ -121,7 +114,24 @@ Kernel::Response Kernel::respond(const PairKey& pair, const FeatureContact& foun
   r.magnitude = std::max(speed_of(side), speed_of(other_side));
   // an approach that the law does not see was rounding, all of it
   if (r.impulse.kind == ImpulseKind::separating) r.magnitude += found.closing_speed / kEpsilon;
+  if (found.sunk() > 0.0 && !depth_) {
+    const Real loss = Real(1) - Real(material.restitution) * material.restitution;
+    push_apart(side, other_side, c.normal, std::min(loss * found.sunk(), Real(limits_.tolerance / 16)), r);
+  }
   return r;
+}
+
+/// What has sunk is pushed out again, as far as the collision's loss of energy pays for the way: at least as
+/// much was won on it. The sides move as an impulse along the normal would move their centres.
+void Kernel::push_apart(const ImpulseSide& a, const ImpulseSide& b, const RealVec& n, Real by, Response& r) {
+  const auto given = [&](const ImpulseSide& s) {
+    return RealVec(s.inverse_mass_x * n.x(), s.inverse_mass_y * n.y());
+  };
+  const RealVec of_a = given(a), of_b = given(b);
+  const Real sum = n.dot(of_a) + n.dot(of_b);
+  if (!(sum > 0)) return;
+  r.body.position += of_a * (by / sum);
+  r.other.position -= of_b * (by / sum);
 }
 
 bool Kernel::deflect(const PairKey& pair, const Response& r, std::vector<int>& changed) {
@@ -169,7 +179,7 @@ const Material& Kernel::material_of(const PairKey& pair) const {
   return pair_materials_[world_.bodies[pair.body].material * world_.materials.size() + other];
 }
 
-std::optional<DiscRebound> Kernel::disc_rebound(const PairKey& pair) const {
+std::optional<DiscRebound> Kernel::disc_rebound(const PairKey& pair, double level) const {
   if (pair.with_site() || depth_ || reflects_) return std::nullopt;
   const auto side = [&](int k) {
     const Body& body = world_.bodies[k];
@@ -179,12 +189,12 @@ std::optional<DiscRebound> Kernel::disc_rebound(const PairKey& pair) const {
   const DiscSide a = side(pair.body), b = side(pair.other_body);
   const Material& material = material_of(pair);
   if (!a.motion || !b.motion || a.radius + b.radius == 0.0 || material.friction != 0.0) return std::nullopt;
-  return rebound(a, b, shift_of(pair), time_, 4.0 * ulp(time_), material.restitution);
+  return rebound(a, b, shift_of(pair), time_, 4.0 * ulp(time_), level, material.restitution);
 }
 
 std::optional<Outcome> Kernel::settle(const PairKey& pair, const FeatureContact& found,
                                       std::vector<int>& changed) {
-  if (const auto discs = disc_rebound(pair)) {
+  if (const auto discs = disc_rebound(pair, found.level)) {
     double rest = note_resolve(pair.body, pair.other_body, discs->magnitude);
     rest = std::min(rest, note_resolve(pair.other_body, pair.body, discs->magnitude));
     restart_free(pair.body, discs->a.state, discs->a.low);
@@ -284,7 +294,33 @@ bool Kernel::poll() {
   return !halt_;
 }
 
+namespace {
+
+std::string reason(PairAnswer::Why why, const std::string& pair, double length) {
+  switch (why) {
+    case PairAnswer::Why::place:
+      return fmt::format("{} are close, but too far from the origin, or turned too often, for their gap to be told "
+                         "to solver.contact_tolerance of the scene's length, {:.3g} m",
+                         pair, length);
+    case PairAnswer::Why::speed:
+      return fmt::format("{} are close, but too fast for the clock: they move more than a thousandth of their "
+                         "size between two of its times",
+                         pair);
+    case PairAnswer::Why::steps:
+      break;
+  }
+  return fmt::format("the search for first contact of {} makes no headway", pair);
+}
+
+}  // namespace
+
 void Kernel::give_up(const Certificate& c) {
+  // all up to there is told
+  roll_back_all();
+  if (extend_motions(c.time)) {
+    record_frames(c.time);
+    advance_all(std::max(time_, c.time));
+  }
   Event event;
   event.seq = seq_++;
   event.kind = EventKind::undecided;
@@ -292,9 +328,7 @@ void Kernel::give_up(const Certificate& c) {
   event.contact.time = c.time;
   if (records_events()) recorder_->event(event);
   stop(Termination::failed,
-       fmt::format("undecided at t = {:.17g}: the search for first contact of {} makes no headway "
-                   "(is something too fast for the clock?)",
-                   c.time, name_of(c.pair)));
+       fmt::format("undecided at t = {:.17g}: {}", c.time, reason(c.why, name_of(c.pair), world_.length())));
 }
 
 }  // namespace brink

@@ -1,5 +1,7 @@
 #include "brink/scheduler/pair_view.h"
 
+#include <numbers>
+
 namespace brink::detail {
 
 namespace {
@@ -48,7 +50,7 @@ Feature PairView::nearest_feature(const Half& half, int i) const {
 
 ArcStep PairView::arc_now(const Half& half, int i, int j) const {
   const Site& arc = half.samples_of().sites[static_cast<std::size_t>(half.sample(i).arc_site)];
-  return arc_step(arc, half.site(j), path(half, i), placed(half.s), placed(half.t), 0.0, limits_.tolerance,
+  return arc_step(arc, half.site(j), path(half, i), placed(half.s), placed(half.t), limits_.tolerance,
                   {}, {0.0, 0.0});
 }
 
@@ -69,16 +71,19 @@ FeatureContact PairView::contact_of(const Half& half, const Feature& f, double t
   c.sample_on_a = half.s_is_a;
   c.sample = f.sample;
   c.site = f.site;
-  c.point = site_owner.frame.to_world(f.point);
+  c.point = now_.base + site_owner.frame.to_world(f.point);
   const Vec2 out = site_owner.frame.direction_to_world(f.normal);
   c.normal = half.s_is_a ? out : Vec2(-out);
   c.closing_speed = -f.rate;
   c.gap = f.gap;
+  const Vec2 q = path(half, f.sample).q;
+  c.level = half.sample(f.sample).arc_site < 0 ? level(half, f.sample, half.site(f.site), q) : arc_level();
+  c.sink = sink_;
   return c;
 }
 
-bool PairView::approaching(const Feature& f, const SamplePath& path) const {
-  return f.rate < -(a_.velocity_rounding + b_.velocity_rounding + 16.0 * kEpsilon * path.magnitude);
+double PairView::rate_noise(const SamplePath& path) const {
+  return a_.velocity_rounding + b_.velocity_rounding + 16.0 * kEpsilon * path.magnitude;
 }
 
 void PairView::find_neighbours(const Half& half, int i, std::span<const std::uint32_t> sites,
@@ -90,7 +95,8 @@ void PairView::find_neighbours(const Half& half, int i, std::span<const std::uin
     const Nearest nearest = nearest_on(site, path.q);
     if (nearest.distance - site.radius - radius > reach) continue;
     const Feature f = vertex_feature(half, i, static_cast<int>(k), nearest, path);
-    const bool leaving = f.gap <= limits_.touch && !approaching(f, path);
+    const bool leaving =
+        f.gap - level(half, i, site, path.q) <= limits_.touch && !approaching(f, path);
     scratch_.neighbours.push_back({f.site, f.normal, leaving});
   }
 }
@@ -116,20 +122,103 @@ bool PairView::belongs_to_a_neighbour(const Half& half, int j, const Nearest& ne
   return false;
 }
 
-double PairView::level_at(const Site& site, double sample_radius, const Nearest& nearest) const {
-  const bool sharp = site.radius + sample_radius == 0.0 && (!site.solid || nearest.foot != Foot::interior);
-  return sharp ? 0.5 * limits_.touch : 0.0;
+void PairView::put(Placing& p, double t) const {
+  const BodyState sa = a_.motion->state(t), sb = b_.motion->state(t);
+  p.place_noise =
+      place_rounding(*a_.motion, sa.pose.position) + place_rounding(*b_.motion, sb.pose.position);
+  p.angle_noise_a = angle_rounding(*a_.motion, sa.pose.angle);
+  p.angle_noise_b = angle_rounding(*b_.motion, sb.pose.angle);
+  const double noise = p.place_noise + p.angle_noise_a * a_.outline().bounding_radius +
+                       p.angle_noise_b * b_.outline().bounding_radius;
+  if (noise > kFarOfTolerance * limits_.tolerance) return put_relative(p, t);
+  p.base.setZero();
+  p.a.move(a_.outline(), sa);
+  p.b.move(b_.outline(), sb);
 }
 
-Vec2 PairView::place_at(const Half& half, int i, double t) const {
-  Placed s = placed(half.s), u = placed(half.t);
-  s.move(half.s->outline(), half.s->motion->state(t));
-  u.move(half.t->outline(), half.t->motion->state(t));
-  return u.frame.direction_to_local(s.frame.direction_to_world(half.sample(i).p) +
-                                    (s.frame.origin - u.frame.origin));
+namespace {
+
+/// An angle brought within half a turn before it is rounded.
+double reduced(Real angle) {
+  constexpr Real turn = 2 * std::numbers::pi_v<Real>;
+  return static_cast<double>(std::abs(angle) > turn ? std::remainder(angle, turn) : angle);
 }
 
-PairView::GapAndSite PairView::gap_to_neighbours(const Half& half, int i, const Vec2& q) const {
+BodyState seen_from(const Vec2& base, const ExtendedState& s) {
+  return {{(s.position - base.cast<Real>()).cast<double>(), reduced(s.angle)}, s.twist.rounded()};
+}
+
+/// What rounding is left of a motion seen in extended precision: as much less as Real is finer than double,
+/// where there is more than a double's worth to see.
+double finer(const Motion& m) { return m.is_ballistic() ? kRealRoundoff / kRoundoff : 1.0; }
+
+}  // namespace
+
+void PairView::put_relative(Placing& p, double t) const {
+  const ExtendedState sa = a_.motion->extended_state(t), sb = b_.motion->extended_state(t);
+  p.base = sb.position.cast<double>();
+  p.a.move(a_.outline(), seen_from(p.base, sa));
+  p.b.move(b_.outline(), seen_from(p.base, sb));
+  p.place_noise = place_rounding(*a_.motion, sa.position.cast<double>()) * finer(*a_.motion) +
+                  place_rounding(*b_.motion, p.base) * finer(*b_.motion);
+  p.angle_noise_a *= finer(*a_.motion);
+  p.angle_noise_b *= finer(*b_.motion);
+}
+
+double PairView::gap_rounding(const Placing& p, const Half& half, int i, const Site& site,
+                              const Vec2& q) const {
+  const double arm = half.sample(i).p.lpNorm<1>(), distance = q.lpNorm<1>();
+  const double of_s = half.s_is_a ? p.angle_noise_a : p.angle_noise_b;
+  const double of_t = half.s_is_a ? p.angle_noise_b : p.angle_noise_a;
+  // angles once more for their sines; then the roundings of turning, and of the distance to a site as far off
+  return p.place_noise + (of_s + 4.0 * kRoundoff) * arm +
+         (of_t + 6.0 * kRoundoff) * distance + 2.0 * kRoundoff * site.a.lpNorm<1>();
+}
+
+double PairView::nominal_level(const Placing& p, const Half& half, int i, const Site& site,
+                               const Vec2& q) const {
+  if (site.solid || site.radius + half.sample(i).radius > 0.0) return 0.0;
+  return wire_level(limits_.touch, gap_rounding(p, half, i, site, q));
+}
+
+bool PairView::out_of_reach(const Half& half, int i, double reach) const {
+  const Outline& outline = half.sites_of();
+  if (outline.container || !(reach < kForever)) return false;
+  return path(half, i).distance - outline.bounding_radius - half.sample(i).radius > reach;
+}
+
+double PairView::sink_at_start() const {
+  PairView then = *this;
+  then.place(start());
+  const RelativeBounds at_once =
+      RelativeBounds::over(a_.outline(), *a_.motion, b_.outline(), *b_.motion, start(), start());
+  double gap = kForever, rate = kForever, noise = 0.0, bend = 0.0, step = 0.0;
+  bool now = false;
+  then.each_feature(limits_.tolerance, [&](const Half& half, const Feature& f) {
+    const SamplePath path = then.path(half, f.sample);
+    const Site& site = half.site(f.site);
+    const bool vertex = half.sample(f.sample).arc_site < 0;
+    const double rounding = then.gap_rounding(half, f.sample, site, path.q);
+    const double own_step = sink_step(limits_.touch, rounding);
+    const double above =
+        f.gap - (vertex ? then.nominal_level(then.now_, half, f.sample, site, path.q) : 0.0);
+    if (!(above < own_step) || above < -kStartOverlap * limits_.tolerance) return;
+    now = now || (above <= 0.0 && then.approaching(f, path));
+    const PathBounds bounds = path_bounds(path, half.s_is_a ? at_once : at_once.swapped(), 0.0);
+    const double hollow =
+        site.kind == SiteKind::arc ? bounds.speed * bounds.speed / site.arc_radius : 0.0;
+    gap = std::min(gap, above);
+    rate = std::min(rate, f.rate);
+    noise = std::max(noise, then.rate_noise(path));
+    bend = std::max(bend, bounds.acceleration + hollow);
+    step = std::max(step, own_step);
+  });
+  if (now || !(gap < kForever)) return 0.0;
+  return start_sink(gap, rate, noise, bend, step);
+}
+
+PairView::GapAndSite PairView::gap_to_neighbours(const Placing& p, const Half& half, int i,
+                                                 const Vec2& q) const {
   const double sample_radius = half.sample(i).radius;
   GapAndSite found;
   double least = kForever;
@@ -145,7 +234,7 @@ PairView::GapAndSite PairView::gap_to_neighbours(const Half& half, int i, const 
     const double radius = site.radius + sample_radius;
     const bool thin = radius == 0.0 && !site.solid && interior;  // then stay on the side it came from
     const double side = !thin ? side_of(site, n, q) : neighbour.normal.dot(q - n.point) < 0.0 ? -1.0 : 1.0;
-    found = {side * n.distance - radius - level_at(site, sample_radius, n), neighbour.site};
+    found = {side * n.distance - radius - nominal_level(p, half, i, site, q) - sink_, neighbour.site};
   }
   return found;
 }
@@ -165,17 +254,13 @@ double PairView::arc_gap(const Half& half, const Feature& f, const Vec2& c) cons
 }
 
 PairView::GapAndSite PairView::gap_at(const Half& half, const Feature& f, double t) const {
-  const Vec2 q = place_at(half, f.sample, t);
-  if (half.sample(f.sample).arc_site < 0) return gap_to_neighbours(half, f.sample, q);
-  return {arc_gap(half, f, q), f.site};
+  Placing then = now_;
+  put(then, t);
+  const Placed &s = half.s_is_a ? then.a : then.b, &u = half.s_is_a ? then.b : then.a;
+  const Vec2 q = u.frame.direction_to_local(s.frame.direction_to_world(half.sample(f.sample).p) +
+                                            (s.frame.origin - u.frame.origin));
+  if (half.sample(f.sample).arc_site < 0) return gap_to_neighbours(then, half, f.sample, q);
+  return {arc_gap(half, f, q) - sink_, f.site};
 }
-
-double PairView::place_rounding(const Mover& m) const {
-  double reach = placed(&m).frame.origin.lpNorm<1>();
-  if (m.motion->is_ballistic()) reach += m.motion->start().pose.position.lpNorm<1>();
-  return 32.0 * kEpsilon * (reach + m.outline().bounding_radius * (1.0 + 0.125 * std::abs(placed(&m).angle)));
-}
-
-double PairView::gap_rounding() const { return place_rounding(a_) + place_rounding(b_); }
 
 }  // namespace brink::detail

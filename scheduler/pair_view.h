@@ -2,6 +2,7 @@
 /// A pair of outlines at one moment: which features are close, their gaps and rates. What first_contact's
 /// search looks through.
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "brink/scheduler/arc_contact.h"
 #include "brink/scheduler/first_contact.h"
 #include "brink/scheduler/pair_kinematics.h"
+#include "brink/scheduler/tolerances.h"
 
 namespace brink::detail {
 
@@ -43,12 +45,8 @@ class PairView {
   const Half& half(bool samples_on_a) const { return halves_[samples_on_a ? 0 : 1]; }
 
   /// Looks at the pair at time t from now on.
-  void place(double t) { place(a_.motion->state(t), b_.motion->state(t)); }
-  void place(const BodyState& state_a, const BodyState& state_b) {
-    placed_a_.move(a_.outline(), state_a);
-    placed_b_.move(b_.outline(), state_b);
-  }
-  const Placed& placed(const Mover* m) const { return m == &a_ ? placed_a_ : placed_b_; }
+  void place(double t) { put(now_, t); }
+  const Placed& placed(const Mover* m) const { return m == &a_ ? now_.a : now_.b; }
   SamplePath path(const Half& half, int i) const {
     return sample_path(placed(half.s), placed(half.t), half.sample(i).p);
   }
@@ -59,7 +57,9 @@ class PairView {
   void each_feature(double tolerance, Visit&& visit) const {
     for (const Half& half : halves_)
       for (int i = 0; i < half.count; ++i)
-        if (half.sample(i).arc_site >= 0)
+        if (out_of_reach(half, i, tolerance))
+          continue;
+        else if (half.sample(i).arc_site >= 0)
           each_arc_feature(half, i, tolerance, visit);
         else if (const Feature f = nearest_feature(half, i); f.site >= 0 && f.gap <= tolerance)
           visit(half, f);
@@ -73,7 +73,9 @@ class PairView {
   FeatureContact contact_of(const Half& half, const Feature& f, double time) const;
 
   /// True if the gap falls faster than the rounding of the velocities it is computed from.
-  bool approaching(const Feature& f, const SamplePath& path) const;
+  bool approaching(const Feature& f, const SamplePath& path) const { return f.rate < -rate_noise(path); }
+  /// Bound on the rounding of a rate of the gap now [m/s].
+  double rate_noise(const SamplePath& path) const;
 
   /// Keeps those of `sites` that lie within `reach` of vertex sample i, and how it stands to them now.
   void find_neighbours(const Half& half, int i, std::span<const std::uint32_t> sites, const SamplePath& path,
@@ -83,12 +85,23 @@ class PairView {
   /// of it, or is deeper in.
   bool belongs_to_a_neighbour(const Half& half, int j, const Nearest& nearest, const Vec2& q) const;
 
-  /// What is taken off a gap: two sharp points never overlap, and a thin wire has no inside to tell that it
-  /// was met, so there the gap counts from half the touching distance.
-  double level_at(const Site& site, double sample_radius, const Nearest& nearest) const;
+  /// The gap at which vertex sample i and the site meet now [m]: 0, or a wire's level (tolerances.h), both
+  /// less what the pair has sunk since its motions began.
+  double level(const Half& half, int i, const Site& site, const Vec2& q) const {
+    return nominal_level(now_, half, i, site, q) + sink_;
+  }
+  /// Likewise of an arc sample.
+  double arc_level() const { return sink_; }
+  /// Sets what is taken off every level, <= 0: sink_at_start().
+  void set_sink(double sink) { sink_ = sink; }
+  /// Since its motions began, how far the pair may sink below nominal levels before it meets (start_sink() of
+  /// tolerances.h) [m], <= 0. A function of the two motions alone. Cost: a look at every sample.
+  double sink_at_start() const;
+  /// When both motions had begun [s].
+  double start() const { return std::max(a_.motion->begin(), b_.motion->begin()); }
 
   struct GapAndSite {
-    double gap = std::numeric_limits<double>::infinity();  ///< [m], less level_at()
+    double gap = std::numeric_limits<double>::infinity();  ///< [m], less level()
     int site = -1;
   };
   /// The gap of f's sample at time t, wherever the pair is placed now. A vertex: signed, to the neighbours
@@ -96,8 +109,10 @@ class PairView {
   /// touches and leaves are left out. An arc: to f's site, on the side that f has.
   GapAndSite gap_at(const Half& half, const Feature& f, double t) const;
 
-  /// Bound on the rounding of a gap now [m].
-  double gap_rounding() const;
+  /// Bound on the rounding of the gap of sample i to a site now [m].
+  double gap_rounding(const Half& half, int i, const Site& site, const Vec2& q) const {
+    return gap_rounding(now_, half, i, site, q);
+  }
 
  private:
   template <class Visit>
@@ -108,18 +123,32 @@ class PairView {
         visit(half, Feature{i, static_cast<int>(j), step.gap, step.rate, step.normal, step.point});
     }
   }
+  /// The two outlines at one moment, seen from `base`: the world's origin, or the pair's own where the world's
+  /// is too far away for doubles.
+  struct Placing {
+    Placed a, b;
+    Vec2 base = Vec2::Zero();                      ///< world [m]
+    double place_noise = 0.0;                      ///< rounding of one place against the other [m]
+    double angle_noise_a = 0.0, angle_noise_b = 0.0;  ///< [rad]
+  };
+
   Feature nearest_feature(const Half& half, int i) const;
   ArcStep arc_now(const Half& half, int i, int j) const;
-  Vec2 place_at(const Half& half, int i, double t) const;
-  GapAndSite gap_to_neighbours(const Half& half, int i, const Vec2& q) const;
+  void put(Placing& placing, double t) const;
+  void put_relative(Placing& placing, double t) const;
+  double gap_rounding(const Placing& placing, const Half& half, int i, const Site& site, const Vec2& q) const;
+  double nominal_level(const Placing& placing, const Half& half, int i, const Site& site,
+                       const Vec2& q) const;
+  GapAndSite gap_to_neighbours(const Placing& placing, const Half& half, int i, const Vec2& q) const;
   double arc_gap(const Half& half, const Feature& f, const Vec2& center) const;
-  double place_rounding(const Mover& m) const;
+  bool out_of_reach(const Half& half, int i, double reach) const;
 
   const Mover &a_, &b_;
   const SearchLimits& limits_;
   SearchScratch& scratch_;
   Half halves_[2];
-  Placed placed_a_, placed_b_;
+  Placing now_;
+  double sink_ = 0.0;
 };
 
 }  // namespace brink::detail

@@ -33,8 +33,10 @@ std::vector<Box> boxes_of(const Outline& outline) {
 double gap_over_speed(const Motion& a, double radius, const Motion& b, const Vec2& shift,
                       const Outline& other, double now, double end) {
   if (other.container) return 0.0;
-  const double distance = (a.pose(now).position - b.pose(now).position - shift).norm();
-  const double gap = distance - (radius + other.bounding_radius) * (1.0 + kFlightMargin);
+  const Vec2 at_a = a.pose(now).position, at_b = b.pose(now).position;
+  const double rounding = kFlightRounding * (at_a.lpNorm<1>() + at_b.lpNorm<1>());
+  const double gap = (at_a - at_b - shift).norm() -
+                     (radius + other.bounding_radius) * (1.0 + kFlightMargin) - rounding;
   const MotionBounds x = a.bounds(now, end), y = b.bounds(now, end);
   const double closing = (x.velocity - y.velocity).norm() + x.velocity_radius + y.velocity_radius;
   return gap <= 0.0 ? 0.0 : gap / closing;
@@ -161,8 +163,9 @@ void Views::see_site(int k, int s, const Image& image, double now) {
   if (wait > 0.0) {
     Course course(flights_[k], gravity_, now);
     course.displace(-periods_.shift(image));
-    const double reach = flights_[k].radius * (1.0 + kFlightMargin) + kernel_->contact_tolerance();
+    const double reach = course.radius + kernel_->contact_tolerance();
     for (const Box& box : site_boxes_[s]) wait = std::min(wait, time_to(box.grown(reach), course));
+    wait = std::max(0.0, wait - kFlightRounding * (now + wait));  // never later than it is
   }
   if (now + wait <= end && wait < kForever)
     clock.see({now + wait, now + wait, body_count() + s, image, 0, 0}, now);

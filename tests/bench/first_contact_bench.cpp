@@ -92,7 +92,7 @@ Pair disc_and_segment() {
 /// The slow way: look every millisecond, then halve.
 double slow_contact(const Pair& pair, const Meeting& m, SearchScratch& scratch) {
   const Mover a = pair.a(m), b = pair.b(m);
-  const auto apart = [&](double t) { return pair_gap(a, b, t, scratch) > 0.0; };
+  const auto apart = [&](double t) { return pair_gap(a, b, t, SearchLimits(), scratch) > 0.0; };
   double high = kStep;
   while (high < kEnd && apart(high)) high += kStep;
   if (high >= kEnd) return kEnd;

@@ -87,7 +87,7 @@ TEST(DiscRebound, IsTheGeneralResponseToRoundingsOfExtendedPrecision) {
     const double latest = 4.0 * ulp(m.time);
     const auto quick = rebound({&m.a.motion, m.a.outline.bounding_radius, 1.0 / m.a.mass},
                                {&m.b.motion, m.b.outline.bounding_radius, 1.0 / m.b.mass}, m.shift, m.time,
-                               latest, m.restitution);
+                               latest, 0.0, m.restitution);
     ASSERT_TRUE(quick);
 
     ExtendedState a = m.a.motion.extended_state(m.time),
@@ -124,7 +124,7 @@ TEST(DiscRebound, SaysNothingOfDiscsThatPart) {
   away.twist.velocity = other.twist.velocity + (away.pose.position - other.pose.position - m.shift);
   m.a.motion = Motion::ballistic(m.time, away, m.a.motion.acceleration());
   EXPECT_FALSE(rebound({&m.a.motion, m.a.outline.bounding_radius, 1.0},
-                       {&m.b.motion, m.b.outline.bounding_radius, 1.0}, m.shift, m.time, 1e-15, 1.0));
+                       {&m.b.motion, m.b.outline.bounding_radius, 1.0}, m.shift, m.time, 1e-15, 0.0, 1.0));
 }
 
 }  // namespace

@@ -1,0 +1,84 @@
+#pragma once
+/// The margins of the search for first contact, all in one place. Each is a function of the two motions and
+/// of time alone, never of where a search began: so that every search finds the same contact.
+///
+/// A gap is computed with some rounding `nu` (gap_rounding). Three margins keep it from mattering:
+///   - a thin wire has no inside that would tell that it was crossed; so it is met at a *level* of at least
+///     4 nu before it (wire_level): what stays beyond the level is never in doubt about its side;
+///   - a pair that starts touching, pressed together or all but at rest, has its next contact when it has
+///     sunk by a *sink step* of at least nu (sink_step), a quarter of the wire's level at most: so every
+///     contact is a crossing of its level from above, and what has sunk is pushed out again as it is resolved;
+///   - steps of the search end at half the *band* (the contact tolerance, or what the clock cannot tell
+///     apart), never on the surface.
+/// Where nu is not small beside the contact tolerance the search says so (PairAnswer::Why::place) instead of
+/// an answer that might be wrong.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "brink/integrators/motion.h"
+
+namespace brink {
+
+/// Unit roundoff of double: half the distance from 1 to the next.
+inline constexpr double kRoundoff = 0.5 * std::numeric_limits<double>::epsilon();
+/// The same of Real, in which start states are kept.
+inline constexpr double kRealRoundoff = 0.5 * static_cast<double>(std::numeric_limits<Real>::epsilon());
+
+/// Gaps below this part of the contact tolerance are touching.
+inline constexpr double kTouchOfTolerance = 1e-3;
+
+/// Outlines may overlap by so many contact tolerances where they start; what is deeper is refused, or not the
+/// start of this pair.
+inline constexpr double kStartOverlap = 1e4;
+
+/// Bound on the rounding of a value that has moved from `start` to `now` along start + s (rate + s / 2 accel),
+/// in arithmetic of unit roundoff u: three roundings of the way, one of the sum.
+inline double rounding_of_way(double start, double now, double u) {
+  const double way = std::abs(now - start);
+  return way > 0.0 ? u * (3.0 * way + std::abs(now)) : 0.0;
+}
+
+/// Bound on the rounding of a motion's place [m] in double precision. Dense output is as exact as its
+/// coefficients: eight roundings of the place, joins of pieces among them.
+inline double place_rounding(const Motion& motion, const Vec2& now, double u = kRoundoff) {
+  if (!motion.is_ballistic()) return 8.0 * kRoundoff * now.lpNorm<1>();
+  const Vec2& start = motion.start().pose.position;
+  return rounding_of_way(start.x(), now.x(), u) + rounding_of_way(start.y(), now.y(), u);
+}
+
+/// Likewise of its angle [rad].
+inline double angle_rounding(const Motion& motion, double now, double u = kRoundoff) {
+  if (!motion.is_ballistic()) return 8.0 * kRoundoff * std::abs(now);
+  return rounding_of_way(motion.start().pose.angle, now, u);
+}
+
+/// Places are taken relative to the pair, in extended precision, where their rounding in double is more than
+/// this part of the contact tolerance.
+inline constexpr double kFarOfTolerance = 1.0 / 256.0;
+
+/// Where a sharp sample meets a wire without thickness: this far before it [m].
+inline double wire_level(double touch, double rounding) { return std::max(0.5 * touch, 4.0 * rounding); }
+
+/// How far a pair that is pressed together sinks until that is a contact again [m].
+inline double sink_step(double touch, double rounding) { return std::max(0.125 * touch, rounding); }
+
+/// True if gaps of that rounding can be held to the contact tolerance; thin: by a wire_level().
+inline bool can_hold(double rounding, double tolerance, bool thin) {
+  return (thin ? 8.0 : 1.0) * rounding <= tolerance;
+}
+
+/// The level at which a pair that starts touching meets [m], below its nominal one (0): `gap` and `rate` are
+/// the least at the start, less nominal levels; `noise` bounds the rounding of the rate, `acceleration` the
+/// bending of the gap. A pair that leaves (that rises by half a step at least) is met where it starts, or at
+/// the nominal level if it rises above that; one that does not is met one step below its start.
+inline double start_sink(double gap, double rate, double noise, double acceleration, double step) {
+  const double rise = rate <= noise          ? 0.0
+                      : acceleration > 0.0 ? 0.5 * rate * rate / acceleration
+                                           : std::numeric_limits<double>::infinity();
+  if (gap + rise >= 0.5 * step) return 0.0;
+  return rise >= 0.5 * step ? gap : gap - step;
+}
+
+}  // namespace brink
