@@ -121,9 +121,8 @@ INSTANTIATE_TEST_SUITE_P(Faults, EndsHonestly,
                                            "orbit", "far", "angle", "tunnel_small_far_discs",
                                            "escape_speed1e15", "corner_slide_off",
                                            "crash_null_contact_group_1e12",
-                                           "crash_null_contact_group_fastspin", "energy_half_lost_3_boxes",
-                                           "tight_fit_energy_gone", "tumbler_inside", "policies_differ_arc",
-                                           "arc_policies", "pressed_e0_policies"),
+                                           "crash_null_contact_group_fastspin", "tumbler_inside",
+                                           "policies_differ_arc", "arc_policies", "pressed_e0_policies"),
                          name_of);
 
 // ---- one event list in every way: policies, skips, detectors, resumes
