@@ -80,6 +80,11 @@ bool starts_clear(double gap, double rate, double acceleration, double noise, do
   return gap >= tolerance || (rate > noise && rate * rate >= 4.0 * acceleration * tolerance);
 }
 
+/// True if the clock can hardly tell such speeds: the search says so.
+bool too_fast(const Vec2& velocity, double t, double radius) {
+  return !(8.0 * velocity.norm() * ulp(t) <= kSlowOfSize * radius);
+}
+
 /// True if places at time t are told well enough in doubles for what is computed here.
 bool near_enough(const Mover& a, const Mover& b, const Vec2& place_a, const Vec2& place_b,
                  const SearchLimits& limits) {
@@ -157,6 +162,7 @@ bool discs(const Mover& a, const Mover& b, double from, double to, const SearchL
                                                     : std::clamp(rel.reference - way / speed2, from, to);
   if (!near_enough(a, b, path_a.at(nearest), path_b.at(nearest), limits)) return false;
   if (!(t <= to)) return true;
+  if (too_fast(rel.velocity, t, smallest_radius(a.outline(), b.outline()))) return false;
   const Vec2 then = rel.offset + s * rel.velocity;
   const double closing = -then.dot(rel.velocity) / then.norm();
   if (!(closing > rel.noise)) return true;
@@ -298,6 +304,10 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
   };
   t = canonical_root([&](double time) { return nearest_at(time).first; }, t, rel.reference, noise, speed);
   const auto [above, met] = nearest_at(t);
+  const Vec2 q = frame.direction_to_local(parabola.at(t) - parabola_of_other.at(t));
+  if (!can_hold(kRoundoff * (6.0 * q.lpNorm<1>() + 2.0 * met->site->a.lpNorm<1>()), limits.tolerance, false) ||
+      too_fast(path.velocity + (t - rel.reference) * path.acceleration, t, smallest_radius(disc.outline(), other.outline())))
+    return false;
   const BodyState sd = disc.motion->state(t), so = other.motion->state(t);
   const Vec2 out = frame.direction_to_world(met->normal);
   FeatureContact& c = answer.contact;

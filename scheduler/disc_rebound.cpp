@@ -78,6 +78,7 @@ std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const V
   dx += r.delay * wx;
   dy += r.delay * wy;
   length = std::sqrt(dx * dx + dy * dy);
+  r.gap = static_cast<double>(length - b.radius - a.radius);
   const Real nx = dx / length, ny = dy / length;
   const Real rate = nx * wx + ny * wy;
   if (!(rate < 0)) return std::nullopt;

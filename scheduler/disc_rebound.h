@@ -22,6 +22,7 @@ struct DiscRebound {
   double impulse = 0.0;  ///< along the normal, which points into a [N s]
   Real delay = 0;        ///< from the clock to the moment of contact [s]
   Start a, b;
+  double gap = 0.0;        ///< at that moment [m]
   double magnitude = 0.0;  ///< the largest speed that took part [m/s]
 };
 

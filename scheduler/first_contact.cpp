@@ -22,9 +22,6 @@ using detail::PairView;
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// What moves more than this part of its radius in a few roundings of the clock is too fast to be resolved.
-constexpr double kSlowOfSize = 1e-3;
-
 class PairSearch {
  public:
   PairSearch(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
@@ -47,13 +44,25 @@ class PairSearch {
   PairAnswer run() {
     if (!apart_by_bounding_discs()) advance();
     // what stopped before the contact that it had found may have passed an earlier one
-    if (best_.sample >= 0 && !(stopped_ && reached_ < best_.time))
-      return {PairAnswer::Status::contact, best_.time, best_};
-    if (stopped_) return {PairAnswer::Status::undecided, reached_, {}, why_};
+    if (capped_ && !(best_.sample >= 0 && reached_ >= best_.time))
+      return {PairAnswer::Status::undecided, reached_, {}};
+    if (best_.sample >= 0) return told(best_);
     return {PairAnswer::Status::clear, to_, {}};
   }
 
  private:
+  /// The contact, or why it cannot be told.
+  PairAnswer told(const FeatureContact& c) {
+    view_.place(c.time);
+    Feature f;
+    f.sample = c.sample;
+    f.site = c.site;
+    const PairView::Doubt doubt = view_.doubt(view_.half(c.sample_on_a), f);
+    if (doubt == PairView::Doubt::none) return {PairAnswer::Status::contact, c.time, c};
+    return {PairAnswer::Status::undecided, c.time, {},
+            doubt == PairView::Doubt::place ? PairAnswer::Why::place : PairAnswer::Why::speed};
+  }
+
   /// Until when sample i of a half is sure not to touch.
   double& safe_until(const Half& half, int i) { return safe_until_[half.s_is_a ? 0 : 1][i]; }
 
@@ -94,7 +103,10 @@ class PairSearch {
       const double t = least_safe_time();
       if (t >= to_) return;
       reached_ = t;
-      if (iteration >= limits_.max_iterations) return stop(PairAnswer::Why::steps);
+      if (iteration >= limits_.max_iterations) {
+        capped_ = true;
+        return;
+      }
       ++work_.search_iterations;
       t_ = t;
       next_ = next_after(t);
@@ -110,36 +122,14 @@ class PairSearch {
       if (first_b >= 0) advance_sample(of_b, first_b);
       advance_due(of_a, due, first_a);
       advance_due(of_b, due, first_b);
-      if (stopped_) return;
       short_window_ = std::max(4.0 * (least_ - t), 64.0 * ulp(t));
     }
   }
 
-  /// Ends the search, undecided at reached_.
-  void stop(PairAnswer::Why why) {
-    stopped_ = true;
-    why_ = why;
-  }
-
-  /// Features have come close: from now on levels count. False, and the search ends undecided, if the gap of
-  /// this sample cannot be held to the tolerance.
-  bool look_closely(const Half& half, int i, const Site& site, const SamplePath& path, double band) {
-    if (!sink_known_) {
-      view_.set_sink(view_.sink_at_start());
-      sink_known_ = true;
-    }
-    const bool thin = !site.solid && site.radius + half.sample(i).radius == 0.0;
-    if (!can_hold(view_.gap_rounding(half, i, site, path.q), limits_.tolerance, thin))
-      stop(PairAnswer::Why::place);
-    else if (band > limits_.tolerance && band > kSlowOfSize * smallest_radius())
-      stop(PairAnswer::Why::speed);
-    return !stopped_;
-  }
-
-  /// Of the two outlines' bounding discs; of a mere point, of the other's [m].
-  double smallest_radius() const {
-    const double ra = a_.outline().bounding_radius, rb = b_.outline().bounding_radius;
-    return ra > 0.0 && rb > 0.0 ? std::min(ra, rb) : std::max(ra, rb);
+  /// Features have come close: from now on levels count.
+  void look_closely() {
+    if (!sink_known_) view_.set_sink(view_.sink_at_start());
+    sink_known_ = true;
   }
 
   /// Of the samples due, the one nearest to the other outline's origin; -1 if none is.
@@ -250,7 +240,7 @@ class PairSearch {
       const double radius = site.radius + sample.radius;
       const double gap = nearest.distance - radius;
       if (gap <= band) {
-        if (!look_closely(half, i, site, path, band)) return {0.0, 0.0};
+        look_closely();
         if (!neighbours_known) view_.find_neighbours(half, i, near.sites, path, 4.0 * band);
         neighbours_known = true;
         const Feature f = view_.vertex_feature(half, i, static_cast<int>(j), nearest, path);
@@ -314,10 +304,11 @@ class PairSearch {
           arc_step(arc, sites.sites[j], path, view_.placed(half.s), view_.placed(half.t), band, relative,
                    bounds);
       if (step.active && step.gap <= band) {
-        if (!look_closely(half, i, sites.sites[j], path, band)) return 0.0;
+        look_closely();
         const Feature f{i, static_cast<int>(j), step.gap, step.rate, step.normal, step.point};
         if (polish(half, f, path, bounds)) continue;
-        const double own = band_step(step.gap - view_.arc_level(), step.rate, step.curvature, band,
+        const double level = view_.level(half, i, sites.sites[j], path.q);
+        const double own = band_step(step.gap - level, step.rate, step.curvature, band,
                                      0.25 * sink_step(limits_.touch, 0.0));
         safe = std::min(safe, own);
         continue;
@@ -336,24 +327,24 @@ class PairSearch {
     }
     const auto gap = [&](double t) { return view_.gap_at(half, f, t).gap; };
     const Site& site = half.site(f.site);
-    const bool vertex = half.sample(f.sample).arc_site < 0;
     const double speed = -f.rate;
-    const double now =
-        f.gap - (vertex ? view_.level(half, f.sample, site, path.q) : view_.arc_level());
+    const double now = f.gap - view_.level(half, f.sample, site, path.q);
     const double begin = view_.start();
     if (t_ <= begin && now <= 0.0) return remember(half, f, t_);  // touching from the start, and approaching
     const double guess = t_ + now / speed;
     const double off = std::abs(now) / speed;
     const double bend = std::min(1.0, bounds.acceleration * off / speed) * off;
-    const double noise = view_.gap_rounding(half, f.sample, site, path.q) / speed + 4.0 * ulp(t_) + bend;
-    const double last = std::min(a_.motion->end(), b_.motion->end());
-    // it was clear until the search began, but for roundings
-    const double floor = std::max(begin, from_ - 1024.0 * noise);
-    double low = std::max(std::min(guess, t_) - 8.0 * noise, floor), high = guess + 8.0 * noise;
-    for (double back = 8.0 * noise; gap(low) <= 0.0; back *= 4.0) {
+    const double rounding = view_.gap_rounding(half, f.sample, site, path.q);
+    const double moment = rounding / speed + 4.0 * ulp(t_), noise = moment + bend;
+    // clear now, or by a few roundings before; it was clear until the search began
+    const double floor = std::max(begin, from_ - 1024.0 * moment);
+    double low = now > 8.0 * rounding ? t_ : std::max(std::min(guess, t_) - 8.0 * moment, floor);
+    for (double back = 8.0 * moment; gap(low) <= 0.0; back *= 4.0) {
       if (low <= floor) return remember(half, f, t_);  // in each other from the start, and now going deeper
       low = std::max(low - back, floor);
     }
+    double high = guess + 8.0 * noise;
+    const double last = std::min(a_.motion->end(), b_.motion->end());
     // beyond the surface; where two points meet, when they are nearest; where a bent path meets it later; and
     // where a tip is grazed, for less than a rounding
     const double nearest = t_ + now / speed, later = t_ + 4.0 * std::max(0.0, now) / speed + 64.0 * noise;
@@ -408,8 +399,7 @@ class PairSearch {
   double least_ = kForever;  ///< of the samples looked at from t_, how long all are safe
   FeatureContact best_;
   bool sink_known_ = false;
-  bool stopped_ = false;
-  PairAnswer::Why why_ = PairAnswer::Why::steps;
+  bool capped_ = false;
 };
 
 }  // namespace

@@ -21,6 +21,7 @@
 #include "brink/scheduler/recorder.h"
 #include "brink/scheduler/simulator.h"
 #include "brink/scheduler/site_motion.h"
+#include "brink/scheduler/thin_walls.h"
 #include "brink/scheduler/zeno.h"
 
 namespace brink {
@@ -172,6 +173,12 @@ class Kernel {
   /// The same for the end of a run. @throws BadInput also if the policy came back too early.
   void hold_to_end(double until);
 
+  // -- watching the searches --
+  /// From now on what searches certify is checked as the run goes on: overlaps and sides of the pairs just
+  /// resolved, of all pairs at frames, and ways through wires without thickness. What is seen ends the run.
+  /// `exact`: false for a policy that may miss contacts; then nothing is checked. Cost: below 3 %.
+  void hold_to_certificates(bool exact);
+
   // -- running --
   void begin(const RunOptions& options, Recorder* recorder);
   /// Records the last frame, at the present time, unless the frame clock has just done so.
@@ -252,6 +259,13 @@ class Kernel {
   std::vector<PairKey> neighbours_at(double t) const;
   std::vector<PairKey> overlapping(const std::vector<Box>& boxes) const;
   void check_overlaps_at(double t);
+  /// The deepest overlap that is none [m]: the contact tolerance, or what the world started with.
+  double allowed_overlap() const { return std::max(limits_.tolerance, start_overlap_); }
+  /// After a resolve at the present time. False on a halt.
+  bool check_resolved(const PairKey& pair, const FeatureContact& found);
+  /// Before body k is resolved at time `to`. False on a halt.
+  bool check_flight(int k, double to);
+  bool report_overlap(const PairKey& pair, double depth, double t, const char* what);
   std::optional<Contact> crossing_at(const PairKey& pair, double t) const;
   const Motion& motion_of(int owner) const;
   int owner_count() const { return static_cast<int>(bodies_.size() + sites_.size()); }
@@ -318,6 +332,12 @@ class Kernel {
   double time_ = 0.0;
   double horizon_ = 0.0;
   double max_overlap_ = 0.0;
+  bool checked_ = false;             ///< hold_to_certificates()
+  bool walls_made_ = false;
+  ThinWalls walls_;                  ///< of still sites
+  std::vector<bool> material_centre_;  ///< of bodies whose centre of mass is in them
+  double checked_until_ = 0.0;       ///< flights before were looked at, at the last frame [s]
+  double start_overlap_ = 0.0;       ///< deepest overlap that the world started with [m]
   std::uint64_t seq_ = 0;
   std::uint64_t frame_ = 0;   ///< frames recorded by the frame clock
   double last_frame_ = -1.0;  ///< time of the last frame recorded [s]

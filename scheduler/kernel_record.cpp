@@ -65,11 +65,6 @@ std::vector<PairKey> Kernel::neighbours_at(double t) const {
   return overlapping(now);
 }
 
-void Kernel::check_overlaps_at(double t) {
-  for (const PairKey& pair : neighbours_at(t))
-    note_overlap(pair_gap(mover(pair.body), other_mover(pair), t, limits_, scratch_));
-}
-
 std::optional<Contact> Kernel::crossing_at(const PairKey& pair, double t) const {
   const Mover a = mover(pair.body), b = other_mover(pair);
   const OutlineCrossing crossing =
@@ -99,6 +94,7 @@ std::vector<Contact> Kernel::overlaps() {
 
 bool Kernel::may_start(std::string* why) {
   const std::vector<Contact> found = overlaps();
+  if (!found.empty()) start_overlap_ = -found.front().gap;
   if (found.empty() || found.front().gap >= -kStartOverlap * world_.length()) return true;
   const Contact& c = found.front();
   const std::string& other =

@@ -91,8 +91,12 @@ double Kernel::note_resolve(int k, int partner, double magnitude) {
 }
 
 Real Kernel::delay_to_contact(const FeatureContact& found, const ExtendedContact& c) const {
-  const Real late = 4.0 * ulp(time_);
-  return c.closing > 0 ? std::clamp((c.gap - found.level) / c.closing, -late, late) : Real(0);
+  if (!(c.closing > 0)) return 0;
+  Real late = 4.0 * ulp(time_);
+  // the motion after is sought from the present double: it must not begin on the other side of a wire
+  const double level = found.level - found.sink;
+  if (level > 0.0) late = std::min(late, Real(0.25 * level) / c.closing);
+  return std::clamp((c.gap - found.level) / c.closing, -late, late);
 }
 
 Kernel::Response Kernel::respond(const PairKey& pair, const FeatureContact& found) const {
@@ -194,6 +198,8 @@ std::optional<DiscRebound> Kernel::disc_rebound(const PairKey& pair, double leve
 
 std::optional<Outcome> Kernel::settle(const PairKey& pair, const FeatureContact& found,
                                       std::vector<int>& changed) {
+  if (!check_flight(pair.body, time_) || (!pair.with_site() && !check_flight(pair.other_body, time_)))
+    return std::nullopt;
   if (const auto discs = disc_rebound(pair, found.level)) {
     double rest = note_resolve(pair.body, pair.other_body, discs->magnitude);
     rest = std::min(rest, note_resolve(pair.other_body, pair.body, discs->magnitude));
@@ -201,6 +207,10 @@ std::optional<Outcome> Kernel::settle(const PairKey& pair, const FeatureContact&
     restart_free(pair.other_body, discs->b.state, discs->b.low);
     changed.push_back(pair.body);
     changed.push_back(pair.other_body);
+    if (const double depth = -discs->gap; checked_ && depth > allowed_overlap()) {
+      report_overlap(pair, depth, time_, "overlaps");
+      return std::nullopt;
+    }
     return Outcome{pair, found, discs->impulse, 0.0, discs->delay, rest};
   }
   const Response response = respond(pair, found);
@@ -210,7 +220,7 @@ std::optional<Outcome> Kernel::settle(const PairKey& pair, const FeatureContact&
   }
   double rest = note_resolve(pair.body, other_owner(pair), response.magnitude);
   if (!pair.with_site()) rest = std::min(rest, note_resolve(pair.other_body, pair.body, response.magnitude));
-  if (!deflect(pair, response, changed)) return std::nullopt;
+  if (!deflect(pair, response, changed) || !check_resolved(pair, found)) return std::nullopt;
   return Outcome{pair, found, response.impulse.normal, response.impulse.tangential, response.delay, rest};
 }
 

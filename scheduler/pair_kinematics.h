@@ -14,6 +14,12 @@ namespace brink {
 /// computation.
 inline bool is_centred_disc(const Outline& o) { return o.is_point() && o.sites[0].a.isZero(0.0); }
 
+/// Of two outlines' bounding discs the smaller; of a mere point and another, the other's [m].
+inline double smallest_radius(const Outline& a, const Outline& b) {
+  const double ra = a.bounding_radius, rb = b.bounding_radius;
+  return ra > 0.0 && rb > 0.0 ? std::min(ra, rb) : std::max(ra, rb);
+}
+
 /// An outline at one moment, and the frame in which it is looked at.
 struct Placed {
   Frame frame;

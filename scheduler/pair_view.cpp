@@ -2,6 +2,8 @@
 
 #include <numbers>
 
+#include "brink/scheduler/canonical_time.h"
+
 namespace brink::detail {
 
 namespace {
@@ -76,8 +78,7 @@ FeatureContact PairView::contact_of(const Half& half, const Feature& f, double t
   c.normal = half.s_is_a ? out : Vec2(-out);
   c.closing_speed = -f.rate;
   c.gap = f.gap;
-  const Vec2 q = path(half, f.sample).q;
-  c.level = half.sample(f.sample).arc_site < 0 ? level(half, f.sample, half.site(f.site), q) : arc_level();
+  c.level = level(half, f.sample, half.site(f.site), path(half, f.sample).q);
   c.sink = sink_;
   return c;
 }
@@ -99,6 +100,9 @@ void PairView::find_neighbours(const Half& half, int i, std::span<const std::uin
         f.gap - level(half, i, site, path.q) <= limits_.touch && !approaching(f, path);
     scratch_.neighbours.push_back({f.site, f.normal, leaving});
   }
+  // in one order, whoever named the candidates: of sites equally near the first is met
+  std::sort(scratch_.neighbours.begin(), scratch_.neighbours.end(),
+            [](const auto& x, const auto& y) { return x.site < y.site; });
 }
 
 bool PairView::belongs_to_a_neighbour(const Half& half, int j, const Nearest& nearest, const Vec2& q) const {
@@ -123,6 +127,7 @@ bool PairView::belongs_to_a_neighbour(const Half& half, int j, const Nearest& ne
 }
 
 void PairView::put(Placing& p, double t) const {
+  p.time = t;
   const BodyState sa = a_.motion->state(t), sb = b_.motion->state(t);
   p.place_noise =
       place_rounding(*a_.motion, sa.pose.position) + place_rounding(*b_.motion, sb.pose.position);
@@ -138,10 +143,11 @@ void PairView::put(Placing& p, double t) const {
 
 namespace {
 
-/// An angle brought within half a turn before it is rounded.
+/// An angle brought within half a turn before it is rounded; by its sine and cosine, which are exact for any
+/// number of turns.
 double reduced(Real angle) {
-  constexpr Real turn = 2 * std::numbers::pi_v<Real>;
-  return static_cast<double>(std::abs(angle) > turn ? std::remainder(angle, turn) : angle);
+  if (std::abs(angle) < std::numbers::pi_v<Real>) return static_cast<double>(angle);
+  return static_cast<double>(std::atan2(std::sin(angle), std::cos(angle)));
 }
 
 BodyState seen_from(const Vec2& base, const ExtendedState& s) {
@@ -177,8 +183,17 @@ double PairView::gap_rounding(const Placing& p, const Half& half, int i, const S
 
 double PairView::nominal_level(const Placing& p, const Half& half, int i, const Site& site,
                                const Vec2& q) const {
-  if (site.solid || site.radius + half.sample(i).radius > 0.0) return 0.0;
-  return wire_level(limits_.touch, gap_rounding(p, half, i, site, q));
+  const bool thin = !site.solid && site.radius + half.sample(i).radius == 0.0;
+  return brink::nominal_level(limits_.touch, limits_.tolerance, gap_rounding(p, half, i, site, q), thin);
+}
+
+PairView::Doubt PairView::doubt(const Half& half, const Feature& f) const {
+  const SamplePath now = path(half, f.sample);
+  const Site& site = half.site(f.site);
+  const bool thin = !site.solid && site.radius + half.sample(f.sample).radius == 0.0;
+  if (!can_hold(gap_rounding(half, f.sample, site, now.q), limits_.tolerance, thin)) return Doubt::place;
+  const double moved = 8.0 * now.rate.norm() * ulp(now_.time);
+  return moved > kSlowOfSize * smallest_radius(a_.outline(), b_.outline()) ? Doubt::speed : Doubt::none;
 }
 
 bool PairView::out_of_reach(const Half& half, int i, double reach) const {
@@ -197,11 +212,9 @@ double PairView::sink_at_start() const {
   then.each_feature(limits_.tolerance, [&](const Half& half, const Feature& f) {
     const SamplePath path = then.path(half, f.sample);
     const Site& site = half.site(f.site);
-    const bool vertex = half.sample(f.sample).arc_site < 0;
     const double rounding = then.gap_rounding(half, f.sample, site, path.q);
     const double own_step = sink_step(limits_.touch, rounding);
-    const double above =
-        f.gap - (vertex ? then.nominal_level(then.now_, half, f.sample, site, path.q) : 0.0);
+    const double above = f.gap - then.nominal_level(then.now_, half, f.sample, site, path.q);
     if (!(above < own_step) || above < -kStartOverlap * limits_.tolerance) return;
     now = now || (above <= 0.0 && then.approaching(f, path));
     const PathBounds bounds = path_bounds(path, half.s_is_a ? at_once : at_once.swapped(), 0.0);
@@ -260,7 +273,7 @@ PairView::GapAndSite PairView::gap_at(const Half& half, const Feature& f, double
   const Vec2 q = u.frame.direction_to_local(s.frame.direction_to_world(half.sample(f.sample).p) +
                                             (s.frame.origin - u.frame.origin));
   if (half.sample(f.sample).arc_site < 0) return gap_to_neighbours(then, half, f.sample, q);
-  return {arc_gap(half, f, q) - sink_, f.site};
+  return {arc_gap(half, f, q) - nominal_level(then, half, f.sample, half.site(f.site), q) - sink_, f.site};
 }
 
 }  // namespace brink::detail

@@ -85,13 +85,14 @@ class PairView {
   /// of it, or is deeper in.
   bool belongs_to_a_neighbour(const Half& half, int j, const Nearest& nearest, const Vec2& q) const;
 
-  /// The gap at which vertex sample i and the site meet now [m]: 0, or a wire's level (tolerances.h), both
-  /// less what the pair has sunk since its motions began.
+  /// The gap at which sample i and the site meet now [m] (tolerances.h), less what the pair may have sunk since
+  /// its motions began.
   double level(const Half& half, int i, const Site& site, const Vec2& q) const {
     return nominal_level(now_, half, i, site, q) + sink_;
   }
-  /// Likewise of an arc sample.
-  double arc_level() const { return sink_; }
+  /// Why a contact of these features that is met now cannot be told, if it cannot.
+  enum class Doubt { none, place, speed };
+  Doubt doubt(const Half& half, const Feature& f) const;
   /// Sets what is taken off every level, <= 0: sink_at_start().
   void set_sink(double sink) { sink_ = sink; }
   /// Since its motions began, how far the pair may sink below nominal levels before it meets (start_sink() of
@@ -127,8 +128,9 @@ class PairView {
   /// is too far away for doubles.
   struct Placing {
     Placed a, b;
-    Vec2 base = Vec2::Zero();                      ///< world [m]
-    double place_noise = 0.0;                      ///< rounding of one place against the other [m]
+    double time = 0.0;                                ///< [s]
+    Vec2 base = Vec2::Zero();                         ///< world [m]
+    double place_noise = 0.0;                         ///< rounding of one place against the other [m]
     double angle_noise_a = 0.0, angle_noise_b = 0.0;  ///< [rad]
   };
 

@@ -40,6 +40,7 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
   if (time() == 0.0)
     if (const std::string why = start_fault(); !why.empty()) throw BadInput(why);
   const auto begin = std::chrono::steady_clock::now();
+  kernel.hold_to_certificates(!impl_->policy->approximate());
   kernel.begin(options, recorder);
   impl_->policy->run(kernel, options.until);
   kernel.hold_to_end(options.until);

@@ -13,7 +13,7 @@ namespace brink {
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x314b4e4952420004ULL;  // "\4\0BRINK1"
+constexpr std::uint64_t kMagic = 0x314b4e4952420005ULL;  // "\5\0BRINK1"
 
 class Writer {
  public:
@@ -74,6 +74,7 @@ class SnapshotCodec {
     each(k.time_);
     each(k.horizon_);
     each(k.max_overlap_);
+    each(k.start_overlap_);
     each(k.seq_);
     each(k.frame_);
     each(k.last_frame_);

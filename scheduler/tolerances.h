@@ -4,14 +4,14 @@
 ///
 /// A gap is computed with some rounding `nu` (gap_rounding). Three margins keep it from mattering:
 ///   - a thin wire has no inside that would tell that it was crossed; so it is met at a *level* of at least
-///     4 nu before it (wire_level): what stays beyond the level is never in doubt about its side;
+///     4 nu before it (nominal_level): what stays beyond the level is never in doubt about its side;
 ///   - a pair that starts touching, pressed together or all but at rest, has its next contact when it has
 ///     sunk by a *sink step* of at least nu (sink_step), a quarter of the wire's level at most: so every
 ///     contact is a crossing of its level from above, and what has sunk is pushed out again as it is resolved;
 ///   - steps of the search end at half the *band* (the contact tolerance, or what the clock cannot tell
 ///     apart), never on the surface.
-/// Where nu is not small beside the contact tolerance the search says so (PairAnswer::Why::place) instead of
-/// an answer that might be wrong.
+/// Where nu is not small beside the contact tolerance the search does not tell a contact but says so
+/// (PairAnswer::Why::place): nothing is missed, as the level then lies beyond nu.
 
 #include <algorithm>
 #include <cmath>
@@ -34,40 +34,53 @@ inline constexpr double kTouchOfTolerance = 1e-3;
 inline constexpr double kStartOverlap = 1e4;
 
 /// Bound on the rounding of a value that has moved from `start` to `now` along start + s (rate + s / 2 accel),
-/// in arithmetic of unit roundoff u: three roundings of the way, one of the sum.
-inline double rounding_of_way(double start, double now, double u) {
-  const double way = std::abs(now - start);
-  return way > 0.0 ? u * (3.0 * way + std::abs(now)) : 0.0;
+/// in arithmetic of unit roundoff u: three roundings of the way, one of the sum. None of what stands still and
+/// is a double (`low`: what its start's rounding left over).
+inline double rounding_of_way(double start, double low, double rate, double now, double u) {
+  if (now == start && rate == 0.0 && low == 0.0) return 0.0;
+  return u * (3.0 * std::abs(now - start) + std::abs(now));
 }
 
 /// Bound on the rounding of a motion's place [m] in double precision. Dense output is as exact as its
 /// coefficients: eight roundings of the place, joins of pieces among them.
 inline double place_rounding(const Motion& motion, const Vec2& now, double u = kRoundoff) {
   if (!motion.is_ballistic()) return 8.0 * kRoundoff * now.lpNorm<1>();
-  const Vec2& start = motion.start().pose.position;
-  return rounding_of_way(start.x(), now.x(), u) + rounding_of_way(start.y(), now.y(), u);
+  const BodyState &start = motion.start(), &low = motion.start_low();
+  double sum = 0.0;
+  for (int axis = 0; axis < 2; ++axis)
+    sum += rounding_of_way(start.pose.position[axis], low.pose.position[axis], start.twist.velocity[axis],
+                           now[axis], u);
+  return sum;
 }
 
 /// Likewise of its angle [rad].
 inline double angle_rounding(const Motion& motion, double now, double u = kRoundoff) {
   if (!motion.is_ballistic()) return 8.0 * kRoundoff * std::abs(now);
-  return rounding_of_way(motion.start().pose.angle, now, u);
+  const BodyState &start = motion.start(), &low = motion.start_low();
+  return rounding_of_way(start.pose.angle, low.pose.angle, start.twist.omega, now, u);
 }
 
 /// Places are taken relative to the pair, in extended precision, where their rounding in double is more than
 /// this part of the contact tolerance.
 inline constexpr double kFarOfTolerance = 1.0 / 256.0;
 
-/// Where a sharp sample meets a wire without thickness: this far before it [m].
-inline double wire_level(double touch, double rounding) { return std::max(0.5 * touch, 4.0 * rounding); }
-
-/// How far a pair that is pressed together sinks until that is a contact again [m].
-inline double sink_step(double touch, double rounding) { return std::max(0.125 * touch, rounding); }
-
 /// True if gaps of that rounding can be held to the contact tolerance; thin: by a wire_level().
 inline bool can_hold(double rounding, double tolerance, bool thin) {
   return (thin ? 8.0 : 1.0) * rounding <= tolerance;
 }
+
+/// The gap at which features meet that start apart [m]: 0; thin, a sharp sample and a wire without thickness: so
+/// far before it; where gaps cannot be held to the tolerance: as far before as they may be wrong.
+inline double nominal_level(double touch, double tolerance, double rounding, bool thin) {
+  if (thin) return std::max(0.5 * touch, 4.0 * rounding);
+  return can_hold(rounding, tolerance, thin) ? 0.0 : 2.0 * rounding;
+}
+
+/// What moves more than this part of its radius in a few roundings of the clock is too fast to be resolved.
+inline constexpr double kSlowOfSize = 1e-3;
+
+/// How far a pair that is pressed together sinks until that is a contact again [m].
+inline double sink_step(double touch, double rounding) { return std::max(0.125 * touch, rounding); }
 
 /// The level at which a pair that starts touching meets [m], below its nominal one (0): `gap` and `rate` are
 /// the least at the start, less nominal levels; `noise` bounds the rounding of the rate, `acceleration` the

@@ -1,0 +1,36 @@
+#pragma once
+/// Still wires without thickness, and whether something flew through one: a watch over the search for first
+/// contact that shares nothing with it.
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "brink/core/base/geometry.h"
+
+namespace brink {
+
+/// Segments in the world, each of a fixed site. Answers are told to roundings of double: a way that begins or
+/// ends closer to a wall than that is not judged by it.
+class ThinWalls {
+ public:
+  ThinWalls();
+  ~ThinWalls();
+
+  void add(const Vec2& a, const Vec2& b, int site);
+  bool empty() const { return count_ == 0; }
+
+  /// The site of a wall that a point went through on its way; nothing if there is none. `place` is where the
+  /// point is at a time of [from, to]; `turns`: how often it turns about its centre on the way. Cost: a search
+  /// in a tree of boxes along the straight line between the ends (O(log walls)); only a wall that this line
+  /// crosses is looked at closer, by 64 places and as many more a turn.
+  std::optional<int> crossed(const std::function<Vec2(double)>& place, double from, double to,
+                             double turns = 0.0) const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
+  int count_ = 0;
+};
+
+}  // namespace brink
