@@ -161,6 +161,7 @@ inline Motion dense_like(Random& r, const Motion& plain, double from, double to,
   for (int k = 0; k < n; ++k) {
     const auto right = knot(k + 1);
     PolynomialPiece piece;
+    piece.c.fill(Eigen::Vector3d::Zero());
     piece.begin = piece.origin = from + k * h;
     piece.end = k + 1 == n ? to : from + (k + 1) * h;
     piece.degree = 3;
