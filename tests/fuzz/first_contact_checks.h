@@ -96,7 +96,7 @@ class Checker {
     limits.closed_forms = false;
     const PairAnswer answer = search(sides, f.from, f.to, limits);
     tally.far += f.far;
-    if (answer.status == PairAnswer::Status::undecided && f.far && answer.why != PairAnswer::Why::steps) {
+    if (answer.status == PairAnswer::Status::undecided && f.far) {
       check_refusal(f, pair, answer);
       return;
     }
