@@ -103,22 +103,24 @@ double before_contact(Gap&& gap, double t, double from, double speed) {
   return t;
 }
 
-/// Rounding of a gap [m] at time t between outlines that reach as far as `arm` together.
-double place_noise(const Parabola& a, const Parabola& b, double t, double arm) {
-  return 32.0 * kEpsilon *
-         (a.place.lpNorm<1>() + a.at(t).lpNorm<1>() + b.place.lpNorm<1>() + b.at(t).lpNorm<1>() + arm);
+/// Rounding of a gap [m] between a disc and a site, one seen at q from the other: PairView::gap_rounding().
+double gap_noise(const Mover& a, const Mover& b, const Vec2& place_a, const Vec2& place_b, const Vec2& q,
+                 const Vec2& site) {
+  return place_rounding(*a.motion, place_a) + place_rounding(*b.motion, place_b) +
+         kRoundoff * (6.0 * q.lpNorm<1>() + 2.0 * site.lpNorm<1>());
 }
 
 /// The general search's time near the root t, so that it does not matter which of the two a window was given
 /// to. Any interval will do that has the crossing and whose ends are beyond rounding: the narrowest first.
+/// `moment`: rounding of the gap over its speed, and of the clock [s].
 template <class Gap>
-double canonical_root(Gap&& gap, double t, double from, double noise, double speed) {
-  for (const double reach : {0.25 * noise, 8.0 * noise})
-    if (t - reach > from && gap(t - reach) > 0.0 && gap(t + reach) <= 0.0)
+double canonical_root(Gap&& gap, double t, double begin, double moment, double speed) {
+  for (const double reach : {8.0 * moment, 64.0 * moment})
+    if (t - reach > begin && gap(t - reach) > 0.0 && gap(t + reach) <= 0.0)
       return last_clear_time(gap, t - reach, t + reach);
-  if (t > from && gap(from) > 0.0 && gap(t + 8.0 * noise) <= 0.0)
-    return last_clear_time(gap, from, t + 8.0 * noise);
-  return before_contact(gap, t, from, speed);
+  if (t > begin && gap(begin) > 0.0 && gap(t + 8.0 * moment) <= 0.0)
+    return last_clear_time(gap, begin, t + 8.0 * moment);
+  return before_contact(gap, t, begin, speed);
 }
 
 /// Two centred discs as the general search sees them at time t: the same operations in the same order.
@@ -168,7 +170,8 @@ bool discs(const Mover& a, const Mover& b, double from, double to, const SearchL
   if (!(closing > rel.noise)) return true;
   const auto gap = [=](double time) { return (path_a.at(time) - path_b.at(time)).norm() - reach - level; };
   t = canonical_root(gap, t, std::max(rel.reference, 0.0),
-                     place_noise(path_a, path_b, t, reach) / closing + 4.0 * ulp(t), closing);
+                     gap_noise(a, b, path_a.at(t), path_b.at(t), then, Vec2::Zero()) / closing + 4.0 * ulp(t),
+                     closing);
   answer = {PairAnswer::Status::contact, t, disc_contact(a, b, t)};
   answer.contact.level = answer.contact.sink = level;
   return true;
@@ -285,8 +288,10 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
   if (!(t <= to)) return true;
   const double speed =
       std::max(-normal.dot(path.velocity + (t - rel.reference) * path.acceleration), rel.noise);
-  const double arm = disc.outline().bounding_radius + other.outline().bounding_radius;
-  const double noise = place_noise(parabola, parabola_of_other, t, arm) / speed + 4.0 * ulp(t);
+  const Vec2 at_disc = parabola.at(t), at_other = parabola_of_other.at(t);
+  const Vec2 far_off = Vec2::Constant(other.outline().bounding_radius);
+  const double moment =
+      gap_noise(disc, other, at_disc, at_other, at_disc - at_other, far_off) / speed + 4.0 * ulp(t);
   // segments that are met at the same time to rounding (a notch) count together, as in the general search
   const auto nearest_at = [&](double time) {
     const Vec2 q = frame.direction_to_local(parabola.at(time) - parabola_of_other.at(time));
@@ -294,7 +299,7 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
     std::pair<double, const Meeting*> nearest{kForever, nullptr};
     for (int k = 0; k < count; ++k) {
       const Meeting& m = meetings[static_cast<std::size_t>(k)];
-      if (!(m.s <= earliest + 16.0 * noise)) continue;
+      if (!(m.s <= earliest + 64.0 * moment)) continue;
       const Meeting::Seen seen = m.seen(q, radius, limits.touch);
       if (!(seen.rank < least)) continue;
       least = seen.rank;
@@ -302,7 +307,7 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
     }
     return nearest;
   };
-  t = canonical_root([&](double time) { return nearest_at(time).first; }, t, rel.reference, noise, speed);
+  t = canonical_root([&](double time) { return nearest_at(time).first; }, t, rel.reference, moment, speed);
   const auto [above, met] = nearest_at(t);
   const Vec2 q = frame.direction_to_local(parabola.at(t) - parabola_of_other.at(t));
   if (!can_hold(kRoundoff * (6.0 * q.lpNorm<1>() + 2.0 * met->site->a.lpNorm<1>()), limits.tolerance, false) ||

@@ -176,9 +176,9 @@ class PairSearch {
     const RelativeBounds relative = half.s_is_a ? long_bounds_ : long_bounds_.swapped();
     const RelativeBounds near = half.s_is_a ? short_bounds_ : short_bounds_.swapped();
     const PathBounds over_all = path_bounds(path, relative, long_window);
-    const Facing line = line_between(half, sample, path);
+    const Facing line = line_between(half, i, path);
     const double apart = line.gap > 0.0 ? safe_step(line.gap, line.rate, over_all.acceleration)
-                                        : clear_of_disc(half, sample, path, over_all);
+                                        : clear_of_disc(half, i, path, over_all);
     if (apart >= long_window || apart > 2.0 * (least_ - t_)) return apart * (1.0 - 4.0 * kEpsilon);
     const PathBounds over_short = path_bounds(path, near, short_window);
     double safe = apart, again = 0.0;
@@ -196,24 +196,25 @@ class PairSearch {
 
   /// How long a sample is sure to stay out of the disc that holds the other outline; 0 if it is in it. As
   /// other steps, this one does not lead onto the surface.
-  double clear_of_disc(const Half& half, const Sample& sample, const SamplePath& path,
-                       const PathBounds& bounds) const {
+  double clear_of_disc(const Half& half, int i, const SamplePath& path, const PathBounds& bounds) const {
     const Outline& outline = half.sites_of();
-    const double f = path.distance - outline.bounding_radius - sample.radius - touching_band(path);
+    const Sample& sample = half.sample(i);
+    const double f = path.distance - outline.bounding_radius - sample.radius - touching_band(half, i, path);
     if (outline.container || outline.is_point() || !(f > 0.0)) return 0.0;
     return safe_step(f, path.q.dot(path.rate) / path.distance, bounds.acceleration);
   }
 
   /// The line between a vertex sample and a convex outline, as far out as a step may lead; gap 0 where there
   /// is none, or the sample is so near that its features must be told apart.
-  Facing line_between(const Half& half, const Sample& sample, const SamplePath& path) {
+  Facing line_between(const Half& half, int i, const SamplePath& path) {
     const Outline& outline = half.sites_of();
+    const Sample& sample = half.sample(i);
     if (outline.facets.empty() || sample.arc_site >= 0) return {};
     ++work_.distance_queries;
     ++work_.candidate_evaluations;
     Facing line = facing_convex(outline, path.q, path.rate);
     line.gap -= outline.sites[0].radius + sample.radius;
-    const double band = touching_band(path);
+    const double band = touching_band(half, i, path);
     line.gap = line.gap > 2.0 * band ? line.gap - 0.5 * band : 0.0;
     return line;
   }
@@ -226,7 +227,7 @@ class PairSearch {
     const Sample& sample = half.sample(i);
     const Outline& sites = half.sites_of();
     ++work_.distance_queries;
-    const double band = touching_band(path);
+    const double band = touching_band(half, i, path);
     const double reach = over_all.speed * window + sample.radius + 2.0 * band;
     const Candidates near = half.t->index->candidates(path.q, reach, scratch_.index);
     work_.candidate_evaluations += near.sites.size();
@@ -286,9 +287,11 @@ class PairSearch {
     return std::max(by_hull, by_speed);
   }
 
-  /// Gaps up to this are close [m]: the tolerance, or what the point moves in a few roundings of the time.
-  double touching_band(const SamplePath& path) const {
-    return std::max(limits_.tolerance, 8.0 * path.rate.norm() * ulp(t_));
+  /// Gaps up to this are close [m]: the tolerance, or what the point moves in a few roundings of the time, or
+  /// more than any level.
+  double touching_band(const Half& half, int i, const SamplePath& path) const {
+    return std::max({limits_.tolerance, 8.0 * path.rate.norm() * ulp(t_),
+                     16.0 * view_.gap_rounding(half, i, path.q)});
   }
 
   double arc_sample_step(const Half& half, int i, const SamplePath& path, const RelativeBounds& relative,
@@ -296,7 +299,7 @@ class PairSearch {
     const Sample& sample = half.sample(i);
     const Site& arc = half.samples_of().sites[sample.arc_site];
     const Outline& sites = half.sites_of();
-    const double band = touching_band(path);
+    const double band = touching_band(half, i, path);
     double safe = kForever;
     for (std::size_t j = 0; j < sites.sites.size(); ++j) {
       ++work_.candidate_evaluations;
@@ -338,10 +341,11 @@ class PairSearch {
     const double moment = rounding / speed + 4.0 * ulp(t_), noise = moment + bend;
     // clear now, or by a few roundings before; it was clear until the search began
     const double floor = std::max(begin, from_ - 1024.0 * moment);
-    double low = now > 8.0 * rounding ? t_ : std::max(std::min(guess, t_) - 8.0 * moment, floor);
+    double low = now > 2.0 * rounding ? t_ : std::max(std::min(guess, t_) - 8.0 * moment, floor);
     for (double back = 8.0 * moment; gap(low) <= 0.0; back *= 4.0) {
-      if (low <= floor) return remember(half, f, t_);  // in each other from the start, and now going deeper
-      low = std::max(low - back, floor);
+      if (low <= floor && gap(t_) <= 0.0)
+        return remember(half, f, t_);  // in each other from the start, and now going deeper
+      low = low <= floor ? t_ : std::max(low - back, floor);
     }
     double high = guess + 8.0 * noise;
     const double last = std::min(a_.motion->end(), b_.motion->end());
@@ -356,7 +360,7 @@ class PairSearch {
     if (high <= low || gap(high) > 0.0) return false;  // passes by
     const double t = last_clear_time(gap, low, high);
     // at the end of its neighbourhood a sample changes sides without having come near
-    if (gap(t) > touching_band(path)) return false;
+    if (gap(t) > touching_band(half, f.sample, path)) return false;
     return remember(half, f, t, 8.0 * noise);
   }
 
@@ -365,7 +369,7 @@ class PairSearch {
   /// steps.
   bool remember(const Half& half, const Feature& f, double t, double noise = 0.0) {
     if (t > window_end_) return true;
-    const FeatureContact contact = t == t_ ? view_.contact_of(half, f, t) : contact_then(half, f, t);
+    const FeatureContact contact = contact_then(half, f, t);
     const bool earlier = best_.sample < 0 || t < best_.time ||
                          (t == best_.time && std::tie(half.s_is_a, best_.sample, best_.site) >
                                                  std::tie(best_.sample_on_a, contact.sample, contact.site));

@@ -82,7 +82,8 @@ struct SearchScratch {
     Vec2 normal = Vec2::Zero();
     bool leaving = false;  ///< touching, but not approaching
   };
-  SiteIndex::Scratch index;
+  SiteIndex::Scratch index;   ///< of the candidates that are being looked through
+  SiteIndex::Scratch nearest;  ///< of single questions beside them
   std::vector<Neighbour> neighbours;
   std::vector<double> safe_until;
 };

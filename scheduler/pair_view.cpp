@@ -45,7 +45,7 @@ Feature PairView::vertex_feature(const Half& half, int i, int j, const Nearest& 
 
 Feature PairView::nearest_feature(const Half& half, int i) const {
   const SamplePath now = path(half, i);
-  const FieldAnswer nearest = half.t->index->query(now.q, scratch_.index);
+  const FieldAnswer nearest = half.t->index->query(now.q, scratch_.nearest);
   if (nearest.site < 0) return {};
   return vertex_feature(half, i, nearest.site, nearest_on(half.site(nearest.site), now.q), now);
 }
@@ -131,8 +131,11 @@ void PairView::put(Placing& p, double t) const {
   const BodyState sa = a_.motion->state(t), sb = b_.motion->state(t);
   p.place_noise =
       place_rounding(*a_.motion, sa.pose.position) + place_rounding(*b_.motion, sb.pose.position);
-  p.angle_noise_a = angle_rounding(*a_.motion, sa.pose.angle);
-  p.angle_noise_b = angle_rounding(*b_.motion, sb.pose.angle);
+  const auto turned = [](const Mover& m, double angle) {
+    return is_centred_disc(m.outline()) ? 0.0 : angle_rounding(*m.motion, angle);
+  };
+  p.angle_noise_a = turned(a_, sa.pose.angle);
+  p.angle_noise_b = turned(b_, sb.pose.angle);
   const double noise = p.place_noise + p.angle_noise_a * a_.outline().bounding_radius +
                        p.angle_noise_b * b_.outline().bounding_radius;
   if (noise > kFarOfTolerance * limits_.tolerance) return put_relative(p, t);
@@ -171,20 +174,21 @@ void PairView::put_relative(Placing& p, double t) const {
   p.angle_noise_b *= finer(*b_.motion);
 }
 
-double PairView::gap_rounding(const Placing& p, const Half& half, int i, const Site& site,
+double PairView::gap_rounding(const Placing& p, const Half& half, int i, double site_distance,
                               const Vec2& q) const {
   const double arm = half.sample(i).p.lpNorm<1>(), distance = q.lpNorm<1>();
   const double of_s = half.s_is_a ? p.angle_noise_a : p.angle_noise_b;
   const double of_t = half.s_is_a ? p.angle_noise_b : p.angle_noise_a;
   // angles once more for their sines; then the roundings of turning, and of the distance to a site as far off
   return p.place_noise + (of_s + 4.0 * kRoundoff) * arm +
-         (of_t + 6.0 * kRoundoff) * distance + 2.0 * kRoundoff * site.a.lpNorm<1>();
+         (of_t + 6.0 * kRoundoff) * distance + 2.0 * kRoundoff * site_distance;
 }
 
 double PairView::nominal_level(const Placing& p, const Half& half, int i, const Site& site,
                                const Vec2& q) const {
   const bool thin = !site.solid && site.radius + half.sample(i).radius == 0.0;
-  return brink::nominal_level(limits_.touch, limits_.tolerance, gap_rounding(p, half, i, site, q), thin);
+  return brink::nominal_level(limits_.touch, limits_.tolerance,
+                              gap_rounding(p, half, i, site.a.lpNorm<1>(), q), thin);
 }
 
 PairView::Doubt PairView::doubt(const Half& half, const Feature& f) const {

@@ -112,7 +112,11 @@ class PairView {
 
   /// Bound on the rounding of the gap of sample i to a site now [m].
   double gap_rounding(const Half& half, int i, const Site& site, const Vec2& q) const {
-    return gap_rounding(now_, half, i, site, q);
+    return gap_rounding(now_, half, i, site.a.lpNorm<1>(), q);
+  }
+  /// The same to any site.
+  double gap_rounding(const Half& half, int i, const Vec2& q) const {
+    return gap_rounding(now_, half, i, half.sites_of().bounding_radius, q);
   }
 
  private:
@@ -138,7 +142,8 @@ class PairView {
   ArcStep arc_now(const Half& half, int i, int j) const;
   void put(Placing& placing, double t) const;
   void put_relative(Placing& placing, double t) const;
-  double gap_rounding(const Placing& placing, const Half& half, int i, const Site& site, const Vec2& q) const;
+  double gap_rounding(const Placing& placing, const Half& half, int i, double site_distance,
+                      const Vec2& q) const;
   double nominal_level(const Placing& placing, const Half& half, int i, const Site& site,
                        const Vec2& q) const;
   GapAndSite gap_to_neighbours(const Placing& placing, const Half& half, int i, const Vec2& q) const;

@@ -62,7 +62,7 @@ inline double angle_rounding(const Motion& motion, double now, double u = kRound
 
 /// Places are taken relative to the pair, in extended precision, where their rounding in double is more than
 /// this part of the contact tolerance.
-inline constexpr double kFarOfTolerance = 1.0 / 256.0;
+inline constexpr double kFarOfTolerance = 1.0 / 1024.0;
 
 /// True if gaps of that rounding can be held to the contact tolerance; thin: by a wire_level().
 inline bool can_hold(double rounding, double tolerance, bool thin) {
