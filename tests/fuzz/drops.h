@@ -60,7 +60,7 @@ class Maker {
         break;
       case 3: {  // a bowl of wire, or of something thick
         const double thick = random_.below(2) ? 0.5 * w : 0.0;
-        out_ << "arc = { center = [0, " << 30.0 + thick << "], radius = 30, from_deg = 180, to_deg = 360 }";
+        out_ << "arc = { center = [0, " << 30.0 - thick << "], radius = 30, from_deg = 180, to_deg = 360 }";
         if (thick > 0.0) out_ << "\nradius = " << thick;
         out_ << where;
         break;

@@ -14,6 +14,7 @@
 
 #include "brink/core/base/random.h"
 #include "brink/core/shapes/shapes.h"
+#include "brink/integrators/prescribed.h"
 #include "first_contact_reference.h"
 
 namespace brink::flights {
@@ -129,9 +130,14 @@ struct Flight {
   double size = 1.0;
   double relative_acceleration = 0.0;
   std::string story;
+  /// Far away, or turned many times: the same flight near by, for the reference. Starts there are such that
+  /// going far rounds nothing, so that both are one flight to the last digit.
+  bool far = false;
+  Motion near_a, near_b;
 
   reference::Pair pair() const {
-    return {a.get(), b.get(), &motion_a, &motion_b, relative_speed, spin_a, spin_b};
+    return {a.get(), b.get(), far ? &near_a : &motion_a, far ? &near_b : &motion_b, relative_speed,
+            spin_a,  spin_b};
   }
 };
 
@@ -155,6 +161,7 @@ inline Motion dense_like(Random& r, const Motion& plain, double from, double to,
   for (int k = 0; k < n; ++k) {
     const auto right = knot(k + 1);
     PolynomialPiece piece;
+    piece.c.fill(Eigen::Vector3d::Zero());
     piece.begin = piece.origin = from + k * h;
     piece.end = k + 1 == n ? to : from + (k + 1) * h;
     piece.degree = 3;
@@ -177,6 +184,57 @@ inline Motion dense_like(Random& r, const Motion& plain, double from, double to,
 
 inline double largest_spin(const Motion& m, double from, double to) {
   return std::max(std::abs(m.twist(from).omega), std::abs(m.twist(to).omega));
+}
+
+/// What is left of an angle after whole turns, to the last digit of a double.
+inline double without_turns(double angle) {
+  constexpr long double kTurn = 2.0L * std::numbers::pi_v<long double>, kRest = -1.00331152253366640476e-19L;
+  const long double turns = std::round(angle / kTurn);
+  return static_cast<double>(std::fma(-turns, kTurn, static_cast<long double>(angle)) - turns * kRest);
+}
+
+/// The same ballistic flight up to 1e9 sizes away, and up to 1e9 rad turned.
+inline void go_far(Flight& f, Random& r) {
+  const double place = std::ldexp(1.0, std::ilogb(f.size) + 4 + static_cast<int>(r.below(27)));
+  const double grain = place * std::ldexp(1.0, -50);
+  const Vec2 by = place * Vec2(r.below(2) ? 1.0 : -1.0, r.below(2) ? 1.0 : 0.0);
+  const bool turned = r.below(2) == 0;
+  const auto move = [&](Motion& motion, Motion& near) {
+    BodyState start = motion.start();
+    start.pose.position = grain * (start.pose.position / grain).array().round().matrix();
+    BodyState there = start;
+    there.pose.position += by;
+    if (turned) there.pose.angle += log_uniform(r, 10.0, 1e9);
+    start.pose.angle = without_turns(there.pose.angle);
+    near = Motion::ballistic(motion.origin(), start, motion.acceleration());
+    motion = Motion::ballistic(motion.origin(), there, motion.acceleration());
+  };
+  move(f.motion_a, f.near_a);
+  move(f.motion_b, f.near_b);
+  f.far = true;
+  std::ostringstream story;
+  story << ", " << place / f.size << " sizes away" << (turned ? ", turned" : "");
+  f.story += story.str();
+}
+
+/// a moves as told by a formula instead: it swings beside its path.
+inline void swing(Flight& f, Random& r) {
+  const double length = f.to - f.from, rate = r.uniform(0.5, 20.0) / length;
+  const double wide = 0.3 * f.size * r.uniform(0.0, 1.0), turn = r.uniform(0.0, 1.0);
+  const Vec2 side = direction(r.uniform(0.0, 6.3));
+  const auto path = [plain = f.motion_a, from = f.from, rate, wide, turn, side](double t) -> Eigen::Vector3d {
+    const BodyState s = plain.state(t);
+    const double swung = std::sin(rate * (t - from));
+    return {s.pose.position.x() + wide * swung * side.x(), s.pose.position.y() + wide * swung * side.y(),
+            s.pose.angle + turn * swung};
+  };
+  PrescribedMotion told(path, "a");
+  if (told.extend(f.to).status != Extent::Status::reached) return;
+  f.motion_a = told.motion();
+  f.relative_speed += wide * rate;
+  f.relative_acceleration += wide * rate * rate;
+  f.spin_a += turn * rate;
+  f.story += ", told by a formula";
 }
 
 /// Two bodies that come at each other, or pass by. A container, or a ring, may hold the other from the start.
@@ -296,15 +354,21 @@ inline Flight random_flight(std::uint64_t seed) {
     f.spin_b = largest_spin(f.motion_b, f.from, f.to);
   }
   story << ", speed " << speed / f.size << " sizes/s";
+  const bool plain = f.motion_a.is_ballistic();
+  f.story = story.str();
+  if (plain && r.below(6) == 0)
+    go_far(f, r);
+  else if (plain && f.to < 20.0 && length > 1e-3 && r.below(8) == 0)
+    swing(f, r);
   f.a = std::make_shared<Outline>(std::move(a));
   f.b = std::make_shared<Outline>(std::move(b));
   if (r.below(2)) {
     std::swap(f.a, f.b);
     std::swap(f.motion_a, f.motion_b);
+    std::swap(f.near_a, f.near_b);
     std::swap(f.spin_a, f.spin_b);
-    story << ", swapped";
+    f.story += ", swapped";
   }
-  f.story = story.str();
   return f;
 }
 

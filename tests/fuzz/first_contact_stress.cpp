@@ -26,7 +26,6 @@ TEST(FirstContactStress, MillionFlightsAgreeWithTheSlowReference) {
   EXPECT_EQ(checker.tally.failures(), 0);
   // a near miss may be so near that the reference cannot tell in reasonable time
   EXPECT_LE(checker.tally.given_up, static_cast<long>(count) / 1000);
-  EXPECT_EQ(checker.tally.not_canonical + checker.tally.not_canonical_closed, 0);
 }
 
 }  // namespace

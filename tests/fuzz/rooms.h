@@ -31,13 +31,13 @@ class Maker {
 
   Case make() {
     Case c;
-    size_ = log_uniform(0.05, 20.0);
+    size_ = log_uniform(0.2, 20.0);
     const double far = random_.below(3) == 0 ? 0.0 : log_uniform(1.0, 1e4);
     x_ = random_.uniform(-far, far);
     y_ = random_.uniform(-far, far);
     c.place = {x_, y_};
     c.size = size_;
-    const double body = size_ * log_uniform(0.02, 0.3), speed = body * log_uniform(0.3, 300.0);
+    const double body = size_ * log_uniform(0.05, 0.3), speed = body * log_uniform(0.3, 300.0);
     // hits come by flight across the room, or, of what turns fast, in bursts
     c.seconds = 1.5 * size_ / speed;
     out_ << std::setprecision(17) << "# room " << seed_ << "\n[world]\nduration = 1.0\n";
@@ -148,11 +148,12 @@ inline outside::Real out_of(const Case& c, const outside::Shape& body, const out
 
 struct Tally {
   long rooms = 0, escaped = 0, energy_lost = 0, ended = 0;
+  long refused = 0;  ///< too small for where they are, and said so
   std::uint64_t hits = 0;
 };
 inline std::ostream& operator<<(std::ostream& out, const Tally& t) {
   return out << t.rooms << " rooms, " << t.hits << " hits, " << t.escaped << " escaped, " << t.energy_lost
-             << " with another energy, " << t.ended << " ended early\n";
+             << " with another energy, " << t.ended << " ended early, " << t.refused << " refused\n";
 }
 
 /// Runs a room for about `hits` hits; tells what went wrong.
@@ -185,7 +186,8 @@ inline void stay(std::uint64_t seed, std::uint64_t hits, Tally& tally) {
       break;
     }
     if (summary.termination != Termination::reached_end) {
-      tell(tally.ended, summary.termination_text());
+      const bool refused = summary.why.find("too far from the origin") != std::string::npos;
+      tell(refused ? tally.refused : tally.ended, summary.termination_text());
       break;
     }
   }

@@ -22,6 +22,7 @@ TEST(RoomsOfWiresStress, NobodyLeaves) {
       std::cout << "seeds " << first << " .. " << first + k << ": " << tally << std::flush;
   }
   EXPECT_EQ(tally.escaped + tally.energy_lost + tally.ended, 0);
+  EXPECT_LT(tally.refused, tally.rooms / 10 + 1);
 }
 
 }  // namespace

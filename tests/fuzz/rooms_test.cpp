@@ -20,6 +20,7 @@ TEST(RoomsOfWires, NobodyLeaves) {
   EXPECT_EQ(tally.escaped, 0);
   EXPECT_EQ(tally.energy_lost, 0);
   EXPECT_EQ(tally.ended, 0);
+  EXPECT_LT(tally.refused, tally.rooms / 10 + 1);
 }
 
 }  // namespace

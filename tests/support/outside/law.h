@@ -63,7 +63,7 @@ inline std::string wrong_with(const Impact& i) {
   const Real leaving = dot(i.normal, i.after), slides = dot(left_of(i.normal), i.after);
   if (!(i.push >= 0)) return "pulls";
   if (std::abs(i.rub) > i.surface.friction * i.push * (1 + 1e-9L)) return "friction outside its cone";
-  if (i.push > 0 && closing < -small)
+  if (closing < -small)
     return "was parting already, at " + std::to_string(static_cast<double>(-closing)) + " m/s";
   if (i.push > 0 && std::abs(leaving - i.surface.restitution * closing) > small)
     return "parts at " + std::to_string(static_cast<double>(leaving)) + " m/s, came at " +

@@ -1,0 +1,323 @@
+// Scenes that once went wrong (faults/), each with what must be seen. What is in what is told by geometry
+// that shares no code with Brink's (support/outside); whatever may hang or fill the memory runs in a process
+// of its own.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "children.h"
+#include "tests/fuzz/world_runs.h"
+
+namespace brink {
+namespace {
+
+namespace fs = std::filesystem;
+using regression::Ended;
+using regression::in_child;
+using regression::Limits;
+
+fs::path folder() { return fs::path(BRINK_SOURCE_DIR) / "tests" / "regression"; }
+fs::path fault(const std::string& name) { return folder() / "faults" / (name + ".toml"); }
+
+struct Watched {
+  worlds::Told told;
+  std::vector<std::string> faults;
+};
+
+/// Runs a scene as its file says, followed from outside.
+Watched watched(const Scene& scene, double until = 0.0) {
+  outside::WatchOptions options;
+  options.until = until > 0.0 ? until : scene.duration;
+  options.contact_tolerance = scene.solver.contact_tolerance;
+  options.laws = !scene.solver.takes_together() && scene.solver.response == "impulse";
+  outside::Watch watch(scene.world, options);
+  Watched run;
+  worlds::Keeper keeper(run.told, &watch);
+  Simulator simulator(scene.world, scene.solver);
+  RunOptions how;
+  how.until = options.until;
+  how.frame_interval = scene.output.frame_interval;
+  how.checkpoint_seconds = -1.0;
+  run.told.summary = simulator.run(how, &keeper);
+  run.faults = watch.faults;
+  return run;
+}
+
+/// What a child prints when all is well.
+const std::string kSound = "sound\n";
+
+int tell(const std::vector<std::string>& faults) {
+  for (const std::string& f : faults) std::cout << f << "\n";
+  if (faults.empty()) std::cout << kSound;
+  return 0;
+}
+
+/// Runs `body` in a child; what it throws is told too.
+Ended guarded(const std::function<std::vector<std::string>()>& body, double seconds = 300) {
+  Limits limits;
+  limits.seconds = seconds;
+  return in_child(limits, [&] {
+    try {
+      return tell(body());
+    } catch (const BadInput& e) {
+      return tell({std::string("refused: ") + e.what()});
+    } catch (const std::exception& e) {
+      return tell({std::string("throws ") + e.what()});
+    }
+  });
+}
+
+std::string name_of(const ::testing::TestParamInfo<std::string>& info) {
+  std::string name = info.param;
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  return name;
+}
+
+// ---- what must reach its end, and be sound all the way
+
+class ReachesItsEnd : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(ReachesItsEnd, Soundly) {
+  const Ended ended = guarded([&] {
+    Watched run = watched(load_scene(fault(GetParam())));
+    if (run.told.summary.termination != Termination::reached_end)
+      run.faults.push_back("ends: " + run.told.summary.termination_text());
+    return run.faults;
+  });
+  EXPECT_EQ(ended.output, kSound) << "signal " << ended.signal << " after " << ended.seconds << " s";
+}
+
+INSTANTIATE_TEST_SUITE_P(Faults, ReachesItsEnd,
+                         ::testing::Values("wire_room_0.4_5", "wire_room_0.1_20", "wire_0", "wire_300",
+                                           "wire_periodic_drift", "diamond", "zeno", "tunnel_1e-9", "f_spike",
+                                           "asin_sin_refused", "asin_site_slow", "ring"),
+                         name_of);
+
+// ---- what loses its energy, or is beyond what doubles can hold: an honest end is right, nothing else
+
+class EndsHonestly : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(EndsHonestly, SoundUpToThere) {
+  const Ended ended = guarded([&] {
+    Watched run = watched(load_scene(fault(GetParam())));
+    const RunSummary& s = run.told.summary;
+    if (s.termination == Termination::failed && s.why.size() < 20)
+      run.faults.push_back("fails without a reason");
+    return run.faults;
+  });
+  const bool refused = ended.output.rfind("refused: ", 0) == 0;
+  EXPECT_TRUE(ended.output == kSound || refused)
+      << ended.output << "signal " << ended.signal << " after " << ended.seconds << " s";
+}
+
+INSTANTIATE_TEST_SUITE_P(Faults, EndsHonestly,
+                         ::testing::Values("box_falls_through", "wire_floor_fall", "box_wire_floor",
+                                           "stacking_tower_blocks_3_cor_minus1_x_offset_0",
+                                           "disc_thick_segment", "disc_placed_touching", "slide", "sink_e0",
+                                           "orbit", "far", "angle", "tunnel_small_far_discs",
+                                           "escape_speed1e15", "corner_slide_off",
+                                           "crash_null_contact_group_1e12",
+                                           "crash_null_contact_group_fastspin", "tumbler_inside",
+                                           "policies_differ_arc", "arc_policies", "pressed_e0_policies"),
+                         name_of);
+
+// ---- one event list in every way: policies, skips, detectors, resumes
+
+class SameInEveryWay : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(SameInEveryWay, AndSound) {
+  const Ended ended = guarded([&] {
+    std::ifstream file(fault(GetParam()));
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    return worlds::Examiner().examine(text, GetParam() + ".toml").faults;
+  });
+  EXPECT_EQ(ended.output, kSound) << "signal " << ended.signal << " after " << ended.seconds << " s";
+}
+
+INSTANTIATE_TEST_SUITE_P(Faults, SameInEveryWay,
+                         ::testing::Values("policies_differ_arc", "arc_policies", "arc_resume",
+                                           "pressed_e0_policies", "failure_loses_events",
+                                           "run_again_after_failure", "wire_periodic_drift", "slide"),
+                         name_of);
+
+// ---- what is wrong from the start is refused, at once and without gigabytes
+
+class Refused : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(Refused, AtOnce) {
+  const fs::path out = fs::temp_directory_path() / ("brink_refused_" + std::to_string(getpid()));
+  Limits limits;
+  limits.seconds = 60;
+  const Ended ended = regression::run_program(
+      limits,
+      {BRINK_BINARY_DIR "/bin/brink", "run", fault(GetParam()).string(), "--out", out.string(), "--quiet"});
+  EXPECT_EQ(ended.status, 2) << "signal " << ended.signal << ": " << ended.output;
+  EXPECT_LT(ended.seconds, 30.0);
+  fs::remove_all(out);
+}
+
+INSTANTIATE_TEST_SUITE_P(Faults, Refused,
+                         ::testing::Values("grid_no_space_memory", "mem_start_overlap",
+                                           "hang_start_overlap_periodic", "periodic_big_site_hangs",
+                                           "formula_nul_truncates"),
+                         name_of);
+
+// ---- what takes long stays in bounds, and hears when it is asked to stop
+
+class TakesLong : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(TakesLong, HearsASignal) {
+  const fs::path out = fs::temp_directory_path() / ("brink_long_" + std::to_string(getpid()));
+  Limits limits;
+  limits.ask_after = 5;
+  limits.seconds = 60;
+  const Ended ended = regression::run_program(
+      limits,
+      {BRINK_BINARY_DIR "/bin/brink", "run", fault(GetParam()).string(), "--out", out.string(), "--quiet"});
+  EXPECT_TRUE(ended.status == 0 || ended.status == 1)
+      << "status " << ended.status << " signal " << ended.signal << ": " << ended.output;
+  EXPECT_LT(ended.stopping, 10.0);  // within a second, on a machine that has one to spare
+  EXPECT_EQ(ended.output.find("bad_alloc"), std::string::npos) << ended.output;
+  fs::remove_all(out);
+}
+
+INSTANTIATE_TEST_SUITE_P(Faults, TakesLong,
+                         ::testing::Values("boxes_900_touching_hang", "raft_484_lcp_hang", "rk4_1e12_memory",
+                                           "stiff_1e15_deaf", "ring"),
+                         name_of);
+
+// ---- one by one
+
+// From height h above the wire, bounces come at t1 + 2 k t1 with t1 = sqrt(2 h / g), for ever.
+TEST(Faults, DiamondBouncesAsOftenAsTheClosedFormSays) {
+  for (const double height : {1.7, 0.9, 1.1, 1.3, 1.5, 1.9, 2.3, 2.7, 3.1, 3.3, 4.7, 5.9, 7.3, 9.7}) {
+    const Scene scene =
+        load_scene(fault("diamond"), {"bodies.0.position=[0, " + std::to_string(height) + "]"});
+    const Watched run = watched(scene);
+    const double t1 = std::sqrt(2.0 * (height - 0.5) / 9.81);
+    EXPECT_EQ(run.told.summary.collisions, static_cast<std::uint64_t>((scene.duration - t1) / (2.0 * t1)) + 1)
+        << height;
+    EXPECT_TRUE(run.faults.empty()) << height << " m: " << run.faults.front();
+    if (height == 1.7) {
+      EXPECT_EQ(run.told.summary.collisions, 2022U);
+    }
+  }
+}
+
+// Restitution 0 without friction or gravity: after the landing at t = 0.6 s it slides on at 5 m/s, level.
+TEST(Faults, ABoxThatSlidesOverTheEdgeFliesOn) {
+  const Scene scene = load_scene(fault("corner_slide_off"));
+  Simulator simulator(scene.world, scene.solver);
+  RunOptions options;
+  options.until = scene.duration;
+  const RunSummary summary = simulator.run(options);
+  if (summary.termination != Termination::reached_end) GTEST_SKIP() << summary.termination_text();
+  const BodyState state = simulator.state(0);
+  EXPECT_NEAR(state.pose.position.y(), 1.0, 1e-9);
+  EXPECT_NEAR(state.pose.angle, 0.0, 1e-9);
+  EXPECT_NEAR(state.twist.velocity.x(), -5.0, 1e-9);
+  EXPECT_NEAR(state.twist.velocity.y(), 0.0, 1e-9);
+}
+
+// Of energy that is lost with restitution 1 the ending tells.
+TEST(Faults, EnergyIsKeptOrTheEndingSaysSo) {
+  for (const char* name : {"energy_half_lost_3_boxes", "tight_fit_energy_gone"}) {
+    const Watched run = watched(load_scene(fault(name)));
+    const RunSummary& s = run.told.summary;
+    if (s.termination == Termination::reached_end) {
+      EXPECT_NEAR(s.energy_final, s.energy_initial, 1e-9 * s.energy_initial) << name;
+    }
+  }
+}
+
+// sqrt(1.5 - t) ends at 1.5 s: everything before must be there, whoever schedules.
+TEST(Faults, AFailureKeepsWhatCameBeforeUnderEveryPolicy) {
+  for (const char* policy : {"body_clocks", "global_backup", "island_backup", "timewarp"}) {
+    const Scene scene = load_scene(fault("failed_at_0_loses_1.5s"), {std::string("solver.policy=") + policy});
+    const Watched run = watched(scene);
+    EXPECT_EQ(run.told.summary.termination, Termination::failed) << policy;
+    EXPECT_GE(run.told.summary.end_time, 1.45) << policy << ": " << run.told.summary.why;
+    EXPECT_LE(run.told.summary.end_time, 1.5) << policy;
+  }
+}
+
+// A table that jumps by 0.3 m at 0.7 s is refused there, or at load; what came before is kept.
+TEST(Faults, AJumpIsRefusedWhereItIs) {
+  for (const char* policy : {"body_clocks", "global_backup", "island_backup", "timewarp"}) {
+    try {
+      const Watched run = watched(load_scene(fault("f_jump"), {std::string("solver.policy=") + policy}));
+      EXPECT_EQ(run.told.summary.termination, Termination::failed) << policy;
+      EXPECT_GE(run.told.summary.end_time, 0.6) << policy << ": " << run.told.summary.why;
+      EXPECT_NE(run.told.summary.why.find("0.7"), std::string::npos) << run.told.summary.why;
+    } catch (const BadInput& e) {
+      EXPECT_NE(std::string(e.what()).find("0.7"), std::string::npos) << e.what();
+    }
+  }
+}
+
+TEST(Faults, AFailedSimulatorAnswersTheSameAgain) {
+  const Scene scene = load_scene(fault("run_again_after_failure"));
+  Simulator simulator(scene.world, scene.solver);
+  RunOptions options;
+  options.until = scene.duration;
+  const std::string first = simulator.run(options).termination_text();
+  EXPECT_EQ(simulator.run(options).termination_text(), first);
+}
+
+// What grows past all numbers ends at the last moment that can be told.
+TEST(Faults, NothingInfiniteIsRecorded) {
+  const std::pair<const char*, double> cases[] = {{"inf_energy_exit0_until_0.36", 0.36},
+                                                  {"inf_in_frames_until_0.05", 0.05}};
+  for (const auto& [name, until] : cases) {
+    const Watched run = watched(load_scene(fault(name)), until);
+    const RunSummary& s = run.told.summary;
+    EXPECT_NE(s.termination, Termination::reached_end) << name;
+    EXPECT_TRUE(std::isfinite(s.energy_final)) << name << ": " << s.energy_final;
+    for (const std::string& f : run.faults)
+      EXPECT_EQ(f.find("not finite"), std::string::npos) << name << ": " << f;
+  }
+}
+
+TEST(Faults, NothingIsScatteredOntoAnImage) {
+  const Scene scene = load_scene(fault("scatter_periodic_overlaps"));
+  EXPECT_EQ(Simulator(scene.world, scene.solver).start_fault(), "");
+  const Watched run = watched(scene, 0.01);
+  EXPECT_TRUE(run.faults.empty()) << run.faults.front();
+}
+
+TEST(Faults, FramesComeOnceAfterAStopAndAKill) {
+  if (std::system("python3 -c 'import sqlite3' 2>/dev/null") != 0) GTEST_SKIP() << "no python3";
+  const Ended ended = regression::run_program(
+      Limits(), {"bash", (folder() / "faults" / "dup_frames_after_stop_then_kill.sh").string(),
+                 BRINK_BINARY_DIR "/bin/brink"});
+  EXPECT_NE(ended.output.find(" same"), std::string::npos) << ended.output;
+}
+
+// ---- scenes of a published benchmark, in which no two bodies may ever overlap
+
+std::vector<std::string> peers() {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder() / "peer-scenes"))
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+class PeerScenes : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(PeerScenes, NothingIsInAnything) {
+  const Ended ended = guarded([&] {
+    const Watched run = watched(load_scene(folder() / "peer-scenes" / (GetParam() + ".toml")));
+    return run.faults;
+  });
+  EXPECT_EQ(ended.output, kSound) << "signal " << ended.signal << " after " << ended.seconds << " s";
+}
+
+INSTANTIATE_TEST_SUITE_P(Peers, PeerScenes, ::testing::ValuesIn(peers()), name_of);
+
+}  // namespace
+}  // namespace brink
