@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -25,6 +26,21 @@ void check_pairs(const World& world, const SolverOptions& options) {
       fmt::format("solver: skip_broad_phase = false, and {} bodies and {} sites make {:.3g} pairs; allowed "
                   "without a broad phase: up to {:.0e}",
                   bodies, sites, pairs, kMostPairs));
+}
+
+/// True if a sharp vertex of one owner may meet a wire without thickness of another.
+bool points_meet_wires(const std::vector<const Outline*>& outlines, std::size_t bodies) {
+  const auto sharp = [](const Outline* o) {
+    return std::any_of(o->samples.begin(), o->samples.end(),
+                       [](const Sample& s) { return s.arc_site < 0 && s.radius == 0.0; });
+  };
+  const auto wire = [](const Outline* o) {
+    return std::any_of(o->sites.begin(), o->sites.end(),
+                       [](const Site& s) { return !s.solid && s.radius == 0.0; });
+  };
+  const auto end_of_bodies = outlines.begin() + static_cast<std::ptrdiff_t>(bodies);
+  return (std::any_of(outlines.begin(), end_of_bodies, sharp) && std::any_of(outlines.begin(), outlines.end(), wire)) ||
+         (std::any_of(outlines.begin(), outlines.end(), sharp) && std::any_of(outlines.begin(), end_of_bodies, wire));
 }
 
 BodyState held(const Body& body, BodyState s) {
@@ -62,6 +78,7 @@ Kernel::Kernel(World world, SolverOptions options)
 
   for (const Body& b : world_.bodies) outlines_.push_back(b.outline.get());
   for (const FixedSite& s : world_.sites) outlines_.push_back(s.outline.get());
+  points_meet_wires_ = points_meet_wires(outlines_, world_.bodies.size());
   bodies_.resize(world_.bodies.size());
   for (Component& c : make_components(world_)) add_component(std::move(c));
   work_.component_resets = 0;  // first starts are no resets

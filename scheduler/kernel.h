@@ -328,7 +328,8 @@ class Kernel {
   std::vector<PairKey> pairs_by_pass(int body, double from, double to);
   /// From the clock's present double to the exact moment of contact: a fraction of a rounding [s]. The
   /// collision is resolved there, and the new motion is the one that passes through that moment, so that long
-  /// runs do not drift by roundings of time.
+  /// runs do not drift by roundings of time. None where sharp points may meet wires without thickness: there a
+  /// motion must not begin, not even by such a fraction, beside the path on which everybody is tested.
   Real delay_to_contact(const FeatureContact& found, const ExtendedContact& c) const;
   const Material& material_of(const PairKey& pair) const;
   /// The response now if the pair are two free discs without friction (a quick way to what respond() says).
@@ -367,6 +368,7 @@ class Kernel {
   WorkCounters work_;
   SearchLimits limits_;
   bool reflects_ = false;  ///< response "reflection"
+  bool points_meet_wires_ = false;  ///< a sharp corner or end of somebody, and a wire without thickness of another
   Random random_;
   LargeVector<BodyTrack> bodies_;
   AheadLog ahead_;

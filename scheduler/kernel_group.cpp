@@ -246,6 +246,7 @@ class Kernel::GroupResolve {
     std::map<int, std::vector<Restart>> by_component;  // a free body is one of its own
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       if (!touched_[i]) continue;
+      if (!kernel_.check_flight(bodies_[i], now())) return false;
       const int body = bodies_[i], component = kernel_.bodies_[body].component;
       ExtendedState after = state(body);
       after.twist = result_.twists[i];
@@ -254,7 +255,9 @@ class Kernel::GroupResolve {
     }
     for (const auto& [component, touched] : by_component)
       if (!kernel_.restart_noted(touched, changed)) return false;
-    return true;
+    return std::all_of(events_.begin(), events_.end(), [&](std::size_t k) {
+      return kernel_.check_resolved(group_[k].pair, group_[k].contact);
+    });
   }
 
   bool record() {

@@ -17,6 +17,9 @@ namespace brink {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+/// A contact that parts faster than this part of the speeds that take part is none; slower is rounding.
+constexpr double kPartsOfSpeed = 1e-6;
 /// In an instant of so many the next are taken together, however many bodies there are: it takes seconds.
 constexpr std::uint64_t kLongestInstant = 200000;
 
@@ -93,11 +96,8 @@ double Kernel::note_resolve(int k, int partner, double magnitude) {
 }
 
 Real Kernel::delay_to_contact(const FeatureContact& found, const ExtendedContact& c) const {
-  if (!(c.closing > 0)) return 0;
-  Real late = 4.0 * ulp(time_);
-  // the motion after is sought from the present double: it must not begin on the other side of a wire
-  const double level = found.level - found.sink;
-  if (level > 0.0) late = std::min(late, Real(0.25 * level) / c.closing);
+  if (points_meet_wires_ || !(c.closing > 0)) return 0;
+  const Real late = 4.0 * ulp(time_);
   return std::clamp((c.gap - found.level) / c.closing, -late, late);
 }
 
@@ -119,7 +119,7 @@ Kernel::Response Kernel::respond(const PairKey& pair, const FeatureContact& foun
   r.impulse = law(side, other_side, c.normal, material);
   r.magnitude = std::max(speed_of(side), speed_of(other_side));
   // an approach that the law does not see was rounding, all of it
-  if (r.impulse.kind == ImpulseKind::separating) r.magnitude += found.closing_speed / kEpsilon;
+  if (r.impulse.kind == ImpulseKind::separating) r.magnitude += std::max(0.0, found.closing_speed) / kEpsilon;
   if (found.sunk() > 0.0 && !depth_) {
     const Real loss = Real(1) - Real(material.restitution) * material.restitution;
     push_apart(side, other_side, c.normal, std::min(loss * found.sunk(), Real(limits_.tolerance / 16)), r);
@@ -206,7 +206,7 @@ const Material& Kernel::material_of(const PairKey& pair) const {
 }
 
 std::optional<DiscRebound> Kernel::disc_rebound(const PairKey& pair, double level) const {
-  if (pair.with_site() || depth_ || reflects_) return std::nullopt;
+  if (pair.with_site() || depth_ || reflects_ || points_meet_wires_) return std::nullopt;
   const auto side = [&](int k) {
     const Body& body = world_.bodies[k];
     const bool bare = is_free(k) && is_centred_disc(outline_of(k)) && !body.lock_x && !body.lock_y;
@@ -236,6 +236,10 @@ std::optional<Outcome> Kernel::settle(const PairKey& pair, const FeatureContact&
     return Outcome{pair, found, discs->impulse, 0.0, discs->delay, rest};
   }
   const Response response = respond(pair, found);
+  if (checked_ && found.closing_speed < -kPartsOfSpeed * response.magnitude) {
+    report_overlap(pair, 0.0, time_, "is said to meet, but parts from");
+    return std::nullopt;
+  }
   if (response.impulse.kind == ImpulseKind::jam) {
     stop(Termination::failed, fmt::format("{} at t = {:.17g}: neither side can move", name_of(pair), time_));
     return std::nullopt;
