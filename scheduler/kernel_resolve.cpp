@@ -301,7 +301,8 @@ bool Kernel::judge_endings(const Outcome& outcome) {
   const double closing = outcome.contact.closing_speed;
   if (const auto zeno =
           depth_ ? std::nullopt
-                 : zeno_.collided({pair, outcome.contact}, time_, closing, loss_of(pair), outcome.rest)) {
+                 : zeno_.collided({pair, outcome.contact}, time_, closing, loss_of(pair), outcome.rest,
+                                  outcome.contact.sunk() > 0.0)) {
     record_ending(EventKind::zeno, outcome, zeno->limit_time);
     stop(Termination::failed,
          fmt::format(

@@ -78,8 +78,9 @@ FeatureContact PairView::contact_of(const Half& half, const Feature& f, double t
   c.normal = half.s_is_a ? out : Vec2(-out);
   c.closing_speed = -f.rate;
   c.gap = f.gap;
-  c.level = level(half, f.sample, half.site(f.site), path(half, f.sample).q);
-  c.sink = sink_;
+  const double nominal = nominal_level(now_, half, f.sample, half.site(f.site), path(half, f.sample).q);
+  c.level = level_of(nominal, sink_);
+  c.sink = c.level - nominal;
   return c;
 }
 
@@ -179,9 +180,11 @@ double PairView::gap_rounding(const Placing& p, const Half& half, int i, double 
   const double arm = half.sample(i).p.lpNorm<1>(), distance = q.lpNorm<1>();
   const double of_s = half.s_is_a ? p.angle_noise_a : p.angle_noise_b;
   const double of_t = half.s_is_a ? p.angle_noise_b : p.angle_noise_a;
-  // angles once more for their sines; then the roundings of turning, and of the distance to a site as far off
-  return p.place_noise + (of_s + 4.0 * kRoundoff) * arm +
-         (of_t + 6.0 * kRoundoff) * distance + 2.0 * kRoundoff * site_distance;
+  const auto turning = [](const Placed& placed) { return placed.angle == 0.0 ? 0.0 : 4.0 * kRoundoff; };
+  const double turn_s = turning(half.s_is_a ? p.a : p.b), turn_t = turning(half.s_is_a ? p.b : p.a);
+  // sines and turning, where anything is turned; then the distance to a site as far off
+  return p.place_noise + (of_s + turn_s) * arm + (of_t + turn_t + 2.0 * kRoundoff) * distance +
+         2.0 * kRoundoff * site_distance;
 }
 
 double PairView::nominal_level(const Placing& p, const Half& half, int i, const Site& site,
@@ -253,7 +256,8 @@ PairView::GapAndSite PairView::gap_to_neighbours(const Placing& p, const Half& h
     const double radius = site.radius + sample_radius;
     const bool thin = radius == 0.0 && !site.solid && interior;  // then stay on the side it came from
     const double side = !thin ? side_of(site, n, q) : neighbour.normal.dot(q - n.point) < 0.0 ? -1.0 : 1.0;
-    found = {side * n.distance - radius - nominal_level(p, half, i, site, q) - sink_, neighbour.site};
+    found = {side * n.distance - radius - level_of(nominal_level(p, half, i, site, q), sink_),
+             neighbour.site};
   }
   return found;
 }
@@ -279,7 +283,8 @@ PairView::GapAndSite PairView::gap_at(const Half& half, const Feature& f, double
   const Vec2 q = u.frame.direction_to_local(s.frame.direction_to_world(half.sample(f.sample).p) +
                                             (s.frame.origin - u.frame.origin));
   if (half.sample(f.sample).arc_site < 0) return gap_to_neighbours(then, half, f.sample, q);
-  return {arc_gap(half, f, q) - nominal_level(then, half, f.sample, half.site(f.site), q) - sink_, f.site};
+  const double nominal = nominal_level(then, half, f.sample, half.site(f.site), q);
+  return {arc_gap(half, f, q) - level_of(nominal, sink_), f.site};
 }
 
 }  // namespace brink::detail

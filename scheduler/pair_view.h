@@ -88,7 +88,7 @@ class PairView {
   /// The gap at which sample i and the site meet now [m] (tolerances.h), less what the pair may have sunk since
   /// its motions began.
   double level(const Half& half, int i, const Site& site, const Vec2& q) const {
-    return nominal_level(now_, half, i, site, q) + sink_;
+    return level_of(nominal_level(now_, half, i, site, q), sink_);
   }
   /// Why a contact of these features that is met now cannot be told, if it cannot.
   enum class Doubt { none, place, speed };

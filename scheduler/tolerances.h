@@ -82,6 +82,10 @@ inline constexpr double kSlowOfSize = 1e-3;
 /// How far a pair that is pressed together sinks until that is a contact again [m].
 inline double sink_step(double touch, double rounding) { return std::max(0.125 * touch, rounding); }
 
+/// The gap at which features meet of a pair that may have sunk by `sink` <= 0 [m]; of thin ones a quarter of
+/// their level is left.
+inline double level_of(double nominal, double sink) { return std::max(nominal + sink, nominal > 0.0 ? 0.25 * nominal : sink); }
+
 /// The level at which a pair that starts touching meets [m], below its nominal one (0): `gap` and `rate` are
 /// the least at the start, less nominal levels; `noise` bounds the rounding of the rate, `acceleration` the
 /// bending of the gap. A pair that leaves (that rises by half a step at least) is met where it starts, or at

@@ -16,7 +16,7 @@ void end_run(ZenoWatch::Bounce& b) {
 }  // namespace
 
 std::optional<ZenoEnding> ZenoWatch::collided(const Feature& feature, double time, double closing_speed,
-                                              BounceLoss loss, double rest) {
+                                              BounceLoss loss, double rest, bool sunk) {
   if (loss == BounceLoss::none || 0.25 * closing_speed * rest > kHighFlight * tolerance_) return std::nullopt;
   Bounce& b = bounces_[feature];
   const bool first = b.count++ == 0;
@@ -32,7 +32,7 @@ std::optional<ZenoEnding> ZenoWatch::collided(const Feature& feature, double tim
   }
   if (b.limit_time == 0.0 && loss != BounceLoss::all && ratio < 1.0 - kAlike)
     b.limit_time = time + interval * ratio / (1.0 - ratio);
-  const bool pressed = loss == BounceLoss::all || (rest >= interval && ratio <= 1.0 + kAlike);
+  const bool pressed = sunk || loss == BounceLoss::all || (rest >= interval && ratio <= 1.0 + kAlike);
   if (interval < b.shortest || pressed) ++b.low_flights;
   b.shortest = std::min(b.shortest, interval);
   if (b.low_flights < kLowFlights) return std::nullopt;

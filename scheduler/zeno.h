@@ -27,7 +27,7 @@ enum class BounceLoss { none, some, all };
 ///   - was shorter than all of the run before it: a series that shrinks. (In a slot hardly wider than the
 ///     body flights are as low, but they grow as the speed goes), or
 ///   - follows a collision that left nothing of the approach, or came back though neither body met anything
-///     else, in no longer time than the last: the two are pressed together.
+///     else, in no longer time than the last, or met below its level: the two are pressed together.
 /// A flight that is not low begins the run anew.
 class ZenoWatch {
  public:
@@ -59,8 +59,9 @@ class ZenoWatch {
   /// To be told of every collision, in order. `rest`: a time that the pair's flight has lasted at least [s]
   /// (since either side was last resolved): flights that rise a million tolerances are not remembered, which
   /// keeps a gas out of the memory. ZenoEnding::bounces counts the remembered ones.
+  /// `sunk`: the features met below their level, so are pressed together (FeatureContact::sunk).
   std::optional<ZenoEnding> collided(const Feature& feature, double time, double closing_speed,
-                                     BounceLoss loss, double rest = 0.0);
+                                     BounceLoss loss, double rest = 0.0, bool sunk = false);
 
   const Bounces& bounces() const { return bounces_; }
   void restore(Bounces bounces) { bounces_ = std::move(bounces); }
