@@ -26,12 +26,15 @@ class ClosedForm final : public Integrator {
     failure_.clear();
   }
 
-  Extent extend(double t) override {
+  using Integrator::extend;
+  Extent extend(double t, std::uint64_t most_steps) override {
     if (std::isnan(t)) check_finite_time(t);
-    while (time_ < t && failure_.empty()) next_piece();
-    if (time_ < t) return {Extent::Status::failed, time_, failure_};
-    return {Extent::Status::reached, time_, {}};
+    for (std::uint64_t n = 0; time_ < t && failure_.empty() && n < most_steps; ++n) next_piece();
+    return extent_at(time_, t, failure_);
   }
+
+  /// A piece lasts from break to break of the forces: there are few.
+  void forget_before(double) override {}
 
   Motion motion(int k) const override {
     const auto& chain = chains_.at(k);

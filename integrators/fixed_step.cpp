@@ -38,7 +38,7 @@ class FixedStep : public SteppingIntegrator {
     if (!(t > time())) return fail("step " + time_text(step_) + " s is lost in rounding");
     if (!advance(time(), states(), t - time(), end_)) return fail(why());
     for (int k = 0; k < size(); ++k) {
-      if (!is_finite(end_[k]))
+      if (!is_in_range(end_[k]))
         return fail("the state of body " + std::to_string(k) + " of the component overflows");
       append(k, cubic_piece(time(), states()[k], t, end_[k]));
     }

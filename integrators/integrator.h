@@ -1,6 +1,8 @@
 #pragma once
 /// Integrators: make the motions of one component, piece after piece, from its own history alone.
 
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -24,15 +26,15 @@ struct IntegratorOptions {
 
 /// How far an extend() got.
 struct Extent {
-  enum class Status { reached, failed };
+  enum class Status { reached, unfinished, failed };
   Status status = Status::reached;
   double end = 0.0;  ///< motions cover up to here
   std::string why;   ///< of a failure: step floor reached, error test failed, right-hand side not finite ...
 };
 
 /// Integrates one component (see Dynamics). Solver steps depend on start() and on the component's own
-/// dynamics alone: never on how far, or how often, extend() was asked to go. That is what makes different
-/// schedules agree.
+/// dynamics alone: never on how far, or how often, or in what instalments extend() was asked to go. That is
+/// what makes different schedules agree.
 class Integrator {
  public:
   virtual ~Integrator() = default;
@@ -41,11 +43,17 @@ class Integrator {
   /// @throws BadInput if t or a state is not finite, or the number of states is not the number of bodies.
   virtual void start(double t, std::span<const BodyState> states) = 0;
 
-  /// Extends every motion to cover at least time t. Steps are the integrator's own: the end may lie beyond t.
-  /// A failure is lasting: motions end at its time, and asking beyond it again gives the same answer until
-  /// start().
+  /// Extends every motion to cover at least time t, in one instalment of at most `most_steps` steps (>= 1);
+  /// "unfinished" where they did not suffice: ask again to go on. Steps are the integrator's own: the end may
+  /// lie beyond t. A failure is lasting: motions end at its time, and asking beyond it again gives the same
+  /// answer until start().
   /// @pre start() was called. @throws BadInput if t is not finite (closed forms also reach infinity).
-  virtual Extent extend(double t) = 0;
+  virtual Extent extend(double t, std::uint64_t most_steps) = 0;
+  /// The same without a limit.
+  Extent extend(double t) { return extend(t, std::numeric_limits<std::uint64_t>::max()); }
+
+  /// Nobody will ask the motions for a time before t any more: memory may be given back.
+  virtual void forget_before(double t) = 0;
 
   /// Motion of the component's body k, from the last start() to the last extend(); it grows with later
   /// extend()s. Taken before the first, it covers the starting time alone and does not grow.

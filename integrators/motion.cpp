@@ -1,6 +1,8 @@
 #include "brink/integrators/motion.h"
 
 #include <algorithm>
+#include <iterator>
+#include <stdexcept>
 
 namespace brink {
 
@@ -93,7 +95,19 @@ const PolynomialPiece& Track::at(double t) const {
   // the last piece that begins at or before t
   auto it = std::upper_bound(pieces.begin(), pieces.end(), t,
                              [](double time, const PolynomialPiece& p) { return time < p.begin; });
-  return it == pieces.begin() ? *it : *std::prev(it);
+  if (it != pieces.begin()) return *std::prev(it);
+  if (begun_) throw std::logic_error("a motion was asked for a time that it has forgotten");
+  return *it;
+}
+
+void Track::forget_before(double t) {
+  constexpr std::ptrdiff_t fewest = 1024;  // worth the moving of the others
+  const auto kept =
+      std::partition_point(pieces.begin(), pieces.end(), [&](const PolynomialPiece& p) { return p.end < t; });
+  const std::ptrdiff_t gone = kept - pieces.begin();
+  if (gone < fewest || 2 * gone < std::ssize(pieces)) return;
+  begun_ = begin();
+  pieces.erase(pieces.begin(), kept);
 }
 
 Motion Motion::still(const Pose& pose, double t0) { return ballistic(t0, {pose, {}}, {}); }
@@ -136,6 +150,10 @@ double Motion::begin() const {
 double Motion::end() const {
   if (kind_ == Kind::dense) return other_->track->end();
   return kind_ == Kind::chain ? other_->chain->back().t1_ : t1_;
+}
+
+bool Motion::remembers(double t) const {
+  return kind_ != Kind::dense || t >= other_->track->pieces.front().begin;
 }
 
 const Motion& Motion::link(double t) const {

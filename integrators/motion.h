@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "brink/core/base/extended.h"
@@ -45,9 +46,17 @@ struct PolynomialPiece {
 /// between them. Integrators append; motions read.
 struct Track {
   std::vector<PolynomialPiece> pieces;
-  double begin() const { return pieces.front().begin; }
+
+  double begin() const { return begun_.value_or(pieces.front().begin); }
   double end() const { return pieces.back().end; }
+  /// @throws std::logic_error where the piece has been forgotten: no answer is better than a wrong one.
   const PolynomialPiece& at(double t) const;
+  /// Gives up pieces that end before t, if that is half of all: nobody will ask for them any more. begin()
+  /// stays.
+  void forget_before(double t);
+
+ private:
+  std::optional<double> begun_;  ///< where the first piece began that is gone [s]
 };
 
 /// A motion covers [begin(), end()] (end may be infinite) and is a value: copying it copies no trajectory.
@@ -84,6 +93,8 @@ class Motion {
 
   double begin() const;
   double end() const;
+  /// False for a time of dense output whose pieces are gone (Track::forget_before).
+  bool remembers(double t) const;
 
   /// @pre begin() <= t <= end(). Cost: a few flops (ballistic), an exponential or two (drag), a binary search
   /// and Horner (dense).

@@ -16,7 +16,9 @@ using Eigen::Vector3d;
 constexpr int kDegree = 10;
 constexpr double kCellWidth = 0.0625;     // 2^-4 s
 constexpr double kFitTolerance = 1e-13;   // of the cell's largest value
-constexpr double kNoiseTolerance = 1e-9;  // the same, where halving no longer helps
+constexpr double kNothing = 1e-18;        // [m or rad]: smaller is not followed
+constexpr double kNoiseTolerance = 1e-9;  // the same, of a range of values that cannot be halved
+constexpr int kMostCornersInARow = 4096;  // of 2^-30 s each
 constexpr double kPi = 3.14159265358979323846;
 
 using Matrix = Eigen::Matrix<double, kDegree + 1, kDegree + 1>;
@@ -78,113 +80,135 @@ struct PrescribedMotion::Fitted {
   Vector3d rate_begin = Vector3d::Zero(), rate_end = Vector3d::Zero();
   Vector3d tolerance = Vector3d::Zero();  ///< of the fit
   Vector3d scale = Vector3d::Zero();      ///< largest value
-  bool fits = true;                       ///< within the tolerance at every checking point
-  double misfit = 0.0;                    ///< the worst that is beyond it, in units of the base scale
-  double worst = 0.0;                     ///< the worst, in units of the pose
+  double worst = 0.0;                     ///< misfit met at the checking points, in units of the pose
 
   double width() const { return piece.end - piece.begin; }
   /// What the end rates may be off by: n^2 times the fit over the half width (Markov's inequality).
   Vector3d rate_tolerance() const { return (2.0 * kDegree * kDegree / width()) * tolerance; }
 };
 
-PrescribedMotion::PrescribedMotion(Function pose, std::string name)
-    : pose_(std::move(pose)), name_(std::move(name)) {}
+PrescribedMotion::PrescribedMotion(Function pose, Bound bound, std::string name)
+    : pose_(std::move(pose)), bound_(std::move(bound)), name_(std::move(name)) {}
 PrescribedMotion::~PrescribedMotion() = default;
 PrescribedMotion::PrescribedMotion(PrescribedMotion&&) noexcept = default;
 PrescribedMotion& PrescribedMotion::operator=(PrescribedMotion&&) noexcept = default;
 
-Extent PrescribedMotion::extend(double t) {
+Extent PrescribedMotion::extend(double t, std::uint64_t most_cells) {
   check_finite_time(t);
-  const auto end = [this] { return track_->pieces.empty() ? 0.0 : track_->end(); };
-  while ((track_->pieces.empty() || end() < t) && failure_.empty()) {
-    const bool fitted = fit(next_cell_, kCellWidth, 0, nullptr);
-    next_cell_ += kCellWidth;
-    if (!fitted && last_) {
-      close(*last_, last_->rate_end);
-      last_.reset();
-    }
+  const auto end = [this] { return begun() ? track_->end() : 0.0; };
+  for (std::uint64_t n = 0; (!begun() || end() < t) && failure_.empty() && n < most_cells; ++n) {
+    fit_next();
+    if (failure_.empty() || !last_) continue;
+    close(*last_, last_->rate_end);
+    last_.reset();
   }
-  if (track_->pieces.empty() || end() < t) return {Extent::Status::failed, end(), failure_};
-  return {Extent::Status::reached, end(), {}};
+  if (begun() || failure_.empty()) return extent_at(end(), t, failure_);
+  return {Extent::Status::failed, 0.0, failure_};
 }
 
-/// Interpolates the function on the cell, and measures the misfit at the checking points. False where a value
-/// is not finite.
-bool PrescribedMotion::sample(double begin, double width, const Vector3d* base_scale, Fitted& cell) {
+/// Fits the next cell, or halves it.
+void PrescribedMotion::fit_next() {
+  if (cells_.empty()) {
+    cells_.push_back({next_cell_, kCellWidth, 0});
+    next_cell_ += kCellWidth;
+  }
+  const Cell at = cells_.back();
+  cells_.pop_back();
+  Fitted cell;
+  const bool finite = interpolate(at, cell);
+  const Certainty known = bound(at);
+  spreads_[at.depth] = known.spread;
+  if (finite && (known.remainder.array() <= cell.tolerance.array()).all()) {
+    corners_in_a_row_ = 0;
+    worst_fit_ = std::max(worst_fit_, cell.worst);
+    return join_next(cell);
+  }
+  const double half = 0.5 * at.width;
+  if (at.depth + 1 < kDepths) {
+    cells_.push_back({at.begin + half, half, at.depth + 1});
+    cells_.push_back({at.begin, half, at.depth + 1});
+    return;
+  }
+  if (!finite) return fail(at.begin, "is not finite");
+  take_corner(std::move(cell), known);
+}
+
+/// Interpolates the function on the cell. False where a value is not finite.
+bool PrescribedMotion::interpolate(const Cell& at, Fitted& cell) {
   const Nodes& n = nodes();
-  const double middle = begin + 0.5 * width, half = 0.5 * width;
-  Columns at;
-  for (int j = 0; j <= kDegree; ++j) at.row(j) = pose_(middle + half * n.at[j]).transpose();
-  if (!at.allFinite()) return false;
-  const Columns monomials = n.monomials(at);
-  cell.piece.begin = begin;
-  cell.piece.end = begin + width;
+  const double half = 0.5 * at.width, middle = at.begin + half;
+  Columns y;
+  for (int j = 0; j <= kDegree; ++j) y.row(j) = pose_(middle + half * n.at[j]).transpose();
+  if (!y.allFinite()) return false;
+  const Columns monomials = n.monomials(y);
+  cell.piece.begin = at.begin;
+  cell.piece.end = at.begin + at.width;
   cell.piece.origin = middle;
   cell.piece.degree = kDegree;
   while (cell.piece.degree > 1 && monomials.row(cell.piece.degree).isZero(0.0)) --cell.piece.degree;
   double power = 1.0;
   for (int k = 0; k <= kDegree; ++k, power /= half) cell.piece.c[k] = power * monomials.row(k).transpose();
-  cell.value_begin = at.row(0).transpose();
-  cell.value_end = at.row(kDegree).transpose();
-  cell.rate_begin = rates(cell.piece.state(begin).twist);
-  cell.rate_end = rates(cell.piece.state(begin + width).twist);
-  cell.scale = at.cwiseAbs().colwise().maxCoeff().transpose();
-  // a time is known to half a bit: what the function makes of that is noise
-  const Vector3d slope = 3.0 / width * (at.colwise().maxCoeff() - at.colwise().minCoeff()).transpose();
-  const double time_rounding = 4.0 * std::numeric_limits<double>::epsilon() * (begin + width);
-  cell.tolerance = kFitTolerance * cell.scale + time_rounding * slope;
-  const Vector3d scale =
-      cell.scale.cwiseMax(base_scale ? *base_scale : Vector3d(cell.scale)).cwiseMax(1e-300);
-  double& worst = cell.worst;
-  for (double u : n.check) {
+  cell.value_begin = y.row(0).transpose();
+  cell.value_end = y.row(kDegree).transpose();
+  cell.rate_begin = rates(cell.piece.state(cell.piece.begin).twist);
+  cell.rate_end = rates(cell.piece.state(cell.piece.end).twist);
+  cell.scale = y.cwiseAbs().colwise().maxCoeff().transpose();
+  cell.tolerance = kFitTolerance * cell.scale + noise(at) + Vector3d::Constant(kNothing);
+  return check(cell);
+}
+
+/// Measures the misfit between the nodes. False where a value is not finite.
+bool PrescribedMotion::check(Fitted& cell) {
+  const double half = 0.5 * cell.width(), middle = cell.piece.origin;
+  for (const double u : nodes().check) {
     const Vector3d value = pose_(middle + half * u);
     if (!value.allFinite()) return false;
-    const Vector3d misfit = (value - values(cell.piece.state(middle + half * u).pose)).cwiseAbs();
-    for (int i = 0; i < 3; ++i) {
-      if (!(misfit[i] > cell.tolerance[i])) continue;
-      cell.fits = false;
-      cell.misfit = std::max(cell.misfit, misfit[i] / scale[i]);
-    }
-    worst = std::max(worst, misfit.maxCoeff());
+    const Vector3d fitted = values(cell.piece.state(middle + half * u).pose);
+    cell.worst = std::max(cell.worst, (value - fitted).cwiseAbs().maxCoeff());
   }
   return true;
 }
 
-/// True if the fit is good, or as good as the function's own noise lets it be.
-bool PrescribedMotion::settled(const Fitted& cell, int depth) const {
-  if (cell.fits) return true;
-  const bool halving_helps = depth < 3 || cell.misfit < 0.5 * misfits_[depth - 3];
-  return !halving_helps && cell.misfit <= kNoiseTolerance;
+/// What roundings make of the function's value: its bounds at single times.
+Vector3d PrescribedMotion::noise(const Cell& at) const {
+  Vector3d most = Vector3d::Zero();
+  for (const double t : {at.begin, at.begin + 0.5 * at.width, at.begin + at.width})
+    for (int i = 0; i < 3; ++i) {
+      const double spread = bound_(i, t, t, false).spread();
+      if (std::isfinite(spread)) most[i] = std::max(most[i], spread);
+    }
+  return most;
 }
 
-/// `base_scale`: of the largest cell around this one that is finite throughout; null: none yet.
-bool PrescribedMotion::fit(double begin, double width, int depth, const Vector3d* base_scale) {
-  Fitted cell;
-  const bool finite = sample(begin, width, base_scale, cell);
-  misfits_[depth] = finite ? cell.misfit : std::numeric_limits<double>::infinity();
-  if (finite && settled(cell, depth)) {
-    worst_fit_ = std::max(worst_fit_, cell.worst);
-    join_next(cell);
-    return true;
+/// The interpolant in n + 1 nodes misses f by at most |f^(n+1)| / (n+1)! times the product of the distances
+/// to the nodes, which for Chebyshev-Lobatto points is at most (w / 2)^(n+1) / 2^(n-1).
+PrescribedMotion::Certainty PrescribedMotion::bound(const Cell& at) const {
+  static_assert(kDegree == 10, "the eleventh derivative belongs to eleven nodes");
+  const double product = std::ldexp(std::pow(0.5 * at.width, kDegree + 1), 1 - kDegree);
+  Certainty known;
+  for (int i = 0; i < 3; ++i) {
+    const TimeBound b = bound_(i, at.begin, at.begin + at.width, true);
+    known.spread[i] = b.spread();
+    known.remainder[i] = b.eleventh == 0.0 ? 0.0 : product * b.eleventh;
   }
-  const double half = 0.5 * width;
-  const Vector3d* scale = base_scale || !finite ? base_scale : &cell.scale;
-  if (depth + 1 < kDepths)
-    return fit(begin, half, depth + 1, scale) && fit(begin + half, half, depth + 1, scale);
-  if (!finite) return fail(begin, "is not finite");
-  return take_corner(std::move(cell), depth);
+  return known;
 }
 
-/// A cell too small to halve. The misfit of a corner halves with the cell, a square root's falls by sqrt(2),
-/// a jump's stays. (Next to the cell's edge a corner's may stay too, but is then far below the noise.)
-bool PrescribedMotion::take_corner(Fitted cell, int depth) {
-  const bool shrinks = cell.misfit < 0.03 * misfits_[depth - 8];
-  if (!shrinks && cell.misfit > kNoiseTolerance)
-    return fail(cell.piece.begin, "jumps, or is infinitely fast,");
+/// A cell too small to halve. The range of values over a corner shrinks with the cell, over a square root's
+/// foot as its root, over a jump not at all; where it is next to nothing it does not matter. Corners that do
+/// not end are none: there the bounds say nothing.
+void PrescribedMotion::take_corner(Fitted cell, const Certainty& known) {
+  if (++corners_in_a_row_ > kMostCornersInARow)
+    return fail(cell.piece.begin,
+                "cannot be bounded by interval arithmetic (it may have corners everywhere)");
+  for (int i = 0; i < 3; ++i) {
+    const bool small = known.spread[i] <= kNoiseTolerance * cell.scale[i] + 8.0 * cell.tolerance[i];
+    const bool shrinks = known.spread[i] < 0.03 * spreads_[kDepths - 9][i];
+    if (!small && !shrinks) return fail(cell.piece.begin, "jumps, or is infinitely fast,");
+  }
   cell.corner = true;
   cell.rate_begin = cell.rate_end = (cell.value_end - cell.value_begin) / cell.width();
   join_next(cell);
-  return true;
 }
 
 /// Decides the twist at the join of last_ and `next`, and closes last_ with it.
@@ -235,10 +259,9 @@ void PrescribedMotion::close(const Fitted& fitted, const Vector3d& rate_end) {
   track_->pieces.push_back(piece);
 }
 
-bool PrescribedMotion::fail(double t, const std::string& what) {
+void PrescribedMotion::fail(double t, const std::string& what) {
   failure_ =
       name_ + " " + what + " near t = " + time_text(t) + " s; allowed: finite, continuous functions of t";
-  return false;
 }
 
 }  // namespace brink

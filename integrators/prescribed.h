@@ -1,9 +1,12 @@
 #pragma once
 /// Prescribed motion: a site that moves as told by a function of time, as dense polynomial pieces.
 
+#include <array>
 #include <functional>
 #include <string>
+#include <vector>
 
+#include "brink/core/base/time_bound.h"
 #include "brink/integrators/integrator.h"
 
 namespace brink {
@@ -12,30 +15,39 @@ namespace brink {
 /// asked for.
 ///
 /// Time is cut on a fixed dyadic grid: cells of 1/16 s, halved where needed, down to 2^-30 s. In each cell
-/// the function is interpolated at 11 Chebyshev-Lobatto points and checked at the 10 points between them, to
-/// 1e-13 of the cell's largest value (more where rounding of t itself makes the function noisier). Then a
-/// cubic makes neighbouring pieces meet with one twist. A piece depends on the function near it alone, never
-/// on how far was asked. A corner of the function (a jump of its rate) is rounded off within 2^-30 s; a jump
-/// of its value, an infinite rate, or a value that is not finite ends the motion.
+/// the function is interpolated at 11 Chebyshev-Lobatto points. The cell is small enough when the bound of
+/// the function's eleventh derivative over it, not a sample, says that the interpolant misses it by no more
+/// than 1e-13 of the cell's largest value, or than the roundings of the function itself: so nothing is too
+/// short to be seen. Then a cubic makes neighbouring pieces meet with one twist. A piece depends on the
+/// function near it alone, never on how far was asked. A corner of the function (a jump of its rate) is
+/// rounded off within 2^-30 s; a jump of its value, an infinite rate, a value that is not finite, or bounds
+/// that say nothing end the motion there.
 ///
-/// What is not seen: features that live between the points, that is shorter than about 3 ms and zero
-/// elsewhere. Cost: some 25 evaluations a cell and halving. Source: Trefethen 2013, Approximation Theory and
-/// Practice, ch. 2-5.
+/// Cost: some 25 evaluations and four bounds a cell and halving. Sources: Trefethen 2013, Approximation
+/// Theory and Practice, ch. 2-5; Moore 1966, Interval Analysis.
 class PrescribedMotion {
  public:
   using Function = std::function<Eigen::Vector3d(double)>;
+  /// Of coordinate i (x, y, angle) over [from, to]; without derivatives, of its value alone.
+  using Bound = std::function<TimeBound(int i, double from, double to, bool with_derivatives)>;
 
-  /// `name` stands for the function in messages: 'motion of site "drum" (x = "...", ...)'.
-  /// The motion begins at t = 0.
-  PrescribedMotion(Function pose, std::string name);
+  /// `bound` holds for what `pose` gives but for a few roundings. `name` stands for the function in messages:
+  /// 'motion of site "drum" (x = "...", ...)'. The motion begins at t = 0.
+  PrescribedMotion(Function pose, Bound bound, std::string name);
   ~PrescribedMotion();
   PrescribedMotion(PrescribedMotion&&) noexcept;
   PrescribedMotion& operator=(PrescribedMotion&&) noexcept;
 
-  /// Extends the motion to cover at least time t. A failure is lasting. @throws BadInput if t is not finite.
-  Extent extend(double t);
+  /// Extends the motion to cover at least time t, in one instalment of at most `most_cells` cells and
+  /// halvings
+  /// (>= 1). A failure is lasting. @throws BadInput if t is not finite.
+  Extent extend(double t, std::uint64_t most_cells = std::numeric_limits<std::uint64_t>::max());
+  /// Nobody will ask the motion for a time before t any more.
+  void forget_before(double t) { track_->forget_before(t); }
 
-  /// From the beginning to the last extend(); grows with later ones. @pre extend() has reached something.
+  /// True once extend() has reached something.
+  bool begun() const { return !track_->pieces.empty(); }
+  /// From the beginning to the last extend(); grows with later ones. @pre begun().
   Motion motion() const { return Motion::dense(track_); }
 
   /// Largest difference met between the function and its interpolant at the checking points, in the units of
@@ -44,24 +56,37 @@ class PrescribedMotion {
 
  private:
   struct Fitted;
+  struct Cell {
+    double begin, width;
+    int depth;  ///< of halving
+  };
+  struct Certainty {            ///< over a cell
+    Eigen::Vector3d spread;     ///< of the function's values
+    Eigen::Vector3d remainder;  ///< by which its interpolant misses it at most
+  };
 
-  bool fit(double begin, double width, int depth, const Eigen::Vector3d* base_scale);
-  bool sample(double begin, double width, const Eigen::Vector3d* base_scale, Fitted& cell);
-  bool settled(const Fitted& cell, int depth) const;
-  bool take_corner(Fitted cell, int depth);
+  void fit_next();
+  bool interpolate(const Cell& at, Fitted& cell);
+  bool check(Fitted& cell);
+  Eigen::Vector3d noise(const Cell& at) const;
+  Certainty bound(const Cell& at) const;
+  void take_corner(Fitted cell, const Certainty& known);
   void join_next(const Fitted& next);
   void close(const Fitted& piece, const Eigen::Vector3d& rate_end);
-  bool fail(double t, const std::string& what);
+  void fail(double t, const std::string& what);
 
   static constexpr int kDepths = 27;  ///< from cells of 2^-4 s to 2^-30 s
 
   Function pose_;
+  Bound bound_;
   std::string name_;
   double next_cell_ = 0.0;  ///< where the next grid cell begins
   std::shared_ptr<Track> track_ = std::make_shared<Track>();
   std::unique_ptr<Fitted> last_;  ///< fitted, not yet joined to what follows
   Eigen::Vector3d rate_begin_;    ///< the twist at which last_ begins, once joined to what came before
-  double misfits_[kDepths] = {};  ///< of the cells that hold the present one
+  std::vector<Cell> cells_;       ///< of the present grid cell that are to be fitted, the next last
+  std::array<Eigen::Vector3d, kDepths> spreads_{};  ///< of the cells that hold the present one
+  int corners_in_a_row_ = 0;
   double worst_fit_ = 0.0;
   std::string failure_;
 };

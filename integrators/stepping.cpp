@@ -13,6 +13,19 @@ bool is_finite(const BodyState& s) {
 }
 bool is_finite(const Acceleration& a) { return a.linear.allFinite() && std::isfinite(a.angular); }
 
+bool is_in_range(const BodyState& s) {
+  constexpr double most = 1e150;
+  const auto ok = [](double x) { return std::abs(x) <= most; };
+  return ok(s.pose.position.x()) && ok(s.pose.position.y()) && ok(s.pose.angle) && ok(s.twist.velocity.x()) &&
+         ok(s.twist.velocity.y()) && ok(s.twist.omega);
+}
+
+Extent extent_at(double end, double t, const std::string& failure) {
+  if (end >= t) return {Extent::Status::reached, end, {}};
+  if (failure.empty()) return {Extent::Status::unfinished, end, {}};
+  return {Extent::Status::failed, end, failure};
+}
+
 std::string time_text(double t) {
   std::ostringstream out;
   out.precision(12);
@@ -47,14 +60,17 @@ void SteppingIntegrator::start(double t, std::span<const BodyState> states) {
   failure_.clear();
 }
 
-Extent SteppingIntegrator::extend(double t) {
+Extent SteppingIntegrator::extend(double t, std::uint64_t most_steps) {
   check_finite_time(t);
-  while (time_ < t && failure_.empty()) {
+  for (std::uint64_t n = 0; time_ < t && failure_.empty() && n < most_steps; ++n) {
     why_.clear();
     if (in_segment_ || next_segment()) step();
   }
-  if (time_ < t) return {Extent::Status::failed, time_, failure_};
-  return {Extent::Status::reached, time_, {}};
+  return extent_at(time_, t, failure_);
+}
+
+void SteppingIntegrator::forget_before(double t) {
+  for (const auto& track : tracks_) track->forget_before(t);
 }
 
 Motion SteppingIntegrator::motion(int k) const {

@@ -13,7 +13,11 @@ namespace brink {
 void check_start(const Dynamics& dynamics, double t, std::span<const BodyState> states);
 /// Throws BadInput unless t is a time that steps can reach.
 void check_finite_time(double t);
+/// What an extend() to t has come to that ends at `end`; `failure` is empty if there was none.
+Extent extent_at(double end, double t, const std::string& failure);
 bool is_finite(const BodyState& state);
+/// True if no number of the state is beyond 1e150 in SI units: energies and momenta are then finite, too.
+bool is_in_range(const BodyState& state);
 bool is_finite(const Acceleration& a);
 /// "1.25" style text of a time in messages.
 std::string time_text(double t);
@@ -27,7 +31,9 @@ std::string time_text(double t);
 class SteppingIntegrator : public Integrator {
  public:
   void start(double t, std::span<const BodyState> states) final;
-  Extent extend(double t) final;
+  using Integrator::extend;
+  Extent extend(double t, std::uint64_t most_steps) final;
+  void forget_before(double t) final;
   Motion motion(int k) const final;
 
  protected:
@@ -42,6 +48,8 @@ class SteppingIntegrator : public Integrator {
   int size() const { return dynamics_->size(); }
   double time() const { return time_; }
   double segment_end() const { return segment_end_; }
+  /// See Dynamics, from the present time on.
+  double steady_until() const { return dynamics_->steady_until(time_); }
   std::span<const BodyState> states() const { return states_; }
 
   /// Accelerations at time t of the present segment: a time at its end counts as just before the jump there.

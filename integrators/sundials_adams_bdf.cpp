@@ -32,10 +32,8 @@ class Cvode : public SundialsStepper {
   virtual int attach_solvers(void* memory) = 0;
 
  private:
-  int restart_solver(double stop_time) final {
-    const int flag = memory_ ? CVodeReInit(memory_, time(), y()) : create();
-    return flag != 0 ? flag : CVodeSetStopTime(memory_, stop_time);
-  }
+  int restart_solver() final { return memory_ ? CVodeReInit(memory_, time(), y()) : create(); }
+  int set_stop_time(double stop_time) final { return CVodeSetStopTime(memory_, stop_time); }
 
   int create() {
     memory_ = CVodeCreate(method_, context());

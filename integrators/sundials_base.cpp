@@ -76,13 +76,23 @@ bool SundialsStepper::begin_segment() {
   pack(states(), N_VGetArrayPointer(y_));
   message_.clear();
   if (!accelerations(time(), states(), first_)) return fail(why());
-  // the largest number stands for "no break": it also clears a stop time left from before
-  const double stop = std::min(segment_end(), std::numeric_limits<double>::max());
-  if (restart_solver(stop) == 0) return true;
+  steady_end_ = time();
+  if (restart_solver() == 0) return true;
   return fail("the solver cannot start: " + message_);
 }
 
+/// No step crosses a break, nor goes farther than the forces are known to change evenly.
+bool SundialsStepper::limit_step() {
+  if (time() < steady_end_) return true;
+  steady_end_ = steady_until();
+  // the largest number stands for "never": it also clears a stop time left from before
+  const double stop = std::min({steady_end_, segment_end(), std::numeric_limits<double>::max()});
+  return set_stop_time(stop) == 0 ||
+         fail("the solver cannot stop at t = " + time_text(stop) + ": " + message_);
+}
+
 bool SundialsStepper::step() {
+  if (!limit_step()) return false;
   double t = time();
   const int flag = solver_step(&t);
   if (flag < 0 || !(t > time())) {
@@ -92,7 +102,7 @@ bool SundialsStepper::step() {
   }
   unpack(N_VGetArrayPointer(y_), ends_);
   for (int k = 0; k < size(); ++k)
-    if (!is_finite(ends_[k]))
+    if (!is_in_range(ends_[k]))
       return fail("the state of body " + std::to_string(k) + " of the component overflows");
   if (!append_pieces(t, ends_)) return fail("no dense output: " + (why().empty() ? message_ : why()));
   return accept(t, ends_);

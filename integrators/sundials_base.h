@@ -30,7 +30,9 @@ class SundialsStepper : public SteppingIntegrator {
   ~SundialsStepper() override;
 
   /// Makes or re-initialises the solver at time() with y; 0 if done.
-  virtual int restart_solver(double stop_time) = 0;
+  virtual int restart_solver() = 0;
+  /// Lets the solver's steps end there at the latest; 0 if done. It holds until the solver comes there.
+  virtual int set_stop_time(double stop_time) = 0;
   /// One step of the solver's own length: y and *t become its end; < 0 if it failed.
   virtual int solver_step(double* t) = 0;
   /// Appends every body's piece for the step from time() to t that ends at `ends`; false if it failed.
@@ -46,6 +48,7 @@ class SundialsStepper : public SteppingIntegrator {
  private:
   bool begin_segment() final;
   bool step() final;
+  bool limit_step();
 
   IntegratorOptions options_;
   _SUNContext* context_ = nullptr;
@@ -54,6 +57,7 @@ class SundialsStepper : public SteppingIntegrator {
   std::vector<BodyState> scratch_states_, ends_;
   std::vector<Acceleration> scratch_accelerations_, first_;
   std::string message_;
+  double steady_end_ = 0.0;  ///< no step goes beyond this [s]
 };
 
 }  // namespace brink

@@ -27,11 +27,11 @@ class Erk final : public SundialsStepper {
   ~Erk() override { ERKStepFree(&memory_); }
 
  private:
-  int restart_solver(double stop_time) override {
-    const int flag = memory_ ? ERKStepReInit(memory_, evaluate, time(), y()) : create();
+  int restart_solver() override {
     fresh_ = true;
-    return flag != 0 ? flag : ERKStepSetStopTime(memory_, stop_time);
+    return memory_ ? ERKStepReInit(memory_, evaluate, time(), y()) : create();
   }
+  int set_stop_time(double stop_time) override { return ERKStepSetStopTime(memory_, stop_time); }
 
   int create() {
     memory_ = ERKStepCreate(evaluate, time(), y(), context());

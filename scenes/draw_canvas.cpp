@@ -7,6 +7,8 @@
 #include <cstring>
 #include <numbers>
 
+#include "brink/core/base/printable.h"
+
 namespace brink::draw {
 namespace {
 
@@ -210,11 +212,12 @@ double Canvas::text(double x, double y, const std::string& words, double size, c
                          bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
   cairo_set_font_size(cairo, size);
   cairo_text_extents_t extents;
-  cairo_text_extents(cairo, words.c_str(), &extents);
+  const std::string shown = printable(words);
+  cairo_text_extents(cairo, shown.c_str(), &extents);
   set_color(cairo, color);
   const double share = align == Align::left ? 0.0 : align == Align::middle ? 0.5 : 1.0;
   cairo_move_to(cairo, x - share * extents.x_advance, y);
-  cairo_show_text(cairo, words.c_str());
+  cairo_show_text(cairo, shown.c_str());
   cairo_new_path(cairo);
   return extents.x_advance;
 }

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "brink/scenes/draw.h"
+#include "brink/scenes/written_file.h"
 
 namespace brink {
 namespace {
@@ -27,7 +28,8 @@ void write_png(const std::filesystem::path& file, const Picture& picture) {
   const cairo_status_t status = cairo_surface_write_to_png_stream(surface, put, &out);
   cairo_surface_destroy(surface);
   out.close();
-  if (status != CAIRO_STATUS_SUCCESS || !out)
+  if (!out) throw_not_written(file);
+  if (status != CAIRO_STATUS_SUCCESS)
     throw IoError(fmt::format("{}: could not be written: {}", file.string(), cairo_status_to_string(status)));
 }
 

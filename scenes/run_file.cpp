@@ -1,22 +1,21 @@
 #include "brink/scenes/run_file.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <cstring>
+#include <span>
+#include <utility>
 
 #include "brink/core/base/error.h"
 #include "brink/core/base/hash.h"
-#include "brink/scenes/run_file_guard.h"
+#include "brink/core/world/world_hash.h"
+#include "brink/scenes/checkpoint_seal.h"
+#include "brink/scenes/database.h"
+#include "brink/scenes/run_file_tables.h"
 #include "brink/scenes/shape_json.h"
 #include "brink/scenes/version.h"
-#include "brink/scenes/world_hash.h"
 
 namespace brink {
 namespace fs = std::filesystem;
@@ -27,47 +26,8 @@ constexpr std::int64_t kRowsPerCommit = 20'000;
 constexpr auto kTimePerCommit = std::chrono::milliseconds(250);
 constexpr int kBusyMilliseconds = 10'000;
 
-constexpr const char* kTables = R"(
-CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT);
-CREATE TABLE body (id INTEGER PRIMARY KEY, name TEXT, mass REAL, inertia REAL, shape TEXT);
-CREATE TABLE site (id INTEGER PRIMARY KEY, name TEXT, owner INTEGER, kind TEXT, shape TEXT);
-CREATE TABLE frame (t REAL, body INTEGER, x REAL, y REAL, angle REAL, vx REAL, vy REAL, omega REAL);
-CREATE TABLE event (seq INTEGER PRIMARY KEY, t REAL, kind TEXT, body INTEGER, other INTEGER, site INTEGER, px REAL, py REAL,
-  nx REAL, ny REAL, closing_speed REAL, impulse_n REAL, impulse_t REAL, gap REAL, outline_site INTEGER, sample INTEGER,
-  sample_on_body INTEGER, t_low REAL);
-CREATE TABLE work (counter TEXT PRIMARY KEY, value REAL, unit TEXT);
-CREATE TABLE checkpoint (t REAL, state BLOB, frames INTEGER, events INTEGER, wall_seconds REAL);
-)";
-
 std::string hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
 std::string number(double x) { return fmt::format("{}", x); }
-
-/// An advisory lock on a folder; the system lets it go when the process ends, however it ends.
-class FolderLock {
- public:
-  explicit FolderLock(const fs::path& dir) : fd_(::open(dir.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    if (fd_ < 0)
-      throw IoError(fmt::format("{}: cannot open the folder: {}", dir.string(), std::strerror(errno)));
-    if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) {
-      ::close(fd_);
-      throw IoError(
-          fmt::format("{}: another run is writing into this folder; choose another --out", dir.string()));
-    }
-  }
-  ~FolderLock() { ::close(fd_); }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  int fd_;
-};
-
-fs::path made_folder(const fs::path& dir) {
-  std::error_code error;
-  fs::create_directories(dir, error);
-  if (error) throw IoError(fmt::format("{}: cannot make the folder: {}", dir.string(), error.message()));
-  return dir;
-}
 
 /// Moves DIR/run.db, with its write-ahead log, to the first free DIR/run-<n>.db.
 void keep_earlier(const fs::path& file) {
@@ -86,8 +46,7 @@ void keep_earlier(const fs::path& file) {
 }  // namespace
 
 struct RunFileRecorder::Impl {
-  fs::path file;
-  FolderLock lock;
+  RunFolder folder;
   SQLite::Database db;
   std::optional<SQLite::Statement> insert_frame, insert_event;
   std::optional<SQLite::Transaction> transaction;
@@ -96,21 +55,34 @@ struct RunFileRecorder::Impl {
   std::int64_t frames = 0, events = 0;  // rows in the file
   std::int64_t bodies = 0;
   double wall_before = 0.0;
+  std::uint64_t identity = 0;
   Clock::time_point opened = Clock::now();
   std::optional<ResumePoint> resume_point;
+  std::string failed;  // why nothing more is written
 
-  Impl(const fs::path& dir, Open how)
-      : file(made_folder(dir) / "run.db"), lock(dir), db(prepared(file, how), flags(), kBusyMilliseconds) {
+  Impl(RunFolder locked, Open how) : folder(std::move(locked)), db(opened_file(how)) {
     db.exec("PRAGMA journal_mode = WAL");
-    db.exec(
-        "PRAGMA synchronous = NORMAL");  // a log that a crash of the machine cuts short is still consistent
+    // a log that a crash of the machine cuts short is still consistent
+    db.exec("PRAGMA synchronous = NORMAL");
   }
 
-  static fs::path prepared(const fs::path& file, Open how) {
-    if (how == Open::fresh) keep_earlier(file);
-    return file;
+  SQLite::Database opened_file(Open how) const {
+    if (how == Open::fresh) keep_earlier(folder.file());
+    return open_database(folder.file(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyMilliseconds);
   }
-  static int flags() { return SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE; }
+
+  /// Runs f, which writes. After a failure the rows that waited are given up and nothing more is written.
+  template <class F>
+  void writing(F&& f) {
+    if (!failed.empty()) throw IoError(failed);
+    try {
+      guarded(folder.file(), f);
+    } catch (const IoError& e) {
+      failed = e.what();
+      transaction.reset();
+      throw;
+    }
+  }
 
   void begin() {
     if (transaction) return;
@@ -127,6 +99,7 @@ struct RunFileRecorder::Impl {
     if (!transaction) return;
     if (rows_waiting >= kRowsPerCommit || Clock::now() - waiting_since >= kTimePerCommit) commit();
   }
+  void put_checkpoint(const ResumePoint& row, std::span<const std::byte> snapshot);
   double wall() const { return wall_before + std::chrono::duration<double>(Clock::now() - opened).count(); }
 
   void set_meta(const std::string& key, const std::string& value) {
@@ -141,6 +114,7 @@ struct RunFileRecorder::Impl {
   void write_sites(const World& world);
   void start_fresh(const Scene& scene);
   void start_again(const Scene& scene);
+  void drop_rows_after_checkpoint(const Scene& scene);
   void drop_early_end_frame(double interval);
   void prepare_inserts();
 };
@@ -151,7 +125,7 @@ void RunFileRecorder::Impl::write_meta(const Scene& scene) {
   set_meta("scene", scene.path.string());
   set_meta("title", scene.world.title);
   set_meta("options", scene.options_json);
-  set_meta("world_hash", hex(world_hash(scene.world)));
+  set_meta("world_hash", world_hash_text(scene.world));
   set_meta("duration", number(scene.duration));
   set_meta("termination", "running");
   set_meta("end_time", "0");
@@ -194,7 +168,7 @@ void RunFileRecorder::Impl::write_sites(const World& world) {
 
 void RunFileRecorder::Impl::start_fresh(const Scene& scene) {
   begin();
-  db.exec(kTables);
+  db.exec(kRunFileTables);
   write_meta(scene);
   write_bodies(scene.world);
   write_sites(scene.world);
@@ -213,25 +187,43 @@ void RunFileRecorder::Impl::drop_early_end_frame(double interval) {
   frames -= drop.exec();
 }
 
-void RunFileRecorder::Impl::start_again(const Scene& scene) {
-  if (!db.tableExists("meta")) return start_fresh(scene);
-  const RunFile earlier(file);
-  earlier.require_same(scene);
-  resume_point = earlier.checkpoint();
+void RunFileRecorder::Impl::drop_rows_after_checkpoint(const Scene& scene) {
   if (resume_point) {
     frames = resume_point->frames;
     events = resume_point->events;
     wall_before = resume_point->wall_seconds;
   }
-  bodies = static_cast<std::int64_t>(scene.world.bodies.size());
-  begin();
   db.exec(fmt::format("DELETE FROM frame WHERE rowid > {}", frames));
   db.exec(fmt::format("DELETE FROM event WHERE rowid >= {}", events));  // seq counts from 0
   drop_early_end_frame(scene.output.frame_interval);
+  db.exec("DELETE FROM checkpoint");
+  if (!resume_point) return;
+  resume_point->frames = frames;
+  put_checkpoint(*resume_point, resume_point->state);
+}
+
+/// All of it in one transaction: killed before its next checkpoint, the run goes on from the same rows again.
+void RunFileRecorder::Impl::start_again(const Scene& scene) {
+  if (!db.tableExists("meta")) return start_fresh(scene);
+  begin();
+  drop_rows_after_checkpoint(scene);
   db.exec("DELETE FROM work");
+  set_meta("options", scene.options_json);  // the same, but for limits
   set_meta("termination", "running");
   set_meta("duration", number(scene.duration));
   commit();
+}
+
+void RunFileRecorder::Impl::put_checkpoint(const ResumePoint& row, std::span<const std::byte> snapshot) {
+  const std::vector<std::byte> state = sealed(row, snapshot, identity);
+  db.exec("DELETE FROM checkpoint");
+  SQLite::Statement put(db, "INSERT INTO checkpoint VALUES (?, ?, ?, ?, ?)");
+  put.bind(1, row.t);
+  put.bindNoCopy(2, state.data(), static_cast<int>(state.size()));
+  put.bind(3, row.frames);
+  put.bind(4, row.events);
+  put.bind(5, row.wall_seconds);
+  put.exec();
 }
 
 void RunFileRecorder::Impl::prepare_inserts() {
@@ -239,19 +231,32 @@ void RunFileRecorder::Impl::prepare_inserts() {
   insert_event.emplace(db, "INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
 }
 
-RunFileRecorder::RunFileRecorder(const fs::path& dir, const Scene& scene, Open how) {
-  guarded(dir / "run.db", [&] {
-    impl_ = std::make_unique<Impl>(dir, how);
-    if (how == Open::fresh) {
-      impl_->start_fresh(scene);
-    } else {
-      impl_->start_again(scene);
-    }
+void RunFileRecorder::open(RunFolder folder, const Scene& scene, Open how, std::optional<ResumePoint> point) {
+  const fs::path file = folder.file();
+  guarded(file, [&] {
+    impl_ = std::make_unique<Impl>(std::move(folder), how);
+    impl_->identity = run_identity(std::string(version()), scene.options_json, world_hash_text(scene.world));
+    impl_->bodies = static_cast<std::int64_t>(scene.world.bodies.size());
+    impl_->resume_point = std::move(point);
+    how == Open::fresh ? impl_->start_fresh(scene) : impl_->start_again(scene);
     impl_->prepare_inserts();
   });
 }
 
+RunFileRecorder::RunFileRecorder(RunFolder folder, const Scene& scene, Open how,
+                                 std::optional<ResumePoint> point) {
+  open(std::move(folder), scene, how, std::move(point));
+}
+
+RunFileRecorder::RunFileRecorder(const fs::path& dir, const Scene& scene, Open how) {
+  RunFolder folder(dir);
+  std::optional<ResumePoint> point;
+  if (how == Open::resume) point = folder.resume_point(scene);
+  open(std::move(folder), scene, how, std::move(point));
+}
+
 RunFileRecorder::~RunFileRecorder() {
+  if (!impl_ || !impl_->failed.empty()) return;
   try {
     impl_->commit();
   } catch (const std::exception&) {
@@ -259,11 +264,11 @@ RunFileRecorder::~RunFileRecorder() {
   }
 }
 
-const fs::path& RunFileRecorder::file() const { return impl_->file; }
+const fs::path& RunFileRecorder::file() const { return impl_->folder.file(); }
 const std::optional<ResumePoint>& RunFileRecorder::resume_point() const { return impl_->resume_point; }
 
 void RunFileRecorder::frame(double t, std::span<const BodyState> states) {
-  guarded(impl_->file, [&] {
+  impl_->writing([&] {
     impl_->begin();
     SQLite::Statement& put = *impl_->insert_frame;
     put.bind(1, t);
@@ -286,7 +291,7 @@ void RunFileRecorder::frame(double t, std::span<const BodyState> states) {
 }
 
 void RunFileRecorder::event(const Event& event) {
-  guarded(impl_->file, [&] {
+  impl_->writing([&] {
     impl_->begin();
     const Contact& c = event.contact;
     SQLite::Statement& put = *impl_->insert_event;
@@ -313,16 +318,9 @@ void RunFileRecorder::event(const Event& event) {
 }
 
 void RunFileRecorder::checkpoint(double t, const std::vector<std::byte>& state) {
-  guarded(impl_->file, [&] {
+  impl_->writing([&] {
     impl_->begin();
-    impl_->db.exec("DELETE FROM checkpoint");
-    SQLite::Statement put(impl_->db, "INSERT INTO checkpoint VALUES (?, ?, ?, ?, ?)");
-    put.bind(1, t);
-    put.bindNoCopy(2, state.data(), static_cast<int>(state.size()));
-    put.bind(3, impl_->frames);
-    put.bind(4, impl_->events);
-    put.bind(5, impl_->wall());
-    put.exec();
+    impl_->put_checkpoint({t, {}, impl_->wall(), impl_->frames, impl_->events}, state);
     impl_->set_meta("end_time", number(t));
     impl_->set_meta("wall_seconds", number(impl_->wall()));
     impl_->commit();
@@ -330,11 +328,11 @@ void RunFileRecorder::checkpoint(double t, const std::vector<std::byte>& state) 
 }
 
 void RunFileRecorder::poll() {
-  guarded(impl_->file, [&] { impl_->commit_if_due(); });
+  impl_->writing([&] { impl_->commit_if_due(); });
 }
 
 void RunFileRecorder::finish(const RunSummary& summary, const std::string& summary_json) {
-  guarded(impl_->file, [&] {
+  impl_->writing([&] {
     impl_->begin();
     impl_->set_meta("termination", summary.termination_text());
     impl_->set_meta("end_time", number(summary.end_time));

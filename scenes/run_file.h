@@ -12,9 +12,9 @@
 ///                 id in the site table; else `site` is NULL. outline_site and sample say which Voronoi site
 ///                 and which sample of the two outlines met
 ///     work        counter, value, unit                   written at the end
-///     checkpoint  t, state, frames, events, wall_seconds one row, the last one: the simulator's snapshot,
-///     and how many
-///                 rows of `frame` and `event` came before it
+///     checkpoint  t, state, frames, events, wall_seconds   one row, the last one: the simulator's snapshot,
+///                 sealed by a checksum (checkpoint_seal.h), and how many rows of `frame` and `event` came
+///                 before it
 ///
 /// meta: schema_version, brink_version, scene, title, options (JSON), world_hash, termination ("running"
 /// until the end), duration, end_time, state_hash, wall_seconds, summary (the JSON of `brink run --json`).
@@ -23,9 +23,12 @@
 /// but those last rows; a checkpoint is committed together with every row before it. While a run goes on the
 /// journal is a write-ahead log (`run.db-wal`, which belongs to the file), so that others may read it
 /// meanwhile; a finished file is a single file.
+///
+/// A run file is read with distrust: whatever is wrong in it is an IoError that names the file and the table.
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -48,8 +51,32 @@ struct ResumePoint {
   std::int64_t frames = 0, events = 0;  ///< rows before
 };
 
-/// Writes a run file as the run goes. One at a time in a folder: the folder is locked until destruction or
-/// death.
+class RunFile;
+
+/// A folder that a run writes its run file into, locked until destruction or death: one run at a time.
+class RunFolder {
+ public:
+  /// Makes the folder if need be, and locks it. @throws IoError, also if another run writes there.
+  explicit RunFolder(const std::filesystem::path& dir);
+  ~RunFolder();
+  RunFolder(RunFolder&&) noexcept;
+
+  const std::filesystem::path& file() const { return file_; }  ///< DIR/run.db, there or not
+  /// Calls f with the run file that is there; does nothing if there is none, or an empty one (a run killed in
+  /// its first moments leaves such). Leaves the file, and what is beside it, byte for byte as it was.
+  void read(const std::function<void(const RunFile&)>& f) const;
+  /// Where the run of `scene` in this folder can go on; nothing if it has to begin again. Every check of a
+  /// resume is made here, before anything is written.
+  /// @throws BadInput if the file is of another scene or other options, naming what differs; IoError.
+  std::optional<ResumePoint> resume_point(const Scene& scene) const;
+
+ private:
+  std::filesystem::path file_;
+  int lock_ = -1;
+};
+
+/// Writes a run file as the run goes. After a failure (a full disk) nothing more is written: the file stays
+/// at its last commit, which is whole, and every later call fails the same way.
 class RunFileRecorder final : public Recorder {
  public:
   enum class Open {
@@ -62,6 +89,9 @@ class RunFileRecorder final : public Recorder {
   /// @throws IoError if it cannot be opened or written, or another run writes there.
   /// @throws BadInput (resume) if the file is of another scene or other options, naming what differs.
   RunFileRecorder(const std::filesystem::path& dir, const Scene& scene, Open how);
+  /// The same in a folder that is locked already. `point` (resume): what folder.resume_point(scene) said;
+  /// rows after it are dropped in one transaction with the checkpoint that counts them.
+  RunFileRecorder(RunFolder folder, const Scene& scene, Open how, std::optional<ResumePoint> point);
   ~RunFileRecorder() override;
 
   const std::filesystem::path& file() const;
@@ -79,15 +109,14 @@ class RunFileRecorder final : public Recorder {
   void finish(const RunSummary& summary, const std::string& summary_json);
 
  private:
+  void open(RunFolder folder, const Scene& scene, Open how, std::optional<ResumePoint> point);
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
-/// True if there is a database with a run in it. (A run killed in its first moments leaves one without.)
-/// @throws IoError if there is a file, but not one that can be read as a database.
-bool is_run_file(const std::filesystem::path& file);
-
-/// Reads a run file, of a finished, killed or going run.
+/// Reads a run file, of a finished, killed or going run. Everything read is checked: numbers are finite, ids
+/// are of bodies and sites that there are, frames are whole; every member throws IoError where they are not.
 class RunFile {
  public:
   struct BodyRow {
@@ -114,13 +143,21 @@ class RunFile {
   /// Materials and forces are not kept in a run file.
   World world() const;
   std::vector<Event> events() const;
+  /// The last checkpoint, its seal opened.
   std::optional<ResumePoint> checkpoint() const;
+  /// meta's `end_time` [s].
+  double end_time() const;
+  /// meta's `summary`, a JSON object in one line.
+  std::string summary() const;
 
   /// @throws BadInput if this run is not of `scene` with its options and of this version, naming what
   /// differs.
   void require_same(const Scene& scene) const;
+  /// @throws IoError if pages of the database are damaged, or rows are missing that the checkpoint counts.
+  /// Cost: reads the whole file.
+  void require_sound() const;
 
-  /// Times of the first and last whole frame [s]. @throws BadInput if there is none.
+  /// Times of the first and last whole frame [s].
   std::pair<double, double> time_range() const;
   /// The last whole frame at or before t, or the first one. Cost: a binary search.
   Frame frame_at(double t) const;

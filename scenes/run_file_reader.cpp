@@ -1,15 +1,20 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "brink/core/base/error.h"
+#include "brink/core/world/world_hash.h"
+#include "brink/scenes/checkpoint_seal.h"
+#include "brink/scenes/database.h"
 #include "brink/scenes/run_file.h"
-#include "brink/scenes/run_file_guard.h"
+#include "brink/scenes/run_file_row.h"
+#include "brink/scenes/run_file_tables.h"
 #include "brink/scenes/shape_json.h"
 #include "brink/scenes/version.h"
-#include "brink/scenes/world_hash.h"
 
 namespace brink {
 namespace fs = std::filesystem;
@@ -17,10 +22,17 @@ namespace {
 
 constexpr int kBusyMilliseconds = 10'000;
 
-/// "solver.order was "index", is now "depth"" for every option that differs.
+constexpr const char* kWhat = "a run file";
+
+/// Options that a run may be gone on with at another value: they decide what is refused, not what happens.
+constexpr const char* kFree[] = {"/output/max_frame_rows"};
+
+/// "solver.order was "index", is now "depth"" for every option that differs; empty if none does.
+/// @throws BadInput if `was` is not JSON.
 std::string differences(const std::string& was, const std::string& is) {
+  if (was == is) return {};
   const auto a = nlohmann::json::parse(was, nullptr, false), b = nlohmann::json::parse(is, nullptr, false);
-  if (a.is_discarded() || b.is_discarded()) return "the options differ";
+  if (!a.is_object()) throw BadInput("options: not a JSON object");
   const auto old_values = a.flatten(), new_values = b.flatten();
   std::string text;
   const auto value = [](const nlohmann::json& j, const std::string& key) {
@@ -28,21 +40,20 @@ std::string differences(const std::string& was, const std::string& is) {
   };
   auto all = old_values;
   all.update(new_values);
+  for (const char* key : kFree) all.erase(key);
   for (const auto& [key, unused] : all.items()) {
     const std::string before = value(old_values, key), now = value(new_values, key);
     if (before != now)
       text += fmt::format("{}{} was {}, is now {}", text.empty() ? "" : "; ", key, before, now);
   }
-  return text.empty() ? "the options differ" : text;
+  return text;
 }
 
-int id_or_none(const SQLite::Column& column) { return column.isNull() ? -1 : column.getInt(); }
-
-EventKind kind_from(const std::string& word, const fs::path& file) {
+EventKind kind_from(const std::string& word) {
   for (int k = 0; k <= static_cast<int>(EventKind::undecided); ++k) {
     if (word == to_string(static_cast<EventKind>(k))) return static_cast<EventKind>(k);
   }
-  throw IoError(fmt::format("{}: event of unknown kind '{}'", file.string(), word));
+  throw BadInput(fmt::format("event of unknown kind '{}'", word));
 }
 
 /// Value and slope at time t of the cubic through (0, a, va) and (h, b, vb), s = t / h.
@@ -68,30 +79,47 @@ BodyState between(const BodyState& a, const BodyState& b, double h, double s) {
 struct RunFile::Impl {
   fs::path file;
   mutable SQLite::Database db;
-  std::int64_t bodies = 0;
+  std::int64_t bodies = 0, sites = 0;
 
-  explicit Impl(const fs::path& f) : file(f), db(f, SQLite::OPEN_READONLY, kBusyMilliseconds) {
-    if (!db.tableExists("meta") || !db.tableExists("frame")) {
-      throw IoError(fmt::format("{}: a database, but not a run file", f.string()));
-    }
-    bodies = db.execAndGet("SELECT count(*) FROM body").getInt64();
+  explicit Impl(const fs::path& f) : file(f), db(open_database(f, SQLite::OPEN_READONLY, kBusyMilliseconds)) {
+    for (const char* table : {"meta", "body", "site", "frame", "event", "work", "checkpoint"})
+      if (!db.tableExists(table))
+        throw IoError(fmt::format("{}: not a run file: table {} is missing", f.string(), table));
+    bodies = rows_numbered_from_zero("body");
+    sites = rows_numbered_from_zero("site");
+  }
+
+  /// How many rows a table of things has, whose ids are 0, 1, 2 ...
+  std::int64_t rows_numbered_from_zero(const char* table) const {
+    return reading(file, table, [&] {
+      SQLite::Statement get(db, fmt::format("SELECT count(*), min(id), max(id) FROM {}", table));
+      get.executeStep();
+      const Row row(get);
+      const std::int64_t rows = row.count(0, std::numeric_limits<int>::max());
+      if (rows > 0 && (row.count(1) != 0 || row.count(2) != rows - 1)) throw BadInput("rows are missing");
+      return rows;
+    });
   }
 
   /// Whole frames in the file. Rows are numbered from 1 without holes, `bodies` rows a frame.
   std::int64_t frames() const {
     const std::int64_t rows = db.execAndGet("SELECT ifnull(max(rowid), 0) FROM frame").getInt64();
-    return bodies > 0 ? rows / bodies : 0;
+    return bodies > 0 && rows > 0 ? rows / bodies : 0;
+  }
+  std::int64_t some_frames() const {
+    const std::int64_t count = frames();
+    if (count == 0) throw BadInput("it holds no whole frame yet");
+    return count;
   }
   double frame_time(std::int64_t index) const {
     SQLite::Statement get(db, "SELECT t FROM frame WHERE rowid = ?");
     get.bind(1, index * bodies + 1);
-    if (!get.executeStep()) throw IoError(fmt::format("{}: frame {} is missing", file.string(), index));
-    return get.getColumn(0).getDouble();
+    if (!get.executeStep()) throw BadInput(fmt::format("frame {} is missing", index));
+    return Row(get).real(0);
   }
   /// The last frame at or before t, or 0.
   std::int64_t frame_index(double t) const {
-    std::int64_t low = 0, high = frames();
-    if (high == 0) throw BadInput(fmt::format("{}: the run file holds no frame yet", file.string()));
+    std::int64_t low = 0, high = some_frames();
     while (high - low > 1) {
       const std::int64_t middle = low + (high - low) / 2;
       (frame_time(middle) <= t ? low : high) = middle;
@@ -100,41 +128,42 @@ struct RunFile::Impl {
   }
   Frame read_frame(std::int64_t index) const {
     Frame frame;
-    SQLite::Statement get(
-        db, "SELECT t, x, y, angle, vx, vy, omega FROM frame WHERE rowid > ? AND rowid <= ? ORDER BY rowid");
+    SQLite::Statement get(db,
+                          "SELECT t, x, y, angle, vx, vy, omega, body FROM frame WHERE rowid > ? AND rowid "
+                          "<= ? ORDER BY rowid");
     get.bind(1, index * bodies);
     get.bind(2, (index + 1) * bodies);
     while (get.executeStep()) {
-      const auto real = [&get](int column) { return get.getColumn(column).getDouble(); };
-      frame.t = real(0);
-      frame.states.push_back({{{real(1), real(2)}, real(3)}, {{real(4), real(5)}, real(6)}});
+      const Row row(get);
+      const double t = row.real(0);
+      const bool next = row.count(7) == static_cast<std::int64_t>(frame.states.size());
+      if (!next || (!frame.states.empty() && t != frame.t))
+        throw BadInput(fmt::format("frame {} is mixed up", index));
+      frame.t = t;
+      frame.states.push_back(
+          {{{row.real(1), row.real(2)}, row.real(3)}, {{row.real(4), row.real(5)}, row.real(6)}});
     }
+    if (static_cast<std::int64_t>(frame.states.size()) != bodies)
+      throw BadInput(fmt::format("frame {} is not whole", index));
     return frame;
   }
 };
 
-bool is_run_file(const fs::path& file) {
-  if (!fs::exists(file)) return false;
-  return guarded(file, [&] {
-    return SQLite::Database(file, SQLite::OPEN_READONLY, kBusyMilliseconds).tableExists("meta");
-  });
-}
-
 RunFile::RunFile(const fs::path& file) : impl_(guarded(file, [&] { return std::make_unique<Impl>(file); })) {
   const std::string schema = meta("schema_version").value_or("");
   if (schema != std::to_string(kRunFileSchema)) {
-    throw IoError(
-        fmt::format("{}: schema_version '{}'; this program reads {}", file.string(), schema, kRunFileSchema));
+    throw IoError(fmt::format("{}: table meta: schema_version '{}'; this program reads {}", file.string(),
+                              schema, kRunFileSchema));
   }
 }
 RunFile::~RunFile() = default;
 RunFile::RunFile(RunFile&&) noexcept = default;
 
 std::map<std::string, std::string> RunFile::meta() const {
-  return guarded(impl_->file, [&] {
+  return reading(impl_->file, "meta", [&] {
     std::map<std::string, std::string> all;
     SQLite::Statement get(impl_->db, "SELECT key, value FROM meta");
-    while (get.executeStep()) all[get.getColumn(0).getString()] = get.getColumn(1).getString();
+    while (get.executeStep()) all[Row(get).text(0)] = Row(get).text(1);
     return all;
   });
 }
@@ -145,77 +174,103 @@ std::optional<std::string> RunFile::meta(const std::string& key) const {
   return found == all.end() ? std::nullopt : std::optional(found->second);
 }
 
+double RunFile::end_time() const {
+  return reading(impl_->file, "meta", [&] { return number_in(meta("end_time").value_or("")); });
+}
+
+std::string RunFile::summary() const {
+  return reading(impl_->file, "meta", [&] {
+    const auto json = nlohmann::ordered_json::parse(meta("summary").value_or(""));
+    if (!json.is_object()) throw BadInput("summary: not a JSON object");
+    return json.dump();
+  });
+}
+
 std::vector<RunFile::BodyRow> RunFile::bodies() const {
-  return guarded(impl_->file, [&] {
+  return reading(impl_->file, "body", [&] {
     std::vector<BodyRow> rows;
     SQLite::Statement get(impl_->db, "SELECT id, name, mass, inertia, shape FROM body ORDER BY id");
     while (get.executeStep()) {
-      rows.push_back({get.getColumn(0).getInt(), get.getColumn(1).getString(), get.getColumn(2).getDouble(),
-                      get.getColumn(3).getDouble(), outline_from_json(get.getColumn(4).getString())});
+      const Row row(get);
+      rows.push_back({row.id_or_none(0, impl_->bodies), row.text(1), row.real(2), row.real(3),
+                      outline_from_json(row.text(4))});
     }
     return rows;
   });
 }
 
 std::vector<FixedSite> RunFile::sites() const {
-  return guarded(impl_->file, [&] {
+  return reading(impl_->file, "site", [&] {
     std::vector<FixedSite> sites;
     SQLite::Statement get(impl_->db, "SELECT name, kind, shape FROM site ORDER BY id");
     while (get.executeStep()) {
-      FixedSite& site = sites.emplace_back(fixed_site_from_json(get.getColumn(2).getString()));
-      site.name = get.getColumn(0).getString();
-      site.kind = get.getColumn(1).getString();
+      const Row row(get);
+      FixedSite& site = sites.emplace_back(fixed_site_from_json(row.text(2)));
+      site.name = row.text(0);
+      site.kind = row.text(1);
     }
     return sites;
   });
 }
 
+namespace {
+
+/// world.periodic of the options.
+Vec2 periods_in(const std::string& options) {
+  const nlohmann::json::json_pointer periodic("/world/periodic");
+  const auto json = nlohmann::json::parse(options);
+  if (!json.contains(periodic)) return Vec2::Zero();
+  const Vec2 size{json.at(periodic).at(0).get<double>(), json.at(periodic).at(1).get<double>()};
+  if (!(size.minCoeff() >= 0.0)) throw BadInput("options: world.periodic is below zero");
+  return size;
+}
+
+}  // namespace
+
 World RunFile::world() const {
   World world;
   world.title = meta("title").value_or("");
   const Frame first = frame_at(0.0);
-  for (const BodyRow& row : bodies()) {
+  for (BodyRow& row : bodies()) {
     Body& body = world.bodies.emplace_back();
-    body.name = row.name;
+    body.name = std::move(row.name);
     body.mass = row.mass;
     body.inertia = row.inertia;
-    body.outline = std::make_shared<const Outline>(row.outline);
+    body.outline = std::make_shared<const Outline>(std::move(row.outline));
     body.initial = first.states.at(row.id);
   }
   world.sites = sites();
-  const auto options = nlohmann::json::parse(meta("options").value_or("{}"), nullptr, false);
-  const nlohmann::json::json_pointer periodic("/world/periodic");
-  if (options.is_object() && options.contains(periodic))
-    world.periods.size = {options.at(periodic).at(0).get<double>(), options.at(periodic).at(1).get<double>()};
+  world.periods.size =
+      reading(impl_->file, "meta", [&] { return periods_in(meta("options").value_or("{}")); });
   return world;
 }
 
 std::vector<Event> RunFile::events() const {
-  return guarded(impl_->file, [&] {
+  return reading(impl_->file, "event", [&] {
     std::vector<Event> all;
     SQLite::Statement get(
         impl_->db,
         "SELECT seq, t, kind, body, other, site, px, py, nx, ny, closing_speed, impulse_n, impulse_t, "
         "gap, outline_site, sample, sample_on_body, t_low FROM event ORDER BY seq");
     while (get.executeStep()) {
-      const auto real = [&get](int column) { return get.getColumn(column).getDouble(); };
+      const Row row(get);
       Event e;
-      e.seq = static_cast<std::uint64_t>(get.getColumn(0).getInt64());
-      e.kind = kind_from(get.getColumn(2).getString(), impl_->file);
-      e.contact = {real(1),
-                   real(17),
-                   id_or_none(get.getColumn(3)),
-                   id_or_none(get.getColumn(4)),
-                   id_or_none(get.getColumn(5)),
-                   id_or_none(get.getColumn(14)),
-                   id_or_none(get.getColumn(15)),
-                   get.getColumn(16).getInt() != 0,
-                   {real(6), real(7)},
-                   {real(8), real(9)},
-                   real(10),
-                   real(13)};
-      e.impulse_n = real(11);
-      e.impulse_t = real(12);
+      e.seq = static_cast<std::uint64_t>(row.count(0));
+      e.kind = kind_from(row.text(2));
+      e.contact = {row.real(1),
+                   row.real_or_nan(17),
+                   row.id_or_none(3, impl_->bodies),
+                   row.id_or_none(4, impl_->bodies),
+                   row.id_or_none(5, impl_->sites),
+                   row.id_or_none(14),
+                   row.id_or_none(15),
+                   row.count(16, 2) != 0,
+                   {row.real_or_nan(6), row.real_or_nan(7)},
+                   {row.real_or_nan(8), row.real_or_nan(9)},
+                   row.real_or_nan(10),
+                   row.real_or_nan(13)};
+      e.impulse_n = row.real_or_nan(11);
+      e.impulse_t = row.real_or_nan(12);
       all.push_back(e);
     }
     return all;
@@ -223,16 +278,18 @@ std::vector<Event> RunFile::events() const {
 }
 
 std::optional<ResumePoint> RunFile::checkpoint() const {
-  return guarded(impl_->file, [&]() -> std::optional<ResumePoint> {
+  const auto of = meta();
+  const auto text = [&](const char* key) { return of.contains(key) ? of.at(key) : std::string(); };
+  return reading(impl_->file, "checkpoint", [&]() -> std::optional<ResumePoint> {
     SQLite::Statement get(impl_->db, "SELECT t, state, frames, events, wall_seconds FROM checkpoint");
     if (!get.executeStep()) return std::nullopt;
-    const auto blob = get.getColumn(1);
+    const Row row(get);
+    const SQLite::Column blob = get.getColumn(1);
     const auto* bytes = static_cast<const std::byte*>(blob.getBlob());
-    return ResumePoint{get.getColumn(0).getDouble(),
-                       {bytes, bytes + blob.getBytes()},
-                       get.getColumn(4).getDouble(),
-                       get.getColumn(2).getInt64(),
-                       get.getColumn(3).getInt64()};
+    ResumePoint point{row.real(0), {bytes, bytes + blob.getBytes()}, row.real(4), row.count(2), row.count(3)};
+    point.state = unsealed(point, run_identity(text("brink_version"), text("options"), text("world_hash")));
+    if (get.executeStep()) throw BadInput("more than one row");
+    return point;
   });
 }
 
@@ -242,12 +299,11 @@ void RunFile::require_same(const Scene& scene) const {
     throw BadInput(
         fmt::format("{}: written by brink {}, this is {}: the bits could differ", name, was, version()));
   }
-  if (const std::string was = meta("options").value_or(""); was != scene.options_json) {
-    throw BadInput(fmt::format("{}: --resume needs the options it was started with: {}", name,
-                               differences(was, scene.options_json)));
-  }
-  const std::string was = meta("world_hash").value_or(""),
-                    is = fmt::format("{:016x}", world_hash(scene.world));
+  const std::string differ = reading(
+      impl_->file, "meta", [&] { return differences(meta("options").value_or(""), scene.options_json); });
+  if (!differ.empty())
+    throw BadInput(fmt::format("{}: --resume needs the options it was started with: {}", name, differ));
+  const std::string was = meta("world_hash").value_or(""), is = world_hash_text(scene.world);
   if (was != is) {
     throw BadInput(
         fmt::format("{}: --resume needs the scene it was started with: bodies, sites, materials or forces of "
@@ -256,25 +312,67 @@ void RunFile::require_same(const Scene& scene) const {
   }
 }
 
+namespace {
+
+/// Every table is made as Brink makes it: what is inserted finds its columns.
+void require_tables(const fs::path& file, SQLite::Database& db) {
+  SQLite::Database made(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  made.exec(kRunFileTables);
+  SQLite::Statement wanted(made, "SELECT name, sql FROM sqlite_master WHERE type = 'table'");
+  SQLite::Statement found(db, "SELECT sql FROM sqlite_master WHERE type = 'table' AND name = ?");
+  while (wanted.executeStep()) {
+    const std::string name = wanted.getColumn(0).getString();
+    found.reset();
+    found.bind(1, name);
+    if (!found.executeStep() || found.getColumn(0).getString() != wanted.getColumn(1).getString())
+      throw IoError(fmt::format("{}: table {}: is not as a run makes it", file.string(), name));
+  }
+}
+
+}  // namespace
+
+void RunFile::require_sound() const {
+  const auto pages = [&] { return impl_->db.execAndGet("PRAGMA integrity_check(1)").getString(); };
+  if (const std::string found = guarded(impl_->file, pages, kWhat); found != "ok")
+    throw IoError(fmt::format("{}: the database is damaged: {}", impl_->file.string(), found));
+  guarded(impl_->file, [&] { require_tables(impl_->file, impl_->db); });
+  const auto point = checkpoint();
+  const auto require = [&](const char* table, std::int64_t first, std::int64_t counted) {
+    reading(impl_->file, table, [&] {
+      SQLite::Statement get(impl_->db,
+                            fmt::format("SELECT count(*) FROM {} WHERE rowid BETWEEN ? AND ?", table));
+      get.bind(1, first);
+      get.bind(2, first + counted - 1);
+      get.executeStep();
+      if (get.getColumn(0).getInt64() != counted)
+        throw BadInput("rows are missing that the checkpoint counts");
+      return 0;
+    });
+  };
+  require("frame", 1, point ? point->frames : 0);
+  require("event", 0, point ? point->events : 0);
+}
+
 std::pair<double, double> RunFile::time_range() const {
-  return guarded(impl_->file, [&] {
-    const std::int64_t count = impl_->frames();
-    if (count == 0) throw BadInput(fmt::format("{}: the run file holds no frame yet", impl_->file.string()));
-    return std::pair(impl_->frame_time(0), impl_->frame_time(count - 1));
+  return reading(impl_->file, "frame", [&] {
+    const std::pair range(impl_->frame_time(0), impl_->frame_time(impl_->some_frames() - 1));
+    if (range.first > range.second) throw BadInput("frames are not in the order of time");
+    return range;
   });
 }
 
 RunFile::Frame RunFile::frame_at(double t) const {
-  return guarded(impl_->file, [&] { return impl_->read_frame(impl_->frame_index(t)); });
+  return reading(impl_->file, "frame", [&] { return impl_->read_frame(impl_->frame_index(t)); });
 }
 
 RunFile::Frame RunFile::states_at(double t) const {
-  return guarded(impl_->file, [&] {
+  return reading(impl_->file, "frame", [&] {
     const std::int64_t index = impl_->frame_index(t);
     Frame a = impl_->read_frame(index);
     if (t <= a.t || index + 1 >= impl_->frames()) return a;
     const Frame b = impl_->read_frame(index + 1);
     const double h = b.t - a.t, s = (t - a.t) / h;
+    if (!(h > 0.0)) throw BadInput("frames are not in the order of time");
     for (std::size_t k = 0; k < a.states.size(); ++k) a.states[k] = between(a.states[k], b.states[k], h, s);
     a.t = t;
     return a;

@@ -1,6 +1,7 @@
 #pragma once
 /// A scene: what a scene file says, parsed, checked and ready to run.
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -11,9 +12,12 @@
 
 namespace brink {
 
+inline constexpr double kLongestRun = 1e12;  ///< no run and no picture goes farther [s]
+
 struct OutputOptions {
   double frame_interval = 0.01;  ///< [s]; 0 = events only
   bool events = true;
+  std::int64_t max_frame_rows = 100'000'000;  ///< frames times bodies; a scene that asks for more is refused
 };
 
 struct Scene {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <set>
-#include <sstream>
+
+#include "brink/scenes/text_file.h"
 
 namespace brink {
 namespace {
@@ -20,7 +20,7 @@ class SceneBuilder {
     materials();
     std::vector<PlannedThing> sites = plan(file_.sites, false), bodies = plan(file_.bodies, true);
     count(bodies);
-    if (faults_.empty()) Placer(file_.world.seed, faults_).place(sites, bodies);
+    if (faults_.empty()) Placer(file_.world.seed, scene_.world.periods, faults_).place(sites, bodies);
     const bool placed = faults_.empty();
     if (placed) {
       add_sites(sites);
@@ -32,6 +32,7 @@ class SceneBuilder {
     build_forces(file_.forces, names_, origins_, placed, scene_.world, faults_);
     for (std::string& note : shapes_.take_notes()) scene_.notes.push_back(std::move(note));
     if (faults_.empty()) last_check();
+    if (faults_.empty()) check_frames();
     return std::move(scene_);
   }
 
@@ -48,13 +49,15 @@ class SceneBuilder {
     scene_.solver = file_.solver;
     scene_.solver.seed = file_.world.seed;
     scene_.solver.field = file_.field.options;
-    if (scene_.output.frame_interval > 0.0 && scene_.duration / scene_.output.frame_interval > 1e8)
-      faults_.add({1, 1}, "frame_interval: too short for the duration; given " +
-                              number_text(scene_.output.frame_interval) +
-                              " s, allowed: 0, or at most 1e8 frames");
     std::string error;
     if (faults_.empty() && !scene_.solver.is_valid(&error)) faults_.add(file_.solver_place, error);
     options_json();
+  }
+
+  void check_frames() {
+    const std::size_t bodies = scene_.world.bodies.size();
+    if (const std::string why = too_many_frames(scene_.output, scene_.duration, bodies); !why.empty())
+      faults_.add(file_.output_place, "output: " + why);
   }
 
   void options_json() {
@@ -306,15 +309,7 @@ Scene parse_scene(std::string_view text, const std::string& name, const std::vec
 }
 
 Scene load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error))
-    throw IoError(file.string() + ": is a directory, not a scene file");
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw IoError(file.string() + ": cannot be opened for reading");
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (in.bad()) throw IoError(file.string() + ": could not be read");
-  return parse_scene(text.str(), file.string(), overrides);
+  return parse_scene(text_of_file(file), file.string(), overrides);
 }
 
 }  // namespace brink

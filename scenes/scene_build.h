@@ -59,7 +59,8 @@ struct PlannedThing {
 /// Places the copies of things: grids, and scatters without overlaps.
 class Placer {
  public:
-  Placer(std::uint64_t seed, FaultList& faults) : seed_(seed), faults_(faults) {}
+  Placer(std::uint64_t seed, const Periods& periods, FaultList& faults)
+      : seed_(seed), periods_(periods), faults_(faults) {}
   /// Fills PlannedThing::copies of everything: first what stands where it is told, then scatters in file
   /// order, sites before bodies.
   void place(std::vector<PlannedThing>& sites, std::vector<PlannedThing>& bodies);
@@ -70,6 +71,7 @@ class Placer {
                const std::vector<PlannedThing>& bodies);
 
   std::uint64_t seed_;
+  Periods periods_;
   FaultList& faults_;
   std::size_t total_ = 0;
 };

@@ -44,6 +44,11 @@ void Placer::stand(PlannedThing& thing) {
     return faults_.add(thing.table->grid.given ? thing.table->grid.where : thing.table->place,
                        "too many copies; given " + std::to_string(total_) +
                            " so far, allowed: " + std::to_string(kMostCopies));
+  if ((grid.columns > 1 && grid.spacing.x() == 0.0) || (grid.rows > 1 && grid.spacing.y() == 0.0))
+    return faults_.add(thing.table->grid.where,
+                       "grid: copies would stand in one place; given spacing [" +
+                           number_text(grid.spacing.x()) + ", " + number_text(grid.spacing.y()) +
+                           "], allowed: not 0 along x for several columns, along y for several rows");
   for (std::int64_t row = 0; row < grid.rows; ++row)
     for (std::int64_t column = 0; column < grid.columns; ++column) {
       BodyState state = start_of(thing);
@@ -63,7 +68,7 @@ void Placer::scatter(PlannedThing& thing, const std::vector<PlannedThing>& sites
                                   " so far, allowed: " + std::to_string(kMostCopies));
   std::vector<Obstacle> obstacles = obstacles_of(sites);
   for (const Obstacle& obstacle : obstacles_of(bodies)) obstacles.push_back(obstacle);
-  ScatterAsk ask{thing.shape.outline.get(), {}, asked.count, thing.pose.angle, asked.random_angle};
+  ScatterAsk ask{thing.shape.outline.get(), {}, asked.count, thing.pose.angle, asked.random_angle, periods_};
   for (const Vec2& corner : asked.region) ask.region.add(corner);
   Random where_to(stream(seed_, thing.ordinal, 0)), how(stream(seed_, thing.ordinal, 1));
   std::int64_t room = 0;

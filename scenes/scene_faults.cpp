@@ -6,6 +6,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "brink/core/base/printable.h"
+
 namespace brink {
 namespace {
 
@@ -13,17 +15,10 @@ std::string joined(const std::filesystem::path& file, const std::vector<SceneFau
   std::string text;
   for (const SceneFault& fault : faults) {
     if (!text.empty()) text += '\n';
-    text += (fault.file.empty() ? file.string() : fault.file) + ':' + std::to_string(fault.line) + ':' +
-            std::to_string(fault.column) + ": " + fault.message;
+    text += printable(fault.file.empty() ? file.string() : fault.file) + ':' + std::to_string(fault.line) +
+            ':' + std::to_string(fault.column) + ": " + printable(fault.message);
   }
   return text;
-}
-
-// One fault, one line: whatever was given may hold line breaks.
-std::string one_line(std::string message) {
-  std::replace_if(
-      message.begin(), message.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  return message;
 }
 
 // Levenshtein distance, two rows.
@@ -50,11 +45,11 @@ SceneFaults::SceneFaults(const std::filesystem::path& file, std::vector<SceneFau
 void FaultList::add(const Where& where, std::string message) {
   if (where.override_index >= 0)
     message = "--set " + paths_[static_cast<std::size_t>(where.override_index)] + ": " + message;
-  faults_.push_back({where.line, where.column, one_line(std::move(message)), {}});
+  faults_.push_back({where.line, where.column, printable(message), {}});
 }
 
 void FaultList::add_elsewhere(const std::string& file, int line, int column, const std::string& message) {
-  faults_.push_back({line, column, one_line(message), file});
+  faults_.push_back({line, column, printable(message), file});
 }
 
 void FaultList::throw_if_any(const std::string& file) {
@@ -86,9 +81,9 @@ std::string listed(const std::vector<std::string>& words) {
 }
 
 std::string in_quotes(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text.substr(0, 60)) out += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
-  return out + (text.size() > 60 ? "...\"" : "\"");
+  std::size_t shown = std::min<std::size_t>(text.size(), 60);
+  while (shown > 0 && shown < text.size() && (text[shown] & 0xc0) == 0x80) --shown;  // whole characters
+  return '"' + printable(text.substr(0, shown)) + (shown < text.size() ? "...\"" : "\"");
 }
 
 std::string number_text(double x) {

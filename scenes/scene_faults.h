@@ -40,7 +40,7 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
 /// "a, b, c" of words.
 std::string listed(const std::vector<std::string>& words);
 
-/// At most 60 printable characters of what was given, in double quotes.
+/// At most 60 bytes of what was given, printable, in double quotes.
 std::string in_quotes(std::string_view text);
 
 /// A number as a person would write it: the shortest text that reads back as the same double.

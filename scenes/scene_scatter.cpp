@@ -23,6 +23,7 @@ class Room {
   Room(const ScatterAsk& ask, const std::vector<Obstacle>& obstacles)
       : outline_(ask.outline),
         region_(ask.region),
+        periods_(ask.periods),
         reach_(ask.outline->bounding_radius),
         margin_(1e-9 * reach_) {
     const Vec2 extent = region_.extent();
@@ -37,25 +38,48 @@ class Room {
   const Box& region() const { return region_; }
 
   bool free(const Pose& pose) {
-    if (!region_.contains(pose.position)) return false;
+    if (full_ || !region_.contains(pose.position)) return false;
     const auto clear = [&](const Obstacle& taken) { return apart(taken, {outline_, pose}); };
     const auto& near = cells_[index(column(pose.position.x()), row(pose.position.y()))];
     return std::all_of(near.begin(), near.end(), clear) && std::all_of(large_.begin(), large_.end(), clear);
   }
 
-  // Into every cell from which a copy could touch it; into the list for all cells if those are many.
+  // Every image of it that a copy in the region could touch.
   void take(const Obstacle& obstacle) {
     if (obstacle.outline->container) return large_.push_back(obstacle);
     const double reach = obstacle.outline->bounding_radius + reach_ + 2.0 * margin_;
+    Box around;
+    around.add(obstacle.pose.position);
+    around = around.grown(reach);
+    if (images_in(around) > kMostImages) return void(full_ = true);  // no room between so many
+    periods_.overlaps(region_, around, [&](const Image& image) {
+      Obstacle there = obstacle;
+      there.pose.position += periods_.shift(image);
+      take_image(there, reach);
+    });
+  }
+
+ private:
+  static constexpr double kMostImages = 1e4;
+
+  // About how many images of a box meet the region.
+  double images_in(const Box& box) const {
+    double count = 1.0;
+    for (int axis = 0; axis < 2; ++axis)
+      if (periods_.size[axis] > 0.0)
+        count *= 1.0 + (region_.extent()[axis] + box.extent()[axis]) / periods_.size[axis];
+    return count;
+  }
+
+  // Into every cell from which a copy could touch it; into the list for all cells if those are many.
+  void take_image(const Obstacle& obstacle, double reach) {
     const Vec2 low = obstacle.pose.position.array() - reach, high = obstacle.pose.position.array() + reach;
-    if (!Box{low, high}.overlaps(region_)) return;
     const int c0 = column(low.x()), c1 = column(high.x()), r0 = row(low.y()), r1 = row(high.y());
     if (static_cast<double>(c1 - c0 + 1) * (r1 - r0 + 1) > 256.0) return large_.push_back(obstacle);
     for (int r = r0; r <= r1; ++r)
       for (int c = c0; c <= c1; ++c) cells_[index(c, r)].push_back(obstacle);
   }
 
- private:
   static int place(double along, double cell, int count) {
     return static_cast<int>(std::clamp(std::floor(along / cell), 0.0, static_cast<double>(count - 1)));
   }
@@ -82,6 +106,8 @@ class Room {
 
   const Outline* outline_;
   Box region_;
+  Periods periods_;
+  bool full_ = false;  // nothing more fits
   double reach_, margin_, cell_ = 1.0;
   double budget_ = 1e8;
   int columns_ = 1, rows_ = 1;

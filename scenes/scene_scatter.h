@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "brink/core/base/periodic.h"
 #include "brink/core/base/random.h"
 #include "brink/core/shapes/outline.h"
 
@@ -22,6 +23,7 @@ struct ScatterAsk {
   std::int64_t count = 1;
   double angle = 0.0;         ///< of every copy [rad]
   bool random_angle = false;  ///< any angle instead
+  Periods periods = {};       ///< of the world: copies keep clear of images too
 };
 
 /// Poses of the copies: apart from one another and from every obstacle. The same arguments give the same

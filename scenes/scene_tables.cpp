@@ -1,6 +1,7 @@
 #include "brink/scenes/scene_tables.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 namespace brink {
@@ -167,10 +168,23 @@ Combine combine_rule(const std::string& name) {
   return static_cast<Combine>(found - kCombineRules.begin());  // kCombineRules is in the order of Combine
 }
 
+Range duration_range() { return {kShortest, kLongestRun, false, "s"}; }
+
+std::string too_many_frames(const OutputOptions& output, double duration, std::size_t bodies) {
+  if (output.frame_interval <= 0.0) return {};
+  const double frames = std::floor(duration / output.frame_interval) + 2.0;  // and the first and the last
+  const double rows = frames * static_cast<double>(std::max<std::size_t>(bodies, 1));
+  if (rows <= static_cast<double>(output.max_frame_rows)) return {};
+  return "too many rows of frames; given " + number_text(rows) + " (" + number_text(duration) +
+         " s, frame_interval " + number_text(output.frame_interval) + " s, " + std::to_string(bodies) +
+         " bodies), allowed: " + std::to_string(output.max_frame_rows) +
+         "; a longer output.frame_interval makes fewer (0: none), output.max_frame_rows allows more";
+}
+
 const Schema<WorldTable>& world_schema() {
   static const Schema<WorldTable> schema =
       Schema<WorldTable>("world")
-          .key("duration", &WorldTable::duration, number({kShortest, 1e12, false, "s"}), "simulated time")
+          .key("duration", &WorldTable::duration, number(duration_range()), "simulated time")
           .key("gravity", &WorldTable::gravity, point("m/s^2"), "uniform acceleration")
           .key("periodic", &WorldTable::periodic, point("m"),
                "the plane repeats after so much to the right and up; 0: never")
@@ -247,6 +261,8 @@ const Schema<OutputOptions>& output_schema() {
       Schema<OutputOptions>("output")
           .key("frame_interval", &OutputOptions::frame_interval, number({0.0, 1e12, false, "s"}),
                "time between frames; 0: events only")
+          .key("max_frame_rows", &OutputOptions::max_frame_rows, whole(1),
+               "frames times bodies that a run may record; some 70 bytes each")
           .key("events", &OutputOptions::events, flag(), "record events");
   return schema;
 }
@@ -304,7 +320,7 @@ const Schema<FileTable>& file_schema() {
           .custom("field", "table", "", "how fields are drawn",
                   table_reader(field_schema(), &FileTable::field, &FileTable::field_place))
           .custom("output", "table", "", "what is recorded",
-                  table_reader(output_schema(), &FileTable::output))
+                  table_reader(output_schema(), &FileTable::output, &FileTable::output_place))
           .custom("materials", "tables by name", "", "what surfaces are like", read_materials)
           .custom("sites", "array of tables", "", "what is fixed, or moves as told",
                   things_reader("sites", site_schema(), &FileTable::sites))

@@ -109,7 +109,7 @@ struct FileTable {
   std::vector<MaterialTable> materials;
   std::vector<ThingTable> sites, bodies;
   std::vector<ForceTable> forces;
-  Where solver_place{1, 1}, field_place{1, 1};
+  Where solver_place{1, 1}, field_place{1, 1}, output_place{1, 1};
 };
 
 const Schema<FileTable>& file_schema();
@@ -128,6 +128,13 @@ std::vector<std::string> force_kinds();
 void add_shape_keys(Schema<ThingTable>& schema, bool site);
 /// The keys inside the shapes' own tables.
 void list_shape_keys(std::vector<OptionInfo>& out);
+
+/// What a duration may be [s], in the file and on the command line.
+Range duration_range();
+
+/// Why `duration` seconds of `bodies` bodies make more rows of frames than output.max_frame_rows allows, as a
+/// fault says it; empty if they do not.
+std::string too_many_frames(const OutputOptions& output, double duration, std::size_t bodies);
 
 /// "max", "min" ... as the rule it names.
 Combine combine_rule(const std::string& name);

@@ -35,6 +35,18 @@ bool read_point(const toml::node& node, TomlDocument& doc, const std::string& ke
 
 Json point_json(const Vec2& p) { return Json::array({p.x(), p.y()}); }
 
+/// Texts end at a NUL for whatever is written in C: a formula, a name shown or stored would be cut there.
+bool read_string(const toml::node& node, TomlDocument& doc, const std::string& key, std::string& out) {
+  out = node.as_string()->get();
+  const std::size_t nul = out.find('\0');
+  if (nul == std::string::npos) return true;
+  doc.faults().add(
+      doc.where(node),
+      fault_text(key, "holds a NUL character",
+                 in_quotes(out) + " (character " + std::to_string(nul + 1) + ")", "text without"));
+  return false;
+}
+
 bool holds(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
@@ -45,7 +57,7 @@ bool read_name(const toml::node& node, TomlDocument& doc, const std::string& key
   const auto* string = node.as_string();
   const std::string what = allowed.empty() ? "a string" : "one of " + listed(allowed);
   if (string == nullptr) return wrong_type(node, doc, key, what), false;
-  out = string->get();
+  if (!read_string(node, doc, key, out)) return false;
   if (allowed.empty() || holds(allowed, out)) return true;
   const char* wrong = holds(later, out) ? "not available in this release" : "not known";
   doc.faults().add(doc.where(node), fault_text(key, wrong, in_quotes(out), what));
@@ -110,8 +122,7 @@ Codec<std::string> text(std::string type) {
   return {type,
           [type](const toml::node& node, TomlDocument& doc, const std::string& key, std::string& out) {
             if (!node.is_string()) return wrong_type(node, doc, key, "a " + type), false;
-            out = node.as_string()->get();
-            return true;
+            return read_string(node, doc, key, out);
           },
           [](const std::string& x) { return Json(x); }};
 }
@@ -137,7 +148,7 @@ Codec<std::string> open_choice(std::function<std::vector<std::string>()> allowed
 Codec<std::string> formula_text() {
   return {"a formula in a string, or a number",
           [](const toml::node& node, TomlDocument& doc, const std::string& key, std::string& out) {
-            if (node.is_string()) return out = node.as_string()->get(), true;
+            if (node.is_string()) return out = node.as_string()->get(), true;  // Formula looks for NULs
             double value = 0.0;
             if (!node.is_number())
               return wrong_type(node, doc, key, "a formula in a string, or a number"), false;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "brink/core/base/error.h"
+#include "brink/scenes/written_file.h"
 
 namespace brink {
 namespace {
@@ -59,7 +60,7 @@ void TraceFile::mark(const TraceMark& m) {
 void TraceFile::finish() {
   out_ << "\n]\n";
   out_.close();
-  if (!out_) throw IoError(fmt::format("{}: could not be written", file_.string()));
+  if (!out_) throw_not_written(file_);
 }
 
 }  // namespace brink

@@ -81,7 +81,7 @@ struct BodyClock {
     if (c.time >= horizon) return;
     candidates.insert(c);
     if (candidates.size() <= CandidateList::kInPlace || candidates.back().clear <= now) return;
-    horizon = candidates.back().clear;
+    horizon = std::min(horizon, candidates.back().clear);  // it may lie beyond an end that was set since
     candidates.pop_back();
   }
   void forget_all() {

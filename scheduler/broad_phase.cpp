@@ -8,9 +8,9 @@ namespace brink {
 
 namespace {
 
-constexpr double kCellsPerBox = 2.0;  ///< a cell is this many times the median box
-constexpr int kMostCellsAcross = 4;   ///< boxes wider than this many cells are large
-constexpr std::int64_t kMostCells = 1 << 22;
+constexpr double kCellsPerBox = 2.0;                        ///< a cell is this many times the median box
+constexpr int kMostCellsAcross = 4;                         ///< boxes wider than this many cells are large
+constexpr std::int64_t kMostCells = std::int64_t{1} << 60;  ///< only those that hold a box take room
 
 /// Cells of a window, counted row by row.
 struct Grid {
@@ -64,6 +64,65 @@ Box moved(Box box, const Vec2& by) {
   return box;
 }
 
+struct Entry {
+  std::int64_t cell;
+  int box;
+};
+
+/// Boxes by the cells that they lie in, and those that lie in too many.
+struct Sorted {
+  std::vector<Entry> entries;  ///< ascending
+  std::vector<int> large;
+  std::vector<char> is_large;
+
+  Sorted(const std::vector<Box>& boxes, const Grid& grid) : is_large(boxes.size(), 0) {
+    for (int i = 0; i < static_cast<int>(boxes.size()); ++i) {
+      if (boxes[i].extent().maxCoeff() <= kMostCellsAcross * grid.cell) {
+        add(i, boxes[i], grid);
+      } else {  // not finite, too
+        large.push_back(i);
+        is_large[i] = 1;
+      }
+    }
+    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+      return std::pair(a.cell, a.box) < std::pair(b.cell, b.box);
+    });
+  }
+
+ private:
+  void add(int i, const Box& box, const Grid& grid) {
+    for (auto r = grid.row(box.low.y()); r <= grid.row(box.high.y()); ++r)
+      for (auto c = grid.column(box.low.x()); c <= grid.column(box.high.x()); ++c)
+        entries.push_back({r * grid.columns + c, i});
+  }
+};
+
+/// Pairs of boxes that share a cell. False if a visit was the last.
+bool each_in_cells(const std::vector<Box>& boxes, const Grid& grid, const std::vector<Entry>& entries,
+                   const std::function<bool(int, int)>& visit) {
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    for (std::size_t j = i + 1; j < entries.size() && entries[j].cell == entries[i].cell; ++j) {
+      const Box &a = boxes[entries[i].box], &b = boxes[entries[j].box];
+      if (!a.overlaps(b)) continue;
+      // a pair that shares several cells is named in one only: where the corner of its intersection lies
+      const Vec2 corner = a.low.cwiseMax(b.low);
+      if (grid.row(corner.y()) * grid.columns + grid.column(corner.x()) != entries[i].cell) continue;
+      if (!visit(entries[i].box, entries[j].box)) return false;
+    }
+  return true;
+}
+
+/// Pairs of which one is large. False if a visit was the last.
+bool each_with_large(const std::vector<Box>& boxes, const Sorted& sorted,
+                     const std::function<bool(int, int)>& visit) {
+  for (const int i : sorted.large)
+    for (int j = 0; j < static_cast<int>(boxes.size()); ++j) {
+      if (j == i || (sorted.is_large[j] && j < i) || !boxes[i].overlaps(boxes[j])) continue;
+      if (!visit(std::min(i, j), std::max(i, j))) return false;
+    }
+  return true;
+}
+
 }  // namespace
 
 Box swept_box(const Outline& outline, const Motion& motion, double from, double to) {
@@ -80,56 +139,24 @@ Box swept_box(const Outline& outline, const Motion& motion, double from, double 
   return box.grown(outline.bounding_radius + bulge + 1e-12 * (scale + outline.bounding_radius));
 }
 
-std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<Box>& boxes) {
-  const int n = static_cast<int>(boxes.size());
+bool each_overlapping(const std::vector<Box>& boxes, const std::function<bool(int i, int j)>& visit) {
   const Grid grid = make_grid(boxes);
-  struct Entry {
-    std::int64_t cell;
-    int box;
-  };
-  std::vector<Entry> entries;
-  std::vector<int> large;
-  std::vector<char> is_large(boxes.size(), 0);
-  for (int i = 0; i < n; ++i) {
-    const Vec2 extent = boxes[i].extent();
-    if (!(extent.maxCoeff() <= kMostCellsAcross * grid.cell)) {
-      large.push_back(i);
-      is_large[i] = 1;
-      continue;
-    }
-    for (auto r = grid.row(boxes[i].low.y()); r <= grid.row(boxes[i].high.y()); ++r)
-      for (auto c = grid.column(boxes[i].low.x()); c <= grid.column(boxes[i].high.x()); ++c)
-        entries.push_back({r * grid.columns + c, i});
-  }
-  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    return std::pair(a.cell, a.box) < std::pair(b.cell, b.box);
-  });
+  Sorted sorted(boxes, grid);
+  return each_in_cells(boxes, grid, sorted.entries, visit) && each_with_large(boxes, sorted, visit);
+}
 
+std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<Box>& boxes) {
   std::vector<std::pair<int, int>> pairs;
-  for (std::size_t first = 0; first < entries.size();) {
-    std::size_t last = first;
-    while (last < entries.size() && entries[last].cell == entries[first].cell) ++last;
-    for (std::size_t i = first; i < last; ++i)
-      for (std::size_t j = i + 1; j < last; ++j) {
-        const Box &a = boxes[entries[i].box], &b = boxes[entries[j].box];
-        if (!a.overlaps(b)) continue;
-        // a pair that shares several cells is named in one only: where the corner of its intersection lies
-        const Vec2 corner = a.low.cwiseMax(b.low);
-        if (grid.row(corner.y()) * grid.columns + grid.column(corner.x()) == entries[i].cell)
-          pairs.emplace_back(entries[i].box, entries[j].box);
-      }
-    first = last;
-  }
-  for (const int i : large)
-    for (int j = 0; j < n; ++j) {
-      if (j == i || (is_large[j] && j < i)) continue;
-      if (boxes[i].overlaps(boxes[j])) pairs.emplace_back(std::min(i, j), std::max(i, j));
-    }
+  each_overlapping(boxes, [&](int i, int j) {
+    pairs.emplace_back(i, j);
+    return true;
+  });
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
 
-std::vector<ImagePair> overlapping_pairs(const std::vector<Box>& boxes, const Periods& periods) {
+bool each_overlapping(const std::vector<Box>& boxes, const Periods& periods,
+                      const std::function<bool(const ImagePair&)>& visit) {
   const int n = static_cast<int>(boxes.size());
   std::vector<Image> images;
   std::vector<Box> copies;  // every box at home, then those images that reach into the homes
@@ -148,15 +175,20 @@ std::vector<ImagePair> overlapping_pairs(const std::vector<Box>& boxes, const Pe
       copies.push_back(moved(boxes[k], periods.shift(image)));
       owner.push_back(k);
     });
+  return each_overlapping(copies, [&](int i, int j) {
+    // of the pair's images, the one whose first box is at home: the same is met with the second at home, too
+    if (i >= n || owner[i] >= owner[j]) return true;
+    return visit({owner[i], owner[j], images[j] + -images[i]});
+  });
+}
+
+std::vector<ImagePair> overlapping_pairs(const std::vector<Box>& boxes, const Periods& periods) {
   std::vector<ImagePair> pairs;
-  for (const auto& [i, j] : overlapping_pairs(copies)) {
-    if (i >= n || owner[i] == owner[j]) continue;  // one of the two at home
-    const Image between = images[j] + -images[i];
-    pairs.push_back(owner[i] < owner[j] ? ImagePair{owner[i], owner[j], between}
-                                        : ImagePair{owner[j], owner[i], -between});
-  }
+  each_overlapping(boxes, periods, [&](const ImagePair& pair) {
+    pairs.push_back(pair);
+    return true;
+  });
   std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   return pairs;
 }
 

@@ -3,22 +3,58 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "brink/core/base/error.h"
-#include "brink/scheduler/stage_clock.h"
 #include "brink/scheduler/tolerances.h"
 
 namespace brink {
 
 namespace {
 
+constexpr double kMostPairs = 1e7;          ///< that are kept at once: 400 MB
+
+/// @throws BadInput where every pair is to be looked at, and there are too many to keep.
+void check_pairs(const World& world, const SolverOptions& options) {
+  const auto bodies = static_cast<double>(world.bodies.size()),
+             sites = static_cast<double>(world.sites.size());
+  const double pairs = bodies * (0.5 * bodies + sites);
+  if (options.skip_broad_phase || options.policy == "body_clocks" || pairs <= kMostPairs) return;
+  throw BadInput(
+      fmt::format("solver: skip_broad_phase = false, and {} bodies and {} sites make {:.3g} pairs; allowed "
+                  "without a broad phase: up to {:.0e}",
+                  bodies, sites, pairs, kMostPairs));
+}
+
+/// True if a sharp vertex of one owner may meet a wire without thickness of another.
+bool points_meet_wires(const std::vector<const Outline*>& outlines, std::size_t bodies) {
+  const auto sharp = [](const Outline* o) {
+    return std::any_of(o->samples.begin(), o->samples.end(),
+                       [](const Sample& s) { return s.arc_site < 0 && s.radius == 0.0; });
+  };
+  const auto wire = [](const Outline* o) {
+    return std::any_of(o->sites.begin(), o->sites.end(),
+                       [](const Site& s) { return !s.solid && s.radius == 0.0; });
+  };
+  const auto end_of_bodies = outlines.begin() + static_cast<std::ptrdiff_t>(bodies);
+  return (std::any_of(outlines.begin(), end_of_bodies, sharp) && std::any_of(outlines.begin(), outlines.end(), wire)) ||
+         (std::any_of(outlines.begin(), outlines.end(), sharp) && std::any_of(outlines.begin(), end_of_bodies, wire));
+}
+
 BodyState held(const Body& body, BodyState s) {
   if (body.lock_x) s.twist.velocity.x() = 0.0;
   if (body.lock_y) s.twist.velocity.y() = 0.0;
   if (body.lock_angle) s.twist.omega = 0.0;
   return s;
+}
+
+/// The box of a still site where it stands; empty if it moves, or is everywhere.
+Box still_box(const FixedSite& site, bool moves) {
+  if (moves || site.outline->container) return {};
+  const Box box = transformed(*site.outline, site.pose).bounds;
+  return box.grown(1e-12 * (box.low.norm() + box.high.norm()));
 }
 
 void raise_version(BodyTrack& b) { b.version = std::max(b.version, b.last_undone) + 1; }
@@ -33,6 +69,7 @@ Kernel::Kernel(World world, SolverOptions options)
   if (world_.periods.any() && options_.detector != "field")
     throw BadInput("solver: detector = \"" + options_.detector +
                    "\" in a periodic world; allowed there: \"field\"");
+  check_pairs(world_, options_);
   limits_.tolerance = options_.contact_tolerance * world_.length();
   limits_.touch = kTouchOfTolerance * limits_.tolerance;
   reflects_ = options_.response == "reflection";
@@ -41,13 +78,15 @@ Kernel::Kernel(World world, SolverOptions options)
 
   for (const Body& b : world_.bodies) outlines_.push_back(b.outline.get());
   for (const FixedSite& s : world_.sites) outlines_.push_back(s.outline.get());
-  const int materials = static_cast<int>(world_.materials.size());
-  for (int i = 0; i < materials; ++i)
-    for (int j = 0; j < materials; ++j) pair_materials_.push_back(combined(world_, i, j));
+  points_meet_wires_ = points_meet_wires(outlines_, world_.bodies.size());
   bodies_.resize(world_.bodies.size());
   for (Component& c : make_components(world_)) add_component(std::move(c));
   work_.component_resets = 0;  // first starts are no resets
-  for (const FixedSite& site : world_.sites) sites_.emplace_back(site);
+  for (const FixedSite& site : world_.sites) {
+    sites_.emplace_back(site);
+    still_boxes_.push_back(still_box(site, sites_.back().moves()));
+  }
+  site_failures_.resize(sites_.size());
   make_indices();
   if (options_.detector == "pass") passes_ = std::make_unique<PassRenderer>(options_.field, &work_);
   if (options_.detector == "depth") depth_ = std::make_unique<DepthDetector>(world_, options_, &work_);
@@ -73,12 +112,11 @@ void Kernel::add_component(Component component) {
     bodies_[k].place_in_component = static_cast<int>(states.size());
     states.push_back(initial(k));
   }
-  Coupled coupled{std::move(component), nullptr, 0.0, {}};
+  Coupled coupled{std::move(component), nullptr, 0.0, {}, {}};
   coupled.integrator =
       make_integrator(options_.integrator, coupled.component.dynamics, options_.integrator_options(), &work_);
   components_.push_back(std::move(coupled));
   start_component(components_.back(), 0.0, std::move(states));
-  cover(components_.back(), 0.0);
 }
 
 void Kernel::make_indices() {
@@ -101,47 +139,12 @@ void Kernel::start_component(Coupled& c, double t, std::vector<BodyState> states
   c.started = t;
   c.start_states = std::move(states);
   c.integrator->start(t, c.start_states);
-  ++work_.component_resets;
-}
-
-void Kernel::fetch_motions(const Coupled& c) {
-  for (std::size_t i = 0; i < c.component.bodies.size(); ++i)
-    bodies_[c.component.bodies[i]].motion = c.integrator->motion(static_cast<int>(i));
-}
-
-bool Kernel::cover(Coupled& c, double t) {
-  const Extent extent = c.integrator->extend(t);
-  if (extent.status == Extent::Status::reached) {
-    fetch_motions(c);
-    return true;
+  fetch_motions(c);
+  if (std::isfinite(c.failure.time)) {
+    c.failure = {};
+    find_reach();
   }
-  stop(Termination::failed,
-       fmt::format("motion of '{}' stopped at t = {:.17g}: {}",
-                   world_.bodies[c.component.bodies.front()].name, extent.end, extent.why));
-  return false;
-}
-
-bool Kernel::extend_motion(int k, double t) {
-  const BodyTrack& b = bodies_[k];
-  if (b.component < 0 || b.motion.end() >= t) return true;
-  const StageClock clock(work_.seconds_motion);
-  return cover(components_[b.component], t);
-}
-
-bool Kernel::extend_sites(double t) {
-  for (std::size_t s = 0; s < sites_.size(); ++s)
-    if (const std::string why = sites_[s].extend(t); !why.empty()) {
-      stop(Termination::failed, fmt::format("motion of site '{}': {}", world_.sites[s].name, why));
-      return false;
-    }
-  return true;
-}
-
-bool Kernel::extend_motions(double t) {
-  const StageClock clock(work_.seconds_motion);
-  for (Coupled& c : components_)
-    if (bodies_[c.component.bodies.front()].motion.end() < t && !cover(c, t)) return false;
-  return extend_sites(t);
+  ++work_.component_resets;
 }
 
 void Kernel::advance_pair(const PairKey& pair, double t) {
@@ -216,7 +219,7 @@ bool Kernel::restart(std::span<const Restart> touched) {
   }
   for (const Restart& r : touched) states[bodies_[r.body].place_in_component] = r.state.rounded();
   start_component(c, time_, std::move(states));
-  return cover(c, time_);
+  return true;
 }
 
 void Kernel::displace(int k, const Vec2& shift) {

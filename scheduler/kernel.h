@@ -2,6 +2,8 @@
 /// The simulator's kernel of verbs: advance, pass, back up, resolve, record. Policies say when; only the
 /// kernel acts.
 
+#include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -15,9 +17,12 @@
 #include "brink/core/world/forces.h"
 #include "brink/scheduler/agenda.h"
 #include "brink/scheduler/ahead.h"
+#include "brink/scheduler/ask_clock.h"
 #include "brink/scheduler/body_track.h"
 #include "brink/scheduler/depth_detector.h"
+#include "brink/scheduler/instant_bodies.h"
 #include "brink/scheduler/options.h"
+#include "brink/scheduler/pair_materials.h"
 #include "brink/scheduler/recorder.h"
 #include "brink/scheduler/simulator.h"
 #include "brink/scheduler/site_motion.h"
@@ -30,6 +35,14 @@ namespace brink {
 struct Halt {
   Termination termination = Termination::failed;
   std::string why;
+};
+
+/// Groups of contacts that had to be taken together with a loss that their materials do not have.
+struct TakenGroups {
+  std::uint64_t count = 0;
+  double energy = 0.0;  ///< that it took [J]
+  PairKey first;        ///< the first group was found at this pair ...
+  double time = 0.0;    ///< ... at this time [s]
 };
 
 struct DiscRebound;
@@ -64,22 +77,41 @@ class Kernel {
   double touch() const { return limits_.touch; }
   double contact_tolerance() const { return limits_.tolerance; }
   const std::optional<Halt>& halt() const { return halt_; }
+  /// Where the first of the motions ends that cannot go on [s]; infinity: none that is known. A collision
+  /// before may start it afresh, so a policy goes on to there, and then calls fail_before().
+  double reach() const { return reach_; }
   WorkCounters& work() { return work_; }
   const WorkCounters& work() const { return work_; }
   Random& random() { return random_; }
   /// Null, or who is to be told what is done with a body.
   TraceSink* trace() const { return run_.trace; }
   double max_overlap() const { return max_overlap_; }
+  const TakenGroups& taken() const { return taken_; }
+  std::string name_of(const PairKey& pair) const;
 
   // -- verbs --
-  /// Makes sure that every motion covers [.., t]. False (and halt() says why) if an integrator cannot.
+  /// Makes sure that every motion covers [.., t]. False (and halt() says why) if an integrator cannot: the
+  /// run then ends where it is. What runs on to the failure, and needs little memory, uses follow_motions().
   bool extend_motions(double t);
+  /// Lets every motion go on towards t, each by no more than an instalment of steps. Returns how far all of
+  /// them cover, <= t: the policy goes on to there and asks again. Asks `progress`: halt() may be set.
+  double follow_motions(double t);
+  /// The same in as many instalments as it takes: less than t at reach() alone, or on a halt.
+  double follow_motions_all_the_way(double t);
   /// Takes all bodies forward to t; frames due on the way are recorded by record_frames().
   void advance_all(double t);
   /// Makes sure that one body's motion covers [.., t]. False (and halt() says why) if its integrator cannot.
   bool extend_motion(int body, double t);
+  double follow_motion(int body, double t);
   /// Likewise every moving site's.
   bool extend_sites(double t);
+  double follow_sites(double t);
+  /// Ends the run as failed if it has come to reach(), and that lies before `until`; true if so.
+  bool fail_before(double until);
+  /// Nobody will ask a motion for a time before t any more.
+  void forget_before(double t);
+  /// True if motions have grown so much since the last forget_before() that it is worth a call.
+  bool much_to_forget() const;
   /// Takes the bodies of one pair to t, and the clock with them; others stay at their own times. Within an
   /// instant t may lie a rounding before the clock.
   void advance_pair(const PairKey& pair, double t);
@@ -124,9 +156,11 @@ class Kernel {
   bool resolve(const PairKey& pair, const FeatureContact& contact, std::vector<int>& changed);
   /// Puts a body elsewhere, at the present time (approximate policies only).
   void displace(int body, const Vec2& shift);
-  /// Records frames due up to and including t; checks them for overlaps.
-  void record_frames(double t);
-  /// Asks `progress` whether to go on, each few thousand search iterations or collisions. False on a halt.
+  /// Records frames due up to and including t; checks them for overlaps. False on a halt: the clock is then
+  /// at the last of them.
+  bool record_frames(double t);
+  /// Asks `progress` whether to go on, each few thousand search iterations or collisions, and ten times a
+  /// second in loops that do neither. Cheap: to be called in every loop that may take long. False on a halt.
   bool poll();
   /// Records that a pair's search cannot tell, and ends the run.
   void give_up(const Certificate& c);
@@ -184,9 +218,10 @@ class Kernel {
   /// Records the last frame, at the present time, unless the frame clock has just done so.
   void end_frame();
   std::uint64_t collisions() const { return work_.collisions; }
-  std::vector<Contact> overlaps();
-  /// False, and the deepest overlap in *why, if pairs overlap at the present time by more than rounding of a
-  /// file.
+  /// See Simulator.
+  std::vector<Contact> overlaps(std::size_t most);
+  /// False, and the deepest of the first overlaps in *why, if pairs overlap at the present time by more than
+  /// rounding of a file.
   bool may_start(std::string* why);
   Plan plan() const;
   /// The horizon that a policy last chose; kept here so that a resumed run does the same work.
@@ -196,11 +231,16 @@ class Kernel {
 
  private:
   friend class SnapshotCodec;
+  struct Failure {  ///< of a motion that cannot go on
+    double time = std::numeric_limits<double>::infinity();
+    std::string why;
+  };
   struct Coupled {  ///< a component and its integrator
     Component component;
     std::unique_ptr<Integrator> integrator;
     double started = 0.0;
     std::vector<BodyState> start_states;
+    Failure failure;
   };
 
   void make_indices();
@@ -216,8 +256,18 @@ class Kernel {
   void restart_free(int body, const BodyState& start, const BodyState& low);
   /// As restart(); bodies whose motion changed are appended to `changed`.
   bool restart_noted(std::span<const Restart> touched, std::vector<int>& changed);
-  /// Extends one component to t and fetches its motions; false and halt() if its integrator cannot.
+  /// Extends one component towards t by an instalment and fetches its motions; how far they cover, <= t.
+  double follow(Coupled& c, double t);
+  double follow_site(int site, double t);
+  void integrate_again(Coupled& c);
+  /// The same all the way. False and halt() if its integrator cannot.
   bool cover(Coupled& c, double t);
+  bool cover_site(int site, double t);
+  /// Steps of one instalment for a component or a moving site.
+  std::uint64_t instalment() const;
+  void note_failure(Failure& of, double end, const std::string& name, const std::string& why);
+  void find_reach();
+  bool stop_at(const Failure& failure);
   void fetch_motions(const Coupled& c);
   Mover mover(int body) const { return mover(body, bodies_[body]); }
   Mover mover(int body, const BodyTrack& track) const {
@@ -256,11 +306,15 @@ class Kernel {
   /// Marks every body, if there is a trace.
   void trace_all(TraceKind kind, double from, double to) const;
   void note_overlap(double gap) { max_overlap_ = std::max(max_overlap_, -gap); }
-  std::vector<PairKey> neighbours_at(double t) const;
+  /// Calls visit for each pair whose boxes at t overlap, until it returns false.
+  void each_near_at(double t, const std::function<bool(const PairKey&)>& visit) const;
+  /// What holds an owner at t; a still site's own box, not a disc's: it may lie far from its frame's origin.
+  Box box_at(int owner, double t) const;
   std::vector<PairKey> overlapping(const std::vector<Box>& boxes) const;
   void check_overlaps_at(double t);
   /// The deepest overlap that is none [m]: the contact tolerance, or what the world started with.
   double allowed_overlap() const { return std::max(limits_.tolerance, start_overlap_); }
+  bool check_overlap(const PairKey& pair, double t);
   /// After a resolve at the present time. False on a halt.
   bool check_resolved(const PairKey& pair, const FeatureContact& found);
   /// Before body k is resolved at time `to`. False on a halt.
@@ -274,7 +328,8 @@ class Kernel {
   std::vector<PairKey> pairs_by_pass(int body, double from, double to);
   /// From the clock's present double to the exact moment of contact: a fraction of a rounding [s]. The
   /// collision is resolved there, and the new motion is the one that passes through that moment, so that long
-  /// runs do not drift by roundings of time.
+  /// runs do not drift by roundings of time. None where sharp points may meet wires without thickness: there a
+  /// motion must not begin, not even by such a fraction, beside the path on which everybody is tested.
   Real delay_to_contact(const FeatureContact& found, const ExtendedContact& c) const;
   const Material& material_of(const PairKey& pair) const;
   /// The response now if the pair are two free discs without friction (a quick way to what respond() says).
@@ -291,31 +346,39 @@ class Kernel {
   bool deflect(const PairKey& pair, const Response& response, std::vector<int>& changed);
   /// Collisions of one instant that are taken to be without end: a row of n touching bodies can need n^2 / 2.
   std::uint64_t endless_group() const;
-  /// True if the present instant has had so many: its contacts are then taken together, without a rebound.
+  /// True if the present instant has had so many: its contacts are then taken together.
   bool collapsed() const;
+  /// Counts a collision of the present instant, or the first of a new one.
+  void count_in_instant(const PairKey& pair);
+  /// Notes that a group was taken with a loss [J] that its materials do not have.
+  void note_taken(const PairKey& pair, double lost);
   class GroupResolve;
   bool resolve_group(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed);
   void count_collision(const PairKey& pair);
   bool records_events() const { return recorder_ && run_.record_events; }
   void record_ending(EventKind kind, const Outcome& outcome, double time);
   bool judge_endings(const Outcome& outcome);
+  BounceLoss loss_of(const PairKey& pair) const;
   /// Notes that a body has been resolved now, with owner `partner`; returns the time since its last [s].
   double note_resolve(int body, int partner, double magnitude);
   Contact world_contact(const PairKey& pair, const FeatureContact& f) const;
-  std::string name_of(const PairKey& pair) const;
 
   World world_;
   SolverOptions options_;
   WorkCounters work_;
   SearchLimits limits_;
   bool reflects_ = false;  ///< response "reflection"
+  bool points_meet_wires_ = false;  ///< a sharp corner or end of somebody, and a wire without thickness of another
   Random random_;
   LargeVector<BodyTrack> bodies_;
   AheadLog ahead_;
   std::vector<Coupled> components_;
   std::vector<SiteMotion> sites_;
+  std::vector<Box> still_boxes_;          ///< of every site where it stands; empty if it moves
+  std::vector<Failure> site_failures_;
+  double reach_ = std::numeric_limits<double>::infinity();
   std::vector<const Outline*> outlines_;  ///< of every owner
-  std::vector<Material> pair_materials_;  ///< of material i on material j, at i n + j
+  mutable PairMaterials pair_materials_;
   std::vector<const SiteIndex*> body_index_, site_index_;
   std::vector<std::unique_ptr<SiteIndex>> indices_;
   std::unique_ptr<PassRenderer> passes_;
@@ -344,8 +407,13 @@ class Kernel {
   double last_event_ = 0.0;   ///< time of the last event recorded [s]
   double instant_ = -1.0;     ///< time of the current group of collisions
   std::uint64_t in_instant_ = 0;
+  InstantBodies bodies_in_instant_;
+  TakenGroups taken_;
   RunOptions run_;
-  std::uint64_t polled_ = 0;  ///< work done when `progress` was last asked
+  std::uint64_t polled_ = 0;      ///< work done when `progress` was last asked
+  AskClock ask_;
+  std::uint64_t integrated_ = 0;  ///< body-steps of integrators, and pieces of moving sites
+  std::uint64_t forgotten_ = 0;   ///< the same when forget_before() was last called
   Recorder* recorder_ = nullptr;
   double next_checkpoint_ = 0.0;  ///< wall clock [s]
 };

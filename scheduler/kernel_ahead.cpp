@@ -69,7 +69,7 @@ bool Kernel::resolve_ahead(const Certificate& c, double end, std::vector<int>& c
   ahead_.add(entry);
   work_.states_kept = std::max<std::uint64_t>(work_.states_kept, ahead_.kept());
   if (done) return true;
-  halt_.reset();  // what fails ahead of time may never come to pass
+  if (halt_ && halt_->termination == Termination::failed) halt_.reset();  // it may never come to pass
   changed.clear();
   undo(entry);
   return false;

@@ -65,22 +65,25 @@ bool Kernel::check_flight(int k, double to) {
 }
 
 void Kernel::check_overlaps_at(double t) {
-  for (const PairKey& pair : neighbours_at(t)) {
-    const double gap = pair_gap(mover(pair.body), other_mover(pair), t, limits_, scratch_);
-    note_overlap(gap);
-    if (!checked_ || halt_) continue;
-    if (gap < -allowed_overlap()) {
-      report_overlap(pair, -gap, t, "overlaps");
-    } else if (outline_of(pair.body).sites.size() * outline_of(other_owner(pair)).sites.size() <=
-               kMostCrossings) {
-      if (const auto crossing = crossing_at(pair, t); crossing && -crossing->gap > allowed_overlap()) {
-        note_overlap(crossing->gap);
-        report_overlap(pair, -crossing->gap, t, "crosses");
-      }
-    }
-  }
+  each_near_at(t, [&](const PairKey& pair) {
+    check_overlap(pair, t);
+    return poll();
+  });
   for (int k = 0; k < body_count() && !halt_; ++k) check_flight(k, t);
   checked_until_ = t;
+}
+
+bool Kernel::check_overlap(const PairKey& pair, double t) {
+  const double gap = pair_gap(mover(pair.body), other_mover(pair), t, limits_, scratch_);
+  note_overlap(gap);
+  if (!checked_) return true;
+  if (gap < -allowed_overlap()) return report_overlap(pair, -gap, t, "overlaps");
+  if (outline_of(pair.body).sites.size() * outline_of(other_owner(pair)).sites.size() > kMostCrossings)
+    return true;
+  const auto crossing = crossing_at(pair, t);
+  if (!crossing || -crossing->gap <= allowed_overlap()) return true;
+  note_overlap(crossing->gap);
+  return report_overlap(pair, -crossing->gap, t, "crosses");
 }
 
 bool Kernel::report_overlap(const PairKey& pair, double depth, double t, const char* what) {

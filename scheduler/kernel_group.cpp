@@ -10,6 +10,7 @@
 #include "brink/core/contacts/group.h"
 #include "brink/scheduler/canonical_time.h"
 #include "brink/scheduler/extended_contact.h"
+#include "brink/scheduler/joint_contacts.h"
 #include "brink/scheduler/kernel.h"
 
 namespace brink {
@@ -20,6 +21,7 @@ namespace {
 /// is found from both sides.
 constexpr double kSamePlace = 10.0;
 constexpr double kSameNormal = 1e-6;
+constexpr double kParting = 1e-6;  ///< of the speed at which a contact was found: more is parting
 
 struct Touch {
   PairKey pair;
@@ -45,7 +47,8 @@ class Kernel::GroupResolve {
   bool run(std::vector<int>& changed) {
     if (!collect()) return false;
     place();
-    result_ = law()(members_, contacts_);
+    result_ = ask_the_law();
+    if (result_.status == GroupResult::Status::stopped) return false;
     if (result_.status == GroupResult::Status::jam) {
       kernel_.stop(Termination::failed,
                    fmt::format("{} at t = {:.17g}: a group of {} contact(s) that no finite impulses can part",
@@ -59,66 +62,111 @@ class Kernel::GroupResolve {
  private:
   double now() const { return kernel_.time_; }
 
-  /// Of a group that does not end, what endless rebounds with losses come to: none.
-  auto law() -> GroupResult (*)(const std::vector<GroupBody>&, const std::vector<GroupContact>&) {
-    if (!kernel_.collapsed()) return kernel_.options_.order == "lcp" ? resolve_together : resolve_reflections;
-    for (GroupContact& c : contacts_) c.material.restitution = 0.0;
-    return resolve_together;
+  /// Of a group that does not end one by one: where every contact loses, what endless rebounds with losses
+  /// come to, no rebound; else reflections, after which nothing approaches.
+  GroupResult ask_the_law() {
+    const GoOn go_on = [this] { return kernel_.poll(); };
+    const auto loses = [](const GroupContact& c) { return c.material.restitution < 1.0; };
+    const bool collapsed = kernel_.collapsed();
+    if (collapsed && std::all_of(contacts_.begin(), contacts_.end(), loses))
+      for (GroupContact& c : contacts_) c.material.restitution = 0.0;
+    return kernel_.options_.order == "lcp" && !collapsed ? resolve_together(members_, contacts_, go_on)
+                                                         : resolve_reflections(members_, contacts_, go_on);
   }
 
   /// False on a halt.
   bool collect() {
-    group_ = {found_};
+    if (!place_boxes()) return false;
+    add_found();
     std::vector<int> reached;
+    std::vector<bool> is_reached(kernel_.body_count(), false);
+    const auto reach = [&](const PairKey& pair) {
+      for (const int k : {pair.body, pair.other_body}) {
+        if (k < 0 || is_reached[k]) continue;
+        is_reached[k] = true;
+        reached.push_back(k);
+      }
+    };
     std::set<PairKey> seen;
-    reach(found_.pair, reached);
-    for (std::size_t i = 0; i < reached.size(); ++i)
-      for (int owner = 0; owner < kernel_.owner_count(); ++owner) {
-        // of bodies with clocks of their own, some may not have come so far
-        if (owner < kernel_.body_count() && !kernel_.extend_motion(owner, now())) return false;
+    reach(found_.pair);
+    for (std::size_t i = 0; i < reached.size(); ++i) {
+      if (!kernel_.poll()) return false;
+      for (int owner = 0; owner < kernel_.owner_count(); ++owner)
         each_image_near(reached[i], owner, [&](const Image& image) {
           const auto pair = kernel_.pair_of(reached[i], owner, image);
-          if (pair && seen.insert(*pair).second && add_touching(*pair)) reach(*pair, reached);
+          if (pair && seen.insert(*pair).second && add_touching(*pair)) reach(*pair);
         });
-      }
+    }
+    add_found_corner();
     // one order, whichever contact was found first
     std::sort(group_.begin(), group_.end(),
               [](const Touch& a, const Touch& b) { return a.order() < b.order(); });
     return true;
   }
 
-  static void reach(const PairKey& pair, std::vector<int>& reached) {
-    for (const int k : {pair.body, pair.other_body})
-      if (k >= 0 && std::find(reached.begin(), reached.end(), k) == reached.end()) reached.push_back(k);
+  /// Where every owner is now. False on a halt: of bodies with clocks of their own, some may not have come so
+  /// far.
+  bool place_boxes() {
+    for (int owner = 0; owner < kernel_.owner_count(); ++owner) {
+      if (owner < kernel_.body_count() && !kernel_.extend_motion(owner, now())) return false;
+      boxes_.push_back(kernel_.box_at(owner, now()));
+    }
+    return true;
   }
 
   template <class Visit>
   void each_image_near(int a, int b, Visit&& visit) const {
-    const Outline &first = kernel_.outline_of(a), &second = kernel_.outline_of(b);
-    if (first.container || second.container) return visit(Image{});
-    const auto box_of = [&](int owner, double margin) {
-      Box place;
-      place.add(kernel_.motion_of(owner).pose(now()).position);
-      return place.grown(kernel_.outline_of(owner).bounding_radius + margin);
-    };
-    kernel_.world_.periods.overlaps(box_of(a, kernel_.limits_.tolerance), box_of(b, 0.0), visit);
+    if (kernel_.outline_of(b).container) return visit(Image{});
+    kernel_.world_.periods.overlaps(boxes_[a].grown(kernel_.limits_.tolerance), boxes_[b], visit);
   }
 
   /// Adds the pair's contacts; true if it has any.
   bool add_touching(const PairKey& pair) {
     const SearchLimits& limits = kernel_.limits_;
     bool any = pair == found_.pair;
+    const std::size_t first = group_.size();
     for (const FeatureContact& f : kernel_.touching(pair, limits.tolerance)) {
       const double above = f.gap - f.level;
       if (above > limits.touch && above > f.closing_speed * same_instant(now())) continue;
       any = true;
-      const auto same = [&](const Touch& t) {
-        return t.pair == pair && (t.contact.point - f.point).norm() <= kSamePlace * limits.tolerance &&
-               t.contact.normal.dot(f.normal) >= 1.0 - kSameNormal;
-      };
-      if (std::none_of(group_.begin(), group_.end(), same)) group_.push_back({pair, f});
+      for (const FeatureContact& joint : joint(pair, f)) add_unless_there(pair, joint, first);
     }
     return any;
+  }
+
+  std::vector<FeatureContact> joint(const PairKey& pair, const FeatureContact& f) const {
+    BodyState other = kernel_.motion_of(kernel_.other_owner(pair)).state(now());
+    other.pose.position += kernel_.shift_of(pair);
+    return joint_contacts(kernel_.outline_of(pair.body), kernel_.motion_of(pair.body).state(now()),
+                          kernel_.outline_of(kernel_.other_owner(pair)), other, f, kernel_.limits_.tolerance);
+  }
+
+  /// What the contact that was found is made of.
+  void add_found() {
+    for (const FeatureContact& f : joint(found_.pair, found_.contact)) group_.push_back({found_.pair, f});
+  }
+
+  /// Corners that meet can be found where no face is approached. Then the contact is taken as it was found,
+  /// unless the pair is parting anyway.
+  void add_found_corner() {
+    const double speed = found_.contact.closing_speed;
+    const auto of_pair = [&](const Touch& t) { return t.pair == found_.pair; };
+    const auto approaches = [&](const Touch& t) { return of_pair(t) && t.contact.closing_speed > 0.0; };
+    const auto parts = [&](const Touch& t) {
+      return !of_pair(t) || t.contact.closing_speed < -kParting * speed;
+    };
+    if (std::any_of(group_.begin(), group_.end(), approaches)) return;
+    if (!std::all_of(group_.begin(), group_.end(), parts)) group_.push_back(found_);
+  }
+
+  /// Contacts of the pair are those from `first` on, and those of the found one.
+  void add_unless_there(const PairKey& pair, const FeatureContact& f, std::size_t first) {
+    const auto same = [&](const Touch& t) {
+      return t.pair == pair && (t.contact.point - f.point).norm() <= kSamePlace * kernel_.limits_.tolerance &&
+             t.contact.normal.dot(f.normal) >= 1.0 - kSameNormal;
+    };
+    const auto from = group_.begin() + static_cast<std::ptrdiff_t>(pair == found_.pair ? 0 : first);
+    if (std::none_of(from, group_.end(), same)) group_.push_back({pair, f});
   }
 
   void place() {
@@ -146,7 +194,6 @@ class Kernel::GroupResolve {
   }
 
   GroupContact contact(const Touch& t) const {
-    const World& world = kernel_.world_;
     const ExtendedContact c = geometry(t);
     const ExtendedState other = other_state(t);
     const RealVec other_arm = c.point - other.position;
@@ -160,9 +207,7 @@ class Kernel::GroupResolve {
       made.other = index_of(t.pair.other_body);
       made.other_arm = other_arm;
     }
-    made.material = combined(world, world.bodies[t.pair.body].material,
-                             t.pair.with_site() ? world.sites[t.pair.other_site].material
-                                                : world.bodies[t.pair.other_body].material);
+    made.material = kernel_.material_of(t.pair);
     return made;
   }
 
@@ -201,6 +246,7 @@ class Kernel::GroupResolve {
     std::map<int, std::vector<Restart>> by_component;  // a free body is one of its own
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       if (!touched_[i]) continue;
+      if (!kernel_.check_flight(bodies_[i], now())) return false;
       const int body = bodies_[i], component = kernel_.bodies_[body].component;
       ExtendedState after = state(body);
       after.twist = result_.twists[i];
@@ -209,12 +255,17 @@ class Kernel::GroupResolve {
     }
     for (const auto& [component, touched] : by_component)
       if (!kernel_.restart_noted(touched, changed)) return false;
-    return true;
+    return std::all_of(events_.begin(), events_.end(), [&](std::size_t k) {
+      return kernel_.check_resolved(group_[k].pair, group_[k].contact);
+    });
   }
 
   bool record() {
     const double time = kernel_.last_event_ = std::max(kernel_.last_event_, now());
-    if (result_.status == GroupResult::Status::endless) tell(EventKind::group, found_, 0, 0, time);
+    if (result_.status == GroupResult::Status::endless) {
+      tell(EventKind::group, found_, 0, 0, time);
+      kernel_.note_taken(found_.pair, static_cast<double>(result_.lost));
+    }
     for (const std::size_t k : events_) {
       kernel_.note_overlap(group_[k].contact.gap);
       kernel_.count_collision(group_[k].pair);
@@ -243,6 +294,7 @@ class Kernel::GroupResolve {
 
   Kernel& kernel_;
   Touch found_;
+  std::vector<Box> boxes_;  ///< of every owner
   std::vector<Touch> group_;
   std::vector<int> bodies_;  ///< ascending
   Real delay_ = 0;           ///< from now to the moment of contact [s]

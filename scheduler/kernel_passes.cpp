@@ -39,6 +39,12 @@ std::vector<PairKey> Kernel::overlapping(const std::vector<Box>& boxes) const {
   return pairs;
 }
 
+Box Kernel::box_at(int k, double t) const {
+  const int n = body_count();
+  return k < n || still_boxes_[k - n].empty() ? swept_box(outline_of(k), motion_of(k), t, t)
+                                              : still_boxes_[k - n];
+}
+
 void Kernel::refresh_boxes(double from, double to, bool all) {
   const int n = body_count();
   if (all) {
@@ -47,12 +53,7 @@ void Kernel::refresh_boxes(double from, double to, bool all) {
     box_versions_.assign(n, 0);
     for (int k = n; k < owner_count(); ++k) {
       const SiteMotion& site = sites_[k - n];
-      if (site.moves() || outline_of(k).container) {
-        boxes_[k] = swept_box(outline_of(k), site.motion(), from, to);
-      } else {  // a still site: its own box, not a disc's
-        const Outline placed = transformed(outline_of(k), site.motion().pose(from));
-        boxes_[k] = placed.bounds.grown(1e-12 * (placed.bounds.low.norm() + placed.bounds.high.norm()));
-      }
+      boxes_[k] = site.moves() ? swept_box(outline_of(k), site.motion(), from, to) : box_at(k, from);
     }
   }
   for (int k = 0; k < n; ++k) {
@@ -87,7 +88,7 @@ std::vector<PairKey> Kernel::near_pairs(double from, double to) {
   refresh_boxes(from, to, true);
   std::vector<PairKey> pairs;
   if (passes_) {
-    for (int k = 0; k < body_count(); ++k) {
+    for (int k = 0; k < body_count() && poll(); ++k) {
       const auto seen = pairs_by_pass(k, from, to);
       pairs.insert(pairs.end(), seen.begin(), seen.end());
     }
@@ -96,7 +97,7 @@ std::vector<PairKey> Kernel::near_pairs(double from, double to) {
   } else if (options_.skip_broad_phase) {
     pairs = overlapping(boxes_);
   } else {
-    for (int a = 0; a < body_count(); ++a)
+    for (int a = 0; a < body_count() && poll(); ++a)
       for (int b = a + 1; b < owner_count(); ++b) add_images(a, b, pairs);
   }
   return pairs;

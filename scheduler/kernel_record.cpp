@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <tuple>
 
 #include "brink/core/shapes/outline_crossing.h"
 #include "brink/scheduler/broad_phase.h"
@@ -17,6 +18,8 @@ namespace {
 /// Overlaps at the start up to this part of the scene's length are let go: coordinates written with few
 /// digits.
 constexpr double kStartOverlap = 1e-6;
+/// The search for them ends after so many: all bodies may be in one place.
+constexpr std::size_t kOverlapsCounted = 1000;
 
 double wall_clock() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -35,12 +38,11 @@ void Kernel::begin(const RunOptions& options, Recorder* recorder) {
   check_overlaps_at(time_);
 }
 
-void Kernel::record_frames(double t) {
+bool Kernel::record_frames(double t) {
   if (watched_) hold_to_known(t);
-  if (run_.frame_interval <= 0.0) return;
-  for (;;) {
+  while (run_.frame_interval > 0.0 && !halt_) {
     const double due = static_cast<double>(frame_ + 1) * run_.frame_interval;
-    if (due > t) return;
+    if (due > t) break;
     const StageClock clock(work_.seconds_record);
     ++frame_;
     last_frame_ = due;
@@ -48,7 +50,9 @@ void Kernel::record_frames(double t) {
     if (recorder_) recorder_->frame(due, states(due));
     check_overlaps_at(due);
     swap_with_certain();
+    if (!poll()) time_ = due;  // all is clear up to t, and so up to here
   }
+  return !halt_;
 }
 
 void Kernel::end_frame() {
@@ -59,10 +63,13 @@ void Kernel::end_frame() {
   check_overlaps_at(time_);
 }
 
-std::vector<PairKey> Kernel::neighbours_at(double t) const {
+void Kernel::each_near_at(double t, const std::function<bool(const PairKey&)>& visit) const {
   std::vector<Box> now;
-  for (int k = 0; k < owner_count(); ++k) now.push_back(swept_box(outline_of(k), motion_of(k), t, t));
-  return overlapping(now);
+  for (int k = 0; k < owner_count(); ++k) now.push_back(box_at(k, t));
+  each_overlapping(now, world_.periods, [&](const ImagePair& p) {
+    const auto pair = pair_of(p.a, p.b, p.image);
+    return !pair || visit(*pair);
+  });
 }
 
 std::optional<Contact> Kernel::crossing_at(const PairKey& pair, double t) const {
@@ -78,32 +85,36 @@ std::optional<Contact> Kernel::crossing_at(const PairKey& pair, double t) const 
   return world_contact(pair, f);
 }
 
-std::vector<Contact> Kernel::overlaps() {
+std::vector<Contact> Kernel::overlaps(std::size_t most) {
   std::vector<Contact> found;
-  for (const PairKey& pair : neighbours_at(time_)) {
+  each_near_at(time_, [&](const PairKey& pair) {
     const auto contacts = touching(pair, 0.0);
     if (!contacts.empty() && contacts.front().gap < 0.0)
       found.push_back(world_contact(pair, contacts.front()));
     else if (const auto crossing = crossing_at(pair, time_))
       found.push_back(*crossing);
-  }
-  std::stable_sort(found.begin(), found.end(),
-                   [](const Contact& x, const Contact& y) { return x.gap < y.gap; });
+    return found.size() < most;
+  });
+  const auto order = [](const Contact& c) { return std::tuple(c.gap, c.body, c.other_body, c.other_site); };
+  std::sort(found.begin(), found.end(),
+            [&](const Contact& x, const Contact& y) { return order(x) < order(y); });
   return found;
 }
 
 bool Kernel::may_start(std::string* why) {
-  const std::vector<Contact> found = overlaps();
+  const double allowed = kStartOverlap * world_.length();
+  const std::vector<Contact> found = overlaps(kOverlapsCounted);
   if (!found.empty()) start_overlap_ = -found.front().gap;
-  if (found.empty() || found.front().gap >= -kStartOverlap * world_.length()) return true;
+  if (found.empty() || found.front().gap >= -allowed) return true;
   const Contact& c = found.front();
   const std::string& other =
       c.other_body >= 0 ? world_.bodies[c.other_body].name : world_.sites[c.other_site].name;
   *why = fmt::format(
       "'{}' and '{}' overlap by {:.3g} m at the start, near ({:.4g}, {:.4g}); at most {:.1g} m is allowed"
       " ({} overlapping pair(s) in all)",
-      world_.bodies[c.body].name, other, -c.gap, c.point.x(), c.point.y(), kStartOverlap * world_.length(),
-      found.size());
+      world_.bodies[c.body].name, other, -c.gap, c.point.x(), c.point.y(), allowed,
+      found.size() < kOverlapsCounted ? std::to_string(found.size())
+                                      : fmt::format("{} or more", kOverlapsCounted));
   return false;
 }
 

@@ -18,6 +18,11 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
+/// A contact that parts faster than this part of the speeds that take part is none; slower is rounding.
+constexpr double kPartsOfSpeed = 1e-6;
+/// In an instant of so many the next are taken together, however many bodies there are: it takes seconds.
+constexpr std::uint64_t kLongestInstant = 200000;
+
 ImpulseSide body_side(const Body& body, const ExtendedState& state, const RealVec& point) {
   return {state.twist, point - state.position, body.inverse_mass_x(), body.inverse_mass_y(),
           body.inverse_inertia()};
@@ -91,11 +96,8 @@ double Kernel::note_resolve(int k, int partner, double magnitude) {
 }
 
 Real Kernel::delay_to_contact(const FeatureContact& found, const ExtendedContact& c) const {
-  if (!(c.closing > 0)) return 0;
-  Real late = 4.0 * ulp(time_);
-  // the motion after is sought from the present double: it must not begin on the other side of a wire
-  const double level = found.level - found.sink;
-  if (level > 0.0) late = std::min(late, Real(0.25 * level) / c.closing);
+  if (points_meet_wires_ || !(c.closing > 0)) return 0;
+  const Real late = 4.0 * ulp(time_);
   return std::clamp((c.gap - found.level) / c.closing, -late, late);
 }
 
@@ -117,7 +119,7 @@ Kernel::Response Kernel::respond(const PairKey& pair, const FeatureContact& foun
   r.impulse = law(side, other_side, c.normal, material);
   r.magnitude = std::max(speed_of(side), speed_of(other_side));
   // an approach that the law does not see was rounding, all of it
-  if (r.impulse.kind == ImpulseKind::separating) r.magnitude += found.closing_speed / kEpsilon;
+  if (r.impulse.kind == ImpulseKind::separating) r.magnitude += std::max(0.0, found.closing_speed) / kEpsilon;
   if (found.sunk() > 0.0 && !depth_) {
     const Real loss = Real(1) - Real(material.restitution) * material.restitution;
     push_apart(side, other_side, c.normal, std::min(loss * found.sunk(), Real(limits_.tolerance / 16)), r);
@@ -160,7 +162,27 @@ bool Kernel::restart_noted(std::span<const Restart> touched, std::vector<int>& c
 }
 
 std::uint64_t Kernel::endless_group() const {
-  return 2000 + 10 * static_cast<std::uint64_t>(bodies_.size()) * bodies_.size();
+  const std::uint64_t bodies = bodies_in_instant_.count() + 2;  // a row may have ends yet to be reached
+  return 2000 + std::min(10 * bodies * bodies, kLongestInstant);
+}
+
+void Kernel::count_in_instant(const PairKey& pair) {
+  if (time_ - instant_ > 2.0 * same_instant(time_)) {
+    instant_ = time_;
+    in_instant_ = 0;
+    bodies_in_instant_.clear();
+  }
+  ++in_instant_;
+  bodies_in_instant_.add(pair);
+}
+
+void Kernel::note_taken(const PairKey& pair, double lost) {
+  if (!(lost > 0.0)) return;
+  if (taken_.count++ == 0) {
+    taken_.first = pair;
+    taken_.time = time_;
+  }
+  taken_.energy += lost;
 }
 
 bool Kernel::collapsed() const {
@@ -180,11 +202,11 @@ bool Kernel::resolve(const PairKey& pair, const FeatureContact& found, std::vect
 const Material& Kernel::material_of(const PairKey& pair) const {
   const int other =
       pair.with_site() ? world_.sites[pair.other_site].material : world_.bodies[pair.other_body].material;
-  return pair_materials_[world_.bodies[pair.body].material * world_.materials.size() + other];
+  return pair_materials_.of(world_, world_.bodies[pair.body].material, other);
 }
 
 std::optional<DiscRebound> Kernel::disc_rebound(const PairKey& pair, double level) const {
-  if (pair.with_site() || depth_ || reflects_) return std::nullopt;
+  if (pair.with_site() || depth_ || reflects_ || points_meet_wires_) return std::nullopt;
   const auto side = [&](int k) {
     const Body& body = world_.bodies[k];
     const bool bare = is_free(k) && is_centred_disc(outline_of(k)) && !body.lock_x && !body.lock_y;
@@ -214,6 +236,10 @@ std::optional<Outcome> Kernel::settle(const PairKey& pair, const FeatureContact&
     return Outcome{pair, found, discs->impulse, 0.0, discs->delay, rest};
   }
   const Response response = respond(pair, found);
+  if (checked_ && found.closing_speed < -kPartsOfSpeed * response.magnitude) {
+    report_overlap(pair, 0.0, time_, "is said to meet, but parts from");
+    return std::nullopt;
+  }
   if (response.impulse.kind == ImpulseKind::jam) {
     stop(Termination::failed, fmt::format("{} at t = {:.17g}: neither side can move", name_of(pair), time_));
     return std::nullopt;
@@ -261,11 +287,21 @@ void Kernel::count_collision(const PairKey& pair) {
   if (!pair.with_site()) run_.trace->mark({TraceKind::collision, pair.other_body, pair.body, time_, time_});
 }
 
+BounceLoss Kernel::loss_of(const PairKey& pair) const {
+  const Material& m = material_of(pair);
+  if (reflects_) return m.slip == 1.0 && m.spin == 1.0 ? BounceLoss::none : BounceLoss::some;
+  if (m.restitution == 0.0) return BounceLoss::all;
+  const bool rubs = m.friction > 0.0 && m.tangential_restitution < 1.0;
+  return m.restitution < 1.0 || rubs ? BounceLoss::some : BounceLoss::none;
+}
+
 bool Kernel::judge_endings(const Outcome& outcome) {
   const PairKey& pair = outcome.pair;
   // flights lower than a pixel say nothing about a Zeno limit
   const double closing = outcome.contact.closing_speed;
-  if (const auto zeno = depth_ ? std::nullopt : zeno_.collided(pair, time_, closing, outcome.rest)) {
+  if (const auto zeno =
+          depth_ ? std::nullopt
+                 : zeno_.collided({pair, outcome.contact}, time_, closing, loss_of(pair), outcome.rest)) {
     record_ending(EventKind::zeno, outcome, zeno->limit_time);
     stop(Termination::failed,
          fmt::format(
@@ -275,11 +311,8 @@ bool Kernel::judge_endings(const Outcome& outcome) {
              name_of(pair)));
     return false;
   }
-  if (time_ - instant_ > 2.0 * same_instant(time_)) {
-    instant_ = time_;
-    in_instant_ = 0;
-  }
-  if (++in_instant_ == endless_group() + 1) {
+  count_in_instant(pair);
+  if (in_instant_ == endless_group() + 1) {
     record_ending(EventKind::group, outcome, last_event_);
   } else if (in_instant_ > 2 * endless_group()) {
     stop(Termination::failed,
@@ -297,8 +330,8 @@ bool Kernel::judge_endings(const Outcome& outcome) {
 
 bool Kernel::poll() {
   constexpr std::uint64_t between = 4096;
-  const std::uint64_t done = work_.search_iterations + 4 * work_.collisions;
-  if (halt_ || done - polled_ < between) return !halt_;
+  const std::uint64_t done = work_.search_iterations + 4 * work_.collisions + 64 * work_.passes + integrated_;
+  if (halt_ || (done - polled_ < between && !ask_.due())) return !halt_;
   polled_ = done;
   if (run_.progress && !run_.progress(time_, work_.collisions)) stop(Termination::stopped, "on request");
   return !halt_;

@@ -207,6 +207,8 @@ bool PairView::out_of_reach(const Half& half, int i, double reach) const {
 }
 
 double PairView::sink_at_start() const {
+  // what was pressed then has met since; of thousands of steps ago nothing is left to tell
+  if (!a_.motion->remembers(start()) || !b_.motion->remembers(start())) return 0.0;
   PairView then = *this;
   then.place(start());
   const RelativeBounds at_once =
@@ -219,7 +221,7 @@ double PairView::sink_at_start() const {
     const double rounding = then.gap_rounding(half, f.sample, site, path.q);
     const double own_step = sink_step(limits_.touch, rounding);
     const double above = f.gap - then.nominal_level(then.now_, half, f.sample, site, path.q);
-    if (!(above < own_step) || above < -kStartOverlap * limits_.tolerance) return;
+    if (!(above < own_step) || above < -kOverlapAtStart * limits_.tolerance) return;
     now = now || (above <= 0.0 && then.approaching(f, path));
     const PathBounds bounds = path_bounds(path, half.s_is_a ? at_once : at_once.swapped(), 0.0);
     const double hollow =

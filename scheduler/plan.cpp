@@ -6,6 +6,7 @@
 
 #include "brink/scheduler/closed_forms.h"
 #include "brink/scheduler/kernel.h"
+#include "brink/scheduler/pair_kinematics.h"
 
 namespace brink {
 
@@ -34,14 +35,27 @@ Plan Kernel::plan() const {
       fmt::format("motion: {} of {} bodies ballistic in closed form, {} component(s) with an integrator, {}",
                   ballistic, bodies_.size(), components_.size(), options_.integrator));
 
-  std::uint64_t closed = 0, pairs = 0;
-  for (int a = 0; a < body_count(); ++a)
-    for (int b = a + 1; b < owner_count(); ++b) {
-      const PairKey pair = *pair_of(a, b);
-      ++pairs;
-      closed += is_ballistic(a) && (b >= body_count() || is_ballistic(b)) &&
-                has_closed_form(mover(pair.body), other_mover(pair));
-    }
+  const auto mover_of = [&](int owner) {
+    return owner < body_count() ? mover(owner) : site_mover(owner - body_count());
+  };
+  std::vector<int> discs;  // one of the two is a disc wherever a pair has a closed form
+  for (int k = 0; k < owner_count(); ++k)
+    if (is_centred_disc(outline_of(k)) && (k >= body_count() || is_ballistic(k)) &&
+        has_closed_form(mover_of(k), mover_of(k)))
+      discs.push_back(k);
+  std::uint64_t disc_bodies = 0, partners = 0, disc_sites = 0,
+                site_partners = 0;  // partners: of discs, no discs
+  for (int k = 0; k < owner_count() && !discs.empty(); ++k) {
+    const bool is_site = k >= body_count();
+    if (!(is_site || is_ballistic(k)) || !has_closed_form(mover_of(k), mover_of(discs.front()))) continue;
+    if (is_centred_disc(outline_of(k)))
+      ++(is_site ? disc_sites : disc_bodies);
+    else
+      ++(is_site ? site_partners : partners);
+  }
+  const std::uint64_t n = bodies_.size(), pairs = n * (n - (n > 0)) / 2 + n * sites_.size();
+  const std::uint64_t closed = disc_bodies * (disc_bodies - (disc_bodies > 0)) / 2 +
+                               disc_bodies * (partners + disc_sites + site_partners) + partners * disc_sites;
   lines.push_back(
       switched(options_.skip_closed_forms, "solver.skip_closed_forms",
                fmt::format("pairs: {} of {} have a first contact in closed form", closed, pairs)));

@@ -42,11 +42,18 @@ struct RunSummary {
   Vec2 momentum = Vec2::Zero();                     ///< at the end [kg m/s]
   double angular_momentum = 0.0;                    ///< about the world's origin, at the end [kg m^2/s]
   double max_overlap = 0.0;  ///< deepest gap below zero met at any event or frame [m], >= 0
+  /// Groups of contacts that no law could part without a loss that their materials do not have: taken
+  /// together with restitution 0, which took so much energy [J].
+  std::uint64_t groups_taken = 0;
+  double energy_taken = 0.0;
+  std::string first_taken;  ///< the first of them: its bodies and time
   std::uint64_t state_hash = 0;
   WorkCounters work;
 
   /// The run file's word: "reached_end", "stopped", "failed: why".
   std::string termination_text() const;
+  /// True if the asked time was reached, and nothing on the way was other than the scene says.
+  bool sound() const { return termination == Termination::reached_end && groups_taken == 0; }
 };
 
 /// Receives frames, events and checkpoints in time order. Calls come from the thread that runs the simulator.

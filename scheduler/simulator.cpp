@@ -63,6 +63,11 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
   summary.momentum = momentum.linear;
   summary.angular_momentum = momentum.angular;
   summary.max_overlap = kernel.max_overlap();
+  if (const TakenGroups& taken = kernel.taken(); taken.count > 0) {
+    summary.groups_taken = taken.count;
+    summary.energy_taken = taken.energy;
+    summary.first_taken = fmt::format("{} at t = {:.15g} s", kernel.name_of(taken.first), taken.time);
+  }
   summary.state_hash = state_hash();
   summary.work = kernel.work();
   summary.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -88,7 +93,7 @@ std::string Simulator::start_fault() const {
   return why;
 }
 
-std::vector<Contact> Simulator::overlaps() const { return impl_->kernel.overlaps(); }
+std::vector<Contact> Simulator::overlaps(std::size_t most) const { return impl_->kernel.overlaps(most); }
 Plan Simulator::plan() const { return impl_->kernel.plan(); }
 std::vector<std::byte> Simulator::snapshot() const { return impl_->kernel.snapshot(); }
 void Simulator::restore(std::span<const std::byte> snapshot) { impl_->kernel.restore(snapshot); }

@@ -55,10 +55,11 @@ class Simulator {
   std::uint64_t state_hash() const;
 
   /// Why a run cannot start from the present state: bodies overlap by more than 1e-6 of the scene's length
-  /// (the deepest pair is named). Empty if it can.
+  /// (the deepest pair of the first thousand found is named). Empty if it can.
   std::string start_fault() const;
-  /// Overlaps at the present time, deepest first: contacts with gap < 0.
-  std::vector<Contact> overlaps() const;
+  /// Overlaps at the present time, deepest first: contacts with gap < 0. The search ends when `most` are
+  /// found, as all bodies may be in one place.
+  std::vector<Contact> overlaps(std::size_t most = 1000) const;
   Plan plan() const;
 
   /// Everything needed to go on with the same bits.

@@ -40,21 +40,43 @@ SiteMotion::SiteMotion(const FixedSite& site) {
         [base, f = *formula](double t) -> Eigen::Vector3d {
           return base + Eigen::Vector3d(value(f.x, t), value(f.y, t), value(f.angle, t));
         },
+        [base, f = *formula](int i, double from, double to, bool with_derivatives) {
+          const std::optional<Formula>& part = i == 0 ? f.x : (i == 1 ? f.y : f.angle);
+          TimeBound b = part ? part->time_bound(0, from, to, with_derivatives) : TimeBound();
+          b.low += base[i];
+          b.high += base[i];
+          return b;
+        },
         description(site, *formula));
-    const std::string why = extend(0.0);
-    if (!why.empty()) throw BadInput(why);
+    if (const Extent extent = extend(0.0); extent.status != Extent::Status::reached)
+      throw BadInput(extent.why);
   }
 }
 
 SiteMotion::~SiteMotion() = default;
 SiteMotion::SiteMotion(SiteMotion&&) noexcept = default;
 
-std::string SiteMotion::extend(double t) {
-  if (!prescribed_) return {};
-  const Extent extent = prescribed_->extend(t);
-  if (extent.status != Extent::Status::reached) return extent.why;
-  motion_ = prescribed_->motion();
-  return {};
+Pose told_pose(const FixedSite& site, double t) {
+  Pose pose = site.pose;
+  if (const auto* constant = std::get_if<ConstantMotion>(&site.motion)) {
+    pose.position += t * constant->twist.velocity;
+    pose.angle += t * constant->twist.omega;
+  } else if (const auto* formula = std::get_if<FormulaMotion>(&site.motion)) {
+    pose.position += Vec2(value(formula->x, t), value(formula->y, t));
+    pose.angle += value(formula->angle, t);
+  }
+  return pose;
+}
+
+Extent SiteMotion::extend(double t, std::uint64_t most_cells) {
+  if (!prescribed_) return {Extent::Status::reached, t, {}};
+  const Extent extent = prescribed_->extend(t, most_cells);
+  if (prescribed_->begun()) motion_ = prescribed_->motion();
+  return extent;
+}
+
+void SiteMotion::forget_before(double t) {
+  if (prescribed_) prescribed_->forget_before(t);
 }
 
 }  // namespace brink

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "brink/core/world/world.h"
-#include "brink/integrators/motion.h"
+#include "brink/integrators/integrator.h"
 
 namespace brink {
 
@@ -22,13 +22,21 @@ class SiteMotion {
   const Motion& motion() const { return motion_; }
   /// True if it moves at all.
   bool moves() const { return moves_; }
-  /// Covers [0, t]. Empty, or why it cannot.
-  std::string extend(double t);
+  /// True if it is given by formulas: its motion is made as it is asked for. All others reach for ever.
+  bool is_prescribed() const { return prescribed_ != nullptr; }
+  /// Goes on towards t by `most_cells` cells of the fit at most.
+  Extent extend(double t, std::uint64_t most_cells = std::numeric_limits<std::uint64_t>::max());
+  /// Nobody will ask for a time before t any more.
+  void forget_before(double t);
 
  private:
   Motion motion_;
   bool moves_ = false;
   std::unique_ptr<PrescribedMotion> prescribed_;
 };
+
+/// Where a fixed site is told to be at time t: its formulas themselves, without a motion made of them (within
+/// rounding the same place, at the cost of one evaluation). May be inf or NaN where a formula is.
+Pose told_pose(const FixedSite& site, double t);
 
 }  // namespace brink

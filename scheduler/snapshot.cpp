@@ -3,24 +3,27 @@
 /// Every motion is kept as what it was started from (time and states of its component); restoring starts the
 /// integrators there again and lets them run on, which gives the same pieces, since their steps depend on
 /// their own history alone.
+#include <cmath>
 #include <cstring>
 
 #include "brink/core/base/error.h"
 #include "brink/core/base/hash.h"
+#include "brink/core/world/world_hash.h"
 #include "brink/scheduler/kernel.h"
 
 namespace brink {
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x314b4e4952420005ULL;  // "\5\0BRINK1"
+constexpr std::uint64_t kMagic = 0x314b4e4952420006ULL;  // "\6\0BRINK1"
 
 class Writer {
  public:
   template <class T>
   void put(const T& value) {
-    const auto* bytes = reinterpret_cast<const std::byte*>(&value);
-    bytes_.insert(bytes_.end(), bytes, bytes + sizeof(T));
+    const std::size_t place = bytes_.size();
+    bytes_.resize(place + sizeof(T));
+    std::memcpy(bytes_.data() + place, &value, sizeof(T));
   }
   std::vector<std::byte> take() { return std::move(bytes_); }
 
@@ -43,24 +46,20 @@ class Reader {
   std::span<const std::byte> bytes_;
 };
 
-/// What a snapshot must agree on with the world it is restored into.
+/// What a snapshot must agree on with the world it is restored into: everything that decides the motion.
 std::uint64_t fingerprint(const World& world, const SolverOptions& options) {
   StateHash hash;
-  hash.add(static_cast<std::uint64_t>(world.bodies.size()));
-  hash.add(static_cast<std::uint64_t>(world.sites.size()));
-  for (const Body& b : world.bodies) {
-    hash.add(b.mass);
-    hash.add(b.inertia);
-    hash.add(b.initial);
-    hash.add(static_cast<std::uint64_t>(b.outline->sites.size()));
+  hash.add(world_hash(world));
+  for (const std::string* word :
+       {&options.policy, &options.integrator, &options.order, &options.response, &options.detector}) {
+    hash.add(static_cast<std::uint64_t>(word->size()));
+    for (const char c : *word) hash.add(static_cast<std::uint64_t>(c));
   }
-  hash.add(world.gravity);
-  for (const char c : options.policy + options.integrator + options.order + options.response)
-    hash.add(static_cast<std::uint64_t>(c));
   hash.add(options.tolerance);
   hash.add(options.absolute_tolerance);
   hash.add(options.step);
   hash.add(options.contact_tolerance);
+  hash.add(options.seed);
   return hash.value();
 }
 
@@ -81,6 +80,7 @@ class SnapshotCodec {
     each(k.last_event_);
     each(k.instant_);
     each(k.in_instant_);
+    each(k.taken_);
   }
 };
 
@@ -106,12 +106,24 @@ std::vector<std::byte> Kernel::snapshot() const {
     out.put(c.started);
     for (const BodyState& s : c.start_states) out.put(s);
   }
+  const std::vector<int> in_instant = bodies_in_instant_.list();
+  out.put(bodies_in_instant_.often());
+  out.put(static_cast<std::uint64_t>(in_instant.size()));
+  for (const int k : in_instant) out.put(k);
   out.put(static_cast<std::uint64_t>(zeno_.bounces().size()));
-  for (const auto& [pair, bounce] : zeno_.bounces()) {
-    out.put(pair);
+  for (const auto& [feature, bounce] : zeno_.bounces()) {
+    out.put(feature);
     out.put(bounce);
   }
   return out.take();
+}
+
+/// From its start to the present time.
+void Kernel::integrate_again(Coupled& c) {
+  while (follow(c, time_) < time_) {
+    if (std::isfinite(c.failure.time)) throw BadInput("snapshot: " + c.failure.why);
+    c.integrator->forget_before(time_);
+  }
 }
 
 void Kernel::restore(std::span<const std::byte> bytes) {
@@ -146,14 +158,23 @@ void Kernel::restore(std::span<const std::byte> bytes) {
   for (Coupled& c : components_) {
     in.get(c.started);
     for (BodyState& s : c.start_states) in.get(s);
-    c.integrator->start(c.started, c.start_states);
-    cover(c, time_);
+    start_component(c, c.started, std::vector<BodyState>(c.start_states));
+    integrate_again(c);
   }
-  std::uint64_t pairs = 0;
-  in.get(pairs);
-  std::map<PairKey, ZenoWatch::Bounce> bounces;
-  for (std::uint64_t i = 0; i < pairs; ++i) {
-    PairKey key;
+  bool often = false;
+  std::uint64_t bodies = 0, features = 0;
+  in.get(often);
+  in.get(bodies);
+  std::vector<int> in_instant;
+  for (std::uint64_t i = 0; i < bodies; ++i) {
+    in_instant.emplace_back();
+    in.get(in_instant.back());
+  }
+  bodies_in_instant_.restore(in_instant, often);
+  in.get(features);
+  ZenoWatch::Bounces bounces;
+  for (std::uint64_t i = 0; i < features; ++i) {
+    ZenoWatch::Feature key;
     ZenoWatch::Bounce bounce;
     in.get(key);
     in.get(bounce);
@@ -161,8 +182,12 @@ void Kernel::restore(std::span<const std::byte> bytes) {
   }
   if (!in.done()) throw BadInput("snapshot: bytes left over");
   zeno_.restore(std::move(bounces));
-  for (SiteMotion& s : sites_)
-    if (const std::string why = s.extend(time_); !why.empty()) throw BadInput(why);
+  for (SiteMotion& s : sites_) {
+    Extent extent = s.extend(time_, instalment());
+    for (; extent.status == Extent::Status::unfinished; extent = s.extend(time_, instalment()))
+      s.forget_before(time_);
+    if (extent.end < time_) throw BadInput(extent.why);
+  }
   work_ = counted;
   if (watched_) watched_->clear();
   ++revision_;

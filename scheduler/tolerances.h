@@ -31,7 +31,7 @@ inline constexpr double kTouchOfTolerance = 1e-3;
 
 /// Outlines may overlap by so many contact tolerances where they start; what is deeper is refused, or not the
 /// start of this pair.
-inline constexpr double kStartOverlap = 1e4;
+inline constexpr double kOverlapAtStart = 1e4;
 
 /// Bound on the rounding of a value that has moved from `start` to `now` along start + s (rate + s / 2 accel),
 /// in arithmetic of unit roundoff u: three roundings of the way, one of the sum. None of what stands still and

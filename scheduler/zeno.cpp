@@ -4,10 +4,21 @@
 
 namespace brink {
 
-std::optional<ZenoEnding> ZenoWatch::collided(const PairKey& pair, double time, double closing_speed,
-                                              double rest) {
-  if (0.25 * closing_speed * rest > kHighFlight * tolerance_) return std::nullopt;
-  Bounce& b = bounces_[pair];
+namespace {
+
+/// A flight that rose above the tolerance: the run is over.
+void end_run(ZenoWatch::Bounce& b) {
+  b.low_flights = 0;
+  b.limit_time = 0.0;
+  b.shortest = std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+std::optional<ZenoEnding> ZenoWatch::collided(const Feature& feature, double time, double closing_speed,
+                                              BounceLoss loss, double rest) {
+  if (loss == BounceLoss::none || 0.25 * closing_speed * rest > kHighFlight * tolerance_) return std::nullopt;
+  Bounce& b = bounces_[feature];
   const bool first = b.count++ == 0;
   const double interval = time - b.last_time;
   b.last_time = time;
@@ -15,10 +26,17 @@ std::optional<ZenoEnding> ZenoWatch::collided(const PairKey& pair, double time, 
     return std::nullopt;  // further impacts of one instant say nothing about flights
   const double ratio = b.last_interval > 0.0 ? interval / b.last_interval : 1.0;
   b.last_interval = interval;
-  b.low_flights = 0.25 * closing_speed * interval < tolerance_ ? b.low_flights + 1 : 0;
-  if (b.low_flights == 1) b.limit_time = ratio < 1.0 ? time + interval * ratio / (1.0 - ratio) : time;
+  if (0.25 * closing_speed * interval >= tolerance_) {
+    end_run(b);
+    return std::nullopt;
+  }
+  if (b.limit_time == 0.0 && loss != BounceLoss::all && ratio < 1.0 - kAlike)
+    b.limit_time = time + interval * ratio / (1.0 - ratio);
+  const bool pressed = loss == BounceLoss::all || (rest >= interval && ratio <= 1.0 + kAlike);
+  if (interval < b.shortest || pressed) ++b.low_flights;
+  b.shortest = std::min(b.shortest, interval);
   if (b.low_flights < kLowFlights) return std::nullopt;
-  return ZenoEnding{pair, std::max(b.limit_time, time), b.count};
+  return ZenoEnding{feature.pair, std::max(b.limit_time, time), b.count};
 }
 
 }  // namespace brink

@@ -28,6 +28,14 @@ class Dynamics {
     return std::numeric_limits<double>::infinity();
   }
 
+  /// A time > t up to which the right-hand side is certain to change evenly with the time itself, as far as
+  /// that is known: adaptive integrators step no farther, so that nothing short is stepped over. Infinity
+  /// where it does not depend on the time between breaks. A function of t alone.
+  virtual double steady_until(double t) const {
+    (void)t;
+    return std::numeric_limits<double>::infinity();
+  }
+
   /// True if, between breaks, accelerations do not depend on the states or on time (uniform gravity, a
   /// constant thrust): motion is then a parabola in closed form.
   virtual bool constant() const { return false; }

@@ -2,6 +2,7 @@
 /// A plane that repeats: every place stands for all its images, whole periods away. Coordinates are never
 /// wrapped; who meets whom is told with the image of the one that the other meets.
 
+#include <algorithm>
 #include <cmath>
 #include <compare>
 
@@ -40,6 +41,8 @@ struct Periods {
       for (int i = right.first; i <= right.last; ++i) visit(Image{i, j});
   }
 
+  static constexpr double kFarthest = 1e9;  ///< periods from the origin [1]: images beyond have no number
+
  private:
   struct Span {
     int first, last;
@@ -47,9 +50,10 @@ struct Periods {
   /// Of images along one axis.
   Span span(const Box& a, const Box& b, int axis) const {
     const double least = a.low[axis] - b.high[axis], most = a.high[axis] - b.low[axis];
-    if (size[axis] > 0.0)
-      return {static_cast<int>(std::ceil(least / size[axis])),
-              static_cast<int>(std::floor(most / size[axis]))};
+    const auto whole = [](double periods) {
+      return static_cast<int>(std::clamp(periods, -kFarthest, kFarthest));
+    };
+    if (size[axis] > 0.0) return {whole(std::ceil(least / size[axis])), whole(std::floor(most / size[axis]))};
     return least <= 0.0 && most >= 0.0 ? Span{0, 0} : Span{0, -1};
   }
 };

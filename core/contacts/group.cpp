@@ -55,12 +55,24 @@ class Group {
     if (a.other >= 0 && b.other >= 0) sum += shared(a.other, a.other_arm, u, b.other, b.other_arm, v);
     return sum;
   }
-  RealMatrix normal_mobilities(const std::vector<int>& set) const {
+  /// Of the contacts of `set`: entries only where two of them share a body that can move.
+  SparseRealMatrix normal_mobilities(const std::vector<int>& set) const {
     const auto n = static_cast<int>(set.size());
-    RealMatrix A(n, n);
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j <= i; ++j)
-        A(i, j) = A(j, i) = mobility(set[i], contacts_[set[i]].normal, set[j], contacts_[set[j]].normal);
+    std::vector<std::vector<int>> at(bodies_.size());
+    std::vector<Eigen::Triplet<Real>> entries;
+    for (int i = 0; i < n; ++i) {
+      std::vector<int> sharing{i};
+      for (const int body : {contacts_[set[i]].body, contacts_[set[i]].other}) {
+        if (body < 0) continue;
+        sharing.insert(sharing.end(), at[body].begin(), at[body].end());
+        at[body].push_back(i);
+      }
+      std::sort(sharing.begin(), sharing.end());
+      sharing.erase(std::unique(sharing.begin(), sharing.end()), sharing.end());
+      for (const int j : sharing) add_mobility(set, i, j, entries);
+    }
+    SparseRealMatrix A(n, n);
+    A.setFromTriplets(entries.begin(), entries.end());
     return A;
   }
 
@@ -72,6 +84,13 @@ class Group {
   void push_normal(int k, Real impulse) { push(k, impulse * contacts_[k].normal); }
 
  private:
+  void add_mobility(const std::vector<int>& set, int i, int j,
+                    std::vector<Eigen::Triplet<Real>>& entries) const {
+    const Real m = mobility(set[i], contacts_[set[i]].normal, set[j], contacts_[set[j]].normal);
+    if (m == 0) return;
+    entries.emplace_back(i, j, m);
+    if (i != j) entries.emplace_back(j, i, m);
+  }
   Real shared(int a, const RealVec& arm_a, const RealVec& u, int b, const RealVec& arm_b,
               const RealVec& v) const {
     if (a != b) return 0;
@@ -100,20 +119,31 @@ std::vector<int> movable(const Group& group, const std::vector<GroupContact>& co
   return set;
 }
 
-/// Impulses at the contacts of `set`, one an entry, so that v' + target >= 0; empty where there are none.
-RealVector impulses(const Group& group, const std::vector<int>& set, const RealVector& target) {
+/// Impulses at the contacts of `set`, one an entry, so that v' + target >= 0.
+LcpAnswer impulses(const Group& group, const std::vector<int>& set, const RealVector& target,
+                   const GoOn& go_on) {
   RealVector q(target.size());
   for (std::size_t k = 0; k < set.size(); ++k) {
     q[k] = group.normal_velocity(set[k]) + target[k];
     if (std::abs(q[k]) <= group.rounding()) q[k] = 0;
   }
-  const LcpAnswer answer = solve_lcp(group.normal_mobilities(set), q);
-  return answer.status == LcpAnswer::Status::solved ? answer.z : RealVector();
+  return solve_lcp(group.normal_mobilities(set), q, go_on);
 }
 
-GroupResult jammed(const Group& group) {
+GroupResult::Status status_of(const LcpAnswer& answer) {
+  switch (answer.status) {
+    case LcpAnswer::Status::solved:
+      return GroupResult::Status::resolved;
+    case LcpAnswer::Status::stopped:
+      return GroupResult::Status::stopped;
+    default:
+      return GroupResult::Status::jam;
+  }
+}
+
+GroupResult unresolved(const Group& group, GroupResult::Status status) {
   GroupResult result;
-  result.status = GroupResult::Status::jam;
+  result.status = status;
   result.twists = group.twists();
   result.normal.assign(group.size(), 0);
   result.tangential.assign(group.size(), 0);
@@ -149,97 +179,123 @@ void add_friction(Group& group, const std::vector<GroupContact>& contacts, Group
   }
 }
 
-/// Gives the impulses of `set` to a fresh group, then friction.
-GroupResult given(Group group, const std::vector<GroupContact>& contacts, const std::vector<int>& set,
-                  const RealVector& normal) {
-  GroupResult result;
-  result.normal.assign(contacts.size(), 0);
-  for (std::size_t k = 0; k < set.size(); ++k) {
-    result.normal[set[k]] = normal[k];
-    group.push_normal(set[k], normal[k]);
-  }
-  add_friction(group, contacts, result);
-  result.twists = group.twists();
-  return result;
-}
-
 /// The work of normal impulses [J], by the mean velocity at each contact before and after.
-Real work_of(const Group& before, const std::vector<int>& set, const RealVector& normal) {
-  Group after = before;
-  for (std::size_t k = 0; k < set.size(); ++k) after.push_normal(set[k], normal[k]);
+Real work_of(const Group& before, const Group& after, const std::vector<int>& set, const RealVector& normal) {
   Real work = 0;
   for (std::size_t k = 0; k < set.size(); ++k)
     work += normal[k] * (before.normal_velocity(set[k]) + after.normal_velocity(set[k])) / 2;
   return work;
 }
 
+Group pushed(Group group, const std::vector<int>& set, const RealVector& normal) {
+  for (std::size_t k = 0; k < set.size(); ++k) group.push_normal(set[k], normal[k]);
+  return group;
+}
+
+/// Gives the impulses of `set` to a fresh group, then friction.
+GroupResult given(const Group& group, const std::vector<GroupContact>& contacts, const std::vector<int>& set,
+                  const RealVector& normal) {
+  GroupResult result;
+  result.normal.assign(contacts.size(), 0);
+  for (std::size_t k = 0; k < set.size(); ++k) result.normal[set[k]] = normal[k];
+  Group after = pushed(group, set, normal);
+  result.lost = -work_of(group, after, set, normal);
+  add_friction(after, contacts, result);
+  result.twists = after.twists();
+  return result;
+}
+
+bool approaches(const Group& group, int k) { return group.normal_velocity(k) < -group.rounding(); }
+
 constexpr int kMostReflections = 10000;
 
-/// Reflects until nothing approaches; adds the impulses to `normal`. False if the cap was met or something
-/// jams.
-bool reflect(Group& group, const std::vector<int>& set, RealVector& normal, int& reflections) {
+/// Reflects until nothing approaches, or kMostReflections times; adds the impulses to `normal`.
+LcpAnswer::Status reflect(Group& group, const std::vector<int>& set, RealVector& normal, int& reflections,
+                          const GoOn& go_on) {
   for (; reflections < kMostReflections; ++reflections) {
     std::vector<int> approaching, place;
     for (std::size_t k = 0; k < set.size(); ++k)
-      if (group.normal_velocity(set[k]) < -group.rounding()) {
+      if (approaches(group, set[k])) {
         approaching.push_back(set[k]);
         place.push_back(static_cast<int>(k));
       }
-    if (approaching.empty()) return true;
+    if (approaching.empty()) return LcpAnswer::Status::solved;
     const auto n = static_cast<Eigen::Index>(approaching.size());
-    const RealVector stop = impulses(group, approaching, RealVector::Zero(n));
-    if (stop.size() == 0) return false;
+    const LcpAnswer stop = impulses(group, approaching, RealVector::Zero(n), go_on);
+    if (stop.status != LcpAnswer::Status::solved) return stop.status;
     for (Eigen::Index k = 0; k < n; ++k) {
-      group.push_normal(approaching[k], 2 * stop[k]);
-      normal[place[k]] += 2 * stop[k];
+      group.push_normal(approaching[k], 2 * stop.z[k]);
+      normal[place[k]] += 2 * stop.z[k];
     }
   }
-  return false;
+  return LcpAnswer::Status::capped;
+}
+
+/// Of a group that reflects without end: Newton's law at all contacts if it leaves nothing approaching, else
+/// the inelastic law.
+GroupResult without_end(const Group& group, const std::vector<GroupBody>& bodies,
+                        const std::vector<GroupContact>& contacts, const std::vector<int>& set,
+                        const GoOn& go_on) {
+  GroupResult together = resolve_together(bodies, contacts, go_on);
+  if (together.status == GroupResult::Status::stopped) return together;
+  if (together.status == GroupResult::Status::resolved) {
+    RealVector normal(static_cast<Eigen::Index>(set.size()));
+    for (std::size_t k = 0; k < set.size(); ++k) normal[k] = together.normal[set[k]];
+    const Group after = pushed(group, set, normal);
+    if (std::none_of(set.begin(), set.end(), [&](int k) { return approaches(after, k); })) return together;
+  }
+  const LcpAnswer stop = impulses(group, set, RealVector::Zero(static_cast<Eigen::Index>(set.size())), go_on);
+  if (stop.status != LcpAnswer::Status::solved) return unresolved(group, status_of(stop));
+  GroupResult result = given(group, contacts, set, stop.z);
+  result.status = GroupResult::Status::endless;
+  return result;
 }
 
 }  // namespace
 
-GroupResult resolve_together(const std::vector<GroupBody>& bodies,
-                             const std::vector<GroupContact>& contacts) {
+GroupResult resolve_together(const std::vector<GroupBody>& bodies, const std::vector<GroupContact>& contacts,
+                             const GoOn& go_on) {
   const Group group(bodies, contacts);
   const std::vector<int> set = movable(group, contacts);
-  if (has_jam(group, set)) return jammed(group);
+  if (has_jam(group, set)) return unresolved(group, GroupResult::Status::jam);
   const auto newton = [&](auto restitution) {
     RealVector target(static_cast<Eigen::Index>(set.size()));
     for (std::size_t k = 0; k < set.size(); ++k)
       target[k] = restitution(set[k]) * group.normal_velocity(set[k]);
-    return impulses(group, set, target);
+    return impulses(group, set, target, go_on);
   };
-  RealVector normal = newton([&](int k) { return static_cast<Real>(contacts[k].material.restitution); });
-  const Real scale = normal.size() > 0 ? normal.sum() * group.rounding() : Real(0);
-  if (normal.size() > 0 && work_of(group, set, normal) > scale) {
+  LcpAnswer found = newton([&](int k) { return static_cast<Real>(contacts[k].material.restitution); });
+  const auto solved = [&] { return found.status == LcpAnswer::Status::solved; };
+  if (solved() &&
+      work_of(group, pushed(group, set, found.z), set, found.z) > found.z.sum() * group.rounding()) {
     const Real least = least_restitution(contacts);
-    normal = newton([&](int) { return least; });
+    found = newton([&](int) { return least; });
   }
-  return normal.size() == 0 && !set.empty() ? jammed(group) : given(group, contacts, set, normal);
+  return solved() ? given(group, contacts, set, found.z) : unresolved(group, status_of(found));
 }
 
 GroupResult resolve_reflections(const std::vector<GroupBody>& bodies,
-                                const std::vector<GroupContact>& contacts) {
+                                const std::vector<GroupContact>& contacts, const GoOn& go_on) {
   const Group group(bodies, contacts);
   const std::vector<int> set = movable(group, contacts);
-  if (has_jam(group, set)) return jammed(group);
+  if (has_jam(group, set)) return unresolved(group, GroupResult::Status::jam);
   const auto n = static_cast<Eigen::Index>(set.size());
   const Real e = least_restitution(contacts);
-  const RealVector inelastic = e < 1 ? impulses(group, set, RealVector::Zero(n)) : RealVector::Zero(n);
-  if (inelastic.size() != n) return jammed(group);
+  LcpAnswer inelastic{LcpAnswer::Status::solved, RealVector::Zero(n), 0};
+  if (e < 1) inelastic = impulses(group, set, RealVector::Zero(n), go_on);
+  if (inelastic.status != LcpAnswer::Status::solved) return unresolved(group, status_of(inelastic));
   RealVector elastic = RealVector::Zero(n);
   Group mirrored = group;
   int reflections = 0;
-  if (e > 0 && !reflect(mirrored, set, elastic, reflections)) {
-    const RealVector stop = impulses(group, set, RealVector::Zero(n));
-    if (reflections < kMostReflections || stop.size() != n) return jammed(group);
-    GroupResult result = given(group, contacts, set, stop);
-    result.status = GroupResult::Status::endless;
-    result.reflections = reflections;
-    return result;
+  if (e > 0) {
+    const LcpAnswer::Status status = reflect(mirrored, set, elastic, reflections, go_on);
+    if (status == LcpAnswer::Status::stopped) return unresolved(group, GroupResult::Status::stopped);
+    if (status != LcpAnswer::Status::solved && reflections < kMostReflections)
+      return unresolved(group, GroupResult::Status::jam);
   }
-  GroupResult result = given(group, contacts, set, e * elastic + (1 - e) * inelastic);
+  GroupResult result = reflections < kMostReflections
+                           ? given(group, contacts, set, e * elastic + (1 - e) * inelastic.z)
+                           : without_end(group, bodies, contacts, set, go_on);
   result.reflections = reflections;
   return result;
 }

@@ -97,12 +97,19 @@ class Tableau {
 /// z0 below this is 0, where |q| <= 1.
 constexpr Real kRounding = 1e5 * kEpsilon;
 
-LcpAnswer lemke(const RealMatrix& A, const RealVector& q) {
+/// Below this many rows a dense tableau is as quick as anything.
+constexpr Eigen::Index kFewRows = 48;
+
+LcpAnswer lemke(const RealMatrix& A, const RealVector& q, const GoOn& go_on) {
   const int n = static_cast<int>(q.size()), most = 50 * n + 100;
   LcpAnswer answer;
   Tableau tableau(A, q);
   int entering = tableau.complement(tableau.begin());
   for (answer.pivots = 1; answer.pivots < most; ++answer.pivots) {
+    if (go_on && !go_on()) {
+      answer.status = LcpAnswer::Status::stopped;
+      return answer;
+    }
     const int row = tableau.leaving_row(entering);
     const bool ray = row < 0;
     const int left = ray ? tableau.z0() : tableau.pivot(row, entering);
@@ -122,15 +129,20 @@ LcpAnswer lemke(const RealMatrix& A, const RealVector& q) {
 
 }  // namespace
 
-LcpAnswer solve_lcp(const RealMatrix& A, const RealVector& q) {
+LcpAnswer solve_lcp_by_lemke(const RealMatrix& A, const RealVector& q, const GoOn& go_on) {
   if (q.size() == 0 || q.minCoeff() >= 0) return {LcpAnswer::Status::solved, RealVector::Zero(q.size()), 0};
   // scaled to a diagonal of ones and |q| <= 1
   const RealVector scale = A.diagonal().cwiseSqrt().cwiseInverse();
   const RealVector scaled_q = scale.cwiseProduct(q);
   const Real q_size = scaled_q.cwiseAbs().maxCoeff();
-  LcpAnswer answer = lemke(scale.asDiagonal() * A * scale.asDiagonal(), scaled_q / q_size);
+  LcpAnswer answer = lemke(scale.asDiagonal() * A * scale.asDiagonal(), scaled_q / q_size, go_on);
   if (answer.status == LcpAnswer::Status::solved) answer.z = q_size * scale.cwiseProduct(answer.z);
   return answer;
+}
+
+LcpAnswer solve_lcp(const SparseRealMatrix& A, const RealVector& q, const GoOn& go_on) {
+  return q.size() <= kFewRows ? solve_lcp_by_lemke(RealMatrix(A), q, go_on)
+                              : solve_lcp_by_active_set(A, q, go_on);
 }
 
 }  // namespace brink

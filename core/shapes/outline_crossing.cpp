@@ -30,6 +30,65 @@ std::vector<Segment> segments(const Outline& outline, const Pose& pose) {
   return all;
 }
 
+/// This part of a solid's size is looked below its edges.
+constexpr double kBelow = 1e-7;
+
+/// An outline where it stands.
+struct PlacedSolid {
+  const Outline& outline;
+  Pose pose;
+
+  /// > 0: that deep inside [m].
+  double depth_of(const Vec2& p) const { return -gap_by_brute_force(outline, Frame(pose).to_local(p)); }
+};
+
+bool is_sharp_solid(const Outline& o) {
+  return o.solid &&
+         std::all_of(o.sites.begin(), o.sites.end(), [](const Site& s) { return s.radius == 0.0; });
+}
+
+/// Fractions of s at which others' ends lie on it, and its own ends, ascending.
+std::vector<double> cuts(const Segment& s, const std::vector<Segment>& others, double tolerance) {
+  const Vec2 d = s.b - s.a;
+  const double length2 = d.squaredNorm();
+  std::vector<double> at{0.0, 1.0};
+  for (const Segment& t : others) {
+    const double along = d.dot(t.a - s.a) / length2;
+    if (along > 0.0 && along < 1.0 && (s.a + along * d - t.a).norm() <= tolerance) at.push_back(along);
+  }
+  std::sort(at.begin(), at.end());
+  return at;
+}
+
+/// The deepest place in both, going in from p along n by twice as much each time.
+OutlineCrossing look_below(const PlacedSolid& a, const PlacedSolid& b, const Vec2& p, const Vec2& n,
+                           double below) {
+  OutlineCrossing deepest;
+  for (;; below *= 2.0) {
+    const Vec2 q = p + below * n;
+    const double depth = std::min(a.depth_of(q), b.depth_of(q));
+    if (!(depth > deepest.depth)) return deepest;
+    deepest = {depth, q, -n};
+  }
+}
+
+/// The deepest place in both that is found below the edges of a.
+OutlineCrossing shared_below_edges(const PlacedSolid& a, const std::vector<Segment>& of_a,
+                                   const PlacedSolid& b, const std::vector<Segment>& of_b) {
+  const double size = std::min(a.outline.bounding_radius, b.outline.bounding_radius);
+  OutlineCrossing deepest;
+  for (const Segment& s : of_a) {
+    if ((s.b - s.a).isZero(0.0)) continue;
+    const std::vector<double> at = cuts(s, of_b, kBelow * size);
+    for (std::size_t k = 1; k < at.size(); ++k) {
+      const Vec2 middle = s.a + 0.5 * (at[k - 1] + at[k]) * (s.b - s.a);
+      const OutlineCrossing c = look_below(a, b, middle, perp((s.b - s.a).normalized()), kBelow * size);
+      if (c.depth > deepest.depth) deepest = c;
+    }
+  }
+  return deepest;
+}
+
 }  // namespace
 
 OutlineCrossing deepest_crossing(const Outline& a, const Pose& pose_a, const Outline& b, const Pose& pose_b) {
@@ -41,6 +100,14 @@ OutlineCrossing deepest_crossing(const Outline& a, const Pose& pose_a, const Out
       const double depth = reach_through(s, t, point);
       if (depth > deepest.depth) deepest = {depth, point, perp((t.b - t.a).normalized())};
     }
+  // edges that coincide may cross by a rounding
+  const bool is_clear = deepest.depth > kBelow * std::min(a.bounding_radius, b.bounding_radius);
+  if (is_clear || !is_sharp_solid(a) || !is_sharp_solid(b)) return deepest;
+  const PlacedSolid solid_a{a, pose_a}, solid_b{b, pose_b};
+  const OutlineCrossing below_a = shared_below_edges(solid_a, of_a, solid_b, of_b);
+  const OutlineCrossing below_b = shared_below_edges(solid_b, of_b, solid_a, of_a);
+  for (const OutlineCrossing& c : {below_a, below_b})
+    if (c.depth > deepest.depth) deepest = c;
   return deepest;
 }
 

@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
+
+#include "brink/core/world/steady.h"
 
 namespace brink {
 
@@ -29,6 +32,7 @@ class ForceDynamics final : public Dynamics {
   int size() const override { return static_cast<int>(bodies_.size()); }
   void accelerations(double t, std::span<const BodyState> states, std::span<Acceleration> out) const override;
   double next_break(double t) const override;
+  double steady_until(double t) const override;
   bool constant() const override {
     return springs_.empty() && drags_.empty() && attracts_.empty() && formulas_.empty();
   }
@@ -154,6 +158,15 @@ double ForceDynamics::next_break(double t) const {
     if (thrust->to > t) next = std::min(next, thrust->to);
   }
   return next;
+}
+
+double ForceDynamics::steady_until(double t) const {
+  double until = std::numeric_limits<double>::infinity();
+  for (const auto& [place, f] : formulas_)
+    for (const std::optional<Formula>* formula : {&f->fx, &f->fy, &f->torque})
+      for (int part = 0; *formula && part < (*formula)->time_parts(); ++part)
+        until = std::min(until, brink::steady_until(**formula, part, t));
+  return until;
 }
 
 /// One body, no spring, attractor or formula, and every drag linear. A held coordinate has no drive and, as

@@ -5,8 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <optional>
+#include <stdexcept>
 
 #include "brink/core/base/error.h"
+#include "brink/core/base/printable.h"
+#include "brink/core/world/formula_tree.h"
 
 namespace brink {
 
@@ -20,7 +24,7 @@ std::string joined(const std::vector<std::string>& names) {
 
 [[noreturn]] void fail(const std::string& text, int position, const std::string& what,
                        const std::vector<std::string>& variables) {
-  std::string message = "formula \"" + text + "\": ";
+  std::string message = "formula \"" + printable(text) + "\": ";
   if (position >= 0) message += "at character " + std::to_string(position + 1) + ": ";
   throw BadInput(message + what + "; allowed variables: " + joined(variables) + "; constants: pi, e");
 }
@@ -54,11 +58,14 @@ struct Formula::Compiled {
   std::vector<std::string> variables;
   std::vector<double> values;
   mu::Parser parser;
+  std::optional<FormulaTree> tree;
   std::mutex busy;  ///< the parser reads `values` where they are: one evaluation at a time
 
   Compiled(std::string formula, std::vector<std::string> names)
       : text(std::move(formula)), variables(std::move(names)), values(variables.size(), 0.0) {
     if (text.find_first_not_of(" \t\r\n") == std::string::npos) fail(text, -1, "is empty", variables);
+    if (const std::size_t nul = text.find('\0'); nul != std::string::npos)
+      fail(text, static_cast<int>(nul), "holds a NUL character", variables);
     const int assignment = find_assignment(text);
     if (assignment >= 0) fail(text, assignment, "\"=\" assigns; compare with \"==\"", variables);
     compile();
@@ -69,6 +76,13 @@ struct Formula::Compiled {
       parser.ClearConst();
       parser.DefineConst("pi", 3.14159265358979323846);
       parser.DefineConst("e", 2.71828182845904523536);
+      // its own lose all digits of asinh(-1e8)
+      parser.DefineFun(
+          "asinh", +[](double x) { return std::asinh(x); });
+      parser.DefineFun(
+          "acosh", +[](double x) { return std::acosh(x); });
+      parser.DefineFun(
+          "atanh", +[](double x) { return std::atanh(x); });
       for (std::size_t i = 0; i < variables.size(); ++i) parser.DefineVar(variables[i], &values[i]);
       parser.SetExpr(text);
       parser.Eval();
@@ -76,6 +90,11 @@ struct Formula::Compiled {
       fail(text, error.GetPos(), explain(error), variables);
     }
     if (parser.GetNumResults() != 1) fail(text, -1, "gives more than one value", variables);
+    try {
+      tree.emplace(text, variables);
+    } catch (const std::invalid_argument& error) {
+      fail(text, -1, std::string("cannot be bounded: ") + error.what(), variables);
+    }
   }
 };
 
@@ -100,6 +119,19 @@ double Formula::operator()(std::span<const double> values) const {
   } catch (const mu::Parser::exception_type&) {  // a domain error that muParser reports instead of NaN
     return std::nan("");
   }
+}
+
+int Formula::time_parts() const { return compiled_->tree->time_parts(); }
+
+bool Formula::depends_on_time() const { return compiled_->tree->depends_on_time(); }
+
+TimeBound Formula::time_bound(int part, double from, double to, bool with_derivatives) const {
+  const Taylor f = compiled_->tree->over(part, from, to, with_derivatives ? Taylor::kMostOrder : 0);
+  TimeBound bound{f.value().lower(), f.value().upper()};
+  if (!with_derivatives) return bound;
+  bound.second = 2.0 * boost::numeric::norm(f.c[2]);
+  bound.eleventh = boost::numeric::norm(f.c[11]);
+  return bound;
 }
 
 const std::string& Formula::text() const { return compiled_->text; }

@@ -111,6 +111,30 @@ void check_body(const World& world, const Body& body, std::size_t i) {
   check_sampling(check, body.sampling);
 }
 
+/// Images of one thing that may reach into one period: each is looked at where bodies are.
+constexpr double kMostImages = 1e4;
+
+void check_place_in_periods(const Periods& periods, const Checker& check, const Vec2& position) {
+  for (const int axis : {0, 1})
+    if (periods.size[axis] > 0.0)
+      check.require(std::abs(position[axis]) <= Periods::kFarthest * periods.size[axis], "position",
+                    position[axis], "in a periodic world up to 1e9 periods from the origin");
+}
+
+void check_site_in_periods(const Periods& periods, const Checker& check, const FixedSite& site) {
+  if (site.outline->container)
+    check.fail("is a container; allowed in a periodic world: sites of finite size");
+  const Box bounds = transformed(*site.outline, site.pose).bounds;
+  check_place_in_periods(periods, check, bounds.center());
+  const Vec2 extent = bounds.extent();
+  double images = 1.0;
+  for (const int axis : {0, 1})
+    if (periods.size[axis] > 0.0) images *= 1.0 + std::floor(extent[axis] / periods.size[axis]);
+  if (images > kMostImages)
+    check.fail("is " + text_of(extent.x()) + " m by " + text_of(extent.y()) + " m: it covers " +
+               text_of(images) + " periods; allowed: up to " + text_of(kMostImages));
+}
+
 void check_periods(const World& world) {
   for (const double period : world.periods.size)
     if (!(period >= 0.0) || !std::isfinite(period))
@@ -125,10 +149,11 @@ void check_periods(const World& world) {
           "is " + text_of(size) + " m across; allowed in a " + "periodic world: up to half a period, " +
           text_of(0.5 * least) + " m");
   }
+  for (std::size_t i = 0; i < world.bodies.size(); ++i)
+    check_place_in_periods(world.periods, Checker{called("body", i, world.bodies[i].name)},
+                           world.bodies[i].initial.pose.position);
   for (std::size_t i = 0; i < world.sites.size(); ++i)
-    if (world.sites[i].outline->container)
-      Checker{called("site", i, world.sites[i].name)}.fail(
-          "is a container; allowed in a periodic world: sites of finite size");
+    check_site_in_periods(world.periods, Checker{called("site", i, world.sites[i].name)}, world.sites[i]);
 }
 
 void check_motion(const Checker& check, const ConstantMotion& motion) {

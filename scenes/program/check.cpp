@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "brink/core/base/error.h"
+#include "brink/core/base/printable.h"
 #include "brink/core/fields/stencil_overlap.h"
 #include "brink/scenes/program/command.h"
 #include "brink/scenes/program/terminal.h"
@@ -26,7 +27,7 @@ void print_contents(const Scene& scene) {
   fmt::print("  {}, {}, {}, {} s\n", counted(w.bodies.size(), "body", "bodies"),
              counted(w.sites.size(), "fixed site", "fixed sites"),
              counted(w.forces.size(), "force", "forces"), scene.duration);
-  for (const std::string& note : scene.notes) fmt::print("  {}\n", note);
+  for (const std::string& note : scene.notes) fmt::print("  {}\n", printable(note));
 }
 
 std::string other_name(const World& world, const Contact& c) {
@@ -59,8 +60,8 @@ void print_overlaps(const Scene& scene, const std::vector<Contact>& overlaps) {
   for (std::size_t i = 0; i < std::min(overlaps.size(), kOverlapsShown); ++i) {
     const Contact& c = overlaps[i];
     fmt::print("  {} '{}' and '{}' by {:.3g} m{} at ({:.6g}, {:.6g})\n",
-               paint(stdout, Paint::bad, "warning:"), world.bodies[c.body].name, other_name(world, c), -c.gap,
-               area_text(scene, c), c.point.x(), c.point.y());
+               paint(stdout, Paint::bad, "warning:"), printable(world.bodies[c.body].name),
+               printable(other_name(world, c)), -c.gap, area_text(scene, c), c.point.x(), c.point.y());
   }
   if (overlaps.size() > kOverlapsShown) fmt::print("  and {} more\n", overlaps.size() - kOverlapsShown);
 }
@@ -70,7 +71,7 @@ void check(const std::string& file, const std::vector<std::string>& overrides) {
   const Simulator simulator(scene.world, scene.solver);
   print_contents(scene);
   heading("Plan");
-  for (const std::string& line : simulator.plan().lines) fmt::print("  {}\n", line);
+  for (const std::string& line : simulator.plan().lines) fmt::print("  {}\n", printable(line));
   print_overlaps(scene, simulator.overlaps());
 }
 

@@ -4,13 +4,11 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "brink/scenes/program/command.h"
-#include "brink/scenes/run_file.h"
+#include "brink/scenes/run_moment.h"
 #include "brink/scenes/scene.h"
+#include "brink/scenes/written_file.h"
 #include "brink/scheduler/simulator.h"
-#include "brink/scheduler/site_motion.h"
 
 namespace brink {
 namespace {
@@ -23,43 +21,16 @@ struct DrawArguments {
   std::vector<std::string> overrides;
 };
 
-/// A world at one moment.
-struct Moment {
-  double t = 0.0;
-  World world;
-  std::vector<BodyState> bodies;
-  std::vector<Pose> sites;
-  FieldOptions field;
-};
-
-BadInput bad_time(double given, double first, double last) {
-  return BadInput(fmt::format("--at: {} given; allowed: {} .. {} s", given, first, last));
-}
-
 /// The run file that `subject` names (the file, or the folder it is in), or an empty path.
 fs::path run_file_of(const fs::path& subject) {
   if (fs::is_directory(subject)) return subject / "run.db";
   return subject.extension() == ".db" ? subject : fs::path();
 }
 
-Moment moment_of_run(const fs::path& file, std::optional<double> at) {
-  const RunFile run(file);
-  const auto [first, last] = run.time_range();
-  const double t = at.value_or(last);
-  if (!(t >= first && t <= last)) throw bad_time(t, first, last);
-  Moment moment{t, run.world(), run.states_at(t).states, {}, {}};
-  for (const FixedSite& site : moment.world.sites) {
-    SiteMotion motion(site);
-    if (const std::string why = motion.extend(t); !why.empty()) throw BadInput(why);
-    moment.sites.push_back(motion.motion().pose(t));
-  }
-  return moment;
-}
-
-Moment moment_of_scene(const DrawArguments& arguments) {
-  const Scene scene = load_scene(arguments.subject, arguments.overrides);
+RunMoment moment_of_scene(const DrawArguments& arguments, const Scene& scene) {
   const double t = arguments.at.value_or(0.0);
-  if (!(t >= 0.0 && std::isfinite(t))) throw bad_time(t, 0.0, INFINITY);
+  if (!(t >= 0.0 && t <= kLongestRun))
+    throw BadInput(fmt::format("--at: {} given; allowed: 0 .. {} s", t, kLongestRun));
   Simulator simulator(scene.world, scene.solver);
   RunOptions options;
   options.until = t;
@@ -71,11 +42,18 @@ Moment moment_of_scene(const DrawArguments& arguments) {
                                  summary.why));
     }
   }
-  Moment moment{t, scene.world, simulator.states(), {}, scene.solver.field};
+  RunMoment moment{t, scene.world, simulator.states(), {}};
   for (std::size_t k = 0; k < scene.world.sites.size(); ++k) {
     moment.sites.push_back(simulator.site_pose(static_cast<int>(k)));
   }
   return moment;
+}
+
+RunMoment moment_of(const DrawArguments& arguments, const fs::path& run, FieldOptions& field) {
+  if (!run.empty()) return moment_of_run(run, arguments.at);
+  const Scene scene = load_scene(arguments.subject, arguments.overrides);
+  field = scene.solver.field;
+  return moment_of_scene(arguments, scene);
 }
 
 void draw(const DrawArguments& arguments) {
@@ -83,9 +61,9 @@ void draw(const DrawArguments& arguments) {
   options.layer = parse_layer(arguments.layer);
   options.size = parse_size(arguments.size);
   const fs::path run = run_file_of(arguments.subject);
-  const Moment moment = run.empty() ? moment_of_scene(arguments) : moment_of_run(run, arguments.at);
+  refuse_overwriting(arguments.out, "-o", {run.empty() ? fs::path(arguments.subject) : run});
+  const RunMoment moment = moment_of(arguments, run, options.field);
   options.time = moment.t;
-  options.field = moment.field;
   draw_png(arguments.out, moment.world, moment.bodies, moment.sites, options);
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "brink/core/base/error.h"
+#include "brink/core/base/printable.h"
 #include "brink/integrators/integrator.h"
 #include "brink/scenes/program/command.h"
 #include "brink/scenes/program/gallery.h"
@@ -57,7 +58,8 @@ Lines force_lines() {
 
 Lines scene_lines() {
   Lines lines;
-  for (const GalleryScene& scene : gallery_scenes()) lines.push_back({scene.path.string(), scene.title});
+  for (const GalleryScene& scene : gallery_scenes())
+    lines.push_back({printable(scene.path.string()), printable(scene.title)});
   return lines;
 }
 

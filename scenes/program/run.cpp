@@ -7,6 +7,7 @@
 #include <cmath>
 #include <csignal>
 
+#include "brink/core/base/printable.h"
 #include "brink/scenes/program/command.h"
 #include "brink/scenes/program/run_folder.h"
 #include "brink/scenes/program/terminal.h"
@@ -54,6 +55,12 @@ std::string change(double before, double after) {
   return scale > 0 ? fmt::format("{:.3g} of it", (after - before) / scale) : std::string("none");
 }
 
+/// What groups took that have no end under the restitution of their materials.
+std::string taken(const RunSummary& s) {
+  return fmt::format("{} without a rebound, as they do not end otherwise: {:.6g} J gone; the first {}",
+                     s.groups_taken, s.energy_taken, s.first_taken);
+}
+
 /// What the policy did and what of it was in vain.
 void print_work(const WorkCounters& w) {
   fmt::print("  work             {} passes, {} searches, {} distance queries, {} queue operations\n",
@@ -73,16 +80,17 @@ void print_summary(const Scene& scene, const RunReport& report) {
   fmt::print("  momentum         ({:.6g}, {:.6g}) kg m/s, angular {:.6g} kg m^2/s\n", s.momentum.x(),
              s.momentum.y(), s.angular_momentum);
   fmt::print("  deepest overlap  {:.3g} m\n", s.max_overlap);
+  if (s.groups_taken > 0) fmt::print("  groups taken     {}\n", paint(stdout, Paint::bad, taken(s)));
   fmt::print("  wall time        {:.3g} s\n", s.wall_seconds);
   print_work(s.work);
   fmt::print("  state hash       {:016x}\n", s.state_hash);
   if (report.resumed_from) fmt::print("  resumed from     t = {} s\n", *report.resumed_from);
-  fmt::print("  run file         {}\n", report.file.string());
+  fmt::print("  run file         {}\n", printable(report.file.string()));
 }
 
 void print_report(const RunArguments& arguments, const Scene& scene, const RunReport& report) {
   if (report.finished_before && !arguments.quiet && !arguments.json) {
-    fmt::print("{}: has already reached t = {} s; nothing to do\n", report.file.string(),
+    fmt::print("{}: has already reached t = {} s; nothing to do\n", printable(report.file.string()),
                report.summary.end_time);
   } else if (!arguments.quiet && !arguments.json) {
     print_summary(scene, report);
@@ -93,13 +101,13 @@ void print_report(const RunArguments& arguments, const Scene& scene, const RunRe
 int run(const RunArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const Scene scene = load_scene(arguments.scene, arguments.overrides);
-  stop_on_signals();
   RunRequest request;
   request.dir = arguments.out.empty() ? default_run_folder(scene.path, arguments.resume)
                                       : std::filesystem::path(arguments.out);
   request.until = arguments.until;
   request.trace = arguments.trace;
   request.resume = arguments.resume;
+  request.begins = stop_on_signals;  // a signal before that ends the program at once: nothing is lost
   request.load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   RunReport report;
   {
@@ -111,8 +119,10 @@ int run(const RunArguments& arguments) {
     report = run_scene(scene, request);
   }
   print_report(arguments, scene, report);
-  if (report.summary.termination == Termination::reached_end) return kDone;
+  if (report.summary.sound()) return kDone;
   if (arguments.quiet || arguments.json) fmt::print(stderr, "brink: {}\n", ending(report.summary));
+  if ((arguments.quiet || arguments.json) && report.summary.groups_taken > 0)
+    fmt::print(stderr, "brink: groups taken {}\n", taken(report.summary));
   return kEndedEarly;
 }
 

@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <csignal>
+#include <set>
 
 #include "brink/core/base/error.h"
+#include "brink/core/base/printable.h"
 #include "brink/scenes/program/command.h"
 #include "brink/scenes/program/terminal.h"
 #include "brink/scenes/sweep/plot.h"
+#include "brink/scenes/sweep/shell_word.h"
 #include "brink/scenes/sweep/sweep.h"
+#include "brink/scenes/written_file.h"
 
 namespace brink {
 namespace {
@@ -61,11 +65,19 @@ class Tally {
 
 void list_runs(const Experiment& experiment) {
   for (const SweepRun& run : experiment.runs) {
-    std::string line = "brink run " + run.scene.string();
-    for (const std::string& o : run.overrides) line += " --set '" + o + "'";
+    const std::string scene = run.scene.string();
+    std::string line = "brink run " + shell_word((scene.starts_with('-') ? "./" : "") + scene);
+    for (const std::string& o : run.overrides) line += " --set " + shell_word(o);
     if (experiment.until) line += fmt::format(" --until {}", *experiment.until);
     fmt::print("{}\n", line);
   }
+}
+
+/// The experiment and its scenes.
+std::vector<fs::path> files_read(const Experiment& experiment) {
+  std::set<fs::path> files{experiment.path};
+  for (const SweepRun& run : experiment.runs) files.insert(run.scene);
+  return {files.begin(), files.end()};
 }
 
 /// Tables, CSV and plot of what is done. Returns how many runs are not.
@@ -77,8 +89,8 @@ std::size_t report(const Experiment& experiment, SweepStore& store, const fs::pa
   fmt::print("{}\n{}", paint(stdout, Paint::heading, experiment.title), sweep_table(experiment, results));
   if (const std::string agreement = policy_agreement(experiment, results); !agreement.empty())
     fmt::print("{}\n", agreement);
-  fmt::print("table {}, plot {}, database {}\n", (folder / "sweep.csv").string(),
-             (folder / "sweep.png").string(), store.file().string());
+  fmt::print("table {}, plot {}, database {}\n", printable((folder / "sweep.csv").string()),
+             printable((folder / "sweep.png").string()), printable(store.file().string()));
   return waiting(results);
 }
 
@@ -87,6 +99,8 @@ int run(const SweepArguments& arguments) {
   if (arguments.dry) return list_runs(experiment), kDone;
   const fs::path folder =
       arguments.out.empty() ? fs::path("runs") / experiment.path.stem() : fs::path(arguments.out);
+  for (const char* name : {"sweep.csv", "sweep.png"})
+    refuse_overwriting(folder / name, "--out", files_read(experiment));
   stop_on_signals();
   SweepStore store(folder, experiment);
   {

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "brink/core/base/printable.h"
+
 namespace brink {
 namespace {
 
@@ -43,7 +45,8 @@ std::string remaining(double seconds) {
 bool on_terminal(std::FILE* stream) { return ::isatty(::fileno(stream)) != 0; }
 
 std::string paint(std::FILE* stream, Paint how, std::string_view text) {
-  return has_colours(stream) ? fmt::format("{}{}\033[0m", code(how), text) : std::string(text);
+  const std::string shown = printable(text);
+  return has_colours(stream) ? fmt::format("{}{}\033[0m", code(how), shown) : shown;
 }
 
 ProgressBar::ProgressBar(double from, double until, bool shown) : from_(from), until_(until), shown_(shown) {}

@@ -14,7 +14,7 @@ bool on_terminal(std::FILE* stream);
 
 enum class Paint { heading, good, bad, faint };
 
-/// `text` in colour if `stream` is a terminal that has colours and NO_COLOR is not set; else as it is.
+/// `text`, printable, in colour if `stream` is a terminal that has colours and NO_COLOR is not set.
 std::string paint(std::FILE* stream, Paint how, std::string_view text);
 
 /// One line on standard error, redrawn at most ten times a second, wiped at the end. Draws nothing if not

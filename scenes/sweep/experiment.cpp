@@ -2,15 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <set>
 #include <sstream>
 
 #include "brink/core/base/hash.h"
+#include "brink/core/base/printable.h"
+#include "brink/core/world/world_hash.h"
+#include "brink/scenes/scene_tables.h"
 #include "brink/scenes/sweep/results.h"
+#include "brink/scenes/text_file.h"
 #include "brink/scenes/toml_schema.h"
 #include "brink/scenes/version.h"
-#include "brink/scenes/world_hash.h"
 
 namespace brink {
 namespace fs = std::filesystem;
@@ -209,7 +211,7 @@ const Schema<ExperimentTable>& experiment_schema() {
                   read_axes)
           .custom("set", "table", "none", "keys of the scene file that are the same in every run",
                   read_settings)
-          .optional("until", &T::until, number(positive("s")), "the scene's duration", "end of every run")
+          .optional("until", &T::until, number(duration_range()), "the scene's duration", "end of every run")
           .key("seconds_limit", &T::seconds_limit, number(not_negative("s")),
                "wall-clock time after which a run is stopped; 0: none")
           .custom("plot", "table", "", "what the plot shows",
@@ -322,7 +324,7 @@ class SceneTrial {
 
  private:
   void tell(const SceneFaults& faults, const std::string& path, const Where& where, const std::string& what) {
-    const std::string mark = "--set " + path + ": ";
+    const std::string mark = printable("--set " + path + ": ");
     for (const SceneFault& f : faults.faults())
       if (f.line == 0 && f.message.starts_with(mark))
         doc_.faults().add(where, what + ": " + f.message.substr(mark.size()));
@@ -382,17 +384,10 @@ std::vector<SweepRun> product(const std::vector<Axis>& axes, const ExperimentTab
   }
 }
 
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in || fs::is_directory(file)) throw IoError(file.string() + ": cannot be read");
-  return text;
-}
-
 }  // namespace
 
 Experiment load_experiment(const fs::path& file) {
-  TomlDocument doc(text_of(file), {});
+  TomlDocument doc(text_of_file(file), {});
   const auto stop_on_faults = [&] { doc.faults().throw_if_any(file.string()); };
   stop_on_faults();
   ExperimentTable table;

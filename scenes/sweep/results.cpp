@@ -22,6 +22,8 @@ void for_each_number(const RunSummary& s, Visit&& visit) {
   visit("momentum_y", s.momentum.y());
   visit("angular_momentum", s.angular_momentum);
   visit("max_overlap", s.max_overlap);
+  visit("groups_taken", static_cast<double>(s.groups_taken));
+  visit("energy_taken", s.energy_taken);
   WorkCounters::for_each(s.work, [&](const char* name, auto value, const char*) {
     if (std::string_view(name) != "collisions") visit(name, static_cast<double>(value));
   });

@@ -16,7 +16,8 @@ struct SweepResult {
 };
 
 /// Names of the numbers: end_time, collisions, wall_seconds, energy_initial, energy_final, energy_drift
-/// (relative), momentum_x, momentum_y, angular_momentum, max_overlap, and every work counter.
+/// (relative), momentum_x, momentum_y, angular_momentum, max_overlap, groups_taken,
+/// energy_taken, and every work counter.
 const std::vector<std::string>& sweep_columns();
 
 SweepResult sweep_result(const RunSummary& summary);

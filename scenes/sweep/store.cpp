@@ -13,7 +13,7 @@
 #include <set>
 
 #include "brink/core/base/error.h"
-#include "brink/scenes/run_file_guard.h"
+#include "brink/scenes/database.h"
 
 namespace brink {
 namespace fs = std::filesystem;
@@ -91,11 +91,21 @@ struct SweepStore::Impl {
   explicit Impl(const fs::path& dir)
       : file(made_folder(dir) / "sweep.db"),
         locks(dir / "sweep.lock"),
-        db(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyMilliseconds) {
+        db(open_database(file, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyMilliseconds)) {
+    require_ours();
     locks.hold(kOpening);  // turning the write-ahead log on does not wait for others
     db.exec("PRAGMA journal_mode = WAL");
     db.exec("PRAGMA synchronous = NORMAL");
     locks.let_go(kOpening);
+  }
+
+  /// Nothing is written into a database of another kind.
+  void require_ours() {
+    if (db.execAndGet("SELECT count(*) FROM sqlite_master").getInt64() == 0) return;  // new
+    for (const char* table : {"worker", "run"})
+      if (!db.tableExists(table))
+        throw IoError(
+            fmt::format("{}: not the results of a sweep: table {} is missing", file.string(), table));
   }
 
   void make_tables() {
@@ -152,19 +162,28 @@ struct SweepStore::Impl {
     return freed;
   }
 
+  static SweepResult row_of(SQLite::Statement& select) {
+    SweepResult row;
+    const auto require = [](bool right, const std::string& column) {
+      if (!right) throw BadInput(column + " is not of the type that stands there");
+    };
+    require(select.getColumn(0).isText(), "termination");
+    require(select.getColumn(1).isText(), "state_hash");
+    row.termination = select.getColumn(0).getString();
+    row.state_hash = select.getColumn(1).getString();
+    int column = 2;
+    for (const std::string& name : sweep_columns()) {
+      const SQLite::Column value = select.getColumn(column++);
+      require(value.isNull() || value.isFloat() || value.isInteger(), name);
+      row.numbers[name] = value.isNull() ? std::nan("") : value.getDouble();
+    }
+    return row;
+  }
+
   std::optional<SweepResult> result(SQLite::Statement& select, const SweepRun& run) {
     select.bind(1, run.key);
     std::optional<SweepResult> found;
-    if (select.executeStep()) {
-      found.emplace();
-      found->termination = select.getColumn(0).getString();
-      found->state_hash = select.getColumn(1).getString();
-      int column = 2;
-      for (const std::string& name : sweep_columns()) {
-        const SQLite::Column value = select.getColumn(column++);
-        found->numbers[name] = value.isNull() ? std::nan("") : value.getDouble();
-      }
-    }
+    if (select.executeStep()) found = row_of(select);
     select.reset();
     return found;
   }
@@ -231,9 +250,16 @@ std::vector<std::optional<SweepResult>> SweepStore::results(const Experiment& ex
     for (const std::string& name : sweep_columns()) columns += ", " + name;
     SQLite::Statement select(
         impl_->db, "SELECT termination, state_hash" + columns + " FROM run WHERE key = ? AND state = 'done'");
-    std::vector<std::optional<SweepResult>> all;
-    for (const SweepRun& run : experiment.runs) all.push_back(impl_->result(select, run));
-    return all;
+    return reading(impl_->file, "run", [&] {
+      if (impl_->db
+              .execAndGet("SELECT count(*) FROM run WHERE state IS NULL OR state NOT IN ('waiting', "
+                          "'running', 'done')")
+              .getInt() > 0)
+        throw BadInput("a state that is none");
+      std::vector<std::optional<SweepResult>> all;
+      for (const SweepRun& run : experiment.runs) all.push_back(impl_->result(select, run));
+      return all;
+    });
   });
 }
 

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <thread>
 
+#include "brink/core/base/error.h"
 #include "brink/scheduler/simulator.h"
 
 namespace brink {
@@ -38,8 +39,14 @@ class Crew {
 
  private:
   void serve() {
-    for (std::size_t k = next_++; k < experiment_.runs.size() && !stopped(); k = next_++)
-      if (store_.take(experiment_.runs[k])) make(experiment_.runs[k]);
+    try {
+      for (std::size_t k = next_++; k < experiment_.runs.size() && !stopped(); k = next_++)
+        if (store_.take(experiment_.runs[k])) make(experiment_.runs[k]);
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!error_) error_ = std::current_exception();
+      failed_ = true;
+    }
   }
 
   void make(const SweepRun& run) {
@@ -51,10 +58,16 @@ class Crew {
       const std::lock_guard lock(mutex_);
       if (request_.done) request_.done(run, result);
     } catch (...) {
+      give_back(run);
+      throw;
+    }
+  }
+
+  /// After a failure; where even that fails, the run is waiting again once this process has ended.
+  void give_back(const SweepRun& run) {
+    try {
       store_.let_go(run);
-      const std::lock_guard lock(mutex_);
-      if (!error_) error_ = std::current_exception();
-      failed_ = true;
+    } catch (const IoError&) {
     }
   }
 

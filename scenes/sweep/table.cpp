@@ -9,6 +9,8 @@
 #include <set>
 #include <utility>
 
+#include "brink/core/base/printable.h"
+#include "brink/scenes/written_file.h"
 #include "brink/scheduler/policies/policy.h"
 
 namespace brink {
@@ -78,7 +80,7 @@ bool exact(const std::string& policy) {
 }
 
 std::string in_csv(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
   quoted += '"';
@@ -116,7 +118,7 @@ std::vector<SweepGroup> sweep_groups(const Experiment& experiment, const SweepRe
 std::string sweep_table(const Experiment& experiment, const SweepResults& results) {
   const std::vector<std::size_t> axes = telling_axes(experiment);
   std::vector<std::vector<std::string>> lines(1);
-  for (const std::size_t k : axes) lines[0].push_back(experiment.axes[k].name);
+  for (const std::size_t k : axes) lines[0].push_back(printable(experiment.axes[k].name));
   for (const char* heading : {"runs", "collisions", "wall", "energy drift", "overlap", "state hash"})
     lines[0].emplace_back(heading);
   for (const SweepGroup& group : sweep_groups(experiment, results)) {
@@ -126,7 +128,7 @@ std::string sweep_table(const Experiment& experiment, const SweepResults& result
       return median(values);
     };
     std::vector<std::string>& line = lines.emplace_back();
-    for (const std::size_t k : axes) line.push_back(group.values[k]);
+    for (const std::size_t k : axes) line.push_back(printable(group.values[k]));
     line.push_back(endings(group, results));
     line.push_back(fmt::format("{}", middle("collisions")));
     line.push_back(time_text(middle("wall_seconds")));
@@ -162,7 +164,7 @@ std::string policy_agreement(const Experiment& experiment, const SweepResults& r
     }
     std::string where;
     for (const std::string& value : rest)
-      if (!value.empty()) where += (where.empty() ? "" : ", ") + value;
+      if (!value.empty()) where += (where.empty() ? "" : ", ") + printable(value);
     others += "\n  not the same: " + where;
   }
   return fmt::format("same bits from all exact policies: {} of {}{}", same, hashes.size(), others);
@@ -177,7 +179,7 @@ void write_sweep_csv(const std::filesystem::path& file, const Experiment& experi
   out << '\n';
   for (std::size_t k = 0; k < experiment.runs.size(); ++k) {
     for (const std::string& value : experiment.runs[k].values) out << in_csv(value) << ',';
-    out << (results[k] ? in_csv(results[k]->termination) + ',' + results[k]->state_hash : "waiting,");
+    out << (results[k] ? in_csv(results[k]->termination) + ',' + in_csv(results[k]->state_hash) : "waiting,");
     for (const std::string& name : sweep_columns()) {
       out << ',';
       if (results[k] && !std::isnan(results[k]->numbers.at(name)))
@@ -186,7 +188,7 @@ void write_sweep_csv(const std::filesystem::path& file, const Experiment& experi
     out << '\n';
   }
   out.close();
-  if (!out) throw IoError(fmt::format("{}: could not be written", file.string()));
+  if (!out) throw_not_written(file);
 }
 
 }  // namespace brink

@@ -28,8 +28,10 @@ namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kBetweenPauses = 2048;  ///< servings between places where a run may be resumed from
-constexpr int kInstalment = 3;  ///< search steps at a time: most contacts ahead are overtaken by others
-constexpr unsigned kMostUndecided = 1000000 / kInstalment;
+constexpr std::uint64_t kBetweenPolls = 64;
+constexpr int kInstalment = 3;      ///< search steps at a time: most contacts ahead are overtaken by others
+constexpr unsigned kDoublings = 8;  ///< of instalments in a row of one search that comes to no end
+constexpr unsigned kMostUndecided = 1000000 / (kInstalment << kDoublings);
 
 class BodyClocks final : public Policy {
  public:
@@ -38,13 +40,16 @@ class BodyClocks final : public Policy {
     until_ = until;
     if (!views_ || revision_ != kernel.revision()) look_around_all();
     views_->set_end(until);
-    while (!kernel.halt() && queue_.time() <= until) {
-      if (++served_ % kBetweenPauses == 0) pause();
+    while (!kernel.halt() && queue_.time() <= end()) {
+      if (++served_ % kBetweenPauses == 0 || kernel.much_to_forget()) pause();
+      if (served_ % kBetweenPolls == 0 && !kernel.poll()) break;
       serve(queue_.body());
     }
-    if (kernel.halt()) return;
-    kernel.record_frames(until);
-    kernel.advance_all(until);
+    if (!kernel.halt()) kernel.follow_motions_all_the_way(end());  // of sites that nobody has in view
+    if (kernel.halt()) return views_.reset();  // in the middle of something: to go on, look at all anew
+    if (!kernel.record_frames(end())) return views_.reset();
+    kernel.advance_all(end());
+    kernel.fail_before(until);
   }
 
  private:
@@ -54,7 +59,7 @@ class BodyClocks final : public Policy {
     revision_ = kernel_->revision();
     found_.emplace(kernel_->body_count());
     queue_.reset(kernel_->body_count(), kernel_->time());
-    for (int k = 0; k < kernel_->body_count() && !kernel_->halt(); ++k) {
+    for (int k = 0; k < kernel_->body_count() && kernel_->poll(); ++k) {
       views_->look_around(k, kernel_->time());
       wait_for(k);
     }
@@ -65,11 +70,21 @@ class BodyClocks final : public Policy {
     queue_.update(k, views_->clock(k).expiry());
   }
 
+  /// Of the run, as far as is known: a motion that fails may be started afresh before.
+  double end() const { return std::min(until_, kernel_->reach()); }
+
   /// A run may be resumed from between two instants only: within one, bodies may be a rounding past each
-  /// other.
+  /// other. Where nothing collides for long the clock goes on all the same, halfway to what is due next.
   void pause() {
-    const double now = kernel_->time();
-    if (queue_.time() > now + 2.0 * same_instant(now)) kernel_->pause_point();
+    const double now = kernel_->time(), next = std::min(queue_.time(), end());
+    if (next <= now + 2.0 * same_instant(now)) return;
+    if (kernel_->much_to_forget()) {
+      const double halfway = now + 0.5 * (next - now);
+      kernel_->record_frames(halfway);
+      kernel_->advance_all(halfway);
+      kernel_->forget_before(views_->earliest_search(halfway));
+    }
+    kernel_->pause_point();
   }
 
   /// A little later: a search that ends on a contact's instant may miss it by the rounding of its first
@@ -117,7 +132,7 @@ class BodyClocks final : public Policy {
     const Candidate& c = clock.candidates.front();
     if (!c.exact || views_->stale(c)) return false;
     const double time = c.time;
-    return time <= until_ && time < queue_.second_time() && time < std::min(clock.exit, clock.horizon);
+    return time <= end() && time < queue_.second_time() && time < std::min(clock.exit, clock.horizon);
   }
 
   /// The first candidate of body k is dropped if it is stale, and searched if it is not.
@@ -130,7 +145,8 @@ class BodyClocks final : public Policy {
       return;
     }
     const double now = c.time, end = views_->end_of(k, c), to = std::min(beyond(end), std::max(now, until_));
-    const auto found = kernel_->search(*kernel_->pair_of(k, c.other, c.image), c.clear, to, kInstalment);
+    const auto found = kernel_->search(*kernel_->pair_of(k, c.other, c.image), c.clear, to,
+                                       kInstalment << std::min(clock.undecided, kDoublings));
     const bool undecided = found && found->kind == Certificate::Kind::undecided;
     clock.undecided = undecided ? clock.undecided + 1 : 0;
     if (undecided && (found->time <= c.clear || clock.undecided > kMostUndecided))
@@ -160,19 +176,20 @@ class BodyClocks final : public Policy {
                        (clock.candidates.size() == 1 || clock.candidates[1].time > instant);
     if (alone) return collide(Certificate(found_->of(k)));
     const std::vector<Certificate> group = contacts_until(instant);
-    if (!kernel_->halt()) collide(group[first_by_order(*kernel_, group)]);
+    // none: what was found by a view that has ended, the next view does not find by the end of the instant
+    if (!kernel_->halt() && !group.empty()) collide(group[first_by_order(*kernel_, group)]);
   }
 
   /// Every contact of the present instant, in the total order of events.
   std::vector<Certificate> contacts_until(double instant) {
     std::vector<Certificate> group;
     std::vector<int> asked;
-    while (queue_.time() <= instant && !kernel_->halt()) {
+    while (queue_.time() <= std::min(instant, kernel_->reach()) && kernel_->poll()) {
       const int k = queue_.body();
       const BodyClock& clock = views_->clock(k);
       const bool settled = clock.exit > instant && clock.horizon > instant;
       if (settled && clock.candidates.front().exact && !views_->stale(clock.candidates.front())) {
-        add_contacts(k, instant, group);
+        add_contacts(k, std::min(instant, kernel_->reach()), group);
         asked.push_back(k);
         queue_.update(k, kForever);
       } else {
@@ -221,7 +238,7 @@ class BodyClocks final : public Policy {
   }
 
   void collide(const Certificate& c) {
-    kernel_->record_frames(c.time);
+    if (!kernel_->record_frames(c.time)) return;
     kernel_->advance_pair(c.pair, c.time);
     views_->expect_look(c.pair.body);
     if (!c.pair.with_site()) views_->expect_look(c.pair.other_body);

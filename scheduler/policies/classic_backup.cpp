@@ -31,7 +31,9 @@ class ClassicBackup final : public Policy {
   void run(Kernel& kernel, double until) override {
     while (kernel.time() < until && !kernel.halt()) {
       if (!kernel.pause_point()) return;
+      kernel.forget_before(kernel.time());
       if (!step(kernel, std::min(until, step_end(kernel.time(), kernel.options().step)))) return;
+      if (kernel.fail_before(until)) return;
     }
   }
 
@@ -40,19 +42,19 @@ class ClassicBackup final : public Policy {
   static bool step(Kernel& kernel, double end) {
     double clear = kernel.time();  // nothing touches and approaches here
     for (int backups = kMostBackups * (1 + kernel.body_count()); clear < end; --backups) {
-      if (!kernel.extend_motions(end)) return false;
+      end = kernel.follow_motions_all_the_way(end);
+      if (kernel.halt()) return false;
       kernel.advance_all(end);
       if (!any_approaches(kernel.look(clear, end))) break;
       const double touch = backups > 0 ? first_touch(kernel, clear, end) : end;
-      kernel.record_frames(std::nextafter(touch, 0.0));
+      if (!kernel.record_frames(std::nextafter(touch, 0.0))) return false;
       kernel.back_up_all(touch);
       const DepthSight sight = kernel.look(clear, touch);
       if (!resolve_all(kernel, sight.contacts)) return false;
       if (backups <= 0) push_all_apart(kernel, sight.overlaps);
       clear = touch;
     }
-    kernel.record_frames(end);
-    return kernel.poll();
+    return kernel.record_frames(end) && kernel.poll();
   }
 
   /// The first time in (clear, touching] at which something touches and approaches, within kHalvings.

@@ -24,15 +24,16 @@ class ClassicFixedStep final : public Policy {
   void run(Kernel& kernel, double until) override {
     while (kernel.time() < until && !kernel.halt()) {
       if (!kernel.pause_point()) return;
-      const double from = kernel.time(), end = std::min(until, step_end(from, kernel.options().step));
-      if (!kernel.extend_motions(end)) return;
-      kernel.record_frames(std::nextafter(end, 0.0));
+      const double from = kernel.time();
+      kernel.forget_before(from);
+      const double end =
+          kernel.follow_motions_all_the_way(std::min(until, step_end(from, kernel.options().step)));
+      if (kernel.halt() || !kernel.record_frames(std::nextafter(end, 0.0))) return;
       kernel.advance_all(end);
       const DepthSight sight = kernel.look(from, end);
       if (!resolve_all(kernel, sight.contacts)) return;
       push_all_apart(kernel, sight.overlaps);
-      kernel.record_frames(end);
-      if (!kernel.poll()) return;
+      if (!kernel.record_frames(end) || !kernel.poll() || kernel.fail_before(until)) return;
     }
   }
 };

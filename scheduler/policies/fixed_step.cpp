@@ -24,14 +24,15 @@ class FixedStep final : public Policy {
     while (kernel.time() < until && !kernel.halt()) {
       if (!kernel.pause_point()) return;
       const double from = kernel.time();
-      const double end = std::min(until, step_end(from, step));
-      if (!kernel.extend_motions(end)) return;
+      kernel.forget_before(from);
+      const double end = kernel.follow_motions_all_the_way(std::min(until, step_end(from, step)));
+      if (kernel.halt()) return;
       const std::vector<PairKey> pairs = kernel.near_pairs(from, end);
-      kernel.record_frames(std::nextafter(end, 0.0));
+      if (kernel.halt() || !kernel.record_frames(std::nextafter(end, 0.0))) return;
       kernel.advance_all(end);
       for (const PairKey& pair : pairs)
         if (!separate(kernel, pair)) return;
-      kernel.record_frames(end);
+      if (!kernel.record_frames(end) || kernel.fail_before(until)) return;
     }
   }
 

@@ -46,9 +46,10 @@ void run_horizons(Kernel& kernel, double until,
                   const std::function<std::optional<std::size_t>(double end)>& run_one) {
   while (kernel.time() < until && !kernel.halt()) {
     if (!kernel.pause_point()) return;
+    kernel.forget_before(kernel.time());
     const std::uint64_t before = kernel.collisions();
     const std::optional<std::size_t> pairs = run_one(next_end(kernel, until));
-    if (!pairs) return;
+    if (!pairs || kernel.fail_before(until)) return;
     adapt(kernel, *pairs, kernel.collisions() - before);
   }
 }
@@ -57,7 +58,10 @@ bool HorizonAgenda::pass(Kernel& kernel, double from, double end) {
   const StageClock clock(kernel.work().seconds_search);
   agenda_.clear();
   pairs_ = kernel.near_pairs(from, end);
-  for (const PairKey& pair : pairs_) test(kernel, pair, from, end);
+  for (const PairKey& pair : pairs_) {
+    if (!kernel.poll()) return false;
+    test(kernel, pair, from, end);
+  }
   return kernel.poll();
 }
 
@@ -71,7 +75,10 @@ bool HorizonAgenda::pass_again(Kernel& kernel, std::span<const int> changed, dou
   }
   std::sort(pairs_.begin(), pairs_.end());  // a pair of two changed bodies is met from both
   pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
-  for (const PairKey& pair : pairs_) test(kernel, pair, now, end);
+  for (const PairKey& pair : pairs_) {
+    if (!kernel.poll()) return false;
+    test(kernel, pair, now, end);
+  }
   return kernel.poll();
 }
 
@@ -83,8 +90,8 @@ void HorizonAgenda::test(Kernel& kernel, const PairKey& pair, double from, doubl
   for (const Certificate& other : kernel.simultaneous(*certificate)) agenda_.insert(other);
 }
 
-std::optional<Certificate> HorizonAgenda::take_earliest(Kernel& kernel) {
-  return brink::take_earliest(kernel, agenda_);
+std::optional<Certificate> HorizonAgenda::take_earliest(Kernel& kernel, double end) {
+  return brink::take_earliest(kernel, agenda_, end);
 }
 
 bool HorizonAgenda::search_on(Kernel& kernel, const Certificate& c, double end) {

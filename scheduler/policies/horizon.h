@@ -12,7 +12,8 @@ namespace brink {
 
 /// Horizon after horizon to `until`, longer while little happens, shorter while much does: that changes what
 /// work is done, never what happens. `run_one` takes the kernel to a horizon's end and returns how many pairs
-/// could meet in it; nothing on a halt.
+/// could meet in it; nothing on a halt. It may come less far: where a motion fails, or an instalment of it
+/// ends.
 void run_horizons(Kernel& kernel, double until,
                   const std::function<std::optional<std::size_t>(double end)>& run_one);
 
@@ -23,8 +24,8 @@ class HorizonAgenda {
   bool pass(Kernel& kernel, double from, double end);
   /// The same for bodies whose motion a resolve has changed just now. False on a halt.
   bool pass_again(Kernel& kernel, std::span<const int> changed, double end);
-  /// The next contact, by time and by the option `order`.
-  std::optional<Certificate> take_earliest(Kernel& kernel);
+  /// The next contact up to `end`, by time and by the option `order`.
+  std::optional<Certificate> take_earliest(Kernel& kernel, double end);
   /// Goes on with a search that stopped at its cap; gives up where a hundred such in a row led nowhere. False
   /// on a halt.
   bool search_on(Kernel& kernel, const Certificate& c, double end);

@@ -28,28 +28,28 @@ class IslandBackup final : public Policy {
  private:
   /// One horizon, contact by contact: the number of pairs that could meet before it; nothing on a halt.
   std::optional<std::size_t> run_horizon(Kernel& kernel, double end) {
-    if (!kernel.extend_motions(end) || !agenda_.pass(kernel, kernel.time(), end)) return std::nullopt;
+    end = kernel.follow_motions(end);
+    if (!agenda_.pass(kernel, kernel.time(), end)) return std::nullopt;
     const std::size_t near = agenda_.pairs().size();
     make_islands(kernel);
     kernel.advance_all(end);
-    while (const auto next = agenda_.take_earliest(kernel)) {
-      kernel.record_frames(next->time);
+    while (const auto next = agenda_.take_earliest(kernel, end)) {
+      if (!kernel.record_frames(next->time)) return std::nullopt;
       island_.assign(islands_.of(next->pair.body).begin(), islands_.of(next->pair.body).end());
       kernel.back_up(island_, end, next->time);
       if (!deal_with(kernel, *next, end)) return std::nullopt;
       kernel.advance(island_, next->time, end);
     }
-    kernel.record_frames(end);
-    return near;
+    return kernel.record_frames(end) ? std::optional(near) : std::nullopt;
   }
 
-  /// False on a halt.
-  bool deal_with(Kernel& kernel, const Certificate& next, double end) {
+  /// False on a halt. A new motion may fail before the horizon's end, which then lies there.
+  bool deal_with(Kernel& kernel, const Certificate& next, double& end) {
     if (next.kind == Certificate::Kind::undecided) return agenda_.search_on(kernel, next, end);
     changed_.clear();
-    if (!kernel.resolve(next.pair, next.contact, changed_) || !kernel.extend_motions(end) ||
-        !agenda_.pass_again(kernel, changed_, end))
-      return false;
+    if (!kernel.resolve(next.pair, next.contact, changed_)) return false;
+    end = kernel.follow_motions(end);
+    if (!agenda_.pass_again(kernel, changed_, end)) return false;
     unite_near();
     return true;
   }

@@ -31,9 +31,9 @@ std::size_t first_by_order(Kernel& kernel, const std::vector<Certificate>& group
   return group.size() == 1 ? 0 : first_by(kernel.options().order, group, kernel.random());
 }
 
-std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda) {
+std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda, double end) {
   std::vector<Certificate> group;
-  while (!agenda.empty()) {
+  while (!agenda.empty() && agenda.earliest().time <= end) {
     if (!group.empty() && agenda.earliest().time > group.front().time + same_instant(group.front().time))
       break;
     const Certificate c = agenda.pop();

@@ -1,6 +1,7 @@
 #pragma once
 /// Which of several simultaneous contacts is resolved first.
 
+#include <limits>
 #include <optional>
 
 #include "brink/scheduler/kernel.h"
@@ -8,8 +9,9 @@
 namespace brink {
 
 /// Takes the next certificate from the agenda: drops stale ones, and among those of the same time (within a
-/// few roundings) picks by the option `order`. Nothing if the agenda is empty.
-std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda);
+/// few roundings) picks by the option `order`. Nothing if the agenda holds none up to `end`.
+std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda,
+                                         double end = std::numeric_limits<double>::infinity());
 
 /// Of contacts of one instant, in the total order of events, the one that the option `order` puts first; its
 /// place in the group. @pre not empty.

@@ -47,18 +47,20 @@ class Timewarp final : public Policy {
  private:
   /// One horizon, contact by contact. False on a halt.
   bool run_horizon() {
-    if (!kernel_->extend_motions(end_) || !look_at_all()) return false;
+    end_ = kernel_->follow_motions(end_);
+    if (!look_at_all()) return false;
     for (;;) {
       run_ahead();
       if (kernel_->halt()) return false;
-      const auto next = take_earliest(*kernel_, agenda_);
+      const auto next = take_earliest(*kernel_, agenda_, end_);
       if (!next) break;
-      kernel_->record_frames(next->time);
+      if (!kernel_->record_frames(next->time)) return false;
       if (!make_certain(*next)) return false;
     }
-    kernel_->record_frames(end_);
+    kernel_->roll_back_all();  // what is ahead of an end that a failure has brought nearer
+    if (!kernel_->record_frames(end_)) return false;
     kernel_->advance_all(end_);
-    return !kernel_->halt();
+    return true;
   }
 
   // -- what is certain --
@@ -75,8 +77,9 @@ class Timewarp final : public Policy {
     for (const int k : {next.pair.body, next.pair.other_body})
       if (k >= 0) roll_back(k, kernel_->versions(k).front(), next.time);
     kernel_->advance_pair(next.pair, next.time);
-    return kernel_->resolve(next.pair, next.contact, changed_) && kernel_->extend_motions(end_) &&
-           look_around(next.time);
+    if (!kernel_->resolve(next.pair, next.contact, changed_)) return false;
+    end_ = kernel_->follow_motions(end_);
+    return look_around(next.time);
   }
 
   /// Certificates of motions that have just become certain join the agenda.
@@ -111,8 +114,10 @@ class Timewarp final : public Policy {
     const double from = kernel_->time();
     const std::vector<PairKey> pairs = kernel_->near_pairs(from, end_);
     near_ = pairs.size();
-    for (const PairKey& pair : pairs)
+    for (const PairKey& pair : pairs) {
+      if (!kernel_->poll()) return false;
       if (const auto c = kernel_->search(pair, from, end_)) note(*c);
+    }
     for (int k = 0; k < kernel_->body_count(); ++k) give_a_turn_to(k);
     return kernel_->poll();
   }
@@ -170,7 +175,7 @@ class Timewarp final : public Policy {
 
   void take_turn(int k) {
     const auto c = first_of(k);
-    if (!c || c->kind != Certificate::Kind::contact) return;
+    if (!c || c->kind != Certificate::Kind::contact || c->time > end_) return;
     if (roll_back_late(*c, k)) return give_a_turn_to(k);
     if (!is_first_of_all(*c)) return;
     changed_.clear();

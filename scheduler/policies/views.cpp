@@ -28,6 +28,16 @@ std::vector<Box> boxes_of(const Outline& outline) {
   return boxes;
 }
 
+/// A time in which a motion goes no farther than `room`, from bounds of its speed; end - now where it stays
+/// till the end. What is fast later on must not shorten it much: then less of it is looked at.
+double time_within(double room, const Motion& motion, double now, double end) {
+  for (double span = end - now;; span *= 0.5) {
+    const double fastest = motion.bounds(now, now + span).speed();
+    if (room >= fastest * span) return span;
+    if (room >= 0.5 * fastest * span || !(now + 0.5 * span > now)) return room / fastest;
+  }
+}
+
 /// A lower bound of the time in which the bounding discs of a and b, displaced by `shift`, can come together
 /// before `end` [s].
 double gap_over_speed(const Motion& a, double radius, const Motion& b, const Vec2& shift,
@@ -187,9 +197,17 @@ void Views::see_moving_site(int k, int s, double now) {
   });
 }
 
+double Views::earliest_search(double now) const {
+  double earliest = now;
+  for (int k = 0; k < body_count(); ++k)
+    for (std::size_t i = 0; i < clocks_[k].candidates.size(); ++i)
+      earliest = std::min(earliest, clocks_[k].candidates[i].clear);
+  return earliest;
+}
+
 void Views::see_by_pass(int k, double now) {
-  const double end = std::min(clocks_[k].horizon, until_);
-  if (!kernel_->extend_motions(end)) return;
+  const double end = end_view(k, kernel_->follow_motions(std::min(clocks_[k].horizon, until_)));
+  if (kernel_->halt()) return;
   for (const PairKey& pair : kernel_->near_pairs_of(k, now, end)) {
     const int second = pair.with_site() ? body_count() + pair.other_site : pair.other_body;
     const int other = second == k ? pair.body : second;
@@ -205,9 +223,7 @@ Meeting Views::bounded_meeting(int k, int owner, const Image& image, double now)
   if (is_body ? !kernel_->extend_motion(owner, now) : !kernel_->extend_sites(now)) return {};
   limit_view(k, now, speed(k, now) + (is_body ? speed(owner, now) : speed_of(owner - body_count())),
              is_body ? stride(owner, now) : kForever);
-  const double end = std::max(now, std::min(clocks_[k].horizon, until_));
-  if (!kernel_->extend_motion(k, end)) return {};
-  if (is_body ? !kernel_->extend_motion(owner, end) : !kernel_->extend_sites(end)) return {};
+  const double end = follow(k, owner, std::max(now, std::min(clocks_[k].horizon, until_)));
   const Motion& other = is_body ? kernel_->body(owner).motion : kernel_->site_motion(owner - body_count());
   const double wait = gap_over_speed(kernel_->body(k).motion, flights_[k].radius, other,
                                      periods_.shift(image), kernel_->outline_of(owner), now, end);
@@ -235,14 +251,30 @@ double Views::stride(int k, double now) const {
 }
 
 /// Ends body k's view about when something that closes in at that speed could have crossed a cell, or after
-/// the stride, if that is not next to nothing.
+/// the stride, if that is not next to nothing, beside a cell's time or what the motion has behind it.
 void Views::limit_view(int k, double now, double closing, double stride) {
   const double cell = near_->cell_size(k),
                length = std::isfinite(cell) ? cell : 4.0 * kernel_->world().length();
   const double window = length / (closing + 1e-2 * length);
-  const double end = now + std::max(std::min(window, stride), 1e-3 * window);
+  const int component = kernel_->body(k).component;
+  const double age = component < 0 ? 0.0 : now - paces_[component].start;
+  const double end = now + std::max({std::min(window, stride), 1e-3 * window, 1e-3 * age});
   // a view that holds to the end of the run ends just after it
   clocks_[k].horizon = std::min(clocks_[k].horizon, end >= until_ ? std::nextafter(until_, kForever) : end);
+}
+
+/// Until when the motions of body k and of another owner (sites: of all that move) can be followed, <= end.
+double Views::follow(int k, int owner, double end) {
+  end = std::min(end, kernel_->follow_motion(k, end));
+  return end_view(k, owner < body_count() ? kernel_->follow_motion(owner, end) : kernel_->follow_sites(end));
+}
+
+/// Ends k's view where what it must follow has been followed to: to go on there, or, where a motion cannot
+/// go on, just after it, for what still happens there.
+double Views::end_view(int k, double followed) {
+  const bool last = followed >= until_ || followed == kernel_->reach();
+  clocks_[k].horizon = std::min(clocks_[k].horizon, last ? std::nextafter(followed, kForever) : followed);
+  return followed;
 }
 
 /// The view of a body that is not in free flight: it ends before the body can leave its cell. False on a
@@ -254,12 +286,11 @@ bool Views::begin_window(int k, double now) {
   near_->settle(k, place);
   clock.exit = kForever;
   limit_view(k, now, speed(k, now), stride(k, now));
-  const double end = std::max(now, std::min(clock.horizon, until_));
-  if (!kernel_->extend_motion(k, end) || !kernel_->extend_sites(end)) return false;
+  const double end = follow(k, body_count(), std::max(now, std::min(clock.horizon, until_)));
   const Box box = near_->box_of(k);
   const double room = std::min((place - box.low).minCoeff(), (box.high - place).minCoeff());
-  const double fastest = kernel_->body(k).motion.bounds(now, end).speed();
-  if (room < fastest * (end - now)) clock.horizon = now + room / fastest;
+  const double stay = time_within(room, kernel_->body(k).motion, now, end);
+  if (stay < end - now) clock.horizon = now + stay;
   return true;
 }
 

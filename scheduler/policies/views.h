@@ -48,6 +48,9 @@ class Views {
   /// Fills body k's view with everything that it may meet from now on, but for bodies of `except`. May halt
   /// the kernel (an integrator that fails).
   void look_around(int k, double now, std::span<const int> except = {});
+  /// Where the earliest search of what is in view would begin, or `now`: no motion will be asked for a time
+  /// before that.
+  double earliest_search(double now) const;
   /// Adds what comes near as body k, in free flight, leaves its cell.
   void look_ahead(int k, double now);
 
@@ -63,6 +66,8 @@ class Views {
   void see_moving_site(int k, int site, double now);
   void see_by_pass(int k, double now);
   bool begin_window(int k, double now);
+  double follow(int k, int owner, double end);
+  double end_view(int k, double followed);
   double speed(int k, double now) const;
   void limit_view(int k, double now, double closing, double stride);
   void note_start(int component, double start);

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -200,6 +201,26 @@ TEST_F(KillResume, InterruptedRunStopsInOrderAndGoesOn) {
   EXPECT_LT(std::stod(*RunFile(b).meta("end_time")), until);
   EXPECT_FALSE(fs::exists(b.string() + "-wal"));
   EXPECT_EQ(ending(start(scene(), out("stopped"), until, true)), 0);
+  EXPECT_EQ(RunFile(a).meta("state_hash"), RunFile(b).meta("state_hash"));
+  EXPECT_EQ(events(a), events(b));
+  EXPECT_EQ(frames(a), frames(b));
+}
+
+// Ctrl-C, gone on with, killed before the next checkpoint, gone on with again: no frame is there twice. The
+// stopped run's last frame was off its frame clock.
+TEST_F(KillResume, StoppedThenKilledRunHasTheUndisturbedFrames) {
+  const double until = time_for(3.0);
+  const double whole = run_for_seconds(scene(), out("whole"), until);
+  const pid_t stopped = start(scene(), out("both"), until, false);
+  ::usleep(static_cast<useconds_t>(1e6 * 0.3 * whole));
+  ::kill(stopped, SIGINT);
+  ending(stopped);
+  const pid_t killed = start(scene(), out("both"), until, true);
+  ::usleep(static_cast<useconds_t>(1e6 * 0.3 * std::min(whole, 2.0)));  // checkpoints are a second apart
+  ::kill(killed, SIGKILL);
+  ending(killed);
+  EXPECT_EQ(ending(start(scene(), out("both"), until, true)), 0);
+  const fs::path a = out("whole") / "run.db", b = out("both") / "run.db";
   EXPECT_EQ(RunFile(a).meta("state_hash"), RunFile(b).meta("state_hash"));
   EXPECT_EQ(events(a), events(b));
   EXPECT_EQ(frames(a), frames(b));

@@ -1,5 +1,9 @@
 // Broken scene files: every mutant of a corpus either reads, checks and runs for a moment, or is refused with
 // at least one located fault. Nothing crashes, hangs or turns into NaN.
+//
+// BRINK_FUZZ_COUNT, BRINK_FUZZ_SEED: how many mutants (default 1000), and which. BRINK_FUZZ_SECONDS: a limit
+// for each, in a process of its own; BRINK_FUZZ_KEEP: a folder for those with findings. By hand:
+//   BRINK_FUZZ_COUNT=10000 BRINK_FUZZ_SECONDS=10 ./fuzz_scene_mutation_test --gtest_filter='*Run*'
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,6 +19,7 @@
 #include "brink/core/base/random.h"
 #include "brink/scenes/scene.h"
 #include "brink/scheduler/simulator.h"
+#include "tests/fuzz/mutant_process.h"
 
 namespace brink {
 namespace {
@@ -291,53 +296,90 @@ void run_for_a_moment(const Scene& scene) {
   for (const BodyState& state : simulator.states()) ASSERT_TRUE(finite(state));
 }
 
+/// How many mutants went which way, and how long the slowest took.
+struct Tally {
+  int accepted = 0, refused = 0;
+  double slowest_reading = 0.0, slowest_running = 0.0;
+};
+
+void require_located(const SceneFaults& faults) {
+  ASSERT_FALSE(faults.faults().empty());
+  for (const SceneFault& fault : faults.faults()) {
+    ASSERT_GE(fault.line, 1);
+    ASSERT_GE(fault.column, 1);
+    ASSERT_FALSE(fault.message.empty());
+    ASSERT_EQ(fault.message.find_first_of("\n\x1b"), std::string::npos);
+  }
+}
+
+void try_mutant(const std::string& text, bool running_too, Tally& tally) {
+  const Clock::time_point reading = Clock::now();
+  std::optional<Scene> scene;
+  try {
+    scene = parse_scene(text, "mutant.toml");
+  } catch (const SceneFaults& faults) {
+    ++tally.refused;
+    require_located(faults);
+  }
+  tally.slowest_reading = std::max(tally.slowest_reading, seconds_since(reading));
+  if (!scene) return;
+  ++tally.accepted;
+  ASSERT_NO_THROW(scene->world.check());
+  if (!running_too) return;
+  const Clock::time_point running = Clock::now();
+  run_for_a_moment(*scene);
+  tally.slowest_running = std::max(tally.slowest_running, seconds_since(running));
+  ASSERT_FALSE(::testing::Test::HasFatalFailure());
+  ASSERT_LT(seconds_since(running), 30.0);
+}
+
+/// By hand: each mutant in a process of its own, ended after so many seconds, so that one finding does not
+/// hide the next. Mutants with findings are kept in the folder BRINK_FUZZ_KEEP.
+void try_mutants_apart(Mutator& mutator, std::uint64_t seed, std::uint64_t count, unsigned seconds) {
+  const char* keep = std::getenv("BRINK_FUZZ_KEEP");
+  std::vector<std::string> findings;  // told at the end: a child would take them for its own
+  for (std::uint64_t k = 0; k < count; ++k) {
+    const std::string text = mutator.next();
+    const std::string how = fuzz::finding(
+        [&] {
+          Tally tally;
+          try_mutant(text, true, tally);
+          return !::testing::Test::HasFailure();
+        },
+        seconds);
+    if (how.empty()) continue;
+    findings.push_back("mutant " + std::to_string(k) + ": " + how);
+    if (keep != nullptr)
+      std::ofstream(std::filesystem::path(keep) / ("mutant-" + std::to_string(k) + ".toml"), std::ios::binary)
+          << text;
+  }
+  for (const std::string& f : findings) ADD_FAILURE() << f << ", seed " << seed;
+  std::cout << count << " mutants, " << findings.size() << " findings\n";
+}
+
 // Reads mutants, and if `running_too` lets those accepted run for a moment.
 void try_mutants(bool running_too) {
-  const char* given = std::getenv("BRINK_FUZZ_SEED");
-  const std::uint64_t seed = given != nullptr ? std::strtoull(given, nullptr, 10) : 20261121;
-  const char* asked = std::getenv("BRINK_FUZZ_COUNT");
-  const int count = asked != nullptr ? std::atoi(asked) : 1000;
-  const char* keep =
-      std::getenv("BRINK_FUZZ_KEEP");  // a file for the mutant at hand: what remains after a hang
+  const std::uint64_t seed = fuzz::asked("BRINK_FUZZ_SEED", 20261121);
+  const std::uint64_t count = fuzz::asked("BRINK_FUZZ_COUNT", 1000);
+  const auto seconds = static_cast<unsigned>(fuzz::asked("BRINK_FUZZ_SECONDS", 0));
   std::cout << "seed " << seed << '\n';
   const std::vector<std::string> texts = corpus();
   Mutator mutator(seed, texts);
-  int accepted = 0, refused = 0;
-  double slowest_reading = 0.0, slowest_running = 0.0;
+  if (seconds > 0 && running_too) return try_mutants_apart(mutator, seed, count, seconds);
+  Tally tally;
   const Clock::time_point start = Clock::now();
-  for (int k = 0; k < count; ++k) {
+  for (std::uint64_t k = 0; k < count; ++k) {
     const std::string text = mutator.next();
     SCOPED_TRACE("mutant " + std::to_string(k) + " of seed " + std::to_string(seed) + ":\n" +
                  text.substr(0, 20000));
-    if (keep != nullptr) std::ofstream(keep, std::ios::binary) << text;
-    const Clock::time_point reading = Clock::now();
-    std::optional<Scene> scene;
-    try {
-      scene = parse_scene(text, "mutant.toml");
-    } catch (const SceneFaults& faults) {
-      ++refused;
-      ASSERT_FALSE(faults.faults().empty());
-      for (const SceneFault& fault : faults.faults()) {
-        ASSERT_GE(fault.line, 1);
-        ASSERT_GE(fault.column, 1);
-        ASSERT_FALSE(fault.message.empty());
-      }
-    }
-    slowest_reading = std::max(slowest_reading, seconds_since(reading));
-    if (!scene) continue;
-    ++accepted;
-    ASSERT_NO_THROW(scene->world.check());
-    if (!running_too) continue;
-    const Clock::time_point running = Clock::now();
-    run_for_a_moment(*scene);
-    slowest_running = std::max(slowest_running, seconds_since(running));
-    ASSERT_FALSE(::testing::Test::HasFatalFailure());
-    ASSERT_LT(seconds_since(running), 30.0);
+    try_mutant(text, running_too, tally);
+    if (::testing::Test::HasFatalFailure()) return;
   }
-  std::cout << accepted << " accepted, " << refused << " refused, " << seconds_since(start)
-            << " s; slowest reading " << slowest_reading << " s, slowest run " << slowest_running << " s\n";
-  EXPECT_GT(accepted, count / 50);  // the mutator leaves some whole, and breaks some
-  EXPECT_GT(refused, count / 50);
+  std::cout << tally.accepted << " accepted, " << tally.refused << " refused, " << seconds_since(start)
+            << " s; slowest reading " << tally.slowest_reading << " s, slowest run " << tally.slowest_running
+            << " s\n";
+  EXPECT_GT(tally.accepted, static_cast<int>(count / 50));  // the mutator leaves some whole, and breaks some
+  EXPECT_GT(tally.refused, static_cast<int>(count / 50));
 }
 
 TEST(SceneMutation, AThousandMutantsReadOrAreRefusedWithAPlace) { try_mutants(false); }

@@ -15,7 +15,7 @@ namespace {
 
 using Bodies = std::vector<GroupBody>;
 using Contacts = std::vector<GroupContact>;
-using Law = GroupResult (*)(const Bodies&, const Contacts&);
+using Law = GroupResult (*)(const Bodies&, const Contacts&, const GoOn&);
 
 GroupBody disc(const RealVec& velocity, double mass = 1.0, double radius = 0.5) {
   return {{velocity, 0}, 1.0 / mass, 1.0 / mass, 2.0 / (mass * radius * radius)};
@@ -104,7 +104,7 @@ TEST(GroupLaws, DiscOnTwoIsSymmetric) {
   const Bodies bodies{disc({1, 0}), disc({0, 0}), disc({0, 0})};
   const Contacts contacts{touch(0, at0, 1, at1), touch(0, at0, 2, at2)};
   for (const Law law : {resolve_together, resolve_reflections}) {
-    const GroupResult result = law(bodies, contacts);
+    const GroupResult result = law(bodies, contacts, {});
     EXPECT_NEAR(result.twists[0].velocity.x(), -0.2L, 1e-17);
     EXPECT_NEAR(result.twists[0].velocity.y(), 0, 1e-17);
     for (const int k : {1, 2})
@@ -122,12 +122,12 @@ TEST(GroupLaws, OneContactIsTheImpulseLaw) {
   floor.material.restitution = 0.5;
   floor.material.friction = 0.1;
   for (const Law law : {resolve_together, resolve_reflections}) {
-    const GroupResult slip = law({disc({3, -2})}, {floor});
+    const GroupResult slip = law({disc({3, -2})}, {floor}, {});
     EXPECT_NEAR(slip.normal[0], 3, 1e-17);  // (1 + e) v_n
     EXPECT_NEAR(slip.tangential[0], 0.3L,
                 1e-16);  // at the bound; along perp(normal) = -x, against the sliding
     EXPECT_NEAR(slip.twists[0].velocity.y(), 1, 1e-17);
-    const GroupResult stick = law({disc({0.6, -2})}, {floor});
+    const GroupResult stick = law({disc({0.6, -2})}, {floor}, {});
     EXPECT_NEAR(stick.tangential[0], 0.2L, 1e-16);
     EXPECT_NEAR(stick.twists[0].at(floor.arm).x(), 0, 1e-17);
   }
@@ -142,8 +142,8 @@ TEST(GroupLaws, SqueezedBetweenWhatCannotMoveIsAJam) {
   right.arm = {0.5, 0};
   right.other_point_velocity = {-1, 0};
   for (const Law law : {resolve_together, resolve_reflections}) {
-    EXPECT_NE(law({disc({0, 0})}, {left, right}).status, GroupResult::Status::resolved);
-    EXPECT_EQ(law({GroupBody{}}, {left}).status, GroupResult::Status::jam);  // held altogether
+    EXPECT_NE(law({disc({0, 0})}, {left, right}, {}).status, GroupResult::Status::resolved);
+    EXPECT_EQ(law({GroupBody{}}, {left}, {}).status, GroupResult::Status::jam);  // held altogether
   }
 }
 
@@ -207,7 +207,7 @@ TEST(GroupLaws, RandomElasticGroupsKeepEverything) {
     const auto before_twists = twists_of(g.bodies);
     const Sums before(g.bodies, before_twists);
     for (const Law law : {resolve_together, resolve_reflections}) {
-      const GroupResult result = law(g.bodies, g.contacts);
+      const GroupResult result = law(g.bodies, g.contacts, {});
       ASSERT_EQ(result.status, GroupResult::Status::resolved) << "case " << i << " of seed 5";
       const Sums after(g.bodies, result.twists);
       ASSERT_LE((after.momentum - before.momentum).norm(), 1e-16L) << i;
@@ -238,7 +238,7 @@ TEST(GroupLaws, RandomLossyGroupsNeverGainEnergy) {
     const RandomGroup g(r, 0.0, 1.0, i % 2 == 0 ? 0.0 : 0.4, i % 3 == 0);
     const Sums before(g.bodies, twists_of(g.bodies));
     for (const Law law : {resolve_together, resolve_reflections}) {
-      const GroupResult result = law(g.bodies, g.contacts);
+      const GroupResult result = law(g.bodies, g.contacts, {});
       ASSERT_EQ(result.status, GroupResult::Status::resolved) << "case " << i << " of seed 6";
       const Sums after(g.bodies, result.twists);
       ASSERT_LE((after.momentum - before.momentum).norm(), 1e-16L) << i;
@@ -282,7 +282,7 @@ TEST(Lcp, RandomSemidefiniteProblemsMeetTheDefinition) {
     }
     const RealMatrix A = B * B.transpose();
     const RealVector q = B * u;
-    const LcpAnswer answer = solve_lcp(A, q);
+    const LcpAnswer answer = solve_lcp_by_lemke(A, q);
     ASSERT_EQ(answer.status, LcpAnswer::Status::solved) << "case " << i << " of seed 8";
     const RealVector w = A * answer.z + q;
     ASSERT_GE(answer.z.minCoeff(), 0) << i;
@@ -291,10 +291,108 @@ TEST(Lcp, RandomSemidefiniteProblemsMeetTheDefinition) {
   }
 }
 
+/// What n contacts on about half as many bodies make: each row reads two bodies' velocities.
+SparseRealMatrix contact_matrix(Random& r, int n) {
+  const int bodies = n / 2 + 1;
+  RealMatrix J = RealMatrix::Zero(n, 2 * bodies);
+  for (int i = 0; i < n; ++i) {
+    const auto a = static_cast<int>(r.below(bodies)), b = static_cast<int>(r.below(bodies));
+    const double angle = r.uniform(0.0, 2.0 * M_PI);
+    J(i, 2 * a) += std::cos(angle);
+    J(i, 2 * a + 1) += std::sin(angle);
+    J(i, 2 * b) -= std::cos(angle + (a == b ? 1.0 : 0.0));
+    J(i, 2 * b + 1) -= std::sin(angle + (a == b ? 1.0 : 0.0));
+  }
+  return RealMatrix(J * J.transpose()).sparseView();
+}
+
+// The two methods against the definition and each other; A z is unique. Twice as many rows as velocities:
+// most are redundant. q = A times something <= 0 has a solution.
+TEST(Lcp, ActiveSetAndLemkeAgree) {
+  Random r(10);
+  for (int i = 0; i < 300; ++i) {
+    const int n = 2 + static_cast<int>(r.below(70));
+    const SparseRealMatrix A = contact_matrix(r, n);
+    RealVector u(n);
+    for (Real& v : u) v = r.below(3) == 0 ? Real(0) : static_cast<Real>(r.uniform(-1, 1));
+    const RealVector q = A * u;
+    const LcpAnswer quick = solve_lcp_by_active_set(A, q), slow = solve_lcp_by_lemke(RealMatrix(A), q);
+    ASSERT_EQ(quick.status, LcpAnswer::Status::solved) << "case " << i << " of seed 10";
+    ASSERT_EQ(slow.status, LcpAnswer::Status::solved) << i;
+    const RealVector w = A * quick.z + q;
+    ASSERT_GE(quick.z.minCoeff(), 0) << i;
+    ASSERT_GE(w.minCoeff(), -1e-14) << i;
+    ASSERT_LE(std::abs(w.dot(quick.z)), 1e-12) << i;
+    ASSERT_LE((A * (quick.z - slow.z)).cwiseAbs().maxCoeff(), 1e-12) << i;
+  }
+}
+
 TEST(Lcp, WithoutSolutionSaysSo) {
   RealMatrix A(2, 2);
   A << 1, -1, -1, 1;  // z0 - z1 >= 1 and z1 - z0 >= 1
-  EXPECT_EQ(solve_lcp(A, RealVector::Constant(2, -1)).status, LcpAnswer::Status::none);
+  EXPECT_EQ(solve_lcp_by_lemke(A, RealVector::Constant(2, -1)).status, LcpAnswer::Status::none);
+  EXPECT_EQ(solve_lcp_by_active_set(A.sparseView(), RealVector::Constant(2, -1)).status,
+            LcpAnswer::Status::none);
+}
+
+TEST(Lcp, StopsWhenAsked) {
+  Random r(11);
+  const SparseRealMatrix A = contact_matrix(r, 60);
+  const RealVector q = A * RealVector::Constant(60, -1);
+  const GoOn never = [] { return false; };
+  EXPECT_EQ(solve_lcp(A, q, never).status, LcpAnswer::Status::stopped);
+  EXPECT_EQ(solve_lcp_by_lemke(RealMatrix(A), q, never).status, LcpAnswer::Status::stopped);
+}
+
+/// A raft of side * side touching discs, and one more that comes from the left.
+std::pair<Bodies, Contacts> raft(int side) {
+  Bodies bodies{disc({5, 1})};
+  std::vector<RealVec> at{{-1, 0}};
+  for (int j = 0; j < side; ++j)
+    for (int i = 0; i < side; ++i) {
+      at.emplace_back(i + Real(j % 2) / 2, j * std::sqrt(Real(3)) / 2);
+      bodies.push_back(disc({0, 0}));
+    }
+  Contacts contacts;
+  for (std::size_t i = 0; i < at.size(); ++i)
+    for (std::size_t j = i + 1; j < at.size(); ++j)
+      if ((at[i] - at[j]).norm() < 1 + 1e-12)
+        contacts.push_back(touch(static_cast<int>(i), at[i], static_cast<int>(j), at[j]));
+  return {bodies, contacts};
+}
+
+// A hit on a raft of 484 discs with 1387 contacts, at once: energy and momentum to rounding, Newton's law at
+// each contact.
+TEST(GroupLaws, LargeRaftIsSolvedExactly) {
+  const auto [bodies, contacts] = raft(22);
+  const Sums before(bodies, twists_of(bodies));
+  for (const Law law : {resolve_together, resolve_reflections}) {
+    const GroupResult result = law(bodies, contacts, {});
+    ASSERT_EQ(result.status, GroupResult::Status::resolved);
+    const Sums after(bodies, result.twists);
+    EXPECT_LE((after.momentum - before.momentum).norm(), 1e-15L);
+    EXPECT_LE(std::abs(after.energy - before.energy), 1e-14L * before.energy);
+    for (std::size_t k = 0; k < contacts.size(); ++k) {
+      ASSERT_GE(result.normal[k], 0);
+      const Real v = normal_velocity(contacts[k], result.twists),
+                 u = normal_velocity(contacts[k], twists_of(bodies));
+      ASSERT_GE(law == resolve_reflections ? v : v + u, -1e-14L) << k;
+    }
+  }
+}
+
+/// A disc of radius 1/2 in a hole of its own size.
+TEST(GroupLaws, DiscInATightHoleIsTakenAndSaysWhatItCost) {
+  GroupContact left, right;
+  left.normal = {1, 0};
+  left.arm = {-0.5, 0};
+  right.normal = {-1, 0};
+  right.arm = {0.5, 0};
+  const GroupResult result = resolve_reflections({disc({1, 0.5})}, {left, right});
+  EXPECT_EQ(result.status, GroupResult::Status::endless);
+  EXPECT_NEAR(result.lost, 0.5, 1e-17);
+  EXPECT_NEAR(result.twists[0].velocity.x(), 0, 1e-17);
+  EXPECT_NEAR(result.twists[0].velocity.y(), 0.5, 1e-17);
 }
 
 }  // namespace

@@ -4,15 +4,31 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdio>
+#include <stdexcept>
 
 #include "brink/core/base/error.h"
 #include "brink/core/base/random.h"
+#include "brink/core/world/formula.h"
 
 namespace brink {
 namespace {
 
 using Eigen::Vector3d;
+
+/// The motion of three formulas of t; `calls`, if given, counts how often it is evaluated.
+PrescribedMotion prescribed(const char* x, const char* y = "0", const char* angle = "0",
+                            const char* name = "test", int* calls = nullptr) {
+  const std::array<Formula, 3> of{Formula(x, {"t"}), Formula(y, {"t"}), Formula(angle, {"t"})};
+  const auto value = [](const Formula& f, double t) { return f(std::span<const double>(&t, 1)); };
+  return PrescribedMotion(
+      [=](double t) {
+        if (calls) ++*calls;
+        return Vector3d(value(of[0], t), value(of[1], t), value(of[2], t));
+      },
+      [=](int i, double from, double to, bool all) { return of[i].time_bound(0, from, to, all); }, name);
+}
 
 struct Deviation {
   double pose = 0.0, twist = 0.0;
@@ -33,7 +49,7 @@ Deviation deviation(const Motion& motion, double from, double to, X x, V v, std:
 // 0.1 sin(6 t): its derivative is 0.6 cos(6 t). Rounding of values of 0.1 is 1.4e-17; 1e-14 leaves room for
 // the sums.
 TEST(Prescribed, SineIsFollowedToRounding) {
-  PrescribedMotion motion([](double t) { return Vector3d(0.1 * std::sin(6 * t), 0.0, std::cos(t)); }, "test");
+  PrescribedMotion motion = prescribed("0.1 * sin(6 * t)", "0", "cos(t)");
   ASSERT_EQ(motion.extend(50.0).status, Extent::Status::reached);
   const Deviation d = deviation(
       motion.motion(), 0.0, 50.0, [](double t) { return 0.1 * std::sin(6 * t); },
@@ -45,7 +61,7 @@ TEST(Prescribed, SineIsFollowedToRounding) {
 
 // A thousand times faster: cells are halved until they fit; the twist is of order 1000.
 TEST(Prescribed, FastSineIsFollowedByHalvingCells) {
-  PrescribedMotion motion([](double t) { return Vector3d(std::sin(1000 * t), 0.0, 0.0); }, "test");
+  PrescribedMotion motion = prescribed("sin(1000 * t)");
   ASSERT_EQ(motion.extend(2.0).status, Extent::Status::reached);
   const Deviation d = deviation(
       motion.motion(), 0.0, 2.0, [](double t) { return std::sin(1000 * t); },
@@ -59,12 +75,7 @@ TEST(Prescribed, FastSineIsFollowedByHalvingCells) {
 // the fit must accept that noise and not halve for ever.
 TEST(Prescribed, NoiseOfLargeTimesIsAccepted) {
   int calls = 0;
-  PrescribedMotion motion(
-      [&](double t) {
-        ++calls;
-        return Vector3d(std::sin(6 * t), 0.0, 0.0);
-      },
-      "test");
+  PrescribedMotion motion = prescribed("sin(6 * t)", "0", "0", "test", &calls);
   ASSERT_EQ(motion.extend(10000.0).status, Extent::Status::reached);
   EXPECT_LT(calls, 30 * 16 * 10010) << "less than 30 calls a cell of 1/16 s: hardly any was halved";
   const Deviation d = deviation(
@@ -78,8 +89,7 @@ TEST(Prescribed, NoiseOfLargeTimesIsAccepted) {
 // Pose and twist may not jump between neighbouring doubles; joins are at dyadic times, so those are tried one
 // by one.
 TEST(Prescribed, MotionIsContinuouslyDifferentiable) {
-  PrescribedMotion motion([](double t) { return Vector3d(std::sin(6 * t), std::abs(t - 0.3), std::exp(-t)); },
-                          "test");
+  PrescribedMotion motion = prescribed("sin(6 * t)", "abs(t - 0.3)", "exp(-t)");
   ASSERT_EQ(motion.extend(2.0).status, Extent::Status::reached);
   const Motion m = motion.motion();
   for (int i = 1; i < 2 * 4096; ++i) {
@@ -95,7 +105,7 @@ TEST(Prescribed, MotionIsContinuouslyDifferentiable) {
 // exact; inside it the twist goes from -1 to 1 and the pose stays within 2^-30.
 TEST(Prescribed, CornersAreRoundedOffWithinTheSmallestCell) {
   for (double corner : {0.3, 0.5}) {
-    PrescribedMotion motion([=](double t) { return Vector3d(std::abs(t - corner), 0.0, 0.0); }, "test");
+    PrescribedMotion motion = prescribed(corner == 0.3 ? "abs(t - 0.3)" : "abs(t - 0.5)");
     ASSERT_EQ(motion.extend(1.0).status, Extent::Status::reached);
     const Motion m = motion.motion();
     EXPECT_NEAR(m.twist(corner - 2e-9).velocity.x(), -1.0, 1e-6);
@@ -113,8 +123,8 @@ TEST(Prescribed, CornersAreRoundedOffWithinTheSmallestCell) {
 
 // Pieces may not depend on how far the motion was asked, not one bit.
 TEST(Prescribed, ManySmallAsksGiveTheBitsOfOneBigAsk) {
-  const auto function = [](double t) { return Vector3d(std::sin(7 * t), std::abs(std::sin(3 * t)), t * t); };
-  PrescribedMotion big(function, "test"), small(function, "test");
+  PrescribedMotion big = prescribed("sin(7 * t)", "abs(sin(3 * t))", "t * t");
+  PrescribedMotion small = prescribed("sin(7 * t)", "abs(sin(3 * t))", "t * t");
   big.extend(5.0);
   Random random(4);
   for (double t = 0.0; t < 5.0; t += random.uniform(0.0, 0.03)) small.extend(t);
@@ -131,12 +141,7 @@ TEST(Prescribed, ManySmallAsksGiveTheBitsOfOneBigAsk) {
 
 TEST(Prescribed, ConstantAndPolynomialAreExactAndCheap) {
   int calls = 0;
-  PrescribedMotion motion(
-      [&](double t) {
-        ++calls;
-        return Vector3d(1.5, 2.0 * t, t * t);
-      },
-      "test");
+  PrescribedMotion motion = prescribed("1.5", "2.0 * t", "t * t", "test", &calls);
   ASSERT_EQ(motion.extend(1.0).status, Extent::Status::reached);
   EXPECT_LE(calls, 18 * 21);
   const Motion m = motion.motion();
@@ -151,8 +156,7 @@ TEST(Prescribed, ConstantAndPolynomialAreExactAndCheap) {
 // 1/1 before t = 0.7, 1/0 behind: the motion ends within the smallest cell of 2^-30 s before that, and says
 // so.
 TEST(Prescribed, ValueThatIsNotFiniteFailsAndIsLocated) {
-  PrescribedMotion motion([](double t) { return Vector3d(1.0 / (t < 0.7 ? 1.0 : 0.0), 0.0, 0.0); },
-                          "site \"piston\"");
+  PrescribedMotion motion = prescribed("1.0 / (t < 0.7 ? 1.0 : 0.0)", "0", "0", "site \"piston\"");
   Extent extent = motion.extend(0.5);
   EXPECT_EQ(extent.status, Extent::Status::reached);
   for (int i = 0; i < 2; ++i) {
@@ -166,8 +170,8 @@ TEST(Prescribed, ValueThatIsNotFiniteFailsAndIsLocated) {
 
 TEST(Prescribed, JumpOfTheValueFailsAndIsLocated) {
   for (double jump : {0.25, 0.7}) {  // on the grid and between
-    PrescribedMotion motion([=](double t) { return Vector3d(t < jump ? 0.0 : 1.0, 0.0, 0.0); },
-                            "site \"step\"");
+    PrescribedMotion motion =
+        prescribed(jump == 0.25 ? "t < 0.25 ? 0 : 1" : "t < 0.7 ? 0 : 1", "0", "0", "site \"step\"");
     const Extent extent = motion.extend(2.0);
     EXPECT_EQ(extent.status, Extent::Status::failed);
     EXPECT_NEAR(extent.end, jump, 1e-8);
@@ -177,10 +181,9 @@ TEST(Prescribed, JumpOfTheValueFailsAndIsLocated) {
 
 // sqrt|t - 0.3| is infinitely fast at 0.3: no motion. |t - 0.3|^1.5 is not: its rate is 0 there.
 TEST(Prescribed, InfiniteSpeedFailsAndSteepCurvatureDoesNot) {
-  PrescribedMotion steep([](double t) { return Vector3d(std::sqrt(std::abs(t - 0.3)), 0.0, 0.0); }, "steep");
+  PrescribedMotion steep = prescribed("sqrt(abs(t - 0.3))");
   EXPECT_EQ(steep.extend(1.0).status, Extent::Status::failed);
-  PrescribedMotion curved([](double t) { return Vector3d(std::pow(std::abs(t - 0.3), 1.5), 0.0, 0.0); },
-                          "curved");
+  PrescribedMotion curved = prescribed("abs(t - 0.3)^1.5");
   const Extent extent = curved.extend(1.0);
   EXPECT_EQ(extent.status, Extent::Status::reached) << extent.why;
   const Deviation d = deviation(
@@ -191,8 +194,62 @@ TEST(Prescribed, InfiniteSpeedFailsAndSteepCurvatureDoesNot) {
   EXPECT_LT(d.twist, 1e-5);
 }
 
+// 2 ms high at 0.7031 and zero elsewhere: it lives between the nodes of every larger cell.
+TEST(Prescribed, ShortSpikesAreFollowed) {
+  for (const char* spike : {"max(0, 0.3 - abs(t - 0.7031) * 300)", "0.3 * exp(-((t - 0.7031) / 0.0002)^2)"}) {
+    PrescribedMotion motion = prescribed(spike);
+    ASSERT_EQ(motion.extend(2.0).status, Extent::Status::reached) << spike;
+    EXPECT_NEAR(motion.motion().pose(0.7031).position.x(), 0.3, 1e-6) << spike;
+    EXPECT_NEAR(motion.motion().pose(0.6).position.x(), 0.0, 1e-15) << spike;
+  }
+}
+
+// Corners of every kind are no jumps: |d/dt asin(sin(w t))| = w on both sides.
+TEST(Prescribed, TrianglesAndOtherCornersAreFollowed) {
+  const double w = 19.441694508615523;
+  PrescribedMotion triangle = prescribed("asin(sin(19.441694508615523 * t))");
+  ASSERT_EQ(triangle.extend(3.0).status, Extent::Status::reached);
+  const Deviation d = deviation(
+      triangle.motion(), 0.0, 3.0, [=](double t) { return std::asin(std::sin(w * t)); },
+      [=](double t) { return std::copysign(w, std::cos(w * t)); });
+  EXPECT_LT(d.pose, 1e-7) << "the arc sine itself is that rough near 1";
+  EXPECT_LT(d.twist, 1e-6);
+  for (const char* corners : {"abs(sin(5 * t))", "max(sin(3 * t), cos(2 * t))", "t < 1 ? t : 2 - t",
+                              "abs(t - rint(t))", "min(t, 1)", "sqrt((t - 0.4)^2)", "acos(cos(7 * t))"}) {
+    const Extent extent = prescribed(corners).extend(2.0);
+    EXPECT_EQ(extent.status, Extent::Status::reached) << corners << ": " << extent.why;
+  }
+}
+
+TEST(Prescribed, WhatJumpsIsRefusedWhereItDoes) {
+  for (const char* jumps : {"rint(t - 0.2)", "sign(t - 0.7)", "t < 0.7 ? 0 : 1e-3", "atan(1 / (t - 0.7))",
+                            "0.1 * (t > 0.7)", "asin(sin(t)) * (t < 0.7)"}) {
+    const Extent extent = prescribed(jumps).extend(2.0);
+    EXPECT_EQ(extent.status, Extent::Status::failed) << jumps;
+    EXPECT_NEAR(extent.end, 0.7, 1e-8) << jumps;
+    EXPECT_THAT(extent.why, testing::HasSubstr("jumps")) << jumps;
+  }
+}
+
+// max(f, f) is f, but no interval arithmetic sees that two terms are one.
+TEST(Prescribed, WhatCannotBeBoundedIsSaid) {
+  const Extent extent = prescribed("max(sin(t), sin(t) + 0)").extend(2.0);
+  EXPECT_EQ(extent.status, Extent::Status::failed);
+  EXPECT_THAT(extent.why, testing::HasSubstr("cannot be bounded"));
+}
+
+TEST(Prescribed, InstalmentsAndForgettingChangeNothing) {
+  PrescribedMotion whole = prescribed("sin(400 * t)"), parts = prescribed("sin(400 * t)");
+  whole.extend(20.0);
+  while (parts.extend(20.0, 100).status == Extent::Status::unfinished) parts.forget_before(10.0);
+  for (double t = 10.0; t < 20.0; t += 0.01)
+    ASSERT_EQ(whole.motion().pose(t).position.x(), parts.motion().pose(t).position.x());
+  EXPECT_EQ(parts.motion().begin(), 0.0);
+  EXPECT_THROW(parts.motion().pose(1.0), std::logic_error);
+}
+
 TEST(Prescribed, AskThatIsNotANumberIsRefused) {
-  PrescribedMotion motion([](double) { return Vector3d(0.0, 0.0, 0.0); }, "test");
+  PrescribedMotion motion = prescribed("0");
   EXPECT_THROW(motion.extend(std::nan("")), BadInput);
 }
 

@@ -1,8 +1,10 @@
 // The program as its users meet it: exit status, messages, the last line of --json.
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -132,6 +134,84 @@ TEST_F(ProgramTest, BadUsageIsStatusTwo) {
                               "run ball.toml --set solver.policy=fastest", "draw ball.toml"}) {
     EXPECT_EQ(brink(command).status, 2) << command;
   }
+}
+
+// The limits of world.duration hold on the command line too, before anything is written.
+TEST_F(ProgramTest, UntilHasTheLimitsOfDuration) {
+  for (const char* until : {"1e13", "1e-13", "inf"}) {
+    const Outcome run = brink(std::string("run ball.toml --out a --until ") + until);
+    EXPECT_EQ(run.status, 2) << until;
+    EXPECT_THAT(run.error, HasSubstr("ball.toml:0:0: --until: out of range; given ")) << until;
+  }
+  EXPECT_FALSE(fs::exists(dir_ / "a"));
+}
+
+// One body for 1e9 s at 0.25 s: 4e9 rows of frames.
+TEST_F(ProgramTest, MoreFramesThanAllowedAreRefusedWithTheOptionThatAllowsThem) {
+  const Outcome run = brink("run ball.toml --out a --until 1e9");
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.error, HasSubstr("output.max_frame_rows"));
+  const Outcome check = brink("check ball.toml --set world.duration=1e9");
+  EXPECT_EQ(check.status, 2);
+  EXPECT_THAT(check.error, HasSubstr("output.max_frame_rows"));
+  const char* const wide = "check ball.toml --set world.duration=1e9 --set output.max_frame_rows=5000000000";
+  EXPECT_EQ(brink(wide).status, 0);
+  EXPECT_THAT(brink("list options").out, HasSubstr("output.max_frame_rows"));
+}
+
+// A run may be made longer than its limit of frames allowed at first.
+TEST_F(ProgramTest, LimitOfFramesMayBeRaisedOnResuming) {
+  ASSERT_EQ(brink("run ball.toml --out a --set output.max_frame_rows=5").status, 0);
+  EXPECT_EQ(brink("run ball.toml --out a --resume --until 1.5 --set output.max_frame_rows=5").status, 2);
+  EXPECT_EQ(brink("run ball.toml --out a --resume --until 1.5 --set output.max_frame_rows=8").status, 0);
+}
+
+TEST_F(ProgramTest, WhatIsReadIsNotWrittenOver) {
+  ASSERT_EQ(brink("run ball.toml --out a").status, 0);
+  fs::create_hard_link(dir_ / "ball.toml", dir_ / "link.toml");
+  const std::string scene = text_of(dir_ / "ball.toml"), run = text_of(dir_ / "a/run.db");
+  for (const char* command :
+       {"run ball.toml --out b --trace ball.toml", "run ball.toml --out b --trace ./a/../link.toml",
+        "run ball.toml --out b --trace b/run.db", "run ball.toml --out b --trace a/run.db",
+        "draw ball.toml -o ball.toml", "draw a -o a/run.db", "draw ball.toml -o a/run.db"})
+    EXPECT_EQ(brink(command).status, 2) << command;
+  EXPECT_EQ(text_of(dir_ / "ball.toml"), scene);
+  EXPECT_EQ(text_of(dir_ / "a/run.db"), run);
+}
+
+// Names and titles are data: nothing in them reaches the terminal as a control, and a fault stays one line.
+TEST_F(ProgramTest, TextFromFilesIsPrintedEscaped) {
+  std::string named = kBall;
+  named.replace(named.find("\"ball\""), 6, R"("\u001b[2J\u202e\nx")");
+  named.replace(named.find("\"ball\"", named.find("[[bodies]]")), 6, R"("b\n\u001b[31m")");
+  write("named.toml", named);
+  const Outcome run = brink("run named.toml --out a");
+  EXPECT_EQ(run.status, 0) << run.error;
+  EXPECT_THAT(run.out, HasSubstr("\\x1b[2J\\u202e\\nx"));
+  const Outcome low = brink("check named.toml --set 'bodies.0.position=[0, 0.4]'");
+  EXPECT_THAT(low.out, HasSubstr("'b\\n\\x1b[31m'"));
+  const Outcome stuck = brink("run named.toml --out b --set 'bodies.0.position=[0, 0.4]'");
+  EXPECT_EQ(stuck.status, 2);
+  EXPECT_EQ(std::count(stuck.error.begin(), stuck.error.end(), '\n'), 1);
+  EXPECT_THAT(run.out + low.out + stuck.out + stuck.error, Not(HasSubstr("\033")));
+}
+
+TEST_F(ProgramTest, DamagedRunFilesAreStatusThreeWithTheirTable) {
+  ASSERT_EQ(brink("run ball.toml --out a").status, 0);
+  SQLite::Database((dir_ / "a/run.db").string(), SQLite::OPEN_READWRITE)
+      .exec("UPDATE body SET shape = '[1'; UPDATE meta SET value = 'x' WHERE key = 'end_time'");
+  const Outcome drawn = brink("draw a -o x.png");
+  EXPECT_EQ(drawn.status, 3);
+  EXPECT_THAT(drawn.error, HasSubstr("table body"));
+  const Outcome resumed = brink("run ball.toml --out a --resume");
+  EXPECT_EQ(resumed.status, 3);
+  EXPECT_THAT(resumed.error, HasSubstr("table meta"));
+}
+
+TEST_F(ProgramTest, FullDiskBehindStandardOutputIsStatusThree) {
+  const std::string command =
+      "cd '" + dir_.string() + "' && '" BRINK_BINARY_DIR "/bin/brink' list options >/dev/full 2>/dev/null";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 3);
 }
 
 TEST_F(ProgramTest, WhatCannotBeReadOrWrittenIsStatusThree) {

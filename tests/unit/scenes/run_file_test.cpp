@@ -1,6 +1,7 @@
 #include "brink/scenes/run_file.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -11,8 +12,8 @@
 #include <set>
 
 #include "brink/core/shapes/shapes.h"
+#include "brink/core/world/world_hash.h"
 #include "brink/scenes/shape_json.h"
-#include "brink/scenes/world_hash.h"
 
 namespace brink {
 namespace {
@@ -245,6 +246,165 @@ TEST_F(RunFileTest, ResumeDropsTheFrameOfAnEarlyEndOnly) {
     const RunFileRecorder recorder(dir_, scene_, Open::resume);
     EXPECT_EQ(RunFile(file()).time_range().second, stop == 0.02 ? 0.02 : 0.01);
   }
+}
+
+// Stopped at 0.013, gone on with, killed before the next checkpoint: the frame of the early end was dropped
+// when the run went on, so the checkpoint must not count it any more, or a frame after it would stay and be
+// made again.
+TEST_F(RunFileTest, KilledAfterGoingOnKeepsNoRowAfterTheCheckpoint) {
+  scene_.output.frame_interval = 0.01;
+  {
+    RunFileRecorder recorder(dir_, scene_, Open::fresh);
+    for (const double t : {0.0, 0.01, 0.013}) recorder.frame(t, states_at_time(t));
+    recorder.checkpoint(0.013, blob(1));
+  }
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    RunFileRecorder recorder(dir_, scene_, Open::resume);
+    recorder.frame(0.02, states_at_time(0.02));
+    ::usleep(300'000);  // longer than rows may wait
+    recorder.poll();
+    ::raise(SIGKILL);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  ASSERT_EQ(RunFile(file()).time_range().second, 0.02);
+  const RunFileRecorder recorder(dir_, scene_, Open::resume);
+  ASSERT_TRUE(recorder.resume_point());
+  EXPECT_EQ(recorder.resume_point()->state, blob(1));
+  EXPECT_EQ(RunFile(file()).time_range().second, 0.01);
+  EXPECT_EQ(frame_rows(file()), 4);
+}
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::set<std::string> names_in(const fs::path& dir) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(dir)) names.insert(entry.path().filename());
+  return names;
+}
+
+// Any change of the checkpoint's row is seen, and named; the file stays byte for byte as it was, and alone.
+TEST_F(RunFileTest, DamagedCheckpointIsRefusedAndNothingIsTouched) {
+  const char* const damages[] = {
+      "UPDATE checkpoint SET state = zeroblob(100)",
+      "UPDATE checkpoint SET state = substr(state, 1, length(state) - 1)",
+      "UPDATE checkpoint SET state = substr(state, 1, 40) || x'07' || substr(state, 42)",
+      "UPDATE checkpoint SET state = substr(state, 1, 7)",
+      "UPDATE checkpoint SET state = NULL",
+      "UPDATE checkpoint SET t = 0.3",
+      "UPDATE checkpoint SET frames = 2",
+      "UPDATE checkpoint SET events = -1",
+      "UPDATE checkpoint SET wall_seconds = 'long'",
+      "INSERT INTO checkpoint SELECT * FROM checkpoint"};
+  for (const char* damage : damages) {
+    {
+      RunFileRecorder recorder(dir_, scene_, Open::fresh);
+      recorder.frame(0.0, states_at_time(0.0));
+      recorder.frame(0.2, states_at_time(0.2));
+      recorder.checkpoint(0.2, blob(1));
+      recorder.finish(finished(0.2), "{}");
+    }
+    SQLite::Database(file().string(), SQLite::OPEN_READWRITE).exec(damage);
+    const std::string before = bytes_of(file());
+    const auto beside = names_in(dir_);
+    try {
+      RunFileRecorder(dir_, scene_, Open::resume);
+      FAIL() << damage;
+    } catch (const IoError& e) {
+      EXPECT_THAT(e.what(), HasSubstr(file().string() + ": table checkpoint: ")) << damage;
+    }
+    EXPECT_TRUE(bytes_of(file()) == before) << damage;
+    EXPECT_EQ(names_in(dir_), beside) << damage;
+  }
+}
+
+// Also where the file was last left in write-ahead mode, as by a run whose file somebody else was reading.
+TEST_F(RunFileTest, RefusedResumeLeavesNoLogBeside) {
+  RunFileRecorder(dir_, scene_, Open::fresh).finish(finished(1), "{}");
+  SQLite::Database(file().string(), SQLite::OPEN_READWRITE).exec("PRAGMA journal_mode = WAL");
+  const std::string before = bytes_of(file());
+  const auto beside = names_in(dir_);
+  scene_.world.bodies[0].mass *= 2.0;
+  EXPECT_THROW(RunFileRecorder(dir_, scene_, Open::resume), BadInput);
+  EXPECT_TRUE(bytes_of(file()) == before);
+  EXPECT_EQ(names_in(dir_), beside);
+}
+
+TEST_F(RunFileTest, RowsThatTheCheckpointCountsMustBeThere) {
+  {
+    RunFileRecorder recorder(dir_, scene_, Open::fresh);
+    recorder.frame(0.0, states_at_time(0.0));
+    recorder.event(event(0, 0.1));
+    recorder.event(event(1, 0.1));
+    recorder.checkpoint(0.2, blob(1));
+    recorder.finish(finished(0.2), "{}");
+  }
+  SQLite::Database(file().string(), SQLite::OPEN_READWRITE).exec("DELETE FROM event WHERE seq = 0");
+  EXPECT_THROW(RunFileRecorder(dir_, scene_, Open::resume), IoError);
+}
+
+// A database of somebody else that happens to be called run.db.
+TEST_F(RunFileTest, AnotherProgramsDatabaseIsRefusedAndLeftAlone) {
+  SQLite::Database(file().string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)
+      .exec("CREATE TABLE bookmarks (url)");
+  const std::string before = bytes_of(file());
+  EXPECT_THROW(RunFileRecorder(dir_, scene_, Open::resume), IoError);
+  EXPECT_TRUE(bytes_of(file()) == before);
+}
+
+// Rows that a picture would read past the end of, ids that are nobody's, numbers that are none.
+TEST_F(RunFileTest, DamagedTablesAreAnIoErrorThatNamesThem) {
+  const std::map<std::string, std::string> damages = {
+      {"DELETE FROM frame WHERE rowid = 3", "frame"},
+      {"UPDATE frame SET x = NULL WHERE rowid = 3", "frame"},
+      {"UPDATE frame SET body = 7 WHERE rowid = 3", "frame"},
+      {"UPDATE frame SET t = 'soon' WHERE rowid = 3", "frame"},
+      {"DELETE FROM body WHERE id = 0", "body"},
+      {"UPDATE body SET shape = '{' WHERE id = 0", "body"},
+      {"UPDATE body SET shape = replace(shape, '0.1', '1e308') WHERE id = 0", "body"},
+      {"UPDATE site SET shape = NULL", "site"},
+      {"UPDATE event SET body = 2", "event"},
+      {"UPDATE event SET kind = 'miracle'", "event"},
+      {"UPDATE meta SET value = '{\"world\":{\"periodic\":[\"a\"]}}' WHERE key = 'options'", "meta"},
+      {"UPDATE meta SET value = 'late' WHERE key = 'end_time'", "meta"},
+      {"DROP TABLE site", "site"}};
+  for (const auto& [damage, table] : damages) {
+    {
+      RunFileRecorder recorder(dir_, scene_, Open::fresh);
+      recorder.frame(0.0, states_at_time(0.0));
+      recorder.frame(0.2, states_at_time(0.2));
+      recorder.event(event(0, 0.1));
+      recorder.finish(finished(0.2), "{}");
+    }
+    SQLite::Database(file().string(), SQLite::OPEN_READWRITE).exec(damage);
+    try {
+      const RunFile run(file());
+      run.world();
+      run.events();
+      run.states_at(0.1);
+      run.end_time();
+      ADD_FAILURE() << damage;
+    } catch (const IoError& e) {
+      EXPECT_THAT(e.what(), HasSubstr(file().string())) << damage;
+      EXPECT_THAT(e.what(), HasSubstr(fmt::format("table {}", table))) << damage;
+    }
+  }
+}
+
+// SQLite as Debian builds it takes names that begin with "file:" for URIs.
+TEST_F(RunFileTest, FolderCalledLikeAUriIsAFolder) {
+  const fs::path before = fs::current_path();
+  fs::current_path(dir_);
+  RunFileRecorder("file:x?mode=memory", scene_, Open::fresh).finish(finished(1), "{}");
+  EXPECT_EQ(RunFile("file:x?mode=memory/run.db").meta("end_time"), "1");
+  EXPECT_TRUE(fs::exists(dir_ / "file:x?mode=memory/run.db"));
+  fs::current_path(before);
 }
 
 TEST_F(RunFileTest, ResumeWithoutCheckpointStartsFromNothing) {

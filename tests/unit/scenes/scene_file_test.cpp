@@ -224,6 +224,42 @@ TEST(SceneFile, ScatterIsTheSameForTheSameSeedAndGrowsAtItsEnd) {
   }
 }
 
+// In a world that repeats every 4 m, over the whole of it: copies and sites stand across the edges too. 40 %
+// of the area is taken, so that without images some pair would overlap.
+TEST(SceneFile, ScatterKeepsClearOfImages) {
+  const World world = parse_scene(R"toml(
+[world]
+periodic = [4, 4]
+[[sites]]
+disc = { radius = 0.5 }
+position = [0, 4]
+[[bodies]]
+name = "ball"
+disc = { radius = 0.2 }
+scatter = { count = 40, region = [[0, 0], [4, 4]] }
+)toml",
+                                  "t")
+                          .world;
+  const auto apart = [](const Vec2& a, const Vec2& b) {
+    const auto along = [&](int axis) { return std::remainder(a[axis] - b[axis], 4.0); };
+    return std::hypot(along(0), along(1));
+  };
+  ASSERT_EQ(world.bodies.size(), 40U);
+  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+    const Vec2& p = world.bodies[i].initial.pose.position;
+    EXPECT_GT(apart(p, {0, 0}), 0.7);
+    for (std::size_t j = 0; j < i; ++j) EXPECT_GT(apart(p, world.bodies[j].initial.pose.position), 0.4);
+  }
+}
+
+// A site as large as a million periods leaves no room; it is not copied a million times to find out.
+TEST(SceneFile, ScatterAmongCountlessImagesIsAFault) {
+  EXPECT_THAT(
+      faults_of("[world]\nperiodic = [1e-6, 1e-6]\n[[sites]]\nsegment = [[0, 0], [1, 1]]\n[[bodies]]\n"
+                "disc = { radius = 1e-9 }\nscatter = { count = 2, region = [[0, 0], [1e-6, 1e-6]] }\n"),
+      Contains(HasSubstr("the region is too small")));
+}
+
 TEST(SceneFile, ScatterThatDoesNotFitIsAFault) {
   // 500 discs of radius 0.3 cover more than the region
   EXPECT_THAT(faults_of(scatter("disc = { radius = 0.3 }", 500)),
@@ -372,6 +408,16 @@ INSTANTIATE_TEST_SUITE_P(
                   "3:10 motion: is not clear"},
         FaultCase{"InsideOfASegment", "[[sites]]\nsegment = [[0,0],[1,0]]\ninside_of = true\n",
                   "3:13 inside_of: segment has no inside"},
+        FaultCase{"NulInAFormula", with_ball("[[forces]]\nkind = \"formula\"\nfx = \"x\\u0000+1\"\n"),
+                  "6:6 formula \"x\\x00+1\": at character 2: holds a NUL character"},
+        FaultCase{"NulInAName", "[[bodies]]\ndisc = { radius = 1 }\nname = \"a\\u0000b\"\n",
+                  "3:8 name: holds a NUL character; given \"a\\x00b\" (character 2)"},
+        FaultCase{"ControlsInAName", with_ball("material = \"\\u001b[2J\\n\\u202e\"\n"),
+                  "4:12 no material is called \"\\x1b[2J\\n\\u202e\""},
+        FaultCase{"GridInOnePlace", with_ball("grid = { columns = 3, rows = 1, spacing = [0, 2] }\n"),
+                  "4:8 grid: copies would stand in one place; given spacing [0, 2]"},
+        FaultCase{"TooManyFrames", with_ball("[output]\nframe_interval = 1e-6\n[world]\nduration = 200\n"),
+                  "4:1 output: too many rows of frames; given 200000002"},
         FaultCase{"DateAsNumber", "[world]\nduration = 2020-01-01\n",
                   "2:12 duration: wrong type; given a date or time"}),
     [](const auto& parameter) { return std::string(parameter.param.name); });

@@ -1,6 +1,7 @@
-#include "brink/scenes/world_hash.h"
+#include "brink/core/world/world_hash.h"
 
 #include <string_view>
+#include <utility>
 
 #include "brink/core/base/hash.h"
 
@@ -14,7 +15,7 @@ class WorldHasher {
   void add(const T&... parts) {
     (one(parts), ...);
   }
-  std::uint64_t value() const { return hash_.value(); }
+  const StateHash& hash() const { return hash_; }
 
  private:
   void one(double x) { hash_.add(x); }
@@ -41,8 +42,20 @@ class WorldHasher {
     add(o.solid, o.container, static_cast<int>(o.sites.size()));
     for (const Site& s : o.sites) one(s);
   }
+  /// Copies share an outline: it is walked once.
+  void one(const std::shared_ptr<const Outline>& outline) {
+    if (outline.get() != last_) {
+      StateHash sites;
+      std::swap(sites, hash_);
+      one(*outline);
+      std::swap(sites, hash_);
+      last_hash_ = sites.value();
+      last_ = outline.get();
+    }
+    hash_.add(last_hash_);
+  }
   void one(const Body& b) {
-    add(*b.outline, b.mass, b.inertia, b.lock_x, b.lock_y, b.lock_angle, b.material, b.initial);
+    add(b.outline, b.mass, b.inertia, b.lock_x, b.lock_y, b.lock_angle, b.material, b.initial);
     add(static_cast<int>(b.sampling.kind), b.sampling.spacing, b.sampling.count);
     one(static_cast<double>(b.sampling.seed));
     for (const Vec2& p : b.sampling.points) one(p);
@@ -51,7 +64,7 @@ class WorldHasher {
   void one(const ConstantMotion& m) { add(m.twist.velocity, m.twist.omega); }
   void one(const FormulaMotion& m) { add(m.x, m.y, m.angle); }
   void one(const FixedSite& s) {
-    add(*s.outline, s.pose, s.material, static_cast<int>(s.motion.index()));
+    add(s.outline, s.pose, s.material, static_cast<int>(s.motion.index()));
     std::visit([this](const auto& motion) { one(motion); }, s.motion);
   }
   void one(const SpringForce& f) {
@@ -67,11 +80,15 @@ class WorldHasher {
   }
 
   StateHash hash_;
+  const Outline* last_ = nullptr;
+  std::uint64_t last_hash_ = 0;
 };
 
 }  // namespace
 
-std::uint64_t world_hash(const World& world) {
+namespace {
+
+StateHash hash_of(const World& world) {
   WorldHasher h;
   if (world.periods.any()) h.add(world.periods.size);
   h.add(world.gravity, static_cast<int>(world.restitution_rule), static_cast<int>(world.friction_rule));
@@ -81,7 +98,12 @@ std::uint64_t world_hash(const World& world) {
   for (const Body& b : world.bodies) h.add(b);
   for (const FixedSite& s : world.sites) h.add(s);
   for (const Force& f : world.forces) h.add(f);
-  return h.value();
+  return h.hash();
 }
+
+}  // namespace
+
+std::uint64_t world_hash(const World& world) { return hash_of(world).value(); }
+std::string world_hash_text(const World& world) { return hash_of(world).text(); }
 
 }  // namespace brink

@@ -1,0 +1,48 @@
+#include "brink/core/contacts/cholesky.h"
+
+#include <cmath>
+
+namespace brink {
+
+void GrowingCholesky::solve_lower(RealVector& b) const {
+  int first = 0;  // leading zeros stay
+  while (first < size() && b[first] == 0) ++first;
+  for (int i = first; i < size(); ++i) {
+    const Real* row = rows_[i].data();
+    Real sum = b[i];
+    for (int k = first; k < i; ++k) sum -= row[k] * b[k];
+    b[i] = sum / row[i];
+  }
+}
+
+void GrowingCholesky::solve_upper(RealVector& y) const {
+  for (int i = size() - 1; i >= 0; --i) {
+    const Real* row = rows_[i].data();
+    const Real x = y[i] /= row[i];
+    if (x == 0) continue;
+    for (int k = 0; k < i; ++k) y[k] -= x * row[k];
+  }
+}
+
+void GrowingCholesky::append(const RealVector& y, Real rest) {
+  rows_.emplace_back(y.data(), y.data() + y.size());
+  rows_.back().push_back(std::sqrt(rest));
+}
+
+void GrowingCholesky::remove(int k) {
+  rows_.erase(rows_.begin() + k);
+  // every row from k on has an entry too many: turned into the one before it, column by column
+  for (int column = k; column < size(); ++column) {
+    const Real a = rows_[column][column], b = rows_[column][column + 1];
+    const Real length = std::hypot(a, b), c = a / length, s = b / length;
+    for (int i = column; i < size(); ++i) {
+      std::vector<Real>& row = rows_[i];
+      const Real left = row[column], right = row[column + 1];
+      row[column] = c * left + s * right;
+      row[column + 1] = c * right - s * left;
+    }
+    rows_[column].pop_back();
+  }
+}
+
+}  // namespace brink

@@ -1,0 +1,41 @@
+#include "brink/scenes/sweep/shell_word.h"
+
+#include <fmt/format.h>
+
+#include "brink/core/base/printable.h"
+
+namespace brink {
+namespace {
+
+bool is_bare(std::string_view text) {
+  return !text.empty() && text.find_first_not_of(
+                              "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                              "_-./=:,+@%") == std::string_view::npos;
+}
+
+/// Octal escapes: always three digits, so that what follows is not taken for a part of them.
+std::string dollar_quoted(std::string_view text) {
+  std::string word = "$'";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '\'' || c == '\\')
+      word += fmt::format("\\{}", c);
+    else if (byte < 0x20 || byte >= 0x7f)
+      word += fmt::format("\\{:03o}", byte);
+    else
+      word += c;
+  }
+  return word + "'";
+}
+
+}  // namespace
+
+std::string shell_word(std::string_view text) {
+  if (is_bare(text)) return std::string(text);
+  if (printable(text) != text) return dollar_quoted(text);
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
+
+}  // namespace brink

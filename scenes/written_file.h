@@ -1,0 +1,20 @@
+#pragma once
+/// Files that a command is told to write (pictures, traces): never one that it reads.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace brink {
+
+/// Refuses `file`, asked for by `option` ("--trace"), if it is one of those that are read or kept, under
+/// whatever name or link, or if it is a database already (a run file, the results of a sweep).
+/// @throws BadInput naming both. Empty paths are nobody.
+void refuse_overwriting(const std::filesystem::path& file, const std::string& option,
+                        const std::vector<std::filesystem::path>& kept);
+
+/// After a write that went wrong: @throws IoError naming the file and what the system says of it ("disk
+/// full").
+[[noreturn]] void throw_not_written(const std::filesystem::path& file);
+
+}  // namespace brink
