@@ -202,6 +202,8 @@ class Watch : public Recorder {
         8 * (kUlp + of_place(k, t) / norm(arm) + (is_body(other) ? of_place(other, t) / norm(other_arm) : 0));
     impact.noise = (1e-9L + blur) * speed + (std::abs(body.omega) + std::abs(partner.omega)) * touching +
                    4 * (astray(k) + astray(other));
+    if (!is_body(other) && site(other).path.told_by_formula())
+      impact.noise += 1e-6L * speed;  // by differences
     const Vec impulse = normal * impact.push + left_of(normal) * impact.rub;
     body = pushed(body, bodies_[k].inertia, arm, impulse);
     if (is_body(other)) partner = pushed(partner, bodies_[other].inertia, other_arm, -impulse);
