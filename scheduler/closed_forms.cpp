@@ -86,9 +86,9 @@ bool too_fast(const Vec2& velocity, double t, double radius) {
 }
 
 /// True if places at time t are told well enough in doubles for what is computed here.
-bool near_enough(const Mover& a, const Mover& b, const Vec2& place_a, const Vec2& place_b,
+bool near_enough(const Mover& a, const Mover& b, double t, const Vec2& place_a, const Vec2& place_b,
                  const SearchLimits& limits) {
-  return place_rounding(*a.motion, place_a) + place_rounding(*b.motion, place_b) <=
+  return place_rounding(*a.motion, t, place_a) + place_rounding(*b.motion, t, place_b) <=
          kFarOfTolerance * limits.tolerance;
 }
 
@@ -104,9 +104,9 @@ double before_contact(Gap&& gap, double t, double from, double speed) {
 }
 
 /// Rounding of a gap [m] between a disc and a site, one seen at q from the other: PairView::gap_rounding().
-double gap_noise(const Mover& a, const Mover& b, const Vec2& place_a, const Vec2& place_b, const Vec2& q,
-                 const Vec2& site) {
-  return place_rounding(*a.motion, place_a) + place_rounding(*b.motion, place_b) +
+double gap_noise(const Mover& a, const Mover& b, double t, const Vec2& place_a, const Vec2& place_b,
+                 const Vec2& q, const Vec2& site) {
+  return place_rounding(*a.motion, t, place_a) + place_rounding(*b.motion, t, place_b) +
          kRoundoff * (6.0 * q.lpNorm<1>() + 2.0 * site.lpNorm<1>());
 }
 
@@ -162,7 +162,7 @@ bool discs(const Mover& a, const Mover& b, double from, double to, const SearchL
   const double nearest = t <= to                        ? t
                          : rel.velocity.isZero(0.0) ? from
                                                     : std::clamp(rel.reference - way / speed2, from, to);
-  if (!near_enough(a, b, path_a.at(nearest), path_b.at(nearest), limits)) return false;
+  if (!near_enough(a, b, nearest, path_a.at(nearest), path_b.at(nearest), limits)) return false;
   if (!(t <= to)) return true;
   if (too_fast(rel.velocity, t, smallest_radius(a.outline(), b.outline()))) return false;
   const Vec2 then = rel.offset + s * rel.velocity;
@@ -170,7 +170,7 @@ bool discs(const Mover& a, const Mover& b, double from, double to, const SearchL
   if (!(closing > rel.noise)) return true;
   const auto gap = [=](double time) { return (path_a.at(time) - path_b.at(time)).norm() - reach - level; };
   t = canonical_root(gap, t, std::max(rel.reference, 0.0),
-                     gap_noise(a, b, path_a.at(t), path_b.at(t), then, Vec2::Zero()) / closing + 4.0 * ulp(t),
+                     gap_noise(a, b, t, path_a.at(t), path_b.at(t), then, Vec2::Zero()) / closing + 4.0 * ulp(t),
                      closing);
   answer = {PairAnswer::Status::contact, t, disc_contact(a, b, t)};
   answer.contact.level = answer.contact.sink = level;
@@ -284,14 +284,14 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
   const Parabola parabola(*disc.motion), parabola_of_other(*other.motion);
   double t = std::max(rel.reference + earliest, from);
   for (const double time : {from, std::min(t, to)})
-    if (!near_enough(disc, other, parabola.at(time), parabola_of_other.at(time), limits)) return false;
+    if (!near_enough(disc, other, time, parabola.at(time), parabola_of_other.at(time), limits)) return false;
   if (!(t <= to)) return true;
   const double speed =
       std::max(-normal.dot(path.velocity + (t - rel.reference) * path.acceleration), rel.noise);
   const Vec2 at_disc = parabola.at(t), at_other = parabola_of_other.at(t);
   const Vec2 far_off = Vec2::Constant(other.outline().bounding_radius);
   const double moment =
-      gap_noise(disc, other, at_disc, at_other, at_disc - at_other, far_off) / speed + 4.0 * ulp(t);
+      gap_noise(disc, other, t, at_disc, at_other, at_disc - at_other, far_off) / speed + 4.0 * ulp(t);
   // segments that are met at the same time to rounding (a notch) count together, as in the general search
   const auto nearest_at = [&](double time) {
     const Vec2 q = frame.direction_to_local(parabola.at(time) - parabola_of_other.at(time));

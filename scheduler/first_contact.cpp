@@ -249,8 +249,11 @@ class PairSearch {
             polish(half, f, path, over_all))
           continue;
         const double above = f.gap - view_.level(half, i, site, path.q);
-        safe = std::min(safe, close_step(site, nearest, f, above, path, band, over_all));
-        again = std::min(again, close_step(site, nearest, f, above, path, band, over_short));
+        const auto step_by = [&](const RelativeBounds& relative, const PathBounds& bounds) {
+          return close_step(half, site, nearest, f, above, path, band, relative, bounds);
+        };
+        safe = std::min(safe, step_by(half.s_is_a ? long_bounds_ : long_bounds_.swapped(), over_all));
+        again = std::min(again, step_by(half.s_is_a ? short_bounds_ : short_bounds_.swapped(), over_short));
         continue;
       }
       const double beyond = gap - 0.5 * band;  // too far to matter at any speed?
@@ -269,11 +272,19 @@ class PairSearch {
   /// The step of a vertex that is within the band of a site and does not meet it, `above` its level: by the
   /// signed distance to the site's line or circle where the foot is inside the site, which holds behind its
   /// surface as in front of it; else by the site's distance.
-  double close_step(const Site& site, const Nearest& nearest, const Feature& f, double above,
-                    const SamplePath& path, double band, const PathBounds& bounds) const {
+  double close_step(const Half& half, const Site& site, const Nearest& nearest, const Feature& f, double above,
+                    const SamplePath& path, double band, const RelativeBounds& relative,
+                    const PathBounds& bounds) const {
     const double allowed = 0.25 * sink_step(limits_.touch, 0.0);
-    if (site.kind == SiteKind::segment || site.kind == SiteKind::point)
-      return band_step(above, f.rate, bounds.acceleration, band, allowed);
+    if (site.kind == SiteKind::segment || site.kind == SiteKind::point) {
+      double bend = bounds.acceleration;
+      if (relative.spin_t == 0.0 && relative.alpha_t == 0.0) {  // only what pulls against the normal counts
+        const double along = view_.placed(half.t).frame.direction_to_world(f.normal).dot(relative.pull);
+        bend = std::min(bend, std::max(0.0, relative.pull_radius - along) +
+                                  (relative.alpha_s + relative.spin_s * relative.spin_s) * path.arm);
+      }
+      return band_step(above, f.rate, bend, band, allowed);
+    }
     const bool hollow = f.normal.dot(path.q - site.center) < 0.0;  // f's normal points to the centre
     const double bend = hollow ? bounds.speed * bounds.speed / site.arc_radius * 1.01 : 0.0;
     if (nearest.foot == Foot::interior)

@@ -29,7 +29,7 @@ void check_pairs(const World& world, const SolverOptions& options) {
 }
 
 /// True if a sharp vertex of one owner may meet a wire without thickness of another.
-bool points_meet_wires(const std::vector<const Outline*>& outlines, std::size_t bodies) {
+bool points_may_meet_wires(const std::vector<const Outline*>& outlines, std::size_t bodies) {
   const auto sharp = [](const Outline* o) {
     return std::any_of(o->samples.begin(), o->samples.end(),
                        [](const Sample& s) { return s.arc_site < 0 && s.radius == 0.0; });
@@ -78,7 +78,7 @@ Kernel::Kernel(World world, SolverOptions options)
 
   for (const Body& b : world_.bodies) outlines_.push_back(b.outline.get());
   for (const FixedSite& s : world_.sites) outlines_.push_back(s.outline.get());
-  points_meet_wires_ = points_meet_wires(outlines_, world_.bodies.size());
+  points_meet_wires_ = points_may_meet_wires(outlines_, world_.bodies.size());
   bodies_.resize(world_.bodies.size());
   for (Component& c : make_components(world_)) add_component(std::move(c));
   work_.component_resets = 0;  // first starts are no resets

@@ -75,6 +75,9 @@ class Kernel {
   /// Raised whenever the state was changed from outside the verbs: what a policy knows is void.
   std::uint64_t revision() const { return revision_; }
   double touch() const { return limits_.touch; }
+  /// True if a sharp corner or end of somebody may meet a wire without thickness of another: nobody may be
+  /// moved past a contact, not even by the rounding of an instant.
+  bool points_meet_wires() const { return points_meet_wires_; }
   double contact_tolerance() const { return limits_.tolerance; }
   const std::optional<Halt>& halt() const { return halt_; }
   /// Where the first of the motions ends that cannot go on [s]; infinity: none that is known. A collision
@@ -315,8 +318,8 @@ class Kernel {
   /// The deepest overlap that is none [m]: the contact tolerance, or what the world started with.
   double allowed_overlap() const { return std::max(limits_.tolerance, start_overlap_); }
   bool check_overlap(const PairKey& pair, double t);
-  /// After a resolve at the present time. False on a halt.
-  bool check_resolved(const PairKey& pair, const FeatureContact& found);
+  /// After a resolve `delay` [s] from the present time. False on a halt.
+  bool check_resolved(const PairKey& pair, const FeatureContact& found, Real delay);
   /// Before body k is resolved at time `to`. False on a halt.
   bool check_flight(int k, double to);
   bool report_overlap(const PairKey& pair, double depth, double t, const char* what);

@@ -41,11 +41,12 @@ void Kernel::hold_to_certificates(bool exact) {
   }
 }
 
-bool Kernel::check_resolved(const PairKey& pair, const FeatureContact& found) {
+bool Kernel::check_resolved(const PairKey& pair, const FeatureContact& found, Real delay) {
   if (!checked_) return true;
   const Outline &a = outline_of(pair.body), &b = outline_of(other_owner(pair));
   const ExtendedContact now =
-      contact_in(a, b, bodies_[pair.body].motion.extended_state(time_), other_state(pair, time_), found);
+      contact_in(a, b, bodies_[pair.body].motion.extended_state(time_).moved(delay),
+                 other_state(pair, time_).moved(delay), found);
   const bool on_wire = found.sample_on_a ? thin(a, b, found) : thin(b, a, found);
   const double gap = static_cast<double>(now.gap);
   note_overlap(gap);

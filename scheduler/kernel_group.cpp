@@ -256,7 +256,7 @@ class Kernel::GroupResolve {
     for (const auto& [component, touched] : by_component)
       if (!kernel_.restart_noted(touched, changed)) return false;
     return std::all_of(events_.begin(), events_.end(), [&](std::size_t k) {
-      return kernel_.check_resolved(group_[k].pair, group_[k].contact);
+      return kernel_.check_resolved(group_[k].pair, group_[k].contact, delay_);
     });
   }
 

@@ -246,7 +246,8 @@ std::optional<Outcome> Kernel::settle(const PairKey& pair, const FeatureContact&
   }
   double rest = note_resolve(pair.body, other_owner(pair), response.magnitude);
   if (!pair.with_site()) rest = std::min(rest, note_resolve(pair.other_body, pair.body, response.magnitude));
-  if (!deflect(pair, response, changed) || !check_resolved(pair, found)) return std::nullopt;
+  if (!deflect(pair, response, changed) || !check_resolved(pair, found, response.delay))
+    return std::nullopt;
   return Outcome{pair, found, response.impulse.normal, response.impulse.tangential, response.delay, rest};
 }
 

@@ -47,6 +47,8 @@ struct RelativeBounds {
   double acceleration = 0.0;  ///< likewise [m/s^2]
   double spin_s = 0.0, alpha_s = 0.0;
   double spin_t = 0.0, alpha_t = 0.0;
+  Vec2 pull = Vec2::Zero();  ///< S's acceleration against T's, in the world, to within pull_radius [m/s^2]
+  double pull_radius = 0.0;
 
   RelativeBounds() = default;
   RelativeBounds(const MotionBounds& s, const MotionBounds& t)
@@ -56,7 +58,9 @@ struct RelativeBounds {
         spin_s(s.spin()),
         alpha_s(s.alpha),
         spin_t(t.spin()),
-        alpha_t(t.alpha) {}
+        alpha_t(t.alpha),
+        pull(s.acceleration - t.acceleration),
+        pull_radius(s.acceleration_radius + t.acceleration_radius) {}
 
   /// Of two outlines on their motions over [from, to].
   static RelativeBounds over(const Outline& s, const Motion& motion_s, const Outline& t,
@@ -76,7 +80,8 @@ struct RelativeBounds {
     const Acceleration &as = s.acceleration(), &at = t.acceleration();
     const Twist &ws = s.start().twist, &wt = t.start().twist;
     RelativeBounds b;
-    b.acceleration = (as.linear - at.linear).norm();
+    b.pull = as.linear - at.linear;
+    b.acceleration = b.pull.norm();
     b.speed = ((ws.velocity + since_s * as.linear) - (wt.velocity + since_t * at.linear)).norm() +
               half * b.acceleration;
     b.alpha_s = std::abs(as.angular);
@@ -90,6 +95,7 @@ struct RelativeBounds {
     RelativeBounds r = *this;
     std::swap(r.spin_s, r.spin_t);
     std::swap(r.alpha_s, r.alpha_t);
+    r.pull = -r.pull;
     return r;
   }
 };

@@ -16,6 +16,12 @@ bool sharp_vertex(const Site& site, const Sample& sample, const Nearest& nearest
          site.radius + sample.radius == 0.0;
 }
 
+/// A direction out of the site's end at which q is nearest; where they are one, that of a solid's corner.
+Vec2 outward(const Site& site, const Nearest& nearest, double side, const Vec2& q) {
+  if (nearest.distance > 0.0 || !site.solid) return side * (q - nearest.point);
+  return nearest.foot == Foot::start ? site.pseudo_a : site.pseudo_b;
+}
+
 }  // namespace
 
 PairView::PairView(const Mover& a, const Mover& b, const SearchLimits& limits, SearchScratch& scratch)
@@ -35,7 +41,7 @@ Feature PairView::vertex_feature(const Half& half, int i, int j, const Nearest& 
   const double side = side_of(site, nearest, path.q);
   f.gap = side * nearest.distance - site.radius - sample.radius;
   if (sharp_vertex(site, sample, nearest) && path.rate.squaredNorm() > 0.0 && f.gap > -limits_.touch &&
-      nearest.distance <= limits_.tolerance && (path.q - nearest.point).dot(path.rate) < 0.0)
+      nearest.distance <= limits_.tolerance && outward(site, nearest, side, path.q).dot(path.rate) < 0.0)
     f.normal = -path.rate.normalized();  // two points that meet: the limit of their direction
   f.rate = f.normal.dot(path.rate);
   f.point =
@@ -131,9 +137,9 @@ void PairView::put(Placing& p, double t) const {
   p.time = t;
   const BodyState sa = a_.motion->state(t), sb = b_.motion->state(t);
   p.place_noise =
-      place_rounding(*a_.motion, sa.pose.position) + place_rounding(*b_.motion, sb.pose.position);
-  const auto turned = [](const Mover& m, double angle) {
-    return is_centred_disc(m.outline()) ? 0.0 : angle_rounding(*m.motion, angle);
+      place_rounding(*a_.motion, t, sa.pose.position) + place_rounding(*b_.motion, t, sb.pose.position);
+  const auto turned = [&](const Mover& m, double angle) {
+    return is_centred_disc(m.outline()) ? 0.0 : angle_rounding(*m.motion, t, angle);
   };
   p.angle_noise_a = turned(a_, sa.pose.angle);
   p.angle_noise_b = turned(b_, sb.pose.angle);
@@ -169,8 +175,8 @@ void PairView::put_relative(Placing& p, double t) const {
   p.base = sb.position.cast<double>();
   p.a.move(a_.outline(), seen_from(p.base, sa));
   p.b.move(b_.outline(), seen_from(p.base, sb));
-  p.place_noise = place_rounding(*a_.motion, sa.position.cast<double>()) * finer(*a_.motion) +
-                  place_rounding(*b_.motion, p.base) * finer(*b_.motion);
+  p.place_noise = place_rounding(*a_.motion, t, sa.position.cast<double>()) * finer(*a_.motion) +
+                  place_rounding(*b_.motion, t, p.base) * finer(*b_.motion);
   p.angle_noise_a *= finer(*a_.motion);
   p.angle_noise_b *= finer(*b_.motion);
 }

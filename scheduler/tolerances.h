@@ -33,31 +33,34 @@ inline constexpr double kTouchOfTolerance = 1e-3;
 /// start of this pair.
 inline constexpr double kOverlapAtStart = 1e4;
 
-/// Bound on the rounding of a value that has moved from `start` to `now` along start + s (rate + s / 2 accel),
-/// in arithmetic of unit roundoff u: three roundings of the way, one of the sum. None of what stands still and
-/// is a double (`low`: what its start's rounding left over).
-inline double rounding_of_way(double start, double low, double rate, double now, double u) {
-  if (now == start && rate == 0.0 && low == 0.0) return 0.0;
-  return u * (3.0 * std::abs(now - start) + std::abs(now));
+/// Bound on the rounding of start + s (rate + s / 2 bent), `now` in the end, in arithmetic of unit roundoff u: four
+/// roundings of the way, one of the sum. None of what stands still and is a double (`low`: what its start's
+/// rounding left over).
+inline double rounding_of_way(double start, double low, double rate, double bent, double s, double now,
+                              double u) {
+  const double way = std::abs(s) * (std::abs(rate) + 0.5 * std::abs(s * bent));
+  if (now == start && way == 0.0 && low == 0.0) return 0.0;
+  return u * (4.0 * way + std::abs(now));
 }
 
-/// Bound on the rounding of a motion's place [m] in double precision. Dense output is as exact as its
-/// coefficients: eight roundings of the place, joins of pieces among them.
-inline double place_rounding(const Motion& motion, const Vec2& now, double u = kRoundoff) {
+/// Bound on the rounding of a motion's place at time t, `now` [m], in double precision. Dense output is as exact
+/// as its coefficients: eight roundings of the place, joins of pieces among them.
+inline double place_rounding(const Motion& motion, double t, const Vec2& now, double u = kRoundoff) {
   if (!motion.is_ballistic()) return 8.0 * kRoundoff * now.lpNorm<1>();
   const BodyState &start = motion.start(), &low = motion.start_low();
   double sum = 0.0;
   for (int axis = 0; axis < 2; ++axis)
     sum += rounding_of_way(start.pose.position[axis], low.pose.position[axis], start.twist.velocity[axis],
-                           now[axis], u);
+                           motion.acceleration().linear[axis], t - motion.origin(), now[axis], u);
   return sum;
 }
 
 /// Likewise of its angle [rad].
-inline double angle_rounding(const Motion& motion, double now, double u = kRoundoff) {
+inline double angle_rounding(const Motion& motion, double t, double now, double u = kRoundoff) {
   if (!motion.is_ballistic()) return 8.0 * kRoundoff * std::abs(now);
   const BodyState &start = motion.start(), &low = motion.start_low();
-  return rounding_of_way(start.pose.angle, low.pose.angle, start.twist.omega, now, u);
+  return rounding_of_way(start.pose.angle, low.pose.angle, start.twist.omega, motion.acceleration().angular,
+                         t - motion.origin(), now, u);
 }
 
 /// Places are taken relative to the pair, in extended precision, where their rounding in double is more than

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "brink/scheduler/tolerances.h"
+
 namespace brink {
 
 namespace {
@@ -35,7 +37,10 @@ std::optional<ZenoEnding> ZenoWatch::collided(const Feature& feature, double tim
   const bool pressed = sunk || loss == BounceLoss::all || (rest >= interval && ratio <= 1.0 + kAlike);
   if (interval < b.shortest || pressed) ++b.low_flights;
   b.shortest = std::min(b.shortest, interval);
-  if (b.low_flights < kLowFlights) return std::nullopt;
+  // a series that shrinks ends where its flights come down to roundings: what bounces on after is pressed
+  const bool run_out = b.limit_time > 0.0 && b.low_flights >= kShortSeries &&
+                       0.25 * closing_speed * interval < kTouchOfTolerance * tolerance_;
+  if (b.low_flights < kLowFlights && !run_out) return std::nullopt;
   return ZenoEnding{feature.pair, std::max(b.limit_time, time), b.count};
 }
 

@@ -278,7 +278,11 @@ Taylor atanh(const Taylor& a) {
 
 Taylor pow(const Taylor& a, const Taylor& b) {
   constexpr double largest_whole = 1024.0;
-  if (!b.is_constant() || !is_point(b.c[0])) return exp(b * log(a));
+  if (!b.is_constant() || !is_point(b.c[0])) {
+    // of a negative base only whole exponents have a value, and they may be met
+    if (leaves(a.c[0], 0.0, kInfinity)) return rough(Interval::whole(), a.order);
+    return exp(b * log(a));
+  }
   const double p = b.c[0].lower();
   if (p == std::floor(p) && std::abs(p) <= largest_whole) return whole_power(a, static_cast<int>(p));
   return real_power(a, p);

@@ -177,7 +177,8 @@ class BodyClocks final : public Policy {
     if (alone) return collide(Certificate(found_->of(k)));
     const std::vector<Certificate> group = contacts_until(instant);
     // none: what was found by a view that has ended, the next view does not find by the end of the instant
-    if (!kernel_->halt() && !group.empty()) collide(group[first_by_order(*kernel_, group)]);
+    if (kernel_->halt() || group.empty()) return;
+    collide(at_its_time(*kernel_, group[first_by_order(*kernel_, group)], group.front().time));
   }
 
   /// Every contact of the present instant, in the total order of events.

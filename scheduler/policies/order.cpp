@@ -31,6 +31,11 @@ std::size_t first_by_order(Kernel& kernel, const std::vector<Certificate>& group
   return group.size() == 1 ? 0 : first_by(kernel.options().order, group, kernel.random());
 }
 
+Certificate at_its_time(const Kernel& kernel, Certificate c, double earliest) {
+  if (kernel.points_meet_wires()) c.time = c.contact.time = earliest;
+  return c;
+}
+
 std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda, double end) {
   std::vector<Certificate> group;
   while (!agenda.empty() && agenda.earliest().time <= end) {
@@ -45,7 +50,7 @@ std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda, double 
   kernel.work().queue_operations += agenda.take_operations();
   if (group.empty()) return std::nullopt;
   const std::size_t chosen = first_by_order(kernel, group);
-  const Certificate first = group[chosen];
+  const Certificate first = at_its_time(kernel, group[chosen], group.front().time);
   for (std::size_t i = 0; i < group.size(); ++i)
     if (i != chosen) agenda.insert(group[i]);
   return first;

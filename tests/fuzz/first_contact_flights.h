@@ -14,7 +14,7 @@
 
 #include "brink/core/base/random.h"
 #include "brink/core/shapes/shapes.h"
-#include "brink/integrators/prescribed.h"
+#include "brink/scheduler/site_motion.h"
 #include "first_contact_reference.h"
 
 namespace brink::flights {
@@ -222,15 +222,25 @@ inline void swing(Flight& f, Random& r) {
   const double length = f.to - f.from, rate = r.uniform(0.5, 20.0) / length;
   const double wide = 0.3 * f.size * r.uniform(0.0, 1.0), turn = r.uniform(0.0, 1.0);
   const Vec2 side = direction(r.uniform(0.0, 6.3));
-  const auto path = [plain = f.motion_a, from = f.from, rate, wide, turn, side](double t) -> Eigen::Vector3d {
-    const BodyState s = plain.state(t);
-    const double swung = std::sin(rate * (t - from));
-    return {s.pose.position.x() + wide * swung * side.x(), s.pose.position.y() + wide * swung * side.y(),
-            s.pose.angle + turn * swung};
+  const BodyState& start = f.motion_a.start();
+  const Acceleration& pull = f.motion_a.acceleration();
+  // start + s (rate + s / 2 pull) + swing sin(rate (t - from)), s = t - origin
+  const auto told = [&](double place, double speed, double bent, double swung) {
+    std::ostringstream text;
+    text << std::setprecision(17) << "(" << place << ") + (t - (" << f.motion_a.origin() << "))*((" << speed
+         << ") + (" << 0.5 * bent << ")*(t - (" << f.motion_a.origin() << "))) + (" << swung << ")*sin((" << rate
+         << ")*(t - (" << f.from << ")))";
+    return Formula(text.str(), {"t"});
   };
-  PrescribedMotion told(path, "a");
-  if (told.extend(f.to).status != Extent::Status::reached) return;
-  f.motion_a = told.motion();
+  FixedSite site;
+  site.name = "a";
+  site.motion = FormulaMotion{
+      told(start.pose.position.x(), start.twist.velocity.x(), pull.linear.x(), wide * side.x()),
+      told(start.pose.position.y(), start.twist.velocity.y(), pull.linear.y(), wide * side.y()),
+      told(start.pose.angle, start.twist.omega, pull.angular, turn)};
+  SiteMotion motion(site);
+  if (motion.extend(f.to).status != Extent::Status::reached) return;
+  f.motion_a = motion.motion();
   f.relative_speed += wide * rate;
   f.relative_acceleration += wide * rate * rate;
   f.spin_a += turn * rate;
