@@ -112,7 +112,7 @@ struct SamplePath {
 
 inline SamplePath sample_path(const Placed& s, const Placed& t, const Vec2& p_local) {
   const Vec2 r = s.frame.direction_to_world(p_local);
-  const Vec2 rho = s.frame.origin + r - t.frame.origin;
+  const Vec2 rho = r + (s.frame.origin - t.frame.origin);  // in this order: origins may be far away
   const Vec2 w = s.twist.at(r) - t.twist.at(rho);
   SamplePath path;
   path.q = t.frame.direction_to_local(rho);
