@@ -73,8 +73,7 @@ ArcStep against_segment(const Site& arc, const Site& site, const SamplePath& pat
 
 /// One of the two ways in which two arcs touch: outside against outside, or inside the other's hollow.
 ArcStep against_arc(const Site& arc, const Site& site, bool hollow, const SamplePath& path, const Placed& s,
-                    const Placed& t, double band, const RelativeBounds& relative,
-                    const PathBounds& bounds) {
+                    const Placed& t, double band, const RelativeBounds& relative, const PathBounds& bounds) {
   const Vec2 w = path.q - site.center;
   const double distance = w.norm();
   const double thickness = arc.radius + site.radius;
@@ -113,8 +112,7 @@ ArcStep arc_step(const Site& arc, const Site& site, const SamplePath& path, cons
   ArcStep none;
   none.safe = kForever;
   if (!touches_convex(arc) || site.kind == SiteKind::point) return none;
-  if (site.kind == SiteKind::segment)
-    return against_segment(arc, site, path, s, t, band, relative, bounds);
+  if (site.kind == SiteKind::segment) return against_segment(arc, site, path, s, t, band, relative, bounds);
   ArcStep outer = none, inner = none;
   if (touches_convex(site)) outer = against_arc(arc, site, false, path, s, t, band, relative, bounds);
   if (touches_concave(site) && arc.arc_radius < site.arc_radius)

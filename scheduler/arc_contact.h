@@ -12,10 +12,10 @@ namespace brink {
 
 /// One arc against one site at one moment.
 struct ArcStep {
-  bool active = false;  ///< the touching direction is in every sector: gap and rate are those of the pair
-  double gap = 0.0;     ///< [m]
-  double rate = 0.0;    ///< [m/s]
-  double safe = 0.0;    ///< certified: the gap stays above half of `band` (or of itself) for this long [s]
+  bool active = false;     ///< the touching direction is in every sector: gap and rate are those of the pair
+  double gap = 0.0;        ///< [m]
+  double rate = 0.0;       ///< [m/s]
+  double safe = 0.0;       ///< certified: the gap stays above half of `band` (or of itself) for this long [s]
   double curvature = 0.0;  ///< bound on how the gap bends towards zero [m/s^2]
   Vec2 normal = Vec2::Zero();  ///< in T's frame, out of the site, into the arc
   Vec2 point = Vec2::Zero();   ///< in T's frame, on the site's surface

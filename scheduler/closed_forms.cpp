@@ -82,7 +82,7 @@ bool starts_clear(double gap, double rate, double acceleration, double noise, do
 
 /// True if the clock can hardly tell such speeds: the search says so.
 bool too_fast(const Vec2& velocity, double t, double radius) {
-  return !(8.0 * velocity.norm() * ulp(t) <= kSlowOfSize * radius);
+  return !(velocity.norm() * same_instant(t) <= kSlowOfSize * radius);
 }
 
 /// True if places at time t are told well enough in doubles for what is computed here.
@@ -159,7 +159,7 @@ bool discs(const Mover& a, const Mover& b, double from, double to, const SearchL
   }
   const Parabola path_a(*a.motion), path_b(*b.motion);
   double t = std::max(rel.reference + s, from);
-  const double nearest = t <= to                        ? t
+  const double nearest = t <= to                    ? t
                          : rel.velocity.isZero(0.0) ? from
                                                     : std::clamp(rel.reference - way / speed2, from, to);
   if (!near_enough(a, b, nearest, path_a.at(nearest), path_b.at(nearest), limits)) return false;
@@ -169,9 +169,9 @@ bool discs(const Mover& a, const Mover& b, double from, double to, const SearchL
   const double closing = -then.dot(rel.velocity) / then.norm();
   if (!(closing > rel.noise)) return true;
   const auto gap = [=](double time) { return (path_a.at(time) - path_b.at(time)).norm() - reach - level; };
-  t = canonical_root(gap, t, std::max(rel.reference, 0.0),
-                     gap_noise(a, b, t, path_a.at(t), path_b.at(t), then, Vec2::Zero()) / closing + 4.0 * ulp(t),
-                     closing);
+  t = canonical_root(
+      gap, t, std::max(rel.reference, 0.0),
+      gap_noise(a, b, t, path_a.at(t), path_b.at(t), then, Vec2::Zero()) / closing + 4.0 * ulp(t), closing);
   answer = {PairAnswer::Status::contact, t, disc_contact(a, b, t)};
   answer.contact.level = answer.contact.sink = level;
   return true;
@@ -203,7 +203,7 @@ struct DiscPath {
 struct Meeting {
   const Site* site;
   int index;
-  Vec2 normal;   ///< towards the disc
+  Vec2 normal;    ///< towards the disc
   Quadratic gap;  ///< [m]
   double s;       ///< infinite: never
 
@@ -269,7 +269,7 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
     clear = clear && starts_clear(std::abs(m.gap.value), m.gap.rate, std::abs(m.gap.second), rel.noise,
                                   limits.tolerance);
   }
-  const double level = clear ? 0.0
+  const double level = clear       ? 0.0
                        : disc_is_a ? sink_at_start(disc, other, limits, scratch)
                                    : sink_at_start(other, disc, limits, scratch);
   for (int k = 0; k < count; ++k) {
@@ -310,8 +310,10 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
   t = canonical_root([&](double time) { return nearest_at(time).first; }, t, rel.reference, moment, speed);
   const auto [above, met] = nearest_at(t);
   const Vec2 q = frame.direction_to_local(parabola.at(t) - parabola_of_other.at(t));
-  if (!can_hold(kRoundoff * (6.0 * q.lpNorm<1>() + 2.0 * met->site->a.lpNorm<1>()), limits.tolerance, false) ||
-      too_fast(path.velocity + (t - rel.reference) * path.acceleration, t, smallest_radius(disc.outline(), other.outline())))
+  if (!can_hold(kRoundoff * (6.0 * q.lpNorm<1>() + 2.0 * met->site->a.lpNorm<1>()), limits.tolerance,
+                false) ||
+      too_fast(path.velocity + (t - rel.reference) * path.acceleration, t,
+               smallest_radius(disc.outline(), other.outline())))
     return false;
   const BodyState sd = disc.motion->state(t), so = other.motion->state(t);
   const Vec2 out = frame.direction_to_world(met->normal);

@@ -28,8 +28,9 @@ struct DiscRebound {
 
 /// What the general response (extended_contact.h, impulse.h) comes to for such a pair, to roundings of
 /// extended precision: nothing turns, the normal is the line of centres. The collision is resolved at its
-/// moment, at most `latest` [s] from `time`, when the gap is `level` [m]; b is met `shift` [m] from where it is, and stays there. Nothing
-/// if they do not approach. Cost: two square roots and five divisions, no sine or cosine.
+/// moment, at most `latest` [s] from `time`, when the gap is `level` [m]; b is met `shift` [m] from where it
+/// is, and stays there. Nothing if they do not approach. Cost: two square roots and five divisions, no sine
+/// or cosine.
 std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const Vec2& shift, double time,
                                    double latest, double level, double restitution);
 

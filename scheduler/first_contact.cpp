@@ -59,7 +59,9 @@ class PairSearch {
     f.site = c.site;
     const PairView::Doubt doubt = view_.doubt(view_.half(c.sample_on_a), f);
     if (doubt == PairView::Doubt::none) return {PairAnswer::Status::contact, c.time, c};
-    return {PairAnswer::Status::undecided, c.time, {},
+    return {PairAnswer::Status::undecided,
+            c.time,
+            {},
             doubt == PairView::Doubt::place ? PairAnswer::Why::place : PairAnswer::Why::speed};
   }
 
@@ -272,8 +274,8 @@ class PairSearch {
   /// The step of a vertex that is within the band of a site and does not meet it, `above` its level: by the
   /// signed distance to the site's line or circle where the foot is inside the site, which holds behind its
   /// surface as in front of it; else by the site's distance.
-  double close_step(const Half& half, const Site& site, const Nearest& nearest, const Feature& f, double above,
-                    const SamplePath& path, double band, const RelativeBounds& relative,
+  double close_step(const Half& half, const Site& site, const Nearest& nearest, const Feature& f,
+                    double above, const SamplePath& path, double band, const RelativeBounds& relative,
                     const PathBounds& bounds) const {
     const double allowed = 0.25 * sink_step(limits_.touch, 0.0);
     if (site.kind == SiteKind::segment || site.kind == SiteKind::point) {
@@ -301,8 +303,8 @@ class PairSearch {
   /// Gaps up to this are close [m]: the tolerance, or what the point moves in a few roundings of the time, or
   /// more than any level.
   double touching_band(const Half& half, int i, const SamplePath& path) const {
-    return std::max({limits_.tolerance, 8.0 * path.rate.norm() * ulp(t_),
-                     16.0 * view_.gap_rounding(half, i, path.q)});
+    return std::max(
+        {limits_.tolerance, 8.0 * path.rate.norm() * ulp(t_), 16.0 * view_.gap_rounding(half, i, path.q)});
   }
 
   double arc_sample_step(const Half& half, int i, const SamplePath& path, const RelativeBounds& relative,
@@ -314,9 +316,8 @@ class PairSearch {
     double safe = kForever;
     for (std::size_t j = 0; j < sites.sites.size(); ++j) {
       ++work_.candidate_evaluations;
-      const ArcStep step =
-          arc_step(arc, sites.sites[j], path, view_.placed(half.s), view_.placed(half.t), band, relative,
-                   bounds);
+      const ArcStep step = arc_step(arc, sites.sites[j], path, view_.placed(half.s), view_.placed(half.t),
+                                    band, relative, bounds);
       if (step.active && step.gap <= band) {
         look_closely();
         const Feature f{i, static_cast<int>(j), step.gap, step.rate, step.normal, step.point};

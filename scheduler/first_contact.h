@@ -66,7 +66,8 @@ struct PairAnswer {
   enum class Why : unsigned char {
     steps,  ///< the iteration cap was met: ask again from `until`
     place,  ///< they are close, and too far away for their gap to be told to the contact tolerance
-    speed,  ///< they are close, and too fast for the clock: they move a part of their size between two doubles
+    speed,  ///< they are close, and too fast for the clock: they move a part of their size between two
+            ///< doubles
   };
   Status status = Status::clear;
   double until = 0.0;
@@ -82,7 +83,7 @@ struct SearchScratch {
     Vec2 normal = Vec2::Zero();
     bool leaving = false;  ///< touching, but not approaching
   };
-  SiteIndex::Scratch index;   ///< of the candidates that are being looked through
+  SiteIndex::Scratch index;    ///< of the candidates that are being looked through
   SiteIndex::Scratch nearest;  ///< of single questions beside them
   std::vector<Neighbour> neighbours;
   std::vector<double> safe_until;

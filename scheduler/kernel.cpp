@@ -14,7 +14,7 @@ namespace brink {
 
 namespace {
 
-constexpr double kMostPairs = 1e7;          ///< that are kept at once: 400 MB
+constexpr double kMostPairs = 1e7;  ///< that are kept at once: 400 MB
 
 /// @throws BadInput where every pair is to be looked at, and there are too many to keep.
 void check_pairs(const World& world, const SolverOptions& options) {
@@ -39,8 +39,10 @@ bool points_may_meet_wires(const std::vector<const Outline*>& outlines, std::siz
                        [](const Site& s) { return !s.solid && s.radius == 0.0; });
   };
   const auto end_of_bodies = outlines.begin() + static_cast<std::ptrdiff_t>(bodies);
-  return (std::any_of(outlines.begin(), end_of_bodies, sharp) && std::any_of(outlines.begin(), outlines.end(), wire)) ||
-         (std::any_of(outlines.begin(), outlines.end(), sharp) && std::any_of(outlines.begin(), end_of_bodies, wire));
+  return (std::any_of(outlines.begin(), end_of_bodies, sharp) &&
+          std::any_of(outlines.begin(), outlines.end(), wire)) ||
+         (std::any_of(outlines.begin(), outlines.end(), sharp) &&
+          std::any_of(outlines.begin(), end_of_bodies, wire));
 }
 
 BodyState held(const Body& body, BodyState s) {

@@ -331,8 +331,8 @@ class Kernel {
   std::vector<PairKey> pairs_by_pass(int body, double from, double to);
   /// From the clock's present double to the exact moment of contact: a fraction of a rounding [s]. The
   /// collision is resolved there, and the new motion is the one that passes through that moment, so that long
-  /// runs do not drift by roundings of time. None where sharp points may meet wires without thickness: there a
-  /// motion must not begin, not even by such a fraction, beside the path on which everybody is tested.
+  /// runs do not drift by roundings of time. None where sharp points may meet wires without thickness: there
+  /// a motion must not begin, not even by such a fraction, beside the path on which everybody is tested.
   Real delay_to_contact(const FeatureContact& found, const ExtendedContact& c) const;
   const Material& material_of(const PairKey& pair) const;
   /// The response now if the pair are two free discs without friction (a quick way to what respond() says).
@@ -371,13 +371,14 @@ class Kernel {
   WorkCounters work_;
   SearchLimits limits_;
   bool reflects_ = false;  ///< response "reflection"
-  bool points_meet_wires_ = false;  ///< a sharp corner or end of somebody, and a wire without thickness of another
+  bool points_meet_wires_ =
+      false;  ///< a sharp corner or end of somebody, and a wire without thickness of another
   Random random_;
   LargeVector<BodyTrack> bodies_;
   AheadLog ahead_;
   std::vector<Coupled> components_;
   std::vector<SiteMotion> sites_;
-  std::vector<Box> still_boxes_;          ///< of every site where it stands; empty if it moves
+  std::vector<Box> still_boxes_;  ///< of every site where it stands; empty if it moves
   std::vector<Failure> site_failures_;
   double reach_ = std::numeric_limits<double>::infinity();
   std::vector<const Outline*> outlines_;  ///< of every owner
@@ -398,12 +399,12 @@ class Kernel {
   double time_ = 0.0;
   double horizon_ = 0.0;
   double max_overlap_ = 0.0;
-  bool checked_ = false;             ///< hold_to_certificates()
+  bool checked_ = false;  ///< hold_to_certificates()
   bool walls_made_ = false;
-  ThinWalls walls_;                  ///< of still sites
+  ThinWalls walls_;                    ///< of still sites
   std::vector<bool> material_centre_;  ///< of bodies whose centre of mass is in them
-  double checked_until_ = 0.0;       ///< flights before were looked at, at the last frame [s]
-  double start_overlap_ = 0.0;       ///< deepest overlap that the world started with [m]
+  double checked_until_ = 0.0;         ///< flights before were looked at, at the last frame [s]
+  double start_overlap_ = 0.0;         ///< deepest overlap that the world started with [m]
   std::uint64_t seq_ = 0;
   std::uint64_t frame_ = 0;   ///< frames recorded by the frame clock
   double last_frame_ = -1.0;  ///< time of the last frame recorded [s]
@@ -413,7 +414,7 @@ class Kernel {
   InstantBodies bodies_in_instant_;
   TakenGroups taken_;
   RunOptions run_;
-  std::uint64_t polled_ = 0;      ///< work done when `progress` was last asked
+  std::uint64_t polled_ = 0;  ///< work done when `progress` was last asked
   AskClock ask_;
   std::uint64_t integrated_ = 0;  ///< body-steps of integrators, and pieces of moving sites
   std::uint64_t forgotten_ = 0;   ///< the same when forget_before() was last called

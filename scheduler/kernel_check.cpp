@@ -44,9 +44,8 @@ void Kernel::hold_to_certificates(bool exact) {
 bool Kernel::check_resolved(const PairKey& pair, const FeatureContact& found, Real delay) {
   if (!checked_) return true;
   const Outline &a = outline_of(pair.body), &b = outline_of(other_owner(pair));
-  const ExtendedContact now =
-      contact_in(a, b, bodies_[pair.body].motion.extended_state(time_).moved(delay),
-                 other_state(pair, time_).moved(delay), found);
+  const ExtendedContact now = contact_in(a, b, bodies_[pair.body].motion.extended_state(time_).moved(delay),
+                                         other_state(pair, time_).moved(delay), found);
   const bool on_wire = found.sample_on_a ? thin(a, b, found) : thin(b, a, found);
   const double gap = static_cast<double>(now.gap);
   note_overlap(gap);
@@ -91,9 +90,10 @@ bool Kernel::report_overlap(const PairKey& pair, double depth, double t, const c
   const std::string& other =
       pair.with_site() ? world_.sites[pair.other_site].name : world_.bodies[pair.other_body].name;
   stop(Termination::failed,
-       fmt::format("'{}' {} '{}' at t = {:.17g} (depth {:.3g} m, at most {:.3g} m is allowed): this must not be; "
-                   "what a search certified does not hold",
-                   world_.bodies[pair.body].name, what, other, t, depth, allowed_overlap()));
+       fmt::format(
+           "'{}' {} '{}' at t = {:.17g} (depth {:.3g} m, at most {:.3g} m is allowed): this must not be; "
+           "what a search certified does not hold",
+           world_.bodies[pair.body].name, what, other, t, depth, allowed_overlap()));
   return false;
 }
 

@@ -246,8 +246,7 @@ std::optional<Outcome> Kernel::settle(const PairKey& pair, const FeatureContact&
   }
   double rest = note_resolve(pair.body, other_owner(pair), response.magnitude);
   if (!pair.with_site()) rest = std::min(rest, note_resolve(pair.other_body, pair.body, response.magnitude));
-  if (!deflect(pair, response, changed) || !check_resolved(pair, found, response.delay))
-    return std::nullopt;
+  if (!deflect(pair, response, changed) || !check_resolved(pair, found, response.delay)) return std::nullopt;
   return Outcome{pair, found, response.impulse.normal, response.impulse.tangential, response.delay, rest};
 }
 
@@ -300,10 +299,9 @@ bool Kernel::judge_endings(const Outcome& outcome) {
   const PairKey& pair = outcome.pair;
   // flights lower than a pixel say nothing about a Zeno limit
   const double closing = outcome.contact.closing_speed;
-  if (const auto zeno =
-          depth_ ? std::nullopt
-                 : zeno_.collided({pair, outcome.contact}, time_, closing, loss_of(pair), outcome.rest,
-                                  outcome.contact.sunk() > 0.0)) {
+  if (const auto zeno = depth_ ? std::nullopt
+                               : zeno_.collided({pair, outcome.contact}, time_, closing, loss_of(pair),
+                                                outcome.rest, outcome.contact.sunk() > 0.0)) {
     record_ending(EventKind::zeno, outcome, zeno->limit_time);
     stop(Termination::failed,
          fmt::format(
@@ -344,13 +342,15 @@ namespace {
 std::string reason(PairAnswer::Why why, const std::string& pair, double length) {
   switch (why) {
     case PairAnswer::Why::place:
-      return fmt::format("{} are close, but too far from the origin, or turned too often, for their gap to be told "
-                         "to solver.contact_tolerance of the scene's length, {:.3g} m",
-                         pair, length);
+      return fmt::format(
+          "{} are close, but too far from the origin, or turned too often, for their gap to be told "
+          "to solver.contact_tolerance of the scene's length, {:.3g} m",
+          pair, length);
     case PairAnswer::Why::speed:
-      return fmt::format("{} are close, but too fast for the clock: they move more than a thousandth of their "
-                         "size between two of its times",
-                         pair);
+      return fmt::format(
+          "{} are close, but too fast for the clock: they move more than a thousandth of their "
+          "size within one instant (7e-15 s, or 32 of its roundings)",
+          pair);
     case PairAnswer::Why::steps:
       break;
   }

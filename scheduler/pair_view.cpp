@@ -58,8 +58,8 @@ Feature PairView::nearest_feature(const Half& half, int i) const {
 
 ArcStep PairView::arc_now(const Half& half, int i, int j) const {
   const Site& arc = half.samples_of().sites[static_cast<std::size_t>(half.sample(i).arc_site)];
-  return arc_step(arc, half.site(j), path(half, i), placed(half.s), placed(half.t), limits_.tolerance,
-                  {}, {0.0, 0.0});
+  return arc_step(arc, half.site(j), path(half, i), placed(half.s), placed(half.t), limits_.tolerance, {},
+                  {0.0, 0.0});
 }
 
 FeatureContact PairView::look_again(const Half& half, const Feature& f, double time) const {
@@ -103,8 +103,7 @@ void PairView::find_neighbours(const Half& half, int i, std::span<const std::uin
     const Nearest nearest = nearest_on(site, path.q);
     if (nearest.distance - site.radius - radius > reach) continue;
     const Feature f = vertex_feature(half, i, static_cast<int>(k), nearest, path);
-    const bool leaving =
-        f.gap - level(half, i, site, path.q) <= limits_.touch && !approaching(f, path);
+    const bool leaving = f.gap - level(half, i, site, path.q) <= limits_.touch && !approaching(f, path);
     scratch_.neighbours.push_back({f.site, f.normal, leaving});
   }
   // in one order, whoever named the candidates: of sites equally near the first is met
@@ -205,7 +204,7 @@ PairView::Doubt PairView::doubt(const Half& half, const Feature& f) const {
   const Site& site = half.site(f.site);
   const bool thin = !site.solid && site.radius + half.sample(f.sample).radius == 0.0;
   if (!can_hold(gap_rounding(half, f.sample, site, now.q), limits_.tolerance, thin)) return Doubt::place;
-  const double moved = 8.0 * now.rate.norm() * ulp(now_.time);
+  const double moved = now.rate.norm() * same_instant(now_.time);
   return moved > kSlowOfSize * smallest_radius(a_.outline(), b_.outline()) ? Doubt::speed : Doubt::none;
 }
 
@@ -233,8 +232,7 @@ double PairView::sink_at_start() const {
     if (!(above < own_step) || above < -kOverlapAtStart * limits_.tolerance) return;
     now = now || (above <= 0.0 && then.approaching(f, path));
     const PathBounds bounds = path_bounds(path, half.s_is_a ? at_once : at_once.swapped(), 0.0);
-    const double hollow =
-        site.kind == SiteKind::arc ? bounds.speed * bounds.speed / site.arc_radius : 0.0;
+    const double hollow = site.kind == SiteKind::arc ? bounds.speed * bounds.speed / site.arc_radius : 0.0;
     gap = std::min(gap, above);
     rate = std::min(rate, f.rate);
     noise = std::max(noise, then.rate_noise(path));

@@ -85,8 +85,8 @@ class PairView {
   /// of it, or is deeper in.
   bool belongs_to_a_neighbour(const Half& half, int j, const Nearest& nearest, const Vec2& q) const;
 
-  /// The gap at which sample i and the site meet now [m] (tolerances.h), less what the pair may have sunk since
-  /// its motions began.
+  /// The gap at which sample i and the site meet now [m] (tolerances.h), less what the pair may have sunk
+  /// since its motions began.
   double level(const Half& half, int i, const Site& site, const Vec2& q) const {
     return level_of(nominal_level(now_, half, i, site, q), sink_);
   }
@@ -128,8 +128,8 @@ class PairView {
         visit(half, Feature{i, static_cast<int>(j), step.gap, step.rate, step.normal, step.point});
     }
   }
-  /// The two outlines at one moment, seen from `base`: the world's origin, or the pair's own where the world's
-  /// is too far away for doubles.
+  /// The two outlines at one moment, seen from `base`: the world's origin, or the pair's own where the
+  /// world's is too far away for doubles.
   struct Placing {
     Placed a, b;
     double time = 0.0;                                ///< [s]

@@ -18,8 +18,8 @@ inline double safe_step(double f, double df, double curvature) {
 
 /// The step of a gap that is within `band` of its level, `above` it by so much and not met: one that leads to
 /// half of what there is, or back to the middle of the band from outside, never onto the level. A gap that
-/// rises from next to nothing, and not so far, is followed to its highest; one at its level that neither rises
-/// nor falls may sink by `allowed` > 0, less than any contact needs.
+/// rises from next to nothing, and not so far, is followed to its highest; one at its level that neither
+/// rises nor falls may sink by `allowed` > 0, less than any contact needs.
 inline double band_step(double above, double rate, double curvature, double band, double allowed) {
   if (rate > 0.0) {
     if (curvature <= 0.0) return std::numeric_limits<double>::infinity();

@@ -21,9 +21,9 @@ class ThinWalls {
   bool empty() const { return count_ == 0; }
 
   /// The site of a wall that a point went through on its way; nothing if there is none. `place` is where the
-  /// point is at a time of [from, to]; `turns`: how often it turns about its centre on the way. Cost: a search
-  /// in a tree of boxes along the straight line between the ends (O(log walls)); only a wall that this line
-  /// crosses is looked at closer, by 64 places and as many more a turn.
+  /// point is at a time of [from, to]; `turns`: how often it turns about its centre on the way. Cost: a
+  /// search in a tree of boxes along the straight line between the ends (O(log walls)); only a wall that this
+  /// line crosses is looked at closer, by 64 places and as many more a turn.
   std::optional<int> crossed(const std::function<Vec2(double)>& place, double from, double to,
                              double turns = 0.0) const;
 

@@ -7,7 +7,8 @@
 ///     4 nu before it (nominal_level): what stays beyond the level is never in doubt about its side;
 ///   - a pair that starts touching, pressed together or all but at rest, has its next contact when it has
 ///     sunk by a *sink step* of at least nu (sink_step), a quarter of the wire's level at most: so every
-///     contact is a crossing of its level from above, and what has sunk is pushed out again as it is resolved;
+///     contact is a crossing of its level from above, and what has sunk is pushed out again as it is
+///     resolved;
 ///   - steps of the search end at half the *band* (the contact tolerance, or what the clock cannot tell
 ///     apart), never on the surface.
 /// Where nu is not small beside the contact tolerance the search does not tell a contact but says so
@@ -33,9 +34,9 @@ inline constexpr double kTouchOfTolerance = 1e-3;
 /// start of this pair.
 inline constexpr double kOverlapAtStart = 1e4;
 
-/// Bound on the rounding of start + s (rate + s / 2 bent), `now` in the end, in arithmetic of unit roundoff u: four
-/// roundings of the way, one of the sum. None of what stands still and is a double (`low`: what its start's
-/// rounding left over).
+/// Bound on the rounding of start + s (rate + s / 2 bent), `now` in the end, in arithmetic of unit roundoff
+/// u: four roundings of the way, one of the sum. None of what stands still and is a double (`low`: what its
+/// start's rounding left over).
 inline double rounding_of_way(double start, double low, double rate, double bent, double s, double now,
                               double u) {
   const double way = std::abs(s) * (std::abs(rate) + 0.5 * std::abs(s * bent));
@@ -43,8 +44,8 @@ inline double rounding_of_way(double start, double low, double rate, double bent
   return u * (4.0 * way + std::abs(now));
 }
 
-/// Bound on the rounding of a motion's place at time t, `now` [m], in double precision. Dense output is as exact
-/// as its coefficients: eight roundings of the place, joins of pieces among them.
+/// Bound on the rounding of a motion's place at time t, `now` [m], in double precision. Dense output is as
+/// exact as its coefficients: eight roundings of the place, joins of pieces among them.
 inline double place_rounding(const Motion& motion, double t, const Vec2& now, double u = kRoundoff) {
   if (!motion.is_ballistic()) return 8.0 * kRoundoff * now.lpNorm<1>();
   const BodyState &start = motion.start(), &low = motion.start_low();
@@ -72,14 +73,14 @@ inline bool can_hold(double rounding, double tolerance, bool thin) {
   return (thin ? 8.0 : 1.0) * rounding <= tolerance;
 }
 
-/// The gap at which features meet that start apart [m]: 0; thin, a sharp sample and a wire without thickness: so
-/// far before it; where gaps cannot be held to the tolerance: as far before as they may be wrong.
+/// The gap at which features meet that start apart [m]: 0; thin, a sharp sample and a wire without thickness:
+/// so far before it; where gaps cannot be held to the tolerance: as far before as they may be wrong.
 inline double nominal_level(double touch, double tolerance, double rounding, bool thin) {
   if (thin) return std::max(0.5 * touch, 4.0 * rounding);
   return can_hold(rounding, tolerance, thin) ? 0.0 : 2.0 * rounding;
 }
 
-/// What moves more than this part of its radius in a few roundings of the clock is too fast to be resolved.
+/// What moves more than this part of its radius within one instant (same_instant()) is too fast to be told.
 inline constexpr double kSlowOfSize = 1e-3;
 
 /// How far a pair that is pressed together sinks until that is a contact again [m].
@@ -87,14 +88,16 @@ inline double sink_step(double touch, double rounding) { return std::max(0.125 *
 
 /// The gap at which features meet of a pair that may have sunk by `sink` <= 0 [m]; of thin ones a quarter of
 /// their level is left.
-inline double level_of(double nominal, double sink) { return std::max(nominal + sink, nominal > 0.0 ? 0.25 * nominal : sink); }
+inline double level_of(double nominal, double sink) {
+  return std::max(nominal + sink, nominal > 0.0 ? 0.25 * nominal : sink);
+}
 
 /// The level at which a pair that starts touching meets [m], below its nominal one (0): `gap` and `rate` are
 /// the least at the start, less nominal levels; `noise` bounds the rounding of the rate, `acceleration` the
 /// bending of the gap. A pair that leaves (that rises by half a step at least) is met where it starts, or at
 /// the nominal level if it rises above that; one that does not is met one step below its start.
 inline double start_sink(double gap, double rate, double noise, double acceleration, double step) {
-  const double rise = rate <= noise          ? 0.0
+  const double rise = rate <= noise        ? 0.0
                       : acceleration > 0.0 ? 0.5 * rate * rate / acceleration
                                            : std::numeric_limits<double>::infinity();
   if (gap + rise >= 0.5 * step) return 0.0;

@@ -33,8 +33,8 @@ struct Twist {
   Vec2 at(const Vec2& r) const { return velocity + cross(omega, r); }
 };
 
-/// When a point at d [m] that moves at v [m/s] comes within `reach` of the origin [s]; infinity: never, or it is
-/// there and leaves. Free of cancellation: the miss distance is told to a rounding of |d|.
+/// When a point at d [m] that moves at v [m/s] comes within `reach` of the origin [s]; infinity: never, or it
+/// is there and leaves. Free of cancellation: the miss distance is told to a rounding of |d|.
 inline double time_until_within(const Vec2& d, const Vec2& v, double reach) {
   const double distance = d.norm(), approach = -d.dot(v), offset = cross(d, v);
   const double square = v.squaredNorm() * reach * reach - offset * offset;

@@ -17,9 +17,10 @@ std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda,
 /// place in the group. @pre not empty.
 std::size_t first_by_order(Kernel& kernel, const std::vector<Certificate>& group);
 
-/// The certificate at the time at which it is resolved. Contacts of one instant are a rounding or so apart, and
-/// the one that comes first by order need not be the earliest: it is resolved at its own time; but where points
-/// may meet wires without thickness at the instant's earliest [s], or a body would be beyond another wire by then.
+/// The certificate at the time at which it is resolved. Contacts of one instant are a rounding or so apart,
+/// and the one that comes first by order need not be the earliest: it is resolved at its own time; but where
+/// points may meet wires without thickness at the instant's earliest [s], or a body would be beyond another
+/// wire by then.
 Certificate at_its_time(const Kernel& kernel, Certificate c, double earliest);
 
 }  // namespace brink

@@ -45,8 +45,8 @@ double gap_over_speed(const Motion& a, double radius, const Motion& b, const Vec
   if (other.container) return 0.0;
   const Vec2 at_a = a.pose(now).position, at_b = b.pose(now).position;
   const double rounding = kFlightRounding * (at_a.lpNorm<1>() + at_b.lpNorm<1>());
-  const double gap = (at_a - at_b - shift).norm() -
-                     (radius + other.bounding_radius) * (1.0 + kFlightMargin) - rounding;
+  const double gap =
+      (at_a - at_b - shift).norm() - (radius + other.bounding_radius) * (1.0 + kFlightMargin) - rounding;
   const MotionBounds x = a.bounds(now, end), y = b.bounds(now, end);
   const double closing = (x.velocity - y.velocity).norm() + x.velocity_radius + y.velocity_radius;
   return gap <= 0.0 ? 0.0 : gap / closing;

@@ -228,16 +228,16 @@ inline void swing(Flight& f, Random& r) {
   const auto told = [&](double place, double speed, double bent, double swung) {
     std::ostringstream text;
     text << std::setprecision(17) << "(" << place << ") + (t - (" << f.motion_a.origin() << "))*((" << speed
-         << ") + (" << 0.5 * bent << ")*(t - (" << f.motion_a.origin() << "))) + (" << swung << ")*sin((" << rate
-         << ")*(t - (" << f.from << ")))";
+         << ") + (" << 0.5 * bent << ")*(t - (" << f.motion_a.origin() << "))) + (" << swung << ")*sin(("
+         << rate << ")*(t - (" << f.from << ")))";
     return Formula(text.str(), {"t"});
   };
   FixedSite site;
   site.name = "a";
-  site.motion = FormulaMotion{
-      told(start.pose.position.x(), start.twist.velocity.x(), pull.linear.x(), wide * side.x()),
-      told(start.pose.position.y(), start.twist.velocity.y(), pull.linear.y(), wide * side.y()),
-      told(start.pose.angle, start.twist.omega, pull.angular, turn)};
+  site.motion =
+      FormulaMotion{told(start.pose.position.x(), start.twist.velocity.x(), pull.linear.x(), wide * side.x()),
+                    told(start.pose.position.y(), start.twist.velocity.y(), pull.linear.y(), wide * side.y()),
+                    told(start.pose.angle, start.twist.omega, pull.angular, turn)};
   SiteMotion motion(site);
   if (motion.extend(f.to).status != Extent::Status::reached) return;
   f.motion_a = motion.motion();

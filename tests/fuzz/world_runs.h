@@ -44,7 +44,8 @@ class Keeper : public Recorder {
   Recorder* also_;
 };
 
-constexpr double kPatience = 20.0;  ///< seconds that one run may take before it is broken off
+constexpr double kPatience =
+    90.0;  ///< seconds that one run may take before it is broken off: no hang, only slow
 
 inline RunOptions options_of(const Scene& scene, Told& told) {
   RunOptions options;

@@ -93,9 +93,18 @@ TEST_P(ReachesItsEnd, Soundly) {
 
 INSTANTIATE_TEST_SUITE_P(Faults, ReachesItsEnd,
                          ::testing::Values("wire_room_0.4_5", "wire_room_0.1_20", "wire_0", "wire_300",
-                                           "wire_periodic_drift", "diamond", "zeno", "tunnel_1e-9", "f_spike",
+                                           "wire_periodic_drift", "diamond", "tunnel_1e-9", "f_spike",
                                            "asin_sin_refused", "asin_site_slow", "ring"),
                          name_of);
+
+// A body in a slot with 4e-11 m of play at 1 m/s meets its sides 2.5e10 times a second: so a part of that
+// second.
+TEST(Faults, ElasticRattlingIsNoZenoSeries) {
+  Scene scene = load_scene(fault("zeno"), {"world.duration=1e-5"});
+  const Watched run = watched(scene);
+  EXPECT_EQ(run.told.summary.termination, Termination::reached_end) << run.told.summary.why;
+  EXPECT_NEAR(static_cast<double>(run.told.summary.collisions), 250000.0, 2.0);
+}
 
 // ---- what loses its energy, or is beyond what doubles can hold: an honest end is right, nothing else
 
@@ -107,6 +116,9 @@ TEST_P(EndsHonestly, SoundUpToThere) {
     const RunSummary& s = run.told.summary;
     if (s.termination == Termination::failed && s.why.size() < 20)
       run.faults.push_back("fails without a reason");
+    // what Brink refuses as too fast or too far the watch from outside may give up on as well
+    if (s.why.rfind("undecided", 0) == 0)
+      std::erase_if(run.faults, [](const std::string& f) { return f.find("gives up") != std::string::npos; });
     return run.faults;
   });
   const bool refused = ended.output.rfind("refused: ", 0) == 0;
@@ -160,10 +172,21 @@ TEST_P(Refused, AtOnce) {
   fs::remove_all(out);
 }
 
+// Nothing overlaps in it after all: it must only not hang.
+TEST(Faults, APeriodOf1e15MetersIsNoHang) {
+  const fs::path out = fs::temp_directory_path() / ("brink_period_" + std::to_string(getpid()));
+  Limits limits;
+  limits.seconds = 60;
+  const Ended ended = regression::run_program(
+      limits, {BRINK_BINARY_DIR "/bin/brink", "run", fault("hang_start_overlap_periodic").string(), "--out",
+               out.string(), "--quiet"});
+  EXPECT_EQ(ended.status, 0) << "signal " << ended.signal << ": " << ended.output;
+  fs::remove_all(out);
+}
+
 INSTANTIATE_TEST_SUITE_P(Faults, Refused,
                          ::testing::Values("grid_no_space_memory", "mem_start_overlap",
-                                           "hang_start_overlap_periodic", "periodic_big_site_hangs",
-                                           "formula_nul_truncates"),
+                                           "periodic_big_site_hangs", "formula_nul_truncates"),
                          name_of);
 
 // ---- what takes long stays in bounds, and hears when it is asked to stop
@@ -228,7 +251,7 @@ TEST(Faults, EnergyIsKeptOrTheEndingSaysSo) {
   for (const char* name : {"energy_half_lost_3_boxes", "tight_fit_energy_gone"}) {
     const Watched run = watched(load_scene(fault(name)));
     const RunSummary& s = run.told.summary;
-    if (s.termination == Termination::reached_end) {
+    if (s.sound()) {
       EXPECT_NEAR(s.energy_final, s.energy_initial, 1e-9 * s.energy_initial) << name;
     }
   }

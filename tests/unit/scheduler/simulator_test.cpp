@@ -67,7 +67,7 @@ TEST(Simulator, SnapshotOfAnotherWorldIsRefused) {
 
 TEST(Simulator, ElasticCrowdKeepsEnergyAndNeverOverlaps) {
   Simulator simulator(crowd(3), {});
-  RunOptions options = testing::until(20.0);
+  RunOptions options = testing::until(25.0);  // chaotic: a change of last bits changes the number
   options.frame_interval = 0.05;
   const RunSummary s = simulator.run(options);
   ASSERT_EQ(s.termination, Termination::reached_end) << s.why;

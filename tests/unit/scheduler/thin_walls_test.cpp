@@ -31,7 +31,9 @@ TEST(ThinWalls, AWayBesideTheEndIsNone) {
 TEST(ThinWalls, AParabolaOverTheEndIsNoneThoughItsChordCrosses) {
   ThinWalls walls;
   walls.add({0.0, -1.0}, {0.0, 0.5}, 0);
-  const auto thrown = [](double t) { return Vec2(-1.0 + 2.0 * t, 4.0 * t * (1.0 - t)); };  // 1 high over the wall
+  const auto thrown = [](double t) {
+    return Vec2(-1.0 + 2.0 * t, 4.0 * t * (1.0 - t));
+  };  // 1 high over the wall
   EXPECT_FALSE(walls.crossed(thrown, 0.0, 1.0));
   walls.add({0.0, 0.75}, {0.0, 2.0}, 1);
   EXPECT_EQ(walls.crossed(thrown, 0.0, 1.0), std::nullopt);  // the chord is below this one: not judged by it

@@ -57,7 +57,8 @@ TEST(BandStep, NeverLeadsOntoTheLevel) {
   Random random(6);
   const double band = 1e-10, allowed = 1e-15;
   for (int i = 0; i < 100000; ++i) {
-    const double above = std::exp(random.uniform(-36.0, -23.1)), curvature = std::exp(random.uniform(-5.0, 5.0));
+    const double above = std::exp(random.uniform(-36.0, -23.1)),
+                 curvature = std::exp(random.uniform(-5.0, 5.0));
     const double rate = random.uniform(-3.0, 3.0) * std::sqrt(curvature * band) * random.uniform(0.0, 1.0);
     const double h = band_step(above, rate, curvature, band, allowed);
     ASSERT_GT(h, 0.0);
@@ -92,7 +93,8 @@ TEST(PlaceRounding, BoundsTheErrorOfAParabola) {
     BodyState start;
     start.pose.position = {random.uniform(-size, size), random.uniform(-size, size)};
     start.twist.velocity = {random.uniform(-size, size), random.uniform(-1.0, 1.0)};
-    const Motion motion = Motion::ballistic(random.uniform(0.0, 10.0), start, {{0.0, random.uniform(-9.0, 0.0)}, 0.0});
+    const Motion motion =
+        Motion::ballistic(random.uniform(0.0, 10.0), start, {{0.0, random.uniform(-9.0, 0.0)}, 0.0});
     const double t = motion.begin() + random.uniform(0.0, 20.0);
     const Vec2 place = motion.pose(t).position;
     const RealVec exact = motion.extended_state(t).position;
