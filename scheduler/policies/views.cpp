@@ -47,9 +47,18 @@ double gap_over_speed(const Motion& a, double radius, const Motion& b, const Vec
   const double rounding = kFlightRounding * (at_a.lpNorm<1>() + at_b.lpNorm<1>());
   const double gap =
       (at_a - at_b - shift).norm() - (radius + other.bounding_radius) * (1.0 + kFlightMargin) - rounding;
-  const MotionBounds x = a.bounds(now, end), y = b.bounds(now, end);
-  const double closing = (x.velocity - y.velocity).norm() + x.velocity_radius + y.velocity_radius;
-  return gap <= 0.0 ? 0.0 : gap / closing;
+  if (gap <= 0.0) return 0.0;
+  const auto closing_in = [&](double span) {
+    const MotionBounds x = a.bounds(now, now + span), y = b.bounds(now, now + span);
+    return (x.velocity - y.velocity).norm() + x.velocity_radius + y.velocity_radius;
+  };
+  // what is fast later on must not shorten it much: then less of it is looked at
+  const double whole = gap / closing_in(end - now);
+  if (whole >= 0.5 * (end - now)) return whole;
+  double longest = whole;
+  for (double span = 0.5 * (end - now); span > longest && now + span > now; span *= 0.5)
+    longest = std::max(longest, std::min(span, gap / closing_in(span)));
+  return longest;
 }
 
 }  // namespace

@@ -98,7 +98,7 @@ const Slow kSlow[] = {
      "skip_broad_phase = false\n[output]\nframe_interval = 0\n" +
          grid("disc.radius = 0.1", 60, 60, 1.0, "velocity = [1e-3, 0]")},
     {"many_bodies_many_frames",
-     "[world]\nduration = 100\n[output]\nframe_interval = 1e-4\nmax_frame_rows = 1e12\n" +
+     "[world]\nduration = 100\n[output]\nframe_interval = 1e-4\nmax_frame_rows = 1000000000000\n" +
          grid("box = {width = 0.5, height = 0.5}", 150, 150, 1.0)},
     {"slot_without_play",
      "[world]\nduration = 1\n[[bodies]]\ndisc.radius = 0.5\nvelocity = [1, 0]\n"
