@@ -22,6 +22,9 @@ using detail::PairView;
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
+/// Iterations that a search may take if it has found a contact, whatever its cap.
+constexpr int kMostAfterContact = 1000;
+
 class PairSearch {
  public:
   PairSearch(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
@@ -53,6 +56,7 @@ class PairSearch {
  private:
   /// The contact, or why it cannot be told.
   PairAnswer told(const FeatureContact& c) {
+    if (view_.beyond_doubt()) return {PairAnswer::Status::contact, c.time, c};
     view_.place(c.time);
     Feature f;
     f.sample = c.sample;
@@ -105,7 +109,8 @@ class PairSearch {
       const double t = least_safe_time();
       if (t >= to_) return;
       reached_ = t;
-      if (iteration >= limits_.max_iterations) {
+      // with a contact in hand little is left to look at
+      if (iteration >= limits_.max_iterations && (best_.sample < 0 || iteration >= kMostAfterContact)) {
         capped_ = true;
         return;
       }

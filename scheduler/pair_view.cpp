@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "brink/scheduler/canonical_time.h"
+#include "brink/scheduler/site_step.h"
 
 namespace brink::detail {
 
@@ -208,10 +209,27 @@ PairView::Doubt PairView::doubt(const Half& half, const Feature& f) const {
   return moved > kSlowOfSize * smallest_radius(a_.outline(), b_.outline()) ? Doubt::speed : Doubt::none;
 }
 
+bool PairView::beyond_doubt() const {
+  constexpr double by_far = 1e-2;
+  const Outline &a = a_.outline(), &b = b_.outline();
+  if (a.container || b.container) return false;
+  const double reach = 2.0 * (a.bounding_radius + b.bounding_radius);
+  const double noise =
+      now_.place_noise + (now_.angle_noise_a + now_.angle_noise_b + 16.0 * kRoundoff) * reach;
+  const double speed = (now_.a.twist.velocity - now_.b.twist.velocity).norm() +
+                       (std::abs(now_.a.twist.omega) + std::abs(now_.b.twist.omega)) * reach;
+  return 8.0 * noise <= by_far * limits_.tolerance &&
+         speed * same_instant(now_.time) <= by_far * kSlowOfSize * smallest_radius(a, b);
+}
+
 bool PairView::out_of_reach(const Half& half, int i, double reach) const {
   const Outline& outline = half.sites_of();
   if (outline.container || !(reach < kForever)) return false;
-  return path(half, i).distance - outline.bounding_radius - half.sample(i).radius > reach;
+  const SamplePath now = path(half, i);
+  const double radius = half.sample(i).radius;
+  if (now.distance - outline.bounding_radius - radius > reach) return true;
+  return !outline.facets.empty() &&
+         facing_convex(outline, now.q, now.rate).gap - outline.sites[0].radius - radius > reach;
 }
 
 double PairView::sink_at_start() const {

@@ -93,6 +93,8 @@ class PairView {
   /// Why a contact of these features that is met now cannot be told, if it cannot.
   enum class Doubt { none, place, speed };
   Doubt doubt(const Half& half, const Feature& f) const;
+  /// True if no feature's contact near the present time can be in doubt, by far: a quick look.
+  bool beyond_doubt() const;
   /// Sets what is taken off every level, <= 0: sink_at_start().
   void set_sink(double sink) { sink_ = sink; }
   /// Since its motions began, how far the pair may sink below nominal levels before it meets (start_sink() of

@@ -34,34 +34,27 @@ inline constexpr double kTouchOfTolerance = 1e-3;
 /// start of this pair.
 inline constexpr double kOverlapAtStart = 1e4;
 
-/// Bound on the rounding of start + s (rate + s / 2 bent), `now` in the end, in arithmetic of unit roundoff
-/// u: four roundings of the way, one of the sum. None of what stands still and is a double (`low`: what its
-/// start's rounding left over).
-inline double rounding_of_way(double start, double low, double rate, double bent, double s, double now,
-                              double u) {
-  const double way = std::abs(s) * (std::abs(rate) + 0.5 * std::abs(s * bent));
-  if (now == start && way == 0.0 && low == 0.0) return 0.0;
-  return u * (4.0 * way + std::abs(now));
+/// Bound on the rounding of start + s (rate + s / 2 bent), `now` in the end, in arithmetic of unit roundoff u: four
+/// roundings of the way, one of the sum. All numbers are sums of sizes. None of what stands still and is a
+/// double (`low`: what its start's rounding left over).
+inline double rounding_of_way(double low, double rate, double bent, double s, double now, double u) {
+  const double way = std::abs(s) * (rate + 0.5 * std::abs(s) * bent);
+  return way + low > 0.0 ? u * (4.0 * way + now) : 0.0;
 }
 
-/// Bound on the rounding of a motion's place at time t, `now` [m], in double precision. Dense output is as
-/// exact as its coefficients: eight roundings of the place, joins of pieces among them.
+/// Bound on the rounding of a motion's place at time t, `now` [m], in double precision. Dense output is as exact
+/// as its coefficients: eight roundings of the place, joins of pieces among them.
 inline double place_rounding(const Motion& motion, double t, const Vec2& now, double u = kRoundoff) {
   if (!motion.is_ballistic()) return 8.0 * kRoundoff * now.lpNorm<1>();
-  const BodyState &start = motion.start(), &low = motion.start_low();
-  double sum = 0.0;
-  for (int axis = 0; axis < 2; ++axis)
-    sum += rounding_of_way(start.pose.position[axis], low.pose.position[axis], start.twist.velocity[axis],
-                           motion.acceleration().linear[axis], t - motion.origin(), now[axis], u);
-  return sum;
+  return rounding_of_way(motion.start_low().pose.position.lpNorm<1>(), motion.start().twist.velocity.lpNorm<1>(),
+                         motion.acceleration().linear.lpNorm<1>(), t - motion.origin(), now.lpNorm<1>(), u);
 }
 
 /// Likewise of its angle [rad].
 inline double angle_rounding(const Motion& motion, double t, double now, double u = kRoundoff) {
   if (!motion.is_ballistic()) return 8.0 * kRoundoff * std::abs(now);
-  const BodyState &start = motion.start(), &low = motion.start_low();
-  return rounding_of_way(start.pose.angle, low.pose.angle, start.twist.omega, motion.acceleration().angular,
-                         t - motion.origin(), now, u);
+  return rounding_of_way(std::abs(motion.start_low().pose.angle), std::abs(motion.start().twist.omega),
+                         std::abs(motion.acceleration().angular), t - motion.origin(), std::abs(now), u);
 }
 
 /// Places are taken relative to the pair, in extended precision, where their rounding in double is more than

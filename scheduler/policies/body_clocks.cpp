@@ -30,8 +30,14 @@ constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kBetweenPauses = 2048;  ///< servings between places where a run may be resumed from
 constexpr std::uint64_t kBetweenPolls = 64;
 constexpr int kInstalment = 3;      ///< search steps at a time: most contacts ahead are overtaken by others
-constexpr unsigned kDoublings = 8;  ///< of instalments in a row of one search that comes to no end
+constexpr unsigned kPlain = 16;     ///< of instalments in a row of one search; then they double:
+constexpr unsigned kDoublings = 8;  ///< so often, if it comes to no end
 constexpr unsigned kMostUndecided = 1000000 / (kInstalment << kDoublings);
+
+/// Steps of the next instalment of a search that so many in a row have brought to no end.
+constexpr int instalment(unsigned undecided) {
+  return kInstalment << (undecided < kPlain ? 0U : std::min(undecided - kPlain + 1, kDoublings));
+}
 
 class BodyClocks final : public Policy {
  public:
@@ -146,7 +152,7 @@ class BodyClocks final : public Policy {
     }
     const double now = c.time, end = views_->end_of(k, c), to = std::min(beyond(end), std::max(now, until_));
     const auto found = kernel_->search(*kernel_->pair_of(k, c.other, c.image), c.clear, to,
-                                       kInstalment << std::min(clock.undecided, kDoublings));
+                                       instalment(clock.undecided));
     const bool undecided = found && found->kind == Certificate::Kind::undecided;
     clock.undecided = undecided ? clock.undecided + 1 : 0;
     if (undecided && (found->time <= c.clear || clock.undecided > kMostUndecided))
