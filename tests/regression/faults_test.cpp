@@ -3,6 +3,8 @@
 // of its own.
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -152,8 +154,7 @@ TEST_P(SameInEveryWay, AndSound) {
 
 INSTANTIATE_TEST_SUITE_P(Faults, SameInEveryWay,
                          ::testing::Values("policies_differ_arc", "arc_policies", "arc_resume",
-                                           "pressed_e0_policies", "failure_loses_events",
-                                           "run_again_after_failure", "wire_periodic_drift", "slide"),
+                                           "pressed_e0_policies", "wire_periodic_drift", "slide"),
                          name_of);
 
 // ---- what is wrong from the start is refused, at once and without gigabytes
@@ -265,6 +266,25 @@ TEST(Faults, AFailureKeepsWhatCameBeforeUnderEveryPolicy) {
     EXPECT_EQ(run.told.summary.termination, Termination::failed) << policy;
     EXPECT_GE(run.told.summary.end_time, 1.45) << policy << ": " << run.told.summary.why;
     EXPECT_LE(run.told.summary.end_time, 1.5) << policy;
+  }
+}
+
+// Bodies fall into an attractor until its steps are too small: all up to there is told, and told alike. (By
+// rendered passes, or with every pair, these take minutes.)
+TEST(Faults, IntegratorsThatFailEndEveryPolicyAlike) {
+  for (const char* name : {"failure_loses_events", "run_again_after_failure"}) {
+    std::optional<RunSummary> first;
+    for (const char* policy : {"body_clocks", "global_backup", "island_backup", "timewarp"}) {
+      const Watched run = watched(load_scene(fault(name), {std::string("solver.policy=") + policy}));
+      const RunSummary& s = run.told.summary;
+      EXPECT_EQ(s.termination, Termination::failed) << name << ", " << policy;
+      EXPECT_EQ(run.faults.size(), 0U)
+          << name << ", " << policy << ": " << (run.faults.empty() ? "" : run.faults[0]);
+      if (!first) first = s;
+      EXPECT_EQ(s.state_hash, first->state_hash) << name << ", " << policy;
+      EXPECT_EQ(s.collisions, first->collisions) << name << ", " << policy;
+      EXPECT_EQ(s.end_time, first->end_time) << name << ", " << policy;
+    }
   }
 }
 
