@@ -32,12 +32,16 @@ inline Real of_ends(const Piece& s, const Piece& t) {
   return std::min({to_core(s.a, t), to_core(s.b, t), to_core(t.a, s), to_core(t.b, s)});
 }
 
-/// Two segments: a crossing is as deep as the end that has the shortest way back.
+/// Two segments: a crossing is as deep as the end that has the shortest way back, straight over the other's line
+/// (two flush edges that cross by 1e-13 at their ends have 1e-13 to go, not the way along them).
 inline Real segment_to_segment(const Piece& s, const Piece& t) {
   const Vec d = s.b - s.a, e = t.b - t.a;
   const bool t_parted = (wedge(d, t.a - s.a) < 0) != (wedge(d, t.b - s.a) < 0);
   const bool s_parted = (wedge(e, s.a - t.a) < 0) != (wedge(e, s.b - t.a) < 0);
-  return t_parted && s_parted ? -of_ends(s, t) : of_ends(s, t);
+  if (!t_parted || !s_parted) return of_ends(s, t);
+  const Real over_s = std::min(std::abs(wedge(d, t.a - s.a)), std::abs(wedge(d, t.b - s.a))) / norm(d);
+  const Real over_t = std::min(std::abs(wedge(e, s.a - t.a)), std::abs(wedge(e, s.b - t.a))) / norm(e);
+  return -std::min(over_s, over_t);
 }
 
 /// A segment and an arc: where they cross, the way out is over an end, or back over the arc's bulge.
