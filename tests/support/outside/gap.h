@@ -32,8 +32,8 @@ inline Real of_ends(const Piece& s, const Piece& t) {
   return std::min({to_core(s.a, t), to_core(s.b, t), to_core(t.a, s), to_core(t.b, s)});
 }
 
-/// Two segments: a crossing is as deep as the end that has the shortest way back, straight over the other's line
-/// (two flush edges that cross by 1e-13 at their ends have 1e-13 to go, not the way along them).
+/// Two segments: a crossing is as deep as the end that has the shortest way back, straight over the other's
+/// line (two flush edges that cross by 1e-13 at their ends have 1e-13 to go, not the way along them).
 inline Real segment_to_segment(const Piece& s, const Piece& t) {
   const Vec d = s.b - s.a, e = t.b - t.a;
   const bool t_parted = (wedge(d, t.a - s.a) < 0) != (wedge(d, t.b - s.a) < 0);
