@@ -34,20 +34,21 @@ inline constexpr double kTouchOfTolerance = 1e-3;
 /// start of this pair.
 inline constexpr double kOverlapAtStart = 1e4;
 
-/// Bound on the rounding of start + s (rate + s / 2 bent), `now` in the end, in arithmetic of unit roundoff u: four
-/// roundings of the way, one of the sum. All numbers are sums of sizes. None of what stands still and is a
-/// double (`low`: what its start's rounding left over).
+/// Bound on the rounding of start + s (rate + s / 2 bent), `now` in the end, in arithmetic of unit roundoff
+/// u: four roundings of the way, one of the sum. All numbers are sums of sizes. None of what stands still and
+/// is a double (`low`: what its start's rounding left over).
 inline double rounding_of_way(double low, double rate, double bent, double s, double now, double u) {
   const double way = std::abs(s) * (rate + 0.5 * std::abs(s) * bent);
   return way + low > 0.0 ? u * (4.0 * way + now) : 0.0;
 }
 
-/// Bound on the rounding of a motion's place at time t, `now` [m], in double precision. Dense output is as exact
-/// as its coefficients: eight roundings of the place, joins of pieces among them.
+/// Bound on the rounding of a motion's place at time t, `now` [m], in double precision. Dense output is as
+/// exact as its coefficients: eight roundings of the place, joins of pieces among them.
 inline double place_rounding(const Motion& motion, double t, const Vec2& now, double u = kRoundoff) {
   if (!motion.is_ballistic()) return 8.0 * kRoundoff * now.lpNorm<1>();
-  return rounding_of_way(motion.start_low().pose.position.lpNorm<1>(), motion.start().twist.velocity.lpNorm<1>(),
-                         motion.acceleration().linear.lpNorm<1>(), t - motion.origin(), now.lpNorm<1>(), u);
+  return rounding_of_way(motion.start_low().pose.position.lpNorm<1>(),
+                         motion.start().twist.velocity.lpNorm<1>(), motion.acceleration().linear.lpNorm<1>(),
+                         t - motion.origin(), now.lpNorm<1>(), u);
 }
 
 /// Likewise of its angle [rad].

@@ -151,8 +151,8 @@ class BodyClocks final : public Policy {
       return;
     }
     const double now = c.time, end = views_->end_of(k, c), to = std::min(beyond(end), std::max(now, until_));
-    const auto found = kernel_->search(*kernel_->pair_of(k, c.other, c.image), c.clear, to,
-                                       instalment(clock.undecided));
+    const auto found =
+        kernel_->search(*kernel_->pair_of(k, c.other, c.image), c.clear, to, instalment(clock.undecided));
     const bool undecided = found && found->kind == Certificate::Kind::undecided;
     clock.undecided = undecided ? clock.undecided + 1 : 0;
     if (undecided && (found->time <= c.clear || clock.undecided > kMostUndecided))
