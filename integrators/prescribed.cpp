@@ -87,8 +87,8 @@ struct PrescribedMotion::Fitted {
   Vector3d rate_tolerance() const { return (2.0 * kDegree * kDegree / width()) * tolerance; }
 };
 
-PrescribedMotion::PrescribedMotion(Function pose, Bound bound, std::string name)
-    : pose_(std::move(pose)), bound_(std::move(bound)), name_(std::move(name)) {}
+PrescribedMotion::PrescribedMotion(const Vector3d& base, Function pose, Bound bound, std::string name)
+    : base_(base), pose_(std::move(pose)), bound_(std::move(bound)), name_(std::move(name)) {}
 PrescribedMotion::~PrescribedMotion() = default;
 PrescribedMotion::PrescribedMotion(PrescribedMotion&&) noexcept = default;
 PrescribedMotion& PrescribedMotion::operator=(PrescribedMotion&&) noexcept = default;
@@ -244,8 +244,8 @@ void PrescribedMotion::join_next(const Fitted& next) {
   *last_ = next;
 }
 
-/// Appends a piece that begins with rate_begin_ and ends with rate_end, its end values exactly the
-/// function's.
+/// Appends a piece that begins with rate_begin_ and ends with rate_end, its end values the function's but for
+/// the rounding of the base.
 void PrescribedMotion::close(const Fitted& fitted, const Vector3d& rate_end) {
   PolynomialPiece piece = fitted.piece;
   if (fitted.corner) {
@@ -256,6 +256,7 @@ void PrescribedMotion::close(const Fitted& fitted, const Vector3d& rate_end) {
   const BodyState begin = piece.state(piece.begin), end = piece.state(piece.end);
   add_cubic(piece, fitted.value_begin - values(begin.pose), rate_begin_ - rates(begin.twist),
             fitted.value_end - values(end.pose), rate_end - rates(end.twist));
+  piece.c[0] += base_;
   track_->pieces.push_back(piece);
 }
 

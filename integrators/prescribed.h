@@ -31,9 +31,10 @@ class PrescribedMotion {
   /// Of coordinate i (x, y, angle) over [from, to]; without derivatives, of its value alone.
   using Bound = std::function<TimeBound(int i, double from, double to, bool with_derivatives)>;
 
-  /// `bound` holds for what `pose` gives but for a few roundings. `name` stands for the function in messages:
+  /// The motion is `base` + `pose`; the base, which may be far away, does not blur the fit. `bound` holds for
+  /// what `pose` gives but for a few roundings. `name` stands for the function in messages:
   /// 'motion of site "drum" (x = "...", ...)'. The motion begins at t = 0.
-  PrescribedMotion(Function pose, Bound bound, std::string name);
+  PrescribedMotion(const Eigen::Vector3d& base, Function pose, Bound bound, std::string name);
   ~PrescribedMotion();
   PrescribedMotion(PrescribedMotion&&) noexcept;
   PrescribedMotion& operator=(PrescribedMotion&&) noexcept;
@@ -77,6 +78,7 @@ class PrescribedMotion {
 
   static constexpr int kDepths = 27;  ///< from cells of 2^-4 s to 2^-30 s
 
+  Eigen::Vector3d base_;
   Function pose_;
   Bound bound_;
   std::string name_;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "brink/scheduler/canonical_time.h"
 #include "brink/scheduler/site_lists.h"
 
 namespace brink {
@@ -75,12 +76,14 @@ struct BodyClock {
     return candidates.empty() ? t : std::min(t, candidates.front().time);
   }
   /// Takes a candidate into view. Where there is no room the latest falls out, and the view ends where a
-  /// search for it must begin; but what must be searched from `now` on stays, so that a view never ends as it
-  /// begins.
+  /// search for it must begin; but what must be searched within the instant `now` stays, so that a view does
+  /// not end in the instant in which it begins.
   void see(const Candidate& c, double now) {
     if (c.time >= horizon) return;
     candidates.insert(c);
-    if (candidates.size() <= CandidateList::kInPlace || candidates.back().clear <= now) return;
+    if (candidates.size() <= CandidateList::kInPlace ||
+        candidates.back().clear <= now + 4.0 * same_instant(now))
+      return;
     horizon = std::min(horizon, candidates.back().clear);  // it may lie beyond an end that was set since
     candidates.pop_back();
   }

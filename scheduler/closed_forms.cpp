@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "brink/core/shapes/distance.h"
@@ -64,15 +65,20 @@ struct RelativeParabola {
   }
 };
 
-/// When, from s_from on, a gap above its level, on the parabola g, meets it; infinity if never. `noise`:
-/// rounding of g's slope [m/s]; `deepest`: below -deepest it is no overlap but the far side of a body [m].
-double contact_after(const Quadratic& g, double s_from, double noise, double deepest) {
+/// A rate so near to its rounding may be told as an approach here, and not by the general search.
+bool doubtful(double rate, double noise) { return std::abs(rate) <= 8.0 * noise; }
+
+/// When, from s_from on, a gap above its level, on the parabola g, meets it; infinity if never, nothing if
+/// the general search must tell. `noise`: rounding of g's slope [m/s]; `deepest`: below -deepest it is no
+/// overlap but the far side of a body [m].
+std::optional<double> contact_after(const Quadratic& g, double s_from, double noise, double deepest) {
   const double root = falling_root(g);
-  // a slope that is all rounding is no approach, unless it grows
-  if (root >= s_from) return g.second < 0.0 || g.slope(root) < -noise ? root : kForever;
+  if (root >= s_from)
+    return root == kForever || !doubtful(g.slope(root), noise) ? std::optional(root) : std::nullopt;
   const double now = g.at(s_from);
   if (now > 0.0 || now < -deepest) return kForever;  // risen again, or beyond
-  return g.slope(s_from) < -noise ? s_from : kForever;
+  if (doubtful(g.slope(s_from), noise)) return std::nullopt;
+  return g.slope(s_from) < 0.0 ? s_from : kForever;
 }
 
 /// True if a gap that starts at `gap` with the given rate is sure to need no sink_at_start().
@@ -92,17 +98,6 @@ bool near_enough(const Mover& a, const Mover& b, double t, const Vec2& place_a, 
          kFarOfTolerance * limits.tolerance;
 }
 
-/// Steps back from a rounded root to a double at which the gap is still above zero.
-template <class Gap>
-double before_contact(Gap&& gap, double t, double from, double speed) {
-  for (int i = 0; i < 8 && t > from; ++i) {
-    const double g = gap(t);
-    if (g > 0.0) break;
-    t = std::max(from, t - std::max(ulp(t), -1.5 * g / speed));
-  }
-  return t;
-}
-
 /// Rounding of a gap [m] between a disc and a site, one seen at q from the other: PairView::gap_rounding().
 double gap_noise(const Mover& a, const Mover& b, double t, const Vec2& place_a, const Vec2& place_b,
                  const Vec2& q, const Vec2& site) {
@@ -112,15 +107,18 @@ double gap_noise(const Mover& a, const Mover& b, double t, const Vec2& place_a, 
 
 /// The general search's time near the root t, so that it does not matter which of the two a window was given
 /// to. Any interval will do that has the crossing and whose ends are beyond rounding: the narrowest first.
-/// `moment`: rounding of the gap over its speed, and of the clock [s].
+/// `rounding`: of the gap [m]; `speed`: its own [m/s]. Nothing if there is none: too near the beginning for
+/// the gap to have risen above rounding, and not at it.
 template <class Gap>
-double canonical_root(Gap&& gap, double t, double begin, double moment, double speed) {
+std::optional<double> canonical_root(Gap&& gap, double t, double begin, double rounding, double speed) {
+  if (t <= begin) return t;
+  const double moment = rounding / speed + 4.0 * ulp(t);
   for (const double reach : {8.0 * moment, 64.0 * moment})
-    if (t - reach > begin && gap(t - reach) > 0.0 && gap(t + reach) <= 0.0)
+    if (t - reach > begin && gap(t - reach) > rounding && gap(t + reach) <= 0.0)
       return last_clear_time(gap, t - reach, t + reach);
-  if (t > begin && gap(begin) > 0.0 && gap(t + 8.0 * moment) <= 0.0)
+  if (gap(begin) > rounding && gap(t + 8.0 * moment) <= 0.0)
     return last_clear_time(gap, begin, t + 8.0 * moment);
-  return before_contact(gap, t, begin, speed);
+  return std::nullopt;
 }
 
 /// Two centred discs as the general search sees them at time t: the same operations in the same order.
@@ -148,6 +146,9 @@ bool discs(const Mover& a, const Mover& b, double from, double to, const SearchL
   const double speed2 = rel.velocity.squaredNorm(), way = rel.offset.dot(rel.velocity);
   const double distance0 = rel.offset.norm(), s_from = from - rel.reference;
   if (way > rel.noise * distance0 && distance0 >= 0.5 * reach) return true;  // they part
+  const bool in_touch = distance0 - reach < limits.touch && way < 0.0;       // a graze, or not: by a rounding
+  if (in_touch || (distance0 - reach < limits.tolerance && doubtful(way / distance0, rel.noise)))
+    return false;
   double level = 0.0;
   if (!starts_clear(distance0 - reach, way / distance0, 0.0, rel.noise, limits.tolerance))
     level = sink_at_start(a, b, limits, scratch);
@@ -155,7 +156,9 @@ bool discs(const Mover& a, const Mover& b, double from, double to, const SearchL
   double s = time_until_within(rel.offset, rel.velocity, met);
   if (!(s >= s_from)) {  // touching at the start, and approaching; or past
     const Vec2 now = rel.offset + s_from * rel.velocity;
-    s = now.dot(rel.velocity) < -rel.noise * met ? s_from : kForever;
+    const double rate = now.dot(rel.velocity) / met;
+    if (now.norm() <= met + limits.tolerance && doubtful(rate, rel.noise)) return false;
+    s = rate < 0.0 ? s_from : kForever;
   }
   const Parabola path_a(*a.motion), path_b(*b.motion);
   double t = std::max(rel.reference + s, from);
@@ -167,11 +170,13 @@ bool discs(const Mover& a, const Mover& b, double from, double to, const SearchL
   if (too_fast(rel.velocity, t, smallest_radius(a.outline(), b.outline()))) return false;
   const Vec2 then = rel.offset + s * rel.velocity;
   const double closing = -then.dot(rel.velocity) / then.norm();
-  if (!(closing > rel.noise)) return true;
+  if (doubtful(closing, rel.noise)) return false;
+  if (closing < 0.0) return true;
   const auto gap = [=](double time) { return (path_a.at(time) - path_b.at(time)).norm() - reach - level; };
-  t = canonical_root(
-      gap, t, std::max(rel.reference, 0.0),
-      gap_noise(a, b, t, path_a.at(t), path_b.at(t), then, Vec2::Zero()) / closing + 4.0 * ulp(t), closing);
+  const double rounding = gap_noise(a, b, t, path_a.at(t), path_b.at(t), then, Vec2::Zero());
+  const auto root = canonical_root(gap, t, std::max(rel.reference, 0.0), rounding, closing);
+  if (!root) return false;
+  t = *root;
   answer = {PairAnswer::Status::contact, t, disc_contact(a, b, t)};
   answer.contact.level = answer.contact.sink = level;
   return true;
@@ -230,7 +235,8 @@ void measure(const DiscPath& disc, Meeting& m) {
            m.normal.dot(disc.acceleration)};
 }
 
-/// False if the disc's centre does not stay abreast of the segment until it meets it or the window ends.
+/// False if it is for the general search: the disc's centre does not stay abreast of the segment until it
+/// meets it or the window ends.
 bool meet(const DiscPath& disc, const SearchLimits& limits, double level, Meeting& m) {
   const Site& site = *m.site;
   const Vec2 d = site.b - site.a;
@@ -239,7 +245,11 @@ bool meet(const DiscPath& disc, const SearchLimits& limits, double level, Meetin
   const Quadratic along{tangent.dot(disc.q - site.a), tangent.dot(disc.velocity),
                         tangent.dot(disc.acceleration)};
   const Quadratic above{m.gap.value - level, m.gap.rate, m.gap.second};
-  m.s = contact_after(above, disc.s_from, disc.slope_noise, disc.radius + site.radius + limits.tolerance);
+  if (above.value < limits.touch && above.value > -limits.tolerance && above.rate < 0.0) return false;
+  const auto contact =
+      contact_after(above, disc.s_from, disc.slope_noise, disc.radius + site.radius + limits.tolerance);
+  if (!contact) return false;
+  m.s = *contact;
   return stays_within(along, length, disc.s_from, std::max(disc.s_from, std::min(m.s, disc.s_to)));
 }
 
@@ -290,8 +300,8 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
       std::max(-normal.dot(path.velocity + (t - rel.reference) * path.acceleration), rel.noise);
   const Vec2 at_disc = parabola.at(t), at_other = parabola_of_other.at(t);
   const Vec2 far_off = Vec2::Constant(other.outline().bounding_radius);
-  const double moment =
-      gap_noise(disc, other, t, at_disc, at_other, at_disc - at_other, far_off) / speed + 4.0 * ulp(t);
+  const double rounding = gap_noise(disc, other, t, at_disc, at_other, at_disc - at_other, far_off);
+  const double moment = rounding / speed + 4.0 * ulp(t);
   // segments that are met at the same time to rounding (a notch) count together, as in the general search
   const auto nearest_at = [&](double time) {
     const Vec2 q = frame.direction_to_local(parabola.at(time) - parabola_of_other.at(time));
@@ -307,11 +317,14 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
     }
     return nearest;
   };
-  t = canonical_root([&](double time) { return nearest_at(time).first; }, t, rel.reference, moment, speed);
+  const auto root =
+      canonical_root([&](double time) { return nearest_at(time).first; }, t, rel.reference, rounding, speed);
+  if (!root) return false;
+  t = *root;
   const auto [above, met] = nearest_at(t);
   const Vec2 q = frame.direction_to_local(parabola.at(t) - parabola_of_other.at(t));
-  if (!can_hold(kRoundoff * (6.0 * q.lpNorm<1>() + 2.0 * met->site->a.lpNorm<1>()), limits.tolerance,
-                false) ||
+  if (!can_hold(kRoundoff * (6.0 * q.lpNorm<1>() + 2.0 * other.outline().bounding_radius),
+                limits.tolerance) ||
       too_fast(path.velocity + (t - rel.reference) * path.acceleration, t,
                smallest_radius(disc.outline(), other.outline())))
     return false;

@@ -292,8 +292,10 @@ class PairSearch {
       }
       return band_step(above, f.rate, bend, band, allowed);
     }
-    const bool hollow = f.normal.dot(path.q - site.center) < 0.0;  // f's normal points to the centre
-    const double bend = hollow ? bounds.speed * bounds.speed / site.arc_radius * 1.01 : 0.0;
+    const Vec2 out = path.q - site.center;
+    const bool hollow = f.normal.dot(out) < 0.0;  // f's normal points to the centre
+    // the circle on which the sample meets: less than the arc's by the radii
+    const double bend = hollow ? bounds.speed * bounds.speed / out.norm() * 1.01 : 0.0;
     if (nearest.foot == Foot::interior)
       return band_step(above, f.rate, bounds.acceleration + bend, band, allowed);
     const HullDistance hull = distance_to_arc_hull(site, nearest, path.q);
@@ -345,6 +347,9 @@ class PairSearch {
       if (f.gap < -limits_.tolerance && t_ == from_ && f.rate > 0.0) ++work_.let_go;
       return false;
     }
+    // of a sample past its contact, so far that sides may have changed, nothing more is to be learnt
+    const bool past = best_.sample == f.sample && best_.sample_on_a == half.s_is_a && t_ > best_.time;
+    if (past) return true;
     const auto gap = [&](double t) { return view_.gap_at(half, f, t).gap; };
     const Site& site = half.site(f.site);
     const double speed = -f.rate;
@@ -354,12 +359,12 @@ class PairSearch {
     const double guess = t_ + now / speed;
     const double off = std::abs(now) / speed;
     const double bend = std::min(1.0, bounds.acceleration * off / speed) * off;
-    const double rounding = view_.gap_rounding(half, f.sample, site, path.q);
+    const double rounding = view_.gap_rounding(half, f.sample, path.q);
     const double moment = rounding / speed + 4.0 * ulp(t_), noise = moment + bend;
-    // clear now, or by a few roundings before; it was clear until the search began
+    // clear now, or a little before, but not before it rose; it was clear until the search began
     const double floor = std::max(begin, from_ - 1024.0 * moment);
-    double low = now > 2.0 * rounding ? t_ : std::max(std::min(guess, t_) - 8.0 * moment, floor);
-    for (double back = 8.0 * moment; gap(low) <= 0.0; back *= 4.0) {
+    double low = now > 2.0 * rounding ? t_ : std::max(std::min(guess, t_), floor);
+    for (double back = moment; low != t_ && gap(low) <= rounding; back *= 1.25) {
       if (low <= floor && gap(t_) <= 0.0)
         return remember(half, f, t_);  // in each other from the start, and now going deeper
       low = low <= floor ? t_ : std::max(low - back, floor);
@@ -378,7 +383,7 @@ class PairSearch {
     const double t = last_clear_time(gap, low, high);
     // at the end of its neighbourhood a sample changes sides without having come near
     if (gap(t) > touching_band(half, f.sample, path)) return false;
-    return remember(half, f, t, 8.0 * noise);
+    return remember(half, f, t, 2.0 * moment);
   }
 
   /// Keeps the contact if it is the earliest so far (ties: lowest half, sample, site). Always true. The

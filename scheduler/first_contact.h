@@ -14,6 +14,7 @@
 /// approaching ones collide now. Sources: Mirtich 1996 (conservative advancement), Zhang et al. 2006 (bounds
 /// under rotation); docs/first-contact.md.
 
+#include <algorithm>
 #include <vector>
 
 #include "brink/core/base/work.h"
@@ -52,8 +53,10 @@ struct FeatureContact {
   double level = 0.0;          ///< the gap at which these features meet [m] (tolerances.h)
   double sink = 0.0;           ///< what of the level is sink_at_start() [m], <= 0
 
-  /// How far these features have sunk into each other beyond their nominal level [m].
-  double sunk() const { return -sink; }
+  /// The gap at which they met if their pair had not sunk before [m].
+  double nominal() const { return level - sink; }
+  /// How far these features have sunk into each other beyond that [m].
+  double sunk() const { return std::max(0.0, nominal() - gap); }
 };
 
 struct PairAnswer {
@@ -82,10 +85,12 @@ struct SearchScratch {
     int site = -1;
     Vec2 normal = Vec2::Zero();
     bool leaving = false;  ///< touching, but not approaching
+    bool at_end = false;   ///< its nearest point is an end of it: the sample is on neither of its sides
   };
   SiteIndex::Scratch index;    ///< of the candidates that are being looked through
   SiteIndex::Scratch nearest;  ///< of single questions beside them
   std::vector<Neighbour> neighbours;
+  Vec2 looked_from = Vec2::Zero();  ///< where the sample was when they were found, in their frame
   std::vector<double> safe_until;
 };
 

@@ -59,14 +59,15 @@ std::optional<Vec2> parting_normal(const Wedge& front, const Wedge& behind, cons
 /// A vertex of S and the sites of T around it.
 class Joint {
  public:
-  Joint(const Outline& a, const BodyState& state_a, const Outline& b, const BodyState& state_b,
+  Joint(const Outline& a, const ExtendedState& state_a, const Outline& b, const ExtendedState& state_b,
         const FeatureContact& f, double tolerance)
       : f_(f),
         tolerance_(tolerance),
         outline_s_(f.sample_on_a ? a : b),
         outline_t_(f.sample_on_a ? b : a),
-        s_(outline_s_, f.sample_on_a ? state_a : state_b),
-        t_(outline_t_, f.sample_on_a ? state_b : state_a),
+        base_(state_b.position.cast<double>()),
+        s_(outline_s_, (f.sample_on_a ? state_a : state_b).seen_from(base_)),
+        t_(outline_t_, (f.sample_on_a ? state_b : state_a).seen_from(base_)),
         sample_(outline_s_.samples[f.sample]),
         path_(sample_path(s_, t_, sample_.p)) {}
 
@@ -129,7 +130,7 @@ class Joint {
     const Vec2 out = t_.frame.direction_to_world(normal);
     c.site = j;
     c.normal = f_.sample_on_a ? out : Vec2(-out);
-    c.point = t_.frame.to_world(path_.q - normal * (gap + sample_.radius));
+    c.point = base_ + t_.frame.to_world(path_.q - normal * (gap + sample_.radius));
     c.closing_speed = -normal.dot(path_.rate);
     c.gap = gap;
     found_.push_back(c);
@@ -138,6 +139,7 @@ class Joint {
   const FeatureContact& f_;
   double tolerance_;
   const Outline &outline_s_, &outline_t_;
+  Vec2 base_;  ///< world, near the pair: frames are seen from there
   Placed s_, t_;
   const Sample& sample_;
   SamplePath path_;
@@ -147,8 +149,8 @@ class Joint {
 
 }  // namespace
 
-std::vector<FeatureContact> joint_contacts(const Outline& a, const BodyState& state_a, const Outline& b,
-                                           const BodyState& state_b, const FeatureContact& f,
+std::vector<FeatureContact> joint_contacts(const Outline& a, const ExtendedState& state_a, const Outline& b,
+                                           const ExtendedState& state_b, const FeatureContact& f,
                                            double tolerance) {
   const Outline& outline = f.sample_on_a ? a : b;
   if (outline.samples[f.sample].arc_site >= 0) return {f};

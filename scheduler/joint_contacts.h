@@ -11,8 +11,8 @@ namespace brink {
 /// normal: a disc in a corner touches both walls. Where two corners of solids meet, one: with a normal that
 /// parts the two wedges, the nearest such to f's; boxes stacked flush part along their faces, whatever way
 /// they move. An arc's contact is returned as it is. Cost: all sites of the other outline.
-std::vector<FeatureContact> joint_contacts(const Outline& a, const BodyState& state_a, const Outline& b,
-                                           const BodyState& state_b, const FeatureContact& f,
+std::vector<FeatureContact> joint_contacts(const Outline& a, const ExtendedState& state_a, const Outline& b,
+                                           const ExtendedState& state_b, const FeatureContact& f,
                                            double tolerance);
 
 }  // namespace brink

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "brink/core/base/error.h"
+#include "brink/core/world/recentred.h"
 #include "brink/scheduler/tolerances.h"
 
 namespace brink {
@@ -78,6 +79,11 @@ Kernel::Kernel(World world, SolverOptions options)
   limits_.closed_forms = options_.skip_closed_forms;
   zeno_ = ZenoWatch(limits_.tolerance);
 
+  for (FixedSite& s : world_.sites) {
+    const Vec2 as_written = s.pose.position;
+    s = recentred(s);
+    frames_moved_.push_back(s.pose.position - as_written);
+  }
   for (const Body& b : world_.bodies) outlines_.push_back(b.outline.get());
   for (const FixedSite& s : world_.sites) outlines_.push_back(s.outline.get());
   points_meet_wires_ = points_may_meet_wires(outlines_, world_.bodies.size());

@@ -63,6 +63,11 @@ class Kernel {
   BodyState state(int k, double t) const { return bodies_[k].motion.state(t); }
   std::vector<BodyState> states(double t) const;
   const Motion& site_motion(int k) const { return sites_[k].motion(); }
+  /// Pose of fixed site k at time t, of its frame as it was written. @pre its motion covers t.
+  Pose site_pose(int k, double t) const {
+    const Pose pose = sites_[k].motion().pose(t);
+    return {pose.position - frames_moved_[k], pose.angle};
+  }
   /// Body or site (owners count bodies first, then sites).
   const Outline& outline_of(int owner) const { return *outlines_[owner]; }
   /// The pair of owner a with that image of owner b; nothing if they are one, or two sites.
@@ -344,7 +349,9 @@ class Kernel {
   struct Response;
   /// The response at that moment.
   Response respond(const PairKey& pair, const FeatureContact& found) const;
-  static void push_apart(const ImpulseSide& a, const ImpulseSide& b, const RealVec& n, Real by, Response& r);
+  /// The ways by which a body and what it met are pushed apart if they have sunk into each other [m].
+  std::pair<RealVec, RealVec> push_apart(const PairKey& pair, const FeatureContact& found,
+                                         const RealVec& n) const;
   /// Starts the touched components afresh with the twists after. False on a halt.
   bool deflect(const PairKey& pair, const Response& response, std::vector<int>& changed);
   /// Collisions of one instant that are taken to be without end: a row of n touching bodies can need n^2 / 2.
@@ -366,7 +373,8 @@ class Kernel {
   double note_resolve(int body, int partner, double magnitude);
   Contact world_contact(const PairKey& pair, const FeatureContact& f) const;
 
-  World world_;
+  World world_;                     ///< its sites recentred()
+  std::vector<Vec2> frames_moved_;  ///< by which the frame of each site was moved for that [m]
   SolverOptions options_;
   WorkCounters work_;
   SearchLimits limits_;

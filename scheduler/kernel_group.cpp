@@ -56,6 +56,7 @@ class Kernel::GroupResolve {
       return false;
     }
     note_touched();
+    push_apart();
     return restart(changed) && record();
   }
 
@@ -135,10 +136,9 @@ class Kernel::GroupResolve {
   }
 
   std::vector<FeatureContact> joint(const PairKey& pair, const FeatureContact& f) const {
-    BodyState other = kernel_.motion_of(kernel_.other_owner(pair)).state(now());
-    other.pose.position += kernel_.shift_of(pair);
-    return joint_contacts(kernel_.outline_of(pair.body), kernel_.motion_of(pair.body).state(now()),
-                          kernel_.outline_of(kernel_.other_owner(pair)), other, f, kernel_.limits_.tolerance);
+    return joint_contacts(kernel_.outline_of(pair.body), kernel_.motion_of(pair.body).extended_state(now()),
+                          kernel_.outline_of(kernel_.other_owner(pair)), kernel_.other_state(pair, now()), f,
+                          kernel_.limits_.tolerance);
   }
 
   /// What the contact that was found is made of.
@@ -242,6 +242,16 @@ class Kernel::GroupResolve {
     touched_[k] = true;
   }
 
+  void push_apart() {
+    ways_.assign(bodies_.size(), RealVec::Zero());
+    for (const std::size_t k : events_) {
+      const auto& [pair, contact] = group_[k];
+      const auto [way, way_of_other] = kernel_.push_apart(pair, contact, contacts_[k].normal);
+      ways_[index_of(pair.body)] += way;
+      if (!pair.with_site()) ways_[index_of(pair.other_body)] += way_of_other;
+    }
+  }
+
   bool restart(std::vector<int>& changed) {
     std::map<int, std::vector<Restart>> by_component;  // a free body is one of its own
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -250,6 +260,7 @@ class Kernel::GroupResolve {
       const int body = bodies_[i], component = kernel_.bodies_[body].component;
       ExtendedState after = state(body);
       after.twist = result_.twists[i];
+      after.position += ways_[i];
       // a motion from now that passes through the moment of contact
       by_component[component < 0 ? -1 - body : component].push_back({body, after.moved(-delay_)});
     }
@@ -303,7 +314,8 @@ class Kernel::GroupResolve {
   GroupResult result_;
   std::vector<std::size_t> events_;  ///< contacts that are told of, as indices into group_
   std::vector<bool> touched_;
-  std::vector<double> rest_;  ///< time since each touched body was last resolved [s]
+  std::vector<RealVec> ways_;  ///< by which what has sunk is pushed out [m]
+  std::vector<double> rest_;   ///< time since each touched body was last resolved [s]
 };
 
 bool Kernel::resolve_group(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed) {

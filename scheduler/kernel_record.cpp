@@ -74,12 +74,14 @@ void Kernel::each_near_at(double t, const std::function<bool(const PairKey&)>& v
 
 std::optional<Contact> Kernel::crossing_at(const PairKey& pair, double t) const {
   const Mover a = mover(pair.body), b = other_mover(pair);
+  const ExtendedState at = a.motion->extended_state(t), other = b.motion->extended_state(t);
+  const Vec2 base = other.position.cast<double>();  // far away, nothing of what is between them is lost
   const OutlineCrossing crossing =
-      deepest_crossing(a.outline(), a.motion->pose(t), b.outline(), b.motion->pose(t));
+      deepest_crossing(a.outline(), at.seen_from(base).pose, b.outline(), other.seen_from(base).pose);
   if (crossing.depth <= 0.0) return std::nullopt;
   FeatureContact f;
   f.time = t;
-  f.point = crossing.point;
+  f.point = base + crossing.point;
   f.normal = crossing.normal;
   f.gap = -crossing.depth;
   return world_contact(pair, f);

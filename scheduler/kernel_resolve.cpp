@@ -11,6 +11,7 @@
 #include "brink/scheduler/extended_contact.h"
 #include "brink/scheduler/kernel.h"
 #include "brink/scheduler/pair_kinematics.h"
+#include "brink/scheduler/tolerances.h"
 
 namespace brink {
 
@@ -120,24 +121,29 @@ Kernel::Response Kernel::respond(const PairKey& pair, const FeatureContact& foun
   r.magnitude = std::max(speed_of(side), speed_of(other_side));
   // an approach that the law does not see was rounding, all of it
   if (r.impulse.kind == ImpulseKind::separating) r.magnitude += std::max(0.0, found.closing_speed) / kEpsilon;
-  if (found.sunk() > 0.0 && !depth_) {
-    const Real loss = Real(1) - Real(material.restitution) * material.restitution;
-    push_apart(side, other_side, c.normal, std::min(loss * found.sunk(), Real(limits_.tolerance / 16)), r);
+  if (!depth_) {
+    const auto [way, way_of_other] = push_apart(pair, found, c.normal);
+    r.body.position += way;
+    r.other.position += way_of_other;
   }
   return r;
 }
 
-/// What has sunk is pushed out again, as far as the collision's loss of energy pays for the way: at least as
-/// much was won on it. The sides move as an impulse along the normal would move their centres.
-void Kernel::push_apart(const ImpulseSide& a, const ImpulseSide& b, const RealVec& n, Real by, Response& r) {
-  const auto given = [&](const ImpulseSide& s) {
-    return RealVec(s.inverse_mass_x * n.x(), s.inverse_mass_y * n.y());
+/// What has sunk is pushed out again. The sides move as an impulse along the normal would move their centres.
+std::pair<RealVec, RealVec> Kernel::push_apart(const PairKey& pair, const FeatureContact& found,
+                                               const RealVec& n) const {
+  const RealVec none = RealVec::Zero();
+  if (!(found.sunk() > 0.0)) return {none, none};
+  const auto given = [&](int body) {
+    const Body& b = world_.bodies[body];
+    return RealVec(b.inverse_mass_x() * n.x(), b.inverse_mass_y() * n.y());
   };
-  const RealVec of_a = given(a), of_b = given(b);
-  const Real sum = n.dot(of_a) + n.dot(of_b);
-  if (!(sum > 0)) return;
-  r.body.position += of_a * (by / sum);
-  r.other.position -= of_b * (by / sum);
+  const RealVec of_body = given(pair.body), of_other = pair.with_site() ? none : given(pair.other_body);
+  const Real sum = n.dot(of_body) + n.dot(of_other);
+  if (!(sum > 0)) return {none, none};
+  const double e = material_of(pair).restitution;
+  const Real by = push_of(found.sunk(), found.nominal(), limits_.tolerance, 1.0 - e * e);
+  return {of_body * (by / sum), -of_other * (by / sum)};
 }
 
 bool Kernel::deflect(const PairKey& pair, const Response& r, std::vector<int>& changed) {
@@ -301,7 +307,7 @@ bool Kernel::judge_endings(const Outcome& outcome) {
   const double closing = outcome.contact.closing_speed;
   if (const auto zeno = depth_ ? std::nullopt
                                : zeno_.collided({pair, outcome.contact}, time_, closing, loss_of(pair),
-                                                outcome.rest, outcome.contact.sunk() > 0.0)) {
+                                                outcome.rest, outcome.contact.sink < 0.0)) {
     record_ending(EventKind::zeno, outcome, zeno->limit_time);
     stop(Termination::failed,
          fmt::format(

@@ -1,7 +1,5 @@
 #include "brink/scheduler/pair_view.h"
 
-#include <numbers>
-
 #include "brink/scheduler/canonical_time.h"
 #include "brink/scheduler/site_step.h"
 
@@ -11,6 +9,8 @@ namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+/// Sine of an angle between an edge and a face that roundings may make of two that lie flush.
+constexpr double kParallel = 1e-6;
 
 bool sharp_vertex(const Site& site, const Sample& sample, const Nearest& nearest) {
   return (nearest.foot != Foot::interior || site.kind == SiteKind::point) &&
@@ -99,17 +99,40 @@ void PairView::find_neighbours(const Half& half, int i, std::span<const std::uin
                                const SamplePath& path, double reach) {
   const double radius = half.sample(i).radius;
   scratch_.neighbours.clear();
+  scratch_.looked_from = path.q;
   for (const std::uint32_t k : sites) {
     const Site& site = half.sites_of().sites[k];
     const Nearest nearest = nearest_on(site, path.q);
     if (nearest.distance - site.radius - radius > reach) continue;
     const Feature f = vertex_feature(half, i, static_cast<int>(k), nearest, path);
+    if (pokes_through(half, i, site, nearest, f)) continue;
     const bool leaving = f.gap - level(half, i, site, path.q) <= limits_.touch && !approaching(f, path);
-    scratch_.neighbours.push_back({f.site, f.normal, leaving});
+    scratch_.neighbours.push_back({f.site, f.normal, leaving, nearest.foot != Foot::interior});
   }
   // in one order, whoever named the candidates: of sites equally near the first is met
   std::sort(scratch_.neighbours.begin(), scratch_.neighbours.end(),
             [](const auto& x, const auto& y) { return x.site < y.site; });
+}
+
+bool PairView::pokes_through(const Half& half, int i, const Site& site, const Nearest& nearest,
+                             const Feature& f) const {
+  const Sample& sample = half.sample(i);
+  if (sample.before < 0 || site.kind != SiteKind::segment || !site.solid || nearest.foot != Foot::interior ||
+      site.radius + sample.radius > 0.0 || !(f.gap > 0.0))
+    return false;
+  const Vec2 along = site.b - site.a;
+  const auto crossed_by = [&](const Site& edge, const Vec2& other_end) {
+    if (edge.kind != SiteKind::segment) return false;
+    const Vec2 way = placed(half.t).frame.direction_to_local(
+        placed(half.s).frame.direction_to_world(other_end - sample.p));
+    const double falls = -f.normal.dot(way);
+    if (!(falls > f.gap && falls > kParallel * way.norm())) return false;
+    const double at = along.dot(nearest.point + (f.gap / falls) * way - site.a);
+    return at >= 0.0 && at <= along.squaredNorm();
+  };
+  const std::vector<Site>& own = half.samples_of().sites;
+  return crossed_by(own[sample.before], own[sample.before].a) ||
+         crossed_by(own[sample.after], own[sample.after].b);
 }
 
 bool PairView::belongs_to_a_neighbour(const Half& half, int j, const Nearest& nearest, const Vec2& q) const {
@@ -153,17 +176,6 @@ void PairView::put(Placing& p, double t) const {
 
 namespace {
 
-/// An angle brought within half a turn before it is rounded; by its sine and cosine, which are exact for any
-/// number of turns.
-double reduced(Real angle) {
-  if (std::abs(angle) < std::numbers::pi_v<Real>) return static_cast<double>(angle);
-  return static_cast<double>(std::atan2(std::sin(angle), std::cos(angle)));
-}
-
-BodyState seen_from(const Vec2& base, const ExtendedState& s) {
-  return {{(s.position - base.cast<Real>()).cast<double>(), reduced(s.angle)}, s.twist.rounded()};
-}
-
 /// What rounding is left of a motion seen in extended precision: as much less as Real is finer than double,
 /// where there is more than a double's worth to see.
 double finer(const Motion& m) { return m.is_ballistic() ? kRealRoundoff / kRoundoff : 1.0; }
@@ -173,16 +185,15 @@ double finer(const Motion& m) { return m.is_ballistic() ? kRealRoundoff / kRound
 void PairView::put_relative(Placing& p, double t) const {
   const ExtendedState sa = a_.motion->extended_state(t), sb = b_.motion->extended_state(t);
   p.base = sb.position.cast<double>();
-  p.a.move(a_.outline(), seen_from(p.base, sa));
-  p.b.move(b_.outline(), seen_from(p.base, sb));
+  p.a.move(a_.outline(), sa.seen_from(p.base));
+  p.b.move(b_.outline(), sb.seen_from(p.base));
   p.place_noise = place_rounding(*a_.motion, t, sa.position.cast<double>()) * finer(*a_.motion) +
                   place_rounding(*b_.motion, t, p.base) * finer(*b_.motion);
   p.angle_noise_a *= finer(*a_.motion);
   p.angle_noise_b *= finer(*b_.motion);
 }
 
-double PairView::gap_rounding(const Placing& p, const Half& half, int i, double site_distance,
-                              const Vec2& q) const {
+double PairView::gap_rounding(const Placing& p, const Half& half, int i, const Vec2& q) const {
   const double arm = half.sample(i).p.lpNorm<1>(), distance = q.lpNorm<1>();
   const double of_s = half.s_is_a ? p.angle_noise_a : p.angle_noise_b;
   const double of_t = half.s_is_a ? p.angle_noise_b : p.angle_noise_a;
@@ -190,21 +201,20 @@ double PairView::gap_rounding(const Placing& p, const Half& half, int i, double 
   const double turn_s = turning(half.s_is_a ? p.a : p.b), turn_t = turning(half.s_is_a ? p.b : p.a);
   // sines and turning, where anything is turned; then the distance to a site as far off
   return p.place_noise + (of_s + turn_s) * arm + (of_t + turn_t + 2.0 * kRoundoff) * distance +
-         2.0 * kRoundoff * site_distance;
+         2.0 * kRoundoff * half.sites_of().bounding_radius;
 }
 
 double PairView::nominal_level(const Placing& p, const Half& half, int i, const Site& site,
                                const Vec2& q) const {
   const bool thin = !site.solid && site.radius + half.sample(i).radius == 0.0;
-  return brink::nominal_level(limits_.touch, limits_.tolerance,
-                              gap_rounding(p, half, i, site.a.lpNorm<1>(), q), thin);
+  return brink::nominal_level(limits_.touch, limits_.tolerance, gap_rounding(p, half, i, q), thin);
 }
 
 PairView::Doubt PairView::doubt(const Half& half, const Feature& f) const {
   const SamplePath now = path(half, f.sample);
-  const Site& site = half.site(f.site);
-  const bool thin = !site.solid && site.radius + half.sample(f.sample).radius == 0.0;
-  if (!can_hold(gap_rounding(half, f.sample, site, now.q), limits_.tolerance, thin)) return Doubt::place;
+  const double rounding = gap_rounding(half, f.sample, now.q);
+  const double nominal = nominal_level(now_, half, f.sample, half.site(f.site), now.q);
+  if (!can_hold(rounding, limits_.tolerance, nominal, sink_ < 0.0)) return Doubt::place;
   const double moved = now.rate.norm() * same_instant(now_.time);
   return moved > kSlowOfSize * smallest_radius(a_.outline(), b_.outline()) ? Doubt::speed : Doubt::none;
 }
@@ -218,7 +228,7 @@ bool PairView::beyond_doubt() const {
       now_.place_noise + (now_.angle_noise_a + now_.angle_noise_b + 16.0 * kRoundoff) * reach;
   const double speed = (now_.a.twist.velocity - now_.b.twist.velocity).norm() +
                        (std::abs(now_.a.twist.omega) + std::abs(now_.b.twist.omega)) * reach;
-  return 8.0 * noise <= by_far * limits_.tolerance &&
+  return 16.0 * noise <= by_far * limits_.tolerance &&
          speed * same_instant(now_.time) <= by_far * kSlowOfSize * smallest_radius(a, b);
 }
 
@@ -244,13 +254,14 @@ double PairView::sink_at_start() const {
   then.each_feature(limits_.tolerance, [&](const Half& half, const Feature& f) {
     const SamplePath path = then.path(half, f.sample);
     const Site& site = half.site(f.site);
-    const double rounding = then.gap_rounding(half, f.sample, site, path.q);
+    const double rounding = then.gap_rounding(half, f.sample, path.q);
     const double own_step = sink_step(limits_.touch, rounding);
     const double above = f.gap - then.nominal_level(then.now_, half, f.sample, site, path.q);
     if (!(above < own_step) || above < -kOverlapAtStart * limits_.tolerance) return;
     now = now || (above <= 0.0 && then.approaching(f, path));
     const PathBounds bounds = path_bounds(path, half.s_is_a ? at_once : at_once.swapped(), 0.0);
-    const double hollow = site.kind == SiteKind::arc ? bounds.speed * bounds.speed / site.arc_radius : 0.0;
+    const bool of_arc = site.kind == SiteKind::arc;
+    const double hollow = of_arc ? bounds.speed * bounds.speed / (path.q - site.center).norm() : 0.0;
     gap = std::min(gap, above);
     rate = std::min(rate, f.rate);
     noise = std::max(noise, then.rate_noise(path));
@@ -259,6 +270,18 @@ double PairView::sink_at_start() const {
   });
   if (now || !(gap < kForever)) return 0.0;
   return start_sink(gap, rate, noise, bend, step);
+}
+
+double PairView::side_kept(const Site& site, const SearchScratch::Neighbour& as_found, const Nearest& now,
+                           const Vec2& q) const {
+  if (!as_found.at_end || site.kind != SiteKind::segment)
+    return as_found.normal.dot(q - now.point) < 0.0 ? -1.0 : 1.0;
+  // it came round an end, unless the straight way leads through the wire
+  const Vec2 d = site.b - site.a, from = scratch_.looked_from;
+  const double before = cross(d, from - site.a), after = cross(d, q - site.a);
+  if ((before < 0.0) == (after < 0.0)) return 1.0;
+  const double along = d.dot(from + (before / (before - after)) * (q - from) - site.a);
+  return along >= 0.0 && along <= d.squaredNorm() ? -1.0 : 1.0;
 }
 
 PairView::GapAndSite PairView::gap_to_neighbours(const Placing& p, const Half& half, int i,
@@ -277,7 +300,7 @@ PairView::GapAndSite PairView::gap_to_neighbours(const Placing& p, const Half& h
     least = rank;
     const double radius = site.radius + sample_radius;
     const bool thin = radius == 0.0 && !site.solid && interior;  // then stay on the side it came from
-    const double side = !thin ? side_of(site, n, q) : neighbour.normal.dot(q - n.point) < 0.0 ? -1.0 : 1.0;
+    const double side = thin ? side_kept(site, neighbour, n, q) : side_of(site, n, q);
     found = {side * n.distance - radius - level_of(nominal_level(p, half, i, site, q), sink_),
              neighbour.site};
   }

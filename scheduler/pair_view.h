@@ -80,6 +80,11 @@ class PairView {
   /// Keeps those of `sites` that lie within `reach` of vertex sample i, and how it stands to them now.
   void find_neighbours(const Half& half, int i, std::span<const std::uint32_t> sites, const SamplePath& path,
                        double reach);
+  /// True if the corner of a solid at sample i is just in front of a face of another solid, but an edge of
+  /// its own leads through that face: it stands out of it, on the far side of something thin, and must not
+  /// come out any further. Never so while the two are apart.
+  bool pokes_through(const Half& half, int i, const Site& site, const Nearest& nearest,
+                     const Feature& f) const;
   /// True if site j is near q, but what q would touch is another of the neighbours. At a joint: one that is
   /// as near with its interior. Behind a solid: j is the far side of a sliver, whose near side q has in front
   /// of it, or is deeper in.
@@ -112,14 +117,9 @@ class PairView {
   /// touches and leaves are left out. An arc: to f's site, on the side that f has.
   GapAndSite gap_at(const Half& half, const Feature& f, double t) const;
 
-  /// Bound on the rounding of the gap of sample i to a site now [m].
-  double gap_rounding(const Half& half, int i, const Site& site, const Vec2& q) const {
-    return gap_rounding(now_, half, i, site.a.lpNorm<1>(), q);
-  }
-  /// The same to any site.
-  double gap_rounding(const Half& half, int i, const Vec2& q) const {
-    return gap_rounding(now_, half, i, half.sites_of().bounding_radius, q);
-  }
+  /// Bound on the rounding of the gap of sample i, at q, to any site now [m]: one for all sites, or the
+  /// nearest by level might not be the nearest.
+  double gap_rounding(const Half& half, int i, const Vec2& q) const { return gap_rounding(now_, half, i, q); }
 
  private:
   template <class Visit>
@@ -144,10 +144,13 @@ class PairView {
   ArcStep arc_now(const Half& half, int i, int j) const;
   void put(Placing& placing, double t) const;
   void put_relative(Placing& placing, double t) const;
-  double gap_rounding(const Placing& placing, const Half& half, int i, double site_distance,
-                      const Vec2& q) const;
+  double gap_rounding(const Placing& placing, const Half& half, int i, const Vec2& q) const;
   double nominal_level(const Placing& placing, const Half& half, int i, const Site& site,
                        const Vec2& q) const;
+  /// Of a wire without thickness, beside which q is now: 1 where the sample has not crossed it since its
+  /// neighbours were found, else -1.
+  double side_kept(const Site& site, const SearchScratch::Neighbour& as_found, const Nearest& now,
+                   const Vec2& q) const;
   GapAndSite gap_to_neighbours(const Placing& placing, const Half& half, int i, const Vec2& q) const;
   double arc_gap(const Half& half, const Feature& f, const Vec2& center) const;
   bool out_of_reach(const Half& half, int i, double reach) const;

@@ -78,7 +78,7 @@ double Simulator::time() const { return impl_->kernel.time(); }
 const World& Simulator::world() const { return impl_->kernel.world(); }
 BodyState Simulator::state(int k) const { return impl_->kernel.state(k, time()); }
 std::vector<BodyState> Simulator::states() const { return impl_->kernel.states(time()); }
-Pose Simulator::site_pose(int k) const { return impl_->kernel.site_motion(k).pose(time()); }
+Pose Simulator::site_pose(int k) const { return impl_->kernel.site_pose(k, time()); }
 
 std::uint64_t Simulator::state_hash() const {
   StateHash hash;

@@ -37,15 +37,13 @@ SiteMotion::SiteMotion(const FixedSite& site) {
     moves_ = true;
     const Eigen::Vector3d base(site.pose.position.x(), site.pose.position.y(), site.pose.angle);
     prescribed_ = std::make_unique<PrescribedMotion>(
-        [base, f = *formula](double t) -> Eigen::Vector3d {
-          return base + Eigen::Vector3d(value(f.x, t), value(f.y, t), value(f.angle, t));
+        base,
+        [f = *formula](double t) -> Eigen::Vector3d {
+          return {value(f.x, t), value(f.y, t), value(f.angle, t)};
         },
-        [base, f = *formula](int i, double from, double to, bool with_derivatives) {
+        [f = *formula](int i, double from, double to, bool with_derivatives) {
           const std::optional<Formula>& part = i == 0 ? f.x : (i == 1 ? f.y : f.angle);
-          TimeBound b = part ? part->time_bound(0, from, to, with_derivatives) : TimeBound();
-          b.low += base[i];
-          b.high += base[i];
-          return b;
+          return part ? part->time_bound(0, from, to, with_derivatives) : TimeBound();
         },
         description(site, *formula));
     if (const Extent extent = extend(0.0); extent.status != Extent::Status::reached)

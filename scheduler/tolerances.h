@@ -4,11 +4,11 @@
 ///
 /// A gap is computed with some rounding `nu` (gap_rounding). Three margins keep it from mattering:
 ///   - a thin wire has no inside that would tell that it was crossed; so it is met at a *level* of at least
-///     4 nu before it (nominal_level): what stays beyond the level is never in doubt about its side;
+///     12 nu before it (nominal_level): what stays beyond the level is never in doubt about its side;
 ///   - a pair that starts touching, pressed together or all but at rest, has its next contact when it has
-///     sunk by a *sink step* of at least nu (sink_step), a quarter of the wire's level at most: so every
-///     contact is a crossing of its level from above, and what has sunk is pushed out again as it is
-///     resolved;
+///     sunk by a *sink step* of at least 2.5 nu (sink_step), but a quarter of the wire's level is left: so
+///     every contact is a crossing of its level from clear above, and what has sunk is pushed out again as it
+///     is resolved;
 ///   - steps of the search end at half the *band* (the contact tolerance, or what the clock cannot tell
 ///     apart), never on the surface.
 /// Where nu is not small beside the contact tolerance the search does not tell a contact but says so
@@ -62,23 +62,32 @@ inline double angle_rounding(const Motion& motion, double t, double now, double 
 /// this part of the contact tolerance.
 inline constexpr double kFarOfTolerance = 1.0 / 1024.0;
 
-/// True if gaps of that rounding can be held to the contact tolerance; thin: by a wire_level().
-inline bool can_hold(double rounding, double tolerance, bool thin) {
-  return (thin ? 8.0 : 1.0) * rounding <= tolerance;
+/// True if gaps of that rounding can be held to the contact tolerance; of features that meet at the given
+/// level; pressed: though the pair sinks a few steps more.
+inline bool can_hold(double rounding, double tolerance, double level = 0.0, bool pressed = false) {
+  return std::max(rounding, 2.0 * level) <= tolerance && (!pressed || 16.0 * rounding <= tolerance);
 }
 
 /// The gap at which features meet that start apart [m]: 0; thin, a sharp sample and a wire without thickness:
 /// so far before it; where gaps cannot be held to the tolerance: as far before as they may be wrong.
 inline double nominal_level(double touch, double tolerance, double rounding, bool thin) {
-  if (thin) return std::max(0.5 * touch, 4.0 * rounding);
-  return can_hold(rounding, tolerance, thin) ? 0.0 : 2.0 * rounding;
+  if (thin) return std::max(0.5 * touch, 12.0 * rounding);
+  return can_hold(rounding, tolerance) ? 0.0 : 2.0 * rounding;
 }
 
 /// What moves more than this part of its radius within one instant (same_instant()) is too fast to be told.
 inline constexpr double kSlowOfSize = 1e-3;
 
 /// How far a pair that is pressed together sinks until that is a contact again [m].
-inline double sink_step(double touch, double rounding) { return std::max(0.125 * touch, rounding); }
+inline double sink_step(double touch, double rounding) { return std::max(0.125 * touch, 2.5 * rounding); }
+
+/// How far features are pushed apart that have sunk into each other by `sunk` > 0 [m], as they collide: as
+/// far as the loss of energy, as a part of it, pays for the way: at least as much was won on it; thin ones by
+/// a few roundings, which their next sink needs, and less than they keep of their level: so a push leads past
+/// no other wire.
+inline double push_of(double sunk, double nominal, double tolerance, double loss) {
+  return nominal > 0.0 ? std::min(sunk, nominal / 6.0) : std::min(loss * sunk, 0.5 * tolerance);
+}
 
 /// The gap at which features meet of a pair that may have sunk by `sink` <= 0 [m]; of thin ones a quarter of
 /// their level is left.

@@ -5,6 +5,9 @@
 /// random walk that the chords amplify (n^1.5 roundings after n hits); so motions start from states kept to
 /// 64 bits, and collisions are resolved in them. Where long double is double, nothing is lost but this.
 
+#include <cmath>
+#include <numbers>
+
 #include "brink/core/base/geometry.h"
 
 namespace brink {
@@ -59,6 +62,14 @@ struct ExtendedState {
     return {{(position - r.position).cast<double>(), static_cast<double>(angle - r.angle)},
             {(twist.velocity - r.twist.velocity).cast<double>(),
              static_cast<double>(twist.omega - r.twist.omega)}};
+  }
+  /// Rounded as seen from `base`, the angle brought within half a turn before: nothing is lost far away, or
+  /// after many turns, by what is near the base.
+  BodyState seen_from(const Vec2& base) const {
+    // by its sine and cosine, which are exact for any number of turns
+    const bool within = std::abs(angle) < std::numbers::pi_v<Real>;
+    const Real reduced = within ? angle : std::atan2(std::sin(angle), std::cos(angle));
+    return {{(position - base.cast<Real>()).cast<double>(), static_cast<double>(reduced)}, twist.rounded()};
   }
   ExtendedState shifted(const Vec2& by) const {
     ExtendedState s = *this;

@@ -94,8 +94,17 @@ void set_pseudo_normals(Outline& outline) {
     }
 }
 
-/// One sample a vertex, however often the loop (a wire, or a union) comes back to it, in order of first
-/// meeting.
+/// One sample a corner: where a union pinches, each of the corners that meet there has its own.
+void add_corner_samples(Outline& outline, const Loop& loop) {
+  for (int k = 0; k < loop.count; ++k) {
+    const Site& after = outline.sites[loop.first + k];
+    const int before = loop.first + (k + loop.count - 1) % loop.count;
+    outline.samples.push_back(
+        {after.a, std::max(after.radius, outline.sites[before].radius), -1, before, loop.first + k});
+  }
+}
+
+/// One sample a vertex of a wire, however often it comes back to it, in order of first meeting.
 void add_vertex_samples(Outline& outline, const Loop& loop) {
   std::map<std::pair<double, double>, std::size_t> known;
   const auto add = [&](const Vec2& p, double radius) {
@@ -157,7 +166,10 @@ void finish_outline(Outline& outline) {
   }
   if (outline.solid) set_pseudo_normals(outline);
   for (const Loop& loop : outline.loops) {
-    add_vertex_samples(outline, loop);
+    if (outline.solid)
+      add_corner_samples(outline, loop);
+    else
+      add_vertex_samples(outline, loop);
     add_arc_samples(outline, loop);
   }
   outline.facets = facets_of(outline);

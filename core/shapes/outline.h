@@ -31,6 +31,7 @@ struct Sample {
   double radius = 0.0;    ///< thickness; for an arc: thickness + circle radius (convex side) [m]
   int arc_site =
       -1;  ///< -1: vertex (counts in every direction); else the arc's site: counts in its sector only
+  int before = -1, after = -1;  ///< of a solid's vertex: the sites that end and begin there
 };
 
 /// The sites of a shape in its own frame; immutable once built, shared by every body of that shape.
@@ -52,7 +53,7 @@ struct Outline {
 
 /// Fills Site::solid, pseudo-normals, samples, facets, bounds and bounding radius from sites and loops. Call
 /// once after assembling; loops must cover all sites in order and join up bit for bit. Samples: each loop's
-/// distinct vertices, then its arcs.
+/// vertices (of wires the distinct ones), then its arcs.
 /// @throws BadInput on a site of zero length, an arc over a quarter turn or off its circle, a loop that does
 /// not
 ///   join up, a solid with an open chain, a point, or sites of different radii, or NaN.

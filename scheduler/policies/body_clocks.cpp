@@ -181,6 +181,7 @@ class BodyClocks final : public Policy {
                        clock.exit > instant && clock.horizon > instant &&
                        (clock.candidates.size() == 1 || clock.candidates[1].time > instant);
     if (alone) return collide(Certificate(found_->of(k)));
+    wait_for(k);  // a contact may be told for a little before the time that the queue knows
     const std::vector<Certificate> group = contacts_until(instant);
     // none: what was found by a view that has ended, the next view does not find by the end of the instant
     if (kernel_->halt() || group.empty()) return;
@@ -190,7 +191,7 @@ class BodyClocks final : public Policy {
   /// Every contact of the present instant, in the total order of events.
   std::vector<Certificate> contacts_until(double instant) {
     std::vector<Certificate> group;
-    std::vector<int> asked;
+    std::vector<int> asked, looked_again;
     while (queue_.time() <= std::min(instant, kernel_->reach()) && kernel_->poll()) {
       const int k = queue_.body();
       const BodyClock& clock = views_->clock(k);
@@ -200,7 +201,7 @@ class BodyClocks final : public Policy {
         asked.push_back(k);
         queue_.update(k, kForever);
       } else {
-        take_next_step(k);
+        take_next_step(k, looked_again);
       }
     }
     for (const int k : asked) queue_.update(k, views_->clock(k).expiry());
@@ -211,18 +212,27 @@ class BodyClocks final : public Policy {
     return group;
   }
 
-  /// What is due first for body k, short of meeting.
-  void take_next_step(int k) {
+  /// What is due first for body k, short of meeting. A view that ends after a contact of this instant is
+  /// begun again at that contact, not beyond it: once, as it may always end that soon.
+  void take_next_step(int k, std::vector<int>& looked_again) {
     const BodyClock& clock = views_->clock(k);
     const double view = std::min(clock.exit, clock.horizon);
-    if (!clock.candidates.empty() && clock.candidates.front().time <= view &&
-        !(clock.candidates.front().exact && !views_->stale(clock.candidates.front())))
+    const bool due = !clock.candidates.empty() && clock.candidates.front().time <= view;
+    const bool contact = due && clock.candidates.front().exact && !views_->stale(clock.candidates.front());
+    if (due && !contact)
       sharpen(k);
     else if (view == clock.exit)
       views_->look_ahead(k, view);
+    else if (contact && std::find(looked_again.begin(), looked_again.end(), k) == looked_again.end())
+      look_again(k, clock.candidates.front().time, looked_again);
     else
       look_around(k, view);
     wait_for(k);
+  }
+
+  void look_again(int k, double contact, std::vector<int>& looked_again) {
+    looked_again.push_back(k);
+    look_around(k, contact);
   }
 
   /// Contacts of body k that are in its view and due by `instant`.

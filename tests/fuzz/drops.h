@@ -144,7 +144,8 @@ inline bool fall(std::uint64_t seed, Tally& tally) {
   }
   tally.hits += told.summary.collisions;
   ++tally.endings[worlds::kind_of(told.summary.termination_text())];
-  if (watch.sound() && !told.too_long) return true;
+  const bool caught = worlds::ended_by_watch(told.summary.termination_text());
+  if (watch.sound() && !told.too_long && !caught) return true;
   ++tally.wrong;
   std::cout << "drop " << seed << (told.too_long ? ": broken off, too long" : "") << " ("
             << told.summary.collisions << " hits, " << told.summary.termination_text() << ")\n"

@@ -41,6 +41,11 @@ inline std::string kind_of(const std::string& ending) {
   return kind;
 }
 
+/// True if the run was ended by the framework's own watch: honest, and a fault of its search all the same.
+inline bool ended_by_watch(const std::string& ending) {
+  return ending.find("what a search certified does not hold") != std::string::npos;
+}
+
 /// Writes a scene that failed to the folder `BRINK_KEEP`, if that is set.
 inline void keep(const std::string& name, const std::string& text) {
   const char* folder = std::getenv("BRINK_KEEP");
@@ -66,6 +71,7 @@ inline bool examine_seed(std::uint64_t seed, const Taste& taste, Tally& tally) {
   tally.collisions += verdict.collisions;
   tally.reached_end += verdict.reached_end;
   ++tally.endings[kind_of(verdict.ending)];
+  if (ended_by_watch(verdict.ending)) verdict.faults.push_back("ended by the watch");
   if (verdict.faults.empty()) return true;
   ++tally.wrong;
   std::cout << "seed " << seed << " (" << verdict.collisions << " collisions, " << verdict.ending << ")\n";

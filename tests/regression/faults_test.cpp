@@ -352,24 +352,17 @@ std::vector<std::string> peers() {
 
 class PeerScenes : public ::testing::TestWithParam<std::string> {};
 
-// Known and not mended: a tooth's tip that comes down exactly where two parts of the other saw touch in one
-// point goes 5e-7 m in between them, at 0.63855 s, before the run ends as Zeno with status 1. Up to there it
-// must be sound.
-bool comes_down_on_a_pinch(const std::string& scene) { return scene == "saw_interlocking_saws_teeth_100"; }
+// A hundred teeth come down flush between a hundred others and are wedged: some 2000 collisions an instant,
+// half a minute, until they are taken together. The first of them are followed.
+std::uint64_t most_collisions(const std::string& scene) {
+  return scene == "saw_interlocking_saws_teeth_100" ? 300 : 0;
+}
 
 TEST_P(PeerScenes, NothingIsInAnything) {
-  if (comes_down_on_a_pinch(GetParam())) {
-    const Scene scene = load_scene(folder() / "peer-scenes" / (GetParam() + ".toml"));
-    EXPECT_EQ(watched(scene, 0.6385).faults, std::vector<std::string>());
-    Simulator simulator(scene.world, scene.solver);
-    RunOptions options;
-    options.until = scene.duration;
-    EXPECT_EQ(simulator.run(options).termination, Termination::failed);
-    return;
-  }
   const Ended ended = guarded([&] {
-    const Watched run = watched(load_scene(folder() / "peer-scenes" / (GetParam() + ".toml")));
-    return run.faults;
+    Scene scene = load_scene(folder() / "peer-scenes" / (GetParam() + ".toml"));
+    if (const auto most = most_collisions(GetParam())) scene.solver.max_collisions = most;
+    return watched(scene).faults;
   });
   EXPECT_EQ(ended.output, kSound) << "signal " << ended.signal << " after " << ended.seconds << " s";
 }

@@ -159,7 +159,8 @@ class Watch : public Recorder {
     body.astray =
         8 * kUlp * (norm(own.velocity) + std::abs(own.omega) * body.shape.reach + norm(body.flight.pull) * t);
     body.frame = t;
-    if (off > rounding(static_cast<int>(k), t)) body.flight = {t, told, body.flight.pull};
+    const Place& place = off > rounding(static_cast<int>(k), t) ? told.place : own.place;
+    body.flight = {t, {place, told.velocity, told.omega}, body.flight.pull};
   }
 
   void look_at_energy(double t, std::span<const BodyState> states) {
@@ -210,10 +211,19 @@ class Watch : public Recorder {
     impact.after = velocity_at(body, arm) - velocity_at(partner, other_arm);
     bodies_[k].flight = {t, body, bodies_[k].flight.pull};
     if (is_body(other)) bodies_[other].flight = {t, partner, bodies_[other].flight.pull};
-    bodies_[k].astray += blur * speed;
-    if (is_body(other)) bodies_[other].astray += blur * speed;
+    // the point is told in doubles: an impulse there turns the bodies by a little more or less
+    const Real off = 4 * kUlp * (norm(point) + norm(arm)), given = norm(impulse) * off;
+    impact.noise += given * turned_by(k, arm);
+    bodies_[k].astray += blur * speed + given * turned_by(k, arm);
+    if (is_body(other)) {
+      impact.noise += given * turned_by(other, other_arm);
+      bodies_[other].astray += blur * speed + given * turned_by(other, other_arm);
+    }
     look_at_law(e, impact, k, other, t);
   }
+
+  /// The speed of the point at `arm` that an impulse of moment 1 gives [m/s].
+  Real turned_by(int k, const Vec& arm) const { return norm(arm) * bodies_[k].inertia.angle; }
 
   void look_at_touch(int a, int b, const State& sa, const State& sb, Real t, Real touching) {
     const Real g = exact_gap(a, b, sa, sb);

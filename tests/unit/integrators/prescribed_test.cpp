@@ -19,10 +19,12 @@ using Eigen::Vector3d;
 
 /// The motion of three formulas of t; `calls`, if given, counts how often it is evaluated.
 PrescribedMotion prescribed(const char* x, const char* y = "0", const char* angle = "0",
-                            const char* name = "test", int* calls = nullptr) {
+                            const char* name = "test", int* calls = nullptr,
+                            const Vector3d& base = Vector3d::Zero()) {
   const std::array<Formula, 3> of{Formula(x, {"t"}), Formula(y, {"t"}), Formula(angle, {"t"})};
   const auto value = [](const Formula& f, double t) { return f(std::span<const double>(&t, 1)); };
   return PrescribedMotion(
+      base,
       [=](double t) {
         if (calls) ++*calls;
         return Vector3d(value(of[0], t), value(of[1], t), value(of[2], t));
@@ -57,6 +59,20 @@ TEST(Prescribed, SineIsFollowedToRounding) {
   std::printf("0.1 sin(6 t) over 50 s: pose %.2e m, twist %.2e m/s\n", d.pose, d.twist);
   EXPECT_LT(d.pose, 1e-14);
   EXPECT_LT(d.twist, 1e-11);
+}
+
+// A faster one 1 km away: the place is rounded by 1.1e-13 m; its rate by no more than near by, where Markov's
+// inequality gives 2e-10 m/s for a fit to 1e-14 m in cells of 1/64 s.
+TEST(Prescribed, FarBaseDoesNotBlurTheFit) {
+  PrescribedMotion motion =
+      prescribed("0.1 * sin(80 * t)", "0", "0", "test", nullptr, Vector3d(1000.0, 0.0, 0.0));
+  ASSERT_EQ(motion.extend(50.0).status, Extent::Status::reached);
+  const Deviation d = deviation(
+      motion.motion(), 0.0, 50.0, [](double t) { return 1000.0 + 0.1 * std::sin(80 * t); },
+      [](double t) { return 8.0 * std::cos(80 * t); });
+  std::printf("1000 + 0.1 sin(80 t) over 50 s: pose %.2e m, twist %.2e m/s\n", d.pose, d.twist);
+  EXPECT_LT(d.pose, 3e-13);
+  EXPECT_LT(d.twist, 2e-10);
 }
 
 // A thousand times faster: cells are halved until they fit; the twist is of order 1000.

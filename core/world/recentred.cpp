@@ -1,0 +1,49 @@
+#include "brink/core/world/recentred.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace brink {
+
+namespace {
+
+/// True if the frame of a site turns with time or stands at an angle.
+bool turned(const FixedSite& site) {
+  if (site.pose.angle != 0.0) return true;
+  if (const auto* constant = std::get_if<ConstantMotion>(&site.motion)) return constant->twist.omega != 0.0;
+  const auto* told = std::get_if<FormulaMotion>(&site.motion);
+  return told && told->angle;
+}
+
+/// The multiple of a power of two, about the size of the box, that is nearest to its middle.
+Vec2 round_place_in(const Box& box) {
+  const Vec2 middle = 0.5 * (box.low + box.high);
+  const double size = (box.high - box.low).maxCoeff();
+  if (!(size > 0.0) || middle.lpNorm<Eigen::Infinity>() <= 2.0 * size) return Vec2::Zero();
+  const double unit = std::exp2(std::ceil(std::log2(size)));
+  return {unit * std::round(middle.x() / unit), unit * std::round(middle.y() / unit)};
+}
+
+bool exactly_moved(const Vec2& p, const Vec2& by) { return (p + by) - by == p && (p + by) - p == by; }
+
+bool exactly_moved(const Outline& outline, const Vec2& by) {
+  return std::all_of(outline.sites.begin(), outline.sites.end(), [&](const Site& s) {
+    return exactly_moved(s.a, by) && exactly_moved(s.b, by) &&
+           (s.kind != SiteKind::arc || exactly_moved(s.center, by));
+  });
+}
+
+}  // namespace
+
+FixedSite recentred(const FixedSite& site) {
+  if (turned(site)) return site;
+  const Vec2 to = round_place_in(site.outline->bounds), back = -to;
+  if (to.isZero(0.0) || !exactly_moved(*site.outline, back) || !exactly_moved(site.pose.position, to))
+    return site;
+  FixedSite moved = site;
+  moved.outline = std::make_shared<const Outline>(transformed(*site.outline, {back, 0.0}));
+  moved.pose.position += to;
+  return moved;
+}
+
+}  // namespace brink
