@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -236,7 +237,9 @@ class PairSearch {
     ++work_.distance_queries;
     const double band = touching_band(half, i, path);
     const double reach = over_all.speed * window + sample.radius + 2.0 * band;
-    const Candidates near = half.t->index->candidates(path.q, reach, scratch_.index);
+    Candidates near = half.t->index->candidates(path.q, reach, scratch_.index);
+    // what is not named is too near to be left out: two things are met, and one of them alone is named
+    if (near.others_at_least - sample.radius <= 2.0 * band) near = all_of(sites);
     work_.candidate_evaluations += near.sites.size();
     const double others = std::max(0.0, near.others_at_least - sample.radius - 0.5 * band);
     double safe = over_all.speed > 0.0 ? others / over_all.speed : kForever;
@@ -274,6 +277,13 @@ class PairSearch {
           std::min(again, site_step(site, nearest, path.q, path.rate, rate, radius, slack, over_short).safe);
     }
     return {safe, again};
+  }
+
+  Candidates all_of(const Outline& outline) {
+    std::vector<std::uint32_t>& all = scratch_.index.sites;
+    all.resize(outline.sites.size());
+    std::iota(all.begin(), all.end(), 0U);
+    return {all, kForever};
   }
 
   /// The step of a vertex that is within the band of a site and does not meet it, `above` its level: by the

@@ -4,7 +4,7 @@
 ///
 /// A gap is computed with some rounding `nu` (gap_rounding). Three margins keep it from mattering:
 ///   - a thin wire has no inside that would tell that it was crossed; so it is met at a *level* of at least
-///     12 nu before it (nominal_level): what stays beyond the level is never in doubt about its side;
+///     8 nu before it (nominal_level): what stays beyond the level is never in doubt about its side;
 ///   - a pair that starts touching, pressed together or all but at rest, has its next contact when it has
 ///     sunk by a *sink step* of at least 2.5 nu (sink_step), but a quarter of the wire's level is left: so
 ///     every contact is a crossing of its level from clear above, and what has sunk is pushed out again as it
@@ -71,7 +71,7 @@ inline bool can_hold(double rounding, double tolerance, double level = 0.0, bool
 /// The gap at which features meet that start apart [m]: 0; thin, a sharp sample and a wire without thickness:
 /// so far before it; where gaps cannot be held to the tolerance: as far before as they may be wrong.
 inline double nominal_level(double touch, double tolerance, double rounding, bool thin) {
-  if (thin) return std::max(0.5 * touch, 12.0 * rounding);
+  if (thin) return std::max(0.5 * touch, 8.0 * rounding);
   return can_hold(rounding, tolerance) ? 0.0 : 2.0 * rounding;
 }
 
