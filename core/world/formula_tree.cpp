@@ -298,8 +298,10 @@ void FormulaTree::find_parts(int root) {
 
 Taylor FormulaTree::over(int part, double from, double to, int order) const {
   const int root = parts_.at(part), first = nodes_[root].first;
-  std::vector<Taylor> values;  // of the nodes from `first` on: arguments come before what they are given to
-  Arguments arguments;
+  // of the nodes from `first` on: arguments come before what they are given to; kept, as it is asked often
+  static thread_local std::vector<Taylor> values;
+  static thread_local Arguments arguments;
+  values.clear();
   for (int i = first; i <= root; ++i) {
     const Node& n = nodes_[i];
     arguments.clear();

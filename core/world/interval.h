@@ -1,8 +1,10 @@
 #pragma once
 /// Intervals of real numbers: Boost.Interval with bounds that are rounded outward by the next double.
 
+#include <bit>
 #include <boost/numeric/interval.hpp>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace brink {
@@ -12,8 +14,13 @@ namespace brink {
 /// number becomes unbounded.
 struct OutwardRounding {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  static double below(double x) { return std::isnan(x) ? -kInfinity : std::nextafter(x, -kInfinity); }
-  static double above(double x) { return std::isnan(x) ? kInfinity : std::nextafter(x, kInfinity); }
+  static double below(double x) { return -above(-x); }
+  /// The next double above x, in line: the library's own takes a tenth of all that a formula's bounds cost.
+  static double above(double x) {
+    if (!(x < kInfinity)) return kInfinity;
+    if (x == 0.0) return std::numeric_limits<double>::denorm_min();
+    return std::bit_cast<double>(std::bit_cast<std::int64_t>(x) + (x > 0.0 ? 1 : -1));
+  }
   static double far_below(double x) { return below(below(below(below(x)))); }
   static double far_above(double x) { return above(above(above(above(x)))); }
 

@@ -5,6 +5,7 @@
 
 #include "brink/core/base/random.h"
 #include "brink/core/world/formula_tree.h"
+#include "brink/core/world/interval.h"
 #include "brink/core/world/steady.h"
 
 namespace brink {
@@ -157,6 +158,21 @@ TEST(FormulaSteady, CellsAreAsSmallAsTheFormulaIsShort) {
   int inside = 0;
   for (double t = 0.0; t < 1.0; t = steady_until(spike, 0, t)) inside += t > 0.7021 && t < 0.7041;
   EXPECT_GT(inside, 10);
+}
+
+// Outward rounding goes to the next double, as the library's nextafter does, from every kind of number.
+TEST(OutwardRounding, GoesToTheNextDouble) {
+  constexpr double kInfinity = OutwardRounding::kInfinity, kLeast = std::numeric_limits<double>::denorm_min(),
+                   kMost = std::numeric_limits<double>::max();
+  for (const double x : {0.0, -0.0, 1.0, -1.0, 0.1, -1e-300, 1e300, kLeast, -kLeast, kMost, -kMost}) {
+    EXPECT_EQ(OutwardRounding::above(x), std::nextafter(x, kInfinity)) << x;
+    EXPECT_EQ(OutwardRounding::below(x), std::nextafter(x, -kInfinity)) << x;
+  }
+  EXPECT_EQ(OutwardRounding::above(kInfinity), kInfinity);
+  EXPECT_EQ(OutwardRounding::below(kInfinity), kMost);
+  EXPECT_EQ(OutwardRounding::above(-kInfinity), -kMost);
+  EXPECT_EQ(OutwardRounding::above(std::nan("")), kInfinity);
+  EXPECT_EQ(OutwardRounding::below(std::nan("")), -kInfinity);
 }
 
 }  // namespace
