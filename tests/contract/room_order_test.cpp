@@ -1,0 +1,97 @@
+// Includes run one way: which room may use which. An arrow that breaks the order is named with its file and
+// line.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace brink {
+namespace {
+
+namespace fs = std::filesystem;
+using Rooms = std::vector<std::string>;
+
+/// What every room may include from, beside itself. A folder that is not named belongs to the room above it.
+const std::map<std::string, Rooms>& order() {
+  static const std::map<std::string, Rooms> rooms = [] {
+    const Rooms core{"core/base", "core/shapes", "core/fields", "core/world", "core/contacts"};
+    const auto with = [](Rooms rooms, const Rooms& more) {
+      rooms.insert(rooms.end(), more.begin(), more.end());
+      return rooms;
+    };
+    const Rooms simulation = with(core, {"integrators", "scheduler"});
+    return std::map<std::string, Rooms>{
+        {"core/base", {}},
+        {"core/shapes", {"core/base"}},
+        {"core/fields", {"core/base", "core/shapes"}},
+        {"core/world", {"core/base", "core/shapes"}},
+        {"core/contacts", {"core/base", "core/world"}},
+        {"integrators", {"core/base"}},
+        {"scheduler", with(core, {"integrators"})},
+        {"scenes", simulation},
+        {"scenes/sweep", with(simulation, {"scenes"})},
+        {"scenes/program", with(simulation, {"scenes", "scenes/sweep"})},
+    };
+  }();
+  return rooms;
+}
+
+/// The room that a folder, or a file in it, belongs to; empty: none.
+std::string room_of(fs::path folder) {
+  for (; !folder.empty(); folder = folder.parent_path())
+    if (order().count(folder.generic_string())) return folder.generic_string();
+  return {};
+}
+
+/// "file:line: room includes 'what'", for every include of a file that its room may not use.
+std::vector<std::string> broken_arrows(const fs::path& file, std::istream& text) {
+  static const std::string lead = "#include \"brink/";
+  std::vector<std::string> broken;
+  const std::string room = room_of(file.parent_path());
+  std::string line;
+  for (int number = 1; std::getline(text, line); ++number) {
+    if (line.rfind(lead, 0) != 0) continue;
+    const std::string what = line.substr(lead.size(), line.rfind('"') - lead.size());
+    const std::string other = room_of(fs::path(what).parent_path());
+    const Rooms& allowed = order().at(room);
+    if (other == room || std::find(allowed.begin(), allowed.end(), other) != allowed.end()) continue;
+    broken.push_back(file.generic_string() + ":" + std::to_string(number) + ": " + room + " includes '" +
+                     what + "'");
+  }
+  return broken;
+}
+
+TEST(RoomOrder, IncludesRunOneWay) {
+  const fs::path root = BRINK_SOURCE_DIR;
+  int files = 0;
+  for (const char* top : {"core", "integrators", "scheduler", "scenes"})
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+      const std::string ending = entry.path().extension().string();
+      if (ending != ".h" && ending != ".cpp") continue;
+      const fs::path file = fs::relative(entry.path(), root);
+      ASSERT_NE(room_of(file.parent_path()), "") << file << " is in no room";
+      std::ifstream text(entry.path());
+      EXPECT_EQ(broken_arrows(file, text), Rooms{});
+      ++files;
+    }
+  EXPECT_GT(files, 150);
+}
+
+TEST(RoomOrder, ABrokenArrowIsNamedWithItsLine) {
+  std::istringstream text(
+      "#pragma once\n#include <vector>\n#include \"brink/core/base/error.h\"\n"
+      "#include \"brink/scheduler/policies/policy.h\"\n#include \"brink/nowhere/x.h\"\n");
+  EXPECT_THAT(
+      broken_arrows("core/shapes/outline.h", text),
+      ::testing::ElementsAre("core/shapes/outline.h:4: core/shapes includes 'scheduler/policies/policy.h'",
+                             "core/shapes/outline.h:5: core/shapes includes 'nowhere/x.h'"));
+}
+
+}  // namespace
+}  // namespace brink
