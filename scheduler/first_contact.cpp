@@ -255,12 +255,14 @@ class PairSearch {
         if (!neighbours_known) view_.find_neighbours(half, i, near.sites, path, 4.0 * band);
         neighbours_known = true;
         const Feature f = view_.vertex_feature(half, i, static_cast<int>(j), nearest, path);
-        if (!view_.belongs_to_a_neighbour(half, static_cast<int>(j), nearest, path.q) &&
-            polish(half, f, path, over_all))
-          continue;
+        const bool hidden = view_.belongs_to_a_neighbour(half, static_cast<int>(j), nearest, path.q);
+        if (!hidden && polish(half, f, path, over_all)) continue;
+        // behind what does not count it may go a part of its way there: what counts has a step of its own
+        const double free_way = hidden && f.gap < 0.0 ? 0.25 * nearest.distance : 0.0;
         const double above = f.gap - view_.level(half, i, site, path.q);
         const auto step_by = [&](const RelativeBounds& relative, const PathBounds& bounds) {
-          return close_step(half, site, nearest, f, above, path, band, relative, bounds);
+          const double step = close_step(half, site, nearest, f, above, path, band, relative, bounds);
+          return free_way > 0.0 ? std::max(step, free_way / bounds.speed) : step;
         };
         safe = std::min(safe, step_by(half.s_is_a ? long_bounds_ : long_bounds_.swapped(), over_all));
         again = std::min(again, step_by(half.s_is_a ? short_bounds_ : short_bounds_.swapped(), over_short));
