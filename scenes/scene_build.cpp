@@ -110,7 +110,7 @@ class SceneBuilder {
         thing.shape = *shape;
         if (body) thing.body = body_of(thing);
       }
-      if (!body) thing.motion = build_motion(table.motion, file_.world.duration, faults_);
+      if (!body) thing.motion = build_motion(table.motion, thing.name, file_.world.duration, faults_);
       thing.pose = pose(table, thing.shape);
       out.push_back(std::move(thing));
     }

@@ -41,7 +41,7 @@ class ShapeBuilder {
   std::vector<std::string> notes_;
 };
 
-using SiteMotion = decltype(FixedSite::motion);
+using PrescribedPath = decltype(FixedSite::motion);
 
 /// Everything of one file entry that is the same for its copies, and the copies' poses.
 struct PlannedThing {
@@ -50,7 +50,7 @@ struct PlannedThing {
   BuiltShape shape;
   int material = 0;
   Body body;                      ///< bodies: all but name and state
-  SiteMotion motion;              ///< sites
+  PrescribedPath motion;          ///< sites
   Pose pose;                      ///< of the outline's frame, before copying
   std::vector<BodyState> copies;  ///< one, or one a copy; twists are zero for sites
   std::size_t ordinal = 0;        ///< place in the file, for its random stream
@@ -103,7 +103,8 @@ void build_forces(const std::vector<ForceTable>& tables, const BodyNames& names,
                   const std::vector<Vec2>& origins, bool placed, World& world, FaultList& faults);
 
 /// The motion of a site.
-SiteMotion build_motion(const Given<MotionTable>& table, double duration, FaultList& faults);
+PrescribedPath build_motion(const Given<MotionTable>& table, const std::string& site, double duration,
+                            FaultList& faults);
 
 /// Reads the classic text data files that shapes name, from `folder`: each becomes its thing's shape, and
 /// gives mass, position, angle and velocities where the thing itself says nothing. Faults in a file name that

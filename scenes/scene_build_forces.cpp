@@ -4,6 +4,7 @@
 
 #include "brink/core/base/error.h"
 #include "brink/scenes/scene_build.h"
+#include "brink/scheduler/site_motion.h"
 
 namespace brink {
 namespace {
@@ -235,7 +236,28 @@ void build_forces(const std::vector<ForceTable>& tables, const BodyNames& names,
   for (const ForceTable& table : tables) builder.build(table);
 }
 
-SiteMotion build_motion(const Given<MotionTable>& given_motion, double duration, FaultList& faults) {
+namespace {
+
+/// A formula by which a site cannot even begin to move (it jumps there, or cannot be bounded) is a fault.
+void must_begin(std::optional<Formula> FormulaMotion::*part, const FormulaMotion& motion,
+                const std::string& site, const Where& where, FaultList& faults) {
+  FormulaMotion alone;
+  alone.*part = motion.*part;
+  FixedSite moved;
+  moved.name = site;
+  moved.motion = alone;
+  if (!(motion.*part) || !faults.empty()) return;
+  try {
+    SiteMotion{moved};
+  } catch (const BadInput& e) {
+    faults.add(where, e.what());
+  }
+}
+
+}  // namespace
+
+PrescribedPath build_motion(const Given<MotionTable>& given_motion, const std::string& site, double duration,
+                            FaultList& faults) {
   if (!given_motion.given) return std::monostate{};
   const MotionTable& table = given_motion.value;
   const bool constant = table.velocity.given || table.angular_velocity.given;
@@ -256,6 +278,9 @@ SiteMotion build_motion(const Given<MotionTable>& given_motion, double duration,
   check(motion.x, table.x.where);
   check(motion.y, table.y.where);
   check(motion.angle, table.angle.where);
+  must_begin(&FormulaMotion::x, motion, site, table.x.where, faults);
+  must_begin(&FormulaMotion::y, motion, site, table.y.where, faults);
+  must_begin(&FormulaMotion::angle, motion, site, table.angle.where, faults);
   return motion;
 }
 

@@ -403,6 +403,8 @@ INSTANTIATE_TEST_SUITE_P(
         FaultCase{"BadFormula", with_ball("[[forces]]\nkind = \"formula\"\nfx = \"2*(x\"\n"), "6:6 "},
         FaultCase{"InfiniteFormula", with_ball("[[forces]]\nkind = \"formula\"\nfx = \"1/x\"\n"),
                   "6:6 formula \"1/x\" is not finite"},
+        FaultCase{"MotionThatCannotBegin", "[[sites]]\npoint = [0, 0]\nmotion = { y = \"sin(-1e16*t)\" }\n",
+                  "y = \"sin(-1e16*t)\" jumps, or is infinitely fast, near t = 0 s"},
         FaultCase{"MotionOfBothKinds",
                   "[[sites]]\npoint = [0, 0]\nmotion = { velocity = [1, 0], x = \"t\" }\n",
                   "3:10 motion: is not clear"},
