@@ -75,10 +75,12 @@ std::optional<double> contact_after(const Quadratic& g, double s_from, double no
   const double root = falling_root(g);
   if (root >= s_from)
     return root == kForever || !doubtful(g.slope(root), noise) ? std::optional(root) : std::nullopt;
-  const double now = g.at(s_from);
-  if (now > 0.0 || now < -deepest) return kForever;  // risen again, or beyond
-  if (doubtful(g.slope(s_from), noise)) return std::nullopt;
-  return g.slope(s_from) < 0.0 ? s_from : kForever;
+  const double now = g.at(s_from), slope = g.slope(s_from);
+  if (now < -deepest) return kForever;  // beyond
+  if (doubtful(slope, noise)) return std::nullopt;
+  if (slope > 0.0) return kForever;  // risen again
+  // it falls, past its root and yet above it: which of the two is the rounding?
+  return now > 0.0 ? std::nullopt : std::optional(s_from);
 }
 
 /// True if a gap that starts at `gap` with the given rate is sure to need no sink_at_start().

@@ -1,5 +1,7 @@
 #include "brink/scheduler/pair_view.h"
 
+#include <numeric>
+
 #include "brink/scheduler/canonical_time.h"
 #include "brink/scheduler/site_step.h"
 
@@ -242,6 +244,14 @@ bool PairView::out_of_reach(const Half& half, int i, double reach) const {
          facing_convex(outline, now.q, now.rate).gap - outline.sites[0].radius - radius > reach;
 }
 
+bool PairView::hidden_behind_others(const Half& half, const Feature& f, const SamplePath& path) {
+  if (half.sample(f.sample).arc_site >= 0) return false;
+  std::vector<std::uint32_t> all(half.sites_of().sites.size());
+  std::iota(all.begin(), all.end(), 0U);
+  find_neighbours(half, f.sample, all, path, 4.0 * limits_.tolerance);
+  return belongs_to_a_neighbour(half, f.site, nearest_on(half.site(f.site), path.q), path.q);
+}
+
 double PairView::sink_at_start() const {
   // what was pressed then has met since; of thousands of steps ago nothing is left to tell
   if (!a_.motion->remembers(start()) || !b_.motion->remembers(start())) return 0.0;
@@ -258,7 +268,7 @@ double PairView::sink_at_start() const {
     const double own_step = sink_step(limits_.touch, rounding);
     const double above = f.gap - then.nominal_level(then.now_, half, f.sample, site, path.q);
     if (!(above < own_step) || above < -kOverlapAtStart * limits_.tolerance) return;
-    now = now || (above <= 0.0 && then.approaching(f, path));
+    now = now || (above <= 0.0 && then.approaching(f, path) && !then.hidden_behind_others(half, f, path));
     const PathBounds bounds = path_bounds(path, half.s_is_a ? at_once : at_once.swapped(), 0.0);
     const bool of_arc = site.kind == SiteKind::arc;
     const double hollow = of_arc ? bounds.speed * bounds.speed / (path.q - site.center).norm() : 0.0;

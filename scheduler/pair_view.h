@@ -90,6 +90,9 @@ class PairView {
   /// of it, or is deeper in.
   bool belongs_to_a_neighbour(const Half& half, int j, const Nearest& nearest, const Vec2& q) const;
 
+  /// The same of a feature near which no neighbours were looked for yet. Cost: a look at every site.
+  bool hidden_behind_others(const Half& half, const Feature& f, const SamplePath& path);
+
   /// The gap at which sample i and the site meet now [m] (tolerances.h), less what the pair may have sunk
   /// since its motions began.
   double level(const Half& half, int i, const Site& site, const Vec2& q) const {

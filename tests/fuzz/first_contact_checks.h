@@ -373,7 +373,13 @@ class Checker {
         4.0 * spin * (spin * (f.a->bounding_radius + f.b->bounding_radius) + pair.relative_speed) +
         4.0 * body_speed(f) * body_speed(f) / (1e-6 * f.size);
     const double h = 1e-2 * c.closing_speed / bend;
-    if (h < c.time - f.from && h * c.closing_speed > 1e4 * rounding && h > 1e4 * 2.2e-16 * c.time) {
+    // at a corner, to rounding, every direction between its edges is a normal
+    const Site& site = (c.sample_on_a ? *f.b : *f.a).sites[static_cast<std::size_t>(c.site)];
+    const Pose& on = c.sample_on_a ? sb.pose : sa.pose;
+    const Vec2 local = Frame(on).direction_to_local(c.point - on.position);
+    const bool at_corner = std::min((local - site.a).norm(), (local - site.b).norm()) <= rounding;
+    if (!at_corner && h < c.time - f.from && h * c.closing_speed > 1e4 * rounding &&
+        h > 1e4 * 2.2e-16 * c.time) {
       // into a notch the distance to its flanks falls slower than that to its bottom: the closing speed is a
       // bound
       const double measured = (pair.distance(c.time - h) - pair.distance(c.time)) / h;
