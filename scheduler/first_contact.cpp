@@ -375,11 +375,17 @@ class PairSearch {
     const double moment = rounding / speed + 4.0 * ulp(t_), noise = moment + bend;
     // clear now, or a little before, but not before it rose; it was clear until the search began
     const double floor = std::max(begin, from_ - 1024.0 * moment);
-    double low = now > 2.0 * rounding ? t_ : std::max(std::min(guess, t_), floor);
-    for (double back = moment; low != t_ && gap(low) <= rounding; back *= 1.25) {
-      if (low <= floor && gap(t_) <= 0.0)
-        return remember(half, f, t_);  // in each other from the start, and now going deeper
-      low = low <= floor ? t_ : std::max(low - back, floor);
+    double low = t_;
+    if (now <= 2.0 * rounding) {
+      low = std::max(std::min(guess, t_), floor);
+      for (double back = moment; gap(low) <= rounding; back *= 1.25) {
+        if (low <= floor) {  // it never was clear
+          if (gap(t_) <= 0.0) return remember(half, f, t_);  // in each other from the start, and going deeper
+          low = t_;
+          break;
+        }
+        low = std::max(low - back, floor);
+      }
     }
     double high = guess + 8.0 * noise;
     const double last = std::min(a_.motion->end(), b_.motion->end());

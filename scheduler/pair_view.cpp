@@ -14,9 +14,19 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// Sine of an angle between an edge and a face that roundings may make of two that lie flush.
 constexpr double kParallel = 1e-6;
 
-bool sharp_vertex(const Site& site, const Sample& sample, const Nearest& nearest) {
-  return (nearest.foot != Foot::interior || site.kind == SiteKind::point) &&
-         site.radius + sample.radius == 0.0;
+/// True if q, on its way in direction `d`, is at a convex corner of a solid at an end of the site, to
+/// `rounding`, and the corner is the nearest to where it comes from, though now its foot lies a rounding
+/// inside.
+bool comes_to_corner(const Site& site, const Nearest& nearest, const Vec2& q, const Vec2& d,
+                     double rounding) {
+  if (!site.solid) return false;
+  const double to_a = (q - site.a).squaredNorm(), to_b = (q - site.b).squaredNorm();
+  if (std::min(to_a, to_b) > rounding * rounding) return false;
+  const bool at_a = to_a < to_b;
+  const Vec2 &bisector = at_a ? site.pseudo_a : site.pseudo_b, normal = normal_at(site, nearest, q);
+  const Vec2 beyond = at_a ? Vec2(-perp(normal)) : perp(normal);  // the site's way on beyond its end
+  const double speed = d.norm();
+  return beyond.dot(bisector) > 0.0 && -d.dot(bisector) >= normal.dot(bisector) * speed;
 }
 
 /// A direction out of the site's end at which q is nearest; where they are one, that of a solid's corner.
@@ -43,8 +53,13 @@ Feature PairView::vertex_feature(const Half& half, int i, int j, const Nearest& 
   Feature f{i, j, 0.0, 0.0, normal_at(site, nearest, path.q), nearest.point};
   const double side = side_of(site, nearest, path.q);
   f.gap = side * nearest.distance - site.radius - sample.radius;
-  if (sharp_vertex(site, sample, nearest) && path.rate.squaredNorm() > 0.0 && f.gap > -limits_.touch &&
-      nearest.distance <= limits_.tolerance && outward(site, nearest, side, path.q).dot(path.rate) < 0.0)
+  const auto comes_to_end = [&] {
+    if (nearest.foot == Foot::interior && site.kind != SiteKind::point)
+      return comes_to_corner(site, nearest, path.q, path.rate, 4.0 * gap_rounding(half, i, path.q));
+    return outward(site, nearest, side, path.q).dot(path.rate) < 0.0;
+  };
+  if (site.radius + sample.radius == 0.0 && path.rate.squaredNorm() > 0.0 && f.gap > -limits_.touch &&
+      nearest.distance <= limits_.tolerance && comes_to_end())
     f.normal = -path.rate.normalized();  // two points that meet: the limit of their direction
   f.rate = f.normal.dot(path.rate);
   f.point =

@@ -89,7 +89,6 @@ class PairView {
   /// as near with its interior. Behind a solid: j is the far side of a sliver, whose near side q has in front
   /// of it, or is deeper in.
   bool belongs_to_a_neighbour(const Half& half, int j, const Nearest& nearest, const Vec2& q) const;
-
   /// The same of a feature near which no neighbours were looked for yet. Cost: a look at every site.
   bool hidden_behind_others(const Half& half, const Feature& f, const SamplePath& path);
 

@@ -285,9 +285,11 @@ class Checker {
       return;
     }
     ++tally.contacts;
-    // what the search calls touching: a wire is met half of it before, and below 1 mm/s that is longer than
-    // 1e-10 s
-    const double touching = 1e-13 / truth.closing;
+    // what the search calls touching: a wire is met so far before it, eight roundings of the gap, of which a
+    // place on dense output has eight of its own; below 1 mm/s that is longer than 1e-10 s
+    const bool dense = !f.motion_a.is_ballistic() || !f.motion_b.is_ballistic();
+    const double of_places = dense ? 4.0 * std::max(place_rounding(f, f.from), place_rounding(f, f.to)) : 0.0;
+    const double touching = std::max(1e-13, 8.0 * of_places) / truth.closing;
     const bool slow = touching + tolerance > 1e-10;
     if (slow) ++tally.slow;
     if (!slow && error > tally.worst_time_error) {
@@ -373,13 +375,7 @@ class Checker {
         4.0 * spin * (spin * (f.a->bounding_radius + f.b->bounding_radius) + pair.relative_speed) +
         4.0 * body_speed(f) * body_speed(f) / (1e-6 * f.size);
     const double h = 1e-2 * c.closing_speed / bend;
-    // at a corner, to rounding, every direction between its edges is a normal
-    const Site& site = (c.sample_on_a ? *f.b : *f.a).sites[static_cast<std::size_t>(c.site)];
-    const Pose& on = c.sample_on_a ? sb.pose : sa.pose;
-    const Vec2 local = Frame(on).direction_to_local(c.point - on.position);
-    const bool at_corner = std::min((local - site.a).norm(), (local - site.b).norm()) <= rounding;
-    if (!at_corner && h < c.time - f.from && h * c.closing_speed > 1e4 * rounding &&
-        h > 1e4 * 2.2e-16 * c.time) {
+    if (h < c.time - f.from && h * c.closing_speed > 1e4 * rounding && h > 1e4 * 2.2e-16 * c.time) {
       // into a notch the distance to its flanks falls slower than that to its bottom: the closing speed is a
       // bound
       const double measured = (pair.distance(c.time - h) - pair.distance(c.time)) / h;
