@@ -7,8 +7,8 @@
 #include "brink/core/fields/stencil_overlap.h"
 #include "brink/scenes/program/command.h"
 #include "brink/scenes/program/terminal.h"
-#include "brink/scenes/scene.h"
-#include "brink/scheduler/simulator.h"
+#include "brink/scenes/scene/scene.h"
+#include "brink/scheduler/simulator/simulator.h"
 
 namespace brink {
 namespace {

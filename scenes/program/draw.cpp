@@ -1,14 +1,14 @@
 /// brink draw: a picture of a scene or of a run.
 
-#include "brink/scenes/draw.h"
+#include "brink/scenes/draw/draw.h"
 
 #include <fmt/format.h>
 
+#include "brink/scenes/files/written_file.h"
 #include "brink/scenes/program/command.h"
-#include "brink/scenes/run_moment.h"
-#include "brink/scenes/scene.h"
-#include "brink/scenes/written_file.h"
-#include "brink/scheduler/simulator.h"
+#include "brink/scenes/run_file/run_moment.h"
+#include "brink/scenes/scene/scene.h"
+#include "brink/scheduler/simulator/simulator.h"
 
 namespace brink {
 namespace {

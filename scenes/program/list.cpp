@@ -11,8 +11,8 @@
 #include "brink/scenes/program/command.h"
 #include "brink/scenes/program/gallery.h"
 #include "brink/scenes/program/terminal.h"
-#include "brink/scenes/scene.h"
-#include "brink/scheduler/options.h"
+#include "brink/scenes/scene/scene.h"
+#include "brink/scheduler/run/options.h"
 
 namespace brink {
 namespace {

@@ -10,7 +10,7 @@
 #include "brink/core/base/printable.h"
 #include "brink/scenes/program/command.h"
 #include "brink/scenes/program/terminal.h"
-#include "brink/scenes/scene.h"
+#include "brink/scenes/scene/scene.h"
 #include "brink/scenes/version.h"
 
 namespace {

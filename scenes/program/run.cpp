@@ -11,7 +11,7 @@
 #include "brink/scenes/program/command.h"
 #include "brink/scenes/program/run_folder.h"
 #include "brink/scenes/program/terminal.h"
-#include "brink/scenes/run_scene.h"
+#include "brink/scenes/run_file/run_scene.h"
 
 namespace brink {
 namespace {

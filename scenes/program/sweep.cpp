@@ -8,12 +8,12 @@
 
 #include "brink/core/base/error.h"
 #include "brink/core/base/printable.h"
+#include "brink/scenes/files/written_file.h"
 #include "brink/scenes/program/command.h"
 #include "brink/scenes/program/terminal.h"
 #include "brink/scenes/sweep/plot.h"
 #include "brink/scenes/sweep/shell_word.h"
 #include "brink/scenes/sweep/sweep.h"
-#include "brink/scenes/written_file.h"
 
 namespace brink {
 namespace {

@@ -8,10 +8,10 @@
 #include "brink/core/base/hash.h"
 #include "brink/core/base/printable.h"
 #include "brink/core/world/world_hash.h"
-#include "brink/scenes/scene_tables.h"
+#include "brink/scenes/files/text_file.h"
+#include "brink/scenes/scene/tables.h"
 #include "brink/scenes/sweep/results.h"
-#include "brink/scenes/text_file.h"
-#include "brink/scenes/toml_schema.h"
+#include "brink/scenes/toml/schema.h"
 #include "brink/scenes/version.h"
 
 namespace brink {

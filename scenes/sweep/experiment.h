@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "brink/scenes/scene.h"
+#include "brink/scenes/scene/scene.h"
 
 namespace brink {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "brink/scenes/chart.h"
+#include "brink/scenes/draw/chart.h"
 
 namespace brink {
 namespace {

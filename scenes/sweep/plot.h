@@ -1,7 +1,7 @@
 #pragma once
 /// A sweep as a picture: one panel a column, one line a value of the series axis.
 
-#include "brink/scenes/draw.h"
+#include "brink/scenes/draw/draw.h"
 #include "brink/scenes/sweep/table.h"
 
 namespace brink {

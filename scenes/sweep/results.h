@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "brink/scheduler/recorder.h"
+#include "brink/scheduler/run/recorder.h"
 
 namespace brink {
 

@@ -13,7 +13,7 @@
 #include <set>
 
 #include "brink/core/base/error.h"
-#include "brink/scenes/database.h"
+#include "brink/scenes/run_file/database.h"
 
 namespace brink {
 namespace fs = std::filesystem;

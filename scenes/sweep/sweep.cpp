@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "brink/core/base/error.h"
-#include "brink/scheduler/simulator.h"
+#include "brink/scheduler/simulator/simulator.h"
 
 namespace brink {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "brink/core/base/printable.h"
-#include "brink/scenes/written_file.h"
+#include "brink/scenes/files/written_file.h"
 #include "brink/scheduler/policies/policy.h"
 
 namespace brink {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "brink/scheduler/kernel/stage_clock.h"
 #include "brink/scheduler/policies/order.h"
-#include "brink/scheduler/stage_clock.h"
 
 namespace brink {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "brink/scheduler/kernel.h"
+#include "brink/scheduler/kernel/kernel.h"
 
 namespace brink {
 

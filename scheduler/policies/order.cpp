@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "brink/scheduler/canonical_time.h"
+#include "brink/scheduler/first_contact/canonical_time.h"
 
 namespace brink {
 

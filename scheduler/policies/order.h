@@ -4,7 +4,7 @@
 #include <limits>
 #include <optional>
 
-#include "brink/scheduler/kernel.h"
+#include "brink/scheduler/kernel/kernel.h"
 
 namespace brink {
 

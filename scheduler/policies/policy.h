@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "brink/scheduler/kernel.h"
+#include "brink/scheduler/kernel/kernel.h"
 
 namespace brink {
 

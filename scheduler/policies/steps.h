@@ -1,7 +1,7 @@
 #pragma once
 /// What policies of fixed steps share.
 
-#include "brink/scheduler/kernel.h"
+#include "brink/scheduler/kernel/kernel.h"
 
 namespace brink {
 

@@ -19,7 +19,7 @@
 #include <algorithm>
 #include <deque>
 
-#include "brink/scheduler/canonical_time.h"
+#include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/policies/horizon.h"
 #include "brink/scheduler/policies/order.h"
 #include "brink/scheduler/policies/policy.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "brink/core/base/random.h"
-#include "brink/scheduler/event_queue.h"
+#include "brink/scheduler/events/event_queue.h"
 
 namespace brink {
 namespace {

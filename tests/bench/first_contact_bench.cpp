@@ -9,7 +9,7 @@
 #include "brink/core/base/random.h"
 #include "brink/core/shapes/distance.h"
 #include "brink/core/shapes/shapes.h"
-#include "brink/scheduler/first_contact.h"
+#include "brink/scheduler/first_contact/first_contact.h"
 
 namespace brink {
 namespace {

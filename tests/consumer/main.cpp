@@ -1,6 +1,6 @@
 // What a user's program looks like: a scene from text, run, and asked.
-#include <brink/scenes/scene.h>
-#include <brink/scheduler/simulator.h>
+#include <brink/scenes/scene/scene.h>
+#include <brink/scheduler/simulator/simulator.h>
 
 #include <cmath>
 #include <cstdio>

@@ -1,5 +1,5 @@
-#include <brink/scenes/scene.h>
-#include <brink/scheduler/simulator.h>
+#include <brink/scenes/scene/scene.h>
+#include <brink/scheduler/simulator/simulator.h>
 
 #include <cstdio>
 

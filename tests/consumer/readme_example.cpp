@@ -1,5 +1,5 @@
 #include <brink/core/shapes/shapes.h>
-#include <brink/scheduler/simulator.h>
+#include <brink/scheduler/simulator/simulator.h>
 
 #include <cstdio>
 

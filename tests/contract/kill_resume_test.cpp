@@ -14,7 +14,7 @@
 #include <random>
 
 #include "brink/core/base/random.h"
-#include "brink/scenes/run_file.h"
+#include "brink/scenes/run_file/run_file.h"
 
 namespace brink {
 namespace {

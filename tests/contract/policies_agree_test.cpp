@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "brink/core/base/random.h"
-#include "brink/scenes/scene.h"
+#include "brink/scenes/scene/scene.h"
 #include "tests/support/same_events.h"
 
 namespace brink {

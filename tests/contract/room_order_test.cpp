@@ -25,19 +25,31 @@ const std::map<std::string, Rooms>& order() {
       rooms.insert(rooms.end(), more.begin(), more.end());
       return rooms;
     };
-    const Rooms simulation = with(core, {"integrators", "scheduler"});
-    return std::map<std::string, Rooms>{
+    const Rooms below = with(core, {"integrators"});
+    std::map<std::string, Rooms> rooms{
         {"core/base", {}},
         {"core/shapes", {"core/base"}},
         {"core/fields", {"core/base", "core/shapes"}},
         {"core/world", {"core/base", "core/shapes"}},
         {"core/contacts", {"core/base", "core/world"}},
         {"integrators", {"core/base"}},
-        {"scheduler", with(core, {"integrators"})},
-        {"scenes", simulation},
-        {"scenes/sweep", with(simulation, {"scenes"})},
-        {"scenes/program", with(simulation, {"scenes", "scenes/sweep"})},
     };
+    // each room of the scheduler may use those before it, and so may each of the scenes
+    Rooms before = below;
+    for (const char* room : {"run", "first_contact", "events", "broad_phase", "resolve", "kernel", "policies",
+                             "policies/body_clocks", "classic", "simulator"}) {
+      const std::string path = std::string("scheduler/") + room;
+      rooms[path] = before;
+      before.push_back(path);
+    }
+    rooms["scenes"] = {};
+    before.push_back("scenes");
+    for (const char* room : {"files", "toml", "draw", "scene", "run_file", "sweep", "program", "bench"}) {
+      const std::string path = std::string("scenes/") + room;
+      rooms[path] = before;
+      before.push_back(path);
+    }
+    return rooms;
   }();
   return rooms;
 }

@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "brink/scenes/run_file.h"
+#include "brink/scenes/run_file/run_file.h"
 
 namespace brink {
 namespace {

@@ -5,7 +5,7 @@
 #include <iomanip>
 #include <iostream>
 
-#include "brink/scheduler/first_contact.h"
+#include "brink/scheduler/first_contact/first_contact.h"
 #include "first_contact_flights.h"
 
 namespace brink::flights {

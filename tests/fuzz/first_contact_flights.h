@@ -14,7 +14,7 @@
 
 #include "brink/core/base/random.h"
 #include "brink/core/shapes/shapes.h"
-#include "brink/scheduler/site_motion.h"
+#include "brink/scheduler/kernel/site_motion.h"
 #include "first_contact_reference.h"
 
 namespace brink::flights {

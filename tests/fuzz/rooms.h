@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "brink/core/base/random.h"
-#include "brink/scenes/scene.h"
-#include "brink/scheduler/simulator.h"
+#include "brink/scenes/scene/scene.h"
+#include "brink/scheduler/simulator/simulator.h"
 #include "tests/support/outside/flight.h"
 #include "tests/support/outside/gap.h"
 

@@ -17,10 +17,10 @@
 #include <map>
 
 #include "brink/core/base/random.h"
-#include "brink/scenes/draw.h"
-#include "brink/scenes/run_file.h"
-#include "brink/scenes/run_moment.h"
-#include "brink/scenes/run_scene.h"
+#include "brink/scenes/draw/draw.h"
+#include "brink/scenes/run_file/run_file.h"
+#include "brink/scenes/run_file/run_moment.h"
+#include "brink/scenes/run_file/run_scene.h"
 #include "brink/scenes/sweep/sweep.h"
 #include "tests/fuzz/mutant_process.h"
 

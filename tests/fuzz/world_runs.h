@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "brink/scenes/scene.h"
+#include "brink/scenes/scene/scene.h"
 #include "tests/support/outside/watch.h"
 #include "tests/support/same_events.h"
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "brink/core/base/random.h"
-#include "brink/scenes/scene.h"
+#include "brink/scenes/scene/scene.h"
 #include "tests/support/worlds.h"
 
 namespace brink {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "brink/scenes/program/bench_reference.h"
+#include "brink/scenes/bench/reference.h"
 #include "tests/support/worlds.h"
 
 namespace brink {

@@ -7,8 +7,8 @@
 #include <set>
 
 #include "brink/core/world/forces.h"
-#include "brink/scenes/scene.h"
-#include "brink/scheduler/simulator.h"
+#include "brink/scenes/scene/scene.h"
+#include "brink/scheduler/simulator/simulator.h"
 
 namespace brink {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "brink/core/shapes/shapes.h"
-#include "brink/scheduler/simulator.h"
+#include "brink/scheduler/simulator/simulator.h"
 
 namespace brink::testing {
 

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "brink/scheduler/simulator.h"
+#include "brink/scheduler/simulator/simulator.h"
 #include "tests/support/outside/gap.h"
 #include "tests/support/outside/law.h"
 

@@ -1,0 +1,54 @@
+#include "brink/scenes/bench/classic_worlds.h"
+
+namespace brink::bench {
+namespace {
+
+class Hits : public Recorder {
+ public:
+  void frame(double, std::span<const BodyState>) override {}
+  void event(const Event& e) override {
+    if (e.kind == EventKind::collision) times.push_back(e.contact.time);
+  }
+  void checkpoint(double, const std::vector<std::byte>&) override {}
+  std::vector<double> times;
+};
+
+}  // namespace
+
+Body sampled_body(const Shape& shape, const Pose& pose, const Twist& twist, double spacing) {
+  Body body;
+  body.outline = std::make_shared<const Outline>(shape.outline);
+  body.inertia = body.mass * shape.measure.second_moment / shape.measure.size;
+  body.initial = {pose, twist};
+  body.sampling.kind = Sampling::Kind::boundary;
+  body.sampling.spacing = spacing;
+  return body;
+}
+
+void add_fixed(World& world, const Shape& shape, const Pose& pose) {
+  FixedSite site;
+  site.name = "site" + std::to_string(world.sites.size());
+  site.outline = std::make_shared<const Outline>(shape.outline);
+  site.pose = pose;
+  world.sites.push_back(std::move(site));
+}
+
+SolverOptions backing_up(const char* detector, double step) {
+  SolverOptions options;
+  options.policy = "global_backup";
+  options.detector = detector;
+  options.step = step;
+  return options;
+}
+
+std::vector<double> hits_of(const World& world, const SolverOptions& options, double until) {
+  Simulator simulator(world, options);
+  Hits hits;
+  RunOptions run;
+  run.until = until;
+  run.checkpoint_seconds = -1.0;
+  simulator.run(run, &hits);
+  return hits.times;
+}
+
+}  // namespace brink::bench

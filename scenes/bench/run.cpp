@@ -1,0 +1,103 @@
+#include "brink/scenes/bench/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "brink/scheduler/policies/policy.h"
+
+namespace brink::bench {
+namespace {
+
+constexpr double kMostSteps = 1e6, kMostIntegratorSteps = 1e5;
+constexpr double kMostSeconds = 1.0;
+
+class Hits : public Recorder {
+ public:
+  void frame(double, std::span<const BodyState>) override {}
+  void event(const Event& e) override {
+    if (e.kind == EventKind::collision) times.push_back(e.contact.time);
+  }
+  void checkpoint(double, const std::vector<std::byte>&) override {}
+  std::vector<double> times;
+};
+
+Outcome run_once(const Problem& problem, const SolverOptions& options) {
+  Simulator simulator(problem.world, options);
+  Hits hits;
+  RunOptions run;
+  run.until = problem.until;
+  run.checkpoint_seconds = -1.0;
+  Outcome outcome;
+  outcome.summary = simulator.run(run, &hits);
+  outcome.hits = std::move(hits.times);
+  outcome.states = simulator.states();
+  return outcome;
+}
+
+void add_tolerances(const char* integrator, bool driven, std::vector<Setting>& all) {
+  for (const int digits : driven ? std::vector{4, 6, 8, 10, 12} : std::vector{6, 12}) {
+    Setting s{integrator, fmt::format("tolerance 1e-{}", digits), false, {}};
+    s.options.integrator = integrator;
+    s.options.tolerance = std::pow(10.0, -digits);
+    s.options.absolute_tolerance = 0.01 * s.options.tolerance;
+    all.push_back(s);
+  }
+}
+
+void add_steps(const Problem& problem, const char* series, bool approximate,
+               const std::function<void(SolverOptions&)>& choose, std::vector<Setting>& all) {
+  for (const int digits : {2, 3, 4, 5}) {
+    Setting s{series, fmt::format("step 1e-{} s", digits), approximate, {}};
+    s.options.step = std::pow(10.0, -digits);
+    choose(s.options);
+    if (problem.until / s.options.step <= (approximate ? kMostSteps : kMostIntegratorSteps)) all.push_back(s);
+  }
+}
+
+}  // namespace
+
+std::vector<Setting> settings(const Problem& problem) {
+  std::vector<Setting> all;
+  for (const Choice& policy : policies()) {
+    if (make_policy(policy.name)->approximate()) continue;
+    Setting s{std::string(policy.name), problem.driven ? "default tolerance" : "closed form", false, {}};
+    s.options.policy = policy.name;
+    all.push_back(s);
+  }
+  for (const char* integrator : {"erk", "adams", "bdf"}) add_tolerances(integrator, problem.driven, all);
+  if (problem.driven)
+    add_steps(
+        problem, "rk4", false, [](SolverOptions& o) { o.integrator = "rk4"; }, all);
+  for (const Choice& policy : policies())
+    if (make_policy(policy.name)->approximate())
+      add_steps(
+          problem, policy.name.data(), true, [&](SolverOptions& o) { o.policy = policy.name; }, all);
+  return all;
+}
+
+Row measure(const Problem& problem, const Setting& setting, int repeats) {
+  Row row;
+  row.problem = problem.name;
+  row.setting = setting;
+  row.expected = problem.hits.size();
+  std::vector<double> seconds;
+  double spent = 0.0;
+  for (int k = 0; k < repeats && (k == 0 || spent < kMostSeconds); ++k) {
+    const Outcome outcome = run_once(problem, setting.options);
+    if (k > 0 && outcome.summary.state_hash != row.summary.state_hash) row.same_hash = false;
+    row.summary = outcome.summary;
+    row.error = problem.error(problem, outcome);
+    row.collisions = outcome.hits.size();
+    seconds.push_back(outcome.summary.wall_seconds);
+    spent += seconds.back();
+  }
+  row.missed = row.expected - std::min(row.expected, row.collisions);
+  row.repeats = static_cast<int>(seconds.size());
+  std::nth_element(seconds.begin(), seconds.begin() + row.repeats / 2, seconds.end());
+  row.wall_seconds = seconds[row.repeats / 2];
+  return row;
+}
+
+}  // namespace brink::bench

@@ -1,0 +1,240 @@
+#include "brink/scenes/draw/canvas.h"
+
+#include <cairo.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+#include "brink/core/base/printable.h"
+
+namespace brink::draw {
+namespace {
+
+void set_color(cairo_t* cairo, const Color& c, double opacity = 1.0) {
+  cairo_set_source_rgba(cairo, c.red, c.green, c.blue, opacity);
+}
+
+bool only_point(const Outline& outline, const Loop& loop) {
+  return loop.count == 1 && outline.sites[loop.first].kind == SiteKind::point;
+}
+
+/// Radius of a loop's sites [m]: the first one's; outlines are built with one radius a loop.
+double thickness(const Outline& outline, const Loop& loop) { return outline.sites[loop.first].radius; }
+
+}  // namespace
+
+struct Canvas::Impl {
+  View view;
+  cairo_surface_t* surface = nullptr;
+  cairo_t* cairo = nullptr;
+
+  void move_to(const Vec2& p) const {
+    const Vec2 q = view.to_picture(p);
+    cairo_move_to(cairo, q.x(), q.y());
+  }
+  void line_to(const Vec2& p) const {
+    const Vec2 q = view.to_picture(p);
+    cairo_line_to(cairo, q.x(), q.y());
+  }
+
+  /// Appends a site to the current path, which ends at its start.
+  void trace(const Site& site, const Frame& frame) const {
+    if (site.kind != SiteKind::arc) return line_to(frame.to_world(site.b));
+    const Vec2 center = view.to_picture(frame.to_world(site.center));
+    const Vec2 from = frame.direction_to_world(site.a - site.center);
+    const double start = std::atan2(-from.y(), from.x());  // the picture's y runs downward
+    const auto arc = site.sweep > 0 ? cairo_arc_negative : cairo_arc;
+    arc(cairo, center.x(), center.y(), site.arc_radius * view.scale, start, start - site.sweep);
+  }
+
+  void trace(const Outline& outline, const Loop& loop, const Frame& frame) const {
+    if (only_point(outline, loop)) {
+      const Vec2 at = view.to_picture(frame.to_world(outline.sites[loop.first].a));
+      cairo_new_sub_path(cairo);
+      cairo_arc(cairo, at.x(), at.y(), thickness(outline, loop) * view.scale, 0.0, 2.0 * std::numbers::pi);
+      return;
+    }
+    move_to(frame.to_world(outline.sites[loop.first].a));
+    for (int k = 0; k < loop.count; ++k) trace(outline.sites[loop.first + k], frame);
+    if (loop.closed) cairo_close_path(cairo);
+  }
+
+  /// Everything of the picture, with a border so that its own edge is not seen.
+  void trace_page() const { cairo_rectangle(cairo, -50.0, -50.0, view.width + 100.0, view.height + 100.0); }
+
+  void fill(const Outline& outline, const Frame& frame, const Color& color, double opacity) const {
+    cairo_new_path(cairo);
+    if (outline.container) trace_page();
+    for (const Loop& loop : outline.loops)
+      if (loop.closed || only_point(outline, loop)) trace(outline, loop, frame);
+    cairo_set_fill_rule(cairo, CAIRO_FILL_RULE_EVEN_ODD);
+    set_color(cairo, color, opacity);
+    cairo_fill(cairo);
+  }
+
+  void stroke(const Outline& outline, const Frame& frame, const Color& color, double extra) const {
+    set_color(cairo, color);
+    for (const Loop& loop : outline.loops) {
+      const bool point = only_point(outline, loop);
+      cairo_new_path(cairo);
+      trace(outline, loop, frame);
+      cairo_set_line_width(cairo, point ? extra : 2.0 * thickness(outline, loop) * view.scale + extra);
+      cairo_stroke(cairo);
+    }
+  }
+
+  void shape(const Outline& outline, const Frame& frame, const Color& color, double opacity,
+             double extra) const {
+    if (outline.solid || outline.is_point()) fill(outline, frame, color, opacity);
+    stroke(outline, frame, color, extra);
+  }
+};
+
+Canvas::Canvas(const View& view, int width, int height, const Color& background)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->view = view;
+  impl_->surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+  impl_->cairo = cairo_create(impl_->surface);
+  cairo_set_line_join(impl_->cairo, CAIRO_LINE_JOIN_ROUND);
+  cairo_set_line_cap(impl_->cairo, CAIRO_LINE_CAP_ROUND);
+  cairo_set_tolerance(impl_->cairo, 0.05);
+  rectangle(0, 0, width, height, background);
+}
+
+Canvas::~Canvas() {
+  cairo_destroy(impl_->cairo);
+  cairo_surface_destroy(impl_->surface);
+}
+
+void Canvas::paste(const Picture& image) {
+  cairo_surface_flush(impl_->surface);
+  unsigned char* data = cairo_image_surface_get_data(impl_->surface);
+  const int stride = cairo_image_surface_get_stride(impl_->surface);
+  for (int row = 0; row < image.height; ++row)
+    std::memcpy(data + static_cast<std::size_t>(row) * stride,
+                image.pixels.data() + static_cast<std::size_t>(row) * image.width, 4U * image.width);
+  cairo_surface_mark_dirty(impl_->surface);
+}
+
+void Canvas::outline(const Outline& outline, const Pose& pose, const Ink& ink) {
+  const Frame frame(pose);
+  cairo_t* cairo = impl_->cairo;
+  cairo_save(cairo);
+  cairo_rectangle(cairo, 0, 0, impl_->view.width, impl_->view.height);
+  cairo_clip(cairo);
+  double radius = 0.0;
+  for (const Site& site : outline.sites) radius = std::max(radius, site.radius);
+  const bool thin = outline.is_point() || radius * impl_->view.scale < 0.5 * ink.line_width;
+  if (ink.dashed) {
+    const double dash[] = {5.0, 4.0};
+    cairo_set_dash(cairo, dash, 2, 0.0);
+  }
+  if (thin) {
+    if (ink.opacity > 0.0 && (outline.solid || outline.is_point()))
+      impl_->fill(outline, frame, ink.fill, ink.opacity);
+    impl_->stroke(outline, frame, ink.line, ink.line_width);
+  } else {
+    // the edge of a thick outline: the whole a line wider, then the inside over it
+    cairo_push_group(cairo);
+    impl_->shape(outline, frame, ink.line, 1.0, ink.line_width);
+    if (ink.opacity > 0.0) {
+      impl_->shape(outline, frame, ink.fill, 1.0, -ink.line_width);
+    } else {
+      cairo_set_operator(cairo, CAIRO_OPERATOR_CLEAR);
+      cairo_set_dash(cairo, nullptr, 0, 0.0);
+      impl_->shape(outline, frame, ink.fill, 1.0, -ink.line_width);
+    }
+    cairo_pop_group_to_source(cairo);
+    cairo_paint(cairo);
+  }
+  cairo_restore(cairo);
+}
+
+void Canvas::line(const Vec2& from, const Vec2& to, const Color& color, double width) {
+  set_color(impl_->cairo, color);
+  cairo_set_line_width(impl_->cairo, width);
+  impl_->move_to(from);
+  impl_->line_to(to);
+  cairo_stroke(impl_->cairo);
+}
+
+void Canvas::dot(const Vec2& at, double pixels, const Color& color) {
+  const Vec2 p = impl_->view.to_picture(at);
+  set_color(impl_->cairo, color);
+  cairo_new_path(impl_->cairo);
+  cairo_arc(impl_->cairo, p.x(), p.y(), pixels, 0.0, 2.0 * std::numbers::pi);
+  cairo_fill(impl_->cairo);
+}
+
+void Canvas::arrow(const Vec2& from, const Vec2& to, const Color& color, double width) {
+  const Vec2 tip = impl_->view.to_picture(to), way = tip - impl_->view.to_picture(from);
+  if (way.norm() < 2.0 * width) return;
+  line(from, to, color, width);
+  const Vec2 back = -way.normalized() * std::min(4.5 * width, 0.5 * way.norm());
+  for (const double side : {0.45, -0.45}) {
+    const Vec2 barb = tip + back + side * perp(back);
+    cairo_move_to(impl_->cairo, tip.x(), tip.y());
+    cairo_line_to(impl_->cairo, barb.x(), barb.y());
+  }
+  cairo_stroke(impl_->cairo);
+}
+
+void Canvas::spring(const Vec2& from, const Vec2& to, const Color& color, double width) {
+  const Vec2 a = impl_->view.to_picture(from), b = impl_->view.to_picture(to);
+  const double length = (b - a).norm();
+  if (length < 4.0) return line(from, to, color, width);
+  const int turns = std::clamp(static_cast<int>(length / 6.0), 5, 60);
+  const Vec2 side = perp(b - a) / length * std::min(0.12 * length, 3.5);
+  cairo_new_path(impl_->cairo);
+  cairo_move_to(impl_->cairo, a.x(), a.y());
+  for (int k = 0; k < turns; ++k) {
+    const Vec2 p = a + (b - a) * (0.15 + 0.7 * (k + 0.5) / turns) + (k % 2 == 0 ? side : Vec2(-side));
+    cairo_line_to(impl_->cairo, p.x(), p.y());
+  }
+  cairo_line_to(impl_->cairo, b.x(), b.y());
+  set_color(impl_->cairo, color);
+  cairo_set_line_width(impl_->cairo, width);
+  cairo_stroke(impl_->cairo);
+}
+
+void Canvas::rectangle(double x, double y, double width, double height, const Color& color) {
+  set_color(impl_->cairo, color);
+  cairo_rectangle(impl_->cairo, x, y, width, height);
+  cairo_fill(impl_->cairo);
+}
+
+double Canvas::text(double x, double y, const std::string& words, double size, const Color& color,
+                    Align align, bool bold) {
+  cairo_t* cairo = impl_->cairo;
+  cairo_select_font_face(cairo, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
+                         bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(cairo, size);
+  cairo_text_extents_t extents;
+  const std::string shown = printable(words);
+  cairo_text_extents(cairo, shown.c_str(), &extents);
+  set_color(cairo, color);
+  const double share = align == Align::left ? 0.0 : align == Align::middle ? 0.5 : 1.0;
+  cairo_move_to(cairo, x - share * extents.x_advance, y);
+  cairo_show_text(cairo, shown.c_str());
+  cairo_new_path(cairo);
+  return extents.x_advance;
+}
+
+Picture Canvas::finish() {
+  cairo_surface_flush(impl_->surface);
+  Picture picture;
+  picture.width = cairo_image_surface_get_width(impl_->surface);
+  picture.height = cairo_image_surface_get_height(impl_->surface);
+  const unsigned char* data = cairo_image_surface_get_data(impl_->surface);
+  const int stride = cairo_image_surface_get_stride(impl_->surface);
+  picture.pixels.resize(static_cast<std::size_t>(picture.width) * picture.height);
+  for (int row = 0; row < picture.height; ++row)
+    std::memcpy(&picture.pixels[static_cast<std::size_t>(row) * picture.width],
+                data + static_cast<std::size_t>(row) * stride, 4U * picture.width);
+  for (std::uint32_t& pixel : picture.pixels) pixel |= 0xff000000U;
+  return picture;
+}
+
+}  // namespace brink::draw

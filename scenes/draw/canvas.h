@@ -1,0 +1,55 @@
+#pragma once
+/// The one door to Cairo: outlines, marks and text on a picture, anti-aliased, arcs as arcs.
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "brink/core/shapes/outline.h"
+#include "brink/scenes/draw/color.h"
+#include "brink/scenes/draw/draw.h"
+#include "brink/scenes/draw/view.h"
+
+namespace brink::draw {
+
+/// How an outline is painted.
+struct Ink {
+  Color fill;               ///< of the solid, of wires with thickness, of points
+  Color line;               ///< of the crisp edge
+  double line_width = 1.4;  ///< [pixels]
+  double opacity = 1.0;     ///< of the fill; 0: the edge alone
+  bool dashed = false;
+};
+
+/// A picture being drawn. World lengths in metres, line widths and text in pixels.
+class Canvas {
+ public:
+  explicit Canvas(const View& view, int width, int height, const Color& background);
+  ~Canvas();
+
+  /// Copies an image (rows from the top) over the picture's top left corner.
+  void paste(const Picture& image);
+
+  /// An outline with its thickness; of a container, all that lies outside.
+  void outline(const Outline& outline, const Pose& pose, const Ink& ink);
+  void line(const Vec2& from, const Vec2& to, const Color& color, double width);
+  void dot(const Vec2& at, double pixels, const Color& color);
+  void arrow(const Vec2& from, const Vec2& to, const Color& color, double width);
+  /// A zigzag between two points.
+  void spring(const Vec2& from, const Vec2& to, const Color& color, double width);
+
+  // below the picture, in pixels from the top left corner
+  enum class Align { left, middle, right };
+  void rectangle(double x, double y, double width, double height, const Color& color);
+  /// One line of text with its baseline at y. Returns its width.
+  double text(double x, double y, const std::string& words, double size, const Color& color, Align align,
+              bool bold = false);
+
+  Picture finish();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace brink::draw

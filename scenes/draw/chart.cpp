@@ -1,0 +1,239 @@
+#include "brink/scenes/draw/chart.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "brink/scenes/draw/canvas.h"
+
+namespace brink {
+namespace {
+
+using draw::Canvas;
+using draw::Color;
+using draw::Oklch;
+using draw::Tones;
+using Align = Canvas::Align;
+
+constexpr int kPanelWidth = 560, kPanelHeight = 390, kColumns = 2, kMargin = 28, kHead = 56, kLegendLine = 26;
+constexpr double kLeft = 70.0, kRight = 22.0, kTop = 64.0, kBottom = 56.0;
+constexpr double kLogSpan = 20.0;  // beyond this factor axes are logarithmic
+constexpr int kMostTicks = 8;
+
+const Color kInk = Tones::ink.rgb(), kPale = Oklch{0.52, 0.015, 260.0}.rgb();
+const Color kGrid = Oklch{0.90, 0.006, 260.0}.rgb(), kPage = Tones::paper.rgb(), kPanel{1.0, 1.0, 1.0};
+
+struct Tick {
+  double place;  ///< 0..1
+  std::string label;
+};
+
+/// Values of one axis to places 0..1.
+class Scale {
+ public:
+  Scale(const ChartAxis& axis, std::vector<double> values) : axis_(axis) {
+    std::erase_if(values, [](double v) { return !std::isfinite(v); });
+    if (!axis.names.empty()) {
+      low_ = -0.5, high_ = static_cast<double>(axis.names.size()) - 0.5;
+    } else if (!values.empty()) {
+      const auto [least, most] = std::minmax_element(values.begin(), values.end());
+      log_ = axis.decades || (*least > 0.0 && *most > kLogSpan * *least);
+      log_ ? span_decades(*least, *most) : span_numbers(*least, *most);
+    }
+  }
+
+  double place(double value) const {
+    if (std::isinf(value)) return 1.0;
+    return ((log_ ? std::log10(value) : value) - low_) / (high_ - low_);
+  }
+
+  std::vector<Tick> ticks() const {
+    std::vector<Tick> ticks;
+    for (std::size_t k = 0; k < axis_.names.size(); ++k)
+      ticks.push_back({place(static_cast<double>(k)), axis_.names[k]});
+    if (!ticks.empty()) return ticks;
+    const double step =
+        log_ ? std::ceil((high_ - low_) / kMostTicks) : draw::round_length((high_ - low_) / 4.0);
+    for (double k = std::ceil(low_ / step); k * step <= high_ + 1e-9 * (high_ - low_); ++k)
+      ticks.push_back({(k * step - low_) / (high_ - low_), label(k * step)});
+    return ticks;
+  }
+
+ private:
+  void span_decades(double least, double most) {
+    low_ = std::floor(std::log10(least));
+    high_ = std::max(low_ + 1.0, std::ceil(std::log10(most)));
+  }
+  void span_numbers(double least, double most) {
+    if (least > 0.0 && least < 0.5 * most) least = 0.0;
+    const double room = most > least ? 0.05 * (most - least) : std::max(1.0, std::abs(most));
+    high_ = most + room;
+    low_ = least == 0.0 ? 0.0 : least - room;
+  }
+  std::string label(double at) const {
+    if (axis_.label) return axis_.label(log_ ? std::pow(10.0, at) : at);
+    return log_ ? power_text(static_cast<int>(std::lround(at))) : fmt::format("{:g}", at);
+  }
+
+  const ChartAxis& axis_;
+  double low_ = 0.0, high_ = 1.0;
+  bool log_ = false;
+};
+
+std::vector<double> all_x(const ChartPanel& panel) {
+  std::vector<double> values;
+  for (const ChartLine& line : panel.lines)
+    for (const ChartPoint& p : line.points) values.push_back(p.x);
+  return values;
+}
+
+std::vector<double> all_y(const ChartPanel& panel) {
+  std::vector<double> values;
+  for (const ChartLine& line : panel.lines)
+    for (const ChartPoint& p : line.points) {
+      values.push_back(p.y);
+      if (p.high > p.low) values.insert(values.end(), {p.low, p.high});
+    }
+  return values;
+}
+
+/// Where one panel's plot lies on the picture [pixels from the top left corner].
+struct Frame {
+  double left, right, top, bottom;
+  double x(double place) const { return left + place * (right - left); }
+  double y(double place) const { return bottom - place * (bottom - top); }
+};
+
+class Sheet {
+ public:
+  explicit Sheet(const Chart& chart)
+      : chart_(chart),
+        columns_(std::clamp(static_cast<int>(chart.panels.size()), 1, kColumns)),
+        width_(columns_ * (kPanelWidth + kMargin) + kMargin),
+        legend_lines_(place_legend(nullptr)),
+        top_(kHead + legend_lines_ * kLegendLine + 10) {
+    const int rows = (static_cast<int>(chart.panels.size()) + columns_ - 1) / columns_;
+    height_ = top_ + rows * (kPanelHeight + kMargin);
+  }
+
+  Picture picture() const {
+    Canvas canvas(view(), width_, height_, kPage);
+    canvas.text(kMargin, 38, chart_.title, 21, kInk, Align::left, true);
+    canvas.text(width_ - kMargin, 38, chart_.note, 13, kPale, Align::right);
+    place_legend(&canvas);
+    for (int k = 0; k < static_cast<int>(chart_.panels.size()); ++k)
+      draw_panel(canvas, kMargin + (k % columns_) * (kPanelWidth + kMargin),
+                 top_ + (k / columns_) * (kPanelHeight + kMargin), chart_.panels[k]);
+    return canvas.finish();
+  }
+
+ private:
+  /// A world of pixels.
+  draw::View view() const {
+    draw::View view;
+    view.window.add(Vec2(0.0, 0.0));
+    view.window.add(Vec2(width_, height_));
+    view.width = width_;
+    view.height = height_;
+    return view;
+  }
+  Vec2 at(double x, double y) const { return {x, height_ - y}; }
+
+  Color color(std::size_t series) const {
+    const auto& given = chart_.series[series].color;
+    return (given ? *given : Oklch{0.58, 0.16, 265.0 + 137.5 * static_cast<double>(series)}).rgb();
+  }
+
+  /// Writes the legend, or without a canvas only counts its lines.
+  int place_legend(Canvas* canvas) const {
+    double x = kMargin;
+    int line = 0;
+    for (std::size_t k = 0; k < chart_.series.size(); ++k) {
+      const std::string& name = chart_.series[k].name;
+      if (name.empty()) continue;
+      const double wide = 40.0 + 8.6 * static_cast<double>(name.size());
+      if (x > kMargin && x + wide > width_ - kMargin) x = kMargin, ++line;
+      if (canvas) {
+        const double y = kHead + (line + 0.5) * kLegendLine;
+        canvas->dot(at(x + 6, y - 5), 5.0, color(k));
+        canvas->text(x + 18, y, name, 14, kInk, Align::left);
+      }
+      x += wide;
+    }
+    return x > kMargin ? line + 1 : 0;
+  }
+
+  void draw_panel(Canvas& canvas, double x0, double y0, const ChartPanel& panel) const {
+    canvas.rectangle(x0, y0, kPanelWidth, kPanelHeight, kPanel);
+    canvas.text(x0 + 18, y0 + 26, panel.title, 14.5, kInk, Align::left, true);
+    canvas.text(x0 + 18, y0 + 46, panel.note, 12.5, kPale, Align::left);
+    const Frame frame{x0 + kLeft, x0 + kPanelWidth - kRight, y0 + kTop, y0 + kPanelHeight - kBottom};
+    const Scale x(panel.x, all_x(panel)), y(panel.y, all_y(panel));
+    draw_grid(canvas, frame, panel, x, y);
+    for (const ChartLine& line : panel.lines) draw_line(canvas, frame, x, y, line);
+  }
+
+  void draw_grid(Canvas& canvas, const Frame& f, const ChartPanel& panel, const Scale& x,
+                 const Scale& y) const {
+    for (const Tick& tick : x.ticks()) {
+      const double px = f.x(tick.place);
+      canvas.line(at(px, f.top), at(px, f.bottom), kGrid, 1.0);
+      canvas.text(px, f.bottom + 18, tick.label, 12, kPale, Align::middle);
+    }
+    for (const Tick& tick : y.ticks()) {
+      const double py = f.y(tick.place);
+      canvas.line(at(f.left, py), at(f.right, py), kGrid, 1.0);
+      canvas.text(f.left - 8, py + 4, tick.label, 12, kPale, Align::right);
+    }
+    canvas.text(f.right, f.bottom + 40, panel.x.title, 12.5, kPale, Align::right);
+    canvas.text(f.right, f.top - 18, panel.y.title, 12.5, kPale, Align::right);
+  }
+
+  void draw_line(Canvas& canvas, const Frame& frame, const Scale& x, const Scale& y,
+                 const ChartLine& line) const {
+    const Color ink = color(line.series);
+    const auto spot = [&](const ChartPoint& p, double value) {
+      return at(frame.x(x.place(p.x)), frame.y(y.place(value)));
+    };
+    for (std::size_t k = 1; line.joined && k < line.points.size(); ++k)
+      canvas.line(spot(line.points[k - 1], line.points[k - 1].y), spot(line.points[k], line.points[k].y), ink,
+                  2.0);
+    for (const ChartPoint& p : line.points) {
+      if (p.high > p.low) canvas.line(spot(p, p.low), spot(p, p.high), ink, 1.2);
+      draw_mark(canvas, spot(p, p.y), p.mark, ink);
+    }
+  }
+
+  static void draw_mark(Canvas& canvas, const Vec2& p, ChartPoint::Mark mark, const Color& ink) {
+    switch (mark) {
+      case ChartPoint::Mark::dot:
+        return canvas.dot(p, 5.0, ink);
+      case ChartPoint::Mark::small_dot:
+        return canvas.dot(p, 3.0, ink);
+      case ChartPoint::Mark::ring:
+        canvas.dot(p, 5.0, ink);
+        return canvas.dot(p, 3.0, kPanel);
+      case ChartPoint::Mark::cross:
+        canvas.line(p + Vec2(-4, -4), p + Vec2(4, 4), ink, 2.0);
+        canvas.line(p + Vec2(-4, 4), p + Vec2(4, -4), ink, 2.0);
+    }
+  }
+
+  const Chart& chart_;
+  int columns_, width_, legend_lines_, top_, height_ = 0;
+};
+
+}  // namespace
+
+std::string power_text(int exponent) {
+  static const char* const digits[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
+                                       "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
+  std::string text = exponent < 0 ? "10\u207b" : "10";
+  for (const char c : std::to_string(std::abs(exponent))) text += digits[c - '0'];
+  return text;
+}
+
+Picture chart_picture(const Chart& chart) { return Sheet(chart).picture(); }
+
+}  // namespace brink

@@ -1,0 +1,155 @@
+#include "brink/scenes/draw/diagram.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace brink::draw {
+namespace {
+
+constexpr Color kEdge{1.0, 1.0, 1.0};
+constexpr Oklch kNothing{0.90, 0.0, 0.0};   // no site anywhere
+constexpr Oklch kSolid{0.13, 0.02, 300.0};  // inside solids on the depth layer
+constexpr double kEdgeStrength = 0.85;      // white of the lines where owners meet
+constexpr double kContourStrength = 0.055;  // darkness of the lines of equal distance
+
+Color mixed(const Color& a, const Color& b, double t) {
+  return {a.red + t * (b.red - a.red), a.green + t * (b.green - a.green), a.blue + t * (b.blue - a.blue)};
+}
+
+bool solid_at(const FieldImage& field, std::size_t i) {
+  return field.inside[i] != 0 || field.distance[i] < 0.0F;
+}
+
+Picture blank(int width, int height) {
+  return {width, height, std::vector<std::uint32_t>(static_cast<std::size_t>(width) * height)};
+}
+
+/// Calls color_of(index into the field) for every picture pixel of a field without fineness.
+template <class ColorOf>
+Picture painted(const FieldImage& field, ColorOf&& color_of) {
+  Picture picture = blank(field.width, field.height);
+  for (int row = 0; row < field.height; ++row)
+    for (int column = 0; column < field.width; ++column)
+      picture.pixels[static_cast<std::size_t>(row) * field.width + column] =
+          color_of(static_cast<std::size_t>(field.height - 1 - row) * field.width + column).argb();
+  return picture;
+}
+
+/// The quiet colour of every owner, taken once.
+std::vector<Color> cell_colors(const FieldImage& field, const Palette& palette, std::size_t body_count) {
+  std::uint32_t last = 0;
+  for (const std::uint32_t owner : field.owner)
+    if (owner != FieldImage::kNone) last = std::max(last, owner);
+  std::vector<Color> colors;
+  for (std::size_t k = 0; k <= last; ++k)
+    colors.push_back(k < body_count ? Palette::cell(palette.body(k)).rgb() : Tones::site_cell.rgb());
+  return colors;
+}
+
+/// True if the pixel to the right or above belongs to another owner.
+bool at_edge(const FieldImage& field, int x, int y, std::size_t i) {
+  return (x + 1 < field.width && field.owner[i] != field.owner[i + 1]) ||
+         (y + 1 < field.height && field.owner[i] != field.owner[i + field.width]);
+}
+
+/// How much of a line of equal distance, as wide as a picture pixel, covers this field pixel: 0..1.
+double contour_cover(const FieldImage& field, std::size_t i, int fineness, double step) {
+  const double d = field.distance[i];
+  if (!(step > 0.0) || !(d > 0.5 * step) || std::isinf(d)) return 0.0;
+  const double away = std::abs(d - step * std::round(d / step)) / field.pixel;
+  return std::clamp(0.5 * fineness + 0.5 - away, 0.0, 1.0);
+}
+
+}  // namespace
+
+std::vector<PlacedOutline> placed_outlines(const World& world, std::span<const BodyState> bodies,
+                                           std::span<const Pose> sites) {
+  std::vector<PlacedOutline> placed;
+  for (std::size_t k = 0; k < world.bodies.size(); ++k)
+    placed.push_back({world.bodies[k].outline.get(), bodies[k].pose, static_cast<std::uint32_t>(k)});
+  for (std::size_t k = 0; k < world.sites.size(); ++k)
+    placed.push_back(
+        {world.sites[k].outline.get(), sites[k], static_cast<std::uint32_t>(world.bodies.size() + k)});
+  return placed;
+}
+
+FieldImage render_field(std::span<const PlacedOutline> placed, const View& view, int fineness,
+                        std::uint32_t excluded, const FieldOptions& options) {
+  PassRenderer renderer(options);
+  if (options.band > 0.0)
+    return renderer.render(view.window, view.width * fineness, view.height * fineness, placed, excluded,
+                           options.band);
+  const int coarse = std::max(1, std::max(view.width, view.height) / 64);
+  View small = view;
+  small.width = (view.width + coarse - 1) / coarse;
+  small.height = (view.height + coarse - 1) / coarse;
+  const double pixel = coarse / view.scale;
+  small.window.high.x() = small.window.low.x() + small.width * pixel;
+  small.window.high.y() = small.window.low.y() + small.height * pixel;
+  const FieldImage seen = renderer.render(small.window, small.width, small.height, placed, excluded,
+                                          std::numeric_limits<double>::infinity());
+  float farthest = 0.0F;
+  for (const float d : seen.distance) farthest = std::max(farthest, std::abs(d));
+  // distance changes by at most the way from a coarse pixel's centre to its corner
+  const double band = std::isinf(farthest) ? farthest : farthest + 1.01 * pixel;
+  return renderer.render(view.window, view.width * fineness, view.height * fineness, placed, excluded, band);
+}
+
+double largest_distance(const FieldImage& field) {
+  float largest = 0.0F;
+  for (std::size_t i = 0; i < field.distance.size(); ++i)
+    if (!solid_at(field, i) && !std::isinf(field.distance[i])) largest = std::max(largest, field.distance[i]);
+  return largest;
+}
+
+Picture cells_picture(const FieldImage& field, int fineness, const Palette& palette, std::size_t body_count,
+                      double contour_step) {
+  const std::vector<Color> cells = cell_colors(field, palette, body_count);
+  const Color ink = Tones::ink.rgb(), nothing = kNothing.rgb();
+  const auto color_at = [&](int x, int y) {
+    const std::size_t i = static_cast<std::size_t>(y) * field.width + x;
+    if (field.owner[i] == FieldImage::kNone) return nothing;
+    const Color cell = mixed(cells[field.owner[i]], ink,
+                             kContourStrength * 2.0 * contour_cover(field, i, fineness, contour_step));
+    return at_edge(field, x, y, i) ? mixed(cell, kEdge, kEdgeStrength) : cell;
+  };
+  Picture picture = blank(field.width / fineness, field.height / fineness);
+  for (int row = 0; row < picture.height; ++row)
+    for (int column = 0; column < picture.width; ++column) {
+      Color sum;
+      for (int k = 0; k < fineness * fineness; ++k) {
+        const Color c =
+            color_at(column * fineness + k % fineness, (picture.height - 1 - row) * fineness + k / fineness);
+        sum = {sum.red + c.red, sum.green + c.green, sum.blue + c.blue};
+      }
+      const double n = fineness * fineness;
+      picture.pixels[static_cast<std::size_t>(row) * picture.width + column] =
+          Color{sum.red / n, sum.green / n, sum.blue / n}.argb();
+    }
+  return picture;
+}
+
+Picture ids_picture(const FieldImage& field, const Palette& palette, std::size_t body_count) {
+  return painted(field, [&](std::size_t i) {
+    if (field.owner[i] == FieldImage::kNone) return kNothing.rgb();
+    const std::size_t owner = field.owner[i];
+    Oklch color = owner < body_count ? palette.strong(owner) : palette.site(owner - body_count);
+    const double turns = 0.6180339887498949 * field.site[i];
+    color.lightness += 0.16 * (turns - std::floor(turns)) - 0.08;
+    if (solid_at(field, i)) color.lightness *= 0.62;
+    return color.rgb();
+  });
+}
+
+Picture distance_picture(const FieldImage& field, double full_scale) {
+  const Color solid = kSolid.rgb();
+  std::vector<Color> map;
+  for (int k = 0; k < 1024; ++k) map.push_back(distance_color(k / 1023.0));
+  return painted(field, [&](std::size_t i) {
+    if (solid_at(field, i)) return solid;
+    const double fraction = full_scale > 0.0 ? field.distance[i] / full_scale : 0.0;
+    return map[static_cast<std::size_t>(std::lround(1023.0 * std::clamp(fraction, 0.0, 1.0)))];
+  });
+}
+
+}  // namespace brink::draw

@@ -1,0 +1,38 @@
+#pragma once
+/// The rendered Voronoi diagram as a picture: what lies beneath the bodies, and the raw layers.
+
+#include <span>
+#include <vector>
+
+#include "brink/core/fields/pass_window.h"
+#include "brink/scenes/draw/color.h"
+#include "brink/scenes/draw/draw.h"
+#include "brink/scenes/draw/view.h"
+
+namespace brink::draw {
+
+/// Every outline of the world in its place. Owners: body k is k, fixed site k is (number of bodies) + k.
+std::vector<PlacedOutline> placed_outlines(const World& world, std::span<const BodyState> bodies,
+                                           std::span<const Pose> sites);
+
+/// The field seen through a view, `fineness` x `fineness` field pixels a picture pixel. The band is found by
+/// a coarse rendering first, so that no pixel is left without a nearest site and few are drawn in vain.
+/// @throws IoError.
+FieldImage render_field(std::span<const PlacedOutline> placed, const View& view, int fineness,
+                        std::uint32_t excluded, const FieldOptions& options);
+
+/// Largest distance outside solids [m]; 0 if there is none.
+double largest_distance(const FieldImage& field);
+
+/// Cells in quiet colours, white where owners meet, faint lines `contour_step` [m] apart in distance (0:
+/// none).
+Picture cells_picture(const FieldImage& field, int fineness, const Palette& palette, std::size_t body_count,
+                      double contour_step);
+
+/// One strong hue an owner, one shade a site, darker inside solids. @pre one field pixel a picture pixel.
+Picture ids_picture(const FieldImage& field, const Palette& palette, std::size_t body_count);
+
+/// distance_color of distance / full_scale, a dark tone inside solids. @pre one field pixel a picture pixel.
+Picture distance_picture(const FieldImage& field, double full_scale);
+
+}  // namespace brink::draw

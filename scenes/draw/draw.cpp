@@ -1,0 +1,272 @@
+#include "brink/scenes/draw/draw.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "brink/core/base/log.h"
+#include "brink/core/shapes/distance.h"
+#include "brink/scenes/draw/diagram.h"
+#include "brink/scenes/draw/sheet.h"
+
+namespace brink {
+namespace {
+
+using draw::Canvas;
+using draw::Color;
+using draw::Ink;
+using draw::Oklch;
+using draw::Palette;
+using draw::Sheet;
+using draw::Tones;
+using draw::View;
+using Kind = DrawLayer::Kind;
+
+constexpr int kFineness = 2;         // field pixels a picture pixel, each way, under bodies
+constexpr double kPassWindow = 2.4;  // half side of the pass layer's view, in bounding radii
+constexpr double kMarkFrom = 7.0;    // bodies of a smaller radius [pixels] carry no mark
+
+int body_named(const World& world, const std::string& name) {
+  for (std::size_t k = 0; k < world.bodies.size(); ++k)
+    if (world.bodies[k].name == name) return static_cast<int>(k);
+  std::string allowed;
+  for (std::size_t k = 0; k < std::min<std::size_t>(world.bodies.size(), 8); ++k)
+    allowed += (k == 0 ? "" : ", ") + world.bodies[k].name;
+  if (world.bodies.size() > 8) allowed += fmt::format(" ... ({} bodies)", world.bodies.size());
+  throw BadInput(fmt::format("layer \"pass:{}\": no body of that name; there are: {}", name, allowed));
+}
+
+void check(const World& world, std::span<const BodyState> bodies, std::span<const Pose> sites,
+           const DrawOptions& options) {
+  std::string error;
+  if (!options.is_valid(&error)) throw BadInput(error);
+  if (bodies.size() != world.bodies.size())
+    throw BadInput(fmt::format("bodies: {} states given for {} bodies", bodies.size(), world.bodies.size()));
+  if (sites.size() != world.sites.size())
+    throw BadInput(fmt::format("sites: {} poses given for {} sites", sites.size(), world.sites.size()));
+  const auto finite = [](const Pose& p) { return p.position.allFinite() && std::isfinite(p.angle); };
+  for (std::size_t k = 0; k < bodies.size(); ++k)
+    if (!finite(bodies[k].pose))
+      throw BadInput(fmt::format("body \"{}\": its pose is not finite", world.bodies[k].name));
+  for (std::size_t k = 0; k < sites.size(); ++k)
+    if (!finite(sites[k]))
+      throw BadInput(fmt::format("site \"{}\": its pose is not finite", world.sites[k].name));
+}
+
+View view_of(const Sheet& sheet) {
+  const DrawOptions& o = sheet.options;
+  Box box = o.view ? *o.view : automatic_view(sheet.world, sheet.bodies, sheet.sites);
+  double margin = o.margin;
+  if (sheet.excluded >= 0 && !o.view) {
+    const double reach = kPassWindow * sheet.world.bodies[sheet.excluded].outline->bounding_radius;
+    box = Box{};
+    box.add(sheet.bodies[sheet.excluded].pose.position);
+    box = box.grown(reach);
+    margin = 0.0;
+  }
+  return draw::fitted(box, margin, o.size.width, o.size.height - sheet.strip);
+}
+
+/// Distance between lines of equal distance: about eight to the farthest point, not closer than 9 pixels.
+double contour_step(double largest, const View& view) {
+  const double wanted = std::max(largest / 8.0, 9.0 / view.scale);
+  return draw::round_length(2.0 * wanted);
+}
+
+std::uint32_t excluded_owner(const Sheet& sheet) {
+  return sheet.excluded < 0 ? FieldImage::kNone : static_cast<std::uint32_t>(sheet.excluded);
+}
+
+Picture background(Sheet& sheet) {
+  const std::size_t count = sheet.world.bodies.size();
+  const bool raw = sheet.options.layer.kind == Kind::color || sheet.options.layer.kind == Kind::depth;
+  const std::vector<PlacedOutline> placed = draw::placed_outlines(sheet.world, sheet.bodies, sheet.sites);
+  const FieldImage field =
+      draw::render_field(placed, sheet.view, raw ? 1 : kFineness, excluded_owner(sheet), sheet.options.field);
+  const double largest = draw::largest_distance(field);
+  if (sheet.options.layer.kind == Kind::color) return draw::ids_picture(field, sheet.palette, count);
+  if (sheet.options.layer.kind == Kind::depth) {
+    sheet.full_scale = largest;
+    return draw::distance_picture(field, largest);
+  }
+  return draw::cells_picture(field, kFineness, sheet.palette, count, contour_step(largest, sheet.view));
+}
+
+/// The diagram if there is one to be drawn and a context to draw it.
+std::optional<Picture> diagram(Sheet& sheet) {
+  const Kind kind = sheet.options.layer.kind;
+  if (kind == Kind::scene &&
+      (!sheet.options.diagram || sheet.world.bodies.size() + sheet.world.sites.size() == 0))
+    return std::nullopt;
+  if (kind == Kind::pass && !sheet.options.diagram) return std::nullopt;
+  try {
+    return background(sheet);
+  } catch (const IoError& error) {
+    if (kind != Kind::scene) throw;
+    log().warn("drawn without the Voronoi diagram: {}", error.what());
+    return std::nullopt;
+  }
+}
+
+Ink body_ink(const Oklch& color) {
+  const Color line = Palette::line(color).rgb();
+  return {color.rgb(), line, 1.4, 1.0, false};
+}
+
+/// A line from the centre of mass along the body's own x axis to just inside its edge: how it has turned.
+void draw_mark(Canvas& canvas, const Outline& outline, const Pose& pose, const Color& color, double scale) {
+  if (outline.bounding_radius * scale < kMarkFrom || !(outline.solid || outline.is_point())) return;
+  const Vec2 center = pose.position;
+  if (gap_by_brute_force(outline, Vec2::Zero()) > -2.0 / scale) return;
+  const double steps = 64.0;
+  double reach = 0.0;
+  for (int k = 1; k <= steps; ++k) {
+    const double x = outline.bounding_radius * k / steps;
+    if (gap_by_brute_force(outline, Vec2(x, 0.0)) > -2.5 / scale) break;
+    reach = x;
+  }
+  canvas.line(center, Frame(pose).to_world(Vec2(reach, 0.0)), color, 1.2);
+  canvas.dot(center, 1.7, color);
+}
+
+void draw_sites(Canvas& canvas, const Sheet& sheet) {
+  const Color line = Tones::ink.rgb();
+  Ink solid{Tones::site_fill.rgb(), line, 1.6, 1.0, false};
+  Ink outside{Tones::paper.rgb(), line, 2.4, 1.0, false};
+  Ink wire{Tones::site_fill.rgb(), line, 2.2, 1.0, false};
+  for (const bool container : {true, false})
+    for (std::size_t k = 0; k < sheet.world.sites.size(); ++k) {
+      const Outline& outline = *sheet.world.sites[k].outline;
+      if (outline.container != container) continue;
+      canvas.outline(outline, sheet.sites[k], container ? outside : outline.solid ? solid : wire);
+    }
+}
+
+void draw_springs(Canvas& canvas, const Sheet& sheet) {
+  const Color color = Oklch{0.45, 0.02, 260.0}.rgb();
+  for (const Force& force : sheet.world.forces) {
+    const auto* spring = std::get_if<SpringForce>(&force);
+    if (spring == nullptr) continue;
+    const Vec2 a = Frame(sheet.bodies[spring->body_a].pose).to_world(spring->at_a);
+    const Vec2 b =
+        spring->body_b < 0 ? spring->at_b : Frame(sheet.bodies[spring->body_b].pose).to_world(spring->at_b);
+    canvas.spring(a, b, color, 1.1);
+  }
+}
+
+void draw_bodies(Canvas& canvas, const Sheet& sheet) {
+  for (std::size_t k = 0; k < sheet.world.bodies.size(); ++k) {
+    if (static_cast<int>(k) == sheet.excluded) continue;
+    const Outline& outline = *sheet.world.bodies[k].outline;
+    const Ink ink = body_ink(sheet.palette.body(k));
+    canvas.outline(outline, sheet.bodies[k].pose, ink);
+    draw_mark(canvas, outline, sheet.bodies[k].pose, ink.line, sheet.view.scale);
+  }
+}
+
+void draw_arrows(Canvas& canvas, const Sheet& sheet) {
+  if (!(sheet.options.arrow_seconds > 0.0)) return;
+  for (const BodyState& state : sheet.bodies)
+    canvas.arrow(state.pose.position,
+                 state.pose.position + sheet.options.arrow_seconds * state.twist.velocity, Tones::ink.rgb(),
+                 1.5);
+}
+
+/// The body left out of a pass: its edge dashed, its samples as dots.
+void draw_excluded(Canvas& canvas, const Sheet& sheet) {
+  const Outline& outline = *sheet.world.bodies[sheet.excluded].outline;
+  const Pose& pose = sheet.bodies[sheet.excluded].pose;
+  Oklch color = sheet.palette.body(sheet.excluded);
+  color.lightness *= 0.8;
+  canvas.outline(outline, pose, {color.rgb(), color.rgb(), 1.8, 0.0, true});
+  for (const Sample& sample : outline.samples) canvas.dot(Frame(pose).to_world(sample.p), 2.6, color.rgb());
+}
+
+/// Thin light edges over the depth layer, so that wires and touching solids can be told apart.
+void draw_edges(Canvas& canvas, const Sheet& sheet) {
+  const Color line = Oklch{0.80, 0.01, 300.0}.rgb();
+  const Ink ink{line, line, 0.9, 0.0, false};
+  for (std::size_t k = 0; k < sheet.world.sites.size(); ++k)
+    canvas.outline(*sheet.world.sites[k].outline, sheet.sites[k], ink);
+  for (std::size_t k = 0; k < sheet.world.bodies.size(); ++k)
+    canvas.outline(*sheet.world.bodies[k].outline, sheet.bodies[k].pose, ink);
+}
+
+/// Fixed wires over the colour layer, where they show as the middle of their cells alone.
+void draw_wires(Canvas& canvas, const Sheet& sheet) {
+  const Color line = Tones::ink.rgb();
+  for (std::size_t k = 0; k < sheet.world.sites.size(); ++k)
+    if (!sheet.world.sites[k].outline->solid)
+      canvas.outline(*sheet.world.sites[k].outline, sheet.sites[k], {line, line, 1.6, 0.0, false});
+}
+
+/// Particles of the classic detector, where a sampling is asked for: dark on the boundary, pale inside.
+void draw_particles(Canvas& canvas, const Sheet& sheet) {
+  const Color dark = Tones::ink.rgb(), pale = Oklch{0.99, 0.0, 0.0}.rgb();
+  for (std::size_t k = 0; k < sheet.world.bodies.size(); ++k) {
+    const Body& body = sheet.world.bodies[k];
+    if (body.sampling.kind == Sampling::Kind::vertices || static_cast<int>(k) == sheet.excluded) continue;
+    const Frame frame(sheet.bodies[k].pose);
+    for (const Particle& particle : make_particles(*body.outline, body.sampling)) {
+      const bool inside = particle.area > 0.0;
+      canvas.dot(frame.to_world(particle.p), 3.8, inside ? dark : pale);
+      canvas.dot(frame.to_world(particle.p), 2.6, inside ? pale : dark);
+    }
+  }
+}
+
+void draw_layer(Canvas& canvas, const Sheet& sheet) {
+  switch (sheet.options.layer.kind) {
+    case Kind::color:
+      draw_wires(canvas, sheet);
+      return draw_particles(canvas, sheet);
+    case Kind::depth:
+      draw_edges(canvas, sheet);
+      return draw_particles(canvas, sheet);
+    case Kind::scene:
+    case Kind::pass:
+      draw_sites(canvas, sheet);
+      draw_springs(canvas, sheet);
+      draw_bodies(canvas, sheet);
+      draw_arrows(canvas, sheet);
+      draw_particles(canvas, sheet);
+      if (sheet.excluded >= 0) draw_excluded(canvas, sheet);
+  }
+}
+
+}  // namespace
+
+/// The bodies' images whose centres are in the period that begins at the origin; in a plane that does not
+/// repeat the bodies themselves.
+std::vector<BodyState> at_home(const Periods& periods, std::span<const BodyState> bodies) {
+  std::vector<BodyState> home(bodies.begin(), bodies.end());
+  for (BodyState& state : home)
+    for (int axis = 0; axis < 2; ++axis)
+      if (const double size = periods.size[axis]; size > 0.0)
+        state.pose.position[axis] -= size * std::floor(state.pose.position[axis] / size);
+  return home;
+}
+
+Picture draw_scene(const World& world, std::span<const BodyState> bodies, std::span<const Pose> sites,
+                   const DrawOptions& options) {
+  check(world, bodies, sites, options);
+  const std::vector<BodyState> home = at_home(world.periods, bodies);
+  Sheet sheet{world, home, sites, options, Palette(world), -1, 0, View{}, 0.0};
+  if (options.layer.kind == Kind::pass) sheet.excluded = body_named(world, options.layer.body);
+  sheet.strip = draw::strip_height(options);
+  sheet.view = view_of(sheet);
+  Canvas canvas(sheet.view, options.size.width, options.size.height, Tones::paper.rgb());
+  if (const std::optional<Picture> beneath = diagram(sheet)) canvas.paste(*beneath);
+  draw_layer(canvas, sheet);
+  draw::draw_caption(canvas, sheet);
+  return canvas.finish();
+}
+
+void draw_png(const std::filesystem::path& file, const World& world, std::span<const BodyState> bodies,
+              std::span<const Pose> sites, const DrawOptions& options) {
+  write_png(file, draw_scene(world, bodies, sites, options));
+}
+
+}  // namespace brink

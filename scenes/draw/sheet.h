@@ -1,0 +1,32 @@
+#pragma once
+/// One picture in the making: what its parts need to know.
+
+#include <span>
+
+#include "brink/scenes/draw/canvas.h"
+#include "brink/scenes/draw/color.h"
+#include "brink/scenes/draw/draw.h"
+#include "brink/scenes/draw/view.h"
+
+namespace brink::draw {
+
+/// One picture in the making.
+struct Sheet {
+  const World& world;
+  std::span<const BodyState> bodies;
+  std::span<const Pose> sites;
+  const DrawOptions& options;
+  Palette palette;
+  int excluded = -1;  ///< body of a pass
+  int strip = 0;      ///< height of the caption [pixels]
+  View view;
+  double full_scale = 0.0;  ///< depth: distance at the light end of the legend [m]
+};
+
+/// Height of the caption's strip [pixels]; 0: none asked for, or no room.
+int strip_height(const DrawOptions& options);
+
+/// Title, time, and a ruler (layer depth: the legend) in the strip at the bottom.
+void draw_caption(Canvas& canvas, const Sheet& sheet);
+
+}  // namespace brink::draw

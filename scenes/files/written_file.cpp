@@ -1,0 +1,47 @@
+#include "brink/scenes/files/written_file.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "brink/core/base/error.h"
+
+namespace brink {
+namespace fs = std::filesystem;
+namespace {
+
+bool same_file(const fs::path& a, const fs::path& b) {
+  std::error_code missing;
+  if (fs::equivalent(a, b, missing)) return true;
+  return fs::weakly_canonical(a, missing) == fs::weakly_canonical(b, missing);
+}
+
+bool is_database(const fs::path& file) {
+  std::error_code missing;
+  if (!fs::is_regular_file(file, missing)) return false;
+  std::string first(15, '\0');
+  std::ifstream(file, std::ios::binary).read(first.data(), static_cast<std::streamsize>(first.size()));
+  return first == "SQLite format 3";
+}
+
+}  // namespace
+
+void refuse_overwriting(const fs::path& file, const std::string& option, const std::vector<fs::path>& kept) {
+  if (file.empty()) return;
+  const auto refuse = [&](const std::string& what) {
+    throw BadInput(
+        fmt::format("{}: {} given, which is {}; allowed: another file", option, file.string(), what));
+  };
+  for (const fs::path& k : kept)
+    if (!k.empty() && same_file(file, k)) refuse("read or kept by this command");
+  if (is_database(file)) refuse("a database");
+}
+
+void throw_not_written(const fs::path& file) {
+  const std::string why = errno == ENOSPC ? "disk full" : std::strerror(errno);
+  throw IoError(fmt::format("{}: could not be written: {}", file.string(), why));
+}
+
+}  // namespace brink

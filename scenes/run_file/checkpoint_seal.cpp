@@ -1,0 +1,80 @@
+#include "brink/scenes/run_file/checkpoint_seal.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "brink/core/base/error.h"
+#include "brink/core/base/hash.h"
+
+namespace brink {
+namespace {
+
+struct Header {
+  char magic[8] = {'B', 'R', 'I', 'N', 'K', 'C', 'P', '\n'};
+  std::uint32_t version = 1, unused = 0;
+  std::uint64_t length = 0, checksum = 0;
+};
+static_assert(sizeof(Header) == 32);
+
+void add_bytes(StateHash& hash, std::span<const std::byte> bytes) {
+  for (; bytes.size() >= 8; bytes = bytes.subspan(8)) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes.data(), 8);
+    hash.add(word);
+  }
+  std::uint64_t rest = 0;
+  std::memcpy(&rest, bytes.data(), bytes.size());
+  hash.add(rest);
+}
+
+std::uint64_t checksum(const ResumePoint& row, std::span<const std::byte> snapshot, std::uint64_t identity) {
+  StateHash hash;
+  hash.add(identity);
+  hash.add(row.t);
+  hash.add(row.wall_seconds);
+  hash.add(static_cast<std::uint64_t>(row.frames));
+  hash.add(static_cast<std::uint64_t>(row.events));
+  hash.add(static_cast<std::uint64_t>(snapshot.size()));
+  add_bytes(hash, snapshot);
+  return hash.value();
+}
+
+}  // namespace
+
+std::uint64_t run_identity(const std::string& version, const std::string& options, const std::string& world) {
+  StateHash hash;
+  for (const std::string* text : {&version, &options, &world}) {
+    hash.add(static_cast<std::uint64_t>(text->size()));
+    add_bytes(hash, std::as_bytes(std::span(*text)));
+  }
+  return hash.value();
+}
+
+std::vector<std::byte> sealed(const ResumePoint& row, std::span<const std::byte> snapshot,
+                              std::uint64_t identity) {
+  Header header;
+  header.length = snapshot.size();
+  header.checksum = checksum(row, snapshot, identity);
+  std::vector<std::byte> bytes(sizeof header + snapshot.size());
+  std::memcpy(bytes.data(), &header, sizeof header);
+  std::copy(snapshot.begin(), snapshot.end(), bytes.begin() + sizeof header);
+  return bytes;
+}
+
+std::vector<std::byte> unsealed(const ResumePoint& point, std::uint64_t identity) {
+  const Header known;
+  Header header;
+  if (point.state.size() < sizeof header) throw BadInput("the state is cut");
+  std::memcpy(&header, point.state.data(), sizeof header);
+  if (std::memcmp(header.magic, known.magic, sizeof known.magic) != 0)
+    throw BadInput("the state is not a sealed checkpoint");
+  if (header.version != known.version || header.unused != 0)
+    throw BadInput("the state is of another version of checkpoints");
+  const auto snapshot = std::span(point.state).subspan(sizeof header);
+  if (header.length != snapshot.size()) throw BadInput("the state is cut or has grown");
+  if (header.checksum != checksum(point, snapshot, identity))
+    throw BadInput("the checksum is wrong: it was damaged, or is of another run");
+  return {snapshot.begin(), snapshot.end()};
+}
+
+}  // namespace brink

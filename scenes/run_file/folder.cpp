@@ -1,0 +1,89 @@
+/// The folder of a run: its lock, and reading what an earlier run left there without touching it.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "brink/scenes/run_file/database.h"
+#include "brink/scenes/run_file/run_file.h"
+
+namespace brink {
+namespace fs = std::filesystem;
+namespace {
+
+/// Reading a database that was last written with a write-ahead log makes an empty log beside it if there is
+/// none. Taken away again: nobody else can be writing, since the folder is locked.
+class LogsAsTheyWere {
+ public:
+  explicit LogsAsTheyWere(const fs::path& file)
+      : log_(file.string() + "-wal"), index_(file.string() + "-shm"), had_log_(fs::exists(log_)) {}
+  ~LogsAsTheyWere() {
+    std::error_code none;
+    if (had_log_ || fs::file_size(log_, none) != 0 || none) return;
+    fs::remove(log_, none);
+    fs::remove(index_, none);
+  }
+  LogsAsTheyWere(const LogsAsTheyWere&) = delete;
+  LogsAsTheyWere& operator=(const LogsAsTheyWere&) = delete;
+
+ private:
+  fs::path log_, index_;
+  bool had_log_;
+};
+
+/// An advisory lock on a folder; the system lets it go when the process ends, however it ends.
+int locked(const fs::path& dir) {
+  const int fd = ::open(dir.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0)
+    throw IoError(fmt::format("{}: cannot open the folder: {}", dir.string(), std::strerror(errno)));
+  if (::flock(fd, LOCK_EX | LOCK_NB) == 0) return fd;
+  ::close(fd);
+  throw IoError(
+      fmt::format("{}: another run is writing into this folder; choose another --out", dir.string()));
+}
+
+fs::path made_folder(const fs::path& dir) {
+  std::error_code error;
+  fs::create_directories(dir, error);
+  if (error) throw IoError(fmt::format("{}: cannot make the folder: {}", dir.string(), error.message()));
+  return dir;
+}
+
+/// True if there is a database without anything in it.
+bool holds_nothing(const fs::path& file) {
+  return guarded(file, [&] {
+    SQLite::Database db = open_database(file, SQLite::OPEN_READONLY, 10'000);
+    return db.execAndGet("SELECT count(*) FROM sqlite_master").getInt64() == 0;
+  });
+}
+
+}  // namespace
+
+RunFolder::RunFolder(const fs::path& dir) : file_(made_folder(dir) / "run.db"), lock_(locked(dir)) {}
+RunFolder::RunFolder(RunFolder&& other) noexcept
+    : file_(std::move(other.file_)), lock_(std::exchange(other.lock_, -1)) {}
+RunFolder::~RunFolder() {
+  if (lock_ >= 0) ::close(lock_);
+}
+
+void RunFolder::read(const std::function<void(const RunFile&)>& f) const {
+  if (!fs::exists(file_)) return;
+  const LogsAsTheyWere tidy(file_);
+  if (!holds_nothing(file_)) f(RunFile(file_));
+}
+
+std::optional<ResumePoint> RunFolder::resume_point(const Scene& scene) const {
+  std::optional<ResumePoint> point;
+  read([&](const RunFile& earlier) {
+    earlier.require_same(scene);
+    earlier.require_sound();
+    point = earlier.checkpoint();
+  });
+  return point;
+}
+
+}  // namespace brink

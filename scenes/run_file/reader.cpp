@@ -1,0 +1,382 @@
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+#include "brink/core/base/error.h"
+#include "brink/core/world/world_hash.h"
+#include "brink/scenes/run_file/checkpoint_seal.h"
+#include "brink/scenes/run_file/database.h"
+#include "brink/scenes/run_file/row.h"
+#include "brink/scenes/run_file/run_file.h"
+#include "brink/scenes/run_file/shape_json.h"
+#include "brink/scenes/run_file/tables.h"
+#include "brink/scenes/version.h"
+
+namespace brink {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kBusyMilliseconds = 10'000;
+
+constexpr const char* kWhat = "a run file";
+
+/// Options that a run may be gone on with at another value: they decide what is refused, not what happens.
+constexpr const char* kFree[] = {"/output/max_frame_rows"};
+
+/// "solver.order was "index", is now "depth"" for every option that differs; empty if none does.
+/// @throws BadInput if `was` is not JSON.
+std::string differences(const std::string& was, const std::string& is) {
+  if (was == is) return {};
+  const auto a = nlohmann::json::parse(was, nullptr, false), b = nlohmann::json::parse(is, nullptr, false);
+  if (!a.is_object()) throw BadInput("options: not a JSON object");
+  const auto old_values = a.flatten(), new_values = b.flatten();
+  std::string text;
+  const auto value = [](const nlohmann::json& j, const std::string& key) {
+    return j.contains(key) ? j.at(key).dump() : std::string("absent");
+  };
+  auto all = old_values;
+  all.update(new_values);
+  for (const char* key : kFree) all.erase(key);
+  for (const auto& [key, unused] : all.items()) {
+    const std::string before = value(old_values, key), now = value(new_values, key);
+    if (before != now)
+      text += fmt::format("{}{} was {}, is now {}", text.empty() ? "" : "; ", key, before, now);
+  }
+  return text;
+}
+
+EventKind kind_from(const std::string& word) {
+  for (int k = 0; k <= static_cast<int>(EventKind::undecided); ++k) {
+    if (word == to_string(static_cast<EventKind>(k))) return static_cast<EventKind>(k);
+  }
+  throw BadInput(fmt::format("event of unknown kind '{}'", word));
+}
+
+/// Value and slope at time t of the cubic through (0, a, va) and (h, b, vb), s = t / h.
+std::pair<double, double> hermite(double a, double va, double b, double vb, double h, double s) {
+  const double d = (b - a) / h;
+  const double c2 = (3 * d - 2 * va - vb) / h, c3 = (va + vb - 2 * d) / (h * h), t = s * h;
+  return {a + t * (va + t * (c2 + t * c3)), va + t * (2 * c2 + 3 * t * c3)};
+}
+
+BodyState between(const BodyState& a, const BodyState& b, double h, double s) {
+  BodyState m;
+  for (int i = 0; i < 2; ++i) {
+    std::tie(m.pose.position[i], m.twist.velocity[i]) =
+        hermite(a.pose.position[i], a.twist.velocity[i], b.pose.position[i], b.twist.velocity[i], h, s);
+  }
+  std::tie(m.pose.angle, m.twist.omega) =
+      hermite(a.pose.angle, a.twist.omega, b.pose.angle, b.twist.omega, h, s);
+  return m;
+}
+
+}  // namespace
+
+struct RunFile::Impl {
+  fs::path file;
+  mutable SQLite::Database db;
+  std::int64_t bodies = 0, sites = 0;
+
+  explicit Impl(const fs::path& f) : file(f), db(open_database(f, SQLite::OPEN_READONLY, kBusyMilliseconds)) {
+    for (const char* table : {"meta", "body", "site", "frame", "event", "work", "checkpoint"})
+      if (!db.tableExists(table))
+        throw IoError(fmt::format("{}: not a run file: table {} is missing", f.string(), table));
+    bodies = rows_numbered_from_zero("body");
+    sites = rows_numbered_from_zero("site");
+  }
+
+  /// How many rows a table of things has, whose ids are 0, 1, 2 ...
+  std::int64_t rows_numbered_from_zero(const char* table) const {
+    return reading(file, table, [&] {
+      SQLite::Statement get(db, fmt::format("SELECT count(*), min(id), max(id) FROM {}", table));
+      get.executeStep();
+      const Row row(get);
+      const std::int64_t rows = row.count(0, std::numeric_limits<int>::max());
+      if (rows > 0 && (row.count(1) != 0 || row.count(2) != rows - 1)) throw BadInput("rows are missing");
+      return rows;
+    });
+  }
+
+  /// Whole frames in the file. Rows are numbered from 1 without holes, `bodies` rows a frame.
+  std::int64_t frames() const {
+    const std::int64_t rows = db.execAndGet("SELECT ifnull(max(rowid), 0) FROM frame").getInt64();
+    return bodies > 0 && rows > 0 ? rows / bodies : 0;
+  }
+  std::int64_t some_frames() const {
+    const std::int64_t count = frames();
+    if (count == 0) throw BadInput("it holds no whole frame yet");
+    return count;
+  }
+  double frame_time(std::int64_t index) const {
+    SQLite::Statement get(db, "SELECT t FROM frame WHERE rowid = ?");
+    get.bind(1, index * bodies + 1);
+    if (!get.executeStep()) throw BadInput(fmt::format("frame {} is missing", index));
+    return Row(get).real(0);
+  }
+  /// The last frame at or before t, or 0.
+  std::int64_t frame_index(double t) const {
+    std::int64_t low = 0, high = some_frames();
+    while (high - low > 1) {
+      const std::int64_t middle = low + (high - low) / 2;
+      (frame_time(middle) <= t ? low : high) = middle;
+    }
+    return low;
+  }
+  Frame read_frame(std::int64_t index) const {
+    Frame frame;
+    SQLite::Statement get(db,
+                          "SELECT t, x, y, angle, vx, vy, omega, body FROM frame WHERE rowid > ? AND rowid "
+                          "<= ? ORDER BY rowid");
+    get.bind(1, index * bodies);
+    get.bind(2, (index + 1) * bodies);
+    while (get.executeStep()) {
+      const Row row(get);
+      const double t = row.real(0);
+      const bool next = row.count(7) == static_cast<std::int64_t>(frame.states.size());
+      if (!next || (!frame.states.empty() && t != frame.t))
+        throw BadInput(fmt::format("frame {} is mixed up", index));
+      frame.t = t;
+      frame.states.push_back(
+          {{{row.real(1), row.real(2)}, row.real(3)}, {{row.real(4), row.real(5)}, row.real(6)}});
+    }
+    if (static_cast<std::int64_t>(frame.states.size()) != bodies)
+      throw BadInput(fmt::format("frame {} is not whole", index));
+    return frame;
+  }
+};
+
+RunFile::RunFile(const fs::path& file) : impl_(guarded(file, [&] { return std::make_unique<Impl>(file); })) {
+  const std::string schema = meta("schema_version").value_or("");
+  if (schema != std::to_string(kRunFileSchema)) {
+    throw IoError(fmt::format("{}: table meta: schema_version '{}'; this program reads {}", file.string(),
+                              schema, kRunFileSchema));
+  }
+}
+RunFile::~RunFile() = default;
+RunFile::RunFile(RunFile&&) noexcept = default;
+
+std::map<std::string, std::string> RunFile::meta() const {
+  return reading(impl_->file, "meta", [&] {
+    std::map<std::string, std::string> all;
+    SQLite::Statement get(impl_->db, "SELECT key, value FROM meta");
+    while (get.executeStep()) all[Row(get).text(0)] = Row(get).text(1);
+    return all;
+  });
+}
+
+std::optional<std::string> RunFile::meta(const std::string& key) const {
+  const auto all = meta();
+  const auto found = all.find(key);
+  return found == all.end() ? std::nullopt : std::optional(found->second);
+}
+
+double RunFile::end_time() const {
+  return reading(impl_->file, "meta", [&] { return number_in(meta("end_time").value_or("")); });
+}
+
+std::string RunFile::summary() const {
+  return reading(impl_->file, "meta", [&] {
+    const auto json = nlohmann::ordered_json::parse(meta("summary").value_or(""));
+    if (!json.is_object()) throw BadInput("summary: not a JSON object");
+    return json.dump();
+  });
+}
+
+std::vector<RunFile::BodyRow> RunFile::bodies() const {
+  return reading(impl_->file, "body", [&] {
+    std::vector<BodyRow> rows;
+    SQLite::Statement get(impl_->db, "SELECT id, name, mass, inertia, shape FROM body ORDER BY id");
+    while (get.executeStep()) {
+      const Row row(get);
+      rows.push_back({row.id_or_none(0, impl_->bodies), row.text(1), row.real(2), row.real(3),
+                      outline_from_json(row.text(4))});
+    }
+    return rows;
+  });
+}
+
+std::vector<FixedSite> RunFile::sites() const {
+  return reading(impl_->file, "site", [&] {
+    std::vector<FixedSite> sites;
+    SQLite::Statement get(impl_->db, "SELECT name, kind, shape FROM site ORDER BY id");
+    while (get.executeStep()) {
+      const Row row(get);
+      FixedSite& site = sites.emplace_back(fixed_site_from_json(row.text(2)));
+      site.name = row.text(0);
+      site.kind = row.text(1);
+    }
+    return sites;
+  });
+}
+
+namespace {
+
+/// world.periodic of the options.
+Vec2 periods_in(const std::string& options) {
+  const nlohmann::json::json_pointer periodic("/world/periodic");
+  const auto json = nlohmann::json::parse(options);
+  if (!json.contains(periodic)) return Vec2::Zero();
+  const Vec2 size{json.at(periodic).at(0).get<double>(), json.at(periodic).at(1).get<double>()};
+  if (!(size.minCoeff() >= 0.0)) throw BadInput("options: world.periodic is below zero");
+  return size;
+}
+
+}  // namespace
+
+World RunFile::world() const {
+  World world;
+  world.title = meta("title").value_or("");
+  const Frame first = frame_at(0.0);
+  for (BodyRow& row : bodies()) {
+    Body& body = world.bodies.emplace_back();
+    body.name = std::move(row.name);
+    body.mass = row.mass;
+    body.inertia = row.inertia;
+    body.outline = std::make_shared<const Outline>(std::move(row.outline));
+    body.initial = first.states.at(row.id);
+  }
+  world.sites = sites();
+  world.periods.size =
+      reading(impl_->file, "meta", [&] { return periods_in(meta("options").value_or("{}")); });
+  return world;
+}
+
+std::vector<Event> RunFile::events() const {
+  return reading(impl_->file, "event", [&] {
+    std::vector<Event> all;
+    SQLite::Statement get(
+        impl_->db,
+        "SELECT seq, t, kind, body, other, site, px, py, nx, ny, closing_speed, impulse_n, impulse_t, "
+        "gap, outline_site, sample, sample_on_body, t_low FROM event ORDER BY seq");
+    while (get.executeStep()) {
+      const Row row(get);
+      Event e;
+      e.seq = static_cast<std::uint64_t>(row.count(0));
+      e.kind = kind_from(row.text(2));
+      e.contact = {row.real(1),
+                   row.real_or_nan(17),
+                   row.id_or_none(3, impl_->bodies),
+                   row.id_or_none(4, impl_->bodies),
+                   row.id_or_none(5, impl_->sites),
+                   row.id_or_none(14),
+                   row.id_or_none(15),
+                   row.count(16, 2) != 0,
+                   {row.real_or_nan(6), row.real_or_nan(7)},
+                   {row.real_or_nan(8), row.real_or_nan(9)},
+                   row.real_or_nan(10),
+                   row.real_or_nan(13)};
+      e.impulse_n = row.real_or_nan(11);
+      e.impulse_t = row.real_or_nan(12);
+      all.push_back(e);
+    }
+    return all;
+  });
+}
+
+std::optional<ResumePoint> RunFile::checkpoint() const {
+  const auto of = meta();
+  const auto text = [&](const char* key) { return of.contains(key) ? of.at(key) : std::string(); };
+  return reading(impl_->file, "checkpoint", [&]() -> std::optional<ResumePoint> {
+    SQLite::Statement get(impl_->db, "SELECT t, state, frames, events, wall_seconds FROM checkpoint");
+    if (!get.executeStep()) return std::nullopt;
+    const Row row(get);
+    const SQLite::Column blob = get.getColumn(1);
+    const auto* bytes = static_cast<const std::byte*>(blob.getBlob());
+    ResumePoint point{row.real(0), {bytes, bytes + blob.getBytes()}, row.real(4), row.count(2), row.count(3)};
+    point.state = unsealed(point, run_identity(text("brink_version"), text("options"), text("world_hash")));
+    if (get.executeStep()) throw BadInput("more than one row");
+    return point;
+  });
+}
+
+void RunFile::require_same(const Scene& scene) const {
+  const std::string name = impl_->file.string();
+  if (const std::string was = meta("brink_version").value_or(""); was != version()) {
+    throw BadInput(
+        fmt::format("{}: written by brink {}, this is {}: the bits could differ", name, was, version()));
+  }
+  const std::string differ = reading(
+      impl_->file, "meta", [&] { return differences(meta("options").value_or(""), scene.options_json); });
+  if (!differ.empty())
+    throw BadInput(fmt::format("{}: --resume needs the options it was started with: {}", name, differ));
+  const std::string was = meta("world_hash").value_or(""), is = world_hash_text(scene.world);
+  if (was != is) {
+    throw BadInput(
+        fmt::format("{}: --resume needs the scene it was started with: bodies, sites, materials or forces of "
+                    "{} differ (hash was {}, is now {})",
+                    name, scene.path.string(), was, is));
+  }
+}
+
+namespace {
+
+/// Every table is made as Brink makes it: what is inserted finds its columns.
+void require_tables(const fs::path& file, SQLite::Database& db) {
+  SQLite::Database made(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  made.exec(kRunFileTables);
+  SQLite::Statement wanted(made, "SELECT name, sql FROM sqlite_master WHERE type = 'table'");
+  SQLite::Statement found(db, "SELECT sql FROM sqlite_master WHERE type = 'table' AND name = ?");
+  while (wanted.executeStep()) {
+    const std::string name = wanted.getColumn(0).getString();
+    found.reset();
+    found.bind(1, name);
+    if (!found.executeStep() || found.getColumn(0).getString() != wanted.getColumn(1).getString())
+      throw IoError(fmt::format("{}: table {}: is not as a run makes it", file.string(), name));
+  }
+}
+
+}  // namespace
+
+void RunFile::require_sound() const {
+  const auto pages = [&] { return impl_->db.execAndGet("PRAGMA integrity_check(1)").getString(); };
+  if (const std::string found = guarded(impl_->file, pages, kWhat); found != "ok")
+    throw IoError(fmt::format("{}: the database is damaged: {}", impl_->file.string(), found));
+  guarded(impl_->file, [&] { require_tables(impl_->file, impl_->db); });
+  const auto point = checkpoint();
+  const auto require = [&](const char* table, std::int64_t first, std::int64_t counted) {
+    reading(impl_->file, table, [&] {
+      SQLite::Statement get(impl_->db,
+                            fmt::format("SELECT count(*) FROM {} WHERE rowid BETWEEN ? AND ?", table));
+      get.bind(1, first);
+      get.bind(2, first + counted - 1);
+      get.executeStep();
+      if (get.getColumn(0).getInt64() != counted)
+        throw BadInput("rows are missing that the checkpoint counts");
+      return 0;
+    });
+  };
+  require("frame", 1, point ? point->frames : 0);
+  require("event", 0, point ? point->events : 0);
+}
+
+std::pair<double, double> RunFile::time_range() const {
+  return reading(impl_->file, "frame", [&] {
+    const std::pair range(impl_->frame_time(0), impl_->frame_time(impl_->some_frames() - 1));
+    if (range.first > range.second) throw BadInput("frames are not in the order of time");
+    return range;
+  });
+}
+
+RunFile::Frame RunFile::frame_at(double t) const {
+  return reading(impl_->file, "frame", [&] { return impl_->read_frame(impl_->frame_index(t)); });
+}
+
+RunFile::Frame RunFile::states_at(double t) const {
+  return reading(impl_->file, "frame", [&] {
+    const std::int64_t index = impl_->frame_index(t);
+    Frame a = impl_->read_frame(index);
+    if (t <= a.t || index + 1 >= impl_->frames()) return a;
+    const Frame b = impl_->read_frame(index + 1);
+    const double h = b.t - a.t, s = (t - a.t) / h;
+    if (!(h > 0.0)) throw BadInput("frames are not in the order of time");
+    for (std::size_t k = 0; k < a.states.size(); ++k) a.states[k] = between(a.states[k], b.states[k], h, s);
+    a.t = t;
+    return a;
+  });
+}
+
+}  // namespace brink

@@ -1,0 +1,358 @@
+#include "brink/scenes/run_file/run_file.h"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "brink/core/base/error.h"
+#include "brink/core/base/hash.h"
+#include "brink/core/world/world_hash.h"
+#include "brink/scenes/run_file/checkpoint_seal.h"
+#include "brink/scenes/run_file/database.h"
+#include "brink/scenes/run_file/shape_json.h"
+#include "brink/scenes/run_file/tables.h"
+#include "brink/scenes/version.h"
+
+namespace brink {
+namespace fs = std::filesystem;
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::int64_t kRowsPerCommit = 20'000;
+constexpr auto kTimePerCommit = std::chrono::milliseconds(250);
+constexpr int kBusyMilliseconds = 10'000;
+
+std::string hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
+std::string number(double x) { return fmt::format("{}", x); }
+
+/// Moves DIR/run.db, with its write-ahead log, to the first free DIR/run-<n>.db.
+void keep_earlier(const fs::path& file) {
+  if (!fs::exists(file)) return;
+  int n = 1;
+  const auto kept = [&] { return file.parent_path() / fmt::format("run-{}.db", n); };
+  while (fs::exists(kept())) ++n;
+  std::error_code error;
+  const fs::path wal = file.string() + "-wal";
+  if (fs::exists(wal)) fs::rename(wal, kept().string() + "-wal", error);
+  if (!error) fs::rename(file, kept(), error);
+  if (error) throw IoError(fmt::format("{}: cannot be moved aside: {}", file.string(), error.message()));
+  fs::remove(file.string() + "-shm", error);
+}
+
+}  // namespace
+
+struct RunFileRecorder::Impl {
+  RunFolder folder;
+  SQLite::Database db;
+  std::optional<SQLite::Statement> insert_frame, insert_event;
+  std::optional<SQLite::Transaction> transaction;
+  std::int64_t rows_waiting = 0;
+  Clock::time_point waiting_since;
+  std::int64_t frames = 0, events = 0;  // rows in the file
+  std::int64_t bodies = 0;
+  double wall_before = 0.0;
+  std::uint64_t identity = 0;
+  Clock::time_point opened = Clock::now();
+  std::optional<ResumePoint> resume_point;
+  std::string failed;  // why nothing more is written
+
+  Impl(RunFolder locked, Open how) : folder(std::move(locked)), db(opened_file(how)) {
+    db.exec("PRAGMA journal_mode = WAL");
+    // a log that a crash of the machine cuts short is still consistent
+    db.exec("PRAGMA synchronous = NORMAL");
+  }
+
+  SQLite::Database opened_file(Open how) const {
+    if (how == Open::fresh) keep_earlier(folder.file());
+    return open_database(folder.file(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyMilliseconds);
+  }
+
+  /// Runs f, which writes. After a failure the rows that waited are given up and nothing more is written.
+  template <class F>
+  void writing(F&& f) {
+    if (!failed.empty()) throw IoError(failed);
+    try {
+      guarded(folder.file(), f);
+    } catch (const IoError& e) {
+      failed = e.what();
+      transaction.reset();
+      throw;
+    }
+  }
+
+  void begin() {
+    if (transaction) return;
+    transaction.emplace(db);
+    waiting_since = Clock::now();
+  }
+  void commit() {
+    if (!transaction) return;
+    transaction->commit();
+    transaction.reset();
+    rows_waiting = 0;
+  }
+  void commit_if_due() {
+    if (!transaction) return;
+    if (rows_waiting >= kRowsPerCommit || Clock::now() - waiting_since >= kTimePerCommit) commit();
+  }
+  void put_checkpoint(const ResumePoint& row, std::span<const std::byte> snapshot);
+  double wall() const { return wall_before + std::chrono::duration<double>(Clock::now() - opened).count(); }
+
+  void set_meta(const std::string& key, const std::string& value) {
+    SQLite::Statement put(db, "INSERT OR REPLACE INTO meta VALUES (?, ?)");
+    put.bind(1, key);
+    put.bind(2, value);
+    put.exec();
+  }
+
+  void write_meta(const Scene& scene);
+  void write_bodies(const World& world);
+  void write_sites(const World& world);
+  void start_fresh(const Scene& scene);
+  void start_again(const Scene& scene);
+  void drop_rows_after_checkpoint(const Scene& scene);
+  void drop_early_end_frame(double interval);
+  void prepare_inserts();
+};
+
+void RunFileRecorder::Impl::write_meta(const Scene& scene) {
+  set_meta("schema_version", std::to_string(kRunFileSchema));
+  set_meta("brink_version", std::string(version()));
+  set_meta("scene", scene.path.string());
+  set_meta("title", scene.world.title);
+  set_meta("options", scene.options_json);
+  set_meta("world_hash", world_hash_text(scene.world));
+  set_meta("duration", number(scene.duration));
+  set_meta("termination", "running");
+  set_meta("end_time", "0");
+  set_meta("state_hash", "");
+  set_meta("wall_seconds", "0");
+}
+
+void RunFileRecorder::Impl::write_bodies(const World& world) {
+  SQLite::Statement put(db, "INSERT INTO body VALUES (?, ?, ?, ?, ?)");
+  const Outline* last = nullptr;  // copies share an outline: write its JSON once
+  std::string shape;
+  for (std::size_t id = 0; id < world.bodies.size(); ++id) {
+    const Body& body = world.bodies[id];
+    if (body.outline.get() != last) {
+      last = body.outline.get();
+      shape = outline_to_json(*last);
+    }
+    put.bind(1, static_cast<std::int64_t>(id));
+    put.bind(2, body.name);
+    put.bind(3, body.mass);
+    put.bind(4, body.inertia);
+    put.bind(5, shape);
+    put.exec();
+    put.reset();
+  }
+}
+
+void RunFileRecorder::Impl::write_sites(const World& world) {
+  SQLite::Statement put(db, "INSERT INTO site VALUES (?, ?, NULL, ?, ?)");
+  for (std::size_t id = 0; id < world.sites.size(); ++id) {
+    const FixedSite& site = world.sites[id];
+    put.bind(1, static_cast<std::int64_t>(id));
+    put.bind(2, site.name);
+    put.bind(3, site.kind);
+    put.bind(4, fixed_site_to_json(site));
+    put.exec();
+    put.reset();
+  }
+}
+
+void RunFileRecorder::Impl::start_fresh(const Scene& scene) {
+  begin();
+  db.exec(kRunFileTables);
+  write_meta(scene);
+  write_bodies(scene.world);
+  write_sites(scene.world);
+  commit();
+}
+
+/// A run that was stopped recorded where it stopped. Gone on with, it has no frame there unless the frame
+/// clock says so.
+void RunFileRecorder::Impl::drop_early_end_frame(double interval) {
+  const double t = resume_point ? resume_point->t : 0.0;
+  const bool on_the_clock = t == 0.0 || (interval > 0.0 && std::round(t / interval) * interval == t);
+  if (on_the_clock) return;
+  SQLite::Statement drop(db, "DELETE FROM frame WHERE t = ? AND rowid > ?");
+  drop.bind(1, t);
+  drop.bind(2, frames - bodies);
+  frames -= drop.exec();
+}
+
+void RunFileRecorder::Impl::drop_rows_after_checkpoint(const Scene& scene) {
+  if (resume_point) {
+    frames = resume_point->frames;
+    events = resume_point->events;
+    wall_before = resume_point->wall_seconds;
+  }
+  db.exec(fmt::format("DELETE FROM frame WHERE rowid > {}", frames));
+  db.exec(fmt::format("DELETE FROM event WHERE rowid >= {}", events));  // seq counts from 0
+  drop_early_end_frame(scene.output.frame_interval);
+  db.exec("DELETE FROM checkpoint");
+  if (!resume_point) return;
+  resume_point->frames = frames;
+  put_checkpoint(*resume_point, resume_point->state);
+}
+
+/// All of it in one transaction: killed before its next checkpoint, the run goes on from the same rows again.
+void RunFileRecorder::Impl::start_again(const Scene& scene) {
+  if (!db.tableExists("meta")) return start_fresh(scene);
+  begin();
+  drop_rows_after_checkpoint(scene);
+  db.exec("DELETE FROM work");
+  set_meta("options", scene.options_json);  // the same, but for limits
+  set_meta("termination", "running");
+  set_meta("duration", number(scene.duration));
+  commit();
+}
+
+void RunFileRecorder::Impl::put_checkpoint(const ResumePoint& row, std::span<const std::byte> snapshot) {
+  const std::vector<std::byte> state = sealed(row, snapshot, identity);
+  db.exec("DELETE FROM checkpoint");
+  SQLite::Statement put(db, "INSERT INTO checkpoint VALUES (?, ?, ?, ?, ?)");
+  put.bind(1, row.t);
+  put.bindNoCopy(2, state.data(), static_cast<int>(state.size()));
+  put.bind(3, row.frames);
+  put.bind(4, row.events);
+  put.bind(5, row.wall_seconds);
+  put.exec();
+}
+
+void RunFileRecorder::Impl::prepare_inserts() {
+  insert_frame.emplace(db, "INSERT INTO frame VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+  insert_event.emplace(db, "INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+}
+
+void RunFileRecorder::open(RunFolder folder, const Scene& scene, Open how, std::optional<ResumePoint> point) {
+  const fs::path file = folder.file();
+  guarded(file, [&] {
+    impl_ = std::make_unique<Impl>(std::move(folder), how);
+    impl_->identity = run_identity(std::string(version()), scene.options_json, world_hash_text(scene.world));
+    impl_->bodies = static_cast<std::int64_t>(scene.world.bodies.size());
+    impl_->resume_point = std::move(point);
+    how == Open::fresh ? impl_->start_fresh(scene) : impl_->start_again(scene);
+    impl_->prepare_inserts();
+  });
+}
+
+RunFileRecorder::RunFileRecorder(RunFolder folder, const Scene& scene, Open how,
+                                 std::optional<ResumePoint> point) {
+  open(std::move(folder), scene, how, std::move(point));
+}
+
+RunFileRecorder::RunFileRecorder(const fs::path& dir, const Scene& scene, Open how) {
+  RunFolder folder(dir);
+  std::optional<ResumePoint> point;
+  if (how == Open::resume) point = folder.resume_point(scene);
+  open(std::move(folder), scene, how, std::move(point));
+}
+
+RunFileRecorder::~RunFileRecorder() {
+  if (!impl_ || !impl_->failed.empty()) return;
+  try {
+    impl_->commit();
+  } catch (const std::exception&) {
+    // the file stays at its last commit, which is whole; a destructor has nobody to tell
+  }
+}
+
+const fs::path& RunFileRecorder::file() const { return impl_->folder.file(); }
+const std::optional<ResumePoint>& RunFileRecorder::resume_point() const { return impl_->resume_point; }
+
+void RunFileRecorder::frame(double t, std::span<const BodyState> states) {
+  impl_->writing([&] {
+    impl_->begin();
+    SQLite::Statement& put = *impl_->insert_frame;
+    put.bind(1, t);
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      const BodyState& s = states[k];
+      put.bind(2, static_cast<std::int64_t>(k));
+      put.bind(3, s.pose.position.x());
+      put.bind(4, s.pose.position.y());
+      put.bind(5, s.pose.angle);
+      put.bind(6, s.twist.velocity.x());
+      put.bind(7, s.twist.velocity.y());
+      put.bind(8, s.twist.omega);
+      put.exec();
+      put.reset();
+    }
+    impl_->frames += static_cast<std::int64_t>(states.size());
+    impl_->rows_waiting += static_cast<std::int64_t>(states.size());
+    impl_->commit_if_due();
+  });
+}
+
+void RunFileRecorder::event(const Event& event) {
+  impl_->writing([&] {
+    impl_->begin();
+    const Contact& c = event.contact;
+    SQLite::Statement& put = *impl_->insert_event;
+    const auto id_or_null = [&put](int column, int id) { id < 0 ? put.bind(column) : put.bind(column, id); };
+    put.bind(1, static_cast<std::int64_t>(event.seq));
+    put.bind(2, c.time);
+    put.bindNoCopy(3, to_string(event.kind));
+    id_or_null(4, c.body);
+    id_or_null(5, c.other_body);
+    id_or_null(6, c.other_site);
+    const double reals[] = {c.point.x(),     c.point.y(),     c.normal.x(),    c.normal.y(),
+                            c.closing_speed, event.impulse_n, event.impulse_t, c.gap};
+    for (int i = 0; i < 8; ++i) put.bind(7 + i, reals[i]);
+    id_or_null(15, c.site);
+    id_or_null(16, c.sample);
+    put.bind(17, c.sample_on_body ? 1 : 0);
+    put.bind(18, c.time_low);
+    put.exec();
+    put.reset();
+    impl_->events = static_cast<std::int64_t>(event.seq) + 1;
+    ++impl_->rows_waiting;
+    impl_->commit_if_due();
+  });
+}
+
+void RunFileRecorder::checkpoint(double t, const std::vector<std::byte>& state) {
+  impl_->writing([&] {
+    impl_->begin();
+    impl_->put_checkpoint({t, {}, impl_->wall(), impl_->frames, impl_->events}, state);
+    impl_->set_meta("end_time", number(t));
+    impl_->set_meta("wall_seconds", number(impl_->wall()));
+    impl_->commit();
+  });
+}
+
+void RunFileRecorder::poll() {
+  impl_->writing([&] { impl_->commit_if_due(); });
+}
+
+void RunFileRecorder::finish(const RunSummary& summary, const std::string& summary_json) {
+  impl_->writing([&] {
+    impl_->begin();
+    impl_->set_meta("termination", summary.termination_text());
+    impl_->set_meta("end_time", number(summary.end_time));
+    impl_->set_meta("state_hash", hex(summary.state_hash));
+    impl_->set_meta("wall_seconds", number(summary.wall_seconds));
+    impl_->set_meta("summary", summary_json);
+    SQLite::Statement put(impl_->db, "INSERT OR REPLACE INTO work VALUES (?, ?, ?)");
+    WorkCounters::for_each(summary.work, [&](const char* name, auto value, const char* unit) {
+      put.bind(1, name);
+      put.bind(2, static_cast<double>(value));
+      put.bind(3, unit);
+      put.exec();
+      put.reset();
+    });
+    impl_->commit();
+    impl_->insert_frame.reset();
+    impl_->insert_event.reset();
+    impl_->db.tryExec(
+        "PRAGMA journal_mode = DELETE");  // one plain file; not possible while somebody reads it
+  });
+}
+
+}  // namespace brink

@@ -1,0 +1,172 @@
+#include "brink/scenes/run_file/run_scene.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "brink/core/base/printable.h"
+#include "brink/scenes/files/written_file.h"
+#include "brink/scenes/run_file/run_file.h"
+#include "brink/scenes/run_file/trace_file.h"
+#include "brink/scenes/scene/tables.h"
+#include "brink/scheduler/simulator/simulator.h"
+
+namespace brink {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// The limits of `duration`, and those of the frames, for a time given on the command line.
+double end_of(const Scene& scene, const RunRequest& request) {
+  if (!request.until) return scene.duration;
+  const auto refuse = [&](const std::string& why) {
+    throw SceneFaults(scene.path, {{0, 0, "--until: " + why, {}}});
+  };
+  const double until = *request.until;
+  if (!duration_range().holds(until))
+    refuse("out of range; given " + number_text(until) + ", allowed: " + duration_range().text());
+  if (const std::string why = too_many_frames(scene.output, until, scene.world.bodies.size()); !why.empty())
+    refuse(why);
+  return until;
+}
+
+/// The report of a run file that has already got to `until`, or nothing.
+std::optional<RunReport> finished_report(const RunFolder& folder, const RunFile& run, double until) {
+  if (run.meta("termination") != "reached_end") return std::nullopt;
+  RunReport report;
+  report.summary.end_time = run.end_time();
+  if (report.summary.end_time < until) return std::nullopt;
+  report.summary.termination = Termination::reached_end;
+  report.json = run.summary();
+  if (const auto j = nlohmann::json::parse(report.json, nullptr, false);
+      j.is_object() && j.contains("groups_taken") && j["groups_taken"].is_number_unsigned())
+    report.summary.groups_taken = j["groups_taken"];
+  report.file = folder.file();
+  report.finished_before = true;
+  return report;
+}
+
+/// The same of the run file in `folder`, if it is of this scene.
+std::optional<RunReport> finished_before(const Scene& scene, const RunFolder& folder, double until) {
+  std::optional<RunReport> report;
+  folder.read([&](const RunFile& run) {
+    run.require_same(scene);
+    report = finished_report(folder, run, until);
+  });
+  return report;
+}
+
+RunOptions run_options(const Scene& scene, const RunRequest& request, double until,
+                       RunFileRecorder& recorder) {
+  RunOptions options;
+  options.until = until;
+  options.frame_interval = scene.output.frame_interval;
+  options.checkpoint_seconds = request.checkpoint_seconds;
+  options.first_frame = !recorder.resume_point();
+  options.record_events = scene.output.events;
+  options.progress = [&recorder, &request](double t, std::uint64_t collisions) {
+    recorder.poll();
+    return !request.progress || request.progress(t, collisions);
+  };
+  return options;
+}
+
+/// Takes the simulator to where the run file has got to.
+void restore(Simulator& simulator, const RunFolder& folder, const ResumePoint& point, double until) {
+  if (until < point.t)
+    throw BadInput(
+        fmt::format("--until: {} given, but the run file is already at t = {} s; allowed: that or later",
+                    until, point.t));
+  try {
+    simulator.restore(point.state);
+  } catch (const BadInput& e) {
+    throw IoError(fmt::format("{}: table checkpoint: {}", folder.file().string(), e.what()));
+  }
+}
+
+/// What the run file says of a run that an exception ended.
+void close_as_failed(RunFileRecorder& recorder, const Simulator& simulator, const std::string& why) {
+  RunSummary summary;
+  summary.termination = Termination::failed;
+  summary.why = why;
+  summary.end_time = simulator.time();
+  summary.state_hash = simulator.state_hash();
+  try {
+    recorder.finish(summary, summary_to_json(summary, 0.0));
+  } catch (const IoError&) {
+    // the file stays at its last commit; what ended the run is told by the exception that did
+  }
+}
+
+}  // namespace
+
+RunReport run_scene(const Scene& scene, const RunRequest& request) {
+  const auto start = Clock::now();
+  const double until = end_of(scene, request);
+  refuse_overwriting(request.trace, "--trace", {scene.path, request.dir / "run.db"});
+  std::optional<RunFolder> folder;
+  if (request.resume) {
+    folder.emplace(request.dir);
+    if (auto report = finished_before(scene, *folder, until)) return *report;
+  }
+  Simulator simulator(scene.world, scene.solver);
+  if (const std::string why = simulator.start_fault(); !why.empty())
+    throw SceneFaults(scene.path, {{1, 1, printable(why), {}}});
+  std::optional<ResumePoint> point;
+  if (request.resume) point = folder->resume_point(scene);
+  if (point) restore(simulator, *folder, *point, until);
+  std::optional<TraceFile> trace;
+  if (!request.trace.empty()) trace.emplace(request.trace, simulator.world());
+  if (!folder) folder.emplace(request.dir);
+  RunFileRecorder recorder(std::move(*folder), scene,
+                           request.resume ? RunFileRecorder::Open::resume : RunFileRecorder::Open::fresh,
+                           std::move(point));
+  RunReport report;
+  report.file = recorder.file();
+  if (recorder.resume_point()) report.resumed_from = recorder.resume_point()->t;
+  const double load_seconds = request.load_seconds + seconds_since(start);
+  RunOptions options = run_options(scene, request, until, recorder);
+  options.trace = trace ? &*trace : nullptr;
+  if (request.begins) request.begins();
+  try {
+    report.summary = simulator.run(options, &recorder);
+  } catch (const std::exception& e) {
+    close_as_failed(recorder, simulator, e.what());
+    throw;
+  }
+  if (recorder.resume_point()) report.summary.wall_seconds += recorder.resume_point()->wall_seconds;
+  report.json = summary_to_json(report.summary, load_seconds);
+  recorder.finish(report.summary, report.json);
+  if (trace) trace->finish();
+  return report;
+}
+
+std::string summary_to_json(const RunSummary& summary, double load_seconds) {
+  nlohmann::ordered_json work;
+  WorkCounters::for_each(summary.work,
+                         [&work](const char* name, auto value, const char*) { work[name] = value; });
+  const nlohmann::ordered_json j = {{"termination", summary.termination_text()},
+                                    {"end_time", summary.end_time},
+                                    {"collisions", summary.collisions},
+                                    {"wall_seconds", summary.wall_seconds},
+                                    {"load_seconds", load_seconds},
+                                    {"energy_initial", summary.energy_initial},
+                                    {"energy_final", summary.energy_final},
+                                    {"momentum_x", summary.momentum.x()},
+                                    {"momentum_y", summary.momentum.y()},
+                                    {"angular_momentum", summary.angular_momentum},
+                                    {"max_overlap", summary.max_overlap},
+                                    {"groups_taken", summary.groups_taken},
+                                    {"energy_taken", summary.energy_taken},
+                                    {"state_hash", fmt::format("{:016x}", summary.state_hash)},
+                                    {"work", std::move(work)}};
+  return j.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+}  // namespace brink

@@ -1,0 +1,66 @@
+#include "brink/scenes/run_file/trace_file.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "brink/core/base/error.h"
+#include "brink/scenes/files/written_file.h"
+
+namespace brink {
+namespace {
+
+std::string json_text(const std::string& text) {
+  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+bool moves_a_body(TraceKind kind) {
+  return kind == TraceKind::advance || kind == TraceKind::back_up || kind == TraceKind::roll_back;
+}
+
+}  // namespace
+
+TraceFile::TraceFile(const std::filesystem::path& file, const World& world)
+    : file_(file), out_(file), begin_(std::chrono::steady_clock::now()) {
+  if (!out_) throw IoError(fmt::format("{}: cannot be written", file.string()));
+  out_ << "[\n"
+       << R"({"ph":"M","name":"process_name","pid":1,"args":{"name":)" << json_text(world.title) << "}}";
+  for (const Body& b : world.bodies) owners_.push_back(json_text(b.name));
+  for (std::size_t k = 0; k < world.bodies.size(); ++k) name_lane(static_cast<int>(k));
+  for (const FixedSite& s : world.sites) owners_.push_back(json_text(s.name));
+}
+
+void TraceFile::name_lane(int body) {
+  out_ << fmt::format(
+      ",\n"
+      R"({{"ph":"M","name":"thread_name","pid":1,"tid":{0},"args":{{"name":{1}}}}})"
+      ",\n"
+      R"({{"ph":"M","name":"thread_sort_index","pid":1,"tid":{0},"args":{{"sort_index":{0}}}}})",
+      body, owners_[static_cast<std::size_t>(body)]);
+}
+
+void TraceFile::mark(const TraceMark& m) {
+  const double now = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  std::string arguments = fmt::format(R"("from":{},"to":{})", m.from, m.to);
+  if (m.other >= 0) arguments += fmt::format(R"(,"other":{})", owners_[static_cast<std::size_t>(m.other)]);
+  const std::string how = m.seconds > 0.0 ? fmt::format(R"("ph":"X","dur":{:.3f})", 1e6 * m.seconds)
+                                          : std::string(R"("ph":"i","s":"t")");
+  out_ << fmt::format(
+      ",\n"
+      R"({{"name":"{}",{},"ts":{:.3f},"pid":1,"tid":{},"args":{{{}}}}})",
+      to_string(m.kind), how, 1e6 * (now - m.seconds), m.body, arguments);
+  if (!moves_a_body(m.kind) || m.to == shown_time_) return;
+  shown_time_ = m.to;
+  out_ << fmt::format(
+      ",\n"
+      R"({{"name":"simulated time","ph":"C","ts":{:.3f},"pid":1,"args":{{"s":{}}}}})",
+      1e6 * now, m.to);
+}
+
+void TraceFile::finish() {
+  out_ << "\n]\n";
+  out_.close();
+  if (!out_) throw_not_written(file_);
+}
+
+}  // namespace brink

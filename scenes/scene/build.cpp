@@ -1,0 +1,315 @@
+#include "brink/scenes/scene/build.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "brink/scenes/files/text_file.h"
+
+namespace brink {
+namespace {
+
+class SceneBuilder {
+ public:
+  SceneBuilder(const FileTable& file, FaultList& faults)
+      : file_(file), faults_(faults), shapes_(file.field.curve_tolerance, faults) {}
+
+  Scene build() {
+    settings();
+    materials();
+    std::vector<PlannedThing> sites = plan(file_.sites, false), bodies = plan(file_.bodies, true);
+    count(bodies);
+    if (faults_.empty()) Placer(file_.world.seed, scene_.world.periods, faults_).place(sites, bodies);
+    const bool placed = faults_.empty();
+    if (placed) {
+      add_sites(sites);
+      add_bodies(bodies);
+    } else {  // the names that forces use can be checked all the same
+      scene_.world.bodies.resize(static_cast<std::size_t>(names_.count()));
+      origins_.assign(scene_.world.bodies.size(), Vec2::Zero());
+    }
+    build_forces(file_.forces, names_, origins_, placed, scene_.world, faults_);
+    for (std::string& note : shapes_.take_notes()) scene_.notes.push_back(std::move(note));
+    if (faults_.empty()) last_check();
+    if (faults_.empty()) check_frames();
+    return std::move(scene_);
+  }
+
+ private:
+  void settings() {
+    World& world = scene_.world;
+    world.title = file_.title;
+    world.gravity = file_.world.gravity;
+    world.periods.size = file_.world.periodic;
+    world.restitution_rule = combine_rule(file_.world.restitution_rule);
+    world.friction_rule = combine_rule(file_.world.friction_rule);
+    scene_.duration = file_.world.duration;
+    scene_.output = file_.output;
+    scene_.solver = file_.solver;
+    scene_.solver.seed = file_.world.seed;
+    scene_.solver.field = file_.field.options;
+    std::string error;
+    if (faults_.empty() && !scene_.solver.is_valid(&error)) faults_.add(file_.solver_place, error);
+    options_json();
+  }
+
+  void check_frames() {
+    const std::size_t bodies = scene_.world.bodies.size();
+    if (const std::string why = too_many_frames(scene_.output, scene_.duration, bodies); !why.empty())
+      faults_.add(file_.output_place, "output: " + why);
+  }
+
+  void options_json() {
+    Json json;
+    json["world"] = world_schema().json(file_.world);
+    json["solver"] = solver_schema().json(scene_.solver);
+    json["field"] = field_schema().json(file_.field);
+    json["output"] = output_schema().json(scene_.output);
+    scene_.options_json = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  }
+
+  void materials() {
+    for (const MaterialTable& entry : file_.materials) {
+      if (entry.material.name == scene_.world.materials[0].name)
+        scene_.world.materials[0] = entry.material;
+      else
+        scene_.world.materials.push_back(entry.material);
+    }
+  }
+
+  int material(const Given<std::string>& name) {
+    if (!name.given) return 0;
+    std::vector<std::string> words;
+    for (std::size_t k = 0; k < scene_.world.materials.size(); ++k) {
+      if (scene_.world.materials[k].name == name.value) return static_cast<int>(k);
+      words.push_back(scene_.world.materials[k].name);
+    }
+    faults_.add(name.where, "no material is called " + in_quotes(name.value) + "; the nearest name is \"" +
+                                nearest_word(name.value, words) + "\"");
+    return 0;
+  }
+
+  std::vector<PlannedThing> plan(const std::vector<ThingTable>& tables, bool body) {
+    std::vector<PlannedThing> out;
+    std::set<std::string> taken;
+    for (const ThingTable& table : tables) {
+      PlannedThing thing;
+      thing.table = &table;
+      thing.ordinal = 2 * out.size() + (body ? 1 : 0);
+      thing.name =
+          table.name.given ? table.name.value : (body ? "body" : "site") + std::to_string(out.size());
+      if (!taken.insert(thing.name).second)
+        faults_.add(table.name.given ? table.name.where : table.place,
+                    "name: is used twice; given " + in_quotes(thing.name) + ", allowed: a name of its own");
+      if (thing.name.empty())
+        faults_.add(table.name.where, "name: is empty; given \"\", allowed: one character or more");
+      thing.material = material(table.material);
+      check_pairs(table);
+      if (const auto shape = shapes_.build(table, thing.name, body)) {
+        thing.shape = *shape;
+        if (body) thing.body = body_of(thing);
+      }
+      if (!body) thing.motion = build_motion(table.motion, thing.name, file_.world.duration, faults_);
+      thing.pose = pose(table, thing.shape);
+      out.push_back(std::move(thing));
+    }
+    return out;
+  }
+
+  // Keys that say the same thing twice.
+  void check_pairs(const ThingTable& table) {
+    if (table.angle.given && table.angle_deg.given)
+      faults_.add(table.angle_deg.where,
+                  "angle is given twice; given angle and angle_deg, allowed: one of them");
+    if (table.mass.given && table.density.given)
+      faults_.add(table.density.where, "mass is given twice; given mass and density, allowed: one of them");
+    if (table.grid.given && table.scatter.given)
+      faults_.add(table.scatter.where,
+                  "copies are asked for twice; given grid and scatter, allowed: one of them");
+    if (table.scatter.given && table.position.given)
+      scene_.notes.push_back("position of " + in_quotes(table.name.value) +
+                             " is not used: scatter places the copies");
+  }
+
+  static Pose pose(const ThingTable& table, const BuiltShape& shape) {
+    Pose pose;
+    pose.position = table.position.value;
+    pose.angle =
+        table.angle_deg.given ? table.angle_deg.value * (std::numbers::pi / 180.0) : table.angle.value;
+    const bool keep_origin = table.centered.given && !table.centered.value;
+    if (keep_origin) pose.position = Frame(pose).to_world(shape.shift);
+    return pose;
+  }
+
+  static bool is_copied(const ThingTable& table) { return table.grid.given || table.scatter.given; }
+
+  // Gives every body its place among the names.
+  void count(const std::vector<PlannedThing>& things) {
+    std::int64_t total = 0;
+    for (const PlannedThing& thing : things) {
+      const ThingTable& table = *thing.table;
+      const std::int64_t copies =
+          table.scatter.given ? table.scatter.value.count : table.grid.value.columns * table.grid.value.rows;
+      if ((total += copies) > kMostCopies)
+        return faults_.add(table.scatter.given ? table.scatter.where : table.grid.where,
+                           "too many copies; given " + std::to_string(total) +
+                               " bodies so far, allowed: " + std::to_string(kMostCopies));
+      names_.add(thing.name, static_cast<int>(copies), is_copied(table));
+    }
+  }
+
+  static std::string copy_name(const PlannedThing& thing, std::size_t k) {
+    return is_copied(*thing.table) ? thing.name + '[' + std::to_string(k) + ']' : thing.name;
+  }
+
+  void add_sites(const std::vector<PlannedThing>& things) {
+    for (const PlannedThing& thing : things)
+      for (std::size_t k = 0; k < thing.copies.size(); ++k) {
+        FixedSite site;
+        site.name = copy_name(thing, k);
+        site.kind = thing.table->shapes[0].kind;
+        site.outline = thing.shape.outline;
+        site.pose = thing.copies[k].pose;
+        site.material = thing.material;
+        site.motion = thing.motion;
+        scene_.world.sites.push_back(std::move(site));
+      }
+  }
+
+  void add_bodies(const std::vector<PlannedThing>& things) {
+    for (const PlannedThing& thing : things) {
+      for (std::size_t k = 0; k < thing.copies.size(); ++k) {
+        Body body = thing.body;
+        body.name = copy_name(thing, k);
+        body.initial = thing.copies[k];
+        hold(body);
+        scene_.world.bodies.push_back(std::move(body));
+        const bool keep_origin = thing.table->centered.given && !thing.table->centered.value;
+        origins_.push_back(keep_origin ? Vec2(-thing.shape.shift) : Vec2(Vec2::Zero()));
+      }
+    }
+  }
+
+  Body body_of(const PlannedThing& thing) {
+    const ThingTable& table = *thing.table;
+    const Measure& measure = thing.shape.measure;
+    Body body;
+    body.outline = thing.shape.outline;
+    body.material = thing.material;
+    body.mass = table.density.given ? table.density.value * measure.size
+                : table.mass.given  ? table.mass.value
+                                    : 1.0;
+    body.inertia =
+        table.inertia.given ? table.inertia.value : body.mass / measure.size * measure.second_moment;
+    for (const std::string& word : table.lock.value) {
+      (word == "x" ? body.lock_x : word == "y" ? body.lock_y : body.lock_angle) = true;
+    }
+    body.sampling = sampling(thing);
+    check_sampling(body, table);
+    check_inertia(body, table, thing.name);
+    check_locks(body, table);
+    return body;
+  }
+
+  void check_inertia(const Body& body, const ThingTable& table, const std::string& name) {
+    const auto sound = [](double x) { return std::isfinite(x) && x >= 1e-100 && x <= 1e100; };
+    if (sound(body.mass) && sound(body.inertia)) return;
+    faults_.add(table.place, in_quotes(name) + ": mass or inertia is out of range; given by its shape " +
+                                 number_text(body.mass) + " kg and " + number_text(body.inertia) +
+                                 " kg m^2, allowed: 1e-100 to 1e100; give mass and inertia");
+  }
+
+  void check_locks(const Body& body, const ThingTable& table) {
+    const bool moves =
+        (body.lock_x && table.velocity.value.x() != 0.0) || (body.lock_y && table.velocity.value.y() != 0.0);
+    if (moves)
+      faults_.add(table.velocity.where, "velocity: a held coordinate does not move; given [" +
+                                            number_text(table.velocity.value.x()) + ", " +
+                                            number_text(table.velocity.value.y()) +
+                                            "], allowed: 0 where lock holds");
+    if (body.lock_angle && table.angular_velocity.value != 0.0)
+      faults_.add(table.angular_velocity.where, "angular_velocity: a held angle does not turn; given " +
+                                                    number_text(table.angular_velocity.value) +
+                                                    ", allowed: 0");
+  }
+
+  // Speeds drawn by a scatter stop where a lock holds.
+  static void hold(Body& body) {
+    Twist& twist = body.initial.twist;
+    if (body.lock_x) twist.velocity.x() = 0.0;
+    if (body.lock_y) twist.velocity.y() = 0.0;
+    if (body.lock_angle) twist.omega = 0.0;
+  }
+
+  Sampling sampling(const PlannedThing& thing) const {
+    static const std::vector<std::string> kinds{"vertices", "boundary", "volume", "random", "raster"};
+    const SamplingTable& table = thing.table->sampling.value;
+    Sampling sampling;
+    sampling.kind =
+        static_cast<Sampling::Kind>(std::find(kinds.begin(), kinds.end(), table.kind) - kinds.begin());
+    sampling.spacing = table.spacing;
+    sampling.count = static_cast<int>(table.count);
+    sampling.seed = file_.world.seed + 0x9e3779b97f4a7c15ULL * thing.ordinal;  // a stream of its own
+    if (thing.table->sampling.given) return sampling;
+    sampling.points = thing.table->shapes[0].samples;
+    if (!sampling.points.empty()) sampling.kind = Sampling::Kind::file;
+    for (Vec2& p : sampling.points) p -= thing.shape.shift;
+    return sampling;
+  }
+
+  void check_sampling(const Body& body, const ThingTable& table) {
+    if (!table.sampling.given) return;
+    try {
+      make_particles(*body.outline, body.sampling);
+    } catch (const BadInput& error) {
+      faults_.add(table.sampling.where, error.what());
+    }
+  }
+
+  // Whatever the tables did not catch: placed at the entry that the message names.
+  void last_check() {
+    try {
+      scene_.world.check();
+    } catch (const BadInput& error) {
+      const std::string message = error.what();
+      faults_.add(place_named_in(message), message);
+    }
+  }
+
+  Where place_named_in(const std::string& message) const {
+    for (const auto* things : {&file_.bodies, &file_.sites})
+      for (const ThingTable& table : *things)
+        if (table.name.given && message.find('"' + table.name.value) != std::string::npos) return table.place;
+    return {1, 1};
+  }
+
+  const FileTable& file_;
+  FaultList& faults_;
+  ShapeBuilder shapes_;
+  Scene scene_;
+  BodyNames names_;
+  std::vector<Vec2> origins_;
+};
+
+}  // namespace
+
+Scene build_scene(const FileTable& file, FaultList& faults) { return SceneBuilder(file, faults).build(); }
+
+Scene parse_scene(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
+  TomlDocument document(text, overrides);
+  if (!document.readable()) document.faults().throw_if_any(name);
+  FileTable file;
+  file_schema().read(document.root(), {1, 1}, document, file);
+  take_sample_files(file, std::filesystem::path(name).parent_path(), document.faults());
+  Scene scene = build_scene(file, document.faults());
+  document.faults().throw_if_any(name);
+  scene.path = name;
+  return scene;
+}
+
+Scene load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  return parse_scene(text_of_file(file), file.string(), overrides);
+}
+
+}  // namespace brink

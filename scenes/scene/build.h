@@ -1,0 +1,117 @@
+#pragma once
+/// From the tables of a scene file to a Scene: one builder for each part. Internal to the scene reader.
+
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "brink/scenes/scene/tables.h"
+
+namespace brink {
+
+/// Bodies and sites that one scene may have.
+inline constexpr int kMostCopies = 1'000'000;
+
+/// A built shape, shared by everything that asks for the same one.
+struct BuiltShape {
+  std::shared_ptr<const Outline> outline;
+  Measure measure;            ///< in the outline's frame
+  Vec2 shift = Vec2::Zero();  ///< of the outline's origin, in the frame of the file's coordinates [m]
+};
+
+/// Builds shapes, each distinct one once.
+class ShapeBuilder {
+ public:
+  ShapeBuilder(double curve_tolerance, FaultList& faults)
+      : curve_tolerance_(curve_tolerance), faults_(faults) {}
+
+  /// The outline of `thing`; empty after a fault. A body's is about its centre of mass.
+  std::optional<BuiltShape> build(const ThingTable& thing, const std::string& name, bool body);
+  /// Achieved deviations of fitted curves, for people.
+  std::vector<std::string> take_notes() { return std::move(notes_); }
+
+ private:
+  bool fits(const ThingTable& thing, const ShapeSpec& spec, bool body);
+  std::optional<BuiltShape> make(const ThingTable& thing, const ShapeSpec& spec, const ShapeContext& context,
+                                 bool about_centre);
+
+  double curve_tolerance_;
+  FaultList& faults_;
+  std::map<std::string, BuiltShape> built_;
+  std::vector<std::string> notes_;
+};
+
+using PrescribedPath = decltype(FixedSite::motion);
+
+/// Everything of one file entry that is the same for its copies, and the copies' poses.
+struct PlannedThing {
+  const ThingTable* table = nullptr;
+  std::string name;
+  BuiltShape shape;
+  int material = 0;
+  Body body;                      ///< bodies: all but name and state
+  PrescribedPath motion;          ///< sites
+  Pose pose;                      ///< of the outline's frame, before copying
+  std::vector<BodyState> copies;  ///< one, or one a copy; twists are zero for sites
+  std::size_t ordinal = 0;        ///< place in the file, for its random stream
+};
+
+/// Places the copies of things: grids, and scatters without overlaps.
+class Placer {
+ public:
+  Placer(std::uint64_t seed, const Periods& periods, FaultList& faults)
+      : seed_(seed), periods_(periods), faults_(faults) {}
+  /// Fills PlannedThing::copies of everything: first what stands where it is told, then scatters in file
+  /// order, sites before bodies.
+  void place(std::vector<PlannedThing>& sites, std::vector<PlannedThing>& bodies);
+
+ private:
+  void stand(PlannedThing& thing);
+  void scatter(PlannedThing& thing, const std::vector<PlannedThing>& sites,
+               const std::vector<PlannedThing>& bodies);
+
+  std::uint64_t seed_;
+  Periods periods_;
+  FaultList& faults_;
+  std::size_t total_ = 0;
+};
+
+/// Names of bodies as forces may use them.
+class BodyNames {
+ public:
+  /// The next `count` bodies. `copied`: they are called NAME[k].
+  void add(const std::string& name, int count, bool copied);
+  int count() const { return count_; }
+  /// Every body called `name`, or every copy of it; a fault and empty if there is none.
+  std::vector<int> find(const std::string& name, const Where& where, FaultList& faults) const;
+  /// Exactly one body; a fault and -1 otherwise.
+  int find_one(const std::string& name, const Where& where, FaultList& faults) const;
+
+ private:
+  struct Entry {
+    int first = 0, count = 1;
+    bool copied = false;
+  };
+  std::map<std::string, Entry> entries_;
+  std::vector<std::string> words_;
+  int count_ = 0;
+};
+
+/// Turns force tables into World::forces. `origins`: where the file's frame of each body lies in its
+/// outline's frame. `placed` false: bodies are not where they start, and what depends on that is not checked.
+void build_forces(const std::vector<ForceTable>& tables, const BodyNames& names,
+                  const std::vector<Vec2>& origins, bool placed, World& world, FaultList& faults);
+
+/// The motion of a site.
+PrescribedPath build_motion(const Given<MotionTable>& table, const std::string& site, double duration,
+                            FaultList& faults);
+
+/// Reads the classic text data files that shapes name, from `folder`: each becomes its thing's shape, and
+/// gives mass, position, angle and velocities where the thing itself says nothing. Faults in a file name that
+/// file.
+void take_sample_files(FileTable& file, const std::filesystem::path& folder, FaultList& faults);
+
+/// The whole scene, or faults.
+Scene build_scene(const FileTable& file, FaultList& faults);
+
+}  // namespace brink

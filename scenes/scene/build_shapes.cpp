@@ -1,0 +1,88 @@
+#include "brink/core/base/error.h"
+#include "brink/scenes/scene/build.h"
+
+namespace brink {
+namespace {
+
+std::vector<std::string> shape_words(bool body) {
+  static const std::vector<std::string> solid{"disc",    "box",   "polygon", "polygons",
+                                              "capsule", "chain", "path",    "samples"};
+  std::vector<std::string> out = solid;
+  if (!body)
+    for (const char* word : {"point", "segment", "polyline", "arc", "bezier"}) out.emplace_back(word);
+  return out;
+}
+
+}  // namespace
+
+std::optional<BuiltShape> ShapeBuilder::build(const ThingTable& thing, const std::string& name, bool body) {
+  if (thing.shapes.size() != 1) {
+    std::vector<std::string> asked;
+    for (const ShapeSpec& spec : thing.shapes) asked.push_back(spec.kind);
+    faults_.add(asked.empty() ? thing.place : thing.shapes[1].where,
+                in_quotes(name) + " needs exactly one shape; given " +
+                    (asked.empty() ? "none" : listed(asked)) + ", allowed: one of " +
+                    listed(shape_words(body)));
+    return std::nullopt;
+  }
+  const ShapeSpec& spec = thing.shapes[0];
+  if (!spec.build || !fits(thing, spec, body)) return std::nullopt;
+  ShapeContext context{thing.curve_tolerance.given ? thing.curve_tolerance.value : curve_tolerance_,
+                       thing.radius.value, thing.inside_of.value};
+  const bool about_centre = body || thing.centered.value;
+  const Json key = {spec.kind,      spec.parameters,
+                    context.radius, spec.takes_curve_tolerance ? context.curve_tolerance : 0.0,
+                    about_centre,   thing.inside_of.value};
+  const std::string text = key.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (const auto found = built_.find(text); found != built_.end()) return found->second;
+  std::optional<BuiltShape> made = make(thing, spec, context, about_centre);
+  if (!made) return std::nullopt;
+  if (made->outline->curve_deviation > 0.0)
+    notes_.push_back(name + ": " + spec.kind + " is drawn by " + std::to_string(made->outline->sites.size()) +
+                     " sites within " + number_text(made->outline->curve_deviation) + " m of its curves");
+  return built_.emplace(text, *made).first->second;
+}
+
+bool ShapeBuilder::fits(const ThingTable& thing, const ShapeSpec& spec, bool body) {
+  const std::size_t before = faults_.size();
+  if (thing.radius.given && !spec.takes_radius)
+    faults_.add(thing.radius.where,
+                "radius: has no meaning beside " + spec.kind + "; given " + number_text(thing.radius.value) +
+                    ", allowed beside: box, polygon, chain, point, segment, polyline, arc, bezier");
+  if (thing.curve_tolerance.given && !spec.takes_curve_tolerance)
+    faults_.add(thing.curve_tolerance.where, "curve_tolerance: has no meaning beside " + spec.kind +
+                                                 "; given " + number_text(thing.curve_tolerance.value) +
+                                                 ", allowed beside: path, bezier");
+  if (!body && thing.centered.given && thing.centered.value && !spec.for_bodies)
+    faults_.add(thing.centered.where, "centered: has no meaning beside " + spec.kind +
+                                          "; given true, allowed: false, or true beside a body's shape");
+  const bool closed = spec.kind == "disc" || spec.kind == "box" || spec.kind == "polygon" ||
+                      spec.kind == "polygons" || spec.kind == "path" || spec.kind == "capsule";
+  if (thing.inside_of.value && !closed)
+    faults_.add(thing.inside_of.where, "inside_of: " + spec.kind +
+                                           " has no inside; given true, allowed beside: disc, box, polygon, "
+                                           "polygons, capsule, path");
+  return faults_.size() == before;
+}
+
+std::optional<BuiltShape> ShapeBuilder::make(const ThingTable& thing, const ShapeSpec& spec,
+                                             const ShapeContext& context, bool about_centre) {
+  try {
+    Shape shape = spec.build(context);
+    BuiltShape built;
+    if (about_centre) {
+      built.shift = shape.measure.centroid;
+      shape = centered(std::move(shape));
+    }
+    if (thing.inside_of.value && !shape.outline.container)
+      shape.outline = as_container(std::move(shape.outline));
+    built.measure = shape.measure;
+    built.outline = std::make_shared<const Outline>(std::move(shape.outline));
+    return built;
+  } catch (const BadInput& error) {
+    faults_.add(spec.where, error.what());
+  }
+  return std::nullopt;
+}
+
+}  // namespace brink

@@ -1,0 +1,207 @@
+#include "brink/scenes/scene/scatter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "brink/core/shapes/outline_crossing.h"
+
+namespace brink {
+namespace {
+
+// Every sample of `a` is farther from `b` than its own radius.
+bool samples_clear(const Obstacle& a, const Obstacle& b, double margin) {
+  const Frame from(a.pose), to(b.pose);
+  return std::all_of(a.outline->samples.begin(), a.outline->samples.end(), [&](const Sample& sample) {
+    return gap_by_brute_force(*b.outline, to.to_local(from.to_world(sample.p))) > sample.radius + margin;
+  });
+}
+
+// What is taken already, in cells of a uniform grid over the region.
+class Room {
+ public:
+  Room(const ScatterAsk& ask, const std::vector<Obstacle>& obstacles)
+      : outline_(ask.outline),
+        region_(ask.region),
+        periods_(ask.periods),
+        reach_(ask.outline->bounding_radius),
+        margin_(1e-9 * reach_) {
+    const Vec2 extent = region_.extent();
+    const double cells = std::clamp(4.0 * static_cast<double>(ask.count), 16.0, 1e6);
+    cell_ = std::max({2.0 * reach_, std::sqrt(extent.x() * extent.y() / cells), extent.maxCoeff() / 1e6});
+    columns_ = static_cast<int>(extent.x() / cell_) + 1;
+    rows_ = static_cast<int>(extent.y() / cell_) + 1;
+    cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+    for (const Obstacle& obstacle : obstacles) take(obstacle);
+  }
+
+  const Box& region() const { return region_; }
+
+  bool free(const Pose& pose) {
+    if (full_ || !region_.contains(pose.position)) return false;
+    const auto clear = [&](const Obstacle& taken) { return apart(taken, {outline_, pose}); };
+    const auto& near = cells_[index(column(pose.position.x()), row(pose.position.y()))];
+    return std::all_of(near.begin(), near.end(), clear) && std::all_of(large_.begin(), large_.end(), clear);
+  }
+
+  // Every image of it that a copy in the region could touch.
+  void take(const Obstacle& obstacle) {
+    if (obstacle.outline->container) return large_.push_back(obstacle);
+    const double reach = obstacle.outline->bounding_radius + reach_ + 2.0 * margin_;
+    Box around;
+    around.add(obstacle.pose.position);
+    around = around.grown(reach);
+    if (images_in(around) > kMostImages) return void(full_ = true);  // no room between so many
+    periods_.overlaps(region_, around, [&](const Image& image) {
+      Obstacle there = obstacle;
+      there.pose.position += periods_.shift(image);
+      take_image(there, reach);
+    });
+  }
+
+ private:
+  static constexpr double kMostImages = 1e4;
+
+  // About how many images of a box meet the region.
+  double images_in(const Box& box) const {
+    double count = 1.0;
+    for (int axis = 0; axis < 2; ++axis)
+      if (periods_.size[axis] > 0.0)
+        count *= 1.0 + (region_.extent()[axis] + box.extent()[axis]) / periods_.size[axis];
+    return count;
+  }
+
+  // Into every cell from which a copy could touch it; into the list for all cells if those are many.
+  void take_image(const Obstacle& obstacle, double reach) {
+    const Vec2 low = obstacle.pose.position.array() - reach, high = obstacle.pose.position.array() + reach;
+    const int c0 = column(low.x()), c1 = column(high.x()), r0 = row(low.y()), r1 = row(high.y());
+    if (static_cast<double>(c1 - c0 + 1) * (r1 - r0 + 1) > 256.0) return large_.push_back(obstacle);
+    for (int r = r0; r <= r1; ++r)
+      for (int c = c0; c <= c1; ++c) cells_[index(c, r)].push_back(obstacle);
+  }
+
+  static int place(double along, double cell, int count) {
+    return static_cast<int>(std::clamp(std::floor(along / cell), 0.0, static_cast<double>(count - 1)));
+  }
+  int column(double x) const { return place(x - region_.low.x(), cell_, columns_); }
+  int row(double y) const { return place(y - region_.low.y(), cell_, rows_); }
+  std::size_t index(int c, int r) const {
+    return static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c);
+  }
+
+  // Discs first, then the outlines themselves as long as the budget lasts (it keeps intricate shapes from
+  // taking minutes; discs alone only cost room).
+  bool apart(const Obstacle& taken, const Obstacle& copy) {
+    const double centres = (copy.pose.position - taken.pose.position).norm();
+    if (!taken.outline->container && centres > taken.outline->bounding_radius + reach_ + margin_) return true;
+    const auto& a = *taken.outline;
+    const auto& b = *copy.outline;
+    const double gap = gap_by_brute_force(a, Frame(taken.pose).to_local(copy.pose.position));
+    budget_ -= static_cast<double>(a.sites.size());
+    if (gap > reach_ + margin_) return true;
+    if (b.is_point() || budget_ < 0.0) return false;
+    budget_ -= static_cast<double>(a.samples.size() * b.sites.size() + b.samples.size() * a.sites.size());
+    return surely_apart(taken, copy, margin_);
+  }
+
+  const Outline* outline_;
+  Box region_;
+  Periods periods_;
+  bool full_ = false;  // nothing more fits
+  double reach_, margin_, cell_ = 1.0;
+  double budget_ = 1e8;
+  int columns_ = 1, rows_ = 1;
+  std::vector<std::vector<Obstacle>> cells_;
+  std::vector<Obstacle> large_;
+};
+
+Pose anywhere(const ScatterAsk& ask, Random& random) {
+  Pose pose;
+  pose.position.x() = random.uniform(ask.region.low.x(), ask.region.high.x());
+  pose.position.y() = random.uniform(ask.region.low.y(), ask.region.high.y());
+  pose.angle = ask.angle + (ask.random_angle ? random.uniform(0.0, 2.0 * std::numbers::pi) : 0.0);
+  return pose;
+}
+
+std::optional<std::vector<Pose>> insert_one_by_one(const ScatterAsk& ask, Room room, Random& random) {
+  constexpr int kTries = 5000;
+  std::vector<Pose> out;
+  while (static_cast<std::int64_t>(out.size()) < ask.count) {
+    int tries = 0;
+    Pose pose = anywhere(ask, random);
+    while (!room.free(pose) && ++tries < kTries) pose = anywhere(ask, random);
+    if (tries == kTries) return std::nullopt;
+    room.take({ask.outline, pose});
+    out.push_back(pose);
+  }
+  return out;
+}
+
+// The free places of a triangular lattice, `spacing` apart.
+std::vector<Pose> lattice(const ScatterAsk& ask, Room& room, double spacing, Random& random) {
+  std::vector<Pose> out;
+  const Box& box = ask.region;
+  const double height = spacing * std::numbers::sqrt3 / 2.0;
+  bool odd = false;
+  for (double y = box.low.y(); y <= box.high.y(); y += height, odd = !odd)
+    for (double x = box.low.x() + (odd ? spacing / 2.0 : 0.0); x <= box.high.x(); x += spacing) {
+      Pose pose = anywhere(ask, random);
+      pose.position = {x, y};
+      if (room.free(pose)) out.push_back(pose);
+    }
+  return out;
+}
+
+std::vector<Pose> choose_and_shake(Room& room, std::vector<Pose> places, std::size_t count, double play,
+                                   Random& random) {
+  for (std::size_t k = 0; k < count; ++k) {
+    std::swap(places[k], places[k + random.below(places.size() - k)]);
+    const double heading = random.uniform(0.0, 2.0 * std::numbers::pi),
+                 r = play * std::sqrt(random.uniform());
+    Pose shaken = places[k];
+    shaken.position += Vec2{r * std::cos(heading), r * std::sin(heading)};
+    if (room.free(shaken)) places[k] = shaken;
+  }
+  places.resize(count);
+  return places;
+}
+
+}  // namespace
+
+bool surely_apart(const Obstacle& a, const Obstacle& b, double margin) {
+  return samples_clear(a, b, margin) && samples_clear(b, a, margin) &&
+         deepest_crossing(*a.outline, a.pose, *b.outline, b.pose).depth == 0.0;
+}
+
+std::optional<std::vector<Pose>> scatter_poses(const ScatterAsk& ask, const std::vector<Obstacle>& obstacles,
+                                               Random& random, std::int64_t* room) {
+  const double radius = ask.outline->bounding_radius, tightest = 2.0 * radius * (1.0 + 1e-8);
+  *room = 0;
+  const Vec2 extent = ask.region.grown(radius).extent();
+  const double area = extent.x() * extent.y(), disc = std::numbers::pi * radius * radius;
+  const double wanted = static_cast<double>(ask.count) * disc;
+  if (ask.outline->is_point() && wanted > area) {
+    *room = static_cast<std::int64_t>(0.9069 * area / disc);  // the densest packing of discs
+    return std::nullopt;
+  }
+  const Room empty(ask, obstacles);
+  if (wanted < 0.45 * area || !ask.outline->is_point())
+    if (auto placed = insert_one_by_one(ask, empty, random)) return placed;
+  Room shelf = empty;
+  double spacing =
+      std::max(tightest, std::sqrt(2.0 / std::numbers::sqrt3 * area / static_cast<double>(ask.count)));
+  // a region that is nearly all taken is not searched to its last corner
+  const double most = 4.0 * static_cast<double>(ask.count) + 2e5;
+  while ((extent.x() / spacing + 1.0) * (extent.y() / spacing + 1.0) < most) {
+    std::vector<Pose> places = lattice(ask, shelf, spacing, random);
+    if (places.size() >= static_cast<std::size_t>(ask.count))
+      return choose_and_shake(shelf, std::move(places), static_cast<std::size_t>(ask.count),
+                              0.5 * (spacing - tightest), random);
+    *room = static_cast<std::int64_t>(places.size());
+    if (spacing <= tightest) return std::nullopt;
+    spacing = std::max(tightest, 0.97 * spacing);
+  }
+  return std::nullopt;
+}
+
+}  // namespace brink

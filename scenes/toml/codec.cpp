@@ -1,0 +1,210 @@
+#include "brink/scenes/toml/codec.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace brink {
+namespace {
+
+void wrong_type(const toml::node& node, TomlDocument& doc, const std::string& key,
+                const std::string& allowed) {
+  doc.faults().add(doc.where(node), fault_text(key, "wrong type", given(node), allowed));
+}
+
+// A finite number within kLargest, from a TOML float or integer.
+bool read_number(const toml::node& node, TomlDocument& doc, const std::string& key, const Range& range,
+                 double& out) {
+  if (!node.is_number()) return wrong_type(node, doc, key, range.text()), false;
+  out = node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
+  if (range.holds(out)) return true;
+  const char* wrong = std::isfinite(out) ? "out of range" : "not a finite number";
+  doc.faults().add(doc.where(node), fault_text(key, wrong, given(node), range.text()));
+  return false;
+}
+
+bool read_point(const toml::node& node, TomlDocument& doc, const std::string& key, const Range& range,
+                Vec2& out) {
+  const toml::array* array = node.as_array();
+  if (array == nullptr || array->size() != 2)
+    return wrong_type(node, doc, key, "two numbers [x, y]" + (range.unit.empty() ? "" : " in " + range.unit)),
+           false;
+  const bool x = read_number((*array)[0], doc, key, range, out.x());
+  const bool y = read_number((*array)[1], doc, key, range, out.y());
+  return x && y;
+}
+
+Json point_json(const Vec2& p) { return Json::array({p.x(), p.y()}); }
+
+/// Texts end at a NUL for whatever is written in C: a formula, a name shown or stored would be cut there.
+bool read_string(const toml::node& node, TomlDocument& doc, const std::string& key, std::string& out) {
+  out = node.as_string()->get();
+  const std::size_t nul = out.find('\0');
+  if (nul == std::string::npos) return true;
+  doc.faults().add(
+      doc.where(node),
+      fault_text(key, "holds a NUL character",
+                 in_quotes(out) + " (character " + std::to_string(nul + 1) + ")", "text without"));
+  return false;
+}
+
+bool holds(const std::vector<std::string>& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+bool read_name(const toml::node& node, TomlDocument& doc, const std::string& key,
+               const std::vector<std::string>& allowed, const std::vector<std::string>& later,
+               std::string& out) {
+  const auto* string = node.as_string();
+  const std::string what = allowed.empty() ? "a string" : "one of " + listed(allowed);
+  if (string == nullptr) return wrong_type(node, doc, key, what), false;
+  if (!read_string(node, doc, key, out)) return false;
+  if (allowed.empty() || holds(allowed, out)) return true;
+  const char* wrong = holds(later, out) ? "not available in this release" : "not known";
+  doc.faults().add(doc.where(node), fault_text(key, wrong, in_quotes(out), what));
+  return false;
+}
+
+}  // namespace
+
+std::string fault_text(const std::string& key, const std::string& wrong, const std::string& what_was_given,
+                       const std::string& allowed) {
+  return key + ": " + wrong + "; given " + what_was_given + ", allowed: " + allowed;
+}
+
+std::string Range::text() const {
+  std::string text = "a number";
+  if (low > -kLargest) text += (open_low ? " > " : " >= ") + number_text(low);
+  if (high < kLargest) text += (low > -kLargest ? " and <= " : " <= ") + number_text(high);
+  if (low <= -kLargest && high >= kLargest) text += " of at most " + number_text(kLargest);
+  return unit.empty() ? text : text + " in " + unit;
+}
+
+Range any(std::string unit) { return {-kLargest, kLargest, false, std::move(unit)}; }
+Range positive(std::string unit, double low) { return {low, kLargest, low == 0.0, std::move(unit)}; }
+Range not_negative(std::string unit) { return {0.0, kLargest, false, std::move(unit)}; }
+Range between(double low, double high, std::string unit) { return {low, high, false, std::move(unit)}; }
+
+Codec<double> number(Range range) {
+  const std::string type = range.text();
+  return {type,
+          [range](const toml::node& node, TomlDocument& doc, const std::string& key, double& out) {
+            return read_number(node, doc, key, range, out);
+          },
+          [](const double& x) { return Json(x); }};
+}
+
+Codec<std::int64_t> integer(std::int64_t low, std::int64_t high) {
+  const std::string type = high == std::numeric_limits<std::int64_t>::max()
+                               ? "an integer >= " + std::to_string(low)
+                               : "an integer from " + std::to_string(low) + " to " + std::to_string(high);
+  return {type,
+          [=](const toml::node& node, TomlDocument& doc, const std::string& key, std::int64_t& out) {
+            if (!node.is_integer()) return wrong_type(node, doc, key, type), false;
+            out = node.as_integer()->get();
+            if (out >= low && out <= high) return true;
+            doc.faults().add(doc.where(node), fault_text(key, "out of range", given(node), type));
+            return false;
+          },
+          [](const std::int64_t& x) { return Json(x); }};
+}
+
+Codec<bool> flag() {
+  return {"true or false",
+          [](const toml::node& node, TomlDocument& doc, const std::string& key, bool& out) {
+            if (!node.is_boolean()) return wrong_type(node, doc, key, "true or false"), false;
+            out = node.as_boolean()->get();
+            return true;
+          },
+          [](const bool& x) { return Json(x); }};
+}
+
+Codec<std::string> text(std::string type) {
+  return {type,
+          [type](const toml::node& node, TomlDocument& doc, const std::string& key, std::string& out) {
+            if (!node.is_string()) return wrong_type(node, doc, key, "a " + type), false;
+            return read_string(node, doc, key, out);
+          },
+          [](const std::string& x) { return Json(x); }};
+}
+
+Codec<std::string> choice(std::vector<std::string> allowed, std::vector<std::string> later) {
+  std::erase_if(later, [&](const std::string& word) { return holds(allowed, word); });
+  const std::string type = listed(allowed);
+  return {type,
+          [=](const toml::node& node, TomlDocument& doc, const std::string& key, std::string& out) {
+            return read_name(node, doc, key, allowed, later, out);
+          },
+          [](const std::string& x) { return Json(x); }};
+}
+
+Codec<std::string> open_choice(std::function<std::vector<std::string>()> allowed) {
+  return {listed(allowed()),
+          [=](const toml::node& node, TomlDocument& doc, const std::string& key, std::string& out) {
+            return read_name(node, doc, key, allowed(), {}, out);
+          },
+          [](const std::string& x) { return Json(x); }};
+}
+
+Codec<std::string> formula_text() {
+  return {"a formula in a string, or a number",
+          [](const toml::node& node, TomlDocument& doc, const std::string& key, std::string& out) {
+            if (node.is_string()) return out = node.as_string()->get(), true;  // Formula looks for NULs
+            double value = 0.0;
+            if (!node.is_number())
+              return wrong_type(node, doc, key, "a formula in a string, or a number"), false;
+            if (!read_number(node, doc, key, any(), value)) return false;
+            out = number_text(value);
+            return true;
+          },
+          [](const std::string& x) { return Json(x); }};
+}
+
+Codec<Vec2> point(std::string unit) {
+  const Range range = any(std::move(unit));
+  return {"[x, y]" + (range.unit.empty() ? "" : " in " + range.unit),
+          [range](const toml::node& node, TomlDocument& doc, const std::string& key, Vec2& out) {
+            return read_point(node, doc, key, range, out);
+          },
+          point_json};
+}
+
+Codec<std::vector<Vec2>> points(std::size_t least, std::size_t most, std::string unit) {
+  const Range range = any(std::move(unit));
+  std::string type = least == most ? std::to_string(least) : std::to_string(least) + " or more";
+  type += " points [[x, y], ...] in " + range.unit;
+  return {type,
+          [=](const toml::node& node, TomlDocument& doc, const std::string& key, std::vector<Vec2>& out) {
+            const toml::array* array = node.as_array();
+            if (array == nullptr || array->size() < least || array->size() > most)
+              return wrong_type(node, doc, key, type), false;
+            bool good = true;
+            for (const toml::node& element : *array) {
+              out.emplace_back(Vec2::Zero());
+              good = read_point(element, doc, key, range, out.back()) && good;
+            }
+            return good;
+          },
+          [](const std::vector<Vec2>& x) {
+            Json json = Json::array();
+            for (const Vec2& p : x) json.push_back(point_json(p));
+            return json;
+          }};
+}
+
+Codec<std::vector<std::string>> names(std::vector<std::string> allowed) {
+  const std::string type = "strings" + (allowed.empty() ? "" : " of " + listed(allowed));
+  return {type,
+          [allowed = std::move(allowed), type](const toml::node& node, TomlDocument& doc,
+                                               const std::string& key, std::vector<std::string>& out) {
+            if (node.is_string()) return read_name(node, doc, key, allowed, {}, out.emplace_back());
+            const toml::array* array = node.as_array();
+            if (array == nullptr) return wrong_type(node, doc, key, "an array of " + type), false;
+            bool good = true;
+            for (const toml::node& element : *array)
+              good = read_name(element, doc, key, allowed, {}, out.emplace_back()) && good;
+            return good;
+          },
+          [](const std::vector<std::string>& x) { return Json(x); }};
+}
+
+}  // namespace brink

@@ -1,0 +1,220 @@
+#include "brink/scenes/toml/document.h"
+
+#include <sstream>
+
+namespace brink {
+namespace {
+
+constexpr int kMaxKeyDepth = 64;
+
+std::vector<std::string> paths_of(const std::vector<std::string>& overrides) {
+  std::vector<std::string> paths;
+  for (const std::string& text : overrides) paths.push_back(text.substr(0, text.find('=')));
+  return paths;
+}
+
+// The parser bounds the nesting of arrays, but "a.a.a..." makes tables without end, and they are freed by
+// recursion: finds a dotted key of more than kMaxKeyDepth parts. Strings and comments are skipped.
+class KeyDepthScan {
+ public:
+  explicit KeyDepthScan(std::string_view text) : text_(text) {}
+
+  /// Line of the first key that is too deep, or 0.
+  int first_too_deep() {
+    for (; at_ < text_.size(); ++at_) {
+      const char c = text_[at_];
+      if (c == '"' || c == '\'')
+        skip_string(c);
+      else if (c == '#')
+        skip_comment();
+      else if (c == '.' && ++dots_ > kMaxKeyDepth)
+        return line_;
+      else if (std::string_view(",=[]{}\n").find(c) != std::string_view::npos)
+        dots_ = 0;
+      if (at_ < text_.size() && text_[at_] == '\n') ++line_;
+    }
+    return 0;
+  }
+
+ private:
+  void skip_comment() {
+    while (at_ + 1 < text_.size() && text_[at_ + 1] != '\n') ++at_;
+  }
+  void skip_string(char quote) {
+    const std::string triple(3, quote);
+    const bool multi = text_.substr(at_, 3) == triple;
+    at_ += multi ? 3 : 1;
+    for (; at_ < text_.size(); ++at_) {
+      if (text_[at_] == '\\' && quote == '"')
+        ++at_;
+      else if (multi && text_.substr(at_, 3) == triple)
+        return void(at_ += 2);
+      else if (!multi && (text_[at_] == quote || text_[at_] == '\n'))
+        return;
+      if (at_ < text_.size() && text_[at_] == '\n') ++line_;
+    }
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+  int line_ = 1;
+  int dots_ = 0;
+};
+
+// "a.b.0" as {"a", "b", "0"}; a part in quotes may hold dots; "a[0]" is the same as "a.0".
+std::vector<std::string> path_parts(std::string_view path) {
+  std::vector<std::string> parts{""};
+  char quote = 0;
+  for (const char c : path) {
+    if (quote != 0) {
+      if (c == quote)
+        quote = 0;
+      else
+        parts.back() += c;
+    } else if (c == '"' || c == '\'')
+      quote = c;
+    else if (c == '.' || c == '[')
+      parts.emplace_back();
+    else if (c != ']')
+      parts.back() += c;
+  }
+  return parts;
+}
+
+// The value of an override: as TOML if it reads as one value, else the text itself.
+toml::table as_value(std::string_view text) {
+  if (text.find('\n') == std::string_view::npos) {
+    const std::string line = "value = " + std::string(text);
+    try {
+      if (KeyDepthScan(line).first_too_deep() == 0) return toml::parse(line);
+    } catch (const toml::parse_error&) {
+    }
+  }
+  return toml::table{{"value", std::string(text)}};
+}
+
+bool is_index(const std::string& part, std::size_t size, std::size_t* index) {
+  if (part.empty() || part.size() > 9 || part.find_first_not_of("0123456789") != std::string::npos)
+    return false;
+  *index = std::stoul(part);
+  return *index < size;
+}
+
+// Index of the table in `array` whose name is `name`, or the array's size.
+std::size_t index_of_name(const toml::array& array, const std::string& name) {
+  for (std::size_t i = 0; i < array.size(); ++i)
+    if (const toml::table* table = array[i].as_table())
+      if (const auto* text = table->get_as<std::string>("name"); text != nullptr && text->get() == name)
+        return i;
+  return array.size();
+}
+
+}  // namespace
+
+TomlDocument::TomlDocument(std::string_view text, const std::vector<std::string>& overrides)
+    : faults_(paths_of(overrides)) {
+  parse(text);
+  readable_ = faults_.empty();
+  for (std::size_t i = 0; readable_ && i < overrides.size(); ++i) apply(overrides[i], static_cast<int>(i));
+}
+
+void TomlDocument::parse(std::string_view text) {
+  if (const int line = KeyDepthScan(text).first_too_deep(); line > 0) {
+    faults_.add({line, 1},
+                "a dotted key has too many parts: " + std::to_string(kMaxKeyDepth) + " are allowed");
+    return;
+  }
+  try {
+    root_ = toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    const auto& at = error.source().begin;
+    faults_.add({std::max(1, static_cast<int>(at.line)), std::max(1, static_cast<int>(at.column))},
+                "not valid TOML: " + std::string(error.description()));
+  }
+}
+
+void TomlDocument::apply(const std::string& override_text, int index) {
+  const Where here{0, 0, index};
+  const std::size_t equals = override_text.find('=');
+  if (equals == std::string::npos || equals == 0)
+    return faults_.add(here, "an override must be PATH=VALUE, given " + in_quotes(override_text));
+  const std::vector<std::string> parts = path_parts(std::string_view(override_text).substr(0, equals));
+  if (parts.size() > static_cast<std::size_t>(kMaxKeyDepth))
+    return faults_.add(here, "the path has too many parts: " + std::to_string(kMaxKeyDepth) + " are allowed");
+  toml::node* node = &root_;
+  for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
+    toml::node* next = step(*node, parts[i]);
+    if (next == nullptr && node->is_table()) {
+      node->as_table()->insert_or_assign(parts[i], toml::table{});
+      next = node->as_table()->get(parts[i]);
+      mark(*next, index);
+    }
+    if (next == nullptr)
+      return faults_.add(here, "nothing is called " + in_quotes(parts[i]) +
+                                   " there; an array takes an index from 0, " +
+                                   "or the name of one of its entries");
+    node = next;
+  }
+  const toml::table parsed = as_value(std::string_view(override_text).substr(equals + 1));
+  assign(*node, parts.back(), *parsed.get("value"), index);
+}
+
+toml::node* TomlDocument::step(toml::node& node, const std::string& part) {
+  if (toml::table* table = node.as_table()) return table->get(part);
+  toml::array* array = node.as_array();
+  if (array == nullptr) return nullptr;
+  std::size_t index = 0;
+  if (!is_index(part, array->size(), &index)) index = index_of_name(*array, part);
+  return index < array->size() ? &(*array)[index] : nullptr;
+}
+
+void TomlDocument::assign(toml::node& parent, const std::string& part, const toml::node& value, int index) {
+  if (toml::table* table = parent.as_table()) {
+    value.visit([&](const auto& concrete) { table->insert_or_assign(part, concrete); });
+    return mark(*table->get(part), index);
+  }
+  toml::array* array = parent.as_array();
+  std::size_t at = 0;
+  if (array == nullptr || !is_index(part, array->size(), &at))
+    return faults_.add({0, 0, index},
+                       "nothing is called " + in_quotes(part) + " there; " +
+                           (array == nullptr ? "the path goes through " + given(parent)
+                                             : "the array has " + std::to_string(array->size()) +
+                                                   " elements, counted from 0"));
+  value.visit([&](const auto& concrete) {
+    array->replace(array->cbegin() + static_cast<std::ptrdiff_t>(at), concrete);
+  });
+  mark((*array)[at], index);
+}
+
+void TomlDocument::mark(const toml::node& node, int index) {
+  override_of_[&node] = index;
+  if (const toml::array* array = node.as_array())
+    for (const toml::node& element : *array) mark(element, index);
+  if (const toml::table* table = node.as_table())
+    for (const auto& [key, value] : *table) mark(value, index);
+}
+
+Where TomlDocument::where(const toml::node& node) const {
+  if (const auto found = override_of_.find(&node); found != override_of_.end()) return {0, 0, found->second};
+  const auto& at = node.source().begin;
+  return {std::max(1, static_cast<int>(at.line)), std::max(1, static_cast<int>(at.column))};
+}
+
+Where TomlDocument::where(const toml::key& key, const toml::node& value) const {
+  const auto& at = key.source().begin;
+  if (override_of_.contains(&value) || at.line == 0) return where(value);
+  return {static_cast<int>(at.line), std::max(1, static_cast<int>(at.column))};
+}
+
+std::string given(const toml::node& node) {
+  if (const auto* text = node.as_string()) return "the string " + in_quotes(text->get());
+  if (const auto* number = node.as_floating_point()) return number_text(number->get());
+  if (const auto* number = node.as_integer()) return std::to_string(number->get());
+  if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
+  if (const toml::array* array = node.as_array()) return "an array of " + std::to_string(array->size());
+  if (node.is_table()) return "a table";
+  return "a date or time";
+}
+
+}  // namespace brink

@@ -1,0 +1,195 @@
+#include "brink/scheduler/broad_phase/broad_phase.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace brink {
+
+namespace {
+
+constexpr double kCellsPerBox = 2.0;                        ///< a cell is this many times the median box
+constexpr int kMostCellsAcross = 4;                         ///< boxes wider than this many cells are large
+constexpr std::int64_t kMostCells = std::int64_t{1} << 60;  ///< only those that hold a box take room
+
+/// Cells of a window, counted row by row.
+struct Grid {
+  Vec2 low;
+  double cell;
+  std::int64_t columns, rows;
+
+  std::int64_t column(double x) const { return clamp((x - low.x()) / cell, columns); }
+  std::int64_t row(double y) const { return clamp((y - low.y()) / cell, rows); }
+  static std::int64_t clamp(double v, std::int64_t n) {
+    return v <= 0.0 ? 0 : v >= static_cast<double>(n) ? n - 1 : static_cast<std::int64_t>(v);
+  }
+};
+
+double median_extent(const std::vector<Box>& boxes) {
+  std::vector<double> extents;
+  for (const Box& b : boxes)
+    if (const double e = b.extent().maxCoeff(); std::isfinite(e)) extents.push_back(e);
+  if (extents.empty()) return 1.0;
+  const auto middle = extents.begin() + static_cast<std::ptrdiff_t>(extents.size() / 2);
+  std::nth_element(extents.begin(), middle, extents.end());
+  return *middle > 0.0 ? *middle : 1.0;
+}
+
+Grid make_grid(const std::vector<Box>& boxes) {
+  Box all;
+  for (const Box& b : boxes)
+    if (std::isfinite(b.extent().maxCoeff())) all.add(b);
+  Grid g{Vec2::Zero(), kCellsPerBox * median_extent(boxes), 1, 1};
+  if (all.empty()) return g;
+  g.low = all.low;
+  const auto cells = [&](double extent) { return std::floor(extent / g.cell) + 1.0; };
+  while (cells(all.extent().x()) * cells(all.extent().y()) > static_cast<double>(kMostCells)) g.cell *= 2.0;
+  g.columns = static_cast<std::int64_t>(cells(all.extent().x()));
+  g.rows = static_cast<std::int64_t>(cells(all.extent().y()));
+  return g;
+}
+
+/// Which image of the box has its centre in the first period.
+Image image_at_home(const Box& box, const Periods& periods) {
+  const auto along = [&](int axis) {
+    const double size = periods.size[axis];
+    return size > 0.0 ? -static_cast<int>(std::floor(box.center()[axis] / size)) : 0;
+  };
+  return {along(0), along(1)};
+}
+
+Box moved(Box box, const Vec2& by) {
+  box.low += by;
+  box.high += by;
+  return box;
+}
+
+struct Entry {
+  std::int64_t cell;
+  int box;
+};
+
+/// Boxes by the cells that they lie in, and those that lie in too many.
+struct Sorted {
+  std::vector<Entry> entries;  ///< ascending
+  std::vector<int> large;
+  std::vector<char> is_large;
+
+  Sorted(const std::vector<Box>& boxes, const Grid& grid) : is_large(boxes.size(), 0) {
+    for (int i = 0; i < static_cast<int>(boxes.size()); ++i) {
+      if (boxes[i].extent().maxCoeff() <= kMostCellsAcross * grid.cell) {
+        add(i, boxes[i], grid);
+      } else {  // not finite, too
+        large.push_back(i);
+        is_large[i] = 1;
+      }
+    }
+    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+      return std::pair(a.cell, a.box) < std::pair(b.cell, b.box);
+    });
+  }
+
+ private:
+  void add(int i, const Box& box, const Grid& grid) {
+    for (auto r = grid.row(box.low.y()); r <= grid.row(box.high.y()); ++r)
+      for (auto c = grid.column(box.low.x()); c <= grid.column(box.high.x()); ++c)
+        entries.push_back({r * grid.columns + c, i});
+  }
+};
+
+/// Pairs of boxes that share a cell. False if a visit was the last.
+bool each_in_cells(const std::vector<Box>& boxes, const Grid& grid, const std::vector<Entry>& entries,
+                   const std::function<bool(int, int)>& visit) {
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    for (std::size_t j = i + 1; j < entries.size() && entries[j].cell == entries[i].cell; ++j) {
+      const Box &a = boxes[entries[i].box], &b = boxes[entries[j].box];
+      if (!a.overlaps(b)) continue;
+      // a pair that shares several cells is named in one only: where the corner of its intersection lies
+      const Vec2 corner = a.low.cwiseMax(b.low);
+      if (grid.row(corner.y()) * grid.columns + grid.column(corner.x()) != entries[i].cell) continue;
+      if (!visit(entries[i].box, entries[j].box)) return false;
+    }
+  return true;
+}
+
+/// Pairs of which one is large. False if a visit was the last.
+bool each_with_large(const std::vector<Box>& boxes, const Sorted& sorted,
+                     const std::function<bool(int, int)>& visit) {
+  for (const int i : sorted.large)
+    for (int j = 0; j < static_cast<int>(boxes.size()); ++j) {
+      if (j == i || (sorted.is_large[j] && j < i) || !boxes[i].overlaps(boxes[j])) continue;
+      if (!visit(std::min(i, j), std::max(i, j))) return false;
+    }
+  return true;
+}
+
+}  // namespace
+
+Box swept_box(const Outline& outline, const Motion& motion, double from, double to) {
+  if (outline.container) {
+    constexpr double everywhere = std::numeric_limits<double>::infinity();
+    return {{-everywhere, -everywhere}, {everywhere, everywhere}};
+  }
+  Box box;
+  box.add(motion.pose(from).position);
+  box.add(motion.pose(to).position);
+  const MotionBounds b = motion.bounds(from, to);
+  const double bulge = (b.acceleration.norm() + b.acceleration_radius) * (to - from) * (to - from) / 8.0;
+  const double scale = box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
+  return box.grown(outline.bounding_radius + bulge + 1e-12 * (scale + outline.bounding_radius));
+}
+
+bool each_overlapping(const std::vector<Box>& boxes, const std::function<bool(int i, int j)>& visit) {
+  const Grid grid = make_grid(boxes);
+  Sorted sorted(boxes, grid);
+  return each_in_cells(boxes, grid, sorted.entries, visit) && each_with_large(boxes, sorted, visit);
+}
+
+std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<Box>& boxes) {
+  std::vector<std::pair<int, int>> pairs;
+  each_overlapping(boxes, [&](int i, int j) {
+    pairs.emplace_back(i, j);
+    return true;
+  });
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+bool each_overlapping(const std::vector<Box>& boxes, const Periods& periods,
+                      const std::function<bool(const ImagePair&)>& visit) {
+  const int n = static_cast<int>(boxes.size());
+  std::vector<Image> images;
+  std::vector<Box> copies;  // every box at home, then those images that reach into the homes
+  std::vector<int> owner(n);
+  Box homes;
+  for (int k = 0; k < n; ++k) {
+    images.push_back(periods.any() ? image_at_home(boxes[k], periods) : Image{});
+    copies.push_back(moved(boxes[k], periods.shift(images[k])));
+    owner[k] = k;
+    if (periods.any()) homes.add(copies[k]);
+  }
+  for (int k = 0; k < n && periods.any(); ++k)
+    periods.overlaps(homes, boxes[k], [&](const Image& image) {
+      if (image == images[k]) return;
+      images.push_back(image);
+      copies.push_back(moved(boxes[k], periods.shift(image)));
+      owner.push_back(k);
+    });
+  return each_overlapping(copies, [&](int i, int j) {
+    // of the pair's images, the one whose first box is at home: the same is met with the second at home, too
+    if (i >= n || owner[i] >= owner[j]) return true;
+    return visit({owner[i], owner[j], images[j] + -images[i]});
+  });
+}
+
+std::vector<ImagePair> overlapping_pairs(const std::vector<Box>& boxes, const Periods& periods) {
+  std::vector<ImagePair> pairs;
+  each_overlapping(boxes, periods, [&](const ImagePair& pair) {
+    pairs.push_back(pair);
+    return true;
+  });
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+}  // namespace brink

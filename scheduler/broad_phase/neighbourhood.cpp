@@ -1,0 +1,98 @@
+#include "brink/scheduler/broad_phase/neighbourhood.h"
+
+#include <cmath>
+
+namespace brink {
+
+namespace {
+
+constexpr int kFew = 6;            ///< bodies that need no cells
+constexpr double kLevelRatio = 4;  ///< of radii, from level to level
+constexpr double kTopLevel = 24;   ///< holds all that is larger still
+
+double median_radius(std::span<const Flight> flights) {
+  if (flights.empty()) return 0.0;
+  std::vector<double> radii;
+  for (const Flight& f : flights) radii.push_back(f.radius);
+  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+  std::nth_element(radii.begin(), middle, radii.end());
+  return *middle;
+}
+
+int level_of(double radius, double median) {
+  if (!(radius > 2.0 * median) || median == 0.0) return 0;
+  return 1 + static_cast<int>(std::min(std::log(radius / (2.0 * median)) / std::log(kLevelRatio), kTopLevel));
+}
+
+}  // namespace
+
+Neighbourhood::Neighbourhood(std::span<Flight> flights, std::span<BodyClock> clocks,
+                             std::span<const Vec2> places, std::vector<SiteLists::Placed> still_sites,
+                             const Periods& periods, bool by_place)
+    : flights_(flights),
+      clocks_(clocks),
+      still_sites_(std::move(still_sites)),
+      periods_(periods),
+      repeats_(periods.any()) {
+  make_levels(places, by_place && flights.size() > kFew);
+  for (int k = 0; k < static_cast<int>(flights.size()); ++k) {
+    flights_[k].cell = grid(k).cell_of(places[k]);
+    link(k);
+  }
+}
+
+void Neighbourhood::make_levels(std::span<const Vec2> places, bool by_place) {
+  Box all;
+  for (const Vec2& p : places) all.add(p);
+  const double median = median_radius(flights_);
+  std::vector<std::size_t> counts;
+  for (std::size_t k = 0; k < flights_.size(); ++k) {
+    const int level = by_place ? level_of(flights_[k].radius, median) : 0;
+    clocks_[k].level = level;
+    if (static_cast<std::size_t>(level) >= levels_.size()) {
+      levels_.resize(level + 1);
+      counts.resize(level + 1);
+    }
+    levels_[level].radius = std::max(levels_[level].radius, flights_[k].radius);
+    ++counts[level];
+  }
+  for (std::size_t m = 0; m < levels_.size(); ++m) {
+    Level& level = levels_[m];
+    const double tightest = 2.0 * level.radius * (1.0 + 8.0 * kFlightMargin) / (1.0 - 2.0 * CellGrid::kSlack);
+    Vec2 extent = all.extent().cwiseMax(tightest);
+    for (int axis = 0; axis < 2; ++axis)
+      if (periods_.size[axis] > 0.0) extent[axis] = periods_.size[axis];
+    const double roomy =
+        std::sqrt(extent.x() * extent.y() / static_cast<double>(std::max<std::size_t>(counts[m], 1)));
+    double size = std::max(tightest, 0.8 * roomy);
+    if (!by_place || !(size > 0.0)) size = std::numeric_limits<double>::infinity();
+    level.grid = CellGrid(size, extent, periods_);
+  }
+  for (Level& level : levels_)
+    level.sites = std::make_unique<SiteLists>(still_sites_, level.grid, periods_, level.radius);
+}
+
+bool Neighbourhood::settle(int k, const Vec2& p) {
+  const Cell cell = grid(k).cell_of(p);
+  if (clocks_[k].sites && cell == flights_[k].cell) return false;
+  unlink(k);
+  flights_[k].cell = cell;
+  link(k);
+  return true;
+}
+
+void Neighbourhood::unlink(int k) {
+  int* from = &grid(k).head(flights_[k].cell);
+  while (*from != k) from = &flights_[*from].next;
+  *from = flights_[k].next;
+}
+
+void Neighbourhood::link(int k) {
+  Level& level = levels_[clocks_[k].level];
+  int& head = level.grid.head(flights_[k].cell);
+  flights_[k].next = head;
+  head = k;
+  clocks_[k].sites = &level.sites->of(flights_[k].cell);
+}
+
+}  // namespace brink

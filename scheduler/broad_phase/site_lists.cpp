@@ -1,0 +1,37 @@
+#include "brink/scheduler/broad_phase/site_lists.h"
+
+#include <cmath>
+
+namespace brink {
+
+bool SiteLists::reaches(const Outline& outline, const Box& box) const {
+  const double half = 0.5 * box.extent().norm();
+  if (!std::isfinite(half)) return true;
+  if (!outline.container && !outline.bounds.grown(reach_).overlaps(box)) return false;
+  return std::abs(gap_by_brute_force(outline, box.center())) <= (half + reach_) * (1.0 + 1e-9);
+}
+
+void SiteLists::find(const Placed& placed, const Box& box, std::vector<SiteImage>& found) const {
+  if (!periods_.any()) {
+    if (reaches(placed.outline, box)) found.push_back({placed.site, {}});
+    return;
+  }
+  periods_.overlaps(box, placed.outline.bounds.grown(reach_), [&](const Image& image) {
+    const Vec2 shift = periods_.shift(image);
+    if (reaches(placed.outline, {box.low - shift, box.high - shift})) found.push_back({placed.site, image});
+  });
+}
+
+const std::vector<SiteImage>& SiteLists::of(const Cell& cell) {
+  const Cell home = grid_->home(cell);
+  const auto key = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(home.column)) << 32) |
+                   static_cast<std::uint32_t>(home.row);
+  const auto [it, is_new] = lists_.try_emplace(key);
+  if (is_new) {
+    const Box box = grid_->box_of(home);
+    for (const Placed& p : *sites_) find(p, box, it->second);
+  }
+  return it->second;
+}
+
+}  // namespace brink

@@ -1,0 +1,45 @@
+#pragma once
+/// Which still fixed sites a body in a cell can reach.
+
+#include <unordered_map>
+#include <vector>
+
+#include "brink/core/world/world.h"
+#include "brink/scheduler/broad_phase/cell_grid.h"
+
+namespace brink {
+
+/// A still site where it stands, or where one of its images does.
+struct SiteImage {
+  int site;
+  Image image;
+};
+
+/// For every cell of one grid level, the still sites within `reach` of the cell's box; found when first asked
+/// for. Lists stay where they are.
+class SiteLists {
+ public:
+  /// `placed`: the still sites' outlines in the world, with their indices into World::sites.
+  struct Placed {
+    int site;
+    Outline outline;
+  };
+  SiteLists(const std::vector<Placed>& sites, const CellGrid& grid, const Periods& periods, double reach)
+      : sites_(&sites), grid_(&grid), periods_(periods), reach_(reach) {}
+
+  /// Sites of the cell's image in the first period, ascending. Cost: all sites when first asked, then a
+  /// look-up.
+  const std::vector<SiteImage>& of(const Cell& cell);
+
+ private:
+  void find(const Placed& placed, const Box& box, std::vector<SiteImage>& found) const;
+  bool reaches(const Outline& outline, const Box& box) const;
+
+  const std::vector<Placed>* sites_;
+  const CellGrid* grid_;
+  Periods periods_;
+  double reach_;
+  std::unordered_map<std::uint64_t, std::vector<SiteImage>> lists_;
+};
+
+}  // namespace brink

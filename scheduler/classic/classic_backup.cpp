@@ -1,0 +1,76 @@
+/// The classic method with backing up (detector `depth`); declares itself approximate:
+///
+///   until the end
+///     advance all bodies by one step and look
+///     while something touches and approaches
+///       halve the time since it did not, drawing again at each try, and back all bodies up to the first
+///       touch resolve what touches there; advance to the step's end and look again
+///
+/// What touches and parts again inside a step is missed.
+#include <algorithm>
+#include <cmath>
+
+#include "brink/scheduler/classic/classic_rebound.h"
+#include "brink/scheduler/policies/policy.h"
+#include "brink/scheduler/policies/steps.h"
+
+namespace brink {
+
+namespace {
+
+/// A step is halved this often: to its 65536th part.
+constexpr int kHalvings = 16;
+/// Backups in one step, and as many more for each body, beyond which what is left of the step is taken
+/// without backing up and overlaps are pushed apart: bodies that come to rest touch again and again.
+constexpr int kMostBackups = 8;
+
+class ClassicBackup final : public Policy {
+ public:
+  bool approximate() const override { return true; }
+
+  void run(Kernel& kernel, double until) override {
+    while (kernel.time() < until && !kernel.halt()) {
+      if (!kernel.pause_point()) return;
+      kernel.forget_before(kernel.time());
+      if (!step(kernel, std::min(until, step_end(kernel.time(), kernel.options().step)))) return;
+      if (kernel.fail_before(until)) return;
+    }
+  }
+
+ private:
+  /// False on a halt.
+  static bool step(Kernel& kernel, double end) {
+    double clear = kernel.time();  // nothing touches and approaches here
+    for (int backups = kMostBackups * (1 + kernel.body_count()); clear < end; --backups) {
+      end = kernel.follow_motions_all_the_way(end);
+      if (kernel.halt()) return false;
+      kernel.advance_all(end);
+      if (!any_approaches(kernel.look(clear, end))) break;
+      const double touch = backups > 0 ? first_touch(kernel, clear, end) : end;
+      if (!kernel.record_frames(std::nextafter(touch, 0.0))) return false;
+      kernel.back_up_all(touch);
+      const DepthSight sight = kernel.look(clear, touch);
+      if (!resolve_all(kernel, sight.contacts)) return false;
+      if (backups <= 0) push_all_apart(kernel, sight.overlaps);
+      clear = touch;
+    }
+    return kernel.record_frames(end) && kernel.poll();
+  }
+
+  /// The first time in (clear, touching] at which something touches and approaches, within kHalvings.
+  static double first_touch(Kernel& kernel, double clear, double touching) {
+    const double from = clear;
+    for (int k = 0; k < kHalvings; ++k) {
+      const double middle = 0.5 * (clear + touching);
+      if (!(middle > clear && middle < touching)) break;
+      (any_approaches(kernel.look(from, middle)) ? touching : clear) = middle;
+    }
+    return touching;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Policy> make_classic_backup() { return std::make_unique<ClassicBackup>(); }
+
+}  // namespace brink

@@ -1,0 +1,127 @@
+#include "brink/scheduler/first_contact/arc_contact.h"
+
+#include <numbers>
+
+#include "brink/scheduler/first_contact/safe_step.h"
+
+namespace brink {
+
+namespace {
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+
+/// How far (>= 0) the direction d lies outside the arc's sector [rad]; 0 inside.
+double angle_outside(const Site& arc, const Vec2& d) {
+  const Vec2 middle = (arc.a - arc.center) + (arc.b - arc.center);
+  const double off = std::abs(std::atan2(cross(middle, d), middle.dot(d)));
+  return std::max(0.0, off - 0.5 * std::abs(arc.sweep));
+}
+
+Vec2 to_s(const Placed& s, const Placed& t, const Vec2& d) {
+  return s.frame.direction_to_local(t.frame.direction_to_world(d));
+}
+
+/// What a step may use of a gap: it leads into the band, never onto the surface.
+double short_of(double gap, double band) { return gap > 0.0 ? gap - 0.5 * std::min(gap, band) : 0.0; }
+/// Likewise of a distance that may be one from behind.
+double held(double gap, double band) { return gap > 0.0 ? short_of(gap, band) : -gap; }
+
+/// True if the arc lies beyond the site, not in it: this pair touches only after its gap has risen to 0
+/// again.
+bool is_through(double gap, const Site& arc, const Site& site, double band) {
+  return gap < -(arc.radius + site.radius) - band;
+}
+
+ArcStep against_segment(const Site& arc, const Site& site, const SamplePath& path, const Placed& s,
+                        const Placed& t, double band, const RelativeBounds& relative,
+                        const PathBounds& bounds) {
+  const Vec2 d = site.b - site.a, w = path.q - site.a;
+  const double length = d.norm();
+  const double offset = cross(d, w) / length;
+  const double side =
+      site.solid ? -1.0 : (offset < 0.0 ? -1.0 : 1.0);  // a solid is touched from its right only
+  ArcStep step;
+  step.normal = perp(d) * (side / length);
+  step.gap = side * offset - arc.arc_radius - arc.radius - site.radius;
+  step.rate = step.normal.dot(path.rate);
+  const double along = w.dot(d) / length;
+  const double beyond = std::max({0.0, -along, along - length});
+  const double outside = angle_outside(arc, to_s(s, t, -step.normal));
+  const bool through = is_through(step.gap, arc, site, band);
+  step.active = beyond == 0.0 && outside == 0.0 && !through;
+  step.point = path.q - step.normal * (side * offset - site.radius);
+  step.curvature = bounds.acceleration;
+  if (step.active || step.gap > 0.0)
+    step.safe = safe_step(short_of(step.gap, band), step.rate, step.curvature);
+  if (!step.active) {
+    const double spin = relative.spin_s + relative.spin_t;
+    if (beyond > 0.0) step.safe = std::max(step.safe, bounds.speed > 0.0 ? beyond / bounds.speed : kForever);
+    if (outside > 0.0) {
+      // a wire may come to be touched from its other side, in the opposite direction
+      const double other = site.solid ? outside : angle_outside(arc, to_s(s, t, step.normal));
+      const double stays = bounds.speed > 0.0 ? std::abs(offset) / bounds.speed : kForever;
+      const auto turned = [&](double angle) {
+        return spin > 0.0 ? angle / spin : angle > 0.0 ? kForever : 0.0;
+      };
+      step.safe = std::max({step.safe, turned(std::min(outside, other)), std::min(turned(outside), stays)});
+    }
+    if (step.gap > 0.0 || through)
+      step.safe = std::max(step.safe, bounds.speed > 0.0 ? held(step.gap, band) / bounds.speed : kForever);
+  }
+  return step;
+}
+
+/// One of the two ways in which two arcs touch: outside against outside, or inside the other's hollow.
+ArcStep against_arc(const Site& arc, const Site& site, bool hollow, const SamplePath& path, const Placed& s,
+                    const Placed& t, double band, const RelativeBounds& relative, const PathBounds& bounds) {
+  const Vec2 w = path.q - site.center;
+  const double distance = w.norm();
+  const double thickness = arc.radius + site.radius;
+  ArcStep step;
+  const Vec2 u = distance > 0.0 ? Vec2(w / distance) : Vec2(1.0, 0.0);
+  const double radial = u.dot(path.rate);
+  // From either centre the touching point lies along +-u.
+  step.normal = hollow ? Vec2(-u) : u;
+  step.gap = hollow ? site.arc_radius - distance - arc.arc_radius - thickness
+                    : distance - site.arc_radius - arc.arc_radius - thickness;
+  step.rate = hollow ? -radial : radial;
+  const double outside = std::max(angle_outside(arc, to_s(s, t, Vec2(-step.normal))), angle_outside(site, u));
+  const bool through = is_through(step.gap, arc, site, band);
+  step.active = outside == 0.0 && distance > 0.0 && !through;
+  step.point = site.center + u * (site.arc_radius + (hollow ? -site.radius : site.radius));
+  step.curvature =
+      bounds.acceleration + (hollow && distance > 0.0 ? bounds.speed * bounds.speed / distance : 0.0);
+  if ((step.active || step.gap > 0.0) && (distance > 0.0 || !hollow))
+    step.safe = safe_step(short_of(step.gap, band), step.rate, step.curvature);
+  if (step.gap > 0.0 || through)
+    step.safe = std::max(step.safe, bounds.speed > 0.0 ? held(step.gap, band) / bounds.speed : kForever);
+  if (!step.active && distance > 0.0) {
+    // The direction turns at most at speed / (distance / 2) while the centres are still half their distance
+    // apart.
+    const double turning = 2.0 * bounds.speed / distance + relative.spin_s + relative.spin_t;
+    const double half_way = bounds.speed > 0.0 ? 0.5 * distance / bounds.speed : kForever;
+    step.safe = std::max(step.safe, std::min(half_way, turning > 0.0 ? outside / turning : kForever));
+  }
+  return step;
+}
+
+}  // namespace
+
+ArcStep arc_step(const Site& arc, const Site& site, const SamplePath& path, const Placed& s, const Placed& t,
+                 double band, const RelativeBounds& relative, const PathBounds& bounds) {
+  ArcStep none;
+  none.safe = kForever;
+  if (!touches_convex(arc) || site.kind == SiteKind::point) return none;
+  if (site.kind == SiteKind::segment) return against_segment(arc, site, path, s, t, band, relative, bounds);
+  ArcStep outer = none, inner = none;
+  if (touches_convex(site)) outer = against_arc(arc, site, false, path, s, t, band, relative, bounds);
+  if (touches_concave(site) && arc.arc_radius < site.arc_radius)
+    inner = against_arc(arc, site, true, path, s, t, band, relative, bounds);
+  ArcStep& first = outer.active && (!inner.active || outer.gap <= inner.gap) ? outer
+                   : inner.active                                            ? inner
+                                                                             : outer;
+  first.safe = std::min(outer.safe, inner.safe);
+  return first;
+}
+
+}  // namespace brink

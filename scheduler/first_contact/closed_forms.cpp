@@ -1,0 +1,377 @@
+#include "brink/scheduler/first_contact/closed_forms.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "brink/core/shapes/distance.h"
+#include "brink/scheduler/first_contact/canonical_time.h"
+#include "brink/scheduler/first_contact/pair_kinematics.h"
+#include "brink/scheduler/first_contact/tolerances.h"
+
+namespace brink {
+
+namespace {
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr std::size_t kMostSites = 16;
+
+bool keeps_angle(const Motion& m) {
+  return m.is_ballistic() && m.start().twist.omega == 0.0 && m.acceleration().angular == 0.0;
+}
+
+bool only_segments(const Outline& o) {
+  return o.sites.size() <= kMostSites && std::all_of(o.sites.begin(), o.sites.end(), [](const Site& s) {
+           return s.kind == SiteKind::segment;
+         });
+}
+
+/// A ballistic motion's places, with Motion::state's own bits, at hand in a loop.
+struct Parabola {
+  double origin;
+  Vec2 place, velocity, acceleration;
+
+  explicit Parabola(const Motion& m)
+      : origin(m.origin()),
+        place(m.start().pose.position),
+        velocity(m.start().twist.velocity),
+        acceleration(m.acceleration().linear) {}
+  Vec2 at(double t) const {
+    const double s = t - origin;
+    return place + s * (velocity + 0.5 * s * acceleration);
+  }
+};
+
+/// The pair on its common clock s = t - reference.
+struct RelativeParabola {
+  double reference;
+  BodyState a, b;
+  Vec2 offset, velocity, acceleration;  ///< a minus b
+  double noise;                         ///< rounding of relative velocities [m/s]
+
+  RelativeParabola(const Mover& ma, const Mover& mb) {
+    reference = std::max(ma.motion->origin(), mb.motion->origin());
+    a = ma.motion->state(reference);
+    b = mb.motion->state(reference);
+    offset = a.pose.position - b.pose.position;
+    velocity = a.twist.velocity - b.twist.velocity;
+    acceleration = ma.motion->acceleration().linear - mb.motion->acceleration().linear;
+    noise = ma.velocity_rounding + mb.velocity_rounding +
+            16.0 * kEpsilon * (a.twist.velocity.lpNorm<1>() + b.twist.velocity.lpNorm<1>());
+  }
+};
+
+/// A rate so near to its rounding may be told as an approach here, and not by the general search.
+bool doubtful(double rate, double noise) { return std::abs(rate) <= 8.0 * noise; }
+
+/// When, from s_from on, a gap above its level, on the parabola g, meets it; infinity if never, nothing if
+/// the general search must tell. `noise`: rounding of g's slope [m/s]; `deepest`: below -deepest it is no
+/// overlap but the far side of a body [m].
+std::optional<double> contact_after(const Quadratic& g, double s_from, double noise, double deepest) {
+  const double root = falling_root(g);
+  if (root >= s_from)
+    return root == kForever || !doubtful(g.slope(root), noise) ? std::optional(root) : std::nullopt;
+  const double now = g.at(s_from), slope = g.slope(s_from);
+  if (now < -deepest) return kForever;  // beyond
+  if (doubtful(slope, noise)) return std::nullopt;
+  if (slope > 0.0) return kForever;  // risen again
+  // it falls, past its root and yet above it: which of the two is the rounding?
+  return now > 0.0 ? std::nullopt : std::optional(s_from);
+}
+
+/// True if a gap that starts at `gap` with the given rate is sure to need no sink_at_start().
+bool starts_clear(double gap, double rate, double acceleration, double noise, double tolerance) {
+  return gap >= tolerance || (rate > noise && rate * rate >= 4.0 * acceleration * tolerance);
+}
+
+/// True if the clock can hardly tell such speeds: the search says so.
+bool too_fast(const Vec2& velocity, double t, double radius) {
+  return !(velocity.norm() * same_instant(t) <= kSlowOfSize * radius);
+}
+
+/// True if places at time t are told well enough in doubles for what is computed here.
+bool near_enough(const Mover& a, const Mover& b, double t, const Vec2& place_a, const Vec2& place_b,
+                 const SearchLimits& limits) {
+  return place_rounding(*a.motion, t, place_a) + place_rounding(*b.motion, t, place_b) <=
+         kFarOfTolerance * limits.tolerance;
+}
+
+/// Rounding of a gap [m] between a disc and a site, one seen at q from the other: PairView::gap_rounding().
+double gap_noise(const Mover& a, const Mover& b, double t, const Vec2& place_a, const Vec2& place_b,
+                 const Vec2& q, const Vec2& site) {
+  return place_rounding(*a.motion, t, place_a) + place_rounding(*b.motion, t, place_b) +
+         kRoundoff * (6.0 * q.lpNorm<1>() + 2.0 * site.lpNorm<1>());
+}
+
+/// The general search's time near the root t, so that it does not matter which of the two a window was given
+/// to. Any interval will do that has the crossing and whose ends are beyond rounding: the narrowest first.
+/// `rounding`: of the gap [m]; `speed`: its own [m/s]. Nothing if there is none: too near the beginning for
+/// the gap to have risen above rounding, and not at it.
+template <class Gap>
+std::optional<double> canonical_root(Gap&& gap, double t, double begin, double rounding, double speed) {
+  if (t <= begin) return t;
+  const double moment = rounding / speed + 4.0 * ulp(t);
+  for (const double reach : {8.0 * moment, 64.0 * moment})
+    if (t - reach > begin && gap(t - reach) > rounding && gap(t + reach) <= 0.0)
+      return last_clear_time(gap, t - reach, t + reach);
+  if (gap(begin) > rounding && gap(t + 8.0 * moment) <= 0.0)
+    return last_clear_time(gap, begin, t + 8.0 * moment);
+  return std::nullopt;
+}
+
+/// Two centred discs as the general search sees them at time t: the same operations in the same order.
+FeatureContact disc_contact(const Mover& a, const Mover& b, double t) {
+  const BodyState sa = a.motion->state(t), sb = b.motion->state(t);
+  const double radius_a = a.outline().sites[0].radius, radius_b = b.outline().sites[0].radius;
+  const Vec2 offset = sa.pose.position - sb.pose.position;
+  const double distance = offset.norm();
+  FeatureContact c;
+  c.time = t;
+  c.sample = c.site = 0;
+  c.gap = distance - radius_b - radius_a;
+  c.normal = offset * (1.0 / distance);
+  c.point = sb.pose.position + (offset - c.normal * (c.gap + radius_a));
+  c.closing_speed = -c.normal.dot(sa.twist.velocity - sb.twist.at(offset));
+  return c;
+}
+
+bool discs(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
+           SearchScratch& scratch, PairAnswer& answer) {
+  const double reach = b.outline().sites[0].radius + a.outline().sites[0].radius;
+  if (!(reach > 0.0) || a.motion->acceleration().linear != b.motion->acceleration().linear) return false;
+  const RelativeParabola rel(a, b);
+  answer = {PairAnswer::Status::clear, to, {}};
+  const double speed2 = rel.velocity.squaredNorm(), way = rel.offset.dot(rel.velocity);
+  const double distance0 = rel.offset.norm(), s_from = from - rel.reference;
+  if (way > rel.noise * distance0 && distance0 >= 0.5 * reach) return true;  // they part
+  const bool in_touch = distance0 - reach < limits.touch && way < 0.0;       // a graze, or not: by a rounding
+  if (in_touch || (distance0 - reach < limits.tolerance && doubtful(way / distance0, rel.noise)))
+    return false;
+  double level = 0.0;
+  if (!starts_clear(distance0 - reach, way / distance0, 0.0, rel.noise, limits.tolerance))
+    level = sink_at_start(a, b, limits, scratch);
+  const double met = reach + level;
+  double s = time_until_within(rel.offset, rel.velocity, met);
+  if (!(s >= s_from)) {  // touching at the start, and approaching; or past
+    const Vec2 now = rel.offset + s_from * rel.velocity;
+    const double rate = now.dot(rel.velocity) / met;
+    if (now.norm() <= met + limits.tolerance && doubtful(rate, rel.noise)) return false;
+    s = rate < 0.0 ? s_from : kForever;
+  }
+  const Parabola path_a(*a.motion), path_b(*b.motion);
+  double t = std::max(rel.reference + s, from);
+  const double nearest = t <= to                    ? t
+                         : rel.velocity.isZero(0.0) ? from
+                                                    : std::clamp(rel.reference - way / speed2, from, to);
+  if (!near_enough(a, b, nearest, path_a.at(nearest), path_b.at(nearest), limits)) return false;
+  if (!(t <= to)) return true;
+  if (too_fast(rel.velocity, t, smallest_radius(a.outline(), b.outline()))) return false;
+  const Vec2 then = rel.offset + s * rel.velocity;
+  const double closing = -then.dot(rel.velocity) / then.norm();
+  if (doubtful(closing, rel.noise)) return false;
+  if (closing < 0.0) return true;
+  const auto gap = [=](double time) { return (path_a.at(time) - path_b.at(time)).norm() - reach - level; };
+  const double rounding = gap_noise(a, b, t, path_a.at(t), path_b.at(t), then, Vec2::Zero());
+  const auto root = canonical_root(gap, t, std::max(rel.reference, 0.0), rounding, closing);
+  if (!root) return false;
+  t = *root;
+  answer = {PairAnswer::Status::contact, t, disc_contact(a, b, t)};
+  answer.contact.level = answer.contact.sink = level;
+  return true;
+}
+
+/// True if the quadratic stays within [0, length] on [s0, s1].
+bool stays_within(const Quadratic& along, double length, double s0, double s1) {
+  const auto inside = [&](double s) {
+    const double x = along.at(s);
+    return x >= 0.0 && x <= length;
+  };
+  if (!inside(s0) || !inside(s1)) return false;
+  if (along.second == 0.0) return true;
+  const double turn = -along.rate / along.second;
+  return turn <= s0 || turn >= s1 || inside(turn);
+}
+
+/// A disc on a parabola in the frame of an outline that does not turn, on the clock of RelativeParabola.
+struct DiscPath {
+  Vec2 q, velocity, acceleration;
+  double radius;
+  double s_from, s_to;
+  double slope_noise;
+
+  Vec2 at(double s) const { return q + s * (velocity + 0.5 * s * acceleration); }
+};
+
+/// A segment and when the disc meets it.
+struct Meeting {
+  const Site* site;
+  int index;
+  Vec2 normal;    ///< towards the disc
+  Quadratic gap;  ///< [m]
+  double s;       ///< infinite: never
+
+  /// Bit for bit what the general search sees of a disc of the given radius at q: the gap, and how near the
+  /// segment is for choosing among several.
+  struct Seen {
+    double gap, rank;
+  };
+  Seen seen(const Vec2& q, double disc_radius, double touch) const {
+    const Nearest nearest = nearest_on(*site, q);
+    const double side = side_of(*site, nearest, q);
+    const double rank = nearest.distance - site->radius - (nearest.foot == Foot::interior ? touch : 0.0);
+    return {side * nearest.distance - (site->radius + disc_radius), rank};
+  }
+};
+
+/// The gap of the disc to a segment.
+void measure(const DiscPath& disc, Meeting& m) {
+  const Site& site = *m.site;
+  const Vec2 d = site.b - site.a;
+  m.normal = -perp(d / d.norm());  // right of travel: out of a solid
+  if (!site.solid && m.normal.dot(disc.at(disc.s_from) - site.a) < 0.0) m.normal = -m.normal;
+  m.gap = {m.normal.dot(disc.q - site.a) - disc.radius - site.radius, m.normal.dot(disc.velocity),
+           m.normal.dot(disc.acceleration)};
+}
+
+/// False if it is for the general search: the disc's centre does not stay abreast of the segment until it
+/// meets it or the window ends.
+bool meet(const DiscPath& disc, const SearchLimits& limits, double level, Meeting& m) {
+  const Site& site = *m.site;
+  const Vec2 d = site.b - site.a;
+  const double length = d.norm();
+  const Vec2 tangent = d / length;
+  const Quadratic along{tangent.dot(disc.q - site.a), tangent.dot(disc.velocity),
+                        tangent.dot(disc.acceleration)};
+  const Quadratic above{m.gap.value - level, m.gap.rate, m.gap.second};
+  if (above.value < limits.touch && above.value > -limits.tolerance && above.rate < 0.0) return false;
+  const auto contact =
+      contact_after(above, disc.s_from, disc.slope_noise, disc.radius + site.radius + limits.tolerance);
+  if (!contact) return false;
+  m.s = *contact;
+  return stays_within(along, length, disc.s_from, std::max(disc.s_from, std::min(m.s, disc.s_to)));
+}
+
+bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, double from, double to,
+                       const SearchLimits& limits, SearchScratch& scratch, PairAnswer& answer) {
+  const RelativeParabola rel(disc, other);
+  const Frame frame(rel.b.pose);
+  const double radius = disc.outline().sites[0].radius;
+  const DiscPath path{frame.direction_to_local(rel.offset),
+                      frame.direction_to_local(rel.velocity),
+                      frame.direction_to_local(rel.acceleration),
+                      radius,
+                      from - rel.reference,
+                      to - rel.reference,
+                      rel.noise};
+  std::array<Meeting, kMostSites> meetings;
+  int count = 0;
+  double earliest = kForever;
+  Vec2 normal = Vec2::Zero();
+  bool clear = true;
+  for (const Site& site : other.outline().sites) {
+    if (radius + site.radius == 0.0) return false;  // a point on a wire: the search knows its level
+    Meeting& m = meetings[static_cast<std::size_t>(count)];
+    m.site = &site;
+    m.index = count++;
+    measure(path, m);
+    clear = clear && starts_clear(std::abs(m.gap.value), m.gap.rate, std::abs(m.gap.second), rel.noise,
+                                  limits.tolerance);
+  }
+  const double level = clear       ? 0.0
+                       : disc_is_a ? sink_at_start(disc, other, limits, scratch)
+                                   : sink_at_start(other, disc, limits, scratch);
+  for (int k = 0; k < count; ++k) {
+    Meeting& m = meetings[static_cast<std::size_t>(k)];
+    if (!meet(path, limits, level, m)) return false;
+    if (m.s < earliest) {
+      earliest = m.s;
+      normal = m.normal;
+    }
+  }
+  answer = {PairAnswer::Status::clear, to, {}};
+  const Parabola parabola(*disc.motion), parabola_of_other(*other.motion);
+  double t = std::max(rel.reference + earliest, from);
+  for (const double time : {from, std::min(t, to)})
+    if (!near_enough(disc, other, time, parabola.at(time), parabola_of_other.at(time), limits)) return false;
+  if (!(t <= to)) return true;
+  const double speed =
+      std::max(-normal.dot(path.velocity + (t - rel.reference) * path.acceleration), rel.noise);
+  const Vec2 at_disc = parabola.at(t), at_other = parabola_of_other.at(t);
+  const Vec2 far_off = Vec2::Constant(other.outline().bounding_radius);
+  const double rounding = gap_noise(disc, other, t, at_disc, at_other, at_disc - at_other, far_off);
+  const double moment = rounding / speed + 4.0 * ulp(t);
+  // segments that are met at the same time to rounding (a notch) count together, as in the general search
+  const auto nearest_at = [&](double time) {
+    const Vec2 q = frame.direction_to_local(parabola.at(time) - parabola_of_other.at(time));
+    double least = kForever;
+    std::pair<double, const Meeting*> nearest{kForever, nullptr};
+    for (int k = 0; k < count; ++k) {
+      const Meeting& m = meetings[static_cast<std::size_t>(k)];
+      if (!(m.s <= earliest + 64.0 * moment)) continue;
+      const Meeting::Seen seen = m.seen(q, radius, limits.touch);
+      if (!(seen.rank < least)) continue;
+      least = seen.rank;
+      nearest = {seen.gap - level, &m};
+    }
+    return nearest;
+  };
+  const auto root =
+      canonical_root([&](double time) { return nearest_at(time).first; }, t, rel.reference, rounding, speed);
+  if (!root) return false;
+  t = *root;
+  const auto [above, met] = nearest_at(t);
+  const Vec2 q = frame.direction_to_local(parabola.at(t) - parabola_of_other.at(t));
+  if (!can_hold(kRoundoff * (6.0 * q.lpNorm<1>() + 2.0 * other.outline().bounding_radius),
+                limits.tolerance) ||
+      too_fast(path.velocity + (t - rel.reference) * path.acceleration, t,
+               smallest_radius(disc.outline(), other.outline())))
+    return false;
+  const BodyState sd = disc.motion->state(t), so = other.motion->state(t);
+  const Vec2 out = frame.direction_to_world(met->normal);
+  FeatureContact& c = answer.contact;
+  c.time = t;
+  c.sample_on_a = disc_is_a;
+  c.sample = 0;
+  c.site = met->index;
+  c.gap = above + level;
+  c.level = c.sink = level;
+  c.normal = disc_is_a ? out : Vec2(-out);
+  c.point = sd.pose.position - out * (radius + c.gap);
+  c.closing_speed = -out.dot(sd.twist.velocity - so.twist.velocity);
+  answer.status = PairAnswer::Status::contact;
+  answer.until = t;
+  return true;
+}
+
+}  // namespace
+
+double falling_root(const Quadratic& g) {
+  const double discriminant = g.rate * g.rate - 2.0 * g.second * g.value;
+  if (discriminant < 0.0) return kForever;
+  const double root = std::sqrt(discriminant);
+  if (g.rate < 0.0) return 2.0 * g.value / (root - g.rate);
+  return g.second < 0.0 ? (g.rate + root) / -g.second : kForever;
+}
+
+bool has_closed_form(const Mover& a, const Mover& b) {
+  if (!a.motion->is_ballistic() || !b.motion->is_ballistic()) return false;
+  const bool disc_a = is_centred_disc(a.outline()), disc_b = is_centred_disc(b.outline());
+  if (disc_a && disc_b) return true;
+  if (disc_a) return keeps_angle(*b.motion) && only_segments(b.outline());
+  return disc_b && keeps_angle(*a.motion) && only_segments(a.outline());
+}
+
+bool first_contact_in_closed_form(const Mover& a, const Mover& b, double from, double to,
+                                  const SearchLimits& limits, SearchScratch& scratch, PairAnswer& answer) {
+  if (!has_closed_form(a, b)) return false;
+  const bool disc_a = is_centred_disc(a.outline()), disc_b = is_centred_disc(b.outline());
+  if (disc_a && disc_b) return discs(a, b, from, to, limits, scratch, answer);
+  return disc_a ? disc_and_segments(a, b, true, from, to, limits, scratch, answer)
+                : disc_and_segments(b, a, false, from, to, limits, scratch, answer);
+}
+
+}  // namespace brink

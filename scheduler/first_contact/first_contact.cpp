@@ -1,0 +1,509 @@
+#include "brink/scheduler/first_contact/first_contact.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "brink/scheduler/first_contact/canonical_time.h"
+#include "brink/scheduler/first_contact/closed_forms.h"
+#include "brink/scheduler/first_contact/pair_view.h"
+#include "brink/scheduler/first_contact/site_step.h"
+
+namespace brink {
+
+namespace {
+
+using detail::Feature;
+using detail::Half;
+using detail::PairView;
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+/// Iterations that a search may take if it has found a contact, whatever its cap.
+constexpr int kMostAfterContact = 1000;
+
+class PairSearch {
+ public:
+  PairSearch(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
+             SearchScratch& scratch, WorkCounters& work)
+      : view_(a, b, limits, scratch),
+        a_(a),
+        b_(b),
+        from_(from),
+        to_(to),
+        window_end_(to),
+        limits_(limits),
+        scratch_(scratch),
+        work_(work) {
+    const auto count_a = static_cast<std::size_t>(view_.half(true).count);
+    scratch.safe_until.assign(count_a + static_cast<std::size_t>(view_.half(false).count), from);
+    safe_until_[0] = scratch.safe_until.data();
+    safe_until_[1] = scratch.safe_until.data() + count_a;
+  }
+
+  PairAnswer run() {
+    if (!apart_by_bounding_discs()) advance();
+    // what stopped before the contact that it had found may have passed an earlier one
+    if (capped_ && !(best_.sample >= 0 && reached_ >= best_.time))
+      return {PairAnswer::Status::undecided, reached_, {}};
+    if (best_.sample >= 0) return told(best_);
+    return {PairAnswer::Status::clear, to_, {}};
+  }
+
+ private:
+  /// The contact, or why it cannot be told.
+  PairAnswer told(const FeatureContact& c) {
+    if (view_.beyond_doubt()) return {PairAnswer::Status::contact, c.time, c};
+    view_.place(c.time);
+    Feature f;
+    f.sample = c.sample;
+    f.site = c.site;
+    const PairView::Doubt doubt = view_.doubt(view_.half(c.sample_on_a), f);
+    if (doubt == PairView::Doubt::none) return {PairAnswer::Status::contact, c.time, c};
+    return {PairAnswer::Status::undecided,
+            c.time,
+            {},
+            doubt == PairView::Doubt::place ? PairAnswer::Why::place : PairAnswer::Why::speed};
+  }
+
+  /// Until when sample i of a half is sure not to touch.
+  double& safe_until(const Half& half, int i) { return safe_until_[half.s_is_a ? 0 : 1][i]; }
+
+  /// Steps the discs that hold the two outlines; true if they stay apart to the end. Else moves from_ on, but
+  /// not onto the discs' contact: it may be the pair's, and wants polishing from before.
+  bool apart_by_bounding_discs() {
+    const Outline &oa = a_.outline(), &ob = b_.outline();
+    if (oa.container || ob.container) return false;
+    const double reach = oa.bounding_radius + ob.bounding_radius;
+    const double near = 1e-3 * reach + limits_.tolerance;  // as near as makes no difference
+    const bool straight = a_.motion->is_ballistic() && b_.motion->is_ballistic() &&
+                          a_.motion->acceleration().linear == b_.motion->acceleration().linear;
+    double t = from_;
+    for (int i = 0; i < 64 && t < to_; ++i) {
+      const BodyState sa = a_.motion->state(t), sb = b_.motion->state(t);
+      const Vec2 d = sa.pose.position - sb.pose.position, v = sa.twist.velocity - sb.twist.velocity;
+      const double distance = d.norm(), f = distance - reach;
+      if (f <= near) break;
+      if (straight) {  // no curvature: there at once
+        t += time_until_within(d, v, reach + 0.5 * near);
+        break;
+      }
+      const RelativeBounds bounds = bounds_over(t, to_);
+      const double df = d.dot(v) / distance;
+      t += safe_step(f - 0.5 * near, df, bounds.acceleration) * (1.0 - 4.0 * kEpsilon);
+    }
+    if (t >= to_) return true;
+    from_ = t;
+    std::fill(scratch_.safe_until.begin(), scratch_.safe_until.end(), t);
+    return false;
+  }
+
+  void advance() {
+    long_bounds_ = bounds_over(from_, to_);
+    short_window_ = to_ - from_;
+    reached_ = from_;
+    for (int iteration = 0;; ++iteration) {
+      const double t = least_safe_time();
+      if (t >= to_) return;
+      reached_ = t;
+      // with a contact in hand little is left to look at
+      if (iteration >= limits_.max_iterations && (best_.sample < 0 || iteration >= kMostAfterContact)) {
+        capped_ = true;
+        return;
+      }
+      ++work_.search_iterations;
+      t_ = t;
+      next_ = next_after(t);
+      view_.place(t);
+      short_end_ = std::min(to_, t + short_window_);
+      short_bounds_ = bounds_over(t, short_end_);
+      const double due = t + 0.25 * std::min(short_window_, to_ - t);
+      least_ = kForever;
+      // the nearest ones first: beside their steps most others are seen to be far at a glance
+      const Half &of_a = view_.half(true), &of_b = view_.half(false);
+      const int first_a = nearest_due(of_a, due), first_b = nearest_due(of_b, due);
+      if (first_a >= 0) advance_sample(of_a, first_a);
+      if (first_b >= 0) advance_sample(of_b, first_b);
+      advance_due(of_a, due, first_a);
+      advance_due(of_b, due, first_b);
+      short_window_ = std::max(4.0 * (least_ - t), 64.0 * ulp(t));
+    }
+  }
+
+  /// Features have come close: from now on levels count.
+  void look_closely() {
+    if (!sink_known_) view_.set_sink(view_.sink_at_start());
+    sink_known_ = true;
+  }
+
+  /// Of the samples due, the one nearest to the other outline's origin; -1 if none is.
+  int nearest_due(const Half& half, double due) {
+    const Vec2 origin = view_.placed(half.s).frame.to_local(view_.placed(half.t).frame.origin);
+    int nearest = -1;
+    double least = kForever;
+    for (int i = 0; i < half.count; ++i) {
+      if (safe_until(half, i) > due) continue;
+      const double distance2 = (half.sample(i).p - origin).squaredNorm();
+      if (nearest >= 0 && distance2 >= least) continue;
+      least = distance2;
+      nearest = i;
+    }
+    return nearest;
+  }
+
+  void advance_due(const Half& half, double due, int done) {
+    for (int i = 0; i < half.count; ++i)
+      if (i != done && safe_until(half, i) <= due) advance_sample(half, i);
+  }
+
+  void advance_sample(const Half& half, int i) {
+    // never less than the next double, or the search would stand still
+    safe_until(half, i) = std::max(t_ + step(half, i), next_);
+    least_ = std::min(least_, safe_until(half, i));
+  }
+
+  RelativeBounds bounds_over(double from, double to) const {
+    return RelativeBounds::over(a_.outline(), *a_.motion, b_.outline(), *b_.motion, from, to);
+  }
+
+  double least_safe_time() const {
+    double t = kForever;
+    for (const double until : scratch_.safe_until) t = std::min(t, until);
+    return t;
+  }
+
+  /// Safe time step of one sample from t_ [s]; records a contact if it finds one (and is then safe up to it).
+  double step(const Half& half, int i) {
+    const Sample& sample = half.sample(i);
+    const SamplePath path = view_.path(half, i);
+    const double long_window = to_ - t_, short_window = short_end_ - t_;
+    const RelativeBounds relative = half.s_is_a ? long_bounds_ : long_bounds_.swapped();
+    const RelativeBounds near = half.s_is_a ? short_bounds_ : short_bounds_.swapped();
+    const PathBounds over_all = path_bounds(path, relative, long_window);
+    const Facing line = line_between(half, i, path);
+    const double apart = line.gap > 0.0 ? safe_step(line.gap, line.rate, over_all.acceleration)
+                                        : clear_of_disc(half, i, path, over_all);
+    if (apart >= long_window || apart > 2.0 * (least_ - t_)) return apart * (1.0 - 4.0 * kEpsilon);
+    const PathBounds over_short = path_bounds(path, near, short_window);
+    double safe = apart, again = 0.0;
+    if (line.gap > 0.0) {
+      if (safe < short_window) again = safe_step(line.gap, line.rate, over_short.acceleration);
+    } else if (sample.arc_site < 0) {
+      std::tie(safe, again) = vertex_steps(half, i, path, over_all, over_short, long_window, short_window);
+    } else {
+      safe = arc_sample_step(half, i, path, relative, over_all);
+      if (safe < short_window) again = arc_sample_step(half, i, path, near, over_short);
+    }
+    if (safe < short_window) safe = std::max(safe, std::min(again, short_window));
+    return safe * (1.0 - 4.0 * kEpsilon);
+  }
+
+  /// How long a sample is sure to stay out of the disc that holds the other outline; 0 if it is in it. As
+  /// other steps, this one does not lead onto the surface.
+  double clear_of_disc(const Half& half, int i, const SamplePath& path, const PathBounds& bounds) const {
+    const Outline& outline = half.sites_of();
+    const Sample& sample = half.sample(i);
+    const double f = path.distance - outline.bounding_radius - sample.radius - touching_band(half, i, path);
+    if (outline.container || outline.is_point() || !(f > 0.0)) return 0.0;
+    return safe_step(f, path.q.dot(path.rate) / path.distance, bounds.acceleration);
+  }
+
+  /// The line between a vertex sample and a convex outline, as far out as a step may lead; gap 0 where there
+  /// is none, or the sample is so near that its features must be told apart.
+  Facing line_between(const Half& half, int i, const SamplePath& path) {
+    const Outline& outline = half.sites_of();
+    const Sample& sample = half.sample(i);
+    if (outline.facets.empty() || sample.arc_site >= 0) return {};
+    ++work_.distance_queries;
+    ++work_.candidate_evaluations;
+    Facing line = facing_convex(outline, path.q, path.rate);
+    line.gap -= outline.sites[0].radius + sample.radius;
+    const double band = touching_band(half, i, path);
+    line.gap = line.gap > 2.0 * band ? line.gap - 0.5 * band : 0.0;
+    return line;
+  }
+
+  /// Safe steps by the bounds over the whole window and by those over the short one; every site is looked at
+  /// once.
+  std::pair<double, double> vertex_steps(const Half& half, int i, const SamplePath& path,
+                                         const PathBounds& over_all, const PathBounds& over_short,
+                                         double window, double short_window) {
+    const Sample& sample = half.sample(i);
+    const Outline& sites = half.sites_of();
+    ++work_.distance_queries;
+    const double band = touching_band(half, i, path);
+    const double reach = over_all.speed * window + sample.radius + 2.0 * band;
+    Candidates near = half.t->index->candidates(path.q, reach, scratch_.index);
+    // what is not named is too near to be left out: two things are met, and one of them alone is named
+    if (near.others_at_least - sample.radius <= 2.0 * band) near = all_of(sites);
+    work_.candidate_evaluations += near.sites.size();
+    const double others = std::max(0.0, near.others_at_least - sample.radius - 0.5 * band);
+    double safe = over_all.speed > 0.0 ? others / over_all.speed : kForever;
+    double again = over_short.speed > 0.0 ? others / over_short.speed : kForever;
+    bool neighbours_known = false;
+    for (const std::uint32_t j : near.sites) {
+      const Site& site = sites.sites[j];
+      const Nearest nearest = nearest_on(site, path.q);
+      const double radius = site.radius + sample.radius;
+      const double gap = nearest.distance - radius;
+      if (gap <= band) {
+        look_closely();
+        if (!neighbours_known) view_.find_neighbours(half, i, near.sites, path, 4.0 * band);
+        neighbours_known = true;
+        const Feature f = view_.vertex_feature(half, i, static_cast<int>(j), nearest, path);
+        const bool hidden = view_.belongs_to_a_neighbour(half, static_cast<int>(j), nearest, path.q);
+        if (!hidden && polish(half, f, path, over_all)) continue;
+        // behind what does not count it may go a part of its way there: what counts has a step of its own
+        const double free_way = hidden && f.gap < 0.0 ? 0.25 * nearest.distance : 0.0;
+        const double above = f.gap - view_.level(half, i, site, path.q);
+        const auto step_by = [&](const RelativeBounds& relative, const PathBounds& bounds) {
+          const double step = close_step(half, site, nearest, f, above, path, band, relative, bounds);
+          return free_way > 0.0 ? std::max(step, free_way / bounds.speed) : step;
+        };
+        safe = std::min(safe, step_by(half.s_is_a ? long_bounds_ : long_bounds_.swapped(), over_all));
+        again = std::min(again, step_by(half.s_is_a ? short_bounds_ : short_bounds_.swapped(), over_short));
+        continue;
+      }
+      const double beyond = gap - 0.5 * band;  // too far to matter at any speed?
+      if (beyond > band && beyond >= safe * over_all.speed &&
+          beyond >= std::min(again, short_window) * over_short.speed)
+        continue;
+      const double slack = -0.5 * band;
+      const double rate = distance_rate(site, nearest, path.q, path.rate);
+      safe = std::min(safe, site_step(site, nearest, path.q, path.rate, rate, radius, slack, over_all).safe);
+      again =
+          std::min(again, site_step(site, nearest, path.q, path.rate, rate, radius, slack, over_short).safe);
+    }
+    return {safe, again};
+  }
+
+  Candidates all_of(const Outline& outline) {
+    std::vector<std::uint32_t>& all = scratch_.index.sites;
+    all.resize(outline.sites.size());
+    std::iota(all.begin(), all.end(), 0U);
+    return {all, kForever};
+  }
+
+  /// The step of a vertex that is within the band of a site and does not meet it, `above` its level: by the
+  /// signed distance to the site's line or circle where the foot is inside the site, which holds behind its
+  /// surface as in front of it; else by the site's distance.
+  double close_step(const Half& half, const Site& site, const Nearest& nearest, const Feature& f,
+                    double above, const SamplePath& path, double band, const RelativeBounds& relative,
+                    const PathBounds& bounds) const {
+    const double allowed = 0.25 * sink_step(limits_.touch, 0.0);
+    if (site.kind == SiteKind::segment || site.kind == SiteKind::point) {
+      double bend = bounds.acceleration;
+      if (relative.spin_t == 0.0 && relative.alpha_t == 0.0) {  // only what pulls against the normal counts
+        const double along = view_.placed(half.t).frame.direction_to_world(f.normal).dot(relative.pull);
+        bend = std::min(bend, std::max(0.0, relative.pull_radius - along) +
+                                  (relative.alpha_s + relative.spin_s * relative.spin_s) * path.arm);
+      }
+      return band_step(above, f.rate, bend, band, allowed);
+    }
+    const Vec2 out = path.q - site.center;
+    const bool hollow = f.normal.dot(out) < 0.0;  // f's normal points to the centre
+    // the circle on which the sample meets: less than the arc's by the radii
+    const double bend = hollow ? bounds.speed * bounds.speed / out.norm() * 1.01 : 0.0;
+    if (nearest.foot == Foot::interior)
+      return band_step(above, f.rate, bounds.acceleration + bend, band, allowed);
+    const HullDistance hull = distance_to_arc_hull(site, nearest, path.q);
+    const double outside = hull.distance - (nearest.distance - above);
+    const double by_hull = hull.distance > 0.0 ? band_step(outside, hull.gradient.dot(path.rate),
+                                                           bounds.acceleration, band, allowed)
+                                               : 0.0;
+    const double by_speed = bounds.speed > 0.0 ? 0.5 * std::max(above, allowed) / bounds.speed : kForever;
+    return std::max(by_hull, by_speed);
+  }
+
+  /// Gaps up to this are close [m]: the tolerance, or what the point moves in a few roundings of the time, or
+  /// more than any level.
+  double touching_band(const Half& half, int i, const SamplePath& path) const {
+    return std::max(
+        {limits_.tolerance, 8.0 * path.rate.norm() * ulp(t_), 16.0 * view_.gap_rounding(half, i, path.q)});
+  }
+
+  double arc_sample_step(const Half& half, int i, const SamplePath& path, const RelativeBounds& relative,
+                         const PathBounds& bounds) {
+    const Sample& sample = half.sample(i);
+    const Site& arc = half.samples_of().sites[sample.arc_site];
+    const Outline& sites = half.sites_of();
+    const double band = touching_band(half, i, path);
+    double safe = kForever;
+    for (std::size_t j = 0; j < sites.sites.size(); ++j) {
+      ++work_.candidate_evaluations;
+      const ArcStep step = arc_step(arc, sites.sites[j], path, view_.placed(half.s), view_.placed(half.t),
+                                    band, relative, bounds);
+      if (step.active && step.gap <= band) {
+        look_closely();
+        const Feature f{i, static_cast<int>(j), step.gap, step.rate, step.normal, step.point};
+        if (polish(half, f, path, bounds)) continue;
+        const double level = view_.level(half, i, sites.sites[j], path.q);
+        const double own = band_step(step.gap - level, step.rate, step.curvature, band,
+                                     0.25 * sink_step(limits_.touch, 0.0));
+        safe = std::min(safe, own);
+        continue;
+      }
+      safe = std::min(safe, step.safe);
+    }
+    return safe;
+  }
+
+  /// The feature pair is within tolerance: if it approaches, finds the last double at which it is still
+  /// apart. True if a contact was found; false if it recedes, or passes by.
+  bool polish(const Half& half, const Feature& f, const SamplePath& path, const PathBounds& bounds) {
+    if (!view_.approaching(f, path)) {
+      if (f.gap < -limits_.tolerance && t_ == from_ && f.rate > 0.0) ++work_.let_go;
+      return false;
+    }
+    // of a sample past its contact, so far that sides may have changed, nothing more is to be learnt
+    const bool past = best_.sample == f.sample && best_.sample_on_a == half.s_is_a && t_ > best_.time;
+    if (past) return true;
+    const auto gap = [&](double t) { return view_.gap_at(half, f, t).gap; };
+    const Site& site = half.site(f.site);
+    const double speed = -f.rate;
+    const double now = f.gap - view_.level(half, f.sample, site, path.q);
+    const double begin = view_.start();
+    if (t_ <= begin && now <= 0.0) return remember(half, f, t_);  // touching from the start, and approaching
+    const double guess = t_ + now / speed;
+    const double off = std::abs(now) / speed;
+    const double bend = std::min(1.0, bounds.acceleration * off / speed) * off;
+    const double rounding = view_.gap_rounding(half, f.sample, path.q);
+    const double moment = rounding / speed + 4.0 * ulp(t_), noise = moment + bend;
+    // clear now, or a little before, but not before it rose; it was clear until the search began
+    const double floor = std::max(begin, from_ - 1024.0 * moment);
+    double low = t_;
+    if (now <= 2.0 * rounding) {
+      low = std::max(std::min(guess, t_), floor);
+      for (double back = moment; gap(low) <= rounding; back *= 1.25) {
+        if (low <= floor) {                                  // it never was clear
+          if (gap(t_) <= 0.0) return remember(half, f, t_);  // in each other from the start, and going deeper
+          low = t_;
+          break;
+        }
+        low = std::max(low - back, floor);
+      }
+    }
+    double high = guess + 8.0 * noise;
+    const double last = std::min(a_.motion->end(), b_.motion->end());
+    // beyond the surface; where two points meet, when they are nearest; where a bent path meets it later; and
+    // where a tip is grazed, for less than a rounding
+    const double nearest = t_ + now / speed, later = t_ + 4.0 * std::max(0.0, now) / speed + 64.0 * noise;
+    for (const double beyond : {high, nearest, later, nearest + 0.125 * noise, nearest + 0.25 * noise,
+                                nearest + 0.5 * noise, nearest + noise}) {
+      high = std::min(beyond, last);
+      if (high > low && gap(high) <= 0.0) break;
+    }
+    if (high <= low || gap(high) > 0.0) return false;  // passes by
+    const double t = last_clear_time(gap, low, high);
+    // at the end of its neighbourhood a sample changes sides without having come near
+    if (gap(t) > touching_band(half, f.sample, path)) return false;
+    return remember(half, f, t, 2.0 * moment);
+  }
+
+  /// Keeps the contact if it is the earliest so far (ties: lowest half, sample, site). Always true. The
+  /// search goes on for `noise` longer: another feature may seem to touch later only by the rounding of its
+  /// steps.
+  bool remember(const Half& half, const Feature& f, double t, double noise = 0.0) {
+    if (t > window_end_) return true;
+    const FeatureContact contact = contact_then(half, f, t);
+    const bool earlier = best_.sample < 0 || t < best_.time ||
+                         (t == best_.time && std::tie(half.s_is_a, best_.sample, best_.site) >
+                                                 std::tie(best_.sample_on_a, contact.sample, contact.site));
+    if (!earlier) return true;
+    best_ = contact;
+    to_ = std::min(to_, std::nextafter(t + noise, kForever));
+    return true;
+  }
+
+  /// The contact's geometry is that of its own time, and its site the nearest then, unless it leaves that.
+  FeatureContact contact_then(const Half& half, const Feature& f, double t) const {
+    PairView there = view_;
+    there.place(t);
+    Feature met = f;
+    met.site = view_.gap_at(half, f, t).site;
+    const FeatureContact contact = there.look_again(half, met, t);
+    return contact.closing_speed > 0.0 || met.site == f.site ? contact : there.look_again(half, f, t);
+  }
+
+  PairView view_;
+  const Mover &a_, &b_;
+  double from_, to_;
+  double window_end_;  ///< to_ as it was given
+  const SearchLimits& limits_;
+  SearchScratch& scratch_;
+  WorkCounters& work_;
+  double* safe_until_[2];  ///< one a sample of each half
+  RelativeBounds long_bounds_, short_bounds_;
+  double short_window_ = 0.0, short_end_ = 0.0;
+  double t_ = 0.0, next_ = 0.0, reached_ = 0.0;
+  double least_ = kForever;  ///< of the samples looked at from t_, how long all are safe
+  FeatureContact best_;
+  bool sink_known_ = false;
+  bool capped_ = false;
+};
+
+}  // namespace
+
+PairAnswer first_contact(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
+                         SearchScratch& scratch, WorkCounters& work) {
+  ++work.pair_searches;
+  if (limits.closed_forms) {
+    PairAnswer answer;
+    if (first_contact_in_closed_form(a, b, from, to, limits, scratch, answer)) {
+      ++work.closed_forms;
+      // seen through the same eyes as the general search's; two discs' is already
+      const bool discs = a.outline().is_point() && b.outline().is_point();
+      if (answer.status == PairAnswer::Status::contact && !discs) {
+        const double t = answer.contact.time;
+        answer.contact = contact_at(a, b, t, answer.contact, limits, scratch);
+      }
+      return answer;
+    }
+  }
+  return PairSearch(a, b, from, to, limits, scratch, work).run();
+}
+
+std::vector<FeatureContact> touching_features(const Mover& a, const Mover& b, double t, double tolerance,
+                                              const SearchLimits& limits, SearchScratch& scratch) {
+  std::vector<FeatureContact> found;
+  PairView view(a, b, limits, scratch);
+  view.place(t);
+  view.each_feature(tolerance + limits.tolerance, [&](const Half& half, const Feature& f) {
+    const FeatureContact c = view.contact_of(half, f, t);
+    if (c.gap - c.level <= tolerance) found.push_back(c);
+  });
+  std::stable_sort(found.begin(), found.end(), [](const auto& x, const auto& y) { return x.gap < y.gap; });
+  return found;
+}
+
+FeatureContact contact_at(const Mover& a, const Mover& b, double t, const FeatureContact& like,
+                          const SearchLimits& limits, SearchScratch& scratch) {
+  PairView view(a, b, limits, scratch);
+  view.set_sink(like.sink);
+  view.place(t);
+  Feature same;
+  same.sample = like.sample;
+  same.site = like.site;
+  FeatureContact c = view.look_again(view.half(like.sample_on_a), same, like.time);
+  if (!(c.normal.dot(like.normal) > 1.0 - 1e-6)) c.normal = like.normal;
+  return c;
+}
+
+double pair_gap(const Mover& a, const Mover& b, double t, const SearchLimits& limits,
+                SearchScratch& scratch) {
+  PairView view(a, b, limits, scratch);
+  view.place(t);
+  double least = kForever;
+  view.each_feature(kForever, [&](const Half&, const Feature& f) { least = std::min(least, f.gap); });
+  return least;
+}
+
+double sink_at_start(const Mover& a, const Mover& b, const SearchLimits& limits, SearchScratch& scratch) {
+  return PairView(a, b, limits, scratch).sink_at_start();
+}
+
+}  // namespace brink

@@ -1,0 +1,360 @@
+#include "brink/scheduler/first_contact/pair_view.h"
+
+#include <numeric>
+
+#include "brink/scheduler/first_contact/canonical_time.h"
+#include "brink/scheduler/first_contact/site_step.h"
+
+namespace brink::detail {
+
+namespace {
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+/// Sine of an angle between an edge and a face that roundings may make of two that lie flush.
+constexpr double kParallel = 1e-6;
+
+/// True if q, on its way in direction `d`, is at a convex corner of a solid at an end of the site, to
+/// `rounding`, and the corner is the nearest to where it comes from, though now its foot lies a rounding
+/// inside.
+bool comes_to_corner(const Site& site, const Nearest& nearest, const Vec2& q, const Vec2& d,
+                     double rounding) {
+  if (!site.solid) return false;
+  const double to_a = (q - site.a).squaredNorm(), to_b = (q - site.b).squaredNorm();
+  if (std::min(to_a, to_b) > rounding * rounding) return false;
+  const bool at_a = to_a < to_b;
+  const Vec2 &bisector = at_a ? site.pseudo_a : site.pseudo_b, normal = normal_at(site, nearest, q);
+  const Vec2 beyond = at_a ? Vec2(-perp(normal)) : perp(normal);  // the site's way on beyond its end
+  const double speed = d.norm();
+  return beyond.dot(bisector) > 0.0 && -d.dot(bisector) >= normal.dot(bisector) * speed;
+}
+
+/// A direction out of the site's end at which q is nearest; where they are one, that of a solid's corner.
+Vec2 outward(const Site& site, const Nearest& nearest, double side, const Vec2& q) {
+  if (nearest.distance > 0.0 || !site.solid) return side * (q - nearest.point);
+  return nearest.foot == Foot::start ? site.pseudo_a : site.pseudo_b;
+}
+
+}  // namespace
+
+PairView::PairView(const Mover& a, const Mover& b, const SearchLimits& limits, SearchScratch& scratch)
+    : a_(a), b_(b), limits_(limits), scratch_(scratch) {
+  // A core of one point needs no reverse test: its one sample against the other's sites is the whole
+  // distance.
+  const bool point_a = a.outline().is_point(), point_b = !point_a && b.outline().is_point();
+  halves_[0] = {&a, &b, true, point_b ? 0 : static_cast<int>(a.outline().samples.size())};
+  halves_[1] = {&b, &a, false, point_a ? 0 : static_cast<int>(b.outline().samples.size())};
+}
+
+Feature PairView::vertex_feature(const Half& half, int i, int j, const Nearest& nearest,
+                                 const SamplePath& path) const {
+  const Sample& sample = half.sample(i);
+  const Site& site = half.site(j);
+  Feature f{i, j, 0.0, 0.0, normal_at(site, nearest, path.q), nearest.point};
+  const double side = side_of(site, nearest, path.q);
+  f.gap = side * nearest.distance - site.radius - sample.radius;
+  const auto comes_to_end = [&] {
+    if (nearest.foot == Foot::interior && site.kind != SiteKind::point)
+      return comes_to_corner(site, nearest, path.q, path.rate, 4.0 * gap_rounding(half, i, path.q));
+    return outward(site, nearest, side, path.q).dot(path.rate) < 0.0;
+  };
+  if (site.radius + sample.radius == 0.0 && path.rate.squaredNorm() > 0.0 && f.gap > -limits_.touch &&
+      nearest.distance <= limits_.tolerance && comes_to_end())
+    f.normal = -path.rate.normalized();  // two points that meet: the limit of their direction
+  f.rate = f.normal.dot(path.rate);
+  f.point =
+      path.q - f.normal * (f.gap + sample.radius);  // from the sample: a long site's foot has lost digits
+  return f;
+}
+
+Feature PairView::nearest_feature(const Half& half, int i) const {
+  const SamplePath now = path(half, i);
+  const FieldAnswer nearest = half.t->index->query(now.q, scratch_.nearest);
+  if (nearest.site < 0) return {};
+  return vertex_feature(half, i, nearest.site, nearest_on(half.site(nearest.site), now.q), now);
+}
+
+ArcStep PairView::arc_now(const Half& half, int i, int j) const {
+  const Site& arc = half.samples_of().sites[static_cast<std::size_t>(half.sample(i).arc_site)];
+  return arc_step(arc, half.site(j), path(half, i), placed(half.s), placed(half.t), limits_.tolerance, {},
+                  {0.0, 0.0});
+}
+
+FeatureContact PairView::look_again(const Half& half, const Feature& f, double time) const {
+  if (half.sample(f.sample).arc_site >= 0) {
+    const ArcStep step = arc_now(half, f.sample, f.site);
+    return contact_of(half, {f.sample, f.site, step.gap, step.rate, step.normal, step.point}, time);
+  }
+  const SamplePath now = path(half, f.sample);
+  const Nearest nearest = nearest_on(half.site(f.site), now.q);
+  return contact_of(half, vertex_feature(half, f.sample, f.site, nearest, now), time);
+}
+
+FeatureContact PairView::contact_of(const Half& half, const Feature& f, double time) const {
+  const Placed& site_owner = placed(half.t);
+  FeatureContact c;
+  c.time = time;
+  c.sample_on_a = half.s_is_a;
+  c.sample = f.sample;
+  c.site = f.site;
+  c.point = now_.base + site_owner.frame.to_world(f.point);
+  const Vec2 out = site_owner.frame.direction_to_world(f.normal);
+  c.normal = half.s_is_a ? out : Vec2(-out);
+  c.closing_speed = -f.rate;
+  c.gap = f.gap;
+  const double nominal = nominal_level(now_, half, f.sample, half.site(f.site), path(half, f.sample).q);
+  c.level = level_of(nominal, sink_);
+  c.sink = c.level - nominal;
+  return c;
+}
+
+double PairView::rate_noise(const SamplePath& path) const {
+  return a_.velocity_rounding + b_.velocity_rounding + 16.0 * kEpsilon * path.magnitude;
+}
+
+void PairView::find_neighbours(const Half& half, int i, std::span<const std::uint32_t> sites,
+                               const SamplePath& path, double reach) {
+  const double radius = half.sample(i).radius;
+  scratch_.neighbours.clear();
+  scratch_.looked_from = path.q;
+  for (const std::uint32_t k : sites) {
+    const Site& site = half.sites_of().sites[k];
+    const Nearest nearest = nearest_on(site, path.q);
+    if (nearest.distance - site.radius - radius > reach) continue;
+    const Feature f = vertex_feature(half, i, static_cast<int>(k), nearest, path);
+    if (pokes_through(half, i, site, nearest, f)) continue;
+    const bool leaving = f.gap - level(half, i, site, path.q) <= limits_.touch && !approaching(f, path);
+    scratch_.neighbours.push_back({f.site, f.normal, leaving, nearest.foot != Foot::interior});
+  }
+  // in one order, whoever named the candidates: of sites equally near the first is met
+  std::sort(scratch_.neighbours.begin(), scratch_.neighbours.end(),
+            [](const auto& x, const auto& y) { return x.site < y.site; });
+}
+
+bool PairView::pokes_through(const Half& half, int i, const Site& site, const Nearest& nearest,
+                             const Feature& f) const {
+  const Sample& sample = half.sample(i);
+  if (sample.before < 0 || site.kind != SiteKind::segment || !site.solid || nearest.foot != Foot::interior ||
+      site.radius + sample.radius > 0.0 || !(f.gap > 0.0))
+    return false;
+  const Vec2 along = site.b - site.a;
+  const auto crossed_by = [&](const Site& edge, const Vec2& other_end) {
+    if (edge.kind != SiteKind::segment) return false;
+    const Vec2 way = placed(half.t).frame.direction_to_local(
+        placed(half.s).frame.direction_to_world(other_end - sample.p));
+    const double falls = -f.normal.dot(way);
+    if (!(falls > f.gap && falls > kParallel * way.norm())) return false;
+    const double at = along.dot(nearest.point + (f.gap / falls) * way - site.a);
+    return at >= 0.0 && at <= along.squaredNorm();
+  };
+  const std::vector<Site>& own = half.samples_of().sites;
+  return crossed_by(own[sample.before], own[sample.before].a) ||
+         crossed_by(own[sample.after], own[sample.after].b);
+}
+
+bool PairView::belongs_to_a_neighbour(const Half& half, int j, const Nearest& nearest, const Vec2& q) const {
+  const Outline& outline = half.sites_of();
+  const Site& site = outline.sites[j];
+  if (site.kind == SiteKind::point) return false;
+  const double distance = nearest.distance - site.radius;
+  const bool at_end = nearest.foot != Foot::interior, behind = side_of(site, nearest, q) < 0.0;
+  if (!at_end && !behind) return false;
+  const Vec2 normal = normal_at(site, nearest, q);
+  for (const SearchScratch::Neighbour& other : scratch_.neighbours) {
+    if (other.site == j) continue;
+    const Site& other_site = outline.sites[other.site];
+    const Nearest n = nearest_on(other_site, q);
+    const double further = n.distance - other_site.radius - distance;
+    if (further > limits_.touch) continue;
+    if (at_end && n.foot == Foot::interior) return true;
+    if (behind && other.normal.dot(normal) < 0.0 && (further < 0.0 || side_of(other_site, n, q) > 0.0))
+      return true;
+  }
+  return false;
+}
+
+void PairView::put(Placing& p, double t) const {
+  p.time = t;
+  const BodyState sa = a_.motion->state(t), sb = b_.motion->state(t);
+  p.place_noise =
+      place_rounding(*a_.motion, t, sa.pose.position) + place_rounding(*b_.motion, t, sb.pose.position);
+  const auto turned = [&](const Mover& m, double angle) {
+    return is_centred_disc(m.outline()) ? 0.0 : angle_rounding(*m.motion, t, angle);
+  };
+  p.angle_noise_a = turned(a_, sa.pose.angle);
+  p.angle_noise_b = turned(b_, sb.pose.angle);
+  const double noise = p.place_noise + p.angle_noise_a * a_.outline().bounding_radius +
+                       p.angle_noise_b * b_.outline().bounding_radius;
+  if (noise > kFarOfTolerance * limits_.tolerance) return put_relative(p, t);
+  p.base.setZero();
+  p.a.move(a_.outline(), sa);
+  p.b.move(b_.outline(), sb);
+}
+
+namespace {
+
+/// What rounding is left of a motion seen in extended precision: as much less as Real is finer than double,
+/// where there is more than a double's worth to see.
+double finer(const Motion& m) { return m.is_ballistic() ? kRealRoundoff / kRoundoff : 1.0; }
+
+}  // namespace
+
+void PairView::put_relative(Placing& p, double t) const {
+  const ExtendedState sa = a_.motion->extended_state(t), sb = b_.motion->extended_state(t);
+  p.base = sb.position.cast<double>();
+  p.a.move(a_.outline(), sa.seen_from(p.base));
+  p.b.move(b_.outline(), sb.seen_from(p.base));
+  p.place_noise = place_rounding(*a_.motion, t, sa.position.cast<double>()) * finer(*a_.motion) +
+                  place_rounding(*b_.motion, t, p.base) * finer(*b_.motion);
+  p.angle_noise_a *= finer(*a_.motion);
+  p.angle_noise_b *= finer(*b_.motion);
+}
+
+double PairView::gap_rounding(const Placing& p, const Half& half, int i, const Vec2& q) const {
+  const double arm = half.sample(i).p.lpNorm<1>(), distance = q.lpNorm<1>();
+  const double of_s = half.s_is_a ? p.angle_noise_a : p.angle_noise_b;
+  const double of_t = half.s_is_a ? p.angle_noise_b : p.angle_noise_a;
+  const auto turning = [](const Placed& placed) { return placed.angle == 0.0 ? 0.0 : 4.0 * kRoundoff; };
+  const double turn_s = turning(half.s_is_a ? p.a : p.b), turn_t = turning(half.s_is_a ? p.b : p.a);
+  // sines and turning, where anything is turned; then the distance to a site as far off
+  return p.place_noise + (of_s + turn_s) * arm + (of_t + turn_t + 2.0 * kRoundoff) * distance +
+         2.0 * kRoundoff * half.sites_of().bounding_radius;
+}
+
+double PairView::nominal_level(const Placing& p, const Half& half, int i, const Site& site,
+                               const Vec2& q) const {
+  const bool thin = !site.solid && site.radius + half.sample(i).radius == 0.0;
+  return brink::nominal_level(limits_.touch, limits_.tolerance, gap_rounding(p, half, i, q), thin);
+}
+
+PairView::Doubt PairView::doubt(const Half& half, const Feature& f) const {
+  const SamplePath now = path(half, f.sample);
+  const double rounding = gap_rounding(half, f.sample, now.q);
+  const double nominal = nominal_level(now_, half, f.sample, half.site(f.site), now.q);
+  if (!can_hold(rounding, limits_.tolerance, nominal, sink_ < 0.0)) return Doubt::place;
+  const double moved = now.rate.norm() * same_instant(now_.time);
+  return moved > kSlowOfSize * smallest_radius(a_.outline(), b_.outline()) ? Doubt::speed : Doubt::none;
+}
+
+bool PairView::beyond_doubt() const {
+  constexpr double by_far = 1e-2;
+  const Outline &a = a_.outline(), &b = b_.outline();
+  if (a.container || b.container) return false;
+  const double reach = 2.0 * (a.bounding_radius + b.bounding_radius);
+  const double noise =
+      now_.place_noise + (now_.angle_noise_a + now_.angle_noise_b + 16.0 * kRoundoff) * reach;
+  const double speed = (now_.a.twist.velocity - now_.b.twist.velocity).norm() +
+                       (std::abs(now_.a.twist.omega) + std::abs(now_.b.twist.omega)) * reach;
+  return 16.0 * noise <= by_far * limits_.tolerance &&
+         speed * same_instant(now_.time) <= by_far * kSlowOfSize * smallest_radius(a, b);
+}
+
+bool PairView::out_of_reach(const Half& half, int i, double reach) const {
+  const Outline& outline = half.sites_of();
+  if (outline.container || !(reach < kForever)) return false;
+  const SamplePath now = path(half, i);
+  const double radius = half.sample(i).radius;
+  if (now.distance - outline.bounding_radius - radius > reach) return true;
+  return !outline.facets.empty() &&
+         facing_convex(outline, now.q, now.rate).gap - outline.sites[0].radius - radius > reach;
+}
+
+bool PairView::hidden_behind_others(const Half& half, const Feature& f, const SamplePath& path) {
+  if (half.sample(f.sample).arc_site >= 0) return false;
+  std::vector<std::uint32_t> all(half.sites_of().sites.size());
+  std::iota(all.begin(), all.end(), 0U);
+  find_neighbours(half, f.sample, all, path, 4.0 * limits_.tolerance);
+  return belongs_to_a_neighbour(half, f.site, nearest_on(half.site(f.site), path.q), path.q);
+}
+
+double PairView::sink_at_start() const {
+  // what was pressed then has met since; of thousands of steps ago nothing is left to tell
+  if (!a_.motion->remembers(start()) || !b_.motion->remembers(start())) return 0.0;
+  PairView then = *this;
+  then.place(start());
+  const RelativeBounds at_once =
+      RelativeBounds::over(a_.outline(), *a_.motion, b_.outline(), *b_.motion, start(), start());
+  double gap = kForever, rate = kForever, noise = 0.0, bend = 0.0, step = 0.0;
+  bool now = false;
+  then.each_feature(limits_.tolerance, [&](const Half& half, const Feature& f) {
+    const SamplePath path = then.path(half, f.sample);
+    const Site& site = half.site(f.site);
+    const double rounding = then.gap_rounding(half, f.sample, path.q);
+    const double own_step = sink_step(limits_.touch, rounding);
+    const double above = f.gap - then.nominal_level(then.now_, half, f.sample, site, path.q);
+    if (!(above < own_step) || above < -kOverlapAtStart * limits_.tolerance) return;
+    now = now || (above <= 0.0 && then.approaching(f, path) && !then.hidden_behind_others(half, f, path));
+    const PathBounds bounds = path_bounds(path, half.s_is_a ? at_once : at_once.swapped(), 0.0);
+    const bool of_arc = site.kind == SiteKind::arc;
+    const double hollow = of_arc ? bounds.speed * bounds.speed / (path.q - site.center).norm() : 0.0;
+    gap = std::min(gap, above);
+    rate = std::min(rate, f.rate);
+    noise = std::max(noise, then.rate_noise(path));
+    bend = std::max(bend, bounds.acceleration + hollow);
+    step = std::max(step, own_step);
+  });
+  if (now || !(gap < kForever)) return 0.0;
+  return start_sink(gap, rate, noise, bend, step);
+}
+
+double PairView::side_kept(const Site& site, const SearchScratch::Neighbour& as_found, const Nearest& now,
+                           const Vec2& q) const {
+  if (!as_found.at_end || site.kind != SiteKind::segment)
+    return as_found.normal.dot(q - now.point) < 0.0 ? -1.0 : 1.0;
+  // it came round an end, unless the straight way leads through the wire
+  const Vec2 d = site.b - site.a, from = scratch_.looked_from;
+  const double before = cross(d, from - site.a), after = cross(d, q - site.a);
+  if ((before < 0.0) == (after < 0.0)) return 1.0;
+  const double along = d.dot(from + (before / (before - after)) * (q - from) - site.a);
+  return along >= 0.0 && along <= d.squaredNorm() ? -1.0 : 1.0;
+}
+
+PairView::GapAndSite PairView::gap_to_neighbours(const Placing& p, const Half& half, int i,
+                                                 const Vec2& q) const {
+  const double sample_radius = half.sample(i).radius;
+  GapAndSite found;
+  double least = kForever;
+  for (const SearchScratch::Neighbour& neighbour : scratch_.neighbours) {
+    if (neighbour.leaving) continue;
+    const Site& site = half.site(neighbour.site);
+    const Nearest n = nearest_on(site, q);
+    const bool interior = n.foot == Foot::interior && site.kind != SiteKind::point;
+    // an interior foot comes before an end that is as near
+    const double rank = n.distance - site.radius - (interior ? limits_.touch : 0.0);
+    if (!(rank < least)) continue;
+    least = rank;
+    const double radius = site.radius + sample_radius;
+    const bool thin = radius == 0.0 && !site.solid && interior;  // then stay on the side it came from
+    const double side = thin ? side_kept(site, neighbour, n, q) : side_of(site, n, q);
+    found = {side * n.distance - radius - level_of(nominal_level(p, half, i, site, q), sink_),
+             neighbour.site};
+  }
+  return found;
+}
+
+double PairView::arc_gap(const Half& half, const Feature& f, const Vec2& c) const {
+  const Site& arc = half.samples_of().sites[half.sample(f.sample).arc_site];
+  const Site& site = half.site(f.site);
+  const double reach = arc.arc_radius + arc.radius + site.radius;
+  if (site.kind == SiteKind::segment) {
+    const Vec2 d = site.b - site.a;
+    const double offset = cross(d, c - site.a) / d.norm();
+    return (perp(d).dot(f.normal) > 0.0 ? offset : -offset) - reach;
+  }
+  const double distance = (c - site.center).norm();
+  const bool hollow = f.normal.dot(c - site.center) < 0.0;
+  return hollow ? site.arc_radius - distance - reach : distance - site.arc_radius - reach;
+}
+
+PairView::GapAndSite PairView::gap_at(const Half& half, const Feature& f, double t) const {
+  Placing then = now_;
+  put(then, t);
+  const Placed &s = half.s_is_a ? then.a : then.b, &u = half.s_is_a ? then.b : then.a;
+  const Vec2 q = u.frame.direction_to_local(s.frame.direction_to_world(half.sample(f.sample).p) +
+                                            (s.frame.origin - u.frame.origin));
+  if (half.sample(f.sample).arc_site < 0) return gap_to_neighbours(then, half, f.sample, q);
+  const double nominal = nominal_level(then, half, f.sample, half.site(f.site), q);
+  return {arc_gap(half, f, q) - level_of(nominal, sink_), f.site};
+}
+
+}  // namespace brink::detail

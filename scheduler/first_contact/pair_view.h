@@ -1,0 +1,168 @@
+#pragma once
+/// A pair of outlines at one moment: which features are close, their gaps and rates. What first_contact's
+/// search looks through.
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "brink/core/shapes/distance.h"
+#include "brink/scheduler/first_contact/arc_contact.h"
+#include "brink/scheduler/first_contact/first_contact.h"
+#include "brink/scheduler/first_contact/pair_kinematics.h"
+#include "brink/scheduler/first_contact/tolerances.h"
+
+namespace brink::detail {
+
+/// One sample of S against one site of T at one moment.
+struct Feature {
+  int sample = -1;
+  int site = -1;
+  double gap = 0.0;            ///< [m]
+  double rate = 0.0;           ///< of the gap [m/s]
+  Vec2 normal = Vec2::Zero();  ///< T's frame, out of the site
+  Vec2 point = Vec2::Zero();   ///< T's frame, on the site
+};
+
+/// Samples of S against sites of T: one half of the two-sided test.
+struct Half {
+  const Mover* s = nullptr;
+  const Mover* t = nullptr;
+  bool s_is_a = true;
+  int count = 0;  ///< samples to be looked at: all, or none where the other half is the whole distance
+
+  const Outline& samples_of() const { return s->outline(); }
+  const Outline& sites_of() const { return t->outline(); }
+  const Sample& sample(int i) const { return samples_of().samples[static_cast<std::size_t>(i)]; }
+  const Site& site(int j) const { return sites_of().sites[static_cast<std::size_t>(j)]; }
+};
+
+class PairView {
+ public:
+  PairView(const Mover& a, const Mover& b, const SearchLimits& limits, SearchScratch& scratch);
+
+  /// The half whose samples are a's (true) or b's.
+  const Half& half(bool samples_on_a) const { return halves_[samples_on_a ? 0 : 1]; }
+
+  /// Looks at the pair at time t from now on.
+  void place(double t) { put(now_, t); }
+  const Placed& placed(const Mover* m) const { return m == &a_ ? now_.a : now_.b; }
+  SamplePath path(const Half& half, int i) const {
+    return sample_path(placed(half.s), placed(half.t), half.sample(i).p);
+  }
+
+  /// Calls visit(half, feature) for every feature with a gap up to `tolerance`: of each vertex the nearest,
+  /// of arcs all. Brute force over samples.
+  template <class Visit>
+  void each_feature(double tolerance, Visit&& visit) const {
+    for (const Half& half : halves_)
+      for (int i = 0; i < half.count; ++i)
+        if (out_of_reach(half, i, tolerance))
+          continue;
+        else if (half.sample(i).arc_site >= 0)
+          each_arc_feature(half, i, tolerance, visit);
+        else if (const Feature f = nearest_feature(half, i); f.site >= 0 && f.gap <= tolerance)
+          visit(half, f);
+  }
+
+  /// Vertex sample i against site j, whose nearest point is given.
+  Feature vertex_feature(const Half& half, int i, int j, const Nearest& nearest,
+                         const SamplePath& path) const;
+  /// The same two features as `f`, looked at now; `time` is noted in the answer.
+  FeatureContact look_again(const Half& half, const Feature& f, double time) const;
+  FeatureContact contact_of(const Half& half, const Feature& f, double time) const;
+
+  /// True if the gap falls faster than the rounding of the velocities it is computed from.
+  bool approaching(const Feature& f, const SamplePath& path) const { return f.rate < -rate_noise(path); }
+  /// Bound on the rounding of a rate of the gap now [m/s].
+  double rate_noise(const SamplePath& path) const;
+
+  /// Keeps those of `sites` that lie within `reach` of vertex sample i, and how it stands to them now.
+  void find_neighbours(const Half& half, int i, std::span<const std::uint32_t> sites, const SamplePath& path,
+                       double reach);
+  /// True if the corner of a solid at sample i is just in front of a face of another solid, but an edge of
+  /// its own leads through that face: it stands out of it, on the far side of something thin, and must not
+  /// come out any further. Never so while the two are apart.
+  bool pokes_through(const Half& half, int i, const Site& site, const Nearest& nearest,
+                     const Feature& f) const;
+  /// True if site j is near q, but what q would touch is another of the neighbours. At a joint: one that is
+  /// as near with its interior. Behind a solid: j is the far side of a sliver, whose near side q has in front
+  /// of it, or is deeper in.
+  bool belongs_to_a_neighbour(const Half& half, int j, const Nearest& nearest, const Vec2& q) const;
+  /// The same of a feature near which no neighbours were looked for yet. Cost: a look at every site.
+  bool hidden_behind_others(const Half& half, const Feature& f, const SamplePath& path);
+
+  /// The gap at which sample i and the site meet now [m] (tolerances.h), less what the pair may have sunk
+  /// since its motions began.
+  double level(const Half& half, int i, const Site& site, const Vec2& q) const {
+    return level_of(nominal_level(now_, half, i, site, q), sink_);
+  }
+  /// Why a contact of these features that is met now cannot be told, if it cannot.
+  enum class Doubt { none, place, speed };
+  Doubt doubt(const Half& half, const Feature& f) const;
+  /// True if no feature's contact near the present time can be in doubt, by far: a quick look.
+  bool beyond_doubt() const;
+  /// Sets what is taken off every level, <= 0: sink_at_start().
+  void set_sink(double sink) { sink_ = sink; }
+  /// Since its motions began, how far the pair may sink below nominal levels before it meets (start_sink() of
+  /// tolerances.h) [m], <= 0. A function of the two motions alone. Cost: a look at every sample.
+  double sink_at_start() const;
+  /// When both motions had begun [s].
+  double start() const { return std::max(a_.motion->begin(), b_.motion->begin()); }
+
+  struct GapAndSite {
+    double gap = std::numeric_limits<double>::infinity();  ///< [m], less level()
+    int site = -1;
+  };
+  /// The gap of f's sample at time t, wherever the pair is placed now. A vertex: signed, to the neighbours
+  /// together, so that it does not matter from which of them, or when, one began to look; those that it
+  /// touches and leaves are left out. An arc: to f's site, on the side that f has.
+  GapAndSite gap_at(const Half& half, const Feature& f, double t) const;
+
+  /// Bound on the rounding of the gap of sample i, at q, to any site now [m]: one for all sites, or the
+  /// nearest by level might not be the nearest.
+  double gap_rounding(const Half& half, int i, const Vec2& q) const { return gap_rounding(now_, half, i, q); }
+
+ private:
+  template <class Visit>
+  void each_arc_feature(const Half& half, int i, double tolerance, Visit&& visit) const {
+    for (std::size_t j = 0; j < half.sites_of().sites.size(); ++j) {
+      const ArcStep step = arc_now(half, i, static_cast<int>(j));
+      if (step.active && step.gap <= tolerance)
+        visit(half, Feature{i, static_cast<int>(j), step.gap, step.rate, step.normal, step.point});
+    }
+  }
+  /// The two outlines at one moment, seen from `base`: the world's origin, or the pair's own where the
+  /// world's is too far away for doubles.
+  struct Placing {
+    Placed a, b;
+    double time = 0.0;                                ///< [s]
+    Vec2 base = Vec2::Zero();                         ///< world [m]
+    double place_noise = 0.0;                         ///< rounding of one place against the other [m]
+    double angle_noise_a = 0.0, angle_noise_b = 0.0;  ///< [rad]
+  };
+
+  Feature nearest_feature(const Half& half, int i) const;
+  ArcStep arc_now(const Half& half, int i, int j) const;
+  void put(Placing& placing, double t) const;
+  void put_relative(Placing& placing, double t) const;
+  double gap_rounding(const Placing& placing, const Half& half, int i, const Vec2& q) const;
+  double nominal_level(const Placing& placing, const Half& half, int i, const Site& site,
+                       const Vec2& q) const;
+  /// Of a wire without thickness, beside which q is now: 1 where the sample has not crossed it since its
+  /// neighbours were found, else -1.
+  double side_kept(const Site& site, const SearchScratch::Neighbour& as_found, const Nearest& now,
+                   const Vec2& q) const;
+  GapAndSite gap_to_neighbours(const Placing& placing, const Half& half, int i, const Vec2& q) const;
+  double arc_gap(const Half& half, const Feature& f, const Vec2& center) const;
+  bool out_of_reach(const Half& half, int i, double reach) const;
+
+  const Mover &a_, &b_;
+  const SearchLimits& limits_;
+  SearchScratch& scratch_;
+  Half halves_[2];
+  Placing now_;
+  double sink_ = 0.0;
+};
+
+}  // namespace brink::detail

@@ -1,0 +1,49 @@
+#include "brink/scheduler/first_contact/site_step.h"
+
+namespace brink {
+
+Facing facing_convex(const Outline& outline, const Vec2& q, const Vec2& rate) {
+  const std::size_t count = outline.sites.size();
+  std::size_t side = 0;
+  double gap = -std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < count; ++k) {
+    const double outside = outline.facets[k].dot(q - outline.sites[k].a);
+    if (!(outside > gap)) continue;
+    gap = outside;
+    side = k;
+  }
+  const Site& site = outline.sites[side];
+  const Vec2 d = site.b - site.a;
+  const double along = d.dot(q - site.a);
+  const Facing of_side{gap, outline.facets[side].dot(rate)};
+  const bool past_b = along > d.squaredNorm();
+  if (gap <= 0.0 || (along >= 0.0 && !past_b)) return of_side;
+  const Site& next = outline.sites[(past_b ? side + 1 : side + count - 1) % count];
+  const Vec2 from_corner = q - (past_b ? site.b : site.a);
+  const Vec2 next_side = past_b ? Vec2(next.b - next.a) : Vec2(next.a - next.b);
+  if (from_corner.dot(next_side) > 0.0) return of_side;  // the next side is nearer than their corner
+  const double distance = from_corner.norm();
+  return {distance, from_corner.dot(rate) / distance};
+}
+
+HullDistance distance_to_arc_hull(const Site& arc, const Nearest& nearest, const Vec2& q) {
+  const double turn = arc.sweep > 0.0 ? 1.0 : -1.0;
+  const Vec2 chord = arc.b - arc.a;
+  const Vec2 w = q - arc.a;
+  // The arc lies to the right of its chord when it turns left, and the reverse.
+  const double behind = turn * cross(chord, w);  // > 0: on the concave side of the chord
+  if (behind > 0.0) {
+    const double along = w.dot(chord), length2 = chord.squaredNorm();
+    if (along > 0.0 && along < length2) {
+      const double length = std::sqrt(length2);
+      return {behind / length, Vec2(perp(chord) * (turn / length))};
+    }
+  } else if (nearest.foot == Foot::interior && beyond_circle(arc, q, q - arc.center) <= 0.0) {
+    return {};  // between chord and arc
+  }
+  if (nearest.foot == Foot::interior) return {nearest.distance, (q - arc.center).normalized()};
+  if (nearest.distance == 0.0) return {};
+  return {nearest.distance, Vec2((q - nearest.point) / nearest.distance)};
+}
+
+}  // namespace brink

@@ -1,0 +1,80 @@
+#include "brink/scheduler/kernel/site_motion.h"
+
+#include <fmt/core.h>
+
+#include "brink/core/base/error.h"
+#include "brink/integrators/prescribed.h"
+
+namespace brink {
+
+namespace {
+
+double value(const std::optional<Formula>& formula, double t) {
+  return formula ? (*formula)(std::span<const double>(&t, 1)) : 0.0;
+}
+
+std::string description(const FixedSite& site, const FormulaMotion& m) {
+  std::string text = fmt::format("site '{}'", site.name);
+  const auto add = [&](const char* what, const std::optional<Formula>& f) {
+    if (f) text += fmt::format(", {} = \"{}\"", what, f->text());
+  };
+  add("x", m.x);
+  add("y", m.y);
+  add("angle", m.angle);
+  return text;
+}
+
+}  // namespace
+
+SiteMotion::SiteMotion(const FixedSite& site) {
+  if (const auto* constant = std::get_if<ConstantMotion>(&site.motion)) {
+    motion_ = Motion::ballistic(0.0, {site.pose, constant->twist}, {});
+    moves_ = !constant->twist.velocity.isZero(0.0) || constant->twist.omega != 0.0;
+    return;
+  }
+  motion_ = Motion::still(site.pose);
+  if (const auto* formula = std::get_if<FormulaMotion>(&site.motion)) {
+    moves_ = true;
+    const Eigen::Vector3d base(site.pose.position.x(), site.pose.position.y(), site.pose.angle);
+    prescribed_ = std::make_unique<PrescribedMotion>(
+        base,
+        [f = *formula](double t) -> Eigen::Vector3d {
+          return {value(f.x, t), value(f.y, t), value(f.angle, t)};
+        },
+        [f = *formula](int i, double from, double to, bool with_derivatives) {
+          const std::optional<Formula>& part = i == 0 ? f.x : (i == 1 ? f.y : f.angle);
+          return part ? part->time_bound(0, from, to, with_derivatives) : TimeBound();
+        },
+        description(site, *formula));
+    if (const Extent extent = extend(0.0); extent.status != Extent::Status::reached)
+      throw BadInput(extent.why);
+  }
+}
+
+SiteMotion::~SiteMotion() = default;
+SiteMotion::SiteMotion(SiteMotion&&) noexcept = default;
+
+Pose told_pose(const FixedSite& site, double t) {
+  Pose pose = site.pose;
+  if (const auto* constant = std::get_if<ConstantMotion>(&site.motion)) {
+    pose.position += t * constant->twist.velocity;
+    pose.angle += t * constant->twist.omega;
+  } else if (const auto* formula = std::get_if<FormulaMotion>(&site.motion)) {
+    pose.position += Vec2(value(formula->x, t), value(formula->y, t));
+    pose.angle += value(formula->angle, t);
+  }
+  return pose;
+}
+
+Extent SiteMotion::extend(double t, std::uint64_t most_cells) {
+  if (!prescribed_) return {Extent::Status::reached, t, {}};
+  const Extent extent = prescribed_->extend(t, most_cells);
+  if (prescribed_->begun()) motion_ = prescribed_->motion();
+  return extent;
+}
+
+void SiteMotion::forget_before(double t) {
+  if (prescribed_) prescribed_->forget_before(t);
+}
+
+}  // namespace brink

@@ -1,0 +1,85 @@
+#include "brink/scheduler/kernel/thin_walls.h"
+
+#include <algorithm>
+#include <boost/geometry.hpp>
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/point_xy.hpp>
+#include <boost/geometry/index/rtree.hpp>
+#include <cmath>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+namespace brink {
+
+namespace {
+
+using Point = boost::geometry::model::d2::point_xy<double>;
+using BoxOfPoints = boost::geometry::model::box<Point>;
+
+struct Wall {
+  Vec2 a, b;
+  int site;
+};
+
+BoxOfPoints box_of(const Vec2& p, const Vec2& q) {
+  const Vec2 low = p.cwiseMin(q), high = p.cwiseMax(q);
+  return {{low.x(), low.y()}, {high.x(), high.y()}};
+}
+
+/// On which side of the line through the wall p lies: 0 if that is lost in rounding.
+int side(const Wall& wall, const Vec2& p) {
+  const Vec2 d = wall.b - wall.a, w = p - wall.a;
+  const double reach = p.lpNorm<1>() + wall.a.lpNorm<1>() + wall.b.lpNorm<1>();
+  const double offset = cross(d, w), noise = 4e-15 * reach * d.lpNorm<1>();
+  return offset > noise ? 1 : offset < -noise ? -1 : 0;
+}
+
+/// True if the straight way from p to q crosses the wall between its ends. @pre p and q lie on two sides.
+bool crosses(const Wall& wall, const Vec2& p, const Vec2& q) {
+  const Vec2 way = q - p;
+  return (cross(way, wall.a - p) > 0.0) != (cross(way, wall.b - p) > 0.0);
+}
+
+}  // namespace
+
+struct ThinWalls::Tree {
+  std::vector<Wall> walls;
+  boost::geometry::index::rtree<std::pair<BoxOfPoints, int>, boost::geometry::index::quadratic<16>> boxes;
+};
+
+ThinWalls::ThinWalls() : tree_(std::make_unique<Tree>()) {}
+ThinWalls::~ThinWalls() = default;
+
+void ThinWalls::add(const Vec2& a, const Vec2& b, int site) {
+  tree_->boxes.insert({box_of(a, b), count_++});
+  tree_->walls.push_back({a, b, site});
+}
+
+std::optional<int> ThinWalls::crossed(const std::function<Vec2(double)>& place, double from, double to,
+                                      double turns) const {
+  const Vec2 p = place(from), q = place(to);
+  std::vector<std::pair<BoxOfPoints, int>> near;
+  tree_->boxes.query(boost::geometry::index::intersects(box_of(p, q)), std::back_inserter(near));
+  for (const auto& [box, k] : near) {
+    const Wall& wall = tree_->walls[static_cast<std::size_t>(k)];
+    if (side(wall, p) * side(wall, q) >= 0 || !crosses(wall, p, q)) continue;
+    // round its end, or through it?
+    const int steps = 64 * (1 + static_cast<int>(std::min(std::abs(turns), 1000.0)));
+    bool through = false;
+    Vec2 last = p;
+    int last_side = side(wall, p);
+    for (int i = 1; i <= steps; ++i) {
+      const Vec2 next = i == steps ? q : place(from + (to - from) * i / steps);
+      const int next_side = side(wall, next);
+      if (next_side == 0) continue;
+      if (next_side != last_side && crosses(wall, last, next)) through = !through;
+      last = next;
+      last_side = next_side;
+    }
+    if (through) return wall.site;
+  }
+  return std::nullopt;
+}
+
+}  // namespace brink

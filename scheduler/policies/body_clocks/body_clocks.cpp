@@ -1,0 +1,285 @@
+/// Local clocks (Lubachevsky 1991; Mirtich & Canny 1995): every body keeps its own time.
+///
+///   until the end
+///     serve the body whose view expires first:
+///       it leaves its cell             -> look at what came near
+///       its view ends                  -> look at everything near it again
+///       it may meet something          -> search that pair; clear: forget it, or ask again later
+///       it meets something, and nothing else comes first
+///                                      -> advance these two alone, resolve; both look around anew
+///
+/// A pair is in view of one of its bodies (body_clock.h). Two bodies in free flight are bounded by a
+/// quadratic (flight.h) and searched only when their bounding discs meet; so a body that is resolved makes no
+/// work for its neighbours, whose candidates are found stale when they are met. Cost: O(log N) a collision.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "brink/scheduler/events/event_queue.h"
+#include "brink/scheduler/first_contact/canonical_time.h"
+#include "brink/scheduler/policies/body_clocks/found_contacts.h"
+#include "brink/scheduler/policies/body_clocks/views.h"
+#include "brink/scheduler/policies/order.h"
+#include "brink/scheduler/policies/policy.h"
+
+namespace brink {
+
+namespace {
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr std::uint64_t kBetweenPauses = 2048;  ///< servings between places where a run may be resumed from
+constexpr std::uint64_t kBetweenPolls = 64;
+constexpr int kInstalment = 3;      ///< search steps at a time: most contacts ahead are overtaken by others
+constexpr unsigned kPlain = 16;     ///< of instalments in a row of one search; then they double:
+constexpr unsigned kDoublings = 8;  ///< so often, if it comes to no end
+constexpr unsigned kMostUndecided = 1000000 / (kInstalment << kDoublings);
+
+/// Steps of the next instalment of a search that so many in a row have brought to no end.
+constexpr int instalment(unsigned undecided) {
+  return kInstalment << (undecided < kPlain ? 0U : std::min(undecided - kPlain + 1, kDoublings));
+}
+
+class BodyClocks final : public Policy {
+ public:
+  void run(Kernel& kernel, double until) override {
+    kernel_ = &kernel;
+    until_ = until;
+    if (!views_ || revision_ != kernel.revision()) look_around_all();
+    views_->set_end(until);
+    while (!kernel.halt() && queue_.time() <= end()) {
+      if (++served_ % kBetweenPauses == 0 || kernel.much_to_forget()) pause();
+      if (served_ % kBetweenPolls == 0 && !kernel.poll()) break;
+      serve(queue_.body());
+    }
+    if (!kernel.halt()) kernel.follow_motions_all_the_way(end());  // of sites that nobody has in view
+    if (kernel.halt()) return views_.reset();  // in the middle of something: to go on, look at all anew
+    if (!kernel.record_frames(end())) return views_.reset();
+    kernel.advance_all(end());
+    kernel.fail_before(until);
+  }
+
+ private:
+  void look_around_all() {
+    views_.emplace(*kernel_);
+    views_->set_end(until_);
+    revision_ = kernel_->revision();
+    found_.emplace(kernel_->body_count());
+    queue_.reset(kernel_->body_count(), kernel_->time());
+    for (int k = 0; k < kernel_->body_count() && kernel_->poll(); ++k) {
+      views_->look_around(k, kernel_->time());
+      wait_for(k);
+    }
+  }
+
+  void wait_for(int k) {
+    ++kernel_->work().queue_operations;
+    queue_.update(k, views_->clock(k).expiry());
+  }
+
+  /// Of the run, as far as is known: a motion that fails may be started afresh before.
+  double end() const { return std::min(until_, kernel_->reach()); }
+
+  /// A run may be resumed from between two instants only: within one, bodies may be a rounding past each
+  /// other. Where nothing collides for long the clock goes on all the same, halfway to what is due next.
+  void pause() {
+    const double now = kernel_->time(), next = std::min(queue_.time(), end());
+    if (next <= now + 2.0 * same_instant(now)) return;
+    if (kernel_->much_to_forget()) {
+      const double halfway = now + 0.5 * (next - now);
+      kernel_->record_frames(halfway);
+      kernel_->advance_all(halfway);
+      kernel_->forget_before(views_->earliest_search(halfway));
+    }
+    kernel_->pause_point();
+  }
+
+  /// A little later: a search that ends on a contact's instant may miss it by the rounding of its first
+  /// guess.
+  static double beyond(double t) { return t + 64.0 * same_instant(t); }
+
+  void serve(int k) {
+    BodyClock& clock = views_->clock(k);
+    const double now = clock.expiry();
+    expect(k);
+    if (!clock.candidates.empty() && clock.candidates.front().time == now) {
+      if (const Candidate& c = clock.candidates.front(); c.exact && !views_->stale(c)) return meet(k);
+      sharpen(k);
+      if (is_next(k)) return meet(k);
+    } else if (now == clock.exit) {
+      views_->look_ahead(k, now);
+    } else {
+      look_around(k, now);
+    }
+    wait_for(k);
+  }
+
+  void look_around(int k, double now, std::span<const int> except = {}) {
+    found_->forget(k);
+    views_->look_around(k, now, except);
+  }
+
+  /// Waiting for the memory of bodies that are met in no order is much of what an event costs.
+  void expect(int k) const {
+    views_->expect(queue_.second());
+    const BodyClock& clock = views_->clock(k);
+    if (clock.candidates.empty()) return;
+    kernel_->expect(k);
+    const int other = clock.candidates.front().other;
+    if (other >= kernel_->body_count()) return;
+    kernel_->expect(other);
+    views_->expect(other);
+  }
+
+  /// True if body k's first candidate is a contact and comes before everything else, without asking the
+  /// queue.
+  bool is_next(int k) const {
+    const BodyClock& clock = views_->clock(k);
+    if (clock.candidates.empty() || kernel_->halt()) return false;
+    const Candidate& c = clock.candidates.front();
+    if (!c.exact || views_->stale(c)) return false;
+    const double time = c.time;
+    return time <= end() && time < queue_.second_time() && time < std::min(clock.exit, clock.horizon);
+  }
+
+  /// The first candidate of body k is dropped if it is stale, and searched if it is not.
+  void sharpen(int k) {
+    BodyClock& clock = views_->clock(k);
+    Candidate c = clock.candidates.front();
+    clock.candidates.pop_front();
+    if (views_->stale(c)) {
+      ++kernel_->work().certificates_stale;
+      return;
+    }
+    const double now = c.time, end = views_->end_of(k, c), to = std::min(beyond(end), std::max(now, until_));
+    const auto found =
+        kernel_->search(*kernel_->pair_of(k, c.other, c.image), c.clear, to, instalment(clock.undecided));
+    const bool undecided = found && found->kind == Certificate::Kind::undecided;
+    clock.undecided = undecided ? clock.undecided + 1 : 0;
+    if (undecided && (found->time <= c.clear || clock.undecided > kMostUndecided))
+      return kernel_->give_up(*found);
+    if (found) {
+      c.time = found->time;
+      c.exact = !undecided;
+      if (undecided) c.clear = c.time;
+    } else if (to < end) {
+      c.time = c.clear = std::nextafter(to, kForever);  // not before the end of this run
+    } else {
+      return;
+    }
+    if (c.exact) {
+      for (std::size_t i = 0; i < clock.candidates.size(); ++i) clock.candidates[i].exact = 0;
+      found_->set(k, *found);
+    }
+    clock.see(c, now);
+  }
+
+  /// Body k's first candidate is a contact, and nothing is due before it.
+  void meet(int k) {
+    const BodyClock& clock = views_->clock(k);
+    const double now = found_->of(k).time, instant = now + same_instant(now);
+    const bool alone = !kernel_->options().picks_among_all() && queue_.second_time() > instant &&
+                       clock.exit > instant && clock.horizon > instant &&
+                       (clock.candidates.size() == 1 || clock.candidates[1].time > instant);
+    if (alone) return collide(Certificate(found_->of(k)));
+    wait_for(k);  // a contact may be told for a little before the time that the queue knows
+    const std::vector<Certificate> group = contacts_until(instant);
+    // none: what was found by a view that has ended, the next view does not find by the end of the instant
+    if (kernel_->halt() || group.empty()) return;
+    collide(at_its_time(*kernel_, group[first_by_order(*kernel_, group)], group.front().time));
+  }
+
+  /// Every contact of the present instant, in the total order of events.
+  std::vector<Certificate> contacts_until(double instant) {
+    std::vector<Certificate> group;
+    std::vector<int> asked, looked_again;
+    while (queue_.time() <= std::min(instant, kernel_->reach()) && kernel_->poll()) {
+      const int k = queue_.body();
+      const BodyClock& clock = views_->clock(k);
+      const bool settled = clock.exit > instant && clock.horizon > instant;
+      if (settled && clock.candidates.front().exact && !views_->stale(clock.candidates.front())) {
+        add_contacts(k, std::min(instant, kernel_->reach()), group);
+        asked.push_back(k);
+        queue_.update(k, kForever);
+      } else {
+        take_next_step(k, looked_again);
+      }
+    }
+    for (const int k : asked) queue_.update(k, views_->clock(k).expiry());
+    const auto before = [](const Certificate& a, const Certificate& b) { return a.order() < b.order(); };
+    std::sort(group.begin(), group.end(), before);
+    const auto same = [](const Certificate& a, const Certificate& b) { return a.order() == b.order(); };
+    group.erase(std::unique(group.begin(), group.end(), same), group.end());
+    return group;
+  }
+
+  /// What is due first for body k, short of meeting. A view that ends after a contact of this instant is
+  /// begun again at that contact, not beyond it: once, as it may always end that soon.
+  void take_next_step(int k, std::vector<int>& looked_again) {
+    const BodyClock& clock = views_->clock(k);
+    const double view = std::min(clock.exit, clock.horizon);
+    const bool due = !clock.candidates.empty() && clock.candidates.front().time <= view;
+    const bool contact = due && clock.candidates.front().exact && !views_->stale(clock.candidates.front());
+    if (due && !contact)
+      sharpen(k);
+    else if (view == clock.exit)
+      views_->look_ahead(k, view);
+    else if (contact && std::find(looked_again.begin(), looked_again.end(), k) == looked_again.end())
+      look_again(k, clock.candidates.front().time, looked_again);
+    else
+      look_around(k, view);
+    wait_for(k);
+  }
+
+  void look_again(int k, double contact, std::vector<int>& looked_again) {
+    looked_again.push_back(k);
+    look_around(k, contact);
+  }
+
+  /// Contacts of body k that are in its view and due by `instant`.
+  void add_contacts(int k, double instant, std::vector<Certificate>& group) {
+    const bool features = kernel_->options().picks_among_all();
+    const auto add = [&](const Certificate& c) {
+      group.push_back(c);
+      if (!features || c.kind != Certificate::Kind::contact) return;
+      for (const Certificate& other : kernel_->simultaneous(c)) group.push_back(other);
+    };
+    add(found_->of(k));
+    const auto& candidates = views_->clock(k).candidates;
+    for (std::size_t i = 1; i < candidates.size() && candidates[i].time <= instant; ++i) {
+      const Candidate& c = candidates[i];
+      if (views_->stale(c)) continue;
+      const auto found = kernel_->search(*kernel_->pair_of(k, c.other, c.image), c.clear,
+                                         std::min(views_->end_of(k, c), beyond(instant)));
+      if (found && found->kind == Certificate::Kind::contact && found->time <= instant) add(*found);
+    }
+  }
+
+  void collide(const Certificate& c) {
+    if (!kernel_->record_frames(c.time)) return;
+    kernel_->advance_pair(c.pair, c.time);
+    views_->expect_look(c.pair.body);
+    if (!c.pair.with_site()) views_->expect_look(c.pair.other_body);
+    changed_.clear();
+    if (!kernel_->resolve(c.pair, c.contact, changed_)) return;
+    for (const int k : changed_) views_->take_up(k);
+    for (std::size_t i = 0; i < changed_.size() && !kernel_->halt(); ++i) {
+      look_around(changed_[i], kernel_->time(), {changed_.data(), i});
+      wait_for(changed_[i]);
+    }
+  }
+
+  Kernel* kernel_ = nullptr;
+  double until_ = 0.0;
+  std::uint64_t revision_ = 0;
+  std::uint64_t served_ = 0;
+  std::optional<Views> views_;
+  EventQueue queue_;
+  std::optional<FoundContacts> found_;  ///< of each body's exact candidate
+  std::vector<int> changed_;
+};
+
+}  // namespace
+
+std::unique_ptr<Policy> make_body_clocks() { return std::make_unique<BodyClocks>(); }
+
+}  // namespace brink

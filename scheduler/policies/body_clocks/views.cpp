@@ -1,0 +1,306 @@
+#include "brink/scheduler/policies/body_clocks/views.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brink/scheduler/broad_phase/broad_phase.h"
+#include "brink/scheduler/first_contact/pair_kinematics.h"
+
+namespace brink {
+
+namespace {
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr std::size_t kMostBoxes = 16;
+
+/// Boxes of an outline's sites; empty where they would not narrow anything down.
+std::vector<Box> boxes_of(const Outline& outline) {
+  if (outline.sites.size() > kMostBoxes)
+    return outline.container ? std::vector<Box>{} : std::vector<Box>{outline.bounds};
+  std::vector<Box> boxes;
+  for (const Site& site : outline.sites) {
+    Box box;
+    box.add(site.a);
+    box.add(site.b);
+    if (site.kind == SiteKind::arc) box = box.grown(site.arc_radius);
+    boxes.push_back(box.grown(site.radius));
+  }
+  return boxes;
+}
+
+/// A time in which a motion goes no farther than `room`, from bounds of its speed; end - now where it stays
+/// till the end. What is fast later on must not shorten it much: then less of it is looked at.
+double time_within(double room, const Motion& motion, double now, double end) {
+  for (double span = end - now;; span *= 0.5) {
+    const double fastest = motion.bounds(now, now + span).speed();
+    if (room >= fastest * span) return span;
+    if (room >= 0.5 * fastest * span || !(now + 0.5 * span > now)) return room / fastest;
+  }
+}
+
+/// A lower bound of the time in which the bounding discs of a and b, displaced by `shift`, can come together
+/// before `end` [s].
+double gap_over_speed(const Motion& a, double radius, const Motion& b, const Vec2& shift,
+                      const Outline& other, double now, double end) {
+  if (other.container) return 0.0;
+  const Vec2 at_a = a.pose(now).position, at_b = b.pose(now).position;
+  const double rounding = kFlightRounding * (at_a.lpNorm<1>() + at_b.lpNorm<1>());
+  const double gap =
+      (at_a - at_b - shift).norm() - (radius + other.bounding_radius) * (1.0 + kFlightMargin) - rounding;
+  if (gap <= 0.0) return 0.0;
+  const auto closing_in = [&](double span) {
+    const MotionBounds x = a.bounds(now, now + span), y = b.bounds(now, now + span);
+    return (x.velocity - y.velocity).norm() + x.velocity_radius + y.velocity_radius;
+  };
+  // what is fast later on must not shorten it much: then less of it is looked at
+  const double whole = gap / closing_in(end - now);
+  if (whole >= 0.5 * (end - now)) return whole;
+  double longest = whole;
+  for (double span = 0.5 * (end - now); span > longest && now + span > now; span *= 0.5)
+    longest = std::max(longest, std::min(span, gap / closing_in(span)));
+  return longest;
+}
+
+}  // namespace
+
+Views::Views(Kernel& kernel)
+    : kernel_(&kernel),
+      gravity_(kernel.world().gravity),
+      periods_(kernel.world().periods),
+      flights_(kernel.body_count()),
+      clocks_(kernel.body_count()) {
+  std::vector<Vec2> places;
+  for (int k = 0; k < body_count(); ++k) {
+    flights_[k].radius = kernel.outline_of(k).bounding_radius;
+    take_up(k);
+    places.push_back(kernel.state(k, kernel.time()).pose.position);
+  }
+  std::vector<SiteLists::Placed> still;
+  for (int s = 0; s < static_cast<int>(kernel.world().sites.size()); ++s) {
+    site_boxes_.emplace_back();
+    if (kernel.site_moves(s)) {
+      moving_.push_back(s);
+      continue;
+    }
+    const Outline& outline = kernel.outline_of(body_count() + s);
+    still.push_back({s, transformed(outline, kernel.site_motion(s).pose(0.0))});
+    site_boxes_.back() = boxes_of(still.back().outline);
+  }
+  const bool by_place = kernel.options().skip_broad_phase && !kernel.by_passes();
+  near_.emplace(flights_, clocks_, places, std::move(still), periods_, by_place);
+}
+
+void Views::take_up(int k) {
+  Flight& f = flights_[k];
+  const Motion& motion = kernel_->body(k).motion;
+  f.version = f.version + 1U;
+  f.free = kernel_->is_free(k) && motion.acceleration().linear == gravity_ && !kernel_->by_passes();
+  f.disc = f.free && is_centred_disc(kernel_->outline_of(k));
+  if (const int component = kernel_->body(k).component; component >= 0) note_start(component, motion.begin());
+  if (!f.free) return;
+  const BodyState& s = motion.start();
+  f.x = s.pose.position.x();
+  f.y = s.pose.position.y();
+  f.vx = s.twist.velocity.x();
+  f.vy = s.twist.velocity.y();
+  f.start = motion.origin();
+}
+
+namespace {
+
+bool holds(std::span<const int> bodies, int k) {
+  return std::find(bodies.begin(), bodies.end(), k) != bodies.end();
+}
+
+}  // namespace
+
+void Views::see_bounded(int k, int j, const Image& image, double now) {
+  const Meeting m = bounded_meeting(k, j, image, now);
+  if (m.begin < clocks_[k].horizon) clocks_[k].see({m.begin, m.begin, j, image, flights_[j].version, 0}, now);
+}
+
+/// Bodies near body k, which is not in free flight.
+void Views::see_bodies(int k, double now, std::span<const int> except) {
+  near_->near(k, [&](int j, const Image& image) {
+    if (!holds(except, j)) see_bounded(k, j, image, now);
+  });
+}
+
+/// Bodies near body k in free flight; with `former`, its former cell, those alone that were not near it
+/// there.
+void Views::see_bodies(int k, const Course& here, double now, std::span<const int> except,
+                       const Cell* former) {
+  BodyClock& clock = clocks_[k];
+  const auto see = [&](int j, const Image& image) {
+    const Flight& b = flights_[j];
+    if (!b.free) {
+      if (!holds(except, j)) see_bounded(k, j, image, now);
+      return;
+    }
+    const Meeting m = meeting(here, b, periods_.shift(image), now);
+    if (m.begin < clock.horizon && !holds(except, j))
+      clock.see({m.begin, m.begin, j, image, b.version, 0}, now);
+  };
+  near_->near(k, see, former);
+}
+
+void Views::look_around(int k, double now, std::span<const int> except) {
+  BodyClock& clock = clocks_[k];
+  ++kernel_->work().passes;
+  if (TraceSink* trace = kernel_->trace()) trace->mark({TraceKind::pass, k, -1, now, now});
+  clock.forget_all();
+  if (flights_[k].free) {
+    const Course course(flights_[k], gravity_, now);
+    if (!near_->box_of(k).contains(course.place)) near_->settle(k, course.place);
+    clock.exit = now + stay_in(near_->box_of(k), course);
+    if (kernel_->by_passes()) return see_by_pass(k, now);
+    see_bodies(k, course, now, except);
+  } else {
+    if (!begin_window(k, now)) return;
+    if (kernel_->by_passes()) return see_by_pass(k, now);
+    see_bodies(k, now, except);
+  }
+  near_->sites_near(k, [&](int s, const Image& image) { see_site(k, s, image, now); });
+  for (const int s : moving_) see_moving_site(k, s, now);
+}
+
+void Views::look_ahead(int k, double now) {
+  BodyClock& clock = clocks_[k];
+  const Course course(flights_[k], gravity_, now);
+  const Cell former = flights_[k].cell;
+  const bool moved = near_->settle(k, course.place);
+  clock.exit = now + stay_in(near_->box_of(k), course);
+  if (moved) see_bodies(k, course, now, {}, &former);
+  near_->sites_near(k, [&](int s, const Image& image) { see_site(k, s, image, now); });
+}
+
+/// Still sites are in view until body k leaves its cell.
+void Views::see_site(int k, int s, const Image& image, double now) {
+  BodyClock& clock = clocks_[k];
+  const double end = std::min(clock.exit, clock.horizon);
+  double wait = flights_[k].free && !site_boxes_[s].empty() ? kForever : 0.0;
+  if (wait > 0.0) {
+    Course course(flights_[k], gravity_, now);
+    course.displace(-periods_.shift(image));
+    const double reach = course.radius + kernel_->contact_tolerance();
+    for (const Box& box : site_boxes_[s]) wait = std::min(wait, time_to(box.grown(reach), course));
+    wait = std::max(0.0, wait - kFlightRounding * (now + wait));  // never later than it is
+  }
+  if (now + wait <= end && wait < kForever)
+    clock.see({now + wait, now + wait, body_count() + s, image, 0, 0}, now);
+}
+
+void Views::see_moving_site(int k, int s, double now) {
+  const auto see = [&](const Image& image) {
+    const Meeting m = bounded_meeting(k, body_count() + s, image, now);
+    if (m.begin < clocks_[k].horizon) clocks_[k].see({m.begin, m.begin, body_count() + s, image, 0, 0}, now);
+  };
+  see({});
+  if (!periods_.any() || kernel_->halt()) return;
+  // the view has an end now, to which both can be followed
+  const double end = std::max(now, std::min(clocks_[k].horizon, until_));
+  const Box here = swept_box(kernel_->outline_of(k), kernel_->body(k).motion, now, end);
+  const Box there = swept_box(kernel_->outline_of(body_count() + s), kernel_->site_motion(s), now, end);
+  periods_.overlaps(here, there, [&](const Image& image) {
+    if (image != Image{}) see(image);
+  });
+}
+
+double Views::earliest_search(double now) const {
+  double earliest = now;
+  for (int k = 0; k < body_count(); ++k)
+    for (std::size_t i = 0; i < clocks_[k].candidates.size(); ++i)
+      earliest = std::min(earliest, clocks_[k].candidates[i].clear);
+  return earliest;
+}
+
+void Views::see_by_pass(int k, double now) {
+  const double end = end_view(k, kernel_->follow_motions(std::min(clocks_[k].horizon, until_)));
+  if (kernel_->halt()) return;
+  for (const PairKey& pair : kernel_->near_pairs_of(k, now, end)) {
+    const int second = pair.with_site() ? body_count() + pair.other_site : pair.other_body;
+    const int other = second == k ? pair.body : second;
+    clocks_[k].see({now, now, other, {}, version_of(other), 0}, now);
+  }
+}
+
+/// When the bounding discs of body k and another owner can meet at the soonest, from bounds of speed; ends
+/// k's view about where the two could have crossed a cell.
+Meeting Views::bounded_meeting(int k, int owner, const Image& image, double now) {
+  const bool is_body = owner < body_count();
+  const auto speed_of = [&](int s) { return kernel_->site_motion(s).twist(now).velocity.norm(); };
+  if (is_body ? !kernel_->extend_motion(owner, now) : !kernel_->extend_sites(now)) return {};
+  limit_view(k, now, speed(k, now) + (is_body ? speed(owner, now) : speed_of(owner - body_count())),
+             is_body ? stride(owner, now) : kForever);
+  const double end = follow(k, owner, std::max(now, std::min(clocks_[k].horizon, until_)));
+  const Motion& other = is_body ? kernel_->body(owner).motion : kernel_->site_motion(owner - body_count());
+  const double wait = gap_over_speed(kernel_->body(k).motion, flights_[k].radius, other,
+                                     periods_.shift(image), kernel_->outline_of(owner), now, end);
+  return now + wait <= end ? Meeting{now + wait, end} : Meeting{};
+}
+
+double Views::speed(int k, double now) const { return kernel_->body(k).motion.twist(now).velocity.norm(); }
+
+void Views::note_start(int component, double start) {
+  if (static_cast<std::size_t>(component) >= paces_.size()) paces_.resize(component + 1);
+  Pace& pace = paces_[component];
+  if (start <= pace.start) return;
+  const double time = start - pace.start;
+  pace.typical = std::isinf(pace.typical) ? time : 0.5 * (pace.typical + time);
+  pace.start = start;
+}
+
+/// How far ahead to look at a body from now [s]: what an integrator has done is thrown away when a collision
+/// starts its component afresh, so no farther than it has come since, or a part of what it typically comes.
+double Views::stride(int k, double now) const {
+  const int component = kernel_->body(k).component;
+  if (component < 0) return kForever;
+  const Pace& pace = paces_[component];
+  return std::max(now - pace.start, 0.25 * pace.typical);
+}
+
+/// Ends body k's view about when something that closes in at that speed could have crossed a cell, or after
+/// the stride, if that is not next to nothing, beside a cell's time or what the motion has behind it.
+void Views::limit_view(int k, double now, double closing, double stride) {
+  const double cell = near_->cell_size(k),
+               length = std::isfinite(cell) ? cell : 4.0 * kernel_->world().length();
+  const double window = length / (closing + 1e-2 * length);
+  const int component = kernel_->body(k).component;
+  const double age = component < 0 ? 0.0 : now - paces_[component].start;
+  const double end = now + std::max({std::min(window, stride), 1e-3 * window, 1e-3 * age});
+  // a view that holds to the end of the run ends just after it
+  clocks_[k].horizon = std::min(clocks_[k].horizon, end >= until_ ? std::nextafter(until_, kForever) : end);
+}
+
+/// Until when the motions of body k and of another owner (sites: of all that move) can be followed, <= end.
+double Views::follow(int k, int owner, double end) {
+  end = std::min(end, kernel_->follow_motion(k, end));
+  return end_view(k, owner < body_count() ? kernel_->follow_motion(owner, end) : kernel_->follow_sites(end));
+}
+
+/// Ends k's view where what it must follow has been followed to: to go on there, or, where a motion cannot
+/// go on, just after it, for what still happens there.
+double Views::end_view(int k, double followed) {
+  const bool last = followed >= until_ || followed == kernel_->reach();
+  clocks_[k].horizon = std::min(clocks_[k].horizon, last ? std::nextafter(followed, kForever) : followed);
+  return followed;
+}
+
+/// The view of a body that is not in free flight: it ends before the body can leave its cell. False on a
+/// halt.
+bool Views::begin_window(int k, double now) {
+  BodyClock& clock = clocks_[k];
+  if (!kernel_->extend_motion(k, now)) return false;
+  const Vec2 place = kernel_->body(k).motion.pose(now).position;
+  near_->settle(k, place);
+  clock.exit = kForever;
+  limit_view(k, now, speed(k, now), stride(k, now));
+  const double end = follow(k, body_count(), std::max(now, std::min(clock.horizon, until_)));
+  const Box box = near_->box_of(k);
+  const double room = std::min((place - box.low).minCoeff(), (box.high - place).minCoeff());
+  const double stay = time_within(room, kernel_->body(k).motion, now, end);
+  if (stay < end - now) clock.horizon = now + stay;
+  return true;
+}
+
+}  // namespace brink

@@ -1,0 +1,93 @@
+#pragma once
+/// What every body has in view, from which policies with local clocks know whom to look at next.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "brink/scheduler/broad_phase/neighbourhood.h"
+#include "brink/scheduler/kernel/kernel.h"
+
+namespace brink {
+
+/// The views of all bodies of a kernel's world. After look_around(k), every pair of k is clear until k's
+/// clock expires, or is in the view of the other; look_ahead() keeps that up as k changes cells.
+class Views {
+ public:
+  /// Places all bodies at the kernel's present time; looks at nothing yet.
+  explicit Views(Kernel& kernel);
+
+  BodyClock& clock(int k) { return clocks_[k]; }
+  const BodyClock& clock(int k) const { return clocks_[k]; }
+  bool stale(const Candidate& c) const { return c.version != version_of(c.other); }
+  /// Starts to fetch body k's clock and flight.
+  void expect(int k) const {
+    prefetch(&clocks_[k]);
+    prefetch(&flights_[k]);
+  }
+  /// Starts to fetch what looking around body k reads. Slow if its own flight is not at hand.
+  void expect_look(int k) const { near_->expect(k); }
+  /// Until when a search of body k's candidate must go: they cannot meet later, or k's view of it ends. Still
+  /// sites are looked at again as k leaves its cell; whatever moves is not.
+  double end_of(int k, const Candidate& c) const {
+    const BodyClock& clock = clocks_[k];
+    if (c.other >= body_count())
+      return kernel_->site_moves(c.other - body_count()) ? clock.horizon
+                                                         : std::min(clock.exit, clock.horizon);
+    if (flights_[k].free && flights_[c.other].free)
+      return meeting(Course(flights_[k], gravity_, c.clear), flights_[c.other], periods_.shift(c.image),
+                     c.clear)
+          .end;
+    return clock.horizon;
+  }
+  /// The end of the present run: views of bodies that are not in free flight end just after it at the latest.
+  void set_end(double until) { until_ = until; }
+
+  /// Reads body k's motion anew; candidates that others have of it are stale.
+  void take_up(int k);
+  /// Fills body k's view with everything that it may meet from now on, but for bodies of `except`. May halt
+  /// the kernel (an integrator that fails).
+  void look_around(int k, double now, std::span<const int> except = {});
+  /// Where the earliest search of what is in view would begin, or `now`: no motion will be asked for a time
+  /// before that.
+  double earliest_search(double now) const;
+  /// Adds what comes near as body k, in free flight, leaves its cell.
+  void look_ahead(int k, double now);
+
+ private:
+  int body_count() const { return static_cast<int>(clocks_.size()); }
+  unsigned version_of(int owner) const { return owner < body_count() ? flights_[owner].version : 0; }
+  void sort_sites();
+  void see_bodies(int k, double now, std::span<const int> except);
+  void see_bodies(int k, const Course& here, double now, std::span<const int> except,
+                  const Cell* former = nullptr);
+  void see_bounded(int k, int j, const Image& image, double now);
+  void see_site(int k, int site, const Image& image, double now);
+  void see_moving_site(int k, int site, double now);
+  void see_by_pass(int k, double now);
+  bool begin_window(int k, double now);
+  double follow(int k, int owner, double end);
+  double end_view(int k, double followed);
+  double speed(int k, double now) const;
+  void limit_view(int k, double now, double closing, double stride);
+  void note_start(int component, double start);
+  double stride(int k, double now) const;
+  Meeting bounded_meeting(int k, int owner, const Image& image, double now);
+
+  Kernel* kernel_;
+  Vec2 gravity_;
+  Periods periods_;
+  double until_ = 0.0;
+  LargeVector<Flight> flights_;
+  LargeVector<BodyClock> clocks_;
+  struct Pace {                                                ///< of a component that an integrator drives
+    double start = 0.0;                                        ///< of its motions [s]
+    double typical = std::numeric_limits<double>::infinity();  ///< time from start to start [s]
+  };
+  std::vector<Pace> paces_;                   ///< of every component
+  std::vector<std::vector<Box>> site_boxes_;  ///< what must be reached to touch a still site; empty: anywhere
+  std::vector<int> moving_;
+  std::optional<Neighbourhood> near_;
+};
+
+}  // namespace brink

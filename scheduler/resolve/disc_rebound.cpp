@@ -1,0 +1,94 @@
+#include "brink/scheduler/resolve/disc_rebound.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace brink {
+
+namespace {
+
+/// A disc at one time, all but its spin.
+struct Moving {
+  Real x, y, vx, vy;
+
+  Moving(const Motion& m, double t) {
+    const BodyState &s = m.start(), &low = m.start_low();
+    const Vec2& a = m.acceleration().linear;
+    const Real since = static_cast<Real>(t) - m.origin();
+    vx = static_cast<Real>(s.twist.velocity.x()) + low.twist.velocity.x();
+    vy = static_cast<Real>(s.twist.velocity.y()) + low.twist.velocity.y();
+    x = static_cast<Real>(s.pose.position.x()) + low.pose.position.x();
+    y = static_cast<Real>(s.pose.position.y()) + low.pose.position.y();
+    if (a.isZero(0.0)) {
+      x += since * vx;
+      y += since * vy;
+      return;
+    }
+    x += since * (vx + Real(0.5) * since * a.x());
+    y += since * (vy + Real(0.5) * since * a.y());
+    vx += since * a.x();
+    vy += since * a.y();
+  }
+};
+
+/// A value as a double and what that leaves over.
+void split(Real value, double& high, double& low) {
+  high = static_cast<double>(value);
+  low = static_cast<double>(value - high);
+}
+
+/// The start at `time` of the parabola on which `disc`, now with the velocity (vx, vy), passes through the
+/// place where it was `delay` from then.
+DiscRebound::Start start_after(const Motion& motion, double time, const Moving& disc, Real vx, Real vy,
+                               Real delay) {
+  DiscRebound::Start start;
+  BodyState &s = start.state, &low = start.low;
+  split(disc.x + delay * (disc.vx - vx), s.pose.position.x(), low.pose.position.x());
+  split(disc.y + delay * (disc.vy - vy), s.pose.position.y(), low.pose.position.y());
+  split(vx, s.twist.velocity.x(), low.twist.velocity.x());
+  split(vy, s.twist.velocity.y(), low.twist.velocity.y());
+  const BodyState &before = motion.start(), &before_low = motion.start_low();
+  const double alpha = motion.acceleration().angular;
+  const Real omega = static_cast<Real>(before.twist.omega) + before_low.twist.omega;
+  const Real angle = static_cast<Real>(before.pose.angle) + before_low.pose.angle;
+  const Real since = static_cast<Real>(time) - motion.origin();
+  split(angle + since * (omega + Real(0.5) * since * alpha), s.pose.angle, low.pose.angle);
+  split(omega + since * alpha, s.twist.omega, low.twist.omega);
+  return start;
+}
+
+/// Sum of the speeds at a disc's edge.
+double speed_of(const DiscRebound::Start& s, const Moving& before, double radius) {
+  return static_cast<double>(std::abs(before.vx) + std::abs(before.vy)) +
+         std::abs(s.state.twist.omega) * radius;
+}
+
+}  // namespace
+
+std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const Vec2& shift, double time,
+                                   double latest, double level, double restitution) {
+  const Moving disc_a(*a.motion, time), disc_b(*b.motion, time);
+  Real dx = disc_a.x - (disc_b.x + shift.x()), dy = disc_a.y - (disc_b.y + shift.y());
+  const Real wx = disc_a.vx - disc_b.vx, wy = disc_a.vy - disc_b.vy;
+  Real length = std::sqrt(dx * dx + dy * dy);
+  const Real closing = -(dx * wx + dy * wy) / length;
+  if (!(closing > 0) || !(a.inverse_mass + b.inverse_mass > 0.0)) return std::nullopt;
+  DiscRebound r;
+  r.delay = std::clamp((length - b.radius - a.radius - level) / closing, Real(-latest), Real(latest));
+  dx += r.delay * wx;
+  dy += r.delay * wy;
+  length = std::sqrt(dx * dx + dy * dy);
+  r.gap = static_cast<double>(length - b.radius - a.radius);
+  const Real nx = dx / length, ny = dy / length;
+  const Real rate = nx * wx + ny * wy;
+  if (!(rate < 0)) return std::nullopt;
+  const Real impulse = -(Real(1) + restitution) * rate / (static_cast<Real>(a.inverse_mass) + b.inverse_mass);
+  r.impulse = static_cast<double>(impulse);
+  const Real push_a = a.inverse_mass * impulse, push_b = b.inverse_mass * impulse;
+  r.a = start_after(*a.motion, time, disc_a, disc_a.vx + push_a * nx, disc_a.vy + push_a * ny, r.delay);
+  r.b = start_after(*b.motion, time, disc_b, disc_b.vx - push_b * nx, disc_b.vy - push_b * ny, r.delay);
+  r.magnitude = std::max(speed_of(r.a, disc_a, a.radius), speed_of(r.b, disc_b, b.radius));
+  return r;
+}
+
+}  // namespace brink

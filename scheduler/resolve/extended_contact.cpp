@@ -1,0 +1,101 @@
+#include "brink/scheduler/resolve/extended_contact.h"
+
+#include <cmath>
+
+#include "brink/scheduler/first_contact/pair_kinematics.h"
+
+namespace brink {
+
+namespace {
+
+/// Below this part of the bounding radius a difference of points has no direction worth its digits.
+constexpr double kNoDirection = 1e-6;
+
+/// Two unit normals with this cosine or more are one, but for rounding.
+constexpr double kSameDirection = 1.0 - 1e-12;
+
+/// An outline's frame in extended precision; a centred disc looks the same at any angle.
+struct Turn {
+  Real cosine = 1, sine = 0;
+  Turn(const Outline& o, Real angle) {
+    if (is_centred_disc(o) || angle == 0) return;
+    cosine = std::cos(angle);
+    sine = std::sin(angle);
+  }
+  RealVec to_world(const RealVec& d) const {
+    return {cosine * d.x() - sine * d.y(), sine * d.x() + cosine * d.y()};
+  }
+};
+
+RealVec aligned(const RealVec& n, const RealVec& with) { return n.dot(with) < 0 ? RealVec(-n) : n; }
+
+/// Distance from a site's core along the normal, and that normal, which keeps the side of `out`.
+struct Away {
+  RealVec normal;
+  Real distance;
+};
+
+Away away_from(const Site& site, const Turn& turn, const RealVec& origin, const RealVec& p,
+               const RealVec& out, Real least) {
+  const auto place = [&](const Vec2& local) -> RealVec { return origin + turn.to_world(local.cast<Real>()); };
+  const auto from_point = [&](const Vec2& local) -> Away {
+    const RealVec d = p - place(local);
+    const Real length = d.norm();
+    if (length <= least) return {out, d.dot(out)};
+    const RealVec n = aligned(d / length, out);
+    return {n, d.dot(n)};
+  };
+  if (site.kind == SiteKind::segment) {
+    const RealVec a = place(site.a), d = place(site.b) - a, w = p - a;
+    const Real along = w.dot(d), length2 = d.squaredNorm();
+    if (along <= 0) return from_point(site.a);
+    if (along >= length2) return from_point(site.b);
+    const RealVec n = aligned(extended::perp(d) / std::sqrt(length2), out);
+    // a contact with an end, seen a rounding inside: its normal is not the segment's
+    if (n.dot(out) < kSameDirection) return from_point(2 * along <= length2 ? site.a : site.b);
+    return {n, n.dot(w)};
+  }
+  if (site.kind == SiteKind::arc) {
+    const RealVec c = place(site.center), w = p - c;
+    const RealVec from = place(site.a) - c, to = place(site.b) - c;
+    const Real sense = site.sweep > 0 ? 1 : -1, length = w.norm();
+    if (sense * extended::cross(from, w) > 0 && sense * extended::cross(w, to) > 0 && length > least) {
+      const RealVec radial = w / length, n = aligned(radial, out);
+      if (n.dot(out) >= kSameDirection)
+        return {n, n.dot(radial) * (length - static_cast<Real>(site.arc_radius))};
+    }
+    return (p - place(site.a)).squaredNorm() <= (p - place(site.b)).squaredNorm() ? from_point(site.a)
+                                                                                  : from_point(site.b);
+  }
+  return from_point(site.a);
+}
+
+Real closing_speed(const ExtendedState& a, const ExtendedState& b, const RealVec& point, const RealVec& n) {
+  return n.dot(b.twist.at(point - b.position) - a.twist.at(point - a.position));
+}
+
+}  // namespace
+
+ExtendedContact contact_in(const Outline& a, const Outline& b, const ExtendedState& state_a,
+                           const ExtendedState& state_b, const FeatureContact& like) {
+  const Outline &carrier = like.sample_on_a ? a : b, &other = like.sample_on_a ? b : a;
+  const ExtendedState &s = like.sample_on_a ? state_a : state_b, &t = like.sample_on_a ? state_b : state_a;
+  const Sample& sample = carrier.samples[like.sample];
+  const Site& site = other.sites[like.site];
+  const ExtendedContact known{like.point.cast<Real>(), like.normal.cast<Real>(), like.gap,
+                              like.closing_speed};
+  const RealVec p = s.position + Turn(carrier, s.angle).to_world(sample.p.cast<Real>());
+  const RealVec out =
+      like.sample_on_a ? known.normal : RealVec(-known.normal);  // from the site to the sample
+  const Real size = carrier.bounding_radius + std::max(sample.radius, site.radius);
+  const Away away = away_from(site, Turn(other, t.angle), t.position, p, out, kNoDirection * size);
+  ExtendedContact c;
+  c.gap = away.distance - site.radius - sample.radius;
+  if (std::abs(c.gap - known.gap) > kNoDirection * size) return known;  // another feature's neighbourhood
+  c.point = p - away.normal * (c.gap + sample.radius);
+  c.normal = like.sample_on_a ? away.normal : RealVec(-away.normal);
+  c.closing = closing_speed(state_a, state_b, c.point, c.normal);
+  return c;
+}
+
+}  // namespace brink

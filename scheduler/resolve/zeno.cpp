@@ -1,0 +1,47 @@
+#include "brink/scheduler/resolve/zeno.h"
+
+#include <algorithm>
+
+#include "brink/scheduler/first_contact/tolerances.h"
+
+namespace brink {
+
+namespace {
+
+/// A flight that rose above the tolerance: the run is over.
+void end_run(ZenoWatch::Bounce& b) {
+  b.low_flights = 0;
+  b.limit_time = 0.0;
+  b.shortest = std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+std::optional<ZenoEnding> ZenoWatch::collided(const Feature& feature, double time, double closing_speed,
+                                              BounceLoss loss, double rest, bool sunk) {
+  if (loss == BounceLoss::none || 0.25 * closing_speed * rest > kHighFlight * tolerance_) return std::nullopt;
+  Bounce& b = bounces_[feature];
+  const bool first = b.count++ == 0;
+  const double interval = time - b.last_time;
+  b.last_time = time;
+  if (first || interval <= 0.0)
+    return std::nullopt;  // further impacts of one instant say nothing about flights
+  const double ratio = b.last_interval > 0.0 ? interval / b.last_interval : 1.0;
+  b.last_interval = interval;
+  if (0.25 * closing_speed * interval >= tolerance_) {
+    end_run(b);
+    return std::nullopt;
+  }
+  if (b.limit_time == 0.0 && loss != BounceLoss::all && ratio < 1.0 - kAlike)
+    b.limit_time = time + interval * ratio / (1.0 - ratio);
+  const bool pressed = sunk || loss == BounceLoss::all || (rest >= interval && ratio <= 1.0 + kAlike);
+  if (interval < b.shortest || pressed) ++b.low_flights;
+  b.shortest = std::min(b.shortest, interval);
+  // a series that shrinks ends where its flights come down to roundings: what bounces on after is pressed
+  const bool run_out = b.limit_time > 0.0 && b.low_flights >= kShortSeries &&
+                       0.25 * closing_speed * interval < kTouchOfTolerance * tolerance_;
+  if (b.low_flights < kLowFlights && !run_out) return std::nullopt;
+  return ZenoEnding{feature.pair, std::max(b.limit_time, time), b.count};
+}
+
+}  // namespace brink

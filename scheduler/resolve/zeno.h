@@ -1,0 +1,78 @@
+#pragma once
+/// Endings that a one-at-a-time scheduler cannot pass: bounces that shrink to nothing, and groups that never
+/// finish.
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "brink/scheduler/events/agenda.h"
+
+namespace brink {
+
+/// Bounces of one pair whose flights no longer rise above the contact tolerance.
+struct ZenoEnding {
+  PairKey pair;
+  double limit_time = 0.0;    ///< sum of the geometric series of intervals [s]
+  std::uint64_t bounces = 0;  ///< collisions of these features so far
+};
+
+/// What a collision takes of the approach: where it takes nothing, no series of bounces has an end.
+enum class BounceLoss { none, some, all };
+
+/// Watches the collisions of every pair of features. Two features are at their Zeno ending after ten low
+/// flights, of which each counts that is longer than no time at all, rose less than the contact tolerance
+/// (closing speed * duration / 4 on a parabola), and either
+///   - was shorter than all of the run before it: a series that shrinks. (In a slot hardly wider than the
+///     body flights are as low, but they grow as the speed goes), or
+///   - follows a collision that left nothing of the approach, or came back though neither body met anything
+///     else, in no longer time than the last, or met below its level: the two are pressed together.
+/// A flight that is not low begins the run anew.
+class ZenoWatch {
+ public:
+  /// A sample of one outline and a site of the other.
+  struct Feature {
+    PairKey pair;
+    int site = -1, sample = -1;
+    bool sample_on_a = true;
+
+    Feature() = default;
+    Feature(const PairKey& p, const FeatureContact& f)
+        : pair(p), site(f.site), sample(f.sample), sample_on_a(f.sample_on_a) {}
+    auto order() const { return std::tuple(pair.order(), site, sample, sample_on_a); }
+    bool operator<(const Feature& f) const { return order() < f.order(); }
+  };
+  struct Bounce {
+    double last_time = 0.0;
+    double last_interval = 0.0;
+    double shortest = std::numeric_limits<double>::infinity();  ///< of this run of low flights [s]
+    /// Foreseen by the first of the run that shrank, where intervals are still far above rounding; 0: none.
+    double limit_time = 0.0;
+    std::uint64_t low_flights = 0;  ///< of this run, those that count
+    std::uint64_t count = 0;
+  };
+  using Bounces = std::map<Feature, Bounce>;
+
+  explicit ZenoWatch(double contact_tolerance = 1e-10) : tolerance_(contact_tolerance) {}
+
+  /// To be told of every collision, in order. `rest`: a time that the pair's flight has lasted at least [s]
+  /// (since either side was last resolved): flights that rise a million tolerances are not remembered, which
+  /// keeps a gas out of the memory. ZenoEnding::bounces counts the remembered ones.
+  /// `sunk`: the features met below their level, so are pressed together (FeatureContact::sunk).
+  std::optional<ZenoEnding> collided(const Feature& feature, double time, double closing_speed,
+                                     BounceLoss loss, double rest = 0.0, bool sunk = false);
+
+  const Bounces& bounces() const { return bounces_; }
+  void restore(Bounces bounces) { bounces_ = std::move(bounces); }
+
+ private:
+  static constexpr std::uint64_t kLowFlights = 10;
+  static constexpr std::uint64_t kShortSeries = 2;  ///< where flights have come down to the touching distance
+  static constexpr double kHighFlight = 1e6;        ///< in tolerances
+  static constexpr double kAlike = 1e-6;            ///< intervals with a ratio so near to 1 are of one length
+  double tolerance_;
+  Bounces bounces_;
+};
+
+}  // namespace brink

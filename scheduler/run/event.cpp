@@ -1,0 +1,60 @@
+#include "brink/scheduler/run/recorder.h"
+#include "brink/scheduler/run/trace.h"
+
+namespace brink {
+
+const char* to_string(EventKind kind) {
+  switch (kind) {
+    case EventKind::collision:
+      return "collision";
+    case EventKind::persist:
+      return "persist";
+    case EventKind::lift:
+      return "lift";
+    case EventKind::zeno:
+      return "zeno";
+    case EventKind::group:
+      return "group";
+    case EventKind::sleep:
+      return "sleep";
+    case EventKind::wake:
+      return "wake";
+    case EventKind::undecided:
+      return "undecided";
+  }
+  return "unknown";
+}
+
+const char* to_string(TraceKind kind) {
+  switch (kind) {
+    case TraceKind::advance:
+      return "advance";
+    case TraceKind::back_up:
+      return "back up";
+    case TraceKind::roll_back:
+      return "roll back";
+    case TraceKind::pass:
+      return "pass";
+    case TraceKind::search:
+      return "search";
+    case TraceKind::collision:
+      return "collision";
+  }
+  return "unknown";
+}
+
+std::string RunSummary::termination_text() const {
+  switch (termination) {
+    case Termination::not_run:
+      return "not run";
+    case Termination::reached_end:
+      return "reached_end";
+    case Termination::stopped:
+      return "stopped";
+    case Termination::failed:
+      return "failed: " + why;
+  }
+  return "unknown";
+}
+
+}  // namespace brink

@@ -1,0 +1,101 @@
+#include "brink/scheduler/simulator/simulator.h"
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "brink/core/base/error.h"
+#include "brink/core/base/hash.h"
+#include "brink/scheduler/kernel/kernel.h"
+#include "brink/scheduler/policies/policy.h"
+
+namespace brink {
+
+struct Simulator::Impl {
+  Impl(World world, SolverOptions options)
+      : kernel(std::move(world), options), policy(make_policy(options.policy, options.detector)) {
+    if (is_added_policy(options.policy) && !policy->approximate()) kernel.watch();
+  }
+  Kernel kernel;
+  std::unique_ptr<Policy> policy;
+  double energy_initial = 0.0;
+};
+
+Simulator::Simulator(World world, SolverOptions options)
+    : impl_(std::make_unique<Impl>(std::move(world), std::move(options))) {
+  impl_->energy_initial = total_energy(this->world(), states());
+}
+Simulator::~Simulator() = default;
+Simulator::Simulator(Simulator&&) noexcept = default;
+Simulator& Simulator::operator=(Simulator&&) noexcept = default;
+
+RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
+  if (!std::isfinite(options.until) || options.until < time())
+    throw BadInput(
+        fmt::format("until = {} must be finite and >= the present time {}", options.until, time()));
+  if (!(options.frame_interval >= 0.0))
+    throw BadInput(fmt::format("frame_interval = {} must be >= 0", options.frame_interval));
+  Kernel& kernel = impl_->kernel;
+  if (time() == 0.0)
+    if (const std::string why = start_fault(); !why.empty()) throw BadInput(why);
+  const auto begin = std::chrono::steady_clock::now();
+  kernel.hold_to_certificates(!impl_->policy->approximate());
+  kernel.begin(options, recorder);
+  impl_->policy->run(kernel, options.until);
+  kernel.hold_to_end(options.until);
+  kernel.end_frame();
+
+  RunSummary summary;
+  if (const auto& halt = kernel.halt()) {
+    summary.termination = halt->termination;
+    summary.why = halt->why;
+  } else {
+    summary.termination = Termination::reached_end;
+  }
+  if (recorder) recorder->checkpoint(time(), kernel.snapshot());
+  const std::vector<BodyState> last = states();
+  const Momentum momentum = total_momentum(world(), last);
+  summary.end_time = time();
+  summary.collisions = kernel.collisions();
+  summary.energy_initial = impl_->energy_initial;
+  summary.energy_final = total_energy(world(), last);
+  summary.momentum = momentum.linear;
+  summary.angular_momentum = momentum.angular;
+  summary.max_overlap = kernel.max_overlap();
+  if (const TakenGroups& taken = kernel.taken(); taken.count > 0) {
+    summary.groups_taken = taken.count;
+    summary.energy_taken = taken.energy;
+    summary.first_taken = fmt::format("{} at t = {:.15g} s", kernel.name_of(taken.first), taken.time);
+  }
+  summary.state_hash = state_hash();
+  summary.work = kernel.work();
+  summary.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return summary;
+}
+
+double Simulator::time() const { return impl_->kernel.time(); }
+const World& Simulator::world() const { return impl_->kernel.world(); }
+BodyState Simulator::state(int k) const { return impl_->kernel.state(k, time()); }
+std::vector<BodyState> Simulator::states() const { return impl_->kernel.states(time()); }
+Pose Simulator::site_pose(int k) const { return impl_->kernel.site_pose(k, time()); }
+
+std::uint64_t Simulator::state_hash() const {
+  StateHash hash;
+  hash.add(time());
+  for (const BodyState& s : states()) hash.add(s);
+  return hash.value();
+}
+
+std::string Simulator::start_fault() const {
+  std::string why;
+  impl_->kernel.may_start(&why);
+  return why;
+}
+
+std::vector<Contact> Simulator::overlaps(std::size_t most) const { return impl_->kernel.overlaps(most); }
+Plan Simulator::plan() const { return impl_->kernel.plan(); }
+std::vector<std::byte> Simulator::snapshot() const { return impl_->kernel.snapshot(); }
+void Simulator::restore(std::span<const std::byte> snapshot) { impl_->kernel.restore(snapshot); }
+
+}  // namespace brink

@@ -1,0 +1,75 @@
+#pragma once
+/// The simulator: takes a world from contact to contact.
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "brink/core/world/world.h"
+#include "brink/scheduler/run/options.h"
+#include "brink/scheduler/run/recorder.h"
+#include "brink/scheduler/run/trace.h"
+
+namespace brink {
+
+/// When frames, checkpoints and progress reports are due.
+struct RunOptions {
+  double until = 1.0;               ///< [s]
+  double frame_interval = 0.0;      ///< [s]; 0: only at the start and the end
+  double checkpoint_seconds = 1.0;  ///< wall-clock seconds between checkpoints; < 0: none, 0: at every chance
+  bool first_frame = true;          ///< record the frame at the starting time (false when resuming)
+  bool record_events = true;
+  TraceSink* trace = nullptr;  ///< told what the scheduler does; may be null
+  /// Called now and then with the time reached; return false to stop the run. May be empty.
+  std::function<bool(double t, std::uint64_t collisions)> progress;
+};
+
+/// What the simulator will do and what it leaves out, in lines for people (printed by `brink check`).
+struct Plan {
+  std::vector<std::string> lines;
+};
+
+class Simulator {
+ public:
+  /// @throws BadInput on an invalid world or options; IoError if a field is needed and no GL context opens.
+  Simulator(World world, SolverOptions options);
+  ~Simulator();
+  Simulator(Simulator&&) noexcept;
+  Simulator& operator=(Simulator&&) noexcept;
+
+  /// Runs on to options.until, telling `recorder` (may be null). May be called again to go further.
+  /// @throws BadInput if `until` lies in the past, or if at t = 0 bodies overlap by more than 1e-6 of the
+  /// scene's length (naming the deepest pair).
+  RunSummary run(const RunOptions& options, Recorder* recorder = nullptr);
+
+  double time() const;
+  const World& world() const;
+  /// State of body k at the present time.
+  BodyState state(int k) const;
+  std::vector<BodyState> states() const;
+  /// Pose of fixed site k at the present time (constant unless the site moves).
+  Pose site_pose(int k) const;
+  /// Hash of the present time and all states.
+  std::uint64_t state_hash() const;
+
+  /// Why a run cannot start from the present state: bodies overlap by more than 1e-6 of the scene's length
+  /// (the deepest pair of the first thousand found is named). Empty if it can.
+  std::string start_fault() const;
+  /// Overlaps at the present time, deepest first: contacts with gap < 0. The search ends when `most` are
+  /// found, as all bodies may be in one place.
+  std::vector<Contact> overlaps(std::size_t most = 1000) const;
+  Plan plan() const;
+
+  /// Everything needed to go on with the same bits.
+  std::vector<std::byte> snapshot() const;
+  /// @throws BadInput if the bytes are not a snapshot of this world and options.
+  void restore(std::span<const std::byte> snapshot);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace brink

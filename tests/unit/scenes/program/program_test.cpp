@@ -1,0 +1,326 @@
+// The program as its users meet it: exit status, messages, the last line of --json.
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "brink/scenes/run_file/run_file.h"
+
+namespace brink {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+struct Outcome {
+  int status = -1;
+  std::string out, error;
+};
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string last_line(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  const auto end = text.rfind('\n');
+  return end == std::string::npos ? text : text.substr(end + 1);
+}
+
+// A ball let go 1 m above a floor under g = 8 m/s^2 meets it after sqrt(2 * 1 / 8) = 0.5 s.
+const char* const kBall = R"(
+title = "ball"
+[world]
+duration = 0.75
+gravity = [0, -8]
+[output]
+frame_interval = 0.25
+[[sites]]
+name = "floor"
+segment = [[-1, 0], [1, 0]]
+[[bodies]]
+name = "ball"
+disc = { radius = 0.5 }
+position = [0, 1.5]
+)";
+
+class ProgramTest : public testing::Test {
+ protected:
+  ProgramTest() {
+    std::string name = (fs::temp_directory_path() / "brink-program-XXXXXX").string();
+    dir_ = ::mkdtemp(name.data());
+    write("ball.toml", kBall);
+  }
+  ~ProgramTest() override { fs::remove_all(dir_); }
+
+  void write(const char* name, const std::string& text) { std::ofstream(dir_ / name) << text; }
+
+  /// Runs the program in the test's own folder.
+  Outcome brink(const std::string& arguments) {
+    const std::string command = "cd '" + dir_.string() + "' && '" BRINK_BINARY_DIR "/bin/brink' " +
+                                arguments + " >out.txt 2>error.txt";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(dir_ / "out.txt"),
+            text_of(dir_ / "error.txt")};
+  }
+
+  fs::path dir_;
+};
+
+TEST_F(ProgramTest, RunWritesTheDefaultFolderAndTheContractsSummary) {
+  const Outcome run = brink("run ball.toml --json");
+  ASSERT_EQ(run.status, 0) << run.error;
+  const auto summary = nlohmann::json::parse(last_line(run.out));
+  for (const char* key : {"termination", "end_time", "collisions", "wall_seconds", "load_seconds",
+                          "energy_initial", "energy_final", "momentum_x", "momentum_y", "angular_momentum",
+                          "max_overlap", "state_hash", "work"}) {
+    EXPECT_TRUE(summary.contains(key)) << key;
+  }
+  EXPECT_EQ(summary["termination"], "reached_end");
+  EXPECT_EQ(summary["end_time"], 0.75);
+  EXPECT_EQ(summary["collisions"], 1);
+  EXPECT_NEAR(summary["energy_initial"].get<double>(), 1.0 * 8 * 1.5, 1e-12);  // m g h, mass 1 by default
+  const RunFile file(dir_ / "runs/ball-1/run.db");
+  ASSERT_EQ(file.events().size(), 1u);
+  EXPECT_NEAR(file.events()[0].contact.time, 0.5, 1e-9);
+  EXPECT_EQ(file.meta("state_hash"), summary["state_hash"]);
+  EXPECT_EQ(file.meta("summary"), last_line(run.out));
+  EXPECT_EQ(brink("run ball.toml --quiet").status, 0);
+  EXPECT_TRUE(fs::exists(dir_ / "runs/ball-2/run.db"));
+}
+
+TEST_F(ProgramTest, QuietRunPrintsNothing) {
+  const Outcome run = brink("run ball.toml --quiet");
+  EXPECT_EQ(run.status, 0);
+  EXPECT_EQ(run.out + run.error, "");
+}
+
+TEST_F(ProgramTest, OutputThatIsNoTerminalHasNoColours) {
+  const Outcome run = brink("run ball.toml");
+  EXPECT_THAT(run.out, HasSubstr("reached the end at t = 0.75 s"));
+  EXPECT_THAT(run.out + run.error, Not(HasSubstr("\033")));
+}
+
+// Frames at 0 and every 0.25 s up to the end, one row a body.
+TEST_F(ProgramTest, UntilAndSetChangeTheRun) {
+  ASSERT_EQ(brink("run ball.toml --out a --until 1.5 --set output.frame_interval=0.5").status, 0);
+  const RunFile run(dir_ / "a/run.db");
+  EXPECT_EQ(run.time_range(), std::pair(0.0, 1.5));
+  EXPECT_EQ(run.frame_at(1.2).t, 1.0);
+}
+
+TEST_F(ProgramTest, FaultsAreOneLineEachWithTheirPlaceAndStatusTwo) {
+  write("bad.toml", "[world]\nduration = -1\ngravty = [0, 0]\n");
+  for (const char* command : {"run bad.toml", "check bad.toml", "draw bad.toml -o x.png"}) {
+    const Outcome run = brink(command);
+    EXPECT_EQ(run.status, 2) << command;
+    EXPECT_THAT(run.error, HasSubstr("bad.toml:2:")) << command;
+    EXPECT_THAT(run.error, HasSubstr("bad.toml:3:")) << command;
+  }
+  EXPECT_FALSE(fs::exists(dir_ / "runs"));
+}
+
+TEST_F(ProgramTest, BadUsageIsStatusTwo) {
+  for (const char* command : {"", "fly", "run", "run ball.toml --no-such", "run ball.toml --until x",
+                              "run ball.toml --until -1", "run ball.toml --until nan", "list nothing",
+                              "run ball.toml --set solver.policy=fastest", "draw ball.toml"}) {
+    EXPECT_EQ(brink(command).status, 2) << command;
+  }
+}
+
+// The limits of world.duration hold on the command line too, before anything is written.
+TEST_F(ProgramTest, UntilHasTheLimitsOfDuration) {
+  for (const char* until : {"1e13", "1e-13", "inf"}) {
+    const Outcome run = brink(std::string("run ball.toml --out a --until ") + until);
+    EXPECT_EQ(run.status, 2) << until;
+    EXPECT_THAT(run.error, HasSubstr("ball.toml:0:0: --until: out of range; given ")) << until;
+  }
+  EXPECT_FALSE(fs::exists(dir_ / "a"));
+}
+
+// One body for 1e9 s at 0.25 s: 4e9 rows of frames.
+TEST_F(ProgramTest, MoreFramesThanAllowedAreRefusedWithTheOptionThatAllowsThem) {
+  const Outcome run = brink("run ball.toml --out a --until 1e9");
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.error, HasSubstr("output.max_frame_rows"));
+  const Outcome check = brink("check ball.toml --set world.duration=1e9");
+  EXPECT_EQ(check.status, 2);
+  EXPECT_THAT(check.error, HasSubstr("output.max_frame_rows"));
+  const char* const wide = "check ball.toml --set world.duration=1e9 --set output.max_frame_rows=5000000000";
+  EXPECT_EQ(brink(wide).status, 0);
+  EXPECT_THAT(brink("list options").out, HasSubstr("output.max_frame_rows"));
+}
+
+// A run may be made longer than its limit of frames allowed at first.
+TEST_F(ProgramTest, LimitOfFramesMayBeRaisedOnResuming) {
+  ASSERT_EQ(brink("run ball.toml --out a --set output.max_frame_rows=5").status, 0);
+  EXPECT_EQ(brink("run ball.toml --out a --resume --until 1.5 --set output.max_frame_rows=5").status, 2);
+  EXPECT_EQ(brink("run ball.toml --out a --resume --until 1.5 --set output.max_frame_rows=8").status, 0);
+}
+
+TEST_F(ProgramTest, WhatIsReadIsNotWrittenOver) {
+  ASSERT_EQ(brink("run ball.toml --out a").status, 0);
+  fs::create_hard_link(dir_ / "ball.toml", dir_ / "link.toml");
+  const std::string scene = text_of(dir_ / "ball.toml"), run = text_of(dir_ / "a/run.db");
+  for (const char* command :
+       {"run ball.toml --out b --trace ball.toml", "run ball.toml --out b --trace ./a/../link.toml",
+        "run ball.toml --out b --trace b/run.db", "run ball.toml --out b --trace a/run.db",
+        "draw ball.toml -o ball.toml", "draw a -o a/run.db", "draw ball.toml -o a/run.db"})
+    EXPECT_EQ(brink(command).status, 2) << command;
+  EXPECT_EQ(text_of(dir_ / "ball.toml"), scene);
+  EXPECT_EQ(text_of(dir_ / "a/run.db"), run);
+}
+
+// Names and titles are data: nothing in them reaches the terminal as a control, and a fault stays one line.
+TEST_F(ProgramTest, TextFromFilesIsPrintedEscaped) {
+  std::string named = kBall;
+  named.replace(named.find("\"ball\""), 6, R"("\u001b[2J\u202e\nx")");
+  named.replace(named.find("\"ball\"", named.find("[[bodies]]")), 6, R"("b\n\u001b[31m")");
+  write("named.toml", named);
+  const Outcome run = brink("run named.toml --out a");
+  EXPECT_EQ(run.status, 0) << run.error;
+  EXPECT_THAT(run.out, HasSubstr("\\x1b[2J\\u202e\\nx"));
+  const Outcome low = brink("check named.toml --set 'bodies.0.position=[0, 0.4]'");
+  EXPECT_THAT(low.out, HasSubstr("'b\\n\\x1b[31m'"));
+  const Outcome stuck = brink("run named.toml --out b --set 'bodies.0.position=[0, 0.4]'");
+  EXPECT_EQ(stuck.status, 2);
+  EXPECT_EQ(std::count(stuck.error.begin(), stuck.error.end(), '\n'), 1);
+  EXPECT_THAT(run.out + low.out + stuck.out + stuck.error, Not(HasSubstr("\033")));
+}
+
+TEST_F(ProgramTest, DamagedRunFilesAreStatusThreeWithTheirTable) {
+  ASSERT_EQ(brink("run ball.toml --out a").status, 0);
+  SQLite::Database((dir_ / "a/run.db").string(), SQLite::OPEN_READWRITE)
+      .exec("UPDATE body SET shape = '[1'; UPDATE meta SET value = 'x' WHERE key = 'end_time'");
+  const Outcome drawn = brink("draw a -o x.png");
+  EXPECT_EQ(drawn.status, 3);
+  EXPECT_THAT(drawn.error, HasSubstr("table body"));
+  const Outcome resumed = brink("run ball.toml --out a --resume");
+  EXPECT_EQ(resumed.status, 3);
+  EXPECT_THAT(resumed.error, HasSubstr("table meta"));
+}
+
+TEST_F(ProgramTest, FullDiskBehindStandardOutputIsStatusThree) {
+  const std::string command =
+      "cd '" + dir_.string() + "' && '" BRINK_BINARY_DIR "/bin/brink' list options >/dev/full 2>/dev/null";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 3);
+}
+
+TEST_F(ProgramTest, WhatCannotBeReadOrWrittenIsStatusThree) {
+  EXPECT_EQ(brink("run absent.toml").status, 3);
+  EXPECT_EQ(brink("run ball.toml --out ball.toml/x").status, 3);
+  write("plain.db", std::string(4096, 'x'));
+  EXPECT_EQ(brink("draw plain.db -o x.png").status, 3);
+}
+
+TEST_F(ProgramTest, RunThatEndsEarlyIsStatusOneAndSaysWhy) {
+  const Outcome run = brink("run ball.toml --out a --set solver.max_collisions=1");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_THAT(run.out, HasSubstr("stopped at t ="));
+  EXPECT_EQ(RunFile(dir_ / "a/run.db").meta("termination"), "stopped");
+}
+
+TEST_F(ProgramTest, ResumingAFinishedRunSaysSoAndChangesNothing) {
+  ASSERT_EQ(brink("run ball.toml --out a").status, 0);
+  const std::string before = text_of(dir_ / "a/run.db");
+  const Outcome again = brink("run ball.toml --out a --resume");
+  EXPECT_EQ(again.status, 0);
+  EXPECT_THAT(again.out, HasSubstr("nothing to do"));
+  EXPECT_EQ(text_of(dir_ / "a/run.db"), before);
+}
+
+// A run to 0.6 s gone on with to 1.5 s is the run to 1.5 s: no frame is left at 0.6 s, which is off the frame
+// clock.
+TEST_F(ProgramTest, RunCanBeMadeLonger) {
+  ASSERT_EQ(brink("run ball.toml --out a --until 0.6").status, 0);
+  ASSERT_EQ(brink("run ball.toml --out a --until 1.5 --resume").status, 0);
+  ASSERT_EQ(brink("run ball.toml --out b --until 1.5").status, 0);
+  const RunFile a(dir_ / "a/run.db"), b(dir_ / "b/run.db");
+  EXPECT_EQ(a.meta("state_hash"), b.meta("state_hash"));
+  EXPECT_EQ(a.events().size(), b.events().size());
+  EXPECT_EQ(a.frame_at(0.6).t, 0.5);
+}
+
+TEST_F(ProgramTest, ResumingWithAnotherOptionIsStatusTwoAndNamesIt) {
+  ASSERT_EQ(brink("run ball.toml --out a --until 0.6").status, 0);
+  const Outcome run = brink("run ball.toml --out a --resume --set solver.tolerance=1e-6");
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.error, HasSubstr("tolerance was"));
+}
+
+TEST_F(ProgramTest, CheckPrintsContentsPlanAndOverlaps) {
+  const Outcome check = brink("check ball.toml");
+  EXPECT_EQ(check.status, 0);
+  EXPECT_THAT(check.out, HasSubstr("1 body, 1 fixed site, 0 forces"));
+  EXPECT_THAT(check.out, HasSubstr("Overlaps at the start\n  none"));
+  // 0.1 m lower than touching: the ball reaches 0.1 m into the floor
+  const Outcome low = brink("check ball.toml --set 'bodies.0.position=[0, 0.4]'");
+  EXPECT_EQ(low.status, 0);
+  EXPECT_THAT(low.out, HasSubstr("'ball' and 'floor' by 0.1 m"));
+}
+
+// Two unit boxes shifted by (0.75, 0.5) m share 0.25 x 0.5 m.
+TEST_F(ProgramTest, CheckCountsTheAreaOfOverlaps) {
+  write("two.toml",
+        "[[bodies]]\nname = \"a\"\nbox = { width = 1, height = 1 }\n"
+        "[[bodies]]\nname = \"b\"\nbox = { width = 1, height = 1 }\nposition = [0.75, 0.5]\n");
+  const Outcome check = brink("check two.toml");
+  EXPECT_EQ(check.status, 0) << check.error;
+  EXPECT_THAT(check.out, HasSubstr("'a' and 'b' by 0.25 m, 0.125 +- 0.00"));
+  EXPECT_THAT(check.out, HasSubstr("pixels counted"));
+}
+
+TEST_F(ProgramTest, FaultsOfASampleFileNameItsOwnLineAndColumn) {
+  write("square.rb", "2\n1 0 0 0 0 0 0   // the state\n0 0\n  1 x\n");
+  write("square.toml", "[[bodies]]\nsamples = { file = \"square.rb\" }\n");
+  const Outcome check = brink("check square.toml");
+  EXPECT_EQ(check.status, 2);
+  EXPECT_THAT(check.error, HasSubstr("square.rb:4:5: "));
+  EXPECT_THAT(check.error, HasSubstr("given \"x\""));
+}
+
+TEST_F(ProgramTest, ListShowsEveryTopicWithItsDefault) {
+  const Outcome all = brink("list");
+  ASSERT_EQ(all.status, 0);
+  for (const char* topic :
+       {"policies", "integrators", "responses", "detectors", "orders", "forces", "scenes", "options"}) {
+    const Outcome one = brink(std::string("list ") + topic);
+    EXPECT_EQ(one.status, 0) << topic;
+    EXPECT_THAT(one.out, HasSubstr("  ")) << topic;  // at least one line, name and text
+    EXPECT_THAT(all.out, HasSubstr(one.out)) << topic;
+  }
+  EXPECT_THAT(brink("list policies").out, HasSubstr("(default)"));
+  EXPECT_THAT(brink("list forces").out, HasSubstr("spring"));
+}
+
+TEST_F(ProgramTest, HelpOfEveryCommandHasExamples) {
+  for (const char* command : {"", "run ", "check ", "draw ", "list "}) {
+    const Outcome help = brink(std::string(command) + "--help");
+    EXPECT_EQ(help.status, 0);
+    EXPECT_THAT(help.out, HasSubstr("Examples:")) << command;
+  }
+}
+
+TEST_F(ProgramTest, PicturesOfASceneAndOfItsRunAreWritten) {
+  ASSERT_EQ(brink("run ball.toml --out a").status, 0);
+  for (const char* command :
+       {"draw ball.toml --at 0.25 --size 64x48 -o x.png", "draw a --at 0.3 --size 64x48 -o x.png",
+        "draw a/run.db --size 64x48 -o x.png"}) {
+    fs::remove(dir_ / "x.png");
+    const Outcome drawn = brink(command);
+    EXPECT_EQ(drawn.status, 0) << command << "\n" << drawn.error;
+    EXPECT_EQ(text_of(dir_ / "x.png").substr(1, 3), "PNG") << command;
+  }
+  EXPECT_EQ(brink("draw a --at 7 -o x.png").status, 2);
+}
+
+}  // namespace
+}  // namespace brink

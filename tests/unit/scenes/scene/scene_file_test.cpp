@@ -1,0 +1,519 @@
+// The scene file: what is written is what is built, and every fault is placed.
+#include "brink/scenes/scene/scene.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <numbers>
+#include <set>
+#include <sstream>
+
+#include "brink/core/shapes/outline.h"
+
+namespace brink {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+// Faults as "LINE:COLUMN message".
+std::vector<std::string> faults_of(std::string_view text, const std::vector<std::string>& overrides = {}) {
+  std::vector<std::string> out;
+  try {
+    parse_scene(text, "test.toml", overrides);
+  } catch (const SceneFaults& faults) {
+    for (const SceneFault& f : faults.faults())
+      out.push_back(std::to_string(f.line) + ":" + std::to_string(f.column) + " " + f.message);
+  }
+  return out;
+}
+
+std::string with_ball(const std::string& more) {
+  return "[[bodies]]\nname = \"ball\"\ndisc = { radius = 0.5 }\n" + more;
+}
+
+// A gap between outlines by the definition: the least over both sample sets.
+double gap_between(const Outline& a, const Pose& pose_a, const Outline& b, const Pose& pose_b) {
+  double least = std::numeric_limits<double>::infinity();
+  const auto one_way = [&](const Outline& from, const Frame& f, const Outline& to, const Frame& t) {
+    for (const Sample& s : from.samples)
+      least = std::min(least, gap_by_brute_force(to, t.to_local(f.to_world(s.p))) - s.radius);
+  };
+  one_way(a, Frame(pose_a), b, Frame(pose_b));
+  one_way(b, Frame(pose_b), a, Frame(pose_a));
+  return least;
+}
+
+TEST(SceneFile, ContractExampleReadsAsWritten) {
+  // The example of the contract; disc of mass 1 and radius 1/2: inertia m r^2 / 2 = 1/8.
+  const Scene scene = parse_scene(R"toml(title = "two discs and a floor"
+[world]
+duration = 5.0
+gravity  = [0.0, -9.81]
+seed     = 7
+[solver]
+policy     = "body_clocks"
+tolerance  = 1e-9
+[output]
+frame_interval = 0.02
+[materials.steel]
+restitution = 0.75
+[[sites]]
+name = "floor"
+segment = [[-10, 0], [10, 0]]
+material = "steel"
+[[bodies]]
+name = "ball"
+disc = { radius = 0.5 }
+mass = 1.0
+position = [0, 10]
+angle_deg = 90
+angular_velocity = 2
+material = "steel"
+)toml",
+                                  "test.toml");
+  EXPECT_EQ(scene.world.title, "two discs and a floor");
+  EXPECT_EQ(scene.duration, 5.0);
+  EXPECT_EQ(scene.world.gravity, Vec2(0.0, -9.81));
+  EXPECT_EQ(scene.solver.seed, 7U);
+  EXPECT_EQ(scene.solver.tolerance, 1e-9);
+  EXPECT_EQ(scene.output.frame_interval, 0.02);
+  ASSERT_EQ(scene.world.bodies.size(), 1U);
+  const Body& ball = scene.world.bodies[0];
+  EXPECT_EQ(ball.initial.pose.position, Vec2(0.0, 10.0));
+  EXPECT_DOUBLE_EQ(ball.initial.pose.angle, std::numbers::pi / 2);
+  EXPECT_EQ(ball.initial.twist.omega, 2.0);
+  EXPECT_DOUBLE_EQ(ball.inertia, 0.125);
+  EXPECT_EQ(scene.world.materials[static_cast<std::size_t>(ball.material)].restitution, 0.75);
+  ASSERT_EQ(scene.world.sites.size(), 1U);
+  EXPECT_EQ(scene.world.sites[0].kind, "segment");
+  EXPECT_THAT(scene.options_json, HasSubstr("\"tolerance\":1e-09"));
+}
+
+TEST(SceneFile, UnknownPolicyIsAFaultThatNamesWhatThereIs) {
+  const auto faults = faults_of("[solver]\npolicy = \"timewrap\"\n");
+  ASSERT_EQ(faults.size(), 1U);
+  for (const char* part : {"2:10 ", "timewrap", "body_clocks", "island_backup", "timewarp", "fixed_step"})
+    EXPECT_THAT(faults.front(), HasSubstr(part));
+}
+
+TEST(SceneFile, OffCentrePolygonIsCentredUnlessTold) {
+  // A unit square with a corner at its frame's origin: centroid (1/2, 1/2), inertia m (1 + 1) / 12. Turned by
+  // 90 degrees, the centroid stands at (-1/2, 1/2) from the origin.
+  const std::string square =
+      "[[bodies]]\npolygon = { vertices = [[0,0],[1,0],[1,1],[0,1]] }\nmass = 3\nposition = [10, 0]\n"
+      "angle_deg = 90\n";
+  const Body centred = parse_scene(square, "t").world.bodies[0];
+  EXPECT_EQ(centred.initial.pose.position, Vec2(10.0, 0.0));
+  EXPECT_NEAR(centred.inertia, 0.5, 1e-15);
+  const Body kept = parse_scene(square + "centered = false\n", "t").world.bodies[0];
+  EXPECT_NEAR(kept.initial.pose.position.x(), 9.5, 1e-15);
+  EXPECT_NEAR(kept.initial.pose.position.y(), 0.5, 1e-15);
+  const Scene site = parse_scene("[[sites]]\npolygon = { vertices = [[0,0],[1,0],[1,1],[0,1]] }\n", "t");
+  EXPECT_NEAR(site.world.sites[0].outline->bounds.low.x(), 0.0, 1e-15);
+}
+
+TEST(SceneFile, DensityTimesAreaIsMass) {
+  // box 2 x 3: area 6; wire of length 5 without thickness: 5 kg at 1 kg/m, inertia m l^2 / 12.
+  EXPECT_NEAR(
+      parse_scene("[[bodies]]\nbox = { width = 2, height = 3 }\ndensity = 2\n", "t").world.bodies[0].mass,
+      12.0, 1e-13);
+  const Body wire =
+      parse_scene("[[bodies]]\nchain = { vertices = [[0,0],[5,0]] }\ndensity = 1\n", "t").world.bodies[0];
+  EXPECT_NEAR(wire.mass, 5.0, 1e-14);
+  EXPECT_NEAR(wire.inertia, 125.0 / 12.0, 1e-13);
+}
+
+TEST(SceneFile, EveryShapeBuilds) {
+  const std::map<std::string, bool> shapes{
+      // true: bodies may have it too
+      {"disc = { radius = 1 }", true},
+      {"box = { width = 1, height = 2, radius = 0.1 }", true},
+      {"polygon = { vertices = [[0,0],[2,0],[1,0.5],[2,2]] }", true},
+      {"polygons = [{ vertices = [[0,0],[1,0],[1,1]] }]", true},
+      {"capsule = { length = 1, radius = 0.2 }", true},
+      {"chain = { vertices = [[0,0],[1,0],[1,1]], closed = true }", true},
+      {"path = { d = \"M0 0 L2 0 L2 2 Z\", scale = 0.5 }", true},
+      {"point = [1, 2]", false},
+      {"segment = [[0, 0], [1, 0]]", false},
+      {"polyline = [[0, 0], [1, 0], [1, 1]]", false},
+      {"arc = { center = [0, 0], radius = 2, from_deg = 0, to_deg = 270 }", false},
+      {"bezier = [[0, 0], [1, 0], [1, 1], [2, 1]]", false}};
+  for (const auto& [shape, body] : shapes) {
+    EXPECT_EQ(parse_scene("[[sites]]\n" + shape, "t").world.sites.size(), 1U) << shape;
+    const std::string as_body = "[[bodies]]\n" + shape;
+    if (body) {
+      EXPECT_EQ(parse_scene(as_body, "t").world.bodies.size(), 1U) << shape;
+    } else {
+      EXPECT_THAT(faults_of(as_body), Contains(HasSubstr("2:1 unknown key"))) << shape;
+    }
+  }
+}
+
+TEST(SceneFile, InsideOfMakesAContainer) {
+  for (const char* shape :
+       {"disc = { radius = 2 }", "polygon = { vertices = [[-2,-2],[2,-2],[2,2],[-2,2]] }"}) {
+    const Scene scene = parse_scene(std::string("[[sites]]\ninside_of = true\n") + shape, "t");
+    const Outline& outline = *scene.world.sites[0].outline;
+    EXPECT_TRUE(outline.container);
+    EXPECT_NEAR(gap_by_brute_force(outline, {1.5, 0.0}), 0.5, 1e-15);  // free inside, half from the wall
+  }
+}
+
+TEST(SceneFile, EqualShapesShareOneOutline) {
+  const World world = parse_scene(R"toml([[bodies]]
+name = "a"
+disc = { radius = 1 }
+grid = { columns = 2, rows = 3, spacing = [3, 4] }
+[[bodies]]
+name = "b"
+disc = { radius = 1 }
+position = [0, 20]
+[[bodies]]
+name = "c"
+disc = { radius = 2 }
+position = [0, 40]
+)toml",
+                                  "t")
+                          .world;
+  ASSERT_EQ(world.bodies.size(), 8U);
+  EXPECT_EQ(world.bodies[0].outline, world.bodies[6].outline);
+  EXPECT_NE(world.bodies[0].outline, world.bodies[7].outline);
+  EXPECT_EQ(world.bodies[3].name, "a[3]");  // row 1, column 1
+  EXPECT_EQ(world.bodies[3].initial.pose.position, Vec2(3.0, 4.0));
+}
+
+std::string scatter(const std::string& shape, int count, const std::string& more = "") {
+  return "[world]\nseed = 5\n[[sites]]\nname = \"peg\"\ndisc = { radius = 0.5 }\nposition = [5, "
+         "5]\n[[bodies]]\nname "
+         "= \"s\"\n" +
+         shape + "\nscatter = { count = " + std::to_string(count) +
+         ", region = [[0, 0], [10, 10]], speed = 3, angular_speed = 2, random_angle = true" + more + " }\n";
+}
+
+TEST(SceneFile, ScatterHasNoOverlapsAndKeepsClearOfSites) {
+  // sparse discs, discs beyond random insertion (60 % of the area), and long rods whose discs would not fit
+  for (const std::string& text :
+       {scatter("disc = { radius = 0.1 }", 300), scatter("disc = { radius = 0.3 }", 200),
+        scatter("capsule = { length = 2, radius = 0.05 }", 60)}) {
+    const World world = parse_scene(text, "t").world;
+    for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+      const Body& a = world.bodies[i];
+      EXPECT_NEAR(a.initial.twist.velocity.norm(), 3.0, 1e-12);
+      EXPECT_EQ(std::abs(a.initial.twist.omega), 2.0);
+      EXPECT_GT(gap_between(*a.outline, a.initial.pose, *world.sites[0].outline, world.sites[0].pose), 0.0);
+      for (std::size_t j = 0; j < i; ++j)
+        EXPECT_GT(
+            gap_between(*a.outline, a.initial.pose, *world.bodies[j].outline, world.bodies[j].initial.pose),
+            0.0);
+    }
+  }
+}
+
+TEST(SceneFile, ScatterIsTheSameForTheSameSeedAndGrowsAtItsEnd) {
+  const World ten = parse_scene(scatter("disc = { radius = 0.1 }", 10), "t").world;
+  const World twenty = parse_scene(scatter("disc = { radius = 0.1 }", 20), "t").world;
+  const World other = parse_scene(scatter("disc = { radius = 0.1 }", 10), "t", {"world.seed=6"}).world;
+  for (std::size_t k = 0; k < 10; ++k) {
+    EXPECT_EQ(ten.bodies[k].initial.pose.position, twenty.bodies[k].initial.pose.position);
+    EXPECT_EQ(ten.bodies[k].initial.twist.velocity, twenty.bodies[k].initial.twist.velocity);
+    EXPECT_NE(ten.bodies[k].initial.pose.position, other.bodies[k].initial.pose.position);
+  }
+}
+
+// In a world that repeats every 4 m, over the whole of it: copies and sites stand across the edges too. 40 %
+// of the area is taken, so that without images some pair would overlap.
+TEST(SceneFile, ScatterKeepsClearOfImages) {
+  const World world = parse_scene(R"toml(
+[world]
+periodic = [4, 4]
+[[sites]]
+disc = { radius = 0.5 }
+position = [0, 4]
+[[bodies]]
+name = "ball"
+disc = { radius = 0.2 }
+scatter = { count = 40, region = [[0, 0], [4, 4]] }
+)toml",
+                                  "t")
+                          .world;
+  const auto apart = [](const Vec2& a, const Vec2& b) {
+    const auto along = [&](int axis) { return std::remainder(a[axis] - b[axis], 4.0); };
+    return std::hypot(along(0), along(1));
+  };
+  ASSERT_EQ(world.bodies.size(), 40U);
+  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+    const Vec2& p = world.bodies[i].initial.pose.position;
+    EXPECT_GT(apart(p, {0, 0}), 0.7);
+    for (std::size_t j = 0; j < i; ++j) EXPECT_GT(apart(p, world.bodies[j].initial.pose.position), 0.4);
+  }
+}
+
+// A site as large as a million periods leaves no room; it is not copied a million times to find out.
+TEST(SceneFile, ScatterAmongCountlessImagesIsAFault) {
+  EXPECT_THAT(
+      faults_of("[world]\nperiodic = [1e-6, 1e-6]\n[[sites]]\nsegment = [[0, 0], [1, 1]]\n[[bodies]]\n"
+                "disc = { radius = 1e-9 }\nscatter = { count = 2, region = [[0, 0], [1e-6, 1e-6]] }\n"),
+      Contains(HasSubstr("the region is too small")));
+}
+
+TEST(SceneFile, ScatterThatDoesNotFitIsAFault) {
+  // 500 discs of radius 0.3 cover more than the region
+  EXPECT_THAT(faults_of(scatter("disc = { radius = 0.3 }", 500)),
+              Contains(HasSubstr("the region is too small")));
+}
+
+TEST(SceneFile, ForcesFindTheirBodies) {
+  const World world = parse_scene(R"toml([[bodies]]
+name = "a"
+polygon = { vertices = [[0,0],[1,0],[1,1],[0,1]] }
+centered = false
+[[bodies]]
+name = "b"
+disc = { radius = 0.5 }
+grid = { columns = 3, spacing = [2, 0] }
+position = [5, 5]
+[[forces]]
+kind = "spring"
+bodies = ["a", "b[1]"]
+at = [[1, 1], [0, 0.25]]
+stiffness = 10
+rest_length = 1
+[[forces]]
+kind = "drag"
+bodies = ["b"]
+linear = 0.5
+[[forces]]
+kind = "attract"
+center = [-5, 0]
+strength = 2
+[[forces]]
+kind = "formula"
+bodies = ["a"]
+fx = "-x + sin(t)"
+)toml",
+                                  "t")
+                          .world;
+  ASSERT_EQ(world.forces.size(), 4U);
+  const auto& spring = std::get<SpringForce>(world.forces[0]);
+  EXPECT_EQ(spring.body_b, 2);
+  // the corner (1, 1) of the file's frame is (1/2, 1/2) from the centre of mass
+  EXPECT_NEAR((spring.at_a - Vec2(0.5, 0.5)).norm(), 0.0, 1e-15);
+  EXPECT_EQ(std::get<DragForce>(world.forces[1]).bodies, (std::vector<int>{1, 2, 3}));
+  EXPECT_EQ(std::get<AttractForce>(world.forces[2]).bodies.size(), 4U);
+}
+
+TEST(SceneFile, MotionsOfSites) {
+  const World world = parse_scene(R"toml([[sites]]
+name = "belt"
+segment = [[0, 0], [1, 0]]
+motion = { velocity = [1, 0], angular_velocity = 2 }
+[[sites]]
+name = "table"
+segment = [[0, 1], [1, 1]]
+motion = { y = "0.1*sin(6*t)" }
+)toml",
+                                  "t")
+                          .world;
+  EXPECT_EQ(std::get<ConstantMotion>(world.sites[0].motion).twist.omega, 2.0);
+  const double t = 0.5;
+  EXPECT_DOUBLE_EQ((*std::get<FormulaMotion>(world.sites[1].motion).y)({&t, 1}), 0.1 * std::sin(3.0));
+}
+
+TEST(SceneFile, OverridesReachTablesArraysAndNames) {
+  const Scene scene = parse_scene(with_ball("mass = 1\n"), "t",
+                                  {"solver.integrator=rk4", "bodies.0.mass=2", "bodies.ball.position=[1, 2]",
+                                   "world.gravity=[0, -1]", "world.gravity.1=-2", "title=free words"});
+  EXPECT_EQ(scene.solver.integrator, "rk4");
+  EXPECT_EQ(scene.world.bodies[0].mass, 2.0);
+  EXPECT_EQ(scene.world.bodies[0].initial.pose.position, Vec2(1.0, 2.0));
+  EXPECT_EQ(scene.world.gravity, Vec2(0.0, -2.0));
+  EXPECT_EQ(scene.world.title, "free words");
+}
+
+struct FaultCase {
+  const char* name;
+  std::string text;
+  const char* expected;  ///< part of one fault, with its place
+};
+
+class SceneFault_ : public ::testing::TestWithParam<FaultCase> {};
+
+TEST_P(SceneFault_, IsPlacedAndNamed) {
+  EXPECT_THAT(faults_of(GetParam().text), Contains(HasSubstr(GetParam().expected)));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    SceneFile, SceneFault_,
+    ::testing::Values(
+        FaultCase{"Syntax", "[world]\nduration = = 3\n", "2:12 not valid TOML"},
+        FaultCase{"UnknownKey", "[world]\ndurration = 3\n",
+                  "2:1 unknown key \"durration\" in world; the nearest known key is \"duration\""},
+        FaultCase{"UnknownTable", "[wrold]\n",
+                  "unknown key \"wrold\" in the file; the nearest known key is \"world\""},
+        FaultCase{"WrongType", "[world]\nduration = \"long\"\n",
+                  "2:12 duration: wrong type; given the string \"long\""},
+        FaultCase{"TableIsANumber", "world = 3\n", "1:9 world: wrong type; given 3"},
+        FaultCase{"Nan", "[world]\nduration = nan\n", "2:12 duration: not a finite number; given nan"},
+        FaultCase{"Inf", "[world]\ngravity = [0, -inf]\n", "2:15 gravity: not a finite number; given -inf"},
+        FaultCase{"OutOfRange", "[materials.m]\nrestitution = 1.5\n",
+                  "2:15 restitution: out of range; given 1.5, allowed: a number >= 0 and <= 1"},
+        FaultCase{"NegativeSeed", "[world]\nseed = -1\n", "2:8 seed: out of range"},
+        FaultCase{"UnknownIntegrator", "[solver]\nintegrator = \"rk5\"\n",
+                  "2:14 integrator: not known; given \"rk5\", allowed: one of auto"},
+        FaultCase{"Mesh", "[field]\nprimitives = \"cones\"\n",
+                  "2:14 primitives: not known; given \"cones\", allowed: one of exact, mesh"},
+        FaultCase{"Samples", "[[bodies]]\nsamples = { file = \"nowhere.rb\" }\n",
+                  "2:11 samples: the file cannot be read; given \"nowhere.rb\""},
+        FaultCase{"SamplingWithoutSpacing", with_ball("sampling = { kind = \"boundary\" }\n"),
+                  "sampling: boundary needs a spacing or a count; given spacing 0 m and count 0"},
+        FaultCase{"NoShape", "[[bodies]]\nname = \"a\"\n", "1:1 \"a\" needs exactly one shape; given none"},
+        FaultCase{"TwoShapes", with_ball("box = { width = 1, height = 1 }\n"),
+                  "needs exactly one shape; given"},
+        FaultCase{"MissingKey", "[[bodies]]\ndisc = {}\n", "2:8 disc: radius is missing"},
+        FaultCase{"NegativeRadius", "[[bodies]]\ndisc = { radius = -1 }\n",
+                  "2:19 radius: out of range; given -1"},
+        FaultCase{"CrossedPolygon", "[[bodies]]\npolygon = { vertices = [[0,0],[2,1],[2,0],[0,2]] }\n",
+                  "2:11 polygon"},
+        FaultCase{"ZeroSegment", "[[sites]]\nsegment = [[1,1],[1,1]]\n", "2:11 segment"},
+        FaultCase{"DuplicateName", with_ball("") + with_ball("position = [5, 5]\n"),
+                  "5:8 name: is used twice; given \"ball\""},
+        FaultCase{"UnknownMaterial", "[materials.steel]\n" + with_ball("material = \"stel\"\n"),
+                  "5:12 no material is called \"stel\"; the nearest name is \"steel\""},
+        FaultCase{"MassAndDensity", with_ball("mass = 1\ndensity = 1\n"), "5:11 mass is given twice"},
+        FaultCase{"TwoAngles", with_ball("angle = 1\nangle_deg = 1\n"), "5:13 angle is given twice"},
+        FaultCase{"GridAndScatter",
+                  with_ball("grid = { columns = 2, spacing = [2, 2] }\nscatter = { count = 1, region = "
+                            "[[0,0],[9,9]] }\n"),
+                  "5:11 copies are asked for twice"},
+        FaultCase{"TooManyCopies", with_ball("grid = { columns = 10000, rows = 10000, spacing = [2, 2] }\n"),
+                  "4:8 too many copies"},
+        FaultCase{"HeldVelocity", with_ball("lock = [\"x\"]\nvelocity = [1, 0]\n"),
+                  "5:12 velocity: a held coordinate does not move"},
+        FaultCase{"UnknownLock", with_ball("lock = [\"z\"]\n"),
+                  "4:9 lock: not known; given \"z\", allowed: one of x, y, angle"},
+        FaultCase{"UnknownForce", "[[forces]]\nkind = \"sprng\"\n",
+                  "2:8 kind: not known; given \"sprng\", allowed: one of spring"},
+        FaultCase{"ForceWithoutKind", "[[forces]]\n", "1:1 forces: kind is missing"},
+        FaultCase{"UnknownBody", with_ball("[[forces]]\nkind = \"thrust\"\nbody = \"bal\"\n"),
+                  "6:8 no body is called \"bal\"; the nearest name is \"ball\""},
+        FaultCase{"BadFormula", with_ball("[[forces]]\nkind = \"formula\"\nfx = \"2*(x\"\n"), "6:6 "},
+        FaultCase{"InfiniteFormula", with_ball("[[forces]]\nkind = \"formula\"\nfx = \"1/x\"\n"),
+                  "6:6 formula \"1/x\" is not finite"},
+        FaultCase{"MotionThatCannotBegin", "[[sites]]\npoint = [0, 0]\nmotion = { y = \"sin(-1e16*t)\" }\n",
+                  "y = \"sin(-1e16*t)\" jumps, or is infinitely fast, near t = 0 s"},
+        FaultCase{"MotionOfBothKinds",
+                  "[[sites]]\npoint = [0, 0]\nmotion = { velocity = [1, 0], x = \"t\" }\n",
+                  "3:10 motion: is not clear"},
+        FaultCase{"InsideOfASegment", "[[sites]]\nsegment = [[0,0],[1,0]]\ninside_of = true\n",
+                  "3:13 inside_of: segment has no inside"},
+        FaultCase{"NulInAFormula", with_ball("[[forces]]\nkind = \"formula\"\nfx = \"x\\u0000+1\"\n"),
+                  "6:6 formula \"x\\x00+1\": at character 2: holds a NUL character"},
+        FaultCase{"NulInAName", "[[bodies]]\ndisc = { radius = 1 }\nname = \"a\\u0000b\"\n",
+                  "3:8 name: holds a NUL character; given \"a\\x00b\" (character 2)"},
+        FaultCase{"ControlsInAName", with_ball("material = \"\\u001b[2J\\n\\u202e\"\n"),
+                  "4:12 no material is called \"\\x1b[2J\\n\\u202e\""},
+        FaultCase{"GridInOnePlace", with_ball("grid = { columns = 3, rows = 1, spacing = [0, 2] }\n"),
+                  "4:8 grid: copies would stand in one place; given spacing [0, 2]"},
+        FaultCase{"TooManyFrames", with_ball("[output]\nframe_interval = 1e-6\n[world]\nduration = 200\n"),
+                  "4:1 output: too many rows of frames; given 200000002"},
+        FaultCase{"DateAsNumber", "[world]\nduration = 2020-01-01\n",
+                  "2:12 duration: wrong type; given a date or time"}),
+    [](const auto& parameter) { return std::string(parameter.param.name); });
+
+TEST(SceneFile, AllFaultsComeAtOnceInFileOrder) {
+  // six faults of six kinds, the last of them a name that only forces use
+  const auto faults = faults_of(R"toml([world]
+duration = -1
+[solver]
+response = "bounce"
+[[bodies]]
+name = "a"
+disc = { radius = 0 }
+mas = 1
+[[bodies]]
+name = "b"
+material = "wood"
+disc = { radius = 1 }
+[[forces]]
+kind = "thrust"
+body = "c"
+)toml");
+  ASSERT_EQ(faults.size(), 6U) << ::testing::PrintToString(faults);
+  const char* places[] = {"2:12", "4:12", "7:19", "8:1", "11:12", "15:8"};
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(faults[k].substr(0, faults[k].find(' ')), places[k]);
+}
+
+TEST(SceneFile, FaultsOfOverridesNameThePath) {
+  EXPECT_THAT(faults_of("", {"solver.step=-1"}),
+              Contains(HasSubstr("0:0 --set solver.step: step: out of range")));
+  EXPECT_THAT(faults_of("", {"solver.stp=1"}), Contains(HasSubstr("--set solver.stp: unknown key \"stp\"")));
+  EXPECT_THAT(faults_of(with_ball(""), {"bodies.cube.mass=1"}),
+              Contains(HasSubstr("nothing is called \"cube\"")));
+  EXPECT_THAT(faults_of(with_ball(""), {"bodies.7.mass=1"}), Contains(HasSubstr("nothing is called \"7\"")));
+  EXPECT_THAT(faults_of("", {"nothing"}), Contains(HasSubstr("must be PATH=VALUE")));
+}
+
+TEST(SceneFile, WhatListsFilePlaceAndMessage) {
+  try {
+    parse_scene("[world]\nseed = -1\n", "dir/s.toml");
+    FAIL();
+  } catch (const SceneFaults& faults) {
+    EXPECT_THAT(faults.what(), HasSubstr("dir/s.toml:2:8: seed: out of range"));
+  }
+}
+
+TEST(SceneFile, KeyWithoutEndIsAFaultAndNoCrash) {
+  std::string deep = "a";
+  for (int k = 0; k < 200000; ++k) deep += ".a";
+  EXPECT_THAT(faults_of(deep + " = 1\n"), Contains(HasSubstr("too many parts")));
+  EXPECT_FALSE(faults_of("x = " + std::string(100000, '[')).empty());
+}
+
+TEST(SceneFile, MissingFileIsAnIoError) {
+  EXPECT_THROW(load_scene("/no/such/file.toml"), IoError);
+  EXPECT_THROW(load_scene("/"), IoError);
+}
+
+TEST(SceneFile, EveryPeerSceneReadsAndChecks) {
+  int count = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(BRINK_SOURCE_DIR "/tests/regression/peer-scenes")) {
+    if (entry.path().extension() != ".toml") continue;
+    ++count;
+    EXPECT_NO_THROW(load_scene(entry.path()).world.check()) << entry.path();
+  }
+  EXPECT_EQ(count, 21);
+}
+
+TEST(SceneFile, EveryGallerySceneReadsAndChecks) {
+  for (const auto& entry : std::filesystem::directory_iterator(BRINK_SOURCE_DIR "/scenes/gallery"))
+    if (entry.path().extension() == ".toml") {
+      EXPECT_NO_THROW(load_scene(entry.path()).world.check()) << entry.path();
+    }
+}
+
+TEST(SceneOptions, ThePageNamesEveryKeyWithItsDefault) {
+  // The page's tables are rows of this very list.
+  std::ifstream in(BRINK_SOURCE_DIR "/docs/scene-format.md");
+  std::stringstream page;
+  page << in.rdbuf();
+  const std::string text = page.str();
+  for (const OptionInfo& option : scene_options()) {
+    const std::string row = "| `" + option.key + "` | " + option.type + " | " + option.default_value + " | " +
+                            option.meaning + " |";
+    EXPECT_THAT(text, HasSubstr(row)) << option.table;
+  }
+}
+
+TEST(SceneOptions, NoKeyIsDeclaredTwice) {
+  std::set<std::pair<std::string, std::string>> seen;
+  for (const OptionInfo& option : scene_options())
+    EXPECT_TRUE(seen.emplace(option.table, option.key).second) << option.table << '.' << option.key;
+}
+
+}  // namespace
+}  // namespace brink

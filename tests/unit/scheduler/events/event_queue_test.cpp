@@ -1,0 +1,39 @@
+// The queue of bodies by time against a sorted list.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "brink/core/base/random.h"
+#include "brink/scheduler/events/event_queue.h"
+
+namespace brink {
+namespace {
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+
+TEST(EventQueue, KnowsTheFirstAndTheSecond) {
+  Random random(11);
+  for (const std::size_t n : {1, 2, 3, 7, 100}) {
+    EventQueue queue;
+    queue.reset(n, 0.0);
+    std::vector<double> times(n, 0.0);
+    for (int step = 0; step < 3000; ++step) {
+      const int k = static_cast<int>(random.below(n));
+      times[k] = random.below(10) ? static_cast<double>(random.below(50)) : kForever;  // ties, and never
+      queue.update(k, times[k]);
+      std::vector<std::pair<double, int>> all;
+      for (std::size_t b = 0; b < n; ++b) all.emplace_back(times[b], static_cast<int>(b));
+      std::sort(all.begin(), all.end());
+      ASSERT_EQ(queue.time(), all[0].first);
+      ASSERT_EQ(queue.body(), all[0].second);
+      ASSERT_EQ(queue.second_time(), n > 1 ? all[1].first : kForever);
+      ASSERT_EQ(queue.second(), all[n > 1 ? 1 : 0].second);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace brink
