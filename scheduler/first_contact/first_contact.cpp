@@ -387,17 +387,21 @@ class PairSearch {
         low = std::max(low - back, floor);
       }
     }
-    double high = guess + 8.0 * noise;
     const double last = std::min(a_.motion->end(), b_.motion->end());
-    // beyond the surface; where two points meet, when they are nearest; where a bent path meets it later; and
-    // where a tip is grazed, for less than a rounding
+    // beyond the surface, by more than rounding if one of these is; where two points meet, when they are
+    // nearest; where a bent path meets it later; and where a tip is grazed, for less than a rounding
     const double nearest = t_ + now / speed, later = t_ + 4.0 * std::max(0.0, now) / speed + 64.0 * noise;
-    for (const double beyond : {high, nearest, later, nearest + 0.125 * noise, nearest + 0.25 * noise,
-                                nearest + 0.5 * noise, nearest + noise}) {
-      high = std::min(beyond, last);
-      if (high > low && gap(high) <= 0.0) break;
+    double high = low, beyond_by = 0.0;
+    for (const double beyond : {guess + 8.0 * noise, nearest, later, nearest + 0.125 * noise,
+                                nearest + 0.25 * noise, nearest + 0.5 * noise, nearest + noise}) {
+      const double then = std::min(beyond, last);
+      const double by = then > low ? -gap(then) : -1.0;
+      if (!(by >= 0.0) || (high > low && by <= rounding)) continue;
+      high = then;
+      beyond_by = by;
+      if (beyond_by > rounding) break;
     }
-    if (high <= low || gap(high) > 0.0) return false;  // passes by
+    if (high <= low) return false;  // passes by
     const double t = last_clear_time(gap, low, high);
     // at the end of its neighbourhood a sample changes sides without having come near
     if (gap(t) > touching_band(half, f.sample, path)) return false;

@@ -285,11 +285,12 @@ class Checker {
       return;
     }
     ++tally.contacts;
-    // what the search calls touching: a wire is met so far before it, eight roundings of the gap, of which a
-    // place on dense output has eight of its own; below 1 mm/s that is longer than 1e-10 s
+    // what the search calls touching: a wire is met eight roundings of the gap before it, and a place is
+    // rounded as often as it is summed up, on dense output twice as often; below 1 mm/s that is longer than
+    // 1e-10 s
     const bool dense = !f.motion_a.is_ballistic() || !f.motion_b.is_ballistic();
-    const double of_places = dense ? 4.0 * std::max(place_rounding(f, f.from), place_rounding(f, f.to)) : 0.0;
-    const double touching = std::max(1e-13, 8.0 * of_places) / truth.closing;
+    const double of_gap = (dense ? 4.0 : 2.0) * std::max(place_rounding(f, f.from), place_rounding(f, f.to));
+    const double touching = std::max(1e-13, 8.0 * of_gap) / truth.closing;
     const bool slow = touching + tolerance > 1e-10;
     if (slow) ++tally.slow;
     if (!slow && error > tally.worst_time_error) {
