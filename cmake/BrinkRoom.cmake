@@ -23,3 +23,25 @@ function(brink_flags target)
     target_link_options(${target} PUBLIC -fsanitize=address,undefined)
   endif()
 endfunction()
+
+# Of targets in which no run spends its time: less optimisation, which compiles a fifth faster. Results have the same bits.
+function(brink_not_hot target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O2>)
+endfunction()
+
+# What nearly every source includes, compiled once for a family of targets: the headers of foreign libraries are most of
+# what a source costs. brink_precompile(TARGET HEADER...) gives TARGET headers of its own beside those of every source;
+# brink_precompiled_as(TARGET OWNER) lets TARGET use OWNER's. Both must be of one kind, library or program.
+set(BRINK_HEADERS <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory>
+  <numbers> <numeric> <optional> <set> <span> <sstream> <string> <string_view> <tuple> <unordered_map> <utility> <variant>
+  <vector> <Eigen/Core> <fmt/format.h>)
+function(brink_precompile target)
+  if(BRINK_PRECOMPILE)
+    target_precompile_headers(${target} PRIVATE ${BRINK_HEADERS} ${ARGN})
+  endif()
+endfunction()
+function(brink_precompiled_as target owner)
+  if(BRINK_PRECOMPILE)
+    target_precompile_headers(${target} REUSE_FROM ${owner})
+  endif()
+endfunction()

@@ -120,7 +120,6 @@ void PrescribedMotion::fit_next() {
   spreads_[at.depth] = known.spread;
   if (finite && (known.remainder.array() <= cell.tolerance.array()).all()) {
     corners_in_a_row_ = 0;
-    worst_fit_ = std::max(worst_fit_, cell.worst);
     return join_next(cell);
   }
   const double half = 0.5 * at.width;

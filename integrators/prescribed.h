@@ -51,10 +51,6 @@ class PrescribedMotion {
   /// From the beginning to the last extend(); grows with later ones. @pre begun().
   Motion motion() const { return Motion::dense(track_); }
 
-  /// Largest difference met between the function and its interpolant at the checking points, in the units of
-  /// the pose.
-  double worst_fit() const { return worst_fit_; }
-
  private:
   struct Fitted;
   struct Cell {
@@ -89,7 +85,6 @@ class PrescribedMotion {
   std::vector<Cell> cells_;       ///< of the present grid cell that are to be fitted, the next last
   std::array<Eigen::Vector3d, kDepths> spreads_{};  ///< of the cells that hold the present one
   int corners_in_a_row_ = 0;
-  double worst_fit_ = 0.0;
   std::string failure_;
 };
 

@@ -18,12 +18,6 @@ struct PixelEntry {
   std::uint32_t site;
 };
 
-/// One rendered layer as read back: ids (top bit: inside; all ones: nothing drawn) and drawn values.
-struct RawLayer {
-  std::vector<std::uint32_t> ids;
-  std::vector<float> values;
-};
-
 /// Draws batches. Belongs to the thread that made it.
 class FieldRenderer {
  public:

@@ -75,12 +75,6 @@ inline double side_of(const Site& site, const Nearest& nearest, const Vec2& q) {
   return within == (site.sweep > 0) ? -1.0 : 1.0;
 }
 
-/// Signed gap [m] from q to the site: > 0 outside; the site's radius is subtracted.
-inline double gap_to(const Site& site, const Vec2& q) {
-  const Nearest n = nearest_on(site, q);
-  return side_of(site, n, q) * n.distance - site.radius;
-}
-
 /// Outward unit normal at the core: from the nearest point to q when outside, the reverse inside. Where q
 /// lies on the core: the site's own left/right normal (solid: outward), for a point site (1, 0).
 Vec2 normal_at(const Site& site, const Nearest& nearest, const Vec2& q);

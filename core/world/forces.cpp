@@ -235,9 +235,11 @@ DisjointSets coupled_bodies(const World& world) {
 
 }  // namespace
 
-std::vector<Component> make_components(const World& world) {
+std::vector<Component> make_components(const World& world, std::span<const std::vector<int>> together) {
   const int count = static_cast<int>(world.bodies.size());
   DisjointSets sets = coupled_bodies(world);
+  for (const std::vector<int>& set : together)
+    for (const int k : set) sets.join(set.front(), k);
   std::vector<Component> components;
   std::vector<int> component_of(world.bodies.size(), -1);
   Assembly assembly;

@@ -3,6 +3,7 @@
 /// store.
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "brink/core/base/dynamics.h"
@@ -16,10 +17,10 @@ struct Component {
   std::shared_ptr<const Dynamics> dynamics;  ///< over `bodies`, in that order
 };
 
-/// Splits the world into components: bodies joined by a spring are in one; all else are alone. `world` must
-/// outlive the dynamics. Uniform gravity with constant thrusts is Dynamics::constant(); with linear drag it
-/// is linear_drag().
-std::vector<Component> make_components(const World& world);
+/// Splits the world into components: bodies joined by a spring are in one, and so are the bodies of each set
+/// of `together`; all else are alone. `world` must outlive the dynamics. Uniform gravity with constant thrusts
+/// is Dynamics::constant(); with linear drag it is linear_drag().
+std::vector<Component> make_components(const World& world, std::span<const std::vector<int>> together = {});
 
 /// Kinetic energy of all bodies, plus the potential of gravity, springs and attractors at these states [J].
 double total_energy(const World& world, std::span<const BodyState> states);

@@ -1,5 +1,7 @@
 #include "brink/core/world/formula_tree.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -203,7 +205,7 @@ class FormulaReader {
     if (std::find(variables_.begin(), variables_.end(), name) != variables_.end()) return variable(name);
     if (name == "pi") return constant(3.14159265358979323846);
     if (name == "e") return constant(2.71828182845904523536);
-    fail("\"" + std::string(name) + "\" is not known");
+    fail(fmt::format("\"{}\" is not known", name));
   }
 
   int function(std::string_view name) {

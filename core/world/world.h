@@ -28,11 +28,12 @@ struct Material {
 /// How two materials make one pair.
 enum class Combine { max, min, mean, geometric_mean, product };
 
+/// A rigid body; make_body() (make_body.h) gives one of a shape and a mass or density.
 struct Body {
   std::string name;
   std::shared_ptr<const Outline> outline;  ///< about the centre of mass, which is the body's position
   double mass = 1.0;                       ///< [kg], > 0
-  double inertia = 1.0;                    ///< about the centre of mass [kg m^2], > 0
+  double inertia = 0.0;                    ///< about the centre of mass [kg m^2], > 0: must be given
   bool lock_x = false, lock_y = false, lock_angle = false;  ///< held coordinates: infinite mass there
   int material = 0;                                         ///< index into World::materials
   BodyState initial;

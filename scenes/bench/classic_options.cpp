@@ -67,14 +67,14 @@ struct Saving {
 
 void all_together(SolverOptions& o) {
   o.field.readback = "window";
-  o.skip_broad_phase = o.field.truncated = true;
+  o.broad_phase = o.field.truncated = true;
 }
 
 std::vector<Saving> savings() {
   return {{"none: full read-back, whole diagram, every body", [](SolverOptions&) {}, {}, {}},
           {"read-back of the window", [](SolverOptions& o) { o.field.readback = "window"; }, {}, {}},
           {"read-back of single pixels", [](SolverOptions& o) { o.field.readback = "pixel"; }, {}, {}},
-          {"bounding circles", [](SolverOptions& o) { o.skip_broad_phase = true; }, {}, {}},
+          {"bounding circles", [](SolverOptions& o) { o.broad_phase = true; }, {}, {}},
           {"truncated diagram", [](SolverOptions& o) { o.field.truncated = true; }, {}, {}},
           {"two layers for all bodies", [](SolverOptions& o) { o.field.passes = "two_layers"; }, {}, {}},
           {"cones and tents", [](SolverOptions& o) { o.field.primitives = "mesh"; }, {}, {}},
@@ -99,7 +99,7 @@ std::vector<Saving> savings() {
 SolverOptions plain() {
   SolverOptions none = backing_up("depth", kStep);
   none.policy = "fixed_step";
-  none.skip_broad_phase = false;
+  none.broad_phase = false;
   none.field.truncated = false;
   none.field.readback = "full";
   return none;

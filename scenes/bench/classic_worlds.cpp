@@ -1,4 +1,5 @@
 #include "brink/scenes/bench/classic_worlds.h"
+#include "brink/core/world/make_body.h"
 
 namespace brink::bench {
 namespace {
@@ -16,9 +17,7 @@ class Hits : public Recorder {
 }  // namespace
 
 Body sampled_body(const Shape& shape, const Pose& pose, const Twist& twist, double spacing) {
-  Body body;
-  body.outline = std::make_shared<const Outline>(shape.outline);
-  body.inertia = body.mass * shape.measure.second_moment / shape.measure.size;
+  Body body = make_body(shape, Mass{1.0});
   body.initial = {pose, twist};
   body.sampling.kind = Sampling::Kind::boundary;
   body.sampling.spacing = spacing;

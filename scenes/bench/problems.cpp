@@ -5,6 +5,7 @@
 
 #include "brink/core/shapes/shapes.h"
 #include "brink/core/world/forces.h"
+#include "brink/core/world/make_body.h"
 #include "brink/scenes/bench/boxes.h"
 #include "brink/scenes/bench/reference.h"
 
@@ -15,10 +16,8 @@ constexpr double kGravity = 9.81;
 
 void add_body(World& world, const Shape& shape, const Vec2& position, const Vec2& velocity,
               double angle = 0.0, double omega = 0.0) {
-  Body body;
+  Body body = make_body(shape, Mass{1.0});
   body.name = "body" + std::to_string(world.bodies.size());
-  body.outline = std::make_shared<const Outline>(shape.outline);
-  body.inertia = body.mass * shape.measure.second_moment / shape.measure.size;
   body.initial = {{position, angle}, {velocity, omega}};
   world.bodies.push_back(std::move(body));
 }

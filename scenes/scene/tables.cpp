@@ -219,11 +219,15 @@ const Schema<SolverOptions>& solver_schema() {
           .count("kept_states", &S::kept_states, whole(),
                  "policy timewarp: former states of bodies that are kept to go back to, at most")
           .count("max_collisions", &S::max_collisions, whole(), "stop after this many; 0: no limit")
-          .key("skip_closed_forms", &S::skip_closed_forms, flag(), "use closed forms where a pair has them")
-          .key("skip_fields", &S::skip_fields, flag(), "no field for shapes of few sites")
-          .key("skip_broad_phase", &S::skip_broad_phase, flag(), "test only pairs whose moving bounds meet")
-          .key("skip_shared_fields", &S::skip_shared_fields, flag(),
-               "one field a distinct shape, not one a body");
+          .key("closed_forms", &S::closed_forms, flag(), "use closed forms where a pair has them")
+          .key("broad_phase", &S::broad_phase, flag(), "test only pairs whose moving bounds meet")
+          .key("share_fields", &S::share_fields, flag(), "one field a distinct shape, not one a body")
+          .key("fields_for_small_shapes", &S::fields_for_small_shapes, flag(),
+               "a field, not brute force, for shapes of few sites, too")
+          .former("skip_closed_forms", "closed_forms")
+          .former("skip_broad_phase", "broad_phase")
+          .former("skip_shared_fields", "share_fields")
+          .former("skip_fields", "fields_for_small_shapes", ", with the opposite meaning");
   return schema;
 }
 

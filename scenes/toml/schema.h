@@ -3,6 +3,9 @@
 /// declaration come reading, unknown keys, defaults, `brink list options` and the options of a run file.
 /// Internal.
 
+#include <algorithm>
+#include <utility>
+
 #include "brink/scenes/toml/codec.h"
 #include "brink/scenes/toml/option_info.h"
 
@@ -90,6 +93,12 @@ class Schema {
     return *this;
   }
 
+  /// A key of before, which is now a fault that names the new one; `but`: what else has changed.
+  Schema& former(const std::string& name, const std::string& now, const std::string& but = "") {
+    former_.push_back({name, "is called \"" + now + "\" now" + but});
+    return *this;
+  }
+
   /// Reads every key of `table` into `out`; unknown and missing keys are faults. `place` is where the table
   /// stands.
   void read(const toml::table& table, const Where& place, TomlDocument& doc, T& out) const {
@@ -162,6 +171,11 @@ class Schema {
   }
 
   void unknown(const toml::key& name, const toml::node& node, TomlDocument& doc) const {
+    const auto before =
+        std::find_if(former_.begin(), former_.end(), [&](const auto& f) { return f.first == name.str(); });
+    if (before != former_.end())
+      return doc.faults().add(doc.where(name, node),
+                              "key " + in_quotes(name.str()) + " in " + table_ + " " + before->second);
     doc.faults().add(doc.where(name, node), "unknown key " + in_quotes(name.str()) + " in " + table_ +
                                                 "; the nearest known key is \"" +
                                                 nearest_word(name.str(), key_names()) + "\"");
@@ -169,6 +183,7 @@ class Schema {
 
   std::string table_;
   std::vector<Key> keys_;
+  std::vector<std::pair<std::string, std::string>> former_;  ///< keys of before, and what is said of them
 };
 
 }  // namespace brink

@@ -30,7 +30,7 @@ struct alignas(64) Flight {
 };
 
 /// A span of time in which two outlines may touch; never: begin = infinity.
-struct Meeting {
+struct MeetingTimes {
   double begin = std::numeric_limits<double>::infinity();
   double end = std::numeric_limits<double>::infinity();
 };
@@ -59,7 +59,7 @@ struct Course {
 
 /// When the discs of two flights overlap, from `now` on: of a, seen from now, and of b moved by `shift`. Two
 /// bare discs that recede never meet. About 15 flops for a pair that does not.
-inline Meeting meeting(const Course& a, const Flight& b, const Vec2& shift, double now) {
+inline MeetingTimes meeting(const Course& a, const Flight& b, const Vec2& shift, double now) {
   const double s = now - b.start, gx = s * a.gravity.x(), gy = s * a.gravity.y();
   const double dx = a.place.x() - shift.x() - (b.x + s * (b.vx + 0.5 * gx));
   const double dy = a.place.y() - shift.y() - (b.y + s * (b.vy + 0.5 * gy));

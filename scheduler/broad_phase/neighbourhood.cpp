@@ -72,7 +72,7 @@ void Neighbourhood::make_levels(std::span<const Vec2> places, bool by_place) {
     level.sites = std::make_unique<SiteLists>(still_sites_, level.grid, periods_, level.radius);
 }
 
-bool Neighbourhood::settle(int k, const Vec2& p) {
+bool Neighbourhood::put_into_cell(int k, const Vec2& p) {
   const Cell cell = grid(k).cell_of(p);
   if (clocks_[k].sites && cell == flights_[k].cell) return false;
   unlink(k);

@@ -23,7 +23,7 @@ class Neighbourhood {
                 std::vector<SiteLists::Placed> still_sites, const Periods& periods, bool by_place);
 
   /// Puts body k into the cell at p; true if that is a new one.
-  bool settle(int k, const Vec2& p);
+  bool put_into_cell(int k, const Vec2& p);
   /// The box in which body k's centre stays as long as it is in its cell.
   Box box_of(int k) const { return grid(k).box_of(flights_[k].cell); }
   double cell_size(int k) const { return grid(k).size(); }

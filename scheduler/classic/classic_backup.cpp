@@ -9,8 +9,10 @@
 /// What touches and parts again inside a step is missed.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "brink/scheduler/classic/classic_rebound.h"
+#include "brink/scheduler/classic/sight.h"
 #include "brink/scheduler/policies/policy.h"
 #include "brink/scheduler/policies/steps.h"
 
@@ -27,6 +29,8 @@ constexpr int kMostBackups = 8;
 class ClassicBackup final : public Policy {
  public:
   bool approximate() const override { return true; }
+  void prepare(Kernel& kernel) override { sight_.emplace(kernel); }
+  std::vector<std::string> plan() const override { return sight_->describe(); }
 
   void run(Kernel& kernel, double until) override {
     while (kernel.time() < until && !kernel.halt()) {
@@ -39,34 +43,36 @@ class ClassicBackup final : public Policy {
 
  private:
   /// False on a halt.
-  static bool step(Kernel& kernel, double end) {
+  bool step(Kernel& kernel, double end) {
     double clear = kernel.time();  // nothing touches and approaches here
     for (int backups = kMostBackups * (1 + kernel.body_count()); clear < end; --backups) {
       end = kernel.follow_motions_all_the_way(end);
       if (kernel.halt()) return false;
       kernel.advance_all(end);
-      if (!any_approaches(kernel.look(clear, end))) break;
-      const double touch = backups > 0 ? first_touch(kernel, clear, end) : end;
+      if (!any_approaches(sight_->look(clear, end))) break;
+      const double touch = backups > 0 ? first_touch(clear, end) : end;
       if (!kernel.record_frames(std::nextafter(touch, 0.0))) return false;
       kernel.back_up_all(touch);
-      const DepthSight sight = kernel.look(clear, touch);
-      if (!resolve_all(kernel, sight.contacts)) return false;
-      if (backups <= 0) push_all_apart(kernel, sight.overlaps);
+      const DepthSight seen = sight_->look(clear, touch);
+      if (!resolve_all(kernel, seen.contacts)) return false;
+      if (backups <= 0) push_all_apart(kernel, seen.overlaps);
       clear = touch;
     }
     return kernel.record_frames(end) && kernel.poll();
   }
 
   /// The first time in (clear, touching] at which something touches and approaches, within kHalvings.
-  static double first_touch(Kernel& kernel, double clear, double touching) {
+  double first_touch(double clear, double touching) {
     const double from = clear;
     for (int k = 0; k < kHalvings; ++k) {
       const double middle = 0.5 * (clear + touching);
       if (!(middle > clear && middle < touching)) break;
-      (any_approaches(kernel.look(from, middle)) ? touching : clear) = middle;
+      (any_approaches(sight_->look(from, middle)) ? touching : clear) = middle;
     }
     return touching;
   }
+
+  std::optional<Sight> sight_;
 };
 
 }  // namespace

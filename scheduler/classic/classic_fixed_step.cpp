@@ -8,8 +8,10 @@
 /// What passes through another body inside a step is missed.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "brink/scheduler/classic/classic_rebound.h"
+#include "brink/scheduler/classic/sight.h"
 #include "brink/scheduler/policies/policy.h"
 #include "brink/scheduler/policies/steps.h"
 
@@ -20,6 +22,8 @@ namespace {
 class ClassicFixedStep final : public Policy {
  public:
   bool approximate() const override { return true; }
+  void prepare(Kernel& kernel) override { sight_.emplace(kernel); }
+  std::vector<std::string> plan() const override { return sight_->describe(); }
 
   void run(Kernel& kernel, double until) override {
     while (kernel.time() < until && !kernel.halt()) {
@@ -30,12 +34,15 @@ class ClassicFixedStep final : public Policy {
           kernel.follow_motions_all_the_way(std::min(until, step_end(from, kernel.options().step)));
       if (kernel.halt() || !kernel.record_frames(std::nextafter(end, 0.0))) return;
       kernel.advance_all(end);
-      const DepthSight sight = kernel.look(from, end);
-      if (!resolve_all(kernel, sight.contacts)) return;
-      push_all_apart(kernel, sight.overlaps);
+      const DepthSight seen = sight_->look(from, end);
+      if (!resolve_all(kernel, seen.contacts)) return;
+      push_all_apart(kernel, seen.overlaps);
       if (!kernel.record_frames(end) || !kernel.poll() || kernel.fail_before(until)) return;
     }
   }
+
+ private:
+  std::optional<Sight> sight_;
 };
 
 }  // namespace

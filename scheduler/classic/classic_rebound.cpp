@@ -15,7 +15,7 @@ constexpr std::size_t kTurns = 8;
 constexpr double kSettled = 1e-9;
 
 /// As the bodies move at the kernel's present time [m/s].
-double closing_now(const Kernel& kernel, const DepthContact& c) {
+double closing_now(const KernelView& kernel, const DepthContact& c) {
   const double t = kernel.time();
   const auto velocity = [&](const BodyState& s) { return s.twist.at(c.contact.point - s.pose.position); };
   const Vec2 other = c.pair.with_site() ? velocity(kernel.site_motion(c.pair.other_site).state(t))
@@ -28,8 +28,8 @@ using Patch = std::tuple<PairKey, bool, int>;
 Patch patch_of(const DepthContact& c) { return {c.pair, c.contact.sample_on_a, c.contact.site}; }
 
 /// The approaching contacts of every patch, joined: mean place and normal, least gap, the first one's sample.
-std::vector<DepthContact> approaching_patches(const Kernel& kernel, const std::vector<DepthContact>& contacts,
-                                              double settled) {
+std::vector<DepthContact> approaching_patches(const KernelView& kernel,
+                                              const std::vector<DepthContact>& contacts, double settled) {
   struct Sum {
     DepthContact joined;
     int count = 0;
@@ -59,15 +59,16 @@ std::vector<DepthContact> approaching_patches(const Kernel& kernel, const std::v
   return all;
 }
 
-const DepthContact& first_by(const std::string& order, const std::vector<DepthContact>& all, Random& random) {
+const DepthContact& first_by_order(Kernel& kernel, const std::vector<DepthContact>& all) {
+  const Order order = kernel.order();
   const auto least = [&](auto key) -> const DepthContact& {
     return *std::min_element(all.begin(), all.end(), [&](const DepthContact& a, const DepthContact& b) {
       return key(a.contact) < key(b.contact);
     });
   };
-  if (order == "closing_speed") return least([](const FeatureContact& c) { return -c.closing_speed; });
-  if (order == "depth") return least([](const FeatureContact& c) { return c.gap; });
-  return order == "random" ? all[random.below(all.size())] : all.front();
+  if (order == Order::closing_speed) return least([](const FeatureContact& c) { return -c.closing_speed; });
+  if (order == Order::depth) return least([](const FeatureContact& c) { return c.gap; });
+  return order == Order::random ? all[kernel.draw(all.size())] : all.front();
 }
 
 }  // namespace
@@ -84,7 +85,7 @@ bool resolve_all(Kernel& kernel, const std::vector<DepthContact>& contacts) {
   for (std::size_t turn = 0; turn < kTurns * contacts.size(); ++turn) {
     const std::vector<DepthContact> all = approaching_patches(kernel, contacts, kSettled * fastest);
     if (all.empty()) return true;
-    const DepthContact& next = first_by(kernel.options().order, all, kernel.random());
+    const DepthContact& next = first_by_order(kernel, all);
     if (!kernel.resolve(next.pair, next.contact, changed)) return false;
   }
   return true;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "brink/scheduler/classic/depth_detector.h"
 #include "brink/scheduler/kernel/kernel.h"
 
 namespace brink {

@@ -41,7 +41,7 @@ double signed_gap(const PixelValue& value, const Site& site, const Vec2& at) {
 DepthDetector::DepthDetector(const World& world, const SolverOptions& options, WorkCounters* work)
     : world_(world),
       tolerance_(options.contact_tolerance * world.length()),
-      prune_(options.skip_broad_phase),
+      prune_(options.broad_phase),
       truncated_(options.field.truncated),
       pictures_(options.field, bounding_radii(world), world.length(), work) {
   for (const Body& body : world.bodies) {
@@ -145,6 +145,7 @@ struct DepthDetector::Reader {
     c.pair = other_owner >= n ? PairKey{body, -1, other_owner - n}
              : on_a           ? PairKey{body, other_owner, -1}
                               : PairKey{other_owner, body, -1};
+    c.contact.seen = true;
     c.contact.sample_on_a = on_a;
     c.contact.sample = index;
     c.contact.site = static_cast<int>(value.site);

@@ -206,8 +206,8 @@ struct DiscPath {
   Vec2 at(double s) const { return q + s * (velocity + 0.5 * s * acceleration); }
 };
 
-/// A segment and when the disc meets it.
-struct Meeting {
+/// A segment, the disc's gap to it, and when that closes.
+struct SegmentGap {
   const Site* site;
   int index;
   Vec2 normal;    ///< towards the disc
@@ -228,7 +228,7 @@ struct Meeting {
 };
 
 /// The gap of the disc to a segment.
-void measure(const DiscPath& disc, Meeting& m) {
+void measure(const DiscPath& disc, SegmentGap& m) {
   const Site& site = *m.site;
   const Vec2 d = site.b - site.a;
   m.normal = -perp(d / d.norm());  // right of travel: out of a solid
@@ -239,7 +239,7 @@ void measure(const DiscPath& disc, Meeting& m) {
 
 /// False if it is for the general search: the disc's centre does not stay abreast of the segment until it
 /// meets it or the window ends.
-bool meet(const DiscPath& disc, const SearchLimits& limits, double level, Meeting& m) {
+bool meet(const DiscPath& disc, const SearchLimits& limits, double level, SegmentGap& m) {
   const Site& site = *m.site;
   const Vec2 d = site.b - site.a;
   const double length = d.norm();
@@ -267,14 +267,14 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
                       from - rel.reference,
                       to - rel.reference,
                       rel.noise};
-  std::array<Meeting, kMostSites> meetings;
+  std::array<SegmentGap, kMostSites> gaps;
   int count = 0;
   double earliest = kForever;
   Vec2 normal = Vec2::Zero();
   bool clear = true;
   for (const Site& site : other.outline().sites) {
     if (radius + site.radius == 0.0) return false;  // a point on a wire: the search knows its level
-    Meeting& m = meetings[static_cast<std::size_t>(count)];
+    SegmentGap& m = gaps[static_cast<std::size_t>(count)];
     m.site = &site;
     m.index = count++;
     measure(path, m);
@@ -285,7 +285,7 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
                        : disc_is_a ? sink_at_start(disc, other, limits, scratch)
                                    : sink_at_start(other, disc, limits, scratch);
   for (int k = 0; k < count; ++k) {
-    Meeting& m = meetings[static_cast<std::size_t>(k)];
+    SegmentGap& m = gaps[static_cast<std::size_t>(k)];
     if (!meet(path, limits, level, m)) return false;
     if (m.s < earliest) {
       earliest = m.s;
@@ -308,11 +308,11 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
   const auto nearest_at = [&](double time) {
     const Vec2 q = frame.direction_to_local(parabola.at(time) - parabola_of_other.at(time));
     double least = kForever;
-    std::pair<double, const Meeting*> nearest{kForever, nullptr};
+    std::pair<double, const SegmentGap*> nearest{kForever, nullptr};
     for (int k = 0; k < count; ++k) {
-      const Meeting& m = meetings[static_cast<std::size_t>(k)];
+      const SegmentGap& m = gaps[static_cast<std::size_t>(k)];
       if (!(m.s <= earliest + 64.0 * moment)) continue;
-      const Meeting::Seen seen = m.seen(q, radius, limits.touch);
+      const SegmentGap::Seen seen = m.seen(q, radius, limits.touch);
       if (!(seen.rank < least)) continue;
       least = seen.rank;
       nearest = {seen.gap - level, &m};

@@ -44,6 +44,7 @@ struct SearchLimits {
 struct FeatureContact {
   double time = 0.0;           ///< last double at which the gap is > 0, or the start if they touched there
   bool sample_on_a = true;     ///< sample on a and site on b, or the reverse
+  bool seen = false;           ///< in a picture: no feature of the outlines, to be looked at more closely
   int sample = -1;             ///< into the carrying outline's samples
   int site = -1;               ///< into the other outline's sites
   Vec2 point = Vec2::Zero();   ///< world [m]

@@ -1,242 +1,322 @@
-/// The kernel's beginnings and its motions.
 #include "brink/scheduler/kernel/kernel.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 
-#include "brink/core/base/error.h"
-#include "brink/core/world/recentred.h"
-#include "brink/scheduler/first_contact/tolerances.h"
+#include "brink/scheduler/kernel/snapshot.h"
+#include "brink/scheduler/kernel/stage_clock.h"
 
 namespace brink {
 
-namespace {
-
-constexpr double kMostPairs = 1e7;  ///< that are kept at once: 400 MB
-
-/// @throws BadInput where every pair is to be looked at, and there are too many to keep.
-void check_pairs(const World& world, const SolverOptions& options) {
-  const auto bodies = static_cast<double>(world.bodies.size()),
-             sites = static_cast<double>(world.sites.size());
-  const double pairs = bodies * (0.5 * bodies + sites);
-  if (options.skip_broad_phase || options.policy == "body_clocks" || pairs <= kMostPairs) return;
-  throw BadInput(
-      fmt::format("solver: skip_broad_phase = false, and {} bodies and {} sites make {:.3g} pairs; allowed "
-                  "without a broad phase: up to {:.0e}",
-                  bodies, sites, pairs, kMostPairs));
+bool KernelView::is_resolved_ahead(const Certificate& c) const {
+  const auto collisions = parts_.speculation.of(c.pair.body);
+  if (collisions.empty()) return false;
+  const Outcome& first = collisions.front()->outcome;
+  return first.pair == c.pair && first.contact.time == c.contact.time &&
+         first.contact.site == c.contact.site && first.contact.sample == c.contact.sample &&
+         first.contact.sample_on_a == c.contact.sample_on_a;
 }
 
-/// True if a sharp vertex of one owner may meet a wire without thickness of another.
-bool points_may_meet_wires(const std::vector<const Outline*>& outlines, std::size_t bodies) {
-  const auto sharp = [](const Outline* o) {
-    return std::any_of(o->samples.begin(), o->samples.end(),
-                       [](const Sample& s) { return s.arc_site < 0 && s.radius == 0.0; });
-  };
-  const auto wire = [](const Outline* o) {
-    return std::any_of(o->sites.begin(), o->sites.end(),
-                       [](const Site& s) { return !s.solid && s.radius == 0.0; });
-  };
-  const auto end_of_bodies = outlines.begin() + static_cast<std::ptrdiff_t>(bodies);
-  return (std::any_of(outlines.begin(), end_of_bodies, sharp) &&
-          std::any_of(outlines.begin(), outlines.end(), wire)) ||
-         (std::any_of(outlines.begin(), outlines.end(), sharp) &&
-          std::any_of(outlines.begin(), end_of_bodies, wire));
+// -- motions --
+
+double Kernel::follow_motions_all_the_way(double t) {
+  double covered = follow_motions(t);
+  while (covered < std::min(t, reach()) && !halt()) covered = follow_motions(t);
+  return covered;
 }
 
-BodyState held(const Body& body, BodyState s) {
-  if (body.lock_x) s.twist.velocity.x() = 0.0;
-  if (body.lock_y) s.twist.velocity.y() = 0.0;
-  if (body.lock_angle) s.twist.omega = 0.0;
-  return s;
+bool Kernel::fail_before(double until) {
+  return reach() < until && time() >= reach() && parts_.trajectories.stop_at_reach();
 }
 
-/// The box of a still site where it stands; empty if it moves, or is everywhere.
-Box still_box(const FixedSite& site, bool moves) {
-  if (moves || site.outline->container) return {};
-  const Box box = transformed(*site.outline, site.pose).bounds;
-  return box.grown(1e-12 * (box.low.norm() + box.high.norm()));
-}
+// -- clocks --
 
-void raise_version(BodyTrack& b) { b.version = std::max(b.version, b.last_undone) + 1; }
-
-}  // namespace
-
-Kernel::Kernel(World world, SolverOptions options)
-    : world_(std::move(world)), options_(std::move(options)), random_(options_.seed) {
-  world_.check();
-  std::string error;
-  if (!options_.is_valid(&error)) throw BadInput(error);
-  if (world_.periods.any() && options_.detector != "field")
-    throw BadInput("solver: detector = \"" + options_.detector +
-                   "\" in a periodic world; allowed there: \"field\"");
-  check_pairs(world_, options_);
-  limits_.tolerance = options_.contact_tolerance * world_.length();
-  limits_.touch = kTouchOfTolerance * limits_.tolerance;
-  reflects_ = options_.response == "reflection";
-  limits_.closed_forms = options_.skip_closed_forms;
-  zeno_ = ZenoWatch(limits_.tolerance);
-
-  for (FixedSite& s : world_.sites) {
-    const Vec2 as_written = s.pose.position;
-    s = recentred(s);
-    frames_moved_.push_back(s.pose.position - as_written);
-  }
-  for (const Body& b : world_.bodies) outlines_.push_back(b.outline.get());
-  for (const FixedSite& s : world_.sites) outlines_.push_back(s.outline.get());
-  points_meet_wires_ = points_may_meet_wires(outlines_, world_.bodies.size());
-  bodies_.resize(world_.bodies.size());
-  for (Component& c : make_components(world_)) add_component(std::move(c));
-  work_.component_resets = 0;  // first starts are no resets
-  for (const FixedSite& site : world_.sites) {
-    sites_.emplace_back(site);
-    still_boxes_.push_back(still_box(site, sites_.back().moves()));
-  }
-  site_failures_.resize(sites_.size());
-  make_indices();
-  if (options_.detector == "pass") passes_ = std::make_unique<PassRenderer>(options_.field, &work_);
-  if (options_.detector == "depth") depth_ = std::make_unique<DepthDetector>(world_, options_, &work_);
-}
-
-Kernel::~Kernel() = default;
-
-void Kernel::add_component(Component component) {
-  const auto initial = [&](int k) { return held(world_.bodies[k], world_.bodies[k].initial); };
-  const Dynamics& dynamics = *component.dynamics;
-  const bool closed = options_.integrator == "auto" || options_.integrator == "ballistic";
-  if (closed && dynamics.size() == 1 && dynamics.constant() && std::isinf(dynamics.next_break(0.0))) {
-    const int k = component.bodies.front();
-    const BodyState state = initial(k);
-    Acceleration acceleration;
-    dynamics.accelerations(0.0, {&state, 1}, {&acceleration, 1});
-    bodies_[k].motion = Motion::ballistic(0.0, state, acceleration);
-    return;
-  }
-  std::vector<BodyState> states;
-  for (const int k : component.bodies) {
-    bodies_[k].component = static_cast<int>(components_.size());
-    bodies_[k].place_in_component = static_cast<int>(states.size());
-    states.push_back(initial(k));
-  }
-  Coupled coupled{std::move(component), nullptr, 0.0, {}, {}};
-  coupled.integrator =
-      make_integrator(options_.integrator, coupled.component.dynamics, options_.integrator_options(), &work_);
-  components_.push_back(std::move(coupled));
-  start_component(components_.back(), 0.0, std::move(states));
-}
-
-void Kernel::make_indices() {
-  FieldOptions field = options_.field;
-  if (!options_.skip_fields) field.brute_force_below = 0;
-  std::map<const Outline*, const SiteIndex*> made;
-  const auto index_of = [&](const std::shared_ptr<const Outline>& outline) {
-    const SiteIndex*& index = made[outline.get()];
-    if (!index || !options_.skip_shared_fields) {
-      indices_.push_back(make_site_index(outline, field, &work_));
-      index = indices_.back().get();
-    }
-    return index;
-  };
-  for (const Body& b : world_.bodies) body_index_.push_back(index_of(b.outline));
-  for (const FixedSite& s : world_.sites) site_index_.push_back(index_of(s.outline));
-}
-
-void Kernel::start_component(Coupled& c, double t, std::vector<BodyState> states) {
-  c.started = t;
-  c.start_states = std::move(states);
-  c.integrator->start(t, c.start_states);
-  fetch_motions(c);
-  if (std::isfinite(c.failure.time)) {
-    c.failure = {};
-    find_reach();
-  }
-  ++work_.component_resets;
-}
-
-void Kernel::advance_pair(const PairKey& pair, double t) {
-  work_.advances += pair.with_site() ? 1 : 2;
-  time_ = t;
-  if (!run_.trace) return;
-  for (const int k : {pair.body, pair.other_body})
-    if (k >= 0) run_.trace->mark({TraceKind::advance, k, -1, std::min(bodies_[k].motion.begin(), t), t});
-}
-
-std::vector<BodyState> Kernel::states(double t) const {
-  std::vector<BodyState> all;
-  all.reserve(bodies_.size());
-  for (const BodyTrack& b : bodies_) all.push_back(b.motion.state(t));
-  return all;
+void Kernel::trace_all(TraceKind kind, double from, double to) const {
+  if (!parts_.run.trace()) return;
+  for (int k = 0; k < body_count(); ++k) parts_.run.mark(kind, k, -1, from, to);
 }
 
 void Kernel::advance_all(double t) {
-  if (t > time_) {
-    work_.advances += bodies_.size();
-    trace_all(TraceKind::advance, time_, t);
+  if (t > time()) {
+    parts_.run.work().advances += body_count();
+    trace_all(TraceKind::advance, time(), t);
   }
-  time_ = t;
+  parts_.run.set_time(t);
 }
 
-void Kernel::trace_all(TraceKind kind, double from, double to) const {
-  if (!run_.trace) return;
-  for (int k = 0; k < body_count(); ++k) run_.trace->mark({kind, k, -1, from, to});
-}
-
-void Kernel::back_up_all(double t) {
-  if (t < time_) {
-    work_.backups += bodies_.size();
-    work_.body_seconds_thrown_away += (time_ - t) * static_cast<double>(bodies_.size());
-    trace_all(TraceKind::back_up, time_, t);
-  }
-  time_ = t;
+void Kernel::advance_pair(const PairKey& pair, double t) {
+  parts_.run.work().advances += pair.with_site() ? 1 : 2;
+  parts_.run.set_time(t);
+  if (!parts_.run.trace()) return;
+  for (const int k : {pair.body, pair.other_body})
+    if (k >= 0) parts_.run.mark(TraceKind::advance, k, -1, std::min(body(k).motion.begin(), t), t);
 }
 
 void Kernel::advance(std::span<const int> bodies, double from, double t) {
-  work_.advances += bodies.size();
-  time_ = t;
-  if (!run_.trace) return;
-  for (const int k : bodies) run_.trace->mark({TraceKind::advance, k, -1, from, t});
+  parts_.run.work().advances += bodies.size();
+  parts_.run.set_time(t);
+  for (const int k : bodies) parts_.run.mark(TraceKind::advance, k, -1, from, t);
+}
+
+void Kernel::back_up_all(double t) {
+  if (t < time()) {
+    parts_.run.work().backups += body_count();
+    parts_.run.work().body_seconds_thrown_away += (time() - t) * body_count();
+    trace_all(TraceKind::back_up, time(), t);
+  }
+  parts_.run.set_time(t);
 }
 
 void Kernel::back_up(std::span<const int> bodies, double from, double t) {
-  work_.backups += bodies.size();
-  work_.body_seconds_thrown_away += (from - t) * static_cast<double>(bodies.size());
-  time_ = t;
-  if (!run_.trace) return;
-  for (const int k : bodies) run_.trace->mark({TraceKind::back_up, k, -1, from, t});
+  parts_.run.work().backups += bodies.size();
+  parts_.run.work().body_seconds_thrown_away += (from - t) * static_cast<double>(bodies.size());
+  parts_.run.set_time(t);
+  for (const int k : bodies) parts_.run.mark(TraceKind::back_up, k, -1, from, t);
 }
 
-void Kernel::restart_free(int k, const BodyState& start, const BodyState& low) {
-  bodies_[k].motion.start_anew(time_, start, low);
-  raise_version(bodies_[k]);
-  ++work_.component_resets;
+// -- passes and searches --
+
+std::vector<PairKey> Kernel::near_pairs(double from, double to) {
+  ++parts_.run.work().horizons;
+  parts_.run.work().passes += body_count();
+  trace_all(TraceKind::pass, from, to);
+  return parts_.near.all(from, to);
 }
 
-bool Kernel::restart(std::span<const Restart> touched) {
-  const BodyTrack& first = bodies_[touched.front().body];
-  if (first.component < 0) {
-    restart_free(touched.front().body, touched.front().state.rounded(), touched.front().state.low());
-    return true;
+std::vector<PairKey> Kernel::near_pairs_of(int body, double from, double to) {
+  ++parts_.run.work().passes;
+  const TraceScope scope(parts_.run.trace(), {TraceKind::pass, body, -1, from, to});
+  return parts_.near.of(body, from, to, !parts_.speculation.empty());
+}
+
+std::optional<Certificate> Kernel::search(const PairKey& pair, double from, double to, int most_steps) {
+  const BodyTrack* other = pair.with_site() ? nullptr : &body(pair.other_body);
+  auto found = parts_.search.search(pair, body(pair.body), other, from, to, most_steps);
+  if (found) parts_.policy_watch.found(*found);
+  return found;
+}
+
+std::optional<Certificate> Kernel::search(const PairKey& pair, std::uint64_t version,
+                                          std::uint64_t other_version, double from, double to) {
+  const Speculation& of = parts_.speculation;
+  const BodyTrack* other = pair.with_site() ? nullptr : of.track(pair.other_body, other_version);
+  auto found = parts_.search.search(pair, *of.track(pair.body, version), other, from, to);
+  if (found) parts_.policy_watch.found(*found);
+  return found;
+}
+
+void Kernel::note_pictures(const WorkCounters& drawn) {
+  WorkCounters& work = parts_.run.work();
+  work.passes += drawn.passes;
+  work.pixels_drawn += drawn.pixels_drawn;
+  work.pixels_read += drawn.pixels_read;
+}
+
+std::vector<Certificate> Kernel::simultaneous(const Certificate& c) {
+  const Speculation& of = parts_.speculation;
+  return parts_.search.simultaneous(
+      c, *of.track(c.pair.body, c.version_body),
+      c.pair.with_site() ? nullptr : of.track(c.pair.other_body, c.version_other));
+}
+
+// -- resolving --
+
+bool Kernel::resolve(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed) {
+  parts_.policy_watch.going_to(time());
+  if (takes_together(order()) || (!found.seen && parts_.endings.collapsed(time()))) {
+    roll_back_all();
+    return resolve_group(pair, found, changed);
   }
-  Coupled& c = components_[first.component];
-  std::vector<BodyState> states;
-  for (const int j : c.component.bodies) {
-    states.push_back(state(j, time_));
-    raise_version(bodies_[j]);
+  const auto outcome = parts_.response.collide(pair, found, changed);
+  return outcome && tell(*outcome);
+}
+
+bool Kernel::resolve_group(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed) {
+  const GroupLaw law = parts_.endings.collapsed(time()) ? GroupLaw::collapsed
+                       : order() == Order::lcp          ? GroupLaw::complementarity
+                                                        : GroupLaw::reflections;
+  const auto group = parts_.groups.resolve(pair, found, law, changed);
+  if (!group) return false;
+  if (group->endless) {
+    parts_.records.event(EventKind::group, pair, found, 0.0, 0.0, group->delay);
+    if (group->lost > 0.0 && parts_.taken.count++ == 0) {
+      parts_.taken.first = pair;
+      parts_.taken.time = time();
+    }
+    parts_.taken.energy += std::max(0.0, group->lost);
   }
-  for (const Restart& r : touched) states[bodies_[r.body].place_in_component] = r.state.rounded();
-  start_component(c, time_, std::move(states));
-  return true;
+  for (const Outcome& o : group->collisions) {
+    parts_.watch.note_overlap(o.contact.gap);
+    count(o.pair);
+    parts_.records.event(EventKind::collision, o.pair, o.contact, o.impulse_n, o.impulse_t, o.delay);
+  }
+  return std::all_of(group->collisions.begin(), group->collisions.end(),
+                     [this](const Outcome& o) { return judge(o); });
+}
+
+bool Kernel::tell(const Outcome& o) {
+  parts_.watch.note_overlap(o.contact.gap);
+  count(o.pair);
+  parts_.records.event(EventKind::collision, o.pair, o.contact, o.impulse_n, o.impulse_t, o.delay);
+  return judge(o);
+}
+
+void Kernel::count(const PairKey& pair) {
+  WorkCounters& work = parts_.run.work();
+  ++work.collisions;
+  ++(pair.with_site() ? work.collisions_body_site : work.collisions_body_body);
+  if (!parts_.run.trace()) return;
+  parts_.run.mark(TraceKind::collision, pair.body, parts_.search.other_owner(pair), time(), time());
+  if (!pair.with_site()) parts_.run.mark(TraceKind::collision, pair.other_body, pair.body, time(), time());
+}
+
+/// What the collision may be the end of.
+bool Kernel::judge(const Outcome& o) {
+  const auto ending =
+      parts_.endings.collided(o, time(), parts_.response.loss_of(o.pair), parts_.run.work().collisions);
+  if (!ending) return poll();
+  switch (ending->kind) {
+    case Ending::Kind::zeno:
+      parts_.records.ending(EventKind::zeno, o.pair, o.contact, ending->time);
+      stop(Termination::failed,
+           fmt::format(
+               "Zeno at t = {:.15g} after {} bounces of {}: a contact that lasts begins, and those are "
+               "not in this release",
+               ending->time,
+               std::max<std::uint64_t>(ending->count, parts_.speculation.certain(o.pair.body).streak),
+               name_of(o.pair)));
+      return false;
+    case Ending::Kind::group:
+      parts_.records.ending(EventKind::group, o.pair, o.contact, parts_.records.last_event());
+      return poll();
+    case Ending::Kind::endless_group:
+      stop(Termination::failed,
+           fmt::format("a group of collisions at t = {:.15g} does not end ({} so far, the last {})", time(),
+                       ending->count, name_of(o.pair)));
+      return false;
+    case Ending::Kind::limit:
+      stop(Termination::stopped,
+           ending->count == options().max_collisions
+               ? fmt::format("max_collisions = {} reached at t = {:.15g}", ending->count, time())
+               : fmt::format("a collision at t = {:.15g}", time()));
+      return false;
+  }
+  return false;
 }
 
 void Kernel::displace(int k, const Vec2& shift) {
-  const Restart moved{k, bodies_[k].motion.extended_state(time_).shifted(shift)};
-  restart({&moved, 1});
+  const Restart moved{k, body(k).motion.extended_state(time()).shifted(shift)};
+  std::vector<int> changed;
+  parts_.trajectories.restart({&moved, 1}, changed);
 }
 
-void Kernel::stop(Termination termination, std::string why) {
-  if (!halt_) halt_ = Halt{termination, std::move(why)};
+namespace {
+
+std::string reason(PairAnswer::Why why, const std::string& pair, double length) {
+  switch (why) {
+    case PairAnswer::Why::place:
+      return fmt::format(
+          "{} are close, but too far from the origin, or turned too often, for their gap to be told "
+          "to solver.contact_tolerance of the scene's length, {:.3g} m",
+          pair, length);
+    case PairAnswer::Why::speed:
+      return fmt::format(
+          "{} are close, but too fast for the clock: they move more than a thousandth of their "
+          "size within one instant (7e-15 s, or 32 of its roundings)",
+          pair);
+    case PairAnswer::Why::steps:
+      break;
+  }
+  return fmt::format("the search for first contact of {} makes no headway", pair);
+}
+
+}  // namespace
+
+void Kernel::give_up(const Certificate& c) {
+  // all up to there is told
+  roll_back_all();
+  if (extend_motions(c.time)) {
+    record_frames(c.time);
+    advance_all(std::max(time(), c.time));
+  }
+  parts_.records.ending(EventKind::undecided, c.pair, c.contact, c.time);
+  stop(Termination::failed,
+       fmt::format("undecided at t = {:.17g}: {}", c.time, reason(c.why, name_of(c.pair), world().length())));
+}
+
+// -- resolving ahead of time --
+
+bool Kernel::resolve_ahead(const Certificate& c, double end, std::vector<int>& changed) {
+  const double present = time();
+  advance_pair(c.pair, c.time);
+  const Speculation::Entry entry = parts_.speculation.before(c.pair);
+  const auto outcome = parts_.response.collide(c.pair, c.contact, changed);
+  bool done = outcome.has_value();
+  for (const int k : changed) done = done && extend_motion(k, end);
+  parts_.run.set_time(present);
+  if (outcome) entry->outcome = *outcome;
+  entry->end = end;
+  parts_.speculation.add(entry);
+  WorkCounters& work = parts_.run.work();
+  work.states_kept = std::max<std::uint64_t>(work.states_kept, states_kept());
+  if (done) return true;
+  if (halt() && halt()->termination == Termination::failed)
+    parts_.run.forget_halt();  // may never come to pass
+  changed.clear();
+  parts_.speculation.undo(entry);
+  return false;
+}
+
+bool Kernel::confirm(const Certificate& c, std::vector<int>& changed) {
+  const Speculation::Entry entry = parts_.speculation.of(c.pair.body).front();
+  parts_.speculation.remove(entry);
+  parts_.run.set_time(entry->time);
+  parts_.policy_watch.going_to(time());
+  for (const AheadCollision::Former& f : entry->former) changed.push_back(f.body);
+  return tell(entry->outcome);
+}
+
+// -- the run --
+
+bool Kernel::record_frames(double t) {
+  parts_.policy_watch.going_to(t);
+  while (!halt()) {
+    const auto due = parts_.records.frame_due(t);
+    if (!due) break;
+    const StageClock clock(parts_.run.work().seconds_record);
+    parts_.speculation.swap_with_certain();
+    parts_.records.frame_of_clock(*due);
+    parts_.watch.frame(*due);
+    parts_.speculation.swap_with_certain();
+    if (!poll()) parts_.run.set_time(*due);  // all is clear up to t, and so up to here
+  }
+  return !halt();
+}
+
+void Kernel::show_frame() {
+  parts_.records.frame(time());
+  parts_.watch.frame(time());
+}
+
+bool Kernel::pause_point() {
+  if (halt() || !parts_.run.ask()) return false;
+  if (parts_.records.checkpoint_due()) parts_.records.checkpoint(snapshot());
+  return true;
+}
+
+std::vector<std::byte> Kernel::snapshot() const {
+  SavedRun saved;
+  saved.time = time();
+  saved.horizon = horizon();
+  saved.watch = parts_.watch.saved();
+  saved.records = parts_.records.saved();
+  saved.endings = parts_.endings.saved();
+  saved.taken = parts_.taken;
+  saved.random = parts_.random.state();
+  saved.work = parts_.run.work();
+  saved.trajectories = parts_.trajectories.saved();
+  return encode(saved, world(), options(), parts_.trajectories);
 }
 
 }  // namespace brink

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "brink/scheduler/kernel/stage_clock.h"
 #include "brink/scheduler/policies/order.h"
 
 namespace brink {
@@ -14,7 +13,7 @@ constexpr double kShortest = 1e-9;
 constexpr int kMostUndecided = 100;
 
 /// About the time in which the fastest body crosses itself.
-double first_length(const Kernel& kernel, double until) {
+double first_length(const KernelView& kernel, double until) {
   double horizon = until;
   for (int k = 0; k < kernel.body_count(); ++k) {
     const double speed = kernel.state(k, kernel.time()).twist.velocity.norm();
@@ -26,18 +25,18 @@ double first_length(const Kernel& kernel, double until) {
 
 /// The end of the next horizon from the present time [s].
 double next_end(Kernel& kernel, double until) {
-  if (kernel.horizon() <= 0.0) kernel.horizon() = first_length(kernel, until);
+  if (kernel.horizon() <= 0.0) kernel.choose_horizon(first_length(kernel, until));
   return std::min(until, kernel.time() + kernel.horizon());
 }
 
 /// Learns from a horizon that had so many near pairs and collisions.
 void adapt(Kernel& kernel, std::size_t pairs, std::uint64_t collisions) {
   const auto n = static_cast<std::uint64_t>(kernel.body_count());
-  if (!kernel.options().skip_broad_phase) pairs = 0;  // every pair is met at any horizon
+  if (!kernel.options().broad_phase) pairs = 0;  // every pair is met at any horizon
   if (pairs > 6 * n + 16 || collisions > 2 * n + 16)
-    kernel.horizon() = std::max(0.5 * kernel.horizon(), kShortest);
+    kernel.choose_horizon(std::max(0.5 * kernel.horizon(), kShortest));
   else if (pairs < 3 * n + 8 && collisions < n / 2 + 4)
-    kernel.horizon() *= 1.5;
+    kernel.choose_horizon(1.5 * kernel.horizon());
 }
 
 }  // namespace
@@ -55,7 +54,6 @@ void run_horizons(Kernel& kernel, double until,
 }
 
 bool HorizonAgenda::pass(Kernel& kernel, double from, double end) {
-  const StageClock clock(kernel.work().seconds_search);
   agenda_.clear();
   pairs_ = kernel.near_pairs(from, end);
   for (const PairKey& pair : pairs_) {
@@ -66,7 +64,6 @@ bool HorizonAgenda::pass(Kernel& kernel, double from, double end) {
 }
 
 bool HorizonAgenda::pass_again(Kernel& kernel, std::span<const int> changed, double end) {
-  const StageClock clock(kernel.work().seconds_search);
   const double now = kernel.time();
   pairs_.clear();
   for (const int body : changed) {
@@ -86,7 +83,7 @@ void HorizonAgenda::test(Kernel& kernel, const PairKey& pair, double from, doubl
   const auto certificate = kernel.search(pair, from, end);
   if (!certificate) return;
   agenda_.insert(*certificate);
-  if (certificate->kind != Certificate::Kind::contact || !kernel.options().picks_among_all()) return;
+  if (certificate->kind != Certificate::Kind::contact || !picks_among_all(kernel.order())) return;
   for (const Certificate& other : kernel.simultaneous(*certificate)) agenda_.insert(other);
 }
 

@@ -8,7 +8,8 @@ namespace brink {
 
 namespace {
 
-std::size_t first_by(const std::string& order, const std::vector<Certificate>& group, Random& random) {
+std::size_t first_by(Kernel& kernel, const std::vector<Certificate>& group) {
+  const Order order = kernel.order();
   const auto least = [&](auto key) {
     return static_cast<std::size_t>(
         std::min_element(group.begin(), group.end(),
@@ -18,20 +19,21 @@ std::size_t first_by(const std::string& order, const std::vector<Certificate>& g
   const auto by_index = [](const Certificate& c) {
     return std::tuple(c.kind, c.pair.order(), c.contact.site, c.contact.sample);
   };
-  if (order == "closing_speed")
+  if (order == Order::closing_speed)
     return least([&](const auto& c) { return std::tuple(-c.contact.closing_speed, by_index(c)); });
-  if (order == "depth") return least([&](const auto& c) { return std::tuple(c.contact.gap, by_index(c)); });
-  if (order == "random") return random.below(group.size());
+  if (order == Order::depth)
+    return least([&](const auto& c) { return std::tuple(c.contact.gap, by_index(c)); });
+  if (order == Order::random) return kernel.draw(group.size());
   return least(by_index);
 }
 
 }  // namespace
 
 std::size_t first_by_order(Kernel& kernel, const std::vector<Certificate>& group) {
-  return group.size() == 1 ? 0 : first_by(kernel.options().order, group, kernel.random());
+  return group.size() == 1 ? 0 : first_by(kernel, group);
 }
 
-Certificate at_its_time(const Kernel& kernel, Certificate c, double earliest) {
+Certificate at_its_time(const KernelView& kernel, Certificate c, double earliest) {
   if (kernel.points_meet_wires()) c.time = c.contact.time = earliest;
   return c;
 }
@@ -45,9 +47,9 @@ std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda, double 
     if (kernel.fresh(c))
       group.push_back(c);
     else
-      ++kernel.work().certificates_stale;
+      kernel.note_stale();
   }
-  kernel.work().queue_operations += agenda.take_operations();
+  kernel.note_queue_operations(agenda.take_operations());
   if (group.empty()) return std::nullopt;
   const std::size_t chosen = first_by_order(kernel, group);
   const Certificate first = at_its_time(kernel, group[chosen], group.front().time);

@@ -21,6 +21,6 @@ std::size_t first_by_order(Kernel& kernel, const std::vector<Certificate>& group
 /// and the one that comes first by order need not be the earliest: it is resolved at its own time; but where
 /// points may meet wires without thickness at the instant's earliest [s], or a body would be beyond another
 /// wire by then.
-Certificate at_its_time(const Kernel& kernel, Certificate c, double earliest);
+Certificate at_its_time(const KernelView& kernel, Certificate c, double earliest);
 
 }  // namespace brink

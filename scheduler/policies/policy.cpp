@@ -81,6 +81,13 @@ class Registry {
 
 std::vector<Choice> policies() { return Registry::get().choices(); }
 
+std::vector<std::string> exact_policies() {
+  std::vector<std::string> names;
+  for (const Choice& c : policies())
+    if (!make_policy(c.name)->approximate()) names.emplace_back(c.name);
+  return names;
+}
+
 void register_policy(const std::string& name, const std::string& summary, PolicyMaker make) {
   Registry::get().add({name, summary, std::move(make), true});
 }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "brink/scheduler/kernel/kernel.h"
 
@@ -17,6 +18,10 @@ class Policy {
   /// Takes the world to time `until`, or to Kernel::halt(), or to where Kernel::pause_point() says stop.
   /// Called again to go further; what a policy knows from before is void if Kernel::revision() has changed.
   virtual void run(Kernel& kernel, double until) = 0;
+  /// Makes what it needs of the world, once, before the first run. @throws BadInput, IoError
+  virtual void prepare(Kernel& /*kernel*/) {}
+  /// What there is to say about that in the plan, in lines for people.
+  virtual std::vector<std::string> plan() const { return {}; }
   /// True if it may skip contacts (the kernel then does not hold it to the exact order of events).
   virtual bool approximate() const { return false; }
 };
@@ -29,7 +34,7 @@ using PolicyMaker = std::function<std::unique_ptr<Policy>()>;
 void register_policy(const std::string& name, const std::string& summary, PolicyMaker make);
 
 /// True for a name that register_policy() was given. Such a policy is held to the contacts that it has been
-/// told of, unless it is approximate: going past one throws (Kernel::watch).
+/// told of, unless it is approximate: going past one throws (PolicyWatch).
 bool is_added_policy(std::string_view name);
 
 /// The policy of that name. Detector `depth` cannot tell when two bodies will meet, only that they do: it has
@@ -37,6 +42,10 @@ bool is_added_policy(std::string_view name);
 /// by looking again (for all others).
 /// @throws BadInput on a name that is not in policies().
 std::unique_ptr<Policy> make_policy(std::string_view name, std::string_view detector = "field");
+
+/// The names of those that give the same events, bit for bit: all that are not approximate, in the order of
+/// policies().
+std::vector<std::string> exact_policies();
 
 std::unique_ptr<Policy> make_body_clocks();
 std::unique_ptr<Policy> make_global_backup();

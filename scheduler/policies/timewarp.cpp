@@ -156,7 +156,7 @@ class Timewarp final : public Policy {
 
   void put_on_agenda(const Certificate& c) {
     agenda_.insert(c);
-    if (c.kind != Certificate::Kind::contact || !kernel_->options().picks_among_all()) return;
+    if (c.kind != Certificate::Kind::contact || !picks_among_all(kernel_->order())) return;
     for (const Certificate& other : kernel_->simultaneous(c)) agenda_.insert(other);
   }
 
@@ -164,7 +164,7 @@ class Timewarp final : public Policy {
 
   /// Everyone to whom something is new has a turn.
   void run_ahead() {
-    if (kernel_->options().takes_together() || kernel_->by_passes()) return;
+    if (takes_together(kernel_->order()) || kernel_->by_passes()) return;
     for (std::size_t turns = restless_.size(); turns > 0 && !kernel_->halt(); --turns) {
       const int k = restless_.front();
       restless_.pop_front();

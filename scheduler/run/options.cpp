@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "brink/core/base/error.h"
+
 namespace brink {
 
 namespace {
@@ -55,8 +57,15 @@ std::span<const Choice> orders() { return kOrders; }
 std::span<const Choice> responses() { return kResponses; }
 std::span<const Choice> detectors() { return kDetectors; }
 
+Order order_of(std::string_view name) {
+  for (std::size_t k = 0; k < kOrders.size(); ++k)
+    if (kOrders[k].name == name) return static_cast<Order>(k);  // listed as they are numbered
+  throw BadInput(fmt::format("order = \"{}\" is not known; allowed: {}", name, names_of(kOrders)));
+}
+
 bool SolverOptions::is_valid(std::string* error) const {
-  if (takes_together() && (response == "reflection" || detector == "depth")) {
+  if (!known(orders(), order, "order", error)) return false;
+  if (takes_together(order_of(order)) && (response == "reflection" || detector == "depth")) {
     *error = fmt::format(
         "order = \"{}\" needs response = \"impulse\" and an exact detector (field, pass); given response = "
         "\"{}\", "
@@ -64,8 +73,8 @@ bool SolverOptions::is_valid(std::string* error) const {
         order, response, detector);
     return false;
   }
-  return known(policies(), policy, "policy", error) && known(orders(), order, "order", error) &&
-         known(responses(), response, "response", error) && known(detectors(), detector, "detector", error) &&
+  return known(policies(), policy, "policy", error) && known(responses(), response, "response", error) &&
+         known(detectors(), detector, "detector", error) &&
          positive(contact_tolerance, "contact_tolerance", error) && positive(step, "step", error) &&
          integrator_options().is_valid(error) && field.is_valid(error);
 }

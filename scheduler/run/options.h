@@ -12,6 +12,15 @@
 
 namespace brink {
 
+/// Of contacts at one instant: which is resolved first, or that they are taken together.
+enum class Order { index, closing_speed, depth, random, lcp, reflections };
+/// True if the order resolves all contacts of one instant together; else it picks one after another.
+constexpr bool takes_together(Order order) { return order == Order::lcp || order == Order::reflections; }
+/// True if the order must see all contacts of an instant to pick one.
+constexpr bool picks_among_all(Order order) { return order != Order::index && !takes_together(order); }
+/// @throws BadInput if there is none of that name: see orders().
+Order order_of(std::string_view name);
+
 struct SolverOptions {
   std::string policy = "body_clocks";  ///< see policies()
   std::string order = "index";         ///< simultaneous contacts: see orders()
@@ -28,17 +37,13 @@ struct SolverOptions {
   std::uint64_t max_collisions = 0;   ///< stop after this many; 0: no limit
 
   // What may be skipped (each gives the same events on and off; see docs/architecture.md)
-  bool skip_closed_forms = true;   ///< use quadratics where a pair has them
-  bool skip_fields = true;         ///< brute force for outlines of few sites instead of a field
-  bool skip_broad_phase = true;    ///< test only pairs whose moving bounds meet
-  bool skip_shared_fields = true;  ///< one field a distinct shape, not one a body
+  bool closed_forms = true;              ///< quadratics where a pair has them
+  bool fields_for_small_shapes = false;  ///< a field, not brute force, for outlines of few sites, too
+  bool broad_phase = true;               ///< test only pairs whose moving bounds meet
+  bool share_fields = true;              ///< one field a distinct shape, not one a body
 
   FieldOptions field;
 
-  /// True if the order resolves all contacts of one instant together; else it picks one after another.
-  bool takes_together() const { return order == "lcp" || order == "reflections"; }
-  /// True if the order must see all contacts of an instant to pick one.
-  bool picks_among_all() const { return order != "index" && !takes_together(); }
   IntegratorOptions integrator_options() const { return {tolerance, absolute_tolerance, step}; }
   /// True if usable; else writes which option, its value and what is allowed into *error.
   bool is_valid(std::string* error) const;

@@ -2,69 +2,25 @@
 /// What a run tells the outside world, as it happens.
 
 #include <cstddef>
-#include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
-#include "brink/core/base/work.h"
-#include "brink/core/contacts/contact.h"
-#include "brink/core/world/world.h"
+#include "brink/core/base/geometry.h"
+#include "brink/scheduler/run/event.h"
+#include "brink/scheduler/run/summary.h"
 
 namespace brink {
 
-enum class EventKind { collision, persist, lift, zeno, group, sleep, wake, undecided };
-const char* to_string(EventKind kind);
-
-struct Event {
-  std::uint64_t seq = 0;  ///< counts from 0
-  EventKind kind = EventKind::collision;
-  Contact contact;
-  double impulse_n = 0.0, impulse_t = 0.0;  ///< [N s]
-};
-
-/// How a run ended.
-enum class Termination {
-  not_run,
-  reached_end,  ///< the asked time
-  stopped,      ///< by a limit or by the user
-  failed,       ///< could not go on: see RunSummary::why
-};
-
-/// Starts as "not run", so that a stale summary cannot look good.
-struct RunSummary {
-  Termination termination = Termination::not_run;
-  std::string why;        ///< of stopped and failed: one sentence with the time and the bodies
-  double end_time = 0.0;  ///< [s]
-  std::uint64_t collisions = 0;
-  double wall_seconds = 0.0;                        ///< the simulation alone
-  double energy_initial = 0.0, energy_final = 0.0;  ///< [J]
-  Vec2 momentum = Vec2::Zero();                     ///< at the end [kg m/s]
-  double angular_momentum = 0.0;                    ///< about the world's origin, at the end [kg m^2/s]
-  double max_overlap = 0.0;  ///< deepest gap below zero met at any event or frame [m], >= 0
-  /// Groups of contacts that no law could part without a loss that their materials do not have: taken
-  /// together with restitution 0, which took so much energy [J].
-  std::uint64_t groups_taken = 0;
-  double energy_taken = 0.0;
-  std::string first_taken;  ///< the first of them: its bodies and time
-  std::uint64_t state_hash = 0;
-  WorkCounters work;
-
-  /// The run file's word: "reached_end", "stopped", "failed: why".
-  std::string termination_text() const;
-  /// True if the asked time was reached, and nothing on the way was other than the scene says.
-  bool sound() const { return termination == Termination::reached_end && groups_taken == 0; }
-};
-
-/// Receives frames, events and checkpoints in time order. Calls come from the thread that runs the simulator.
+/// Receives frames, events and checkpoints in time order; what it does not override is not kept. Calls come
+/// from the thread that runs the simulator.
 class Recorder {
  public:
   virtual ~Recorder() = default;
   /// Every body's state at a frame time (t = 0, each frame interval, the end).
-  virtual void frame(double t, std::span<const BodyState> states) = 0;
-  virtual void event(const Event& event) = 0;
+  virtual void frame(double /*t*/, std::span<const BodyState> /*states*/) {}
+  virtual void event(const Event& /*event*/) {}
   /// Everything needed to go on from t with the same bits (Simulator::restore). All before is complete.
-  virtual void checkpoint(double t, const std::vector<std::byte>& state) = 0;
+  virtual void checkpoint(double /*t*/, const std::vector<std::byte>& /*state*/) {}
 };
 
 }  // namespace brink

@@ -7,17 +7,21 @@
 
 #include "brink/core/base/error.h"
 #include "brink/core/base/hash.h"
-#include "brink/scheduler/kernel/kernel.h"
+#include "brink/scheduler/kernel/run_kernel.h"
 #include "brink/scheduler/policies/policy.h"
+#include "brink/scheduler/simulator/make_plan.h"
 
 namespace brink {
 
 struct Simulator::Impl {
   Impl(World world, SolverOptions options)
       : kernel(std::move(world), options), policy(make_policy(options.policy, options.detector)) {
-    if (is_added_policy(options.policy) && !policy->approximate()) kernel.watch();
+    policy->prepare(kernel);
+    if (policy->approximate()) return;
+    kernel.hold_to_certificates();
+    if (is_added_policy(options.policy)) kernel.hold_to_known_contacts();
   }
-  Kernel kernel;
+  RunKernel kernel;
   std::unique_ptr<Policy> policy;
   double energy_initial = 0.0;
 };
@@ -36,15 +40,14 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
         fmt::format("until = {} must be finite and >= the present time {}", options.until, time()));
   if (!(options.frame_interval >= 0.0))
     throw BadInput(fmt::format("frame_interval = {} must be >= 0", options.frame_interval));
-  Kernel& kernel = impl_->kernel;
+  RunKernel& kernel = impl_->kernel;
   if (time() == 0.0)
     if (const std::string why = start_fault(); !why.empty()) throw BadInput(why);
   const auto begin = std::chrono::steady_clock::now();
-  kernel.hold_to_certificates(!impl_->policy->approximate());
   kernel.begin(options, recorder);
   impl_->policy->run(kernel, options.until);
-  kernel.hold_to_end(options.until);
-  kernel.end_frame();
+  kernel.check_returned(options.until);
+  kernel.end();
 
   RunSummary summary;
   if (const auto& halt = kernel.halt()) {
@@ -87,14 +90,27 @@ std::uint64_t Simulator::state_hash() const {
   return hash.value();
 }
 
-std::string Simulator::start_fault() const {
-  std::string why;
-  impl_->kernel.may_start(&why);
-  return why;
+std::string Simulator::start_fault() const { return impl_->kernel.start_fault(); }
+
+void Simulator::set_state(int k, const BodyState& state) { impl_->kernel.set_state(k, state); }
+void Simulator::apply_impulse(int k, const Vec2& impulse, const Vec2& point) {
+  impl_->kernel.apply_impulse(k, impulse, point);
+}
+
+RunSummary Simulator::step_to_next_event(RunOptions options, Recorder* recorder) {
+  impl_->kernel.stop_after_collisions(1);
+  try {
+    const RunSummary summary = run(options, recorder);
+    impl_->kernel.stop_after_collisions(0);
+    return summary;
+  } catch (...) {
+    impl_->kernel.stop_after_collisions(0);
+    throw;
+  }
 }
 
 std::vector<Contact> Simulator::overlaps(std::size_t most) const { return impl_->kernel.overlaps(most); }
-Plan Simulator::plan() const { return impl_->kernel.plan(); }
+Plan Simulator::plan() const { return make_plan(impl_->kernel, impl_->policy->plan()); }
 std::vector<std::byte> Simulator::snapshot() const { return impl_->kernel.snapshot(); }
 void Simulator::restore(std::span<const std::byte> snapshot) { impl_->kernel.restore(snapshot); }
 

@@ -2,34 +2,17 @@
 /// The simulator: takes a world from contact to contact.
 
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "brink/core/world/world.h"
 #include "brink/scheduler/run/options.h"
+#include "brink/scheduler/run/plan.h"
 #include "brink/scheduler/run/recorder.h"
-#include "brink/scheduler/run/trace.h"
+#include "brink/scheduler/run/run_options.h"
 
 namespace brink {
-
-/// When frames, checkpoints and progress reports are due.
-struct RunOptions {
-  double until = 1.0;               ///< [s]
-  double frame_interval = 0.0;      ///< [s]; 0: only at the start and the end
-  double checkpoint_seconds = 1.0;  ///< wall-clock seconds between checkpoints; < 0: none, 0: at every chance
-  bool first_frame = true;          ///< record the frame at the starting time (false when resuming)
-  bool record_events = true;
-  TraceSink* trace = nullptr;  ///< told what the scheduler does; may be null
-  /// Called now and then with the time reached; return false to stop the run. May be empty.
-  std::function<bool(double t, std::uint64_t collisions)> progress;
-};
-
-/// What the simulator will do and what it leaves out, in lines for people (printed by `brink check`).
-struct Plan {
-  std::vector<std::string> lines;
-};
 
 class Simulator {
  public:
@@ -61,6 +44,16 @@ class Simulator {
   /// found, as all bodies may be in one place.
   std::vector<Contact> overlaps(std::size_t most = 1000) const;
   Plan plan() const;
+
+  // -- at the present time, between runs --
+  /// Body k goes on from this state. @throws BadInput if a number of it is not finite.
+  void set_state(int k, const BodyState& state);
+  /// Gives body k an impulse [N s] at a point of the world [m]; what is locked stays. @throws BadInput if a
+  /// number is not finite.
+  void apply_impulse(int k, const Vec2& impulse, const Vec2& point);
+  /// Runs to the next collision, or to options.until if there is none before; the summary's `stopped` says
+  /// that one was met. The present time is then that of the collision, which has been resolved.
+  RunSummary step_to_next_event(RunOptions options, Recorder* recorder = nullptr);
 
   /// Everything needed to go on with the same bits.
   std::vector<std::byte> snapshot() const;

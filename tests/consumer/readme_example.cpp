@@ -1,4 +1,4 @@
-#include <brink/core/shapes/shapes.h>
+#include <brink/core/world/make_body.h>
 #include <brink/scheduler/simulator/simulator.h>
 
 #include <cstdio>
@@ -7,9 +7,8 @@ int main() {
   brink::FixedSite floor;
   floor.name = "floor";
   floor.outline = std::make_shared<brink::Outline>(brink::make_segment({-10.0, 0.0}, {10.0, 0.0}).outline);
-  brink::Body ball;  // 1 kg, and restitution 1 unless its material says otherwise
-  ball.name = "ball";
-  ball.outline = std::make_shared<brink::Outline>(brink::make_disc(0.5).outline);
+  brink::Body ball = brink::make_body(brink::make_disc(0.5), brink::Mass{1.0});
+  ball.name = "ball";  // inertia 0.125 kg m^2; restitution 1, unless its material says otherwise
   ball.initial.pose.position = {0.0, 10.0};
 
   brink::World world;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "brink/core/base/error.h"
+#include "brink/scheduler/policies/policy.h"
 #include "tests/support/same_events.h"
 
 namespace brink {
@@ -80,7 +81,8 @@ TEST(FailingMotion, ACollisionBeforeMayAvertIt) {
 }
 
 TEST(FailingMotion, RunAgainGivesTheSameAnswer) {
-  for (const char* policy : {"body_clocks", "global_backup", "island_backup", "timewarp", "fixed_step"}) {
+  for (const Choice& choice : policies()) {
+    const std::string policy(choice.name);
     SolverOptions options;
     options.policy = policy;
     Simulator simulator(one_fails(), options);
@@ -98,7 +100,7 @@ TEST(FailingMotion, NothingThatIsNotFiniteIsRecorded) {
   World world;
   add(world, testing::body(make_disc(0.1), {0.0, 0.0}, {1.0, 0.0}));
   world.forces.push_back(force_on(0, "1000 * vx"));
-  for (const char* policy : {"body_clocks", "global_backup", "island_backup", "timewarp"})
+  for (const std::string& policy : exact_policies())
     for (const char* integrator : {"erk", "adams", "bdf", "rk4"}) {
       SolverOptions options;
       options.policy = policy;
@@ -122,7 +124,8 @@ TEST(FailingMotion, EndlessIntegrationAsksWhetherToGoOn) {
   drag.bodies = {0};
   drag.linear = 1.0;
   world.forces.push_back(drag);
-  for (const char* policy : {"body_clocks", "global_backup", "island_backup", "timewarp", "fixed_step"}) {
+  for (const Choice& choice : policies()) {
+    const std::string policy(choice.name);
     SolverOptions options;
     options.policy = policy;
     options.integrator = "rk4";
@@ -142,7 +145,7 @@ TEST(FailingMotion, ForgettingThePastChangesNothing) {
   World world;
   add(world, testing::body(make_disc(0.1), {1.0, 0.0}, {0.0, 0.5}));
   world.forces.push_back(AttractForce{{0}, {0.0, 0.0}, 1.0, 1.0});
-  for (const char* policy : {"body_clocks", "global_backup", "island_backup", "timewarp"}) {
+  for (const std::string& policy : exact_policies()) {
     SolverOptions options;
     options.policy = policy;
     options.integrator = "rk4";

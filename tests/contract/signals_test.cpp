@@ -95,7 +95,7 @@ const Slow kSlow[] = {
                                 "[[bodies]]\ndisc.radius = 0.1\nposition = [-3, 0.3]\nvelocity = [10, 1]\n"},
     {"every_pair_with_every_other",
      "[world]\nduration = 1e6\n[solver]\npolicy = \"global_backup\"\n"
-     "skip_broad_phase = false\n[output]\nframe_interval = 0\n" +
+     "broad_phase = false\n[output]\nframe_interval = 0\n" +
          grid("disc.radius = 0.1", 60, 60, 1.0, "velocity = [1e-3, 0]")},
     {"many_bodies_many_frames",
      "[world]\nduration = 100\n[output]\nframe_interval = 1e-4\nmax_frame_rows = 1000000000000\n" +

@@ -26,8 +26,9 @@ TEST(FirstContactFuzz, RandomFlightsAgreeWithTheSlowReference) {
 // closed form for a leaving one, or met a corner to within a rounding.
 TEST(FirstContactFuzz, FlightsThatOnceFailedAgree) {
   flights::Checker checker;
-  for (const std::uint64_t seed : {1031187, 1054535, 1062042, 1064138, 1067637, 1085544,
-                                   2004568, 3124736, 3186176}) checker.check(seed);
+  for (const std::uint64_t seed :
+       {1031187, 1054535, 1062042, 1064138, 1067637, 1085544, 2004568, 3124736, 3186176})
+    checker.check(seed);
   EXPECT_EQ(checker.tally.failures(), 0);
 }
 

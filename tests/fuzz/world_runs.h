@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "brink/scenes/scene/scene.h"
+#include "brink/scheduler/policies/policy.h"
 #include "tests/support/outside/watch.h"
 #include "tests/support/same_events.h"
 
@@ -141,20 +142,21 @@ struct Verdict {
 
 /// One way to run a scene.
 struct Way {
-  const char* name;
+  std::string name;
   std::vector<std::string> sets;
 };
 
 inline std::vector<Way> ways(bool with_pass) {
-  std::vector<Way> all{
-      {"global_backup", {"solver.policy=global_backup"}},
-      {"island_backup", {"solver.policy=island_backup"}},
-      {"timewarp", {"solver.policy=timewarp"}},
-      {"no closed forms", {"solver.skip_closed_forms=false"}},
-      {"fields for all", {"solver.skip_fields=false"}},
-      {"no broad phase", {"solver.skip_broad_phase=false"}},
-      {"no shared fields", {"solver.skip_shared_fields=false", "solver.policy=global_backup"}},
+  std::vector<Way> all;
+  for (const std::string& policy : exact_policies())
+    if (policy != SolverOptions().policy) all.push_back({policy, {"solver.policy=" + policy}});
+  const std::vector<Way> skips{
+      {"no closed forms", {"solver.closed_forms=false"}},
+      {"fields for all", {"solver.fields_for_small_shapes=true"}},
+      {"no broad phase", {"solver.broad_phase=false"}},
+      {"no shared fields", {"solver.share_fields=false", "solver.policy=global_backup"}},
   };
+  all.insert(all.end(), skips.begin(), skips.end());
   if (with_pass) all.push_back({"pass", {"solver.detector=pass"}});
   return all;
 }
@@ -190,7 +192,7 @@ class Examiner {
     outside::WatchOptions options;
     options.until = scene.duration;
     options.contact_tolerance = scene.solver.contact_tolerance;
-    options.laws = !scene.solver.takes_together() && scene.solver.response == "impulse";
+    options.laws = !takes_together(order_of(scene.solver.order)) && scene.solver.response == "impulse";
     outside::Watch watch(scene.world, options);
     const Told told = run(scene, &watch);
     ++verdict_.runs;

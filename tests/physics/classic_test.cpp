@@ -142,10 +142,10 @@ World pairs_that_part() {
 // How a picture is read back, whether bodies without neighbours are drawn, and how far the diagram reaches
 // change the work, not a bit of the answer.
 TEST(Classic, PerformanceOptionsChangeTheWorkAlone) {
-  const auto run = [](const char* readback, bool skip_broad_phase, bool truncated) {
+  const auto run = [](const char* readback, bool broad_phase, bool truncated) {
     SolverOptions options = options_of("depth");
     options.field.readback = readback;
-    options.skip_broad_phase = skip_broad_phase;
+    options.broad_phase = broad_phase;
     options.field.truncated = truncated;
     Simulator simulator(pairs_that_part(), options);
     const RunSummary summary = simulator.run(until(0.5));

@@ -169,13 +169,13 @@ TEST_P(SameEvents, FallingDiscsMeetAtTheSameBits) {
 INSTANTIATE_TEST_SUITE_P(
     WorkLeftOutOrNot, SameEvents,
     ::testing::Values(Choice{"detector_pass", [](SolverOptions& o) { o.detector = "pass"; }},
-                      Choice{"no_closed_forms", [](SolverOptions& o) { o.skip_closed_forms = false; }},
-                      Choice{"fields_for_all", [](SolverOptions& o) { o.skip_fields = false; }},
-                      Choice{"no_broad_phase", [](SolverOptions& o) { o.skip_broad_phase = false; }},
+                      Choice{"no_closed_forms", [](SolverOptions& o) { o.closed_forms = false; }},
+                      Choice{"fields_for_all", [](SolverOptions& o) { o.fields_for_small_shapes = true; }},
+                      Choice{"no_broad_phase", [](SolverOptions& o) { o.broad_phase = false; }},
                       Choice{"a_field_each",
                              [](SolverOptions& o) {
-                               o.skip_fields = false;
-                               o.skip_shared_fields = false;
+                               o.fields_for_small_shapes = true;
+                               o.share_fields = false;
                              }}),
     [](const auto& choice) { return std::string(choice.param.name); });
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "brink/core/base/error.h"
+#include "brink/scheduler/policies/policy.h"
 #include "tests/support/worlds.h"
 
 namespace brink {
@@ -17,11 +18,9 @@ using testing::Events;
 using testing::site;
 using testing::until;
 
-constexpr const char* kPolicies[] = {"body_clocks", "global_backup", "island_backup", "timewarp"};
-
 std::string numbered(std::string name, int k) { return name.append(std::to_string(k)); }
 
-SolverOptions by(const char* policy, const char* order = "index") {
+SolverOptions by(const std::string& policy, const char* order = "index") {
   SolverOptions options;
   options.policy = policy;
   options.order = order;
@@ -35,7 +34,7 @@ TEST(Rattling, ElasticDiscInATightSlotGoesOn) {
   add(world, body(make_disc(0.5), {0, 0}, {1.0, 0.5}));
   for (const double x : {-0.50000000002, 0.50000000002}) add(world, site(make_segment({x, -10}, {x, 10})));
   const double end = 1e-6;
-  for (const char* policy : kPolicies) {
+  for (const std::string& policy : exact_policies()) {
     Simulator simulator(world, by(policy));
     const RunSummary summary = simulator.run(until(end));
     EXPECT_EQ(summary.termination, Termination::reached_end) << policy << ": " << summary.why;
@@ -55,7 +54,7 @@ World column() {
 // One at a time their corners collide without end; together they keep the energy, and nothing is taken.
 TEST(GroupsWithoutEnd, ElasticBoxesKeepTheirEnergy) {
   std::vector<std::uint64_t> hashes;
-  for (const char* policy : kPolicies) {
+  for (const std::string& policy : exact_policies()) {
     Simulator simulator(column(), by(policy));
     const RunSummary summary = simulator.run(until(0.5));
     EXPECT_TRUE(summary.sound()) << policy << ": " << summary.why;
@@ -76,7 +75,7 @@ TEST(GroupsWithoutEnd, DiscInATightHoleIsTakenAndNamed) {
   hole.outline = std::make_shared<Outline>(as_container(make_box(2, 2).outline));
   hole.name = "hole";
   add(world, hole);
-  for (const char* policy : kPolicies)
+  for (const std::string& policy : exact_policies())
     for (const char* order : {"index", "reflections"}) {
       Simulator simulator(world, by(policy, order));
       const RunSummary summary = simulator.run(until(1.0));
@@ -113,7 +112,7 @@ TEST(Instants, SiteThatTurnsWithinARoundingOfTheClockDoesNotCrash) {
   blade.motion = ConstantMotion{{Vec2::Zero(), 1e15}};
   add(world, blade);
   add(world, body(make_disc(0.1), {0, 0}, {1, 0}));
-  for (const char* policy : kPolicies)
+  for (const std::string& policy : exact_policies())
     for (const char* order : {"index", "closing_speed"}) {
       Simulator simulator(world, by(policy, order));
       RunOptions options = until(1.0);
@@ -137,7 +136,7 @@ TEST(Stops, LeaveNoGapAndNothingTwiceInTheFrames) {
   add(world, room);
   RunOptions whole = until(20.0);
   whole.frame_interval = 1.0 / 32.0;
-  for (const char* policy : kPolicies) {
+  for (const std::string& policy : exact_policies()) {
     Simulator undisturbed(world, by(policy)), stopped(world, by(policy));
     Events all, pieces;
     undisturbed.run(whole, &all);

@@ -7,6 +7,8 @@
 
 #include "brink/core/base/error.h"
 #include "brink/core/base/random.h"
+#include "brink/scheduler/policies/policy.h"
+#include "tests/support/same_events.h"
 #include "tests/support/worlds.h"
 
 namespace brink {
@@ -24,7 +26,7 @@ struct Ran {
   std::vector<BodyState> states;
 };
 
-Ran run(const World& world, const char* policy, double end) {
+Ran run(const World& world, const std::string& policy, double end) {
   SolverOptions options;
   options.policy = policy;
   Simulator simulator(world, options);
@@ -64,13 +66,13 @@ World gas(int side, double pitch, const std::vector<Shape>& shapes, double spin)
 
 TEST(PeriodicWorld, ExactPoliciesGiveTheSameEvents) {
   World discs = gas(10, 1.0, {make_disc(0.4), make_disc(0.3), make_disc(0.1)}, 0.0);
-  for (const char* policy : {"body_clocks", "island_backup", "timewarp"})
+  for (const std::string& policy : testing::other_exact_policies())
     expect_same(run(discs, "global_backup", 5.0), run(discs, policy, 5.0));
 
   World boxes = gas(6, 1.2, {make_box(0.8, 0.4), make_disc(0.3)}, 3.0);
   boxes.gravity = {0.0, -0.5};
   boxes.bodies[7].outline = testing::outline(make_disc(0.1));
-  for (const char* policy : {"body_clocks", "island_backup", "timewarp"})
+  for (const std::string& policy : testing::other_exact_policies())
     expect_same(run(boxes, "global_backup", 3.0), run(boxes, policy, 3.0));
 }
 

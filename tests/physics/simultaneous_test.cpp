@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brink/scheduler/policies/policy.h"
 #include "tests/support/worlds.h"
 
 namespace brink {
@@ -17,7 +18,7 @@ struct Outcome {
   Events events;
 };
 
-class Together : public ::testing::TestWithParam<const char*> {
+class Together : public ::testing::TestWithParam<std::string> {
  protected:
   static Outcome run(const World& world, const char* order, double until) {
     SolverOptions options;
@@ -141,8 +142,7 @@ TEST_P(Together, BreakKeepsEnergyOrLosesIt) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Policies, Together,
-                         ::testing::Values("global_backup", "body_clocks", "island_backup", "timewarp"));
+INSTANTIATE_TEST_SUITE_P(Policies, Together, ::testing::ValuesIn(exact_policies()));
 
 // Twenty touching discs, the left half running into the right one at 2 m/s, e = 0.7: one at a time they
 // collide within the instant until nothing is left of their speeds (inelastic collapse; McNamara & Young
@@ -152,7 +152,7 @@ TEST(Collapse, RowThatCollidesWithoutEndIsTakenTogetherAndReported) {
   world.materials[0].restitution = 0.7;
   for (int i = 0; i < 20; ++i)
     testing::add(world, testing::body(make_disc(0.5), {1.0 * i, 0.0}, {i < 10 ? 1.0 : -1.0, 0.0}));
-  for (const char* policy : {"global_backup", "body_clocks", "island_backup", "timewarp"}) {
+  for (const std::string& policy : exact_policies()) {
     SolverOptions options;
     options.policy = policy;
     Simulator simulator(world, options);
@@ -174,7 +174,7 @@ TEST(TogetherPolicies, GiveTheSameEvents) {
   for (const char* order : {"lcp", "reflections"})
     for (const double friction : {0.0, 0.3}) {
       std::vector<std::uint64_t> hashes;
-      for (const char* policy : {"global_backup", "body_clocks", "island_backup", "timewarp"}) {
+      for (const std::string& policy : exact_policies()) {
         SolverOptions options;
         options.policy = policy;
         options.order = order;

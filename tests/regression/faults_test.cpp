@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "brink/scheduler/policies/policy.h"
 #include "children.h"
 #include "tests/fuzz/world_runs.h"
 
@@ -34,7 +35,7 @@ Watched watched(const Scene& scene, double until = 0.0) {
   outside::WatchOptions options;
   options.until = until > 0.0 ? until : scene.duration;
   options.contact_tolerance = scene.solver.contact_tolerance;
-  options.laws = !scene.solver.takes_together() && scene.solver.response == "impulse";
+  options.laws = !takes_together(order_of(scene.solver.order)) && scene.solver.response == "impulse";
   outside::Watch watch(scene.world, options);
   Watched run;
   worlds::Keeper keeper(run.told, &watch);
@@ -260,7 +261,7 @@ TEST(Faults, EnergyIsKeptOrTheEndingSaysSo) {
 
 // sqrt(1.5 - t) ends at 1.5 s: everything before must be there, whoever schedules.
 TEST(Faults, AFailureKeepsWhatCameBeforeUnderEveryPolicy) {
-  for (const char* policy : {"body_clocks", "global_backup", "island_backup", "timewarp"}) {
+  for (const std::string& policy : exact_policies()) {
     const Scene scene = load_scene(fault("failed_at_0_loses_1.5s"), {std::string("solver.policy=") + policy});
     const Watched run = watched(scene);
     EXPECT_EQ(run.told.summary.termination, Termination::failed) << policy;
@@ -274,7 +275,7 @@ TEST(Faults, AFailureKeepsWhatCameBeforeUnderEveryPolicy) {
 TEST(Faults, IntegratorsThatFailEndEveryPolicyAlike) {
   for (const char* name : {"failure_loses_events", "run_again_after_failure"}) {
     std::optional<RunSummary> first;
-    for (const char* policy : {"body_clocks", "global_backup", "island_backup", "timewarp"}) {
+    for (const std::string& policy : exact_policies()) {
       const Watched run = watched(load_scene(fault(name), {std::string("solver.policy=") + policy}));
       const RunSummary& s = run.told.summary;
       EXPECT_EQ(s.termination, Termination::failed) << name << ", " << policy;
@@ -290,7 +291,7 @@ TEST(Faults, IntegratorsThatFailEndEveryPolicyAlike) {
 
 // A table that jumps by 0.3 m at 0.7 s is refused there, or at load; what came before is kept.
 TEST(Faults, AJumpIsRefusedWhereItIs) {
-  for (const char* policy : {"body_clocks", "global_backup", "island_backup", "timewarp"}) {
+  for (const std::string& policy : exact_policies()) {
     try {
       const Watched run = watched(load_scene(fault("f_jump"), {std::string("solver.policy=") + policy}));
       EXPECT_EQ(run.told.summary.termination, Termination::failed) << policy;

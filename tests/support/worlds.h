@@ -4,6 +4,7 @@
 #include <string>
 
 #include "brink/core/shapes/shapes.h"
+#include "brink/core/world/make_body.h"
 #include "brink/scheduler/simulator/simulator.h"
 
 namespace brink::testing {
@@ -12,13 +13,14 @@ inline std::shared_ptr<const Outline> outline(const Shape& shape) {
   return std::make_shared<const Outline>(centered(shape).outline);
 }
 
-/// A body of the shape with unit density times `mass` / measure.
 inline Body body(const Shape& shape, const Vec2& position, const Vec2& velocity, double mass = 1.0,
                  double angle = 0.0, double omega = 0.0) {
-  Body b;
-  b.outline = outline(shape);
-  b.mass = mass;
-  b.inertia = mass * shape.measure.second_moment / shape.measure.size;
+  const bool point = shape.measure.size == 0.0;  // whose inertia nothing feels
+  Body b = point ? Body() : make_body(shape, Mass{mass});
+  if (point) {
+    b.outline = outline(shape);
+    b.mass = b.inertia = mass;
+  }
   b.initial = {{position, angle}, {velocity, omega}};
   return b;
 }

@@ -72,7 +72,7 @@ class BodyClocks final : public Policy {
   }
 
   void wait_for(int k) {
-    ++kernel_->work().queue_operations;
+    kernel_->note_queue_operations(1);
     queue_.update(k, views_->clock(k).expiry());
   }
 
@@ -98,19 +98,38 @@ class BodyClocks final : public Policy {
   static double beyond(double t) { return t + 64.0 * same_instant(t); }
 
   void serve(int k) {
-    BodyClock& clock = views_->clock(k);
-    const double now = clock.expiry();
+    const Due due = due_of(k);
     expect(k);
-    if (!clock.candidates.empty() && clock.candidates.front().time == now) {
-      if (const Candidate& c = clock.candidates.front(); c.exact && !views_->stale(c)) return meet(k);
-      sharpen(k);
-      if (is_next(k)) return meet(k);
-    } else if (now == clock.exit) {
-      views_->look_ahead(k, now);
-    } else {
-      look_around(k, now);
+    switch (due.kind) {
+      case Due::Kind::leaves_cell:
+        views_->look_ahead(k, due.time);
+        break;
+      case Due::Kind::view_ends:
+        look_around(k, due.time);
+        break;
+      case Due::Kind::may_meet:
+        sharpen(k);
+        if (is_next(k)) return meet(k);
+        break;
+      case Due::Kind::meets:
+        return meet(k);
     }
     wait_for(k);
+  }
+
+  /// What comes first for a body.
+  struct Due {
+    enum class Kind { leaves_cell, view_ends, may_meet, meets };
+    double time;
+    Kind kind;
+  };
+  Due due_of(int k) const {
+    const BodyClock& clock = views_->clock(k);
+    const double now = clock.expiry();
+    if (clock.candidates.empty() || clock.candidates.front().time != now)
+      return {now, now == clock.exit ? Due::Kind::leaves_cell : Due::Kind::view_ends};
+    const Candidate& first = clock.candidates.front();
+    return {now, first.exact && !views_->stale(first) ? Due::Kind::meets : Due::Kind::may_meet};
   }
 
   void look_around(int k, double now, std::span<const int> except = {}) {
@@ -147,7 +166,7 @@ class BodyClocks final : public Policy {
     Candidate c = clock.candidates.front();
     clock.candidates.pop_front();
     if (views_->stale(c)) {
-      ++kernel_->work().certificates_stale;
+      kernel_->note_stale();
       return;
     }
     const double now = c.time, end = views_->end_of(k, c), to = std::min(beyond(end), std::max(now, until_));
@@ -177,7 +196,7 @@ class BodyClocks final : public Policy {
   void meet(int k) {
     const BodyClock& clock = views_->clock(k);
     const double now = found_->of(k).time, instant = now + same_instant(now);
-    const bool alone = !kernel_->options().picks_among_all() && queue_.second_time() > instant &&
+    const bool alone = !picks_among_all(kernel_->order()) && queue_.second_time() > instant &&
                        clock.exit > instant && clock.horizon > instant &&
                        (clock.candidates.size() == 1 || clock.candidates[1].time > instant);
     if (alone) return collide(Certificate(found_->of(k)));
@@ -215,18 +234,17 @@ class BodyClocks final : public Policy {
   /// What is due first for body k, short of meeting. A view that ends after a contact of this instant is
   /// begun again at that contact, not beyond it: once, as it may always end that soon.
   void take_next_step(int k, std::vector<int>& looked_again) {
+    const Due due = due_of(k);
     const BodyClock& clock = views_->clock(k);
-    const double view = std::min(clock.exit, clock.horizon);
-    const bool due = !clock.candidates.empty() && clock.candidates.front().time <= view;
-    const bool contact = due && clock.candidates.front().exact && !views_->stale(clock.candidates.front());
-    if (due && !contact)
+    const bool again = std::find(looked_again.begin(), looked_again.end(), k) != looked_again.end();
+    if (due.kind == Due::Kind::may_meet)
       sharpen(k);
-    else if (view == clock.exit)
-      views_->look_ahead(k, view);
-    else if (contact && std::find(looked_again.begin(), looked_again.end(), k) == looked_again.end())
-      look_again(k, clock.candidates.front().time, looked_again);
+    else if (clock.exit <= clock.horizon)
+      views_->look_ahead(k, clock.exit);
+    else if (due.kind == Due::Kind::meets && !again)
+      look_again(k, due.time, looked_again);
     else
-      look_around(k, view);
+      look_around(k, clock.horizon);
     wait_for(k);
   }
 
@@ -237,7 +255,7 @@ class BodyClocks final : public Policy {
 
   /// Contacts of body k that are in its view and due by `instant`.
   void add_contacts(int k, double instant, std::vector<Certificate>& group) {
-    const bool features = kernel_->options().picks_among_all();
+    const bool features = picks_among_all(kernel_->order());
     const auto add = [&](const Certificate& c) {
       group.push_back(c);
       if (!features || c.kind != Certificate::Kind::contact) return;

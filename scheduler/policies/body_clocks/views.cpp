@@ -86,7 +86,7 @@ Views::Views(Kernel& kernel)
     still.push_back({s, transformed(outline, kernel.site_motion(s).pose(0.0))});
     site_boxes_.back() = boxes_of(still.back().outline);
   }
-  const bool by_place = kernel.options().skip_broad_phase && !kernel.by_passes();
+  const bool by_place = kernel.options().broad_phase && !kernel.by_passes();
   near_.emplace(flights_, clocks_, places, std::move(still), periods_, by_place);
 }
 
@@ -115,7 +115,7 @@ bool holds(std::span<const int> bodies, int k) {
 }  // namespace
 
 void Views::see_bounded(int k, int j, const Image& image, double now) {
-  const Meeting m = bounded_meeting(k, j, image, now);
+  const MeetingTimes m = bounded_meeting(k, j, image, now);
   if (m.begin < clocks_[k].horizon) clocks_[k].see({m.begin, m.begin, j, image, flights_[j].version, 0}, now);
 }
 
@@ -137,7 +137,7 @@ void Views::see_bodies(int k, const Course& here, double now, std::span<const in
       if (!holds(except, j)) see_bounded(k, j, image, now);
       return;
     }
-    const Meeting m = meeting(here, b, periods_.shift(image), now);
+    const MeetingTimes m = meeting(here, b, periods_.shift(image), now);
     if (m.begin < clock.horizon && !holds(except, j))
       clock.see({m.begin, m.begin, j, image, b.version, 0}, now);
   };
@@ -146,12 +146,11 @@ void Views::see_bodies(int k, const Course& here, double now, std::span<const in
 
 void Views::look_around(int k, double now, std::span<const int> except) {
   BodyClock& clock = clocks_[k];
-  ++kernel_->work().passes;
-  if (TraceSink* trace = kernel_->trace()) trace->mark({TraceKind::pass, k, -1, now, now});
+  kernel_->note_pass(k, now);
   clock.forget_all();
   if (flights_[k].free) {
     const Course course(flights_[k], gravity_, now);
-    if (!near_->box_of(k).contains(course.place)) near_->settle(k, course.place);
+    if (!near_->box_of(k).contains(course.place)) near_->put_into_cell(k, course.place);
     clock.exit = now + stay_in(near_->box_of(k), course);
     if (kernel_->by_passes()) return see_by_pass(k, now);
     see_bodies(k, course, now, except);
@@ -168,7 +167,7 @@ void Views::look_ahead(int k, double now) {
   BodyClock& clock = clocks_[k];
   const Course course(flights_[k], gravity_, now);
   const Cell former = flights_[k].cell;
-  const bool moved = near_->settle(k, course.place);
+  const bool moved = near_->put_into_cell(k, course.place);
   clock.exit = now + stay_in(near_->box_of(k), course);
   if (moved) see_bodies(k, course, now, {}, &former);
   near_->sites_near(k, [&](int s, const Image& image) { see_site(k, s, image, now); });
@@ -192,7 +191,7 @@ void Views::see_site(int k, int s, const Image& image, double now) {
 
 void Views::see_moving_site(int k, int s, double now) {
   const auto see = [&](const Image& image) {
-    const Meeting m = bounded_meeting(k, body_count() + s, image, now);
+    const MeetingTimes m = bounded_meeting(k, body_count() + s, image, now);
     if (m.begin < clocks_[k].horizon) clocks_[k].see({m.begin, m.begin, body_count() + s, image, 0, 0}, now);
   };
   see({});
@@ -226,7 +225,7 @@ void Views::see_by_pass(int k, double now) {
 
 /// When the bounding discs of body k and another owner can meet at the soonest, from bounds of speed; ends
 /// k's view about where the two could have crossed a cell.
-Meeting Views::bounded_meeting(int k, int owner, const Image& image, double now) {
+MeetingTimes Views::bounded_meeting(int k, int owner, const Image& image, double now) {
   const bool is_body = owner < body_count();
   const auto speed_of = [&](int s) { return kernel_->site_motion(s).twist(now).velocity.norm(); };
   if (is_body ? !kernel_->extend_motion(owner, now) : !kernel_->extend_sites(now)) return {};
@@ -236,7 +235,7 @@ Meeting Views::bounded_meeting(int k, int owner, const Image& image, double now)
   const Motion& other = is_body ? kernel_->body(owner).motion : kernel_->site_motion(owner - body_count());
   const double wait = gap_over_speed(kernel_->body(k).motion, flights_[k].radius, other,
                                      periods_.shift(image), kernel_->outline_of(owner), now, end);
-  return now + wait <= end ? Meeting{now + wait, end} : Meeting{};
+  return now + wait <= end ? MeetingTimes{now + wait, end} : MeetingTimes{};
 }
 
 double Views::speed(int k, double now) const { return kernel_->body(k).motion.twist(now).velocity.norm(); }
@@ -292,7 +291,7 @@ bool Views::begin_window(int k, double now) {
   BodyClock& clock = clocks_[k];
   if (!kernel_->extend_motion(k, now)) return false;
   const Vec2 place = kernel_->body(k).motion.pose(now).position;
-  near_->settle(k, place);
+  near_->put_into_cell(k, place);
   clock.exit = kForever;
   limit_view(k, now, speed(k, now), stride(k, now));
   const double end = follow(k, body_count(), std::max(now, std::min(clock.horizon, until_)));

@@ -57,7 +57,6 @@ class Views {
  private:
   int body_count() const { return static_cast<int>(clocks_.size()); }
   unsigned version_of(int owner) const { return owner < body_count() ? flights_[owner].version : 0; }
-  void sort_sites();
   void see_bodies(int k, double now, std::span<const int> except);
   void see_bodies(int k, const Course& here, double now, std::span<const int> except,
                   const Cell* former = nullptr);
@@ -72,7 +71,7 @@ class Views {
   void limit_view(int k, double now, double closing, double stride);
   void note_start(int component, double start);
   double stride(int k, double now) const;
-  Meeting bounded_meeting(int k, int owner, const Image& image, double now);
+  MeetingTimes bounded_meeting(int k, int owner, const Image& image, double now);
 
   Kernel* kernel_;
   Vec2 gravity_;

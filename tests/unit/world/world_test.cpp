@@ -31,6 +31,7 @@ World good_world() {
     Body body;
     body.name = std::string(name);
     body.outline = disc(0.5);
+    body.inertia = 0.125;
     world.bodies.push_back(body);
   }
   FixedSite site;

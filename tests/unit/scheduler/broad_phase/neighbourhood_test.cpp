@@ -42,7 +42,7 @@ TEST(Flight, MeetingHoldsEveryOverlapOfTheBoundingDiscs) {
     const Flight a = random_flight(random), b = random_flight(random);
     const Vec2 gravity(trial % 2 ? 0.0 : 0.5, trial % 3 ? 0.0 : -9.8);
     const Vec2 shift = trial % 5 ? Vec2(0, 0) : Vec2(3, -4);
-    const Meeting m = meeting(Course(a, gravity, 0.0), b, shift, 0.0);
+    const MeetingTimes m = meeting(Course(a, gravity, 0.0), b, shift, 0.0);
     met += std::isfinite(m.begin);
     for (double t = 0.0; t < 10.0; t += 0.05)
       if (t < m.begin || t > m.end) {
@@ -119,7 +119,7 @@ TEST(Neighbourhood, BodiesThatOverlapSeeEachOtherWhereverTheyGo) {
         expect_near(crowd, near, periods);
         for (std::size_t k = 0; k < crowd.places.size(); ++k) {
           crowd.places[k] += Vec2(random.uniform(-2, 2), random.uniform(-2, 2));
-          near.settle(static_cast<int>(k), crowd.places[k]);
+          near.put_into_cell(static_cast<int>(k), crowd.places[k]);
           ASSERT_TRUE(near.box_of(static_cast<int>(k)).contains(crowd.places[k]));
         }
       }

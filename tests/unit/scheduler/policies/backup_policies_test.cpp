@@ -74,7 +74,9 @@ TEST(Timewarp, KeepsNoMoreStatesThanItMay) {
     options.kept_states = most;
     const auto run = run_under(small_gas(), options, "timewarp", 5.0);
     EXPECT_LE(run.summary.work.states_kept, most);
-    if (most == 0) EXPECT_EQ(run.summary.work.rollbacks, 0U);
+    if (most == 0) {
+      EXPECT_EQ(run.summary.work.rollbacks, 0U);
+    }
     EXPECT_EQ(run.summary.state_hash, run_under(small_gas(), {}, "body_clocks", 5.0).summary.state_hash);
   }
 }

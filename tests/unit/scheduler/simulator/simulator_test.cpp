@@ -5,6 +5,7 @@
 
 #include "brink/core/base/error.h"
 #include "brink/core/base/random.h"
+#include "brink/scheduler/policies/policy.h"
 #include "tests/support/worlds.h"
 
 namespace brink {
@@ -40,7 +41,7 @@ World crowd(std::uint64_t seed, bool springs = false) {
 }
 
 TEST(Simulator, SnapshotGoesOnWithTheSameBits) {
-  for (const char* policy : {"body_clocks", "global_backup", "island_backup", "timewarp"})
+  for (const std::string& policy : exact_policies())
     for (const bool springs : {false, true}) {
       SolverOptions options;
       options.policy = policy;
@@ -132,7 +133,7 @@ TEST(Simulator, BodiesOfAllSizesMeet) {  // on every level of the cells
   EXPECT_EQ(Simulator(world, options).run(until(100.0)).collisions, 7U);
 }
 
-TEST(Simulator, StopsAtTheLimitOfCollisionsAndGoesOn) {
+TEST(Simulator, StopsAtTheLimitOfCollisions) {
   SolverOptions options;
   options.max_collisions = 10;
   Simulator simulator(crowd(4), options);
@@ -140,6 +141,73 @@ TEST(Simulator, StopsAtTheLimitOfCollisionsAndGoesOn) {
   EXPECT_EQ(s.termination, Termination::stopped);
   EXPECT_EQ(s.collisions, 10U);
   EXPECT_LT(s.end_time, 20.0);
+}
+
+// Event by event, under every exact policy: the same collisions and the same end as in one go.
+TEST(Simulator, StepsFromEventToEventAndGoesOn) {
+  for (const std::string& policy : exact_policies()) {
+    SolverOptions options;
+    options.policy = policy;
+    Simulator at_once(crowd(4), options), by_steps(crowd(4), options);
+    Events expected, met;
+    at_once.run(testing::until(5.0), &expected);
+    ASSERT_GT(expected.collisions().size(), 10U);
+    for (int k = 0; k < 10; ++k) {
+      const RunSummary s = by_steps.step_to_next_event(testing::until(5.0), &met);
+      EXPECT_EQ(s.termination, Termination::stopped);
+      ASSERT_EQ(met.events.size(), k + 1U);
+      EXPECT_EQ(by_steps.time(), expected.events[k].contact.time);
+    }
+    EXPECT_EQ(by_steps.run(testing::until(5.0), &met).termination, Termination::reached_end);
+    ASSERT_EQ(met.events.size(), expected.events.size());
+    for (std::size_t k = 0; k < met.events.size(); ++k)
+      EXPECT_EQ(met.events[k].contact.time, expected.events[k].contact.time);
+    EXPECT_EQ(by_steps.state_hash(), at_once.state_hash());
+    EXPECT_EQ(by_steps.step_to_next_event(testing::until(5.0)).termination, Termination::reached_end);
+  }
+}
+
+// A ball that is stopped in its flight and pushed sideways: parabolas, by hand.
+TEST(Simulator, StatesAndImpulsesFromOutsideAreGoneOnFrom) {
+  for (const char* integrator : {"auto", "erk"}) {
+    World world;
+    world.gravity = {0.0, -2.0};
+    add(world, body(make_disc(0.5), {0.0, 0.0}, {1.0, 0.0}, 2.0));
+    add(world, body(make_disc(0.5), {9.0, 0.0}, {0.0, 0.0}, 2.0));
+    SolverOptions options;
+    options.integrator = integrator;
+    Simulator simulator(world, options);
+    simulator.run(testing::until(1.0));
+    simulator.set_state(0, {{{3.0, 4.0}, 0.5}, {{0.0, 2.0}, 0.0}});
+    EXPECT_EQ(simulator.state(0).pose.position, Vec2(3.0, 4.0));
+    simulator.apply_impulse(0, {2.0, 0.0}, {3.0, 4.25});  // turns it, too: inertia 2 r^2 / 2
+    simulator.run(testing::until(3.0));
+    const BodyState s = simulator.state(0);
+    EXPECT_NEAR(s.pose.position.x(), 3.0 + 2.0 * 1.0, 1e-9);
+    EXPECT_NEAR(s.pose.position.y(), 4.0 + 2.0 * 2.0 - 4.0, 1e-9);
+    EXPECT_NEAR(s.twist.omega, -0.25 * 2.0 / 0.25, 1e-9);
+    EXPECT_NEAR(simulator.state(1).pose.position.y(), -9.0, 1e-9);
+    EXPECT_THROW(simulator.set_state(0, {{{NAN, 0.0}, 0.0}, {}}), BadInput);
+    EXPECT_THROW(simulator.apply_impulse(0, {INFINITY, 0.0}, {}), BadInput);
+  }
+}
+
+// What a policy has in view of a body that was put elsewhere is void: it collides where it is now.
+TEST(Simulator, ABodyPutElsewhereCollidesThere) {
+  for (const std::string& policy : exact_policies()) {
+    World world;
+    add(world, body(make_disc(0.5), {0.0, 0.0}, {1.0, 0.0}));
+    add(world, body(make_disc(0.5), {0.0, 50.0}, {0.0, 0.0}));
+    SolverOptions options;
+    options.policy = policy;
+    Simulator simulator(world, options);
+    simulator.run(testing::until(1.0));
+    simulator.set_state(1, {{{5.0, 0.0}, 0.0}, {}});
+    Events events;
+    simulator.run(testing::until(9.0), &events);
+    ASSERT_EQ(events.collisions().size(), 1U) << policy;
+    EXPECT_NEAR(events.collisions()[0].contact.time, 4.0, 1e-12);
+  }
 }
 
 TEST(Simulator, FramesComeOnTheFrameClockAndAtTheEnd) {
@@ -155,7 +223,7 @@ TEST(Simulator, FramesComeOnTheFrameClockAndAtTheEnd) {
 // Two pairs on springs far apart, and a free disc that hits one of them once: what is started afresh is the
 // disc and the pair that it hit.
 TEST(Simulator, CollisionResetsTheTouchedComponentsAlone) {
-  for (const char* policy : {"body_clocks", "global_backup", "island_backup", "timewarp"}) {
+  for (const std::string& policy : exact_policies()) {
     World world;
     for (const double y : {0.0, 10.0})
       for (const double x : {0.0, 1.0}) add(world, body(make_disc(0.3), {x, y}, {0.0, 0.0}));

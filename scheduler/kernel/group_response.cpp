@@ -1,16 +1,15 @@
-/// The kernel's resolves of groups: every contact of one instant that hangs together, taken at once (orders
-/// `lcp` and `reflections`, and whatever the order, groups that do not end).
+#include "brink/scheduler/kernel/group_response.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "brink/core/contacts/group.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
-#include "brink/scheduler/kernel/kernel.h"
-#include "brink/scheduler/resolve/extended_contact.h"
 #include "brink/scheduler/resolve/joint_contacts.h"
 
 namespace brink {
@@ -32,47 +31,39 @@ struct Touch {
 
 }  // namespace
 
-/// One group, from the contact that was found to its events:
-///
-///   collect   the contacts that touch now, from body to body
-///   place     everything at the exact moment of contact
-///   the law   impulses at all contacts
-///   restart   the bodies that were pushed
-///   record    one event for each contact that pushed
-class Kernel::GroupResolve {
+class GroupResponse::Group {
  public:
-  GroupResolve(Kernel& kernel, const PairKey& pair, const FeatureContact& found)
-      : kernel_(kernel), found_{pair, found} {}
+  Group(GroupResponse& parts, const PairKey& pair, const FeatureContact& found)
+      : parts_(parts), found_{pair, found} {}
 
-  bool run(std::vector<int>& changed) {
-    if (!collect()) return false;
+  std::optional<GroupOutcome> resolve(GroupLaw law, std::vector<int>& changed) {
+    if (!collect()) return std::nullopt;
     place();
-    result_ = ask_the_law();
-    if (result_.status == GroupResult::Status::stopped) return false;
+    result_ = ask(law);
+    if (result_.status == GroupResult::Status::stopped) return std::nullopt;
     if (result_.status == GroupResult::Status::jam) {
-      kernel_.stop(Termination::failed,
-                   fmt::format("{} at t = {:.17g}: a group of {} contact(s) that no finite impulses can part",
-                               kernel_.name_of(found_.pair), kernel_.time_, group_.size()));
-      return false;
+      parts_.run_.stop(
+          Termination::failed,
+          fmt::format("{} at t = {:.17g}: a group of {} contact(s) that no finite impulses can part",
+                      parts_.search_.name_of(found_.pair), now(), group_.size()));
+      return std::nullopt;
     }
     note_touched();
     push_apart();
-    return restart(changed) && record();
+    if (!restart(changed)) return std::nullopt;
+    return outcome();
   }
 
  private:
-  double now() const { return kernel_.time_; }
+  double now() const { return parts_.run_.time(); }
 
-  /// Of a group that does not end one by one: where every contact loses, what endless rebounds with losses
-  /// come to, no rebound; else reflections, after which nothing approaches.
-  GroupResult ask_the_law() {
-    const GoOn go_on = [this] { return kernel_.poll(); };
+  GroupResult ask(GroupLaw law) {
+    const GoOn go_on = [this] { return parts_.run_.poll(); };
     const auto loses = [](const GroupContact& c) { return c.material.restitution < 1.0; };
-    const bool collapsed = kernel_.collapsed();
-    if (collapsed && std::all_of(contacts_.begin(), contacts_.end(), loses))
+    if (law == GroupLaw::collapsed && std::all_of(contacts_.begin(), contacts_.end(), loses))
       for (GroupContact& c : contacts_) c.material.restitution = 0.0;
-    return kernel_.options_.order == "lcp" && !collapsed ? resolve_together(members_, contacts_, go_on)
-                                                         : resolve_reflections(members_, contacts_, go_on);
+    return law == GroupLaw::complementarity ? resolve_together(members_, contacts_, go_on)
+                                            : resolve_reflections(members_, contacts_, go_on);
   }
 
   /// False on a halt.
@@ -80,7 +71,7 @@ class Kernel::GroupResolve {
     if (!place_boxes()) return false;
     add_found();
     std::vector<int> reached;
-    std::vector<bool> is_reached(kernel_.body_count(), false);
+    std::vector<bool> is_reached(parts_.trajectories_.body_count(), false);
     const auto reach = [&](const PairKey& pair) {
       for (const int k : {pair.body, pair.other_body}) {
         if (k < 0 || is_reached[k]) continue;
@@ -91,10 +82,10 @@ class Kernel::GroupResolve {
     std::set<PairKey> seen;
     reach(found_.pair);
     for (std::size_t i = 0; i < reached.size(); ++i) {
-      if (!kernel_.poll()) return false;
-      for (int owner = 0; owner < kernel_.owner_count(); ++owner)
+      if (!parts_.run_.poll()) return false;
+      for (int owner = 0; owner < parts_.trajectories_.owner_count(); ++owner)
         each_image_near(reached[i], owner, [&](const Image& image) {
-          const auto pair = kernel_.pair_of(reached[i], owner, image);
+          const auto pair = parts_.search_.pair_of(reached[i], owner, image);
           if (pair && seen.insert(*pair).second && add_touching(*pair)) reach(*pair);
         });
     }
@@ -108,25 +99,26 @@ class Kernel::GroupResolve {
   /// Where every owner is now. False on a halt: of bodies with clocks of their own, some may not have come so
   /// far.
   bool place_boxes() {
-    for (int owner = 0; owner < kernel_.owner_count(); ++owner) {
-      if (owner < kernel_.body_count() && !kernel_.extend_motion(owner, now())) return false;
-      boxes_.push_back(kernel_.box_at(owner, now()));
+    for (int owner = 0; owner < parts_.trajectories_.owner_count(); ++owner) {
+      if (owner < parts_.trajectories_.body_count() && !parts_.trajectories_.cover_body(owner, now()))
+        return false;
+      boxes_.push_back(parts_.near_.box_at(owner, now()));
     }
     return true;
   }
 
   template <class Visit>
   void each_image_near(int a, int b, Visit&& visit) const {
-    if (kernel_.outline_of(b).container) return visit(Image{});
-    kernel_.world_.periods.overlaps(boxes_[a].grown(kernel_.limits_.tolerance), boxes_[b], visit);
+    if (parts_.search_.outline_of(b).container) return visit(Image{});
+    parts_.world_.periods.overlaps(boxes_[a].grown(parts_.search_.limits().tolerance), boxes_[b], visit);
   }
 
   /// Adds the pair's contacts; true if it has any.
   bool add_touching(const PairKey& pair) {
-    const SearchLimits& limits = kernel_.limits_;
+    const SearchLimits& limits = parts_.search_.limits();
     bool any = pair == found_.pair;
     const std::size_t first = group_.size();
-    for (const FeatureContact& f : kernel_.touching(pair, limits.tolerance)) {
+    for (const FeatureContact& f : parts_.search_.touching(pair, limits.tolerance, now())) {
       const double above = f.gap - f.level;
       if (above > limits.touch && above > f.closing_speed * same_instant(now())) continue;
       any = true;
@@ -136,9 +128,10 @@ class Kernel::GroupResolve {
   }
 
   std::vector<FeatureContact> joint(const PairKey& pair, const FeatureContact& f) const {
-    return joint_contacts(kernel_.outline_of(pair.body), kernel_.motion_of(pair.body).extended_state(now()),
-                          kernel_.outline_of(kernel_.other_owner(pair)), kernel_.other_state(pair, now()), f,
-                          kernel_.limits_.tolerance);
+    return joint_contacts(parts_.search_.outline_of(pair.body),
+                          parts_.trajectories_.motion_of(pair.body).extended_state(now()),
+                          parts_.search_.outline_of(parts_.search_.other_owner(pair)),
+                          parts_.search_.other_state(pair, now()), f, parts_.search_.limits().tolerance);
   }
 
   /// What the contact that was found is made of.
@@ -162,7 +155,8 @@ class Kernel::GroupResolve {
   /// Contacts of the pair are those from `first` on, and those of the found one.
   void add_unless_there(const PairKey& pair, const FeatureContact& f, std::size_t first) {
     const auto same = [&](const Touch& t) {
-      return t.pair == pair && (t.contact.point - f.point).norm() <= kSamePlace * kernel_.limits_.tolerance &&
+      return t.pair == pair &&
+             (t.contact.point - f.point).norm() <= kSamePlace * parts_.search_.limits().tolerance &&
              t.contact.normal.dot(f.normal) >= 1.0 - kSameNormal;
     };
     const auto from = group_.begin() + static_cast<std::ptrdiff_t>(pair == found_.pair ? 0 : first);
@@ -175,19 +169,24 @@ class Kernel::GroupResolve {
       for (const int k : {t.pair.body, t.pair.other_body})
         if (k >= 0) bodies.insert(k);
     bodies_.assign(bodies.begin(), bodies.end());
-    delay_ = kernel_.delay_to_contact(found_.contact, geometry(found_));
+    delay_ = parts_.response_.delay_to_contact(found_.contact, geometry(found_));
     for (const int k : bodies_) {
-      const Body& b = kernel_.world_.bodies[k];
+      const Body& b = parts_.world_.bodies[k];
       members_.push_back({state(k).twist, b.inverse_mass_x(), b.inverse_mass_y(), b.inverse_inertia()});
     }
     for (const Touch& t : group_) contacts_.push_back(contact(t));
   }
 
-  ExtendedState state(int body) const { return kernel_.motion_of(body).extended_state(now()).moved(delay_); }
-  ExtendedState other_state(const Touch& t) const { return kernel_.other_state(t.pair, now()).moved(delay_); }
+  ExtendedState state(int body) const {
+    return parts_.trajectories_.motion_of(body).extended_state(now()).moved(delay_);
+  }
+  ExtendedState other_state(const Touch& t) const {
+    return parts_.search_.other_state(t.pair, now()).moved(delay_);
+  }
   ExtendedContact geometry(const Touch& t) const {
-    return contact_in(kernel_.outline_of(t.pair.body), kernel_.outline_of(kernel_.other_owner(t.pair)),
-                      state(t.pair.body), other_state(t), t.contact);
+    return contact_in(parts_.search_.outline_of(t.pair.body),
+                      parts_.search_.outline_of(parts_.search_.other_owner(t.pair)), state(t.pair.body),
+                      other_state(t), t.contact);
   }
   int index_of(int body) const {
     return static_cast<int>(std::lower_bound(bodies_.begin(), bodies_.end(), body) - bodies_.begin());
@@ -207,7 +206,7 @@ class Kernel::GroupResolve {
       made.other = index_of(t.pair.other_body);
       made.other_arm = other_arm;
     }
-    made.material = kernel_.material_of(t.pair);
+    made.material = parts_.response_.material_of(t.pair);
     return made;
   }
 
@@ -218,9 +217,9 @@ class Kernel::GroupResolve {
     double speed = 0.0;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
       const ExtendedTwist& t = members_[k].twist;
-      speed = std::max(
-          speed, static_cast<double>(t.velocity.lpNorm<1>() +
-                                     std::abs(t.omega) * kernel_.outline_of(bodies_[k]).bounding_radius));
+      speed = std::max(speed, static_cast<double>(t.velocity.lpNorm<1>() +
+                                                  std::abs(t.omega) *
+                                                      parts_.search_.outline_of(bodies_[k]).bounding_radius));
     }
     const bool pushed =
         std::any_of(result_.normal.begin(), result_.normal.end(), [](Real p) { return p > 0; });
@@ -231,14 +230,14 @@ class Kernel::GroupResolve {
     }
     for (const std::size_t k : events_) {
       const PairKey& pair = group_[k].pair;
-      touch(pair.body, kernel_.other_owner(pair), speed);
+      touch(pair.body, parts_.search_.other_owner(pair), speed);
       if (!pair.with_site()) touch(pair.other_body, pair.body, speed);
     }
   }
 
   void touch(int body, int partner, double speed) {
     const int k = index_of(body);
-    if (!touched_[k]) rest_[k] = kernel_.note_resolve(body, partner, speed);
+    if (!touched_[k]) rest_[k] = parts_.response_.note_resolve(body, partner, speed);
     touched_[k] = true;
   }
 
@@ -246,7 +245,7 @@ class Kernel::GroupResolve {
     ways_.assign(bodies_.size(), RealVec::Zero());
     for (const std::size_t k : events_) {
       const auto& [pair, contact] = group_[k];
-      const auto [way, way_of_other] = kernel_.push_apart(pair, contact, contacts_[k].normal);
+      const auto [way, way_of_other] = parts_.response_.push_apart(pair, contact, contacts_[k].normal);
       ways_[index_of(pair.body)] += way;
       if (!pair.with_site()) ways_[index_of(pair.other_body)] += way_of_other;
     }
@@ -256,54 +255,36 @@ class Kernel::GroupResolve {
     std::map<int, std::vector<Restart>> by_component;  // a free body is one of its own
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       if (!touched_[i]) continue;
-      if (!kernel_.check_flight(bodies_[i], now())) return false;
-      const int body = bodies_[i], component = kernel_.bodies_[body].component;
+      if (!parts_.watch_.flight(bodies_[i], now())) return false;
+      const int body = bodies_[i], component = parts_.trajectories_.body(body).component;
       ExtendedState after = state(body);
       after.twist = result_.twists[i];
       after.position += ways_[i];
       // a motion from now that passes through the moment of contact
       by_component[component < 0 ? -1 - body : component].push_back({body, after.moved(-delay_)});
     }
-    for (const auto& [component, touched] : by_component)
-      if (!kernel_.restart_noted(touched, changed)) return false;
+    for (const auto& [component, touched] : by_component) parts_.trajectories_.restart(touched, changed);
     return std::all_of(events_.begin(), events_.end(), [&](std::size_t k) {
-      return kernel_.check_resolved(group_[k].pair, group_[k].contact, delay_);
+      return parts_.watch_.resolved(group_[k].pair, group_[k].contact, delay_);
     });
   }
 
-  bool record() {
-    const double time = kernel_.last_event_ = std::max(kernel_.last_event_, now());
-    if (result_.status == GroupResult::Status::endless) {
-      tell(EventKind::group, found_, 0, 0, time);
-      kernel_.note_taken(found_.pair, static_cast<double>(result_.lost));
-    }
-    for (const std::size_t k : events_) {
-      kernel_.note_overlap(group_[k].contact.gap);
-      kernel_.count_collision(group_[k].pair);
-      tell(EventKind::collision, group_[k], result_.normal[k], result_.tangential[k], time);
-    }
+  GroupOutcome outcome() const {
+    GroupOutcome told;
+    told.endless = result_.status == GroupResult::Status::endless;
+    told.delay = delay_;
+    told.lost = told.endless ? static_cast<double>(result_.lost) : 0.0;
     for (const std::size_t k : events_) {
       const PairKey& pair = group_[k].pair;
       double rest = rest_[index_of(pair.body)];
       if (!pair.with_site()) rest = std::min(rest, rest_[index_of(pair.other_body)]);
-      if (!kernel_.judge_endings({pair, group_[k].contact, 0.0, 0.0, Real(0), rest})) return false;
+      told.collisions.push_back({pair, group_[k].contact, static_cast<double>(result_.normal[k]),
+                                 static_cast<double>(result_.tangential[k]), delay_, rest});
     }
-    return true;
+    return told;
   }
 
-  void tell(EventKind kind, const Touch& t, Real normal, Real tangential, double time) {
-    Event event;
-    event.seq = kernel_.seq_++;
-    event.kind = kind;
-    event.contact = kernel_.world_contact(t.pair, t.contact);
-    event.contact.time = time;
-    event.contact.time_low = static_cast<double>(now() - time + delay_);
-    event.impulse_n = static_cast<double>(normal);
-    event.impulse_t = static_cast<double>(tangential);
-    if (kernel_.recorder_ && kernel_.run_.record_events) kernel_.recorder_->event(event);
-  }
-
-  Kernel& kernel_;
+  GroupResponse& parts_;
   Touch found_;
   std::vector<Box> boxes_;  ///< of every owner
   std::vector<Touch> group_;
@@ -318,8 +299,9 @@ class Kernel::GroupResolve {
   std::vector<double> rest_;   ///< time since each touched body was last resolved [s]
 };
 
-bool Kernel::resolve_group(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed) {
-  return GroupResolve(*this, pair, found).run(changed);
+std::optional<GroupOutcome> GroupResponse::resolve(const PairKey& pair, const FeatureContact& found,
+                                                   GroupLaw law, std::vector<int>& changed) {
+  return Group(*this, pair, found).resolve(law, changed);
 }
 
 }  // namespace brink

@@ -1,0 +1,155 @@
+#include "brink/scheduler/kernel/certificate_watch.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "brink/core/shapes/distance.h"
+#include "brink/scheduler/resolve/extended_contact.h"
+
+namespace brink {
+
+namespace {
+
+/// More pairs of sites than this are not looked at for a crossing at every frame.
+constexpr std::size_t kMostCrossings = 4096;
+/// Overlaps at the start up to this part of the scene's length are let go: coordinates written with few
+/// digits.
+constexpr double kStartOverlap = 1e-6;
+/// The search for them ends after so many: all bodies may be in one place.
+constexpr std::size_t kOverlapsCounted = 1000;
+
+bool thin(const Outline& samples, const Outline& sites, const FeatureContact& f) {
+  return !sites.sites[f.site].solid && sites.sites[f.site].radius + samples.samples[f.sample].radius == 0.0;
+}
+
+}  // namespace
+
+CertificateWatch::CertificateWatch(const World& world, const Trajectories& trajectories,
+                                   ContactSearch& search, const NearPairs& near, RunControl& run)
+    : world_(&world), trajectories_(&trajectories), search_(&search), near_(&near), run_(&run) {}
+
+void CertificateWatch::begin() {
+  on_ = true;
+  if (!world_->periods.any() && !walls_made_) make_walls();
+}
+
+void CertificateWatch::make_walls() {
+  walls_made_ = true;
+  const int n = trajectories_->body_count();
+  for (int s = 0; s < trajectories_->site_count(); ++s) {
+    const SiteMotion& motion = trajectories_->site(s);
+    if (motion.moves()) continue;
+    const Outline placed = transformed(search_->outline_of(n + s), motion.motion().pose(0.0));
+    for (const Site& site : placed.sites)
+      if (!site.solid && site.radius == 0.0 && site.kind == SiteKind::segment) walls_.add(site.a, site.b, s);
+  }
+  for (const Body& b : world_->bodies) {
+    const Outline& o = *b.outline;
+    const bool solid = o.is_point() ? o.sites[0].radius > 0.0 : o.solid;
+    material_centre_.push_back(solid && !o.container && gap_by_brute_force(o, Vec2::Zero()) < 0.0);
+  }
+}
+
+std::vector<Contact> CertificateWatch::overlaps(std::size_t most) {
+  std::vector<Contact> found;
+  const double now = run_->time();
+  near_->each_at(now, [&](const PairKey& pair) {
+    const auto contacts = search_->touching(pair, 0.0, now);
+    if (!contacts.empty() && contacts.front().gap < 0.0)
+      found.push_back(world_contact(pair, contacts.front()));
+    else if (const auto crossing = search_->crossing(pair, now))
+      found.push_back(*crossing);
+    return found.size() < most;
+  });
+  const auto order = [](const Contact& c) { return std::tuple(c.gap, c.body, c.other_body, c.other_site); };
+  std::sort(found.begin(), found.end(),
+            [&](const Contact& x, const Contact& y) { return order(x) < order(y); });
+  return found;
+}
+
+std::string CertificateWatch::start_fault() {
+  const double allowed = kStartOverlap * world_->length();
+  const std::vector<Contact> found = overlaps(kOverlapsCounted);
+  if (!found.empty()) start_overlap_ = -found.front().gap;
+  if (found.empty() || found.front().gap >= -allowed) return {};
+  const Contact& c = found.front();
+  const std::string& other =
+      c.other_body >= 0 ? world_->bodies[c.other_body].name : world_->sites[c.other_site].name;
+  return fmt::format(
+      "'{}' and '{}' overlap by {:.3g} m at the start, near ({:.4g}, {:.4g}); at most {:.1g} m is allowed"
+      " ({} overlapping pair(s) in all)",
+      world_->bodies[c.body].name, other, -c.gap, c.point.x(), c.point.y(), allowed,
+      found.size() < kOverlapsCounted ? std::to_string(found.size())
+                                      : fmt::format("{} or more", kOverlapsCounted));
+}
+
+bool CertificateWatch::flight(int k, double to) {
+  if (!on_ || walls_.empty() || !material_centre_[k]) return true;
+  const Motion& motion = trajectories_->body(k).motion;
+  const double from = std::max(motion.begin(), flown_until_);
+  if (!(from < to)) return true;
+  const auto site = walls_.crossed([&](double t) { return motion.pose(t).position; }, from, to);
+  return !site || report({k, -1, *site, {}}, 0.0, to, "went through a wire of");
+}
+
+bool CertificateWatch::approaches(const PairKey& pair, double closing_speed, double rounding) {
+  if (!on_ || closing_speed >= -rounding) return true;
+  return report(pair, 0.0, run_->time(), "is said to meet, but parts from");
+}
+
+bool CertificateWatch::resolved(const PairKey& pair, const FeatureContact& found, Real delay) {
+  if (!on_) return true;
+  const Outline &a = search_->outline_of(pair.body), &b = search_->outline_of(search_->other_owner(pair));
+  const double t = run_->time();
+  const ExtendedContact now =
+      contact_in(a, b, trajectories_->body(pair.body).motion.extended_state(t).moved(delay),
+                 search_->other_state(pair, t).moved(delay), found);
+  const bool on_wire = found.sample_on_a ? thin(a, b, found) : thin(b, a, found);
+  const double gap = static_cast<double>(now.gap);
+  note_overlap(gap);
+  if (on_wire ? gap > 0.0 : gap >= -allowed()) return true;
+  return report(pair, on_wire ? std::max(0.0, -gap) : -gap, t,
+                on_wire ? "is on the other side of a wire of" : "overlaps");
+}
+
+bool CertificateWatch::discs_resolved(const PairKey& pair, double gap) {
+  return !on_ || -gap <= allowed() || report(pair, -gap, run_->time(), "overlaps");
+}
+
+void CertificateWatch::frame(double t) {
+  near_->each_at(t, [&](const PairKey& pair) {
+    pair_at_frame(pair, t);
+    return run_->poll();
+  });
+  for (int k = 0; k < trajectories_->body_count() && !run_->halt(); ++k) flight(k, t);
+  flown_until_ = t;
+}
+
+bool CertificateWatch::pair_at_frame(const PairKey& pair, double t) {
+  const double gap = search_->gap(pair, t);
+  note_overlap(gap);
+  if (!on_) return true;
+  if (gap < -allowed()) return report(pair, -gap, t, "overlaps");
+  const std::size_t sites = search_->outline_of(pair.body).sites.size() *
+                            search_->outline_of(search_->other_owner(pair)).sites.size();
+  if (sites > kMostCrossings) return true;
+  const auto crossing = search_->crossing(pair, t);
+  if (!crossing || -crossing->gap <= allowed()) return true;
+  note_overlap(crossing->gap);
+  return report(pair, -crossing->gap, t, "crosses");
+}
+
+bool CertificateWatch::report(const PairKey& pair, double depth, double t, const char* what) {
+  const std::string& other =
+      pair.with_site() ? world_->sites[pair.other_site].name : world_->bodies[pair.other_body].name;
+  run_->stop(
+      Termination::failed,
+      fmt::format("'{}' {} '{}' at t = {:.17g} (depth {:.3g} m, at most {:.3g} m is allowed): this must not "
+                  "be; what a search certified does not hold",
+                  world_->bodies[pair.body].name, what, other, t, depth, allowed()));
+  return false;
+}
+
+}  // namespace brink

@@ -1,0 +1,207 @@
+#include "brink/scheduler/kernel/collision_response.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "brink/scheduler/first_contact/canonical_time.h"
+#include "brink/scheduler/first_contact/pair_kinematics.h"
+#include "brink/scheduler/first_contact/tolerances.h"
+
+namespace brink {
+
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+/// A contact that parts faster than this part of the speeds that take part is none; slower is rounding.
+constexpr double kPartsOfSpeed = 1e-6;
+
+ImpulseSide body_side(const Body& body, const ExtendedState& state, const RealVec& point) {
+  return {state.twist, point - state.position, body.inverse_mass_x(), body.inverse_mass_y(),
+          body.inverse_inertia()};
+}
+
+ImpulseSide site_side(const ExtendedState& state, const RealVec& point) {
+  return {state.twist, point - state.position, 0.0, 0.0, 0.0};
+}
+
+/// Sum of the speeds that a side's velocity at the contact is made of [m/s].
+double speed_of(const ImpulseSide& side) {
+  return static_cast<double>(side.twist.velocity.lpNorm<1>() + std::abs(side.twist.omega) * side.arm.norm());
+}
+
+/// The state now of a motion that has twist `after` and meets the old one, now in `s`, `delay` from now.
+ExtendedState deflected(ExtendedState s, const ExtendedTwist& after, Real delay) {
+  s.position += delay * (s.twist.velocity - after.velocity);
+  s.angle += delay * (s.twist.omega - after.omega);
+  s.twist = after;
+  return s;
+}
+
+ExtendedContact as_seen(const FeatureContact& f) {
+  return {f.point.cast<Real>(), f.normal.cast<Real>(), f.gap, f.closing_speed};
+}
+
+}  // namespace
+
+/// How a collision is resolved.
+struct CollisionResponse::Change {
+  ImpulseResult impulse;
+  Real delay = 0;             ///< from now to the moment of contact [s]
+  ExtendedState body, other;  ///< states now; of the other where its image is
+  double magnitude = 0.0;     ///< the largest speed that took part [m/s]
+};
+
+CollisionResponse::CollisionResponse(const World& world, const SolverOptions& options,
+                                     Trajectories& trajectories, const ContactSearch& search,
+                                     CertificateWatch& watch, RunControl& run)
+    : world_(&world),
+      trajectories_(&trajectories),
+      search_(&search),
+      watch_(&watch),
+      run_(&run),
+      reflects_(options.response == "reflection") {}
+
+const Material& CollisionResponse::material_of(const PairKey& pair) {
+  const int other =
+      pair.with_site() ? world_->sites[pair.other_site].material : world_->bodies[pair.other_body].material;
+  return materials_.of(*world_, world_->bodies[pair.body].material, other);
+}
+
+BounceLoss CollisionResponse::loss_of(const PairKey& pair) {
+  const Material& m = material_of(pair);
+  if (reflects_) return m.slip == 1.0 && m.spin == 1.0 ? BounceLoss::none : BounceLoss::some;
+  if (m.restitution == 0.0) return BounceLoss::all;
+  const bool rubs = m.friction > 0.0 && m.tangential_restitution < 1.0;
+  return m.restitution < 1.0 || rubs ? BounceLoss::some : BounceLoss::none;
+}
+
+double CollisionResponse::note_resolve(int k, int partner, double magnitude) {
+  BodyTrack& b = trajectories_->body(k);
+  const double now = run_->time();
+  const double rest = b.resolved_at < 0.0 ? std::numeric_limits<double>::infinity() : now - b.resolved_at;
+  const double rounding = 16.0 * kEpsilon * magnitude;
+  // within one instant velocities are differences of larger ones: the largest rounding stays
+  b.velocity_rounding =
+      std::abs(rest) <= same_instant(now) ? std::max(b.velocity_rounding, rounding) : rounding;
+  b.resolved_at = now;
+  b.streak = b.last_partner == partner ? b.streak + 1 : 1;
+  b.last_partner = partner;
+  return rest;
+}
+
+Real CollisionResponse::delay_to_contact(const FeatureContact& found, const ExtendedContact& c) const {
+  if (found.seen || search_->points_meet_wires() || !(c.closing > 0)) return 0;
+  const Real late = 4.0 * ulp(run_->time());
+  return std::clamp((c.gap - found.level) / c.closing, -late, late);
+}
+
+CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const FeatureContact& found) {
+  Change r;
+  const double now = run_->time();
+  r.body = trajectories_->body(pair.body).motion.extended_state(now);
+  r.other = search_->other_state(pair, now);
+  const auto look_at = [&](const ExtendedState& body, const ExtendedState& other) {
+    return found.seen ? as_seen(found)
+                      : contact_in(search_->outline_of(pair.body),
+                                   search_->outline_of(search_->other_owner(pair)), body, other, found);
+  };
+  r.delay = delay_to_contact(found, look_at(r.body, r.other));
+  const ExtendedState body = r.body.moved(r.delay), other = r.other.moved(r.delay);
+  const ExtendedContact c = look_at(body, other);
+  const ImpulseSide side = body_side(world_->bodies[pair.body], body, c.point);
+  const ImpulseSide other_side = pair.with_site()
+                                     ? site_side(other, c.point)
+                                     : body_side(world_->bodies[pair.other_body], other, c.point);
+  const auto law = reflects_ ? resolve_reflection : resolve_impulse;
+  r.impulse = law(side, other_side, c.normal, material_of(pair));
+  r.magnitude = std::max(speed_of(side), speed_of(other_side));
+  // an approach that the law does not see was rounding, all of it
+  if (r.impulse.kind == ImpulseKind::separating) r.magnitude += std::max(0.0, found.closing_speed) / kEpsilon;
+  const auto [way, way_of_other] = push_apart(pair, found, c.normal);
+  r.body.position += way;
+  r.other.position += way_of_other;
+  return r;
+}
+
+std::pair<RealVec, RealVec> CollisionResponse::push_apart(const PairKey& pair, const FeatureContact& found,
+                                                          const RealVec& n) {
+  const RealVec none = RealVec::Zero();
+  if (found.seen || !(found.sunk() > 0.0)) return {none, none};
+  const auto given = [&](int body) {
+    const Body& b = world_->bodies[body];
+    return RealVec(b.inverse_mass_x() * n.x(), b.inverse_mass_y() * n.y());
+  };
+  const RealVec of_body = given(pair.body), of_other = pair.with_site() ? none : given(pair.other_body);
+  const Real sum = n.dot(of_body) + n.dot(of_other);
+  if (!(sum > 0)) return {none, none};
+  const double e = material_of(pair).restitution;
+  const Real by = push_of(found.sunk(), found.nominal(), search_->limits().tolerance, 1.0 - e * e);
+  return {of_body * (by / sum), -of_other * (by / sum)};
+}
+
+void CollisionResponse::deflect(const PairKey& pair, const Change& r, std::vector<int>& changed) {
+  const Restart both[] = {
+      {pair.body, deflected(r.body, r.impulse.body, r.delay)},
+      {pair.other_body, deflected(r.other, r.impulse.other, r.delay).shifted(-search_->shift_of(pair))}};
+  if (pair.with_site()) return trajectories_->restart({both, 1}, changed);
+  const int component = trajectories_->body(pair.body).component;
+  if (component >= 0 && component == trajectories_->body(pair.other_body).component)
+    return trajectories_->restart(both, changed);
+  trajectories_->restart({both, 1}, changed);
+  trajectories_->restart({both + 1, 1}, changed);
+}
+
+/// The response now if the pair are two free discs without friction: a quick way to what change() says.
+std::optional<DiscRebound> CollisionResponse::disc_rebound(const PairKey& pair, double level) {
+  if (pair.with_site() || reflects_ || search_->points_meet_wires()) return std::nullopt;
+  const auto side = [&](int k) {
+    const Body& body = world_->bodies[k];
+    const bool bare =
+        trajectories_->is_free(k) && is_centred_disc(search_->outline_of(k)) && !body.lock_x && !body.lock_y;
+    return DiscSide{bare ? &trajectories_->body(k).motion : nullptr, body.outline->bounding_radius,
+                    1.0 / body.mass};
+  };
+  const DiscSide a = side(pair.body), b = side(pair.other_body);
+  const Material& material = material_of(pair);
+  if (!a.motion || !b.motion || a.radius + b.radius == 0.0 || material.friction != 0.0) return std::nullopt;
+  const double now = run_->time();
+  return rebound(a, b, search_->shift_of(pair), now, 4.0 * ulp(now), level, material.restitution);
+}
+
+std::optional<Outcome> CollisionResponse::part_discs(const PairKey& pair, const FeatureContact& found,
+                                                     const DiscRebound& discs, std::vector<int>& changed) {
+  double rest = note_resolve(pair.body, pair.other_body, discs.magnitude);
+  rest = std::min(rest, note_resolve(pair.other_body, pair.body, discs.magnitude));
+  trajectories_->restart_free(pair.body, discs.a.state, discs.a.low);
+  trajectories_->restart_free(pair.other_body, discs.b.state, discs.b.low);
+  changed.push_back(pair.body);
+  changed.push_back(pair.other_body);
+  if (!watch_->discs_resolved(pair, discs.gap)) return std::nullopt;
+  return Outcome{pair, found, discs.impulse, 0.0, discs.delay, rest};
+}
+
+std::optional<Outcome> CollisionResponse::collide(const PairKey& pair, const FeatureContact& found,
+                                                  std::vector<int>& changed) {
+  const double now = run_->time();
+  if (!watch_->flight(pair.body, now) || (!pair.with_site() && !watch_->flight(pair.other_body, now)))
+    return std::nullopt;
+  if (!found.seen)
+    if (const auto discs = disc_rebound(pair, found.level)) return part_discs(pair, found, *discs, changed);
+  const Change r = change(pair, found);
+  if (!watch_->approaches(pair, found.closing_speed, kPartsOfSpeed * r.magnitude)) return std::nullopt;
+  if (r.impulse.kind == ImpulseKind::jam) {
+    run_->stop(Termination::failed,
+               fmt::format("{} at t = {:.17g}: neither side can move", search_->name_of(pair), now));
+    return std::nullopt;
+  }
+  double rest = note_resolve(pair.body, search_->other_owner(pair), r.magnitude);
+  if (!pair.with_site()) rest = std::min(rest, note_resolve(pair.other_body, pair.body, r.magnitude));
+  deflect(pair, r, changed);
+  if (!watch_->resolved(pair, found, r.delay)) return std::nullopt;
+  return Outcome{pair, found, r.impulse.normal, r.impulse.tangential, r.delay, rest};
+}
+
+}  // namespace brink

@@ -1,0 +1,63 @@
+#pragma once
+/// What a collision does to the motions of those whom it concerns.
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "brink/core/contacts/impulse.h"
+#include "brink/scheduler/kernel/certificate_watch.h"
+#include "brink/scheduler/kernel/contact_search.h"
+#include "brink/scheduler/kernel/speculation.h"
+#include "brink/scheduler/resolve/disc_rebound.h"
+#include "brink/scheduler/resolve/extended_contact.h"
+#include "brink/scheduler/resolve/pair_materials.h"
+#include "brink/scheduler/resolve/zeno.h"
+
+namespace brink {
+
+class CollisionResponse {
+ public:
+  /// What is given must outlive it.
+  CollisionResponse(const World& world, const SolverOptions& options, Trajectories& trajectories,
+                    const ContactSearch& search, CertificateWatch& watch, RunControl& run);
+
+  /// One collision at the present time: the law's impulse, and motions that begin anew with it. Bodies whose
+  /// motion changed are appended to `changed`. Nothing on a halt: neither side can move, or the watch has
+  /// seen what must not be.
+  std::optional<Outcome> collide(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed);
+
+  // -- what collisions of single pairs and of groups share --
+  const Material& material_of(const PairKey& pair);
+  /// What a collision of the pair takes of the approach.
+  BounceLoss loss_of(const PairKey& pair);
+  /// From the clock's present double to the exact moment of contact: a fraction of a rounding [s]. The
+  /// collision is resolved there, and the new motion is the one that passes through that moment, so that long
+  /// runs do not drift by roundings of time. None where sharp points may meet wires without thickness: there
+  /// a motion must not begin, not even by such a fraction, beside the path on which everybody is tested.
+  Real delay_to_contact(const FeatureContact& found, const ExtendedContact& c) const;
+  /// The ways by which a body and what it met are pushed apart if they have sunk into each other [m]: each
+  /// side as an impulse along the normal n would move its centre.
+  std::pair<RealVec, RealVec> push_apart(const PairKey& pair, const FeatureContact& found, const RealVec& n);
+  /// Notes that a body has been resolved now, with owner `partner`, by speeds up to `magnitude`; returns the
+  /// time since its last [s].
+  double note_resolve(int body, int partner, double magnitude);
+
+ private:
+  struct Change;
+  Change change(const PairKey& pair, const FeatureContact& found);
+  std::optional<DiscRebound> disc_rebound(const PairKey& pair, double level);
+  std::optional<Outcome> part_discs(const PairKey& pair, const FeatureContact& found,
+                                    const DiscRebound& discs, std::vector<int>& changed);
+  void deflect(const PairKey& pair, const Change& change, std::vector<int>& changed);
+
+  const World* world_;
+  Trajectories* trajectories_;
+  const ContactSearch* search_;
+  CertificateWatch* watch_;
+  RunControl* run_;
+  bool reflects_;  ///< response "reflection"
+  PairMaterials materials_;
+};
+
+}  // namespace brink

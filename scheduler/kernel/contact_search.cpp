@@ -1,0 +1,189 @@
+#include "brink/scheduler/kernel/contact_search.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <map>
+
+#include "brink/core/shapes/outline_crossing.h"
+#include "brink/scheduler/first_contact/tolerances.h"
+
+namespace brink {
+
+namespace {
+
+/// Of features that meet together with others, one that approaches slower than this part of their speed does
+/// not approach.
+constexpr double kApproaches = 1e-12;
+
+/// True if a sharp vertex of one owner may meet a wire without thickness of another.
+bool points_may_meet_wires(const std::vector<const Outline*>& outlines, std::size_t bodies) {
+  const auto sharp = [](const Outline* o) {
+    return std::any_of(o->samples.begin(), o->samples.end(),
+                       [](const Sample& s) { return s.arc_site < 0 && s.radius == 0.0; });
+  };
+  const auto wire = [](const Outline* o) {
+    return std::any_of(o->sites.begin(), o->sites.end(),
+                       [](const Site& s) { return !s.solid && s.radius == 0.0; });
+  };
+  const auto end_of_bodies = outlines.begin() + static_cast<std::ptrdiff_t>(bodies);
+  return (std::any_of(outlines.begin(), end_of_bodies, sharp) &&
+          std::any_of(outlines.begin(), outlines.end(), wire)) ||
+         (std::any_of(outlines.begin(), outlines.end(), sharp) &&
+          std::any_of(outlines.begin(), end_of_bodies, wire));
+}
+
+}  // namespace
+
+struct ContactSearch::Sides {
+  Motion image;  ///< of the other, where it is one
+  Mover a, b;
+
+  Sides(const ContactSearch& search, const PairKey& pair, const BodyTrack& body, const BodyTrack* other)
+      : a(search.mover(pair.body, body)),
+        b(other ? search.mover(pair.other_body, *other) : search.mover(search.other_owner(pair))) {
+    if (pair.image == Image{}) return;
+    image = b.motion->displaced(search.shift_of(pair));
+    b.motion = &image;
+  }
+  /// On their newest motions.
+  Sides(const ContactSearch& search, const PairKey& pair)
+      : Sides(search, pair, search.trajectories_->body(pair.body),
+              pair.with_site() ? nullptr : &search.trajectories_->body(pair.other_body)) {}
+  Sides(const Sides&) = delete;
+  Sides& operator=(const Sides&) = delete;
+};
+
+ContactSearch::ContactSearch(const World& world, const SolverOptions& options,
+                             const Trajectories& trajectories, RunControl& run)
+    : world_(&world), trajectories_(&trajectories), run_(&run) {
+  limits_.tolerance = options.contact_tolerance * world.length();
+  limits_.touch = kTouchOfTolerance * limits_.tolerance;
+  limits_.closed_forms = options.closed_forms;
+  FieldOptions field = options.field;
+  if (options.fields_for_small_shapes) field.brute_force_below = 0;
+  std::map<const Outline*, const SiteIndex*> made;
+  const auto add = [&](const std::shared_ptr<const Outline>& outline) {
+    const SiteIndex*& index = made[outline.get()];
+    if (!index || !options.share_fields) {
+      indices_.push_back(make_site_index(outline, field, &run.work()));
+      index = indices_.back().get();
+    }
+    outlines_.push_back(outline.get());
+    indices_of_.push_back(index);
+  };
+  for (const Body& b : world.bodies) add(b.outline);
+  for (const FixedSite& s : world.sites) add(s.outline);
+  points_meet_wires_ = points_may_meet_wires(outlines_, world.bodies.size());
+}
+
+std::optional<PairKey> ContactSearch::pair_of(int a, int b, const Image& image) const {
+  const int n = trajectories_->body_count();
+  if (a > b) return pair_of(b, a, -image);
+  if (a >= n || a == b) return std::nullopt;
+  return b < n ? PairKey{a, b, -1, image} : PairKey{a, -1, b - n, image};
+}
+
+ExtendedState ContactSearch::other_state(const PairKey& pair, double t) const {
+  const ExtendedState state = trajectories_->motion_of(other_owner(pair)).extended_state(t);
+  return pair.image == Image{} ? state : state.shifted(shift_of(pair));
+}
+
+std::string ContactSearch::name_of(const PairKey& pair) const {
+  return fmt::format(
+      "'{}' on '{}'", world_->bodies[pair.body].name,
+      pair.with_site() ? world_->sites[pair.other_site].name : world_->bodies[pair.other_body].name);
+}
+
+Mover ContactSearch::mover(int owner) const {
+  const int n = trajectories_->body_count();
+  if (owner < n) return mover(owner, trajectories_->body(owner));
+  return {indices_of_[owner], &trajectories_->site(owner - n).motion(), 0.0};
+}
+
+std::optional<Certificate> ContactSearch::search(const PairKey& pair, const BodyTrack& body,
+                                                 const BodyTrack* other, double from, double to,
+                                                 int most_steps) {
+  const Sides sides(*this, pair, body, other);
+  // of simultaneous resolves one may be a rounding ahead
+  from = std::max({from, sides.a.motion->begin(), sides.b.motion->begin()});
+  if (from > to) return std::nullopt;
+  const TraceScope scope(run_->trace(), {TraceKind::search, pair.body, other_owner(pair), from, to});
+  SearchLimits limits = limits_;
+  if (most_steps > 0) limits.max_iterations = most_steps;
+  WorkCounters& work = run_->work();
+  const SampledClock::Scope timed(clock_, work.seconds_search);
+  const PairAnswer answer = first_contact(sides.a, sides.b, from, to, limits, scratch_, work);
+  if (answer.status == PairAnswer::Status::clear) return std::nullopt;
+  Certificate c;
+  c.time = answer.until;
+  c.pair = pair;
+  c.version_body = body.version;
+  c.version_other = other ? other->version : 0;
+  c.contact = answer.contact;
+  ++work.certificates_issued;
+  if (answer.status == PairAnswer::Status::undecided) {
+    c.kind = Certificate::Kind::undecided;
+    c.why = answer.why;
+    ++work.certificates_undecided;
+  }
+  return c;
+}
+
+std::vector<Certificate> ContactSearch::simultaneous(const Certificate& c, const BodyTrack& body,
+                                                     const BodyTrack* other) {
+  std::vector<Certificate> others;
+  const Sides sides(*this, c.pair, body, other);
+  for (const FeatureContact& f :
+       touching_features(sides.a, sides.b, c.time, limits_.touch, limits_, scratch_)) {
+    if (f.sample == c.contact.sample && f.sample_on_a == c.contact.sample_on_a) continue;
+    if (f.closing_speed <= kApproaches * c.contact.closing_speed) continue;
+    others.push_back(c);
+    others.back().contact = f;
+  }
+  return others;
+}
+
+std::vector<FeatureContact> ContactSearch::touching(const PairKey& pair, double tolerance, double t) {
+  const Sides sides(*this, pair);
+  return touching_features(sides.a, sides.b, t, tolerance, limits_, scratch_);
+}
+
+double ContactSearch::gap(const PairKey& pair, double t) {
+  const Sides sides(*this, pair);
+  return pair_gap(sides.a, sides.b, t, limits_, scratch_);
+}
+
+std::optional<Contact> ContactSearch::crossing(const PairKey& pair, double t) const {
+  const ExtendedState at = trajectories_->body(pair.body).motion.extended_state(t),
+                      other = other_state(pair, t);
+  const Vec2 base = other.position.cast<double>();  // far away, nothing of what is between them is lost
+  const OutlineCrossing crossing =
+      deepest_crossing(outline_of(pair.body), at.seen_from(base).pose, outline_of(other_owner(pair)),
+                       other.seen_from(base).pose);
+  if (crossing.depth <= 0.0) return std::nullopt;
+  FeatureContact f;
+  f.time = t;
+  f.point = base + crossing.point;
+  f.normal = crossing.normal;
+  f.gap = -crossing.depth;
+  return world_contact(pair, f);
+}
+
+Contact world_contact(const PairKey& pair, const FeatureContact& f) {
+  Contact c;
+  c.time = f.time;
+  c.body = pair.body;
+  c.other_body = pair.other_body;
+  c.other_site = pair.other_site;
+  c.site = f.site;
+  c.sample = f.sample;
+  c.sample_on_body = f.sample_on_a;
+  c.point = f.point;
+  c.normal = f.normal;
+  c.closing_speed = f.closing_speed;
+  c.gap = f.gap;
+  return c;
+}
+
+}  // namespace brink

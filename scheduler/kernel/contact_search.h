@@ -1,0 +1,86 @@
+#pragma once
+/// Who meets whom, and when: searches of one pair on the motions that its owners have, or had.
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "brink/core/contacts/contact.h"
+#include "brink/scheduler/events/agenda.h"
+#include "brink/scheduler/first_contact/first_contact.h"
+#include "brink/scheduler/kernel/stage_clock.h"
+#include "brink/scheduler/kernel/trajectories.h"
+
+namespace brink {
+
+class ContactSearch {
+ public:
+  /// Makes a site index of each distinct outline. What is given must outlive it.
+  /// @throws IoError if a field is needed and no GL context opens.
+  ContactSearch(const World& world, const SolverOptions& options, const Trajectories& trajectories,
+                RunControl& run);
+
+  const SearchLimits& limits() const { return limits_; }
+  /// True if a sharp corner or end of somebody may meet a wire without thickness of another: nobody may be
+  /// moved past a contact, not even by the rounding of an instant.
+  bool points_meet_wires() const { return points_meet_wires_; }
+  /// Owners count bodies first, then sites.
+  const Outline& outline_of(int owner) const { return *outlines_[owner]; }
+  /// Starts to fetch what a search of the body reads.
+  void expect(int k) const {
+    prefetch(&outlines_[k]);
+    prefetch(&indices_of_[k]);
+  }
+
+  // -- pairs --
+  /// The pair of owner a with that image of owner b; nothing if they are one, or two sites.
+  std::optional<PairKey> pair_of(int a, int b, const Image& image = {}) const;
+  int other_owner(const PairKey& pair) const {
+    return pair.with_site() ? trajectories_->body_count() + pair.other_site : pair.other_body;
+  }
+  /// From the other owner to its image [m].
+  Vec2 shift_of(const PairKey& pair) const { return world_->periods.shift(pair.image); }
+  /// The state at t of the pair's other owner, where its image is.
+  ExtendedState other_state(const PairKey& pair, double t) const;
+  /// "'a' on 'b'".
+  std::string name_of(const PairKey& pair) const;
+  /// An owner on its newest motion.
+  Mover mover(int owner) const;
+
+  // -- searches --
+  /// The certificate of a contact or of an undecided end, or nothing if clear to the end, on the motions of
+  /// `body` and `other` (null: a site). `most_steps` > 0: the search stops after so many of its steps.
+  std::optional<Certificate> search(const PairKey& pair, const BodyTrack& body, const BodyTrack* other,
+                                    double from, double to, int most_steps = 0);
+  /// Other features of that pair that touch and approach at the certificate's time, each as one of its own.
+  std::vector<Certificate> simultaneous(const Certificate& c, const BodyTrack& body, const BodyTrack* other);
+  /// Contacts of the newest motions at time t with gap <= `tolerance`, deepest first.
+  std::vector<FeatureContact> touching(const PairKey& pair, double tolerance, double t);
+  /// The least signed gap at time t [m].
+  double gap(const PairKey& pair, double t);
+  /// Where the outlines cross at time t, by intersections of their boundaries.
+  std::optional<Contact> crossing(const PairKey& pair, double t) const;
+
+ private:
+  /// The two sides of a pair, the second where its image is.
+  struct Sides;
+  Mover mover(int owner, const BodyTrack& track) const {
+    return {indices_of_[owner], &track.motion, track.velocity_rounding};
+  }
+
+  const World* world_;
+  const Trajectories* trajectories_;
+  RunControl* run_;
+  SearchLimits limits_;
+  bool points_meet_wires_ = false;
+  std::vector<const Outline*> outlines_;  ///< of every owner
+  std::vector<const SiteIndex*> indices_of_;
+  std::vector<std::unique_ptr<SiteIndex>> indices_;
+  SearchScratch scratch_;
+  SampledClock clock_;
+};
+
+/// The contact of a pair as it is told to the world.
+Contact world_contact(const PairKey& pair, const FeatureContact& f);
+
+}  // namespace brink

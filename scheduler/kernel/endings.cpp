@@ -1,0 +1,56 @@
+#include "brink/scheduler/kernel/endings.h"
+
+#include <algorithm>
+
+#include "brink/scheduler/first_contact/canonical_time.h"
+
+namespace brink {
+
+namespace {
+
+/// In an instant of so many the next are taken together, however many bodies there are: it takes seconds.
+constexpr std::uint64_t kLongestInstant = 200000;
+
+}  // namespace
+
+std::uint64_t Endings::endless() const {
+  const std::uint64_t bodies = bodies_.count() + 2;  // a row may have ends yet to be reached
+  return 2000 + std::min(10 * bodies * bodies, kLongestInstant);
+}
+
+bool Endings::collapsed(double now) const {
+  return in_instant_ > endless() && now - instant_ <= 2.0 * same_instant(now);
+}
+
+void Endings::count_in_instant(const PairKey& pair, double now) {
+  if (now - instant_ > 2.0 * same_instant(now)) {
+    instant_ = now;
+    in_instant_ = 0;
+    bodies_.clear();
+  }
+  ++in_instant_;
+  bodies_.add(pair);
+}
+
+std::optional<Ending> Endings::collided(const Outcome& o, double now, BounceLoss loss,
+                                        std::uint64_t collisions) {
+  if (!o.contact.seen)
+    if (const auto zeno = zeno_.collided({o.pair, o.contact}, now, o.contact.closing_speed, loss, o.rest,
+                                         o.contact.sink < 0.0))
+      return Ending{Ending::Kind::zeno, zeno->limit_time, zeno->bounces};
+  count_in_instant(o.pair, now);
+  if (in_instant_ > 2 * endless()) return Ending{Ending::Kind::endless_group, now, in_instant_};
+  if (max_collisions_ > 0 && collisions >= max_collisions_)
+    return Ending{Ending::Kind::limit, now, collisions};
+  if (in_instant_ == endless() + 1) return Ending{Ending::Kind::group, now, in_instant_};
+  return std::nullopt;
+}
+
+void Endings::restore(Saved saved) {
+  instant_ = saved.instant;
+  in_instant_ = saved.in_instant;
+  bodies_.restore(saved.bodies, saved.often);
+  zeno_.restore(std::move(saved.bounces));
+}
+
+}  // namespace brink

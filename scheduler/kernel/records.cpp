@@ -1,0 +1,72 @@
+#include "brink/scheduler/kernel/records.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace brink {
+
+namespace {
+
+double wall_clock() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+void Records::begin(Recorder* recorder) {
+  recorder_ = recorder;
+  next_checkpoint_ = wall_clock() + run_->options().checkpoint_seconds;
+}
+
+std::optional<double> Records::frame_due(double t) const {
+  const double interval = run_->options().frame_interval;
+  if (!(interval > 0.0)) return std::nullopt;
+  const double due = static_cast<double>(frame_ + 1) * interval;
+  return due > t ? std::nullopt : std::optional(due);
+}
+
+void Records::frame_of_clock(double due) {
+  ++frame_;
+  frame(due);
+}
+
+void Records::frame(double t) {
+  last_frame_ = t;
+  if (recorder_) recorder_->frame(t, trajectories_->states(t));
+}
+
+void Records::event(EventKind kind, const PairKey& pair, const FeatureContact& contact, double impulse_n,
+                    double impulse_t, Real delay) {
+  Event event;
+  event.seq = seq_++;
+  last_event_ = std::max(last_event_, run_->time());
+  if (!records_events()) return;
+  event.kind = kind;
+  event.contact = world_contact(pair, contact);
+  event.contact.time = last_event_;
+  event.contact.time_low = static_cast<double>(run_->time() - last_event_ + delay);
+  event.impulse_n = impulse_n;
+  event.impulse_t = impulse_t;
+  recorder_->event(event);
+}
+
+void Records::ending(EventKind kind, const PairKey& pair, const FeatureContact& contact, double time) {
+  Event event;
+  event.seq = seq_++;
+  if (!records_events()) return;
+  event.kind = kind;
+  event.contact = world_contact(pair, contact);
+  event.contact.time = time;
+  recorder_->event(event);
+}
+
+bool Records::checkpoint_due() const {
+  return recorder_ && run_->options().checkpoint_seconds >= 0.0 && wall_clock() >= next_checkpoint_;
+}
+
+void Records::checkpoint(const std::vector<std::byte>& state) {
+  recorder_->checkpoint(run_->time(), state);
+  next_checkpoint_ = wall_clock() + run_->options().checkpoint_seconds;
+}
+
+}  // namespace brink

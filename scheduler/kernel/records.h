@@ -1,0 +1,66 @@
+#pragma once
+/// A run's records: frames on the frame clock, events, checkpoints.
+
+#include <optional>
+
+#include "brink/scheduler/kernel/contact_search.h"
+#include "brink/scheduler/kernel/speculation.h"
+#include "brink/scheduler/run/recorder.h"
+
+namespace brink {
+
+class Records {
+ public:
+  Records(const Trajectories& trajectories, RunControl& run) : trajectories_(&trajectories), run_(&run) {}
+
+  void begin(Recorder* recorder);
+
+  // -- frames --
+  /// When the next frame of the clock is due, if that is up to t [s].
+  std::optional<double> frame_due(double t) const;
+  /// Records that frame.
+  void frame_of_clock(double due);
+  /// Records one beside the clock.
+  void frame(double t);
+  /// The time of the last one [s]; < 0: there was none.
+  double last_frame() const { return last_frame_; }
+
+  // -- events --
+  /// A collision, or the group that it is of, `delay` [s] after the present time.
+  void event(EventKind kind, const PairKey& pair, const FeatureContact& contact, double impulse_n,
+             double impulse_t, Real delay);
+  /// What comes to an end at a time of its own.
+  void ending(EventKind kind, const PairKey& pair, const FeatureContact& contact, double time);
+  /// The time of the last event, to which the next one is told not to be before [s].
+  double last_event() const { return last_event_; }
+
+  // -- checkpoints --
+  bool checkpoint_due() const;
+  void checkpoint(const std::vector<std::byte>& state);
+
+  struct Saved {
+    std::uint64_t seq = 0, frame = 0;
+    double last_frame = -1.0, last_event = 0.0;
+  };
+  Saved saved() const { return {seq_, frame_, last_frame_, last_event_}; }
+  void restore(const Saved& s) {
+    seq_ = s.seq;
+    frame_ = s.frame;
+    last_frame_ = s.last_frame;
+    last_event_ = s.last_event;
+  }
+
+ private:
+  bool records_events() const { return recorder_ && run_->options().record_events; }
+
+  const Trajectories* trajectories_;
+  RunControl* run_;
+  Recorder* recorder_ = nullptr;
+  std::uint64_t seq_ = 0;         ///< of the next event
+  std::uint64_t frame_ = 0;       ///< frames recorded by the frame clock
+  double last_frame_ = -1.0;      ///< time of the last frame recorded [s]
+  double last_event_ = 0.0;       ///< time of the last event recorded [s]
+  double next_checkpoint_ = 0.0;  ///< wall clock [s]
+};
+
+}  // namespace brink

@@ -1,0 +1,127 @@
+#include "brink/scheduler/kernel/run_kernel.h"
+
+#include <fmt/core.h>
+
+#include "brink/core/base/error.h"
+#include "brink/core/world/recentred.h"
+#include "brink/scheduler/kernel/snapshot.h"
+
+namespace brink {
+
+namespace {
+
+World checked(World world, const SolverOptions& options) {
+  world.check();
+  std::string error;
+  if (!options.is_valid(&error)) throw BadInput(error);
+  if (world.periods.any() && options.detector != "field")
+    throw BadInput("solver: detector = \"" + options.detector +
+                   "\" in a periodic world; allowed there: \"field\"");
+  return world;
+}
+
+/// Moves the frame of each site near it; by how much.
+std::vector<Vec2> recentre_sites(World& world) {
+  std::vector<Vec2> moved;
+  for (FixedSite& s : world.sites) {
+    const Vec2 as_written = s.pose.position;
+    s = recentred(s);
+    moved.push_back(s.pose.position - as_written);
+  }
+  return moved;
+}
+
+}  // namespace
+
+KernelParts::KernelParts(World given, SolverOptions chosen)
+    : world(checked(std::move(given), chosen)),
+      frames_moved(recentre_sites(world)),
+      options(std::move(chosen)),
+      order(order_of(options.order)),
+      trajectories(world, options, run),
+      search(world, options, trajectories, run),
+      near(world, options, trajectories, search, run),
+      watch(world, trajectories, search, near, run),
+      response(world, options, trajectories, search, watch, run),
+      groups(world, trajectories, search, near, response, watch, run),
+      speculation(trajectories, run),
+      endings(search.limits().tolerance, options.max_collisions),
+      records(trajectories, run),
+      policy_watch(options.policy, search, speculation),
+      random(options.seed) {}
+
+RunKernel::RunKernel(World world, SolverOptions options) : Kernel(std::move(world), std::move(options)) {}
+
+void RunKernel::begin(const RunOptions& options, Recorder* recorder) {
+  parts_.run.begin(options);
+  parts_.records.begin(recorder);
+  if (options.first_frame) show_frame();
+}
+
+void RunKernel::end() {
+  roll_back_all();
+  if (parts_.records.last_frame() != time()) show_frame();
+}
+
+void RunKernel::check_returned(double until) {
+  if (!halt()) parts_.policy_watch.returned(time(), until);
+}
+
+void RunKernel::stop_after_collisions(std::uint64_t count) {
+  const std::uint64_t most = options().max_collisions, here = collisions() + count;
+  parts_.endings.set_limit(count > 0 && (most == 0 || here < most) ? here : most);
+}
+
+void RunKernel::go_on_from(int k, const ExtendedState& state) {
+  const Restart restart{k, state};
+  std::vector<int> changed;
+  parts_.trajectories.restart({&restart, 1}, changed);
+  for (const int j : changed) parts_.trajectories.body(j).velocity_rounding = 0.0;
+  parts_.policy_watch.forget_all();
+  ++parts_.revision;
+}
+
+void RunKernel::set_state(int k, const BodyState& state) {
+  if (!state.pose.position.allFinite() || !std::isfinite(state.pose.angle) ||
+      !state.twist.velocity.allFinite() || !std::isfinite(state.twist.omega))
+    throw BadInput(fmt::format("set_state of '{}': every number must be finite", world().bodies[k].name));
+  go_on_from(k, ExtendedState(state));
+}
+
+void RunKernel::apply_impulse(int k, const Vec2& impulse, const Vec2& point) {
+  const Body& b = world().bodies[k];
+  if (!impulse.allFinite() || !point.allFinite())
+    throw BadInput(fmt::format("apply_impulse to '{}': every number must be finite", b.name));
+  ExtendedState s = body(k).motion.extended_state(time());
+  const RealVec p = impulse.cast<Real>(), arm = point.cast<Real>() - s.position;
+  s.twist.velocity += RealVec(b.inverse_mass_x() * p.x(), b.inverse_mass_y() * p.y());
+  s.twist.omega += b.inverse_inertia() * extended::cross(arm, p);
+  go_on_from(k, s);
+}
+
+void RunKernel::restore(std::span<const std::byte> bytes) {
+  SavedRun saved = decode(bytes, world(), options(), parts_.trajectories);
+  const WorkCounters before = work();
+  Trajectories again(world(), options(), parts_.run);
+  try {
+    again.regroup(parts_.trajectories.together());
+    again.restore(saved.trajectories, saved.time);
+  } catch (...) {
+    work() = before;
+    throw;
+  }
+  parts_.trajectories = std::move(again);
+  parts_.run.set_time(saved.time);
+  parts_.run.forget_halt();
+  parts_.horizon = saved.horizon;
+  parts_.watch.restore(saved.watch);
+  parts_.records.restore(saved.records);
+  parts_.endings.restore(std::move(saved.endings));
+  parts_.taken = saved.taken;
+  parts_.random.set_state(saved.random);
+  parts_.policy_watch.forget_all();
+  work() = saved.work;
+  ++parts_.revision;
+}
+
+}  // namespace brink

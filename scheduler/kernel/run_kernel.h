@@ -1,0 +1,57 @@
+#pragma once
+/// The kernel as the simulator has it: begun and ended, saved and restored, and changed from outside.
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "brink/scheduler/kernel/kernel.h"
+
+namespace brink {
+
+class RunKernel final : public Kernel {
+ public:
+  /// @throws BadInput, IoError as Simulator.
+  RunKernel(World world, SolverOptions options);
+
+  /// `recorder` may be null.
+  void begin(const RunOptions& options, Recorder* recorder);
+  /// Records the last frame, at the present time, unless the frame clock has just done so, and a checkpoint.
+  void end();
+  WorkCounters& work() { return parts_.run.work(); }
+  double max_overlap() const { return parts_.watch.max_overlap(); }
+  const TakenGroups& taken() const { return parts_.taken; }
+
+  /// Ends the run after so many collisions from now on, before max_collisions; 0: no more than that says.
+  void stop_after_collisions(std::uint64_t count);
+
+  // -- at the present time; the policy's knowledge is void afterwards --
+  /// Body k goes on from this state. @throws BadInput if it is not finite.
+  void set_state(int k, const BodyState& state);
+  /// An impulse [N s] at a point of the world [m]; locks hold against it. @throws BadInput if it is not finite.
+  void apply_impulse(int k, const Vec2& impulse, const Vec2& point);
+
+  // -- checks --
+  /// See Simulator.
+  std::vector<Contact> overlaps(std::size_t most) { return parts_.watch.overlaps(most); }
+  /// Empty, or the deepest of the first overlaps, if pairs overlap by more than rounding of a file.
+  std::string start_fault() { return parts_.watch.start_fault(); }
+  /// From now on what searches certify is checked as the run goes on (CertificateWatch).
+  void hold_to_certificates() { parts_.watch.begin(); }
+  /// From now on the policy is held to the contacts that it has been told of (PolicyWatch).
+  void hold_to_known_contacts() { parts_.policy_watch.begin(); }
+  /// @throws BadInput if the policy, which has returned, came back too early or past a contact.
+  void check_returned(double until);
+
+  // -- snapshots --
+  std::vector<std::byte> snapshot() const { return Kernel::snapshot(); }
+  /// @throws BadInput if the bytes are not a snapshot of this world and options, or a motion cannot be made
+  /// again; nothing has changed then.
+  void restore(std::span<const std::byte> bytes);
+
+ private:
+  void go_on_from(int k, const ExtendedState& state);
+};
+
+}  // namespace brink

@@ -1,0 +1,37 @@
+#pragma once
+/// Snapshots: bytes from which a run goes on with the same bits.
+///
+/// Every motion is kept as what it was started from (time and states of its component); restoring starts the
+/// integrators there again and lets them run on, which gives the same pieces, since their steps depend on
+/// their own history alone.
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "brink/scheduler/kernel/kernel_parts.h"
+
+namespace brink {
+
+/// Everything that a run goes on from.
+struct SavedRun {
+  double time = 0.0, horizon = 0.0;  ///< [s]
+  CertificateWatch::Saved watch;
+  Records::Saved records;
+  Endings::Saved endings;
+  TakenGroups taken;
+  std::array<std::uint64_t, 4> random{};
+  WorkCounters work;
+  Trajectories::Saved trajectories;
+};
+
+std::vector<std::byte> encode(const SavedRun& saved, const World& world, const SolverOptions& options,
+                              const Trajectories& trajectories);
+
+/// @throws BadInput if the bytes are no snapshot of this world, these options and these components; nothing
+/// has changed then.
+SavedRun decode(std::span<const std::byte> bytes, const World& world, const SolverOptions& options,
+                const Trajectories& trajectories);
+
+}  // namespace brink

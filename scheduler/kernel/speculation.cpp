@@ -1,0 +1,119 @@
+#include "brink/scheduler/kernel/speculation.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace brink {
+
+const BodyTrack& Speculation::certain(int k) const {
+  const auto collisions = of(k);
+  return collisions.empty() ? trajectories_->body(k) : collisions.front()->former_of(k);
+}
+
+const BodyTrack* Speculation::track(int k, std::uint64_t version) const {
+  if (trajectories_->body(k).version == version) return &trajectories_->body(k);
+  for (const Entry& c : of(k))
+    if (const BodyTrack& former = c->former_of(k); former.version == version) return &former;
+  return nullptr;
+}
+
+std::vector<std::uint64_t> Speculation::versions(int k) const {
+  std::vector<std::uint64_t> all;
+  for (const Entry& c : of(k)) all.push_back(c->former_of(k).version);
+  all.push_back(trajectories_->body(k).version);
+  return all;
+}
+
+std::optional<double> Speculation::end_of_version(int k, std::uint64_t version) const {
+  if (trajectories_->body(k).version == version) return std::numeric_limits<double>::infinity();
+  for (const Entry& c : of(k))
+    if (c->former_of(k).version == version) return c->time;
+  return std::nullopt;
+}
+
+Speculation::Entry Speculation::before(const PairKey& pair) const {
+  auto entry = std::make_shared<AheadCollision>();
+  entry->time = run_->time();
+  const auto keep = [&](int k) {
+    const BodyTrack& b = trajectories_->body(k);
+    if (b.component < 0) return entry->former.push_back({k, b});
+    const auto kept = [&](const ComponentStart& s) { return s.component == b.component; };
+    if (std::any_of(entry->starts.begin(), entry->starts.end(), kept)) return;
+    entry->starts.push_back(trajectories_->start_of(b.component));
+    for (const int j : trajectories_->members(b.component))
+      entry->former.push_back({j, trajectories_->body(j)});
+  };
+  keep(pair.body);
+  if (!pair.with_site()) keep(pair.other_body);
+  return entry;
+}
+
+void Speculation::add(const Entry& entry) {
+  for (const AheadCollision::Former& f : entry->former) {
+    if (static_cast<std::size_t>(f.body) >= of_.size()) of_.resize(f.body + 1);
+    of_[f.body].push_back(entry);
+  }
+  kept_ += entry->former.size();
+}
+
+void Speculation::remove(const Entry& entry) {
+  for (const AheadCollision::Former& f : entry->former) std::erase(of_[f.body], entry);
+  kept_ -= entry->former.size();
+}
+
+void Speculation::undo(const Entry& entry) {
+  for (const AheadCollision::Former& f : entry->former) {
+    BodyTrack& b = trajectories_->body(f.body);
+    const std::uint64_t undone = std::max(b.version, b.last_undone);
+    b = f.track;
+    b.last_undone = undone;
+  }
+  for (const ComponentStart& s : entry->starts) trajectories_->go_back_to(s);
+  remove(entry);
+}
+
+/// Undoes the last collision that a body has ahead of time, and first all that hangs on it.
+void Speculation::undo_last(int body, std::vector<Undone>& taken_back) {
+  const Entry entry = of(body).back();
+  for (const AheadCollision::Former& f : entry->former)
+    while (of(f.body).back() != entry) undo_last(f.body, taken_back);
+  for (const AheadCollision::Former& f : entry->former) {
+    const auto known =
+        std::find_if(taken_back.begin(), taken_back.end(), [&](const Undone& u) { return u.body == f.body; });
+    if (known == taken_back.end())
+      taken_back.push_back({f.body, entry->end, entry->time});
+    else
+      known->to = entry->time;
+  }
+  undo(entry);
+}
+
+void Speculation::roll_back(int body, std::uint64_t version, double t, std::vector<int>& undone) {
+  std::vector<Undone> taken_back;
+  while (trajectories_->body(body).version != version) undo_last(body, taken_back);
+  for (Undone& u : taken_back) {
+    if (u.body == body) u.to = t;
+    const double from = std::max(u.from, u.to);
+    ++run_->work().rollbacks;
+    run_->work().body_seconds_thrown_away += from - u.to;
+    run_->mark(TraceKind::roll_back, u.body, -1, from, u.to);
+    undone.push_back(u.body);
+  }
+}
+
+void Speculation::roll_back_all() {
+  std::vector<int> undone;
+  for (int k = 0; k < trajectories_->body_count() && !empty(); ++k)
+    roll_back(k, certain(k).version, run_->time(), undone);
+}
+
+void Speculation::swap_with_certain() {
+  for (int k = 0; k < trajectories_->body_count() && !empty(); ++k) {
+    const auto collisions = of(k);
+    if (collisions.empty()) continue;
+    for (AheadCollision::Former& f : collisions.front()->former)
+      if (f.body == k) std::swap(f.track, trajectories_->body(k));
+  }
+}
+
+}  // namespace brink

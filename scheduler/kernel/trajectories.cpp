@@ -1,0 +1,314 @@
+#include "brink/scheduler/kernel/trajectories.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "brink/core/base/error.h"
+#include "brink/scheduler/kernel/stage_clock.h"
+
+namespace brink {
+
+namespace {
+
+/// Pieces of motion that one round of instalments makes at most, of all bodies together: some 50 MB.
+constexpr std::uint64_t kMostPieces = 1U << 17;
+constexpr std::uint64_t kShortest = 16, kLongest = 4096;  ///< instalments [steps]
+
+BodyState held(const Body& body, BodyState s) {
+  if (body.lock_x) s.twist.velocity.x() = 0.0;
+  if (body.lock_y) s.twist.velocity.y() = 0.0;
+  if (body.lock_angle) s.twist.omega = 0.0;
+  return s;
+}
+
+void raise_version(BodyTrack& b) { b.version = std::max(b.version, b.last_undone) + 1; }
+
+bool moves_in_closed_form(const SolverOptions& options, const Dynamics& dynamics, double t) {
+  const bool asked = options.integrator == "auto" || options.integrator == "ballistic";
+  return asked && dynamics.size() == 1 && dynamics.constant() && std::isinf(dynamics.next_break(t));
+}
+
+}  // namespace
+
+Trajectories::Trajectories(const World& world, const SolverOptions& options, RunControl& run)
+    : world_(&world), options_(&options), run_(&run) {
+  bodies_.resize(world.bodies.size());
+  std::vector<BodyState> initial;
+  for (const Body& b : world.bodies) initial.push_back(held(b, b.initial));
+  for (Component& c : make_components(world)) {
+    std::vector<BodyState> states;
+    for (const int k : c.bodies) states.push_back(initial[k]);
+    add_component(std::move(c), 0.0, states);
+  }
+  run.work().component_resets = 0;  // first starts are no resets
+  for (const FixedSite& site : world.sites) sites_.emplace_back(site);
+  site_failures_.resize(sites_.size());
+}
+
+void Trajectories::add_component(Component component, double t, std::span<const BodyState> states) {
+  const Dynamics& dynamics = *component.dynamics;
+  if (moves_in_closed_form(*options_, dynamics, t)) {
+    Acceleration acceleration;
+    dynamics.accelerations(t, states, {&acceleration, 1});
+    BodyTrack& b = bodies_[component.bodies.front()];
+    b.motion = Motion::ballistic(t, states.front(), acceleration);
+    b.component = -1;
+    return;
+  }
+  for (std::size_t i = 0; i < component.bodies.size(); ++i) {
+    BodyTrack& b = bodies_[component.bodies[i]];
+    b.component = static_cast<int>(components_.size());
+    b.place_in_component = static_cast<int>(i);
+  }
+  Coupled coupled{std::move(component), nullptr, 0.0, {}, {}};
+  coupled.integrator = make_integrator(options_->integrator, coupled.component.dynamics,
+                                       options_->integrator_options(), &run_->work());
+  components_.push_back(std::move(coupled));
+  start(components_.back(), t, {states.begin(), states.end()});
+}
+
+std::vector<BodyState> Trajectories::states(double t) const {
+  std::vector<BodyState> all;
+  all.reserve(bodies_.size());
+  for (const BodyTrack& b : bodies_) all.push_back(b.motion.state(t));
+  return all;
+}
+
+bool Trajectories::is_ballistic(int k) const {
+  const bool asked = options_->integrator == "auto" || options_->integrator == "ballistic";
+  return is_free(k) || (asked && components_[bodies_[k].component].component.dynamics->constant());
+}
+
+// -- going on --
+
+std::uint64_t Trajectories::instalment() const {
+  const std::uint64_t movers = bodies_.size() + sites_.size();
+  return std::clamp(kMostPieces / std::max<std::uint64_t>(movers, 1), kShortest, kLongest);
+}
+
+void Trajectories::fetch(const Coupled& c) {
+  for (std::size_t i = 0; i < c.component.bodies.size(); ++i)
+    bodies_[c.component.bodies[i]].motion = c.integrator->motion(static_cast<int>(i));
+}
+
+double Trajectories::follow(Coupled& c, double t) {
+  const int first = c.component.bodies.front();
+  const double covered = bodies_[first].motion.end();
+  if (covered >= t) return t;
+  if (covered >= c.failure.time) return covered;
+  const std::uint64_t before = run_->work().solver_steps;
+  const Extent extent = c.integrator->extend(t, instalment());
+  run_->count_pieces((run_->work().solver_steps - before) * c.component.bodies.size());
+  fetch(c);
+  if (extent.status == Extent::Status::failed)
+    note_failure(c.failure, extent.end, "'" + world_->bodies[first].name + "'", extent.why);
+  return std::min(extent.end, t);
+}
+
+double Trajectories::follow_site(int s, double t) {
+  if (!sites_[s].is_prescribed() || sites_[s].motion().end() >= t) return t;
+  const Extent extent = sites_[s].extend(t, instalment());
+  run_->count_pieces(instalment());
+  if (extent.status == Extent::Status::failed)
+    note_failure(site_failures_[s], extent.end, "site '" + world_->sites[s].name + "'", extent.why);
+  return std::min(extent.end, t);
+}
+
+double Trajectories::follow_body(int k, double t) {
+  const BodyTrack& b = bodies_[k];
+  if (b.component < 0 || b.motion.end() >= t) return t;
+  const StageClock clock(run_->work().seconds_motion);
+  const double covered = follow(components_[b.component], t);
+  run_->poll();
+  return covered;
+}
+
+double Trajectories::follow_sites(double t) {
+  double covered = t;
+  for (int s = 0; s < site_count() && run_->poll(); ++s) covered = std::min(covered, follow_site(s, t));
+  return covered;
+}
+
+double Trajectories::follow(double t) {
+  const StageClock clock(run_->work().seconds_motion);
+  double covered = t;
+  for (Coupled& c : components_) {
+    if (!run_->poll()) return run_->time();
+    covered = std::min(covered, follow(c, t));
+  }
+  return std::min(covered, follow_sites(t));
+}
+
+bool Trajectories::cover(Coupled& c, double t) {
+  while (follow(c, t) < t)
+    if (stop_at(c.failure) || !run_->poll()) return false;
+  return true;
+}
+
+bool Trajectories::cover_body(int k, double t) {
+  const BodyTrack& b = bodies_[k];
+  if (b.component < 0 || b.motion.end() >= t) return true;
+  const StageClock clock(run_->work().seconds_motion);
+  return cover(components_[b.component], t);
+}
+
+bool Trajectories::cover_sites(double t) {
+  for (int s = 0; s < site_count(); ++s)
+    while (follow_site(s, t) < t)
+      if (stop_at(site_failures_[s]) || !run_->poll()) return false;
+  return true;
+}
+
+bool Trajectories::cover(double t) {
+  const StageClock clock(run_->work().seconds_motion);
+  for (Coupled& c : components_)
+    if (!cover(c, t)) return false;
+  return cover_sites(t);
+}
+
+void Trajectories::note_failure(Failure& of, double end, const std::string& name, const std::string& why) {
+  of = {end, fmt::format("motion of {} stopped at t = {:.17g}: {}", name, end, why)};
+  find_reach();
+}
+
+void Trajectories::find_reach() {
+  reach_ = std::numeric_limits<double>::infinity();
+  for (const Coupled& c : components_) reach_ = std::min(reach_, c.failure.time);
+  for (const Failure& f : site_failures_) reach_ = std::min(reach_, f.time);
+}
+
+bool Trajectories::stop_at(const Failure& failure) {
+  if (std::isfinite(failure.time)) run_->stop(Termination::failed, failure.why);
+  return std::isfinite(failure.time);
+}
+
+bool Trajectories::stop_at_reach() {
+  for (const Coupled& c : components_)
+    if (c.failure.time == reach_) return stop_at(c.failure);
+  for (const Failure& f : site_failures_)
+    if (f.time == reach_) return stop_at(f);
+  return false;
+}
+
+bool Trajectories::much_to_forget() const { return run_->pieces() - forgotten_ > kMostPieces; }
+
+void Trajectories::forget_before(double t) {
+  if (!much_to_forget()) return;
+  forgotten_ = run_->pieces();
+  for (Coupled& c : components_) c.integrator->forget_before(t);
+  for (SiteMotion& s : sites_) s.forget_before(t);
+}
+
+// -- starting afresh --
+
+void Trajectories::start(Coupled& c, double t, std::vector<BodyState> states) {
+  c.started = t;
+  c.start_states = std::move(states);
+  c.integrator->start(t, c.start_states);
+  fetch(c);
+  if (std::isfinite(c.failure.time)) {
+    c.failure = {};
+    find_reach();
+  }
+  ++run_->work().component_resets;
+}
+
+void Trajectories::restart_free(int k, const BodyState& start, const BodyState& low) {
+  bodies_[k].motion.start_anew(run_->time(), start, low);
+  raise_version(bodies_[k]);
+  ++run_->work().component_resets;
+}
+
+void Trajectories::restart(std::span<const Restart> touched, std::vector<int>& changed) {
+  const int first = touched.front().body, component = bodies_[first].component;
+  if (component < 0) {
+    changed.push_back(first);
+    return restart_free(first, touched.front().state.rounded(), touched.front().state.low());
+  }
+  Coupled& c = components_[component];
+  changed.insert(changed.end(), c.component.bodies.begin(), c.component.bodies.end());
+  std::vector<BodyState> states;
+  for (const int j : c.component.bodies) {
+    states.push_back(bodies_[j].motion.state(run_->time()));
+    raise_version(bodies_[j]);
+  }
+  for (const Restart& r : touched) states[bodies_[r.body].place_in_component] = r.state.rounded();
+  start(c, run_->time(), std::move(states));
+}
+
+void Trajectories::regroup(std::vector<std::vector<int>> together) {
+  together_ = std::move(together);
+  const double now = run_->time();
+  std::vector<Coupled> before = std::exchange(components_, {});
+  for (Component& c : make_components(*world_, together_)) {
+    const int former = bodies_[c.bodies.front()].component;
+    if (former < 0 && c.bodies.size() == 1) continue;
+    if (former >= 0 && before[former].component.bodies == c.bodies) {
+      for (const int k : c.bodies) bodies_[k].component = static_cast<int>(components_.size());
+      components_.push_back(std::move(before[former]));
+      continue;
+    }
+    std::vector<BodyState> states;
+    for (const int k : c.bodies) {
+      states.push_back(bodies_[k].motion.state(now));
+      raise_version(bodies_[k]);
+    }
+    add_component(std::move(c), now, states);
+  }
+  find_reach();
+}
+
+// -- going back --
+
+ComponentStart Trajectories::start_of(int component) const {
+  const Coupled& c = components_[component];
+  return {component, c.started, c.start_states};
+}
+
+void Trajectories::go_back_to(const ComponentStart& s) {
+  Coupled& c = components_[s.component];
+  const double end = bodies_[c.component.bodies.front()].motion.end();
+  start(c, s.time, s.states);
+  cover(c, end);
+}
+
+Trajectories::Saved Trajectories::saved() const {
+  Saved all{{bodies_.begin(), bodies_.end()}, {}};
+  for (int c = 0; c < static_cast<int>(components_.size()); ++c) all.starts.push_back(start_of(c));
+  return all;
+}
+
+void Trajectories::restore(const Saved& saved, double t) {
+  for (int k = 0; k < body_count(); ++k) {
+    BodyTrack& b = bodies_[k];
+    const BodyTrack& as = saved.bodies[k];
+    const Motion& m = as.motion;
+    b.version = as.version;
+    b.velocity_rounding = as.velocity_rounding;
+    b.resolved_at = as.resolved_at;
+    b.last_partner = as.last_partner;
+    b.streak = as.streak;
+    if (b.component < 0)
+      b.motion =
+          Motion::ballistic(m.origin(), m.start(), b.motion.acceleration(), b.motion.end(), m.start_low());
+  }
+  for (const ComponentStart& s : saved.starts) {
+    Coupled& c = components_[s.component];
+    start(c, s.time, s.states);
+    while (follow(c, t) < t) {
+      if (std::isfinite(c.failure.time)) throw BadInput("snapshot: " + c.failure.why);
+      c.integrator->forget_before(t);
+    }
+  }
+  for (SiteMotion& s : sites_) {
+    Extent extent = s.extend(t, instalment());
+    for (; extent.status == Extent::Status::unfinished; extent = s.extend(t, instalment()))
+      s.forget_before(t);
+    if (extent.end < t) throw BadInput("snapshot: " + extent.why);
+  }
+}
+
+}  // namespace brink

@@ -1,0 +1,138 @@
+#pragma once
+/// Every body's motion, and every moving site's.
+///
+/// How far a motion is made at a time is work, not physics: steps depend on the start alone. So a long horizon
+/// is cut where an instalment ends, which bounds memory and the time between two looks at `progress`; and a
+/// motion that fails is followed to its end, since a collision before may start it afresh.
+
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "brink/core/base/large_vector.h"
+#include "brink/core/world/forces.h"
+#include "brink/integrators/integrator.h"
+#include "brink/scheduler/kernel/body_track.h"
+#include "brink/scheduler/kernel/run_control.h"
+#include "brink/scheduler/kernel/site_motion.h"
+#include "brink/scheduler/run/options.h"
+
+namespace brink {
+
+/// A body and the state at which its motion begins anew.
+struct Restart {
+  int body;
+  ExtendedState state;
+};
+
+/// Where the integrator of a component was started.
+struct ComponentStart {
+  int component = -1;
+  double time = 0.0;  ///< [s]
+  std::vector<BodyState> states;
+};
+
+class Trajectories {
+ public:
+  /// Starts everything at t = 0. `world` must outlive it. @throws BadInput as make_integrator.
+  Trajectories(const World& world, const SolverOptions& options, RunControl& run);
+
+  int body_count() const { return static_cast<int>(bodies_.size()); }
+  int site_count() const { return static_cast<int>(sites_.size()); }
+  /// Owners count bodies first, then sites.
+  int owner_count() const { return body_count() + site_count(); }
+  const BodyTrack& body(int k) const { return bodies_[k]; }
+  BodyTrack& body(int k) { return bodies_[k]; }
+  const SiteMotion& site(int k) const { return sites_[k]; }
+  const Motion& motion_of(int owner) const {
+    return owner < body_count() ? bodies_[owner].motion : sites_[owner - body_count()].motion();
+  }
+  std::vector<BodyState> states(double t) const;
+  std::size_t component_count() const { return components_.size(); }
+  /// Bodies of a component, ascending.
+  std::span<const int> members(int component) const { return components_[component].component.bodies; }
+  /// True if the body is on a parabola for as long as it meets nothing.
+  bool is_free(int k) const { return bodies_[k].component < 0; }
+  /// True if its motion is a closed form under constant accelerations.
+  bool is_ballistic(int k) const;
+
+  // -- going on: bool is false on a halt, where an integrator failed or `progress` said stop --
+  /// Lets every motion go on towards t by an instalment at most. Returns how far all of them cover, <= t.
+  double follow(double t);
+  double follow_body(int k, double t);
+  double follow_sites(double t);
+  /// All the way to t.
+  bool cover(double t);
+  bool cover_body(int k, double t);
+  bool cover_sites(double t);
+  /// Where the first of the motions ends that cannot go on [s]; infinity: none that is known.
+  double reach() const { return reach_; }
+  /// Halts for the motion that ends at reach().
+  bool stop_at_reach();
+  /// True if motions have grown so much since the last forget_before() that it is worth a call.
+  bool much_to_forget() const;
+  /// Nobody will ask a motion for a time before t any more.
+  void forget_before(double t);
+
+  // -- starting afresh, at the present time; versions are raised --
+  /// Bodies of one component, or one free body. Bodies whose motion changed are appended to `changed`.
+  void restart(std::span<const Restart> touched, std::vector<int>& changed);
+  /// A free body.
+  void restart_free(int k, const BodyState& start, const BodyState& low);
+  /// From now on the bodies of each set are integrated together, beside those that forces couple; sets that
+  /// are not named again are split. Components that stay as they are keep their motions, bit for bit.
+  void regroup(std::vector<std::vector<int>> together);
+  /// The sets that regroup() was last given.
+  const std::vector<std::vector<int>>& together() const { return together_; }
+
+  // -- going back --
+  ComponentStart start_of(int component) const;
+  /// Starts the component there again and goes on to where it has come.
+  void go_back_to(const ComponentStart& start);
+  struct Saved {
+    std::vector<BodyTrack> bodies;       ///< motions of those that are free alone
+    std::vector<ComponentStart> starts;  ///< of every component
+  };
+  Saved saved() const;
+  /// As they were saved at time t. @throws BadInput where a motion cannot be made again.
+  void restore(const Saved& saved, double t);
+
+ private:
+  struct Failure {  ///< of a motion that cannot go on
+    double time = std::numeric_limits<double>::infinity();
+    std::string why;
+  };
+  struct Coupled {  ///< a component and its integrator
+    Component component;
+    std::unique_ptr<Integrator> integrator;
+    double started = 0.0;
+    std::vector<BodyState> start_states;
+    Failure failure;
+  };
+
+  void add_component(Component component, double t, std::span<const BodyState> states);
+  void start(Coupled& c, double t, std::vector<BodyState> states);
+  void fetch(const Coupled& c);
+  double follow(Coupled& c, double t);
+  double follow_site(int site, double t);
+  bool cover(Coupled& c, double t);
+  std::uint64_t instalment() const;
+  void note_failure(Failure& of, double end, const std::string& name, const std::string& why);
+  void find_reach();
+  bool stop_at(const Failure& failure);
+
+  const World* world_;
+  const SolverOptions* options_;
+  RunControl* run_;
+  LargeVector<BodyTrack> bodies_;
+  std::vector<Coupled> components_;
+  std::vector<std::vector<int>> together_;
+  std::vector<SiteMotion> sites_;
+  std::vector<Failure> site_failures_;
+  double reach_ = std::numeric_limits<double>::infinity();
+  std::uint64_t forgotten_ = 0;  ///< pieces made when forget_before() was last called
+};
+
+}  // namespace brink

@@ -1,0 +1,20 @@
+#pragma once
+/// What happened, one record each.
+
+#include <cstdint>
+
+#include "brink/core/contacts/contact.h"
+
+namespace brink {
+
+enum class EventKind { collision, persist, lift, zeno, group, sleep, wake, undecided };
+const char* to_string(EventKind kind);
+
+struct Event {
+  std::uint64_t seq = 0;  ///< counts from 0
+  EventKind kind = EventKind::collision;
+  Contact contact;
+  double impulse_n = 0.0, impulse_t = 0.0;  ///< [N s]
+};
+
+}  // namespace brink

@@ -1,0 +1,12 @@
+#pragma once
+#include <string>
+#include <vector>
+
+namespace brink {
+
+/// What the simulator will do and what it leaves out, in lines for people (printed by `brink check`).
+struct Plan {
+  std::vector<std::string> lines;
+};
+
+}  // namespace brink

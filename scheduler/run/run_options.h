@@ -1,0 +1,23 @@
+#pragma once
+/// How far to run, and what to tell on the way.
+
+#include <cstdint>
+#include <functional>
+
+#include "brink/scheduler/run/trace.h"
+
+namespace brink {
+
+/// When frames, checkpoints and progress reports are due.
+struct RunOptions {
+  double until = 1.0;               ///< [s]
+  double frame_interval = 0.0;      ///< [s]; 0: only at the start and the end
+  double checkpoint_seconds = 1.0;  ///< wall-clock seconds between checkpoints; < 0: none, 0: at every chance
+  bool first_frame = true;          ///< record the frame at the starting time (false when resuming)
+  bool record_events = true;
+  TraceSink* trace = nullptr;  ///< told what the scheduler does; may be null
+  /// Called now and then with the time reached; return false to stop the run. May be empty.
+  std::function<bool(double t, std::uint64_t collisions)> progress;
+};
+
+}  // namespace brink

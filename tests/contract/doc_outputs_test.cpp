@@ -1,0 +1,126 @@
+// What README.md and docs/hello.md print is what the program prints. Wall times are left out, and so is all of
+// it where last bits may differ: on another processor or compiler.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kRoot = BRINK_SOURCE_DIR;
+const fs::path kProgram = fs::path(BRINK_BINARY_DIR) / "bin" / "brink";
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Fenced blocks without a language.
+std::vector<std::string> printed_blocks(const std::string& page) {
+  std::vector<std::string> blocks;
+  std::istringstream lines(page);
+  bool inside = false, plain = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("```", 0) == 0) {
+      plain = !inside && line == "```";
+      inside = !inside;
+      if (plain) blocks.emplace_back();
+    } else if (inside && plain) {
+      blocks.back() += line + '\n';
+    }
+  }
+  return blocks;
+}
+
+/// What a command prints, on both streams.
+std::string output_of(const std::string& command, const fs::path& folder) {
+  FILE* pipe = popen(("cd '" + folder.string() + "' && " + command + " 2>&1").c_str(), "r");
+  std::string text;
+  for (int c = 0; (c = std::fgetc(pipe)) != EOF;) text += static_cast<char>(c);
+  pclose(pipe);
+  return text;
+}
+
+std::string without_wall_time(const std::string& text) {
+  return std::regex_replace(text, std::regex("wall time +[^\n]*"), "wall time");
+}
+
+/// Text as a pattern: any white space for white space, anything for "...".
+std::regex pattern_of(const std::string& shown) {
+  std::string pattern;
+  std::istringstream words(shown);
+  for (std::string word; words >> word;) {
+    if (!pattern.empty()) pattern += "\\s+";
+    pattern +=
+        word == "..." ? "[^]*?" : std::regex_replace(word, std::regex(R"([.^$|()\[\]{}*+?\\])"), R"(\$&)");
+  }
+  return std::regex("\\s*" + pattern + "\\s*");
+}
+
+class DocOutputs : public ::testing::Test {
+ protected:
+  void SetUp() override {
+#if !defined(__x86_64__) || !defined(__GNUC__) || defined(__clang__)
+    GTEST_SKIP() << "last bits may differ";
+#endif
+    folder = fs::temp_directory_path() / ("brink-doc-outputs-" + std::to_string(::getpid()));
+    fs::create_directories(folder);
+  }
+  void TearDown() override { fs::remove_all(folder); }
+
+  void expect_shown(const std::string& shown, const std::string& printed) const {
+    EXPECT_TRUE(std::regex_match(without_wall_time(printed), pattern_of(without_wall_time(shown))))
+        << "shown:\n"
+        << shown << "printed:\n"
+        << printed;
+  }
+  /// Runs the `$ ./brink ...` of a block and compares what follows it.
+  bool check_command(const std::string& block) const {
+    static const std::string lead = "$ ./brink ";
+    if (block.rfind(lead, 0) != 0) return false;
+    const std::size_t end = block.find('\n');
+    const std::string command = "'" + kProgram.string() + "' " + block.substr(lead.size(), end - lead.size());
+    expect_shown(block.substr(end + 1), output_of(command, folder));
+    return true;
+  }
+
+  fs::path folder;
+};
+
+TEST_F(DocOutputs, ReadmesFirstRun) {
+  const std::string page = text_of(kRoot / "README.md");
+  std::smatch command;
+  ASSERT_TRUE(std::regex_search(page, command, std::regex(R"(\n\./brink run (\S+\.toml))")));
+  const std::string run = "'" + kProgram.string() + "' run '" + (kRoot / command[1].str()).string() + "'";
+  for (const std::string& block : printed_blocks(page))
+    if (block.find("state hash") != std::string::npos) return expect_shown(block, output_of(run, folder));
+  FAIL() << "README.md shows no summary";
+}
+
+TEST_F(DocOutputs, TheWalkOfHello) {
+  const std::string page = text_of(kRoot / "docs/hello.md");
+  const std::size_t begin = page.find("```toml\n") + 8, end = page.find("```", begin);
+  const std::string scene = page.substr(begin, end - begin);
+  std::ofstream(folder / "ball.toml") << scene;
+  int commands = 0;
+  for (const std::string& block : printed_blocks(page)) commands += check_command(block);
+  EXPECT_GE(commands, 3);
+
+  std::string misspelt = scene;
+  misspelt.replace(misspelt.find("mass ="), 4, "mas");
+  std::ofstream(folder / "ball.toml") << misspelt;
+  const std::string fault = output_of("'" + kProgram.string() + "' check ball.toml", folder);
+  const std::size_t shown = page.find("ball.toml:14:1:");
+  ASSERT_NE(shown, std::string::npos);
+  EXPECT_NE(fault.find(page.substr(shown, page.find('\n', shown) - shown)), std::string::npos) << fault;
+}
+
+}  // namespace

@@ -1,0 +1,56 @@
+// What the watch over a run sees, and what it lets pass.
+#include "brink/scheduler/kernel/certificate_watch.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/scheduler/kernel/parts.h"
+
+namespace brink {
+namespace {
+
+using namespace testing;
+using ::testing::HasSubstr;
+
+TEST(CertificateWatch, AnOverlapAtAFrameEndsTheRunWithPairTimeAndDepth) {
+  KernelParts parts(two_discs(), {});
+  parts.watch.frame(1.5);
+  EXPECT_FALSE(parts.run.halt()) << "before begin() overlaps are measured alone";
+  EXPECT_NEAR(parts.watch.max_overlap(), 1.0, 1e-12);
+  parts.watch.begin();
+  parts.watch.frame(1.5);
+  ASSERT_TRUE(parts.run.halt());
+  EXPECT_THAT(parts.run.halt()->why, HasSubstr("'body0' overlaps 'body1' at t = 1.5"));
+}
+
+TEST(CertificateWatch, AWayThroughAWireEndsTheRun) {
+  World world = two_discs();
+  world.bodies[1].initial.twist.velocity.x() = 50.0;
+  KernelParts parts(world, {});
+  parts.watch.begin();
+  EXPECT_TRUE(parts.watch.flight(1, 0.03));
+  EXPECT_FALSE(parts.watch.flight(1, 1.0));
+  EXPECT_THAT(parts.run.halt()->why, HasSubstr("'body1' went through a wire of 'site0'"));
+}
+
+TEST(CertificateWatch, AContactThatPartsIsNone) {
+  KernelParts parts(two_discs(), {});
+  parts.watch.begin();
+  EXPECT_TRUE(parts.watch.approaches(kDiscs, -1e-12, 1e-9));
+  EXPECT_FALSE(parts.watch.approaches(kDiscs, -1e-3, 1e-9));
+}
+
+TEST(CertificateWatch, AnOverlapAtTheStartIsNamedAndASmallOneAllowed) {
+  World world = two_discs();
+  world.bodies[1].initial.pose.position.x() = 0.9;
+  EXPECT_THAT(KernelParts(world, {}).watch.start_fault(), HasSubstr("overlap by 0.1 m at the start"));
+  world.bodies[1].initial.pose.position.x() = 1.0 - 1e-8;
+  KernelParts parts(world, {});
+  EXPECT_EQ(parts.watch.start_fault(), "");
+  parts.watch.begin();
+  parts.watch.frame(0.0);
+  EXPECT_FALSE(parts.run.halt());
+}
+
+}  // namespace
+}  // namespace brink

@@ -1,0 +1,71 @@
+// Frames on the clock, events in order, checkpoints when they are due.
+#include "brink/scheduler/kernel/records.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/scheduler/kernel/parts.h"
+
+namespace brink {
+namespace {
+
+using namespace testing;
+
+TEST(Records, FramesAreDueOnTheFrameClock) {
+  KernelParts parts(two_discs(), {});
+  EXPECT_FALSE(parts.records.frame_due(100.0));
+  RunOptions options;
+  options.frame_interval = 0.1;
+  parts.run.begin(options);
+  Events told;
+  parts.records.begin(&told);
+  while (const auto due = parts.records.frame_due(0.35)) parts.records.frame_of_clock(*due);
+  EXPECT_EQ(told.frame_times, (std::vector<double>{0.1, 0.2, 0.30000000000000004}));
+  EXPECT_EQ(parts.records.last_frame(), told.frame_times.back());
+}
+
+// Within an instant the clock may be a rounding back: times are told in order all the same, and what is left
+// over says when it was.
+TEST(Records, EventsAreNeverToldBeforeTheLast) {
+  KernelParts parts(two_discs(), {});
+  Events told;
+  parts.records.begin(&told);
+  const FeatureContact contact = meeting(parts).contact;
+  parts.run.set_time(1.0);
+  parts.records.event(EventKind::collision, kDiscs, contact, 1.0, 0.0, Real(0));
+  parts.run.set_time(std::nextafter(1.0, 0.0));
+  parts.records.event(EventKind::collision, kDiscs, contact, 2.0, 0.0, Real(0));
+  ASSERT_EQ(told.events.size(), 2U);
+  EXPECT_EQ(told.events[1].seq, 1U);
+  EXPECT_EQ(told.events[1].contact.time, 1.0);
+  EXPECT_EQ(told.events[1].contact.time_low, std::nextafter(1.0, 0.0) - 1.0);
+}
+
+TEST(Records, EventsThatNobodyWantsAreCountedAllTheSame) {
+  KernelParts parts(two_discs(), {});
+  RunOptions options;
+  options.record_events = false;
+  parts.run.begin(options);
+  Events told;
+  parts.records.begin(&told);
+  parts.records.event(EventKind::collision, kDiscs, {}, 1.0, 0.0, Real(0));
+  EXPECT_TRUE(told.events.empty());
+  EXPECT_EQ(parts.records.saved().seq, 1U);
+}
+
+TEST(Records, ARecorderThatOverridesNothingIsAsked) {
+  KernelParts parts(two_discs(), {});
+  Recorder nobody;
+  RunOptions options;
+  options.checkpoint_seconds = 0.0;
+  parts.run.begin(options);
+  parts.records.begin(&nobody);
+  EXPECT_TRUE(parts.records.checkpoint_due());
+  parts.records.checkpoint({});
+  parts.records.frame(0.0);
+  options.checkpoint_seconds = -1.0;
+  parts.run.begin(options);
+  EXPECT_FALSE(parts.records.checkpoint_due());
+}
+
+}  // namespace
+}  // namespace brink

@@ -1,0 +1,42 @@
+// Whether a run goes on.
+#include "brink/scheduler/kernel/run_control.h"
+
+#include <gtest/gtest.h>
+
+namespace brink {
+namespace {
+
+TEST(RunControl, TheFirstReasonToStopCounts) {
+  RunControl run;
+  EXPECT_TRUE(run.poll());
+  run.stop(Termination::failed, "first");
+  run.stop(Termination::stopped, "second");
+  ASSERT_TRUE(run.halt());
+  EXPECT_EQ(run.halt()->why, "first");
+  EXPECT_FALSE(run.poll());
+  run.forget_halt();
+  EXPECT_TRUE(run.poll());
+}
+
+TEST(RunControl, ProgressIsAskedAfterEnoughWorkAndMayStop) {
+  RunControl run;
+  RunOptions options;
+  int asked = 0;
+  options.progress = [&](double t, std::uint64_t collisions) {
+    EXPECT_EQ(t, 2.5);
+    EXPECT_EQ(collisions, 3U);
+    return ++asked < 2;
+  };
+  run.begin(options);
+  run.set_time(2.5);
+  run.work().collisions = 3;
+  for (int k = 0; k < 2; ++k) {
+    run.count_pieces(1U << 20);
+    EXPECT_EQ(run.poll(), k == 0);
+  }
+  EXPECT_EQ(asked, 2);
+  EXPECT_EQ(run.halt()->termination, Termination::stopped);
+}
+
+}  // namespace
+}  // namespace brink
