@@ -52,7 +52,9 @@ void expect_no_drift(const char* what, const World& world, std::uint64_t collisi
       what, static_cast<unsigned long long>(s.collisions), static_cast<double>(s.collisions) / s.wall_seconds,
       energy, momentum, s.max_overlap);
   EXPECT_LE(energy, drift);
-  if (world.periods.any()) EXPECT_LE(momentum, drift);
+  if (world.periods.any()) {
+    EXPECT_LE(momentum, drift);
+  }
   EXPECT_LE(s.max_overlap, overlap);
   EXPECT_TRUE(simulator.start_fault().empty());
 }

