@@ -91,7 +91,8 @@ bool CertificateWatch::flight(int k, double to) {
   const double from = std::max(motion.begin(), flown_until_);
   if (!(from < to)) return true;
   const auto site = walls_.crossed([&](double t) { return motion.pose(t).position; }, from, to);
-  return !site || report({k, -1, *site, {}}, 0.0, to, "went through a wire of");
+  if (!site || !search_->may_meet(k, trajectories_->body_count() + *site)) return true;
+  return report({k, -1, *site, {}}, 0.0, to, "went through a wire of");
 }
 
 bool CertificateWatch::approaches(const PairKey& pair, double closing_speed, double rounding) {

@@ -80,7 +80,7 @@ ContactSearch::ContactSearch(const World& world, const SolverOptions& options,
 std::optional<PairKey> ContactSearch::pair_of(int a, int b, const Image& image) const {
   const int n = trajectories_->body_count();
   if (a > b) return pair_of(b, a, -image);
-  if (a >= n || a == b) return std::nullopt;
+  if (a >= n || a == b || !may_meet(a, b)) return std::nullopt;
   return b < n ? PairKey{a, b, -1, image} : PairKey{a, -1, b - n, image};
 }
 

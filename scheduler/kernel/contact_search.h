@@ -1,6 +1,7 @@
 #pragma once
 /// Who meets whom, and when: searches of one pair on the motions that its owners have, or had.
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -12,6 +13,9 @@
 #include "brink/scheduler/kernel/trajectories.h"
 
 namespace brink {
+
+/// Whether owners a and b (bodies first, then sites) may meet at all.
+using PairFilter = std::function<bool(int a, int b)>;
 
 class ContactSearch {
  public:
@@ -33,7 +37,10 @@ class ContactSearch {
   }
 
   // -- pairs --
-  /// The pair of owner a with that image of owner b; nothing if they are one, or two sites.
+  /// From now on owners whom it says no to never meet. It is asked with a < b.
+  void set_filter(PairFilter filter) { filter_ = std::move(filter); }
+  bool may_meet(int a, int b) const { return !filter_ || filter_(std::min(a, b), std::max(a, b)); }
+  /// The pair of owner a with that image of owner b; nothing if they are one, two sites, or never meet.
   std::optional<PairKey> pair_of(int a, int b, const Image& image = {}) const;
   int other_owner(const PairKey& pair) const {
     return pair.with_site() ? trajectories_->body_count() + pair.other_site : pair.other_body;
@@ -77,6 +84,7 @@ class ContactSearch {
   std::vector<const SiteIndex*> indices_of_;
   std::vector<std::unique_ptr<SiteIndex>> indices_;
   SearchScratch scratch_;
+  PairFilter filter_;
   SampledClock clock_;
 };
 

@@ -56,7 +56,9 @@ class KernelView {
   }
 
   // -- pairs --
-  /// The pair of owner a with that image of owner b; nothing if they are one, or two sites.
+  /// False if a filter says that owners a and b never meet.
+  bool may_meet(int a, int b) const { return parts_.search.may_meet(a, b); }
+  /// The pair of owner a with that image of owner b; nothing if they are one, two sites, or never meet.
   std::optional<PairKey> pair_of(int a, int b, const Image& image = {}) const {
     return parts_.search.pair_of(a, b, image);
   }

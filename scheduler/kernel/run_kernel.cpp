@@ -72,6 +72,11 @@ void RunKernel::stop_after_collisions(std::uint64_t count) {
   parts_.endings.set_limit(count > 0 && (most == 0 || here < most) ? here : most);
 }
 
+void RunKernel::set_pair_filter(PairFilter filter) {
+  parts_.search.set_filter(std::move(filter));
+  ++parts_.revision;
+}
+
 void RunKernel::go_on_from(int k, const ExtendedState& state) {
   const Restart restart{k, state};
   std::vector<int> changed;

@@ -26,6 +26,9 @@ class RunKernel final : public Kernel {
   /// Ends the run after so many collisions from now on, before max_collisions; 0: no more than that says.
   void stop_after_collisions(std::uint64_t count);
 
+  /// From now on owners whom the filter says no to never meet.
+  void set_pair_filter(PairFilter filter);
+
   // -- at the present time; the policy's knowledge is void afterwards --
   /// Body k goes on from this state. @throws BadInput if it is not finite.
   void set_state(int k, const BodyState& state);

@@ -7,18 +7,10 @@ const char* to_string(EventKind kind) {
   switch (kind) {
     case EventKind::collision:
       return "collision";
-    case EventKind::persist:
-      return "persist";
-    case EventKind::lift:
-      return "lift";
     case EventKind::zeno:
       return "zeno";
     case EventKind::group:
       return "group";
-    case EventKind::sleep:
-      return "sleep";
-    case EventKind::wake:
-      return "wake";
     case EventKind::undecided:
       return "undecided";
   }

@@ -7,7 +7,7 @@
 
 namespace brink {
 
-enum class EventKind { collision, persist, lift, zeno, group, sleep, wake, undecided };
+enum class EventKind { collision, zeno, group, undecided };
 const char* to_string(EventKind kind);
 
 struct Event {

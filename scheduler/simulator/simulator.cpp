@@ -92,6 +92,9 @@ std::uint64_t Simulator::state_hash() const {
 
 std::string Simulator::start_fault() const { return impl_->kernel.start_fault(); }
 
+void Simulator::set_pair_filter(std::function<bool(int a, int b)> filter) {
+  impl_->kernel.set_pair_filter(std::move(filter));
+}
 void Simulator::set_state(int k, const BodyState& state) { impl_->kernel.set_state(k, state); }
 void Simulator::apply_impulse(int k, const Vec2& impulse, const Vec2& point) {
   impl_->kernel.apply_impulse(k, impulse, point);

@@ -2,6 +2,7 @@
 /// The simulator: takes a world from contact to contact.
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -44,6 +45,10 @@ class Simulator {
   /// found, as all bodies may be in one place.
   std::vector<Contact> overlaps(std::size_t most = 1000) const;
   Plan plan() const;
+
+  /// From now on two owners (bodies first, then sites; a < b) whom the filter says no to pass through each
+  /// other; an empty one: everybody meets. It must always say the same of a pair. Snapshots do not hold it.
+  void set_pair_filter(std::function<bool(int a, int b)> filter);
 
   // -- at the present time, between runs --
   /// Body k goes on from this state. @throws BadInput if a number of it is not finite.

@@ -132,7 +132,7 @@ TEST_P(Signals, EndTheRunInOrder) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Signals, testing::ValuesIn(kSlow),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& scene) { return std::string(scene.param.name); });
 
 }  // namespace
 }  // namespace brink

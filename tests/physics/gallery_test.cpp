@@ -94,10 +94,12 @@ TEST_P(Gallery, RunKeepsWhatIsConserved) {
 
   // adaptive integrators keep energy to about their tolerance a second; closed forms to rounding
   if (conservative(world) && collisions_keep_energy(world) && sites_stand_still(world)) {
-    EXPECT_NEAR(summary.energy_final, summary.energy_initial, 1e-6 * std::abs(summary.energy_initial));
+    const bool closed_forms = world.forces.empty() && scene.solver.integrator == "auto";
+    const double allowed = closed_forms ? 1e-13 * static_cast<double>(10 + summary.collisions) : 1e-6;
+    EXPECT_NEAR(summary.energy_final, summary.energy_initial, allowed * std::abs(summary.energy_initial));
   }
   if (left_to_itself(world)) {
-    EXPECT_NEAR((summary.momentum - before.linear).norm(), 0.0, 1e-9 * before.linear.norm());
+    EXPECT_NEAR((summary.momentum - before.linear).norm(), 0.0, 1e-12 * before.linear.norm());
   }
 }
 

@@ -122,7 +122,7 @@ void Views::see_bounded(int k, int j, const Image& image, double now) {
 /// Bodies near body k, which is not in free flight.
 void Views::see_bodies(int k, double now, std::span<const int> except) {
   near_->near(k, [&](int j, const Image& image) {
-    if (!holds(except, j)) see_bounded(k, j, image, now);
+    if (!holds(except, j) && kernel_->may_meet(k, j)) see_bounded(k, j, image, now);
   });
 }
 
@@ -134,11 +134,11 @@ void Views::see_bodies(int k, const Course& here, double now, std::span<const in
   const auto see = [&](int j, const Image& image) {
     const Flight& b = flights_[j];
     if (!b.free) {
-      if (!holds(except, j)) see_bounded(k, j, image, now);
+      if (!holds(except, j) && kernel_->may_meet(k, j)) see_bounded(k, j, image, now);
       return;
     }
     const MeetingTimes m = meeting(here, b, periods_.shift(image), now);
-    if (m.begin < clock.horizon && !holds(except, j))
+    if (m.begin < clock.horizon && !holds(except, j) && kernel_->may_meet(k, j))
       clock.see({m.begin, m.begin, j, image, b.version, 0}, now);
   };
   near_->near(k, see, former);
@@ -175,6 +175,7 @@ void Views::look_ahead(int k, double now) {
 
 /// Still sites are in view until body k leaves its cell.
 void Views::see_site(int k, int s, const Image& image, double now) {
+  if (!kernel_->may_meet(k, body_count() + s)) return;
   BodyClock& clock = clocks_[k];
   const double end = std::min(clock.exit, clock.horizon);
   double wait = flights_[k].free && !site_boxes_[s].empty() ? kForever : 0.0;
@@ -190,6 +191,7 @@ void Views::see_site(int k, int s, const Image& image, double now) {
 }
 
 void Views::see_moving_site(int k, int s, double now) {
+  if (!kernel_->may_meet(k, body_count() + s)) return;
   const auto see = [&](const Image& image) {
     const MeetingTimes m = bounded_meeting(k, body_count() + s, image, now);
     if (m.begin < clocks_[k].horizon) clocks_[k].see({m.begin, m.begin, body_count() + s, image, 0, 0}, now);

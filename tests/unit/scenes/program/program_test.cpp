@@ -9,8 +9,10 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "brink/scenes/run_file/run_file.h"
+#include "brink/scheduler/policies/policy.h"
 
 namespace brink {
 namespace {
@@ -260,6 +262,10 @@ TEST_F(ProgramTest, CheckPrintsContentsPlanAndOverlaps) {
   const Outcome check = brink("check ball.toml");
   EXPECT_EQ(check.status, 0);
   EXPECT_THAT(check.out, HasSubstr("1 body, 1 fixed site, 0 forces"));
+  EXPECT_THAT(check.out, HasSubstr("1 of 1 bodies ballistic in closed form"));
+  EXPECT_THAT(check.out, HasSubstr("pairs: 1 of 1 have a first contact in closed form"));
+  EXPECT_THAT(brink("check ball.toml --set solver.closed_forms=false").out,
+              HasSubstr("closed form (not left out: solver.closed_forms = false)"));
   EXPECT_THAT(check.out, HasSubstr("Overlaps at the start\n  none"));
   // 0.1 m lower than touching: the ball reaches 0.1 m into the floor
   const Outcome low = brink("check ball.toml --set 'bodies.0.position=[0, 0.4]'");
@@ -302,11 +308,48 @@ TEST_F(ProgramTest, ListShowsEveryTopicWithItsDefault) {
 }
 
 TEST_F(ProgramTest, HelpOfEveryCommandHasExamples) {
-  for (const char* command : {"", "run ", "check ", "draw ", "list "}) {
+  for (const char* command : {"", "run ", "check ", "draw ", "list ", "sweep ", "bench "}) {
     const Outcome help = brink(std::string(command) + "--help");
     EXPECT_EQ(help.status, 0);
     EXPECT_THAT(help.out, HasSubstr("Examples:")) << command;
   }
+}
+
+// Exact policies agree to the bit, and reach the known answer to rounding; a fixed step does not.
+TEST_F(ProgramTest, BenchMeasuresAProblemWithAKnownAnswer) {
+  const Outcome bench = brink("bench dropped_disc --repeats 1 --out b");
+  ASSERT_EQ(bench.status, 0) << bench.error;
+  EXPECT_EQ(text_of(dir_ / "b" / "bench.png").substr(1, 3), "PNG");
+  std::istringstream table(text_of(dir_ / "b" / "bench.csv"));
+  std::string line, hash_of_exact;
+  std::getline(table, line);
+  EXPECT_EQ(line.rfind("problem,series,setting,approximate,error,", 0), 0U);
+  int exact = 0, approximate = 0;
+  while (std::getline(table, line)) {
+    std::vector<std::string> cells;
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+    const double error = std::stod(cells.at(4));
+    if (cells.at(3) == "1") {
+      ++approximate;
+      EXPECT_GT(error, 1e-9) << line;
+    } else if (cells.at(2) == "closed form") {
+      EXPECT_LT(error, 1e-13) << line;
+      if (exact++ == 0) hash_of_exact = cells.at(12);
+      EXPECT_EQ(cells.at(12), hash_of_exact) << line;
+    }
+  }
+  EXPECT_EQ(exact, static_cast<int>(exact_policies().size()));
+  EXPECT_GE(approximate, 3);
+  EXPECT_EQ(brink("bench nonesuch").status, 2);
+}
+
+TEST_F(ProgramTest, AKeyOfBeforeIsAFaultThatNamesTheNewOne) {
+  const Outcome check = brink("check ball.toml --set solver.skip_broad_phase=false");
+  EXPECT_EQ(check.status, 2);
+  EXPECT_THAT(check.error, HasSubstr("key \"skip_broad_phase\" in solver is called \"broad_phase\" now"));
+  EXPECT_THAT(brink("check ball.toml --set solver.skip_fields=true").error,
+              HasSubstr("\"fields_for_small_shapes\" now, with the opposite meaning"));
 }
 
 TEST_F(ProgramTest, PicturesOfASceneAndOfItsRunAreWritten) {

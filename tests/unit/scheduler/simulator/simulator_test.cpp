@@ -192,6 +192,33 @@ TEST(Simulator, StatesAndImpulsesFromOutsideAreGoneOnFrom) {
   }
 }
 
+// Discs of two teams in a room: those of one team pass through each other, and nobody feels the left wall.
+TEST(Simulator, OwnersThatAFilterKeepsApartNeverMeet) {
+  std::uint64_t hash = 0;
+  for (const std::string& policy : exact_policies()) {
+    World world;
+    for (int k = 0; k < 6; ++k)
+      add(world, body(make_disc(0.4), {k % 3 - 1.0, k / 3 - 0.5}, {k % 2 ? 1.1 : -1.3, 0.3 * k - 0.8}));
+    const int left = add(world, site(make_segment({-3.0, -9.0}, {-3.0, 9.0})));
+    add(world, site(make_segment({3.0, -9.0}, {3.0, 9.0})));
+    SolverOptions options;
+    options.policy = policy;
+    Simulator simulator(world, options);
+    simulator.set_pair_filter([&](int a, int b) { return b < 6 ? (a + b) % 2 == 1 : b != 6 + left; });
+    Events events;
+    EXPECT_EQ(simulator.run(testing::until(6.0), &events).termination, Termination::reached_end) << policy;
+    EXPECT_GT(events.collisions().size(), 4U);
+    for (const Event& e : events.collisions()) {
+      if (e.contact.other_body >= 0) {
+        EXPECT_EQ((e.contact.body + e.contact.other_body) % 2, 1);
+      }
+      EXPECT_NE(e.contact.other_site, left);
+    }
+    if (hash == 0) hash = simulator.state_hash();
+    EXPECT_EQ(simulator.state_hash(), hash) << policy;
+  }
+}
+
 // What a policy has in view of a body that was put elsewhere is void: it collides where it is now.
 TEST(Simulator, ABodyPutElsewhereCollidesThere) {
   for (const std::string& policy : exact_policies()) {
