@@ -23,6 +23,9 @@ while(pending)
     list(APPEND pending ${included})
   endforeach()
 endwhile()
+list(SORT headers)
+list(JOIN headers "\n" lines)
+file(WRITE ${PROJECT_BINARY_DIR}/public_headers.txt "${lines}\n")  # for tests/gates.sh
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes/gallery DESTINATION ${CMAKE_INSTALL_DATADIR}/brink)
 install(EXPORT brinkTargets NAMESPACE brink:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/brink)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/brinkConfig.cmake.in

@@ -19,11 +19,11 @@ using Rooms = std::vector<std::string>;
 
 /// What every room may include from, beside itself. A folder that is not named belongs to the room above it.
 const std::map<std::string, Rooms>& order() {
-  static const std::map<std::string, Rooms> rooms = [] {
+  static const std::map<std::string, Rooms> all = [] {
     const Rooms core{"core/base", "core/shapes", "core/fields", "core/world", "core/contacts"};
-    const auto with = [](Rooms rooms, const Rooms& more) {
-      rooms.insert(rooms.end(), more.begin(), more.end());
-      return rooms;
+    const auto with = [](Rooms some, const Rooms& more) {
+      some.insert(some.end(), more.begin(), more.end());
+      return some;
     };
     const Rooms below = with(core, {"integrators"});
     std::map<std::string, Rooms> rooms{
@@ -51,7 +51,7 @@ const std::map<std::string, Rooms>& order() {
     }
     return rooms;
   }();
-  return rooms;
+  return all;
 }
 
 /// The room that a folder, or a file in it, belongs to; empty: none.
