@@ -1,6 +1,7 @@
 #include "brink/scheduler/policies/horizon.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "brink/scheduler/policies/order.h"
 
@@ -23,10 +24,23 @@ double first_length(const KernelView& kernel, double until) {
   return std::max(horizon, kShortest * std::max(1.0, until));
 }
 
+/// In a plane that repeats, a body that crosses many periods before the horizon's end would be near as many
+/// images of everybody: the time in which the fastest goes no farther than a few, under gravity [s].
+double within_periods(const KernelView& kernel) {
+  constexpr double few = 4.0;
+  const double length = few * kernel.world().periods.least();
+  if (!std::isfinite(length)) return length;
+  double fastest = 0.0;
+  for (int k = 0; k < kernel.body_count(); ++k)
+    fastest = std::max(fastest, kernel.state(k, kernel.time()).twist.velocity.norm());
+  const double root = std::sqrt(fastest * fastest + 2.0 * kernel.world().gravity.norm() * length);
+  return std::max(2.0 * length / (fastest + root), kShortest);
+}
+
 /// The end of the next horizon from the present time [s].
 double next_end(Kernel& kernel, double until) {
   if (kernel.horizon() <= 0.0) kernel.choose_horizon(first_length(kernel, until));
-  return std::min(until, kernel.time() + kernel.horizon());
+  return std::min(until, kernel.time() + std::min(kernel.horizon(), within_periods(kernel)));
 }
 
 /// Learns from a horizon that had so many near pairs and collisions.
