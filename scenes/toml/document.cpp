@@ -2,6 +2,8 @@
 
 #include <sstream>
 
+#include "brink/scenes/toml/not_toml.h"
+
 namespace brink {
 namespace {
 
@@ -88,9 +90,31 @@ toml::table as_value(std::string_view text) {
     try {
       if (KeyDepthScan(line).first_too_deep() == 0) return toml::parse(line);
     } catch (const toml::parse_error&) {
+    } catch (const NotToml&) {
     }
   }
   return toml::table{{"value", std::string(text)}};
+}
+
+/// The line of a text that is NotToml: the last of the shortest beginning that is it, too.
+int line_of(std::string_view text) {
+  std::vector<std::size_t> ends;
+  for (std::size_t at = text.find('\n'); at != std::string_view::npos; at = text.find('\n', at + 1))
+    ends.push_back(at + 1);
+  ends.push_back(text.size());
+  std::size_t sound = 0, fault = ends.size();  // so many lines
+  while (fault - sound > 1) {
+    const std::size_t middle = (sound + fault) / 2;
+    try {
+      toml::parse(text.substr(0, ends[middle - 1]));
+      sound = middle;
+    } catch (const toml::parse_error&) {
+      sound = middle;  // cut off in the middle of something
+    } catch (const NotToml&) {
+      fault = middle;
+    }
+  }
+  return static_cast<int>(fault);
 }
 
 bool is_index(const std::string& part, std::size_t size, std::size_t* index) {
@@ -130,6 +154,8 @@ void TomlDocument::parse(std::string_view text) {
     const auto& at = error.source().begin;
     faults_.add({std::max(1, static_cast<int>(at.line)), std::max(1, static_cast<int>(at.column))},
                 "not valid TOML: " + std::string(error.description()));
+  } catch (const NotToml& error) {
+    faults_.add({line_of(text), 1}, std::string("not valid TOML: ") + error.what());
   }
 }
 
