@@ -5,6 +5,11 @@
 // TomlDocument says where.
 #include "brink/scenes/toml/not_toml.h"
 
+#if defined(__clang__)
+#pragma clang diagnostic ignored "-Wexceptions"  // some assertions stand in functions that may not throw
+#elif defined(__GNUC__)
+#pragma GCC diagnostic ignored "-Wterminate"
+#endif
 #undef NDEBUG
 #define TOML_ASSERT(condition) \
   ((condition) ? static_cast<void>(0) : throw brink::NotToml("a key or a value is missing"))
