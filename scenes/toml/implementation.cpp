@@ -11,7 +11,8 @@
 #pragma GCC diagnostic ignored "-Wterminate"
 #endif
 #undef NDEBUG
-#define TOML_ASSERT(condition) \
-  ((condition) ? static_cast<void>(0) : throw brink::NotToml("a key or a value is missing"))
+#define TOML_ASSERT(condition)        \
+  ((condition) ? static_cast<void>(0) \
+               : throw brink::NotToml("expected a key of letters, digits, - and _, or one in quotes"))
 #define TOML_IMPLEMENTATION
 #include <toml++/toml.h>

@@ -93,6 +93,16 @@ material = "steel"
   EXPECT_THAT(scene.options_json, HasSubstr("\"tolerance\":1e-09"));
 }
 
+// Headers on which toml++ would assert (and assumes away in release builds): faults with their line.
+TEST(SceneFile, HeadersWithoutAKeyAreFaultsWithTheirLine) {
+  for (const char* header : {"[.]", "[[.a]]", "[\u00e9]", "[\u00e9.a]", "[!]"}) {
+    const auto faults = faults_of("[world]\nduration = 1.0\n" + std::string(header) + "\na = 1\n");
+    ASSERT_EQ(faults.size(), 1U) << header;
+    EXPECT_EQ(faults[0], "3:1 not valid TOML: expected a key of letters, digits, - and _, or one in quotes")
+        << header;
+  }
+}
+
 TEST(SceneFile, UnknownPolicyIsAFaultThatNamesWhatThereIs) {
   const auto faults = faults_of("[solver]\npolicy = \"timewrap\"\n");
   ASSERT_EQ(faults.size(), 1U);
