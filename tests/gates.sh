@@ -85,7 +85,7 @@ gate_sanitizers() {
     -DCMAKE_CXX_FLAGS="-O1 -g1" -DBRINK_SANITIZE=ON -DBRINK_TESTS=ON >build/sanitize.log 2>&1
   cmake --build "$build" -j "$jobs" --target brink_program fuzz_scene_mutation_test fuzz_run_file_mutation_test \
     fuzz_random_worlds_test fuzz_first_contact_test >>build/sanitize.log 2>&1 || { tail -n 40 build/sanitize.log >&2; return 1; }
-  export UBSAN_OPTIONS=print_stacktrace=1 ASAN_OPTIONS=detect_leaks=1
+  export UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS=suppressions=$PWD/tests/leaks.supp:print_suppressions=0
   {
     BRINK_FUZZ_COUNT=${BRINK_FUZZ_COUNT:-300} BRINK_FUZZ_SECONDS=60 "$build/tests/fuzz_scene_mutation_test" &&
       BRINK_FUZZ_COUNT=${BRINK_FUZZ_COUNT:-100} BRINK_FUZZ_SECONDS=60 "$build/tests/fuzz_run_file_mutation_test" &&
