@@ -73,6 +73,8 @@ void RunKernel::stop_after_collisions(std::uint64_t count) {
 }
 
 void RunKernel::set_pair_filter(PairFilter filter) {
+  if (options().detector == "depth")
+    throw BadInput("set_pair_filter: detector = \"depth\" sees everybody; allowed: \"field\", \"pass\"");
   parts_.search.set_filter(std::move(filter));
   ++parts_.revision;
 }
@@ -90,6 +92,11 @@ void RunKernel::set_state(int k, const BodyState& state) {
   if (!state.pose.position.allFinite() || !std::isfinite(state.pose.angle) ||
       !state.twist.velocity.allFinite() || !std::isfinite(state.twist.omega))
     throw BadInput(fmt::format("set_state of '{}': every number must be finite", world().bodies[k].name));
+  const Body& b = world().bodies[k];
+  const Twist& v = state.twist;
+  if ((b.lock_x && v.velocity.x() != 0.0) || (b.lock_y && v.velocity.y() != 0.0) ||
+      (b.lock_angle && v.omega != 0.0))
+    throw BadInput(fmt::format("set_state of '{}': a locked coordinate must have no velocity", b.name));
   go_on_from(k, ExtendedState(state));
 }
 
@@ -107,15 +114,15 @@ void RunKernel::apply_impulse(int k, const Vec2& impulse, const Vec2& point) {
 void RunKernel::restore(std::span<const std::byte> bytes) {
   SavedRun saved = decode(bytes, world(), options(), parts_.trajectories);
   const WorkCounters before = work();
-  Trajectories again(world(), options(), parts_.run);
   try {
+    Trajectories again(world(), options(), parts_.run);
     again.regroup(parts_.trajectories.together());
     again.restore(saved.trajectories, saved.time);
+    parts_.trajectories = std::move(again);
   } catch (...) {
     work() = before;
     throw;
   }
-  parts_.trajectories = std::move(again);
   parts_.run.set_time(saved.time);
   parts_.run.forget_halt();
   parts_.horizon = saved.horizon;

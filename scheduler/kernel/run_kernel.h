@@ -30,7 +30,7 @@ class RunKernel final : public Kernel {
   void set_pair_filter(PairFilter filter);
 
   // -- at the present time; the policy's knowledge is void afterwards --
-  /// Body k goes on from this state. @throws BadInput if it is not finite.
+  /// Body k goes on from this state. @throws BadInput if it is not finite, or moves along a lock.
   void set_state(int k, const BodyState& state);
   /// An impulse [N s] at a point of the world [m]; locks hold against it. @throws BadInput if it is not finite.
   void apply_impulse(int k, const Vec2& impulse, const Vec2& point);

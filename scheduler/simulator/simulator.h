@@ -48,10 +48,12 @@ class Simulator {
 
   /// From now on two owners (bodies first, then sites; a < b) whom the filter says no to pass through each
   /// other; an empty one: everybody meets. It must always say the same of a pair. Snapshots do not hold it.
+  /// @throws BadInput with detector "depth", which sees everybody.
   void set_pair_filter(std::function<bool(int a, int b)> filter);
 
   // -- at the present time, between runs --
-  /// Body k goes on from this state. @throws BadInput if a number of it is not finite.
+  /// Body k goes on from this state. @throws BadInput if a number of it is not finite, or it moves along what
+  /// is locked.
   void set_state(int k, const BodyState& state);
   /// Gives body k an impulse [N s] at a point of the world [m]; what is locked stays. @throws BadInput if a
   /// number is not finite.

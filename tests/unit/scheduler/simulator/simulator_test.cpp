@@ -189,6 +189,10 @@ TEST(Simulator, StatesAndImpulsesFromOutsideAreGoneOnFrom) {
     EXPECT_NEAR(simulator.state(1).pose.position.y(), -9.0, 1e-9);
     EXPECT_THROW(simulator.set_state(0, {{{NAN, 0.0}, 0.0}, {}}), BadInput);
     EXPECT_THROW(simulator.apply_impulse(0, {INFINITY, 0.0}, {}), BadInput);
+    world.bodies[1].lock_y = true;
+    Simulator locked(world, options);
+    EXPECT_THROW(locked.set_state(1, {{{9.0, 0.0}, 0.0}, {{0.0, 1.0}, 0.0}}), BadInput);
+    EXPECT_NO_THROW(locked.set_state(1, {{{9.0, 1.0}, 0.0}, {{1.0, 0.0}, 0.0}}));
   }
 }
 
