@@ -312,9 +312,12 @@ class PairSearch {
       return band_step(above, f.rate, bounds.acceleration + bend, band, allowed);
     const HullDistance hull = distance_to_arc_hull(site, nearest, path.q);
     const double outside = hull.distance - (nearest.distance - above);
-    const double by_hull = hull.distance > 0.0 ? band_step(outside, hull.gradient.dot(path.rate),
-                                                           bounds.acceleration, band, allowed)
-                                               : 0.0;
+    // what reaches over the chord to an end is in the hull already, however that moves
+    const bool by_end = hull.distance == nearest.distance;
+    const double by_hull =
+        hull.distance > 0.0 && (outside > 0.0 || by_end)
+            ? band_step(outside, hull.gradient.dot(path.rate), bounds.acceleration, band, allowed)
+            : 0.0;
     const double by_speed = bounds.speed > 0.0 ? 0.5 * std::max(above, allowed) / bounds.speed : kForever;
     return std::max(by_hull, by_speed);
   }
@@ -401,11 +404,29 @@ class PairSearch {
       beyond_by = by;
       if (beyond_by > rounding) break;
     }
-    if (high <= low) return false;  // passes by
+    if (high <= low) return meets_tip(half, f, path, gap, nearest, rounding);  // or passes by
     const double t = last_clear_time(gap, low, high);
     // at the end of its neighbourhood a sample changes sides without having come near
     if (gap(t) > touching_band(half, f.sample, path)) return false;
     return remember(half, f, t, 2.0 * moment);
+  }
+
+  /// Two sharp corners of solids that come upon each other, to rounding: beyond that the tip of one may run
+  /// along the outside of the other though their edges cross, which no tip tells of. So they meet, a part of
+  /// the touching distance before. True if they do; `nearest`: when they are nearest.
+  template <class Gap>
+  bool meets_tip(const Half& half, const Feature& f, const SamplePath& path, Gap&& gap, double nearest,
+                 double rounding) {
+    const Site& site = half.site(f.site);
+    const Sample& sample = half.sample(f.sample);
+    const bool sharp = sample.before >= 0 && site.solid && site.radius + sample.radius == 0.0;
+    if (!sharp || nearest_on(site, path.q).foot == Foot::interior) return false;
+    if (nearest > window_end_ || !(std::abs(gap(nearest)) <= 4.0 * rounding)) return false;
+    const double before = 0.5 * limits_.touch;
+    const auto clear = [&](double t) { return gap(t) - before; };
+    const double speed = -f.rate, low = t_ - std::max(0.0, 2.0 * (before - f.gap)) / speed;
+    if (low < std::max(view_.start(), from_) || !(clear(low) > 0.0)) return remember(half, f, t_);
+    return remember(half, f, last_clear_time(clear, low, nearest), 2.0 * rounding / speed);
   }
 
   /// Keeps the contact if it is the earliest so far (ties: lowest half, sample, site). Always true. The

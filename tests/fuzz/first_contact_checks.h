@@ -138,6 +138,18 @@ class Checker {
     return first_contact(s.a, s.b, from, to, limits, scratch_, work_);
   }
 
+  /// The same, taken up again where its cap stopped it, as a policy does.
+  PairAnswer search_on(const Sides& s, double from, double to, const SearchLimits& limits) {
+    PairAnswer answer = search(s, from, to, limits);
+    for (int k = 0; k < 100 && answer.status == PairAnswer::Status::undecided &&
+                    answer.why == PairAnswer::Why::steps && answer.until > from;
+         ++k) {
+      from = answer.until;
+      answer = search(s, from, to, limits);
+    }
+    return answer;
+  }
+
   /// Bound on the speed of any point of one body against the other.
   static double body_speed(const Flight& f) {
     return f.relative_speed + f.spin_a * f.a->bounding_radius + f.spin_b * f.b->bounding_radius;
@@ -233,6 +245,11 @@ class Checker {
       last = next;
       beyond.depth = std::max(beyond.depth, pair.distance(last));
     }
+    // through the very tip of a corner the point comes out on the side that it came from
+    const double way = 0.5 * (beyond.until - t);
+    const bool solid = f.a->is_point() ? f.b->solid : f.a->solid;
+    if (solid && t - way > f.from && pair.bare_point_enclosed(t - way) == pair.bare_point_enclosed(t + way))
+      beyond.depth = 0.0;
     return beyond;
   }
 
@@ -500,7 +517,7 @@ class Checker {
     const Touch next = true_touch(back, pair, t + gone, f.to);
     for (const bool closed : {false, true}) {
       limits.closed_forms = closed;
-      const PairAnswer again = search(sides_back, t, f.to, limits);
+      const PairAnswer again = search_on(sides_back, t, f.to, limits);
       const bool says = again.status == PairAnswer::Status::contact;
       const bool clean = next.real && next.closing > 1e-3 * c.closing_speed;
       const double error = says ? std::abs(again.contact.time - next.time) : 0.0;

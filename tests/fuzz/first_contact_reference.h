@@ -187,7 +187,39 @@ struct Pair {
     }));
   }
 
+  /// True if the bare point is within the loops of the other outline at time t, by the parity of crossings of
+  /// a straight way out: of three ways, what most say. @pre the other is solid.
+  bool bare_point_enclosed(double t) const {
+    const bool of_a = is_bare_point(*a);
+    const Outline& other = of_a ? *b : *a;
+    int odd = 0;
+    for (const double angle : {0.3, 2.1, 4.4}) {
+      Curve path;
+      path.kind = SiteKind::segment;
+      path.a = point_in_other(of_a, t);
+      path.b =
+          path.a + 4.0 * (other.bounding_radius + path.a.norm()) * Vec2(std::cos(angle), std::sin(angle));
+      int crossed = 0;
+      for (const Site& site : other.sites)
+        crossed += times_crossed(path, placed(site, Turn(0.0), Vec2::Zero()));
+      odd += crossed % 2;
+    }
+    return odd >= 2;
+  }
+
  private:
+  /// How often a straight path meets a site's core.
+  static int times_crossed(const Curve& path, const Curve& site) {
+    if (site.kind != SiteKind::arc) return core_distance(path, site) == 0.0 ? 1 : 0;
+    const Vec2 d = (path.b - path.a).normalized(), w = site.center - path.a;
+    const double along = w.dot(d), off2 = w.squaredNorm() - along * along;
+    const double half2 = site.circle * site.circle - off2;
+    if (half2 <= 0.0) return 0;
+    int count = 0;
+    for (const double x : {along - std::sqrt(half2), along + std::sqrt(half2)})
+      count += x > 0.0 && in_sector(site, path.a + x * d - site.center);
+    return count;
+  }
   static bool is_bare_point(const Outline& o) { return o.is_point() && o.sites[0].radius == 0.0; }
   Vec2 point_in_other(bool of_a, double t) const {
     const Pose p = (of_a ? motion_a : motion_b)->pose(t), o = (of_a ? motion_b : motion_a)->pose(t);

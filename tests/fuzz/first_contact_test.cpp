@@ -23,11 +23,12 @@ TEST(FirstContactFuzz, RandomFlightsAgreeWithTheSlowReference) {
 }
 
 // Flights in which the search once made no headway behind the far side of a sharp tip, took an approach in
-// closed form for a leaving one, or met a corner to within a rounding.
+// closed form for a leaving one, met a corner to within a rounding, let two tips that came upon each other pass
+// through, or stepped over what a disc that reaches over an arc's chord met at its other end.
 TEST(FirstContactFuzz, FlightsThatOnceFailedAgree) {
   flights::Checker checker;
-  for (const std::uint64_t seed :
-       {1031187, 1054535, 1062042, 1064138, 1067637, 1085544, 2004568, 3124736, 3186176})
+  for (const std::uint64_t seed : {1031187, 1054535, 1062042, 1064138, 1067637, 1085544, 2004568, 2085429,
+                                   3124736, 3186176, 4343553, 4370944, 4388614, 4396536})
     checker.check(seed);
   EXPECT_EQ(checker.tally.failures(), 0);
 }
