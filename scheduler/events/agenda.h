@@ -28,7 +28,8 @@ struct PairKey {
 /// What a pass found out about one pair: a contact, or where the search had to stop. It speaks of bodies at
 /// the versions it names; a resolve raises those, and the certificate is stale.
 struct Certificate {
-  enum class Kind : std::uint8_t { contact, undecided };
+  /// island: its step ends; of `pair` only `body` means something, its least member.
+  enum class Kind : std::uint8_t { contact, island, undecided };
   double time = 0.0;
   Kind kind = Kind::contact;
   PairKey pair;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "brink/core/contacts/contact.h"
@@ -40,6 +41,9 @@ class ContactSearch {
   /// From now on owners whom it says no to never meet. It is asked with a < b.
   void set_filter(PairFilter filter) { filter_ = std::move(filter); }
   bool may_meet(int a, int b) const { return !filter_ || filter_(std::min(a, b), std::max(a, b)); }
+  /// From now on, until search_again(), searches of the pair find nothing: somebody else keeps its gap.
+  void leave_out(const PairKey& pair) { left_out_.insert(pair); }
+  void search_again(const PairKey& pair) { left_out_.erase(pair); }
   /// The pair of owner a with that image of owner b; nothing if they are one, two sites, or never meet.
   std::optional<PairKey> pair_of(int a, int b, const Image& image = {}) const;
   int other_owner(const PairKey& pair) const {
@@ -85,6 +89,7 @@ class ContactSearch {
   std::vector<std::unique_ptr<SiteIndex>> indices_;
   SearchScratch scratch_;
   PairFilter filter_;
+  std::set<PairKey> left_out_;
   SampledClock clock_;
 };
 

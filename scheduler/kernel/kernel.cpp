@@ -129,7 +129,7 @@ bool Kernel::resolve(const PairKey& pair, const FeatureContact& found, std::vect
     return resolve_group(pair, found, changed);
   }
   const auto outcome = parts_.response.collide(pair, found, changed);
-  return outcome && tell(*outcome);
+  return outcome && tell(*outcome, changed);
 }
 
 bool Kernel::resolve_group(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed) {
@@ -152,14 +152,14 @@ bool Kernel::resolve_group(const PairKey& pair, const FeatureContact& found, std
     parts_.records.event(EventKind::collision, o.pair, o.contact, o.impulse_n, o.impulse_t, o.delay);
   }
   return std::all_of(group->collisions.begin(), group->collisions.end(),
-                     [this](const Outcome& o) { return judge(o); });
+                     [&](const Outcome& o) { return judge(o, changed); });
 }
 
-bool Kernel::tell(const Outcome& o) {
+bool Kernel::tell(const Outcome& o, std::vector<int>& changed) {
   parts_.watch.note_overlap(o.contact.gap);
   count(o.pair);
   parts_.records.event(EventKind::collision, o.pair, o.contact, o.impulse_n, o.impulse_t, o.delay);
-  return judge(o);
+  return judge(o, changed);
 }
 
 void Kernel::count(const PairKey& pair) {
@@ -172,12 +172,13 @@ void Kernel::count(const PairKey& pair) {
 }
 
 /// What the collision may be the end of.
-bool Kernel::judge(const Outcome& o) {
+bool Kernel::judge(const Outcome& o, std::vector<int>& changed) {
   const auto ending =
       parts_.endings.collided(o, time(), parts_.response.loss_of(o.pair), parts_.run.work().collisions);
-  if (!ending) return poll();
+  if (!ending) return go_on_in_islands(o, changed) && poll();
   switch (ending->kind) {
     case Ending::Kind::zeno:
+      if (parts_.islands.allowed()) return begin_to_last(o, ending->time, changed);
       parts_.records.ending(EventKind::zeno, o.pair, o.contact, ending->time);
       stop(Termination::failed,
            fmt::format(
@@ -189,7 +190,7 @@ bool Kernel::judge(const Outcome& o) {
       return false;
     case Ending::Kind::group:
       parts_.records.ending(EventKind::group, o.pair, o.contact, parts_.records.last_event());
-      return poll();
+      return go_on_in_islands(o, changed) && poll();
     case Ending::Kind::endless_group:
       stop(Termination::failed,
            fmt::format("a group of collisions at t = {:.15g} does not end ({} so far, the last {})", time(),
@@ -203,6 +204,26 @@ bool Kernel::judge(const Outcome& o) {
       return false;
   }
   return false;
+}
+
+/// The pair's bounces have their limit: a contact that lasts begins.
+bool Kernel::begin_to_last(const Outcome& o, double limit, std::vector<int>& changed) {
+  roll_back_all();
+  parts_.records.ending(EventKind::persist, o.pair, o.contact, parts_.records.last_event());
+  return parts_.islands.capture(o.pair, limit, changed);
+}
+
+/// A collision of a member is a step of its island.
+bool Kernel::go_on_in_islands(const Outcome& o, std::vector<int>& changed) {
+  const bool concerned =
+      is_held(o.pair.body) || (!o.pair.with_site() && is_held(o.pair.other_body));
+  return !concerned || parts_.islands.collided(o.pair, o.contact.closing_speed, changed);
+}
+
+bool Kernel::step_island(std::vector<int>& changed) {
+  parts_.run.set_time(next_step());
+  parts_.policy_watch.going_to(time());
+  return parts_.islands.step(changed);
 }
 
 void Kernel::displace(int k, const Vec2& shift) {
@@ -248,6 +269,7 @@ void Kernel::give_up(const Certificate& c) {
 // -- resolving ahead of time --
 
 bool Kernel::resolve_ahead(const Certificate& c, double end, std::vector<int>& changed) {
+  if (is_held(c.pair.body) || (!c.pair.with_site() && is_held(c.pair.other_body))) return false;
   const double present = time();
   advance_pair(c.pair, c.time);
   const Speculation::Entry entry = parts_.speculation.before(c.pair);
@@ -274,7 +296,7 @@ bool Kernel::confirm(const Certificate& c, std::vector<int>& changed) {
   parts_.run.set_time(entry->time);
   parts_.policy_watch.going_to(time());
   for (const AheadCollision::Former& f : entry->former) changed.push_back(f.body);
-  return tell(entry->outcome);
+  return tell(entry->outcome, changed);
 }
 
 // -- the run --
@@ -312,6 +334,7 @@ std::vector<std::byte> Kernel::snapshot() const {
   saved.watch = parts_.watch.saved();
   saved.records = parts_.records.saved();
   saved.endings = parts_.endings.saved();
+  saved.islands = parts_.islands.saved();
   saved.taken = parts_.taken;
   saved.random = parts_.random.state();
   saved.work = parts_.run.work();

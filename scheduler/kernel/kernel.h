@@ -76,6 +76,9 @@ class Kernel : public KernelView {
   /// every contact of this instant that hangs together with it through touching bodies, one event for each
   /// that pushed. Raises versions. Bodies whose motion changed are appended to `changed`.
   bool resolve(const PairKey& pair, const FeatureContact& contact, std::vector<int>& changed);
+  /// The island whose step ends first takes its next, at next_step(), which is the present time then. Bodies
+  /// whose motion changed are appended to `changed`; their versions are raised.
+  bool step_island(std::vector<int>& changed);
   /// Puts a body elsewhere, at the present time (approximate policies only).
   void displace(int body, const Vec2& shift);
   /// Records that a pair's search cannot tell, and ends the run.
@@ -116,9 +119,11 @@ class Kernel : public KernelView {
 
  private:
   bool resolve_group(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed);
-  bool tell(const Outcome& outcome);
+  bool tell(const Outcome& outcome, std::vector<int>& changed);
   void count(const PairKey& pair);
-  bool judge(const Outcome& outcome);
+  bool judge(const Outcome& outcome, std::vector<int>& changed);
+  bool begin_to_last(const Outcome& outcome, double limit, std::vector<int>& changed);
+  bool go_on_in_islands(const Outcome& outcome, std::vector<int>& changed);
   void trace_all(TraceKind kind, double from, double to) const;
 };
 

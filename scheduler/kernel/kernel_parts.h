@@ -7,6 +7,7 @@
 #include "brink/scheduler/kernel/contact_search.h"
 #include "brink/scheduler/kernel/endings.h"
 #include "brink/scheduler/kernel/group_response.h"
+#include "brink/scheduler/kernel/islands.h"
 #include "brink/scheduler/kernel/near_pairs.h"
 #include "brink/scheduler/kernel/policy_watch.h"
 #include "brink/scheduler/kernel/records.h"
@@ -44,6 +45,7 @@ struct KernelParts {
   Speculation speculation;
   Endings endings;
   Records records;
+  Islands islands;
   PolicyWatch policy_watch;
   Random random;
   TakenGroups taken;

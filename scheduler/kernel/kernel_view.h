@@ -55,6 +55,16 @@ class KernelView {
     parts_.search.expect(k);
   }
 
+  // -- islands --
+  /// When the next step of an island ends [s]; infinity: never. To be asked for with step_island().
+  double next_step() const { return parts_.islands.next_step(); }
+  /// Its least member. @pre next_step() is finite.
+  int next_island() const { return parts_.islands.next_island(); }
+  /// True if an island holds the body.
+  bool is_held(int k) const { return parts_.trajectories.is_held(k); }
+  /// By their least member.
+  const std::map<int, Island>& islands() const { return parts_.islands.all(); }
+
   // -- pairs --
   /// False if a filter says that owners a and b never meet.
   bool may_meet(int a, int b) const { return parts_.search.may_meet(a, b); }

@@ -47,6 +47,7 @@ KernelParts::KernelParts(World given, SolverOptions chosen)
       speculation(trajectories, run),
       endings(search.limits().tolerance, options.max_collisions),
       records(trajectories, run),
+      islands(world, trajectories, search, response, records, run),
       policy_watch(options.policy, search, speculation),
       random(options.seed) {}
 
@@ -83,6 +84,7 @@ void RunKernel::go_on_from(int k, const ExtendedState& state) {
   const Restart restart{k, state};
   std::vector<int> changed;
   parts_.trajectories.restart({&restart, 1}, changed);
+  if (parts_.islands.is_member(k)) parts_.islands.disturbed(k, changed);
   for (const int j : changed) parts_.trajectories.body(j).velocity_rounding = 0.0;
   parts_.policy_watch.forget_all();
   ++parts_.revision;
@@ -129,6 +131,7 @@ void RunKernel::restore(std::span<const std::byte> bytes) {
   parts_.watch.restore(saved.watch);
   parts_.records.restore(saved.records);
   parts_.endings.restore(std::move(saved.endings));
+  parts_.islands.restore(saved.islands);
   parts_.taken = saved.taken;
   parts_.random.set_state(saved.random);
   parts_.policy_watch.forget_all();

@@ -42,6 +42,9 @@ class RunKernel final : public Kernel {
   std::string start_fault() { return parts_.watch.start_fault(); }
   /// From now on what searches certify is checked as the run goes on (CertificateWatch).
   void hold_to_certificates() { parts_.watch.begin(); }
+  /// From now on contacts may last (Islands). The policy asks for next_step().
+  void let_contacts_last() { parts_.islands.allow(); }
+  const IslandTally& island_tally() const { return parts_.islands.tally(); }
   /// From now on the policy is held to the contacts that it has been told of (PolicyWatch).
   void hold_to_known_contacts() { parts_.policy_watch.begin(); }
   /// @throws BadInput if the policy, which has returned, came back too early or past a contact.

@@ -11,7 +11,7 @@ namespace brink {
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x314b4e4952420006ULL;  // "\6\0BRINK1"
+constexpr std::uint64_t kMagic = 0x314b4e4952420007ULL;  // "\7\0BRINK1"
 
 class Writer {
  public:
@@ -98,6 +98,33 @@ void track(Each&& each, Track& b) {
   each(b.streak);
 }
 
+void write_islands(Writer& out, const Islands::Saved& islands) {
+  out(islands.tally);
+  out(static_cast<std::uint64_t>(islands.islands.size()));
+  for (const Island& i : islands.islands) {
+    out(i.rests);
+    out(i.due);
+    out(static_cast<std::uint64_t>(i.members.size()));
+    for (const int k : i.members) out(k);
+    out(static_cast<std::uint64_t>(i.contacts.size()));
+    for (const HeldContact& c : i.contacts) out(c);
+  }
+}
+
+void read_islands(Reader& in, Islands::Saved& islands) {
+  in(islands.tally);
+  for (std::uint64_t n = in.count(sizeof(double)); n > 0; --n) {
+    Island i;
+    in(i.rests);
+    in(i.due);
+    i.members.resize(in.count(sizeof(int)));
+    for (int& k : i.members) in(k);
+    i.contacts.resize(in.count(sizeof(HeldContact)));
+    for (HeldContact& c : i.contacts) in(c);
+    islands.islands.push_back(std::move(i));
+  }
+}
+
 }  // namespace
 
 std::vector<std::byte> encode(const SavedRun& saved, const World& world, const SolverOptions& options,
@@ -108,6 +135,7 @@ std::vector<std::byte> encode(const SavedRun& saved, const World& world, const S
   scalars(out, saved);
   for (const BodyTrack& b : saved.trajectories.bodies) {
     track(out, b);
+    out(b.component == BodyTrack::kHeld);
     if (b.component >= 0) continue;
     out(b.motion.origin());
     out(b.motion.start());
@@ -117,6 +145,7 @@ std::vector<std::byte> encode(const SavedRun& saved, const World& world, const S
     out(s.time);
     for (const BodyState& state : s.states) out(state);
   }
+  write_islands(out, saved.islands);
   out(saved.endings.often);
   out(static_cast<std::uint64_t>(saved.endings.bodies.size()));
   for (const int k : saved.endings.bodies) out(k);
@@ -142,7 +171,9 @@ SavedRun decode(std::span<const std::byte> bytes, const World& world, const Solv
   for (int k = 0; k < trajectories.body_count(); ++k) {
     BodyTrack b;
     track(in, b);
-    b.component = trajectories.body(k).component;
+    bool held = false;
+    in(held);
+    b.component = held ? BodyTrack::kHeld : trajectories.own_component(k);
     if (b.component < 0) {
       double origin = 0.0;
       BodyState start, low;
@@ -159,6 +190,7 @@ SavedRun decode(std::span<const std::byte> bytes, const World& world, const Solv
     for (BodyState& state : s.states) in(state);
     saved.trajectories.starts.push_back(std::move(s));
   }
+  read_islands(in, saved.islands);
   in(saved.endings.often);
   saved.endings.bodies.resize(in.count(sizeof(int)));
   for (int& k : saved.endings.bodies) in(k);

@@ -23,6 +23,7 @@ struct SavedRun {
   TakenGroups taken;
   std::array<std::uint64_t, 4> random{};
   WorkCounters work;
+  Islands::Saved islands;
   Trajectories::Saved trajectories;
 };
 

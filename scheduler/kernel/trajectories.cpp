@@ -79,7 +79,7 @@ std::vector<BodyState> Trajectories::states(double t) const {
 
 bool Trajectories::is_ballistic(int k) const {
   const bool asked = options_->integrator == "auto" || options_->integrator == "ballistic";
-  return is_free(k) || (asked && components_[bodies_[k].component].component.dynamics->constant());
+  return bodies_[k].component < 0 || (asked && components_[bodies_[k].component].component.dynamics->constant());
 }
 
 // -- going on --
@@ -95,6 +95,7 @@ void Trajectories::fetch(const Coupled& c) {
 }
 
 double Trajectories::follow(Coupled& c, double t) {
+  if (c.dormant) return t;
   const int first = c.component.bodies.front();
   const double covered = bodies_[first].motion.end();
   if (covered >= t) return t;
@@ -198,7 +199,8 @@ bool Trajectories::much_to_forget() const { return run_->pieces() - forgotten_ >
 void Trajectories::forget_before(double t) {
   if (!much_to_forget()) return;
   forgotten_ = run_->pieces();
-  for (Coupled& c : components_) c.integrator->forget_before(t);
+  for (Coupled& c : components_)
+    if (!c.dormant) c.integrator->forget_before(t);
   for (SiteMotion& s : sites_) s.forget_before(t);
 }
 
@@ -237,6 +239,78 @@ void Trajectories::restart(std::span<const Restart> touched, std::vector<int>& c
   }
   for (const Restart& r : touched) states[bodies_[r.body].place_in_component] = r.state.rounded();
   start(c, run_->time(), std::move(states));
+}
+
+// -- islands --
+
+void Trajectories::hold(std::span<const Restart> bodies, std::vector<int>& changed) {
+  for (const Restart& r : bodies) {
+    BodyTrack& b = bodies_[r.body];
+    if (b.component != BodyTrack::kHeld) {
+      held_[r.body] = {b.component, b.component < 0 ? b.motion.acceleration() : Acceleration{}};
+      if (b.component >= 0) put_to_sleep(components_[b.component]);
+      b.component = BodyTrack::kHeld;
+    }
+    b.motion = Motion::ballistic(run_->time(), r.state.rounded(), {}, std::numeric_limits<double>::infinity(),
+                                 r.state.low());
+    raise_version(b);
+    changed.push_back(r.body);
+  }
+}
+
+void Trajectories::put_to_sleep(Coupled& c) {
+  c.dormant = true;
+  c.failure = {};
+  find_reach();
+}
+
+void Trajectories::release(std::span<const int> bodies, std::vector<int>& changed) {
+  for (const int k : bodies) {
+    BodyTrack& b = bodies_[k];
+    const Former former = held_.at(k);
+    held_.erase(k);
+    raise_version(b);
+    changed.push_back(k);
+    b.component = former.component;
+    if (former.component >= 0) continue;
+    const ExtendedState s = b.motion.extended_state(run_->time());
+    b.motion = Motion::ballistic(run_->time(), s.rounded(), former.acceleration,
+                                 std::numeric_limits<double>::infinity(), s.low());
+  }
+  for (Coupled& c : components_) {
+    if (!c.dormant || bodies_[c.component.bodies.front()].component < 0) continue;
+    c.dormant = false;
+    std::vector<BodyState> states;
+    for (const int k : c.component.bodies) states.push_back(bodies_[k].motion.state(run_->time()));
+    start(c, run_->time(), std::move(states));
+  }
+}
+
+Acceleration Trajectories::acceleration(int k) const {
+  const Former& former = held_.at(k);
+  if (former.component < 0) return former.acceleration;
+  const Component& c = components_[former.component].component;
+  std::vector<BodyState> states;
+  for (const int j : c.bodies) states.push_back(bodies_[j].motion.state(run_->time()));
+  std::vector<Acceleration> all(states.size());
+  c.dynamics->accelerations(run_->time(), states, all);
+  return all[bodies_[k].place_in_component];
+}
+
+double Trajectories::next_break(int k) const {
+  const Former& former = held_.at(k);
+  if (former.component < 0) return std::numeric_limits<double>::infinity();
+  return components_[former.component].component.dynamics->next_break(run_->time());
+}
+
+bool Trajectories::is_constant(int k) const {
+  const Former& former = held_.at(k);
+  return former.component < 0 || components_[former.component].component.dynamics->constant();
+}
+
+std::vector<int> Trajectories::coupled_to(int k) const {
+  const int component = own_component(k);
+  return component < 0 ? std::vector<int>{k} : components_[component].component.bodies;
 }
 
 void Trajectories::regroup(std::vector<std::vector<int>> together) {
@@ -291,12 +365,19 @@ void Trajectories::restore(const Saved& saved, double t) {
     b.resolved_at = as.resolved_at;
     b.last_partner = as.last_partner;
     b.streak = as.streak;
+    if (as.component == BodyTrack::kHeld) {
+      held_[k] = {b.component, b.component < 0 ? b.motion.acceleration() : Acceleration{}};
+      if (b.component >= 0) put_to_sleep(components_[b.component]);
+      b.component = BodyTrack::kHeld;
+      b.motion = Motion::still({}, 0.0);
+    }
     if (b.component < 0)
       b.motion =
           Motion::ballistic(m.origin(), m.start(), b.motion.acceleration(), b.motion.end(), m.start_low());
   }
   for (const ComponentStart& s : saved.starts) {
     Coupled& c = components_[s.component];
+    if (c.dormant) continue;
     start(c, s.time, s.states);
     while (follow(c, t) < t) {
       if (std::isfinite(c.failure.time)) throw BadInput("snapshot: " + c.failure.why);

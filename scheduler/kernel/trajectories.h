@@ -6,6 +6,7 @@
 /// motion that fails is followed to its end, since a collision before may start it afresh.
 
 #include <limits>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -54,7 +55,9 @@ class Trajectories {
   /// Bodies of a component, ascending.
   std::span<const int> members(int component) const { return components_[component].component.bodies; }
   /// True if the body is on a parabola for as long as it meets nothing.
-  bool is_free(int k) const { return bodies_[k].component < 0; }
+  bool is_free(int k) const { return bodies_[k].component == BodyTrack::kFree; }
+  /// True if an island holds the body: its twist is constant until it is restarted.
+  bool is_held(int k) const { return bodies_[k].component == BodyTrack::kHeld; }
   /// True if its motion is a closed form under constant accelerations.
   bool is_ballistic(int k) const;
 
@@ -81,6 +84,22 @@ class Trajectories {
   void restart(std::span<const Restart> touched, std::vector<int>& changed);
   /// A free body.
   void restart_free(int k, const BodyState& start, const BodyState& low);
+  // -- islands --
+  /// From now on the bodies move with constant twists from these states, whatever forces there are, until
+  /// they are restarted or released. @pre all bodies of a component, or none.
+  void hold(std::span<const Restart> bodies, std::vector<int>& changed);
+  /// Forces act on the bodies again, from the present time on. @pre held; all bodies of a component, or none.
+  void release(std::span<const int> bodies, std::vector<int>& changed);
+  /// What forces would do to a held body now.
+  Acceleration acceleration(int k) const;
+  /// When that next jumps [s]; and whether until then it depends on nothing.
+  double next_break(int k) const;
+  bool is_constant(int k) const;
+  /// The component that drives the body where no island holds it.
+  int own_component(int k) const { return is_held(k) ? held_.at(k).component : bodies_[k].component; }
+  /// Bodies that forces couple to the body, itself included, ascending.
+  std::vector<int> coupled_to(int k) const;
+
   /// From now on the bodies of each set are integrated together, beside those that forces couple; sets that
   /// are not named again are split. Components that stay as they are keep their motions, bit for bit.
   void regroup(std::vector<std::vector<int>> together);
@@ -92,7 +111,7 @@ class Trajectories {
   /// Starts the component there again and goes on to where it has come.
   void go_back_to(const ComponentStart& start);
   struct Saved {
-    std::vector<BodyTrack> bodies;       ///< motions of those that are free alone
+    std::vector<BodyTrack> bodies;       ///< motions of those that no integrator drives alone
     std::vector<ComponentStart> starts;  ///< of every component
   };
   Saved saved() const;
@@ -110,10 +129,16 @@ class Trajectories {
     double started = 0.0;
     std::vector<BodyState> start_states;
     Failure failure;
+    bool dormant = false;  ///< an island holds its bodies
+  };
+  struct Former {  ///< how a held body moved by itself
+    int component = BodyTrack::kFree;
+    Acceleration acceleration;  ///< of a free one
   };
 
   void add_component(Component component, double t, std::span<const BodyState> states);
   void start(Coupled& c, double t, std::vector<BodyState> states);
+  void put_to_sleep(Coupled& c);
   void fetch(const Coupled& c);
   double follow(Coupled& c, double t);
   double follow_site(int site, double t);
@@ -129,6 +154,7 @@ class Trajectories {
   LargeVector<BodyTrack> bodies_;
   std::vector<Coupled> components_;
   std::vector<std::vector<int>> together_;
+  std::map<int, Former> held_;
   std::vector<SiteMotion> sites_;
   std::vector<Failure> site_failures_;
   double reach_ = std::numeric_limits<double>::infinity();

@@ -18,6 +18,7 @@ namespace {
 
 class GlobalBackup final : public Policy {
  public:
+  bool steps_islands() const override { return true; }
   void run(Kernel& kernel, double until) override {
     run_horizons(kernel, until, [&](double end) { return run_horizon(kernel, end); });
   }
@@ -44,7 +45,10 @@ class GlobalBackup final : public Policy {
   bool deal_with(Kernel& kernel, const Certificate& next, double& end) {
     if (next.kind == Certificate::Kind::undecided) return agenda_.search_on(kernel, next, end);
     changed_.clear();
-    if (!kernel.resolve(next.pair, next.contact, changed_)) return false;
+    const bool done = next.kind == Certificate::Kind::island
+                        ? kernel.step_island(changed_)
+                        : kernel.resolve(next.pair, next.contact, changed_);
+    if (!done) return false;
     end = kernel.follow_motions(end);
     return agenda_.pass_again(kernel, changed_, end);
   }

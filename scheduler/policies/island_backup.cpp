@@ -11,8 +11,8 @@
 ///
 /// Contacts are taken in the order of time over all islands, so that an island that another one grows into
 /// has not done anything too early.
+#include "brink/core/base/disjoint_sets.h"
 #include "brink/scheduler/policies/horizon.h"
-#include "brink/scheduler/policies/islands.h"
 #include "brink/scheduler/policies/policy.h"
 
 namespace brink {
@@ -21,6 +21,7 @@ namespace {
 
 class IslandBackup final : public Policy {
  public:
+  bool steps_islands() const override { return true; }
   void run(Kernel& kernel, double until) override {
     run_horizons(kernel, until, [&](double end) { return run_horizon(kernel, end); });
   }
@@ -47,9 +48,13 @@ class IslandBackup final : public Policy {
   bool deal_with(Kernel& kernel, const Certificate& next, double& end) {
     if (next.kind == Certificate::Kind::undecided) return agenda_.search_on(kernel, next, end);
     changed_.clear();
-    if (!kernel.resolve(next.pair, next.contact, changed_)) return false;
+    const bool done = next.kind == Certificate::Kind::island
+                        ? kernel.step_island(changed_)
+                        : kernel.resolve(next.pair, next.contact, changed_);
+    if (!done) return false;
     end = kernel.follow_motions(end);
     if (!agenda_.pass_again(kernel, changed_, end)) return false;
+    for (const int k : changed_) islands_.unite(changed_.front(), k);
     unite_near();
     return true;
   }
@@ -63,6 +68,8 @@ class IslandBackup final : public Policy {
       if (component >= static_cast<int>(first.size())) first.resize(component + 1, k);
       islands_.unite(first[component], k);
     }
+    for (const auto& [lead, island] : kernel.islands())
+      for (const int k : island.members) islands_.unite(lead, k);
     unite_near();
   }
 
@@ -72,7 +79,7 @@ class IslandBackup final : public Policy {
   }
 
   HorizonAgenda agenda_;
-  Islands islands_;
+  DisjointSets islands_;
   std::vector<int> island_;  ///< that is backed up
   std::vector<int> changed_;
 };

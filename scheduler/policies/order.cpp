@@ -27,6 +27,14 @@ std::size_t first_by(Kernel& kernel, const std::vector<Certificate>& group) {
   return least(by_index);
 }
 
+Certificate end_of_step(const KernelView& kernel, double time) {
+  Certificate c;
+  c.kind = Certificate::Kind::island;
+  c.time = time;
+  c.pair.body = kernel.next_island();
+  return c;
+}
+
 }  // namespace
 
 std::size_t first_by_order(Kernel& kernel, const std::vector<Certificate>& group) {
@@ -40,7 +48,8 @@ Certificate at_its_time(const KernelView& kernel, Certificate c, double earliest
 
 std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda, double end) {
   std::vector<Certificate> group;
-  while (!agenda.empty() && agenda.earliest().time <= end) {
+  const double step = kernel.next_step();
+  while (!agenda.empty() && agenda.earliest().time <= (group.empty() ? std::min(step, end) : end)) {
     if (!group.empty() && agenda.earliest().time > group.front().time + same_instant(group.front().time))
       break;
     const Certificate c = agenda.pop();
@@ -50,7 +59,7 @@ std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda, double 
       kernel.note_stale();
   }
   kernel.note_queue_operations(agenda.take_operations());
-  if (group.empty()) return std::nullopt;
+  if (group.empty()) return step <= end ? std::optional(end_of_step(kernel, step)) : std::nullopt;
   const std::size_t chosen = first_by_order(kernel, group);
   const Certificate first = at_its_time(kernel, group[chosen], group.front().time);
   for (std::size_t i = 0; i < group.size(); ++i)

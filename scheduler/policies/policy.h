@@ -22,6 +22,8 @@ class Policy {
   virtual void prepare(Kernel& /*kernel*/) {}
   /// What there is to say about that in the plan, in lines for people.
   virtual std::vector<std::string> plan() const { return {}; }
+  /// True if it asks for Kernel::next_step(): contacts may last then.
+  virtual bool steps_islands() const { return false; }
   /// True if it may skip contacts (the kernel then does not hold it to the exact order of events).
   virtual bool approximate() const { return false; }
 };

@@ -35,6 +35,7 @@ double too_close(double t) { return 4.0 * same_instant(t); }
 
 class Timewarp final : public Policy {
  public:
+  bool steps_islands() const override { return true; }
   void run(Kernel& kernel, double until) override {
     kernel_ = &kernel;
     group_bodies();
@@ -69,8 +70,16 @@ class Timewarp final : public Policy {
   bool make_certain(const Certificate& next) {
     if (next.kind == Certificate::Kind::undecided) return search_on(next);
     changed_.clear();
+    if (next.kind == Certificate::Kind::island) {  // its members never run ahead
+      if (!kernel_->step_island(changed_)) return false;
+      end_ = kernel_->follow_motions(end_);
+      return look_around(next.time);
+    }
     if (kernel_->is_resolved_ahead(next)) {
       if (!kernel_->confirm(next, changed_)) return false;
+      // an island that it began has taken its bodies elsewhere than they had gone
+      const bool held = std::any_of(changed_.begin(), changed_.end(), [&](int k) { return kernel_->is_held(k); });
+      if (held) return look_around(next.time);
       count_from_now_on();
       return true;
     }

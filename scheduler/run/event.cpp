@@ -13,6 +13,8 @@ const char* to_string(EventKind kind) {
       return "group";
     case EventKind::undecided:
       return "undecided";
+    case EventKind::persist:
+      return "persist";
   }
   return "unknown";
 }

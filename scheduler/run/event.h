@@ -7,7 +7,13 @@
 
 namespace brink {
 
-enum class EventKind { collision, zeno, group, undecided };
+enum class EventKind {
+  collision,
+  zeno,
+  group,
+  undecided,
+  persist,  ///< a contact lasts from now on
+};
 const char* to_string(EventKind kind);
 
 struct Event {

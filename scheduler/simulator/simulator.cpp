@@ -17,6 +17,7 @@ struct Simulator::Impl {
   Impl(World world, SolverOptions options)
       : kernel(std::move(world), options), policy(make_policy(options.policy, options.detector)) {
     policy->prepare(kernel);
+    if (options.persistent && policy->steps_islands()) kernel.let_contacts_last();
     if (policy->approximate()) return;
     kernel.hold_to_certificates();
     if (is_added_policy(options.policy)) kernel.hold_to_known_contacts();

@@ -41,15 +41,19 @@ constexpr int instalment(unsigned undecided) {
 
 class BodyClocks final : public Policy {
  public:
+  bool steps_islands() const override { return true; }
   void run(Kernel& kernel, double until) override {
     kernel_ = &kernel;
     until_ = until;
     if (!views_ || revision_ != kernel.revision()) look_around_all();
     views_->set_end(until);
-    while (!kernel.halt() && queue_.time() <= end()) {
+    while (!kernel.halt() && std::min(queue_.time(), kernel.next_step()) <= end()) {
       if (++served_ % kBetweenPauses == 0 || kernel.much_to_forget()) pause();
       if (served_ % kBetweenPolls == 0 && !kernel.poll()) break;
-      serve(queue_.body());
+      if (kernel.next_step() < queue_.time())
+        step_island();
+      else
+        serve(queue_.body());
     }
     if (!kernel.halt()) kernel.follow_motions_all_the_way(end());  // of sites that nobody has in view
     if (kernel.halt()) return views_.reset();  // in the middle of something: to go on, look at all anew
@@ -82,7 +86,7 @@ class BodyClocks final : public Policy {
   /// A run may be resumed from between two instants only: within one, bodies may be a rounding past each
   /// other. Where nothing collides for long the clock goes on all the same, halfway to what is due next.
   void pause() {
-    const double now = kernel_->time(), next = std::min(queue_.time(), end());
+    const double now = kernel_->time(), next = std::min({queue_.time(), kernel_->next_step(), end()});
     if (next <= now + 2.0 * same_instant(now)) return;
     if (kernel_->much_to_forget()) {
       const double halfway = now + 0.5 * (next - now);
@@ -157,7 +161,7 @@ class BodyClocks final : public Policy {
     const Candidate& c = clock.candidates.front();
     if (!c.exact || views_->stale(c)) return false;
     const double time = c.time;
-    return time <= end() && time < queue_.second_time() && time < std::min(clock.exit, clock.horizon);
+    return time <= std::min(end(), kernel_->next_step()) && time < queue_.second_time() && time < std::min(clock.exit, clock.horizon);
   }
 
   /// The first candidate of body k is dropped if it is stale, and searched if it is not.
@@ -278,7 +282,17 @@ class BodyClocks final : public Policy {
     views_->expect_look(c.pair.body);
     if (!c.pair.with_site()) views_->expect_look(c.pair.other_body);
     changed_.clear();
-    if (!kernel_->resolve(c.pair, c.contact, changed_)) return;
+    if (kernel_->resolve(c.pair, c.contact, changed_)) look_around_changed();
+  }
+
+  /// An island's step ends, and nothing comes before.
+  void step_island() {
+    if (!kernel_->record_frames(kernel_->next_step())) return;
+    changed_.clear();
+    if (kernel_->step_island(changed_)) look_around_changed();
+  }
+
+  void look_around_changed() {
     for (const int k : changed_) views_->take_up(k);
     for (std::size_t i = 0; i < changed_.size() && !kernel_->halt(); ++i) {
       look_around(changed_[i], kernel_->time(), {changed_.data(), i});

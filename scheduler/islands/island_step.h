@@ -1,0 +1,54 @@
+#pragma once
+/// One step of an island at the level of velocities: bodies joined by contacts that last move on with constant
+/// twists, and no gap closes.
+///
+///   until no gap is missed along the step
+///     v + h a  ->  the nearest twists w (in the mass metric) with  gap + h n.(w - w_other) >= 0  at every
+///                  contact, and friction within mu times the normal force
+///     look at the gaps along the step; where one is missed (a face that turns, a hollow arc): aim higher
+///
+/// Gaps that are convex in the relative place (discs, straight sides that do not turn) lie above their
+/// tangents: none is missed. Order 1 in h; gaps exact. Sources: Moreau 1988; Anitescu & Potra 1997; friction by
+/// a fixed point of given bounds: Haslinger 1983.
+
+#include <functional>
+#include <vector>
+
+#include "brink/core/base/geometry.h"
+#include "brink/core/contacts/cone_qp.h"
+
+namespace brink {
+
+/// A contact of the step, beside its geometry.
+struct IslandContact {
+  LastingContact rows;
+  double gap = 0.0;            ///< at the start, less what it must keep [m]
+  double friction = 0.0;
+  double normal_force = 0.0;   ///< in: of the step before; 0: new. Out: mean over this one [N]
+  double tangential_force = 0.0;             ///< out [N]
+  double normal_support = 0.0, tangential_support = 0.0;  ///< mean velocity of a site's point [m/s]
+};
+
+struct IslandStep {
+  std::vector<Vec3> mass;      ///< of each body, infinity: held (RestProblem)
+  std::vector<Vec3> velocity;  ///< in: before; out: of the step
+  std::vector<Vec3> force;     ///< of all but contacts [N], [N m]
+  std::vector<IslandContact> contacts;
+};
+
+/// The gap of contact k a time into the step, were the bodies to move with these velocities [m].
+using GapAlong = std::function<double(std::size_t k, double moment, const std::vector<Vec3>& velocity)>;
+
+struct StepOutcome {
+  bool solved = false;       ///< every gap stays above -`tolerance` along the step
+  int factorisations = 0;
+  double friction_residual = 0.0;  ///< largest |q| - mu p left by bounds that lag, of the largest p
+};
+
+/// Takes a step of h > 0 [s]. What is not solved is to be tried again with a shorter one.
+StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap);
+
+/// True if the bodies stay at rest under their forces: the contacts' forces are set then.
+bool stays_at_rest(ConeQp& solver, IslandStep& step);
+
+}  // namespace brink

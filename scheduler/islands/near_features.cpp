@@ -1,0 +1,117 @@
+#include "brink/scheduler/islands/near_features.h"
+
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "brink/core/shapes/curve_site.h"
+#include "brink/core/shapes/distance.h"
+
+namespace brink {
+
+namespace {
+
+/// Of a site that is part of a solid, points this far behind it [of its outline's size] belong to another.
+constexpr double kBehind = 1e-6;
+/// Below this part of the size two points are one, and their difference has no direction.
+constexpr double kOnePoint = 1e-12;
+
+/// One outline that carries the samples, and the other, each in its own frame.
+struct Half {
+  const Outline& carrier;
+  const Outline& other;
+  Frame carrier_frame, other_frame;  ///< from b's position
+  bool on_a;
+};
+
+/// Out of the site, in its frame; where the two points are one, the site's own normal.
+Vec2 direction(const Site& site, const Nearest& nearest, const Vec2& q, double least) {
+  const Vec2 way = q - nearest.point;
+  if (way.norm() > least) return way.normalized();
+  if (site.solid && nearest.foot != Foot::interior)
+    return (nearest.foot == Foot::start ? site.pseudo_a : site.pseudo_b).normalized();
+  return normal_at(site, nearest, q);
+}
+
+/// Sample i of a half against site j of the other, whatever their gap. Nothing where they do not face each
+/// other.
+std::optional<NearFeature> feature(const Half& half, int i, int j) {
+  const Sample& sample = half.carrier.samples[i];
+  const Site& site = half.other.sites[j];
+  const Vec2 q = half.other_frame.to_local(half.carrier_frame.to_world(sample.p));
+  const Nearest nearest = nearest_on(site, q);
+  const double size = half.carrier.bounding_radius + half.other.bounding_radius;
+  const double side = side_of(site, nearest, q);
+  if (side < 0.0 && nearest.distance > kBehind * size) return std::nullopt;
+  Vec2 out = direction(site, nearest, q, kOnePoint * size);
+  if (side < 0.0 && nearest.distance > kOnePoint * size) out = -out;
+  const Vec2 outward = half.other_frame.direction_to_world(out);
+  if (sample.arc_site >= 0) {
+    const Vec2 towards = half.carrier_frame.direction_to_local(-outward);
+    const Site& arc = half.carrier.sites[sample.arc_site];
+    if (nearest.distance < 0.5 * arc.arc_radius || !in_sector(arc, towards)) return std::nullopt;
+  }
+  NearFeature f;
+  f.sample = i;
+  f.site = j;
+  f.sample_on_a = half.on_a;
+  f.gap = side * nearest.distance - site.radius - sample.radius;
+  f.point = half.other_frame.to_world(nearest.point + site.radius * out);
+  f.normal = half.on_a ? outward : Vec2(-outward);
+  f.thin = !site.solid && site.radius + sample.radius == 0.0;
+  return f;
+}
+
+std::array<Half, 2> halves(const Outline& a, const ExtendedState& state_a, const Outline& b,
+                           const ExtendedState& state_b) {
+  const ExtendedState origin = state_b;
+  const auto frame = [&](const ExtendedState& s) {
+    ExtendedState from = s;
+    from.position -= origin.position;
+    return Frame(from.seen_from(Vec2::Zero()).pose);
+  };
+  const Frame of_a = frame(state_a), of_b = frame(state_b);
+  return {Half{a, b, of_a, of_b, true}, Half{b, a, of_b, of_a, false}};
+}
+
+/// True if the sample is clear of the other's box, a quick look.
+bool out_of_reach(const Half& half, const Sample& sample, double reach) {
+  if (half.other.container) return false;
+  const Vec2 q = half.other_frame.to_local(half.carrier_frame.to_world(sample.p));
+  return !half.other.bounds.grown(reach + sample.radius).contains(q);
+}
+
+}  // namespace
+
+std::vector<NearFeature> near_features(const Outline& a, const ExtendedState& state_a, const Outline& b,
+                                       const ExtendedState& state_b, double reach) {
+  std::vector<NearFeature> found;
+  for (const Half& half : halves(a, state_a, b, state_b)) {
+    // a disc's centre sees all that its surface meets: what the other's samples see is the same once more
+    const bool both = half.carrier.is_point() && half.other.is_point();
+    if (half.other.is_point() && !(both && half.on_a)) continue;
+    for (int i = 0; i < static_cast<int>(half.carrier.samples.size()); ++i) {
+      if (out_of_reach(half, half.carrier.samples[i], reach)) continue;
+      for (int j = 0; j < static_cast<int>(half.other.sites.size()); ++j)
+        if (const auto f = feature(half, i, j); f && f->gap <= reach) found.push_back(*f);
+    }
+  }
+  return found;
+}
+
+double gap_of(const NearFeature& f, const Outline& a, const ExtendedState& state_a, const Outline& b,
+              const ExtendedState& state_b) {
+  const Half half = halves(a, state_a, b, state_b)[f.sample_on_a ? 0 : 1];
+  const Sample& sample = half.carrier.samples[f.sample];
+  const Site& site = half.other.sites[f.site];
+  const Vec2 q = half.other_frame.to_local(half.carrier_frame.to_world(sample.p));
+  const Nearest nearest = nearest_on(site, q);
+  const Vec2 out = half.other_frame.direction_to_local(half.on_a ? f.normal : Vec2(-f.normal));
+  // a wire's side, and a solid's too, is the one on which the sample was
+  const bool crossed = nearest.foot == Foot::interior && site.kind == SiteKind::segment
+                           ? out.dot(q - nearest.point) < 0.0
+                           : side_of(site, nearest, q) < 0.0;
+  return (crossed ? -nearest.distance : nearest.distance) - site.radius - sample.radius;
+}
+
+}  // namespace brink

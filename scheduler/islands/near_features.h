@@ -1,0 +1,34 @@
+#pragma once
+/// Everything of two outlines that is near: what contacts that last are made of.
+
+#include <vector>
+
+#include "brink/core/base/extended.h"
+#include "brink/core/shapes/outline.h"
+
+namespace brink {
+
+/// A sample of one outline and a site of the other. Unlike what a search for first contact lists, every site
+/// that faces a sample counts, not the nearest alone: a body in a groove touches both sides.
+struct NearFeature {
+  int sample = -1;             ///< into the carrying outline's samples
+  int site = -1;               ///< into the other outline's sites
+  bool sample_on_a = true;     ///< sample on a and site on b, or the reverse
+  Vec2 point = Vec2::Zero();   ///< on the site's surface, from b's position, in world axes [m]
+  Vec2 normal = Vec2::Zero();  ///< world, unit, from b into a
+  double gap = 0.0;            ///< [m]
+  bool thin = false;           ///< a sharp sample and a wire without thickness
+};
+
+/// Features of a and b with a gap up to `reach` [m], in the order of samples of a, then of b, and of sites.
+/// Everything is taken from b's position: far from the origin nothing is lost. Each gap, seen as a function
+/// of where the sample's point is in the site's frame, is convex wherever the site is a point, a segment, or
+/// an arc seen from outside: its tangent never lies above it. Cost: samples times sites.
+std::vector<NearFeature> near_features(const Outline& a, const ExtendedState& state_a, const Outline& b,
+                                       const ExtendedState& state_b, double reach);
+
+/// The gap of one such feature with the outlines elsewhere [m].
+double gap_of(const NearFeature& feature, const Outline& a, const ExtendedState& state_a, const Outline& b,
+              const ExtendedState& state_b);
+
+}  // namespace brink

@@ -1,0 +1,108 @@
+#pragma once
+/// Islands: bodies joined by contacts that last. An island is at rest, or goes on in steps of constant twists.
+///
+///   capture    bounces of a pair have come to their limit: its bodies are an island from now on
+///   step       what has come apart leaves; the others move on together (island_step.h), or come to rest
+///   collided   a member was hit: what it hit may join, and the island begins a step at once
+///
+/// Steps begin at events and see the states of their members alone, so they are the same whoever schedules.
+/// Pairs of an island are not searched for contacts while it takes a step: the step keeps their gaps.
+
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "brink/scheduler/islands/island_step.h"
+#include "brink/scheduler/islands/near_features.h"
+#include "brink/scheduler/kernel/collision_response.h"
+#include "brink/scheduler/kernel/near_pairs.h"
+#include "brink/scheduler/kernel/records.h"
+
+namespace brink {
+
+/// A contact of an island, at the start of its step.
+struct HeldContact {
+  PairKey pair;
+  NearFeature feature;
+  double normal_force = 0.0, tangential_force = 0.0;  ///< [N]
+
+  auto order() const {
+    return std::tuple(pair.order(), feature.sample_on_a, feature.sample, feature.site);
+  }
+};
+
+struct Island {
+  std::vector<int> members;           ///< ascending
+  std::vector<HeldContact> contacts;  ///< in order
+  bool rests = false;
+  double due = std::numeric_limits<double>::infinity();  ///< when its step ends [s]
+};
+
+/// What islands came to.
+struct IslandTally {
+  std::uint64_t captured = 0, steps = 0, slept = 0, woken = 0, factorisations = 0;
+  double absorbed = 0.0;           ///< the largest approach that a step took without a rebound [m/s]
+  double friction_residual = 0.0;  ///< the largest, of the largest normal force of its island
+};
+
+class Islands {
+ public:
+  /// What is given must outlive it.
+  Islands(const World& world, Trajectories& trajectories, ContactSearch& search, CollisionResponse& response,
+          Records& records, RunControl& run);
+
+  /// Contacts may last from now on: an option, and a policy that asks for next_step().
+  void allow() { allowed_ = true; }
+  bool allowed() const { return allowed_; }
+  /// When the next step of an island ends [s]; infinity: none takes steps.
+  double next_step() const { return next_step_; }
+  /// Its least member; of several at one time the least of all. @pre next_step() is finite.
+  int next_island() const;
+  /// By their least member.
+  const std::map<int, Island>& all() const { return islands_; }
+  bool is_member(int body) const { return trajectories_->is_held(body); }
+  const IslandTally& tally() const { return tally_; }
+
+  // -- what happens at the present time: bodies whose motion changed are appended to `changed`; false on a halt
+  /// The pair's bounces come to an end at `limit` [s]: from now on their contact lasts.
+  bool capture(const PairKey& pair, double limit, std::vector<int>& changed);
+  /// The island whose step ends now, and first, takes its next.
+  bool step(std::vector<int>& changed);
+  /// A collision has been resolved, of which one side at least is a member.
+  bool collided(const PairKey& pair, double closing_speed, std::vector<int>& changed);
+  /// A body has been given another state.
+  bool disturbed(int body, std::vector<int>& changed);
+
+  struct Saved {
+    std::vector<Island> islands;
+    IslandTally tally;
+  };
+  Saved saved() const;
+  /// @pre the trajectories are restored.
+  void restore(const Saved& saved);
+
+ private:
+  class Step;
+  void gather(int body, std::set<int>& members) const;
+  bool begin_step(const std::set<int>& members, double longest, std::vector<int>& changed);
+  std::map<std::tuple<PairKey, bool, int, int>, double> take_out(const std::set<int>& members);
+  void put_in(Island island);
+  void find_next();
+
+  const World* world_;
+  Trajectories* trajectories_;
+  ContactSearch* search_;
+  CollisionResponse* response_;
+  Records* records_;
+  RunControl* run_;
+  ConeQp solver_;
+  bool allowed_ = false;
+  std::map<int, Island> islands_;
+  std::map<int, int> lead_of_;  ///< of every member
+  double next_step_ = std::numeric_limits<double>::infinity();
+  IslandTally tally_;
+};
+
+}  // namespace brink
