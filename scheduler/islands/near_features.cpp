@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "brink/core/shapes/curve_site.h"
@@ -11,8 +12,6 @@ namespace brink {
 
 namespace {
 
-/// Of a site that is part of a solid, points this far behind it [of its outline's size] belong to another.
-constexpr double kBehind = 1e-6;
 /// Below this part of the size two points are one, and their difference has no direction.
 constexpr double kOnePoint = 1e-12;
 
@@ -33,18 +32,15 @@ Vec2 direction(const Site& site, const Nearest& nearest, const Vec2& q, double l
   return normal_at(site, nearest, q);
 }
 
-/// Sample i of a half against site j of the other, whatever their gap. Nothing where they do not face each
-/// other.
-std::optional<NearFeature> feature(const Half& half, int i, int j) {
+/// Sample i of a half against site j, where it is nearest to it; side: see side_of(). Nothing of an arc that
+/// looks elsewhere.
+std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest& nearest, double side,
+                                   const Vec2& q) {
   const Sample& sample = half.carrier.samples[i];
   const Site& site = half.other.sites[j];
-  const Vec2 q = half.other_frame.to_local(half.carrier_frame.to_world(sample.p));
-  const Nearest nearest = nearest_on(site, q);
-  const double size = half.carrier.bounding_radius + half.other.bounding_radius;
-  const double side = side_of(site, nearest, q);
-  if (side < 0.0 && nearest.distance > kBehind * size) return std::nullopt;
-  Vec2 out = direction(site, nearest, q, kOnePoint * size);
-  if (side < 0.0 && nearest.distance > kOnePoint * size) out = -out;
+  const double least = kOnePoint * (half.carrier.bounding_radius + half.other.bounding_radius);
+  Vec2 out = direction(site, nearest, q, least);
+  if (side < 0.0 && nearest.distance > least) out = -out;
   const Vec2 outward = half.other_frame.direction_to_world(out);
   if (sample.arc_site >= 0) {
     const Vec2 towards = half.carrier_frame.direction_to_local(-outward);
@@ -60,6 +56,28 @@ std::optional<NearFeature> feature(const Half& half, int i, int j) {
   f.normal = half.on_a ? outward : Vec2(-outward);
   f.thin = !site.solid && site.radius + sample.radius == 0.0;
   return f;
+}
+
+/// Adds the features of sample i: sites that face it; and where it lies inside by roundings, those that are
+/// nearest. What it is merely behind, beyond a tip, is none.
+void add_features(const Half& half, int i, double reach, std::vector<NearFeature>& found) {
+  const Vec2 q = half.other_frame.to_local(half.carrier_frame.to_world(half.carrier.samples[i].p));
+  const double tie = kOnePoint * (half.carrier.bounding_radius + half.other.bounding_radius);
+  std::vector<Nearest> nearest;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Site& site : half.other.sites) {
+    nearest.push_back(nearest_on(site, q));
+    least = std::min(least, nearest.back().distance);
+  }
+  bool outside = false;
+  for (std::size_t j = 0; j < nearest.size(); ++j)
+    outside = outside || (nearest[j].distance <= least + tie && side_of(half.other.sites[j], nearest[j], q) > 0.0);
+  for (std::size_t j = 0; j < nearest.size(); ++j) {
+    const double side = side_of(half.other.sites[j], nearest[j], q);
+    if (side < 0.0 && (outside || nearest[j].distance > least + tie)) continue;
+    const auto f = feature(half, i, static_cast<int>(j), nearest[j], side, q);
+    if (f && f->gap <= reach) found.push_back(*f);
+  }
 }
 
 std::array<Half, 2> halves(const Outline& a, const ExtendedState& state_a, const Outline& b,
@@ -90,11 +108,8 @@ std::vector<NearFeature> near_features(const Outline& a, const ExtendedState& st
     // a disc's centre sees all that its surface meets: what the other's samples see is the same once more
     const bool both = half.carrier.is_point() && half.other.is_point();
     if (half.other.is_point() && !(both && half.on_a)) continue;
-    for (int i = 0; i < static_cast<int>(half.carrier.samples.size()); ++i) {
-      if (out_of_reach(half, half.carrier.samples[i], reach)) continue;
-      for (int j = 0; j < static_cast<int>(half.other.sites.size()); ++j)
-        if (const auto f = feature(half, i, j); f && f->gap <= reach) found.push_back(*f);
-    }
+    for (int i = 0; i < static_cast<int>(half.carrier.samples.size()); ++i)
+      if (!out_of_reach(half, half.carrier.samples[i], reach)) add_features(half, i, reach, found);
   }
   return found;
 }

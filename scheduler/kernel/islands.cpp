@@ -17,8 +17,9 @@ namespace {
 constexpr double kOfFall = 0.05;
 /// ... and moves nobody by more than this part of it.
 constexpr double kOfSize = 0.1;
-/// Features are listed as far as bodies can come in so many steps.
-constexpr double kReach = 2.0;
+/// Features are listed as far as bodies come in so many steps; where impulses take one farther, in more.
+constexpr double kReach = 2.0, kWider = 4.0;
+constexpr int kWidenings = 4;
 constexpr int kHalvings = 8;
 /// A force below this part of the weight of the heaviest member is none.
 constexpr double kNoForce = 1e-9;
@@ -79,7 +80,7 @@ class Islands::Step {
 
   /// Takes a step of `h` at most, and less where that does not do. False: not even the shortest does.
   bool take(double h) {
-    for (int halving = 0; halving <= kHalvings; ++halving, h *= 0.5) {
+    for (int halving = 0, widening = 0; halving <= kHalvings;) {
       h_ = h;
       list_contacts(-1.0);
       make_problem();
@@ -89,7 +90,15 @@ class Islands::Step {
                       return gap_along(k, moment, velocity);
                     });
       of_.tally_.factorisations += outcome.factorisations;
-      if (!outcome.solved || !stays_within_reach()) continue;
+      if (outcome.solved && !stays_within_reach() && ++widening <= kWidenings) {
+        reach_ *= kWider;
+        continue;
+      }
+      if (!outcome.solved || !stays_within_reach()) {
+        ++halving;
+        h *= 0.5;
+        continue;
+      }
       of_.tally_.friction_residual = std::max(of_.tally_.friction_residual, outcome.friction_residual);
       of_.tally_.absorbed = std::max(of_.tally_.absorbed, absorbed_);
       take_forces();
@@ -153,7 +162,7 @@ class Islands::Step {
   }
 
   double reach_of(int member) const {
-    return kReach * h_ * (speeds_[member] + pulls_[member] * h_ + pull_ * h_);
+    return reach_ * h_ * (speeds_[member] + pulls_[member] * h_ + pull_ * h_ + 0.01 * speed_);
   }
 
   ExtendedState other_state(const PairKey& pair) const {
@@ -329,7 +338,7 @@ class Islands::Step {
 
   Islands& of_;
   double now_;
-  double h_ = 0.0;
+  double h_ = 0.0, reach_ = kReach;
   std::vector<int> members_;
   std::map<int, int> place_;  ///< of each member
   std::vector<ExtendedState> states_;

@@ -60,6 +60,8 @@ class KernelView {
   double next_step() const { return parts_.islands.next_step(); }
   /// Its least member. @pre next_step() is finite.
   int next_island() const { return parts_.islands.next_island(); }
+  /// Steps that islands have begun so far.
+  std::uint64_t island_steps() const { return parts_.islands.tally().steps; }
   /// True if an island holds the body.
   bool is_held(int k) const { return parts_.trajectories.is_held(k); }
   /// By their least member.

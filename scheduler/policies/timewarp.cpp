@@ -76,10 +76,10 @@ class Timewarp final : public Policy {
       return look_around(next.time);
     }
     if (kernel_->is_resolved_ahead(next)) {
+      const std::uint64_t steps = kernel_->island_steps();
       if (!kernel_->confirm(next, changed_)) return false;
       // an island that it began has taken its bodies elsewhere than they had gone
-      const bool held = std::any_of(changed_.begin(), changed_.end(), [&](int k) { return kernel_->is_held(k); });
-      if (held) return look_around(next.time);
+      if (kernel_->island_steps() != steps) return look_around(next.time);
       count_from_now_on();
       return true;
     }
