@@ -143,9 +143,12 @@ class Author {
         momenta += of.mass * v + of.inertia * std::abs(x.twist.omega) / std::max(reach, 1e-3);
         energies += of.mass * (v * v + h) + of.inertia * x.twist.omega * x.twist.omega;
       }
-    const auto off = [&](double x, double y, double scale) { return !(std::abs(x - y) <= 1e-12 * scale); };
+    const double size = b.outline->bounding_radius;
+    // the arm is a difference of places
+    const double fine = 1e-12 + 1e-15 * (s.pose.position.norm() + door.point.norm()) / size;
+    const auto off = [&](double x, double y, double scale) { return !(std::abs(x - y) <= fine * scale); };
     const double moment = door.point.x() * door.impulse.y() - door.point.y() * door.impulse.x();
-    if ((q.linear - p.linear - door.impulse).norm() > 1e-12 * (momenta + b.mass * speed_) ||
+    if ((q.linear - p.linear - door.impulse).norm() > fine * (momenta + b.mass * speed_) ||
         off(q.angular - p.angular, moment, (momenta + b.mass * speed_) * std::max(reach, 1e-3)) ||
         off(total_energy(world, after) - total_energy(world, before), work, energies))
       watch_.blame(simulator().time(), "momentum or energy do not jump as the impulse says", door.body);
