@@ -50,12 +50,19 @@ class IslandBackup final : public Policy {
     if (!kernel.resolve(next.pair, next.contact, changed_)) return false;
     end = kernel.follow_motions(end);
     if (!agenda_.pass_again(kernel, changed_, end)) return false;
+    if (groupings_ != kernel.groupings()) unite_coupled(kernel);
     unite_near();
     return true;
   }
 
   void make_islands(const Kernel& kernel) {
     islands_.reset(kernel.body_count());
+    unite_coupled(kernel);
+    unite_near();
+  }
+
+  void unite_coupled(const Kernel& kernel) {
+    groupings_ = kernel.groupings();
     std::vector<int> first;  // body of every component
     for (int k = 0; k < kernel.body_count(); ++k) {
       const int component = kernel.body(k).component;
@@ -63,7 +70,6 @@ class IslandBackup final : public Policy {
       if (component >= static_cast<int>(first.size())) first.resize(component + 1, k);
       islands_.unite(first[component], k);
     }
-    unite_near();
   }
 
   void unite_near() {
@@ -73,7 +79,8 @@ class IslandBackup final : public Policy {
 
   HorizonAgenda agenda_;
   Islands islands_;
-  std::vector<int> island_;  ///< that is backed up
+  std::uint64_t groupings_ = 0;  ///< as of the islands
+  std::vector<int> island_;      ///< that is backed up
   std::vector<int> changed_;
 };
 
