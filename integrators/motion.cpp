@@ -209,7 +209,7 @@ Motion Motion::displaced(const Vec2& by) const {
 }
 
 ExtendedState Motion::extended_state(double t) const {
-  if (kind_ != Kind::ballistic) return state(t);
+  if (kind_ != Kind::ballistic) return {state(t), low_};
   const Real s = static_cast<Real>(t) - t0_;
   ExtendedState e(start_, low_);
   const RealVec a = drive_.linear.cast<Real>();

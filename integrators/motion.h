@@ -91,6 +91,9 @@ class Motion {
     low_ = low;
   }
 
+  /// What the rounding of its start left over: only extended_state() sees it.
+  void keep_low(const Pose& low) { low_.pose = low; }
+
   double begin() const;
   double end() const;
   /// False for a time of dense output whose pieces are gone (Track::forget_before).
@@ -102,8 +105,8 @@ class Motion {
   Pose pose(double t) const { return state(t).pose; }
   Twist twist(double t) const { return state(t).twist; }
 
-  /// The state in extended precision: of a parabola with the low-order part of its start, of anything else
-  /// state(t) widened.
+  /// The state in extended precision: of a parabola from the low-order part of its start on, of anything else
+  /// state(t) beside it.
   ExtendedState extended_state(double t) const;
 
   /// Enclosures over [from, to]. @pre begin() <= from <= to <= end().

@@ -41,12 +41,13 @@ class CertificateWatch {
 
   /// What is kept of it in a snapshot.
   struct Saved {
-    double max_overlap = 0.0, start_overlap = 0.0;
+    double max_overlap = 0.0, start_overlap = 0.0, flown_until = 0.0;
   };
-  Saved saved() const { return {max_overlap_, start_overlap_}; }
+  Saved saved() const { return {max_overlap_, start_overlap_, flown_until_}; }
   void restore(const Saved& saved) {
     max_overlap_ = saved.max_overlap;
     start_overlap_ = saved.start_overlap;
+    flown_until_ = saved.flown_until;
   }
 
  private:

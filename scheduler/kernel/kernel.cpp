@@ -129,7 +129,9 @@ bool Kernel::resolve(const PairKey& pair, const FeatureContact& found, std::vect
     return resolve_group(pair, found, changed);
   }
   const auto outcome = parts_.response.collide(pair, found, changed);
-  return outcome && tell(*outcome, changed);
+  if (!outcome) return false;
+  const bool goes_on = tell(*outcome, changed);
+  return regroup_after(pair, changed) && goes_on;
 }
 
 bool Kernel::resolve_group(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed) {
@@ -151,8 +153,22 @@ bool Kernel::resolve_group(const PairKey& pair, const FeatureContact& found, std
     count(o.pair);
     parts_.records.event(EventKind::collision, o.pair, o.contact, o.impulse_n, o.impulse_t, o.delay);
   }
-  return std::all_of(group->collisions.begin(), group->collisions.end(),
-                     [&](const Outcome& o) { return judge(o, changed); });
+  const bool goes_on = std::all_of(group->collisions.begin(), group->collisions.end(),
+                                   [&](const Outcome& o) { return judge(o, changed); });
+  return regroup_after(pair, changed) && goes_on;
+}
+
+/// Also where the run stops here: it may go on later.
+bool Kernel::regroup_after(const PairKey& pair, std::vector<int>& changed) {
+  if (!parts_.grouping) return true;
+  auto together = parts_.grouping(*this, pair);
+  return !together || regroup(std::move(*together), changed);
+}
+
+bool Kernel::regroup(std::vector<std::vector<int>> together, std::vector<int>& changed) {
+  roll_back_all();
+  ++parts_.groupings;
+  return parts_.trajectories.regroup(std::move(together), changed);
 }
 
 bool Kernel::tell(const Outcome& o, std::vector<int>& changed) {
@@ -296,7 +312,8 @@ bool Kernel::confirm(const Certificate& c, std::vector<int>& changed) {
   parts_.run.set_time(entry->time);
   parts_.policy_watch.going_to(time());
   for (const AheadCollision::Former& f : entry->former) changed.push_back(f.body);
-  return tell(entry->outcome, changed);
+  const bool goes_on = tell(entry->outcome, changed);
+  return regroup_after(c.pair, changed) && goes_on;
 }
 
 // -- the run --
@@ -339,7 +356,7 @@ std::vector<std::byte> Kernel::snapshot() const {
   saved.random = parts_.random.state();
   saved.work = parts_.run.work();
   saved.trajectories = parts_.trajectories.saved();
-  return encode(saved, world(), options(), parts_.trajectories);
+  return encode(saved, world(), options());
 }
 
 }  // namespace brink

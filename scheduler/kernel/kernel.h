@@ -116,8 +116,13 @@ class Kernel : public KernelView {
   /// Records a frame at the present time, and looks at all pairs.
   void show_frame();
   std::vector<std::byte> snapshot() const;
+  /// From now on the bodies of each set are integrated together, beside those that forces couple; sets that
+  /// are not named again are split. For what answers collisions, not for policies: they learn of it by
+  /// `changed`, to which bodies whose motion changed are appended. What was resolved ahead of time is undone.
+  bool regroup(std::vector<std::vector<int>> together, std::vector<int>& changed);
 
  private:
+  bool regroup_after(const PairKey& pair, std::vector<int>& changed);
   bool resolve_group(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed);
   bool tell(const Outcome& outcome, std::vector<int>& changed);
   void count(const PairKey& pair);

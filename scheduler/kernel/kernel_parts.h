@@ -7,6 +7,7 @@
 #include "brink/scheduler/kernel/contact_search.h"
 #include "brink/scheduler/kernel/endings.h"
 #include "brink/scheduler/kernel/group_response.h"
+#include "brink/scheduler/kernel/grouping.h"
 #include "brink/scheduler/kernel/islands.h"
 #include "brink/scheduler/kernel/near_pairs.h"
 #include "brink/scheduler/kernel/policy_watch.h"
@@ -47,6 +48,8 @@ struct KernelParts {
   Records records;
   Islands islands;
   PolicyWatch policy_watch;
+  Grouping grouping;            ///< may be empty
+  std::uint64_t groupings = 0;  ///< that it made
   Random random;
   TakenGroups taken;
   double horizon = 0.0;

@@ -42,6 +42,8 @@ class KernelView {
   bool is_ballistic(int k) const { return parts_.trajectories.is_ballistic(k); }
   /// Groups of bodies that an integrator drives together.
   std::size_t component_count() const { return parts_.trajectories.component_count(); }
+  /// Raised whenever bodies have been grouped anew: components are others now.
+  std::uint64_t groupings() const { return parts_.groupings; }
   /// Where the first of the motions ends that cannot go on [s]; infinity: none that is known. A collision
   /// before may start it afresh, so a policy goes on to there, and then calls fail_before().
   double reach() const { return parts_.trajectories.reach(); }

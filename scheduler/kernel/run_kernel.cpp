@@ -114,11 +114,10 @@ void RunKernel::apply_impulse(int k, const Vec2& impulse, const Vec2& point) {
 }
 
 void RunKernel::restore(std::span<const std::byte> bytes) {
-  SavedRun saved = decode(bytes, world(), options(), parts_.trajectories);
+  SavedRun saved = decode(bytes, world(), options());
   const WorkCounters before = work();
   try {
     Trajectories again(world(), options(), parts_.run);
-    again.regroup(parts_.trajectories.together());
     again.restore(saved.trajectories, saved.time);
     parts_.trajectories = std::move(again);
   } catch (...) {

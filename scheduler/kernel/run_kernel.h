@@ -29,6 +29,9 @@ class RunKernel final : public Kernel {
   /// From now on owners whom the filter says no to never meet.
   void set_pair_filter(PairFilter filter);
 
+  /// From now on bodies are grouped as it says. Snapshots hold the groups, not the function.
+  void set_grouping(Grouping grouping) { parts_.grouping = std::move(grouping); }
+
   // -- at the present time; the policy's knowledge is void afterwards --
   /// Body k goes on from this state. @throws BadInput if it is not finite, or moves along a lock.
   void set_state(int k, const BodyState& state);

@@ -50,8 +50,7 @@ class Reader {
 };
 
 /// What a snapshot must agree on with the world it is restored into: everything that decides the motion.
-std::uint64_t fingerprint(const World& world, const SolverOptions& options,
-                          const std::vector<std::vector<int>>& together) {
+std::uint64_t fingerprint(const World& world, const SolverOptions& options) {
   StateHash hash;
   hash.add(world_hash(world));
   for (const std::string* word :
@@ -64,10 +63,6 @@ std::uint64_t fingerprint(const World& world, const SolverOptions& options,
   hash.add(options.step);
   hash.add(options.contact_tolerance);
   hash.add(options.seed);
-  for (const std::vector<int>& set : together) {
-    hash.add(static_cast<std::uint64_t>(set.size()));
-    for (const int k : set) hash.add(static_cast<std::uint64_t>(k));
-  }
   return hash.value();
 }
 
@@ -78,6 +73,7 @@ void scalars(Each&& each, Run& run) {
   each(run.horizon);
   each(run.watch.max_overlap);
   each(run.watch.start_overlap);
+  each(run.watch.flown_until);
   each(run.records.seq);
   each(run.records.frame);
   each(run.records.last_frame);
@@ -125,26 +121,108 @@ void read_islands(Reader& in, Islands::Saved& islands) {
   }
 }
 
-}  // namespace
+/// How a body moves, as it is written.
+enum class Kind : std::uint8_t {
+  driven,  ///< by an integrator
+  free,
+  held,    ///< by an island, and free otherwise
+  asleep,  ///< held, and driven otherwise
+};
 
-std::vector<std::byte> encode(const SavedRun& saved, const World& world, const SolverOptions& options,
-                              const Trajectories& trajectories) {
-  Writer out;
-  out(kMagic);
-  out(fingerprint(world, options, trajectories.together()));
-  scalars(out, saved);
-  for (const BodyTrack& b : saved.trajectories.bodies) {
+Kind kind_of(const Trajectories::Saved& saved, const BodyTrack& b, int k) {
+  if (b.component == BodyTrack::kHeld) return saved.is_asleep(k) ? Kind::asleep : Kind::held;
+  return b.component < 0 ? Kind::free : Kind::driven;
+}
+
+void write_sets(Writer& out, const Trajectories::Sets& sets) {
+  out(static_cast<std::uint64_t>(sets.size()));
+  for (const std::vector<int>& set : sets) {
+    out(static_cast<std::uint64_t>(set.size()));
+    for (const int k : set) out(k);
+  }
+}
+
+Trajectories::Sets read_sets(Reader& in, std::size_t bodies) {
+  Trajectories::Sets sets(in.count(sizeof(std::uint64_t)));
+  for (std::vector<int>& set : sets) {
+    set.resize(in.count(sizeof(int)));
+    for (int& k : set) {
+      in(k);
+      if (k < 0 || static_cast<std::size_t>(k) >= bodies) throw BadInput("snapshot: it groups no such body");
+    }
+  }
+  return sets;
+}
+
+void write(Writer& out, const Trajectories::Saved& saved) {
+  write_sets(out, saved.together);
+  for (const BodyTrack& b : saved.bodies) {
     track(out, b);
-    out(b.component == BodyTrack::kHeld);
+    out(kind_of(saved, b, static_cast<int>(&b - saved.bodies.data())));
     if (b.component >= 0) continue;
     out(b.motion.origin());
     out(b.motion.start());
     out(b.motion.start_low());
   }
-  for (const ComponentStart& s : saved.trajectories.starts) {
+  for (const ComponentStart& s : saved.starts) {
     out(s.time);
     for (const BodyState& state : s.states) out(state);
+    out(static_cast<std::uint8_t>(!s.lows.empty()));
+    for (const Pose& low : s.lows) out(low);
   }
+}
+
+BodyTrack read_body(Reader& in, bool& asleep) {
+  BodyTrack b;
+  track(in, b);
+  Kind kind = Kind::driven;
+  in(kind);
+  b.component = kind == Kind::driven ? 0 : kind == Kind::free ? BodyTrack::kFree : BodyTrack::kHeld;
+  asleep = kind == Kind::asleep;
+  if (b.component >= 0) return b;
+  double origin = 0.0;
+  BodyState start, low;
+  in(origin);
+  in(start);
+  in(low);
+  b.motion = Motion::ballistic(origin, start, {}, std::numeric_limits<double>::infinity(), low);
+  return b;
+}
+
+Trajectories::Saved read_trajectories(Reader& in, const World& world) {
+  Trajectories::Saved saved;
+  saved.together = read_sets(in, world.bodies.size());
+  for (std::size_t k = 0; k < world.bodies.size(); ++k) {
+    bool asleep = false;
+    saved.bodies.push_back(read_body(in, asleep));
+    if (asleep) saved.asleep.push_back(static_cast<int>(k));
+  }
+  for (const Component& c : make_components(world, saved.together)) {
+    if (saved.bodies[c.bodies.front()].component < 0 && !saved.is_asleep(c.bodies.front())) {
+      if (c.bodies.size() > 1 || !c.dynamics->constant())
+        throw BadInput("snapshot: a body flies freely that cannot");
+      continue;
+    }
+    ComponentStart s{static_cast<int>(saved.starts.size()), 0.0, std::vector<BodyState>(c.bodies.size()), {}};
+    in(s.time);
+    for (BodyState& state : s.states) in(state);
+    std::uint8_t with_lows = 0;
+    in(with_lows);
+    if (with_lows) s.lows.resize(c.bodies.size());
+    for (Pose& low : s.lows) in(low);
+    saved.starts.push_back(std::move(s));
+  }
+  return saved;
+}
+
+}  // namespace
+
+std::vector<std::byte> encode(const SavedRun& saved, const World& world, const SolverOptions& options) {
+  Writer out;
+  out(kMagic);
+  out(fingerprint(world, options));
+  scalars(out, saved);
+  write(out, saved.trajectories);
   write_islands(out, saved.islands);
   out(saved.endings.often);
   out(static_cast<std::uint64_t>(saved.endings.bodies.size()));
@@ -157,39 +235,17 @@ std::vector<std::byte> encode(const SavedRun& saved, const World& world, const S
   return out.take();
 }
 
-SavedRun decode(std::span<const std::byte> bytes, const World& world, const SolverOptions& options,
-                const Trajectories& trajectories) {
+SavedRun decode(std::span<const std::byte> bytes, const World& world, const SolverOptions& options) {
   Reader in(bytes);
   std::uint64_t magic = 0, print = 0;
   in(magic);
   in(print);
   if (magic != kMagic) throw BadInput("snapshot: these bytes are not a snapshot of this version");
-  if (print != fingerprint(world, options, trajectories.together()))
+  if (print != fingerprint(world, options))
     throw BadInput("snapshot: it was taken of another world or with other options");
   SavedRun saved;
   scalars(in, saved);
-  for (int k = 0; k < trajectories.body_count(); ++k) {
-    BodyTrack b;
-    track(in, b);
-    bool held = false;
-    in(held);
-    b.component = held ? BodyTrack::kHeld : trajectories.own_component(k);
-    if (b.component < 0) {
-      double origin = 0.0;
-      BodyState start, low;
-      in(origin);
-      in(start);
-      in(low);
-      b.motion = Motion::ballistic(origin, start, {}, std::numeric_limits<double>::infinity(), low);
-    }
-    saved.trajectories.bodies.push_back(b);
-  }
-  for (int c = 0; c < static_cast<int>(trajectories.component_count()); ++c) {
-    ComponentStart s{c, 0.0, std::vector<BodyState>(trajectories.members(c).size())};
-    in(s.time);
-    for (BodyState& state : s.states) in(state);
-    saved.trajectories.starts.push_back(std::move(s));
-  }
+  saved.trajectories = read_trajectories(in, world);
   read_islands(in, saved.islands);
   in(saved.endings.often);
   saved.endings.bodies.resize(in.count(sizeof(int)));

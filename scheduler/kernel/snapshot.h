@@ -27,12 +27,9 @@ struct SavedRun {
   Trajectories::Saved trajectories;
 };
 
-std::vector<std::byte> encode(const SavedRun& saved, const World& world, const SolverOptions& options,
-                              const Trajectories& trajectories);
+std::vector<std::byte> encode(const SavedRun& saved, const World& world, const SolverOptions& options);
 
-/// @throws BadInput if the bytes are no snapshot of this world, these options and these components; nothing
-/// has changed then.
-SavedRun decode(std::span<const std::byte> bytes, const World& world, const SolverOptions& options,
-                const Trajectories& trajectories);
+/// @throws BadInput if the bytes are no snapshot of this world and these options.
+SavedRun decode(std::span<const std::byte> bytes, const World& world, const SolverOptions& options);
 
 }  // namespace brink

@@ -15,6 +15,7 @@ namespace {
 
 /// Pieces of motion that one round of instalments makes at most, of all bodies together: some 50 MB.
 constexpr std::uint64_t kMostPieces = 1U << 17;
+constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kShortest = 16, kLongest = 4096;  ///< instalments [steps]
 
 BodyState held(const Body& body, BodyState s) {
@@ -25,6 +26,16 @@ BodyState held(const Body& body, BodyState s) {
 }
 
 void raise_version(BodyTrack& b) { b.version = std::max(b.version, b.last_undone) + 1; }
+
+ComponentStart start_from(double t, std::span<const ExtendedState> states, bool with_lows) {
+  ComponentStart start;
+  start.time = t;
+  for (const ExtendedState& s : states) {
+    start.states.push_back(s.rounded());
+    if (with_lows) start.lows.push_back(s.low().pose);
+  }
+  return start;
+}
 
 bool moves_in_closed_form(const SolverOptions& options, const Dynamics& dynamics, double t) {
   const bool asked = options.integrator == "auto" || options.integrator == "ballistic";
@@ -39,35 +50,43 @@ Trajectories::Trajectories(const World& world, const SolverOptions& options, Run
   std::vector<BodyState> initial;
   for (const Body& b : world.bodies) initial.push_back(held(b, b.initial));
   for (Component& c : make_components(world)) {
-    std::vector<BodyState> states;
-    for (const int k : c.bodies) states.push_back(initial[k]);
-    add_component(std::move(c), 0.0, states);
+    std::vector<ExtendedState> states;
+    for (const int k : c.bodies) states.emplace_back(initial[k]);
+    add_component(std::move(c), start_from(0.0, states, false));
   }
   run.work().component_resets = 0;  // first starts are no resets
   for (const FixedSite& site : world.sites) sites_.emplace_back(site);
   site_failures_.resize(sites_.size());
 }
 
-void Trajectories::add_component(Component component, double t, std::span<const BodyState> states) {
-  const Dynamics& dynamics = *component.dynamics;
-  if (moves_in_closed_form(*options_, dynamics, t)) {
-    Acceleration acceleration;
-    dynamics.accelerations(t, states, {&acceleration, 1});
-    BodyTrack& b = bodies_[component.bodies.front()];
-    b.motion = Motion::ballistic(t, states.front(), acceleration);
-    b.component = -1;
-    return;
-  }
+void Trajectories::add_component(Component component, ComponentStart start) {
+  if (!moves_in_closed_form(*options_, *component.dynamics, start.time))
+    return add_coupled(std::move(component), std::move(start));
+  BodyState low;
+  if (!start.lows.empty()) low.pose = start.lows.front();
+  add_free(component, start.time, start.states.front(), low);
+}
+
+void Trajectories::add_free(const Component& component, double t, const BodyState& start,
+                            const BodyState& low) {
+  Acceleration acceleration;
+  component.dynamics->accelerations(t, {&start, 1}, {&acceleration, 1});
+  BodyTrack& b = bodies_[component.bodies.front()];
+  b.motion = Motion::ballistic(t, start, acceleration, kForever, low);
+  b.component = -1;
+}
+
+void Trajectories::add_coupled(Component component, ComponentStart from) {
   for (std::size_t i = 0; i < component.bodies.size(); ++i) {
     BodyTrack& b = bodies_[component.bodies[i]];
     b.component = static_cast<int>(components_.size());
     b.place_in_component = static_cast<int>(i);
   }
-  Coupled coupled{std::move(component), nullptr, 0.0, {}, {}};
+  Coupled coupled{std::move(component), nullptr, {}, {}};
   coupled.integrator = make_integrator(options_->integrator, coupled.component.dynamics,
                                        options_->integrator_options(), &run_->work());
   components_.push_back(std::move(coupled));
-  start(components_.back(), t, {states.begin(), states.end()});
+  start(components_.back(), std::move(from));
 }
 
 std::vector<BodyState> Trajectories::states(double t) const {
@@ -90,8 +109,11 @@ std::uint64_t Trajectories::instalment() const {
 }
 
 void Trajectories::fetch(const Coupled& c) {
-  for (std::size_t i = 0; i < c.component.bodies.size(); ++i)
-    bodies_[c.component.bodies[i]].motion = c.integrator->motion(static_cast<int>(i));
+  for (std::size_t i = 0; i < c.component.bodies.size(); ++i) {
+    Motion& motion = bodies_[c.component.bodies[i]].motion;
+    motion = c.integrator->motion(static_cast<int>(i));
+    if (!c.begun.lows.empty()) motion.keep_low(c.begun.lows[i]);
+  }
 }
 
 double Trajectories::follow(Coupled& c, double t) {
@@ -206,10 +228,9 @@ void Trajectories::forget_before(double t) {
 
 // -- starting afresh --
 
-void Trajectories::start(Coupled& c, double t, std::vector<BodyState> states) {
-  c.started = t;
-  c.start_states = std::move(states);
-  c.integrator->start(t, c.start_states);
+void Trajectories::start(Coupled& c, ComponentStart from) {
+  c.begun = std::move(from);
+  c.integrator->start(c.begun.time, c.begun.states);
   fetch(c);
   if (std::isfinite(c.failure.time)) {
     c.failure = {};
@@ -232,13 +253,13 @@ void Trajectories::restart(std::span<const Restart> touched, std::vector<int>& c
   }
   Coupled& c = components_[component];
   changed.insert(changed.end(), c.component.bodies.begin(), c.component.bodies.end());
-  std::vector<BodyState> states;
+  std::vector<ExtendedState> states;
   for (const int j : c.component.bodies) {
-    states.push_back(bodies_[j].motion.state(run_->time()));
+    states.push_back(bodies_[j].motion.extended_state(run_->time()));
     raise_version(bodies_[j]);
   }
-  for (const Restart& r : touched) states[bodies_[r.body].place_in_component] = r.state.rounded();
-  start(c, run_->time(), std::move(states));
+  for (const Restart& r : touched) states[bodies_[r.body].place_in_component] = r.state;
+  start(c, start_from(run_->time(), states, !c.begun.lows.empty()));
 }
 
 // -- islands --
@@ -280,9 +301,9 @@ void Trajectories::release(std::span<const int> bodies, std::vector<int>& change
   for (Coupled& c : components_) {
     if (!c.dormant || bodies_[c.component.bodies.front()].component < 0) continue;
     c.dormant = false;
-    std::vector<BodyState> states;
-    for (const int k : c.component.bodies) states.push_back(bodies_[k].motion.state(run_->time()));
-    start(c, run_->time(), std::move(states));
+    std::vector<ExtendedState> states;
+    for (const int k : c.component.bodies) states.push_back(bodies_[k].motion.extended_state(run_->time()));
+    start(c, start_from(run_->time(), states, !c.begun.lows.empty()));
   }
 }
 
@@ -313,82 +334,128 @@ std::vector<int> Trajectories::coupled_to(int k) const {
   return component < 0 ? std::vector<int>{k} : components_[component].component.bodies;
 }
 
-void Trajectories::regroup(std::vector<std::vector<int>> together) {
-  together_ = std::move(together);
+// -- grouping --
+
+/// True if these bodies are a component already.
+bool Trajectories::stays(const Component& component) const {
+  const int former = bodies_[component.bodies.front()].component;
+  return former < 0 ? component.bodies.size() == 1 : components_[former].component.bodies == component.bodies;
+}
+
+/// Nobody is asked whether to go on: what answers a collision is not to be broken off.
+bool Trajectories::catch_up(const Component& component, double t) {
+  for (const int k : component.bodies) {
+    if (bodies_[k].component < 0) continue;
+    Coupled& c = components_[bodies_[k].component];
+    while (follow(c, t) < t)
+      if (stop_at(c.failure)) return false;
+  }
+  return true;
+}
+
+void Trajectories::begin_anew(Component component, double t, std::vector<int>& changed) {
+  std::vector<ExtendedState> states;
+  for (const int k : component.bodies) {
+    states.push_back(bodies_[k].motion.extended_state(t));
+    raise_version(bodies_[k]);
+    if (std::find(changed.begin(), changed.end(), k) == changed.end()) changed.push_back(k);
+  }
+  add_component(std::move(component), start_from(t, states, true));
+}
+
+bool Trajectories::regroup(Sets together, std::vector<int>& changed) {
   const double now = run_->time();
+  std::vector<Component> after = make_components(*world_, together);
+  std::vector<bool> stay;
+  for (const Component& c : after) {
+    stay.push_back(stays(c));
+    if (!stay.back() && !catch_up(c, now)) return false;
+  }
+  together_ = std::move(together);
   std::vector<Coupled> before = std::exchange(components_, {});
-  for (Component& c : make_components(*world_, together_)) {
-    const int former = bodies_[c.bodies.front()].component;
-    if (former < 0 && c.bodies.size() == 1) continue;
-    if (former >= 0 && before[former].component.bodies == c.bodies) {
-      for (const int k : c.bodies) bodies_[k].component = static_cast<int>(components_.size());
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    const int former = bodies_[after[i].bodies.front()].component;
+    if (!stay[i]) {
+      begin_anew(std::move(after[i]), now, changed);
+    } else if (former >= 0) {
+      for (const int k : after[i].bodies) bodies_[k].component = static_cast<int>(components_.size());
       components_.push_back(std::move(before[former]));
-      continue;
     }
-    std::vector<BodyState> states;
-    for (const int k : c.bodies) {
-      states.push_back(bodies_[k].motion.state(now));
-      raise_version(bodies_[k]);
-    }
-    add_component(std::move(c), now, states);
   }
   find_reach();
+  return true;
 }
 
 // -- going back --
 
 ComponentStart Trajectories::start_of(int component) const {
-  const Coupled& c = components_[component];
-  return {component, c.started, c.start_states};
+  ComponentStart start = components_[component].begun;
+  start.component = component;
+  return start;
 }
 
 void Trajectories::go_back_to(const ComponentStart& s) {
   Coupled& c = components_[s.component];
   const double end = bodies_[c.component.bodies.front()].motion.end();
-  start(c, s.time, s.states);
+  start(c, s);
   cover(c, end);
 }
 
 Trajectories::Saved Trajectories::saved() const {
-  Saved all{{bodies_.begin(), bodies_.end()}, {}};
+  Saved all{together_, {bodies_.begin(), bodies_.end()}, {}, {}};
+  for (const auto& [k, former] : held_)
+    if (former.component >= 0) all.asleep.push_back(k);
   for (int c = 0; c < static_cast<int>(components_.size()); ++c) all.starts.push_back(start_of(c));
   return all;
 }
 
 void Trajectories::restore(const Saved& saved, double t) {
+  together_ = saved.together;
   for (int k = 0; k < body_count(); ++k) {
-    BodyTrack& b = bodies_[k];
     const BodyTrack& as = saved.bodies[k];
-    const Motion& m = as.motion;
+    BodyTrack& b = bodies_[k];
     b.version = as.version;
     b.velocity_rounding = as.velocity_rounding;
     b.resolved_at = as.resolved_at;
     b.last_partner = as.last_partner;
     b.streak = as.streak;
-    if (as.component == BodyTrack::kHeld) {
-      held_[k] = {b.component, b.component < 0 ? b.motion.acceleration() : Acceleration{}};
-      if (b.component >= 0) put_to_sleep(components_[b.component]);
-      b.component = BodyTrack::kHeld;
-      b.motion = Motion::still({}, 0.0);
-    }
-    if (b.component < 0)
-      b.motion =
-          Motion::ballistic(m.origin(), m.start(), b.motion.acceleration(), b.motion.end(), m.start_low());
   }
-  for (const ComponentStart& s : saved.starts) {
-    Coupled& c = components_[s.component];
-    if (c.dormant) continue;
-    start(c, s.time, s.states);
-    while (follow(c, t) < t) {
-      if (std::isfinite(c.failure.time)) throw BadInput("snapshot: " + c.failure.why);
-      c.integrator->forget_before(t);
+  components_.clear();
+  find_reach();
+  for (Component& c : make_components(*world_, together_)) {
+    const Motion& m = saved.bodies[c.bodies.front()].motion;
+    const std::vector<int> members = c.bodies;
+    const bool held = saved.bodies[members.front()].component == BodyTrack::kHeld;
+    if (saved.bodies[members.front()].component < 0 && !saved.is_asleep(members.front())) {
+      add_free(c, m.origin(), m.start(), m.start_low());
+    } else {
+      add_coupled(std::move(c), saved.starts[components_.size()]);
+      if (!held) follow_again(components_.back(), t);
     }
+    if (held) hold_again(members, saved);
   }
   for (SiteMotion& s : sites_) {
     Extent extent = s.extend(t, instalment());
     for (; extent.status == Extent::Status::unfinished; extent = s.extend(t, instalment()))
       s.forget_before(t);
     if (extent.end < t) throw BadInput("snapshot: " + extent.why);
+  }
+}
+
+void Trajectories::hold_again(std::span<const int> members, const Saved& saved) {
+  for (const int k : members) {
+    BodyTrack& b = bodies_[k];
+    held_[k] = {b.component, b.component < 0 ? b.motion.acceleration() : Acceleration{}};
+    if (b.component >= 0) put_to_sleep(components_[b.component]);
+    b.component = BodyTrack::kHeld;
+    b.motion = saved.bodies[k].motion;
+  }
+}
+
+void Trajectories::follow_again(Coupled& c, double t) {
+  while (follow(c, t) < t) {
+    if (std::isfinite(c.failure.time)) throw BadInput("snapshot: " + c.failure.why);
+    c.integrator->forget_before(t);
   }
 }
 

@@ -5,6 +5,7 @@
 /// is cut where an instalment ends, which bounds memory and the time between two looks at `progress`; and a
 /// motion that fails is followed to its end, since a collision before may start it afresh.
 
+#include <algorithm>
 #include <limits>
 #include <map>
 #include <memory>
@@ -28,15 +29,20 @@ struct Restart {
   ExtendedState state;
 };
 
-/// Where the integrator of a component was started.
+/// Where the integrator of a component was started. Of bodies that were grouped while running, what the
+/// rounding of their places leaves over is kept beside what the integrator makes: who joins must not jump, not
+/// even by that, into what it touches.
 struct ComponentStart {
   int component = -1;
   double time = 0.0;  ///< [s]
   std::vector<BodyState> states;
+  std::vector<Pose> lows;  ///< what their rounding left over; empty: nothing, never
 };
 
 class Trajectories {
  public:
+  using Sets = std::vector<std::vector<int>>;  ///< of bodies
+
   /// Starts everything at t = 0. `world` must outlive it. @throws BadInput as make_integrator.
   Trajectories(const World& world, const SolverOptions& options, RunControl& run);
 
@@ -101,21 +107,25 @@ class Trajectories {
   std::vector<int> coupled_to(int k) const;
 
   /// From now on the bodies of each set are integrated together, beside those that forces couple; sets that
-  /// are not named again are split. Components that stay as they are keep their motions, bit for bit.
-  void regroup(std::vector<std::vector<int>> together);
-  /// The sets that regroup() was last given.
-  const std::vector<std::vector<int>>& together() const { return together_; }
+  /// are not named again are split. Components that stay as they are keep their motions, bit for bit. Bodies
+  /// whose motion changed are appended to `changed`, unless they are there. False, and nothing has changed but
+  /// halt(), where one of them cannot be followed to the present.
+  bool regroup(Sets together, std::vector<int>& changed);
 
   // -- going back --
   ComponentStart start_of(int component) const;
   /// Starts the component there again and goes on to where it has come.
   void go_back_to(const ComponentStart& start);
   struct Saved {
+    Sets together;                       ///< that regroup() was last given
     std::vector<BodyTrack> bodies;       ///< motions of those that no integrator drives alone
     std::vector<ComponentStart> starts;  ///< of every component
+    std::vector<int> asleep;             ///< bodies that an island holds, but an integrator would drive
+
+    bool is_asleep(int k) const { return std::binary_search(asleep.begin(), asleep.end(), k); }
   };
   Saved saved() const;
-  /// As they were saved at time t. @throws BadInput where a motion cannot be made again.
+  /// As they were saved at time t, whoever was together. @throws BadInput where a motion cannot be made again.
   void restore(const Saved& saved, double t);
 
  private:
@@ -126,8 +136,7 @@ class Trajectories {
   struct Coupled {  ///< a component and its integrator
     Component component;
     std::unique_ptr<Integrator> integrator;
-    double started = 0.0;
-    std::vector<BodyState> start_states;
+    ComponentStart begun;
     Failure failure;
     bool dormant = false;  ///< an island holds its bodies
   };
@@ -136,9 +145,16 @@ class Trajectories {
     Acceleration acceleration;  ///< of a free one
   };
 
-  void add_component(Component component, double t, std::span<const BodyState> states);
-  void start(Coupled& c, double t, std::vector<BodyState> states);
+  void add_component(Component component, ComponentStart start);
+  void add_free(const Component& component, double t, const BodyState& start, const BodyState& low);
+  void add_coupled(Component component, ComponentStart start);
+  bool stays(const Component& component) const;
+  bool catch_up(const Component& component, double t);
+  void follow_again(Coupled& c, double t);
+  void begin_anew(Component component, double t, std::vector<int>& changed);
+  void start(Coupled& c, ComponentStart from);
   void put_to_sleep(Coupled& c);
+  void hold_again(std::span<const int> members, const Saved& saved);
   void fetch(const Coupled& c);
   double follow(Coupled& c, double t);
   double follow_site(int site, double t);
@@ -153,7 +169,7 @@ class Trajectories {
   RunControl* run_;
   LargeVector<BodyTrack> bodies_;
   std::vector<Coupled> components_;
-  std::vector<std::vector<int>> together_;
+  Sets together_;
   std::map<int, Former> held_;
   std::vector<SiteMotion> sites_;
   std::vector<Failure> site_failures_;

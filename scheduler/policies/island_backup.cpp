@@ -54,6 +54,7 @@ class IslandBackup final : public Policy {
     if (!done) return false;
     end = kernel.follow_motions(end);
     if (!agenda_.pass_again(kernel, changed_, end)) return false;
+    if (groupings_ != kernel.groupings()) unite_coupled(kernel);
     for (const int k : changed_) islands_.unite(changed_.front(), k);
     unite_near();
     return true;
@@ -61,6 +62,12 @@ class IslandBackup final : public Policy {
 
   void make_islands(const Kernel& kernel) {
     islands_.reset(kernel.body_count());
+    unite_coupled(kernel);
+    unite_near();
+  }
+
+  void unite_coupled(const Kernel& kernel) {
+    groupings_ = kernel.groupings();
     std::vector<int> first;  // body of every component
     for (int k = 0; k < kernel.body_count(); ++k) {
       const int component = kernel.body(k).component;
@@ -70,7 +77,6 @@ class IslandBackup final : public Policy {
     }
     for (const auto& [lead, island] : kernel.islands())
       for (const int k : island.members) islands_.unite(lead, k);
-    unite_near();
   }
 
   void unite_near() {
@@ -80,7 +86,8 @@ class IslandBackup final : public Policy {
 
   HorizonAgenda agenda_;
   DisjointSets islands_;
-  std::vector<int> island_;  ///< that is backed up
+  std::uint64_t groupings_ = 0;  ///< as of the islands
+  std::vector<int> island_;      ///< that is backed up
   std::vector<int> changed_;
 };
 

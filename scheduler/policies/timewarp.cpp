@@ -80,6 +80,7 @@ class Timewarp final : public Policy {
       if (!kernel_->confirm(next, changed_)) return false;
       // an island that it began has taken its bodies elsewhere than they had gone
       if (kernel_->island_steps() != steps) return look_around(next.time);
+      if (groupings_ != kernel_->groupings()) return look_at_groups(next.time);
       count_from_now_on();
       return true;
     }
@@ -87,8 +88,17 @@ class Timewarp final : public Policy {
       if (k >= 0) roll_back(k, kernel_->versions(k).front(), next.time);
     kernel_->advance_pair(next.pair, next.time);
     if (!kernel_->resolve(next.pair, next.contact, changed_)) return false;
+    if (groupings_ != kernel_->groupings()) return look_at_groups(next.time);
     end_ = kernel_->follow_motions(end_);
     return look_around(next.time);
+  }
+
+  /// Bodies have been grouped anew, and nobody is ahead any more. False on a halt.
+  bool look_at_groups(double now) {
+    group_bodies();
+    end_ = kernel_->follow_motions(end_);
+    for (int k = 0; k < kernel_->body_count(); ++k) give_a_turn_to(k);
+    return look_around(now);
   }
 
   /// Certificates of motions that have just become certain join the agenda.
@@ -286,6 +296,7 @@ class Timewarp final : public Policy {
   /// Bodies that change together with body k.
   std::span<const int> group_of(int k) const { return groups_[group_[k]]; }
   void group_bodies() {
+    groupings_ = kernel_->groupings();
     groups_.clear();
     group_.assign(kernel_->body_count(), -1);
     std::vector<int> of_component;
@@ -308,6 +319,7 @@ class Timewarp final : public Policy {
   std::vector<bool> is_restless_;
   std::vector<int> group_;  ///< of every body
   std::vector<std::vector<int>> groups_;
+  std::uint64_t groupings_ = 0;  ///< as of the groups
   std::vector<int> changed_, undone_;
   std::size_t near_ = 0;       ///< pairs that could meet before the horizon
   int undecided_ = 0;          ///< searches in a row that met their cap

@@ -54,13 +54,14 @@ inline void keep(const std::string& name, const std::string& text) {
   std::ofstream(std::filesystem::path(folder) / name) << text;
 }
 
-/// Examines the world of a seed; on a fault its scene is kept.
-inline bool examine_seed(std::uint64_t seed, const Taste& taste, Tally& tally) {
-  const std::string text = random_world(seed, taste), name = "seed_" + std::to_string(seed) + ".toml";
+/// Adds what `examine` finds in the world of a seed to the tally; on a fault its scene is kept.
+template <class Examine>
+bool count(std::uint64_t seed, const std::string& text, Tally& tally, const Examine& examine) {
+  const std::string name = "seed_" + std::to_string(seed) + ".toml";
   ++tally.worlds;
   Verdict verdict;
   try {
-    verdict = Examiner().examine(text, name);
+    verdict = examine(name);
   } catch (const BadInput& e) {
     ++tally.refused;
     ++tally.endings["refused: " + kind_of(e.what())];
@@ -79,6 +80,12 @@ inline bool examine_seed(std::uint64_t seed, const Taste& taste, Tally& tally) {
   std::cout << std::flush;
   keep(name, text);
   return false;
+}
+
+/// Examines the world of a seed.
+inline bool examine_seed(std::uint64_t seed, const Taste& taste, Tally& tally) {
+  const std::string text = random_world(seed, taste);
+  return count(seed, text, tally, [&](const std::string& name) { return Examiner().examine(text, name); });
 }
 
 }  // namespace brink::worlds

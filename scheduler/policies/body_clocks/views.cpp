@@ -68,7 +68,8 @@ Views::Views(Kernel& kernel)
       gravity_(kernel.world().gravity),
       periods_(kernel.world().periods),
       flights_(kernel.body_count()),
-      clocks_(kernel.body_count()) {
+      clocks_(kernel.body_count()),
+      paces_(kernel.body_count()) {
   std::vector<Vec2> places;
   for (int k = 0; k < body_count(); ++k) {
     flights_[k].radius = kernel.outline_of(k).bounding_radius;
@@ -96,7 +97,7 @@ void Views::take_up(int k) {
   f.version = f.version + 1U;
   f.free = kernel_->is_free(k) && motion.acceleration().linear == gravity_ && !kernel_->by_passes();
   f.disc = f.free && is_centred_disc(kernel_->outline_of(k));
-  if (const int component = kernel_->body(k).component; component >= 0) note_start(component, motion.begin());
+  if (!kernel_->is_free(k)) note_start(k, motion.begin());
   if (!f.free) return;
   const BodyState& s = motion.start();
   f.x = s.pose.position.x();
@@ -242,9 +243,8 @@ MeetingTimes Views::bounded_meeting(int k, int owner, const Image& image, double
 
 double Views::speed(int k, double now) const { return kernel_->body(k).motion.twist(now).velocity.norm(); }
 
-void Views::note_start(int component, double start) {
-  if (static_cast<std::size_t>(component) >= paces_.size()) paces_.resize(component + 1);
-  Pace& pace = paces_[component];
+void Views::note_start(int k, double start) {
+  Pace& pace = paces_[k];
   if (start <= pace.start) return;
   const double time = start - pace.start;
   pace.typical = std::isinf(pace.typical) ? time : 0.5 * (pace.typical + time);
@@ -254,9 +254,8 @@ void Views::note_start(int component, double start) {
 /// How far ahead to look at a body from now [s]: what an integrator has done is thrown away when a collision
 /// starts its component afresh, so no farther than it has come since, or a part of what it typically comes.
 double Views::stride(int k, double now) const {
-  const int component = kernel_->body(k).component;
-  if (component < 0) return kForever;
-  const Pace& pace = paces_[component];
+  if (kernel_->is_free(k)) return kForever;
+  const Pace& pace = paces_[k];
   return std::max(now - pace.start, 0.25 * pace.typical);
 }
 
@@ -266,8 +265,7 @@ void Views::limit_view(int k, double now, double closing, double stride) {
   const double cell = near_->cell_size(k),
                length = std::isfinite(cell) ? cell : 4.0 * kernel_->world().length();
   const double window = length / (closing + 1e-2 * length);
-  const int component = kernel_->body(k).component;
-  const double age = component < 0 ? 0.0 : now - paces_[component].start;
+  const double age = kernel_->is_free(k) ? 0.0 : now - paces_[k].start;
   const double end = now + std::max({std::min(window, stride), 1e-3 * window, 1e-3 * age});
   // a view that holds to the end of the run ends just after it
   clocks_[k].horizon = std::min(clocks_[k].horizon, end >= until_ ? std::nextafter(until_, kForever) : end);

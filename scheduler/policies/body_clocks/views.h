@@ -69,7 +69,7 @@ class Views {
   double end_view(int k, double followed);
   double speed(int k, double now) const;
   void limit_view(int k, double now, double closing, double stride);
-  void note_start(int component, double start);
+  void note_start(int k, double start);
   double stride(int k, double now) const;
   MeetingTimes bounded_meeting(int k, int owner, const Image& image, double now);
 
@@ -79,11 +79,11 @@ class Views {
   double until_ = 0.0;
   LargeVector<Flight> flights_;
   LargeVector<BodyClock> clocks_;
-  struct Pace {                                                ///< of a component that an integrator drives
-    double start = 0.0;                                        ///< of its motions [s]
+  struct Pace {                                                ///< of a body that an integrator drives
+    double start = 0.0;                                        ///< of its motion [s]
     double typical = std::numeric_limits<double>::infinity();  ///< time from start to start [s]
   };
-  std::vector<Pace> paces_;                   ///< of every component
+  std::vector<Pace> paces_;                   ///< of every body
   std::vector<std::vector<Box>> site_boxes_;  ///< what must be reached to touch a still site; empty: anywhere
   std::vector<int> moving_;
   std::optional<Neighbourhood> near_;

@@ -82,7 +82,7 @@ class Watch : public Recorder {
     return text;
   }
 
- private:
+ protected:
   struct Flyer {
     Shape shape;
     Flight flight;
@@ -100,8 +100,9 @@ class Watch : public Recorder {
   /// Two owners: bodies first, then sites.
   struct Pair {
     int a = 0, b = 0;
-    Real clear_to = 0;  ///< looked at so far [s]
-    bool lost = false;  ///< a fault was told: no more is asked of it
+    Real clear_to = 0;   ///< looked at so far [s]
+    bool lost = false;   ///< a fault was told: no more is asked of it
+    bool apart = false;  ///< they are let pass through each other
   };
 
   bool is_body(int owner) const { return owner < static_cast<int>(bodies_.size()); }
@@ -163,15 +164,24 @@ class Watch : public Recorder {
     body.flight = {t, {place, told.velocity, told.omega}, body.flight.pull};
   }
 
+  /// Kinetic and of gravity; and the sum of its parts' sizes [J].
+  struct Energy {
+    Real sum = 0, scale = 0;
+  };
+  Energy energy_of(std::size_t k, const State& s) const {
+    const Body& b = world_.bodies[k];
+    const Vec& g = bodies_[k].flight.pull;
+    const Real kinetic = (b.mass * dot(s.velocity, s.velocity) + b.inertia * s.omega * s.omega) / 2;
+    return {kinetic - b.mass * dot(g, s.place.at),
+            kinetic + b.mass * (std::abs(g.x * s.place.at.x) + std::abs(g.y * s.place.at.y))};
+  }
+
   void look_at_energy(double t, std::span<const BodyState> states) {
     Real energy = 0, scale = 0;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
-      const Body& b = world_.bodies[k];
-      const State s = state_of(states[k]);
-      const Real kinetic = (b.mass * dot(s.velocity, s.velocity) + b.inertia * s.omega * s.omega) / 2;
-      const Vec& g = bodies_[k].flight.pull;
-      energy += kinetic - b.mass * dot(g, s.place.at);
-      scale += kinetic + b.mass * (std::abs(g.x * s.place.at.x) + std::abs(g.y * s.place.at.y));
+      const Energy e = energy_of(k, state_of(states[k]));
+      energy += e.sum;
+      scale += e.scale;
     }
     if (t == 0.0) first_energy_ = energy;
     if (std::abs(energy - first_energy_) > 1e-8L * scale && !energy_told_) {
@@ -345,6 +355,7 @@ class Watch : public Recorder {
 
   /// Looks at a pair from where it was looked at last up to `until`.
   void follow(Pair& p, Real until) {
+    if (p.apart) return;
     const Real least_step = stride(p);
     long steps = 0;
     while (!p.lost && p.clear_to < until) {
@@ -369,7 +380,7 @@ class Watch : public Recorder {
   }
 
   void look(Pair& p, Real t) {
-    if (p.lost) return;
+    if (p.lost || p.apart) return;
     const State sa = state(p.a, t), sb = state(p.b, t);
     if (t > 0 && lower_bound(p.a, p.b, sa, sb) > tolerance(p.a, p.b, t)) return;
     judge(p, exact_gap(p.a, p.b, sa, sb), t);

@@ -68,7 +68,9 @@ TEST(Trajectories, BodiesAreJoinedAndSplitWhileRunning) {
   KernelParts parts(world, {});
   const KernelParts alone(world, {});
   parts.run.set_time(0.25);
-  parts.trajectories.regroup({{0, 1}});
+  std::vector<int> changed;
+  ASSERT_TRUE(parts.trajectories.regroup({{0, 1}}, changed));
+  EXPECT_EQ(changed, (std::vector<int>{0, 1}));
   EXPECT_FALSE(parts.trajectories.is_free(0));
   EXPECT_EQ(parts.trajectories.body(0).component, parts.trajectories.body(1).component);
   EXPECT_EQ(parts.trajectories.component_count(), 1U);
@@ -76,7 +78,8 @@ TEST(Trajectories, BodiesAreJoinedAndSplitWhileRunning) {
   EXPECT_EQ(parts.trajectories.body(2).version, 0U);
   ASSERT_TRUE(parts.trajectories.cover(0.75));
   parts.run.set_time(0.75);
-  parts.trajectories.regroup({});
+  ASSERT_TRUE(parts.trajectories.regroup({}, changed));
+  EXPECT_EQ(changed, (std::vector<int>{0, 1}));
   EXPECT_TRUE(parts.trajectories.is_free(0) && parts.trajectories.is_free(1));
   EXPECT_EQ(parts.trajectories.component_count(), 0U);
   for (int k = 0; k < 3; ++k) {

@@ -223,6 +223,24 @@ TEST(Simulator, OwnersThatAFilterKeepsApartNeverMeet) {
   }
 }
 
+// The watch beside the search looks at flights from where it last looked: what a filter let through a wire
+// then is no fault later, in a program that knows of it by a snapshot alone either.
+TEST(Simulator, ABodyThatWasLetThroughAWireIsNotBlamedAfterARestore) {
+  World world;
+  add(world, body(make_disc(0.25), {0.0, 0.0}, {1.0, 0.0}));
+  add(world, site(make_segment({1.0, -9.0}, {1.0, 9.0})));
+  add(world, site(make_segment({4.0, -9.0}, {4.0, 9.0})));
+  Simulator first(world, {});
+  first.set_pair_filter([](int, int b) { return b != 1; });
+  EXPECT_EQ(first.run(testing::until(2.0)).collisions, 0U);
+  Simulator second(world, {});
+  second.restore(first.snapshot());
+  const RunSummary summary = second.run(testing::until(5.0));
+  EXPECT_EQ(summary.termination, Termination::reached_end) << summary.why;
+  EXPECT_EQ(summary.collisions, 1U);
+  EXPECT_NEAR(second.state(0).pose.position.x(), 2.5, 1e-12);
+}
+
 // What a policy has in view of a body that was put elsewhere is void: it collides where it is now.
 TEST(Simulator, ABodyPutElsewhereCollidesThere) {
   for (const std::string& policy : exact_policies()) {
