@@ -21,9 +21,9 @@ struct OutlineGap {
 /// Apart, it is the exact distance of the two surfaces, with the closest features: the samples of each are
 /// held against the sites of the other (design: shapes, sites, samples). Overlapping, the depth is that of the
 /// deepest vertex inside the other, or of the deepest crossing of two sites: how far the nearer end, or an
-/// arc's bulge, reaches through. It is at most a bound on the way out, not the least translation that parts
-/// them. Where no sample tells (sample -1) both points are where the two cross, and the normal is across b's
-/// site there, or a's; of a wire, either way.
+/// arc's bulge, reaches through. It is a measure of how deep, not the least translation that parts them. Where
+/// no sample tells (sample -1) both points are where the two cross, and the normal is across b's site there, or
+/// a's; of a wire, either way.
 ///
 /// Two outlines that only touch are told to a rounding of their sizes and their distance from each other; how
 /// far away from the world's origin they are costs no digits but those of the poses themselves. Two images in a

@@ -14,7 +14,8 @@ namespace brink {
 class SeededRandom : public Random {
  public:
   explicit SeededRandom(std::uint64_t seed, std::source_location here = std::source_location::current())
-      : Random(seed), trace_(here.file_name(), static_cast<int>(here.line()), "seed " + std::to_string(seed)) {}
+      : Random(seed),
+        trace_(here.file_name(), static_cast<int>(here.line()), "seed " + std::to_string(seed)) {}
 
  private:
   ::testing::ScopedTrace trace_;

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "brink/core/base/error.h"
+#include "brink/core/shapes/curve_site.h"
 #include "tests/unit/query/query_shapes.h"
 
 namespace brink {
@@ -112,6 +113,48 @@ TEST(CastRay, NothingSlipsThroughWhereSitesMeet) {
       ASSERT_TRUE(hit) << o.name << ", case " << k << ", seed " << seed;
       EXPECT_LE(hit->distance, beyond + 1e-9) << o.name << ", case " << k << ", seed " << seed;
     }
+  }
+}
+
+/// Arcs that hand over to each other.
+Outline wire_of_arcs(std::vector<Site> sites) {
+  Outline outline;
+  outline.loops = {{0, static_cast<int>(sites.size()), false}};
+  outline.sites = std::move(sites);
+  finish_outline(outline);
+  return outline;
+}
+
+// Two eighths of circles that cross the x axis where they join, each on the side of its own centre.
+TEST(CastRay, WhereTwoArcsJoinThereIsNoSlit) {
+  const double root = std::sqrt(2.0);
+  std::vector<Site> sites;
+  add_arc(sites, {1.0 - root, 1.0}, {0.0, 0.0}, {1.0, 1.0}, root, pi / 4, 0.0);
+  add_arc(sites, {0.0, 0.0}, {root - 1.0, -1.0}, {-1.0, -1.0}, root, -pi / 4, 0.0);
+  const std::optional<RayHit> hit = cast_ray(wire_of_arcs(sites), {}, along_x(-5, 0));
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit->distance, 5.0);
+  EXPECT_LT(hit->normal.x(), 0.0);
+}
+
+// A circle of 1e8 m through the origin, of which the middle 2 m are there: the distance keeps its digits.
+TEST(CastRay, AFlatArcIsMetToARoundingOfTheDistance) {
+  const double r = 1e8, drop = 1.0 / (r + std::sqrt(r * r - 1.0));
+  std::vector<Site> sites;
+  add_arc(sites, {1.0, -drop}, {-1.0, -drop}, {0.0, -r}, r, 2.0 * std::asin(1.0 / r), 0.0);
+  expect_hit(cast_ray(wire_of_arcs(sites), {}, {{0.0, 0.1}, {0, -1}}), 0.1, {0, 1});
+  expect_hit(cast_ray(wire_of_arcs(sites), {}, {{0.0, -0.1}, {0, 1}}), 0.1, {0, -1});
+}
+
+// Over the tip of a diamond, from either side: what is behind the tip does not turn its inside to the ray.
+TEST(CastRay, ACornerThatIsGrazedTurnsItsOutsideToTheRay) {
+  const Outline diamond = make_polygon({{0.5, 0}, {0, 0.5}, {-0.5, 0}, {0, -0.5}}).outline;
+  for (const double way : {1.0, -1.0}) {
+    const std::optional<RayHit> hit = cast_ray(diamond, {}, {{-2.0 * way, 0.5}, {way, 0}});
+    ASSERT_TRUE(hit);
+    EXPECT_EQ(hit->distance, 2.0);
+    EXPECT_GT(hit->normal.y(), 0.5);
+    EXPECT_LT(hit->normal.x() * way, -0.5);
   }
 }
 
