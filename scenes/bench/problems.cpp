@@ -59,15 +59,16 @@ std::vector<double> bouncing_impacts(double height, double restitution, double u
   return times;
 }
 
+/// Judged by its impact times alone.
+Problem impacts(std::string name, std::string title, World world, double until, std::vector<double> hits,
+                bool driven) {
+  return {std::move(name), std::move(title), "worst impact time [s]", std::move(world), until,
+          std::move(hits), driven,           worst_impact_time};
+}
+
 Problem bouncing_ball() {
-  return {"bouncing_ball",
-          "ball dropped from 1 m, restitution 0.9: 44 impacts in 8.5 s",
-          "worst impact time [s]",
-          ball_over_floor(1.0, 0.5, 0.9),
-          8.5,
-          bouncing_impacts(1.0, 0.9, 8.5),
-          false,
-          worst_impact_time};
+  return impacts("bouncing_ball", "ball dropped from 1 m, restitution 0.9: 44 impacts in 8.5 s",
+                 ball_over_floor(1.0, 0.5, 0.9), 8.5, bouncing_impacts(1.0, 0.9, 8.5), false);
 }
 
 Problem dropped_disc() {
@@ -86,6 +87,10 @@ Problem dropped_disc() {
           height_error};
 }
 
+double distance(const Vec2& at, long double x, long double y) {
+  return static_cast<double>(std::hypot(at.x() - x, at.y() - y));
+}
+
 /// A coordinate that runs to and fro between -half and half.
 struct Unfolded {
   long double start, speed, half;
@@ -102,9 +107,11 @@ struct Unfolded {
 Problem rectangle() {
   const double radius = 0.25, until = 50.0;
   const Vec2 half(2.0, 1.5), p(0.3, 0.2), v(1.0, 0.83);
-  Problem problem{
-      "rectangle", "disc in a rectangle without gravity, 50 s", "place at the end [m]", {}, until, {}, false,
-      {}};
+  Problem problem;
+  problem.name = "rectangle";
+  problem.title = "disc in a rectangle without gravity, 50 s";
+  problem.error_of = "place at the end [m]";
+  problem.until = until;
   add_body(problem.world, make_disc(radius), p, v);
   const Vec2 corners[] = {-half, {half.x(), -half.y()}, half, {-half.x(), half.y()}};
   for (int k = 0; k < 4; ++k) add_wall(problem.world, corners[k], corners[(k + 1) % 4]);
@@ -114,7 +121,7 @@ Problem rectangle() {
   std::sort(problem.hits.begin(), problem.hits.end());
   problem.error = [x, y](const Problem& q, const Outcome& o) {
     const Vec2& at = o.states[0].pose.position;
-    return static_cast<double>(std::hypot(at.x() - x.at(q.until), at.y() - y.at(q.until)));
+    return distance(at, x.at(q.until), y.at(q.until));
   };
   return problem;
 }
@@ -124,14 +131,11 @@ Problem cradle() {
   const int discs = 5;
   const double gap = 0.0625, speed = 1.7, until = 1.0;
   const auto place = [gap](int k) { return k * (1.0 + gap) - (k == 0 ? 0.25 : 0.0); };
-  Problem problem{"cradle",
-                  "five equal discs in a row with gaps, the first at 1.7 m/s",
-                  "worst place at the end [m]",
-                  {},
-                  until,
-                  {},
-                  false,
-                  {}};
+  Problem problem;
+  problem.name = "cradle";
+  problem.title = "five equal discs in a row with gaps, the first at 1.7 m/s";
+  problem.error_of = "worst place at the end [m]";
+  problem.until = until;
   for (int k = 0; k < discs; ++k)
     add_body(problem.world, make_disc(0.5), {place(k), 0.0}, {k == 0 ? speed : 0.0, 0.0});
   for (int k = 1; k < discs; ++k)
@@ -149,10 +153,15 @@ Problem cradle() {
   return problem;
 }
 
+/// A reference's ball before its forces.
+World world_of(const auto& ball, double radius) {
+  return ball_over_floor(static_cast<double>(ball.height), radius, static_cast<double>(ball.restitution));
+}
+
 Problem shaken_spring() {
   const SpringBall b;
   const double radius = 0.25;
-  World world = ball_over_floor(static_cast<double>(b.height), radius, static_cast<double>(b.restitution));
+  World world = world_of(b, radius);
   SpringForce spring;  // hangs from 3 m; every length a short binary fraction
   spring.at_b = {0.0, 3.0};
   spring.stiffness = static_cast<double>(b.stiffness);
@@ -162,31 +171,19 @@ Problem shaken_spring() {
   shaking.bodies = {0};
   shaking.fy = Formula("4*cos(7*t)", force_formula_variables());
   world.forces = {spring, shaking};
-  return {"shaken_spring",
-          "ball pressed to a floor by a damped spring and shaken, 5 s",
-          "worst impact time [s]",
-          world,
-          5.0,
-          impact_times(b, 5.0),
-          true,
-          worst_impact_time};
+  return impacts("shaken_spring", "ball pressed to a floor by a damped spring and shaken, 5 s", world, 5.0,
+                 impact_times(b, 5.0), true);
 }
 
 Problem ball_in_air() {
   const BallInAir b;
-  World world = ball_over_floor(static_cast<double>(b.height), 0.25, static_cast<double>(b.restitution));
+  World world = world_of(b, 0.25);
   DragForce drag;
   drag.bodies = {0};
   drag.quadratic = static_cast<double>(b.drag);
   world.forces = {drag};
-  return {"ball_in_air",
-          "ball bouncing in air with quadratic drag, 6 s",
-          "worst impact time [s]",
-          world,
-          6.0,
-          impact_times(b, 6.0),
-          true,
-          worst_impact_time};
+  return impacts("ball_in_air", "ball bouncing in air with quadratic drag, 6 s", world, 6.0,
+                 impact_times(b, 6.0), true);
 }
 
 Problem two_boxes() {
@@ -199,8 +196,7 @@ Problem two_boxes() {
     double worst = 0.0;
     for (int k = 0; k < 2; ++k) {
       const Vec2& at = o.states[k].pose.position;
-      worst = std::max(worst,
-                       static_cast<double>(std::hypot(at.x() - meeting.end[k].x, at.y() - meeting.end[k].y)));
+      worst = std::max(worst, distance(at, meeting.end[k].x, meeting.end[k].y));
       worst = std::max(worst, static_cast<double>(std::abs(o.states[k].pose.angle - meeting.end[k].angle)));
     }
     return worst;

@@ -4,18 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "brink/core/shapes/outline_crossing.h"
+#include "brink/core/query/outline_gap.h"
 
 namespace brink {
 namespace {
-
-// Every sample of `a` is farther from `b` than its own radius.
-bool samples_clear(const Obstacle& a, const Obstacle& b, double margin) {
-  const Frame from(a.pose), to(b.pose);
-  return std::all_of(a.outline->samples.begin(), a.outline->samples.end(), [&](const Sample& sample) {
-    return gap_by_brute_force(*b.outline, to.to_local(from.to_world(sample.p))) > sample.radius + margin;
-  });
-}
 
 // What is taken already, in cells of a uniform grid over the region.
 class Room {
@@ -101,7 +93,7 @@ class Room {
     if (gap > reach_ + margin_) return true;
     if (b.is_point() || budget_ < 0.0) return false;
     budget_ -= static_cast<double>(a.samples.size() * b.sites.size() + b.samples.size() * a.sites.size());
-    return surely_apart(taken, copy, margin_);
+    return surely_apart(a, taken.pose, b, copy.pose, margin_);
   }
 
   const Outline* outline_;
@@ -167,11 +159,6 @@ std::vector<Pose> choose_and_shake(Room& room, std::vector<Pose> places, std::si
 }
 
 }  // namespace
-
-bool surely_apart(const Obstacle& a, const Obstacle& b, double margin) {
-  return samples_clear(a, b, margin) && samples_clear(b, a, margin) &&
-         deepest_crossing(*a.outline, a.pose, *b.outline, b.pose).depth == 0.0;
-}
 
 std::optional<std::vector<Pose>> scatter_poses(const ScatterAsk& ask, const std::vector<Obstacle>& obstacles,
                                                Random& random, std::int64_t* room) {

@@ -36,8 +36,4 @@ struct ScatterAsk {
 std::optional<std::vector<Pose>> scatter_poses(const ScatterAsk& ask, const std::vector<Obstacle>& obstacles,
                                                Random& random, std::int64_t* room);
 
-/// True if the two outlines are surely apart by more than `margin` [m]. False where they overlap or touch,
-/// and also where an arc's circle, taken as whole, would (it counts beyond its sector here).
-bool surely_apart(const Obstacle& a, const Obstacle& b, double margin);
-
 }  // namespace brink

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "brink/scheduler/broad_phase/tolerances.h"
+
 namespace brink {
 
 namespace {
@@ -136,7 +138,7 @@ Box swept_box(const Outline& outline, const Motion& motion, double from, double 
   const MotionBounds b = motion.bounds(from, to);
   const double bulge = (b.acceleration.norm() + b.acceleration_radius) * (to - from) * (to - from) / 8.0;
   const double scale = box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
-  return box.grown(outline.bounding_radius + bulge + 1e-12 * (scale + outline.bounding_radius));
+  return box.grown(outline.bounding_radius + bulge + kBoxMargin * (scale + outline.bounding_radius));
 }
 
 bool each_overlapping(const std::vector<Box>& boxes, const std::function<bool(int i, int j)>& visit) {

@@ -8,6 +8,7 @@
 
 #include "brink/core/base/geometry.h"
 #include "brink/scheduler/broad_phase/cell_grid.h"
+#include "brink/scheduler/broad_phase/tolerances.h"
 
 namespace brink {
 
@@ -34,11 +35,6 @@ struct MeetingTimes {
   double begin = std::numeric_limits<double>::infinity();
   double end = std::numeric_limits<double>::infinity();
 };
-
-/// Bounding discs are taken larger by this part of their size, which holds the rounding of these formulas
-/// but for that of places, and by kFlightRounding of the places' size (in both, of their ways as well).
-inline constexpr double kFlightMargin = 1e-9;
-inline constexpr double kFlightRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 /// A flight seen from the present: where its centre is now.
 struct Course {

@@ -2,13 +2,15 @@
 
 #include <cmath>
 
+#include "brink/scheduler/broad_phase/tolerances.h"
+
 namespace brink {
 
 bool SiteLists::reaches(const Outline& outline, const Box& box) const {
   const double half = 0.5 * box.extent().norm();
   if (!std::isfinite(half)) return true;
   if (!outline.container && !outline.bounds.grown(reach_).overlaps(box)) return false;
-  return std::abs(gap_by_brute_force(outline, box.center())) <= (half + reach_) * (1.0 + 1e-9);
+  return std::abs(gap_by_brute_force(outline, box.center())) <= (half + reach_) * (1.0 + kFlightMargin);
 }
 
 void SiteLists::find(const Placed& placed, const Box& box, std::vector<SiteImage>& found) const {

@@ -7,14 +7,10 @@
 ///       touch resolve what touches there; advance to the step's end and look again
 ///
 /// What touches and parts again inside a step is missed.
-#include <algorithm>
 #include <cmath>
-#include <optional>
 
+#include "brink/scheduler/classic/classic_policy.h"
 #include "brink/scheduler/classic/classic_rebound.h"
-#include "brink/scheduler/classic/sight.h"
-#include "brink/scheduler/policies/policy.h"
-#include "brink/scheduler/policies/steps.h"
 
 namespace brink {
 
@@ -26,34 +22,19 @@ constexpr int kHalvings = 16;
 /// without backing up and overlaps are pushed apart: bodies that come to rest touch again and again.
 constexpr int kMostBackups = 8;
 
-class ClassicBackup final : public Policy {
- public:
-  bool approximate() const override { return true; }
-  void prepare(Kernel& kernel) override { sight_.emplace(kernel); }
-  std::vector<std::string> plan() const override { return sight_->describe(); }
-
-  void run(Kernel& kernel, double until) override {
-    while (kernel.time() < until && !kernel.halt()) {
-      if (!kernel.pause_point()) return;
-      kernel.forget_before(kernel.time());
-      if (!step(kernel, std::min(until, step_end(kernel.time(), kernel.options().step)))) return;
-      if (kernel.fail_before(until)) return;
-    }
-  }
-
+class ClassicBackup final : public ClassicPolicy {
  private:
-  /// False on a halt.
-  bool step(Kernel& kernel, double end) {
+  bool step(Kernel& kernel, double end) override {
     double clear = kernel.time();  // nothing touches and approaches here
     for (int backups = kMostBackups * (1 + kernel.body_count()); clear < end; --backups) {
       end = kernel.follow_motions_all_the_way(end);
       if (kernel.halt()) return false;
       kernel.advance_all(end);
-      if (!any_approaches(sight_->look(clear, end))) break;
+      if (!any_approaches(sight().look(clear, end))) break;
       const double touch = backups > 0 ? first_touch(clear, end) : end;
       if (!kernel.record_frames(std::nextafter(touch, 0.0))) return false;
       kernel.back_up_all(touch);
-      const DepthSight seen = sight_->look(clear, touch);
+      const DepthSight seen = sight().look(clear, touch);
       if (!resolve_all(kernel, seen.contacts)) return false;
       if (backups <= 0) push_all_apart(kernel, seen.overlaps);
       clear = touch;
@@ -67,12 +48,10 @@ class ClassicBackup final : public Policy {
     for (int k = 0; k < kHalvings; ++k) {
       const double middle = 0.5 * (clear + touching);
       if (!(middle > clear && middle < touching)) break;
-      (any_approaches(sight_->look(from, middle)) ? touching : clear) = middle;
+      (any_approaches(sight().look(from, middle)) ? touching : clear) = middle;
     }
     return touching;
   }
-
-  std::optional<Sight> sight_;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "brink/core/shapes/distance.h"
+#include "brink/scheduler/kernel/tolerances.h"
 #include "brink/scheduler/resolve/extended_contact.h"
 
 namespace brink {
@@ -14,10 +15,7 @@ namespace {
 
 /// More pairs of sites than this are not looked at for a crossing at every frame.
 constexpr std::size_t kMostCrossings = 4096;
-/// Overlaps at the start up to this part of the scene's length are let go: coordinates written with few
-/// digits.
-constexpr double kStartOverlap = 1e-6;
-/// The search for them ends after so many: all bodies may be in one place.
+/// The search for overlaps at the start ends after so many: all bodies may be in one place.
 constexpr std::size_t kOverlapsCounted = 1000;
 
 bool thin(const Outline& samples, const Outline& sites, const FeatureContact& f) {

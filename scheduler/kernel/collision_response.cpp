@@ -8,15 +8,11 @@
 #include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/first_contact/pair_kinematics.h"
 #include "brink/scheduler/first_contact/tolerances.h"
+#include "brink/scheduler/kernel/tolerances.h"
 
 namespace brink {
 
 namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-
-/// A contact that parts faster than this part of the speeds that take part is none; slower is rounding.
-constexpr double kPartsOfSpeed = 1e-6;
 
 ImpulseSide body_side(const Body& body, const ExtendedState& state, const RealVec& point) {
   return {state.twist, point - state.position, body.inverse_mass_x(), body.inverse_mass_y(),

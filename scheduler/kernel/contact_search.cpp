@@ -7,14 +7,11 @@
 
 #include "brink/core/shapes/outline_crossing.h"
 #include "brink/scheduler/first_contact/tolerances.h"
+#include "brink/scheduler/kernel/tolerances.h"
 
 namespace brink {
 
 namespace {
-
-/// Of features that meet together with others, one that approaches slower than this part of their speed does
-/// not approach.
-constexpr double kApproaches = 1e-12;
 
 /// True if a sharp vertex of one owner may meet a wire without thickness of another.
 bool points_may_meet_wires(const std::vector<const Outline*>& outlines, std::size_t bodies) {

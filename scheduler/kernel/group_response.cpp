@@ -10,17 +10,12 @@
 
 #include "brink/core/contacts/group.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
+#include "brink/scheduler/kernel/tolerances.h"
 #include "brink/scheduler/resolve/joint_contacts.h"
 
 namespace brink {
 
 namespace {
-
-/// Two features closer than this many contact tolerances, with one normal, are one contact: a disc on a disc
-/// is found from both sides.
-constexpr double kSamePlace = 10.0;
-constexpr double kSameNormal = 1e-6;
-constexpr double kParting = 1e-6;  ///< of the speed at which a contact was found: more is parting
 
 struct Touch {
   PairKey pair;
@@ -224,7 +219,7 @@ class GroupResponse::Group {
     const bool pushed =
         std::any_of(result_.normal.begin(), result_.normal.end(), [](Real p) { return p > 0; });
     // an approach that the law does not see was rounding, all of it
-    if (!pushed) speed += found_.contact.closing_speed / std::numeric_limits<double>::epsilon();
+    if (!pushed) speed += found_.contact.closing_speed / kEpsilon;
     for (std::size_t k = 0; k < group_.size(); ++k) {
       if (result_.normal[k] > 0 || (!pushed && group_[k].pair == found_.pair)) events_.push_back(k);
     }

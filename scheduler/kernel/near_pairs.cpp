@@ -6,6 +6,7 @@
 
 #include "brink/core/base/error.h"
 #include "brink/scheduler/broad_phase/broad_phase.h"
+#include "brink/scheduler/broad_phase/tolerances.h"
 
 namespace brink {
 
@@ -28,7 +29,7 @@ void check_pairs(const World& world, const SolverOptions& options) {
 Box still_box(const FixedSite& site, bool moves) {
   if (moves || site.outline->container) return {};
   const Box box = transformed(*site.outline, site.pose).bounds;
-  return box.grown(1e-12 * (box.low.norm() + box.high.norm()));
+  return box.grown(kBoxMargin * (box.low.norm() + box.high.norm()));
 }
 
 }  // namespace

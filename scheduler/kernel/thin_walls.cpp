@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "brink/scheduler/kernel/tolerances.h"
+
 namespace brink {
 
 namespace {
@@ -31,7 +33,7 @@ BoxOfPoints box_of(const Vec2& p, const Vec2& q) {
 int side(const Wall& wall, const Vec2& p) {
   const Vec2 d = wall.b - wall.a, w = p - wall.a;
   const double reach = p.lpNorm<1>() + wall.a.lpNorm<1>() + wall.b.lpNorm<1>();
-  const double offset = cross(d, w), noise = 4e-15 * reach * d.lpNorm<1>();
+  const double offset = cross(d, w), noise = kSideRounding * reach * d.lpNorm<1>();
   return offset > noise ? 1 : offset < -noise ? -1 : 0;
 }
 

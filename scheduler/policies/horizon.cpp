@@ -4,13 +4,12 @@
 #include <cmath>
 
 #include "brink/scheduler/policies/order.h"
+#include "brink/scheduler/policies/tolerances.h"
 
 namespace brink {
 
 namespace {
 
-/// A horizon below this would only repeat broad phases [s].
-constexpr double kShortest = 1e-9;
 constexpr int kMostUndecided = 100;
 
 /// About the time in which the fastest body crosses itself.
@@ -21,7 +20,7 @@ double first_length(const KernelView& kernel, double until) {
     const double size = 2.0 * kernel.world().bodies[k].outline->bounding_radius;
     if (speed > 0.0 && size > 0.0) horizon = std::min(horizon, size / speed);
   }
-  return std::max(horizon, kShortest * std::max(1.0, until));
+  return std::max(horizon, kShortestHorizon * std::max(1.0, until));
 }
 
 /// In a plane that repeats, a body that crosses many periods before the horizon's end would be near as many
@@ -34,7 +33,7 @@ double within_periods(const KernelView& kernel) {
   for (int k = 0; k < kernel.body_count(); ++k)
     fastest = std::max(fastest, kernel.state(k, kernel.time()).twist.velocity.norm());
   const double root = std::sqrt(fastest * fastest + 2.0 * kernel.world().gravity.norm() * length);
-  return std::max(2.0 * length / (fastest + root), kShortest);
+  return std::max(2.0 * length / (fastest + root), kShortestHorizon);
 }
 
 /// The end of the next horizon from the present time [s].
@@ -48,7 +47,7 @@ void adapt(Kernel& kernel, std::size_t pairs, std::uint64_t collisions) {
   const auto n = static_cast<std::uint64_t>(kernel.body_count());
   if (!kernel.options().broad_phase) pairs = 0;  // every pair is met at any horizon
   if (pairs > 6 * n + 16 || collisions > 2 * n + 16)
-    kernel.choose_horizon(std::max(0.5 * kernel.horizon(), kShortest));
+    kernel.choose_horizon(std::max(0.5 * kernel.horizon(), kShortestHorizon));
   else if (pairs < 3 * n + 8 && collisions < n / 2 + 4)
     kernel.choose_horizon(1.5 * kernel.horizon());
 }

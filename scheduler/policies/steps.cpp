@@ -2,10 +2,12 @@
 
 #include <cmath>
 
+#include "brink/scheduler/policies/tolerances.h"
+
 namespace brink {
 
 double step_end(double from, double step) {
-  const double end = (std::floor(from / step + 1e-9) + 1.0) * step;
+  const double end = (std::floor(from / step + kSameStep) + 1.0) * step;
   return end > from ? end : from + step;
 }
 

@@ -3,16 +3,11 @@
 #include <cmath>
 
 #include "brink/scheduler/first_contact/pair_kinematics.h"
+#include "brink/scheduler/resolve/tolerances.h"
 
 namespace brink {
 
 namespace {
-
-/// Below this part of the bounding radius a difference of points has no direction worth its digits.
-constexpr double kNoDirection = 1e-6;
-
-/// Two unit normals with this cosine or more are one, but for rounding.
-constexpr double kSameDirection = 1.0 - 1e-12;
 
 /// An outline's frame in extended precision; a centred disc looks the same at any angle.
 struct Turn {

@@ -7,13 +7,11 @@
 #include "brink/core/shapes/curve_site.h"
 #include "brink/core/shapes/distance.h"
 #include "brink/scheduler/first_contact/pair_kinematics.h"
+#include "brink/scheduler/resolve/tolerances.h"
 
 namespace brink {
 
 namespace {
-
-/// Sine of an angle that rounding alone may make of two parallel edges.
-constexpr double kParallel = 1e-6;
 
 /// A solid's boundary at one of its vertices.
 struct Wedge {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "brink/scheduler/first_contact/tolerances.h"
+#include "brink/scheduler/resolve/tolerances.h"
 
 namespace brink {
 

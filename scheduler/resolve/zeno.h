@@ -67,10 +67,6 @@ class ZenoWatch {
   void restore(Bounces bounces) { bounces_ = std::move(bounces); }
 
  private:
-  static constexpr std::uint64_t kLowFlights = 10;
-  static constexpr std::uint64_t kShortSeries = 2;  ///< where flights have come down to the touching distance
-  static constexpr double kHighFlight = 1e6;        ///< in tolerances
-  static constexpr double kAlike = 1e-6;            ///< intervals with a ratio so near to 1 are of one length
   double tolerance_;
   Bounces bounces_;
 };

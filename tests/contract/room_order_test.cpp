@@ -20,7 +20,7 @@ using Rooms = std::vector<std::string>;
 /// What every room may include from, beside itself. A folder that is not named belongs to the room above it.
 const std::map<std::string, Rooms>& order() {
   static const std::map<std::string, Rooms> all = [] {
-    const Rooms core{"core/base", "core/shapes", "core/fields", "core/world", "core/contacts"};
+    const Rooms core{"core/base", "core/shapes", "core/query", "core/fields", "core/world", "core/contacts"};
     const auto with = [](Rooms some, const Rooms& more) {
       some.insert(some.end(), more.begin(), more.end());
       return some;
@@ -29,6 +29,7 @@ const std::map<std::string, Rooms>& order() {
     std::map<std::string, Rooms> rooms{
         {"core/base", {}},
         {"core/shapes", {"core/base"}},
+        {"core/query", {"core/base", "core/shapes"}},
         {"core/fields", {"core/base", "core/shapes"}},
         {"core/world", {"core/base", "core/shapes"}},
         {"core/contacts", {"core/base", "core/world"}},

@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 
-#include "brink/core/base/random.h"
 #include "brink/scenes/scene/scene.h"
+#include "tests/support/seeded_random.h"
 #include "tests/support/worlds.h"
 
 namespace brink {
@@ -32,8 +32,7 @@ constexpr double kReach = 0.2;  // [m]
 
 /// The share of boxes of side 1 that, moving down onto a wedge at a random place of their lower side, are not
 /// stopped within kReach of its tip. A box a world: the cost of backing a world up grows with its bodies.
-double missed(double spacing, double degrees, const std::string& detector) {
-  Random random(17);
+double missed(double spacing, double degrees, const std::string& detector, Random random) {
   const double half = 0.6 * std::tan(0.5 * degrees * std::numbers::pi / 180.0);
   const Shape wedge = make_polygon({{-half, -0.6}, {half, -0.6}, {0.0, 0.0}});
   int stopped = 0;
@@ -59,25 +58,26 @@ double missed(double spacing, double degrees, const std::string& detector) {
 // (1/64 of 1.41 m) of tolerance makes it a little less, five standard errors of 24 draws a little more or
 // less. The exact detectors stop every box at the tip.
 TEST(Classic, MissesWhatFitsBetweenParticlesAndTheExactDetectorsMissNothing) {
+  const SeededRandom random(17);
   for (const double degrees : {15.0, 45.0})
     for (const double spacing : {0.5, 0.25, 0.0625}) {
       const double slope = std::tan(0.5 * degrees * std::numbers::pi / 180.0);
       const double expected = std::max(0.0, 1.0 - 2.0 * kReach * slope / spacing);
       const double error = 5.0 * std::sqrt(std::max(expected * (1.0 - expected), 0.0) / kBoxes);
-      const double share = missed(spacing, degrees, "depth");
+      const double share = missed(spacing, degrees, "depth", random);
       EXPECT_LE(share, expected + error) << degrees << " deg, " << spacing << " m";
       EXPECT_GE(share, expected - error - 4.0 * 0.022 / spacing) << degrees << " deg, " << spacing << " m";
     }
-  for (const char* detector : {"field", "pass"}) EXPECT_EQ(missed(0.5, 15.0, detector), 0.0) << detector;
+  for (const char* detector : {"field", "pass"})
+    EXPECT_EQ(missed(0.5, 15.0, detector, random), 0.0) << detector;
 }
 
 /// Root mean square error [s] of the first contact of discs that fly at a block at 4 m/s, from distances
 /// drawn at random.
-double flight_error(SolverOptions options, const Sampling& sampling = {}) {
+double flight_error(SolverOptions options, Random random, const Sampling& sampling = {}) {
   constexpr int kDiscs = 16;
   constexpr double kSpeed = 4.0;
   options.max_collisions = 1;
-  Random random(23);
   double sum = 0.0;
   for (int k = 0; k < kDiscs; ++k) {
     const double away = random.uniform(0.1, 0.42);
@@ -101,26 +101,27 @@ double flight_error(SolverOptions options, const Sampling& sampling = {}) {
 // backing up errs by a step: first order in the step. Between particles s apart a disc's edge reaches beyond
 // the chord by s^2 / (8 R): second order in the spacing.
 TEST(Classic, ConvergesAtFirstOrderInPixelAndStepAndSecondInSpacing) {
-  const auto with_pixels = [](int resolution) {
+  const SeededRandom random(23);
+  const auto with_pixels = [&](int resolution) {
     SolverOptions options = options_of("depth");
     options.field.resolution = resolution;
-    return flight_error(options);
+    return flight_error(options, random);
   };
   EXPECT_NEAR(std::log2(with_pixels(32) / with_pixels(128)) / 2.0, 1.0, 0.2);
-  const auto with_step = [](double step) {
+  const auto with_step = [&](double step) {
     SolverOptions options = options_of("depth", step);
     options.policy = "fixed_step";
     options.field.resolution = 256;
-    return flight_error(options);
+    return flight_error(options, random);
   };
   EXPECT_NEAR(std::log2(with_step(0.04) / with_step(0.01)) / 2.0, 1.0, 0.35);
-  const auto with_spacing = [](double spacing) {
+  const auto with_spacing = [&](double spacing) {
     SolverOptions options = options_of("depth");
     options.field.resolution = 256;
     Sampling boundary;
     boundary.kind = Sampling::Kind::boundary;
     boundary.spacing = spacing;
-    return flight_error(options, boundary);
+    return flight_error(options, random, boundary);
   };
   EXPECT_NEAR(std::log2(with_spacing(0.8) / with_spacing(0.4)), 2.0, 0.3);
 }

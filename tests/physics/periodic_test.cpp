@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "brink/core/base/error.h"
-#include "brink/core/base/random.h"
 #include "brink/scheduler/policies/policy.h"
 #include "tests/support/same_events.h"
+#include "tests/support/seeded_random.h"
 #include "tests/support/worlds.h"
 
 namespace brink {
@@ -51,20 +51,25 @@ void expect_same(const Ran& a, const Ran& b) {
   EXPECT_EQ(a.summary.state_hash, b.summary.state_hash);
 }
 
-/// `side` x `side` bodies of those shapes, in turn, on a lattice of the pitch, with random velocities whose
-/// mean is not 0: all drift through the cell.
-World gas(int side, double pitch, const std::vector<Shape>& shapes, double spin) {
-  World world;
-  world.periods.size = {side * pitch, side * pitch};
-  Random random(11);
-  for (int k = 0; k < side * side; ++k)
-    add(world,
-        body(shapes[k % shapes.size()], {pitch * (k % side), pitch * (k / side)},
-             {random.uniform(-1.0, 2.0), random.uniform(-1.0, 1.5)}, 1.0, 0.0, random.uniform(-spin, spin)));
-  return world;
-}
+class PeriodicWorld : public ::testing::Test {
+ protected:
+  /// `side` x `side` bodies of those shapes, in turn, on a lattice of the pitch, with random velocities whose
+  /// mean is not 0: all drift through the cell.
+  World gas(int side, double pitch, const std::vector<Shape>& shapes, double spin) const {
+    World world;
+    world.periods.size = {side * pitch, side * pitch};
+    Random random = start_;
+    for (int k = 0; k < side * side; ++k)
+      add(world, body(shapes[k % shapes.size()], {pitch * (k % side), pitch * (k / side)},
+                      {random.uniform(-1.0, 2.0), random.uniform(-1.0, 1.5)}, 1.0, 0.0,
+                      random.uniform(-spin, spin)));
+    return world;
+  }
 
-TEST(PeriodicWorld, ExactPoliciesGiveTheSameEvents) {
+  const SeededRandom start_{11};
+};
+
+TEST_F(PeriodicWorld, ExactPoliciesGiveTheSameEvents) {
   World discs = gas(10, 1.0, {make_disc(0.4), make_disc(0.3), make_disc(0.1)}, 0.0);
   for (const std::string& policy : testing::other_exact_policies())
     expect_same(run(discs, "global_backup", 5.0), run(discs, policy, 5.0));
@@ -76,7 +81,7 @@ TEST(PeriodicWorld, ExactPoliciesGiveTheSameEvents) {
     expect_same(run(boxes, "global_backup", 3.0), run(boxes, policy, 3.0));
 }
 
-TEST(PeriodicWorld, SitesAndMovingSitesHaveImages) {
+TEST_F(PeriodicWorld, SitesAndMovingSitesHaveImages) {
   World world = gas(4, 1.2, {make_disc(0.2)}, 0.0);
   add(world, site(make_disc(0.3), {0.6, 0.6}));
   add(world, site(make_segment({-0.5, 0.0}, {0.5, 0.0}), {0.0, 3.0}));  // over the edge of the cell
@@ -88,7 +93,7 @@ TEST(PeriodicWorld, SitesAndMovingSitesHaveImages) {
   expect_same(r, run(world, "body_clocks", 6.0));
 }
 
-TEST(PeriodicWorld, IntegratedMotionGivesTheSameEvents) {
+TEST_F(PeriodicWorld, IntegratedMotionGivesTheSameEvents) {
   World world = gas(4, 1.2, {make_disc(0.3), make_box(0.5, 0.3)}, 1.0);
   world.forces.push_back(DragForce{{0, 1, 2, 3, 4, 5}, 0.1, 0.05, 0.0});
   SpringForce spring;
@@ -104,7 +109,7 @@ TEST(PeriodicWorld, IntegratedMotionGivesTheSameEvents) {
 
 // A cell of 3 x 3 bodies, and the same as part of one of twice the size: every collision happens four times
 // there, at the same time but for rounding, until chaos has made that large.
-TEST(PeriodicWorld, ImagesAreWhatALargerCellHasAsBodies) {
+TEST_F(PeriodicWorld, ImagesAreWhatALargerCellHasAsBodies) {
   const World small = gas(3, 1.3, {make_disc(0.45)}, 0.0);
   World large;
   large.periods.size = 2.0 * small.periods.size;
@@ -122,7 +127,7 @@ TEST(PeriodicWorld, ImagesAreWhatALargerCellHasAsBodies) {
     EXPECT_NEAR(many[k].contact.time, few[k / 4].contact.time, 1e-9);
 }
 
-TEST(PeriodicWorld, GasKeepsMomentumAndEnergyAndNeverOverlaps) {
+TEST_F(PeriodicWorld, GasKeepsMomentumAndEnergyAndNeverOverlaps) {
   const World world = gas(20, 1.0, {make_disc(0.4)}, 0.0);
   SolverOptions options;
   options.max_collisions = 100000;
@@ -166,7 +171,7 @@ TEST_P(LorentzGas, MeanFreePathIsSantalos) {
 
 INSTANTIATE_TEST_SUITE_P(Radii, LorentzGas, ::testing::Values(0.1, 0.2, 0.3));
 
-TEST(PeriodicWorld, RefusesWhatCannotRepeat) {
+TEST_F(PeriodicWorld, RefusesWhatCannotRepeat) {
   World world = gas(2, 1.0, {make_disc(0.3)}, 0.0);
   world.periods.size = {1.0, 2.0};
   EXPECT_THROW(Simulator(world, {}), BadInput);  // a body wider than half a period

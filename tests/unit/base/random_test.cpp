@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/seeded_random.h"
+
 namespace brink {
 namespace {
 
@@ -25,7 +27,7 @@ TEST(Random, RestoredStateContinuesTheStream) {
 }
 
 TEST(Random, UniformHasTheMeanAndVarianceOfTheUnitInterval) {
-  Random r(5);
+  SeededRandom r(5);
   const int n = 200000;
   double sum = 0.0, squares = 0.0;
   for (int i = 0; i < n; ++i) {

@@ -9,6 +9,7 @@
 
 #include "brink/core/base/random.h"
 #include "brink/core/contacts/lcp.h"
+#include "tests/support/seeded_random.h"
 
 namespace brink {
 namespace {
@@ -336,7 +337,7 @@ TEST(Lcp, WithoutSolutionSaysSo) {
 }
 
 TEST(Lcp, StopsWhenAsked) {
-  Random r(11);
+  SeededRandom r(11);
   const SparseRealMatrix A = contact_matrix(r, 60);
   const RealVector q = A * RealVector::Constant(60, -1);
   const GoOn never = [] { return false; };

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "brink/core/base/random.h"
+#include "tests/support/seeded_random.h"
 
 namespace brink {
 namespace {
@@ -67,7 +68,7 @@ TEST(Impulse, RandomCollisionsMeetRestitutionMomentumAndCoulombsLaw) {
 }
 
 TEST(Impulse, ElasticAndFrictionlessKeepsEnergy) {
-  Random r(12);
+  SeededRandom r(12);
   for (int i = 0; i < 20000; ++i) {
     const ImpulseSide a = random_side(r), b = random_side(r);
     const double angle = r.uniform(0.0, 2.0 * M_PI);

@@ -8,6 +8,7 @@
 
 #include "brink/core/fields/body_field.h"
 #include "brink/core/shapes/distance.h"
+#include "tests/support/seeded_random.h"
 #include "tests/unit/fields/field_shapes.h"
 
 namespace brink::detail {
@@ -116,7 +117,7 @@ TEST_P(Lists, OverTheCapAreAnsweredByTheTree) {
   options.context = GetParam();
   const auto index = make_site_index(shape.outline, options);
   SiteIndex::Scratch scratch;
-  Random random(5);
+  SeededRandom random(5);
   for (int i = 0; i < 20000; ++i) {
     const Vec2 q =
         shape.outline->bounds.extent().x() * Vec2(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5));
@@ -171,7 +172,7 @@ TEST(Backends, GiveTheSameIdsTiesApart) {
 TEST(SiteTree, ListsTheNearestAndBoundsTheOthers) {
   for (const auto& shape : field_test::all_shapes()) {
     const SiteTree tree(*shape.outline);
-    Random random(9);
+    SeededRandom random(9);
     std::vector<std::uint32_t> sites;
     for (int i = 0; i < 3000; ++i) {
       const Vec2 q = field_test::query_point(*shape.outline, random);

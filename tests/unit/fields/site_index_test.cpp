@@ -7,6 +7,7 @@
 
 #include "brink/core/fields/body_field.h"
 #include "brink/core/shapes/distance.h"
+#include "tests/support/seeded_random.h"
 #include "tests/unit/fields/field_shapes.h"
 
 namespace brink {
@@ -59,7 +60,7 @@ TEST_P(SiteIndexOnShapes, RandomQueriesGiveTheBruteForceAnswer) {
 // away, and an empty list means that the outline is beyond the reach.
 TEST_P(SiteIndexOnShapes, UnlistedSitesAreAtLeastAsFarAsPromised) {
   const auto index = make_site_index(shape_.outline, always_a_field());
-  Random random(77);
+  SeededRandom random(77);
   SiteIndex::Scratch scratch;
   const double size = shape_.outline->bounds.extent().norm();
   // Distances themselves are rounded, relative to the coordinates they come from.

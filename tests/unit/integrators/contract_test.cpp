@@ -7,6 +7,7 @@
 #include "brink/core/base/error.h"
 #include "brink/core/base/random.h"
 #include "brink/integrators/integrator.h"
+#include "tests/support/seeded_random.h"
 #include "tests/unit/integrators/problems.h"
 
 namespace brink {
@@ -145,7 +146,7 @@ TEST_P(IntegratorContract, TwistIsTheDerivativeOfThePose) {
   integrator->start(0.0, spring_pair_start());
   integrator->extend(5.0);
   const Motion motion = integrator->motion(0);
-  Random random(11);
+  SeededRandom random(11);
   for (int i = 0; i < 2000; ++i) {
     const double t = random.uniform(0.1, 4.9), h = 1e-5;
     const Vec2 slope = (motion.pose(t + h).position - motion.pose(t - h).position) / (2.0 * h);

@@ -5,6 +5,7 @@
 
 #include "brink/core/base/random.h"
 #include "brink/integrators/integrator.h"
+#include "tests/support/seeded_random.h"
 #include "tests/unit/integrators/problems.h"
 
 namespace brink {
@@ -18,7 +19,7 @@ const BodyState kThrown{{{0.3, -0.7}, 0.1}, {{2.5, 4.25}, -1.75}};
 TEST(Ballistic, StateIsTheFormulaBitForBit) {
   const Acceleration a{{0.5, -9.81}, 0.3};
   const Motion motion = Motion::ballistic(1.0, kThrown, a);
-  Random random(5);
+  SeededRandom random(5);
   for (int i = 0; i < 1000; ++i) {
     const double t = random.uniform(1.0, 20.0), s = t - 1.0;
     const BodyState state = motion.state(t);
@@ -68,7 +69,7 @@ TEST(Drag, TwistIsTheDerivativeOfThePose) {
 
 TEST(Drag, BoundsEncloseSampledRates) {
   const Motion motion = Motion::drag(0.0, kThrown, {{1.0, -9.81}, 2.0}, 0.5, 0.25);
-  Random random(2);
+  SeededRandom random(2);
   for (int i = 0; i < 300; ++i) {
     const double from = random.uniform(0.0, 10.0), to = from + random.uniform(0.0, 5.0);
     const MotionBounds b = motion.bounds(from, to);

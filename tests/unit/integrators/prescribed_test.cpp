@@ -11,6 +11,7 @@
 #include "brink/core/base/error.h"
 #include "brink/core/base/random.h"
 #include "brink/core/world/formula.h"
+#include "tests/support/seeded_random.h"
 
 namespace brink {
 namespace {
@@ -142,7 +143,7 @@ TEST(Prescribed, ManySmallAsksGiveTheBitsOfOneBigAsk) {
   PrescribedMotion big = prescribed("sin(7 * t)", "abs(sin(3 * t))", "t * t");
   PrescribedMotion small = prescribed("sin(7 * t)", "abs(sin(3 * t))", "t * t");
   big.extend(5.0);
-  Random random(4);
+  SeededRandom random(4);
   for (double t = 0.0; t < 5.0; t += random.uniform(0.0, 0.03)) small.extend(t);
   small.extend(5.0);
   EXPECT_EQ(big.motion().end(), small.motion().end());

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "brink/core/base/error.h"
-#include "brink/core/base/random.h"
 #include "brink/core/shapes/shapes.h"
+#include "tests/support/seeded_random.h"
 
 namespace brink {
 namespace {
@@ -104,7 +104,7 @@ TEST(SvgPath, FaultsNameTheirCharacter) {
 
 TEST(SvgPath, RandomTextEitherParsesOrIsAFault) {
   // no crash, no hang, no other exception, and never a point that is not finite
-  Random random(31);
+  SeededRandom random(31);
   const std::string letters = "MmLlHhVvCcSsQqTtAaZz0123456789.,-+eE  \n#";
   for (int trial = 0; trial < 20000; ++trial) {
     std::string d = "M0 0";

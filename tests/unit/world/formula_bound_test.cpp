@@ -7,6 +7,7 @@
 #include "brink/core/world/formula_tree.h"
 #include "brink/core/world/interval.h"
 #include "brink/core/world/steady.h"
+#include "tests/support/seeded_random.h"
 
 namespace brink {
 namespace {
@@ -53,7 +54,7 @@ double slack(const Formula& f, double t, double v) {
 
 // At a single time the bounds are muParser's value and its roundings: tree and parser read the same.
 TEST(FormulaBound, OfRandomFormulasHoldMuParsersValues) {
-  Random random(11);
+  SeededRandom random(11);
   int finite = 0, told = 0;
   for (int i = 0; i < 3000; ++i) {
     const std::string text = random_formula(random, 4);
@@ -81,7 +82,7 @@ TEST(FormulaBound, OfRandomFormulasHoldMuParsersValues) {
 
 // Taylor's theorem: the coefficients at one time, and the eleventh over the interval, hold every value.
 TEST(FormulaBound, CoefficientsAreThoseOfTaylorsTheorem) {
-  Random random(12);
+  SeededRandom random(12);
   int smooth = 0;
   for (int i = 0; i < 4000; ++i) {
     const std::string text = random_formula(random, 3);
@@ -123,7 +124,7 @@ TEST(FormulaBound, OfTheTriangleWaveAreThoseOfStraightPieces) {
     EXPECT_EQ(f.time_bound(0, 1.6, 4.7).second, 0.0) << text;
     EXPECT_TRUE(std::isinf(f.time_bound(0, 1.5, 1.6).second)) << text;
     EXPECT_LT(f.time_bound(0, 1.5, 1.6).spread(), 0.11) << text;
-    Random random(13);
+    SeededRandom random(13);
     for (int i = 0; i < 10000; ++i) {
       const double t = random.uniform(-100.0, 100.0);
       EXPECT_NEAR(f.time_bound(0, t, t).low, value(f, t), 5e-8) << text << ": so rough is an arc sine near 1";

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "brink/core/base/random.h"
 #include "brink/core/shapes/shapes.h"
+#include "tests/support/seeded_random.h"
 
 namespace brink {
 namespace {
@@ -19,7 +19,7 @@ FixedSite wall(const Vec2& a, const Vec2& b, const Pose& pose = {}) {
 // A wall of 3 cm that is 10 km away: in its new frame it is a few centimetres long and off, and at every end
 // exactly where it was.
 TEST(Recentred, FarWallKeepsItsPlaceExactly) {
-  Random random(1);
+  SeededRandom random(1);
   for (int k = 0; k < 1000; ++k) {
     const Vec2 a(random.uniform(-1e4, 1e4), random.uniform(-1e4, 1e4));
     const Vec2 b = a + Vec2(random.uniform(-0.03, 0.03), random.uniform(-0.03, 0.03));

@@ -10,6 +10,7 @@
 #include "brink/core/shapes/shapes.h"
 #include "brink/scheduler/broad_phase/flight.h"
 #include "brink/scheduler/broad_phase/neighbourhood.h"
+#include "tests/support/seeded_random.h"
 
 namespace brink {
 namespace {
@@ -36,7 +37,7 @@ double gap_at(const Flight& a, const Flight& b, const Vec2& shift, const Vec2& g
 }
 
 TEST(Flight, MeetingHoldsEveryOverlapOfTheBoundingDiscs) {
-  Random random(13);
+  SeededRandom random(13);
   int met = 0;
   for (int trial = 0; trial < 20000; ++trial) {
     const Flight a = random_flight(random), b = random_flight(random);
@@ -57,7 +58,7 @@ TEST(Flight, MeetingHoldsEveryOverlapOfTheBoundingDiscs) {
 }
 
 TEST(Flight, StaysInABoxUntilTheTimeItIsTold) {
-  Random random(14);
+  SeededRandom random(14);
   for (int trial = 0; trial < 5000; ++trial) {
     const Flight f = random_flight(random);
     const Vec2 gravity(trial % 2 ? 0.0 : 0.5, trial % 3 ? 0.0 : -9.8);
@@ -108,7 +109,7 @@ void expect_near(const Crowd& crowd, const Neighbourhood& near, const Periods& p
 }
 
 TEST(Neighbourhood, BodiesThatOverlapSeeEachOtherWhereverTheyGo) {
-  Random random(15);
+  SeededRandom random(15);
   for (const bool periodic : {false, true})
     for (int trial = 0; trial < 10; ++trial) {
       Periods periods;

@@ -3,14 +3,14 @@
 
 #include <algorithm>
 
-#include "brink/core/base/random.h"
 #include "brink/scheduler/events/agenda.h"
+#include "tests/support/seeded_random.h"
 
 namespace brink {
 namespace {
 
 TEST(Agenda, PopsInTheTotalOrder) {
-  Random r(5);
+  SeededRandom r(5);
   Agenda agenda;
   std::vector<Certificate> all;
   for (int i = 0; i < 2000; ++i) {

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "brink/core/base/random.h"
 #include "brink/scheduler/events/event_queue.h"
+#include "tests/support/seeded_random.h"
 
 namespace brink {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
 TEST(EventQueue, KnowsTheFirstAndTheSecond) {
-  Random random(11);
+  SeededRandom random(11);
   for (const std::size_t n : {1, 2, 3, 7, 100}) {
     EventQueue queue;
     queue.reset(n, 0.0);

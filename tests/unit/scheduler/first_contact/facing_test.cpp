@@ -6,6 +6,7 @@
 #include "brink/core/base/random.h"
 #include "brink/core/shapes/shapes.h"
 #include "brink/scheduler/first_contact/site_step.h"
+#include "tests/support/seeded_random.h"
 
 namespace brink {
 namespace {
@@ -23,7 +24,7 @@ Outline random_convex(Random& random) {
 }
 
 TEST(FacingConvex, IsNeverFartherThanThePolygonWhereverThePointGoes) {
-  Random random(20261122);
+  SeededRandom random(20261122);
   int outside = 0, exact = 0;
   for (int trial = 0; trial < 20000; ++trial) {
     const Outline outline = random_convex(random);

@@ -4,17 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "brink/core/base/random.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/first_contact/closed_forms.h"
 #include "brink/scheduler/first_contact/safe_step.h"
+#include "tests/support/seeded_random.h"
 
 namespace brink {
 namespace {
 
 // The step is the first zero of f + f' h - c h^2 / 2, so the bound is 0 there and above 0 before.
 TEST(SafeStep, EndsWhereTheLowerBoundReachesZero) {
-  Random r(3);
+  SeededRandom r(3);
   for (int i = 0; i < 100000; ++i) {
     const double f = r.uniform(0.0, 2.0), df = r.uniform(-3.0, 3.0), c = r.uniform(0.0, 5.0) * (i % 5 != 0);
     const double h = safe_step(f, df, c);
@@ -38,7 +38,7 @@ TEST(CanonicalTime, CoarsestDyadicLiesBetweenAndHasTheFewestBits) {
 
 // The root of a falling function found from a thousand brackets is one and the same double.
 TEST(CanonicalTime, LastClearTimeDoesNotDependOnTheBracket) {
-  Random r(4);
+  SeededRandom r(4);
   for (int k = 0; k < 200; ++k) {
     const double root = r.uniform(0.0, 100.0), slope = r.uniform(0.1, 50.0);
     const auto gap = [&](double t) { return (root - t) * slope; };

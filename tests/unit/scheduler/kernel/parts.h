@@ -17,6 +17,20 @@ inline World two_discs(double restitution = 1.0) {
   return world;
 }
 
+/// The two discs joined by a spring and falling; a third flies by itself above them.
+inline World on_a_spring() {
+  World world = two_discs();
+  world.gravity = {0.0, -1.0};
+  SpringForce spring;
+  spring.body_a = 0;
+  spring.body_b = 1;
+  spring.stiffness = 5.0;
+  spring.rest_length = 2.5;
+  world.forces.push_back(spring);
+  add(world, body(make_disc(0.5), {0.0, 9.0}, {1.0, 0.0}));
+  return world;
+}
+
 inline constexpr PairKey kDiscs{0, 1, -1, {}};
 inline constexpr PairKey kWall{1, -1, 0, {}};
 

@@ -11,20 +11,8 @@ namespace {
 
 using namespace testing;
 
-World sprung() {
-  World world = two_discs();
-  SpringForce spring;
-  spring.body_a = 0;
-  spring.body_b = 1;
-  spring.stiffness = 2.0;
-  spring.rest_length = 3.0;
-  world.forces.push_back(spring);
-  add(world, body(make_disc(0.5), {0.0, 9.0}, {1.0, 0.0}));
-  return world;
-}
-
 TEST(Snapshot, GoesOnWithTheSameBitsAndRefusesEveryShorterOne) {
-  Simulator a(sprung(), {}), b(sprung(), {});
+  Simulator a(on_a_spring(), {}), b(on_a_spring(), {});
   a.run(until(1.5));
   const std::vector<std::byte> bytes = a.snapshot();
   const std::uint64_t before = b.state_hash();
@@ -41,11 +29,11 @@ TEST(Snapshot, GoesOnWithTheSameBitsAndRefusesEveryShorterOne) {
 
 // What decides the motion must be the same: materials, forces, periods, geometry, detector, seed.
 TEST(Snapshot, OfAnotherWorldIsRefused) {
-  Simulator a(sprung(), {});
+  Simulator a(on_a_spring(), {});
   a.run(until(0.5));
   const std::vector<std::byte> bytes = a.snapshot();
   const auto refuses = [&](const char* what, auto&& change) {
-    World world = sprung();
+    World world = on_a_spring();
     SolverOptions options;
     change(world, options);
     Simulator b(world, options);

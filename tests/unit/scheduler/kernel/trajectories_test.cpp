@@ -12,19 +12,6 @@ namespace {
 
 using namespace testing;
 
-World on_a_spring() {
-  World world = two_discs();
-  world.gravity = {0.0, -1.0};
-  SpringForce spring;
-  spring.body_a = 0;
-  spring.body_b = 1;
-  spring.stiffness = 5.0;
-  spring.rest_length = 2.5;
-  world.forces.push_back(spring);
-  add(world, body(make_disc(0.5), {0.0, 9.0}, {1.0, 0.0}));
-  return world;
-}
-
 bool same_bits(const BodyState& a, const BodyState& b) {
   return a.pose.position == b.pose.position && a.pose.angle == b.pose.angle &&
          a.twist.velocity == b.twist.velocity && a.twist.omega == b.twist.omega;

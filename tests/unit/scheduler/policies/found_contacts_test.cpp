@@ -3,14 +3,14 @@
 
 #include <map>
 
-#include "brink/core/base/random.h"
 #include "brink/scheduler/policies/body_clocks/found_contacts.h"
+#include "tests/support/seeded_random.h"
 
 namespace brink {
 namespace {
 
 TEST(FoundContacts, GivesEachBodyItsOwnUntilItIsForgotten) {
-  Random random(12);
+  SeededRandom random(12);
   FoundContacts found(20);
   std::map<int, double> expected;
   for (int step = 0; step < 20000; ++step) {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "brink/core/base/random.h"
 #include "brink/scheduler/resolve/zeno.h"
+#include "tests/support/seeded_random.h"
 
 namespace brink {
 namespace {
@@ -79,7 +79,7 @@ TEST(ZenoWatch, PressedFeaturesEndAfterTenLikeFlights) {
 
 // Bounces under changing loads, each flight 0.5 to 1.2 times as long as the last: it shrinks all the same.
 TEST(ZenoWatch, UnsteadySeriesEnds) {
-  Random r(9);
+  SeededRandom r(9);
   ZenoWatch watch(1e-10);
   double t = 0.0, flight = 1e-5;
   std::optional<ZenoEnding> ending;

@@ -1,0 +1,136 @@
+#include "brink/core/query/outline_gap.h"
+
+#include <algorithm>
+
+#include "brink/core/query/closest_point.h"
+#include "brink/core/query/site_crossing.h"
+#include "brink/core/shapes/curve_site.h"
+#include "brink/core/shapes/distance.h"
+#include "brink/core/shapes/outline_crossing.h"
+
+namespace brink {
+
+namespace {
+
+/// One outline's samples against the other's sites, in a frame in which both stand near the origin.
+struct Side {
+  const Outline& samples_of;
+  const Outline& sites_of;
+  Pose samples_at, sites_at;
+  bool samples_are_a;
+};
+
+/// Keeps the least gap. `on_sites` and `out` are the sites' surface point and its normal.
+void keep_least(const Side& side, int sample, int site, double gap, const Vec2& on_sites, const Vec2& out,
+                OutlineGap& least) {
+  if (!(gap < least.gap)) return;
+  const Vec2 on_sample = on_sites + gap * out;
+  least = side.samples_are_a ? OutlineGap{gap, on_sample, on_sites, out, sample, true, site}
+                             : OutlineGap{gap, on_sites, on_sample, -out, sample, false, site};
+}
+
+void look_at_vertex(const Side& side, int i, OutlineGap& least) {
+  const Sample& sample = side.samples_of.samples[static_cast<std::size_t>(i)];
+  const Vec2 p = Frame(side.samples_at).to_world(sample.p);
+  const SurfacePoint on = closest_point(side.sites_of, side.sites_at, p);
+  keep_least(side, i, on.site, on.gap - sample.radius, on.point, on.normal, least);
+}
+
+/// An arc counts for the nearest point of every site that its sector sees beyond its circle.
+void look_at_arc(const Side& side, int i, OutlineGap& least) {
+  const Sample& sample = side.samples_of.samples[static_cast<std::size_t>(i)];
+  const Site& arc = side.samples_of.sites[static_cast<std::size_t>(sample.arc_site)];
+  const Frame from(side.samples_at), to(side.sites_at);
+  const Vec2 center = to.to_local(from.to_world(sample.p));
+  for (std::size_t k = 0; k < side.sites_of.sites.size(); ++k) {
+    const Site& site = side.sites_of.sites[k];
+    const Nearest nearest = nearest_on(site, center);
+    if (nearest.distance < arc.arc_radius) continue;
+    const Vec2 toward = (center - nearest.point) / nearest.distance;
+    if (!in_sector(arc, from.direction_to_local(to.direction_to_world(-toward)))) continue;
+    keep_least(side, i, static_cast<int>(k), nearest.distance - site.radius - sample.radius,
+               to.to_world(nearest.point + site.radius * toward), to.direction_to_world(toward), least);
+  }
+}
+
+void look_at_samples(const Side& side, OutlineGap& least) {
+  for (int i = 0; i < static_cast<int>(side.samples_of.samples.size()); ++i)
+    if (side.samples_of.samples[static_cast<std::size_t>(i)].arc_site < 0)
+      look_at_vertex(side, i, least);
+    else
+      look_at_arc(side, i, least);
+}
+
+void keep_crossing(double depth, const Vec2& point, const Vec2& normal, double thickness, OutlineGap& least) {
+  const double gap = -depth - thickness;
+  if (!(gap < least.gap)) return;
+  least = {gap, point + 0.5 * gap * normal, point - 0.5 * gap * normal, normal};
+}
+
+Site moved(Site site, const Frame& frame) {
+  site.a = frame.to_world(site.a);
+  site.b = frame.to_world(site.b);
+  site.center = frame.to_world(site.center);
+  return site;
+}
+
+/// `b` stands at `pose`, seen from a.
+void look_at_crossings(const Outline& a, const Outline& b, const Pose& pose, OutlineGap& least) {
+  const Frame frame(pose);
+  for (const Site& placed : b.sites) {
+    if (placed.kind == SiteKind::point) continue;
+    const Site t = moved(placed, frame);
+    for (const Site& s : a.sites) {
+      if (s.kind == SiteKind::point) continue;
+      const SiteCrossing c = site_crossing(s, t);
+      if (c.depth >= 0.0) keep_crossing(c.depth, c.point, c.normal, s.radius + t.radius, least);
+    }
+  }
+}
+
+/// Of the lesser outline's size: two that are further apart, or deeper in each other, have told so by a sample
+/// or a crossing. Those between may share an inside along edges that coincide.
+constexpr double kSeemsToTouch = 1e-6;
+
+void look_below_common_edges(const Outline& a, const Outline& b, const Pose& pose, OutlineGap& least) {
+  if (std::abs(least.gap) > kSeemsToTouch * std::min(a.bounding_radius, b.bounding_radius)) return;
+  const OutlineCrossing shared = deepest_crossing(a, Pose(), b, pose);
+  if (shared.depth > 0.0) keep_crossing(shared.depth, shared.point, shared.normal, 0.0, least);
+}
+
+OutlineGap to_world(OutlineGap gap, const Frame& frame) {
+  gap.point_a = frame.to_world(gap.point_a);
+  gap.point_b = frame.to_world(gap.point_b);
+  gap.normal = frame.direction_to_world(gap.normal);
+  return gap;
+}
+
+/// Every sample of `a` is farther from `b` than its own radius.
+bool samples_clear(const Outline& a, const Pose& pose_a, const Outline& b, const Pose& pose_b,
+                   double margin) {
+  const Frame from(pose_a), to(pose_b);
+  return std::all_of(a.samples.begin(), a.samples.end(), [&](const Sample& sample) {
+    return gap_by_brute_force(b, to.to_local(from.to_world(sample.p))) > sample.radius + margin;
+  });
+}
+
+}  // namespace
+
+OutlineGap outline_gap(const Outline& a, const Pose& pose_a, const Outline& b, const Pose& pose_b) {
+  // seen from a: far away, nothing of what is between them is lost
+  const Pose from_a{Frame(pose_a).to_local(pose_b.position), pose_b.angle - pose_a.angle};
+  OutlineGap least;
+  least.gap = std::numeric_limits<double>::infinity();
+  look_at_samples({a, b, Pose(), from_a, true}, least);
+  look_at_samples({b, a, from_a, Pose(), false}, least);
+  look_at_crossings(a, b, from_a, least);
+  look_below_common_edges(a, b, from_a, least);
+  return to_world(least, Frame(pose_a));
+}
+
+bool surely_apart(const Outline& a, const Pose& pose_a, const Outline& b, const Pose& pose_b, double margin) {
+  return samples_clear(a, pose_a, b, pose_b, margin) && samples_clear(b, pose_b, a, pose_a, margin) &&
+         deepest_crossing(a, pose_a, b, pose_b).depth == 0.0;
+}
+
+}  // namespace brink

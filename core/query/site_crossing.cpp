@@ -1,0 +1,85 @@
+#include "brink/core/query/site_crossing.h"
+
+#include <algorithm>
+#include <array>
+
+#include "brink/core/shapes/curve_site.h"
+#include "brink/core/shapes/distance.h"
+
+namespace brink {
+
+namespace {
+
+/// The two points, maybe, in which a site's line or circle meets an arc's circle.
+struct Meeting {
+  std::array<Vec2, 2> points{Vec2::Zero(), Vec2::Zero()};
+  double bulge = -1.0;  ///< how far one reaches over the other [m]; < 0: they do not meet
+};
+
+Meeting line_and_circle(const Site& line, const Site& arc) {
+  const Vec2 u = (line.b - line.a).normalized(), w = arc.center - line.a;
+  const double height = std::abs(cross(u, w)), r = arc.arc_radius;
+  if (height > r) return {};
+  const double half = std::sqrt((r - height) * (r + height));
+  const Vec2 foot = line.a + u.dot(w) * u;
+  return {{foot - half * u, foot + half * u}, r - height};
+}
+
+Meeting two_circles(const Site& s, const Site& t) {
+  const Vec2 w = t.center - s.center;
+  const double d = w.norm(), r = s.arc_radius, q = t.arc_radius;
+  const double bulge = std::min(r + q - d, d - std::abs(r - q));
+  if (bulge < 0.0 || d == 0.0) return {};
+  const double along = 0.5 * (d + (r - q) * (r + q) / d);
+  const double half = std::sqrt(std::max(0.0, (r - along) * (r + along)));
+  const Vec2 u = w / d, foot = s.center + along * u;
+  return {{foot - half * perp(u), foot + half * perp(u)}, bulge};
+}
+
+/// Abreast of the core of an arc or a segment, as far as its line or circle goes.
+bool abreast(const Site& site, const Vec2& p) {
+  if (site.kind == SiteKind::arc) return in_sector(site, p - site.center);
+  const Vec2 d = site.b - site.a;
+  return d.dot(p - site.a) >= 0.0 && d.dot(p - site.b) <= 0.0;
+}
+
+double nearest_end(const Site& s, const Site& t) {
+  return std::min({nearest_on(s, t.a).distance, nearest_on(s, t.b).distance, nearest_on(t, s.a).distance,
+                   nearest_on(t, s.b).distance});
+}
+
+Vec2 right_of(const Site& site, const Vec2& p) {
+  if (site.kind == SiteKind::segment) return -perp((site.b - site.a).normalized());
+  const Vec2 radial = (p - site.center).normalized();
+  return site.sweep > 0.0 ? radial : Vec2(-radial);
+}
+
+/// How far the nearest end of either reaches over the other's line.
+SiteCrossing two_segments(const Site& s, const Site& t) {
+  const Vec2 ds = (s.b - s.a).normalized(), dt = (t.b - t.a).normalized();
+  const double ta = cross(ds, t.a - s.a), tb = cross(ds, t.b - s.a);
+  const double sa = cross(dt, s.a - t.a), sb = cross(dt, s.b - t.a);
+  if (ta * tb >= 0.0 || sa * sb >= 0.0) return {};
+  return {std::min({std::abs(ta), std::abs(tb), std::abs(sa), std::abs(sb)}),
+          s.a + (s.b - s.a) * (sa / (sa - sb)), -perp(dt)};
+}
+
+SiteCrossing with_arc(const Site& s, const Site& t) {
+  const bool s_is_arc = s.kind == SiteKind::arc, t_is_arc = t.kind == SiteKind::arc;
+  const Meeting meeting =
+      s_is_arc && t_is_arc ? two_circles(s, t) : line_and_circle(s_is_arc ? t : s, s_is_arc ? s : t);
+  if (meeting.bulge < 0.0) return {};
+  for (const Vec2& p : meeting.points)
+    if (abreast(s, p) && abreast(t, p))
+      return {std::min(meeting.bulge, nearest_end(s, t)), p, right_of(t, p)};
+  return {};
+}
+
+}  // namespace
+
+SiteCrossing site_crossing(const Site& s, const Site& t) {
+  const bool segments = s.kind == SiteKind::segment && t.kind == SiteKind::segment;
+  return segments ? two_segments(s, t) : with_arc(s, t);
+}
+
+}  // namespace brink

@@ -1,0 +1,15 @@
+#pragma once
+/// Times that policies take for the same or for none, all in one place. What exact policies find does not depend
+/// on them.
+
+namespace brink {
+
+/// The least horizon [s]; of the first, a part of the run's end: shorter ones would only repeat broad phases, and
+/// no run could do a billion of them.
+inline constexpr double kShortestHorizon = 1e-9;
+
+/// A time that lies this part of a step before a step's end is that end: a quotient of times is told to 1e-16 of
+/// itself, so up to ten million steps are counted right.
+inline constexpr double kSameStep = 1e-9;
+
+}  // namespace brink

@@ -1,0 +1,115 @@
+/// Gaps of two outlines against known distances, and against pairs of pieces that share no code.
+#include "brink/core/query/outline_gap.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/unit/query/query_shapes.h"
+
+namespace brink {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+TEST(OutlineGap, DiscsApartAreTheirCentresLessTheirRadii) {
+  const OutlineGap g =
+      outline_gap(make_disc(1.0).outline, {{3, 4}, 2.0}, make_disc(0.5).outline, {{0, 0}, 1.0});
+  EXPECT_NEAR(g.gap, 3.5, 1e-15);
+  EXPECT_LE((g.normal - Vec2(0.6, 0.8)).norm(), 1e-15);
+  EXPECT_LE((g.point_a - Vec2(2.4, 3.2)).norm(), 1e-15);
+  EXPECT_LE((g.point_b - Vec2(0.3, 0.4)).norm(), 1e-15);
+}
+
+// A corner of the turned box points at the face: sqrt(2) below its centre.
+TEST(OutlineGap, ACornerAboveAFaceIsItsHeight) {
+  const Outline box = make_box(2.0, 2.0).outline, floor = make_box(10.0, 2.0).outline;
+  for (const double height : {3.0, 2.2}) {
+    const OutlineGap g = outline_gap(box, {{0.5, height}, pi / 4}, floor, {});
+    EXPECT_NEAR(g.gap, height - 1.0 - std::sqrt(2.0), 1e-14);  // the second is in the floor
+    EXPECT_LE((g.normal - Vec2(0, 1)).norm(), 1e-15);
+    EXPECT_LE((g.point_b - Vec2(0.5, 1.0)).norm(), 1e-14);
+    EXPECT_TRUE(g.sample_on_a);
+    const OutlineGap other_way = outline_gap(floor, {}, box, {{0.5, height}, pi / 4});
+    EXPECT_NEAR(other_way.gap, g.gap, 1e-14);
+    EXPECT_LE((other_way.normal + g.normal).norm(), 1e-14);
+    EXPECT_FALSE(other_way.sample_on_a);
+  }
+}
+
+// The round side of a half disc, 0.25 above a wire: only its arc sees the wire's middle.
+TEST(OutlineGap, AnArcIsMetInItsSector) {
+  const Outline bow = make_arc({0, 0}, 1.0, -2.5, -0.5, 0.1).outline;
+  const OutlineGap g = outline_gap(bow, {{0.3, 1.35}, 0.0}, make_segment({-5, 0}, {5, 0}).outline, {});
+  EXPECT_NEAR(g.gap, 0.25, 1e-15);
+  EXPECT_LE((g.point_a - Vec2(0.3, 0.25)).norm(), 1e-15);
+  EXPECT_GE(g.sample, 0);
+}
+
+// No vertex of either is in the other: a plus of two boxes; two wires; a bow through a wire.
+TEST(OutlineGap, WhatCrossesWithoutAVertexInsideIsAnOverlap) {
+  const Outline bar = make_box(4.0, 1.0).outline, wire = make_segment({-1, 0}, {1, 0}).outline;
+  // of four crossings the deepest: the upright's upper end, at 2.1, over the side at 0.5
+  EXPECT_NEAR(outline_gap(bar, {}, bar, {{0.2, 0.1}, pi / 2}).gap, -1.6, 1e-14);
+  EXPECT_NEAR(outline_gap(wire, {}, wire, {{0.25, 0.0}, pi / 2}).gap, -0.75, 1e-14);
+  const Outline bow = make_arc({0, 0}, 1.0, pi / 4, 3 * pi / 4).outline;
+  EXPECT_LT(outline_gap(bow, {{0, -0.9}, 0.0}, wire, {}).gap, -0.05);
+  EXPECT_LT(outline_gap(bow, {}, bow, {{0.5, 0.0}, 0.0}).gap, -0.05);
+}
+
+TEST(OutlineGap, EdgesThatCoincideShareAnInside) {
+  const Outline box = make_box(1.0, 1.0).outline;
+  EXPECT_LT(outline_gap(box, {}, box, {}).gap, -0.1);
+  EXPECT_LT(outline_gap(box, {}, box, {{0.5, 0.0}, 0.0}).gap, -0.05);
+  EXPECT_EQ(outline_gap(box, {}, box, {{1.0, 0.0}, 0.0}).gap, 0.0);  // neighbours
+}
+
+TEST(OutlineGap, ABodyInAContainerIsApartFromItsWall) {
+  const Outline room = make_disc_container(3.0).outline, ball = make_disc(0.5).outline;
+  EXPECT_NEAR(outline_gap(ball, {{2, 0}, 0.0}, room, {}).gap, 0.5, 1e-15);
+  EXPECT_NEAR(outline_gap(ball, {{2.75, 0}, 0.0}, room, {}).gap, -0.25, 1e-15);
+  EXPECT_NEAR(outline_gap(ball, {{9, 0}, 0.0}, room, {}).gap, -6.5, 1e-15);  // in the rock
+}
+
+// 1e9 m out the poses have 1e-7 m; what is between them is told to a rounding of their sizes all the same.
+TEST(OutlineGap, FarAwayNothingIsLost) {
+  const Outline box = make_box(2.0, 2.0).outline;
+  const Vec2 far(1073741824.0, -536870912.0);
+  EXPECT_NEAR(outline_gap(box, {far, 0.0}, box, {far + Vec2(3.25, 0), 0.0}).gap, 1.25, 1e-15);
+}
+
+TEST(OutlineGap, AgreesWithPairsOfPiecesThatShareNoCode) {
+  constexpr std::uint64_t seed = 404;
+  Random random(seed);
+  const std::vector<NamedOutline> outlines = query_outlines();
+  int apart = 0, overlapping = 0;
+  for (const NamedOutline& a : outlines)
+    for (const NamedOutline& b : outlines)
+      for (int k = 0; k < 30; ++k) {
+        if (a.outline.container && b.outline.container) continue;
+        SCOPED_TRACE(a.name + " and " + b.name + ", case " + std::to_string(k) + ", seed " +
+                     std::to_string(seed));
+        const Pose pose_a{anywhere(random, 2.5), random.uniform(-9, 9)},
+            pose_b{anywhere(random, 2.5), random.uniform(-9, 9)};
+        const OutlineGap g = outline_gap(a.outline, pose_a, b.outline, pose_b);
+        const double reference = static_cast<double>(
+            outside::gap(outside::shape_of(a.outline), {outside::vec(pose_a.position), pose_a.angle},
+                         outside::shape_of(b.outline), {outside::vec(pose_b.position), pose_b.angle}));
+        const double noise = 2e-14 + looseness(a.outline) + looseness(b.outline);
+        EXPECT_LE((g.point_b + g.gap * g.normal - g.point_a).norm(), noise);
+        if (std::abs(reference) <= noise) continue;
+        ASSERT_EQ(g.gap > 0.0, reference > 0.0) << g.gap << " is not " << reference;
+        if (reference > 0.0) {
+          EXPECT_NEAR(g.gap, reference, noise);
+        } else {
+          EXPECT_FALSE(surely_apart(a.outline, pose_a, b.outline, pose_b, 0.0));
+        }
+        ++(reference > 0.0 ? apart : overlapping);
+      }
+  EXPECT_GT(apart, 1000);
+  EXPECT_GT(overlapping, 1000);
+}
+
+}  // namespace
+}  // namespace brink
