@@ -27,6 +27,7 @@ struct LastingContact {
 LastingContact contact_at(int body, int other, const Vec2& normal, const Vec2& arm, const Vec2& other_arm);
 
 /// Of one contact on its `body`, the opposite on its `other`: forces [N], [N m] or impulses [N s], [N m s].
+/// 0 between what is held on both sides, whatever would be there.
 struct ContactLoad {
   double normal = 0.0;      ///< >= 0
   double tangential = 0.0;  ///< along the normal turned by +90 degrees
