@@ -13,7 +13,7 @@ constexpr int kMostSteps = 80;
 constexpr double kNoFriction = 1e-12;
 /// Of products and of the squares of residuals, in units of the step: where the search ends; where it does if
 /// rounding hinders; and what will do.
-constexpr double kExact = 1e-18, kNearly = 1e-14, kEnough = 1e-10;
+constexpr double kExact = 1e-16, kNearly = 1e-14, kEnough = 1e-10;
 
 /// The step's rows, in w - v: so that what is held keeps its velocity.
 class StepRows {

@@ -2,7 +2,7 @@
 // factorisations, `a_solve` all of the time by them; a wrong or undecided answer fails.
 #include <benchmark/benchmark.h>
 
-#include "tests/unit/contacts/cone_qp_problems.h"
+#include "tests/support/lasting_contacts.h"
 
 namespace brink {
 namespace {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "brink/core/base/random.h"
-#include "tests/unit/contacts/cone_qp_problems.h"
+#include "tests/support/lasting_contacts.h"
 
 namespace brink {
 namespace {
@@ -91,6 +91,17 @@ TEST(RestForces, FrictionlessBoxMovesAtItsAcceleration) {
   expect_proved(island.problem, result);
   EXPECT_NEAR(result.acceleration[0].x(), -kGravity * std::sin(0.3), 1e-11);
   EXPECT_NEAR(result.acceleration[0].y(), 0.0, 1e-11);
+}
+
+// However rough: a wedge of friction holds at any slope that it covers.
+TEST(RestForces, RoughnessHasNoLimit) {
+  for (const double friction : {10.0, 1e3, 1e6}) {
+    RestIsland box = incline(std::atan(0.9 * friction), friction);
+    box.problem.mass[0][2] = std::numeric_limits<double>::infinity();  // or it tips over
+    EXPECT_EQ(status_of(box), Status::rests) << friction;
+    box.problem.force = incline(std::atan(1.1 * friction), friction).problem.force;
+    EXPECT_EQ(status_of(box), Status::moves) << friction;
+  }
 }
 
 // Each joint carries what is above it.

@@ -4,7 +4,7 @@
 
 #include "brink/core/base/random.h"
 #include "brink/core/contacts/lcp.h"
-#include "tests/unit/contacts/cone_qp_problems.h"
+#include "tests/support/lasting_contacts.h"
 
 namespace brink {
 namespace {
@@ -220,6 +220,30 @@ TEST(Step, HeapOfDiscsIsProved) {
       expect_proved(problem, result);
       EXPECT_LE(result.factorisations, 30);
     }
+}
+
+// Units of powers of two are taken out first: an island of grains and one of mountains get the same bits.
+TEST(Step, UnitsOfMassAndTimeChangeNoBit) {
+  const StepProblem problem = testing::heap_step(6, 5, 1e-3, 0.5, 1.0 / 128);
+  StepProblem other = problem;  // masses times 2^30, times times 2^-7, at the same lengths
+  const double mass = std::exp2(30), rate = std::exp2(7);
+  other.duration /= rate;
+  for (Vec3& m : other.mass) m *= mass;
+  for (Vec3& f : other.force) f *= mass * rate * rate;
+  for (StepContact& s : other.contacts) s.friction_bound *= mass * rate;
+  const StepResult result = ConeQp().step(problem), scaled = ConeQp().step(other);
+  ASSERT_EQ(result.status, Status::solved);
+  for (std::size_t k = 0; k < result.velocity.size(); ++k)
+    for (int c = 0; c < 3; ++c) EXPECT_EQ(scaled.velocity[k][c], result.velocity[k][c] * rate);
+  for (std::size_t k = 0; k < result.loads.size(); ++k)
+    EXPECT_EQ(scaled.loads[k].normal, result.loads[k].normal * mass * rate);
+}
+
+TEST(Step, NotANumberIsNeverSolved) {
+  StepProblem problem = discs(2);
+  problem.contacts = {on_floor(0, 0.1), on_floor(1, 0.1)};
+  problem.velocity[1].y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(ConeQp().step(problem).status, Status::undecided);
 }
 
 /// Bodies and contacts that mean nothing: any matrix will do.
