@@ -11,7 +11,7 @@ namespace {
 constexpr int kMostSteps = 80;
 /// Bounds on friction below this part of the step's largest impulse are none.
 constexpr double kNoFriction = 1e-12;
-/// Of products and of the squares of residuals, in units of the step: where the search ends; where it does if
+/// Of products, in units of the step (residuals: a hundredth of their roots): where the search ends; where it does if
 /// rounding hinders; and what will do.
 constexpr double kExact = 1e-16, kNearly = 1e-14, kEnough = 1e-10;
 
@@ -102,7 +102,7 @@ double residual(const InteriorPoint& solver) {
 }
 
 bool solved(const InteriorPoint& solver, double part) {
-  return solver.mean_product() <= part && residual(solver) <= std::sqrt(part);
+  return solver.mean_product() <= part && residual(solver) <= 0.01 * std::sqrt(part);
 }
 
 }  // namespace
