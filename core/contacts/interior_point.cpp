@@ -25,6 +25,9 @@ constexpr double kNothing = 1e-60, kNoStep = 1e-10;
 /// after so many steps plain ones follow that keep to the centre.
 constexpr int kQuick = 25;
 
+/// Of forces that add up on a body, as a part of them.
+constexpr double kRounding = 1e-13;
+
 }  // namespace
 
 double InteriorPoint::Row::see(const std::vector<Vec3>& u) const {
@@ -216,9 +219,16 @@ double InteriorPoint::row_residual() const {
 }
 
 double InteriorPoint::body_residual() const {
+  std::vector<double> carried(u_.size(), 0.0);
+  for (const Row& row : rows_) {
+    const double x = std::abs(row.force());
+    carried[row.last] += x * row.on_last.cwiseAbs().maxCoeff();
+    if (row.first >= 0) carried[row.first] += x * row.on_first.cwiseAbs().maxCoeff();
+  }
   double most = 0.0;
   for (std::size_t k = 0; k < u_.size(); ++k)
-    most = std::max(most, imbalance_[k].cwiseQuotient(mass_[k]).cwiseAbs().maxCoeff());
+    most =
+        std::max(most, (imbalance_[k].cwiseAbs().maxCoeff() - kRounding * carried[k]) / mass_[k].minCoeff());
   return most;
 }
 
