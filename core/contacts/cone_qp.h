@@ -107,6 +107,9 @@ class ConeQp {
   /// It is convex and always has one answer w. Gaps that are linearised stay >= 0 whatever the bounds; with
   /// b = mu p of a step before it is Coulomb's law to first order. Sources: Moreau 1988, "Unilateral contact and
   /// dry friction in finite freedom dynamics"; Acary & Brogliato 2008.
+  ///
+  /// Known limit: where masses of one island are spread at random over 1e6 and more, some steps end `undecided`
+  /// (2.6 % of random problems at 1e6).
   StepResult step(const StepProblem& problem);
 
  private:
