@@ -1,0 +1,169 @@
+#include "brink/core/contacts/block_ldl.h"
+
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
+#include <algorithm>
+
+namespace brink {
+
+namespace {
+
+/// C -= A B^T
+void subtract_product(Block& C, const Block& A, const Block& B) {
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r)
+      C.at[c][r] -= A.at[0][r] * B.at[0][c] + A.at[1][r] * B.at[1][c] + A.at[2][r] * B.at[2][c];
+}
+
+/// x -= A y
+void subtract_product(Vec3& x, const Block& A, const Vec3& y) {
+  for (int r = 0; r < 3; ++r) x[r] -= A.at[0][r] * y[0] + A.at[1][r] * y[1] + A.at[2][r] * y[2];
+}
+
+/// x -= A^T y
+void subtract_transposed(Vec3& x, const Block& A, const Vec3& y) {
+  for (int c = 0; c < 3; ++c) x[c] -= A.at[c][0] * y[0] + A.at[c][1] * y[1] + A.at[c][2] * y[2];
+}
+
+}  // namespace
+
+void BlockLdl::analyse(int n, std::vector<Edge> edges) {
+  for (Edge& e : edges) e = std::minmax({e.first, e.second});
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  if (n == size() && edges == edges_) return;
+  edges_ = std::move(edges);
+  order_.resize(n);
+  find_order();
+  find_blocks();
+  find_targets();
+  diagonal_.resize(n);
+  below_.resize(rows_.size());
+}
+
+void BlockLdl::find_order() {
+  const int n = size();
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int k = 0; k < n; ++k) entries.emplace_back(k, k, 1.0);
+  for (const auto& [i, j] : edges_) {
+    entries.emplace_back(i, j, 1.0);
+    entries.emplace_back(j, i, 1.0);
+  }
+  Eigen::SparseMatrix<double> graph(n, n);
+  graph.setFromTriplets(entries.begin(), entries.end());
+  Eigen::AMDOrdering<int>::PermutationType order;
+  if (n > 0) Eigen::AMDOrdering<int>()(graph, order);
+  place_.resize(n);
+  for (int k = 0; k < n; ++k) place_[order_[k] = order.indices()[k]] = k;
+}
+
+void BlockLdl::find_blocks() {
+  const int n = size();
+  std::vector<std::vector<int>> columns(n), children(n);
+  for (const auto& [i, j] : edges_) {
+    const auto [first, last] = std::minmax(place_[i], place_[j]);
+    columns[first].push_back(last);
+  }
+  begins_.assign(1, 0);
+  rows_.clear();
+  for (int k = 0; k < n; ++k) {
+    // what is eliminated leaves its neighbours joined: column k takes over those of its children in the tree
+    std::vector<int>& column = columns[k];
+    for (const int child : children[k])
+      column.insert(column.end(), columns[child].begin() + 1, columns[child].end());
+    std::sort(column.begin(), column.end());
+    column.erase(std::unique(column.begin(), column.end()), column.end());
+    if (!column.empty()) children[column[0]].push_back(k);
+    rows_.insert(rows_.end(), column.begin(), column.end());
+    begins_.push_back(static_cast<int>(rows_.size()));
+  }
+}
+
+void BlockLdl::find_targets() {
+  targets_.clear();
+  for (int k = 0; k < size(); ++k)
+    for (int p = begins_[k]; p < begins_[k + 1]; ++p) {
+      int target = begins_[rows_[p]];
+      for (int q = p + 1; q < begins_[k + 1]; ++q) {
+        while (rows_[target] < rows_[q]) ++target;
+        targets_.push_back(target);
+      }
+    }
+}
+
+int BlockLdl::slot(int row, int column) const {
+  const auto begin = rows_.begin() + begins_[column], end = rows_.begin() + begins_[column + 1];
+  return static_cast<int>(std::lower_bound(begin, end, row) - rows_.begin());
+}
+
+void BlockLdl::begin(const std::vector<Vec3>& diagonal) {
+  least_ = diagonal;
+  for (int k = 0; k < size(); ++k) {
+    diagonal_[k] = {};
+    for (int c = 0; c < 3; ++c) diagonal_[k].at[c][c] = diagonal[k][c];
+  }
+  std::fill(below_.begin(), below_.end(), Block{});
+}
+
+void BlockLdl::factor() {
+  next_target_ = 0;
+  for (int k = 0; k < size(); ++k) {
+    factor_diagonal(k);
+    factor_column(k);
+  }
+}
+
+/// The block becomes its own factor: D on the diagonal, L below it.
+void BlockLdl::factor_diagonal(int k) {
+  double(&a)[3][3] = diagonal_[k].at;
+  const Vec3& least = least_[k];
+  a[0][0] = std::max(a[0][0], least[0]);
+  const double a10 = a[0][1], a20 = a[0][2];
+  a[0][1] /= a[0][0];
+  a[0][2] /= a[0][0];
+  a[1][1] = std::max(a[1][1] - a[0][1] * a10, least[1]);
+  const double a21 = a[1][2] - a[0][2] * a10;
+  a[1][2] = a21 / a[1][1];
+  a[2][2] = std::max(a[2][2] - a[0][2] * a20 - a[1][2] * a21, least[2]);
+}
+
+/// Column k of L, and what it takes from the columns after it.
+void BlockLdl::factor_column(int k) {
+  const int begin = begins_[k], end = begins_[k + 1];
+  const double(&d)[3][3] = diagonal_[k].at;
+  undivided_.assign(below_.begin() + begin, below_.begin() + end);
+  for (int p = begin; p < end; ++p) {
+    Block &undivided = undivided_[p - begin], &L = below_[p];
+    for (int r = 0; r < 3; ++r) {
+      double* const u[3] = {&undivided.at[0][r], &undivided.at[1][r], &undivided.at[2][r]};
+      *u[1] -= d[0][1] * *u[0];
+      *u[2] -= d[0][2] * *u[0] + d[1][2] * *u[1];
+      for (int c = 0; c < 3; ++c) L.at[c][r] = *u[c] / d[c][c];
+    }
+  }
+  for (int p = begin; p < end; ++p) {
+    const Block& column = undivided_[p - begin];
+    subtract_product(diagonal_[rows_[p]], below_[p], column);
+    for (int q = p + 1; q < end; ++q) subtract_product(below_[targets_[next_target_++]], below_[q], column);
+  }
+}
+
+void BlockLdl::solve(std::vector<Vec3>& b) const {
+  for (int k = 0; k < size(); ++k) {
+    const double(&d)[3][3] = diagonal_[k].at;
+    Vec3& x = b[k];
+    x[1] -= d[0][1] * x[0];
+    x[2] -= d[0][2] * x[0] + d[1][2] * x[1];
+    for (int p = begins_[k]; p < begins_[k + 1]; ++p) subtract_product(b[rows_[p]], below_[p], x);
+  }
+  for (int k = size() - 1; k >= 0; --k) {
+    const double(&d)[3][3] = diagonal_[k].at;
+    Vec3& x = b[k];
+    for (int c = 0; c < 3; ++c) x[c] /= d[c][c];
+    for (int p = begins_[k]; p < begins_[k + 1]; ++p) subtract_transposed(x, below_[p], b[rows_[p]]);
+    x[1] -= d[1][2] * x[2];
+    x[0] -= d[0][1] * x[1] + d[0][2] * x[2];
+  }
+}
+
+}  // namespace brink

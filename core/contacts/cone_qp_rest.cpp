@@ -1,0 +1,158 @@
+#include <algorithm>
+#include <cmath>
+
+#include "brink/core/contacts/cone_qp.h"
+#include "brink/core/contacts/island_units.h"
+
+namespace brink {
+
+namespace {
+
+constexpr int kMostSteps = 80;
+/// Accelerations below this part of the unit are rest; the search goes on to the lesser one where it can.
+constexpr double kRest = 1e-8, kSure = 1e-10;
+/// Rounding of what loads add up to, as a part of them.
+constexpr double kRounding = 1e-13;
+/// Of w.M w: the gap at which w is known to the square root of this; where that does if rounding hinders; and
+/// at which w is known not to be 0.
+constexpr double kExact = 1e-18, kNearly = 1e-14, kProof = 1e-8;
+
+/// The problem's rows: the edges of each contact's cone of forces.
+class Cones {
+ public:
+  Cones(const RestProblem& given) : given_(given), units_(given.mass) {
+    units_.set_speed(units_.largest(given.force) / units_.mass());
+    for (int k = 0; k < static_cast<int>(given.mass.size()); ++k) {
+      problem_.mass.push_back(units_.scaled_mass(k));
+      problem_.force.push_back(units_.scaled_force(k, given.force[k]));
+    }
+    for (int k = 0; k < static_cast<int>(given.contacts.size()); ++k) add_contact(k);
+  }
+
+  const QpProblem& problem() const { return problem_; }
+  const IslandUnits& units() const { return units_; }
+
+  std::vector<ContactLoad> loads(const InteriorPoint& solver) const {
+    std::vector<ContactLoad> loads(given_.contacts.size());
+    for (std::size_t r = 0; r < edges_.size(); ++r) {
+      const double x = solver.force(static_cast<int>(r)) * units_.force();
+      ContactLoad& load = loads[edges_[r].contact];
+      load.normal += x;
+      load.tangential += edges_[r].tangential * x;
+      load.rolling += edges_[r].rolling * x;
+    }
+    return loads;
+  }
+
+ private:
+  struct Edge {
+    int contact;
+    double tangential, rolling;  ///< for a normal force of 1
+  };
+
+  void add_contact(int k) {
+    const LastingContact& c = given_.contacts[k];
+    for (const double q : signs(c.friction))
+      for (const double m : signs(c.rolling_resistance)) add_edge({k, q, m});
+  }
+
+  static std::vector<double> signs(double bound) {
+    return bound > 0.0 ? std::vector{bound, -bound} : std::vector{0.0};
+  }
+
+  void add_edge(const Edge& edge) {
+    const LastingContact& c = given_.contacts[edge.contact];
+    const Vec3 turn(0.0, 0.0, edge.rolling);
+    QpRow row;
+    row.body = c.body;
+    row.on_body = units_.scaled_row(c.body, c.normal_on_body + edge.tangential * c.tangent_on_body + turn);
+    row.other = c.other;
+    if (c.other >= 0)
+      row.on_other =
+          units_.scaled_row(c.other, c.normal_on_other + edge.tangential * c.tangent_on_other - turn);
+    if (row.on_body.isZero(0.0) && row.on_other.isZero(0.0)) return;  // between what is held
+    edges_.push_back(edge);
+    problem_.rows.push_back(row);
+  }
+
+  const RestProblem& given_;
+  IslandUnits units_;
+  QpProblem problem_;
+  std::vector<Edge> edges_;  ///< of each row
+};
+
+/// What the solver's numbers say so far.
+class Verdict {
+ public:
+  Verdict(const QpProblem& problem, const InteriorPoint& solver)
+      : problem_(problem), solver_(solver), carried_(problem.mass.size(), 0.0) {
+    for (std::size_t r = 0; r < problem.rows.size(); ++r) {
+      const QpRow& row = problem.rows[r];
+      const double x = solver.force(static_cast<int>(r));
+      carried_[row.body] += x * row.on_body.cwiseAbs().maxCoeff();
+      if (row.other >= 0) carried_[row.other] += x * row.on_other.cwiseAbs().maxCoeff();
+    }
+    for (int k = 0; k < bodies(); ++k)
+      acceleration_ = std::max(acceleration_, solver.velocity(k).cwiseAbs().maxCoeff());
+  }
+
+  double acceleration() const { return acceleration_; }
+  double imbalance() const {
+    double most = 0.0;
+    for (int k = 0; k < bodies(); ++k) most = std::max(most, left_over(k) / (own(k) + carried_[k]));
+    return most;
+  }
+
+  bool rests(double bound) const {
+    if (!(acceleration_ <= bound)) return false;
+    for (int k = 0; k < bodies(); ++k)
+      if (!(left_over(k) <= bound * own(k) + kRounding * carried_[k])) return false;
+    return true;
+  }
+  bool moves(double part) const {
+    return acceleration_ > kRest && solver_.gap() <= part * solver_.energy() &&
+           std::max(solver_.row_residual(), solver_.body_residual()) <= std::sqrt(part) * acceleration_;
+  }
+
+ private:
+  int bodies() const { return static_cast<int>(problem_.mass.size()); }
+  double own(int k) const { return problem_.mass[k].maxCoeff(); }
+  /// f + J^T x, which forces in balance bring to 0.
+  double left_over(int k) const {
+    return (solver_.imbalance(k) + problem_.mass[k].cwiseProduct(solver_.velocity(k))).cwiseAbs().maxCoeff();
+  }
+
+  const QpProblem& problem_;
+  const InteriorPoint& solver_;
+  std::vector<double> carried_;  ///< by each body: what its contacts push
+  double acceleration_ = 0.0;
+};
+
+}  // namespace
+
+RestResult ConeQp::rest_forces(const RestProblem& problem) {
+  const Cones cones(problem);
+  solver_.begin(cones.problem());
+  const auto sure = [&] {
+    const Verdict verdict(cones.problem(), solver_);
+    if (verdict.rests(kSure) || verdict.moves(kExact)) return true;
+    return solver_.hindered() && (verdict.rests(kRest) || verdict.moves(kNearly));
+  };
+  while (!sure() && solver_.steps() < kMostSteps && solver_.step()) continue;
+
+  RestResult result;
+  const Verdict verdict(cones.problem(), solver_);
+  if (verdict.rests(kRest)) result.status = RestResult::Status::rests;
+  if (verdict.moves(kProof)) result.status = RestResult::Status::moves;
+  const bool rests = result.status == RestResult::Status::rests;
+  for (int k = 0; k < static_cast<int>(problem.mass.size()); ++k)
+    result.acceleration.push_back(rests ? Vec3(Vec3::Zero())
+                                        : cones.units().speed_of(k, solver_.velocity(k)));
+  result.loads = cones.loads(solver_);
+  result.residual = verdict.acceleration();
+  result.imbalance = verdict.imbalance();
+  result.factorisations = solver_.steps();
+  return result;
+}
+
+}  // namespace brink

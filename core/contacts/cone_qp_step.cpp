@@ -1,0 +1,128 @@
+#include <algorithm>
+#include <cmath>
+
+#include "brink/core/contacts/cone_qp.h"
+#include "brink/core/contacts/island_units.h"
+
+namespace brink {
+
+namespace {
+
+constexpr int kMostSteps = 80;
+/// Bounds on friction below this part of the step's largest impulse are none.
+constexpr double kNoFriction = 1e-12;
+/// Of products, in units of the step (residuals: a hundredth of their roots): where the search ends; where it does if
+/// rounding hinders; and what will do.
+constexpr double kExact = 1e-16, kNearly = 1e-14, kEnough = 1e-10;
+
+/// The step's rows, in w - v: so that what is held keeps its velocity.
+class StepRows {
+ public:
+  explicit StepRows(const StepProblem& given) : given_(given), units_(given.mass) {
+    units_.set_speed(speed());
+    for (int k = 0; k < static_cast<int>(given.mass.size()); ++k) {
+      problem_.mass.push_back(units_.scaled_mass(k));
+      problem_.force.push_back(units_.scaled_force(k, given.duration * given.force[k]));
+    }
+    for (int k = 0; k < static_cast<int>(given.contacts.size()); ++k) add_contact(k);
+  }
+
+  const QpProblem& problem() const { return problem_; }
+  const IslandUnits& units() const { return units_; }
+
+  std::vector<ContactLoad> loads(const InteriorPoint& solver) const {
+    std::vector<ContactLoad> loads(given_.contacts.size());
+    for (std::size_t r = 0; r < sources_.size(); ++r)
+      loads[sources_[r].contact].*sources_[r].load =
+          solver.force(static_cast<int>(r)) * units_.force() * sources_[r].unit;
+    return loads;
+  }
+
+ private:
+  struct Source {
+    int contact;
+    double ContactLoad::*load;
+    double unit;  ///< [m] of torques
+  };
+
+  /// Relative velocity before the step along one direction of a contact.
+  double before(const LastingContact& c, const Vec3& on_body, const Vec3& on_other) const {
+    return on_body.dot(given_.velocity[c.body]) +
+           (c.other < 0 ? 0.0 : on_other.dot(given_.velocity[c.other]));
+  }
+  /// v_n that the contact may still lose.
+  double room(const StepContact& s) const {
+    const LastingContact& c = s.contact;
+    return s.gap / given_.duration + before(c, c.normal_on_body, c.normal_on_other) - s.support_velocity[0];
+  }
+  /// Of the changes that forces and contacts ask for.
+  double speed() const {
+    double most = given_.duration * units_.largest(given_.force) / units_.mass();
+    for (const StepContact& s : given_.contacts) most = std::max(most, -room(s));
+    return most;
+  }
+
+  void add_contact(int k) {
+    const StepContact& s = given_.contacts[k];
+    const LastingContact& c = s.contact;
+    const Vec3 turn(0.0, 0.0, units_.length());
+    add_row({k, &ContactLoad::normal, 1.0}, c.normal_on_body, c.normal_on_other, room(s), kNone);
+    add_row({k, &ContactLoad::tangential, 1.0}, c.tangent_on_body, c.tangent_on_other,
+            before(c, c.tangent_on_body, c.tangent_on_other) - s.support_velocity[1], s.friction_bound);
+    add_row({k, &ContactLoad::rolling, units_.length()}, turn, -turn,
+            before(c, turn, -turn) - units_.length() * s.support_velocity[2],
+            s.rolling_bound / units_.length());
+  }
+
+  void add_row(const Source& source, const Vec3& on_body, const Vec3& on_other, double speed, double bound) {
+    const LastingContact& c = given_.contacts[source.contact].contact;
+    QpRow row;
+    row.body = c.body;
+    row.on_body = units_.scaled_row(c.body, on_body);
+    row.other = c.other;
+    if (c.other >= 0) row.on_other = units_.scaled_row(c.other, on_other);
+    row.offset = speed / units_.speed();
+    row.bound = bound / units_.force();
+    if (row.bound <= kNoFriction) return;
+    if (row.on_body.isZero(0.0) && row.on_other.isZero(0.0)) return;  // between what is held
+    sources_.push_back(source);
+    problem_.rows.push_back(row);
+  }
+
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+
+  const StepProblem& given_;
+  IslandUnits units_;
+  QpProblem problem_;
+  std::vector<Source> sources_;  ///< of each row
+};
+
+double residual(const InteriorPoint& solver) {
+  return std::max(solver.row_residual(), solver.body_residual());
+}
+
+bool solved(const InteriorPoint& solver, double part) {
+  return solver.mean_product() <= part && residual(solver) <= 0.01 * std::sqrt(part);
+}
+
+}  // namespace
+
+StepResult ConeQp::step(const StepProblem& problem) {
+  const StepRows rows(problem);
+  solver_.begin(rows.problem());
+  const auto sure = [&] {
+    return solved(solver_, kExact) || (solver_.hindered() && solved(solver_, kNearly));
+  };
+  while (!sure() && solver_.steps() < kMostSteps && solver_.step()) continue;
+
+  StepResult result;
+  if (solved(solver_, kEnough)) result.status = StepResult::Status::solved;
+  for (int k = 0; k < static_cast<int>(problem.mass.size()); ++k)
+    result.velocity.push_back(problem.velocity[k] + rows.units().speed_of(k, solver_.velocity(k)));
+  result.loads = rows.loads(solver_);
+  result.residual = residual(solver_);
+  result.factorisations = solver_.steps();
+  return result;
+}
+
+}  // namespace brink

@@ -1,0 +1,235 @@
+#include "brink/core/contacts/interior_point.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace brink {
+
+namespace {
+
+/// Of the way to where a first pair meets 0: nearly all of it when the products are small.
+double part_of_way(double product) { return 1.0 - std::clamp(product, 1e-8, 0.005); }
+
+/// What a row yields under a force of 1, at least: bounds the weights, so that stiff rows leave something of the
+/// masses. It changes the way to the solution, not the solution. Source: Friedlander &
+/// Orban 2012, "A primal-dual regularized interior-point method for convex quadratic programs".
+constexpr double kYield = 1e-12;
+
+/// Weights below this, of order 1 where a row matters, are left out of the factor: chains of them underflow.
+constexpr double kNoWeight = 1e-20;
+
+/// Products that add up to less cannot be told from none; nor can such a step.
+constexpr double kNothing = 1e-60, kNoStep = 1e-10;
+
+/// Steps with a corrector, which is quick but may go in circles (once in some ten thousand random problems);
+/// after so many steps plain ones follow that keep to the centre.
+constexpr int kQuick = 25;
+
+/// Of forces that add up on a body, as a part of them.
+constexpr double kRounding = 1e-13;
+
+}  // namespace
+
+double InteriorPoint::Row::see(const std::vector<Vec3>& u) const {
+  const double y = on_last.dot(u[last]);
+  return first < 0 ? y : y + on_first.dot(u[first]);
+}
+
+void InteriorPoint::Row::apply(double force, std::vector<Vec3>& to) const {
+  to[last] += force * on_last;
+  if (first >= 0) to[first] += force * on_first;
+}
+
+void InteriorPoint::Row::set_weight() {
+  double yields = kYield;
+  for (int p = 0; p < pairs; ++p) yields += z[p] / s[p];
+  weight = 1.0 / yields;
+}
+
+void InteriorPoint::Row::set_push(double product, bool corrected) {
+  double dy = -residual;
+  for (int p = 0; p < pairs; ++p) {
+    aim[p] = product - s[p] * z[p] - (corrected ? ds[p] * dz[p] : 0.0);
+    dy += sign[p] * aim[p] / s[p];
+  }
+  push = weight * dy;
+}
+
+void InteriorPoint::Row::set_direction(double dx) {
+  for (int p = 0; p < pairs; ++p) {
+    ds[p] = sign[p] * dx;
+    dz[p] = (aim[p] - z[p] * ds[p]) / s[p];
+  }
+}
+
+void InteriorPoint::begin(const QpProblem& problem) {
+  const int n = static_cast<int>(problem.mass.size());
+  std::vector<BlockLdl::Edge> edges;
+  for (const QpRow& row : problem.rows)
+    if (row.other >= 0) edges.emplace_back(row.body, row.other);
+  factor_.analyse(n, std::move(edges));
+  mass_.resize(n);
+  f_.resize(n);
+  for (int k = 0; k < n; ++k) {
+    mass_[factor_.place(k)] = problem.mass[k];
+    f_[factor_.place(k)] = problem.force[k];
+  }
+  u_.assign(n, Vec3::Zero());
+  rows_.clear();
+  for (const QpRow& row : problem.rows) rows_.push_back(ordered(row));
+  steps_ = 0;
+  last_length_ = 1.0;
+  start_pairs();
+  measure();
+}
+
+InteriorPoint::Row InteriorPoint::ordered(const QpRow& given) const {
+  Row row{};
+  row.first = -1;
+  row.last = factor_.place(given.body);
+  row.on_last = given.on_body;
+  row.offset = given.offset;
+  row.pairs = std::isinf(given.bound) ? 1 : 2;
+  row.sign[0] = row.pairs == 1 ? 1.0 : -1.0;
+  row.sign[1] = 1.0;
+  if (row.pairs == 2) row.s[0] = row.s[1] = given.bound;
+  if (given.other < 0) return row;
+  row.first = factor_.place(given.other);
+  row.on_first = given.on_other;
+  if (row.first > row.last) {
+    std::swap(row.first, row.last);
+    std::swap(row.on_first, row.on_last);
+  }
+  row.slot = factor_.slot(row.last, row.first);
+  return row;
+}
+
+/// All products alike, and large enough for what the rows begin with.
+void InteriorPoint::start_pairs() {
+  double speed = 1.0;
+  for (const Row& row : rows_)
+    speed = std::max(speed, row.pairs == 1 ? -row.offset : std::abs(row.offset) / 4);
+  const double product = speed * speed;
+  pairs_ = 0;
+  for (Row& row : rows_) {
+    pairs_ += row.pairs;
+    if (row.pairs == 1) {
+      row.z[0] = std::max(row.offset, speed);
+      row.s[0] = product / row.z[0];
+    } else {
+      row.z[0] = row.z[1] = product / row.s[0];
+    }
+  }
+}
+
+void InteriorPoint::measure() {
+  imbalance_.resize(u_.size());
+  for (std::size_t k = 0; k < u_.size(); ++k) imbalance_[k] = f_[k] - mass_[k].cwiseProduct(u_[k]);
+  gap_ = 0.0;
+  for (Row& row : rows_) {
+    row.apply(row.force(), imbalance_);
+    row.residual = row.see(u_) + row.offset;
+    for (int p = 0; p < row.pairs; ++p) {
+      row.residual -= row.sign[p] * row.z[p];
+      gap_ += row.s[p] * row.z[p];
+    }
+  }
+}
+
+bool InteriorPoint::step() {
+  if (steps_ > 0 && gap_ < kNothing) return false;
+  ++steps_;
+  factor();
+  find_direction(0.0, false);
+  const double reach = std::min(1.0, longest_step());
+  double centre = rows_.empty() ? 0.0 : std::min(1.0, std::pow(gap_after(reach) / gap_, 3));
+  if (reach < 0.1 || steps_ > kQuick) centre = std::max(centre, 0.3);
+  if (last_length_ < 0.05) centre = 1.0;
+  const bool corrected = reach > 0.1 && centre < 1.0 && steps_ <= kQuick;
+  find_direction(centre, corrected);
+  last_length_ = std::min(1.0, part_of_way(gap_ / std::max(1, pairs_)) * longest_step());
+  take(last_length_);
+  measure();
+  return last_length_ > kNoStep;
+}
+
+void InteriorPoint::factor() {
+  factor_.begin(mass_);
+  for (Row& row : rows_) {
+    row.set_weight();
+    if (row.weight < kNoWeight) continue;
+    factor_.diagonal(row.last).add(row.weight, row.on_last, row.on_last);
+    if (row.first < 0) continue;
+    factor_.diagonal(row.first).add(row.weight, row.on_first, row.on_first);
+    factor_.below(row.slot).add(row.weight, row.on_last, row.on_first);
+  }
+  factor_.factor();
+}
+
+/// Newton's direction towards products that all are `centre` times their mean; `corrected` by the products of
+/// the direction before.
+void InteriorPoint::find_direction(double centre, bool corrected) {
+  const double product = rows_.empty() ? 0.0 : centre * gap_ / pairs_;
+  du_ = imbalance_;
+  for (Row& row : rows_) {
+    row.set_push(product, corrected);
+    row.apply(row.push, du_);
+  }
+  factor_.solve(du_);
+  for (Row& row : rows_) row.set_direction(row.push - row.weight * row.see(du_));
+}
+
+double InteriorPoint::longest_step() const {
+  double most = 2.0;
+  for (const Row& row : rows_)
+    for (int p = 0; p < row.pairs; ++p) {
+      if (row.ds[p] < 0.0) most = std::min(most, -row.s[p] / row.ds[p]);
+      if (row.dz[p] < 0.0) most = std::min(most, -row.z[p] / row.dz[p]);
+    }
+  return most;
+}
+
+double InteriorPoint::gap_after(double length) const {
+  double sum = 0.0;
+  for (const Row& row : rows_)
+    for (int p = 0; p < row.pairs; ++p)
+      sum += (row.s[p] + length * row.ds[p]) * (row.z[p] + length * row.dz[p]);
+  return sum;
+}
+
+void InteriorPoint::take(double length) {
+  for (std::size_t k = 0; k < u_.size(); ++k) u_[k] += length * du_[k];
+  for (Row& row : rows_)
+    for (int p = 0; p < row.pairs; ++p) {
+      row.s[p] += length * row.ds[p];
+      row.z[p] += length * row.dz[p];
+    }
+}
+
+double InteriorPoint::energy() const {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < u_.size(); ++k) sum += u_[k].dot(mass_[k].cwiseProduct(u_[k]));
+  return sum;
+}
+
+double InteriorPoint::row_residual() const {
+  double most = 0.0;
+  for (const Row& row : rows_) most = std::max(most, std::abs(row.residual));
+  return most;
+}
+
+double InteriorPoint::body_residual() const {
+  std::vector<double> carried(u_.size(), 0.0);
+  for (const Row& row : rows_) {
+    const double x = std::abs(row.force());
+    carried[row.last] += x * row.on_last.cwiseAbs().maxCoeff();
+    if (row.first >= 0) carried[row.first] += x * row.on_first.cwiseAbs().maxCoeff();
+  }
+  double most = 0.0;
+  for (std::size_t k = 0; k < u_.size(); ++k)
+    most =
+        std::max(most, (imbalance_[k].cwiseAbs().maxCoeff() - kRounding * carried[k]) / mass_[k].minCoeff());
+  return most;
+}
+
+}  // namespace brink

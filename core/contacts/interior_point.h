@@ -1,0 +1,98 @@
+#pragma once
+/// An interior point for convex quadratic programs of bodies in the plane: a cost in each body's velocity, and
+/// rows that each see one body or two.
+
+#include <limits>
+#include <vector>
+
+#include "brink/core/contacts/block_ldl.h"
+
+namespace brink {
+
+/// A contact's normal, tangent or spin as one number, y = on_body . u(body) + on_other . u(other) + offset,
+/// and the force x that goes with it.
+struct QpRow {
+  int body = 0, other = -1;  ///< indices of bodies; -1: something that does not yield
+  Vec3 on_body = Vec3::Zero(), on_other = Vec3::Zero();
+  double offset = 0.0;
+  /// infinity: 0 <= x _|_ y >= 0. Else > 0: |x| <= bound, and x is -bound * sign(y) where y is not 0.
+  double bound = std::numeric_limits<double>::infinity();
+};
+
+/// minimise u.M u / 2 - f.u + (sum of bound |y| over the rows that have one), subject to y >= 0 at the others.
+/// Its forces x satisfy M u = f + J^T x. @pre M > 0; M, f, and velocities wanted are of order 1 or less
+struct QpProblem {
+  std::vector<Vec3> mass;   ///< M, the diagonal: x, y, angle of each body
+  std::vector<Vec3> force;  ///< f
+  std::vector<QpRow> rows;
+};
+
+/// Steps towards the solution: primal-dual, predictor and corrector, with one factor of M + J^T W J a step
+/// (W > 0 diagonal), in blocks of a body. Rows that depend on others, or are given twice, do no harm.
+/// Sources: Mehrotra 1992, "On the implementation of a primal-dual interior point method"; Wright 1997,
+/// "Primal-dual interior-point methods", ch. 10; Nocedal & Wright, "Numerical optimization", 16.6.
+class InteriorPoint {
+ public:
+  /// Before the first step. What is known of the graph is kept from the problem before.
+  void begin(const QpProblem& problem);
+  /// One factorisation, one step. False: no step of any length is left to rounding.
+  bool step();
+  /// The last step had to be short. Near the solution that is by rounding, and more steps do not help.
+  bool hindered() const { return last_length_ < 0.9; }
+
+  int steps() const { return steps_; }
+  int blocks() const { return factor_.blocks(); }
+  const Vec3& velocity(int body) const { return u_[factor_.place(body)]; }
+  /// f + J^T x - M u
+  const Vec3& imbalance(int body) const { return imbalance_[factor_.place(body)]; }
+  double force(int row) const { return rows_[row].force(); }
+  /// u.M u
+  double energy() const;
+  /// Sum of the products of what must not both be positive: bounds 2 (cost - least cost), where the two below
+  /// are 0.
+  double gap() const { return gap_; }
+  double mean_product() const { return pairs_ > 0 ? gap_ / pairs_ : 0.0; }
+  /// Largest |y| that a row's own y differs from that of the velocities.
+  double row_residual() const;
+  /// Largest |imbalance| beyond the rounding of its body's forces, as a velocity of the body.
+  double body_residual() const;
+
+ private:
+  /// A row in the order of elimination, and its pairs: s >= 0, z >= 0, s z -> 0. Without a bound the one pair
+  /// is (x, y); with one they are (bound - x, z0) and (bound + x, z1), where y = z1 - z0.
+  struct Row {
+    int first, last, slot;  ///< places of bodies, first < last; first -1: one body only
+    Vec3 on_first, on_last;
+    double offset;
+    int pairs;
+    double sign[2];  ///< ds = sign dx, y = sum of sign z
+    double s[2], z[2], ds[2], dz[2];
+    double aim[2];        ///< what s dz + z ds is to be
+    double residual;      ///< y of the velocities less y of the pairs
+    double weight, push;  ///< dx = push - weight dy
+
+    double force() const { return pairs == 1 ? s[0] : (s[1] - s[0]) / 2; }
+    double see(const std::vector<Vec3>& u) const;
+    void apply(double force, std::vector<Vec3>& to) const;
+    void set_weight();
+    void set_push(double product, bool corrected);
+    void set_direction(double dx);
+  };
+
+  Row ordered(const QpRow& row) const;
+  void start_pairs();
+  void measure();
+  void factor();
+  void find_direction(double centre, bool corrected);
+  double longest_step() const;
+  double gap_after(double length) const;
+  void take(double length);
+
+  BlockLdl factor_;
+  std::vector<Vec3> mass_, f_, u_, du_, imbalance_;  ///< in the order of elimination
+  std::vector<Row> rows_;
+  int pairs_ = 0, steps_ = 0;
+  double gap_ = 0.0, last_length_ = 1.0;
+};
+
+}  // namespace brink
