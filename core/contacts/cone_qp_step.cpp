@@ -11,8 +11,9 @@ namespace {
 constexpr int kMostSteps = 80;
 /// Bounds on friction below this part of the step's largest impulse are none.
 constexpr double kNoFriction = 1e-12;
-/// Of products and of the squares of residuals, in units of the step: where the search ends, and what does.
-constexpr double kExact = 1e-18, kEnough = 1e-10;
+/// Of products, in units of the step (residuals: a hundredth of their roots): where the search ends; where it does if
+/// rounding hinders; and what will do.
+constexpr double kExact = 1e-16, kNearly = 1e-14, kEnough = 1e-10;
 
 /// The step's rows, in w - v: so that what is held keeps its velocity.
 class StepRows {
@@ -101,7 +102,7 @@ double residual(const InteriorPoint& solver) {
 }
 
 bool solved(const InteriorPoint& solver, double part) {
-  return solver.mean_product() <= part && residual(solver) <= std::sqrt(part);
+  return solver.mean_product() <= part && residual(solver) <= 0.01 * std::sqrt(part);
 }
 
 }  // namespace
@@ -110,7 +111,7 @@ StepResult ConeQp::step(const StepProblem& problem) {
   const StepRows rows(problem);
   solver_.begin(rows.problem());
   const auto sure = [&] {
-    return solved(solver_, kExact) || (solver_.hindered() && solved(solver_, kEnough));
+    return solved(solver_, kExact) || (solver_.hindered() && solved(solver_, kNearly));
   };
   while (!sure() && solver_.steps() < kMostSteps && solver_.step()) continue;
 

@@ -11,13 +11,22 @@ namespace {
 double part_of_way(double product) { return 1.0 - std::clamp(product, 1e-8, 0.005); }
 
 /// What a row yields under a force of 1, at least: bounds the weights, so that stiff rows leave something of the
-/// masses. The search goes the other way round it, as it does not change the solution. Source: Friedlander &
+/// masses. It changes the way to the solution, not the solution. Source: Friedlander &
 /// Orban 2012, "A primal-dual regularized interior-point method for convex quadratic programs".
 constexpr double kYield = 1e-12;
 
-/// Products that add up to less cannot be told from none; nor can such a step.
+/// Weights below this, of order 1 where a row matters, are left out of the factor: chains of them underflow.
 constexpr double kNoWeight = 1e-20;
+
+/// Products that add up to less cannot be told from none; nor can such a step.
 constexpr double kNothing = 1e-60, kNoStep = 1e-10;
+
+/// Steps with a corrector, which is quick but may go in circles (once in some ten thousand random problems);
+/// after so many steps plain ones follow that keep to the centre.
+constexpr int kQuick = 25;
+
+/// Of forces that add up on a body, as a part of them.
+constexpr double kRounding = 1e-13;
 
 }  // namespace
 
@@ -133,10 +142,11 @@ bool InteriorPoint::step() {
   factor();
   find_direction(0.0, false);
   const double reach = std::min(1.0, longest_step());
-  double centre = rows_.empty() ? 0.0 : std::pow(gap_after(reach) / gap_, 3);
-  if (reach < 0.1) centre = std::max(centre, 0.3);
+  double centre = rows_.empty() ? 0.0 : std::min(1.0, std::pow(gap_after(reach) / gap_, 3));
+  if (reach < 0.1 || steps_ > kQuick) centre = std::max(centre, 0.3);
   if (last_length_ < 0.05) centre = 1.0;
-  find_direction(std::min(centre, 1.0), reach > 0.1 && centre < 1.0);
+  const bool corrected = reach > 0.1 && centre < 1.0 && steps_ <= kQuick;
+  find_direction(centre, corrected);
   last_length_ = std::min(1.0, part_of_way(gap_ / std::max(1, pairs_)) * longest_step());
   take(last_length_);
   measure();
@@ -209,9 +219,16 @@ double InteriorPoint::row_residual() const {
 }
 
 double InteriorPoint::body_residual() const {
+  std::vector<double> carried(u_.size(), 0.0);
+  for (const Row& row : rows_) {
+    const double x = std::abs(row.force());
+    carried[row.last] += x * row.on_last.cwiseAbs().maxCoeff();
+    if (row.first >= 0) carried[row.first] += x * row.on_first.cwiseAbs().maxCoeff();
+  }
   double most = 0.0;
   for (std::size_t k = 0; k < u_.size(); ++k)
-    most = std::max(most, imbalance_[k].cwiseQuotient(mass_[k]).cwiseAbs().maxCoeff());
+    most =
+        std::max(most, (imbalance_[k].cwiseAbs().maxCoeff() - kRounding * carried[k]) / mass_[k].minCoeff());
   return most;
 }
 

@@ -54,7 +54,7 @@ class InteriorPoint {
   double mean_product() const { return pairs_ > 0 ? gap_ / pairs_ : 0.0; }
   /// Largest |y| that a row's own y differs from that of the velocities.
   double row_residual() const;
-  /// Largest |imbalance|, as a velocity of its body.
+  /// Largest |imbalance| beyond the rounding of its body's forces, as a velocity of the body.
   double body_residual() const;
 
  private:
