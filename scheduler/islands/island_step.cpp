@@ -10,10 +10,13 @@ namespace {
 constexpr int kLooks = 8;        ///< along a step
 constexpr int kCorrections = 6;  ///< of gaps that were missed
 constexpr double kAimHigher = 1.1;
+/// A step may win this part of the energies that it turns over: the solver's rounding.
+constexpr double kWonOf = 1e-10;
 /// Friction bounds are taken from normal forces that were found with the bounds before, so often.
 constexpr int kFrictionPasses = 2;
 
-StepProblem problem_of(const IslandStep& step, double h, const std::vector<double>& lift) {
+/// `lift`: how much higher than its gap a contact aims; `pushes`: also where that takes it beyond where it is.
+StepProblem problem_of(const IslandStep& step, double h, const std::vector<double>& lift, bool pushes) {
   StepProblem p;
   p.duration = h;
   p.mass = step.mass;
@@ -24,6 +27,7 @@ StepProblem problem_of(const IslandStep& step, double h, const std::vector<doubl
     StepContact s;
     s.contact = c.rows;
     s.gap = std::max(c.gap, 0.0) - lift[k];
+    if (!pushes) s.gap = std::max(s.gap, 0.0);
     s.friction_bound = c.friction * c.normal_force * h;
     s.support_velocity = Vec3(c.normal_support, c.tangential_support, 0.0);
     p.contacts.push_back(s);
@@ -57,6 +61,23 @@ double missed(std::size_t k, double h, const std::vector<Vec3>& velocity, const 
   return -least;
 }
 
+/// What the bodies won in the step beyond what forces and moving supports gave them [J].
+double won(const IslandStep& step, const StepResult& result, double h, double& of) {
+  double change = 0.0;
+  for (std::size_t i = 0; i < step.mass.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      if (std::isinf(step.mass[i][k])) continue;
+      const double before = step.velocity[i][k], after = result.velocity[i][k];
+      change += 0.5 * step.mass[i][k] * (after - before) * (after + before) - h * step.force[i][k] * after;
+      of +=
+          0.5 * step.mass[i][k] * (before * before + after * after) + std::abs(h * step.force[i][k] * after);
+    }
+  for (std::size_t k = 0; k < step.contacts.size(); ++k)
+    change -= result.loads[k].normal * step.contacts[k].normal_support +
+              result.loads[k].tangential * step.contacts[k].tangential_support;
+  return change;
+}
+
 double residual(const IslandStep& step, const StepResult& result) {
   double most = 0.0, beyond = 0.0;
   for (std::size_t k = 0; k < step.contacts.size(); ++k) {
@@ -69,11 +90,12 @@ double residual(const IslandStep& step, const StepResult& result) {
 
 }  // namespace
 
-StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap) {
+StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, bool pushes,
+                      const GapAlong& gap) {
   StepOutcome outcome;
   std::vector<double> lift(step.contacts.size(), 0.0);
   for (int again = 0; again < kCorrections && !outcome.solved; ++again) {
-    StepProblem p = problem_of(step, h, lift);
+    StepProblem p = problem_of(step, h, lift, pushes);
     const StepResult result = with_friction(solver, p, step, outcome.factorisations);
     if (result.status != StepResult::Status::solved) return outcome;
     double worst = 0.0;
@@ -83,6 +105,8 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
       if (miss > 0.1 * tolerance) lift[k] += kAimHigher * miss;
     }
     if (worst > tolerance) continue;
+    double of = 0.0;
+    if (won(step, result, h, of) > kWonOf * of) return outcome;
     outcome.solved = true;
     outcome.friction_residual = residual(step, result);
     step.velocity = result.velocity;

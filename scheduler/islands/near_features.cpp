@@ -71,7 +71,8 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
   }
   bool outside = false;
   for (std::size_t j = 0; j < nearest.size(); ++j)
-    outside = outside || (nearest[j].distance <= least + tie && side_of(half.other.sites[j], nearest[j], q) > 0.0);
+    outside =
+        outside || (nearest[j].distance <= least + tie && side_of(half.other.sites[j], nearest[j], q) > 0.0);
   for (std::size_t j = 0; j < nearest.size(); ++j) {
     const double side = side_of(half.other.sites[j], nearest[j], q);
     if (side < 0.0 && (outside || nearest[j].distance > least + tie)) continue;

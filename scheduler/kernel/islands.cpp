@@ -85,7 +85,7 @@ class Islands::Step {
       list_contacts(-1.0);
       make_problem();
       const StepOutcome outcome =
-          take_step(of_.solver_, problem_, h, of_.search_->limits().tolerance,
+          take_step(of_.solver_, problem_, h, of_.search_->limits().tolerance, halving < kHalvings / 2,
                     [this](std::size_t k, double moment, const std::vector<Vec3>& velocity) {
                       return gap_along(k, moment, velocity);
                     });
@@ -179,9 +179,9 @@ class Islands::Step {
       return box.grown(outline.bounding_radius + reach);
     }
     const Frame frame(pose);
-    for (const Vec2& corner : {outline.bounds.low, outline.bounds.high,
-                               Vec2(outline.bounds.low.x(), outline.bounds.high.y()),
-                               Vec2(outline.bounds.high.x(), outline.bounds.low.y())})
+    for (const Vec2& corner :
+         {outline.bounds.low, outline.bounds.high, Vec2(outline.bounds.low.x(), outline.bounds.high.y()),
+          Vec2(outline.bounds.high.x(), outline.bounds.low.y())})
       box.add(frame.to_world(corner));
     return box.grown(reach);
   }
@@ -196,9 +196,8 @@ class Islands::Step {
       boxes.push_back(box_of(members_[i], reach < 0.0 ? reach_of(static_cast<int>(i)) : reach));
     std::vector<int> by_left(members_.size());
     std::iota(by_left.begin(), by_left.end(), 0);
-    std::sort(by_left.begin(), by_left.end(), [&](int a, int b) {
-      return std::pair(boxes[a].low.x(), a) < std::pair(boxes[b].low.x(), b);
-    });
+    std::sort(by_left.begin(), by_left.end(),
+              [&](int a, int b) { return std::pair(boxes[a].low.x(), a) < std::pair(boxes[b].low.x(), b); });
     const bool repeats = of_.world_->periods.any();
     for (std::size_t x = 0; x < by_left.size(); ++x)
       for (std::size_t y = x + 1; y < by_left.size(); ++y) {
@@ -242,8 +241,7 @@ class Islands::Step {
     const ExtendedState other = other_state(*pair);
     const Outline &outline = of_.search_->outline_of(pair->body),
                   &other_outline = of_.search_->outline_of(of_.search_->other_owner(*pair));
-    const std::vector<NearFeature> features =
-        near_features(outline, states_[i], other_outline, other, far);
+    const std::vector<NearFeature> features = near_features(outline, states_[i], other_outline, other, far);
     if (features.empty()) return;
     double closing = 0.0;
     for (const NearFeature& f : features)
@@ -257,8 +255,7 @@ class Islands::Step {
     const ExtendedState& a = states_[place_.at(pair.body)];
     const ExtendedState b = other_state(pair);
     const RealVec arm = f.point.cast<Real>() + (b.position - a.position);
-    return static_cast<double>(
-        f.normal.cast<Real>().dot(b.twist.at(f.point.cast<Real>()) - a.twist.at(arm)));
+    return static_cast<double>(f.normal.cast<Real>().dot(b.twist.at(f.point.cast<Real>()) - a.twist.at(arm)));
   }
 
   /// An approach as slow as this would be back within the step [m/s].
@@ -362,7 +359,8 @@ Islands::Islands(const World& world, Trajectories& trajectories, ContactSearch& 
 void Islands::gather(int body, std::set<int>& members) const {
   if (members.count(body)) return;
   const auto lead = lead_of_.find(body);
-  const std::vector<int> with = lead != lead_of_.end() ? islands_.at(lead->second).members : std::vector{body};
+  const std::vector<int> with =
+      lead != lead_of_.end() ? islands_.at(lead->second).members : std::vector{body};
   members.insert(with.begin(), with.end());
   for (const int k : with)
     for (const int j : trajectories_->coupled_to(k)) gather(j, members);
@@ -408,10 +406,11 @@ bool Islands::begin_step(const std::set<int>& members, double longest, std::vect
   step.warm(std::move(forces));
   const bool rests = step.rests();
   if (!rests && !step.take(std::min(longest, step.longest()))) {
-    run_->stop(Termination::failed,
-               fmt::format("an island of {} bodies, '{}' the first, finds no step at t = {:.17g} that keeps its "
-                           "contacts",
-                           members.size(), world_->bodies[*members.begin()].name, run_->time()));
+    run_->stop(
+        Termination::failed,
+        fmt::format("an island of {} bodies, '{}' the first, finds no step at t = {:.17g} that keeps its "
+                    "contacts",
+                    members.size(), world_->bodies[*members.begin()].name, run_->time()));
     return false;
   }
   ++tally_.steps;
@@ -427,15 +426,15 @@ bool Islands::capture(const PairKey& pair, double limit, std::vector<int>& chang
   if (!pair.with_site()) gather(pair.other_body, members);
   ++tally_.captured;
   const double until_limit = limit - run_->time();
-  return begin_step(members, until_limit > same_instant(limit) ? until_limit
-                                                               : std::numeric_limits<double>::infinity(),
+  return begin_step(members,
+                    until_limit > same_instant(limit) ? until_limit : std::numeric_limits<double>::infinity(),
                     changed);
 }
 
 int Islands::next_island() const {
   return std::find_if(islands_.begin(), islands_.end(),
                       [&](const auto& i) { return i.second.due == next_step_; })
-    ->first;
+      ->first;
 }
 
 bool Islands::step(std::vector<int>& changed) {

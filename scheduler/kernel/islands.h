@@ -28,9 +28,7 @@ struct HeldContact {
   NearFeature feature;
   double normal_force = 0.0, tangential_force = 0.0;  ///< [N]
 
-  auto order() const {
-    return std::tuple(pair.order(), feature.sample_on_a, feature.sample, feature.site);
-  }
+  auto order() const { return std::tuple(pair.order(), feature.sample_on_a, feature.sample, feature.site); }
 };
 
 struct Island {
