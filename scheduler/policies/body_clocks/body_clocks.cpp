@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "brink/scheduler/events/event_queue.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
@@ -292,7 +293,13 @@ class BodyClocks final : public Policy {
     if (kernel_->step_island(changed_)) look_around_changed();
   }
 
+  /// Each looks at all but those that have looked before it: so each only once, though a collision in an
+  /// island tells of its bodies twice.
   void look_around_changed() {
+    if (changed_.size() > 2) {
+      std::set<int> seen;
+      std::erase_if(changed_, [&](int k) { return !seen.insert(k).second; });
+    }
     for (const int k : changed_) views_->take_up(k);
     for (std::size_t i = 0; i < changed_.size() && !kernel_->halt(); ++i) {
       look_around(changed_[i], kernel_->time(), {changed_.data(), i});
