@@ -1,0 +1,230 @@
+#include "brink/scheduler/islands/near_features.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "tests/support/seeded_random.h"
+#include "tests/unit/query/query_shapes.h"
+#include "tests/unit/scheduler/islands/facing_points.h"
+
+namespace brink {
+namespace {
+
+std::vector<NearFeature> between(const Outline& a, const Pose& at_a, const Outline& b, const Pose& at_b,
+                                 double reach) {
+  return near_features(a, BodyState{at_a, {}}, b, BodyState{at_b, {}}, reach);
+}
+
+Outline wire(const Vec2& a, const Vec2& b) { return make_segment(a, b).outline; }
+
+// ---- known answers
+
+TEST(NearFeatures, BoxOnAFloorTouchesWithItsTwoLowerCorners) {
+  const auto found = between(make_box(2, 1).outline, {{0.3, 0.51}, 0}, wire({-5, 0}, {5, 0}), {}, 0.1);
+  ASSERT_EQ(found.size(), 2U);
+  for (const NearFeature& f : found) {
+    EXPECT_TRUE(f.sample_on_a);
+    EXPECT_NEAR(f.gap, 0.01, 1e-15);
+    EXPECT_NEAR((f.normal - Vec2(0, 1)).norm(), 0.0, 1e-12);
+    EXPECT_NEAR(std::abs(f.point.x() - 0.3), 1.0, 1e-15);
+    EXPECT_TRUE(f.thin);
+  }
+}
+
+TEST(NearFeatures, DiscInAGrooveTouchesBothSides) {
+  const Outline groove = make_polygon({{-2, -2}, {2, -2}, {2, 1}, {0, -1}, {-2, 1}}).outline;
+  const double r = 0.5, slack = 0.01;
+  const auto found =
+      between(make_disc(r).outline, {{0, -1 + (r + slack) * std::sqrt(2.0)}, 0}, groove, {}, 0.1);
+  ASSERT_EQ(found.size(), 2U);
+  for (const NearFeature& f : found) EXPECT_NEAR(f.gap, slack, 1e-15);
+  EXPECT_NEAR(found[0].normal.dot(found[1].normal), 0.0, 1e-15);
+}
+
+// Beyond the tip of a wedge nothing but the tip is near: its sides are seen from behind, or from their ends.
+TEST(NearFeatures, WhatIsBehindATipIsNone) {
+  const Outline wedge = make_polygon({{0, 0}, {-1, -3}, {1, -3}}).outline;
+  for (const double gap : {1e-12, 1e-6, 0.01}) {
+    const auto found = between(make_point({0, 0}).outline, {{0.2 * gap, gap}, 0}, wedge, {}, 0.5);
+    ASSERT_FALSE(found.empty()) << gap;
+    for (const NearFeature& f : found) {
+      EXPECT_NEAR(f.gap, gap * std::hypot(0.2, 1.0), 1e-15) << "site " << f.site;
+      EXPECT_NEAR(f.point.norm(), 0.0, 1e-15) << "site " << f.site;
+    }
+  }
+}
+
+// A sample that roundings have put into a solid is met by the side that it crossed, from inside.
+TEST(NearFeatures, SampleInsideByARoundingIsSeenFromTheSideThatItCrossed) {
+  const auto found =
+      between(make_point({0, 0}).outline, {{0.2, 0.5 - 1e-14}, 0}, make_box(2, 1).outline, {}, 0.1);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR(found[0].gap, -1e-14, 1e-16);
+  EXPECT_NEAR((found[0].normal - Vec2(0, 1)).norm(), 0.0, 1e-12);
+}
+
+TEST(NearFeatures, DiscInABowlTouchesItOnceWhereItIsDeepest) {
+  const Outline bowl = make_disc_container(2.0).outline;
+  for (const double angle : {0.3, 2.0, 4.0, 5.5}) {
+    const Vec2 out(std::cos(angle), std::sin(angle));
+    const auto found = between(make_disc(0.5).outline, {1.49 * out, 0}, bowl, {}, 0.1);
+    ASSERT_FALSE(found.empty()) << angle;
+    const auto nearest = std::min_element(found.begin(), found.end(),
+                                          [](const auto& f, const auto& g) { return f.gap < g.gap; });
+    EXPECT_NEAR(nearest->gap, 0.01, 1e-14) << angle;
+    EXPECT_NEAR((nearest->normal + out).norm(), 0.0, 1e-14) << angle;
+    EXPECT_EQ(std::count_if(found.begin(), found.end(), [](const auto& f) { return f.gap < 0.0101; }), 1);
+  }
+}
+
+TEST(NearFeatures, BoxInTheCornerOfARoomTouchesBothWalls) {
+  const Outline room = as_container(make_box(4, 4).outline);
+  const auto found = between(make_box(1, 1).outline, {{1.49, -1.48}, 0}, room, {}, 0.1);
+  int right = 0, below = 0;
+  for (const NearFeature& f : found) {
+    right += f.normal.x() < -0.99 && std::abs(f.gap - 0.01) < 1e-14;
+    below += f.normal.y() > 0.99 && std::abs(f.gap - 0.02) < 1e-14;
+    EXPECT_GE(f.gap, 0.01 - 1e-14);
+  }
+  EXPECT_EQ(right, 2);
+  EXPECT_EQ(below, 2);
+}
+
+// ---- against brute force
+
+std::vector<NamedOutline> outlines() {
+  std::vector<NamedOutline> all;
+  for (NamedOutline& n : query_outlines())  // but those too thin, flat or fat to be walked along
+    if (n.name != "thin wall" && n.name != "flat arc" && n.name != "very thick arc") all.push_back(n);
+  return all;
+}
+
+struct Placed {
+  Pose a, b;
+  double gap = 0.0;
+};
+
+/// Two outlines a little apart, as extended precision sees them.
+std::optional<Placed> place(const Outline& a, const Outline& b, Random& random) {
+  const outside::Shape of_a = outside::shape_of(a), of_b = outside::shape_of(b);
+  for (int tries = 0; tries < 200; ++tries) {
+    Placed p;
+    p.b = {anywhere(random, 3.0), random.uniform(-3.0, 3.0)};
+    p.a = {p.b.position + anywhere(random, 2.5), random.uniform(-3.0, 3.0)};
+    p.gap = static_cast<double>(outside::gap(of_a, {outside::vec(p.a.position), p.a.angle}, of_b,
+                                             {outside::vec(p.b.position), p.b.angle}));
+    if (p.gap > 1e-3 && p.gap < 0.3) return p;
+  }
+  return std::nullopt;
+}
+
+/// The site of a feature as it stands in the world, in extended precision.
+outside::Piece site_of(const NearFeature& f, const Outline& a, const Outline& b, const Placed& p) {
+  const Pose& at = f.sample_on_a ? p.b : p.a;
+  return moved(outside::shape_of(f.sample_on_a ? b : a).pieces[f.site], outside::Turn(at.angle),
+               outside::vec(at.position));
+}
+
+/// Arcs that are hollow somewhere: see BoxInTheHollowOfAnArcIsApart.
+bool has_hollows(const std::string& name) { return name == "curve" || name == "egg"; }
+
+// None is nearer than the outlines are, one is as near; each begins on the surface of its site.
+TEST(NearFeatures, OfOutlinesOfAllKindsAreAsNearAsThese) {
+  SeededRandom random(1);
+  const std::vector<NamedOutline> all = outlines();
+  int features = 0;
+  for (const auto& [name_a, a] : all)
+    for (const auto& [name_b, b] : all)
+      for (int k = 0; k < 4; ++k) {
+        const auto p = a.container ? std::nullopt : place(a, b, random);
+        if (!p || has_hollows(name_a) || has_hollows(name_b)) continue;
+        double least = std::numeric_limits<double>::infinity();
+        for (const NearFeature& f : between(a, p->a, b, p->b, 0.4)) {
+          ++features;
+          least = std::min(least, f.gap);
+          EXPECT_NEAR(f.normal.norm(), 1.0, 1e-14) << name_a << " and " << name_b;
+          const outside::Piece piece = site_of(f, a, b, *p);
+          const outside::Vec there = outside::vec(p->b.position) + outside::vec(f.point);
+          EXPECT_LE(std::abs(outside::to_core(there, piece) - piece.thickness), 1e-12)
+              << name_a << " and " << name_b;
+        }
+        EXPECT_NEAR(least, p->gap, 1e-12) << name_a << " and " << name_b << ", place " << k;
+      }
+  std::printf("%d features\n", features);
+  EXPECT_GT(features, 2000);
+}
+
+// Whatever two points face each other, neither of which can go nearer, are a feature.
+TEST(NearFeatures, AreAllThatFaceEachOther) {
+  SeededRandom random(2);
+  const std::vector<NamedOutline> all = outlines();
+  constexpr double kReach = 0.4;
+  int met = 0;
+  for (const auto& [name_a, a] : all)
+    for (const auto& [name_b, b] : all) {
+      if (a.container) continue;
+      const auto p = place(a, b, random);
+      if (!p) continue;
+      const auto found = between(a, p->a, b, p->b, kReach);
+      for (const FacingPoints& facing : facing_points(a, p->a, b, p->b)) {
+        if (facing.gap > 0.9 * kReach) continue;
+        ++met;
+        const bool told = std::any_of(found.begin(), found.end(), [&](const NearFeature& f) {
+          return std::abs(f.gap - facing.gap) < 1e-6 && (f.normal - facing.normal).norm() < 1e-2;
+        });
+        EXPECT_TRUE(told) << name_a << " and " << name_b << ": gap " << facing.gap << " along "
+                          << facing.normal.transpose() << ", at " << facing.on_a.transpose();
+      }
+    }
+  std::printf("%d pairs of points that face each other\n", met);
+  EXPECT_GT(met, 300);
+}
+
+// ---- elsewhere
+
+/// Where site and sample are of kinds whose distance is convex, anything but an arc's hollow; and the sample is
+/// beside a solid's site, not beyond its end (see GapGoesOnWhereTheSampleLeavesTheSideOfItsSite).
+bool is_convex(const NearFeature& f, const Outline& a, const Outline& b, const Placed& p) {
+  const Outline &of_site = f.sample_on_a ? b : a, &of_sample = f.sample_on_a ? a : b;
+  const outside::Piece site = site_of(f, a, b, p);
+  const outside::Vec there = outside::vec(p.b.position) + outside::vec(f.point);
+  const bool at_end = std::min(norm(there - site.a), norm(there - site.b)) <= site.thickness + 1e-12L;
+  return site.kind != outside::Piece::Kind::arc && of_sample.samples[f.sample].arc_site < 0 &&
+         !(of_site.solid && at_end);
+}
+
+// A gap moved by nothing is itself; along a way on which nothing turns it lies above its tangent.
+TEST(NearFeatures, GapsAlongAStraightWayLieAboveTheirTangents) {
+  SeededRandom random(3);
+  const std::vector<NamedOutline> all = outlines();
+  int looks = 0;
+  for (const auto& [name_a, a] : all)
+    for (const auto& [name_b, b] : all) {
+      if (a.container) continue;
+      const auto p = place(a, b, random);
+      if (!p) continue;
+      const Vec2 way = anywhere(random, 1.0).normalized();
+      for (const NearFeature& f : between(a, p->a, b, p->b, 0.4)) {
+        const ExtendedState at_b(BodyState{p->b, {}});
+        const auto gap = [&](double along) {
+          return gap_of(f, a, ExtendedState(BodyState{p->a, {}}).shifted(along * way), b, at_b);
+        };
+        EXPECT_NEAR(gap(0.0), f.gap, 1e-14) << name_a << " and " << name_b;
+        if (!is_convex(f, a, b, *p)) continue;
+        for (const double along : {1e-3, 0.01, 0.1}) {
+          if (along > f.gap) continue;  // may go through
+          ++looks;
+          EXPECT_GE(gap(along), f.gap + along * f.normal.dot(way) - 1e-13)
+              << name_a << " and " << name_b << ", sample " << f.sample << (f.sample_on_a ? " of a" : " of b")
+              << ", site " << f.site << ", gap " << f.gap << ", moved by " << along;
+        }
+      }
+    }
+  EXPECT_GT(looks, 1000);
+}
+
+}  // namespace
+}  // namespace brink

@@ -1,0 +1,68 @@
+// What features should be, and are not today: each test names what goes wrong, and fails when it is run
+// (--gtest_also_run_disabled_tests). One that passes belongs into near_features_test.cpp.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "brink/core/shapes/shapes.h"
+#include "brink/scheduler/islands/near_features.h"
+
+namespace brink {
+namespace {
+
+std::vector<NearFeature> between(const Outline& a, const Pose& at_a, const Outline& b, const Pose& at_b,
+                                 double reach) {
+  return near_features(a, BodyState{at_a, {}}, b, BodyState{at_b, {}}, reach);
+}
+
+Outline wire(const Vec2& a, const Vec2& b) { return make_segment(a, b).outline; }
+
+// A normal from the difference of two points that are a gap apart has a rounding of the place in it, over the gap.
+TEST(NearFeaturesToday, DISABLED_NormalsKeepTheirDigitsHoweverSmallTheGap) {
+  for (const double gap : {1e-3, 1e-6, 1e-9, 1e-11})
+    for (const NearFeature& f :
+         between(make_box(2, 1).outline, {{0.3, 0.5 + gap}, 0}, wire({-5, 0}, {5, 0}), {}, 0.1))
+      EXPECT_NEAR((f.normal - Vec2(0, 1)).norm(), 0.0, 1e-13) << gap;
+}
+
+// Corner on corner, each touches the upper face of the one below; the sides are no obstacles.
+TEST(NearFeaturesToday, DISABLED_EqualBoxesOnOneAnotherTouchUpwards) {
+  const Outline box = make_box(0.4, 0.2).outline;
+  for (const double gap : {1e-3, 1e-9, 1e-16, 0.0, -1e-16}) {
+    int up = 0;
+    for (const NearFeature& f : between(box, {{0, 0.2 + gap}, 0}, box, {}, 1e-2)) {
+      EXPECT_NEAR(f.normal.x(), 0.0, 1e-12) << gap << ", site " << f.site << ", gap " << f.gap;
+      up += f.normal.y() > 0.5;
+    }
+    EXPECT_GE(up, 2) << gap;
+  }
+}
+
+// What slides over a joint of two straight pieces meets no end of a piece, neither before nor after it.
+TEST(NearFeaturesToday, DISABLED_JointOfTwoStraightPiecesIsNoObstacle) {
+  const Outline floor = make_chain({{-1, 0}, {0, 0}, {1, 0}}).outline;
+  for (const double x : {-0.05, 0.05})
+    for (const NearFeature& f : between(make_point({0, 0}).outline, {{x, 1e-9}, 0}, floor, {}, 0.1))
+      EXPECT_NEAR(f.normal.x(), 0.0, 1e-6) << "at " << x << ", site " << f.site << ", gap " << f.gap;
+}
+
+// An arc's own sample speaks for its outer side alone: what is in its hollow is as far away as it is.
+TEST(NearFeaturesToday, DISABLED_BoxInTheHollowOfAnArcIsApart) {
+  const Outline arc = make_arc({0, 0}, 1.0, 4.0, 5.4).outline;
+  const auto found = between(make_box(0.2, 0.2).outline, {{0, -0.85}, 0}, arc, {}, 0.2);
+  ASSERT_FALSE(found.empty());
+  for (const NearFeature& f : found)
+    EXPECT_GT(f.gap, 0.04) << "sample " << f.sample << (f.sample_on_a ? " of the box" : " of the arc");
+}
+
+// A sample that is near a face's end and goes down beside the next face has not gone through the first.
+TEST(NearFeaturesToday, DISABLED_GapGoesOnWhereTheSampleLeavesTheSideOfItsSite) {
+  const Outline box = make_box(2, 1).outline, point = make_point({0, 0}).outline;
+  const auto at = [](double y) { return ExtendedState(BodyState{{{-1.1, y}, 0}, {}}); };
+  for (const NearFeature& f : near_features(point, at(0.52), box, BodyState{}, 0.2))
+    for (const double y : {0.48, 0.4, 0.2})
+      EXPECT_GE(gap_of(f, point, at(y), box, BodyState{}), 0.1 - 1e-12) << "site " << f.site << ", at " << y;
+}
+
+}  // namespace
+}  // namespace brink
