@@ -61,6 +61,15 @@ std::string taken(const RunSummary& s) {
                      s.groups_taken, s.energy_taken, s.first_taken);
 }
 
+/// What came of contacts that last. Where bodies slid or rolled on them, that is exact to first order alone.
+std::string lasting(const RunSummary& s) {
+  return fmt::format(
+      "{} captured, {} island(s) at rest at the end; {} steps of order 1, which took approaches up to {:.3g} "
+      "m/s "
+      "as plastic, friction to {:.2g} of the largest force",
+      s.contacts_lasting, s.islands_at_rest, s.island_steps, s.approach_absorbed, s.friction_residual);
+}
+
 /// What the policy did and what of it was in vain.
 void print_work(const WorkCounters& w) {
   fmt::print("  work             {} passes, {} searches, {} distance queries, {} queue operations\n",
@@ -81,6 +90,7 @@ void print_summary(const Scene& scene, const RunReport& report) {
              s.momentum.y(), s.angular_momentum);
   fmt::print("  deepest overlap  {:.3g} m\n", s.max_overlap);
   if (s.groups_taken > 0) fmt::print("  groups taken     {}\n", paint(stdout, Paint::bad, taken(s)));
+  if (s.contacts_lasting > 0) fmt::print("  lasting contacts {}\n", lasting(s));
   fmt::print("  wall time        {:.3g} s\n", s.wall_seconds);
   print_work(s.work);
   fmt::print("  state hash       {:016x}\n", s.state_hash);

@@ -164,6 +164,12 @@ std::string summary_to_json(const RunSummary& summary, double load_seconds) {
                                     {"max_overlap", summary.max_overlap},
                                     {"groups_taken", summary.groups_taken},
                                     {"energy_taken", summary.energy_taken},
+                                    {"contacts_lasting", summary.contacts_lasting},
+                                    {"island_steps", summary.island_steps},
+                                    {"islands_at_rest", summary.islands_at_rest},
+                                    {"resting", summary.resting},
+                                    {"approach_absorbed", summary.approach_absorbed},
+                                    {"friction_residual", summary.friction_residual},
                                     {"state_hash", fmt::format("{:016x}", summary.state_hash)},
                                     {"work", std::move(work)}};
   return j.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);

@@ -24,6 +24,12 @@ void for_each_number(const RunSummary& s, Visit&& visit) {
   visit("max_overlap", s.max_overlap);
   visit("groups_taken", static_cast<double>(s.groups_taken));
   visit("energy_taken", s.energy_taken);
+  visit("contacts_lasting", static_cast<double>(s.contacts_lasting));
+  visit("island_steps", static_cast<double>(s.island_steps));
+  visit("islands_at_rest", static_cast<double>(s.islands_at_rest));
+  visit("resting", static_cast<double>(s.resting));
+  visit("approach_absorbed", s.approach_absorbed);
+  visit("friction_residual", s.friction_residual);
   WorkCounters::for_each(s.work, [&](const char* name, auto value, const char*) {
     if (std::string_view(name) != "collisions") visit(name, static_cast<double>(value));
   });

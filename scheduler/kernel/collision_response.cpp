@@ -97,8 +97,9 @@ Real CollisionResponse::delay_to_contact(const FeatureContact& found, const Exte
 CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const FeatureContact& found) {
   Change r;
   const double now = run_->time();
-  r.body = trajectories_->body(pair.body).motion.extended_state(now);
+  r.body = trajectories_->state_now(pair.body);
   r.other = search_->other_state(pair, now);
+  if (!pair.with_site()) r.other.twist = trajectories_->state_now(pair.other_body).twist;
   const auto look_at = [&](const ExtendedState& body, const ExtendedState& other) {
     return found.seen ? as_seen(found)
                       : contact_in(search_->outline_of(pair.body),

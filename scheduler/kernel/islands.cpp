@@ -21,6 +21,8 @@ constexpr double kOfSize = 0.1;
 constexpr double kReach = 2.0, kWider = 4.0;
 constexpr int kWidenings = 4;
 constexpr int kHalvings = 8;
+/// Impacts of one instant inside an island, at most; what closes then is taken as plastic.
+constexpr std::size_t kFirstImpacts = 100, kImpactsEach = 20;
 /// A force below this part of the weight of the heaviest member is none.
 constexpr double kNoForce = 1e-9;
 
@@ -39,18 +41,17 @@ class Islands::Step {
     for (std::size_t i = 0; i < members_.size(); ++i) {
       const int k = members_[i];
       place_[k] = static_cast<int>(i);
-      states_.push_back(of_.trajectories_->body(k).motion.extended_state(now_));
+      states_.push_back(of_.trajectories_->state_now(k));
       accelerations_.push_back(of_.trajectories_->acceleration(k));
       const double radius = of_.search_->outline_of(k).bounding_radius;
       const double size = radius > 0.0 ? 2.0 * radius : of_.world_->length();
       size_ = std::min(size_, size);
-      speeds_.push_back(speed_of(states_.back().twist.rounded(), radius));
       const double pull =
           accelerations_.back().linear.norm() + std::abs(accelerations_.back().angular) * radius;
       pulls_.push_back(pull);
-      speed_ = std::max(speed_, speeds_.back());
       pull_ = std::max(pull_, pull);
     }
+    find_speeds();
   }
 
   /// How long a step may be [s]; infinity: nothing moves or pulls.
@@ -58,6 +59,26 @@ class Islands::Step {
     const double fall = pull_ > 0.0 ? kOfFall * std::sqrt(size_ / pull_) : kForever;
     const double way = speed_ > 0.0 ? kOfSize * size_ / speed_ : kForever;
     return std::min(fall, way);
+  }
+
+  /// A collision goes on through contacts of this instant: the one that closes fastest first, each by its own
+  /// law, until none closes faster than what a step takes as plastic.
+  void pass_on_impacts() {
+    h_ = longest();
+    list_contacts(of_.search_->limits().tolerance);
+    for (std::size_t k = 0; k < kFirstImpacts + kImpactsEach * contacts_.size(); ++k) {
+      const HeldContact* fastest = nullptr;
+      double most = 0.0;
+      for (const HeldContact& c : contacts_) {
+        const double closing = closing_speed(c.pair, c.feature);
+        if (closing <= most || closing <= most_absorbed(c.pair)) continue;
+        most = closing;
+        fastest = &c;
+      }
+      if (!fastest) break;
+      collide(*fastest, most);
+    }
+    find_speeds();
   }
 
   /// True if the members can be taken to be at rest: what is left of their motion is gone within the contact
@@ -116,7 +137,7 @@ class Islands::Step {
     joined.reset(static_cast<int>(members_.size()));
     std::vector<bool> pushed(members_.size(), false);
     for (const HeldContact& c : contacts_) {
-      if (!rests && !pushes(c)) continue;
+      if (!rests && !pushes(c) && !stays_near(c)) continue;
       const int a = place_.at(c.pair.body), b = c.pair.with_site() ? a : place_.at(c.pair.other_body);
       pushed[a] = pushed[b] = true;
       joined.unite(a, b);
@@ -137,21 +158,68 @@ class Islands::Step {
       std::sort(set.begin(), set.end());
       if (set.front() == static_cast<int>(i)) put_in(set, rests);
     }
+    std::vector<Restart> as_they_are;
+    for (const int k : free) as_they_are.push_back({k, states_[place_.at(k)]});
     of_.trajectories_->hold(held, changed);
+    of_.trajectories_->hold(as_they_are, changed);
     of_.trajectories_->release(free, changed);
+    if (!rests)
+      for (const Restart& r : held)
+        of_.trajectories_->note_step(r.body, {now_, now_ + h_, states_[place_.at(r.body)].twist.rounded()});
   }
 
  private:
+  void find_speeds() {
+    speeds_.clear();
+    speed_ = 0.0;
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+      const double radius = of_.search_->outline_of(members_[i]).bounding_radius;
+      speeds_.push_back(speed_of(states_[i].twist.rounded(), radius));
+      speed_ = std::max(speed_, speeds_.back());
+    }
+  }
+
+  ImpulseSide side_of(int member, const RealVec& arm) const {
+    const Body& b = of_.world_->bodies[members_[member]];
+    return {states_[member].twist, arm, b.inverse_mass_x(), b.inverse_mass_y(), b.inverse_inertia()};
+  }
+
+  /// Contact point minus the body's centre of mass [m].
+  RealVec arm_of(const HeldContact& c) const {
+    return c.feature.point.cast<Real>() +
+           (other_state(c.pair).position - states_[place_.at(c.pair.body)].position);
+  }
+
+  void collide(const HeldContact& c, double closing) {
+    const int a = place_.at(c.pair.body), b = c.pair.with_site() ? -1 : place_.at(c.pair.other_body);
+    const RealVec other_arm = c.feature.point.cast<Real>();
+    const ImpulseSide other =
+        b < 0 ? ImpulseSide{other_state(c.pair).twist, other_arm, 0.0, 0.0, 0.0} : side_of(b, other_arm);
+    const ImpulseResult r = resolve_impulse(side_of(a, arm_of(c)), other, c.feature.normal.cast<Real>(),
+                                            of_.response_->material_of(c.pair));
+    states_[a].twist = r.body;
+    if (b >= 0) states_[b].twist = r.other;
+    of_.note_impact(c, other_state(c.pair).position, closing, r);
+  }
+
   static constexpr double kForever = std::numeric_limits<double>::infinity();
 
   void put_in(const std::vector<int>& set, bool rests) {
     Island island;
     for (const int i : set) island.members.push_back(members_[i]);
+    const auto has = [&](int body) { return std::binary_search(set.begin(), set.end(), place_.at(body)); };
     for (const HeldContact& c : contacts_)
-      if (std::binary_search(set.begin(), set.end(), place_.at(c.pair.body))) island.contacts.push_back(c);
+      if (has(c.pair.body) && (c.pair.with_site() || has(c.pair.other_body))) island.contacts.push_back(c);
     island.rests = rests;
-    island.due = rests ? kForever : now_ + h_;
+    island.due = rests ? next_break(set) : now_ + h_;
     of_.put_in(std::move(island));
+  }
+
+  /// When forces on those members next jump [s].
+  double next_break(const std::vector<int>& set) const {
+    double next = kForever;
+    for (const int i : set) next = std::min(next, of_.trajectories_->next_break(members_[i]));
+    return next;
   }
 
   /// A force that is more than a rounding of the heaviest member's weight.
@@ -159,6 +227,11 @@ class Islands::Step {
     double heaviest = 0.0;
     for (const int k : members_) heaviest = std::max(heaviest, of_.world_->bodies[k].mass);
     return c.normal_force > kNoForce * heaviest * pull_;
+  }
+
+  /// Nothing pushes, but one of the two alone, left to its parabola, could run into the other's step.
+  bool stays_near(const HeldContact& c) const {
+    return !c.pair.with_site() && c.feature.gap <= pull_ * h_ * h_ && closing_speed(c.pair, c.feature) >= -pull_ * h_;
   }
 
   double reach_of(int member) const {
@@ -371,7 +444,7 @@ std::map<std::tuple<PairKey, bool, int, int>, double> Islands::take_out(const st
   for (const int k : members) {
     const auto found = islands_.find(k);
     if (found == islands_.end()) continue;
-    if (found->second.rests) ++tally_.woken;
+    if (found->second.rests) note_change(EventKind::wake, k), ++tally_.woken;
     for (const HeldContact& c : found->second.contacts) {
       search_->search_again(c.pair);
       forces[{c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site}] = c.normal_force;
@@ -394,7 +467,32 @@ void Islands::find_next() {
   for (const auto& [lead, island] : islands_) next_step_ = std::min(next_step_, island.due);
 }
 
-bool Islands::begin_step(const std::set<int>& members, double longest, std::vector<int>& changed) {
+/// An island, by its least member, comes to rest or is woken.
+void Islands::note_change(EventKind kind, int lead) {
+  FeatureContact none;
+  none.time = run_->time();
+  none.point = trajectories_->body(lead).motion.pose(run_->time()).position;
+  records_->ending(kind, {lead, -1, -1, {}}, none, std::max(run_->time(), records_->last_event()));
+}
+
+/// An impact inside an island is a collision like any other.
+void Islands::note_impact(const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r) {
+  WorkCounters& work = run_->work();
+  ++work.collisions;
+  ++(c.pair.with_site() ? work.collisions_body_site : work.collisions_body_body);
+  FeatureContact f;
+  f.time = run_->time();
+  f.sample_on_a = c.feature.sample_on_a;
+  f.sample = c.feature.sample;
+  f.site = c.feature.site;
+  f.point = (from + c.feature.point.cast<Real>()).cast<double>();
+  f.normal = c.feature.normal;
+  f.closing_speed = closing;
+  f.gap = c.feature.gap;
+  records_->event(EventKind::collision, c.pair, f, r.normal, r.tangential, 0);
+}
+
+bool Islands::begin_step(const std::set<int>& members, double longest, bool hit, std::vector<int>& changed) {
   auto forces = take_out(members);
   std::vector<Restart> as_they_are;
   for (const int k : members)
@@ -404,6 +502,7 @@ bool Islands::begin_step(const std::set<int>& members, double longest, std::vect
   trajectories_->hold(as_they_are, held);
   Step step(*this, members);
   step.warm(std::move(forces));
+  if (hit) step.pass_on_impacts();
   const bool rests = step.rests();
   if (!rests && !step.take(std::min(longest, step.longest()))) {
     run_->stop(
@@ -414,21 +513,34 @@ bool Islands::begin_step(const std::set<int>& members, double longest, std::vect
     return false;
   }
   ++tally_.steps;
-  if (rests) ++tally_.slept;
+  if (rests) note_change(EventKind::sleep, *members.begin()), ++tally_.slept;
   step.part(rests, changed);
+  std::sort(changed.begin(), changed.end());
+  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
   find_next();
   return run_->poll();
 }
 
-bool Islands::capture(const PairKey& pair, double limit, std::vector<int>& changed) {
+bool Islands::capture(const PairKey& pair, const FeatureContact& contact, double limit,
+                      std::vector<int>& changed) {
   std::set<int> members;
   gather(pair.body, members);
   if (!pair.with_site()) gather(pair.other_body, members);
   ++tally_.captured;
-  const double until_limit = limit - run_->time();
-  return begin_step(members,
-                    until_limit > same_instant(limit) ? until_limit : std::numeric_limits<double>::infinity(),
-                    changed);
+  const double left = limit - run_->time();
+  const bool later = left > same_instant(limit);
+  if (!later) records_->ending(EventKind::zeno, pair, contact, records_->last_event());
+  if (!begin_step(members, later ? left : std::numeric_limits<double>::infinity(), false, changed))
+    return false;
+  const auto lead = lead_of_.find(pair.body);
+  if (!later || lead == lead_of_.end()) return true;
+  Island& island = islands_.at(lead->second);
+  if (std::abs(island.due - limit) > same_instant(limit)) return true;
+  island.due = limit;
+  island.series = pair;
+  island.series_contact = contact;
+  find_next();
+  return true;
 }
 
 int Islands::next_island() const {
@@ -438,22 +550,26 @@ int Islands::next_island() const {
 }
 
 bool Islands::step(std::vector<int>& changed) {
-  const std::vector<int> members = islands_.at(next_island()).members;
-  return begin_step({members.begin(), members.end()}, std::numeric_limits<double>::infinity(), changed);
+  const Island& island = islands_.at(next_island());
+  if (island.series.body >= 0)
+    records_->ending(EventKind::zeno, island.series, island.series_contact,
+                     std::max(island.due, records_->last_event()));
+  const std::vector<int> members = island.members;
+  return begin_step({members.begin(), members.end()}, std::numeric_limits<double>::infinity(), false,
+                    changed);
 }
 
-bool Islands::collided(const PairKey& pair, double closing_speed, std::vector<int>& changed) {
+bool Islands::collided(const PairKey& pair, std::vector<int>& changed) {
   std::set<int> members;
-  (void)closing_speed;
   gather(pair.body, members);
   if (!pair.with_site()) gather(pair.other_body, members);
-  return begin_step(members, std::numeric_limits<double>::infinity(), changed);
+  return begin_step(members, std::numeric_limits<double>::infinity(), true, changed);
 }
 
 bool Islands::disturbed(int body, std::vector<int>& changed) {
   std::set<int> members;
   gather(body, members);
-  return begin_step(members, std::numeric_limits<double>::infinity(), changed);
+  return begin_step(members, std::numeric_limits<double>::infinity(), true, changed);
 }
 
 Islands::Saved Islands::saved() const {

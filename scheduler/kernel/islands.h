@@ -36,6 +36,9 @@ struct Island {
   std::vector<HeldContact> contacts;  ///< in order
   bool rests = false;
   double due = std::numeric_limits<double>::infinity();  ///< when its step ends [s]
+  /// The contact whose bounces come to their limit where the step ends; body < 0: none.
+  PairKey series;
+  FeatureContact series_contact;
 };
 
 /// What islands came to.
@@ -64,12 +67,13 @@ class Islands {
   const IslandTally& tally() const { return tally_; }
 
   // -- what happens at the present time: bodies whose motion changed are appended to `changed`; false on a halt
-  /// The pair's bounces come to an end at `limit` [s]: from now on their contact lasts.
-  bool capture(const PairKey& pair, double limit, std::vector<int>& changed);
+  /// The pair's bounces come to an end at `limit` [s]: from now on their contact lasts. Where nothing cuts the
+  /// first step, it ends there, and the event `zeno` is told.
+  bool capture(const PairKey& pair, const FeatureContact& contact, double limit, std::vector<int>& changed);
   /// The island whose step ends now, and first, takes its next.
   bool step(std::vector<int>& changed);
   /// A collision has been resolved, of which one side at least is a member.
-  bool collided(const PairKey& pair, double closing_speed, std::vector<int>& changed);
+  bool collided(const PairKey& pair, std::vector<int>& changed);
   /// A body has been given another state.
   bool disturbed(int body, std::vector<int>& changed);
 
@@ -84,7 +88,9 @@ class Islands {
  private:
   class Step;
   void gather(int body, std::set<int>& members) const;
-  bool begin_step(const std::set<int>& members, double longest, std::vector<int>& changed);
+  bool begin_step(const std::set<int>& members, double longest, bool hit, std::vector<int>& changed);
+  void note_change(EventKind kind, int lead);
+  void note_impact(const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r);
   std::map<std::tuple<PairKey, bool, int, int>, double> take_out(const std::set<int>& members);
   void put_in(Island island);
   void find_next();

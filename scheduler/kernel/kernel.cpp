@@ -226,14 +226,14 @@ bool Kernel::judge(const Outcome& o, std::vector<int>& changed) {
 bool Kernel::begin_to_last(const Outcome& o, double limit, std::vector<int>& changed) {
   roll_back_all();
   parts_.records.ending(EventKind::persist, o.pair, o.contact, parts_.records.last_event());
-  return parts_.islands.capture(o.pair, limit, changed);
+  return parts_.islands.capture(o.pair, o.contact, limit, changed);
 }
 
 /// A collision of a member is a step of its island.
 bool Kernel::go_on_in_islands(const Outcome& o, std::vector<int>& changed) {
   const bool concerned =
       is_held(o.pair.body) || (!o.pair.with_site() && is_held(o.pair.other_body));
-  return !concerned || parts_.islands.collided(o.pair, o.contact.closing_speed, changed);
+  return !concerned || parts_.islands.collided(o.pair, changed);
 }
 
 bool Kernel::step_island(std::vector<int>& changed) {

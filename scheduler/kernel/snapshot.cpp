@@ -100,6 +100,8 @@ void write_islands(Writer& out, const Islands::Saved& islands) {
   for (const Island& i : islands.islands) {
     out(i.rests);
     out(i.due);
+    out(i.series);
+    out(i.series_contact);
     out(static_cast<std::uint64_t>(i.members.size()));
     for (const int k : i.members) out(k);
     out(static_cast<std::uint64_t>(i.contacts.size()));
@@ -113,6 +115,8 @@ void read_islands(Reader& in, Islands::Saved& islands) {
     Island i;
     in(i.rests);
     in(i.due);
+    in(i.series);
+    in(i.series_contact);
     i.members.resize(in.count(sizeof(int)));
     for (int& k : i.members) in(k);
     i.contacts.resize(in.count(sizeof(HeldContact)));

@@ -268,15 +268,31 @@ void Trajectories::hold(std::span<const Restart> bodies, std::vector<int>& chang
   for (const Restart& r : bodies) {
     BodyTrack& b = bodies_[r.body];
     if (b.component != BodyTrack::kHeld) {
-      held_[r.body] = {b.component, b.component < 0 ? b.motion.acceleration() : Acceleration{}};
+      held_[r.body] = {b.component, b.component < 0 ? b.motion.acceleration() : Acceleration{}, {}};
       if (b.component >= 0) put_to_sleep(components_[b.component]);
       b.component = BodyTrack::kHeld;
     }
     b.motion = Motion::ballistic(run_->time(), r.state.rounded(), {}, std::numeric_limits<double>::infinity(),
                                  r.state.low());
+    held_[r.body].step = {};
     raise_version(b);
     changed.push_back(r.body);
   }
+}
+
+ExtendedState Trajectories::state_now(int k) const {
+  const Motion& motion = bodies_[k].motion;
+  const double now = run_->time();
+  ExtendedState s = motion.extended_state(now);
+  if (!is_held(k)) return s;
+  const HeldStep& step = held_.at(k).step;
+  // a collision has started it afresh since, or its step is over
+  if (step.start != motion.begin() || !(now < step.end)) return s;
+  const Real left = (step.end - std::max(now, step.start)) / (step.end - step.start);
+  const ExtendedTwist before(step.before);
+  s.twist.velocity += left * (before.velocity - s.twist.velocity);
+  s.twist.omega += left * (before.omega - s.twist.omega);
+  return s;
 }
 
 void Trajectories::put_to_sleep(Coupled& c) {
@@ -445,7 +461,7 @@ void Trajectories::restore(const Saved& saved, double t) {
 void Trajectories::hold_again(std::span<const int> members, const Saved& saved) {
   for (const int k : members) {
     BodyTrack& b = bodies_[k];
-    held_[k] = {b.component, b.component < 0 ? b.motion.acceleration() : Acceleration{}};
+    held_[k] = {b.component, b.component < 0 ? b.motion.acceleration() : Acceleration{}, {}};
     if (b.component >= 0) put_to_sleep(components_[b.component]);
     b.component = BodyTrack::kHeld;
     b.motion = saved.bodies[k].motion;

@@ -29,6 +29,12 @@ struct Restart {
   ExtendedState state;
 };
 
+/// A held body's step: it moves with the twist that it comes to have at the end, from the start on.
+struct HeldStep {
+  double start = 0.0, end = 0.0;  ///< [s]
+  Twist before;                   ///< at the start
+};
+
 /// Where the integrator of a component was started. Of bodies that were grouped while running, what the
 /// rounding of their places leaves over is kept beside what the integrator makes: who joins must not jump, not
 /// even by that, into what it touches.
@@ -94,6 +100,11 @@ class Trajectories {
   /// From now on the bodies move with constant twists from these states, whatever forces there are, until
   /// they are restarted or released. @pre all bodies of a component, or none.
   void hold(std::span<const Restart> bodies, std::vector<int>& changed);
+  /// The last hold() of the body begins such a step.
+  void note_step(int k, const HeldStep& step) { held_.at(k).step = step; }
+  /// The body's state now, in extended precision. Of one that is held its motion has the twist of the step's
+  /// end; this has what it has come to by now, in proportion.
+  ExtendedState state_now(int k) const;
   /// Forces act on the bodies again, from the present time on. @pre held; all bodies of a component, or none.
   void release(std::span<const int> bodies, std::vector<int>& changed);
   /// What forces would do to a held body now.
@@ -143,6 +154,7 @@ class Trajectories {
   struct Former {  ///< how a held body moved by itself
     int component = BodyTrack::kFree;
     Acceleration acceleration;  ///< of a free one
+    HeldStep step;
   };
 
   void add_component(Component component, ComponentStart start);

@@ -15,6 +15,10 @@ const char* to_string(EventKind kind) {
       return "undecided";
     case EventKind::persist:
       return "persist";
+    case EventKind::sleep:
+      return "sleep";
+    case EventKind::wake:
+      return "wake";
   }
   return "unknown";
 }

@@ -13,6 +13,8 @@ enum class EventKind {
   group,
   undecided,
   persist,  ///< a contact lasts from now on
+  sleep,    ///< an island comes to rest: `body` is its least member
+  wake,     ///< it moves again
 };
 const char* to_string(EventKind kind);
 

@@ -72,6 +72,16 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
     summary.energy_taken = taken.energy;
     summary.first_taken = fmt::format("{} at t = {:.15g} s", kernel.name_of(taken.first), taken.time);
   }
+  const IslandTally& islands = kernel.island_tally();
+  summary.contacts_lasting = islands.captured;
+  summary.island_steps = islands.steps - islands.slept;
+  for (const auto& [lead, island] : kernel.islands()) {
+    if (!island.rests) continue;
+    ++summary.islands_at_rest;
+    summary.resting += island.members.size();
+  }
+  summary.approach_absorbed = islands.absorbed;
+  summary.friction_residual = islands.friction_residual;
   summary.state_hash = state_hash();
   summary.work = kernel.work();
   summary.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
