@@ -25,6 +25,7 @@ struct IslandContact {
   double gap = 0.0;  ///< at the start, less what it must keep [m]
   double friction = 0.0;
   double normal_force = 0.0;      ///< in: of the step before; 0: new. Out: mean over this one [N]
+  double force_lasted = 0.0;  ///< how long the step before was [s]
   double tangential_force = 0.0;  ///< out [N]
   double normal_support = 0.0, tangential_support = 0.0;  ///< mean velocity of a site's point [m/s]
 };
