@@ -118,7 +118,8 @@ CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const F
   // an approach that the law does not see was rounding, all of it
   const bool held = trajectories_->is_held(pair.body) ||
                     (!pair.with_site() && trajectories_->is_held(pair.other_body));  // by state_now()
-  if (r.impulse.kind == ImpulseKind::separating && !held) r.magnitude += std::max(0.0, found.closing_speed) / kEpsilon;
+  if (r.impulse.kind == ImpulseKind::separating && !held)
+    r.magnitude += std::max(0.0, found.closing_speed) / kEpsilon;
   const auto [way, way_of_other] = push_apart(pair, found, c.normal);
   r.body.position += way;
   r.other.position += way_of_other;

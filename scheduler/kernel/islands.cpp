@@ -110,12 +110,11 @@ class Islands::Step {
       }
       make_problem();
       const StepOutcome outcome =
-          take_step(of_.solver_, problem_, h, of_.search_->limits().tolerance, halving < kHalvings / 2,
+          take_step(of_.solver_, problem_, h, of_.search_->limits().tolerance,
                     [this](std::size_t k, double moment, const std::vector<Vec3>& velocity) {
                       return gap_along(k, moment, velocity);
                     });
       of_.tally_.factorisations += outcome.factorisations;
-      if (getenv("DBGI") && !outcome.solved) { fprintf(stderr, "NOT SOLVED t %.17g h %g\n", now_, h); for (auto& c : contacts_) fprintf(stderr, "   (%d %d %d s %d f %d on %d g %.3g n %.3g %.3g pt %.3g %.3g  c %.3g)\n", c.pair.body, c.pair.other_body, c.pair.other_site, c.feature.sample, c.feature.site, c.feature.sample_on_a, c.feature.gap, c.feature.normal.x(), c.feature.normal.y(), c.feature.point.x(), c.feature.point.y(),  closing_speed(c.pair, c.feature)); }
       if (outcome.solved && !stays_within_reach() && ++widening <= kWidenings) {
         reach_ *= kWider;
         continue;
@@ -126,6 +125,7 @@ class Islands::Step {
         continue;
       }
       of_.tally_.friction_residual = std::max(of_.tally_.friction_residual, outcome.friction_residual);
+      of_.tally_.energy_won += outcome.won;
       of_.tally_.absorbed = std::max(of_.tally_.absorbed, absorbed_);
       take_forces();
       return true;
@@ -168,7 +168,6 @@ class Islands::Step {
     of_.trajectories_->hold(held, changed);
     of_.trajectories_->hold(as_they_are, changed);
     of_.trajectories_->release(free, changed);
-    if (getenv("DBGI")) { fprintf(stderr, "part t %.17g h %g rests %d held", now_, h_, rests); for (auto& r : held) fprintf(stderr, " %d", r.body); fprintf(stderr, " free"); for (int k : free) fprintf(stderr, " %d", k); fprintf(stderr, "\n"); for (auto& c : contacts_) fprintf(stderr, "   (%d %d %d s %d f %d on %d g %.3g n %.3g %.3g pt %.3g %.3g f %.3g c %.3g end %.3g)\n", c.pair.body, c.pair.other_body, c.pair.other_site, c.feature.sample, c.feature.site, c.feature.sample_on_a, c.feature.gap, c.feature.normal.x(), c.feature.normal.y(), c.feature.point.x(), c.feature.point.y(), c.normal_force, closing_speed(c.pair, c.feature), rests ? 0.0 : gap_along(&c - contacts_.data(), h_, problem_.velocity)); fprintf(stderr, "\n"); }
     if (!rests)
       for (const Restart& r : held)
         of_.trajectories_->note_step(r.body, {now_, now_ + h_, states_[place_.at(r.body)].twist.rounded()});
@@ -237,7 +236,8 @@ class Islands::Step {
 
   /// Nothing pushes, but one of the two alone, left to its parabola, could run into the other's step.
   bool stays_near(const HeldContact& c) const {
-    return !c.pair.with_site() && c.feature.gap <= pull_ * h_ * h_ && closing_speed(c.pair, c.feature) >= -pull_ * h_;
+    return !c.pair.with_site() && c.feature.gap <= pull_ * h_ * h_ &&
+           closing_speed(c.pair, c.feature) >= -pull_ * h_;
   }
 
   double reach_of(int member) const {
@@ -541,7 +541,6 @@ bool Islands::begin_step(const std::set<int>& members, double longest, std::vect
 
 bool Islands::capture(const PairKey& pair, const FeatureContact& contact, double limit,
                       std::vector<int>& changed) {
-  if (getenv("DBGI")) fprintf(stderr, "capture %d %d %d t %.17g limit %.17g\n", pair.body, pair.other_body, pair.other_site, run_->time(), limit);
   std::set<int> members;
   gather(pair.body, members);
   if (!pair.with_site()) gather(pair.other_body, members);
@@ -549,8 +548,7 @@ bool Islands::capture(const PairKey& pair, const FeatureContact& contact, double
   const double left = limit - run_->time();
   const bool later = left > same_instant(limit);
   if (!later) records_->ending(EventKind::zeno, pair, contact, records_->last_event());
-  if (!begin_step(members, later ? left : std::numeric_limits<double>::infinity(), changed))
-    return false;
+  if (!begin_step(members, later ? left : std::numeric_limits<double>::infinity(), changed)) return false;
   const auto lead = lead_of_.find(pair.body);
   if (!later || lead == lead_of_.end()) return true;
   Island& island = islands_.at(lead->second);

@@ -49,6 +49,7 @@ struct Island {
 struct IslandTally {
   std::uint64_t captured = 0, steps = 0, slept = 0, woken = 0, factorisations = 0;
   double absorbed = 0.0;           ///< the largest approach that a step took without a rebound [m/s]
+  double energy_won = 0.0;         ///< that steps made, by rounding and by faces that turn [J]
   double friction_residual = 0.0;  ///< the largest, of the largest normal force of its island
 };
 
