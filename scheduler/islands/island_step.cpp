@@ -10,13 +10,16 @@ namespace {
 constexpr int kLooks = 8;        ///< along a step
 constexpr int kCorrections = 6;  ///< of gaps that were missed
 constexpr double kAimHigher = 1.1;
-/// A step may win this part of the energies that it turns over: the solver's rounding.
-constexpr double kWonOf = 1e-10;
+/// What the solver may miss, of the step's speed: gaps and energy are looked at themselves.
+constexpr double kResidual = 1e-6;
+/// A step may win this part of the energies that it turns over: the solver's rounding, and what faces that turn
+/// push into what lies on them, which the true motion takes from their turning.
+constexpr double kWonOf = 1e-6;
 /// Friction bounds are taken from normal forces that were found with the bounds before, so often.
 constexpr int kFrictionPasses = 2;
 
-/// `lift`: how much higher than its gap a contact aims; `pushes`: also where that takes it beyond where it is.
-StepProblem problem_of(const IslandStep& step, double h, const std::vector<double>& lift, bool pushes) {
+/// `lift`: how much higher than its gap a contact aims.
+StepProblem problem_of(const IslandStep& step, double h, const std::vector<double>& lift) {
   StepProblem p;
   p.duration = h;
   p.mass = step.mass;
@@ -27,8 +30,7 @@ StepProblem problem_of(const IslandStep& step, double h, const std::vector<doubl
     StepContact s;
     s.contact = c.rows;
     s.gap = std::max(c.gap, 0.0) - lift[k];
-    if (!pushes) s.gap = std::max(s.gap, 0.0);
-    s.friction_bound = c.friction * c.normal_force * h;
+    s.friction_bound = c.friction * c.normal_force * std::min(h, c.force_lasted);
     s.support_velocity = Vec3(c.normal_support, c.tangential_support, 0.0);
     p.contacts.push_back(s);
   }
@@ -41,7 +43,7 @@ StepResult with_friction(ConeQp& solver, StepProblem& p, const IslandStep& step,
   for (int pass = 0; pass <= kFrictionPasses; ++pass) {
     result = solver.step(p);
     factorisations += result.factorisations;
-    if (result.status != StepResult::Status::solved) break;
+    if (!(result.residual <= kResidual)) break;
     bool same = true;
     for (std::size_t k = 0; k < p.contacts.size(); ++k) {
       const double bound = step.contacts[k].friction * result.loads[k].normal;
@@ -90,14 +92,13 @@ double residual(const IslandStep& step, const StepResult& result) {
 
 }  // namespace
 
-StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, bool pushes,
-                      const GapAlong& gap) {
+StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap) {
   StepOutcome outcome;
   std::vector<double> lift(step.contacts.size(), 0.0);
   for (int again = 0; again < kCorrections && !outcome.solved; ++again) {
-    StepProblem p = problem_of(step, h, lift, pushes);
+    StepProblem p = problem_of(step, h, lift);
     const StepResult result = with_friction(solver, p, step, outcome.factorisations);
-    if (result.status != StepResult::Status::solved) return outcome;
+    if (!(result.residual <= kResidual)) return outcome;
     double worst = 0.0;
     for (std::size_t k = 0; k < step.contacts.size(); ++k) {
       const double miss = missed(k, h, result.velocity, gap);
@@ -106,7 +107,9 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
     }
     if (worst > tolerance) continue;
     double of = 0.0;
-    if (won(step, result, h, of) > kWonOf * of) return outcome;
+    const double won_here = won(step, result, h, of);
+    if (won_here > kWonOf * of) return outcome;
+    outcome.won = std::max(0.0, won_here);
     outcome.solved = true;
     outcome.friction_residual = residual(step, result);
     step.velocity = result.velocity;

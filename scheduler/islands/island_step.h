@@ -25,6 +25,7 @@ struct IslandContact {
   double gap = 0.0;  ///< at the start, less what it must keep [m]
   double friction = 0.0;
   double normal_force = 0.0;      ///< in: of the step before; 0: new. Out: mean over this one [N]
+  double force_lasted = 0.0;      ///< how long the step before was [s]
   double tangential_force = 0.0;  ///< out [N]
   double normal_support = 0.0, tangential_support = 0.0;  ///< mean velocity of a site's point [m/s]
 };
@@ -42,14 +43,12 @@ using GapAlong = std::function<double(std::size_t k, double moment, const std::v
 struct StepOutcome {
   bool solved = false;  ///< every gap stays above -`tolerance` along the step
   int factorisations = 0;
+  double won = 0.0;  ///< energy that the step made [J]: a part of 1e-6 of what it turned over, at most
   double friction_residual = 0.0;  ///< largest |q| - mu p left by bounds that lag, of the largest p
 };
 
-/// Takes a step of h > 0 [s]. Energy never grows, but by what moving supports give. What is not solved is to be
-/// tried again with a shorter one; without `pushes`: and no contact is pushed apart to make room for what will
-/// turn into it, which may win energy.
-StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, bool pushes,
-                      const GapAlong& gap);
+/// Takes a step of h > 0 [s]. What is not solved is to be tried again with a shorter one.
+StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap);
 
 /// True if the bodies stay at rest under their forces: the contacts' forces are set then.
 bool stays_at_rest(ConeQp& solver, IslandStep& step);

@@ -12,6 +12,8 @@ namespace brink {
 
 namespace {
 
+/// What lies nearer to a wire than this part of its own radius may be on either side by roundings.
+constexpr double kSinks = 1e-6;
 /// Below this part of the size two points are one, and their difference has no direction.
 constexpr double kOnePoint = 1e-12;
 
@@ -41,6 +43,14 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   const double least = kOnePoint * (half.carrier.bounding_radius + half.other.bounding_radius);
   Vec2 out = direction(site, nearest, q, least);
   if (side < 0.0 && nearest.distance > least) out = -out;
+  const bool thin = !site.solid && site.radius + sample.radius == 0.0;
+  double distance = side * nearest.distance;
+  if (thin && nearest.foot == Foot::interior && nearest.distance < kSinks * half.carrier.bounding_radius) {
+    // a wire has no inside that would tell: what has sunk by a rounding is on its centre's side
+    const Vec2 centre = half.other_frame.to_local(half.carrier_frame.origin);
+    if (out.dot(centre - nearest.point) < 0.0) out = -out;
+    distance = out.dot(q - nearest.point);
+  }
   const Vec2 outward = half.other_frame.direction_to_world(out);
   if (sample.arc_site >= 0) {
     const Vec2 towards = half.carrier_frame.direction_to_local(-outward);
@@ -51,10 +61,10 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   f.sample = i;
   f.site = j;
   f.sample_on_a = half.on_a;
-  f.gap = side * nearest.distance - site.radius - sample.radius;
+  f.gap = distance - site.radius - sample.radius;
   f.point = half.other_frame.to_world(nearest.point + site.radius * out);
   f.normal = half.on_a ? outward : Vec2(-outward);
-  f.thin = !site.solid && site.radius + sample.radius == 0.0;
+  f.thin = thin;
   return f;
 }
 

@@ -116,7 +116,10 @@ CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const F
   r.impulse = law(side, other_side, c.normal, material_of(pair));
   r.magnitude = std::max(speed_of(side), speed_of(other_side));
   // an approach that the law does not see was rounding, all of it
-  if (r.impulse.kind == ImpulseKind::separating) r.magnitude += std::max(0.0, found.closing_speed) / kEpsilon;
+  const bool held = trajectories_->is_held(pair.body) ||
+                    (!pair.with_site() && trajectories_->is_held(pair.other_body));  // by state_now()
+  if (r.impulse.kind == ImpulseKind::separating && !held)
+    r.magnitude += std::max(0.0, found.closing_speed) / kEpsilon;
   const auto [way, way_of_other] = push_apart(pair, found, c.normal);
   r.body.position += way;
   r.other.position += way_of_other;

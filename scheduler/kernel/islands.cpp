@@ -104,9 +104,13 @@ class Islands::Step {
     for (int halving = 0, widening = 0; halving <= kHalvings;) {
       h_ = h;
       list_contacts(-1.0);
+      if (const double arrival = next_arrival(); arrival < h) {  // an impact ends the step
+        h = h_ = arrival;
+        list_contacts(-1.0);
+      }
       make_problem();
       const StepOutcome outcome =
-          take_step(of_.solver_, problem_, h, of_.search_->limits().tolerance, halving < kHalvings / 2,
+          take_step(of_.solver_, problem_, h, of_.search_->limits().tolerance,
                     [this](std::size_t k, double moment, const std::vector<Vec3>& velocity) {
                       return gap_along(k, moment, velocity);
                     });
@@ -121,6 +125,7 @@ class Islands::Step {
         continue;
       }
       of_.tally_.friction_residual = std::max(of_.tally_.friction_residual, outcome.friction_residual);
+      of_.tally_.energy_won += outcome.won;
       of_.tally_.absorbed = std::max(of_.tally_.absorbed, absorbed_);
       take_forces();
       return true;
@@ -128,7 +133,7 @@ class Islands::Step {
     return false;
   }
 
-  void warm(std::map<std::tuple<PairKey, bool, int, int>, double> forces) { warm_ = std::move(forces); }
+  void warm(WarmForces forces) { warm_ = std::move(forces); }
 
   /// Members that push each other are islands; those that nothing pushes are let go, as they were. Bodies
   /// whose motion changed are appended to `changed`.
@@ -231,7 +236,8 @@ class Islands::Step {
 
   /// Nothing pushes, but one of the two alone, left to its parabola, could run into the other's step.
   bool stays_near(const HeldContact& c) const {
-    return !c.pair.with_site() && c.feature.gap <= pull_ * h_ * h_ && closing_speed(c.pair, c.feature) >= -pull_ * h_;
+    return !c.pair.with_site() && c.feature.gap <= pull_ * h_ * h_ &&
+           closing_speed(c.pair, c.feature) >= -pull_ * h_;
   }
 
   double reach_of(int member) const {
@@ -316,12 +322,7 @@ class Islands::Step {
                   &other_outline = of_.search_->outline_of(of_.search_->other_owner(*pair));
     const std::vector<NearFeature> features = near_features(outline, states_[i], other_outline, other, far);
     if (features.empty()) return;
-    double closing = 0.0;
-    for (const NearFeature& f : features)
-      if (f.gap <= closing_speed(*pair, f) * h_) closing = std::max(closing, closing_speed(*pair, f));
-    if (reach < 0.0 && closing > most_absorbed(*pair)) return;
-    absorbed_ = std::max(absorbed_, closing);
-    for (const NearFeature& f : features) contacts_.push_back({*pair, f, 0.0, 0.0});
+    for (const NearFeature& f : features) contacts_.push_back({*pair, f, 0.0, 0.0, 0.0});
   }
 
   double closing_speed(const PairKey& pair, const NearFeature& f) const {
@@ -329,6 +330,22 @@ class Islands::Step {
     const ExtendedState b = other_state(pair);
     const RealVec arm = f.point.cast<Real>() + (b.position - a.position);
     return static_cast<double>(f.normal.cast<Real>().dot(b.twist.at(f.point.cast<Real>()) - a.twist.at(arm)));
+  }
+
+  /// When the first feature comes that closes too fast to be taken as plastic, seen along its tangent [s];
+  /// infinity: none. What touches has been dealt with.
+  double next_arrival() {
+    double first = kForever;
+    absorbed_ = 0.0;
+    for (const HeldContact& c : contacts_) {
+      const double closing = closing_speed(c.pair, c.feature), gap = c.feature.gap - kept(c.feature);
+      if (gap > closing * h_) continue;
+      if (closing > most_absorbed(c.pair) && gap > of_.search_->limits().tolerance)
+        first = std::min(first, gap / closing);
+      else
+        absorbed_ = std::max(absorbed_, closing);
+    }
+    return first;
   }
 
   /// An approach as slow as this would be back within the step [m/s].
@@ -360,7 +377,7 @@ class Islands::Step {
     made.gap = c.feature.gap - kept(c.feature);
     made.friction = of_.response_->material_of(c.pair).friction;
     const auto warm = warm_.find({c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site});
-    if (warm != warm_.end()) made.normal_force = warm->second;
+    if (warm != warm_.end()) std::tie(made.normal_force, made.force_lasted) = warm->second;
     if (c.pair.with_site() && of_.trajectories_->site(c.pair.other_site).moves()) {
       const Vec2 v = of_.trajectories_->site(c.pair.other_site).motion().twist(now_).at(c.feature.point);
       made.normal_support = v.dot(c.feature.normal);
@@ -403,6 +420,7 @@ class Islands::Step {
     for (std::size_t k = 0; k < contacts_.size(); ++k) {
       contacts_[k].normal_force = problem_.contacts[k].normal_force;
       contacts_[k].tangential_force = problem_.contacts[k].tangential_force;
+      contacts_[k].lasted = h_;
     }
   }
 
@@ -415,7 +433,7 @@ class Islands::Step {
   std::vector<Acceleration> accelerations_;
   std::vector<double> speeds_, pulls_;  ///< [m/s], [m/s^2], of any point of each
   double size_ = kForever, speed_ = 0.0, pull_ = 0.0, absorbed_ = 0.0;
-  std::map<std::tuple<PairKey, bool, int, int>, double> warm_;  ///< normal forces of the step before
+  WarmForces warm_;  ///< normal forces of the step before
   std::vector<HeldContact> contacts_;
   IslandStep problem_;
 };
@@ -439,15 +457,15 @@ void Islands::gather(int body, std::set<int>& members) const {
     for (const int j : trajectories_->coupled_to(k)) gather(j, members);
 }
 
-std::map<std::tuple<PairKey, bool, int, int>, double> Islands::take_out(const std::set<int>& members) {
-  std::map<std::tuple<PairKey, bool, int, int>, double> forces;
+WarmForces Islands::take_out(const std::set<int>& members) {
+  WarmForces forces;
   for (const int k : members) {
     const auto found = islands_.find(k);
     if (found == islands_.end()) continue;
     if (found->second.rests) note_change(EventKind::wake, k), ++tally_.woken;
     for (const HeldContact& c : found->second.contacts) {
       search_->search_again(c.pair);
-      forces[{c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site}] = c.normal_force;
+      forces[{c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site}] = {c.normal_force, c.lasted};
     }
     for (const int j : found->second.members) lead_of_.erase(j);
     islands_.erase(found);
@@ -492,7 +510,7 @@ void Islands::note_impact(const HeldContact& c, const RealVec& from, double clos
   records_->event(EventKind::collision, c.pair, f, r.normal, r.tangential, 0);
 }
 
-bool Islands::begin_step(const std::set<int>& members, double longest, bool hit, std::vector<int>& changed) {
+bool Islands::begin_step(const std::set<int>& members, double longest, std::vector<int>& changed) {
   auto forces = take_out(members);
   std::vector<Restart> as_they_are;
   for (const int k : members)
@@ -502,7 +520,7 @@ bool Islands::begin_step(const std::set<int>& members, double longest, bool hit,
   trajectories_->hold(as_they_are, held);
   Step step(*this, members);
   step.warm(std::move(forces));
-  if (hit) step.pass_on_impacts();
+  step.pass_on_impacts();
   const bool rests = step.rests();
   if (!rests && !step.take(std::min(longest, step.longest()))) {
     run_->stop(
@@ -530,8 +548,7 @@ bool Islands::capture(const PairKey& pair, const FeatureContact& contact, double
   const double left = limit - run_->time();
   const bool later = left > same_instant(limit);
   if (!later) records_->ending(EventKind::zeno, pair, contact, records_->last_event());
-  if (!begin_step(members, later ? left : std::numeric_limits<double>::infinity(), false, changed))
-    return false;
+  if (!begin_step(members, later ? left : std::numeric_limits<double>::infinity(), changed)) return false;
   const auto lead = lead_of_.find(pair.body);
   if (!later || lead == lead_of_.end()) return true;
   Island& island = islands_.at(lead->second);
@@ -555,21 +572,20 @@ bool Islands::step(std::vector<int>& changed) {
     records_->ending(EventKind::zeno, island.series, island.series_contact,
                      std::max(island.due, records_->last_event()));
   const std::vector<int> members = island.members;
-  return begin_step({members.begin(), members.end()}, std::numeric_limits<double>::infinity(), false,
-                    changed);
+  return begin_step({members.begin(), members.end()}, std::numeric_limits<double>::infinity(), changed);
 }
 
 bool Islands::collided(const PairKey& pair, std::vector<int>& changed) {
   std::set<int> members;
   gather(pair.body, members);
   if (!pair.with_site()) gather(pair.other_body, members);
-  return begin_step(members, std::numeric_limits<double>::infinity(), true, changed);
+  return begin_step(members, std::numeric_limits<double>::infinity(), changed);
 }
 
 bool Islands::disturbed(int body, std::vector<int>& changed) {
   std::set<int> members;
   gather(body, members);
-  return begin_step(members, std::numeric_limits<double>::infinity(), true, changed);
+  return begin_step(members, std::numeric_limits<double>::infinity(), changed);
 }
 
 Islands::Saved Islands::saved() const {

@@ -27,9 +27,13 @@ struct HeldContact {
   PairKey pair;
   NearFeature feature;
   double normal_force = 0.0, tangential_force = 0.0;  ///< [N]
+  double lasted = 0.0;                                ///< the step over which they are means [s]
 
   auto order() const { return std::tuple(pair.order(), feature.sample_on_a, feature.sample, feature.site); }
 };
+
+/// Normal force [N] of a contact, and the time over which that was a mean [s]: by pair, side, sample, site.
+using WarmForces = std::map<std::tuple<PairKey, bool, int, int>, std::pair<double, double>>;
 
 struct Island {
   std::vector<int> members;           ///< ascending
@@ -45,6 +49,7 @@ struct Island {
 struct IslandTally {
   std::uint64_t captured = 0, steps = 0, slept = 0, woken = 0, factorisations = 0;
   double absorbed = 0.0;           ///< the largest approach that a step took without a rebound [m/s]
+  double energy_won = 0.0;         ///< that steps made, by rounding and by faces that turn [J]
   double friction_residual = 0.0;  ///< the largest, of the largest normal force of its island
 };
 
@@ -88,10 +93,10 @@ class Islands {
  private:
   class Step;
   void gather(int body, std::set<int>& members) const;
-  bool begin_step(const std::set<int>& members, double longest, bool hit, std::vector<int>& changed);
+  bool begin_step(const std::set<int>& members, double longest, std::vector<int>& changed);
   void note_change(EventKind kind, int lead);
   void note_impact(const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r);
-  std::map<std::tuple<PairKey, bool, int, int>, double> take_out(const std::set<int>& members);
+  WarmForces take_out(const std::set<int>& members);
   void put_in(Island island);
   void find_next();
 

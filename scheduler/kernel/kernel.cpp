@@ -231,8 +231,7 @@ bool Kernel::begin_to_last(const Outcome& o, double limit, std::vector<int>& cha
 
 /// A collision of a member is a step of its island.
 bool Kernel::go_on_in_islands(const Outcome& o, std::vector<int>& changed) {
-  const bool concerned =
-      is_held(o.pair.body) || (!o.pair.with_site() && is_held(o.pair.other_body));
+  const bool concerned = is_held(o.pair.body) || (!o.pair.with_site() && is_held(o.pair.other_body));
   return !concerned || parts_.islands.collided(o.pair, changed);
 }
 

@@ -98,7 +98,8 @@ std::vector<BodyState> Trajectories::states(double t) const {
 
 bool Trajectories::is_ballistic(int k) const {
   const bool asked = options_->integrator == "auto" || options_->integrator == "ballistic";
-  return bodies_[k].component < 0 || (asked && components_[bodies_[k].component].component.dynamics->constant());
+  return bodies_[k].component < 0 ||
+         (asked && components_[bodies_[k].component].component.dynamics->constant());
 }
 
 // -- going on --
