@@ -1,0 +1,145 @@
+// Bodies that slide, stick and roll on what holds them, against closed forms. Steps of islands are of order 1:
+// their length goes with the root of the body's size, on which nothing of these answers depends.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "tests/support/settling.h"
+
+namespace brink {
+namespace {
+
+using testing::add;
+using testing::add_floor;
+using testing::at_rest;
+using testing::body;
+using testing::go_on;
+using testing::heavy_world;
+using testing::kEarth;
+using testing::same_place;
+using testing::site;
+
+// ---- a block on an incline
+
+constexpr double kSteep = 0.4;  // [rad]
+
+/// A block of length `size`, a rounding above a wire through the origin.
+World block_on_an_incline(double size, double friction) {
+  World world = heavy_world(0.0, friction);
+  add(world, site(make_segment({-50.0, 0.0}, {50.0, 0.0}), Vec2::Zero(), kSteep));
+  const Vec2 out(-std::sin(kSteep), std::cos(kSteep));
+  add(world, body(make_box(size, 0.5 * size), (0.25 * size + 1e-9 * size) * out, {0.0, 0.0}, 1.0, kSteep));
+  return world;
+}
+
+/// How far it is down the incline [m].
+double way(const BodyState& s) { return -s.pose.position.dot(Vec2(std::cos(kSteep), std::sin(kSteep))); }
+
+TEST(BlockOnAnIncline, SticksWhereFrictionHoldsIt) {
+  for (const double friction : {1.001 * std::tan(kSteep), 2.0}) {
+    Simulator simulator(block_on_an_incline(0.2, friction), {});
+    EXPECT_EQ(go_on(simulator, 1.0), "");
+    const BodyState lies = simulator.state(0);
+    EXPECT_TRUE(at_rest(lies)) << friction;
+    EXPECT_NEAR(way(lies), 0.0, 1e-8) << friction;
+    EXPECT_EQ(go_on(simulator, 100.0), "");
+    EXPECT_TRUE(same_place(simulator.state(0), lies)) << friction;
+  }
+}
+
+/// What its way in a second misses of a/2, a = g (sin - mu cos) [m].
+double error_of_way(double size, double friction) {
+  Simulator simulator(block_on_an_incline(size, friction), {});
+  EXPECT_EQ(go_on(simulator, 1.0), "") << size;
+  const double a = kEarth * (std::sin(kSteep) - friction * std::cos(kSteep));
+  return way(simulator.state(0)) - 0.5 * a;
+}
+
+TEST(BlockOnAnIncline, SlidesWithTheAccelerationThatFrictionLeavesToOrderOne) {
+  for (const double friction : {0.0, 0.2, 0.999 * std::tan(kSteep)}) {
+    double coarser = 0.0;
+    for (const double size : {3.2, 0.8, 0.2}) {
+      const double error = std::abs(error_of_way(size, friction));
+      std::printf("friction %.4f, size %.1f: error %.3e m, ratio %.2f\n", friction, size, error,
+                  coarser / error);
+      EXPECT_GE(coarser / error, coarser > 0.0 ? 1.7 : 0.0) << friction << ", size " << size;
+      coarser = error;
+    }
+    EXPECT_LE(coarser, 0.05);
+  }
+}
+
+// ---- wheels
+
+// Nothing stops it, so it may not be taken to lie.
+TEST(Wheel, RollsOnAFloorAndNeverLies) {
+  World world = heavy_world(0.0, 0.5);
+  add_floor(world);
+  const double v = 0.7, r = 0.5;
+  add(world, body(make_disc(r), {-50.0, r + 1e-12}, {v, 0.0}, 1.0, 0.0, -v / r));
+  Simulator simulator(world, {});
+  for (const double t : {1.0, 10.0, 100.0}) {
+    EXPECT_EQ(go_on(simulator, t), "");
+    const BodyState s = simulator.state(0);
+    std::printf("after %.0f s: speed off by %.1e, place by %.1e m\n", t, s.twist.velocity.x() - v,
+                s.pose.position.x() + 50.0 - v * t);
+    EXPECT_NEAR(s.twist.velocity.x(), v, 1e-12) << t;
+    EXPECT_NEAR(s.pose.position.x(), -50.0 + v * t, 1e-10) << t;
+    EXPECT_NEAR(s.pose.position.y(), r, 1e-10) << t;
+  }
+}
+
+// Angular momentum about a point of the floor is kept, whatever friction does: 2/3 of the speed is left.
+TEST(Wheel, ThatSlidesAtFirstRollsWithTwoThirdsOfItsSpeed) {
+  World world = heavy_world(0.0, 0.3);
+  add_floor(world);
+  const double v = 3.0, r = 0.2, begins = v / (3.0 * 0.3 * kEarth);
+  add(world, body(make_disc(r), {0.0, r + 1e-12}, {v, 0.0}));
+  Simulator simulator(world, {});
+  EXPECT_EQ(go_on(simulator, 2.0 * begins), "");
+  const BodyState s = simulator.state(0);
+  const double x = 5.0 * v * v / (18.0 * 0.3 * kEarth) + begins * 2.0 * v / 3.0;
+  std::printf("speed off by %.1e, slip %.1e m/s, place by %.1e m\n", s.twist.velocity.x() - 2.0 * v / 3.0,
+              s.twist.velocity.x() + r * s.twist.omega, s.pose.position.x() - x);
+  EXPECT_NEAR(s.twist.velocity.x(), 2.0 * v / 3.0, 1e-9);
+  EXPECT_NEAR(s.twist.velocity.x(), -r * s.twist.omega, 1e-9);
+  EXPECT_NEAR(s.pose.position.x(), x, 0.02);
+}
+
+TEST(Wheel, InAGrooveComesToLie) {
+  World world = heavy_world(0.0, 0.5);
+  add(world, site(make_polygon({{-4, -2}, {4, -2}, {4, 1.5}, {0, -1}, {-4, 1.5}})));
+  add(world, body(make_disc(0.4), {0.8, 0.3}, {0.0, 0.0}));
+  Simulator simulator(world, {});
+  EXPECT_EQ(go_on(simulator, 20.0), "");
+  const BodyState lies = simulator.state(0);
+  EXPECT_TRUE(at_rest(lies)) << lies.twist.velocity.transpose() << ", " << lies.twist.omega;
+  EXPECT_NEAR(lies.pose.position.x(), 0.0, 1e-6);
+  EXPECT_EQ(go_on(simulator, 100.0), "");
+  EXPECT_TRUE(same_place(simulator.state(0), lies));
+}
+
+// ---- a conveyor
+
+// The top of a wheel that turns under a block: it drags the block with mu g until both go alike.
+TEST(Conveyor, DragsABlockUntilBothGoAlike) {
+  const double radius = 1000.0, speed = 1.0, friction = 0.2, alike = speed / (friction * kEarth);
+  World world = heavy_world(0.0, friction);
+  FixedSite wheel = site(make_disc(radius), {0.0, -radius});
+  wheel.motion = ConstantMotion{{Vec2::Zero(), -speed / radius}};
+  add(world, wheel);
+  Body block = body(make_box(0.2, 0.2), {0.0, 0.1 + 1e-9}, {0.0, 0.0});
+  block.lock_angle = true;
+  add(world, block);
+  Simulator simulator(world, {});
+  EXPECT_EQ(go_on(simulator, 0.5 * alike), "");
+  std::printf("dragged to %.6f of %.6f m/s, ", simulator.state(0).twist.velocity.x(), 0.5 * speed);
+  EXPECT_NEAR(simulator.state(0).twist.velocity.x(), 0.5 * speed, 0.02);
+  EXPECT_EQ(go_on(simulator, 3.0 * alike), "");
+  std::printf("then %.9f of %.9f m/s\n", simulator.state(0).twist.velocity.x(), speed);
+  EXPECT_NEAR(simulator.state(0).twist.velocity.x(), speed, 1e-3);
+}
+
+}  // namespace
+}  // namespace brink
