@@ -167,6 +167,7 @@ void write(Writer& out, const Trajectories::Saved& saved) {
     out(b.motion.origin());
     out(b.motion.start());
     out(b.motion.start_low());
+    if (b.component == BodyTrack::kHeld) out(saved.steps.at(static_cast<int>(&b - saved.bodies.data())));
   }
   for (const ComponentStart& s : saved.starts) {
     out(s.time);
@@ -199,6 +200,7 @@ Trajectories::Saved read_trajectories(Reader& in, const World& world) {
   for (std::size_t k = 0; k < world.bodies.size(); ++k) {
     bool asleep = false;
     saved.bodies.push_back(read_body(in, asleep));
+    if (saved.bodies.back().component == BodyTrack::kHeld) in(saved.steps[static_cast<int>(k)]);
     if (asleep) saved.asleep.push_back(static_cast<int>(k));
   }
   for (const Component& c : make_components(world, saved.together)) {

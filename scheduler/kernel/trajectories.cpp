@@ -419,9 +419,11 @@ void Trajectories::go_back_to(const ComponentStart& s) {
 }
 
 Trajectories::Saved Trajectories::saved() const {
-  Saved all{together_, {bodies_.begin(), bodies_.end()}, {}, {}};
-  for (const auto& [k, former] : held_)
+  Saved all{together_, {bodies_.begin(), bodies_.end()}, {}, {}, {}};
+  for (const auto& [k, former] : held_) {
+    all.steps[k] = former.step;
     if (former.component >= 0) all.asleep.push_back(k);
+  }
   for (int c = 0; c < static_cast<int>(components_.size()); ++c) all.starts.push_back(start_of(c));
   return all;
 }
@@ -462,7 +464,7 @@ void Trajectories::restore(const Saved& saved, double t) {
 void Trajectories::hold_again(std::span<const int> members, const Saved& saved) {
   for (const int k : members) {
     BodyTrack& b = bodies_[k];
-    held_[k] = {b.component, b.component < 0 ? b.motion.acceleration() : Acceleration{}, {}};
+    held_[k] = {b.component, b.component < 0 ? b.motion.acceleration() : Acceleration{}, saved.steps.at(k)};
     if (b.component >= 0) put_to_sleep(components_[b.component]);
     b.component = BodyTrack::kHeld;
     b.motion = saved.bodies[k].motion;

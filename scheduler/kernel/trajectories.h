@@ -131,6 +131,7 @@ class Trajectories {
     Sets together;                       ///< that regroup() was last given
     std::vector<BodyTrack> bodies;       ///< motions of those that no integrator drives alone
     std::vector<ComponentStart> starts;  ///< of every component
+    std::map<int, HeldStep> steps;       ///< of bodies that an island holds
     std::vector<int> asleep;             ///< bodies that an island holds, but an integrator would drive
 
     bool is_asleep(int k) const { return std::binary_search(asleep.begin(), asleep.end(), k); }

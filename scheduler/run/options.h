@@ -31,7 +31,9 @@ struct SolverOptions {
   std::string response = "impulse";  ///< impulse | reflection
   std::string detector = "field";    ///< field | pass | depth
   double contact_tolerance = 1e-10;  ///< of the scene's length
-  bool persistent = true;  ///< resting contacts (a later release: until then a Zeno ending stops the run)
+  /// Contacts may last: where bounces come to their limit the run goes on, in steps of order 1 or at rest
+  /// (docs/contacts-that-last.md). Else it ends there.
+  bool persistent = false;
   std::uint64_t seed = 1;  ///< for order "random"
   std::uint64_t kept_states = 10000;  ///< policy timewarp: former states of bodies kept at most
   std::uint64_t max_collisions = 0;   ///< stop after this many; 0: no limit
