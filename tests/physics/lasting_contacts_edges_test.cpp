@@ -17,6 +17,7 @@ using testing::body;
 using testing::go_on;
 using testing::heavy_world;
 using testing::kEarth;
+using testing::lasting;
 using testing::site;
 
 /// A floor in two pieces that meet at x = 0.
@@ -32,7 +33,7 @@ TEST(Joint, DISABLED_OfTwoFloorsIsNotFeltByASlidingBox) {
   World world = heavy_world(0.0, 0.0);
   add_floor_in_two(world);
   add(world, body(make_box(0.4, 0.2), {-1.0, 0.1 + 1e-12}, {1.0, 0.0}));
-  Simulator simulator(world, {});
+  Simulator simulator(world, lasting());
   EXPECT_EQ(go_on(simulator, 2.0), "");
   const BodyState s = simulator.state(0);
   std::printf("sliding box: speed %.9f of 1, place off by %.1e m, turned by %.1e\n", s.twist.velocity.x(),
@@ -48,7 +49,7 @@ TEST(Joint, DISABLED_OfTwoFloorsIsNotFeltByARollingWheel) {
   add_floor_in_two(world);
   const double v = 0.7, r = 0.25;
   add(world, body(make_disc(r), {-1.0, r + 1e-12}, {v, 0.0}, 1.0, 0.0, -v / r));
-  Simulator simulator(world, {});
+  Simulator simulator(world, lasting());
   EXPECT_EQ(go_on(simulator, 3.0), "");
   const BodyState s = simulator.state(0);
   std::printf("rolling wheel: speed %.9f of %.1f, place off by %.1e m, height by %.1e m\n",
@@ -61,7 +62,7 @@ TEST(Joint, DISABLED_OfTwoFloorsIsNotFeltByARollingWheel) {
 
 /// Runs with frames watched, to the end.
 std::string watched(const World& world, double end, outside::FrameWatch& watch) {
-  Simulator simulator(world, {});
+  Simulator simulator(world, lasting());
   RunOptions options = testing::until(end);
   options.frame_interval = 0.001;
   const RunSummary summary = simulator.run(options, &watch);
@@ -135,7 +136,7 @@ TEST(Spring, BetweenSlidingBoxesKeepsMomentumAndAboutTheEnergy) {
   spring.stiffness = 20.0;
   spring.rest_length = 0.8;
   world.forces.emplace_back(spring);
-  Simulator simulator(world, {});
+  Simulator simulator(world, lasting());
   double most = 0.0;
   const double energy = 0.5 * 20.0 * 0.4 * 0.4;
   for (double t = 0.05; t <= 5.0; t += 0.05) {

@@ -20,6 +20,7 @@ using testing::body;
 using testing::go_on;
 using testing::heavy_world;
 using testing::kEarth;
+using testing::lasting;
 using testing::same_place;
 using testing::site;
 
@@ -40,7 +41,7 @@ class BallThatBounces : public ::testing::TestWithParam<double> {};
 // The geometric series has a limit, and from there on nothing moves: not by a bit.
 TEST_P(BallThatBounces, LiesOnTheFloorAfterTheLimit) {
   const double e = GetParam(), limit = limit_of(e);
-  Simulator simulator(dropped_ball(e), {});
+  Simulator simulator(dropped_ball(e), lasting());
   EXPECT_EQ(go_on(simulator, 0.999 * limit), "");
   EXPECT_FALSE(at_rest(simulator.state(0)));
   EXPECT_EQ(go_on(simulator, limit), "");
@@ -55,7 +56,7 @@ TEST_P(BallThatBounces, LiesOnTheFloorAfterTheLimit) {
 // limit, which is not told then; for .99 it is told 1e-8 s early.
 TEST_P(BallThatBounces, DISABLED_TellsTheLimitOfItsBounces) {
   const double e = GetParam(), limit = limit_of(e);
-  Simulator simulator(dropped_ball(e), {});
+  Simulator simulator(dropped_ball(e), lasting());
   testing::Events events;
   EXPECT_EQ(simulator.run(testing::until(limit + 0.1), &events).termination, Termination::reached_end);
   const auto zeno = std::find_if(events.events.begin(), events.events.end(),
@@ -81,7 +82,7 @@ World stack(int boxes, double hair) {
 
 TEST(Stack, SetDownLiesForAHundredSecondsAtNoCost) {
   const World world = stack(10, 1e-4);
-  Simulator simulator(world, {});
+  Simulator simulator(world, lasting());
   EXPECT_EQ(go_on(simulator, 2.0), "");
   ASSERT_TRUE(all_at_rest(simulator));
   const std::vector<BodyState> lies = simulator.states();
@@ -105,7 +106,7 @@ TEST(Stack, HitByABallWakes) {
   World world = stack(3, 1e-4);
   // meets the upper box at its middle after 1.45 s
   add(world, body(make_disc(0.25), {-8.0, 2.5}, {5.0, 0.5 * kEarth * 7.25 / 5.0}));
-  Simulator simulator(world, {});
+  Simulator simulator(world, lasting());
   EXPECT_EQ(go_on(simulator, 1.4), "");
   for (int k = 0; k < 3; ++k) ASSERT_TRUE(at_rest(simulator.state(k))) << k;
   EXPECT_EQ(go_on(simulator, 1.5), "");
@@ -131,7 +132,7 @@ World on_a_table(const char* x, const char* y, const Shape& shape) {
 
 // Today it finds no step: at rest on what could move, a step wins 2e-24 J of 2e-24 J, all of it rounding.
 TEST(Support, DISABLED_ThatFallsFasterThanItsLoadLetsItFly) {
-  Simulator simulator(on_a_table("0", "-10*max(0,t-1)^2", make_box(1.0, 1.0)), {});
+  Simulator simulator(on_a_table("0", "-10*max(0,t-1)^2", make_box(1.0, 1.0)), lasting());
   ASSERT_EQ(go_on(simulator, 1.0), "");
   const double y = simulator.state(0).pose.position.y();
   EXPECT_NEAR(y, 0.5, 1e-6);
@@ -143,7 +144,7 @@ TEST(Support, DISABLED_ThatFallsFasterThanItsLoadLetsItFly) {
 }
 
 TEST(Support, DrawnAwaySidewaysLetsADiscFall) {
-  Simulator simulator(on_a_table("-2*max(0,t-1)", "0", make_disc(0.5)), {});
+  Simulator simulator(on_a_table("-2*max(0,t-1)", "0", make_disc(0.5)), lasting());
   EXPECT_EQ(go_on(simulator, 1.4), "");
   EXPECT_NEAR(simulator.state(0).pose.position.y(), 0.5, 1e-6);  // the edge comes by after 1.5 s
   EXPECT_EQ(go_on(simulator, 2.5), "");
@@ -160,7 +161,7 @@ TEST(Pile, OfThirtyDiscsInABinComesToRest) {
     add(world, body(make_disc(0.12 + 0.002 * (k % 7)),
                     {-0.75 + 0.37 * (k % 5) + 0.01 * (k % 3), 0.3 + 0.35 * (k / 5)}, {0.0, 0.0}));
   outside::FrameWatch watch(world, 20.0, 1e-9);
-  Simulator simulator(world, {});
+  Simulator simulator(world, lasting());
   RunOptions options = testing::until(0.0);
   options.frame_interval = 0.02;
   double from = 0.0;

@@ -17,6 +17,7 @@ using testing::body;
 using testing::go_on;
 using testing::heavy_world;
 using testing::kEarth;
+using testing::lasting;
 using testing::same_place;
 using testing::site;
 
@@ -38,7 +39,7 @@ double way(const BodyState& s) { return -s.pose.position.dot(Vec2(std::cos(kStee
 
 TEST(BlockOnAnIncline, SticksWhereFrictionHoldsIt) {
   for (const double friction : {1.001 * std::tan(kSteep), 2.0}) {
-    Simulator simulator(block_on_an_incline(0.2, friction), {});
+    Simulator simulator(block_on_an_incline(0.2, friction), lasting());
     EXPECT_EQ(go_on(simulator, 1.0), "");
     const BodyState lies = simulator.state(0);
     EXPECT_TRUE(at_rest(lies)) << friction;
@@ -50,7 +51,7 @@ TEST(BlockOnAnIncline, SticksWhereFrictionHoldsIt) {
 
 /// What its way in a second misses of a/2, a = g (sin - mu cos) [m].
 double error_of_way(double size, double friction) {
-  Simulator simulator(block_on_an_incline(size, friction), {});
+  Simulator simulator(block_on_an_incline(size, friction), lasting());
   EXPECT_EQ(go_on(simulator, 1.0), "") << size;
   const double a = kEarth * (std::sin(kSteep) - friction * std::cos(kSteep));
   return way(simulator.state(0)) - 0.5 * a;
@@ -78,7 +79,7 @@ TEST(Wheel, RollsOnAFloorAndNeverLies) {
   add_floor(world);
   const double v = 0.7, r = 0.5;
   add(world, body(make_disc(r), {-50.0, r + 1e-12}, {v, 0.0}, 1.0, 0.0, -v / r));
-  Simulator simulator(world, {});
+  Simulator simulator(world, lasting());
   for (const double t : {1.0, 10.0, 100.0}) {
     EXPECT_EQ(go_on(simulator, t), "");
     const BodyState s = simulator.state(0);
@@ -96,7 +97,7 @@ TEST(Wheel, ThatSlidesAtFirstRollsWithTwoThirdsOfItsSpeed) {
   add_floor(world);
   const double v = 3.0, r = 0.2, begins = v / (3.0 * 0.3 * kEarth);
   add(world, body(make_disc(r), {0.0, r + 1e-12}, {v, 0.0}));
-  Simulator simulator(world, {});
+  Simulator simulator(world, lasting());
   EXPECT_EQ(go_on(simulator, 2.0 * begins), "");
   const BodyState s = simulator.state(0);
   const double x = 5.0 * v * v / (18.0 * 0.3 * kEarth) + begins * 2.0 * v / 3.0;
@@ -111,7 +112,7 @@ TEST(Wheel, InAGrooveComesToLie) {
   World world = heavy_world(0.0, 0.5);
   add(world, site(make_polygon({{-4, -2}, {4, -2}, {4, 1.5}, {0, -1}, {-4, 1.5}})));
   add(world, body(make_disc(0.4), {0.8, 0.3}, {0.0, 0.0}));
-  Simulator simulator(world, {});
+  Simulator simulator(world, lasting());
   EXPECT_EQ(go_on(simulator, 20.0), "");
   const BodyState lies = simulator.state(0);
   EXPECT_TRUE(at_rest(lies)) << lies.twist.velocity.transpose() << ", " << lies.twist.omega;
@@ -132,7 +133,7 @@ TEST(Conveyor, DragsABlockUntilBothGoAlike) {
   Body block = body(make_box(0.2, 0.2), {0.0, 0.1 + 1e-9}, {0.0, 0.0});
   block.lock_angle = true;
   add(world, block);
-  Simulator simulator(world, {});
+  Simulator simulator(world, lasting());
   EXPECT_EQ(go_on(simulator, 0.5 * alike), "");
   std::printf("dragged to %.6f of %.6f m/s, ", simulator.state(0).twist.velocity.x(), 0.5 * speed);
   EXPECT_NEAR(simulator.state(0).twist.velocity.x(), 0.5 * speed, 0.02);

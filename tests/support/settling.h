@@ -17,6 +17,12 @@ inline World heavy_world(double restitution, double friction) {
 }
 inline void add_floor(World& world) { add(world, site(make_segment({-100.0, 0.0}, {100.0, 0.0}))); }
 
+inline SolverOptions lasting() {
+  SolverOptions options;
+  options.persistent = true;
+  return options;
+}
+
 /// Runs on to t; how it ended if not there, else empty.
 inline std::string go_on(Simulator& simulator, double t) {
   const RunSummary summary = simulator.run(until(t));
