@@ -1,0 +1,221 @@
+// Random worlds in which contacts last: the same bits under every exact policy and after every resume, nobody
+// in anybody else, and no energy from nowhere.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <numeric>
+
+#include "tests/support/lasting_worlds.h"
+#include "tests/support/outside/frame_watch.h"
+#include "tests/support/same_events.h"
+#include "tests/support/seeded_random.h"
+
+namespace brink {
+namespace {
+
+using testing::LastingWorld;
+
+/// Seeds 0 .. kWorlds - 1; BRINK_SEED asks for one alone.
+constexpr std::uint64_t kWorlds = 32;
+
+std::vector<std::uint64_t> seeds() {
+  if (const char* one = std::getenv("BRINK_SEED")) return {std::stoull(one)};
+  std::vector<std::uint64_t> all(kWorlds);
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+LastingWorld make(std::uint64_t seed) { return testing::LastingWorldMaker(seed).make(); }
+
+SolverOptions by(const std::string& policy) {
+  SolverOptions options;
+  options.policy = policy;
+  options.persistent = true;
+  options.max_collisions = 200000;
+  return options;
+}
+
+/// Patience is for what would hang: a run that is broken off fails.
+RunOptions options_to(double end, double frame_interval = 0.0) {
+  RunOptions options = testing::until(end);
+  options.frame_interval = frame_interval;
+  const auto begin = std::chrono::steady_clock::now();
+  options.progress = [begin](double t, std::uint64_t) {
+    if (std::chrono::steady_clock::now() - begin < std::chrono::seconds(120)) return true;
+    ADD_FAILURE() << "broken off at t = " << t;
+    return false;
+  };
+  return options;
+}
+
+struct Told {
+  std::vector<Event> events;
+  RunSummary summary;
+};
+
+Told run(const LastingWorld& w, const std::string& policy) {
+  Simulator simulator(w.world, by(policy));
+  testing::Events events;
+  const RunSummary summary = simulator.run(options_to(w.duration, w.duration / 7.0), &events);
+  return {events.events, summary};
+}
+
+/// How the second differs from the first, in words; empty: not at all. It may have begun later: its events go
+/// by their numbers.
+std::string difference(const Told& whole, const Told& other) {
+  const auto &a = whole.events, &b = other.events;
+  const std::size_t skipped = b.empty() ? a.size() : std::min<std::size_t>(b.front().seq, a.size());
+  for (std::size_t k = 0; k < std::min(a.size() - skipped, b.size()); ++k)
+    if (!testing::same(a[k + skipped], b[k]))
+      return "event " + std::to_string(k + skipped) + ": " + testing::text(b[k]) + ", not " +
+             testing::text(a[k + skipped]);
+  if (a.size() != b.size() + skipped)
+    return std::to_string(b.size() + skipped) + " events, not " + std::to_string(a.size());
+  if (whole.summary.termination_text() != other.summary.termination_text())
+    return "ends '" + other.summary.termination_text() + "', not '" + whole.summary.termination_text() + "'";
+  return whole.summary.state_hash == other.summary.state_hash ? "" : "another state at the end";
+}
+
+/// The world, or where a run cannot go on as much of it as can be looked at: SeenFromOutside counts those.
+LastingWorld make_as_far_as_it_goes(std::uint64_t seed) {
+  LastingWorld w = make(seed);
+  const RunSummary summary = run(w, "body_clocks").summary;
+  if (summary.termination != Termination::reached_end) w.duration = 0.95 * summary.end_time;
+  return w;
+}
+
+std::string named(std::uint64_t seed, const LastingWorld& w) {
+  return "seed " + std::to_string(seed) + ", " + w.ground + " of " + std::to_string(w.world.bodies.size());
+}
+
+/// Tells of a difference; 1 if there is one.
+int tell(const std::string& different, const std::string& of) {
+  if (different.empty()) return 0;
+  std::printf("%s: %s\n", of.c_str(), different.c_str());
+  return 1;
+}
+
+TEST(Islands, UnderEveryPolicyGiveTheSameEvents) {
+  constexpr int kDifferent = 2;  // today: timewarp, where forces are integrated; is to be 0
+  int different = 0;
+  for (const std::uint64_t seed : seeds()) {
+    const LastingWorld w = make_as_far_as_it_goes(seed);
+    const Told reference = run(w, "global_backup");
+    for (const std::string& policy : testing::other_exact_policies())
+      different += tell(difference(reference, run(w, policy)), named(seed, w) + ", " + policy);
+  }
+  EXPECT_LE(different, kDifferent);
+}
+
+/// Keeps some of the checkpoints, each of all as likely, and the events told before each.
+class SomeCheckpoints : public testing::Events {
+ public:
+  explicit SomeCheckpoints(Random& random) : random_(&random) {}
+  void checkpoint(double, const std::vector<std::byte>& state) override {
+    const std::uint64_t place = seen_++ < kKept ? seen_ - 1 : random_->below(seen_);
+    if (place >= kKept) return;
+    kept.resize(std::max<std::size_t>(kept.size(), place + 1));
+    kept[place] = state;
+  }
+  std::vector<std::vector<std::byte>> kept;
+
+ private:
+  static constexpr std::uint64_t kKept = 2;
+  Random* random_;
+  std::uint64_t seen_ = 0;
+};
+
+/// Goes on from `state` in a simulator that knows nothing else.
+Told go_on(const LastingWorld& w, const std::string& policy, const std::vector<std::byte>& state) {
+  Simulator simulator(w.world, by(policy));
+  simulator.restore(state);
+  RunOptions options = options_to(w.duration);
+  options.first_frame = false;
+  testing::Events events;
+  const RunSummary summary = simulator.run(options, &events);
+  return {events.events, summary};
+}
+
+/// Runs in pieces, each in a simulator that knows those before by a snapshot alone.
+Told run_in_pieces(const LastingWorld& w, const std::string& policy, std::vector<double> ends) {
+  std::sort(ends.begin(), ends.end());
+  ends.push_back(w.duration);
+  testing::Events events;
+  RunSummary summary;
+  std::vector<std::byte> state;
+  for (const double end : ends) {
+    Simulator simulator(w.world, by(policy));
+    if (!state.empty()) simulator.restore(state);
+    summary = simulator.run(options_to(end), &events);
+    if (summary.termination != Termination::reached_end) break;
+    state = simulator.snapshot();
+  }
+  return {events.events, summary};
+}
+
+// Times at random lie within steps and in rests; checkpoints at every chance, between events of one instant.
+TEST(Islands, ResumedAnywhereGoOnWithTheSameBits) {
+  int different = 0;
+  for (const std::uint64_t seed : seeds()) {
+    SeededRandom random(seed);
+    const LastingWorld w = make_as_far_as_it_goes(seed);
+    const std::string policy = exact_policies()[seed % exact_policies().size()];
+    const std::string name = named(seed, w) + ", " + policy;
+    const Told whole = run(w, policy);
+    std::vector<double> ends;
+    for (int k = 0; k < 5; ++k) ends.push_back(random.uniform(0.0, w.duration));
+    different += tell(difference(whole, run_in_pieces(w, policy, ends)), name + ", in pieces");
+    SomeCheckpoints checkpoints(random);
+    RunOptions often = options_to(w.duration);
+    often.checkpoint_seconds = 0.0;
+    Simulator(w.world, by(policy)).run(often, &checkpoints);
+    for (const auto& state : checkpoints.kept)
+      different += tell(difference(whole, go_on(w, policy, state)), name + ", from a checkpoint");
+  }
+  EXPECT_EQ(different, 0);
+}
+
+/// Frames at even times, and others at random ones between.
+RunSummary watched(const LastingWorld& w, Random& random, outside::FrameWatch& watch) {
+  Simulator simulator(w.world, by("body_clocks"));
+  std::vector<double> ends{w.duration};
+  for (int k = 0; k < 40; ++k) ends.push_back(random.uniform(0.0, w.duration));
+  std::sort(ends.begin(), ends.end());
+  RunSummary summary;
+  for (const double end : ends) {
+    summary = simulator.run(options_to(end, 0.01), &watch);
+    if (summary.termination != Termination::reached_end) break;
+  }
+  return summary;
+}
+
+TEST(Islands, SeenFromOutsideKeepApartAndWinNothing) {
+  constexpr double kOverlap = 1e-9, kWon = 1e-10;
+  // What is true today; both are to be 0.
+  constexpr int kStopped = 5, kOverlapping = 2;
+  int stopped = 0, overlapping = 0;
+  for (const std::uint64_t seed : seeds()) {
+    SeededRandom random(seed);
+    const LastingWorld w = make(seed);
+    outside::FrameWatch watch(w.world, w.duration, kOverlap);
+    const RunSummary summary = watched(w, random, watch);
+    const bool conserves = !w.moves && !w.pulls && !w.rebounds_rub;
+    std::printf("%s: %llu collisions, deepest %.1e m, gained %.1e at %.4f s%s, %s\n", named(seed, w).c_str(),
+                static_cast<unsigned long long>(summary.collisions), static_cast<double>(watch.deepest),
+                static_cast<double>(watch.gained), watch.when, conserves ? "" : " (may)",
+                summary.termination_text().c_str());
+    if (!watch.sound()) std::printf("  %s", watch.report().c_str());
+    overlapping += !watch.sound();
+    EXPECT_LE(conserves ? watch.gained : 0.0L, kWon) << named(seed, w) << " at " << watch.when;
+    stopped += summary.termination != Termination::reached_end;
+  }
+  std::printf("%d could not go on, %d overlapped\n", stopped, overlapping);
+  EXPECT_LE(stopped, kStopped);
+  EXPECT_LE(overlapping, kOverlapping);
+}
+
+}  // namespace
+}  // namespace brink
