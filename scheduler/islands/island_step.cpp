@@ -71,8 +71,9 @@ double won(const IslandStep& step, const StepResult& result, double h, double& o
       if (std::isinf(step.mass[i][k])) continue;
       const double before = step.velocity[i][k], after = result.velocity[i][k];
       change += 0.5 * step.mass[i][k] * (after - before) * (after + before) - h * step.force[i][k] * after;
-      of +=
-          0.5 * step.mass[i][k] * (before * before + after * after) + std::abs(h * step.force[i][k] * after);
+      of += 0.5 * step.mass[i][k] * (before * before + after * after) +
+            std::abs(h * step.force[i][k] * after) +
+            h * h * step.force[i][k] * step.force[i][k] / step.mass[i][k];
     }
   for (std::size_t k = 0; k < step.contacts.size(); ++k)
     change -= result.loads[k].normal * step.contacts[k].normal_support +

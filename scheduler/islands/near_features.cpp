@@ -25,10 +25,21 @@ struct Half {
   bool on_a;
 };
 
+/// Of a segment of a solid: to its right.
+Vec2 outward(const Site& site) {
+  const Vec2 d = site.b - site.a;
+  return Vec2(d.y(), -d.x()) / d.norm();
+}
+
 /// Out of the site, in its frame; where the two points are one, the site's own normal.
 Vec2 direction(const Site& site, const Nearest& nearest, const Vec2& q, double least) {
   const Vec2 way = q - nearest.point;
+  if (way.norm() > least && nearest.foot == Foot::interior && site.kind == SiteKind::segment) {
+    const Vec2 d = site.b - site.a;  // its own normal: that of a short way has lost digits
+    return perp(d) * ((cross(d, q - site.a) < 0.0 ? -1.0 : 1.0) / d.norm());
+  }
   if (way.norm() > least) return way.normalized();
+  if (site.solid && site.kind == SiteKind::segment) return outward(site);
   if (site.solid && nearest.foot != Foot::interior)
     return (nearest.foot == Foot::start ? site.pseudo_a : site.pseudo_b).normalized();
   return normal_at(site, nearest, q);
@@ -55,7 +66,8 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   if (sample.arc_site >= 0) {
     const Vec2 towards = half.carrier_frame.direction_to_local(-outward);
     const Site& arc = half.carrier.sites[sample.arc_site];
-    if (nearest.distance < 0.5 * arc.arc_radius || !in_sector(arc, towards)) return std::nullopt;
+    if (nearest.distance < arc.arc_radius * (1.0 - kOnePoint) || !in_sector(arc, towards))
+      return std::nullopt;
   }
   NearFeature f;
   f.sample = i;
@@ -66,6 +78,36 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   f.normal = half.on_a ? outward : Vec2(-outward);
   f.thin = thin;
   return f;
+}
+
+/// True if the nearest point of site j is an end of it, and another site that has that end, too, is nearer: a
+/// joint of two straight pieces is no corner.
+bool goes_on_nearer(const Outline& outline, std::size_t j, const std::vector<Nearest>& nearest, double tie) {
+  const Site& site = outline.sites[j];
+  if (site.kind == SiteKind::point || nearest[j].foot == Foot::interior) return false;
+  const Vec2& end = nearest[j].foot == Foot::start ? site.a : site.b;
+  for (std::size_t k = 0; k < nearest.size(); ++k)
+    if (k != j && nearest[k].distance < nearest[j].distance - tie &&
+        (outline.sites[k].a == end || outline.sites[k].b == end))
+      return true;
+  return false;
+}
+
+/// True if the sample is on the end of site j, a straight side of a solid, and the side that goes on from there
+/// faces the sample's owner more: corner on corner, each lies on the face below it.
+bool other_side_faces(const Half& half, std::size_t j, const std::vector<Nearest>& nearest, const Vec2& q,
+                      double tie) {
+  const Outline& outline = half.other;
+  const Site& site = outline.sites[j];
+  if (!site.solid || site.kind != SiteKind::segment || nearest[j].distance > tie) return false;
+  const Vec2 centre = half.other_frame.to_local(half.carrier_frame.origin) - q;
+  for (std::size_t k = 0; k < nearest.size(); ++k) {
+    const Site& next = outline.sites[k];
+    if (k == j || next.kind != SiteKind::segment || nearest[k].distance > tie) continue;
+    const double more = outward(next).dot(centre) - outward(site).dot(centre);
+    if (more > 0.0 || (more == 0.0 && k < j)) return true;
+  }
+  return false;
 }
 
 /// Adds the features of sample i: sites that face it; and where it lies inside by roundings, those that are
@@ -85,7 +127,8 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
         outside || (nearest[j].distance <= least + tie && side_of(half.other.sites[j], nearest[j], q) > 0.0);
   for (std::size_t j = 0; j < nearest.size(); ++j) {
     const double side = side_of(half.other.sites[j], nearest[j], q);
-    if (side < 0.0 && (outside || nearest[j].distance > least + tie)) continue;
+    if (side < 0.0 && nearest[j].distance > tie && (outside || nearest[j].distance > least + tie)) continue;
+    if (goes_on_nearer(half.other, j, nearest, tie) || other_side_faces(half, j, nearest, q, tie)) continue;
     const auto f = feature(half, i, static_cast<int>(j), nearest[j], side, q);
     if (f && f->gap <= reach) found.push_back(*f);
   }
@@ -134,9 +177,9 @@ double gap_of(const NearFeature& f, const Outline& a, const ExtendedState& state
   const Nearest nearest = nearest_on(site, q);
   const Vec2 out = half.other_frame.direction_to_local(half.on_a ? f.normal : Vec2(-f.normal));
   // a wire's side, and a solid's too, is the one on which the sample was
-  const bool crossed = nearest.foot == Foot::interior && site.kind == SiteKind::segment
-                           ? out.dot(q - nearest.point) < 0.0
-                           : side_of(site, nearest, q) < 0.0;
+  const bool abreast = nearest.foot == Foot::interior;  // beyond an end nothing is crossed
+  const bool crossed = abreast && (site.kind == SiteKind::segment ? out.dot(q - nearest.point) < 0.0
+                                                                  : side_of(site, nearest, q) < 0.0);
   return (crossed ? -nearest.distance : nearest.distance) - site.radius - sample.radius;
 }
 

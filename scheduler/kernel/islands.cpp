@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "brink/core/base/disjoint_sets.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
@@ -20,7 +21,7 @@ constexpr double kOfSize = 0.1;
 /// Features are listed as far as bodies come in so many steps; where impulses take one farther, in more.
 constexpr double kReach = 2.0, kWider = 4.0;
 constexpr int kWidenings = 4;
-constexpr int kHalvings = 8;
+constexpr int kHalvings = 16;
 /// Impacts of one instant inside an island, at most; what closes then is taken as plastic.
 constexpr std::size_t kFirstImpacts = 100, kImpactsEach = 20;
 /// A force below this part of the weight of the heaviest member is none.
@@ -528,6 +529,8 @@ bool Islands::begin_step(const std::set<int>& members, double longest, std::vect
         fmt::format("an island of {} bodies, '{}' the first, finds no step at t = {:.17g} that keeps its "
                     "contacts",
                     members.size(), world_->bodies[*members.begin()].name, run_->time()));
+    trajectories_->release(std::vector<int>(members.begin(), members.end()), changed);
+    find_next();
     return false;
   }
   ++tally_.steps;
@@ -552,7 +555,9 @@ bool Islands::capture(const PairKey& pair, const FeatureContact& contact, double
   const auto lead = lead_of_.find(pair.body);
   if (!later || lead == lead_of_.end()) return true;
   Island& island = islands_.at(lead->second);
-  if (std::abs(island.due - limit) > same_instant(limit)) return true;
+  if (!island.rests && std::abs(island.due - limit) > same_instant(limit)) return true;
+  if (island.due <= limit && island.rests) return true;
+  island.then = island.due;
   island.due = limit;
   island.series = pair;
   island.series_contact = contact;
@@ -567,10 +572,15 @@ int Islands::next_island() const {
 }
 
 bool Islands::step(std::vector<int>& changed) {
-  const Island& island = islands_.at(next_island());
+  Island& island = islands_.at(next_island());
   if (island.series.body >= 0)
     records_->ending(EventKind::zeno, island.series, island.series_contact,
                      std::max(island.due, records_->last_event()));
+  if (std::exchange(island.series.body, -1) >= 0 && island.rests) {  // it has come to rest before
+    island.due = island.then;
+    find_next();
+    return run_->poll();
+  }
   const std::vector<int> members = island.members;
   return begin_step({members.begin(), members.end()}, std::numeric_limits<double>::infinity(), changed);
 }

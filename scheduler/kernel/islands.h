@@ -41,6 +41,7 @@ struct Island {
   bool rests = false;
   double due = std::numeric_limits<double>::infinity();  ///< when its step ends [s]
   /// The contact whose bounces come to their limit where the step ends; body < 0: none.
+  double then = std::numeric_limits<double>::infinity();  ///< of one at rest: `due` after that [s]
   PairKey series;
   FeatureContact series_contact;
 };

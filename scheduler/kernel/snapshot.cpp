@@ -100,6 +100,7 @@ void write_islands(Writer& out, const Islands::Saved& islands) {
   for (const Island& i : islands.islands) {
     out(i.rests);
     out(i.due);
+    out(i.then);
     out(i.series);
     out(i.series_contact);
     out(static_cast<std::uint64_t>(i.members.size()));
@@ -115,6 +116,7 @@ void read_islands(Reader& in, Islands::Saved& islands) {
     Island i;
     in(i.rests);
     in(i.due);
+    in(i.then);
     in(i.series);
     in(i.series_contact);
     i.members.resize(in.count(sizeof(int)));

@@ -1,6 +1,7 @@
 #include "brink/scheduler/policies/order.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "brink/scheduler/first_contact/canonical_time.h"
 
@@ -59,7 +60,8 @@ std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda, double 
       kernel.note_stale();
   }
   kernel.note_queue_operations(agenda.take_operations());
-  if (group.empty()) return step <= end ? std::optional(end_of_step(kernel, step)) : std::nullopt;
+  if (group.empty() && std::isfinite(step) && step <= end) return end_of_step(kernel, step);
+  if (group.empty()) return std::nullopt;
   const std::size_t chosen = first_by_order(kernel, group);
   const Certificate first = at_its_time(kernel, group[chosen], group.front().time);
   for (std::size_t i = 0; i < group.size(); ++i)

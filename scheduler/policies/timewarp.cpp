@@ -79,7 +79,10 @@ class Timewarp final : public Policy {
       const std::uint64_t steps = kernel_->island_steps();
       if (!kernel_->confirm(next, changed_)) return false;
       // an island that it began has taken its bodies elsewhere than they had gone
-      if (kernel_->island_steps() != steps) return look_around(next.time);
+      if (kernel_->island_steps() != steps) {
+        end_ = kernel_->follow_motions(end_);
+        return look_around(next.time);
+      }
       if (groupings_ != kernel_->groupings()) return look_at_groups(next.time);
       count_from_now_on();
       return true;

@@ -71,8 +71,8 @@ std::string watched(const World& world, double end, outside::FrameWatch& watch) 
   return summary.termination == Termination::reached_end ? "" : summary.why;
 }
 
-// Over the edge its lower face turns about the corner. Today no step is found at .80 s.
-TEST(Edge, DISABLED_BoxSlidesOverItAndFalls) {
+// Over the edge its lower face turns about the corner.
+TEST(Edge, BoxSlidesOverItAndFalls) {
   World world = heavy_world(0.0, 0.0);
   add(world, site(make_box(4.0, 1.0), {-2.0, -0.5}));
   add(world, body(make_box(0.4, 0.2), {-1.0, 0.1 + 1e-12}, {1.0, 0.0}));
@@ -110,9 +110,8 @@ TEST(Table, DISABLED_ThatShakesGentlyCarriesItsLoad) {
   }
 }
 
-// Today they fall through each other at .75 s: equal boxes, corner on corner, hold each other by their sides
-// (see EqualBoxesOnOneAnotherTouchUpwards).
-TEST(Lift, DISABLED_ThatRisesEvenlyCarriesAStack) {
+// Equal boxes, corner on corner, hold each other by their faces.
+TEST(Lift, ThatRisesEvenlyCarriesAStack) {
   World world = heavy_world(0.0, 0.5);
   FixedSite lift = site(make_box(4.0, 0.5), {0.0, -0.25});
   lift.motion = ConstantMotion{{{0.0, 0.5}, 0.0}};

@@ -52,8 +52,8 @@ TEST_P(BallThatBounces, LiesOnTheFloorAfterTheLimit) {
   EXPECT_TRUE(same_place(simulator.state(0), lies));
 }
 
-// Today a ball lies from the bounce at which its series is seen to end, 2e-7 s (e = .5) or 3e-5 s (.9) before the
-// limit, which is not told then; for .99 it is told 1e-8 s early.
+// The limit is told where it lies, though the ball has been caught a little before. Today to 1e-10 s (e = .5), 2e-11
+// (.9) and 1e-8 (.99) alone.
 TEST_P(BallThatBounces, DISABLED_TellsTheLimitOfItsBounces) {
   const double e = GetParam(), limit = limit_of(e);
   Simulator simulator(dropped_ball(e), lasting());

@@ -138,7 +138,7 @@ TEST(NearFeatures, OfOutlinesOfAllKindsAreAsNearAsThese) {
   int features = 0;
   for (const auto& [name_a, a] : all)
     for (const auto& [name_b, b] : all)
-      for (int k = 0; k < 4; ++k) {
+      for (int k = 0; k < 6; ++k) {
         const auto p = a.container ? std::nullopt : place(a, b, random);
         if (!p || has_hollows(name_a) || has_hollows(name_b)) continue;
         double least = std::numeric_limits<double>::infinity();

@@ -1,5 +1,4 @@
-// What features should be, and are not today: each test names what goes wrong, and fails when it is run
-// (--gtest_also_run_disabled_tests). One that passes belongs into near_features_test.cpp.
+// Features that once went wrong: normals that lost digits, corners on corners, joints, hollows.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +17,7 @@ std::vector<NearFeature> between(const Outline& a, const Pose& at_a, const Outli
 Outline wire(const Vec2& a, const Vec2& b) { return make_segment(a, b).outline; }
 
 // A normal from the difference of two points that are a gap apart has a rounding of the place in it, over the gap.
-TEST(NearFeaturesToday, DISABLED_NormalsKeepTheirDigitsHoweverSmallTheGap) {
+TEST(NearFeatures, NormalsKeepTheirDigitsHoweverSmallTheGap) {
   for (const double gap : {1e-3, 1e-6, 1e-9, 1e-11})
     for (const NearFeature& f :
          between(make_box(2, 1).outline, {{0.3, 0.5 + gap}, 0}, wire({-5, 0}, {5, 0}), {}, 0.1))
@@ -26,7 +25,7 @@ TEST(NearFeaturesToday, DISABLED_NormalsKeepTheirDigitsHoweverSmallTheGap) {
 }
 
 // Corner on corner, each touches the upper face of the one below; the sides are no obstacles.
-TEST(NearFeaturesToday, DISABLED_EqualBoxesOnOneAnotherTouchUpwards) {
+TEST(NearFeatures, EqualBoxesOnOneAnotherTouchUpwards) {
   const Outline box = make_box(0.4, 0.2).outline;
   for (const double gap : {1e-3, 1e-9, 1e-16, 0.0, -1e-16}) {
     int up = 0;
@@ -39,7 +38,7 @@ TEST(NearFeaturesToday, DISABLED_EqualBoxesOnOneAnotherTouchUpwards) {
 }
 
 // What slides over a joint of two straight pieces meets no end of a piece, neither before nor after it.
-TEST(NearFeaturesToday, DISABLED_JointOfTwoStraightPiecesIsNoObstacle) {
+TEST(NearFeatures, JointOfTwoStraightPiecesIsNoObstacle) {
   const Outline floor = make_chain({{-1, 0}, {0, 0}, {1, 0}}).outline;
   for (const double x : {-0.05, 0.05})
     for (const NearFeature& f : between(make_point({0, 0}).outline, {{x, 1e-9}, 0}, floor, {}, 0.1))
@@ -47,7 +46,7 @@ TEST(NearFeaturesToday, DISABLED_JointOfTwoStraightPiecesIsNoObstacle) {
 }
 
 // An arc's own sample speaks for its outer side alone: what is in its hollow is as far away as it is.
-TEST(NearFeaturesToday, DISABLED_BoxInTheHollowOfAnArcIsApart) {
+TEST(NearFeatures, BoxInTheHollowOfAnArcIsApart) {
   const Outline arc = make_arc({0, 0}, 1.0, 4.0, 5.4).outline;
   const auto found = between(make_box(0.2, 0.2).outline, {{0, -0.85}, 0}, arc, {}, 0.2);
   ASSERT_FALSE(found.empty());
@@ -56,7 +55,7 @@ TEST(NearFeaturesToday, DISABLED_BoxInTheHollowOfAnArcIsApart) {
 }
 
 // A sample that is near a face's end and goes down beside the next face has not gone through the first.
-TEST(NearFeaturesToday, DISABLED_GapGoesOnWhereTheSampleLeavesTheSideOfItsSite) {
+TEST(NearFeatures, GapGoesOnWhereTheSampleLeavesTheSideOfItsSite) {
   const Outline box = make_box(2, 1).outline, point = make_point({0, 0}).outline;
   const auto at = [](double y) { return ExtendedState(BodyState{{{-1.1, y}, 0}, {}}); };
   for (const NearFeature& f : near_features(point, at(0.52), box, BodyState{}, 0.2))
