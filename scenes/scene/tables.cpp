@@ -215,7 +215,8 @@ const Schema<SolverOptions>& solver_schema() {
           .key("detector", &S::detector, choice(names_of(detectors())), "how contacts are found")
           .key("contact_tolerance", &S::contact_tolerance, number({1e-14, 1e-2, false, ""}),
                "gap that counts as contact, of the scene's length")
-          .key("persistent", &S::persistent, flag(), "contacts may last (slides and rolls to first order); false: a Zeno point ends the run")
+          .key("persistent", &S::persistent, flag(),
+               "contacts may last (slides and rolls to first order); false: a Zeno point ends the run")
           .count("kept_states", &S::kept_states, whole(),
                  "policy timewarp: former states of bodies that are kept to go back to, at most")
           .count("max_collisions", &S::max_collisions, whole(), "stop after this many; 0: no limit")
