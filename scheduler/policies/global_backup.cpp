@@ -46,8 +46,8 @@ class GlobalBackup final : public Policy {
     if (next.kind == Certificate::Kind::undecided) return agenda_.search_on(kernel, next, end);
     changed_.clear();
     const bool done = next.kind == Certificate::Kind::island
-                        ? kernel.step_island(changed_)
-                        : kernel.resolve(next.pair, next.contact, changed_);
+                          ? kernel.step_island(changed_)
+                          : kernel.resolve(next.pair, next.contact, changed_);
     if (!done) return false;
     end = kernel.follow_motions(end);
     return agenda_.pass_again(kernel, changed_, end);

@@ -37,8 +37,8 @@ const std::map<std::string, Rooms>& order() {
     };
     // each room of the scheduler may use those before it, and so may each of the scenes
     Rooms before = below;
-    for (const char* room : {"run", "first_contact", "events", "broad_phase", "resolve", "islands", "kernel", "policies",
-                             "policies/body_clocks", "classic", "simulator"}) {
+    for (const char* room : {"run", "first_contact", "events", "broad_phase", "resolve", "islands", "kernel",
+                             "policies", "policies/body_clocks", "classic", "simulator"}) {
       const std::string path = std::string("scheduler/") + room;
       rooms[path] = before;
       before.push_back(path);

@@ -162,7 +162,8 @@ class BodyClocks final : public Policy {
     const Candidate& c = clock.candidates.front();
     if (!c.exact || views_->stale(c)) return false;
     const double time = c.time;
-    return time <= std::min(end(), kernel_->next_step()) && time < queue_.second_time() && time < std::min(clock.exit, clock.horizon);
+    return time <= std::min(end(), kernel_->next_step()) && time < queue_.second_time() &&
+           time < std::min(clock.exit, clock.horizon);
   }
 
   /// The first candidate of body k is dropped if it is stale, and searched if it is not.
