@@ -51,6 +51,7 @@ class Islands::Step {
           accelerations_.back().linear.norm() + std::abs(accelerations_.back().angular) * radius;
       pulls_.push_back(pull);
       pull_ = std::max(pull_, pull);
+      heaviest_ = std::max(heaviest_, of_.world_->bodies[k].mass);
     }
     find_speeds();
   }
@@ -152,17 +153,18 @@ class Islands::Step {
       for (const int j : of_.trajectories_->coupled_to(k)) joined.unite(place_.at(k), place_.at(j));
     std::vector<Restart> held;
     std::vector<int> free;
+    std::vector<bool> seen(members_.size(), false);
     for (std::size_t i = 0; i < members_.size(); ++i) {
+      if (seen[i]) continue;
       std::vector<int> set(joined.of(static_cast<int>(i)).begin(), joined.of(static_cast<int>(i)).end());
-      if (std::none_of(set.begin(), set.end(), [&](int j) { return pushed[j]; })) {
-        free.push_back(members_[i]);
-        continue;
-      }
-      ExtendedState s = states_[i];
-      if (!rests) s.twist = ExtendedTwist(as_twist(problem_.velocity[i]));
-      held.push_back({members_[i], s});
       std::sort(set.begin(), set.end());
-      if (set.front() == static_cast<int>(i)) put_in(set, rests);
+      const bool together = std::any_of(set.begin(), set.end(), [&](int j) { return pushed[j]; });
+      for (const int j : set) {
+        seen[j] = true;
+        if (!together) free.push_back(members_[j]);
+        if (together) held.push_back({members_[j], rests ? states_[j] : after(j)});
+      }
+      if (together) put_in(set, rests);
     }
     std::vector<Restart> as_they_are;
     for (const int k : free) as_they_are.push_back({k, states_[place_.at(k)]});
@@ -210,6 +212,13 @@ class Islands::Step {
 
   static constexpr double kForever = std::numeric_limits<double>::infinity();
 
+  /// The state from which a member moves through the step.
+  ExtendedState after(int member) const {
+    ExtendedState s = states_[member];
+    s.twist = ExtendedTwist(as_twist(problem_.velocity[member]));
+    return s;
+  }
+
   void put_in(const std::vector<int>& set, bool rests) {
     Island island;
     for (const int i : set) island.members.push_back(members_[i]);
@@ -229,11 +238,7 @@ class Islands::Step {
   }
 
   /// A force that is more than a rounding of the heaviest member's weight.
-  bool pushes(const HeldContact& c) const {
-    double heaviest = 0.0;
-    for (const int k : members_) heaviest = std::max(heaviest, of_.world_->bodies[k].mass);
-    return c.normal_force > kNoForce * heaviest * pull_;
-  }
+  bool pushes(const HeldContact& c) const { return c.normal_force > kNoForce * heaviest_ * pull_; }
 
   /// Nothing pushes, but one of the two alone, left to its parabola, could run into the other's step.
   bool stays_near(const HeldContact& c) const {
@@ -433,7 +438,7 @@ class Islands::Step {
   std::vector<ExtendedState> states_;
   std::vector<Acceleration> accelerations_;
   std::vector<double> speeds_, pulls_;  ///< [m/s], [m/s^2], of any point of each
-  double size_ = kForever, speed_ = 0.0, pull_ = 0.0, absorbed_ = 0.0;
+  double size_ = kForever, speed_ = 0.0, pull_ = 0.0, heaviest_ = 0.0, absorbed_ = 0.0;
   WarmForces warm_;  ///< normal forces of the step before
   std::vector<HeldContact> contacts_;
   IslandStep problem_;

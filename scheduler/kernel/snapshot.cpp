@@ -110,7 +110,8 @@ void write_islands(Writer& out, const Islands::Saved& islands) {
   }
 }
 
-void read_islands(Reader& in, Islands::Saved& islands) {
+/// @throws BadInput on a member that is none, or that is not held.
+void read_islands(Reader& in, const Trajectories::Saved& bodies, Islands::Saved& islands) {
   in(islands.tally);
   for (std::uint64_t n = in.count(sizeof(double)); n > 0; --n) {
     Island i;
@@ -120,7 +121,13 @@ void read_islands(Reader& in, Islands::Saved& islands) {
     in(i.series);
     in(i.series_contact);
     i.members.resize(in.count(sizeof(int)));
-    for (int& k : i.members) in(k);
+    for (int& k : i.members) {
+      in(k);
+      const bool held = k >= 0 && k < static_cast<int>(bodies.bodies.size()) &&
+                        bodies.bodies[k].component == BodyTrack::kHeld;
+      if (!held) throw BadInput("snapshot: an island has no such body");
+    }
+    if (i.members.empty()) throw BadInput("snapshot: an island has no body");
     i.contacts.resize(in.count(sizeof(HeldContact)));
     for (HeldContact& c : i.contacts) in(c);
     islands.islands.push_back(std::move(i));
@@ -254,7 +261,7 @@ SavedRun decode(std::span<const std::byte> bytes, const World& world, const Solv
   SavedRun saved;
   scalars(in, saved);
   saved.trajectories = read_trajectories(in, world);
-  read_islands(in, saved.islands);
+  read_islands(in, saved.trajectories, saved.islands);
   in(saved.endings.often);
   saved.endings.bodies.resize(in.count(sizeof(int)));
   for (int& k : saved.endings.bodies) in(k);
