@@ -371,6 +371,7 @@ class PairSearch {
     const double now = f.gap - view_.level(half, f.sample, site, path.q);
     const double begin = view_.start();
     if (t_ <= begin && now <= 0.0) return remember(half, f, t_);  // touching from the start, and approaching
+    if (meets_tip(half, f, path, bounds)) return true;
     const double guess = t_ + now / speed;
     const double off = std::abs(now) / speed;
     const double bend = std::min(1.0, bounds.acceleration * off / speed) * off;
@@ -404,28 +405,47 @@ class PairSearch {
       beyond_by = by;
       if (beyond_by > rounding) break;
     }
-    if (high <= low) return meets_tip(half, f, path, gap, nearest, rounding);  // or passes by
+    if (high <= low) return false;  // passes by
     const double t = last_clear_time(gap, low, high);
     // at the end of its neighbourhood a sample changes sides without having come near
     if (gap(t) > touching_band(half, f.sample, path)) return false;
     return remember(half, f, t, 2.0 * moment);
   }
 
-  /// Two sharp corners of solids that come upon each other, to rounding: beyond that the tip of one may run
-  /// along the outside of the other though their edges cross, which no tip tells of. So they meet, a part of
-  /// the touching distance before. True if they do; `nearest`: when they are nearest.
-  template <class Gap>
-  bool meets_tip(const Half& half, const Feature& f, const SamplePath& path, Gap&& gap, double nearest,
-                 double rounding) {
+  /// Two sharp corners of solids that come upon each other, to rounding: what lies beyond is for roundings to
+  /// say, and the tip of one may run along the outside of the other though their edges cross, which no tip
+  /// tells of. So they meet, a part of the touching distance before. True if they do.
+  bool meets_tip(const Half& half, const Feature& f, const SamplePath& path, const PathBounds& bounds) {
     const Site& site = half.site(f.site);
     const Sample& sample = half.sample(f.sample);
     const bool sharp = sample.before >= 0 && site.solid && site.radius + sample.radius == 0.0;
-    if (!sharp || nearest_on(site, path.q).foot == Foot::interior) return false;
-    if (nearest > window_end_ || !(std::abs(gap(nearest)) <= 4.0 * rounding)) return false;
-    const double before = 0.5 * limits_.touch;
-    const auto clear = [&](double t) { return gap(t) - before; };
-    const double speed = -f.rate, low = t_ - std::max(0.0, 2.0 * (before - f.gap)) / speed;
-    if (low < std::max(view_.start(), from_) || !(clear(low) > 0.0)) return remember(half, f, t_);
+    if (!sharp) return false;
+    const bool at_a = (path.q - site.a).squaredNorm() < (path.q - site.b).squaredNorm();
+    const Vec2 tip = at_a ? site.a : site.b, way = path.q - tip;
+    const double slow = path.rate.norm(), off = way.norm() / slow,
+                 noise = view_.gap_rounding(half, f.sample, path.q);
+    if (std::abs(cross(path.rate, way)) / slow > 8.0 * noise + bounds.acceleration * off * off) return false;
+    PairView there = view_;
+    const auto to_tip = [&](double t) {
+      there.place(t);
+      SamplePath then = there.path(half, f.sample);
+      then.q -= tip;
+      return then;
+    };
+    double nearest = t_ - way.dot(path.rate) / path.rate.squaredNorm();
+    SamplePath then;
+    for (int i = 0; i < 2; ++i) {
+      if (!(nearest >= view_.start() && nearest <= window_end_)) return false;
+      then = to_tip(nearest);
+      nearest -= then.q.dot(then.rate) / then.rate.squaredNorm();
+    }
+    then = to_tip(nearest);
+    const double rounding = there.gap_rounding(half, f.sample, then.q + tip);
+    if (!(nearest <= window_end_ && then.q.norm() <= 4.0 * rounding)) return false;
+    const double before = std::max(0.5 * limits_.touch, 8.0 * rounding), speed = then.rate.norm();
+    const auto clear = [&](double t) { return to_tip(t).q.norm() - before; };
+    const double low = nearest - 2.0 * before / speed;
+    if (low < std::max(view_.start(), from_)) return remember(half, f, t_);
     return remember(half, f, last_clear_time(clear, low, nearest), 2.0 * rounding / speed);
   }
 
