@@ -271,8 +271,8 @@ void Views::limit_view(int k, double now, double closing, double stride) {
   // a view that holds to the end of the run ends just after it
   clocks_[k].horizon = std::min(clocks_[k].horizon, end >= until_ ? std::nextafter(until_, kForever) : end);
   // a view that holds to the end of an island's step ends just after it: the step comes first
-  if (kernel_->is_held(k))
-    clocks_[k].horizon = std::min(clocks_[k].horizon, std::nextafter(kernel_->step_end(k), kForever));
+  const double step_end = kernel_->is_held(k) ? kernel_->step_end(k) : kForever;
+  if (step_end >= now) clocks_[k].horizon = std::min(clocks_[k].horizon, std::nextafter(step_end, kForever));
 }
 
 /// Until when the motions of body k and of another owner (sites: of all that move) can be followed, <= end.
