@@ -17,7 +17,7 @@ constexpr double kResidual = 1e-6;
 /// A step may win this part of the energies that it turns over, before it is slowed to win none: the solver's
 /// rounding, and what faces that turn push into what lies on them, which the true motion takes from their
 /// turning.
-constexpr double kWonOf = 1e-6;
+constexpr double kWonOf = 1e-3;
 /// Friction bounds are taken from normal forces that were found with the bounds before, so often.
 constexpr int kFrictionPasses = 2;
 

@@ -49,7 +49,7 @@ using GapAlong = std::function<double(std::size_t k, double moment, const std::v
 struct StepOutcome {
   bool solved = false;  ///< every gap stays above -`tolerance` along the step
   int factorisations = 0;
-  /// Energy that the step made [J], beyond what sites that move gave: at most 1e-6 of what it turned over. 0 where
+  /// Energy that the step made [J], beyond what sites that move gave: at most 1e-3 of what it turned over. 0 where
   /// none does: all is slowed by as much then.
   double won = 0.0;
   double friction_residual = 0.0;  ///< largest |q| - mu p left by bounds that lag, of the largest p
