@@ -65,6 +65,7 @@ class IslandMotion {
   void take_forces();
   bool pushes(const HeldContact& c) const;
   bool stays_near(const HeldContact& c) const;
+  ContactMode mode_of(const HeldContact& c, bool rests) const;
   std::vector<Vec3> velocities() const;
 
   IslandMembers members_;

@@ -54,6 +54,8 @@ class Islands {
     IslandTally tally;
   };
   Saved saved() const;
+  /// Tells the records of contacts that last still, up to the present time.
+  void tell_lasting() const;
   /// @pre the trajectories are restored.
   void restore(const Saved& saved);
 
@@ -65,6 +67,7 @@ class Islands {
   void note_impact(const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r);
   WarmForces take_out(const std::set<int>& members);
   void put_in(Island island);
+  void tell_ended();
   void find_next();
 
   const World* world_;
@@ -77,6 +80,8 @@ class Islands {
   bool allowed_ = false;
   std::map<int, Island> islands_;
   std::map<int, int> lead_of_;  ///< of every member
+  using Feature = std::tuple<PairKey, bool, int, int>;
+  std::map<Feature, HeldContact> taken_out_;  ///< that pressed, until it is known whether they go on
   double next_step_ = std::numeric_limits<double>::infinity();
   IslandTally tally_;
 };

@@ -58,6 +58,7 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
     summary.termination = Termination::reached_end;
   }
   if (recorder) recorder->checkpoint(time(), kernel.snapshot());
+  kernel.tell_lasting_contacts();  // beyond the checkpoint: a run that goes on tells them again
   const std::vector<BodyState> last = states();
   const Momentum momentum = total_momentum(world(), last);
   summary.end_time = time();
