@@ -36,6 +36,8 @@ class Islands {
   /// By their least member.
   const std::map<int, Island>& all() const { return islands_; }
   bool is_member(int body) const { return trajectories_->is_held(body); }
+  /// When the step of that member's island ends [s]; infinity: it is at rest.
+  double step_end(int body) const { return islands_.at(lead_of_.at(body)).due; }
   const IslandTally& tally() const { return tally_; }
 
   // -- what happens at the present time: bodies whose motion changed are appended to `changed`; false on a halt

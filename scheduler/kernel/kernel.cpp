@@ -9,6 +9,11 @@
 
 namespace brink {
 
+bool KernelView::is_searched(int a, int b, const Image& image) const {
+  const auto pair = parts_.search.pair_of(a, b, image);
+  return pair && !parts_.search.is_left_out(*pair);
+}
+
 bool KernelView::is_resolved_ahead(const Certificate& c) const {
   const auto collisions = parts_.speculation.of(c.pair.body);
   if (collisions.empty()) return false;
