@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "brink/core/base/disjoint_sets.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
 
 namespace brink {
@@ -184,6 +185,24 @@ bool Islands::capture(const PairKey& pair, const FeatureContact& contact, double
   island.series = pair;
   island.series_contact = contact;
   find_next();
+  return true;
+}
+
+bool Islands::begin(const std::vector<std::pair<PairKey, FeatureContact>>& touching,
+                    std::vector<int>& changed) {
+  DisjointSets joined;
+  joined.reset(trajectories_->body_count());
+  for (const auto& [pair, contact] : touching) {
+    records_->ending(EventKind::persist, pair, contact, records_->last_event());
+    ++tally_.captured;
+    if (!pair.with_site()) joined.unite(pair.body, pair.other_body);
+  }
+  for (const auto& [pair, contact] : touching) {
+    if (is_member(pair.body)) continue;  // with another of its contacts
+    std::set<int> members;
+    for (const int k : joined.of(pair.body)) gather(k, members);
+    if (!begin_step(members, std::numeric_limits<double>::infinity(), changed)) return false;
+  }
   return true;
 }
 

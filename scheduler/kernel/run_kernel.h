@@ -17,6 +17,8 @@ class RunKernel final : public Kernel {
 
   /// `recorder` may be null.
   void begin(const RunOptions& options, Recorder* recorder);
+  /// At the start, where contacts may last: those that are there, press, and neither close nor part last.
+  void let_touching_last();
   /// Records the last frame, at the present time, unless the frame clock has just done so, and a checkpoint.
   void end();
   /// Tells the recorder of contacts that last still.

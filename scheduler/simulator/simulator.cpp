@@ -46,6 +46,7 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
     if (const std::string why = start_fault(); !why.empty()) throw BadInput(why);
   const auto begin = std::chrono::steady_clock::now();
   kernel.begin(options, recorder);
+  kernel.let_touching_last();
   impl_->policy->run(kernel, options.until);
   kernel.check_returned(options.until);
   kernel.end();
