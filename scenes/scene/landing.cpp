@@ -111,7 +111,7 @@ class Descent {
     for (const Meeting& m : touched_)
       least =
           std::min(least, outline_gap(*ask_.outline, copies[m.copy], *m.ground.outline, m.ground.pose).gap -
-                              gap_of_touching(*ask_.outline, *m.ground.outline, ask_.thin));
+                              gap_of_touching({ask_.outline, copies[m.copy]}, m.ground, ask_.thin));
     return least;
   }
 
@@ -126,6 +126,11 @@ class Descent {
   std::vector<Meeting> touched_;
 };
 
+/// Coordinates of what is turned have roundings of their own, of which another way of asking knows others.
+constexpr double kTurnedRounding = 2.0 * std::numeric_limits<double>::epsilon();
+
+bool is_upright(const Pose& pose) { return pose.angle == 0.0; }
+
 bool is_thin(const Outline& outline) { return !outline.solid && outline.sites[0].radius == 0.0; }
 
 bool is_sharp(const Outline& outline) {
@@ -135,8 +140,13 @@ bool is_sharp(const Outline& outline) {
 
 }  // namespace
 
-double gap_of_touching(const Outline& a, const Outline& b, double thin) {
-  return (is_thin(a) && is_sharp(b)) || (is_thin(b) && is_sharp(a)) ? thin : 0.0;
+double gap_of_touching(const Obstacle& a, const Obstacle& b, double thin) {
+  const bool on_wire =
+      (is_thin(*a.outline) && is_sharp(*b.outline)) || (is_thin(*b.outline) && is_sharp(*a.outline));
+  if (on_wire) return thin;
+  if (is_upright(a.pose) && is_upright(b.pose)) return 0.0;
+  const double apart = (a.pose.position - b.pose.position).norm() + a.outline->bounding_radius;
+  return kTurnedRounding * (a.outline->bounding_radius + std::min(apart, b.outline->bounding_radius));
 }
 
 void push_apart(const Outline& outline, Pose& pose, const std::vector<Touched>& touched, double thin) {
@@ -150,7 +160,7 @@ void push_apart(const Outline& outline, Pose& pose, const std::vector<Touched>& 
       Vec2 away = Vec2::Zero();
       for (const Touched& t : touched) {
         const OutlineGap is = outline_gap(outline, pose, *t.other.outline, t.other.pose);
-        const double beyond = is.gap - gap_of_touching(outline, *t.other.outline, thin);
+        const double beyond = is.gap - gap_of_touching({&outline, pose}, t.other, thin);
         if (beyond >= worst) continue;
         worst = beyond;
         away = along_normals ? is.normal : t.away;

@@ -9,9 +9,10 @@
 
 namespace brink {
 
-/// The gap at which two are put that touch [m]: 0; where one is a wire without thickness and the other has
-/// corners, `thin`: on the wire itself nobody could tell on which side they are (first_contact/tolerances.h).
-double gap_of_touching(const Outline& a, const Outline& b, double thin);
+/// The gap at which two are put that touch [m]: 0 where neither is turned, a few roundings of their sizes where
+/// one is; and `thin` where one is a wire without thickness and the other has corners: on the wire itself nobody
+/// could tell on which side they are (first_contact/tolerances.h).
+double gap_of_touching(const Obstacle& a, const Obstacle& b, double thin);
 
 /// What a copy touches, and which way it is pushed where roundings have left their gap too small.
 struct Touched {
