@@ -235,6 +235,8 @@ const Schema<SolverOptions>& solver_schema() {
                "gap that counts as contact, of the scene's length")
           .key("persistent", &S::persistent, flag(),
                "contacts may last (slides and rolls to first order); false: a Zeno point ends the run")
+          .key("rest_speed", &S::rest_speed, number(between(0.0, 1e6, "m/s")),
+               "what lasting contacts hold is taken to be at rest below this speed; 0: only what is at rest")
           .count("kept_states", &S::kept_states, whole(),
                  "policy timewarp: former states of bodies that are kept to go back to, at most")
           .count("max_collisions", &S::max_collisions, whole(), "stop after this many; 0: no limit")
@@ -298,6 +300,8 @@ const Schema<Material>& material_schema() {
           .key("friction", &Material::friction, number(between(0.0, 1e6)), "Coulomb's")
           .key("tangential_restitution", &Material::tangential_restitution, number(between(-1.0, 1.0)),
                "with friction; 0: plain Coulomb, 1: the elastic rough superball")
+          .key("rolling_resistance", &Material::rolling_resistance, number(between(0.0, 1e6, "m")),
+               "contacts that last: the largest torque against rolling, for a normal force of 1 N")
           .key("slip", &Material::slip, number(between(0.0, 10.0)),
                "reflection only: scales the tangential rebound")
           .key("spin", &Material::spin, number(between(0.0, 10.0)),

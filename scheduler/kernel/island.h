@@ -45,6 +45,7 @@ struct IslandTally {
   std::uint64_t captured = 0, steps = 0, slept = 0, woken = 0, factorisations = 0;
   double absorbed = 0.0;           ///< the largest approach that a step took without a rebound [m/s]
   double energy_won = 0.0;         ///< that steps made, by rounding and by faces that turn [J]
+  double energy_of_rest = 0.0;     ///< that the option rest_speed took [J]
   double friction_residual = 0.0;  ///< the largest, of the largest normal force of its island
 };
 

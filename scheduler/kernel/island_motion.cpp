@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "brink/core/base/disjoint_sets.h"
+#include "brink/scheduler/kernel/island_joining.h"
 
 namespace brink {
 
@@ -44,6 +45,14 @@ double IslandMotion::longest() const {
   const double fall = pull > 0.0 ? kOfFall * std::sqrt(members_.size() / pull) : kForever;
   const double way = speed > 0.0 ? kOfSize * members_.size() / speed : kForever;
   return std::min(fall, way);
+}
+
+std::vector<int> IslandMotion::joining(const World& world, Trajectories& trajectories, double now) {
+  h_ = longest();
+  if (!(h_ < kForever)) return {};
+  members_.look_ahead(h_, kReach);
+  return brink::joining(world, trajectories, *search_, members_, now, h_,
+                        [this](const PairKey& pair) { return most_absorbed(pair); });
 }
 
 void IslandMotion::list(double reach) {
@@ -100,9 +109,10 @@ void IslandMotion::collide(const HeldContact& c, double closing, const Impact& t
 
 // ---- rest
 
-bool IslandMotion::rests() {
+bool IslandMotion::rests(double rest_speed) {
   const double tolerance = search_->limits().tolerance, pull = members_.pull(), speed = members_.speed();
-  if (!(pull > 0.0) || 2.0 * speed * speed > tolerance * pull) return false;
+  const bool fades = 2.0 * speed * speed <= tolerance * pull;
+  if (!(pull > 0.0) || !(fades || speed <= rest_speed)) return false;
   const int count = static_cast<int>(members_.count());
   for (int i = 0; i < count; ++i)
     if (!members_.is_constant(i)) return false;
@@ -114,8 +124,18 @@ bool IslandMotion::rests() {
   make_problem();
   if (!stays_at_rest(*solver_, problem_)) return false;
   take_forces();
+  if (!fades) tally_->energy_of_rest += kinetic_energy();
   for (int i = 0; i < count; ++i) members_.set_twist(i, ExtendedTwist());
   return true;
+}
+
+double IslandMotion::kinetic_energy() const {
+  double twice = 0.0;
+  for (int i = 0; i < static_cast<int>(members_.count()); ++i) {
+    const Twist v = members_.state(i).twist.rounded();
+    twice += members_.body(i).mass * v.velocity.squaredNorm() + members_.body(i).inertia * v.omega * v.omega;
+  }
+  return 0.5 * twice;
 }
 
 // ---- steps
@@ -214,7 +234,9 @@ IslandContact IslandMotion::island_contact(const HeldContact& c) const {
   const int b = c.pair.with_site() ? -1 : members_.place_of(c.pair.other_body);
   made.rows = contact_at(a, b, c.feature.normal, members_.arm(c).cast<double>(), c.feature.point);
   made.gap = c.feature.gap - kept(c.feature);
-  made.friction = response_->material_of(c.pair).friction;
+  const Material& material = response_->material_of(c.pair);
+  made.friction = material.friction;
+  made.rolling_resistance = material.rolling_resistance;
   const auto warm = warm_.find({c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site});
   if (warm != warm_.end()) std::tie(made.normal_force, made.force_lasted) = warm->second;
   made.at_end = c.feature.at_end;
@@ -261,10 +283,14 @@ bool IslandMotion::pushes(const HeldContact& c) const {
   return c.normal_force > kNoForce * members_.heaviest() * members_.pull();
 }
 
-/// Nothing pushes, but one of the two alone, left to its parabola, could run into the other's step.
+/// Nothing pushes, but one of the two alone, left to its parabola, could run into the other's step: that has the
+/// twist of its end from the start on, which a parabola comes to by and by.
 bool IslandMotion::stays_near(const HeldContact& c) const {
-  const double gained = members_.pull() * h_;
-  return !c.pair.with_site() && c.feature.gap <= gained * h_ && members_.closing_speed(c) >= -gained;
+  if (c.pair.with_site()) return false;
+  const double behind = members_.pull() * h_;
+  const double closing = members_.closing_speed(c, after(members_.place_of(c.pair.body)).twist,
+                                                after(members_.place_of(c.pair.other_body)).twist);
+  return c.feature.gap - h_ * (closing + behind) <= search_->limits().tolerance;
 }
 
 IslandMotion::Parts IslandMotion::parts(bool rests) const {

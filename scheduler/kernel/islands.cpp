@@ -12,13 +12,14 @@
 namespace brink {
 
 Islands::Islands(const World& world, Trajectories& trajectories, ContactSearch& search,
-                 CollisionResponse& response, Records& records, RunControl& run)
+                 CollisionResponse& response, Records& records, RunControl& run, double rest_speed)
     : world_(&world),
       trajectories_(&trajectories),
       search_(&search),
       response_(&response),
       records_(&records),
-      run_(&run) {}
+      run_(&run),
+      rest_speed_(rest_speed) {}
 
 void Islands::gather(int body, std::set<int>& members) const {
   if (members.count(body)) return;
@@ -104,19 +105,31 @@ void Islands::note_impact(const HeldContact& c, const RealVec& from, double clos
   records_->event(EventKind::collision, c.pair, f, r.normal, r.tangential, 0);
 }
 
-bool Islands::begin_step(const std::set<int>& members, double longest, std::vector<int>& changed) {
-  auto forces = take_out(members);
-  std::vector<Restart> as_they_are;
-  for (const int k : members)
-    if (!trajectories_->is_held(k))
-      as_they_are.push_back({k, trajectories_->body(k).motion.extended_state(run_->time())});
-  std::vector<int> held;
-  trajectories_->hold(as_they_are, held);
-  IslandMotion motion(IslandMembers(*world_, *trajectories_, *search_, run_->time(), members), *search_,
-                      *response_, solver_, tally_, std::move(forces));
+/// Members are held from now on, also those that join; what they push each other with is taken out.
+IslandMotion Islands::set_out(std::set<int>& members) {
+  WarmForces forces;
+  for (;;) {
+    forces.merge(take_out(members));
+    std::vector<Restart> as_they_are;
+    for (const int k : members)
+      if (!trajectories_->is_held(k))
+        as_they_are.push_back({k, trajectories_->body(k).motion.extended_state(run_->time())});
+    std::vector<int> held;
+    trajectories_->hold(as_they_are, held);
+    IslandMotion motion(IslandMembers(*world_, *trajectories_, *search_, run_->time(), members), *search_,
+                        *response_, solver_, tally_, forces);
+    const std::vector<int> more = motion.joining(*world_, *trajectories_, run_->time());
+    if (more.empty()) return motion;
+    for (const int k : more) gather(k, members);
+  }
+}
+
+bool Islands::begin_step(std::set<int> members, double longest, std::vector<int>& changed) {
+  IslandMotion motion = set_out(members);
+  if (run_->halt()) return false;
   motion.pass_on_impacts([this](const HeldContact& c, const RealVec& from, double closing,
                                 const ImpulseResult& r) { note_impact(c, from, closing, r); });
-  const bool rests = motion.rests();
+  const bool rests = motion.rests(rest_speed_);
   const double h = std::min(longest, motion.longest());
   if (!rests && std::isfinite(h) && !trajectories_->cover_sites(run_->time() + h)) return false;
   if (!rests && !motion.take(h)) {

@@ -25,7 +25,7 @@ class Islands {
  public:
   /// What is given must outlive it.
   Islands(const World& world, Trajectories& trajectories, ContactSearch& search, CollisionResponse& response,
-          Records& records, RunControl& run);
+          Records& records, RunControl& run, double rest_speed);
 
   /// Contacts may last from now on: an option, and a policy that asks for next_step().
   void allow() { allowed_ = true; }
@@ -67,7 +67,8 @@ class Islands {
 
  private:
   void gather(int body, std::set<int>& members) const;
-  bool begin_step(const std::set<int>& members, double longest, std::vector<int>& changed);
+  IslandMotion set_out(std::set<int>& members);
+  bool begin_step(std::set<int> members, double longest, std::vector<int>& changed);
   void part(const IslandMotion& motion, bool rests, std::vector<int>& changed);
   void note_change(EventKind kind, int lead);
   void note_impact(const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r);
@@ -83,6 +84,7 @@ class Islands {
   Records* records_;
   RunControl* run_;
   ConeQp solver_;
+  double rest_speed_;
   bool allowed_ = false;
   std::map<int, Island> islands_;
   std::map<int, int> lead_of_;  ///< of every member

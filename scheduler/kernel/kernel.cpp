@@ -237,12 +237,15 @@ bool Kernel::begin_to_last(const Outcome& o, double limit, std::vector<int>& cha
 /// A collision of a member is a step of its island.
 bool Kernel::go_on_in_islands(const Outcome& o, std::vector<int>& changed) {
   const bool concerned = is_held(o.pair.body) || (!o.pair.with_site() && is_held(o.pair.other_body));
-  return !concerned || parts_.islands.collided(o.pair, changed);
+  if (!concerned) return true;
+  roll_back_all();
+  return parts_.islands.collided(o.pair, changed);
 }
 
 bool Kernel::step_island(std::vector<int>& changed) {
   parts_.run.set_time(next_step());
   parts_.policy_watch.going_to(time());
+  roll_back_all();
   return parts_.islands.step(changed);
 }
 

@@ -34,6 +34,9 @@ struct SolverOptions {
   /// Contacts may last: where bounces come to their limit the run goes on, in steps of order 1 or at rest
   /// (docs/contacts-that-last.md). Else it ends there.
   bool persistent = false;
+  /// Where contacts hold an island and nothing of it is faster than this, it is taken to be at rest [m/s]; the
+  /// energy that goes with it is told. 0: an island is at rest where nothing of its motion is left.
+  double rest_speed = 0.0;
   std::uint64_t seed = 1;             ///< for order "random"
   std::uint64_t kept_states = 10000;  ///< policy timewarp: former states of bodies kept at most
   std::uint64_t max_collisions = 0;   ///< stop after this many; 0: no limit

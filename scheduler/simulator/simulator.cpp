@@ -85,6 +85,7 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
   summary.approach_absorbed = islands.absorbed;
   summary.friction_residual = islands.friction_residual;
   summary.island_energy = islands.energy_won;
+  summary.rest_energy = islands.energy_of_rest;
   summary.state_hash = state_hash();
   summary.work = kernel.work();
   summary.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
