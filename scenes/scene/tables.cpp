@@ -111,6 +111,16 @@ const Schema<ScatterTable>& scatter_schema() {
   return schema;
 }
 
+const Schema<PileTable>& pile_schema() {
+  static const Schema<PileTable> schema =
+      Schema<PileTable>("pile")
+          .required("count", &PileTable::count, whole(1, 1'000'000), "number of copies")
+          .required("width", &PileTable::width, number(positive("m", kShortest)),
+                    "of the column that holds the position of every copy, about position")
+          .key("random_angle", &PileTable::random_angle, flag(), "turn each copy by a random angle");
+  return schema;
+}
+
 const Schema<SamplingTable>& sampling_schema() {
   static const Schema<SamplingTable> schema =
       Schema<SamplingTable>("sampling")
@@ -157,7 +167,15 @@ Schema<ThingTable> thing_schema(const std::string& table, bool site) {
                 "[field] curve_tolerance", "largest distance between a curve and the arcs that stand for it")
       .optional("grid", &ThingTable::grid, grid_schema().codec(), "none", "copies in rows, named NAME[k]")
       .optional("scatter", &ThingTable::scatter, scatter_schema().codec(), "none",
-                "copies at random without overlaps, named NAME[k]");
+                "copies at random without overlaps, named NAME[k]")
+      .optional("stack", &ThingTable::stack, whole(1, 1'000'000), "none",
+                "so many copies on one another, named NAME[k]")
+      .optional("pyramid", &ThingTable::pyramid, whole(1, 1'000), "none",
+                "copies in touching rows, so many in the lowest, one less in each above")
+      .optional("wall", &ThingTable::wall, two_integers(1, 100'000, "[columns, rows]"), "none",
+                "copies in touching rows, each shifted by half a copy, every second one shorter by one")
+      .optional("pile", &ThingTable::pile, pile_schema().codec(), "none",
+                "copies at random without overlaps above position, to fall");
   return schema;
 }
 
@@ -312,6 +330,10 @@ const Schema<ThingTable>& body_schema() {
           .optional("velocity", &ThingTable::velocity, point("m/s"), "[0, 0]", "of the centre of mass")
           .optional("angular_velocity", &ThingTable::angular_velocity, number(any("rad/s")), "0",
                     "counter-clockwise")
+          .optional("touching", &ThingTable::touching, names(), "none",
+                    "bodies or sites that it is put on, moved along gravity to first contact")
+          .optional("touching_direction", &ThingTable::touching_direction, point(""), "along gravity",
+                    "the way down of touching, stack, pyramid, wall and pile")
           .optional("lock", &ThingTable::lock, names({"x", "y", "angle"}), "[]", "coordinates that are held")
           .optional("sampling", &ThingTable::sampling, sampling_schema().codec(), "vertices",
                     "samples of the classic detector");
@@ -356,6 +378,7 @@ std::vector<OptionInfo> scene_options() {
   list_shape_keys(out);
   grid_schema().list(out);
   scatter_schema().list(out);
+  pile_schema().list(out);
   motion_schema().list(out);
   sampling_schema().list(out);
   for (const std::string& kind : force_kinds()) force_schema(kind)->list(out);

@@ -9,6 +9,7 @@
 
 #include "brink/scheduler/events/agenda.h"
 #include "brink/scheduler/islands/near_features.h"
+#include "brink/scheduler/run/lasted_contact.h"
 
 namespace brink {
 
@@ -18,6 +19,9 @@ struct HeldContact {
   NearFeature feature;
   double normal_force = 0.0, tangential_force = 0.0;  ///< [N]
   double lasted = 0.0;                                ///< the step over which they are means [s]
+  ContactMode mode = ContactMode::none;
+  double since = 0.0;         ///< in this mode without a break [s]
+  Vec2 place = Vec2::Zero();  ///< of the feature's point in the world [m]
 
   auto order() const { return std::tuple(pair.order(), feature.sample_on_a, feature.sample, feature.site); }
 };

@@ -26,6 +26,8 @@ constexpr int kTangents = 32;
 constexpr std::size_t kFirstImpacts = 100, kImpactsEach = 20;
 /// A force below this part of the weight of the heaviest member is none.
 constexpr double kNoForce = 1e-9;
+/// A speed below this part of what the smallest member gains as it falls by its size is none.
+constexpr double kNoSpeed = 1e-7;
 
 }  // namespace
 
@@ -319,6 +321,18 @@ IslandMotion::Parts IslandMotion::parts(bool rests) const {
   return parts;
 }
 
+ContactMode IslandMotion::mode_of(const HeldContact& c, bool rests) const {
+  if (!pushes(c)) return ContactMode::none;
+  if (rests) return ContactMode::rest;
+  const Twist a = as_twist(problem_.velocity[members_.place_of(c.pair.body)]);
+  const Twist b = c.pair.with_site() ? members_.other_state(c.pair).twist.rounded()
+                                     : as_twist(problem_.velocity[members_.place_of(c.pair.other_body)]);
+  const Vec2 relative = a.at(members_.arm(c).cast<double>()) - b.at(c.feature.point);
+  const double slow = kNoSpeed * std::sqrt(members_.pull() * members_.size());
+  if (std::abs(cross(c.feature.normal, relative)) > slow) return ContactMode::slip;
+  return std::abs(a.omega - b.omega) * members_.size() > slow ? ContactMode::roll : ContactMode::stick;
+}
+
 Island IslandMotion::island_of(const std::vector<int>& together, bool rests, double now) const {
   Island island;
   const auto has = [&](int body) {
@@ -326,7 +340,11 @@ Island IslandMotion::island_of(const std::vector<int>& together, bool rests, dou
   };
   for (const int i : together) island.members.push_back(members_.bodies()[i]);
   for (const HeldContact& c : contacts_)
-    if (has(c.pair.body) && (c.pair.with_site() || has(c.pair.other_body))) island.contacts.push_back(c);
+    if (has(c.pair.body) && (c.pair.with_site() || has(c.pair.other_body))) {
+      HeldContact& held = island.contacts.emplace_back(c);
+      held.mode = mode_of(c, rests);
+      held.place = members_.other_state(c.pair).position.cast<double>() + c.feature.point;
+    }
   island.rests = rests;
   if (!rests) island.due = now + h_;
   if (rests)  // until forces jump

@@ -68,6 +68,7 @@ class IslandMotion {
   double kinetic_energy() const;
   bool pushes(const HeldContact& c) const;
   bool stays_near(const HeldContact& c) const;
+  ContactMode mode_of(const HeldContact& c, bool rests) const;
   std::vector<Vec3> velocities() const;
 
   IslandMembers members_;

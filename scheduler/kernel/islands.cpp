@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "brink/core/base/disjoint_sets.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
 
 namespace brink {
@@ -38,7 +39,9 @@ WarmForces Islands::take_out(const std::set<int>& members) {
     if (found->second.rests) note_change(EventKind::wake, k), ++tally_.woken;
     for (const HeldContact& c : found->second.contacts) {
       search_->search_again(c.pair);
-      forces[{c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site}] = {c.normal_force, c.lasted};
+      const Feature key{c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site};
+      forces[key] = {c.normal_force, c.lasted};
+      if (c.mode != ContactMode::none) taken_out_.emplace(key, c);
     }
     for (const int j : found->second.members) lead_of_.erase(j);
     islands_.erase(found);
@@ -47,10 +50,29 @@ WarmForces Islands::take_out(const std::set<int>& members) {
 }
 
 void Islands::put_in(Island island) {
-  for (const HeldContact& c : island.contacts) search_->leave_out(c.pair);
+  for (HeldContact& c : island.contacts) {
+    search_->leave_out(c.pair);
+    if (c.mode == ContactMode::none) continue;
+    const auto before = taken_out_.find({c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site});
+    const bool goes_on = before != taken_out_.end() && before->second.mode == c.mode;
+    c.since = goes_on ? before->second.since : run_->time();
+    if (goes_on) taken_out_.erase(before);
+  }
   const int lead = island.members.front();
   for (const int k : island.members) lead_of_[k] = lead;
   islands_[lead] = std::move(island);
+}
+
+/// Those that were taken out and are in no island now have ended.
+void Islands::tell_ended() {
+  for (const auto& [feature, c] : taken_out_) records_->lasted(c);
+  taken_out_.clear();
+}
+
+void Islands::tell_lasting() const {
+  for (const auto& [lead, island] : islands_)
+    for (const HeldContact& c : island.contacts)
+      if (c.mode != ContactMode::none) records_->lasted(c);
 }
 
 void Islands::find_next() {
@@ -117,12 +139,14 @@ bool Islands::begin_step(std::set<int> members, double longest, std::vector<int>
                     "contacts",
                     members.size(), world_->bodies[*members.begin()].name, run_->time()));
     trajectories_->release(std::vector<int>(members.begin(), members.end()), changed);
+    tell_ended();
     find_next();
     return false;
   }
   ++tally_.steps;
   if (rests) note_change(EventKind::sleep, *members.begin()), ++tally_.slept;
   part(motion, rests, changed);
+  tell_ended();
   std::sort(changed.begin(), changed.end());
   changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
   find_next();
@@ -177,6 +201,24 @@ bool Islands::capture(const PairKey& pair, const FeatureContact& contact, double
   return true;
 }
 
+bool Islands::begin(const std::vector<std::pair<PairKey, FeatureContact>>& touching,
+                    std::vector<int>& changed) {
+  DisjointSets joined;
+  joined.reset(trajectories_->body_count());
+  for (const auto& [pair, contact] : touching) {
+    records_->ending(EventKind::persist, pair, contact, records_->last_event());
+    ++tally_.captured;
+    if (!pair.with_site()) joined.unite(pair.body, pair.other_body);
+  }
+  for (const auto& [pair, contact] : touching) {
+    if (is_member(pair.body)) continue;  // with another of its contacts
+    std::set<int> members;
+    for (const int k : joined.of(pair.body)) gather(k, members);
+    if (!begin_step(members, std::numeric_limits<double>::infinity(), changed)) return false;
+  }
+  return true;
+}
+
 int Islands::next_island() const {
   return std::find_if(islands_.begin(), islands_.end(),
                       [&](const auto& i) { return i.second.due == next_step_; })
@@ -221,7 +263,13 @@ void Islands::restore(const Saved& saved) {
     for (const HeldContact& c : island.contacts) search_->search_again(c.pair);
   islands_.clear();
   lead_of_.clear();
-  for (const Island& island : saved.islands) put_in(island);
+  taken_out_.clear();
+  for (const Island& island : saved.islands) {
+    for (const HeldContact& c : island.contacts)  // they go on
+      if (c.mode != ContactMode::none)
+        taken_out_.emplace(Feature{c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site}, c);
+    put_in(island);
+  }
   tally_ = saved.tally;
   find_next();
 }

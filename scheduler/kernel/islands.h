@@ -1,6 +1,7 @@
 #pragma once
 /// Islands: bodies joined by contacts that last. An island is at rest, or goes on in steps of constant twists.
 ///
+///   begin      bodies start touching: they are an island from the start
 ///   capture    bounces of a pair have come to their limit: its bodies are an island from now on
 ///   step       what has come apart leaves; the others move on together (island_step.h), or come to rest
 ///   collided   a member was hit: what it hit may join, and the island begins a step at once
@@ -44,6 +45,9 @@ class Islands {
   /// The pair's bounces come to an end at `limit` [s]: from now on their contact lasts. Where nothing cuts the
   /// first step, it ends there, and the event `zeno` is told.
   bool capture(const PairKey& pair, const FeatureContact& contact, double limit, std::vector<int>& changed);
+  /// Contacts that are there at the start, and neither close nor part: they last from now on, and the bodies
+  /// that they join are islands.
+  bool begin(const std::vector<std::pair<PairKey, FeatureContact>>& touching, std::vector<int>& changed);
   /// The island whose step ends now, and first, takes its next.
   bool step(std::vector<int>& changed);
   /// A collision has been resolved, of which one side at least is a member.
@@ -56,6 +60,8 @@ class Islands {
     IslandTally tally;
   };
   Saved saved() const;
+  /// Tells the records of contacts that last still, up to the present time.
+  void tell_lasting() const;
   /// @pre the trajectories are restored.
   void restore(const Saved& saved);
 
@@ -68,6 +74,7 @@ class Islands {
   void note_impact(const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r);
   WarmForces take_out(const std::set<int>& members);
   void put_in(Island island);
+  void tell_ended();
   void find_next();
 
   const World* world_;
@@ -81,6 +88,8 @@ class Islands {
   bool allowed_ = false;
   std::map<int, Island> islands_;
   std::map<int, int> lead_of_;  ///< of every member
+  using Feature = std::tuple<PairKey, bool, int, int>;
+  std::map<Feature, HeldContact> taken_out_;  ///< that pressed, until it is known whether they go on
   double next_step_ = std::numeric_limits<double>::infinity();
   IslandTally tally_;
 };
