@@ -203,11 +203,12 @@ bool Kernel::judge(const Outcome& o, std::vector<int>& changed) {
       parts_.records.ending(EventKind::zeno, o.pair, o.contact, ending->time);
       stop(Termination::failed,
            fmt::format(
-               "Zeno at t = {:.15g} after {} bounces of {}: a contact that lasts begins, and those are "
-               "not in this release",
+               "Zeno at t = {:.15g} after {} bounces of {}: a contact that lasts begins, and {} ends there",
                ending->time,
                std::max<std::uint64_t>(ending->count, parts_.speculation.certain(o.pair.body).streak),
-               name_of(o.pair)));
+               name_of(o.pair),
+               options().persistent ? fmt::format("policy \"{}\"", options().policy)
+                                    : "solver.persistent = false"));
       return false;
     case Ending::Kind::group:
       parts_.records.ending(EventKind::group, o.pair, o.contact, parts_.records.last_event());

@@ -33,7 +33,7 @@ struct SolverOptions {
   double contact_tolerance = 1e-10;  ///< of the scene's length
   /// Contacts may last: where bounces come to their limit the run goes on, in steps of order 1 or at rest
   /// (docs/contacts-that-last.md). Else it ends there.
-  bool persistent = false;
+  bool persistent = true;
   /// Where contacts hold an island and nothing of it is faster than this, it is taken to be at rest [m/s]; the
   /// energy that goes with it is told. 0: an island is at rest where nothing of its motion is left.
   double rest_speed = 0.0;
