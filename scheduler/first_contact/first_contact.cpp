@@ -9,6 +9,7 @@
 
 #include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/first_contact/closed_forms.h"
+#include "brink/scheduler/first_contact/corners.h"
 #include "brink/scheduler/first_contact/pair_view.h"
 #include "brink/scheduler/first_contact/site_step.h"
 
@@ -16,6 +17,9 @@ namespace brink {
 
 namespace {
 
+using detail::come_to_overlap;
+using detail::Corner;
+using detail::corner_at;
 using detail::Feature;
 using detail::Half;
 using detail::PairView;
@@ -440,6 +444,7 @@ class PairSearch {
       nearest -= then.q.dot(then.rate) / then.rate.squaredNorm();
     }
     then = to_tip(nearest);
+    if (!corners_cross(half, f, at_a, then.rate, there)) return false;
     const double rounding = there.gap_rounding(half, f.sample, then.q + tip);
     if (!(nearest <= window_end_ && then.q.norm() <= 4.0 * rounding)) return false;
     const double before = std::max(0.5 * limits_.touch, 8.0 * rounding), speed = then.rate.norm();
@@ -447,6 +452,16 @@ class PairSearch {
     const double low = nearest - 2.0 * before / speed;
     if (low < std::max(view_.start(), from_)) return remember(half, f, t_);
     return remember(half, f, last_clear_time(clear, low, nearest), 2.0 * rounding / speed);
+  }
+
+  /// True if the sample's corner, at the site's end, comes to overlap with that as it moves along d (T's frame).
+  bool corners_cross(const Half& half, const Feature& f, bool at_a, const Vec2& d,
+                     const PairView& there) const {
+    const Frame &s = there.placed(half.s).frame, &t = there.placed(half.t).frame;
+    Corner corner = corner_at(half.samples_of(), half.sample(f.sample));
+    for (Vec2* normal : {&corner.before, &corner.after})
+      *normal = t.direction_to_local(s.direction_to_world(*normal));
+    return come_to_overlap(corner, corner_at(half.site(f.site), at_a), d);
   }
 
   /// Keeps the contact if it is the earliest so far (ties: lowest half, sample, site). Always true. The

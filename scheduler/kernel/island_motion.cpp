@@ -78,7 +78,7 @@ void IslandMotion::pass_on_impacts(const Impact& told) {
     double most = 0.0;
     for (const HeldContact& c : contacts_) {
       const double closing = members_.closing_speed(c);
-      if (closing <= most || closing <= most_absorbed(c.pair)) continue;
+      if (closing <= most || closing <= most_absorbed(c.pair) || passes_by(c, 0.0, closing)) continue;
       most = closing;
       fastest = &c;
     }
@@ -206,7 +206,15 @@ IslandMotion::Arrival IslandMotion::arrival(const HeldContact& c, const std::vec
     gap = next;
     if (gap <= search_->limits().tolerance) break;
   }
-  return {t, closing};
+  return passes_by(c, t, closing) ? Arrival{} : Arrival{t, closing};
+}
+
+/// True if what comes to the end of a site does not meet it, but goes by: some tolerances further on it is not
+/// behind it.
+bool IslandMotion::passes_by(const HeldContact& c, double then, double closing) const {
+  const double tolerance = search_->limits().tolerance;
+  if (!c.feature.at_end || !(closing > 0.0)) return false;
+  return members_.gap(c, then + 4.0 * tolerance / closing, velocities()) - kept(c.feature) > -tolerance;
 }
 
 /// An approach as slow as this would be back within the step [m/s].

@@ -21,7 +21,8 @@ class Maker {
                                              : 0.99 * random_.uniform();
     out_ << std::setprecision(17) << "# drop " << seed_
          << "\n[world]\nduration = 6.0\ngravity = [0.0, -9.81]\n"
-         << "[solver]\nmax_collisions = 20000\n[materials.default]\nrestitution = " << e << "\n";
+         << "[solver]\npersistent = false\nmax_collisions = 20000\n[materials.default]\nrestitution = " << e
+         << "\n";
     if (random_.below(3) == 0) out_ << "friction = " << random_.uniform(0.0, 1.0) << "\n";
     floor();
     const double turn = random_.below(3) == 0 ? 0.5 * std::numbers::pi * static_cast<double>(random_.below(4))

@@ -94,7 +94,8 @@ class Maker {
     if (fall_ > 0.0)
       out_ << "gravity = " << (chance(0.8) ? text(0.0, -fall_) : text(0.6 * fall_, 0.8 * fall_)) << "\n";
     if (room_ == Room::periodic) out_ << "periodic = " << text(2.0 * half_x_, 2.0 * half_y_) << "\n";
-    out_ << "[solver]\nmax_collisions = 1500\n";
+    // followed from outside by the impulses that are told; contacts that last have worlds of their own
+    out_ << "[solver]\npersistent = false\nmax_collisions = 1500\n";
     const char* orders[] = {"closing_speed", "depth", "random", "lcp", "reflections"};
     if (chance(0.3)) out_ << "order = \"" << orders[below(5)] << "\"\n";
     if (springs_) out_ << "integrator = \"erk\"\n";

@@ -146,6 +146,9 @@ struct Way {
   std::vector<std::string> sets;
 };
 
+/// What is followed from outside by the impulses that are told; contacts that last have checks of their own.
+inline const std::string kCollisionsAlone = "solver.persistent=false";
+
 inline std::vector<Way> ways(bool with_pass) {
   std::vector<Way> all;
   for (const std::string& policy : exact_policies())
@@ -158,6 +161,7 @@ inline std::vector<Way> ways(bool with_pass) {
   };
   all.insert(all.end(), skips.begin(), skips.end());
   if (with_pass) all.push_back({"pass", {"solver.detector=pass"}});
+  for (Way& way : all) way.sets.push_back(kCollisionsAlone);
   return all;
 }
 
@@ -167,7 +171,7 @@ class Examiner {
 
   Verdict examine(const std::string& text, const std::string& name) {
     verdict_ = {};
-    const Scene scene = parse_scene(text, name);
+    const Scene scene = parse_scene(text, name, {kCollisionsAlone});
     const Told reference = watched(scene);
     verdict_.ending = reference.summary.termination_text();
     verdict_.collisions = reference.summary.collisions;

@@ -69,17 +69,19 @@ TEST(BouncingBall, DroppedFromTenMetresElasticStaysOnTheClosedFormForFiveSeconds
   EXPECT_NEAR(simulator.state(0).pose.position.y(), y, 1e-12);
 }
 
-TEST(BouncingBall, PastTheZenoTimeTheRunEndsHonestly) {
+TEST(BouncingBall, PastTheZenoTimeARunOfCollisionsAloneEndsHonestly) {
   for (const double e : {0.5, 0.8, 0.9}) {
     const double t1 = std::sqrt(2.0 / kGravity), zeno = t1 * (1.0 + e) / (1.0 - e);
-    Simulator simulator(ball_over_floor(e, 1.0, 0.5), {});
+    SolverOptions options;
+    options.persistent = false;
+    Simulator simulator(ball_over_floor(e, 1.0, 0.5), options);
     Events events;
     const RunSummary summary = simulator.run(testing::until(10.0), &events);
     EXPECT_EQ(summary.termination, Termination::failed);
     EXPECT_NE(summary.why.find("Zeno"), std::string::npos) << summary.why;
     ASSERT_FALSE(events.events.empty());
     EXPECT_EQ(events.events.back().kind, EventKind::zeno);
-    EXPECT_NEAR(events.events.back().contact.time, zeno, 1e-9);
+    EXPECT_NEAR(events.events.back().contact.time, zeno, 1e-11);
   }
 }
 

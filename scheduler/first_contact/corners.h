@@ -1,0 +1,51 @@
+#pragma once
+/// Two corners of solids that are at one point: do they come to overlap as one goes on?
+
+#include "brink/core/shapes/curve_site.h"
+#include "brink/core/shapes/outline.h"
+
+namespace brink::detail {
+
+/// A corner by the outward unit normals of the two sides that meet there, in the order of travel.
+struct Corner {
+  Vec2 before = Vec2::Zero(), after = Vec2::Zero();
+
+  static constexpr double kRounding = 1e-12;  ///< of unit normals
+
+  /// Needles included: their two normals are opposite.
+  bool convex() const { return cross(before, after) >= -kRounding; }
+  bool needle() const { return std::abs(cross(before, after)) <= kRounding && before.dot(after) < 0.0; }
+  /// True if the direction is an outward normal of the corner: one between its sides', both included.
+  bool faces(const Vec2& u) const { return cross(before, u) >= -kRounding && cross(u, after) >= -kRounding; }
+};
+
+inline Vec2 right_of(const Vec2& direction) { return -perp(direction); }
+
+/// The corner at an end of a solid's side.
+inline Corner corner_at(const Site& site, bool at_a) {
+  const Vec2 own = right_of(at_a ? direction_at_start(site) : direction_at_end(site));
+  const Vec2 sum = at_a ? site.pseudo_a : site.pseudo_b;
+  const Vec2 rest = sum - own;
+  const bool cusp = std::abs(rest.norm() - 1.0) > 1e-6;  // the pseudo-normal is its tangent then
+  const Vec2 other = cusp ? Vec2(-own) : rest;
+  return at_a ? Corner{other, own} : Corner{own, other};
+}
+
+/// The corner at a solid's vertex sample. @pre sample.before >= 0.
+inline Corner corner_at(const Outline& outline, const Sample& sample) {
+  return {right_of(direction_at_end(outline.sites[static_cast<std::size_t>(sample.before)])),
+          right_of(direction_at_start(outline.sites[static_cast<std::size_t>(sample.after)]))};
+}
+
+/// True if two convex corners that touch at their tips come to overlap as s moves along d: there is no
+/// direction that separates them and in which s does not go back. Grazing is passing by (a corner that slides
+/// over an edge), but of a needle, which has its thickness just behind its tip.
+inline bool come_to_overlap(const Corner& s, const Corner& t, const Vec2& d) {
+  if (!s.convex() || !t.convex()) return false;
+  const double grazing = (s.needle() || t.needle() ? 1e-6 : -1e-6) * d.norm();
+  for (const Vec2& u : {t.before, t.after, Vec2(-s.before), Vec2(-s.after)})
+    if (t.faces(u) && s.faces(-u) && u.dot(d) >= grazing) return false;
+  return true;
+}
+
+}  // namespace brink::detail
