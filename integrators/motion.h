@@ -39,6 +39,7 @@ struct PolynomialPiece {
   std::array<Eigen::Vector3d, kMaxDegree + 1> c{};
 
   BodyState state(double t) const;
+  Acceleration acceleration(double t) const;
   MotionBounds bounds(double from, double to) const;
 };
 
@@ -104,6 +105,9 @@ class Motion {
   BodyState state(double t) const;
   Pose pose(double t) const { return state(t).pose; }
   Twist twist(double t) const { return state(t).twist; }
+
+  /// The exact derivative of twist(t); where pieces of dense output meet, that of the later one.
+  Acceleration rate(double t) const;
 
   /// The state in extended precision: of a parabola from the low-order part of its start on, of anything else
   /// state(t) beside it.
