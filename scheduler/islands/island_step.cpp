@@ -1,7 +1,9 @@
 #include "brink/scheduler/islands/island_step.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 namespace brink {
 
@@ -9,27 +11,33 @@ namespace {
 
 constexpr int kLooks = 8;        ///< along a step
 constexpr int kCorrections = 6;  ///< of gaps that were missed
-constexpr double kAimHigher = 1.1;
+constexpr double kAimHigher = 1.001;
 /// What the solver may miss, of the step's speed: gaps and energy are looked at themselves.
 constexpr double kResidual = 1e-6;
-/// A step may win this part of the energies that it turns over: the solver's rounding, and what faces that turn
-/// push into what lies on them, which the true motion takes from their turning.
+/// A step may win this part of the energies that it turns over, before it is slowed to win none: the solver's
+/// rounding, and what faces that turn push into what lies on them, which the true motion takes from their
+/// turning.
 constexpr double kWonOf = 1e-6;
 /// Friction bounds are taken from normal forces that were found with the bounds before, so often.
 constexpr int kFrictionPasses = 2;
 
-/// `lift`: how much higher than its gap a contact aims.
-StepProblem problem_of(const IslandStep& step, double h, const std::vector<double>& lift) {
+/// A contact that takes part in the step.
+struct Part {
+  std::size_t contact;
+  double lift = 0.0;  ///< how much higher than its gap it aims [m]
+};
+
+StepProblem problem_of(const IslandStep& step, double h, const std::vector<Part>& parts) {
   StepProblem p;
   p.duration = h;
   p.mass = step.mass;
   p.velocity = step.velocity;
   p.force = step.force;
-  for (std::size_t k = 0; k < step.contacts.size(); ++k) {
-    const IslandContact& c = step.contacts[k];
+  for (const Part& part : parts) {
+    const IslandContact& c = step.contacts[part.contact];
     StepContact s;
     s.contact = c.rows;
-    s.gap = std::max(c.gap, 0.0) - lift[k];
+    s.gap = std::max(c.gap, 0.0) - part.lift;
     s.friction_bound = c.friction * c.normal_force * std::min(h, c.force_lasted);
     s.support_velocity = Vec3(c.normal_support, c.tangential_support, 0.0);
     p.contacts.push_back(s);
@@ -38,7 +46,8 @@ StepProblem problem_of(const IslandStep& step, double h, const std::vector<doubl
 }
 
 /// Coulomb by given bounds, each pass with the normal forces of the one before.
-StepResult with_friction(ConeQp& solver, StepProblem& p, const IslandStep& step, int& factorisations) {
+StepResult with_friction(ConeQp& solver, StepProblem& p, const IslandStep& step,
+                         const std::vector<Part>& parts, int& factorisations) {
   StepResult result;
   for (int pass = 0; pass <= kFrictionPasses; ++pass) {
     result = solver.step(p);
@@ -46,7 +55,7 @@ StepResult with_friction(ConeQp& solver, StepProblem& p, const IslandStep& step,
     if (!(result.residual <= kResidual)) break;
     bool same = true;
     for (std::size_t k = 0; k < p.contacts.size(); ++k) {
-      const double bound = step.contacts[k].friction * result.loads[k].normal;
+      const double bound = step.contacts[parts[k].contact].friction * result.loads[k].normal;
       same = same && std::abs(bound - p.contacts[k].friction_bound) <= 1e-9 * bound;
       if (pass < kFrictionPasses) p.contacts[k].friction_bound = bound;
     }
@@ -55,16 +64,46 @@ StepResult with_friction(ConeQp& solver, StepProblem& p, const IslandStep& step,
   return result;
 }
 
-/// How far gap k is missed along the step, at most [m]; <= 0: not at all.
-double missed(std::size_t k, double h, const std::vector<Vec3>& velocity, const GapAlong& gap) {
-  double least = 0.0;
-  for (int look = 1; look <= kLooks; ++look)
-    least = std::min(least, gap(k, h * look / static_cast<double>(kLooks), velocity));
-  return -least;
+/// How a gap is missed along the step [m]; 0: not at all.
+struct Miss {
+  double most = 0.0;
+  double lift = 0.0;  ///< how much higher the contact must aim for the step's end, not to miss it
+};
+
+/// Where a parabola through three looks, one apart, is lowest, from the middle one; 0: at none between them.
+double lowest(double before, double here, double after) {
+  const double bend = before - 2.0 * here + after, at = 0.5 * (before - after) / bend;
+  return bend > 0.0 && std::abs(at) < 1.0 ? at : 0.0;
 }
 
-/// What the bodies won in the step beyond what forces and moving supports gave them [J].
-double won(const IslandStep& step, const StepResult& result, double h, double& of) {
+/// By looks along the step, and where parabolas through them dip in between.
+Miss missed(std::size_t k, double h, const std::vector<Vec3>& velocity, const GapAlong& gap) {
+  Miss miss;
+  std::array<double, kLooks + 1> seen;
+  const auto look = [&](double at) {
+    const double part = at / kLooks, there = gap(k, h * part, velocity);
+    miss.most = std::max(miss.most, -there);
+    miss.lift = std::max(miss.lift, -there / std::max(part, 0.5 / kLooks));
+    return there;
+  };
+  for (int i = 0; i <= kLooks; ++i) seen[i] = i == 0 ? gap(k, 0.0, velocity) : look(i);
+  for (int i = 1; i < kLooks; ++i)
+    if (const double at = lowest(seen[i - 1], seen[i], seen[i + 1]); at != 0.0) look(i + at);
+  return miss;
+}
+
+/// The loads of those that took part, at their contacts' places.
+std::vector<ContactLoad> of_all(const std::vector<ContactLoad>& loads, const std::vector<Part>& parts,
+                                std::size_t contacts) {
+  std::vector<ContactLoad> all(contacts);
+  for (std::size_t k = 0; k < parts.size(); ++k) all[parts[k].contact] = loads[k];
+  return all;
+}
+
+/// What the bodies won in the step beyond what forces and moving supports gave them [J]; `of`: the energies
+/// that it turned over, and the work of the forces along the contact tolerance.
+double won(const IslandStep& step, const StepResult& result, const std::vector<Part>& parts, double h,
+           double tolerance, double& of) {
   double change = 0.0;
   for (std::size_t i = 0; i < step.mass.size(); ++i)
     for (int k = 0; k < 3; ++k) {
@@ -72,13 +111,30 @@ double won(const IslandStep& step, const StepResult& result, double h, double& o
       const double before = step.velocity[i][k], after = result.velocity[i][k];
       change += 0.5 * step.mass[i][k] * (after - before) * (after + before) - h * step.force[i][k] * after;
       of += 0.5 * step.mass[i][k] * (before * before + after * after) +
-            std::abs(h * step.force[i][k] * after) +
+            std::abs(step.force[i][k]) * (std::abs(h * after) + (k < 2 ? tolerance : 0.0)) +
             h * h * step.force[i][k] * step.force[i][k] / step.mass[i][k];
     }
-  for (std::size_t k = 0; k < step.contacts.size(); ++k)
-    change -= result.loads[k].normal * step.contacts[k].normal_support +
-              result.loads[k].tangential * step.contacts[k].tangential_support;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const IslandContact& c = step.contacts[parts[k].contact];
+    if (c.driven)
+      change -= result.loads[k].normal * (c.normal_support + parts[k].lift / h) +
+                result.loads[k].tangential * c.tangential_support;
+  }
   return change;
+}
+
+/// The part of its velocities at which the step wins nothing: all of it goes the same way then, only not as far.
+double without_winning(const IslandStep& step, const std::vector<Vec3>& velocity, double h) {
+  double before = 0.0, after = 0.0, work = 0.0;  // twice the kinetic energies [J]
+  for (std::size_t i = 0; i < step.mass.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      if (std::isinf(step.mass[i][k])) continue;
+      before += step.mass[i][k] * step.velocity[i][k] * step.velocity[i][k];
+      after += step.mass[i][k] * velocity[i][k] * velocity[i][k];
+      work += h * step.force[i][k] * velocity[i][k];
+    }
+  // after s^2 / 2 - work s - before / 2 = 0
+  return after > 0.0 ? std::min(1.0, (work + std::sqrt(work * work + after * before)) / after) : 1.0;
 }
 
 double residual(const IslandStep& step, const StepResult& result) {
@@ -95,22 +151,46 @@ double residual(const IslandStep& step, const StepResult& result) {
 
 StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap) {
   StepOutcome outcome;
-  std::vector<double> lift(step.contacts.size(), 0.0);
-  for (int again = 0; again < kCorrections && !outcome.solved; ++again) {
-    StepProblem p = problem_of(step, h, lift);
-    const StepResult result = with_friction(solver, p, step, outcome.factorisations);
+  std::vector<Part> parts;
+  std::vector<std::size_t> waiting;
+  for (std::size_t k = 0; k < step.contacts.size(); ++k)
+    if (step.contacts[k].at_end && !(step.contacts[k].normal_force > 0.0))
+      waiting.push_back(k);
+    else
+      parts.push_back({k});
+  for (int again = 0; again < kCorrections && !outcome.solved;) {
+    StepProblem p = problem_of(step, h, parts);
+    StepResult result = with_friction(solver, p, step, parts, outcome.factorisations);
     if (!(result.residual <= kResidual)) return outcome;
-    double worst = 0.0;
-    for (std::size_t k = 0; k < step.contacts.size(); ++k) {
-      const double miss = missed(k, h, result.velocity, gap);
-      worst = std::max(worst, miss);
-      if (miss > 0.1 * tolerance) lift[k] += kAimHigher * miss;
+    // those that are missed take part from now on: each comes once
+    const auto met = std::stable_partition(waiting.begin(), waiting.end(), [&](std::size_t k) {
+      return !(missed(k, h, result.velocity, gap).most > 0.1 * tolerance);
+    });
+    if (met != waiting.end()) {
+      for (auto k = met; k != waiting.end(); ++k) parts.push_back({*k});
+      waiting.erase(met, waiting.end());
+      continue;
     }
+    double worst = 0.0;
+    for (Part& part : parts) {
+      const Miss miss = missed(part.contact, h, result.velocity, gap);
+      worst = std::max(worst, miss.most);
+      if (miss.most > 0.1 * tolerance) part.lift += kAimHigher * miss.lift;
+    }
+    ++again;
     if (worst > tolerance) continue;
     double of = 0.0;
-    const double won_here = won(step, result, h, of);
+    const double won_here = won(step, result, parts, h, tolerance, of);
     if (won_here > kWonOf * of) return outcome;
-    outcome.won = std::max(0.0, won_here);
+    result.loads = of_all(result.loads, parts, step.contacts.size());
+    const bool driven = std::any_of(parts.begin(), parts.end(),
+                                    [&](const Part& part) { return step.contacts[part.contact].driven; });
+    if (won_here > 0.0 && !driven) {
+      const double slower = without_winning(step, result.velocity, h);
+      for (Vec3& v : result.velocity) v *= slower;
+    } else {
+      outcome.won = std::max(0.0, won_here);
+    }
     outcome.solved = true;
     outcome.friction_residual = residual(step, result);
     step.velocity = result.velocity;

@@ -7,6 +7,9 @@
 ///                  contact, and friction within mu times the normal force
 ///     look at the gaps along the step; where one is missed (a face that turns, a hollow arc): aim higher
 ///
+/// The ends of sites take part only where they did in the step before, or once they are missed: what slides
+/// over the joint of two floors does not feel it.
+///
 /// Gaps that are convex in the relative place (discs, straight sides that do not turn) lie above their
 /// tangents: none is missed. Order 1 in h; gaps exact. Sources: Moreau 1988; Anitescu & Potra 1997; friction by
 /// a fixed point of given bounds: Haslinger 1983.
@@ -24,6 +27,8 @@ struct IslandContact {
   LastingContact rows;
   double gap = 0.0;  ///< at the start, less what it must keep [m]
   double friction = 0.0;
+  bool driven = false;  ///< its site moves as it is told, and gives what energy that takes
+  bool at_end = false;  ///< of a site: its tangent bars the way to what passes by, so that is asked for last
   double normal_force = 0.0;      ///< in: of the step before; 0: new. Out: mean over this one [N]
   double force_lasted = 0.0;      ///< how long the step before was [s]
   double tangential_force = 0.0;  ///< out [N]
@@ -43,7 +48,9 @@ using GapAlong = std::function<double(std::size_t k, double moment, const std::v
 struct StepOutcome {
   bool solved = false;  ///< every gap stays above -`tolerance` along the step
   int factorisations = 0;
-  double won = 0.0;  ///< energy that the step made [J]: a part of 1e-6 of what it turned over, at most
+  /// Energy that the step made [J], beyond what sites that move gave: at most 1e-6 of what it turned over. 0 where
+  /// none does: all is slowed by as much then.
+  double won = 0.0;
   double friction_residual = 0.0;  ///< largest |q| - mu p left by bounds that lag, of the largest p
 };
 

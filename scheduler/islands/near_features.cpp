@@ -77,6 +77,7 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   f.point = half.other_frame.to_world(nearest.point + site.radius * out);
   f.normal = half.on_a ? outward : Vec2(-outward);
   f.thin = thin;
+  f.at_end = site.kind != SiteKind::point && nearest.foot != Foot::interior;
   return f;
 }
 

@@ -18,6 +18,7 @@ struct NearFeature {
   Vec2 normal = Vec2::Zero();  ///< world, unit, from b into a
   double gap = 0.0;            ///< [m]
   bool thin = false;           ///< a sharp sample and a wire without thickness
+  bool at_end = false;         ///< of a site that goes on from there: the sample may pass by
 };
 
 /// Features of a and b with a gap up to `reach` [m], in the order of samples of a, then of b, and of sites.

@@ -171,6 +171,21 @@ std::optional<DiscRebound> CollisionResponse::disc_rebound(const PairKey& pair, 
   return rebound(a, b, search_->shift_of(pair), now, 4.0 * ulp(now), level, material.restitution);
 }
 
+/// The limit of bounces in closed form, where both sides fly under constant accelerations between them: the
+/// next flight lasts 2 e v / a, each one after e times as long.
+ForeseenLimit CollisionResponse::foresee(const PairKey& pair, const FeatureContact& found, Real delay) {
+  const Motion &motion = trajectories_->motion_of(pair.body),
+               &other = trajectories_->motion_of(search_->other_owner(pair));
+  const double e = material_of(pair).restitution;
+  if (!(e < 1.0) || !motion.is_ballistic() || !other.is_ballistic()) return {};
+  const double pull = -found.normal.dot(motion.acceleration().linear - other.acceleration().linear);
+  if (!(pull > 0.0)) return {};
+  const double late = static_cast<double>(delay), v = found.closing_speed + pull * late;
+  // what a rounding of the gap takes to fall comes back with every bounce
+  const double rounding = 4.0 * search_->limits().touch / (v * (1.0 - e));
+  return {run_->time() + (late + 2.0 * e * v / (pull * (1.0 - e))), rounding};
+}
+
 std::optional<Outcome> CollisionResponse::part_discs(const PairKey& pair, const FeatureContact& found,
                                                      const DiscRebound& discs, std::vector<int>& changed) {
   double rest = note_resolve(pair.body, pair.other_body, discs.magnitude);
@@ -180,7 +195,7 @@ std::optional<Outcome> CollisionResponse::part_discs(const PairKey& pair, const 
   changed.push_back(pair.body);
   changed.push_back(pair.other_body);
   if (!watch_->discs_resolved(pair, discs.gap)) return std::nullopt;
-  return Outcome{pair, found, discs.impulse, 0.0, discs.delay, rest};
+  return Outcome{pair, found, discs.impulse, 0.0, discs.delay, rest, foresee(pair, found, discs.delay)};
 }
 
 std::optional<Outcome> CollisionResponse::collide(const PairKey& pair, const FeatureContact& found,
@@ -201,7 +216,8 @@ std::optional<Outcome> CollisionResponse::collide(const PairKey& pair, const Fea
   if (!pair.with_site()) rest = std::min(rest, note_resolve(pair.other_body, pair.body, r.magnitude));
   deflect(pair, r, changed);
   if (!watch_->resolved(pair, found, r.delay)) return std::nullopt;
-  return Outcome{pair, found, r.impulse.normal, r.impulse.tangential, r.delay, rest};
+  return Outcome{
+      pair, found, r.impulse.normal, r.impulse.tangential, r.delay, rest, foresee(pair, found, r.delay)};
 }
 
 }  // namespace brink

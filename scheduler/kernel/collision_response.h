@@ -50,6 +50,7 @@ class CollisionResponse {
   std::optional<Outcome> part_discs(const PairKey& pair, const FeatureContact& found,
                                     const DiscRebound& discs, std::vector<int>& changed);
   void deflect(const PairKey& pair, const Change& change, std::vector<int>& changed);
+  ForeseenLimit foresee(const PairKey& pair, const FeatureContact& found, Real delay);
 
   const World* world_;
   Trajectories* trajectories_;

@@ -36,7 +36,7 @@ std::optional<Ending> Endings::collided(const Outcome& o, double now, BounceLoss
                                         std::uint64_t collisions) {
   if (!o.contact.seen)
     if (const auto zeno = zeno_.collided({o.pair, o.contact}, now, o.contact.closing_speed, loss, o.rest,
-                                         o.contact.sink < 0.0))
+                                         o.contact.sink < 0.0, o.limit))
       return Ending{Ending::Kind::zeno, zeno->limit_time, zeno->bounces};
   count_in_instant(o.pair, now);
   if (in_instant_ > 2 * endless()) return Ending{Ending::Kind::endless_group, now, in_instant_};

@@ -273,8 +273,13 @@ class GroupResponse::Group {
       const PairKey& pair = group_[k].pair;
       double rest = rest_[index_of(pair.body)];
       if (!pair.with_site()) rest = std::min(rest, rest_[index_of(pair.other_body)]);
-      told.collisions.push_back({pair, group_[k].contact, static_cast<double>(result_.normal[k]),
-                                 static_cast<double>(result_.tangential[k]), delay_, rest});
+      told.collisions.push_back({pair,
+                                 group_[k].contact,
+                                 static_cast<double>(result_.normal[k]),
+                                 static_cast<double>(result_.tangential[k]),
+                                 delay_,
+                                 rest,
+                                 {}});
     }
     return told;
   }

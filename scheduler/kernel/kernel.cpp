@@ -194,7 +194,7 @@ bool Kernel::judge(const Outcome& o, std::vector<int>& changed) {
   if (!ending) return go_on_in_islands(o, changed) && poll();
   switch (ending->kind) {
     case Ending::Kind::zeno:
-      if (parts_.islands.allowed()) return begin_to_last(o, limit_in_closed_form(o, ending->time), changed);
+      if (parts_.islands.allowed()) return begin_to_last(o, ending->time, changed);
       parts_.records.ending(EventKind::zeno, o.pair, o.contact, ending->time);
       stop(Termination::failed,
            fmt::format(
@@ -220,18 +220,6 @@ bool Kernel::judge(const Outcome& o, std::vector<int>& changed) {
       return false;
   }
   return false;
-}
-
-/// The limit of bounces [s] in closed form, where both sides fly under constant accelerations between them:
-/// the next flight lasts 2 e v / a, each one after e times as long. `seen`: the limit of the series as it was
-/// seen, which stands where that is another (a body that turns).
-double Kernel::limit_in_closed_form(const Outcome& o, double seen) {
-  const Motion &motion = body(o.pair.body).motion, &other = motion_of(parts_.search.other_owner(o.pair));
-  const double e = parts_.response.material_of(o.pair).restitution;
-  if (!motion.is_ballistic() || !other.is_ballistic() || !(e < 1.0)) return seen;
-  const double pull = -o.contact.normal.dot(motion.acceleration().linear - other.acceleration().linear);
-  const double limit = time() + 2.0 * e * o.contact.closing_speed / (pull * (1.0 - e));
-  return pull > 0.0 && std::abs(limit - seen) <= 1e-2 * (seen - time()) ? limit : seen;
 }
 
 /// The pair's bounces have their limit: a contact that lasts begins.

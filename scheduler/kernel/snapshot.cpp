@@ -11,7 +11,7 @@ namespace brink {
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x314b4e4952420007ULL;  // "\7\0BRINK1"
+constexpr std::uint64_t kMagic = 0x314b4e4952420008ULL;  // "\10\0BRINK1"
 
 class Writer {
  public:

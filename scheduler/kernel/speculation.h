@@ -8,6 +8,7 @@
 
 #include "brink/scheduler/events/agenda.h"
 #include "brink/scheduler/kernel/trajectories.h"
+#include "brink/scheduler/resolve/zeno.h"
 
 namespace brink {
 
@@ -18,6 +19,7 @@ struct Outcome {
   double impulse_n = 0.0, impulse_t = 0.0;  ///< [N s]
   Real delay = 0;                           ///< from the clock to the moment of contact [s]
   double rest = 0.0;                        ///< since one of the two was last resolved [s]
+  ForeseenLimit limit;                      ///< of a series of bounces that this is one of
 };
 
 /// One collision ahead of time: what it will tell when it is certain, and what it changed.

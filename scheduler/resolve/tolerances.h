@@ -26,6 +26,12 @@ inline constexpr std::uint64_t kShortSeries = 2;
 /// Flights that rise so many contact tolerances are not remembered: at a restitution of 0.5 ten bounces later
 /// one is a low flight, and is remembered then.
 inline constexpr double kHighFlight = 1e6;
+/// Limits that are foreseen by a closed form are one series' while they agree to this part of what is left:
+/// times and speeds of high flights keep ten digits.
+inline constexpr double kAlikeLimit = 1e-6;
+/// And the form is the flights' own if it agrees with their intervals to this part of what is left: those of a
+/// body that turns shrink by another ratio.
+inline constexpr double kAlikeForm = 1e-2;
 /// Intervals with a ratio so near to 1 are of one length: each is the difference of two times, which keeps ten
 /// digits until it has come down to a millionth of the time itself.
 inline constexpr double kAlike = 1e-6;

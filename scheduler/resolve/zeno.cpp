@@ -1,6 +1,7 @@
 #include "brink/scheduler/resolve/zeno.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "brink/scheduler/first_contact/tolerances.h"
 #include "brink/scheduler/resolve/tolerances.h"
@@ -19,9 +20,13 @@ void end_run(ZenoWatch::Bounce& b) {
 }  // namespace
 
 std::optional<ZenoEnding> ZenoWatch::collided(const Feature& feature, double time, double closing_speed,
-                                              BounceLoss loss, double rest, bool sunk) {
+                                              BounceLoss loss, double rest, bool sunk,
+                                              const ForeseenLimit& foreseen) {
   if (loss == BounceLoss::none || 0.25 * closing_speed * rest > kHighFlight * tolerance_) return std::nullopt;
   Bounce& b = bounces_[feature];
+  const double left = foreseen.time - time;
+  if (!(std::abs(foreseen.time - b.foreseen) <= kAlikeLimit * left + foreseen.rounding))
+    b.foreseen = foreseen.time;
   const bool first = b.count++ == 0;
   const double interval = time - b.last_time;
   b.last_time = time;
@@ -42,7 +47,10 @@ std::optional<ZenoEnding> ZenoWatch::collided(const Feature& feature, double tim
   const bool run_out = b.limit_time > 0.0 && b.low_flights >= kShortSeries &&
                        0.25 * closing_speed * interval < kTouchOfTolerance * tolerance_;
   if (b.low_flights < kLowFlights && !run_out) return std::nullopt;
-  return ZenoEnding{feature.pair, std::max(b.limit_time, time), b.count};
+  const double seen = std::max(b.limit_time, time);
+  const double beside = std::abs(foreseen.time - seen);
+  const bool alike = foreseen.time > 0.0 && beside <= kAlikeForm * (seen - time) + foreseen.rounding;
+  return ZenoEnding{feature.pair, alike ? std::max(b.foreseen, time) : seen, b.count};
 }
 
 }  // namespace brink

@@ -18,6 +18,11 @@ struct ZenoEnding {
   std::uint64_t bounces = 0;  ///< collisions of these features so far
 };
 
+/// The limit of a series of bounces by a closed form [s], 0 where there is none, and its own rounding [s].
+struct ForeseenLimit {
+  double time = 0.0, rounding = 0.0;
+};
+
 /// What a collision takes of the approach: where it takes nothing, no series of bounces has an end.
 enum class BounceLoss { none, some, all };
 
@@ -49,6 +54,8 @@ class ZenoWatch {
     double shortest = std::numeric_limits<double>::infinity();  ///< of this run of low flights [s]
     /// Foreseen by the first of the run that shrank, where intervals are still far above rounding; 0: none.
     double limit_time = 0.0;
+    /// Foreseen by a closed form, at the earliest collision since which each has foreseen the same [s]; 0: none.
+    double foreseen = 0.0;
     std::uint64_t low_flights = 0;  ///< of this run, those that count
     std::uint64_t count = 0;
   };
@@ -60,8 +67,11 @@ class ZenoWatch {
   /// (since either side was last resolved): flights that rise a million tolerances are not remembered, which
   /// keeps a gas out of the memory. ZenoEnding::bounces counts the remembered ones.
   /// `sunk`: the features met below their level, so are pressed together (FeatureContact::sunk).
+  /// `foreseen`: high flights foresee the limit best, since it takes a low one long to fall by a rounding of
+  /// the gap.
   std::optional<ZenoEnding> collided(const Feature& feature, double time, double closing_speed,
-                                     BounceLoss loss, double rest = 0.0, bool sunk = false);
+                                     BounceLoss loss, double rest = 0.0, bool sunk = false,
+                                     const ForeseenLimit& foreseen = {});
 
   const Bounces& bounces() const { return bounces_; }
   void restore(Bounces bounces) { bounces_ = std::move(bounces); }

@@ -52,9 +52,8 @@ TEST_P(BallThatBounces, LiesOnTheFloorAfterTheLimit) {
   EXPECT_TRUE(same_place(simulator.state(0), lies));
 }
 
-// The limit is told where it lies, though the ball has been caught a little before. Today to 1e-10 s (e = .5), 2e-11
-// (.9) and 1e-8 (.99) alone.
-TEST_P(BallThatBounces, DISABLED_TellsTheLimitOfItsBounces) {
+// The limit is told where it lies, though the ball has been caught a little before.
+TEST_P(BallThatBounces, TellsTheLimitOfItsBounces) {
   const double e = GetParam(), limit = limit_of(e);
   Simulator simulator(dropped_ball(e), lasting());
   testing::Events events;
@@ -67,7 +66,9 @@ TEST_P(BallThatBounces, DISABLED_TellsTheLimitOfItsBounces) {
   EXPECT_NEAR(zeno->contact.time, limit, 1e-12 * std::max(1.0, limit));
 }
 
-INSTANTIATE_TEST_SUITE_P(Restitutions, BallThatBounces, ::testing::Values(0.5, 0.9, 0.99));
+INSTANTIATE_TEST_SUITE_P(Restitutions, BallThatBounces, ::testing::Values(0.5, 0.9));
+// After 80 s a collision is told up to 1.4e-14 s early, always early: 1156 of them take 1e-9 s off the limit.
+INSTANTIATE_TEST_SUITE_P(DISABLED_Restitutions, BallThatBounces, ::testing::Values(0.99));
 
 // ---- a stack
 
@@ -130,8 +131,7 @@ World on_a_table(const char* x, const char* y, const Shape& shape) {
   return world;
 }
 
-// Today it finds no step: at rest on what could move, a step wins 2e-24 J of 2e-24 J, all of it rounding.
-TEST(Support, DISABLED_ThatFallsFasterThanItsLoadLetsItFly) {
+TEST(Support, ThatFallsFasterThanItsLoadLetsItFly) {
   Simulator simulator(on_a_table("0", "-10*max(0,t-1)^2", make_box(1.0, 1.0)), lasting());
   ASSERT_EQ(go_on(simulator, 1.0), "");
   const double y = simulator.state(0).pose.position.y();
@@ -139,7 +139,8 @@ TEST(Support, DISABLED_ThatFallsFasterThanItsLoadLetsItFly) {
   EXPECT_EQ(go_on(simulator, 2.0), "");
   std::printf("falls %.6f m in a second, a free body %.6f m\n", y - simulator.state(0).pose.position.y(),
               0.5 * kEarth);
-  EXPECT_NEAR(y - simulator.state(0).pose.position.y(), 0.5 * kEarth, 0.1);  // a step late at most
+  const double step = 0.05 * std::sqrt(std::sqrt(2.0) / kEarth);  // late by so much at most
+  EXPECT_NEAR(y - simulator.state(0).pose.position.y(), 0.5 * kEarth, kEarth * step);
   EXPECT_NEAR(simulator.state(0).pose.angle, 0.0, 1e-9);
 }
 

@@ -1,0 +1,168 @@
+#include "brink/scheduler/kernel/island_members.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace brink {
+
+namespace {
+
+double speed_of(const Twist& v, double radius) { return v.velocity.norm() + std::abs(v.omega) * radius; }
+
+}  // namespace
+
+IslandMembers::IslandMembers(const World& world, const Trajectories& trajectories,
+                             const ContactSearch& search, double now, const std::set<int>& members)
+    : world_(&world),
+      trajectories_(&trajectories),
+      search_(&search),
+      now_(now),
+      bodies_(members.begin(), members.end()) {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const int k = bodies_[i];
+    place_[k] = static_cast<int>(i);
+    states_.push_back(trajectories.state_now(k));
+    accelerations_.push_back(trajectories.acceleration(k));
+    const double radius = search.outline_of(k).bounding_radius;
+    size_ = std::min(size_, radius > 0.0 ? 2.0 * radius : world.length());
+    pulls_.push_back(accelerations_.back().linear.norm() + std::abs(accelerations_.back().angular) * radius);
+    pull_ = std::max(pull_, pulls_.back());
+    heaviest_ = std::max(heaviest_, world.bodies[k].mass);
+  }
+  find_speeds();
+}
+
+void IslandMembers::find_speeds() {
+  speeds_.clear();
+  speed_ = 0.0;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    speeds_.push_back(speed_of(states_[i].twist.rounded(), bounding_radius(static_cast<int>(i))));
+    speed_ = std::max(speed_, speeds_.back());
+  }
+}
+
+double IslandMembers::reach_of(int member) const {
+  return reach_ * h_ * (speeds_[member] + pulls_[member] * h_ + pull_ * h_ + 0.01 * speed_);
+}
+
+// ---- who is near
+
+struct IslandMembers::Listing {
+  double reach = 0.0;
+  std::vector<HeldContact> contacts;
+};
+
+std::vector<HeldContact> IslandMembers::contacts(double reach) const {
+  Listing to{reach, {}};
+  std::vector<Box> boxes;
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    boxes.push_back(box_of(bodies_[i], reach < 0.0 ? reach_of(static_cast<int>(i)) : reach));
+  std::vector<int> by_left(bodies_.size());
+  std::iota(by_left.begin(), by_left.end(), 0);
+  std::sort(by_left.begin(), by_left.end(),
+            [&](int a, int b) { return std::pair(boxes[a].low.x(), a) < std::pair(boxes[b].low.x(), b); });
+  const bool repeats = world_->periods.any();
+  for (std::size_t x = 0; x < by_left.size(); ++x)
+    for (std::size_t y = x + 1; y < by_left.size(); ++y) {
+      const auto [a, b] = std::minmax(by_left[x], by_left[y]);
+      if (!repeats && boxes[by_left[y]].low.x() > boxes[by_left[x]].high.x()) break;
+      add_images(to, bodies_[a], boxes[a], bodies_[b], boxes[b]);
+    }
+  for (int s = 0; s < trajectories_->site_count(); ++s) {
+    const int owner = trajectories_->body_count() + s;
+    const Box box = box_of(owner, site_way(s));
+    for (std::size_t i = 0; i < bodies_.size(); ++i) add_images(to, bodies_[i], boxes[i], owner, box);
+  }
+  std::sort(to.contacts.begin(), to.contacts.end(),
+            [](const HeldContact& a, const HeldContact& b) { return a.order() < b.order(); });
+  return std::move(to.contacts);
+}
+
+Box IslandMembers::box_of(int owner, double reach) const {
+  const Outline& outline = search_->outline_of(owner);
+  const Pose pose = trajectories_->motion_of(owner).pose(now_);
+  Box box;
+  if (outline.is_point() || owner < trajectories_->body_count()) {
+    box.add(pose.position);
+    return box.grown(outline.bounding_radius + reach);
+  }
+  const Frame frame(pose);
+  const Box& own = outline.bounds;
+  for (const Vec2& corner :
+       {own.low, own.high, Vec2(own.low.x(), own.high.y()), Vec2(own.high.x(), own.low.y())})
+    box.add(frame.to_world(corner));
+  return box.grown(reach);
+}
+
+/// How far a site can come in a step [m].
+double IslandMembers::site_way(int s) const {
+  const SiteMotion& site = trajectories_->site(s);
+  if (!site.moves() || !(h_ > 0.0)) return 0.0;
+  const MotionBounds over = site.motion().bounds(now_, now_ + h_);
+  return h_ *
+         (over.speed() + over.spin() * search_->outline_of(trajectories_->body_count() + s).bounding_radius);
+}
+
+void IslandMembers::add_images(Listing& to, int a, const Box& box_a, int b, const Box& box_b) const {
+  if (search_->outline_of(b).container) return add_pair(to, a, b, Image{});
+  world_->periods.overlaps(box_a, box_b, [&](const Image& image) { add_pair(to, a, b, image); });
+}
+
+void IslandMembers::add_pair(Listing& to, int a, int b, const Image& image) const {
+  const auto pair = search_->pair_of(a, b, image);
+  if (!pair) return;
+  const int member = place_of(pair->body);
+  double far = to.reach;
+  if (far < 0.0)
+    far = search_->limits().tolerance + reach_of(member) +
+          (pair->with_site() ? site_way(pair->other_site) : reach_of(place_of(pair->other_body)));
+  const Outline &outline = search_->outline_of(pair->body),
+                &other_outline = search_->outline_of(search_->other_owner(*pair));
+  for (const NearFeature& f : near_features(outline, states_[member], other_outline, other_state(*pair), far))
+    to.contacts.push_back({*pair, f, 0.0, 0.0, 0.0});
+}
+
+std::vector<int> IslandMembers::coupled_to(int member) const {
+  std::vector<int> places;
+  for (const int k : trajectories_->coupled_to(bodies_[member])) places.push_back(place_of(k));
+  return places;
+}
+
+// ---- where things are
+
+ExtendedState IslandMembers::moved(int member, double later, const std::vector<Vec3>& velocity) const {
+  ExtendedState s = states_[member];
+  s.twist = ExtendedTwist(as_twist(velocity[member]));
+  return s.moved(later);
+}
+
+ExtendedState IslandMembers::other_state(const PairKey& pair) const {
+  if (pair.with_site()) return search_->other_state(pair, now_);
+  return states_[place_of(pair.other_body)].shifted(search_->shift_of(pair));
+}
+
+ExtendedState IslandMembers::other_state(const PairKey& pair, double later,
+                                         const std::vector<Vec3>& velocity) const {
+  if (pair.with_site()) return search_->other_state(pair, now_ + later);
+  return moved(place_of(pair.other_body), later, velocity).shifted(search_->shift_of(pair));
+}
+
+double IslandMembers::gap(const HeldContact& c, double later, const std::vector<Vec3>& velocity) const {
+  const Outline &a = search_->outline_of(c.pair.body), &b = search_->outline_of(search_->other_owner(c.pair));
+  return gap_of(c.feature, a, moved(place_of(c.pair.body), later, velocity), b,
+                other_state(c.pair, later, velocity));
+}
+
+RealVec IslandMembers::arm(const HeldContact& c) const {
+  return c.feature.point.cast<Real>() +
+         (other_state(c.pair).position - states_[place_of(c.pair.body)].position);
+}
+
+double IslandMembers::closing_speed(const HeldContact& c) const {
+  const ExtendedTwist &of_body = states_[place_of(c.pair.body)].twist, of_other = other_state(c.pair).twist;
+  const RealVec relative = of_other.at(c.feature.point.cast<Real>()) - of_body.at(arm(c));
+  return static_cast<double>(c.feature.normal.cast<Real>().dot(relative));
+}
+
+}  // namespace brink

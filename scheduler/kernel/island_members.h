@@ -1,0 +1,91 @@
+#pragma once
+/// Bodies of one island at one instant, and everything that is near them.
+
+#include <limits>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "brink/core/contacts/cone_qp.h"
+#include "brink/scheduler/kernel/contact_search.h"
+#include "brink/scheduler/kernel/island.h"
+#include "brink/scheduler/kernel/trajectories.h"
+
+namespace brink {
+
+/// A twist as a column: x, y [m/s], angle [rad/s].
+inline Vec3 as_vector(const Twist& v) { return {v.velocity.x(), v.velocity.y(), v.omega}; }
+inline Twist as_twist(const Vec3& v) { return {{v.x(), v.y()}, v.z()}; }
+
+/// The members' states now and what pulls at them. Members are named by their place in bodies().
+class IslandMembers {
+ public:
+  /// What is given must outlive it. @pre all are held (Trajectories::hold).
+  IslandMembers(const World& world, const Trajectories& trajectories, const ContactSearch& search, double now,
+                const std::set<int>& members);
+
+  std::size_t count() const { return bodies_.size(); }
+  const std::vector<int>& bodies() const { return bodies_; }  ///< ascending
+  const Body& body(int member) const { return world_->bodies[bodies_[member]]; }
+  int place_of(int body) const { return place_.at(body); }
+  const ExtendedState& state(int member) const { return states_[member]; }
+  const Acceleration& acceleration(int member) const { return accelerations_[member]; }
+  /// Gives a member another twist; find_speeds() is due then.
+  void set_twist(int member, const ExtendedTwist& twist) { states_[member].twist = twist; }
+  void find_speeds();
+
+  double size() const { return size_; }          ///< of the smallest [m]
+  double speed() const { return speed_; }        ///< of the fastest point [m/s]
+  double pull() const { return pull_; }          ///< the largest acceleration of a point by forces [m/s^2]
+  double heaviest() const { return heaviest_; }  ///< [kg]
+  double bounding_radius(int member) const { return search_->outline_of(bodies_[member]).bounding_radius; }
+  /// Steps of h [s] are looked ahead from now on: bodies come as far as they may in `reach` of them.
+  void look_ahead(double h, double reach) { h_ = h, reach_ = reach; }
+  /// How far a member may come in a step [m].
+  double reach_of(int member) const;
+
+  /// Every near feature of the members, among each other and with sites, in order. Features are listed up to
+  /// a gap of `reach` [m]; < 0: as far as a step may lead. Cost: members sorted along x, times sites.
+  std::vector<HeldContact> contacts(double reach) const;
+
+  /// The state of the pair's other owner, where its image is; a time `later` [s] into the step, where members
+  /// move with `velocity` (x, y [m/s], angle [rad/s]), and sites as they do. @pre sites are covered as far.
+  ExtendedState other_state(const PairKey& pair) const;
+  ExtendedState other_state(const PairKey& pair, double later, const std::vector<Vec3>& velocity) const;
+  ExtendedState moved(int member, double later, const std::vector<Vec3>& velocity) const;
+  /// The gap of the contact's features then [m].
+  double gap(const HeldContact& contact, double later, const std::vector<Vec3>& velocity) const;
+  /// How fast the two features approach now [m/s].
+  double closing_speed(const HeldContact& contact) const;
+  /// Contact point minus the body's centre of mass [m].
+  RealVec arm(const HeldContact& contact) const;
+  bool on_moving_site(const HeldContact& contact) const {
+    return contact.pair.with_site() && trajectories_->site(contact.pair.other_site).moves();
+  }
+  /// When forces on the member next jump [s]; whether until then they depend on nothing; who is coupled to it.
+  double next_break(int member) const { return trajectories_->next_break(bodies_[member]); }
+  bool is_constant(int member) const { return trajectories_->is_constant(bodies_[member]); }
+  std::vector<int> coupled_to(int member) const;
+
+ private:
+  struct Listing;
+  Box box_of(int owner, double reach) const;
+  double site_way(int site) const;
+  void add_images(Listing& to, int a, const Box& box_a, int b, const Box& box_b) const;
+  void add_pair(Listing& to, int a, int b, const Image& image) const;
+
+  static constexpr double kForever = std::numeric_limits<double>::infinity();
+  const World* world_;
+  const Trajectories* trajectories_;
+  const ContactSearch* search_;
+  double now_;
+  double h_ = 0.0, reach_ = 0.0;
+  std::vector<int> bodies_;
+  std::map<int, int> place_;  ///< of each body
+  std::vector<ExtendedState> states_;
+  std::vector<Acceleration> accelerations_;
+  std::vector<double> speeds_, pulls_;  ///< [m/s], [m/s^2], of any point of each
+  double size_ = kForever, speed_ = 0.0, pull_ = 0.0, heaviest_ = 0.0;
+};
+
+}  // namespace brink

@@ -1,0 +1,311 @@
+#include "brink/scheduler/kernel/island_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "brink/core/base/disjoint_sets.h"
+
+namespace brink {
+
+namespace {
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+/// A step lasts this part of the time in which the smallest member falls by its size ...
+constexpr double kOfFall = 0.05;
+/// ... and moves nobody by more than this part of it.
+constexpr double kOfSize = 0.1;
+/// Features are listed as far as bodies come in so many steps; where impulses take one farther, in more.
+constexpr double kReach = 2.0, kWider = 4.0;
+constexpr int kWidenings = 4;
+constexpr int kHalvings = 16;
+/// Looks along a contact's tangents until it arrives, or passes by.
+constexpr int kTangents = 32;
+/// Impacts of one instant inside an island, at most; what closes then is taken as plastic.
+constexpr std::size_t kFirstImpacts = 100, kImpactsEach = 20;
+/// A force below this part of the weight of the heaviest member is none.
+constexpr double kNoForce = 1e-9;
+
+}  // namespace
+
+IslandMotion::IslandMotion(IslandMembers members, const ContactSearch& search, CollisionResponse& response,
+                           ConeQp& solver, IslandTally& tally, WarmForces warm)
+    : members_(std::move(members)),
+      search_(&search),
+      response_(&response),
+      solver_(&solver),
+      tally_(&tally),
+      warm_(std::move(warm)) {}
+
+double IslandMotion::longest() const {
+  const double pull = members_.pull(), speed = members_.speed();
+  const double fall = pull > 0.0 ? kOfFall * std::sqrt(members_.size() / pull) : kForever;
+  const double way = speed > 0.0 ? kOfSize * members_.size() / speed : kForever;
+  return std::min(fall, way);
+}
+
+void IslandMotion::list(double reach) {
+  contacts_ = members_.contacts(reach);
+  absorbed_ = 0.0;
+}
+
+std::vector<Vec3> IslandMotion::velocities() const {
+  std::vector<Vec3> all;
+  for (std::size_t i = 0; i < members_.count(); ++i)
+    all.push_back(as_vector(members_.state(static_cast<int>(i)).twist.rounded()));
+  return all;
+}
+
+// ---- impacts of this instant
+
+void IslandMotion::pass_on_impacts(const Impact& told) {
+  h_ = longest();
+  members_.look_ahead(0.0, kReach);
+  list(search_->limits().tolerance);
+  for (std::size_t k = 0; k < kFirstImpacts + kImpactsEach * contacts_.size(); ++k) {
+    const HeldContact* fastest = nullptr;
+    double most = 0.0;
+    for (const HeldContact& c : contacts_) {
+      const double closing = members_.closing_speed(c);
+      if (closing <= most || closing <= most_absorbed(c.pair)) continue;
+      most = closing;
+      fastest = &c;
+    }
+    if (!fastest) break;
+    collide(*fastest, most, told);
+  }
+  members_.find_speeds();
+}
+
+ImpulseSide IslandMotion::side_of(int member, const RealVec& arm) const {
+  const Body& b = members_.body(member);
+  return {members_.state(member).twist, arm, b.inverse_mass_x(), b.inverse_mass_y(), b.inverse_inertia()};
+}
+
+void IslandMotion::collide(const HeldContact& c, double closing, const Impact& told) {
+  const int a = members_.place_of(c.pair.body);
+  const int b = c.pair.with_site() ? -1 : members_.place_of(c.pair.other_body);
+  const RealVec other_arm = c.feature.point.cast<Real>();
+  const ExtendedState other = members_.other_state(c.pair);
+  const ImpulseResult r =
+      resolve_impulse(side_of(a, members_.arm(c)),
+                      b < 0 ? ImpulseSide{other.twist, other_arm, 0.0, 0.0, 0.0} : side_of(b, other_arm),
+                      c.feature.normal.cast<Real>(), response_->material_of(c.pair));
+  members_.set_twist(a, r.body);
+  if (b >= 0) members_.set_twist(b, r.other);
+  told(c, other.position, closing, r);
+}
+
+// ---- rest
+
+bool IslandMotion::rests() {
+  const double tolerance = search_->limits().tolerance, pull = members_.pull(), speed = members_.speed();
+  if (!(pull > 0.0) || 2.0 * speed * speed > tolerance * pull) return false;
+  const int count = static_cast<int>(members_.count());
+  for (int i = 0; i < count; ++i)
+    if (!members_.is_constant(i)) return false;
+  h_ = longest();
+  members_.look_ahead(0.0, kReach);
+  list(tolerance);
+  for (const HeldContact& c : contacts_)
+    if (members_.on_moving_site(c)) return false;
+  make_problem();
+  if (!stays_at_rest(*solver_, problem_)) return false;
+  take_forces();
+  for (int i = 0; i < count; ++i) members_.set_twist(i, ExtendedTwist());
+  return true;
+}
+
+// ---- steps
+
+bool IslandMotion::take(double h) {
+  contacts_.clear();
+  if (!(h < kForever)) return true;  // nothing moves or pulls: nobody needs anybody
+  double reach = kReach;
+  const auto look = [&](double step) {
+    h_ = step;
+    members_.look_ahead(h_, reach);
+    list(-1.0);
+  };
+  for (int halving = 0, widening = 0; halving <= kHalvings;) {
+    look(h);
+    if (const double first = next_arrival(); first < h) look(h = first);  // an impact ends the step
+    make_problem();
+    const auto gap = [this](std::size_t k, double later, const std::vector<Vec3>& velocity) {
+      return members_.gap(contacts_[k], later, velocity) - kept(contacts_[k].feature);
+    };
+    const StepOutcome outcome = take_step(*solver_, problem_, h, search_->limits().tolerance, gap);
+    tally_->factorisations += outcome.factorisations;
+    const bool within = outcome.solved && stays_within_reach();
+    if (within) {
+      tally_->friction_residual = std::max(tally_->friction_residual, outcome.friction_residual);
+      tally_->energy_won += outcome.won;
+      tally_->absorbed = std::max(tally_->absorbed, absorbed_);
+      take_forces();
+      return true;
+    }
+    if (outcome.solved && ++widening <= kWidenings) {
+      reach *= kWider;
+      continue;
+    }
+    ++halving;
+    h *= 0.5;
+  }
+  return false;
+}
+
+/// When the first feature comes that closes too fast to be taken as plastic [s]; infinity: none. What touches
+/// has been dealt with.
+double IslandMotion::next_arrival() {
+  double first = kForever;
+  const std::vector<Vec3> velocity = velocities();
+  for (const HeldContact& c : contacts_) {
+    const bool touches = c.feature.gap - kept(c.feature) <= search_->limits().tolerance;
+    const Arrival come = touches ? Arrival{0.0, members_.closing_speed(c)} : arrival(c, velocity);
+    if (!(come.time <= h_)) continue;
+    if (!touches && come.closing > most_absorbed(c.pair))
+      first = std::min(first, come.time);
+    else
+      absorbed_ = std::max(absorbed_, come.closing);
+  }
+  return first;
+}
+
+/// When the two features meet if the members go on as they do now, by its tangents: those of a convex gap lead
+/// to before its root, and so do its secants.
+IslandMotion::Arrival IslandMotion::arrival(const HeldContact& c, const std::vector<Vec3>& velocity) const {
+  double closing = members_.closing_speed(c), gap = c.feature.gap - kept(c.feature), t = 0.0;
+  for (int k = 0; k < kTangents; ++k) {
+    const double way = gap / closing;
+    if (!(closing > 0.0 && t + way <= h_)) return {};
+    const double next = members_.gap(c, t + way, velocity) - kept(c.feature);
+    closing = (gap - next) / way;
+    t += way;
+    gap = next;
+    if (gap <= search_->limits().tolerance) break;
+  }
+  return {t, closing};
+}
+
+/// An approach as slow as this would be back within the step [m/s].
+double IslandMotion::most_absorbed(const PairKey& pair) const {
+  const double e = response_->material_of(pair).restitution;
+  return e > 0.0 ? members_.pull() * h_ / e : kForever;
+}
+
+void IslandMotion::make_problem() {
+  problem_ = {};
+  problem_.velocity = velocities();
+  for (std::size_t i = 0; i < members_.count(); ++i) {
+    const Body& b = members_.body(static_cast<int>(i));
+    const Acceleration& a = members_.acceleration(static_cast<int>(i));
+    problem_.mass.emplace_back(b.lock_x ? kForever : b.mass, b.lock_y ? kForever : b.mass,
+                               b.lock_angle ? kForever : b.inertia);
+    problem_.force.emplace_back(b.mass * a.linear.x(), b.mass * a.linear.y(), b.inertia * a.angular);
+  }
+  for (const HeldContact& c : contacts_) problem_.contacts.push_back(island_contact(c));
+}
+
+IslandContact IslandMotion::island_contact(const HeldContact& c) const {
+  IslandContact made;
+  const int a = members_.place_of(c.pair.body);
+  const int b = c.pair.with_site() ? -1 : members_.place_of(c.pair.other_body);
+  made.rows = contact_at(a, b, c.feature.normal, members_.arm(c).cast<double>(), c.feature.point);
+  made.gap = c.feature.gap - kept(c.feature);
+  made.friction = response_->material_of(c.pair).friction;
+  const auto warm = warm_.find({c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site});
+  if (warm != warm_.end()) std::tie(made.normal_force, made.force_lasted) = warm->second;
+  made.at_end = c.feature.at_end;
+  made.driven = members_.on_moving_site(c);
+  if (made.driven) {  // the mean velocity of its point
+    const ExtendedState from = members_.other_state(c.pair), to = members_.other_state(c.pair, h_, {});
+    const Frame step(
+        {(to.position - from.position).cast<double>(), static_cast<double>(to.angle - from.angle)});
+    const Vec2 v = (step.to_world(c.feature.point) - c.feature.point) / h_;
+    made.normal_support = v.dot(c.feature.normal);
+    made.tangential_support = v.dot(perp(c.feature.normal));
+  }
+  return made;
+}
+
+/// True if nobody moves farther than features were listed for.
+bool IslandMotion::stays_within_reach() const {
+  for (int i = 0; i < static_cast<int>(members_.count()); ++i) {
+    const Twist v = as_twist(problem_.velocity[i]);
+    if (h_ * (v.velocity.norm() + std::abs(v.omega) * members_.bounding_radius(i)) > members_.reach_of(i))
+      return false;
+  }
+  return true;
+}
+
+void IslandMotion::take_forces() {
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    contacts_[k].normal_force = problem_.contacts[k].normal_force;
+    contacts_[k].tangential_force = problem_.contacts[k].tangential_force;
+    contacts_[k].lasted = h_;
+  }
+}
+
+ExtendedState IslandMotion::after(int member) const {
+  ExtendedState s = members_.state(member);
+  s.twist = ExtendedTwist(as_twist(problem_.velocity[member]));
+  return s;
+}
+
+// ---- who stays together
+
+/// A force that is more than a rounding of the heaviest member's weight.
+bool IslandMotion::pushes(const HeldContact& c) const {
+  return c.normal_force > kNoForce * members_.heaviest() * members_.pull();
+}
+
+/// Nothing pushes, but one of the two alone, left to its parabola, could run into the other's step.
+bool IslandMotion::stays_near(const HeldContact& c) const {
+  const double gained = members_.pull() * h_;
+  return !c.pair.with_site() && c.feature.gap <= gained * h_ && members_.closing_speed(c) >= -gained;
+}
+
+IslandMotion::Parts IslandMotion::parts(bool rests) const {
+  const int count = static_cast<int>(members_.count());
+  DisjointSets joined;
+  joined.reset(count);
+  std::vector<bool> pushed(members_.count(), false), seen(members_.count(), false);
+  for (const HeldContact& c : contacts_) {
+    if (!rests && !pushes(c) && !stays_near(c)) continue;
+    const int a = members_.place_of(c.pair.body);
+    const int b = c.pair.with_site() ? a : members_.place_of(c.pair.other_body);
+    pushed[a] = pushed[b] = true;
+    joined.unite(a, b);
+  }
+  for (int i = 0; i < count; ++i)
+    for (const int j : members_.coupled_to(i)) joined.unite(i, j);
+  Parts parts;
+  for (int i = 0; i < count; ++i) {
+    if (seen[i]) continue;
+    std::vector<int> set(joined.of(i).begin(), joined.of(i).end());
+    std::sort(set.begin(), set.end());
+    for (const int j : set) seen[j] = true;
+    if (std::any_of(set.begin(), set.end(), [&](int j) { return pushed[j]; }))
+      parts.together.push_back(std::move(set));
+    else
+      parts.free.insert(parts.free.end(), set.begin(), set.end());
+  }
+  return parts;
+}
+
+Island IslandMotion::island_of(const std::vector<int>& together, bool rests, double now) const {
+  Island island;
+  const auto has = [&](int body) {
+    return std::binary_search(together.begin(), together.end(), members_.place_of(body));
+  };
+  for (const int i : together) island.members.push_back(members_.bodies()[i]);
+  for (const HeldContact& c : contacts_)
+    if (has(c.pair.body) && (c.pair.with_site() || has(c.pair.other_body))) island.contacts.push_back(c);
+  island.rests = rests;
+  if (!rests) island.due = now + h_;
+  if (rests)  // until forces jump
+    for (const int i : together) island.due = std::min(island.due, members_.next_break(i));
+  return island;
+}
+
+}  // namespace brink

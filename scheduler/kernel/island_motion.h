@@ -1,0 +1,81 @@
+#pragma once
+/// How an island goes on from one instant: impacts at once, then rest, or a step of constant twists.
+
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "brink/core/contacts/impulse.h"
+#include "brink/scheduler/islands/island_step.h"
+#include "brink/scheduler/kernel/collision_response.h"
+#include "brink/scheduler/kernel/island_members.h"
+
+namespace brink {
+
+class IslandMotion {
+ public:
+  /// Told of every impact: the contact, its other owner's place, how fast it closed [m/s], the impulse.
+  using Impact =
+      std::function<void(const HeldContact&, const RealVec& from, double closing, const ImpulseResult&)>;
+
+  /// What is given must outlive it. `warm`: forces of the step before.
+  IslandMotion(IslandMembers members, const ContactSearch& search, CollisionResponse& response,
+               ConeQp& solver, IslandTally& tally, WarmForces warm);
+
+  const IslandMembers& members() const { return members_; }
+  /// How long a step may be [s]; infinity: nothing moves or pulls.
+  double longest() const;
+  /// A collision goes on through contacts of this instant: the one that closes fastest first, each by its own
+  /// law, until none closes faster than what a step takes as plastic.
+  void pass_on_impacts(const Impact& told);
+  /// True if the members can be taken to be at rest: what is left of their motion is gone within the contact
+  /// tolerance, and their contacts hold them. They are at rest then.
+  bool rests();
+  /// Takes a step of `h` [s] at most, and less where that does not do. False: not even the shortest does.
+  /// @pre sites are covered as far.
+  bool take(double h);
+
+  /// Members that push each other, or are coupled to such, together; and those that nothing pushes.
+  struct Parts {
+    std::vector<std::vector<int>> together;  ///< members, ascending
+    std::vector<int> free;
+  };
+  Parts parts(bool rests) const;
+  /// The island that these are from now on, at rest or until the step ends.
+  Island island_of(const std::vector<int>& together, bool rests, double now) const;
+  /// The state from which a member moves through the step.
+  ExtendedState after(int member) const;
+  double duration() const { return h_; }  ///< of the step [s]
+
+ private:
+  struct Arrival {
+    double time = std::numeric_limits<double>::infinity();  ///< from now [s]
+    double closing = 0.0;                                   ///< then, or a little before [m/s]
+  };
+  void list(double reach);
+  void collide(const HeldContact& c, double closing, const Impact& told);
+  ImpulseSide side_of(int member, const RealVec& arm) const;
+  double next_arrival();
+  Arrival arrival(const HeldContact& c, const std::vector<Vec3>& velocity) const;
+  double most_absorbed(const PairKey& pair) const;
+  double kept(const NearFeature& f) const { return f.thin ? search_->limits().touch : 0.0; }
+  void make_problem();
+  IslandContact island_contact(const HeldContact& c) const;
+  bool stays_within_reach() const;
+  void take_forces();
+  bool pushes(const HeldContact& c) const;
+  bool stays_near(const HeldContact& c) const;
+  std::vector<Vec3> velocities() const;
+
+  IslandMembers members_;
+  const ContactSearch* search_;
+  CollisionResponse* response_;
+  ConeQp* solver_;
+  IslandTally* tally_;
+  WarmForces warm_;
+  double h_ = 0.0, absorbed_ = 0.0;
+  std::vector<HeldContact> contacts_;
+  IslandStep problem_;
+};
+
+}  // namespace brink
