@@ -45,6 +45,8 @@ class Complementarity {
     return true;
   }
 
+  const RealVector& acceleration() const { return acceleration_; }
+
   ContactMode mode_of(std::size_t k, ContactKnown known, bool frictionless) const {
     const auto found =
         std::find_if(contacts_.begin(), contacts_.end(), [&](const Rows& r) { return r.of == k; });
@@ -119,6 +121,32 @@ ModeChoice choose_modes(const ModeProblem& problem, const ModeMoment& moment,
     if (known[k] != ContactKnown::open)
       choice.modes[k] = problem_of.mode_of(k, known[k], problem.contacts[k].friction == 0.0);
   return choice;
+}
+
+std::optional<std::vector<BodyState>> after_plastic_impact(const ModeProblem& problem, double t,
+                                                           std::vector<BodyState> states,
+                                                           const std::vector<bool>& touching) {
+  ModeMoment m;
+  m.contacts = rates_at(problem, t, states);
+  m.free.resize(3 * problem.bodies());
+  for (int k = 0; k < problem.bodies(); ++k)
+    m.free.segment<3>(3 * k) << states[k].twist.velocity, states[k].twist.omega;
+  std::vector<ContactKnown> known;
+  for (std::size_t k = 0; k < touching.size(); ++k) {
+    ContactRates& r = m.contacts[k];
+    const ModeContact& c = problem.contacts[k];
+    known.push_back(touching[k] ? ContactKnown::still : ContactKnown::open);
+    r.normal_bend =
+        r.normal_velocity - row_of(problem, c, r.normal_on_sample, r.normal_on_site).dot(m.free);
+    r.tangential_bend =
+        r.tangential_velocity - row_of(problem, c, r.tangent_on_sample, r.tangent_on_site).dot(m.free);
+  }
+  Complementarity impact(problem, m, known);
+  if (!impact.solve()) return std::nullopt;
+  for (int k = 0; k < problem.bodies(); ++k)
+    states[k].twist = {impact.acceleration().segment<2>(3 * k).cast<double>(),
+                       static_cast<double>(impact.acceleration()[3 * k + 2])};
+  return states;
 }
 
 }  // namespace brink

@@ -8,6 +8,8 @@
 /// a linear complementarity problem, solved by Lemke's method. Sources: Glocker & Pfeiffer 1993, "Complementarity
 /// problems in multibody systems with planar friction"; Stewart & Trinkle 1996.
 
+#include <optional>
+
 #include "brink/scheduler/islands/modes/mode_problem.h"
 
 namespace brink {
@@ -28,5 +30,12 @@ struct ModeChoice {
 /// @pre moment and known speak of the problem's contacts. Cost: about (3 contacts)^3 in extended precision.
 ModeChoice choose_modes(const ModeProblem& problem, const ModeMoment& moment,
                         const std::vector<ContactKnown>& known);
+
+/// Velocities after contacts that touch have met without a rebound, all of them at once, with Coulomb's law for
+/// impulses (Moreau 1988): the same problem for velocities. Nothing: none were found. `touching`: by contact.
+/// @pre problem.supports move as they do at t.
+std::optional<std::vector<BodyState>> after_plastic_impact(const ModeProblem& problem, double t,
+                                                           std::vector<BodyState> states,
+                                                           const std::vector<bool>& touching);
 
 }  // namespace brink

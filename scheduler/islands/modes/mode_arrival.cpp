@@ -61,7 +61,7 @@ class Watch {
 
   bool comes(const ContactRates& r) const {
     const double speed = std::abs(r.tangential_velocity) + std::abs(r.normal_velocity);
-    return r.gap < -0.5 * slack_ || (r.gap < 0.0 && r.normal_velocity < -kCloses * speed);
+    return r.gap < -0.5 * slack_ || (!contact_.passes && r.gap < 0.0 && r.normal_velocity < -kCloses * speed);
   }
 
   /// The last double at which the gap is not below zero, by halving.

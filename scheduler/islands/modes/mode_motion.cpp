@@ -20,6 +20,8 @@ constexpr double kNoSlip = 1e-12;
 constexpr double kNoSpeed = 1e-9;
 /// Modes are chosen from so far ahead, of a step: what fails has failed there beyond rounding.
 constexpr double kAhead = 1e-5;
+/// Where a feature is left the step leads beyond its end, by this part of the size.
+constexpr double kBeyond = 1e-11;
 /// Changes of mode at one instant, beside a few for every contact.
 constexpr int kChanges = 8, kChangesEach = 4;
 
@@ -46,7 +48,7 @@ ModeMotion::ModeMotion(const ModeProblem& problem, const ModeLimits& limits, dou
       modes_(problem.contacts.size(), ContactMode::open),
       size_(problem.size) {
   set_scales();
-  h_ = std::min(limits_.longest, 0.01 * size_ / speed_);
+  h_ = limits_.longest;
 }
 
 /// Of any point, and what a fall through the size gives.
@@ -65,15 +67,18 @@ bool ModeMotion::begin(const std::vector<bool>& closed) {
   const std::vector<ContactRates> rates = rates_at(problem_, t_, states_);
   std::vector<ContactKnown> known(closed.size(), ContactKnown::open);
   for (std::size_t k = 0; k < closed.size(); ++k) {
-    if (!closed[k] || rates[k].normal_velocity > kNoSpeed * speed_) continue;
+    if (!closed[k]) continue;
     const double slip = rates[k].tangential_velocity;
     known[k] = std::abs(slip) <= kNoSpeed * speed_ ? ContactKnown::still
                : slip > 0.0                        ? ContactKnown::slides_plus
                                                    : ContactKnown::slides_minus;
   }
   const ModeChoice choice = choose_modes(problem_, moment_at(problem_, t_, states_), known);
-  if (!choice.found) return false;
-  modes_ = choice.modes;
+  return choice.found && begin_in(choice.modes);
+}
+
+bool ModeMotion::begin_in(const std::vector<ContactMode>& modes) {
+  modes_ = modes;
   states_ = projected(problem_, t_, std::move(states_), modes_);
   forces_ = forces_in(problem_, moment_at(problem_, t_, states_), modes_);
   return forces_.consistent;
@@ -112,7 +117,8 @@ bool ModeMotion::gaps_hold(const std::vector<PolynomialPiece>& pieces, double h)
     const std::vector<ContactRates> rates = rates_at(problem_, t, states_of(pieces, t));
     for (std::size_t k = 0; k < modes_.size(); ++k)
       if (is_closed(modes_[k]) &&
-          !(std::abs(rates[k].gap - problem_.contacts[k].kept) <= 0.5 * limits_.gap_tolerance))
+          !(std::abs(rates[k].gap - problem_.contacts[k].kept) <=
+            std::min(limits_.gap_tolerance, problem_.contacts[k].off)))
         return false;
   }
   return true;
@@ -257,7 +263,8 @@ ModeStep ModeMotion::step(double until) {
   Look failed;
   const bool fails = fails_within(h, done.pieces, clear, failed);
   if (fails) at = t_ + clear;
-  if (fails && at > t_) done.pieces = pieces_to(at, end = after(clear));
+  if (fails && failed.what == Look::What::range) at = std::min(until, at + kBeyond * size_ / speed_);
+  if (fails && at > t_) done.pieces = pieces_to(at, end = after(at - t_));
   Arrival arrival;
   if (at > t_) arrival = first_arrival(problem_, modes_, done.pieces, t_, at, limits_.touch);
   if (arrival.found) {

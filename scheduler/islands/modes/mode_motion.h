@@ -46,8 +46,11 @@ class ModeMotion {
   /// At time t. `known`: which contacts may be closed. What is given must outlive it.
   ModeMotion(const ModeProblem& problem, const ModeLimits& limits, double t, std::vector<BodyState> states);
 
-  /// Chooses modes: contacts with `closed` that do not part may be closed. False: none are found.
+  /// Chooses modes; contacts with `closed` may be closed: what is left of their v_n is taken away. False: none are
+  /// found.
   bool begin(const std::vector<bool>& closed);
+  /// Goes on in modes that were chosen before. False: they contradict each other.
+  bool begin_in(const std::vector<ContactMode>& modes);
   /// One step towards `until` > time(). After range, arrival, no_modes and lost it cannot go on.
   ModeStep step(double until);
 

@@ -56,12 +56,12 @@ void look_at_circle(const SmoothContact& c, const Placing& at, ContactRates& r) 
   const double side = c.hollow ? -1.0 : 1.0;
   const Vec2 centre = at.site_frame.direction_to_world(c.place), way = at.rho - centre;
   const double distance = way.norm();
-  r.normal = side / distance * way;
+  r.normal = distance > 0.0 ? Vec2(side / distance * way) : Vec2::UnitX();
   const Vec2 t = perp(r.normal);
   r.gap = side * (distance - c.radius) - c.sample_radius;
   const Vec2 u = at.velocity - cross(at.omega_t, centre);
   const double lever = side * distance - c.sample_radius;         // from the centre to the point that touches
-  const double along = t.dot(u), turn = side * along / distance;  // of the normal
+  const double along = t.dot(u), turn = distance > 0.0 ? side * along / distance : 0.0;  // of the normal
   r.normal_velocity = r.normal.dot(u);
   r.tangential_velocity = along - c.sample_radius * at.omega_s - lever * at.omega_t;
   const Vec2 bend = -at.omega_s * at.omega_s * at.arm + at.omega_t * at.omega_t * centre;
@@ -88,36 +88,49 @@ std::array<HalfPlane, 2> sector_of(const Site& arc, const Vec2& from) {
 }
 
 /// The straight or round interior of a site; q: the sample's point, out: the normal, both in its frame.
-void take_interior(SmoothContact& c, const Site& site, const Vec2& q, const Vec2& out) {
+SmoothContact interior_of(SmoothContact c, const Site& site, const Vec2& q, const Vec2& out) {
   if (site.kind == SiteKind::segment) {
     const Vec2 d = (site.b - site.a).normalized();
+    const bool right = site.solid || perp(d).dot(out) < 0.0;  // a solid lies to the left
     c.kind = SmoothContact::Kind::line;
     c.place = site.a;
-    c.normal = perp(d).dot(out) < 0.0 ? Vec2(-perp(d)) : perp(d);
+    c.normal = right ? Vec2(-perp(d)) : perp(d);
     c.radius = site.radius;
     c.range = {beyond(site.a, d), beyond(site.b, -d)};
-    return;
+    return c;
   }
   c.kind = SmoothContact::Kind::circle;
   c.place = site.center;
-  c.hollow = out.dot(q - site.center) < 0.0;
+  c.hollow = site.solid ? site.sweep < 0.0 : (q - site.center).norm() < site.arc_radius;
   c.radius = site.arc_radius + (c.hollow ? -site.radius : site.radius);
   c.range = sector_of(site, site.center);
+  return c;
 }
 
-/// An end of it, or a point.
-void take_end(SmoothContact& c, const Site& site, const Nearest& nearest, const Vec2& q) {
+/// One end of it, or a point.
+SmoothContact end_of(SmoothContact c, const Site& site, bool start, const Vec2& q) {
   c.kind = SmoothContact::Kind::circle;
-  c.place = nearest.point;
+  c.place = start ? site.a : site.b;
   c.radius = site.radius;
   if (site.kind == SiteKind::segment) {
     const Vec2 d = (site.b - site.a).normalized();
-    c.range[0] = beyond(nearest.point, nearest.foot == Foot::start ? Vec2(-d) : d);
+    c.range[0] = beyond(c.place, start ? Vec2(-d) : d);
   } else if (site.kind == SiteKind::arc) {  // as long as the sample's point is outside the sector
-    const std::array<HalfPlane, 2> sector = sector_of(site, site.center);
-    const HalfPlane& edge = sector[nearest.foot == Foot::start ? 0 : 1];
+    const HalfPlane edge = sector_of(site, site.center)[start ? 0 : 1];
     if (edge.within(q) < 0.0) c.range[0] = {-edge.inward, -edge.least};
   }
+  return c;
+}
+
+/// The shapes of a site, the present one first.
+std::vector<SmoothContact> shapes_of(const SmoothContact& sample, const Site& site, const Vec2& q, const Vec2& out) {
+  if (site.kind == SiteKind::point) return {end_of(sample, site, true, q)};
+  const Foot foot = nearest_on(site, q).foot;
+  const SmoothContact interior = interior_of(sample, site, q, out), start = end_of(sample, site, true, q),
+                      end = end_of(sample, site, false, q);
+  if (foot == Foot::interior) return {interior, start, end};
+  if (foot == Foot::start) return {start, interior, end};
+  return {end, interior, start};
 }
 
 }  // namespace
@@ -133,13 +146,11 @@ ContactRates rates_of(const SmoothContact& c, const BodyState& sample_owner, con
   return r;
 }
 
-std::optional<SmoothContact> smooth_contact(const NearFeature& f, const Outline& a,
-                                            const ExtendedState& state_a, const Outline& b,
-                                            const ExtendedState& state_b) {
+std::vector<SmoothContact> smooth_contacts(const NearFeature& f, const Outline& a, const ExtendedState& state_a,
+                                           const Outline& b, const ExtendedState& state_b) {
   const Outline &carrier = f.sample_on_a ? a : b, &other = f.sample_on_a ? b : a;
   const ExtendedState &s = f.sample_on_a ? state_a : state_b, &t = f.sample_on_a ? state_b : state_a;
   const Sample& sample = carrier.samples[f.sample];
-  const Site& site = other.sites[f.site];
   ExtendedState from = s;
   from.position -= t.position;
   const Frame site_frame(Pose{{0.0, 0.0}, t.seen_from(Vec2::Zero()).pose.angle});
@@ -149,13 +160,12 @@ std::optional<SmoothContact> smooth_contact(const NearFeature& f, const Outline&
   c.sample = sample.p;
   c.sample_radius = sample.radius;
   if (sample.arc_site >= 0) c.sector = sector_of(carrier.sites[sample.arc_site], Vec2::Zero());
-  const Nearest nearest = nearest_on(site, q);
-  const bool interior = nearest.foot == Foot::interior && site.kind != SiteKind::point;
-  interior ? take_interior(c, site, q, out) : take_end(c, site, nearest, q);
+  std::vector<SmoothContact> shapes = shapes_of(c, other.sites[f.site], q, out);
+  const SmoothContact& first = shapes.front();
   const double size = carrier.bounding_radius + other.bounding_radius;
-  if (c.kind == SmoothContact::Kind::circle && !((q - c.place).norm() > kNoDirection * size))
-    return std::nullopt;
-  return c;
+  const bool round = first.kind == SmoothContact::Kind::circle;
+  if (round && !((q - first.place).norm() > kNoDirection * size)) shapes.clear();
+  return shapes;
 }
 
 }  // namespace brink

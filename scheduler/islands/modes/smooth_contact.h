@@ -12,7 +12,7 @@
 
 #include <array>
 #include <limits>
-#include <optional>
+#include <vector>
 
 #include "brink/core/base/extended.h"
 #include "brink/core/contacts/cone_qp.h"
@@ -63,10 +63,11 @@ struct ContactRates {
 ContactRates rates_of(const SmoothContact& contact, const BodyState& sample_owner,
                       const BodyState& site_owner);
 
-/// The feature of outlines that are there, as such a constraint. Nothing where it has no one shape around this
-/// place: a sharp point on a sharp point, a disc about its container's centre.
-std::optional<SmoothContact> smooth_contact(const NearFeature& feature, const Outline& a,
-                                            const ExtendedState& state_a, const Outline& b,
-                                            const ExtendedState& state_b);
+/// The feature of outlines that are there, as such constraints: first what the sample is nearest to now, then what
+/// else the site has (its interior, its ends), which the sample may come to. Nothing where the first has no one shape
+/// around this place: a sharp point on a sharp point, a disc about its container's centre.
+std::vector<SmoothContact> smooth_contacts(const NearFeature& feature, const Outline& a,
+                                           const ExtendedState& state_a, const Outline& b,
+                                           const ExtendedState& state_b);
 
 }  // namespace brink

@@ -146,7 +146,7 @@ SmoothContact made_of(const Outline& a, const Pose& at_a, const Outline& b, cons
                       std::size_t which = 0) {
   const ExtendedState sa(BodyState{at_a, {}}), sb(BodyState{at_b, {}});
   const auto found = near_features(a, sa, b, sb, 0.1);
-  return smooth_contact(found.at(which), a, sa, b, sb).value();
+  return smooth_contacts(found.at(which), a, sa, b, sb).at(0);
 }
 
 TEST(SmoothContactOfAFeature, DiscOnAFloorIsItsCentreAgainstALine) {
