@@ -119,6 +119,8 @@ class Motion {
   /// True for a parabola (uniform acceleration, `still` included): closed forms may use start() and
   /// acceleration().
   bool is_ballistic() const { return kind_ == Kind::ballistic; }
+  /// The pieces of dense output; null: a closed form.
+  const Track* track() const { return kind_ == Kind::dense ? other_->track.get() : nullptr; }
   double origin() const { return begin(); }
   const BodyState& start() const { return start_; }
   const BodyState& start_low() const { return low_; }

@@ -217,6 +217,9 @@ const Schema<SolverOptions>& solver_schema() {
                "gap that counts as contact, of the scene's length")
           .key("persistent", &S::persistent, flag(),
                "contacts may last (slides and rolls to first order); false: a Zeno point ends the run")
+          .count(
+              "modes_contacts", &S::modes_contacts, whole(),
+              "few bodies with at most so many contacts that last move to `tolerance`, others to first order")
           .count("kept_states", &S::kept_states, whole(),
                  "policy timewarp: former states of bodies that are kept to go back to, at most")
           .count("max_collisions", &S::max_collisions, whole(), "stop after this many; 0: no limit")

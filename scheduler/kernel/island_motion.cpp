@@ -29,7 +29,7 @@ constexpr double kNoForce = 1e-9;
 }  // namespace
 
 IslandMotion::IslandMotion(IslandMembers members, const ContactSearch& search, CollisionResponse& response,
-                           ConeQp& solver, IslandTally& tally, WarmForces warm)
+                           ConeQp& solver, IslandTally& tally, WarmContacts warm)
     : members_(std::move(members)),
       search_(&search),
       response_(&response),
@@ -68,6 +68,7 @@ void IslandMotion::pass_on_impacts(const Impact& told) {
     for (const HeldContact& c : contacts_) {
       const double closing = members_.closing_speed(c);
       if (closing <= most || closing <= most_absorbed(c.pair)) continue;
+      if (by_modes_ && IslandModes::passes_by(c, contacts_, search_->limits().tolerance)) continue;
       most = closing;
       fastest = &c;
     }
@@ -118,7 +119,25 @@ bool IslandMotion::rests() {
 
 // ---- steps
 
+bool IslandMotion::take(IslandModes& modes, double now, double h, bool on_time) {
+  if (!by_modes_ || !(h < kForever)) return false;
+  double reach = kReach;
+  for (int widening = 0; widening <= kWidenings; ++widening, reach *= kWider) {
+    h_ = h;
+    members_.look_ahead(h_, reach);
+    list(-1.0);
+    const IslandModes::Outcome outcome = modes.take(now, h, contacts_, on_time);
+    if (outcome == IslandModes::Outcome::wider) continue;
+    if (outcome == IslandModes::Outcome::none) return false;
+    contacts_ = modes.contacts();
+    h_ = modes.end() - now;
+    return true;
+  }
+  return false;
+}
+
 bool IslandMotion::take(double h) {
+  by_modes_ = false;
   contacts_.clear();
   if (!(h < kForever)) return true;  // nothing moves or pulls: nobody needs anybody
   double reach = kReach;
@@ -190,7 +209,8 @@ IslandMotion::Arrival IslandMotion::arrival(const HeldContact& c, const std::vec
 /// An approach as slow as this would be back within the step [m/s].
 double IslandMotion::most_absorbed(const PairKey& pair) const {
   const double e = response_->material_of(pair).restitution;
-  return e > 0.0 ? members_.pull() * h_ / e : kForever;
+  if (!(e > 0.0)) return kForever;
+  return by_modes_ ? IslandModes::slowest_bounce(members_, *search_) : members_.pull() * h_ / e;
 }
 
 void IslandMotion::make_problem() {
@@ -213,8 +233,10 @@ IslandContact IslandMotion::island_contact(const HeldContact& c) const {
   made.rows = contact_at(a, b, c.feature.normal, members_.arm(c).cast<double>(), c.feature.point);
   made.gap = c.feature.gap - kept(c.feature);
   made.friction = response_->material_of(c.pair).friction;
-  const auto warm = warm_.find({c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site});
-  if (warm != warm_.end()) std::tie(made.normal_force, made.force_lasted) = warm->second;
+  if (const HeldContact* warm = find_warm(warm_, c)) {
+    made.normal_force = warm->normal_force;
+    made.force_lasted = warm->lasted;
+  }
   made.at_end = c.feature.at_end;
   made.driven = members_.on_moving_site(c);
   if (made.driven) {  // the mean velocity of its point
@@ -293,7 +315,7 @@ IslandMotion::Parts IslandMotion::parts(bool rests) const {
   return parts;
 }
 
-Island IslandMotion::island_of(const std::vector<int>& together, bool rests, double now) const {
+Island IslandMotion::island_of(const std::vector<int>& together, bool rests, double end) const {
   Island island;
   const auto has = [&](int body) {
     return std::binary_search(together.begin(), together.end(), members_.place_of(body));
@@ -302,7 +324,7 @@ Island IslandMotion::island_of(const std::vector<int>& together, bool rests, dou
   for (const HeldContact& c : contacts_)
     if (has(c.pair.body) && (c.pair.with_site() || has(c.pair.other_body))) island.contacts.push_back(c);
   island.rests = rests;
-  if (!rests) island.due = now + h_;
+  if (!rests) island.due = end;
   if (rests)  // until forces jump
     for (const int i : together) island.due = std::min(island.due, members_.next_break(i));
   return island;

@@ -1,8 +1,9 @@
 #pragma once
-/// Islands: bodies joined by contacts that last. An island is at rest, or goes on in steps of constant twists.
+/// Islands: bodies joined by contacts that last. An island is at rest, or goes on in steps.
 ///
 ///   capture    bounces of a pair have come to their limit: its bodies are an island from now on
-///   step       what has come apart leaves; the others move on together (island_step.h), or come to rest
+///   step       what has come apart leaves; the others move on together, few by modes (island_modes.h), many at
+///              the level of velocities (island_step.h), or come to rest
 ///   collided   a member was hit: what it hit may join, and the island begins a step at once
 ///
 /// Steps begin at events and see the states of their members alone, so they are the same whoever schedules.
@@ -27,7 +28,10 @@ class Islands {
           Records& records, RunControl& run);
 
   /// Contacts may last from now on: an option, and a policy that asks for next_step().
-  void allow() { allowed_ = true; }
+  void allow(const IslandModes::Limits& by_modes) {
+    allowed_ = true;
+    by_modes_ = by_modes;
+  }
   bool allowed() const { return allowed_; }
   /// When the next step of an island ends [s]; infinity: none takes steps.
   double next_step() const { return next_step_; }
@@ -59,11 +63,15 @@ class Islands {
 
  private:
   void gather(int body, std::set<int>& members) const;
-  bool begin_step(const std::set<int>& members, double longest, std::vector<int>& changed);
-  void part(const IslandMotion& motion, bool rests, std::vector<int>& changed);
+  bool begin_step(const std::set<int>& members, double longest, std::vector<int>& changed,
+                  bool on_time = false);
+  void part(const IslandMotion& motion, bool rests, const IslandModes* modes, int hasty,
+            std::vector<int>& changed);
+  FeatureContact as_told(const HeldContact& c, const RealVec& from) const;
+  void note_mode(const HeldContact& c, const RealVec& from, EventKind kind);
   void note_change(EventKind kind, int lead);
   void note_impact(const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r);
-  WarmForces take_out(const std::set<int>& members);
+  WarmContacts take_out(const std::set<int>& members, int& hasty);
   void put_in(Island island);
   void find_next();
 
@@ -75,6 +83,7 @@ class Islands {
   RunControl* run_;
   ConeQp solver_;
   bool allowed_ = false;
+  IslandModes::Limits by_modes_;
   std::map<int, Island> islands_;
   std::map<int, int> lead_of_;  ///< of every member
   double next_step_ = std::numeric_limits<double>::infinity();

@@ -136,8 +136,7 @@ std::optional<std::vector<BodyState>> after_plastic_impact(const ModeProblem& pr
     ContactRates& r = m.contacts[k];
     const ModeContact& c = problem.contacts[k];
     known.push_back(touching[k] ? ContactKnown::still : ContactKnown::open);
-    r.normal_bend =
-        r.normal_velocity - row_of(problem, c, r.normal_on_sample, r.normal_on_site).dot(m.free);
+    r.normal_bend = r.normal_velocity - row_of(problem, c, r.normal_on_sample, r.normal_on_site).dot(m.free);
     r.tangential_bend =
         r.tangential_velocity - row_of(problem, c, r.tangent_on_sample, r.tangent_on_site).dot(m.free);
   }

@@ -116,9 +116,8 @@ bool ModeMotion::gaps_hold(const std::vector<PolynomialPiece>& pieces, double h)
     const double t = t_ + h * i / kGapLooks;
     const std::vector<ContactRates> rates = rates_at(problem_, t, states_of(pieces, t));
     for (std::size_t k = 0; k < modes_.size(); ++k)
-      if (is_closed(modes_[k]) &&
-          !(std::abs(rates[k].gap - problem_.contacts[k].kept) <=
-            std::min(limits_.gap_tolerance, problem_.contacts[k].off)))
+      if (is_closed(modes_[k]) && !(std::abs(rates[k].gap - problem_.contacts[k].kept) <=
+                                    std::min(limits_.gap_tolerance, problem_.contacts[k].off)))
         return false;
   }
   return true;

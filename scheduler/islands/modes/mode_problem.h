@@ -29,7 +29,8 @@ struct ModeContact {
   double kept = 0.0;      ///< the gap that it keeps while it is closed [m]
   /// What its gap may be off inside a step [m].
   double off = std::numeric_limits<double>::infinity();
-  bool passes = false;  ///< open: the end of a site that goes on, by which the sample passes, but for roundings
+  bool passes =
+      false;  ///< open: the end of a site that goes on, by which the sample passes, but for roundings
 };
 
 /// Accelerations of all but contacts at time t [s], of bodies at those states.

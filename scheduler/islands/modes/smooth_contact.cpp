@@ -60,7 +60,7 @@ void look_at_circle(const SmoothContact& c, const Placing& at, ContactRates& r) 
   const Vec2 t = perp(r.normal);
   r.gap = side * (distance - c.radius) - c.sample_radius;
   const Vec2 u = at.velocity - cross(at.omega_t, centre);
-  const double lever = side * distance - c.sample_radius;         // from the centre to the point that touches
+  const double lever = side * distance - c.sample_radius;  // from the centre to the point that touches
   const double along = t.dot(u), turn = distance > 0.0 ? side * along / distance : 0.0;  // of the normal
   r.normal_velocity = r.normal.dot(u);
   r.tangential_velocity = along - c.sample_radius * at.omega_s - lever * at.omega_t;
@@ -123,7 +123,8 @@ SmoothContact end_of(SmoothContact c, const Site& site, bool start, const Vec2& 
 }
 
 /// The shapes of a site, the present one first.
-std::vector<SmoothContact> shapes_of(const SmoothContact& sample, const Site& site, const Vec2& q, const Vec2& out) {
+std::vector<SmoothContact> shapes_of(const SmoothContact& sample, const Site& site, const Vec2& q,
+                                     const Vec2& out) {
   if (site.kind == SiteKind::point) return {end_of(sample, site, true, q)};
   const Foot foot = nearest_on(site, q).foot;
   const SmoothContact interior = interior_of(sample, site, q, out), start = end_of(sample, site, true, q),
@@ -146,8 +147,9 @@ ContactRates rates_of(const SmoothContact& c, const BodyState& sample_owner, con
   return r;
 }
 
-std::vector<SmoothContact> smooth_contacts(const NearFeature& f, const Outline& a, const ExtendedState& state_a,
-                                           const Outline& b, const ExtendedState& state_b) {
+std::vector<SmoothContact> smooth_contacts(const NearFeature& f, const Outline& a,
+                                           const ExtendedState& state_a, const Outline& b,
+                                           const ExtendedState& state_b) {
   const Outline &carrier = f.sample_on_a ? a : b, &other = f.sample_on_a ? b : a;
   const ExtendedState &s = f.sample_on_a ? state_a : state_b, &t = f.sample_on_a ? state_b : state_a;
   const Sample& sample = carrier.samples[f.sample];

@@ -1,0 +1,272 @@
+#include "brink/scheduler/kernel/island_modes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "brink/scheduler/kernel/tolerances.h"
+
+namespace brink {
+
+namespace {
+
+/// Integration steps of one island's step, at most.
+constexpr int kMostPieces = 256;
+/// A closed contact's gap may be off by this part of the contact tolerance inside a step, or of what it keeps.
+constexpr double kOff = 0.25;
+/// Where places are rounded to more than this part of a touch, gaps cannot be kept in double precision.
+constexpr double kRounding = 0.1;
+/// An approach slower than this part of the speeds that take part is rounding.
+constexpr double kNoApproach = 1e-11;
+/// A parting, after an impact.
+constexpr double kNoParting = 1e-9;
+
+/// The polynomial that goes on from a state with its twist, for ever.
+PolynomialPiece onward(double t, const BodyState& s) {
+  PolynomialPiece piece;
+  piece.begin = piece.origin = t;
+  piece.end = std::numeric_limits<double>::infinity();
+  piece.degree = 1;
+  piece.c[0] << s.pose.position, s.pose.angle;
+  piece.c[1] << s.twist.velocity, s.twist.omega;
+  return piece;
+}
+
+}  // namespace
+
+IslandModes::IslandModes(const IslandMembers& members, const Trajectories& trajectories,
+                         const ContactSearch& search, CollisionResponse& response, const Limits& limits,
+                         const WarmContacts& warm)
+    : members_(&members),
+      trajectories_(&trajectories),
+      search_(&search),
+      response_(&response),
+      limits_(limits),
+      warm_(&warm) {}
+
+double IslandModes::slowest_bounce(const IslandMembers& members, const ContactSearch& search) {
+  return std::sqrt(2.0 * members.pull() * search.limits().tolerance);
+}
+
+bool IslandModes::passes_by(const HeldContact& c, const std::vector<HeldContact>& all, double tolerance) {
+  if (!c.feature.at_end) return false;
+  return std::any_of(all.begin(), all.end(), [&](const HeldContact& other) {
+    return !other.feature.at_end && other.feature.gap <= tolerance && other.pair == c.pair &&
+           other.feature.sample_on_a == c.feature.sample_on_a && other.feature.sample == c.feature.sample;
+  });
+}
+
+double IslandModes::speed() const {
+  return std::max(members_->speed(), std::sqrt(members_->pull() * members_->size()));
+}
+
+bool IslandModes::suits() const {
+  if (limits_.contacts == 0 || members_->count() > kModeBodies) return false;
+  for (int i = 0; i < static_cast<int>(members_->count()); ++i)
+    if (kEpsilon * members_->state(i).position.cast<double>().norm() > kRounding * search_->limits().touch)
+      return false;
+  const double tolerance = search_->limits().tolerance;
+  return members_->contacts(tolerance).size() <= limits_.contacts;
+}
+
+// ---- the problem
+
+bool IslandModes::touches(const HeldContact& c) const {
+  const double tolerance = search_->limits().tolerance;
+  if (passes_by(c, contacts_, tolerance)) return false;
+  const HeldContact* warm = find_warm(*warm_, c);
+  const bool was_closed = warm && warm->by_modes && is_closed(warm->mode);
+  return c.feature.gap <= (was_closed ? 2.0 : 1.0) * tolerance;
+}
+
+void IslandModes::add_contact(const HeldContact& c) {
+  const int a = members_->place_of(c.pair.body);
+  const Outline &of_a = search_->outline_of(c.pair.body),
+                &of_b = search_->outline_of(search_->other_owner(c.pair));
+  int b = 0;
+  if (c.pair.with_site()) {
+    b = problem_.bodies() + static_cast<int>(problem_.supports.size());
+    problem_.supports.push_back(trajectories_->site(c.pair.other_site).motion());
+  } else {
+    b = members_->place_of(c.pair.other_body);
+  }
+  const bool touching = touches(c);
+  const Vec2 shift = search_->shift_of(c.pair);
+  place_.push_back(problem_.contacts.size());
+  bool present = true;
+  for (SmoothContact& shape :
+       smooth_contacts(c.feature, of_a, members_->state(a), of_b, members_->other_state(c.pair))) {
+    shape.offset = c.feature.sample_on_a ? Vec2(-shift) : shift;
+    ModeContact made;
+    made.shape = shape;
+    made.sample_owner = c.feature.sample_on_a ? a : b;
+    made.site_owner = c.feature.sample_on_a ? b : a;
+    made.friction = response_->material_of(c.pair).friction;
+    made.kept = std::max(c.feature.gap, c.feature.thin ? search_->limits().touch : 0.0);
+    if (c.feature.thin) made.off = kOff * made.kept;
+    made.passes = c.feature.at_end || !present;
+    problem_.contacts.push_back(made);
+    of_.push_back(place_.size() - 1);
+    touching_.push_back(present && touching);
+    present = false;
+  }
+  if (present) place_.back() = std::numeric_limits<std::size_t>::max();  // it has no one shape
+}
+
+void IslandModes::make_problem(std::vector<HeldContact> contacts) {
+  contacts_ = std::move(contacts);
+  problem_ = {};
+  of_.clear();
+  place_.clear();
+  touching_.clear();
+  for (int i = 0; i < static_cast<int>(members_->count()); ++i) {
+    const Body& b = members_->body(i);
+    problem_.inverse_mass.emplace_back(b.inverse_mass_x(), b.inverse_mass_y(), b.inverse_inertia());
+  }
+  problem_.size = members_->size();
+  double jump = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < static_cast<int>(members_->count()); ++i)
+    jump = std::min(jump, members_->next_break(i));
+  problem_.free = [this, jump](double t, std::span<const BodyState> states, std::span<Acceleration> out) {
+    trajectories_->accelerations(members_->bodies(), t < jump ? t : std::nextafter(jump, now_), states, out);
+  };
+  for (const HeldContact& c : contacts_) add_contact(c);
+}
+
+// ---- its beginning
+
+/// What touches and closes meets without a rebound. False: nothing says how.
+bool IslandModes::close_up(States& states, bool& met) const {
+  const std::vector<ContactRates> rates = rates_at(problem_, now_, states);
+  met = false;
+  for (std::size_t k = 0; k < rates.size(); ++k)
+    met = met || (touching_[k] && rates[k].normal_velocity < -kNoApproach * speed());
+  if (!met) return true;
+  auto after = after_plastic_impact(problem_, now_, states, touching_);
+  if (after) states = std::move(*after);
+  return after.has_value();
+}
+
+/// Those that the step before ended in, if they speak of all that touches.
+std::optional<std::vector<ContactMode>> IslandModes::former_modes() const {
+  std::vector<ContactMode> modes(problem_.contacts.size(), ContactMode::open);
+  std::ptrdiff_t closed = 0;
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    if (place_[k] >= modes.size() || !touching_[place_[k]]) continue;
+    const HeldContact* warm = find_warm(*warm_, contacts_[k]);
+    if (!warm || !warm->by_modes) return std::nullopt;
+    modes[place_[k]] = warm->next;
+    closed += is_closed(warm->next);
+  }
+  const auto were_closed = std::count_if(warm_->begin(), warm_->end(), [](const auto& w) {
+    return !w.second.by_modes || is_closed(w.second.next);
+  });
+  if (closed != were_closed) return std::nullopt;
+  return modes;
+}
+
+std::vector<bool> IslandModes::closed_now(const States& states, bool met) const {
+  const std::vector<ContactRates> rates = rates_at(problem_, now_, states);
+  const double slow = 2.0 * slowest_bounce(*members_, *search_);
+  std::vector<bool> closed(problem_.contacts.size(), false);
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const std::size_t at = place_[k];
+    if (at >= closed.size() || !touching_[at]) continue;
+    const HeldContact* warm = find_warm(*warm_, contacts_[k]);
+    const bool known = warm && warm->by_modes, was_open = known && !is_closed(warm->mode);
+    closed[at] =
+        rates[at].normal_velocity <= (met || known ? kNoParting * speed() : slow) && (met || !was_open);
+  }
+  return closed;
+}
+
+// ---- the step
+
+IslandModes::Outcome IslandModes::take(double now, double h, std::vector<HeldContact> contacts,
+                                       bool on_time) {
+  now_ = end_ = now;
+  double until = now + h;
+  States states;
+  for (int i = 0; i < static_cast<int>(members_->count()); ++i) {
+    states.push_back(members_->state(i).rounded());
+    until = std::min({until, members_->next_break(i), trajectories_->steady_until(members_->bodies()[i])});
+  }
+  make_problem(std::move(contacts));
+  bool met = false;
+  if (!(until > now) || !close_up(states, met)) return Outcome::none;
+  const SearchLimits& of = search_->limits();
+  ModeMotion motion(problem_, {limits_.tolerance, kOff * of.tolerance, of.touch, until - now}, now, states);
+  const auto former = on_time && !met ? former_modes() : std::nullopt;
+  if (!(former ? motion.begin_in(*former) : motion.begin(closed_now(states, met)))) return Outcome::none;
+  if (!move_on(motion, until)) return Outcome::none;
+  return within_reach() ? Outcome::moved : Outcome::wider;
+}
+
+/// Modes and forces from the present time on.
+void IslandModes::note(const ModeMotion& motion) {
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    HeldContact& c = contacts_[k];
+    c.by_modes = true;
+    if (place_[k] >= motion.modes().size()) continue;
+    c.mode = c.next = motion.modes()[place_[k]];
+    c.normal_force = motion.forces().normal[place_[k]];
+    c.tangential_force = motion.forces().tangential[place_[k]];
+  }
+}
+
+bool IslandModes::move_on(ModeMotion& motion, double until) {
+  tracks_.clear();
+  for (std::size_t i = 0; i < members_->count(); ++i) tracks_.push_back(std::make_shared<Track>());
+  ModeStep step;
+  for (int n = 0; n < kMostPieces && motion.time() < until; ++n) {
+    if (!(motion.time() > now_)) note(motion);
+    step = motion.step(until);
+    for (std::size_t i = 0; i < step.pieces.size(); ++i) tracks_[i]->pieces.push_back(step.pieces[i]);
+    if (step.end != ModeEnd::step && motion.time() > now_) break;
+    if (step.end != ModeEnd::step && step.end != ModeEnd::change) return false;
+  }
+  end_ = motion.time();
+  if (!(end_ > now_)) return false;
+  const bool lost = step.end == ModeEnd::no_modes || step.end == ModeEnd::lost;
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    HeldContact& c = contacts_[k];
+    c.lasted = end_ - now_;
+    const bool arrives = step.end == ModeEnd::arrival && of_[step.contact] == k;
+    if (lost || arrives) c.by_modes = false;
+    if (place_[k] >= motion.modes().size()) continue;
+    c.next = motion.modes()[place_[k]];
+    c.normal_force = std::max(c.normal_force, motion.forces().normal[place_[k]]);
+  }
+  for (std::size_t i = 0; i < tracks_.size(); ++i)
+    tracks_[i]->pieces.push_back(onward(end_, motion.states()[i]));
+  return true;
+}
+
+/// True if nobody moves farther than features were listed for.
+bool IslandModes::within_reach() const {
+  for (int i = 0; i < static_cast<int>(members_->count()); ++i) {
+    double way = 0.0;
+    for (const PolynomialPiece& p : tracks_[i]->pieces) {
+      if (!(p.end <= end_)) break;
+      const MotionBounds b = p.bounds(p.begin, p.end);
+      way += (p.end - p.begin) * (b.speed() + b.spin() * members_->bounding_radius(i));
+    }
+    if (way > members_->reach_of(i)) return false;
+  }
+  return true;
+}
+
+std::vector<IslandModes::Change> IslandModes::changes() const {
+  std::vector<Change> changes;
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const HeldContact& c = contacts_[k];
+    const HeldContact* warm = find_warm(*warm_, c);
+    if (!warm || !warm->by_modes || warm->mode == c.mode || !is_closed(warm->mode)) continue;
+    if (c.mode == ContactMode::stick) changes.push_back({c, EventKind::stick});
+    if (is_slip(c.mode)) changes.push_back({c, EventKind::slip});
+    if (!is_closed(c.mode)) changes.push_back({c, EventKind::lift});
+  }
+  return changes;
+}
+
+}  // namespace brink
