@@ -135,16 +135,13 @@ void IslandModes::make_problem(std::vector<HeldContact> contacts) {
 
 // ---- its beginning
 
-/// What touches and closes meets without a rebound. False: nothing says how.
-bool IslandModes::close_up(States& states, bool& met) const {
+IslandModes::Meeting IslandModes::meeting(const States& states) const {
   const std::vector<ContactRates> rates = rates_at(problem_, now_, states);
-  met = false;
+  double fastest = 0.0;
   for (std::size_t k = 0; k < rates.size(); ++k)
-    met = met || (touching_[k] && rates[k].normal_velocity < -kNoApproach * speed());
-  if (!met) return true;
-  auto after = after_plastic_impact(problem_, now_, states, touching_);
-  if (after) states = std::move(*after);
-  return after.has_value();
+    if (touching_[k]) fastest = std::max(fastest, -rates[k].normal_velocity);
+  if (fastest <= kNoApproach * speed()) return Meeting::none;
+  return fastest <= 2.0 * slowest_bounce(*members_, *search_) ? Meeting::slow : Meeting::fast;
 }
 
 /// Those that the step before ended in, if they speak of all that touches.
@@ -165,7 +162,9 @@ std::optional<std::vector<ContactMode>> IslandModes::former_modes() const {
   return modes;
 }
 
-std::vector<bool> IslandModes::closed_now(const States& states, bool met) const {
+/// What touches and does not part. Where it meets slowly, or is new, what parts as slowly does not, either: bounces,
+/// and the rocking from one corner to the other, come to their end there.
+std::vector<bool> IslandModes::closed_now(const States& states, Meeting met) const {
   const std::vector<ContactRates> rates = rates_at(problem_, now_, states);
   const double slow = 2.0 * slowest_bounce(*members_, *search_);
   std::vector<bool> closed(problem_.contacts.size(), false);
@@ -174,8 +173,9 @@ std::vector<bool> IslandModes::closed_now(const States& states, bool met) const 
     if (at >= closed.size() || !touching_[at]) continue;
     const HeldContact* warm = find_warm(*warm_, contacts_[k]);
     const bool known = warm && warm->by_modes, was_open = known && !is_closed(warm->mode);
-    closed[at] =
-        rates[at].normal_velocity <= (met || known ? kNoParting * speed() : slow) && (met || !was_open);
+    const bool slowly = met == Meeting::slow || (met == Meeting::none && !known);
+    if (met == Meeting::none && was_open) continue;
+    closed[at] = rates[at].normal_velocity <= (slowly ? slow : kNoParting * speed());
   }
   return closed;
 }
@@ -192,11 +192,16 @@ IslandModes::Outcome IslandModes::take(double now, double h, std::vector<HeldCon
     until = std::min({until, members_->next_break(i), trajectories_->steady_until(members_->bodies()[i])});
   }
   make_problem(std::move(contacts));
-  bool met = false;
-  if (!(until > now) || !close_up(states, met)) return Outcome::none;
+  if (!(until > now)) return Outcome::none;
+  const Meeting met = meeting(states);
+  if (met == Meeting::fast) {
+    auto after = after_plastic_impact(problem_, now, states, touching_);
+    if (!after) return Outcome::none;
+    states = std::move(*after);
+  }
   const SearchLimits& of = search_->limits();
   ModeMotion motion(problem_, {limits_.tolerance, kOff * of.tolerance, of.touch, until - now}, now, states);
-  const auto former = on_time && !met ? former_modes() : std::nullopt;
+  const auto former = on_time && met == Meeting::none ? former_modes() : std::nullopt;
   if (!(former ? motion.begin_in(*former) : motion.begin(closed_now(states, met)))) return Outcome::none;
   if (!move_on(motion, until)) return Outcome::none;
   return within_reach() ? Outcome::moved : Outcome::wider;

@@ -67,9 +67,15 @@ class IslandModes {
   void make_problem(std::vector<HeldContact> contacts);
   void add_contact(const HeldContact& contact);
   bool touches(const HeldContact& c) const;
-  bool close_up(States& states, bool& met) const;
+  /// How what touches meets now.
+  enum class Meeting {
+    none,
+    slow,  ///< so that no bounce of it would leave the contact tolerance
+    fast,
+  };
+  Meeting meeting(const States& states) const;
   std::optional<std::vector<ContactMode>> former_modes() const;
-  std::vector<bool> closed_now(const States& states, bool met) const;
+  std::vector<bool> closed_now(const States& states, Meeting met) const;
   bool move_on(ModeMotion& motion, double until);
   void note(const ModeMotion& motion);
   bool within_reach() const;

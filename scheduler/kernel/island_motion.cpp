@@ -19,6 +19,8 @@ constexpr double kOfSize = 0.1;
 constexpr double kReach = 2.0, kWider = 4.0;
 constexpr int kWidenings = 4;
 constexpr int kHalvings = 16;
+/// Contact tolerances that a contact is open before its bodies are let go from modes.
+constexpr double kClear = 100.0;
 /// Looks along a contact's tangents until it arrives, or passes by.
 constexpr int kTangents = 32;
 /// Impacts of one instant inside an island, at most; what closes then is taken as plastic.
@@ -281,8 +283,12 @@ bool IslandMotion::pushes(const HeldContact& c) const {
   return c.normal_force > kNoForce * members_.heaviest() * members_.pull();
 }
 
-/// Nothing pushes, but one of the two alone, left to its parabola, could run into the other's step.
+/// Nothing pushes, but one of the two alone, left to its parabola, could run into the other's step; or, by modes, it
+/// has just been let go: an open contact is looked at from there on as well as any other, until it is clear of it.
 bool IslandMotion::stays_near(const HeldContact& c) const {
+  if (by_modes_ && c.feature.gap <= kClear * search_->limits().tolerance &&
+      members_.closing_speed(c) >= -std::sqrt(kClear) * IslandModes::slowest_bounce(members_, *search_))
+    return true;
   const double gained = members_.pull() * h_;
   return !c.pair.with_site() && c.feature.gap <= gained * h_ && members_.closing_speed(c) >= -gained;
 }

@@ -124,7 +124,10 @@ bool Islands::begin_step(const std::set<int>& members, double longest, std::vect
   on_time = on_time && run_->work().collisions == collisions;
   const bool rests = motion.rests();
   const double h = std::min(longest, motion.longest());
-  if (!rests && std::isfinite(h) && !trajectories_->cover_sites(now + h)) return false;
+  if (!rests && std::isfinite(h)) {
+    if (!trajectories_->cover_sites(now + h)) return false;
+    trajectories_->follow_sites(now + 2.0 * h);  // what is beyond the end must not depend on who has asked
+  }
   const bool by_modes = !rests && motion.take(modes, now, h, on_time);
   if (!rests && !by_modes && !motion.take(h)) {
     run_->stop(

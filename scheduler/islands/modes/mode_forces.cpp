@@ -84,7 +84,7 @@ System system_of(const ModeProblem& problem, const ModeMoment& moment,
   return s;
 }
 
-/// Forces that the system's columns give, and their margin where they are unique.
+/// Forces that the system's columns give.
 void read_forces(const ModeProblem& problem, const std::vector<ContactMode>& modes, const System& s,
                  const VectorXd& loads, ModeForces& f) {
   for (Eigen::Index i = 0; i < loads.size(); ++i) {
@@ -211,10 +211,9 @@ ModeForces forces_in(const ModeProblem& problem, const ModeMoment& moment,
   f.acceleration += pushed.cwiseProduct(root_of(problem));
   read_forces(problem, modes, s, loads, f);
   if (!with_margin) return f;
-  if (solver.rank() == s.right.size())
-    find_margin(problem, modes, f);
-  else
-    find_admissible(problem, moment, modes, pushed, f);
+  find_margin(problem, modes, f);
+  // redundant: the least forces are some of many
+  if (solver.rank() < s.right.size() && f.margin < 0.0) find_admissible(problem, moment, modes, pushed, f);
   return f;
 }
 
@@ -223,7 +222,7 @@ std::vector<BodyState> projected(const ModeProblem& problem, double t, std::vect
   std::vector<double> off;
   const auto move = [&](bool velocities) {
     const std::vector<VectorXd> rows =
-        closed_rows(problem, rates_at(problem, t, states), modes, velocities, off);
+        closed_rows(problem, rates_at(problem, t, states, modes), modes, velocities, off);
     if (rows.empty()) return;
     const VectorXd change = least_change(problem, rows, off);
     for (int k = 0; k < problem.bodies(); ++k) {

@@ -80,7 +80,7 @@ bool ModeMotion::begin(const std::vector<bool>& closed) {
 bool ModeMotion::begin_in(const std::vector<ContactMode>& modes) {
   modes_ = modes;
   states_ = projected(problem_, t_, std::move(states_), modes_);
-  forces_ = forces_in(problem_, moment_at(problem_, t_, states_), modes_);
+  forces_ = forces_in(problem_, moment_at(problem_, t_, states_, modes_), modes_);
   return forces_.consistent;
 }
 
@@ -94,7 +94,7 @@ double ModeMotion::error_of(const ModeTrial& trial) const {
 }
 
 ModeMotion::Look ModeMotion::look_at(double t, const States& states) const {
-  const ModeMoment m = moment_at(problem_, t, states);
+  const ModeMoment m = moment_at(problem_, t, states, modes_);
   const ModeForces f = forces_in(problem_, m, modes_);
   Look look;
   const auto take = [&](Look::What what, std::size_t contact, double room) {
@@ -114,7 +114,7 @@ ModeMotion::Look ModeMotion::look_at(double t, const States& states) const {
 bool ModeMotion::gaps_hold(const std::vector<PolynomialPiece>& pieces, double h) const {
   for (int i = 1; i < kGapLooks; ++i) {
     const double t = t_ + h * i / kGapLooks;
-    const std::vector<ContactRates> rates = rates_at(problem_, t, states_of(pieces, t));
+    const std::vector<ContactRates> rates = rates_at(problem_, t, states_of(pieces, t), modes_);
     for (std::size_t k = 0; k < modes_.size(); ++k)
       if (is_closed(modes_[k]) && !(std::abs(rates[k].gap - problem_.contacts[k].kept) <=
                                     std::min(limits_.gap_tolerance, problem_.contacts[k].off)))
@@ -132,7 +132,7 @@ bool ModeMotion::fails_within(double h, const std::vector<PolynomialPiece>& piec
     const double ahead = i == kLooks ? h : h * i / kLooks;
     failed = look_at(t_ + ahead, states_of(pieces, t_ + ahead));
     if (failed.room < 0.0) {
-      close_in(clear, ahead, room, failed);
+      close_in(pieces, clear, ahead, room, failed);
       return true;
     }
     clear = ahead;
@@ -141,19 +141,26 @@ bool ModeMotion::fails_within(double h, const std::vector<PolynomialPiece>& piec
   return false;
 }
 
-/// Regula falsi by the Illinois rule (Dowell & Jarratt 1971), with a halving now and then: rooms may jump.
-void ModeMotion::close_in(double& clear, double crossed, double room, Look& failed) const {
-  double below = failed.room;
+/// Regula falsi by the Illinois rule (Dowell & Jarratt 1971); every third time from what has failed alone, for rooms of
+/// redundant contacts are known on that side only; and a halving now and then.
+void ModeMotion::close_in(const std::vector<PolynomialPiece>& pieces, double& clear, double crossed,
+                          double room, Look& failed) const {
+  double below = failed.room, before = crossed, below_before = below;
   int side = 0;
   for (int n = 0; n < kClosings && crossed - clear > 2.0 * ulp(t_ + crossed); ++n) {
-    const bool halve = room <= 0.0 || n % 4 == 3;
-    double h = halve ? 0.5 * (clear + crossed) : clear + (crossed - clear) * (room / (room - below));
+    double h = 0.5 * (clear + crossed);
+    if (n % 3 == 0 && room > 0.0) h = clear + (crossed - clear) * (room / (room - below));
+    if (n % 3 == 1 && below_before < below) {
+      const double root = crossed + below * (before - crossed) / (below - below_before);
+      h = root - 0.01 * (crossed - root);
+    }
     if (!(h > clear && h < crossed)) h = 0.5 * (clear + crossed);
     if (!(h > clear && h < crossed)) break;
-    const Look look = look_at(t_ + h, after(h));
+    const Look look = look_at(t_ + h, states_of(pieces, t_ + h));
     if (look.room < 0.0) {
       if (side < 0) room *= 0.5;
       side = -1;
+      before = crossed, below_before = below;
       crossed = h, below = look.room, failed = look;
     } else {
       if (side > 0) below *= 0.5;
@@ -167,7 +174,7 @@ void ModeMotion::close_in(double& clear, double crossed, double room, Look& fail
 double ModeMotion::arrive(double h, int contact) const {
   double reached = h;
   for (int n = 0; n < kApproaches; ++n) {
-    const ContactRates r = rates_at(problem_, t_ + h, after(h))[contact];
+    const ContactRates r = rates_at(problem_, t_ + h, after(h), problem_.contacts[contact]);
     if (r.gap >= 0.0) reached = h;
     if (r.gap >= 0.0 && r.gap <= limits_.touch) break;
     if (!(r.normal_velocity < 0.0)) break;
@@ -179,7 +186,7 @@ double ModeMotion::arrive(double h, int contact) const {
 }
 
 std::vector<PolynomialPiece> ModeMotion::pieces_to(double end, const States& states) const {
-  const ModeForces f = forces_in(problem_, moment_at(problem_, end, states), modes_, false);
+  const ModeForces f = forces_in(problem_, moment_at(problem_, end, states, modes_), modes_, false);
   std::vector<PolynomialPiece> pieces;
   for (int k = 0; k < problem_.bodies(); ++k)
     pieces.push_back(quintic_piece(t_, states_[k], as_acceleration(forces_.acceleration, k), end, states[k],
@@ -191,12 +198,12 @@ void ModeMotion::accept(double end, States states) {
   if (end - t_ > 1e-9 * limits_.longest) changes_ = 0;
   t_ = end;
   states_ = std::move(states);
-  forces_ = forces_in(problem_, moment_at(problem_, t_, states_), modes_);
+  forces_ = forces_in(problem_, moment_at(problem_, t_, states_, modes_), modes_);
   set_scales();
 }
 
 std::vector<ContactKnown> ModeMotion::known_now(const Look& failed) const {
-  const std::vector<ContactRates> rates = rates_at(problem_, t_, states_);
+  const std::vector<ContactRates> rates = rates_at(problem_, t_, states_, modes_);
   std::vector<ContactKnown> known(modes_.size(), ContactKnown::open);
   for (std::size_t k = 0; k < modes_.size(); ++k) {
     if (!is_closed(modes_[k])) continue;
@@ -215,7 +222,7 @@ bool ModeMotion::change(const Look& failed) {
   const double ahead = std::max(kAhead * h_, 64.0 * ulp(t_));
   const ModeTrial trial = try_step(problem_, modes_, t_, states_, ahead);
   if (!trial.finite) return false;
-  const ModeMoment m = moment_at(problem_, t_ + ahead, trial.states);
+  const ModeMoment m = moment_at(problem_, t_ + ahead, trial.states, modes_);
   ModeChoice choice = choose_modes(problem_, m, known);
   if (choice.found && choice.modes == modes_ && failed.contact >= 0) {
     known[failed.contact] = ContactKnown::open;
@@ -224,7 +231,7 @@ bool ModeMotion::change(const Look& failed) {
   if (!choice.found || choice.modes == modes_) return false;
   modes_ = choice.modes;
   states_ = projected(problem_, t_, std::move(states_), modes_);
-  forces_ = forces_in(problem_, moment_at(problem_, t_, states_), modes_);
+  forces_ = forces_in(problem_, moment_at(problem_, t_, states_, modes_), modes_);
   return forces_.consistent;
 }
 

@@ -77,7 +77,8 @@ class ModeMotion {
   Look look_at(double t, const States& states) const;
   bool gaps_hold(const std::vector<PolynomialPiece>& pieces, double h) const;
   bool fails_within(double h, const std::vector<PolynomialPiece>& pieces, double& clear, Look& failed) const;
-  void close_in(double& clear, double crossed, double room, Look& failed) const;
+  void close_in(const std::vector<PolynomialPiece>& pieces, double& clear, double crossed, double room,
+                Look& failed) const;
   double arrive(double h, int contact) const;
   std::vector<PolynomialPiece> pieces_to(double end, const States& states) const;
   bool change(const Look& failed);

@@ -21,20 +21,33 @@ BodyState state_of(const ModeProblem& problem, int owner, double t, std::span<co
   return owner < problem.bodies() ? states[owner] : problem.supports[owner - problem.bodies()].state(t);
 }
 
+ContactRates rates_at(const ModeProblem& problem, double t, std::span<const BodyState> states,
+                      const ModeContact& c) {
+  ContactRates r = rates_of(c.shape, state_of(problem, c.sample_owner, t, states),
+                            state_of(problem, c.site_owner, t, states));
+  add_support(problem, c.sample_owner, t, r.normal_on_sample, r.tangent_on_sample, r);
+  add_support(problem, c.site_owner, t, r.normal_on_site, r.tangent_on_site, r);
+  return r;
+}
+
 std::vector<ContactRates> rates_at(const ModeProblem& problem, double t, std::span<const BodyState> states) {
-  std::vector<ContactRates> all;
-  all.reserve(problem.contacts.size());
-  for (const ModeContact& c : problem.contacts) {
-    ContactRates r = rates_of(c.shape, state_of(problem, c.sample_owner, t, states),
-                              state_of(problem, c.site_owner, t, states));
-    add_support(problem, c.sample_owner, t, r.normal_on_sample, r.tangent_on_sample, r);
-    add_support(problem, c.site_owner, t, r.normal_on_site, r.tangent_on_site, r);
-    all.push_back(r);
-  }
+  return rates_at(problem, t, states, std::vector(problem.contacts.size(), ContactMode::stick));
+}
+
+std::vector<ContactRates> rates_at(const ModeProblem& problem, double t, std::span<const BodyState> states,
+                                   const std::vector<ContactMode>& modes) {
+  std::vector<ContactRates> all(modes.size());
+  for (std::size_t k = 0; k < modes.size(); ++k)
+    if (is_closed(modes[k])) all[k] = rates_at(problem, t, states, problem.contacts[k]);
   return all;
 }
 
 ModeMoment moment_at(const ModeProblem& problem, double t, std::span<const BodyState> states) {
+  return moment_at(problem, t, states, std::vector(problem.contacts.size(), ContactMode::stick));
+}
+
+ModeMoment moment_at(const ModeProblem& problem, double t, std::span<const BodyState> states,
+                     const std::vector<ContactMode>& modes) {
   ModeMoment m;
   const int bodies = problem.bodies();
   std::vector<Acceleration> free(bodies);
@@ -43,7 +56,7 @@ ModeMoment moment_at(const ModeProblem& problem, double t, std::span<const BodyS
   for (int k = 0; k < bodies; ++k)
     for (int i = 0; i < 3; ++i)
       m.free[3 * k + i] = problem.inverse_mass[k][i] == 0.0 ? 0.0 : as_vector(free[k])[i];
-  m.contacts = rates_at(problem, t, states);
+  m.contacts = rates_at(problem, t, states, modes);
   return m;
 }
 

@@ -55,6 +55,14 @@ struct ModeMoment {
 
 ModeMoment moment_at(const ModeProblem& problem, double t, std::span<const BodyState> states);
 std::vector<ContactRates> rates_at(const ModeProblem& problem, double t, std::span<const BodyState> states);
+/// The same of closed contacts alone; others are left as they are made.
+ModeMoment moment_at(const ModeProblem& problem, double t, std::span<const BodyState> states,
+                     const std::vector<ContactMode>& modes);
+std::vector<ContactRates> rates_at(const ModeProblem& problem, double t, std::span<const BodyState> states,
+                                   const std::vector<ContactMode>& modes);
+/// Of one contact.
+ContactRates rates_at(const ModeProblem& problem, double t, std::span<const BodyState> states,
+                      const ModeContact& contact);
 /// The state of an owner, a body or a support, at that moment.
 BodyState state_of(const ModeProblem& problem, int owner, double t, std::span<const BodyState> states);
 

@@ -58,7 +58,7 @@ ModeTrial try_step(const ModeProblem& problem, const std::vector<ContactMode>& m
     for (int j = 0; j < i; ++j)
       if (kWeights[i][j] != 0.0) place += (h * kWeights[i][j]) * slopes[j];
     const ModeForces f =
-        forces_in(problem, moment_at(problem, t + kNodes[i] * h, as_states(place)), modes, false);
+        forces_in(problem, moment_at(problem, t + kNodes[i] * h, as_states(place), modes), modes, false);
     slopes[i].resize(2 * n);
     slopes[i] << place.tail(n), f.acceleration;
   }
