@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "brink/core/shapes/curve_site.h"
 #include "brink/scheduler/kernel/tolerances.h"
 
 namespace brink {
@@ -20,6 +21,27 @@ constexpr double kRounding = 0.1;
 constexpr double kNoApproach = 1e-11;
 /// A parting, after an impact.
 constexpr double kNoParting = 1e-9;
+
+/// Two features that touch within this part of the smaller size of each other are at one place.
+constexpr double kOnePlace = 1e-6;
+/// A vertex that turns by less than this is a joint.
+constexpr double kTurns = 1e-6;
+
+/// False for a joint of two pieces that hardly turns, or turns away from what may touch it.
+bool is_corner(const Outline& outline, const Sample& sample) {
+  if (sample.arc_site >= 0) return true;
+  if (sample.before >= 0 && sample.after >= 0)
+    return cross(direction_at_end(outline.sites[sample.before]),
+                 direction_at_start(outline.sites[sample.after])) > kTurns;
+  const Site *in = nullptr, *out = nullptr;  // of a wire
+  for (const Site& s : outline.sites) {
+    if (s.kind == SiteKind::point) continue;
+    if (s.b == sample.p) in = &s;
+    if (s.a == sample.p) out = &s;
+  }
+  return !in || !out || std::abs(cross(direction_at_end(*in), direction_at_start(*out))) > kTurns ||
+         direction_at_end(*in).dot(direction_at_start(*out)) < 0.0;
+}
 
 /// The polynomial that goes on from a state with its twist, for ever.
 PolynomialPiece onward(double t, const BodyState& s) {
@@ -48,11 +70,22 @@ double IslandModes::slowest_bounce(const IslandMembers& members, const ContactSe
   return std::sqrt(2.0 * members.pull() * search.limits().tolerance);
 }
 
-bool IslandModes::passes_by(const HeldContact& c, const std::vector<HeldContact>& all, double tolerance) {
-  if (!c.feature.at_end) return false;
-  return std::any_of(all.begin(), all.end(), [&](const HeldContact& other) {
-    return !other.feature.at_end && other.feature.gap <= tolerance && other.pair == c.pair &&
-           other.feature.sample_on_a == c.feature.sample_on_a && other.feature.sample == c.feature.sample;
+bool IslandModes::is_shadow(const ContactSearch& search, const HeldContact& c,
+                            const std::vector<HeldContact>& all) {
+  const Outline &a = search.outline_of(c.pair.body), &b = search.outline_of(search.other_owner(c.pair));
+  const Outline &carrier = c.feature.sample_on_a ? a : b, &other = c.feature.sample_on_a ? b : a;
+  const Sample& sample = carrier.samples[c.feature.sample];
+  const bool sharp = sample.radius + other.sites[c.feature.site].radius == 0.0;
+  const double tolerance = search.limits().tolerance;
+  if (c.feature.at_end && sharp && c.feature.gap <= tolerance) return true;  // it has no direction
+  const bool corner = is_corner(carrier, sample);
+  if (corner && !c.feature.at_end) return false;
+  const double place = kOnePlace * std::min(a.bounding_radius, b.bounding_radius);
+  return std::any_of(all.begin(), all.end(), [&](const HeldContact& o) {
+    if (o.feature.at_end || o.feature.gap > tolerance || !(o.pair == c.pair)) return false;
+    if (o.feature.sample_on_a == c.feature.sample_on_a) return o.feature.sample == c.feature.sample && corner;
+    return (o.feature.point - c.feature.point).norm() <= place &&
+           is_corner(other, other.samples[o.feature.sample]);
   });
 }
 
@@ -65,15 +98,29 @@ bool IslandModes::suits() const {
   for (int i = 0; i < static_cast<int>(members_->count()); ++i)
     if (kEpsilon * members_->state(i).position.cast<double>().norm() > kRounding * search_->limits().touch)
       return false;
-  const double tolerance = search_->limits().tolerance;
-  return members_->contacts(tolerance).size() <= limits_.contacts;
+  const std::vector<HeldContact> near = members_->contacts(search_->limits().tolerance);
+  return near.size() <= limits_.contacts &&
+         std::none_of(near.begin(), near.end(),
+                      [this](const HeldContact& c) { return is_corner_on_corner(c); });
+}
+
+/// A sharp corner at another: which side meets which is told in their place by roundings alone.
+bool IslandModes::is_corner_on_corner(const HeldContact& c) const {
+  if (!c.feature.at_end) return false;
+  const Outline &a = search_->outline_of(c.pair.body), &b = search_->outline_of(search_->other_owner(c.pair));
+  const Outline &carrier = c.feature.sample_on_a ? a : b, &other = c.feature.sample_on_a ? b : a;
+  const Sample& sample = carrier.samples[c.feature.sample];
+  const Site& site = other.sites[c.feature.site];
+  if (sample.radius + site.radius > 0.0 || !is_corner(carrier, sample)) return false;
+  return std::any_of(other.samples.begin(), other.samples.end(), [&](const Sample& end) {
+    return end.arc_site < 0 && (end.p == site.a || end.p == site.b) && is_corner(other, end);
+  });
 }
 
 // ---- the problem
 
 bool IslandModes::touches(const HeldContact& c) const {
   const double tolerance = search_->limits().tolerance;
-  if (passes_by(c, contacts_, tolerance)) return false;
   const HeldContact* warm = find_warm(*warm_, c);
   const bool was_closed = warm && warm->by_modes && is_closed(warm->mode);
   return c.feature.gap <= (was_closed ? 2.0 : 1.0) * tolerance;
@@ -90,10 +137,14 @@ void IslandModes::add_contact(const HeldContact& c) {
   } else {
     b = members_->place_of(c.pair.other_body);
   }
-  const bool touching = touches(c);
+  const bool shadow = is_shadow(*search_, c, contacts_), touching = !shadow && touches(c);
   const Vec2 shift = search_->shift_of(c.pair);
   place_.push_back(problem_.contacts.size());
   bool present = true;
+  if (shadow && c.feature.gap <= search_->limits().tolerance) {  // what is there is looked at already
+    place_.back() = std::numeric_limits<std::size_t>::max();
+    return;
+  }
   for (SmoothContact& shape :
        smooth_contacts(c.feature, of_a, members_->state(a), of_b, members_->other_state(c.pair))) {
     shape.offset = c.feature.sample_on_a ? Vec2(-shift) : shift;
@@ -116,6 +167,7 @@ void IslandModes::add_contact(const HeldContact& c) {
 void IslandModes::make_problem(std::vector<HeldContact> contacts) {
   contacts_ = std::move(contacts);
   problem_ = {};
+  impacts_.clear();
   of_.clear();
   place_.clear();
   touching_.clear();
@@ -142,6 +194,22 @@ IslandModes::Meeting IslandModes::meeting(const States& states) const {
     if (touching_[k]) fastest = std::max(fastest, -rates[k].normal_velocity);
   if (fastest <= kNoApproach * speed()) return Meeting::none;
   return fastest <= 2.0 * slowest_bounce(*members_, *search_) ? Meeting::slow : Meeting::fast;
+}
+
+/// Everything that touches meets without a rebound. False: nothing says how.
+bool IslandModes::meet(States& states) {
+  const std::vector<ContactRates> rates = rates_at(problem_, now_, states);
+  auto after = plastic_impact(problem_, now_, states, touching_);
+  if (!after) return false;
+  const double slow = slowest_bounce(*members_, *search_);
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const std::size_t at = place_[k];
+    if (at < rates.size() && touching_[at] && -rates[at].normal_velocity > slow)
+      impacts_.push_back(
+          {contacts_[k], -rates[at].normal_velocity, after->normal[at], after->tangential[at]});
+  }
+  states = std::move(after->states);
+  return true;
 }
 
 /// Those that the step before ended in, if they speak of all that touches.
@@ -194,11 +262,7 @@ IslandModes::Outcome IslandModes::take(double now, double h, std::vector<HeldCon
   make_problem(std::move(contacts));
   if (!(until > now)) return Outcome::none;
   const Meeting met = meeting(states);
-  if (met == Meeting::fast) {
-    auto after = after_plastic_impact(problem_, now, states, touching_);
-    if (!after) return Outcome::none;
-    states = std::move(*after);
-  }
+  if (met == Meeting::fast && !meet(states)) return Outcome::none;
   const SearchLimits& of = search_->limits();
   ModeMotion motion(problem_, {limits_.tolerance, kOff * of.tolerance, of.touch, until - now}, now, states);
   const auto former = on_time && met == Meeting::none ? former_modes() : std::nullopt;

@@ -55,17 +55,27 @@ class IslandModes {
     EventKind kind;
   };
   std::vector<Change> changes() const;
+  /// What met without a rebound, faster than the slowest bounce, at the beginning.
+  struct Impact {
+    HeldContact contact;
+    double closing = 0.0;                   ///< [m/s]
+    double normal = 0.0, tangential = 0.0;  ///< impulses on the pair's body [N s]
+  };
+  const std::vector<Impact>& impacts() const { return impacts_; }
 
   /// What closes no faster is at rest against its site: a bounce of that speed does not leave the contact
   /// tolerance [m/s].
   static double slowest_bounce(const IslandMembers& members, const ContactSearch& search);
-  /// True if the contact is the end of a site that goes on, and its sample lies on another site: it passes by.
-  static bool passes_by(const HeldContact& contact, const std::vector<HeldContact>& all, double tolerance);
+  /// True if it says of a place what another contact of `all`, which touches there, says better: the end of a site
+  /// that goes on, by which the sample passes; a joint of a floor under a corner that slides over it.
+  static bool is_shadow(const ContactSearch& search, const HeldContact& contact,
+                        const std::vector<HeldContact>& all);
 
  private:
   using States = std::vector<BodyState>;
   void make_problem(std::vector<HeldContact> contacts);
   void add_contact(const HeldContact& contact);
+  bool is_corner_on_corner(const HeldContact& c) const;
   bool touches(const HeldContact& c) const;
   /// How what touches meets now.
   enum class Meeting {
@@ -74,6 +84,7 @@ class IslandModes {
     fast,
   };
   Meeting meeting(const States& states) const;
+  bool meet(States& states);
   std::optional<std::vector<ContactMode>> former_modes() const;
   std::vector<bool> closed_now(const States& states, Meeting met) const;
   bool move_on(ModeMotion& motion, double until);
@@ -89,6 +100,7 @@ class IslandModes {
   const WarmContacts* warm_;
   double now_ = 0.0, end_ = 0.0;
   std::vector<HeldContact> contacts_;
+  std::vector<Impact> impacts_;
   std::vector<bool> touching_;      ///< of each contact of the problem
   std::vector<std::size_t> of_;     ///< contact that it is a shape of, of each contact of the problem
   std::vector<std::size_t> place_;  ///< of each contact's present shape in the problem

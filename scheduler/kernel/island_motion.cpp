@@ -70,7 +70,7 @@ void IslandMotion::pass_on_impacts(const Impact& told) {
     for (const HeldContact& c : contacts_) {
       const double closing = members_.closing_speed(c);
       if (closing <= most || closing <= most_absorbed(c.pair)) continue;
-      if (by_modes_ && IslandModes::passes_by(c, contacts_, search_->limits().tolerance)) continue;
+      if (by_modes_ && IslandModes::is_shadow(*search_, c, contacts_)) continue;
       most = closing;
       fastest = &c;
     }

@@ -12,10 +12,15 @@ namespace brink {
 
 namespace {
 
-/// Steps by modes that led on by less than this part of what was asked for are hasty; after so many in a row one step
-/// at the level of velocities is taken.
-constexpr double kHasty = 1e-7;
-constexpr int kMostHasty = 40;
+/// Steps by modes that led on by less than this part of what was asked for are hasty; after so many in a row some
+/// steps at the level of velocities are taken: what buzzes without end gets on.
+constexpr double kHasty = 0.05;
+constexpr int kMostHasty = 64, kCalmed = 4;
+
+int next_hasty(int hasty, bool by_modes, bool was_short) {
+  if (by_modes) return was_short ? hasty + 1 : 0;
+  return hasty >= kMostHasty && hasty < kMostHasty + kCalmed ? hasty + 1 : 0;
+}
 
 }  // namespace
 
@@ -77,13 +82,14 @@ void Islands::note_change(EventKind kind, int lead) {
 }
 
 /// An impact inside an island is a collision like any other.
-void Islands::note_impact(const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r) {
+void Islands::note_impact(const HeldContact& c, const RealVec& from, double closing, double normal,
+                          double tangential) {
   WorkCounters& work = run_->work();
   ++work.collisions;
   ++(c.pair.with_site() ? work.collisions_body_site : work.collisions_body_body);
   FeatureContact f = as_told(c, from);
   f.closing_speed = closing;
-  records_->event(EventKind::collision, c.pair, f, r.normal, r.tangential, 0);
+  records_->event(EventKind::collision, c.pair, f, normal, tangential, 0);
 }
 
 FeatureContact Islands::as_told(const HeldContact& c, const RealVec& from) const {
@@ -103,6 +109,15 @@ void Islands::note_mode(const HeldContact& c, const RealVec& from, EventKind kin
   records_->ending(kind, c.pair, as_told(c, from), std::max(run_->time(), records_->last_event()));
 }
 
+/// What happened at the beginning of a step by modes.
+void Islands::tell(const IslandModes& modes, const IslandMembers& members) {
+  ++tally_.by_modes;
+  for (const IslandModes::Impact& i : modes.impacts())
+    note_impact(i.contact, members.other_state(i.contact.pair).position, i.closing, i.normal, i.tangential);
+  for (const IslandModes::Change& c : modes.changes())
+    note_mode(c.contact, members.other_state(c.contact.pair).position, c.kind);
+}
+
 bool Islands::begin_step(const std::set<int>& members, double longest, std::vector<int>& changed,
                          bool on_time) {
   int hasty = 0;
@@ -119,8 +134,10 @@ bool Islands::begin_step(const std::set<int>& members, double longest, std::vect
   IslandModes modes(motion.members(), *trajectories_, *search_, *response_, by_modes_, warm);
   if (hasty < kMostHasty && modes.suits()) motion.expect_modes();
   const std::uint64_t collisions = run_->work().collisions;
-  motion.pass_on_impacts([this](const HeldContact& c, const RealVec& from, double closing,
-                                const ImpulseResult& r) { note_impact(c, from, closing, r); });
+  motion.pass_on_impacts(
+      [this](const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r) {
+        note_impact(c, from, closing, r.normal, r.tangential);
+      });
   on_time = on_time && run_->work().collisions == collisions;
   const bool rests = motion.rests();
   const double h = std::min(longest, motion.longest());
@@ -140,14 +157,8 @@ bool Islands::begin_step(const std::set<int>& members, double longest, std::vect
     return false;
   }
   ++tally_.steps;
-  if (by_modes) {
-    ++tally_.by_modes;
-    for (const IslandModes::Change& c : modes.changes())
-      note_mode(c.contact, motion.members().other_state(c.contact.pair).position, c.kind);
-    hasty = modes.end() - now < kHasty * h ? hasty + 1 : 0;
-  } else {
-    hasty = 0;
-  }
+  if (by_modes) tell(modes, motion.members());
+  hasty = next_hasty(hasty, by_modes, by_modes && modes.end() - now < kHasty * h);
   if (rests) note_change(EventKind::sleep, *members.begin()), ++tally_.slept;
   part(motion, rests, by_modes ? &modes : nullptr, hasty, changed);
   std::sort(changed.begin(), changed.end());

@@ -67,10 +67,12 @@ class Islands {
                   bool on_time = false);
   void part(const IslandMotion& motion, bool rests, const IslandModes* modes, int hasty,
             std::vector<int>& changed);
+  void tell(const IslandModes& modes, const IslandMembers& members);
   FeatureContact as_told(const HeldContact& c, const RealVec& from) const;
   void note_mode(const HeldContact& c, const RealVec& from, EventKind kind);
   void note_change(EventKind kind, int lead);
-  void note_impact(const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r);
+  void note_impact(const HeldContact& c, const RealVec& from, double closing, double normal,
+                   double tangential);
   WarmContacts take_out(const std::set<int>& members, int& hasty);
   void put_in(Island island);
   void find_next();

@@ -39,6 +39,7 @@ class Complementarity {
     }
     const LcpAnswer answer = solve_lcp_by_lemke(A, q);
     if (answer.status != LcpAnswer::Status::solved || !answer.z.allFinite()) return false;
+    z_ = answer.z;
     acceleration_ = free_;
     for (Eigen::Index j = 0; j < n; ++j)
       acceleration_ += answer.z[j] * inverse_mass_.cwiseProduct(unknowns_[j].force);
@@ -46,6 +47,17 @@ class Complementarity {
   }
 
   const RealVector& acceleration() const { return acceleration_; }
+
+  /// Adds to forces (impulses) of each contact, of such as do not slide.
+  void add_forces(std::vector<double>& normal, std::vector<double>& tangential) const {
+    for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+      const Unknown& u = unknowns_[i];
+      const auto load = static_cast<double>(u.by * z_[static_cast<Eigen::Index>(i)]);
+      if (u.kind == Unknown::Kind::normal) normal[u.of] += load;
+      if (u.kind == Unknown::Kind::plus) tangential[u.of] += load;
+      if (u.kind == Unknown::Kind::minus) tangential[u.of] -= load;
+    }
+  }
 
   ContactMode mode_of(std::size_t k, ContactKnown known, bool frictionless) const {
     const auto found =
@@ -65,7 +77,7 @@ class Complementarity {
     Real bend = 0;
     enum class Kind : unsigned char { normal, plus, minus, slack } kind = Kind::normal;
     std::size_t of = 0;
-    Real friction = 0;
+    Real friction = 0, by = 1;
   };
   struct Rows {
     std::size_t of;
@@ -84,12 +96,12 @@ class Complementarity {
     const Real sign = known == ContactKnown::slides_plus ? -1 : known == ContactKnown::slides_minus ? 1 : 0;
     const Real normal_bend = by * Real(r.normal_bend), tangential_bend = by * Real(r.tangential_bend);
     contacts_.push_back({k, by * n, by * t, normal_bend, tangential_bend});
-    unknowns_.push_back({by * n, by * (n + sign * mu * t), normal_bend, Unknown::Kind::normal, k, mu});
+    unknowns_.push_back({by * n, by * (n + sign * mu * t), normal_bend, Unknown::Kind::normal, k, mu, by});
     if (!still) return;
     const RealVector none = RealVector::Zero(n.size());
-    unknowns_.push_back({by * t, by * t, tangential_bend, Unknown::Kind::plus, k, mu});
-    unknowns_.push_back({-by * t, -by * t, -tangential_bend, Unknown::Kind::minus, k, mu});
-    unknowns_.push_back({none, none, 0, Unknown::Kind::slack, k, mu});
+    unknowns_.push_back({by * t, by * t, tangential_bend, Unknown::Kind::plus, k, mu, by});
+    unknowns_.push_back({-by * t, -by * t, -tangential_bend, Unknown::Kind::minus, k, mu, by});
+    unknowns_.push_back({none, none, 0, Unknown::Kind::slack, k, mu, 1});
   }
 
   /// Between unknowns of one contact, beside what accelerations couple.
@@ -102,7 +114,7 @@ class Complementarity {
     return b.kind == Kind::normal ? a.friction : -1;
   }
 
-  RealVector inverse_mass_, free_, acceleration_;
+  RealVector inverse_mass_, free_, acceleration_, z_;
   std::vector<Unknown> unknowns_;
   std::vector<Rows> contacts_;
   Real size_ = 0;
@@ -123,16 +135,17 @@ ModeChoice choose_modes(const ModeProblem& problem, const ModeMoment& moment,
   return choice;
 }
 
-std::optional<std::vector<BodyState>> after_plastic_impact(const ModeProblem& problem, double t,
-                                                           std::vector<BodyState> states,
-                                                           const std::vector<bool>& touching) {
+std::optional<PlasticImpact> plastic_impact(const ModeProblem& problem, double t,
+                                            const std::vector<BodyState>& states,
+                                            const std::vector<bool>& touching) {
   ModeMoment m;
   m.contacts = rates_at(problem, t, states);
   m.free.resize(3 * problem.bodies());
   for (int k = 0; k < problem.bodies(); ++k)
     m.free.segment<3>(3 * k) << states[k].twist.velocity, states[k].twist.omega;
   std::vector<ContactKnown> known;
-  for (std::size_t k = 0; k < touching.size(); ++k) {
+  for (std::size_t k = 0; k < touching.size();
+       ++k) {  // velocities for accelerations; supports are in the bends
     ContactRates& r = m.contacts[k];
     const ModeContact& c = problem.contacts[k];
     known.push_back(touching[k] ? ContactKnown::still : ContactKnown::open);
@@ -142,10 +155,12 @@ std::optional<std::vector<BodyState>> after_plastic_impact(const ModeProblem& pr
   }
   Complementarity impact(problem, m, known);
   if (!impact.solve()) return std::nullopt;
+  PlasticImpact after{states, std::vector(touching.size(), 0.0), std::vector(touching.size(), 0.0)};
+  impact.add_forces(after.normal, after.tangential);
   for (int k = 0; k < problem.bodies(); ++k)
-    states[k].twist = {impact.acceleration().segment<2>(3 * k).cast<double>(),
-                       static_cast<double>(impact.acceleration()[3 * k + 2])};
-  return states;
+    after.states[k].twist = {impact.acceleration().segment<2>(3 * k).cast<double>(),
+                             static_cast<double>(impact.acceleration()[3 * k + 2])};
+  return after;
 }
 
 }  // namespace brink

@@ -31,11 +31,15 @@ struct ModeChoice {
 ModeChoice choose_modes(const ModeProblem& problem, const ModeMoment& moment,
                         const std::vector<ContactKnown>& known);
 
-/// Velocities after contacts that touch have met without a rebound, all of them at once, with Coulomb's law for
-/// impulses (Moreau 1988): the same problem for velocities. Nothing: none were found. `touching`: by contact.
-/// @pre problem.supports move as they do at t.
-std::optional<std::vector<BodyState>> after_plastic_impact(const ModeProblem& problem, double t,
-                                                           std::vector<BodyState> states,
-                                                           const std::vector<bool>& touching);
+struct PlasticImpact {
+  std::vector<BodyState> states;           ///< with the velocities after it
+  std::vector<double> normal, tangential;  ///< impulses of each contact, on the sample's owner [N s]
+};
+
+/// Contacts that touch have met without a rebound, all of them at once, with Coulomb's law for impulses (Moreau
+/// 1988): the same problem for velocities. Nothing: none were found. `touching`: by contact.
+std::optional<PlasticImpact> plastic_impact(const ModeProblem& problem, double t,
+                                            const std::vector<BodyState>& states,
+                                            const std::vector<bool>& touching);
 
 }  // namespace brink
