@@ -262,7 +262,7 @@ IslandModes::Outcome IslandModes::take(double now, double h, std::vector<HeldCon
   make_problem(std::move(contacts));
   if (!(until > now)) return Outcome::none;
   const Meeting met = meeting(states);
-  if (met == Meeting::fast && !meet(states)) return Outcome::none;
+  if (met != Meeting::none && !meet(states)) return Outcome::none;
   const SearchLimits& of = search_->limits();
   ModeMotion motion(problem_, {limits_.tolerance, kOff * of.tolerance, of.touch, until - now}, now, states);
   const auto former = on_time && met == Meeting::none ? former_modes() : std::nullopt;
