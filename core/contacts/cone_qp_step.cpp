@@ -14,6 +14,9 @@ constexpr double kNoFriction = 1e-12;
 /// Of products, in units of the step (residuals: a hundredth of their roots): where the search ends; where it does if
 /// rounding hinders; and what will do.
 constexpr double kExact = 1e-16, kNearly = 1e-14, kEnough = 1e-10;
+/// Nothing changes by so many units of the step's speed: what has more room, or slips faster, is taken to have
+/// no more. (A short step's unit is small beside what else moves, and roundings of that would be beside it large.)
+constexpr double kFar = 1e8;
 
 /// The step's rows, in w - v: so that what is held keeps its velocity.
 class StepRows {
@@ -81,7 +84,7 @@ class StepRows {
     row.on_body = units_.scaled_row(c.body, on_body);
     row.other = c.other;
     if (c.other >= 0) row.on_other = units_.scaled_row(c.other, on_other);
-    row.offset = speed / units_.speed();
+    row.offset = std::clamp(speed / units_.speed(), -kFar, kFar);
     row.bound = bound / units_.force();
     if (row.bound <= kNoFriction) return;
     if (row.on_body.isZero(0.0) && row.on_other.isZero(0.0)) return;  // between what is held

@@ -48,6 +48,7 @@ Material combined(const World& world, int material_a, int material_b) {
   pair.restitution = combine(world.restitution_rule, a.restitution, b.restitution);
   pair.friction = combine(world.friction_rule, a.friction, b.friction);
   pair.tangential_restitution = std::max(a.tangential_restitution, b.tangential_restitution);
+  pair.rolling_resistance = std::max(a.rolling_resistance, b.rolling_resistance);
   pair.slip = a.slip * b.slip;
   pair.spin = a.spin * b.spin;
   return pair;

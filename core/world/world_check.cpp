@@ -72,6 +72,7 @@ void check_material(const Material& material, std::size_t i) {
   check.between("restitution", material.restitution, 0.0, 1.0, "0 to 1");
   check.not_negative("friction", material.friction);
   check.between("tangential_restitution", material.tangential_restitution, -1.0, 1.0, "-1 to 1");
+  check.not_negative("rolling_resistance", material.rolling_resistance);
   check.finite("slip", material.slip);
   check.finite("spin", material.spin);
 }

@@ -34,7 +34,9 @@ class WorldHasher {
   void one(const Pose& p) { add(p.position, p.angle); }
   void one(const std::optional<Formula>& f) { one(f ? std::string_view(f->text()) : std::string_view()); }
 
-  void one(const Material& m) { add(m.restitution, m.friction, m.tangential_restitution, m.slip, m.spin); }
+  void one(const Material& m) {
+    add(m.restitution, m.friction, m.tangential_restitution, m.rolling_resistance, m.slip, m.spin);
+  }
   void one(const Site& s) {
     add(static_cast<int>(s.kind), s.solid, s.radius, s.a, s.b, s.center, s.arc_radius, s.sweep);
   }

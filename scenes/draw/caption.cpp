@@ -63,6 +63,11 @@ void draw_caption(Canvas& canvas, const Sheet& sheet) {
   if (o.time)
     x += size + canvas.text(x + (title.empty() ? 0.0 : size), y, fmt::format("t = {:.6g} s", *o.time), size,
                             Oklch{0.45, 0.02, 260.0}.rgb(), Canvas::Align::left);
+  if (o.layer.kind == DrawLayer::Kind::forces) {
+    const double most = largest_force(sheet);
+    const std::string words = most > 0.0 ? fmt::format("widest line: {:.3g} N", most) : "no contact lasts";
+    x += size + canvas.text(x + size, y, words, size, Oklch{0.45, 0.17, 25.0}.rgb(), Canvas::Align::left);
+  }
   if (x > kRoomForWords * o.size.width) return;
   depth ? draw_legend(canvas, sheet, o.size.width - edge, y, size)
         : draw_ruler(canvas, sheet, o.size.width - edge, y, size);

@@ -53,6 +53,9 @@ void check(const World& world, std::span<const BodyState> bodies, std::span<cons
   for (std::size_t k = 0; k < sites.size(); ++k)
     if (!finite(sites[k]))
       throw BadInput(fmt::format("site \"{}\": its pose is not finite", world.sites[k].name));
+  for (const DrawnForce& f : options.forces)
+    if (f.body < 0 || f.body >= static_cast<int>(bodies.size()))
+      throw BadInput(fmt::format("forces: on body {}; there are {} bodies", f.body, bodies.size()));
 }
 
 View view_of(const Sheet& sheet) {
@@ -97,6 +100,7 @@ Picture background(Sheet& sheet) {
 /// The diagram if there is one to be drawn and a context to draw it.
 std::optional<Picture> diagram(Sheet& sheet) {
   const Kind kind = sheet.options.layer.kind;
+  if (kind == Kind::forces) return std::nullopt;
   if (kind == Kind::scene &&
       (!sheet.options.diagram || sheet.world.bodies.size() + sheet.world.sites.size() == 0))
     return std::nullopt;
@@ -113,6 +117,15 @@ std::optional<Picture> diagram(Sheet& sheet) {
 Ink body_ink(const Oklch& color) {
   const Color line = Palette::line(color).rgb();
   return {color.rgb(), line, 1.4, 1.0, false};
+}
+
+/// Beneath lines that are to be seen.
+Ink pale_ink(Oklch color) {
+  color.lightness = 0.5 * (color.lightness + 1.0);
+  color.chroma *= 0.3;
+  Oklch line = color;
+  line.lightness = 0.72;
+  return {color.rgb(), line.rgb(), 1.0, 1.0, false};
 }
 
 /// A line from the centre of mass along the body's own x axis to just inside its edge: how it has turned.
@@ -160,9 +173,10 @@ void draw_bodies(Canvas& canvas, const Sheet& sheet) {
   for (std::size_t k = 0; k < sheet.world.bodies.size(); ++k) {
     if (static_cast<int>(k) == sheet.excluded) continue;
     const Outline& outline = *sheet.world.bodies[k].outline;
-    const Ink ink = body_ink(sheet.palette.body(k));
+    const bool pale = sheet.options.layer.kind == Kind::forces;
+    const Ink ink = pale ? pale_ink(sheet.palette.body(k)) : body_ink(sheet.palette.body(k));
     canvas.outline(outline, sheet.bodies[k].pose, ink);
-    draw_mark(canvas, outline, sheet.bodies[k].pose, ink.line, sheet.view.scale);
+    if (!pale) draw_mark(canvas, outline, sheet.bodies[k].pose, ink.line, sheet.view.scale);
   }
 }
 
@@ -225,6 +239,10 @@ void draw_layer(Canvas& canvas, const Sheet& sheet) {
     case Kind::depth:
       draw_edges(canvas, sheet);
       return draw_particles(canvas, sheet);
+    case Kind::forces:
+      draw_sites(canvas, sheet);
+      draw_bodies(canvas, sheet);
+      return draw_forces(canvas, sheet);
     case Kind::scene:
     case Kind::pass:
       draw_sites(canvas, sheet);

@@ -18,16 +18,17 @@ namespace brink {
 /// What a picture shows.
 struct DrawLayer {
   enum class Kind {
-    scene,  ///< bodies and sites over their cells in quiet colours, with faint lines of equal distance
-    color,  ///< the raw colour layer: one hue an owner, one shade a site, darker inside solids
-    depth,  ///< distance to the nearest site; lightness grows linearly with it
-    pass    ///< the pass window of one body: everything else, the body itself left out and only sketched
+    scene,   ///< bodies and sites over their cells in quiet colours, with faint lines of equal distance
+    color,   ///< the raw colour layer: one hue an owner, one shade a site, darker inside solids
+    depth,   ///< distance to the nearest site; lightness grows linearly with it
+    forces,  ///< what contacts that last carry: lines from centres to contacts, as wide as the force is large
+    pass     ///< the pass window of one body: everything else, the body itself left out and only sketched
   };
   Kind kind = Kind::scene;
   std::string body;  ///< pass: its name
 };
 
-/// "scene", "color", "depth" or "pass:BODY". @throws BadInput naming the layer and those allowed.
+/// "scene", "color", "depth", "forces" or "pass:BODY". @throws BadInput naming the layer and those allowed.
 DrawLayer parse_layer(std::string_view text);
 
 struct PictureSize {
@@ -37,6 +38,13 @@ struct PictureSize {
 /// "WxH", each 16..8192. @throws BadInput.
 PictureSize parse_size(std::string_view text);
 
+/// What a contact that lasts presses with on one body.
+struct DrawnForce {
+  int body = 0;
+  Vec2 arm = Vec2::Zero();  ///< from the centre of mass to the contact, world axes [m]
+  double newtons = 0.0;     ///< >= 0
+};
+
 struct DrawOptions {
   DrawLayer layer;
   PictureSize size;
@@ -44,10 +52,11 @@ struct DrawOptions {
   double margin = 0.05;     ///< left free around the view, of its longer side, 0..1
   bool caption = true;  ///< a strip below with title, time and a ruler or legend; none on pictures too small
   std::string title;    ///< empty: the world's
-  std::optional<double> time;  ///< shown in the caption [s]
-  double arrow_seconds = 0.0;  ///< > 0: velocity arrows, as long as the way made in this time [s]
-  bool diagram = true;         ///< scene and pass: draw the cells beneath
-  FieldOptions field;          ///< context, primitives; a band > 0 truncates the diagram to it
+  std::optional<double> time;      ///< shown in the caption [s]
+  std::vector<DrawnForce> forces;  ///< layer forces
+  double arrow_seconds = 0.0;      ///< > 0: velocity arrows, as long as the way made in this time [s]
+  bool diagram = true;             ///< scene and pass: draw the cells beneath
+  FieldOptions field;              ///< context, primitives; a band > 0 truncates the diagram to it
 
   /// True if usable; else writes which option, its value and what is allowed into *error.
   bool is_valid(std::string* error) const;
@@ -72,6 +81,7 @@ Box automatic_view(const World& world, std::span<const BodyState> bodies, std::s
 /// for (any kind but `vertices`) show their particles as dots. The diagram is rendered by PassRenderer at
 /// twice the resolution. Layer `scene` does without it (and says so in the log) where no GL context opens;
 /// the others need it.
+/// Layer `forces` has no diagram; its lines are as wide, of the widest, as the force is of the largest.
 /// @throws BadInput on invalid options, an unknown body, or counts or poses that do not fit; IoError without
 /// a context.
 Picture draw_scene(const World& world, std::span<const BodyState> bodies, std::span<const Pose> sites,

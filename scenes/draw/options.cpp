@@ -16,9 +16,11 @@ DrawLayer parse_layer(std::string_view text) {
   if (text == "scene") return {DrawLayer::Kind::scene, {}};
   if (text == "color") return {DrawLayer::Kind::color, {}};
   if (text == "depth") return {DrawLayer::Kind::depth, {}};
+  if (text == "forces") return {DrawLayer::Kind::forces, {}};
   if (text.starts_with("pass:") && text.size() > 5)
     return {DrawLayer::Kind::pass, std::string(text.substr(5))};
-  throw BadInput(fmt::format("layer: \"{}\" is not known; allowed: scene, color, depth, pass:BODY", text));
+  throw BadInput(
+      fmt::format("layer: \"{}\" is not known; allowed: scene, color, depth, forces, pass:BODY", text));
 }
 
 PictureSize parse_size(std::string_view text) {
@@ -54,6 +56,9 @@ bool DrawOptions::is_valid(std::string* error) const {
     return fault("view: must be finite and hold something");
   if (layer.kind == DrawLayer::Kind::pass && layer.body.empty())
     return fault("layer: pass needs a body's name");
+  for (const DrawnForce& f : forces)
+    if (!f.arm.allFinite() || !(f.newtons >= 0.0) || std::isinf(f.newtons))
+      return fault("forces: must be finite and >= 0");
   return field.is_valid(error);
 }
 

@@ -26,6 +26,12 @@ struct Sheet {
 /// Height of the caption's strip [pixels]; 0: none asked for, or no room.
 int strip_height(const DrawOptions& options);
 
+/// The largest of options.forces [N]; 0: there are none.
+double largest_force(const Sheet& sheet);
+
+/// Lines from the centres of bodies to their contacts, over the bodies.
+void draw_forces(Canvas& canvas, const Sheet& sheet);
+
 /// Title, time, and a ruler (layer depth: the legend) in the strip at the bottom.
 void draw_caption(Canvas& canvas, const Sheet& sheet);
 

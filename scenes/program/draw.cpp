@@ -27,22 +27,36 @@ fs::path run_file_of(const fs::path& subject) {
   return subject.extension() == ".db" ? subject : fs::path();
 }
 
+/// Keeps the contacts that last at the end of a run.
+class LastContacts final : public Recorder {
+ public:
+  explicit LastContacts(double end) : end_(end) {}
+  void contact_lasted(const LastedContact& contact) override {
+    if (contact.to >= end_) contacts.push_back(contact);
+  }
+  std::vector<LastedContact> contacts;
+
+ private:
+  double end_;
+};
+
 RunMoment moment_of_scene(const DrawArguments& arguments, const Scene& scene) {
   const double t = arguments.at.value_or(0.0);
   if (!(t >= 0.0 && t <= kLongestRun))
     throw BadInput(fmt::format("--at: {} given; allowed: 0 .. {} s", t, kLongestRun));
   Simulator simulator(scene.world, scene.solver);
+  LastContacts last(t);
   RunOptions options;
   options.until = t;
   options.checkpoint_seconds = -1.0;
   if (t > 0.0) {
-    const RunSummary summary = simulator.run(options);
+    const RunSummary summary = simulator.run(options, &last);
     if (summary.termination != Termination::reached_end) {
       throw BadInput(fmt::format("--at: {} given, but the scene ended at t = {} s: {}", t, summary.end_time,
                                  summary.why));
     }
   }
-  RunMoment moment{t, scene.world, simulator.states(), {}};
+  RunMoment moment{t, scene.world, simulator.states(), {}, last.contacts};
   for (std::size_t k = 0; k < scene.world.sites.size(); ++k) {
     moment.sites.push_back(simulator.site_pose(static_cast<int>(k)));
   }
@@ -64,6 +78,7 @@ void draw(const DrawArguments& arguments) {
   refuse_overwriting(arguments.out, "-o", {run.empty() ? fs::path(arguments.subject) : run});
   const RunMoment moment = moment_of(arguments, run, options.field);
   options.time = moment.t;
+  if (options.layer.kind == DrawLayer::Kind::forces) options.forces = forces_of(moment);
   draw_png(arguments.out, moment.world, moment.bodies, moment.sites, options);
 }
 
@@ -76,7 +91,8 @@ void add_draw_command(CLI::App& program, int& status) {
   command->add_option("-o,--output", arguments->out, "Picture to write")->type_name("FILE.png")->required();
   command->add_option("--at", arguments->at, "Time [s]; default: the start of a scene, the end of a run")
       ->type_name("T");
-  command->add_option("--layer", arguments->layer, "scene, color, depth or pass:BODY")->type_name("LAYER");
+  command->add_option("--layer", arguments->layer, "scene, color, depth, forces or pass:BODY")
+      ->type_name("LAYER");
   command->add_option("--size", arguments->size, "Pixels")->type_name("WxH")->capture_default_str();
   command->add_option("--set", arguments->overrides, "Override a key of the scene; may be repeated")
       ->type_name("PATH=VALUE")
@@ -87,7 +103,9 @@ void add_draw_command(CLI::App& program, int& status) {
       "  brink draw scenes/gallery/newtons_cradle.toml -o start.png\n"
       "  brink draw runs/newtons_cradle-1 --at 1.5 -o later.png\n"
       "  brink draw my_scene.toml --layer depth --size 800x600 -o depth.png\n"
-      "  brink draw my_scene.toml --layer pass:ball -o pass.png");
+      "  brink draw my_scene.toml --layer pass:ball -o pass.png\n"
+      "  brink draw runs/pile-1 --at 3 --layer forces -o chains.png\n"
+      "Layer forces: lines from centres to the contacts that last, as wide as their normal force is large.");
   command->callback([arguments, &status] {
     draw(*arguments);
     status = kDone;

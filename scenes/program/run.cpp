@@ -65,10 +65,9 @@ std::string taken(const RunSummary& s) {
 std::string lasting(const RunSummary& s) {
   return fmt::format(
       "{} captured, {} island(s) at rest at the end; {} steps of order 1, which took approaches up to {:.3g} "
-      "m/s "
-      "as plastic, friction to {:.2g} of the largest force, and made {:.2g} J",
+      "m/s as plastic, friction to {:.2g} of the largest force, and made {:.2g} J; rest_speed took {:.2g} J",
       s.contacts_lasting, s.islands_at_rest, s.island_steps, s.approach_absorbed, s.friction_residual,
-      s.island_energy);
+      s.island_energy, s.rest_energy);
 }
 
 /// What the policy did and what of it was in vain.

@@ -34,6 +34,7 @@ std::uint64_t checksum(const ResumePoint& row, std::span<const std::byte> snapsh
   hash.add(row.wall_seconds);
   hash.add(static_cast<std::uint64_t>(row.frames));
   hash.add(static_cast<std::uint64_t>(row.events));
+  hash.add(static_cast<std::uint64_t>(row.contacts));
   hash.add(static_cast<std::uint64_t>(snapshot.size()));
   add_bytes(hash, snapshot);
   return hash.value();

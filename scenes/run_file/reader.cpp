@@ -56,6 +56,12 @@ EventKind kind_from(const std::string& word) {
   throw BadInput(fmt::format("event of unknown kind '{}'", word));
 }
 
+ContactMode mode_from(const std::string& word) {
+  for (int k = 1; k <= static_cast<int>(ContactMode::roll); ++k)
+    if (word == to_string(static_cast<ContactMode>(k))) return static_cast<ContactMode>(k);
+  throw BadInput(fmt::format("contact of unknown mode '{}'", word));
+}
+
 /// Value and slope at time t of the cubic through (0, a, va) and (h, b, vb), s = t / h.
 std::pair<double, double> hermite(double a, double va, double b, double vb, double h, double s) {
   const double d = (b - a) / h;
@@ -277,16 +283,51 @@ std::vector<Event> RunFile::events() const {
   });
 }
 
+std::vector<LastedContact> RunFile::contacts_at(double t) const {
+  return reading(impl_->file, "contact", [&] {
+    std::vector<LastedContact> all;
+    if (!impl_->db.tableExists("contact")) return all;  // of before there was one
+    SQLite::Statement get(
+        impl_->db,
+        "SELECT t_begin, t_end, mode, body, other, site, sample, outline_site, sample_on_body, px, py, nx, "
+        "ny, force_n, force_t FROM contact WHERE t_begin <= ?1 AND (?1 < t_end OR t_end >= ?2) ORDER BY "
+        "rowid");
+    get.bind(1, t);
+    get.bind(2, end_time());
+    while (get.executeStep()) {
+      const Row row(get);
+      all.push_back({row.real(0),
+                     row.real(1),
+                     mode_from(row.text(2)),
+                     static_cast<int>(row.count(3, impl_->bodies)),
+                     row.id_or_none(4, impl_->bodies),
+                     row.id_or_none(5, impl_->sites),
+                     static_cast<int>(row.count(6, std::numeric_limits<int>::max())),
+                     static_cast<int>(row.count(7, std::numeric_limits<int>::max())),
+                     row.count(8, 2) != 0,
+                     {row.real(9), row.real(10)},
+                     {row.real(11), row.real(12)},
+                     row.real(13),
+                     row.real(14)});
+      if ((all.back().other_body < 0) == (all.back().other_site < 0))
+        throw BadInput("a contact has one other owner, a body or a site");
+    }
+    return all;
+  });
+}
+
 std::optional<ResumePoint> RunFile::checkpoint() const {
   const auto of = meta();
   const auto text = [&](const char* key) { return of.contains(key) ? of.at(key) : std::string(); };
   return reading(impl_->file, "checkpoint", [&]() -> std::optional<ResumePoint> {
-    SQLite::Statement get(impl_->db, "SELECT t, state, frames, events, wall_seconds FROM checkpoint");
+    SQLite::Statement get(impl_->db,
+                          "SELECT t, state, frames, events, wall_seconds, contacts FROM checkpoint");
     if (!get.executeStep()) return std::nullopt;
     const Row row(get);
     const SQLite::Column blob = get.getColumn(1);
     const auto* bytes = static_cast<const std::byte*>(blob.getBlob());
-    ResumePoint point{row.real(0), {bytes, bytes + blob.getBytes()}, row.real(4), row.count(2), row.count(3)};
+    ResumePoint point{row.real(0), {bytes, bytes + blob.getBytes()}, row.real(4), row.count(2), row.count(3),
+                      row.count(5)};
     point.state = unsealed(point, run_identity(text("brink_version"), text("options"), text("world_hash")));
     if (get.executeStep()) throw BadInput("more than one row");
     return point;
@@ -351,6 +392,7 @@ void RunFile::require_sound() const {
   };
   require("frame", 1, point ? point->frames : 0);
   require("event", 0, point ? point->events : 0);
+  require("contact", 1, point ? point->contacts : 0);
 }
 
 std::pair<double, double> RunFile::time_range() const {

@@ -48,11 +48,11 @@ void keep_earlier(const fs::path& file) {
 struct RunFileRecorder::Impl {
   RunFolder folder;
   SQLite::Database db;
-  std::optional<SQLite::Statement> insert_frame, insert_event;
+  std::optional<SQLite::Statement> insert_frame, insert_event, insert_contact;
   std::optional<SQLite::Transaction> transaction;
   std::int64_t rows_waiting = 0;
   Clock::time_point waiting_since;
-  std::int64_t frames = 0, events = 0;  // rows in the file
+  std::int64_t frames = 0, events = 0, contacts = 0;  // rows in the file
   std::int64_t bodies = 0;
   double wall_before = 0.0;
   std::uint64_t identity = 0;
@@ -191,10 +191,12 @@ void RunFileRecorder::Impl::drop_rows_after_checkpoint(const Scene& scene) {
   if (resume_point) {
     frames = resume_point->frames;
     events = resume_point->events;
+    contacts = resume_point->contacts;
     wall_before = resume_point->wall_seconds;
   }
   db.exec(fmt::format("DELETE FROM frame WHERE rowid > {}", frames));
   db.exec(fmt::format("DELETE FROM event WHERE rowid >= {}", events));  // seq counts from 0
+  db.exec(fmt::format("DELETE FROM contact WHERE rowid > {}", contacts));
   drop_early_end_frame(scene.output.frame_interval);
   db.exec("DELETE FROM checkpoint");
   if (!resume_point) return;
@@ -217,18 +219,20 @@ void RunFileRecorder::Impl::start_again(const Scene& scene) {
 void RunFileRecorder::Impl::put_checkpoint(const ResumePoint& row, std::span<const std::byte> snapshot) {
   const std::vector<std::byte> state = sealed(row, snapshot, identity);
   db.exec("DELETE FROM checkpoint");
-  SQLite::Statement put(db, "INSERT INTO checkpoint VALUES (?, ?, ?, ?, ?)");
+  SQLite::Statement put(db, "INSERT INTO checkpoint VALUES (?, ?, ?, ?, ?, ?)");
   put.bind(1, row.t);
   put.bindNoCopy(2, state.data(), static_cast<int>(state.size()));
   put.bind(3, row.frames);
   put.bind(4, row.events);
   put.bind(5, row.wall_seconds);
+  put.bind(6, row.contacts);
   put.exec();
 }
 
 void RunFileRecorder::Impl::prepare_inserts() {
   insert_frame.emplace(db, "INSERT INTO frame VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
   insert_event.emplace(db, "INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  insert_contact.emplace(db, "INSERT INTO contact VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
 }
 
 void RunFileRecorder::open(RunFolder folder, const Scene& scene, Open how, std::optional<ResumePoint> point) {
@@ -317,10 +321,32 @@ void RunFileRecorder::event(const Event& event) {
   });
 }
 
+void RunFileRecorder::contact_lasted(const LastedContact& c) {
+  impl_->writing([&] {
+    impl_->begin();
+    SQLite::Statement& put = *impl_->insert_contact;
+    put.bind(1, c.from);
+    put.bind(2, c.to);
+    const int ids[] = {c.body, c.other_body, c.other_site, c.site, c.sample};
+    for (int i = 0; i < 5; ++i) ids[i] < 0 ? put.bind(3 + i) : put.bind(3 + i, ids[i]);
+    put.bindNoCopy(8, to_string(c.mode));
+    put.bind(9, c.normal_force);
+    put.bind(10, c.tangential_force);
+    put.bind(11, c.sample_on_body ? 1 : 0);
+    const double reals[] = {c.point.x(), c.point.y(), c.normal.x(), c.normal.y()};
+    for (int i = 0; i < 4; ++i) put.bind(12 + i, reals[i]);
+    put.exec();
+    put.reset();
+    ++impl_->contacts;
+    ++impl_->rows_waiting;
+    impl_->commit_if_due();
+  });
+}
+
 void RunFileRecorder::checkpoint(double t, const std::vector<std::byte>& state) {
   impl_->writing([&] {
     impl_->begin();
-    impl_->put_checkpoint({t, {}, impl_->wall(), impl_->frames, impl_->events}, state);
+    impl_->put_checkpoint({t, {}, impl_->wall(), impl_->frames, impl_->events, impl_->contacts}, state);
     impl_->set_meta("end_time", number(t));
     impl_->set_meta("wall_seconds", number(impl_->wall()));
     impl_->commit();
@@ -350,6 +376,7 @@ void RunFileRecorder::finish(const RunSummary& summary, const std::string& summa
     impl_->commit();
     impl_->insert_frame.reset();
     impl_->insert_event.reset();
+    impl_->insert_contact.reset();
     impl_->db.tryExec(
         "PRAGMA journal_mode = DELETE");  // one plain file; not possible while somebody reads it
   });

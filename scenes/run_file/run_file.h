@@ -11,10 +11,15 @@
 ///                 outline_site, sample, sample_on_body, t_low   other NULL: a fixed site, and `site` is its
 ///                 id in the site table; else `site` is NULL. outline_site and sample say which Voronoi site
 ///                 and which sample of the two outlines met
+///     contact     t_begin, t_end, body, other, site, outline_site, sample, mode, force_n, force_t,
+///                 sample_on_body, px, py, nx, ny         contacts that lasted, in the order of their ends;
+///                 mode: rest, stick, slip, roll. A row is one stretch of a mode, with its forces [N], place
+///                 and normal at its end (scheduler/run/lasted_contact.h). At the end of a run come those
+///                 that last still, with its time as t_end
 ///     work        counter, value, unit                   written at the end
-///     checkpoint  t, state, frames, events, wall_seconds   one row, the last one: the simulator's snapshot,
-///                 sealed by a checksum (checkpoint_seal.h), and how many rows of `frame` and `event` came
-///                 before it
+///     checkpoint  t, state, frames, events, wall_seconds, contacts   one row, the last one: the simulator's
+///                 snapshot, sealed by a checksum (checkpoint_seal.h), and how many rows of `frame`, `event`
+///                 and `contact` came before it
 ///
 /// meta: schema_version, brink_version, scene, title, options (JSON), world_hash, termination ("running"
 /// until the end), duration, end_time, state_hash, wall_seconds, summary (the JSON of `brink run --json`).
@@ -47,8 +52,8 @@ inline constexpr int kRunFileSchema = 2;
 struct ResumePoint {
   double t = 0.0;  ///< [s]
   std::vector<std::byte> state;
-  double wall_seconds = 0.0;            ///< spent before
-  std::int64_t frames = 0, events = 0;  ///< rows before
+  double wall_seconds = 0.0;                          ///< spent before
+  std::int64_t frames = 0, events = 0, contacts = 0;  ///< rows before
 };
 
 class RunFile;
@@ -100,6 +105,7 @@ class RunFileRecorder final : public Recorder {
 
   void frame(double t, std::span<const BodyState> states) override;
   void event(const Event& event) override;
+  void contact_lasted(const LastedContact& contact) override;
   void checkpoint(double t, const std::vector<std::byte>& state) override;
 
   /// Commits what has waited longer than 0.25 s. Call now and then where rows are rare.
@@ -143,6 +149,8 @@ class RunFile {
   /// Materials and forces are not kept in a run file.
   World world() const;
   std::vector<Event> events() const;
+  /// Those that lasted at time t [s]: from <= t < to, and at the end of the run those that last still.
+  std::vector<LastedContact> contacts_at(double t) const;
   /// The last checkpoint, its seal opened.
   std::optional<ResumePoint> checkpoint() const;
   /// meta's `end_time` [s].

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "brink/core/base/error.h"
+#include "brink/core/shapes/distance.h"
 #include "brink/scenes/run_file/run_file.h"
 #include "brink/scheduler/kernel/site_motion.h"
 
@@ -32,15 +33,72 @@ void require_drawable(const std::filesystem::path& file, const RunMoment& moment
 
 }  // namespace
 
+namespace {
+
+/// Who carries the sample of a contact, or its site: an outline where it stands.
+struct Carrier {
+  const Outline& outline;
+  const Pose& pose;
+};
+
+template <class T>
+const T& feature_at(const std::vector<T>& all, int index, const char* what) {
+  if (index < 0 || index >= static_cast<int>(all.size()))
+    throw BadInput(fmt::format("contact: {} {} given; the outline has {}", what, index, all.size()));
+  return all[static_cast<std::size_t>(index)];
+}
+
+/// Where the two features touch, nearest to the sample.
+Vec2 place_of(const LastedContact& c, const Carrier& samples, const Carrier& sites) {
+  const Sample& sample = feature_at(samples.outline.samples, c.sample, "sample");
+  const Site& site = feature_at(sites.outline.sites, c.site, "site");
+  const Frame from(samples.pose), to(sites.pose);
+  const Vec2 p = to.to_local(from.to_world(sample.p));
+  const Vec2 on = nearest_on(site, p).point, out = p - on;
+  return to.to_world(out.norm() > 0.0 ? Vec2(on + site.radius * out.normalized()) : on);
+}
+
+}  // namespace
+
+std::vector<DrawnForce> forces_of(const RunMoment& moment) {
+  std::vector<DrawnForce> out;
+  for (const LastedContact& c : moment.contacts) {
+    const Pose& body = moment.bodies.at(c.body).pose;
+    const bool with_site = c.other_body < 0;
+    Pose other = with_site ? moment.sites.at(c.other_site) : moment.bodies.at(c.other_body).pose;
+    // its image that the body meets: the contact's place was near the body
+    for (int axis = 0; axis < 2; ++axis)
+      if (const double size = moment.world.periods.size[axis]; size > 0.0 && !with_site)
+        other.position[axis] -= size * std::round((other.position[axis] - body.position[axis]) / size);
+    const Carrier a{*moment.world.bodies.at(c.body).outline, body};
+    const Carrier b{with_site ? *moment.world.sites.at(c.other_site).outline
+                              : *moment.world.bodies.at(c.other_body).outline,
+                    other};
+    Vec2 arm = (c.sample_on_body ? place_of(c, a, b) : place_of(c, b, a)) - body.position;
+    if (with_site)  // of a site that covers many periods: the image at the contact
+      for (int axis = 0; axis < 2; ++axis)
+        if (const double size = moment.world.periods.size[axis]; size > 0.0)
+          arm[axis] -= size * std::round(arm[axis] / size);
+    out.push_back({c.body, arm, c.normal_force});
+    if (!with_site) out.push_back({c.other_body, body.position + arm - other.position, c.normal_force});
+  }
+  return out;
+}
+
 RunMoment moment_of_run(const std::filesystem::path& file, std::optional<double> at) {
   const RunFile run(file);
   const auto [first, last] = run.time_range();
   const double t = at.value_or(last);
   if (!(t >= first && t <= last))
     throw BadInput(fmt::format("--at: {} given; allowed: {} .. {} s", t, first, last));
-  RunMoment moment{t, run.world(), run.states_at(t).states, {}};
+  RunMoment moment{t, run.world(), run.states_at(t).states, {}, run.contacts_at(t)};
   for (const FixedSite& site : moment.world.sites) moment.sites.push_back(told_pose(site, t));
   require_drawable(file, moment);
+  try {
+    forces_of(moment);
+  } catch (const BadInput& e) {
+    throw IoError(fmt::format("{}: table contact: {}", file.string(), e.what()));
+  }
   return moment;
 }
 

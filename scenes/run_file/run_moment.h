@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "brink/core/world/world.h"
+#include "brink/scenes/draw/draw.h"
+#include "brink/scheduler/run/lasted_contact.h"
 
 namespace brink {
 
@@ -15,7 +17,13 @@ struct RunMoment {
   World world;
   std::vector<BodyState> bodies;
   std::vector<Pose> sites;
+  std::vector<LastedContact> contacts;  ///< that last at this moment
 };
+
+/// The forces of the moment's contacts on its bodies, where the features that press are at the moment: their
+/// forces are those at the ends of their stretches.
+/// @throws BadInput if a contact names a sample or a site that its outline does not have.
+std::vector<DrawnForce> forces_of(const RunMoment& moment);
 
 /// The run in `file` at time `at`, the end if not given; between two frames its states are interpolated.
 /// @throws BadInput if `at` is outside the run; IoError naming file and table where the file cannot be read,

@@ -171,6 +171,7 @@ std::string summary_to_json(const RunSummary& summary, double load_seconds) {
                                     {"approach_absorbed", summary.approach_absorbed},
                                     {"friction_residual", summary.friction_residual},
                                     {"island_energy", summary.island_energy},
+                                    {"rest_energy", summary.rest_energy},
                                     {"state_hash", fmt::format("{:016x}", summary.state_hash)},
                                     {"work", std::move(work)}};
   return j.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);

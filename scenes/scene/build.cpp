@@ -6,6 +6,7 @@
 #include <set>
 
 #include "brink/scenes/files/text_file.h"
+#include "brink/scheduler/first_contact/tolerances.h"
 
 namespace brink {
 namespace {
@@ -20,7 +21,7 @@ class SceneBuilder {
     materials();
     std::vector<PlannedThing> sites = plan(file_.sites, false), bodies = plan(file_.bodies, true);
     count(bodies);
-    if (faults_.empty()) Placer(file_.world.seed, scene_.world.periods, faults_).place(sites, bodies);
+    if (faults_.empty()) Placer(file_.world.seed, place_rules(bodies), faults_).place(sites, bodies);
     const bool placed = faults_.empty();
     if (placed) {
       add_sites(sites);
@@ -52,6 +53,15 @@ class SceneBuilder {
     std::string error;
     if (faults_.empty() && !scene_.solver.is_valid(&error)) faults_.add(file_.solver_place, error);
     options_json();
+  }
+
+  PlaceRules place_rules(const std::vector<PlannedThing>& bodies) const {
+    double largest = 0.0;
+    for (const PlannedThing& thing : bodies)
+      largest = std::max(largest, 2.0 * thing.shape.outline->bounding_radius);
+    // more than half the touching distance, at which such pairs meet, and less than the whole
+    const double thin = 0.75 * kTouchOfTolerance * scene_.solver.contact_tolerance * largest;
+    return {scene_.world.gravity, scene_.world.periods, thin};
   }
 
   void check_frames() {
@@ -105,7 +115,10 @@ class SceneBuilder {
       if (thing.name.empty())
         faults_.add(table.name.where, "name: is empty; given \"\", allowed: one character or more");
       thing.material = material(table.material);
-      check_pairs(table);
+      check_keys(table, faults_);
+      if (table.scatter.given && table.position.given)
+        scene_.notes.push_back("position of " + in_quotes(table.name.value) +
+                               " is not used: scatter places the copies");
       if (const auto shape = shapes_.build(table, thing.name, body)) {
         thing.shape = *shape;
         if (body) thing.body = body_of(thing);
@@ -115,21 +128,6 @@ class SceneBuilder {
       out.push_back(std::move(thing));
     }
     return out;
-  }
-
-  // Keys that say the same thing twice.
-  void check_pairs(const ThingTable& table) {
-    if (table.angle.given && table.angle_deg.given)
-      faults_.add(table.angle_deg.where,
-                  "angle is given twice; given angle and angle_deg, allowed: one of them");
-    if (table.mass.given && table.density.given)
-      faults_.add(table.density.where, "mass is given twice; given mass and density, allowed: one of them");
-    if (table.grid.given && table.scatter.given)
-      faults_.add(table.scatter.where,
-                  "copies are asked for twice; given grid and scatter, allowed: one of them");
-    if (table.scatter.given && table.position.given)
-      scene_.notes.push_back("position of " + in_quotes(table.name.value) +
-                             " is not used: scatter places the copies");
   }
 
   static Pose pose(const ThingTable& table, const BuiltShape& shape) {
@@ -142,25 +140,20 @@ class SceneBuilder {
     return pose;
   }
 
-  static bool is_copied(const ThingTable& table) { return table.grid.given || table.scatter.given; }
-
   // Gives every body its place among the names.
   void count(const std::vector<PlannedThing>& things) {
     std::int64_t total = 0;
     for (const PlannedThing& thing : things) {
-      const ThingTable& table = *thing.table;
-      const std::int64_t copies =
-          table.scatter.given ? table.scatter.value.count : table.grid.value.columns * table.grid.value.rows;
-      if ((total += copies) > kMostCopies)
-        return faults_.add(table.scatter.given ? table.scatter.where : table.grid.where,
-                           "too many copies; given " + std::to_string(total) +
-                               " bodies so far, allowed: " + std::to_string(kMostCopies));
-      names_.add(thing.name, static_cast<int>(copies), is_copied(table));
+      const CopyCount copies = copies_of(*thing.table);
+      if ((total += copies.count) > kMostCopies)
+        return faults_.add(copies.where, "too many copies; given " + std::to_string(total) +
+                                             " bodies so far, allowed: " + std::to_string(kMostCopies));
+      names_.add(thing.name, static_cast<int>(copies.count), copies.copied);
     }
   }
 
   static std::string copy_name(const PlannedThing& thing, std::size_t k) {
-    return is_copied(*thing.table) ? thing.name + '[' + std::to_string(k) + ']' : thing.name;
+    return copies_of(*thing.table).copied ? thing.name + '[' + std::to_string(k) + ']' : thing.name;
   }
 
   void add_sites(const std::vector<PlannedThing>& things) {

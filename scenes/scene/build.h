@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "brink/scenes/scene/scatter.h"
 #include "brink/scenes/scene/tables.h"
 
 namespace brink {
@@ -56,24 +57,60 @@ struct PlannedThing {
   std::size_t ordinal = 0;        ///< place in the file, for its random stream
 };
 
-/// Places the copies of things: grids, and scatters without overlaps.
+/// Faults where keys of one entry say the same thing twice, or have no meaning beside each other.
+void check_keys(const ThingTable& table, FaultList& faults);
+
+/// How many copies an entry asks for, and by which key.
+struct CopyCount {
+  std::int64_t count = 1;
+  Where where;
+  bool copied = false;  ///< they are called NAME[k]
+};
+CopyCount copies_of(const ThingTable& table);
+
+/// Which way is down for an entry: its touching_direction, else along gravity; nothing where there is neither.
+std::optional<Vec2> down_of(const ThingTable& table, const Vec2& gravity);
+
+/// What the places of things that touch depend on, beside the things themselves.
+struct PlaceRules {
+  Vec2 gravity = Vec2::Zero();  ///< [m/s^2]
+  Periods periods;
+  double thin = 0.0;  ///< gap of corners that stand on wires without thickness [m]
+};
+
+/// Where the copies of a thing stand that is put where it is told to be, as a function of the position of the
+/// first (of rows: of the middle of the lowest). @pre no scatter, no pile; the thing outlives the function.
+std::function<std::vector<Pose>(const Vec2&)> standing_poses(const PlannedThing& thing,
+                                                             const PlaceRules& rules);
+
+/// Puts bodies on what their key `touching` names, in the order in which they depend on each other, and fills
+/// their copies. @pre everything else that stands where it is told is placed.
+void put_on_others(std::vector<PlannedThing>& sites, std::vector<PlannedThing>& bodies,
+                   const PlaceRules& rules, FaultList& faults);
+
+/// The state in which every copy of a thing starts, but for its place.
+BodyState start_of(const PlannedThing& thing);
+
+/// Places the copies of things: those that stand where they are told, or on others, and scatters without
+/// overlaps.
 class Placer {
  public:
-  Placer(std::uint64_t seed, const Periods& periods, FaultList& faults)
-      : seed_(seed), periods_(periods), faults_(faults) {}
-  /// Fills PlannedThing::copies of everything: first what stands where it is told, then scatters in file
-  /// order, sites before bodies.
+  Placer(std::uint64_t seed, const PlaceRules& rules, FaultList& faults)
+      : seed_(seed), rules_(rules), faults_(faults) {}
+  /// Fills PlannedThing::copies of everything: first what stands where it is told, then what is put on
+  /// others, then scatters and piles in file order, sites before bodies.
   void place(std::vector<PlannedThing>& sites, std::vector<PlannedThing>& bodies);
 
  private:
+  bool counted(const PlannedThing& thing);
   void stand(PlannedThing& thing);
-  void scatter(PlannedThing& thing, const std::vector<PlannedThing>& sites,
-               const std::vector<PlannedThing>& bodies);
+  void scatter(PlannedThing& thing, const std::vector<Obstacle>& obstacles);
+  void pile(PlannedThing& thing, const std::vector<Obstacle>& obstacles);
 
   std::uint64_t seed_;
-  Periods periods_;
+  PlaceRules rules_;
   FaultList& faults_;
-  std::size_t total_ = 0;
+  std::int64_t total_ = 0;
 };
 
 /// Names of bodies as forces may use them.

@@ -1,9 +1,10 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "brink/core/base/random.h"
 #include "brink/scenes/scene/build.h"
-#include "brink/scenes/scene/scatter.h"
+#include "brink/scenes/scene/rows.h"
 
 namespace brink {
 namespace {
@@ -13,71 +14,128 @@ std::uint64_t stream(std::uint64_t seed, std::size_t ordinal, std::uint64_t purp
   return Random(seed ^ (0x9e3779b97f4a7c15ULL * (2 * ordinal + purpose + 1))).next();
 }
 
+bool is_random(const ThingTable& table) { return table.scatter.given || table.pile.given; }
+
+std::vector<Obstacle> obstacles_of(const std::vector<PlannedThing>& sites,
+                                   const std::vector<PlannedThing>& bodies) {
+  std::vector<Obstacle> out;
+  for (const auto* things : {&sites, &bodies})
+    for (const PlannedThing& thing : *things)
+      for (const BodyState& copy : thing.copies) out.push_back({thing.shape.outline.get(), copy.pose});
+  return out;
+}
+
+std::vector<std::int64_t> lengths_of_rows(const ThingTable& table) {
+  if (table.stack.given) return std::vector<std::int64_t>(static_cast<std::size_t>(table.stack.value), 1);
+  std::vector<std::int64_t> out;
+  for (std::int64_t n = table.pyramid.given ? table.pyramid.value : 0; n > 0; --n) out.push_back(n);
+  if (!table.wall.given) return out;
+  const auto [columns, rows] = table.wall.value;
+  // the top row is a short one: what stands half on the row below is held down by the row above
+  for (std::int64_t row = 0; row < rows; ++row)
+    out.push_back(rows > 1 && columns > 1 && (rows - row) % 2 == 1 ? columns - 1 : columns);
+  return out;
+}
+
+std::vector<Pose> grid_poses(const PlannedThing& thing, const Vec2& position) {
+  const GridTable& grid = thing.table->grid.value;
+  std::vector<Pose> out;
+  for (std::int64_t row = 0; row < grid.rows; ++row)
+    for (std::int64_t column = 0; column < grid.columns; ++column)
+      out.push_back({position + Vec2{static_cast<double>(column) * grid.spacing.x(),
+                                     static_cast<double>(row) * grid.spacing.y()},
+                     thing.pose.angle});
+  return out;
+}
+
+bool in_one_place(const GridTable& grid) {
+  return (grid.columns > 1 && grid.spacing.x() == 0.0) || (grid.rows > 1 && grid.spacing.y() == 0.0);
+}
+
+}  // namespace
+
+CopyCount copies_of(const ThingTable& table) {
+  if (table.scatter.given) return {table.scatter.value.count, table.scatter.where, true};
+  if (table.pile.given) return {table.pile.value.count, table.pile.where, true};
+  if (table.grid.given) return {table.grid.value.columns * table.grid.value.rows, table.grid.where, true};
+  if (table.stack.given) return {table.stack.value, table.stack.where, true};
+  if (table.pyramid.given)
+    return {table.pyramid.value * (table.pyramid.value + 1) / 2, table.pyramid.where, true};
+  if (!table.wall.given) return {1, table.place, false};
+  const auto [columns, rows] = table.wall.value;
+  const std::int64_t shorter = rows > 1 && columns > 1 ? (rows + 1) / 2 : 0;
+  return {columns * rows - shorter, table.wall.where, true};
+}
+
+std::optional<Vec2> down_of(const ThingTable& table, const Vec2& gravity) {
+  const Vec2 down = table.touching_direction.given ? table.touching_direction.value : gravity;
+  if (down.isZero(0.0)) return std::nullopt;
+  return Vec2((down / down.lpNorm<Eigen::Infinity>()).normalized());
+}
+
 BodyState start_of(const PlannedThing& thing) {
   const ThingTable& table = *thing.table;
   return {thing.pose, {table.velocity.value, table.angular_velocity.value}};
 }
 
-std::vector<Obstacle> obstacles_of(const std::vector<PlannedThing>& things) {
-  std::vector<Obstacle> out;
-  for (const PlannedThing& thing : things)
-    for (const BodyState& copy : thing.copies) out.push_back({thing.shape.outline.get(), copy.pose});
-  return out;
+std::function<std::vector<Pose>(const Vec2&)> standing_poses(const PlannedThing& thing,
+                                                             const PlaceRules& rules) {
+  const ThingTable& table = *thing.table;
+  if (!table.stack.given && !table.pyramid.given && !table.wall.given)
+    return [&thing](const Vec2& position) { return grid_poses(thing, position); };
+  const Vec2 down = down_of(table, rules.gravity).value_or(-Vec2::UnitY());
+  const TouchingRows rows(
+      {thing.shape.outline.get(), thing.pose.angle, -down, lengths_of_rows(table), rules.thin});
+  return [rows](const Vec2& middle) { return rows.at(middle); };
 }
-
-}  // namespace
 
 void Placer::place(std::vector<PlannedThing>& sites, std::vector<PlannedThing>& bodies) {
   for (auto* things : {&sites, &bodies})
     for (PlannedThing& thing : *things)
-      if (!thing.table->scatter.given) stand(thing);
+      if (counted(thing) && !is_random(*thing.table) && !thing.table->touching.given) stand(thing);
+  if (!faults_.empty()) return;
+  put_on_others(sites, bodies, rules_, faults_);
   for (auto* things : {&sites, &bodies})
-    for (PlannedThing& thing : *things)
-      if (thing.table->scatter.given) scatter(thing, sites, bodies);
+    for (PlannedThing& thing : *things) {
+      if (thing.table->scatter.given) scatter(thing, obstacles_of(sites, bodies));
+      if (thing.table->pile.given) pile(thing, obstacles_of(sites, bodies));
+    }
+}
+
+bool Placer::counted(const PlannedThing& thing) {
+  const CopyCount copies = copies_of(*thing.table);
+  if ((total_ += copies.count) <= kMostCopies) return true;
+  faults_.add(copies.where, "too many copies; given " + std::to_string(total_) +
+                                " so far, allowed: " + std::to_string(kMostCopies));
+  return false;
 }
 
 void Placer::stand(PlannedThing& thing) {
-  const GridTable grid = thing.table->grid.value;
-  const auto copies = static_cast<std::size_t>(grid.columns * grid.rows);
-  total_ += copies;
-  if (total_ > static_cast<std::size_t>(kMostCopies))
-    return faults_.add(thing.table->grid.given ? thing.table->grid.where : thing.table->place,
-                       "too many copies; given " + std::to_string(total_) +
-                           " so far, allowed: " + std::to_string(kMostCopies));
-  if ((grid.columns > 1 && grid.spacing.x() == 0.0) || (grid.rows > 1 && grid.spacing.y() == 0.0))
+  const GridTable& grid = thing.table->grid.value;
+  if (in_one_place(grid))
     return faults_.add(thing.table->grid.where,
                        "grid: copies would stand in one place; given spacing [" +
                            number_text(grid.spacing.x()) + ", " + number_text(grid.spacing.y()) +
                            "], allowed: not 0 along x for several columns, along y for several rows");
-  for (std::int64_t row = 0; row < grid.rows; ++row)
-    for (std::int64_t column = 0; column < grid.columns; ++column) {
-      BodyState state = start_of(thing);
-      state.pose.position +=
-          Vec2{static_cast<double>(column) * grid.spacing.x(), static_cast<double>(row) * grid.spacing.y()};
-      thing.copies.push_back(state);
-    }
+  for (const Pose& pose : standing_poses(thing, rules_)(thing.pose.position)) {
+    thing.copies.push_back(start_of(thing));
+    thing.copies.back().pose = pose;
+  }
 }
 
-void Placer::scatter(PlannedThing& thing, const std::vector<PlannedThing>& sites,
-                     const std::vector<PlannedThing>& bodies) {
+void Placer::scatter(PlannedThing& thing, const std::vector<Obstacle>& obstacles) {
   const ScatterTable& asked = thing.table->scatter.value;
-  const Where& where = thing.table->scatter.where;
-  total_ += static_cast<std::size_t>(asked.count);
-  if (total_ > static_cast<std::size_t>(kMostCopies))
-    return faults_.add(where, "too many copies; given " + std::to_string(total_) +
-                                  " so far, allowed: " + std::to_string(kMostCopies));
-  std::vector<Obstacle> obstacles = obstacles_of(sites);
-  for (const Obstacle& obstacle : obstacles_of(bodies)) obstacles.push_back(obstacle);
-  ScatterAsk ask{thing.shape.outline.get(), {}, asked.count, thing.pose.angle, asked.random_angle, periods_};
+  ScatterAsk ask{
+      thing.shape.outline.get(), {}, asked.count, thing.pose.angle, asked.random_angle, rules_.periods};
   for (const Vec2& corner : asked.region) ask.region.add(corner);
   Random where_to(stream(seed_, thing.ordinal, 0)), how(stream(seed_, thing.ordinal, 1));
   std::int64_t room = 0;
   const auto poses = scatter_poses(ask, obstacles, where_to, &room);
   if (!poses)
-    return faults_.add(where, "scatter: the region is too small; given " + std::to_string(asked.count) +
-                                  " copies of bounding radius " + number_text(ask.outline->bounding_radius) +
-                                  " m, allowed: about " + std::to_string(room) +
-                                  " beside what is there already");
+    return faults_.add(thing.table->scatter.where,
+                       "scatter: the region is too small; given " + std::to_string(asked.count) +
+                           " copies of bounding radius " + number_text(ask.outline->bounding_radius) +
+                           " m, allowed: about " + std::to_string(room) + " beside what is there already");
   for (const Pose& pose : *poses) {
     BodyState state = start_of(thing);
     const double heading = how.uniform(0.0, 2.0 * std::numbers::pi);
@@ -87,6 +145,50 @@ void Placer::scatter(PlannedThing& thing, const std::vector<PlannedThing>& sites
     state.twist.omega += asked.angular_speed * way;
     thing.copies.push_back(state);
   }
+}
+
+// A scatter in a column above the position that is as high as it takes, seen with down along -y.
+void Placer::pile(PlannedThing& thing, const std::vector<Obstacle>& obstacles) {
+  constexpr double kFilled = 0.4;  // of the column, by the discs about the copies
+  constexpr int kHeights = 40;     // that are tried
+  const PileTable& asked = thing.table->pile.value;
+  const Vec2 up = -down_of(*thing.table, rules_.gravity).value_or(-Vec2::UnitY());
+  const Frame frame({thing.pose.position, std::atan2(-up.x(), up.y())});
+  const double turn = std::atan2(frame.sine, frame.cosine), radius = thing.shape.outline->bounding_radius;
+  if (turn != 0.0 && rules_.periods.any())
+    return faults_.add(thing.table->pile.where, "pile: the plane repeats; given a way down of [" +
+                                                    number_text(-up.x()) + ", " + number_text(-up.y()) +
+                                                    "], allowed there: [0, -1]");
+  const bool upright = turn == 0.0;
+  std::vector<Obstacle> seen = obstacles;
+  if (!upright)
+    for (Obstacle& o : seen) o.pose = {frame.to_local(o.pose.position), o.pose.angle - turn};
+  const Vec2 base = upright ? thing.pose.position : Vec2(Vec2::Zero());
+  ScatterAsk ask{thing.shape.outline.get(),
+                 {},
+                 asked.count,
+                 thing.pose.angle - turn,
+                 asked.random_angle,
+                 rules_.periods};
+  double height = std::numbers::pi * radius * radius * static_cast<double>(asked.count) /
+                  (kFilled * (asked.width + 2.0 * radius));
+  for (int k = 0; k < kHeights; ++k, height = 1.25 * height + radius) {
+    ask.region = Box();
+    ask.region.add(base + Vec2(-0.5 * asked.width, radius));
+    ask.region.add(base + Vec2(0.5 * asked.width, radius + height));
+    Random random(stream(seed_, thing.ordinal, 0));
+    std::int64_t room = 0;
+    const auto poses = scatter_poses(ask, seen, random, &room);
+    if (!poses) continue;
+    for (const Pose& pose : *poses) {
+      thing.copies.push_back(start_of(thing));
+      thing.copies.back().pose = upright ? pose : Pose{frame.to_world(pose.position), pose.angle + turn};
+    }
+    return;
+  }
+  faults_.add(thing.table->pile.where, "pile: there is no room above; given " + std::to_string(asked.count) +
+                                           " copies of bounding radius " + number_text(radius) +
+                                           " m, allowed: a column that is free, or becomes so higher up");
 }
 
 }  // namespace brink

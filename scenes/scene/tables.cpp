@@ -111,6 +111,16 @@ const Schema<ScatterTable>& scatter_schema() {
   return schema;
 }
 
+const Schema<PileTable>& pile_schema() {
+  static const Schema<PileTable> schema =
+      Schema<PileTable>("pile")
+          .required("count", &PileTable::count, whole(1, 1'000'000), "number of copies")
+          .required("width", &PileTable::width, number(positive("m", kShortest)),
+                    "of the column that holds the position of every copy, about position")
+          .key("random_angle", &PileTable::random_angle, flag(), "turn each copy by a random angle");
+  return schema;
+}
+
 const Schema<SamplingTable>& sampling_schema() {
   static const Schema<SamplingTable> schema =
       Schema<SamplingTable>("sampling")
@@ -157,7 +167,15 @@ Schema<ThingTable> thing_schema(const std::string& table, bool site) {
                 "[field] curve_tolerance", "largest distance between a curve and the arcs that stand for it")
       .optional("grid", &ThingTable::grid, grid_schema().codec(), "none", "copies in rows, named NAME[k]")
       .optional("scatter", &ThingTable::scatter, scatter_schema().codec(), "none",
-                "copies at random without overlaps, named NAME[k]");
+                "copies at random without overlaps, named NAME[k]")
+      .optional("stack", &ThingTable::stack, whole(1, 1'000'000), "none",
+                "so many copies on one another, named NAME[k]")
+      .optional("pyramid", &ThingTable::pyramid, whole(1, 1'000), "none",
+                "copies in touching rows, so many in the lowest, one less in each above")
+      .optional("wall", &ThingTable::wall, two_integers(1, 100'000, "[columns, rows]"), "none",
+                "copies in touching rows, each shifted by half a copy, every second one shorter by one")
+      .optional("pile", &ThingTable::pile, pile_schema().codec(), "none",
+                "copies at random without overlaps above position, to fall");
   return schema;
 }
 
@@ -220,6 +238,8 @@ const Schema<SolverOptions>& solver_schema() {
           .count(
               "modes_contacts", &S::modes_contacts, whole(),
               "few bodies with at most so many contacts that last move to `tolerance`, others to first order")
+          .key("rest_speed", &S::rest_speed, number(between(0.0, 1e6, "m/s")),
+               "what lasting contacts hold is taken to be at rest below this speed; 0: only what is at rest")
           .count("kept_states", &S::kept_states, whole(),
                  "policy timewarp: former states of bodies that are kept to go back to, at most")
           .count("max_collisions", &S::max_collisions, whole(), "stop after this many; 0: no limit")
@@ -283,6 +303,8 @@ const Schema<Material>& material_schema() {
           .key("friction", &Material::friction, number(between(0.0, 1e6)), "Coulomb's")
           .key("tangential_restitution", &Material::tangential_restitution, number(between(-1.0, 1.0)),
                "with friction; 0: plain Coulomb, 1: the elastic rough superball")
+          .key("rolling_resistance", &Material::rolling_resistance, number(between(0.0, 1e6, "m")),
+               "contacts that last: the largest torque against rolling, for a normal force of 1 N")
           .key("slip", &Material::slip, number(between(0.0, 10.0)),
                "reflection only: scales the tangential rebound")
           .key("spin", &Material::spin, number(between(0.0, 10.0)),
@@ -311,6 +333,10 @@ const Schema<ThingTable>& body_schema() {
           .optional("velocity", &ThingTable::velocity, point("m/s"), "[0, 0]", "of the centre of mass")
           .optional("angular_velocity", &ThingTable::angular_velocity, number(any("rad/s")), "0",
                     "counter-clockwise")
+          .optional("touching", &ThingTable::touching, names(), "none",
+                    "bodies or sites that it is put on, moved along gravity to first contact")
+          .optional("touching_direction", &ThingTable::touching_direction, point(""), "along gravity",
+                    "the way down of touching, stack, pyramid, wall and pile")
           .optional("lock", &ThingTable::lock, names({"x", "y", "angle"}), "[]", "coordinates that are held")
           .optional("sampling", &ThingTable::sampling, sampling_schema().codec(), "vertices",
                     "samples of the classic detector");
@@ -355,6 +381,7 @@ std::vector<OptionInfo> scene_options() {
   list_shape_keys(out);
   grid_schema().list(out);
   scatter_schema().list(out);
+  pile_schema().list(out);
   motion_schema().list(out);
   sampling_schema().list(out);
   for (const std::string& kind : force_kinds()) force_schema(kind)->list(out);

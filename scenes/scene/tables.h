@@ -52,6 +52,11 @@ struct ScatterTable {
   double speed = 0.0, angular_speed = 0.0;
   bool random_angle = false;
 };
+struct PileTable {
+  std::int64_t count = 1;
+  double width = 0.0;  ///< [m]
+  bool random_angle = false;
+};
 struct SamplingTable {
   std::string kind = "vertices";
   double spacing = Sampling{}.spacing;
@@ -77,6 +82,11 @@ struct ThingTable {
   Given<SamplingTable> sampling;
   Given<GridTable> grid;
   Given<ScatterTable> scatter;
+  Given<std::int64_t> stack, pyramid;       ///< copies; copies in the lowest row
+  Given<std::array<std::int64_t, 2>> wall;  ///< copies in the longer rows, rows
+  Given<PileTable> pile;
+  Given<std::vector<std::string>> touching;  ///< bodies: what it is put on
+  Given<Vec2> touching_direction;            ///< any length; else along gravity
   Given<MotionTable> motion;
 };
 

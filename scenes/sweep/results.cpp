@@ -31,6 +31,7 @@ void for_each_number(const RunSummary& s, Visit&& visit) {
   visit("approach_absorbed", s.approach_absorbed);
   visit("friction_residual", s.friction_residual);
   visit("island_energy", s.island_energy);
+  visit("rest_energy", s.rest_energy);
   WorkCounters::for_each(s.work, [&](const char* name, auto value, const char*) {
     if (std::string_view(name) != "collisions") visit(name, static_cast<double>(value));
   });

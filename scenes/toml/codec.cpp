@@ -108,6 +108,21 @@ Codec<std::int64_t> integer(std::int64_t low, std::int64_t high) {
           [](const std::int64_t& x) { return Json(x); }};
 }
 
+Codec<std::array<std::int64_t, 2>> two_integers(std::int64_t low, std::int64_t high,
+                                                const std::string& names) {
+  const std::string type = names + ", integers from " + std::to_string(low) + " to " + std::to_string(high);
+  return {type,
+          [=](const toml::node& node, TomlDocument& doc, const std::string& key,
+              std::array<std::int64_t, 2>& out) {
+            const toml::array* array = node.as_array();
+            if (array == nullptr || array->size() != 2) return wrong_type(node, doc, key, type), false;
+            const Codec<std::int64_t> one = integer(low, high);
+            const bool first = one.read((*array)[0], doc, key, out[0]);
+            return one.read((*array)[1], doc, key, out[1]) && first;
+          },
+          [](const std::array<std::int64_t, 2>& x) { return Json(x); }};
+}
+
 Codec<bool> flag() {
   return {"true or false",
           [](const toml::node& node, TomlDocument& doc, const std::string& key, bool& out) {

@@ -52,6 +52,9 @@ Range between(double low, double high, std::string unit = "");
 
 Codec<double> number(Range range = {});
 Codec<std::int64_t> integer(std::int64_t low, std::int64_t high);
+/// Two integers, called [first, second] in messages.
+Codec<std::array<std::int64_t, 2>> two_integers(std::int64_t low, std::int64_t high,
+                                                const std::string& names);
 Codec<bool> flag();
 Codec<std::string> text(std::string type = "string");
 /// One of `allowed`; those of `later` are known to the format but not available yet, and the fault says so.

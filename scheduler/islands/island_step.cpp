@@ -17,7 +17,7 @@ constexpr double kResidual = 1e-6;
 /// A step may win this part of the energies that it turns over, before it is slowed to win none: the solver's
 /// rounding, and what faces that turn push into what lies on them, which the true motion takes from their
 /// turning.
-constexpr double kWonOf = 1e-6;
+constexpr double kWonOf = 1e-3;
 /// Friction bounds are taken from normal forces that were found with the bounds before, so often.
 constexpr int kFrictionPasses = 2;
 
@@ -38,7 +38,9 @@ StepProblem problem_of(const IslandStep& step, double h, const std::vector<Part>
     StepContact s;
     s.contact = c.rows;
     s.gap = std::max(c.gap, 0.0) - part.lift;
-    s.friction_bound = c.friction * c.normal_force * std::min(h, c.force_lasted);
+    const double expected = c.normal_force * std::min(h, c.force_lasted);
+    s.friction_bound = c.friction * expected;
+    s.rolling_bound = c.rolling_resistance * expected;
     s.support_velocity = Vec3(c.normal_support, c.tangential_support, 0.0);
     p.contacts.push_back(s);
   }
@@ -55,9 +57,14 @@ StepResult with_friction(ConeQp& solver, StepProblem& p, const IslandStep& step,
     if (!(result.residual <= kResidual)) break;
     bool same = true;
     for (std::size_t k = 0; k < p.contacts.size(); ++k) {
-      const double bound = step.contacts[parts[k].contact].friction * result.loads[k].normal;
-      same = same && std::abs(bound - p.contacts[k].friction_bound) <= 1e-9 * bound;
-      if (pass < kFrictionPasses) p.contacts[k].friction_bound = bound;
+      const IslandContact& c = step.contacts[parts[k].contact];
+      const double bound = c.friction * result.loads[k].normal;
+      const double rolling = c.rolling_resistance * result.loads[k].normal;
+      same = same && std::abs(bound - p.contacts[k].friction_bound) <= 1e-9 * bound &&
+             std::abs(rolling - p.contacts[k].rolling_bound) <= 1e-9 * rolling;
+      if (pass == kFrictionPasses) continue;
+      p.contacts[k].friction_bound = bound;
+      p.contacts[k].rolling_bound = rolling;
     }
     if (same) break;
   }
@@ -209,6 +216,7 @@ bool stays_at_rest(ConeQp& solver, IslandStep& step) {
   for (const IslandContact& c : step.contacts) {
     p.contacts.push_back(c.rows);
     p.contacts.back().friction = c.friction;
+    p.contacts.back().rolling_resistance = c.rolling_resistance;
   }
   const RestResult result = solver.rest_forces(p);
   if (result.status != RestResult::Status::rests) return false;

@@ -27,6 +27,7 @@ struct IslandContact {
   LastingContact rows;
   double gap = 0.0;  ///< at the start, less what it must keep [m]
   double friction = 0.0;
+  double rolling_resistance = 0.0;  ///< largest torque for a normal force of 1 [m]
   bool driven = false;  ///< its site moves as it is told, and gives what energy that takes
   bool at_end = false;  ///< of a site: its tangent bars the way to what passes by, so that is asked for last
   double normal_force = 0.0;      ///< in: of the step before; 0: new. Out: mean over this one [N]
@@ -48,7 +49,7 @@ using GapAlong = std::function<double(std::size_t k, double moment, const std::v
 struct StepOutcome {
   bool solved = false;  ///< every gap stays above -`tolerance` along the step
   int factorisations = 0;
-  /// Energy that the step made [J], beyond what sites that move gave: at most 1e-6 of what it turned over. 0 where
+  /// Energy that the step made [J], beyond what sites that move gave: at most 1e-3 of what it turned over. 0 where
   /// none does: all is slowed by as much then.
   double won = 0.0;
   double friction_residual = 0.0;  ///< largest |q| - mu p left by bounds that lag, of the largest p

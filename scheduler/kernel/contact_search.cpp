@@ -101,7 +101,7 @@ Mover ContactSearch::mover(int owner) const {
 std::optional<Certificate> ContactSearch::search(const PairKey& pair, const BodyTrack& body,
                                                  const BodyTrack* other, double from, double to,
                                                  int most_steps) {
-  if (!left_out_.empty() && left_out_.count(pair)) return std::nullopt;
+  if (is_left_out(pair)) return std::nullopt;
   const Sides sides(*this, pair, body, other);
   // of simultaneous resolves one may be a rounding ahead
   from = std::max({from, sides.a.motion->begin(), sides.b.motion->begin()});

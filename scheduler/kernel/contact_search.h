@@ -44,6 +44,7 @@ class ContactSearch {
   /// From now on, until search_again(), searches of the pair find nothing: somebody else keeps its gap.
   void leave_out(const PairKey& pair) { left_out_.insert(pair); }
   void search_again(const PairKey& pair) { left_out_.erase(pair); }
+  bool is_left_out(const PairKey& pair) const { return !left_out_.empty() && left_out_.count(pair) > 0; }
   /// The pair of owner a with that image of owner b; nothing if they are one, two sites, or never meet.
   std::optional<PairKey> pair_of(int a, int b, const Image& image = {}) const;
   int other_owner(const PairKey& pair) const {

@@ -9,6 +9,7 @@
 #include "brink/scheduler/events/agenda.h"
 #include "brink/scheduler/islands/modes/mode_problem.h"
 #include "brink/scheduler/islands/near_features.h"
+#include "brink/scheduler/run/lasted_contact.h"
 
 namespace brink {
 
@@ -18,9 +19,12 @@ struct HeldContact {
   NearFeature feature;
   double normal_force = 0.0, tangential_force = 0.0;  ///< [N]
   double lasted = 0.0;                                ///< the step over which they are means [s]
+  ContactMode mode = ContactMode::none;
+  double since = 0.0;         ///< in this mode without a break [s]
+  Vec2 place = Vec2::Zero();  ///< of the feature's point in the world [m]
   /// Of a step by modes: what it does in the step, and from its end on if nothing comes between.
   bool by_modes = false;
-  ContactMode mode = ContactMode::open, next = ContactMode::open;
+  MotionMode motion = MotionMode::open, next_motion = MotionMode::open;
 
   auto order() const { return std::tuple(pair.order(), feature.sample_on_a, feature.sample, feature.site); }
 };
@@ -49,6 +53,7 @@ struct IslandTally {
   std::uint64_t captured = 0, steps = 0, by_modes = 0, slept = 0, woken = 0, factorisations = 0;
   double absorbed = 0.0;           ///< the largest approach that a step took without a rebound [m/s]
   double energy_won = 0.0;         ///< that steps made, by rounding and by faces that turn [J]
+  double energy_of_rest = 0.0;     ///< that the option rest_speed took [J]
   double friction_residual = 0.0;  ///< the largest, of the largest normal force of its island
 };
 

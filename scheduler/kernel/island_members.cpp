@@ -160,7 +160,11 @@ RealVec IslandMembers::arm(const HeldContact& c) const {
 }
 
 double IslandMembers::closing_speed(const HeldContact& c) const {
-  const ExtendedTwist &of_body = states_[place_of(c.pair.body)].twist, of_other = other_state(c.pair).twist;
+  return closing_speed(c, states_[place_of(c.pair.body)].twist, other_state(c.pair).twist);
+}
+
+double IslandMembers::closing_speed(const HeldContact& c, const ExtendedTwist& of_body,
+                                    const ExtendedTwist& of_other) const {
   const RealVec relative = of_other.at(c.feature.point.cast<Real>()) - of_body.at(arm(c));
   return static_cast<double>(c.feature.normal.cast<Real>().dot(relative));
 }

@@ -28,6 +28,7 @@ class IslandMembers {
   const std::vector<int>& bodies() const { return bodies_; }  ///< ascending
   const Body& body(int member) const { return world_->bodies[bodies_[member]]; }
   int place_of(int body) const { return place_.at(body); }
+  bool has(int body) const { return place_.count(body) > 0; }
   const ExtendedState& state(int member) const { return states_[member]; }
   const Acceleration& acceleration(int member) const { return accelerations_[member]; }
   /// Gives a member another twist; find_speeds() is due then.
@@ -43,6 +44,8 @@ class IslandMembers {
   void look_ahead(double h, double reach) { h_ = h, reach_ = reach; }
   /// How far a member may come in a step [m].
   double reach_of(int member) const;
+  /// Where it may come in a step.
+  Box box(int member) const { return box_of(bodies_[member], reach_of(member)); }
 
   /// Every near feature of the members, among each other and with sites, in order. Features are listed up to
   /// a gap of `reach` [m]; < 0: as far as a step may lead. Cost: members sorted along x, times sites.
@@ -57,6 +60,9 @@ class IslandMembers {
   double gap(const HeldContact& contact, double later, const std::vector<Vec3>& velocity) const;
   /// How fast the two features approach now [m/s].
   double closing_speed(const HeldContact& contact) const;
+  /// The same if they had these twists.
+  double closing_speed(const HeldContact& contact, const ExtendedTwist& of_body,
+                       const ExtendedTwist& of_other) const;
   /// Contact point minus the body's centre of mass [m].
   RealVec arm(const HeldContact& contact) const;
   bool on_moving_site(const HeldContact& contact) const {

@@ -100,8 +100,9 @@ bool IslandModes::suits() const {
       return false;
   const std::vector<HeldContact> near = members_->contacts(search_->limits().tolerance);
   return near.size() <= limits_.contacts &&
-         std::none_of(near.begin(), near.end(),
-                      [this](const HeldContact& c) { return is_corner_on_corner(c); });
+         std::none_of(near.begin(), near.end(), [this](const HeldContact& c) {
+           return is_corner_on_corner(c) || response_->material_of(c.pair).rolling_resistance > 0.0;
+         });
 }
 
 /// A sharp corner at another: which side meets which is told in their place by roundings alone.
@@ -122,7 +123,7 @@ bool IslandModes::is_corner_on_corner(const HeldContact& c) const {
 bool IslandModes::touches(const HeldContact& c) const {
   const double tolerance = search_->limits().tolerance;
   const HeldContact* warm = find_warm(*warm_, c);
-  const bool was_closed = warm && warm->by_modes && is_closed(warm->mode);
+  const bool was_closed = warm && warm->by_modes && is_closed(warm->motion);
   return c.feature.gap <= (was_closed ? 2.0 : 1.0) * tolerance;
 }
 
@@ -213,18 +214,18 @@ bool IslandModes::meet(States& states) {
 }
 
 /// Those that the step before ended in, if they speak of all that touches.
-std::optional<std::vector<ContactMode>> IslandModes::former_modes() const {
-  std::vector<ContactMode> modes(problem_.contacts.size(), ContactMode::open);
+std::optional<std::vector<MotionMode>> IslandModes::former_modes() const {
+  std::vector<MotionMode> modes(problem_.contacts.size(), MotionMode::open);
   std::ptrdiff_t closed = 0;
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     if (place_[k] >= modes.size() || !touching_[place_[k]]) continue;
     const HeldContact* warm = find_warm(*warm_, contacts_[k]);
     if (!warm || !warm->by_modes) return std::nullopt;
-    modes[place_[k]] = warm->next;
-    closed += is_closed(warm->next);
+    modes[place_[k]] = warm->next_motion;
+    closed += is_closed(warm->next_motion);
   }
   const auto were_closed = std::count_if(warm_->begin(), warm_->end(), [](const auto& w) {
-    return !w.second.by_modes || is_closed(w.second.next);
+    return !w.second.by_modes || is_closed(w.second.next_motion);
   });
   if (closed != were_closed) return std::nullopt;
   return modes;
@@ -240,7 +241,7 @@ std::vector<bool> IslandModes::closed_now(const States& states, Meeting met) con
     const std::size_t at = place_[k];
     if (at >= closed.size() || !touching_[at]) continue;
     const HeldContact* warm = find_warm(*warm_, contacts_[k]);
-    const bool known = warm && warm->by_modes, was_open = known && !is_closed(warm->mode);
+    const bool known = warm && warm->by_modes, was_open = known && !is_closed(warm->motion);
     const bool slowly = met == Meeting::slow || (met == Meeting::none && !known);
     if (met == Meeting::none && was_open) continue;
     closed[at] = rates[at].normal_velocity <= (slowly ? slow : kNoParting * speed());
@@ -277,7 +278,7 @@ void IslandModes::note(const ModeMotion& motion) {
     HeldContact& c = contacts_[k];
     c.by_modes = true;
     if (place_[k] >= motion.modes().size()) continue;
-    c.mode = c.next = motion.modes()[place_[k]];
+    c.motion = c.next_motion = motion.modes()[place_[k]];
     c.normal_force = motion.forces().normal[place_[k]];
     c.tangential_force = motion.forces().tangential[place_[k]];
   }
@@ -303,7 +304,7 @@ bool IslandModes::move_on(ModeMotion& motion, double until) {
     const bool arrives = step.end == ModeEnd::arrival && of_[step.contact] == k;
     if (lost || arrives) c.by_modes = false;
     if (place_[k] >= motion.modes().size()) continue;
-    c.next = motion.modes()[place_[k]];
+    c.next_motion = motion.modes()[place_[k]];
     c.normal_force = std::max(c.normal_force, motion.forces().normal[place_[k]]);
   }
   for (std::size_t i = 0; i < tracks_.size(); ++i)
@@ -330,10 +331,10 @@ std::vector<IslandModes::Change> IslandModes::changes() const {
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     const HeldContact& c = contacts_[k];
     const HeldContact* warm = find_warm(*warm_, c);
-    if (!warm || !warm->by_modes || warm->mode == c.mode || !is_closed(warm->mode)) continue;
-    if (c.mode == ContactMode::stick) changes.push_back({c, EventKind::stick});
-    if (is_slip(c.mode)) changes.push_back({c, EventKind::slip});
-    if (!is_closed(c.mode)) changes.push_back({c, EventKind::lift});
+    if (!warm || !warm->by_modes || warm->motion == c.motion || !is_closed(warm->motion)) continue;
+    if (c.motion == MotionMode::stick) changes.push_back({c, EventKind::stick});
+    if (is_slip(c.motion)) changes.push_back({c, EventKind::slip});
+    if (!is_closed(c.motion)) changes.push_back({c, EventKind::lift});
   }
   return changes;
 }

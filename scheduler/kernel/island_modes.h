@@ -85,7 +85,7 @@ class IslandModes {
   };
   Meeting meeting(const States& states) const;
   bool meet(States& states);
-  std::optional<std::vector<ContactMode>> former_modes() const;
+  std::optional<std::vector<MotionMode>> former_modes() const;
   std::vector<bool> closed_now(const States& states, Meeting met) const;
   bool move_on(ModeMotion& motion, double until);
   void note(const ModeMotion& motion);

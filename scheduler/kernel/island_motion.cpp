@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "brink/core/base/disjoint_sets.h"
+#include "brink/scheduler/kernel/island_joining.h"
 
 namespace brink {
 
@@ -27,6 +28,8 @@ constexpr int kTangents = 32;
 constexpr std::size_t kFirstImpacts = 100, kImpactsEach = 20;
 /// A force below this part of the weight of the heaviest member is none.
 constexpr double kNoForce = 1e-9;
+/// A speed below this part of what the smallest member gains as it falls by its size is none.
+constexpr double kNoSpeed = 1e-7;
 
 }  // namespace
 
@@ -44,6 +47,14 @@ double IslandMotion::longest() const {
   const double fall = pull > 0.0 ? kOfFall * std::sqrt(members_.size() / pull) : kForever;
   const double way = speed > 0.0 ? kOfSize * members_.size() / speed : kForever;
   return std::min(fall, way);
+}
+
+std::vector<int> IslandMotion::joining(const World& world, Trajectories& trajectories, double now) {
+  h_ = longest();
+  if (!(h_ < kForever)) return {};
+  members_.look_ahead(h_, kReach);
+  return brink::joining(world, trajectories, *search_, members_, now, h_,
+                        [this](const PairKey& pair) { return most_absorbed(pair); });
 }
 
 void IslandMotion::list(double reach) {
@@ -101,9 +112,10 @@ void IslandMotion::collide(const HeldContact& c, double closing, const Impact& t
 
 // ---- rest
 
-bool IslandMotion::rests() {
+bool IslandMotion::rests(double rest_speed) {
   const double tolerance = search_->limits().tolerance, pull = members_.pull(), speed = members_.speed();
-  if (!(pull > 0.0) || 2.0 * speed * speed > tolerance * pull) return false;
+  const bool fades = 2.0 * speed * speed <= tolerance * pull;
+  if (!(pull > 0.0) || !(fades || speed <= rest_speed)) return false;
   const int count = static_cast<int>(members_.count());
   for (int i = 0; i < count; ++i)
     if (!members_.is_constant(i)) return false;
@@ -115,8 +127,18 @@ bool IslandMotion::rests() {
   make_problem();
   if (!stays_at_rest(*solver_, problem_)) return false;
   take_forces();
+  if (!fades) tally_->energy_of_rest += kinetic_energy();
   for (int i = 0; i < count; ++i) members_.set_twist(i, ExtendedTwist());
   return true;
+}
+
+double IslandMotion::kinetic_energy() const {
+  double twice = 0.0;
+  for (int i = 0; i < static_cast<int>(members_.count()); ++i) {
+    const Twist v = members_.state(i).twist.rounded();
+    twice += members_.body(i).mass * v.velocity.squaredNorm() + members_.body(i).inertia * v.omega * v.omega;
+  }
+  return 0.5 * twice;
 }
 
 // ---- steps
@@ -234,7 +256,9 @@ IslandContact IslandMotion::island_contact(const HeldContact& c) const {
   const int b = c.pair.with_site() ? -1 : members_.place_of(c.pair.other_body);
   made.rows = contact_at(a, b, c.feature.normal, members_.arm(c).cast<double>(), c.feature.point);
   made.gap = c.feature.gap - kept(c.feature);
-  made.friction = response_->material_of(c.pair).friction;
+  const Material& material = response_->material_of(c.pair);
+  made.friction = material.friction;
+  made.rolling_resistance = material.rolling_resistance;
   if (const HeldContact* warm = find_warm(warm_, c)) {
     made.normal_force = warm->normal_force;
     made.force_lasted = warm->lasted;
@@ -283,14 +307,21 @@ bool IslandMotion::pushes(const HeldContact& c) const {
   return c.normal_force > kNoForce * members_.heaviest() * members_.pull();
 }
 
-/// Nothing pushes, but one of the two alone, left to its parabola, could run into the other's step; or, by modes, it
-/// has just been let go: an open contact is looked at from there on as well as any other, until it is clear of it.
+/// Nothing pushes, but one of the two alone, left to its parabola, could run into the other's step: that has the
+/// twist of its end from the start on, which a parabola comes to by and by. By modes, it has just been let go: an open
+/// contact is looked at from there on as well as any other, until it is clear of it.
 bool IslandMotion::stays_near(const HeldContact& c) const {
-  if (by_modes_ && c.feature.gap <= kClear * search_->limits().tolerance &&
-      members_.closing_speed(c) >= -std::sqrt(kClear) * IslandModes::slowest_bounce(members_, *search_))
-    return true;
-  const double gained = members_.pull() * h_;
-  return !c.pair.with_site() && c.feature.gap <= gained * h_ && members_.closing_speed(c) >= -gained;
+  const double behind = members_.pull() * h_, tolerance = search_->limits().tolerance;
+  if (by_modes_) {
+    const double closing = members_.closing_speed(c);
+    const bool slow = closing >= -std::sqrt(kClear) * IslandModes::slowest_bounce(members_, *search_);
+    if (c.feature.gap <= kClear * tolerance && slow) return true;
+    return !c.pair.with_site() && c.feature.gap <= behind * h_ && closing >= -behind;
+  }
+  if (c.pair.with_site()) return false;
+  const double closing = members_.closing_speed(c, after(members_.place_of(c.pair.body)).twist,
+                                                after(members_.place_of(c.pair.other_body)).twist);
+  return c.feature.gap - h_ * (closing + behind) <= tolerance;
 }
 
 IslandMotion::Parts IslandMotion::parts(bool rests) const {
@@ -321,6 +352,22 @@ IslandMotion::Parts IslandMotion::parts(bool rests) const {
   return parts;
 }
 
+ContactMode IslandMotion::mode_of(const HeldContact& c, bool rests) const {
+  if (!pushes(c)) return ContactMode::none;
+  if (rests) return ContactMode::rest;
+  const auto twist = [this](int body) {
+    const int member = members_.place_of(body);
+    return by_modes_ ? members_.state(member).twist.rounded() : as_twist(problem_.velocity[member]);
+  };
+  const Twist a = twist(c.pair.body);
+  const Twist b =
+      c.pair.with_site() ? members_.other_state(c.pair).twist.rounded() : twist(c.pair.other_body);
+  const Vec2 relative = a.at(members_.arm(c).cast<double>()) - b.at(c.feature.point);
+  const double slow = kNoSpeed * std::sqrt(members_.pull() * members_.size());
+  if (std::abs(cross(c.feature.normal, relative)) > slow) return ContactMode::slip;
+  return std::abs(a.omega - b.omega) * members_.size() > slow ? ContactMode::roll : ContactMode::stick;
+}
+
 Island IslandMotion::island_of(const std::vector<int>& together, bool rests, double end) const {
   Island island;
   const auto has = [&](int body) {
@@ -328,7 +375,11 @@ Island IslandMotion::island_of(const std::vector<int>& together, bool rests, dou
   };
   for (const int i : together) island.members.push_back(members_.bodies()[i]);
   for (const HeldContact& c : contacts_)
-    if (has(c.pair.body) && (c.pair.with_site() || has(c.pair.other_body))) island.contacts.push_back(c);
+    if (has(c.pair.body) && (c.pair.with_site() || has(c.pair.other_body))) {
+      HeldContact& held = island.contacts.emplace_back(c);
+      held.mode = mode_of(c, rests);
+      held.place = members_.other_state(c.pair).position.cast<double>() + c.feature.point;
+    }
   island.rests = rests;
   if (!rests) island.due = end;
   if (rests)  // until forces jump

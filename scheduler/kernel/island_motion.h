@@ -24,16 +24,19 @@ class IslandMotion {
                ConeQp& solver, IslandTally& tally, WarmContacts warm);
 
   const IslandMembers& members() const { return members_; }
+  /// Bodies that are to be members before it steps, see joining(). None where nothing moves or pulls.
+  std::vector<int> joining(const World& world, Trajectories& trajectories, double now);
   /// How long a step may be [s]; infinity: nothing moves or pulls.
   double longest() const;
   /// A collision goes on through contacts of this instant: the one that closes fastest first, each by its own
   /// law, until none closes faster than what a step takes as plastic.
   void pass_on_impacts(const Impact& told);
   /// True if the members can be taken to be at rest: what is left of their motion is gone within the contact
-  /// tolerance, and their contacts hold them. They are at rest then.
-  bool rests();
+  /// tolerance, or slower than `rest_speed` [m/s], and their contacts hold them. They are at rest then.
+  bool rests(double rest_speed);
   /// From now on bounces end where they do not leave the contact tolerance any more, not the step.
   void expect_modes() { by_modes_ = true; }
+  const WarmContacts& warm() const { return warm_; }
   /// Takes a step of `h` [s] at most by modes; false: not that way. @pre sites are covered as far.
   bool take(IslandModes& modes, double now, double h, bool on_time);
   /// Takes a step of `h` [s] at most, and less where that does not do. False: not even the shortest does.
@@ -68,8 +71,10 @@ class IslandMotion {
   IslandContact island_contact(const HeldContact& c) const;
   bool stays_within_reach() const;
   void take_forces();
+  double kinetic_energy() const;
   bool pushes(const HeldContact& c) const;
   bool stays_near(const HeldContact& c) const;
+  ContactMode mode_of(const HeldContact& c, bool rests) const;
   std::vector<Vec3> velocities() const;
 
   IslandMembers members_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "brink/core/base/disjoint_sets.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
 
 namespace brink {
@@ -25,13 +26,14 @@ int next_hasty(int hasty, bool by_modes, bool was_short) {
 }  // namespace
 
 Islands::Islands(const World& world, Trajectories& trajectories, ContactSearch& search,
-                 CollisionResponse& response, Records& records, RunControl& run)
+                 CollisionResponse& response, Records& records, RunControl& run, double rest_speed)
     : world_(&world),
       trajectories_(&trajectories),
       search_(&search),
       response_(&response),
       records_(&records),
-      run_(&run) {}
+      run_(&run),
+      rest_speed_(rest_speed) {}
 
 void Islands::gather(int body, std::set<int>& members) const {
   if (members.count(body)) return;
@@ -45,14 +47,15 @@ void Islands::gather(int body, std::set<int>& members) const {
 
 WarmContacts Islands::take_out(const std::set<int>& members, int& hasty) {
   WarmContacts warm;
-  hasty = 0;
   for (const int k : members) {
     const auto found = islands_.find(k);
     if (found == islands_.end()) continue;
     if (found->second.rests) note_change(EventKind::wake, k), ++tally_.woken;
     for (const HeldContact& c : found->second.contacts) {
       search_->search_again(c.pair);
-      warm[{c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site}] = c;
+      const Feature key{c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site};
+      warm[key] = c;
+      if (c.mode != ContactMode::none) taken_out_.emplace(key, c);
     }
     hasty = std::max(hasty, found->second.hasty);
     for (const int j : found->second.members) lead_of_.erase(j);
@@ -62,10 +65,29 @@ WarmContacts Islands::take_out(const std::set<int>& members, int& hasty) {
 }
 
 void Islands::put_in(Island island) {
-  for (const HeldContact& c : island.contacts) search_->leave_out(c.pair);
+  for (HeldContact& c : island.contacts) {
+    search_->leave_out(c.pair);
+    if (c.mode == ContactMode::none) continue;
+    const auto before = taken_out_.find({c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site});
+    const bool goes_on = before != taken_out_.end() && before->second.mode == c.mode;
+    c.since = goes_on ? before->second.since : run_->time();
+    if (goes_on) taken_out_.erase(before);
+  }
   const int lead = island.members.front();
   for (const int k : island.members) lead_of_[k] = lead;
   islands_[lead] = std::move(island);
+}
+
+/// Those that were taken out and are in no island now have ended.
+void Islands::tell_ended() {
+  for (const auto& [feature, c] : taken_out_) records_->lasted(c);
+  taken_out_.clear();
+}
+
+void Islands::tell_lasting() const {
+  for (const auto& [lead, island] : islands_)
+    for (const HeldContact& c : island.contacts)
+      if (c.mode != ContactMode::none) records_->lasted(c);
 }
 
 void Islands::find_next() {
@@ -118,20 +140,32 @@ void Islands::tell(const IslandModes& modes, const IslandMembers& members) {
     note_mode(c.contact, members.other_state(c.contact.pair).position, c.kind);
 }
 
-bool Islands::begin_step(const std::set<int>& members, double longest, std::vector<int>& changed,
-                         bool on_time) {
+/// Members are held from now on, also those that join; what they push each other with is taken out.
+IslandMotion Islands::set_out(std::set<int>& members, int& hasty) {
+  WarmContacts warm;
+  hasty = 0;
+  for (;;) {
+    warm.merge(take_out(members, hasty));
+    std::vector<Restart> as_they_are;
+    for (const int k : members)
+      if (!trajectories_->is_held(k))
+        as_they_are.push_back({k, trajectories_->body(k).motion.extended_state(run_->time())});
+    std::vector<int> held;
+    trajectories_->hold(as_they_are, held);
+    IslandMotion motion(IslandMembers(*world_, *trajectories_, *search_, run_->time(), members), *search_,
+                        *response_, solver_, tally_, warm);
+    const std::vector<int> more = motion.joining(*world_, *trajectories_, run_->time());
+    if (more.empty()) return motion;
+    for (const int k : more) gather(k, members);
+  }
+}
+
+bool Islands::begin_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time) {
   int hasty = 0;
-  auto warm = take_out(members, hasty);
-  std::vector<Restart> as_they_are;
-  for (const int k : members)
-    if (!trajectories_->is_held(k))
-      as_they_are.push_back({k, trajectories_->body(k).motion.extended_state(run_->time())});
-  std::vector<int> held;
-  trajectories_->hold(as_they_are, held);
+  IslandMotion motion = set_out(members, hasty);
+  if (run_->halt()) return false;
   const double now = run_->time();
-  IslandMotion motion(IslandMembers(*world_, *trajectories_, *search_, now, members), *search_, *response_,
-                      solver_, tally_, warm);
-  IslandModes modes(motion.members(), *trajectories_, *search_, *response_, by_modes_, warm);
+  IslandModes modes(motion.members(), *trajectories_, *search_, *response_, by_modes_, motion.warm());
   if (hasty < kMostHasty && modes.suits()) motion.expect_modes();
   const std::uint64_t collisions = run_->work().collisions;
   motion.pass_on_impacts(
@@ -139,7 +173,7 @@ bool Islands::begin_step(const std::set<int>& members, double longest, std::vect
         note_impact(c, from, closing, r.normal, r.tangential);
       });
   on_time = on_time && run_->work().collisions == collisions;
-  const bool rests = motion.rests();
+  const bool rests = motion.rests(rest_speed_);
   const double h = std::min(longest, motion.longest());
   if (!rests && std::isfinite(h)) {
     if (!trajectories_->cover_sites(now + h)) return false;
@@ -153,6 +187,7 @@ bool Islands::begin_step(const std::set<int>& members, double longest, std::vect
                     "contacts",
                     members.size(), world_->bodies[*members.begin()].name, now));
     trajectories_->release(std::vector<int>(members.begin(), members.end()), changed);
+    tell_ended();
     find_next();
     return false;
   }
@@ -161,6 +196,7 @@ bool Islands::begin_step(const std::set<int>& members, double longest, std::vect
   hasty = next_hasty(hasty, by_modes, by_modes && modes.end() - now < kHasty * h);
   if (rests) note_change(EventKind::sleep, *members.begin()), ++tally_.slept;
   part(motion, rests, by_modes ? &modes : nullptr, hasty, changed);
+  tell_ended();
   std::sort(changed.begin(), changed.end());
   changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
   find_next();
@@ -222,6 +258,24 @@ bool Islands::capture(const PairKey& pair, const FeatureContact& contact, double
   return true;
 }
 
+bool Islands::begin(const std::vector<std::pair<PairKey, FeatureContact>>& touching,
+                    std::vector<int>& changed) {
+  DisjointSets joined;
+  joined.reset(trajectories_->body_count());
+  for (const auto& [pair, contact] : touching) {
+    records_->ending(EventKind::persist, pair, contact, records_->last_event());
+    ++tally_.captured;
+    if (!pair.with_site()) joined.unite(pair.body, pair.other_body);
+  }
+  for (const auto& [pair, contact] : touching) {
+    if (is_member(pair.body)) continue;  // with another of its contacts
+    std::set<int> members;
+    for (const int k : joined.of(pair.body)) gather(k, members);
+    if (!begin_step(members, std::numeric_limits<double>::infinity(), changed)) return false;
+  }
+  return true;
+}
+
 int Islands::next_island() const {
   return std::find_if(islands_.begin(), islands_.end(),
                       [&](const auto& i) { return i.second.due == next_step_; })
@@ -266,7 +320,13 @@ void Islands::restore(const Saved& saved) {
     for (const HeldContact& c : island.contacts) search_->search_again(c.pair);
   islands_.clear();
   lead_of_.clear();
-  for (const Island& island : saved.islands) put_in(island);
+  taken_out_.clear();
+  for (const Island& island : saved.islands) {
+    for (const HeldContact& c : island.contacts)  // they go on
+      if (c.mode != ContactMode::none)
+        taken_out_.emplace(Feature{c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site}, c);
+    put_in(island);
+  }
   tally_ = saved.tally;
   find_next();
 }

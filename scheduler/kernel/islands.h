@@ -1,6 +1,7 @@
 #pragma once
 /// Islands: bodies joined by contacts that last. An island is at rest, or goes on in steps.
 ///
+///   begin      bodies start touching: they are an island from the start
 ///   capture    bounces of a pair have come to their limit: its bodies are an island from now on
 ///   step       what has come apart leaves; the others move on together, few by modes (island_modes.h), many at
 ///              the level of velocities (island_step.h), or come to rest
@@ -25,7 +26,7 @@ class Islands {
  public:
   /// What is given must outlive it.
   Islands(const World& world, Trajectories& trajectories, ContactSearch& search, CollisionResponse& response,
-          Records& records, RunControl& run);
+          Records& records, RunControl& run, double rest_speed);
 
   /// Contacts may last from now on: an option, and a policy that asks for next_step().
   void allow(const IslandModes::Limits& by_modes) {
@@ -40,12 +41,17 @@ class Islands {
   /// By their least member.
   const std::map<int, Island>& all() const { return islands_; }
   bool is_member(int body) const { return trajectories_->is_held(body); }
+  /// When the step of that member's island ends [s]; infinity: it is at rest.
+  double step_end(int body) const { return islands_.at(lead_of_.at(body)).due; }
   const IslandTally& tally() const { return tally_; }
 
   // -- what happens at the present time: bodies whose motion changed are appended to `changed`; false on a halt
   /// The pair's bounces come to an end at `limit` [s]: from now on their contact lasts. Where nothing cuts the
   /// first step, it ends there, and the event `zeno` is told.
   bool capture(const PairKey& pair, const FeatureContact& contact, double limit, std::vector<int>& changed);
+  /// Contacts that are there at the start, and neither close nor part: they last from now on, and the bodies
+  /// that they join are islands.
+  bool begin(const std::vector<std::pair<PairKey, FeatureContact>>& touching, std::vector<int>& changed);
   /// The island whose step ends now, and first, takes its next.
   bool step(std::vector<int>& changed);
   /// A collision has been resolved, of which one side at least is a member.
@@ -58,13 +64,15 @@ class Islands {
     IslandTally tally;
   };
   Saved saved() const;
+  /// Tells the records of contacts that last still, up to the present time.
+  void tell_lasting() const;
   /// @pre the trajectories are restored.
   void restore(const Saved& saved);
 
  private:
   void gather(int body, std::set<int>& members) const;
-  bool begin_step(const std::set<int>& members, double longest, std::vector<int>& changed,
-                  bool on_time = false);
+  IslandMotion set_out(std::set<int>& members, int& hasty);
+  bool begin_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time = false);
   void part(const IslandMotion& motion, bool rests, const IslandModes* modes, int hasty,
             std::vector<int>& changed);
   void tell(const IslandModes& modes, const IslandMembers& members);
@@ -75,6 +83,7 @@ class Islands {
                    double tangential);
   WarmContacts take_out(const std::set<int>& members, int& hasty);
   void put_in(Island island);
+  void tell_ended();
   void find_next();
 
   const World* world_;
@@ -84,10 +93,13 @@ class Islands {
   Records* records_;
   RunControl* run_;
   ConeQp solver_;
+  double rest_speed_;
   bool allowed_ = false;
   IslandModes::Limits by_modes_;
   std::map<int, Island> islands_;
   std::map<int, int> lead_of_;  ///< of every member
+  using Feature = std::tuple<PairKey, bool, int, int>;
+  std::map<Feature, HeldContact> taken_out_;  ///< that pressed, until it is known whether they go on
   double next_step_ = std::numeric_limits<double>::infinity();
   IslandTally tally_;
 };

@@ -9,6 +9,11 @@
 
 namespace brink {
 
+bool KernelView::is_searched(int a, int b, const Image& image) const {
+  const auto pair = parts_.search.pair_of(a, b, image);
+  return pair && !parts_.search.is_left_out(*pair);
+}
+
 bool KernelView::is_resolved_ahead(const Certificate& c) const {
   const auto collisions = parts_.speculation.of(c.pair.body);
   if (collisions.empty()) return false;
@@ -198,11 +203,12 @@ bool Kernel::judge(const Outcome& o, std::vector<int>& changed) {
       parts_.records.ending(EventKind::zeno, o.pair, o.contact, ending->time);
       stop(Termination::failed,
            fmt::format(
-               "Zeno at t = {:.15g} after {} bounces of {}: a contact that lasts begins, and those are "
-               "not in this release",
+               "Zeno at t = {:.15g} after {} bounces of {}: a contact that lasts begins, and {} ends there",
                ending->time,
                std::max<std::uint64_t>(ending->count, parts_.speculation.certain(o.pair.body).streak),
-               name_of(o.pair)));
+               name_of(o.pair),
+               options().persistent ? fmt::format("policy \"{}\"", options().policy)
+                                    : "solver.persistent = false"));
       return false;
     case Ending::Kind::group:
       parts_.records.ending(EventKind::group, o.pair, o.contact, parts_.records.last_event());
@@ -232,12 +238,15 @@ bool Kernel::begin_to_last(const Outcome& o, double limit, std::vector<int>& cha
 /// A collision of a member is a step of its island.
 bool Kernel::go_on_in_islands(const Outcome& o, std::vector<int>& changed) {
   const bool concerned = is_held(o.pair.body) || (!o.pair.with_site() && is_held(o.pair.other_body));
-  return !concerned || parts_.islands.collided(o.pair, changed);
+  if (!concerned) return true;
+  roll_back_all();
+  return parts_.islands.collided(o.pair, changed);
 }
 
 bool Kernel::step_island(std::vector<int>& changed) {
   parts_.run.set_time(next_step());
   parts_.policy_watch.going_to(time());
+  roll_back_all();
   return parts_.islands.step(changed);
 }
 

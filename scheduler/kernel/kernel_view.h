@@ -66,12 +66,17 @@ class KernelView {
   std::uint64_t island_steps() const { return parts_.islands.tally().steps; }
   /// True if an island holds the body.
   bool is_held(int k) const { return parts_.trajectories.is_held(k); }
+  /// When the step of the island that holds body k ends [s], and its motion with it; infinity: at rest.
+  double step_end(int k) const { return parts_.islands.step_end(k); }
   /// By their least member.
   const std::map<int, Island>& islands() const { return parts_.islands.all(); }
 
   // -- pairs --
   /// False if a filter says that owners a and b never meet.
   bool may_meet(int a, int b) const { return parts_.search.may_meet(a, b); }
+  /// False where an island keeps the gap of owner a and that image of owner b: until one of their motions
+  /// changes, searches find nothing.
+  bool is_searched(int a, int b, const Image& image) const;
   /// The pair of owner a with that image of owner b; nothing if they are one, two sites, or never meet.
   std::optional<PairKey> pair_of(int a, int b, const Image& image = {}) const {
     return parts_.search.pair_of(a, b, image);

@@ -60,6 +60,13 @@ void Records::ending(EventKind kind, const PairKey& pair, const FeatureContact& 
   recorder_->event(event);
 }
 
+void Records::lasted(const HeldContact& c) {
+  if (!records_events() || !(run_->time() > c.since)) return;
+  recorder_->contact_lasted({c.since, run_->time(), c.mode, c.pair.body, c.pair.other_body, c.pair.other_site,
+                             c.feature.sample, c.feature.site, c.feature.sample_on_a, c.place,
+                             c.feature.normal, c.normal_force, c.tangential_force});
+}
+
 bool Records::checkpoint_due() const {
   return recorder_ && run_->options().checkpoint_seconds >= 0.0 && wall_clock() >= next_checkpoint_;
 }

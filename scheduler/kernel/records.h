@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "brink/scheduler/kernel/contact_search.h"
+#include "brink/scheduler/kernel/island.h"
 #include "brink/scheduler/kernel/speculation.h"
 #include "brink/scheduler/run/recorder.h"
 
@@ -33,6 +34,9 @@ class Records {
   void ending(EventKind kind, const PairKey& pair, const FeatureContact& contact, double time);
   /// The time of the last event, to which the next one is told not to be before [s].
   double last_event() const { return last_event_; }
+
+  /// A contact that lasted up to the present time.
+  void lasted(const HeldContact& contact);
 
   // -- checkpoints --
   bool checkpoint_due() const;

@@ -2,6 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "brink/core/base/error.h"
 #include "brink/core/world/recentred.h"
 #include "brink/scheduler/kernel/snapshot.h"
@@ -9,6 +12,9 @@
 namespace brink {
 
 namespace {
+
+/// Slower than this nothing closes or parts [m/s]: a rounding of velocities.
+constexpr double kStillAtStart = 1e-12;
 
 World checked(World world, const SolverOptions& options) {
   world.check();
@@ -47,7 +53,7 @@ KernelParts::KernelParts(World given, SolverOptions chosen)
       speculation(trajectories, run),
       endings(search.limits().tolerance, options.max_collisions),
       records(trajectories, run),
-      islands(world, trajectories, search, response, records, run),
+      islands(world, trajectories, search, response, records, run, options.rest_speed),
       policy_watch(options.policy, search, speculation),
       random(options.seed) {}
 
@@ -57,6 +63,25 @@ void RunKernel::begin(const RunOptions& options, Recorder* recorder) {
   parts_.run.begin(options);
   parts_.records.begin(recorder);
   if (options.first_frame) show_frame();
+}
+
+void RunKernel::let_touching_last() {
+  if (!parts_.islands.allowed() || time() != 0.0) return;
+  const double tolerance = parts_.search.limits().tolerance;
+  if (world().gravity.isZero(0.0) && world().forces.empty()) return;  // nothing presses
+  std::vector<std::pair<PairKey, FeatureContact>> touching;
+  parts_.near.each_at(time(), [&](const PairKey& pair) {
+    if (parts_.search.is_left_out(pair)) return true;
+    for (const FeatureContact& c : parts_.search.touching(pair, tolerance, time()))
+      if (std::abs(c.closing_speed) <= kStillAtStart) return touching.emplace_back(pair, c), true;
+    return true;
+  });
+  if (touching.empty()) return;
+  std::sort(touching.begin(), touching.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<int> changed;
+  parts_.islands.begin(touching, changed);
+  parts_.policy_watch.forget_all();
+  ++parts_.revision;
 }
 
 void RunKernel::end() {

@@ -17,8 +17,12 @@ class RunKernel final : public Kernel {
 
   /// `recorder` may be null.
   void begin(const RunOptions& options, Recorder* recorder);
+  /// At the start, where contacts may last: those that are there, press, and neither close nor part last.
+  void let_touching_last();
   /// Records the last frame, at the present time, unless the frame clock has just done so, and a checkpoint.
   void end();
+  /// Tells the recorder of contacts that last still.
+  void tell_lasting_contacts() const { parts_.islands.tell_lasting(); }
   WorkCounters& work() { return parts_.run.work(); }
   double max_overlap() const { return parts_.watch.max_overlap(); }
   const TakenGroups& taken() const { return parts_.taken; }

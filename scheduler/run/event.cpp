@@ -29,6 +29,22 @@ const char* to_string(EventKind kind) {
   return "unknown";
 }
 
+const char* to_string(ContactMode mode) {
+  switch (mode) {
+    case ContactMode::none:
+      return "none";
+    case ContactMode::rest:
+      return "rest";
+    case ContactMode::stick:
+      return "stick";
+    case ContactMode::slip:
+      return "slip";
+    case ContactMode::roll:
+      return "roll";
+  }
+  return "unknown";
+}
+
 const char* to_string(TraceKind kind) {
   switch (kind) {
     case TraceKind::advance:

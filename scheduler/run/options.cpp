@@ -51,6 +51,12 @@ bool positive(double value, const char* option, std::string* error) {
   return false;
 }
 
+bool not_negative(double value, const char* option, std::string* error) {
+  if (std::isfinite(value) && value >= 0.0) return true;
+  *error = fmt::format("{} = {} must be a finite number >= 0", option, value);
+  return false;
+}
+
 }  // namespace
 
 std::span<const Choice> orders() { return kOrders; }
@@ -74,7 +80,7 @@ bool SolverOptions::is_valid(std::string* error) const {
     return false;
   }
   return known(policies(), policy, "policy", error) && known(responses(), response, "response", error) &&
-         known(detectors(), detector, "detector", error) &&
+         known(detectors(), detector, "detector", error) && not_negative(rest_speed, "rest_speed", error) &&
          positive(contact_tolerance, "contact_tolerance", error) && positive(step, "step", error) &&
          integrator_options().is_valid(error) && field.is_valid(error);
 }

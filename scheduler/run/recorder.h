@@ -7,6 +7,7 @@
 
 #include "brink/core/base/geometry.h"
 #include "brink/scheduler/run/event.h"
+#include "brink/scheduler/run/lasted_contact.h"
 #include "brink/scheduler/run/summary.h"
 
 namespace brink {
@@ -19,6 +20,9 @@ class Recorder {
   /// Every body's state at a frame time (t = 0, each frame interval, the end).
   virtual void frame(double /*t*/, std::span<const BodyState> /*states*/) {}
   virtual void event(const Event& /*event*/) {}
+  /// A contact that lasted, when its stretch ends: at its own `to`, or, last of all, at the end of the run that
+  /// it outlasts. A run that goes on from there tells those again, whole, when they end.
+  virtual void contact_lasted(const LastedContact& /*contact*/) {}
   /// Everything needed to go on from t with the same bits (Simulator::restore). All before is complete.
   virtual void checkpoint(double /*t*/, const std::vector<std::byte>& /*state*/) {}
 };

@@ -38,6 +38,7 @@ struct RunSummary {
   /// far friction was from its cone at most, as a part of the largest normal force.
   std::uint64_t contacts_lasting = 0, island_steps = 0, islands_at_rest = 0, resting = 0;
   double approach_absorbed = 0.0, friction_residual = 0.0;
+  double rest_energy = 0.0;    ///< that the option rest_speed took [J]
   double island_energy = 0.0;  ///< that steps made, in all [J]: by rounding, and by faces that turn
   std::uint64_t state_hash = 0;
   WorkCounters work;

@@ -46,6 +46,7 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
     if (const std::string why = start_fault(); !why.empty()) throw BadInput(why);
   const auto begin = std::chrono::steady_clock::now();
   kernel.begin(options, recorder);
+  kernel.let_touching_last();
   impl_->policy->run(kernel, options.until);
   kernel.check_returned(options.until);
   kernel.end();
@@ -58,6 +59,7 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
     summary.termination = Termination::reached_end;
   }
   if (recorder) recorder->checkpoint(time(), kernel.snapshot());
+  kernel.tell_lasting_contacts();  // beyond the checkpoint: a run that goes on tells them again
   const std::vector<BodyState> last = states();
   const Momentum momentum = total_momentum(world(), last);
   summary.end_time = time();
@@ -83,6 +85,7 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
   summary.approach_absorbed = islands.absorbed;
   summary.friction_residual = islands.friction_residual;
   summary.island_energy = islands.energy_won;
+  summary.rest_energy = islands.energy_of_rest;
   summary.state_hash = state_hash();
   summary.work = kernel.work();
   summary.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -201,8 +201,9 @@ TEST(Islands, SeenFromOutsideKeepApartAndWinNothing) {
     outside::FrameWatch watch(w.world, w.duration, kOverlap);
     const RunSummary summary = watched(w, random, watch);
     const bool conserves = !w.moves && !w.pulls && !w.rebounds_rub;
-    std::printf("%s: %llu collisions, deepest %.1e m, gained %.1e at %.4f s%s, %s\n", named(seed, w).c_str(),
-                static_cast<unsigned long long>(summary.collisions), static_cast<double>(watch.deepest),
+    std::printf("%s: %llu collisions, %llu steps, deepest %.1e m, gained %.1e at %.4f s%s, %s\n",
+                named(seed, w).c_str(), static_cast<unsigned long long>(summary.collisions),
+                static_cast<unsigned long long>(summary.island_steps), static_cast<double>(watch.deepest),
                 static_cast<double>(watch.gained), watch.when, conserves ? "" : " (may)",
                 summary.termination_text().c_str());
     if (!watch.sound()) std::printf("  %s", watch.report().c_str());

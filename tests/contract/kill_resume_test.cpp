@@ -128,6 +128,13 @@ std::vector<std::string> frames(const fs::path& file) {
                         " FROM frame ORDER BY rowid");
 }
 
+std::vector<std::string> contacts(const fs::path& file) {
+  return rows(file, "SELECT mode || ' ' || " +
+                        exact({"t_begin", "t_end", "body", "other", "site", "outline_site", "sample",
+                               "force_n", "force_t", "sample_on_body", "px", "py", "nx", "ny"}) +
+                        " FROM contact ORDER BY rowid");
+}
+
 class KillResume : public testing::Test {
  protected:
   KillResume() {
@@ -185,6 +192,7 @@ TEST_F(KillResume, TwentyKillsAndOneEndGiveTheUndisturbedRun) {
   EXPECT_GT(events(a).size(), 100u);
   EXPECT_EQ(events(a), events(b));
   EXPECT_EQ(frames(a), frames(b));
+  EXPECT_EQ(contacts(a), contacts(b));
 }
 
 // Ctrl-C: exit status 1, termination "stopped", a whole file; gone on with, it is the undisturbed run, frames
@@ -204,6 +212,7 @@ TEST_F(KillResume, InterruptedRunStopsInOrderAndGoesOn) {
   EXPECT_EQ(RunFile(a).meta("state_hash"), RunFile(b).meta("state_hash"));
   EXPECT_EQ(events(a), events(b));
   EXPECT_EQ(frames(a), frames(b));
+  EXPECT_EQ(contacts(a), contacts(b));
 }
 
 // Ctrl-C, gone on with, killed before the next checkpoint, gone on with again: no frame is there twice. The
@@ -224,6 +233,7 @@ TEST_F(KillResume, StoppedThenKilledRunHasTheUndisturbedFrames) {
   EXPECT_EQ(RunFile(a).meta("state_hash"), RunFile(b).meta("state_hash"));
   EXPECT_EQ(events(a), events(b));
   EXPECT_EQ(frames(a), frames(b));
+  EXPECT_EQ(contacts(a), contacts(b));
 }
 
 }  // namespace

@@ -91,6 +91,64 @@ TEST(Wheel, RollsOnAFloorAndNeverLies) {
   }
 }
 
+// The torque of a rolling resistance b is b m g; at no slip (I + m R^2) alpha = -b m g, I = m R^2 / 2.
+TEST(Wheel, WithRollingResistanceStopsWhereItsWorkIsDone) {
+  const double v = 0.7, r = 0.5, b = 0.01, deceleration = 2.0 / 3.0 * b * kEarth / r;
+  World world = heavy_world(0.0, 0.5);
+  world.materials[0].rolling_resistance = b;
+  add_floor(world);
+  add(world, body(make_disc(r), {0.0, r + 1e-12}, {v, 0.0}, 1.0, 0.0, -v / r));
+  Simulator simulator(world, lasting());
+  EXPECT_EQ(go_on(simulator, 2.0), "");
+  EXPECT_NEAR(simulator.state(0).twist.velocity.x(), v - 2.0 * deceleration,
+              0.016 * deceleration);  // a step of it
+  EXPECT_EQ(go_on(simulator, v / deceleration + 1.0), "");
+  const BodyState lies = simulator.state(0);
+  std::printf("stops after %.6f m, %.6f by its work\n", lies.pose.position.x(), 0.5 * v * v / deceleration);
+  EXPECT_TRUE(at_rest(lies));
+  EXPECT_NEAR(lies.pose.position.x(), 0.5 * v * v / deceleration, 0.02 * v);  // a step at most
+  EXPECT_EQ(go_on(simulator, 1000.0), "");
+  EXPECT_TRUE(same_place(simulator.state(0), lies));
+}
+
+// On a slope its weight turns it about the foot with m g R sin, against at most b m g cos.
+TEST(Wheel, WithRollingResistanceStandsOnASlopeUpToItsAngle) {
+  for (const double steeper : {0.999, 1.001}) {
+    const double r = 0.25, b = 0.02, angle = steeper * std::atan(b / r);
+    World world = heavy_world(0.0, 0.5);
+    world.materials[0].rolling_resistance = b;
+    add(world, site(make_segment({-50.0, 0.0}, {50.0, 0.0}), Vec2::Zero(), angle));
+    const Vec2 out(-std::sin(angle), std::cos(angle));
+    add(world, body(make_disc(r), (r + 1e-12) * out, {0.0, 0.0}));
+    Simulator simulator(world, lasting());
+    EXPECT_EQ(go_on(simulator, 10.0), "");
+    const double rolled = simulator.state(0).pose.position.dot(Vec2(-std::cos(angle), -std::sin(angle)));
+    // 2/3 g (sin - b/R cos)
+    const double free = 2.0 / 3.0 * kEarth * (std::sin(angle) - b / r * std::cos(angle)) * 0.5 * 100.0;
+    std::printf("%.4f of the angle: rolled %.6f m, %.6f in closed form\n", steeper, rolled,
+                std::max(free, 0.0));
+    EXPECT_EQ(at_rest(simulator.state(0)), steeper < 1.0);
+    EXPECT_NEAR(rolled, std::max(free, 0.0), 1e-2 * std::abs(free) + 1e-9);
+  }
+}
+
+TEST(Wheel, SlowerThanTheRestSpeedLies) {
+  World world = heavy_world(0.0, 0.5);
+  add_floor(world);
+  const double v = 1e-3, r = 0.5;
+  add(world, body(make_disc(r), {0.0, r + 1e-12}, {v, 0.0}, 2.0, 0.0, -v / r));
+  for (const double rest_speed : {0.0, 1.9e-3, 2.1e-3}) {  // its fastest point goes at 2 v
+    SolverOptions options = lasting();
+    options.rest_speed = rest_speed;
+    Simulator simulator(world, options);
+    const RunSummary summary = simulator.run(testing::until(1.0));
+    EXPECT_EQ(summary.termination, Termination::reached_end) << summary.why;
+    const bool lies = rest_speed > 2.0 * v;
+    EXPECT_EQ(at_rest(simulator.state(0)), lies) << rest_speed;
+    EXPECT_NEAR(summary.rest_energy, lies ? 0.75 * world.bodies[0].mass * v * v : 0.0, 1e-15) << rest_speed;
+  }
+}
+
 // Angular momentum about a point of the floor is kept, whatever friction does: 2/3 of the speed is left.
 TEST(Wheel, ThatSlidesAtFirstRollsWithTwoThirdsOfItsSpeed) {
   World world = heavy_world(0.0, 0.3);

@@ -59,16 +59,16 @@ class Complementarity {
     }
   }
 
-  ContactMode mode_of(std::size_t k, ContactKnown known, bool frictionless) const {
+  MotionMode mode_of(std::size_t k, ContactKnown known, bool frictionless) const {
     const auto found =
         std::find_if(contacts_.begin(), contacts_.end(), [&](const Rows& r) { return r.of == k; });
-    if (found->normal.dot(acceleration_) + found->normal_bend > kNone * size_) return ContactMode::open;
-    if (frictionless) return ContactMode::smooth;
-    if (known == ContactKnown::slides_plus) return ContactMode::slip_plus;
-    if (known == ContactKnown::slides_minus) return ContactMode::slip_minus;
+    if (found->normal.dot(acceleration_) + found->normal_bend > kNone * size_) return MotionMode::open;
+    if (frictionless) return MotionMode::smooth;
+    if (known == ContactKnown::slides_plus) return MotionMode::slip_plus;
+    if (known == ContactKnown::slides_minus) return MotionMode::slip_minus;
     const Real along = found->tangent.dot(acceleration_) + found->tangential_bend;
-    if (std::abs(along) <= kNone * size_) return ContactMode::stick;
-    return along > 0 ? ContactMode::slip_plus : ContactMode::slip_minus;
+    if (std::abs(along) <= kNone * size_) return MotionMode::stick;
+    return along > 0 ? MotionMode::slip_plus : MotionMode::slip_minus;
   }
 
  private:
@@ -125,7 +125,7 @@ class Complementarity {
 ModeChoice choose_modes(const ModeProblem& problem, const ModeMoment& moment,
                         const std::vector<ContactKnown>& known) {
   ModeChoice choice;
-  choice.modes.assign(known.size(), ContactMode::open);
+  choice.modes.assign(known.size(), MotionMode::open);
   Complementarity problem_of(problem, moment, known);
   if (!problem_of.solve()) return choice;
   choice.found = true;

@@ -24,7 +24,7 @@ enum class ContactKnown : unsigned char {
 
 struct ModeChoice {
   bool found = false;  ///< false: no forces are Coulomb's (Painleve 1895), or none was found
-  std::vector<ContactMode> modes;
+  std::vector<MotionMode> modes;
 };
 
 /// @pre moment and known speak of the problem's contacts. Cost: about (3 contacts)^3 in extended precision.

@@ -130,7 +130,7 @@ class Watch {
 
 }  // namespace
 
-Arrival first_arrival(const ModeProblem& problem, const std::vector<ContactMode>& modes,
+Arrival first_arrival(const ModeProblem& problem, const std::vector<MotionMode>& modes,
                       const std::vector<PolynomialPiece>& bodies, double from, double to, double slack) {
   Arrival first;
   first.time = to;

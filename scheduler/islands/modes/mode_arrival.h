@@ -16,7 +16,7 @@ struct Arrival {
 
 /// The first contact that is `open` and closes in [from, to] on these motions of the bodies; of several at one time
 /// the first in order. `slack` > 0: what a gap may be below zero by rounding [m].
-Arrival first_arrival(const ModeProblem& problem, const std::vector<ContactMode>& modes,
+Arrival first_arrival(const ModeProblem& problem, const std::vector<MotionMode>& modes,
                       const std::vector<PolynomialPiece>& bodies, double from, double to, double slack);
 
 }  // namespace brink

@@ -37,8 +37,8 @@ VectorXd root_of(const ModeProblem& problem) {
   return root;
 }
 
-double friction_sign(ContactMode mode) {
-  return mode == ContactMode::slip_plus ? -1.0 : mode == ContactMode::slip_minus ? 1.0 : 0.0;
+double friction_sign(MotionMode mode) {
+  return mode == MotionMode::slip_plus ? -1.0 : mode == MotionMode::slip_minus ? 1.0 : 0.0;
 }
 
 VectorXd normal_row(const ModeProblem& p, const ContactRates& r, std::size_t k) {
@@ -48,8 +48,7 @@ VectorXd tangent_row(const ModeProblem& p, const ContactRates& r, std::size_t k)
   return row_of(p, p.contacts[k], r.tangent_on_sample, r.tangent_on_site);
 }
 
-System system_of(const ModeProblem& problem, const ModeMoment& moment,
-                 const std::vector<ContactMode>& modes) {
+System system_of(const ModeProblem& problem, const ModeMoment& moment, const std::vector<MotionMode>& modes) {
   const VectorXd root = root_of(problem);
   System s;
   std::vector<VectorXd> rows, columns;
@@ -70,7 +69,7 @@ System system_of(const ModeProblem& problem, const ModeMoment& moment,
                    t = tangent_row(problem, moment.contacts[k], k);
     const double sign = friction_sign(modes[k]) * problem.contacts[k].friction;
     add(k, n, n + sign * t, moment.contacts[k].normal_bend, false);
-    if (modes[k] == ContactMode::stick) add(k, t, t, moment.contacts[k].tangential_bend, true);
+    if (modes[k] == MotionMode::stick) add(k, t, t, moment.contacts[k].tangential_bend, true);
   }
   const auto count = static_cast<Eigen::Index>(rows.size());
   s.rows.resize(count, root.size());
@@ -85,7 +84,7 @@ System system_of(const ModeProblem& problem, const ModeMoment& moment,
 }
 
 /// Forces that the system's columns give.
-void read_forces(const ModeProblem& problem, const std::vector<ContactMode>& modes, const System& s,
+void read_forces(const ModeProblem& problem, const std::vector<MotionMode>& modes, const System& s,
                  const VectorXd& loads, ModeForces& f) {
   for (Eigen::Index i = 0; i < loads.size(); ++i) {
     const int k = s.of[i];
@@ -100,7 +99,7 @@ void read_forces(const ModeProblem& problem, const std::vector<ContactMode>& mod
 }
 
 /// The least room of any force, of the largest.
-void find_margin(const ModeProblem& problem, const std::vector<ContactMode>& modes, ModeForces& f) {
+void find_margin(const ModeProblem& problem, const std::vector<MotionMode>& modes, ModeForces& f) {
   double largest = 0.0;
   for (std::size_t k = 0; k < modes.size(); ++k)
     largest = std::max({largest, std::abs(f.normal[k]), std::abs(f.tangential[k])});
@@ -108,7 +107,7 @@ void find_margin(const ModeProblem& problem, const std::vector<ContactMode>& mod
   for (std::size_t k = 0; k < modes.size(); ++k) {
     if (!is_closed(modes[k])) continue;
     double room = f.normal[k];
-    if (modes[k] == ContactMode::stick)
+    if (modes[k] == MotionMode::stick)
       room = std::min(room, problem.contacts[k].friction * f.normal[k] - std::abs(f.tangential[k]));
     if (largest > 0.0) room /= largest;
     if (room < f.margin) f.margin = room, f.worst = static_cast<int>(k);
@@ -117,7 +116,7 @@ void find_margin(const ModeProblem& problem, const std::vector<ContactMode>& mod
 
 /// Redundant contacts: forces within the cones, if there are any.
 void find_admissible(const ModeProblem& problem, const ModeMoment& moment,
-                     const std::vector<ContactMode>& modes, const VectorXd& pushed, ModeForces& f) {
+                     const std::vector<MotionMode>& modes, const VectorXd& pushed, ModeForces& f) {
   const VectorXd root = root_of(problem);
   std::vector<VectorXd> edges;
   std::vector<std::pair<int, double>> of;  // contact, tangential part
@@ -130,7 +129,7 @@ void find_admissible(const ModeProblem& problem, const ModeMoment& moment,
       edges.push_back((n + part * t).cwiseProduct(root));
       of.emplace_back(static_cast<int>(k), part);
     };
-    if (modes[k] != ContactMode::stick) {
+    if (modes[k] != MotionMode::stick) {
       add(friction_sign(modes[k]) * mu);
     } else {
       add(mu);
@@ -157,7 +156,7 @@ void find_admissible(const ModeProblem& problem, const ModeMoment& moment,
 
 /// Positions, or velocities, that change least in the mass metric.
 std::vector<VectorXd> closed_rows(const ModeProblem& problem, const std::vector<ContactRates>& rates,
-                                  const std::vector<ContactMode>& modes, bool velocities,
+                                  const std::vector<MotionMode>& modes, bool velocities,
                                   std::vector<double>& off) {
   std::vector<VectorXd> rows;
   off.clear();
@@ -165,7 +164,7 @@ std::vector<VectorXd> closed_rows(const ModeProblem& problem, const std::vector<
     if (!is_closed(modes[k])) continue;
     rows.push_back(normal_row(problem, rates[k], k));
     off.push_back(velocities ? rates[k].normal_velocity : rates[k].gap - problem.contacts[k].kept);
-    if (!velocities || modes[k] != ContactMode::stick) continue;
+    if (!velocities || modes[k] != MotionMode::stick) continue;
     rows.push_back(tangent_row(problem, rates[k], k));
     off.push_back(rates[k].tangential_velocity);
   }
@@ -192,7 +191,7 @@ VectorXd least_change(const ModeProblem& problem, const std::vector<VectorXd>& r
 }  // namespace
 
 ModeForces forces_in(const ModeProblem& problem, const ModeMoment& moment,
-                     const std::vector<ContactMode>& modes, bool with_margin) {
+                     const std::vector<MotionMode>& modes, bool with_margin) {
   ModeForces f;
   f.normal.assign(modes.size(), 0.0);
   f.tangential.assign(modes.size(), 0.0);
@@ -218,7 +217,7 @@ ModeForces forces_in(const ModeProblem& problem, const ModeMoment& moment,
 }
 
 std::vector<BodyState> projected(const ModeProblem& problem, double t, std::vector<BodyState> states,
-                                 const std::vector<ContactMode>& modes) {
+                                 const std::vector<MotionMode>& modes) {
   std::vector<double> off;
   const auto move = [&](bool velocities) {
     const std::vector<VectorXd> rows =

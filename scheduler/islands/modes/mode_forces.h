@@ -23,11 +23,11 @@ struct ModeForces {
 
 /// Cost: about (3 rows)^3 flops. Margins cost as much again and are left out where not asked for.
 ModeForces forces_in(const ModeProblem& problem, const ModeMoment& moment,
-                     const std::vector<ContactMode>& modes, bool with_margin = true);
+                     const std::vector<MotionMode>& modes, bool with_margin = true);
 
 /// The states with positions moved onto gap = kept of all closed contacts, and then velocities onto v_n = 0, and
 /// v_t = 0 where it sticks: by least change in the mass metric. Supports move as they do at t.
 std::vector<BodyState> projected(const ModeProblem& problem, double t, std::vector<BodyState> states,
-                                 const std::vector<ContactMode>& modes);
+                                 const std::vector<MotionMode>& modes);
 
 }  // namespace brink

@@ -27,7 +27,7 @@ constexpr int kChanges = 8, kChangesEach = 4;
 
 double ulp(double t) { return kEps * std::max(std::abs(t), std::numeric_limits<double>::min()); }
 
-double slip_sign(ContactMode m) { return m == ContactMode::slip_plus ? 1.0 : -1.0; }
+double slip_sign(MotionMode m) { return m == MotionMode::slip_plus ? 1.0 : -1.0; }
 
 Acceleration as_acceleration(const Eigen::VectorXd& a, int k) { return {a.segment<2>(3 * k), a[3 * k + 2]}; }
 
@@ -45,7 +45,7 @@ ModeMotion::ModeMotion(const ModeProblem& problem, const ModeLimits& limits, dou
       limits_(limits),
       t_(t),
       states_(std::move(states)),
-      modes_(problem.contacts.size(), ContactMode::open),
+      modes_(problem.contacts.size(), MotionMode::open),
       size_(problem.size) {
   set_scales();
   h_ = limits_.longest;
@@ -77,7 +77,7 @@ bool ModeMotion::begin(const std::vector<bool>& closed) {
   return choice.found && begin_in(choice.modes);
 }
 
-bool ModeMotion::begin_in(const std::vector<ContactMode>& modes) {
+bool ModeMotion::begin_in(const std::vector<MotionMode>& modes) {
   modes_ = modes;
   states_ = projected(problem_, t_, std::move(states_), modes_);
   forces_ = forces_in(problem_, moment_at(problem_, t_, states_, modes_), modes_);

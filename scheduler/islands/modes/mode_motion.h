@@ -50,13 +50,13 @@ class ModeMotion {
   /// found.
   bool begin(const std::vector<bool>& closed);
   /// Goes on in modes that were chosen before. False: they contradict each other.
-  bool begin_in(const std::vector<ContactMode>& modes);
+  bool begin_in(const std::vector<MotionMode>& modes);
   /// One step towards `until` > time(). After range, arrival, no_modes and lost it cannot go on.
   ModeStep step(double until);
 
   double time() const { return t_; }
   const std::vector<BodyState>& states() const { return states_; }
-  const std::vector<ContactMode>& modes() const { return modes_; }
+  const std::vector<MotionMode>& modes() const { return modes_; }
   /// At time(), in these modes.
   const ModeForces& forces() const { return forces_; }
 
@@ -90,7 +90,7 @@ class ModeMotion {
   ModeLimits limits_;
   double t_;
   States states_;
-  std::vector<ContactMode> modes_;
+  std::vector<MotionMode> modes_;
   ModeForces forces_;
   double h_ = 0.0;  ///< of the next step [s]
   double size_ = 1.0, speed_ = 1.0;

@@ -31,11 +31,11 @@ ContactRates rates_at(const ModeProblem& problem, double t, std::span<const Body
 }
 
 std::vector<ContactRates> rates_at(const ModeProblem& problem, double t, std::span<const BodyState> states) {
-  return rates_at(problem, t, states, std::vector(problem.contacts.size(), ContactMode::stick));
+  return rates_at(problem, t, states, std::vector(problem.contacts.size(), MotionMode::stick));
 }
 
 std::vector<ContactRates> rates_at(const ModeProblem& problem, double t, std::span<const BodyState> states,
-                                   const std::vector<ContactMode>& modes) {
+                                   const std::vector<MotionMode>& modes) {
   std::vector<ContactRates> all(modes.size());
   for (std::size_t k = 0; k < modes.size(); ++k)
     if (is_closed(modes[k])) all[k] = rates_at(problem, t, states, problem.contacts[k]);
@@ -43,11 +43,11 @@ std::vector<ContactRates> rates_at(const ModeProblem& problem, double t, std::sp
 }
 
 ModeMoment moment_at(const ModeProblem& problem, double t, std::span<const BodyState> states) {
-  return moment_at(problem, t, states, std::vector(problem.contacts.size(), ContactMode::stick));
+  return moment_at(problem, t, states, std::vector(problem.contacts.size(), MotionMode::stick));
 }
 
 ModeMoment moment_at(const ModeProblem& problem, double t, std::span<const BodyState> states,
-                     const std::vector<ContactMode>& modes) {
+                     const std::vector<MotionMode>& modes) {
   ModeMoment m;
   const int bodies = problem.bodies();
   std::vector<Acceleration> free(bodies);

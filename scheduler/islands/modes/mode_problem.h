@@ -11,15 +11,15 @@
 namespace brink {
 
 /// What a contact does while nothing changes. Slip's sign is that of v_t.
-enum class ContactMode : unsigned char {
+enum class MotionMode : unsigned char {
   open,   ///< no force
   stick,  ///< v_n = v_t = 0
   slip_plus,
   slip_minus,  ///< v_n = 0, friction at its bound against the slip
   smooth,      ///< v_n = 0, and no friction there
 };
-constexpr bool is_closed(ContactMode m) { return m != ContactMode::open; }
-constexpr bool is_slip(ContactMode m) { return m == ContactMode::slip_plus || m == ContactMode::slip_minus; }
+constexpr bool is_closed(MotionMode m) { return m != MotionMode::open; }
+constexpr bool is_slip(MotionMode m) { return m == MotionMode::slip_plus || m == MotionMode::slip_minus; }
 
 /// Owners are indices into the problem's bodies and, after them, its supports.
 struct ModeContact {
@@ -57,9 +57,9 @@ ModeMoment moment_at(const ModeProblem& problem, double t, std::span<const BodyS
 std::vector<ContactRates> rates_at(const ModeProblem& problem, double t, std::span<const BodyState> states);
 /// The same of closed contacts alone; others are left as they are made.
 ModeMoment moment_at(const ModeProblem& problem, double t, std::span<const BodyState> states,
-                     const std::vector<ContactMode>& modes);
+                     const std::vector<MotionMode>& modes);
 std::vector<ContactRates> rates_at(const ModeProblem& problem, double t, std::span<const BodyState> states,
-                                   const std::vector<ContactMode>& modes);
+                                   const std::vector<MotionMode>& modes);
 /// Of one contact.
 ContactRates rates_at(const ModeProblem& problem, double t, std::span<const BodyState> states,
                       const ModeContact& contact);

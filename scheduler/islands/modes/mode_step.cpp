@@ -47,7 +47,7 @@ std::vector<BodyState> as_states(const VectorXd& y) {
 
 }  // namespace
 
-ModeTrial try_step(const ModeProblem& problem, const std::vector<ContactMode>& modes, double t,
+ModeTrial try_step(const ModeProblem& problem, const std::vector<MotionMode>& modes, double t,
                    const std::vector<BodyState>& from, double h) {
   const VectorXd start = flat(from);
   const Eigen::Index n = start.size() / 2;

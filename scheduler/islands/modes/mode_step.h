@@ -13,7 +13,7 @@ struct ModeTrial {
 
 /// From `from` at t over h > 0 [s]. Nothing is projected. Cost: seven times forces_in(). Source: Dormand & Prince 1980,
 /// "A family of embedded Runge-Kutta formulae".
-ModeTrial try_step(const ModeProblem& problem, const std::vector<ContactMode>& modes, double t,
+ModeTrial try_step(const ModeProblem& problem, const std::vector<MotionMode>& modes, double t,
                    const std::vector<BodyState>& from, double h);
 
 }  // namespace brink

@@ -71,7 +71,7 @@ class BodyClocks final : public Policy {
     found_.emplace(kernel_->body_count());
     queue_.reset(kernel_->body_count(), kernel_->time());
     for (int k = 0; k < kernel_->body_count() && kernel_->poll(); ++k) {
-      views_->look_around(k, kernel_->time());
+      look_alone(k, kernel_->time());
       wait_for(k);
     }
   }
@@ -110,7 +110,7 @@ class BodyClocks final : public Policy {
         views_->look_ahead(k, due.time);
         break;
       case Due::Kind::view_ends:
-        look_around(k, due.time);
+        look_alone(k, due.time);
         break;
       case Due::Kind::may_meet:
         sharpen(k);
@@ -137,9 +137,14 @@ class BodyClocks final : public Policy {
     return {now, first.exact && !views_->stale(first) ? Due::Kind::meets : Due::Kind::may_meet};
   }
 
-  void look_around(int k, double now, std::span<const int> except = {}) {
+  void look_alone(int k, double now) {
+    views_->begin_round();
+    look_around(k, now);
+  }
+
+  void look_around(int k, double now) {
     found_->forget(k);
-    views_->look_around(k, now, except);
+    views_->look_around(k, now);
   }
 
   /// Waiting for the memory of bodies that are met in no order is much of what an event costs.
@@ -250,13 +255,13 @@ class BodyClocks final : public Policy {
     else if (due.kind == Due::Kind::meets && !again)
       look_again(k, due.time, looked_again);
     else
-      look_around(k, clock.horizon);
+      look_alone(k, clock.horizon);
     wait_for(k);
   }
 
   void look_again(int k, double contact, std::vector<int>& looked_again) {
     looked_again.push_back(k);
-    look_around(k, contact);
+    look_alone(k, contact);
   }
 
   /// Contacts of body k that are in its view and due by `instant`.
@@ -302,8 +307,9 @@ class BodyClocks final : public Policy {
       std::erase_if(changed_, [&](int k) { return !seen.insert(k).second; });
     }
     for (const int k : changed_) views_->take_up(k);
+    views_->begin_round();
     for (std::size_t i = 0; i < changed_.size() && !kernel_->halt(); ++i) {
-      look_around(changed_[i], kernel_->time(), {changed_.data(), i});
+      look_around(changed_[i], kernel_->time());
       wait_for(changed_[i]);
     }
   }

@@ -69,7 +69,8 @@ Views::Views(Kernel& kernel)
       periods_(kernel.world().periods),
       flights_(kernel.body_count()),
       clocks_(kernel.body_count()),
-      paces_(kernel.body_count()) {
+      paces_(kernel.body_count()),
+      looked_(static_cast<std::size_t>(kernel.body_count())) {
   std::vector<Vec2> places;
   for (int k = 0; k < body_count(); ++k) {
     flights_[k].radius = kernel.outline_of(k).bounding_radius;
@@ -107,13 +108,11 @@ void Views::take_up(int k) {
   f.start = motion.origin();
 }
 
-namespace {
-
-bool holds(std::span<const int> bodies, int k) {
-  return std::find(bodies.begin(), bodies.end(), k) != bodies.end();
+/// True if body k is to have that owner in view: nobody else looks after the pair.
+bool Views::sees(int k, int other, const Image& image) const {
+  if (other < body_count() && looked_[other] == round_) return false;
+  return kernel_->may_meet(k, other) && (!kernel_->is_held(k) || kernel_->is_searched(k, other, image));
 }
-
-}  // namespace
 
 void Views::see_bounded(int k, int j, const Image& image, double now) {
   const MeetingTimes m = bounded_meeting(k, j, image, now);
@@ -121,44 +120,44 @@ void Views::see_bounded(int k, int j, const Image& image, double now) {
 }
 
 /// Bodies near body k, which is not in free flight.
-void Views::see_bodies(int k, double now, std::span<const int> except) {
+void Views::see_bodies(int k, double now) {
   near_->near(k, [&](int j, const Image& image) {
-    if (!holds(except, j) && kernel_->may_meet(k, j)) see_bounded(k, j, image, now);
+    if (sees(k, j, image)) see_bounded(k, j, image, now);
   });
 }
 
 /// Bodies near body k in free flight; with `former`, its former cell, those alone that were not near it
 /// there.
-void Views::see_bodies(int k, const Course& here, double now, std::span<const int> except,
-                       const Cell* former) {
+void Views::see_bodies(int k, const Course& here, double now, const Cell* former) {
   BodyClock& clock = clocks_[k];
   const auto see = [&](int j, const Image& image) {
     const Flight& b = flights_[j];
     if (!b.free) {
-      if (!holds(except, j) && kernel_->may_meet(k, j)) see_bounded(k, j, image, now);
+      if (sees(k, j, image)) see_bounded(k, j, image, now);
       return;
     }
     const MeetingTimes m = meeting(here, b, periods_.shift(image), now);
-    if (m.begin < clock.horizon && !holds(except, j) && kernel_->may_meet(k, j))
+    if (m.begin < clock.horizon && sees(k, j, image))
       clock.see({m.begin, m.begin, j, image, b.version, 0}, now);
   };
   near_->near(k, see, former);
 }
 
-void Views::look_around(int k, double now, std::span<const int> except) {
+void Views::look_around(int k, double now) {
   BodyClock& clock = clocks_[k];
   kernel_->note_pass(k, now);
+  looked_[k] = round_;
   clock.forget_all();
   if (flights_[k].free) {
     const Course course(flights_[k], gravity_, now);
     if (!near_->box_of(k).contains(course.place)) near_->put_into_cell(k, course.place);
     clock.exit = now + stay_in(near_->box_of(k), course);
     if (kernel_->by_passes()) return see_by_pass(k, now);
-    see_bodies(k, course, now, except);
+    see_bodies(k, course, now);
   } else {
     if (!begin_window(k, now)) return;
     if (kernel_->by_passes()) return see_by_pass(k, now);
-    see_bodies(k, now, except);
+    see_bodies(k, now);
   }
   near_->sites_near(k, [&](int s, const Image& image) { see_site(k, s, image, now); });
   for (const int s : moving_) see_moving_site(k, s, now);
@@ -170,13 +169,14 @@ void Views::look_ahead(int k, double now) {
   const Cell former = flights_[k].cell;
   const bool moved = near_->put_into_cell(k, course.place);
   clock.exit = now + stay_in(near_->box_of(k), course);
-  if (moved) see_bodies(k, course, now, {}, &former);
+  begin_round();
+  if (moved) see_bodies(k, course, now, &former);
   near_->sites_near(k, [&](int s, const Image& image) { see_site(k, s, image, now); });
 }
 
 /// Still sites are in view until body k leaves its cell.
 void Views::see_site(int k, int s, const Image& image, double now) {
-  if (!kernel_->may_meet(k, body_count() + s)) return;
+  if (!sees(k, body_count() + s, image)) return;
   BodyClock& clock = clocks_[k];
   const double end = std::min(clock.exit, clock.horizon);
   double wait = flights_[k].free && !site_boxes_[s].empty() ? kForever : 0.0;
@@ -194,6 +194,7 @@ void Views::see_site(int k, int s, const Image& image, double now) {
 void Views::see_moving_site(int k, int s, double now) {
   if (!kernel_->may_meet(k, body_count() + s)) return;
   const auto see = [&](const Image& image) {
+    if (!sees(k, body_count() + s, image)) return;
     const MeetingTimes m = bounded_meeting(k, body_count() + s, image, now);
     if (m.begin < clocks_[k].horizon) clocks_[k].see({m.begin, m.begin, body_count() + s, image, 0, 0}, now);
   };
@@ -254,7 +255,7 @@ void Views::note_start(int k, double start) {
 /// How far ahead to look at a body from now [s]: what an integrator has done is thrown away when a collision
 /// starts its component afresh, so no farther than it has come since, or a part of what it typically comes.
 double Views::stride(int k, double now) const {
-  if (kernel_->is_free(k)) return kForever;
+  if (kernel_->is_free(k) || kernel_->is_held(k)) return kForever;
   const Pace& pace = paces_[k];
   return std::max(now - pace.start, 0.25 * pace.typical);
 }
@@ -269,6 +270,9 @@ void Views::limit_view(int k, double now, double closing, double stride) {
   const double end = now + std::max({std::min(window, stride), 1e-3 * window, 1e-3 * age});
   // a view that holds to the end of the run ends just after it
   clocks_[k].horizon = std::min(clocks_[k].horizon, end >= until_ ? std::nextafter(until_, kForever) : end);
+  // a view that holds to the end of an island's step ends just after it: the step comes first
+  const double step_end = kernel_->is_held(k) ? kernel_->step_end(k) : kForever;
+  if (step_end >= now) clocks_[k].horizon = std::min(clocks_[k].horizon, std::nextafter(step_end, kForever));
 }
 
 /// Until when the motions of body k and of another owner (sites: of all that move) can be followed, <= end.

@@ -1,8 +1,8 @@
 #pragma once
 /// What every body has in view, from which policies with local clocks know whom to look at next.
 
+#include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "brink/scheduler/broad_phase/neighbourhood.h"
@@ -45,9 +45,11 @@ class Views {
 
   /// Reads body k's motion anew; candidates that others have of it are stale.
   void take_up(int k);
-  /// Fills body k's view with everything that it may meet from now on, but for bodies of `except`. May halt
-  /// the kernel (an integrator that fails).
-  void look_around(int k, double now, std::span<const int> except = {});
+  /// Bodies that look around from now on see none of those that have done so before them since.
+  void begin_round() { ++round_; }
+  /// Fills body k's view with everything that it may meet from now on, but for bodies that have looked around
+  /// in this round: they see it. May halt the kernel (an integrator that fails).
+  void look_around(int k, double now);
   /// Where the earliest search of what is in view would begin, or `now`: no motion will be asked for a time
   /// before that.
   double earliest_search(double now) const;
@@ -57,9 +59,9 @@ class Views {
  private:
   int body_count() const { return static_cast<int>(clocks_.size()); }
   unsigned version_of(int owner) const { return owner < body_count() ? flights_[owner].version : 0; }
-  void see_bodies(int k, double now, std::span<const int> except);
-  void see_bodies(int k, const Course& here, double now, std::span<const int> except,
-                  const Cell* former = nullptr);
+  void see_bodies(int k, double now);
+  void see_bodies(int k, const Course& here, double now, const Cell* former = nullptr);
+  bool sees(int k, int other, const Image& image) const;
   void see_bounded(int k, int j, const Image& image, double now);
   void see_site(int k, int site, const Image& image, double now);
   void see_moving_site(int k, int site, double now);
@@ -86,6 +88,8 @@ class Views {
   std::vector<Pace> paces_;                   ///< of every body
   std::vector<std::vector<Box>> site_boxes_;  ///< what must be reached to touch a still site; empty: anywhere
   std::vector<int> moving_;
+  std::vector<std::uint64_t> looked_;  ///< the round in which each body looked around
+  std::uint64_t round_ = 0;
   std::optional<Neighbourhood> near_;
 };
 

@@ -23,6 +23,7 @@ TEST(DrawLayer, KnownNamesAreParsed) {
   EXPECT_EQ(parse_layer("scene").kind, DrawLayer::Kind::scene);
   EXPECT_EQ(parse_layer("color").kind, DrawLayer::Kind::color);
   EXPECT_EQ(parse_layer("depth").kind, DrawLayer::Kind::depth);
+  EXPECT_EQ(parse_layer("forces").kind, DrawLayer::Kind::forces);
 }
 
 TEST(DrawLayer, PassCarriesTheBodysNameWithItsBrackets) {
@@ -34,7 +35,7 @@ TEST(DrawLayer, PassCarriesTheBodysNameWithItsBrackets) {
 TEST(DrawLayer, UnknownNamesAreToldWithThoseAllowed) {
   for (const char* wrong : {"", "Scene", "colour", "pass", "pass:", "depth "}) {
     const std::string message = message_of([&] { parse_layer(wrong); });
-    EXPECT_THAT(message, HasSubstr("scene, color, depth, pass:BODY"));
+    EXPECT_THAT(message, HasSubstr("scene, color, depth, forces, pass:BODY"));
     EXPECT_THAT(message, HasSubstr("\"" + std::string(wrong) + "\""));
   }
 }

@@ -164,6 +164,7 @@ TEST_F(RunFileTest, TablesHaveTheContractsColumns) {
       {"site", "id,name,owner,kind,shape"},
       {"frame", "t,body,x,y,angle,vx,vy,omega"},
       {"event", "seq,t,kind,body,other,site,px,py,nx,ny,closing_speed,impulse_n,impulse_t,gap"},
+      {"contact", "t_begin,t_end,body,other,site,outline_site,sample,mode,force_n,force_t"},
       {"work", "counter,value,unit"},
       {"checkpoint", "t,state"}};
   SQLite::Database db(file().string());
@@ -231,6 +232,74 @@ TEST_F(RunFileTest, ResumeDropsExactlyTheRowsAfterTheCheckpoint) {
   EXPECT_THAT(event_times(file()), ElementsAre(0.1, 0.2, 0.25));
   EXPECT_EQ(RunFile(file()).time_range(), std::pair(0.0, 0.4));
   EXPECT_EQ(frame_rows(file()), 6);
+}
+
+LastedContact lasted(double from, double to, bool with_site) {
+  return {from,
+          to,
+          ContactMode::roll,
+          1,
+          with_site ? -1 : 0,
+          with_site ? 0 : -1,
+          3,
+          0,
+          false,
+          {from, 0.1},
+          {0.6, 0.8},
+          1.0 / 3,
+          -2.0 / 7};
+}
+
+TEST_F(RunFileTest, ContactsReadBackToTheSameBitsAtTheirTimes) {
+  RunFileRecorder recorder(dir_, scene_, Open::fresh);
+  recorder.contact_lasted(lasted(0.1, 0.3, false));
+  recorder.contact_lasted(lasted(0.3, 0.5, true));
+  recorder.contact_lasted(lasted(0.2, 0.5, true));
+  recorder.checkpoint(0.5, blob(1));
+  recorder.finish(finished(0.5), "{}");
+  const RunFile run(file());
+  const auto from_at = [&](double t) {
+    std::vector<double> times;
+    for (const LastedContact& c : run.contacts_at(t)) times.push_back(c.from);
+    return times;
+  };
+  EXPECT_THAT(from_at(0.05), ElementsAre());
+  EXPECT_THAT(from_at(0.1), ElementsAre(0.1));
+  EXPECT_THAT(from_at(0.25), ElementsAre(0.1, 0.2));
+  EXPECT_THAT(from_at(0.3), ElementsAre(0.3, 0.2));  // a stretch ends where the next begins
+  EXPECT_THAT(from_at(0.5), ElementsAre(0.3, 0.2));  // at the end of the run they last still
+  const LastedContact c = run.contacts_at(0.1)[0], wanted = lasted(0.1, 0.3, false);
+  EXPECT_EQ(c.to, wanted.to);
+  EXPECT_EQ(c.mode, wanted.mode);
+  EXPECT_EQ(c.body, wanted.body);
+  EXPECT_EQ(c.other_body, wanted.other_body);
+  EXPECT_EQ(c.other_site, wanted.other_site);
+  EXPECT_EQ(c.sample, wanted.sample);
+  EXPECT_EQ(c.site, wanted.site);
+  EXPECT_EQ(c.sample_on_body, wanted.sample_on_body);
+  EXPECT_EQ(c.point, wanted.point);
+  EXPECT_EQ(c.normal, wanted.normal);
+  EXPECT_EQ(c.normal_force, wanted.normal_force);
+  EXPECT_EQ(c.tangential_force, wanted.tangential_force);
+  EXPECT_EQ(run.contacts_at(0.5)[0].other_site, 0);
+}
+
+// Contacts that last at the end of a run come after its checkpoint: going on, they are told again, whole.
+TEST_F(RunFileTest, ResumeDropsContactsAfterTheCheckpoint) {
+  {
+    RunFileRecorder recorder(dir_, scene_, Open::fresh);
+    recorder.contact_lasted(lasted(0.1, 0.2, true));
+    recorder.checkpoint(0.3, blob(1));
+    recorder.contact_lasted(lasted(0.2, 0.3, true));
+    recorder.finish(finished(0.3), "{}");
+  }
+  RunFileRecorder recorder(dir_, scene_, Open::resume);
+  EXPECT_EQ(recorder.resume_point()->contacts, 1);
+  recorder.contact_lasted(lasted(0.2, 0.4, true));
+  recorder.finish(finished(0.4), "{}");
+  SQLite::Database db(file().string());
+  EXPECT_EQ(db.execAndGet("SELECT count(*) FROM contact").getInt(), 2);
+  EXPECT_EQ(RunFile(file()).contacts_at(0.25).at(0).to, 0.4);
 }
 
 // A run stopped at t = 0.013 with frames every 0.01 s has a frame there, which a run that never stopped has
@@ -371,6 +440,11 @@ TEST_F(RunFileTest, DamagedTablesAreAnIoErrorThatNamesThem) {
       {"UPDATE site SET shape = NULL", "site"},
       {"UPDATE event SET body = 2", "event"},
       {"UPDATE event SET kind = 'miracle'", "event"},
+      {"UPDATE contact SET mode = 'hover'", "contact"},
+      {"UPDATE contact SET body = 2", "contact"},
+      {"UPDATE contact SET site = NULL", "contact"},
+      {"UPDATE contact SET other = 0", "contact"},
+      {"UPDATE contact SET force_n = 'much'", "contact"},
       {"UPDATE meta SET value = '{\"world\":{\"periodic\":[\"a\"]}}' WHERE key = 'options'", "meta"},
       {"UPDATE meta SET value = 'late' WHERE key = 'end_time'", "meta"},
       {"DROP TABLE site", "site"}};
@@ -380,6 +454,7 @@ TEST_F(RunFileTest, DamagedTablesAreAnIoErrorThatNamesThem) {
       recorder.frame(0.0, states_at_time(0.0));
       recorder.frame(0.2, states_at_time(0.2));
       recorder.event(event(0, 0.1));
+      recorder.contact_lasted(lasted(0.1, 0.2, true));
       recorder.finish(finished(0.2), "{}");
     }
     SQLite::Database(file().string(), SQLite::OPEN_READWRITE).exec(damage);
@@ -388,6 +463,7 @@ TEST_F(RunFileTest, DamagedTablesAreAnIoErrorThatNamesThem) {
       run.world();
       run.events();
       run.states_at(0.1);
+      run.contacts_at(0.1);
       run.end_time();
       ADD_FAILURE() << damage;
     } catch (const IoError& e) {

@@ -49,8 +49,8 @@ TEST(ChooseModes, BoxOnItsEdgeTipsOverOrStaysByWhereItsWeightIs) {
     const ModeChoice c = choose_modes(s.problem, now(s), {ContactKnown::still, ContactKnown::still});
     ASSERT_TRUE(c.found);
     const bool left = angle > 0;  // the lower corner
-    EXPECT_EQ(c.modes[left ? 0 : 1], ContactMode::stick);
-    EXPECT_EQ(c.modes[left ? 1 : 0], ContactMode::open);
+    EXPECT_EQ(c.modes[left ? 0 : 1], MotionMode::stick);
+    EXPECT_EQ(c.modes[left ? 1 : 0], MotionMode::open);
   }
 }
 
@@ -88,7 +88,7 @@ TEST(ChooseModes, RandomBodiesInRandomCornersKeepCoulombsLaw) {
       EXPECT_GE(an, -1e-9);
       closed += is_closed(c.modes[k]);
       EXPECT_LE(is_slip(c.modes[k]) ? at * f.tangential[k] : 0.0, 1e-12);
-      EXPECT_NEAR(c.modes[k] == ContactMode::stick ? at : 0.0, 0.0, 1e-9);
+      EXPECT_NEAR(c.modes[k] == MotionMode::stick ? at : 0.0, 0.0, 1e-9);
     }
   }
   EXPECT_GT(found, 490);

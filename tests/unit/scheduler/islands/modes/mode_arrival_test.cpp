@@ -19,7 +19,7 @@ PolynomialPiece piece(double end, std::initializer_list<Vec3> c) {
 }
 
 Arrival arrival_of(const ModeScene& s, const PolynomialPiece& p) {
-  return first_arrival(s.problem, std::vector(s.problem.contacts.size(), ContactMode::open), {p}, 0.0, p.end,
+  return first_arrival(s.problem, std::vector(s.problem.contacts.size(), MotionMode::open), {p}, 0.0, p.end,
                        1e-13);
 }
 

@@ -54,8 +54,8 @@ TEST(ModeMotion, SlidingBlockStopsWhereAndWhenItMust) {
   ASSERT_EQ(log.time, 2.0);
   ASSERT_EQ(log.changes.size(), 2U);
   EXPECT_NEAR(log.changes[1].time, v / (mu * kGravity), 1e-12);
-  EXPECT_EQ(log.changes[1].modes[0], ContactMode::stick);
-  EXPECT_EQ(log.changes[1].modes[1], ContactMode::stick);
+  EXPECT_EQ(log.changes[1].modes[0], MotionMode::stick);
+  EXPECT_EQ(log.changes[1].modes[1], MotionMode::stick);
   EXPECT_NEAR(log.states[0].pose.position.x(), v * v / (2 * mu * kGravity), 1e-12);
 }
 
@@ -184,8 +184,8 @@ TEST(ModeMotion, RodLeavesTheWallWhereTwoThirdsOfItsHeightAreLeft) {
     ASSERT_EQ(log.changes.size(), 2U) << tolerance;
     EXPECT_NEAR(log.changes[1].time, when, 10 * tolerance + 1e-11) << tolerance;
     EXPECT_NEAR(log.changes[1].states[0].pose.angle, th1, 10 * tolerance + 1e-11) << tolerance;
-    EXPECT_EQ(log.changes[1].modes[1], ContactMode::open);
-    EXPECT_EQ(log.changes[1].modes[0], ContactMode::smooth);
+    EXPECT_EQ(log.changes[1].modes[1], MotionMode::open);
+    EXPECT_EQ(log.changes[1].modes[0], MotionMode::smooth);
     EXPECT_EQ(log.time, 1.1 * when);
   }
 }

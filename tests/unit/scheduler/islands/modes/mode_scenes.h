@@ -75,7 +75,7 @@ inline ModeScene box_on_incline(double half_width, double half_height, double an
 struct ModeLog {
   struct Entry {
     double time;
-    std::vector<ContactMode> modes;
+    std::vector<MotionMode> modes;
     std::vector<BodyState> states;
   };
   std::vector<Entry> changes;  ///< the first: the beginning
@@ -96,7 +96,7 @@ inline ModeLog follow(const ModeScene& scene, double until, const ModeLimits& li
   }
   log.changes.push_back({0.0, motion.modes(), motion.states()});
   while (motion.time() < until && log.steps < 1000000) {
-    const std::vector<ContactMode> modes = motion.modes();
+    const std::vector<MotionMode> modes = motion.modes();
     const double from = motion.time();
     const ModeStep step = motion.step(until);
     ++log.steps;

@@ -1,0 +1,66 @@
+// Force chains: what contacts that last carry.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "brink/scenes/draw/sheet.h"
+
+namespace brink::draw {
+namespace {
+
+constexpr double kWidestOfBody = 0.6;           // of a body of middle size, its bounding radius
+constexpr double kWidest = 14.0, kLeast = 3.0;  // [pixels], of the widest line
+constexpr double kThinnest = 0.12;              // [pixels]: thinner lines are not drawn
+constexpr double kOnePlace = 1e-6;              // of a body's size: two corners that meet there press as one
+
+/// Those of one body at one place as one.
+std::vector<DrawnForce> merged(const Sheet& sheet) {
+  std::vector<DrawnForce> out;
+  std::vector<std::vector<std::size_t>> of_body(sheet.bodies.size());
+  for (const DrawnForce& f : sheet.options.forces) {
+    const double near = kOnePlace * sheet.world.bodies[f.body].outline->bounding_radius;
+    auto& known = of_body[f.body];
+    const auto same = std::find_if(known.begin(), known.end(),
+                                   [&](std::size_t k) { return (out[k].arm - f.arm).norm() <= near; });
+    if (same != known.end()) {
+      out[*same].newtons += f.newtons;
+      continue;
+    }
+    known.push_back(out.size());
+    out.push_back(f);
+  }
+  return out;
+}
+
+/// The width of the widest line [pixels].
+double widest(const Sheet& sheet) {
+  std::vector<double> radii;
+  for (const Body& body : sheet.world.bodies) radii.push_back(body.outline->bounding_radius);
+  if (radii.empty()) return kLeast;
+  std::nth_element(radii.begin(), radii.begin() + radii.size() / 2, radii.end());
+  return std::clamp(kWidestOfBody * radii[radii.size() / 2] * sheet.view.scale, kLeast, kWidest);
+}
+
+double largest(const std::vector<DrawnForce>& forces) {
+  double most = 0.0;
+  for (const DrawnForce& f : forces) most = std::max(most, f.newtons);
+  return most;
+}
+
+}  // namespace
+
+double largest_force(const Sheet& sheet) { return largest(merged(sheet)); }
+
+void draw_forces(Canvas& canvas, const Sheet& sheet) {
+  const std::vector<DrawnForce> forces = merged(sheet);
+  const double most = largest(forces), width = widest(sheet);
+  const Color color = Oklch{0.45, 0.17, 25.0}.rgb();
+  for (const DrawnForce& f : forces) {
+    const double pixels = most > 0.0 ? width * f.newtons / most : 0.0;
+    if (pixels < kThinnest) continue;
+    const Vec2 from = sheet.bodies[f.body].pose.position;
+    canvas.line(from, from + f.arm, color, pixels);
+  }
+}
+
+}  // namespace brink::draw

@@ -1,0 +1,191 @@
+// Bodies that are put on others: who is meant, in which order, and where they come to lie.
+#include <algorithm>
+#include <map>
+
+#include "brink/scenes/scene/build.h"
+#include "brink/scenes/scene/landing.h"
+#include "brink/scheduler/kernel/site_motion.h"
+
+namespace brink {
+namespace {
+
+/// What one name stands for: a thing, or one copy of it.
+struct Ground {
+  PlannedThing* thing = nullptr;
+  std::optional<std::size_t> copy;
+};
+
+class Touching {
+ public:
+  Touching(std::vector<PlannedThing>& sites, std::vector<PlannedThing>& bodies, const PlaceRules& rules,
+           FaultList& faults)
+      : bodies_(bodies), rules_(rules), faults_(faults) {
+    for (auto* things : {&sites, &bodies})
+      for (PlannedThing& thing : *things) {
+        called_[thing.name].push_back(&thing);
+        words_.push_back(thing.name);
+      }
+    for (PlannedThing& thing : bodies_)
+      if (thing.table->touching.given) waiting_.emplace(&thing, grounds_of(thing));
+  }
+
+  /// Each after what it is put on; what is left over waits for itself.
+  void place() {
+    if (!faults_.empty()) return;
+    std::map<const PlannedThing*, std::vector<PlannedThing*>> above;
+    std::map<const PlannedThing*, std::size_t> missing;
+    std::vector<PlannedThing*> ready;
+    for (PlannedThing& thing : bodies_) {
+      if (!waiting_.contains(&thing)) continue;
+      for (const Ground& ground : waiting_.at(&thing)) {
+        if (!waiting_.contains(ground.thing)) continue;
+        ++missing[&thing];
+        above[ground.thing].push_back(&thing);
+      }
+      if (missing[&thing] == 0) ready.push_back(&thing);
+    }
+    std::size_t placed = 0;
+    for (; placed < ready.size(); ++placed) {
+      put(*ready[placed]);
+      for (PlannedThing* thing : above[ready[placed]])
+        if (--missing[thing] == 0) ready.push_back(thing);
+    }
+    if (placed < waiting_.size()) tell_circle(missing);
+  }
+
+ private:
+  std::vector<Ground> grounds_of(PlannedThing& thing) {
+    const auto& touching = thing.table->touching;
+    std::vector<Ground> out;
+    if (touching.value.empty())
+      faults_.add(touching.where, "touching: names nobody; given [], allowed: names of bodies and sites");
+    for (const std::string& name : touching.value)
+      if (const auto ground = find(name, thing)) out.push_back(*ground);
+    if (!down_of(*thing.table, rules_.gravity))
+      faults_.add(touching.where,
+                  "touching: there is no way down; given no gravity and no touching_direction, allowed: "
+                  "either of them, not [0, 0]");
+    return out;
+  }
+
+  std::optional<Ground> find(const std::string& name, const PlannedThing& thing) {
+    const Where& where = thing.table->touching.where;
+    Ground ground;
+    std::string called = name;
+    if (!called_.contains(name)) std::tie(called, ground.copy) = apart(name);
+    const auto found = called_.find(called);
+    if (found == called_.end() || (ground.copy && !has_copy(*found->second.front(), *ground.copy))) {
+      faults_.add(where, "touching: no body or site is called " + in_quotes(name) + "; the nearest name is " +
+                             in_quotes(nearest_word(name, words_)));
+      return std::nullopt;
+    }
+    ground.thing = found->second.front();
+    const ThingTable& table = *ground.thing->table;
+    std::string wrong;
+    if (found->second.size() > 1) wrong = "stands for a site and a body";
+    if (ground.thing == &thing) wrong = "is the body itself";
+    if (table.scatter.given || table.pile.given) wrong = "has no place before the others";
+    if (wrong.empty()) return ground;
+    faults_.add(where, "touching: " + wrong + "; given " + in_quotes(name) +
+                           ", allowed: another body, or a site, that stands where it is told");
+    return std::nullopt;
+  }
+
+  /// NAME[k] as NAME and k.
+  static std::pair<std::string, std::optional<std::size_t>> apart(const std::string& name) {
+    const std::size_t bracket = name.rfind('[');
+    if (bracket == std::string::npos || name.back() != ']') return {name, std::nullopt};
+    const std::string digits = name.substr(bracket + 1, name.size() - bracket - 2);
+    if (digits.empty() || digits.size() > 7 || digits.find_first_not_of("0123456789") != std::string::npos)
+      return {name, std::nullopt};
+    return {name.substr(0, bracket), std::stoul(digits)};
+  }
+
+  static bool has_copy(const PlannedThing& thing, std::size_t copy) {
+    const CopyCount copies = copies_of(*thing.table);
+    return copies.copied && static_cast<std::int64_t>(copy) < copies.count;
+  }
+
+  void put(PlannedThing& thing) {
+    if (!faults_.empty()) return;
+    LandingAsk ask;
+    ask.outline = thing.shape.outline.get();
+    ask.position = thing.pose.position;
+    ask.copies = standing_poses(thing, rules_);
+    ask.direction = *down_of(*thing.table, rules_.gravity);
+    ask.periods = rules_.periods;
+    ask.thin = rules_.thin;
+    for (const Ground& ground : waiting_.at(&thing)) add_obstacles(ground, ask.grounds);
+    const Landing landing = land(ask);
+    if (landing.status != Landing::Status::lands) return tell(thing, landing.status);
+    for (const Pose& pose : ask.copies(landing.position)) {
+      thing.copies.push_back(start_of(thing));
+      thing.copies.back().pose = pose;
+    }
+  }
+
+  /// Where it stands at the start, which the formulas of its motion may move it to.
+  static void add_obstacles(const Ground& ground, std::vector<Obstacle>& out) {
+    for (std::size_t k = 0; k < ground.thing->copies.size(); ++k) {
+      if (ground.copy && *ground.copy != k) continue;
+      FixedSite site;
+      site.pose = ground.thing->copies[k].pose;
+      site.motion = ground.thing->motion;
+      out.push_back({ground.thing->shape.outline.get(), told_pose(site, 0.0)});
+    }
+  }
+
+  void tell(const PlannedThing& thing, Landing::Status status) {
+    const auto& touching = thing.table->touching;
+    const Vec2& p = thing.pose.position;
+    const Vec2 down = *down_of(*thing.table, rules_.gravity);
+    const std::string at = in_quotes(thing.name) + " at [" + number_text(p.x()) + ", " + number_text(p.y()) +
+                           "], moved along [" + number_text(down.x()) + ", " + number_text(down.y()) + "]";
+    const std::string names = in_quotes(listed(touching.value));
+    if (status == Landing::Status::never)
+      faults_.add(touching.where, "touching: never meets " + names + "; given " + at +
+                                      ", allowed: a position from which it does");
+    else
+      faults_.add(touching.where, "touching: overlaps " + names + " where it is written; given " + at +
+                                      ", allowed: a position clear of it");
+  }
+
+  /// One of those that wait for each other, and all between.
+  void tell_circle(const std::map<const PlannedThing*, std::size_t>& missing) {
+    if (!faults_.empty()) return;
+    const auto waits = [&](const PlannedThing* thing) {
+      const auto found = missing.find(thing);
+      return found != missing.end() && found->second > 0;
+    };
+    const PlannedThing* at = nullptr;
+    for (const PlannedThing& thing : bodies_)
+      if (at == nullptr && waits(&thing)) at = &thing;
+    std::vector<const PlannedThing*> way;
+    while (std::find(way.begin(), way.end(), at) == way.end()) {
+      way.push_back(at);
+      for (const Ground& ground : waiting_.at(at))
+        if (waits(ground.thing)) at = ground.thing;
+    }
+    std::string text;
+    for (auto it = std::find(way.begin(), way.end(), at); it != way.end(); ++it) text += (*it)->name + " on ";
+    faults_.add(at->table->touching.where, "touching: goes round in a circle; given " +
+                                               in_quotes(text + at->name) +
+                                               ", allowed: each on what is placed without it");
+  }
+
+  std::vector<PlannedThing>& bodies_;
+  const PlaceRules& rules_;
+  FaultList& faults_;
+  std::map<std::string, std::vector<PlannedThing*>> called_;
+  std::vector<std::string> words_;
+  std::map<const PlannedThing*, std::vector<Ground>> waiting_;
+};
+
+}  // namespace
+
+void put_on_others(std::vector<PlannedThing>& sites, std::vector<PlannedThing>& bodies,
+                   const PlaceRules& rules, FaultList& faults) {
+  Touching(sites, bodies, rules, faults).place();
+}
+
+}  // namespace brink

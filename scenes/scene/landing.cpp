@@ -1,0 +1,177 @@
+#include "brink/scenes/scene/landing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "brink/core/query/cast_outline.h"
+#include "brink/core/query/outline_gap.h"
+
+namespace brink {
+
+namespace {
+
+constexpr int kTries = 60;               // each twice as far as the one before
+constexpr double kMostPeriods = 1000.0;  // on the way of what falls across images
+constexpr double kNear = 1e-6;           // of a copy's radius: what touches, and what all but does
+
+double rounding_at(const Vec2& place, const Outline& outline) {
+  return std::numeric_limits<double>::epsilon() *
+         std::max(place.lpNorm<Eigen::Infinity>(), 0.25 * outline.bounding_radius);
+}
+
+/// A copy and a ground, or an image of one, that may meet.
+struct Meeting {
+  std::size_t copy = 0;
+  Obstacle ground;
+};
+
+class Descent {
+ public:
+  explicit Descent(const LandingAsk& ask) : ask_(ask) {}
+
+  Landing land() {
+    Vec2 position = ask_.position;
+    // the second time from nearby, where the way has no rounding of its own
+    for (int time = 0; time < 2; ++time) {
+      const Landing::Status status = fall(position);
+      if (status != Landing::Status::lands) return {status, position};
+      back_up(position);
+    }
+    return {Landing::Status::lands, position};
+  }
+
+ private:
+  Landing::Status fall(Vec2& position) {
+    const std::vector<Pose> copies = ask_.copies(position);
+    double least = std::numeric_limits<double>::infinity();
+    std::vector<std::pair<double, Meeting>> found;
+    bool overlaps = false;
+    for (std::size_t k = 0; k < copies.size(); ++k)
+      for_grounds(copies[k].position, [&](const Obstacle& ground) {
+        const OutlineHit hit =
+            cast_outline(*ask_.outline, copies[k], ask_.direction, *ground.outline, ground.pose);
+        overlaps = overlaps || hit.status == OutlineHit::Status::overlaps;
+        if (hit.status != OutlineHit::Status::touches) return;
+        least = std::min(least, hit.distance);
+        found.push_back({hit.distance, {k, ground}});
+      });
+    if (overlaps) return Landing::Status::overlaps;
+    if (!std::isfinite(least)) return Landing::Status::never;
+    touched_.clear();
+    for (const auto& [distance, meeting] : found)
+      if (distance <= least + kNear * ask_.outline->bounding_radius) touched_.push_back(meeting);
+    position += least * ask_.direction;
+    return Landing::Status::lands;
+  }
+
+  /// visit(ground) for what a copy may meet on its way.
+  template <class Visit>
+  void for_grounds(const Vec2& from, Visit&& visit) const {
+    const double own = ask_.outline->bounding_radius;
+    for (const Obstacle& ground : ask_.grounds) {
+      const double reach = own + ground.outline->bounding_radius;
+      const auto look = [&](const Obstacle& there) {
+        const Vec2 to = there.pose.position - from;
+        const bool beside = std::abs(cross(ask_.direction, to)) > reach * (1.0 + kNear);
+        const bool behind = ask_.direction.dot(to) < -reach;
+        if (there.outline->container || (!beside && !behind)) visit(there);
+      };
+      if (!ask_.periods.any()) {
+        look(ground);
+        continue;
+      }
+      Box around;
+      around.add(ground.pose.position);
+      ask_.periods.overlaps(way_of(from, own), around.grown(ground.outline->bounding_radius),
+                            [&](const Image& image) {
+                              Obstacle there = ground;
+                              there.pose.position += ask_.periods.shift(image);
+                              look(there);
+                            });
+    }
+  }
+
+  /// A box about the way, as far as images are looked at.
+  Box way_of(const Vec2& from, double radius) const {
+    Vec2 way = 1e15 * ask_.direction;
+    for (int axis = 0; axis < 2; ++axis)
+      if (const double size = ask_.periods.size[axis]; size > 0.0 && ask_.direction[axis] != 0.0)
+        way = std::min(way.norm(), kMostPeriods * size) * ask_.direction;
+    Box box;
+    box.add(from);
+    box.add(from + way);
+    return box.grown(radius);
+  }
+
+  /// Beyond what it should be.
+  double least_gap(const Vec2& position) const {
+    const std::vector<Pose> copies = ask_.copies(position);
+    double least = std::numeric_limits<double>::infinity();
+    for (const Meeting& m : touched_)
+      least =
+          std::min(least, outline_gap(*ask_.outline, copies[m.copy], *m.ground.outline, m.ground.pose).gap -
+                              gap_of_touching({ask_.outline, copies[m.copy]}, m.ground, ask_.thin));
+    return least;
+  }
+
+  void back_up(Vec2& position) const {
+    double step = rounding_at(position, *ask_.outline);
+    const Vec2 from = position;
+    for (int time = 0; time < kTries && least_gap(position) < 0.0; ++time, step *= 2.0)
+      position = from - step * ask_.direction;
+  }
+
+  const LandingAsk& ask_;
+  std::vector<Meeting> touched_;
+};
+
+/// Coordinates of what is turned have roundings of their own, of which another way of asking knows others.
+constexpr double kTurnedRounding = 2.0 * std::numeric_limits<double>::epsilon();
+
+bool is_upright(const Pose& pose) { return pose.angle == 0.0; }
+
+bool is_thin(const Outline& outline) { return !outline.solid && outline.sites[0].radius == 0.0; }
+
+bool is_sharp(const Outline& outline) {
+  return std::any_of(outline.samples.begin(), outline.samples.end(),
+                     [](const Sample& sample) { return sample.radius == 0.0; });
+}
+
+}  // namespace
+
+double gap_of_touching(const Obstacle& a, const Obstacle& b, double thin) {
+  const bool on_wire =
+      (is_thin(*a.outline) && is_sharp(*b.outline)) || (is_thin(*b.outline) && is_sharp(*a.outline));
+  if (on_wire) return thin;
+  if (is_upright(a.pose) && is_upright(b.pose)) return 0.0;
+  const double apart = (a.pose.position - b.pose.position).norm() + a.outline->bounding_radius;
+  return kTurnedRounding * (a.outline->bounding_radius + std::min(apart, b.outline->bounding_radius));
+}
+
+void push_apart(const Outline& outline, Pose& pose, const std::vector<Touched>& touched, double thin) {
+  const Pose written = pose;
+  for (const bool along_normals :
+       {false, true}) {  // shapes that hook into each other have to give way otherwise
+    pose = written;
+    double step = rounding_at(pose.position, outline);
+    for (int time = 0; time < kTries; ++time) {
+      double worst = 0.0;
+      Vec2 away = Vec2::Zero();
+      for (const Touched& t : touched) {
+        const OutlineGap is = outline_gap(outline, pose, *t.other.outline, t.other.pose);
+        const double beyond = is.gap - gap_of_touching({&outline, pose}, t.other, thin);
+        if (beyond >= worst) continue;
+        worst = beyond;
+        away = along_normals ? is.normal : t.away;
+      }
+      if (worst >= 0.0) return;
+      pose.position += std::max(step, -worst) * away;
+      if (time % 4 == 3) step *= 2.0;
+    }
+  }
+}
+
+Landing land(const LandingAsk& ask) { return Descent(ask).land(); }
+
+}  // namespace brink

@@ -1,0 +1,94 @@
+#include "brink/scheduler/kernel/island_joining.h"
+
+#include <algorithm>
+
+namespace brink {
+
+namespace {
+
+/// One body beside an island.
+class Outsider {
+ public:
+  Outsider(const World& world, const Trajectories& trajectories, const ContactSearch& search,
+           const IslandMembers& members, int body, double h)
+      : world_(world),
+        search_(search),
+        members_(members),
+        body_(body),
+        h_(h),
+        state_(trajectories.state_now(body)) {
+    const BodyState rounded = state_.rounded();
+    const double radius = search.outline_of(body).bounding_radius;
+    const double speed = rounded.twist.velocity.norm() + std::abs(rounded.twist.omega) * radius;
+    reach_ = h * (speed + members.pull() * h);
+    box_.add(rounded.pose.position);
+    box_ = box_.grown(radius + reach_ + search.limits().tolerance);
+  }
+
+  const Box& box() const { return box_; }
+
+  bool joins(const std::vector<Box>& boxes, const MostAbsorbed& most_absorbed) const {
+    for (int member = 0; member < static_cast<int>(boxes.size()); ++member) {
+      bool touches = false;
+      world_.periods.overlaps(boxes[member], box_, [&](const Image& image) {
+        touches = touches || comes_to(member, image, most_absorbed);
+      });
+      if (touches) return true;
+    }
+    return false;
+  }
+
+ private:
+  /// Where a member goes with the step's last twist from its start on, this one comes to it by and by.
+  bool comes_to(int member, const Image& image, const MostAbsorbed& most_absorbed) const {
+    const auto pair = search_.pair_of(members_.bodies()[member], body_, image);
+    if (!pair) return false;
+    const bool member_first = pair->body != body_;
+    const Vec2 shift = search_.shift_of(*pair);
+    const ExtendedState &of_member = members_.state(member), a = member_first ? of_member : state_,
+                        b = (member_first ? state_ : of_member).shifted(shift);
+    const double behind = members_.pull() * h_, most = most_absorbed(*pair);
+    const double far = search_.limits().tolerance + reach_ + members_.reach_of(member);
+    for (const NearFeature& f :
+         near_features(search_.outline_of(pair->body), a, search_.outline_of(pair->other_body), b, far)) {
+      const RealVec arm = f.point.cast<Real>() + (b.position - a.position);
+      const double closing =
+          static_cast<double>(f.normal.cast<Real>().dot(b.twist.at(f.point.cast<Real>()) - a.twist.at(arm)));
+      if (closing <= most && f.gap - h_ * (closing + behind) <= search_.limits().tolerance) return true;
+    }
+    return false;
+  }
+
+  const World& world_;
+  const ContactSearch& search_;
+  const IslandMembers& members_;
+  int body_;
+  double h_, reach_ = 0.0;
+  ExtendedState state_;
+  Box box_;
+};
+
+}  // namespace
+
+std::vector<int> joining(const World& world, Trajectories& trajectories, const ContactSearch& search,
+                         const IslandMembers& members, double now, double h,
+                         const MostAbsorbed& most_absorbed) {
+  std::vector<Box> boxes;
+  Box all;
+  for (int i = 0; i < static_cast<int>(members.count()); ++i) {
+    boxes.push_back(members.box(i));
+    all.add(boxes.back());
+  }
+  std::vector<int> found;
+  for (int k = 0; k < trajectories.body_count(); ++k) {
+    if (members.has(k)) continue;
+    if (!trajectories.cover_body(k, now)) return {};
+    const Outsider outsider(world, trajectories, search, members, k, h);
+    bool near = false;
+    world.periods.overlaps(all, outsider.box(), [&](const Image&) { near = true; });
+    if (near && outsider.joins(boxes, most_absorbed)) found.push_back(k);
+  }
+  return found;
+}
+
+}  // namespace brink
