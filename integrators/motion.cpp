@@ -66,6 +66,13 @@ BodyState PolynomialPiece::state(double t) const {
   return {{value.head<2>(), value.z()}, {rate.head<2>(), rate.z()}};
 }
 
+Acceleration PolynomialPiece::acceleration(double t) const {
+  const double s = t - origin;
+  Eigen::Vector3d value = Eigen::Vector3d::Zero();
+  for (int k = degree; k >= 2; --k) value = value * s + (k * (k - 1.0)) * c[k];
+  return {value.head<2>(), value.z()};
+}
+
 MotionBounds PolynomialPiece::bounds(double from, double to) const {
   // Taylor coefficients about the middle by repeated synthetic division, then sums of absolute values.
   const double h = 0.5 * (to - from), s = 0.5 * (from + to) - origin;
@@ -192,6 +199,22 @@ BodyState Motion::state(double t) const {
   BodyState state = kind_ == Kind::chain ? link(t).state(t) : other_->track->at(t).state(t);
   state.pose.position += other_->offset;
   return state;
+}
+
+Acceleration Motion::rate(double t) const {
+  switch (kind_) {
+    case Kind::ballistic:
+      return drive_;
+    case Kind::drag: {
+      const Twist now = twist(t);
+      return {drive_.linear - other_->linear * now.velocity, drive_.angular - other_->angular * now.omega};
+    }
+    case Kind::chain:
+      return link(t).rate(t);
+    case Kind::dense:
+      break;
+  }
+  return other_->track->at(t).acceleration(t);
 }
 
 Motion Motion::displaced(const Vec2& by) const {

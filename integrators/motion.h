@@ -39,6 +39,7 @@ struct PolynomialPiece {
   std::array<Eigen::Vector3d, kMaxDegree + 1> c{};
 
   BodyState state(double t) const;
+  Acceleration acceleration(double t) const;
   MotionBounds bounds(double from, double to) const;
 };
 
@@ -105,6 +106,9 @@ class Motion {
   Pose pose(double t) const { return state(t).pose; }
   Twist twist(double t) const { return state(t).twist; }
 
+  /// The exact derivative of twist(t); where pieces of dense output meet, that of the later one.
+  Acceleration rate(double t) const;
+
   /// The state in extended precision: of a parabola from the low-order part of its start on, of anything else
   /// state(t) beside it.
   ExtendedState extended_state(double t) const;
@@ -115,6 +119,8 @@ class Motion {
   /// True for a parabola (uniform acceleration, `still` included): closed forms may use start() and
   /// acceleration().
   bool is_ballistic() const { return kind_ == Kind::ballistic; }
+  /// The pieces of dense output; null: a closed form.
+  const Track* track() const { return kind_ == Kind::dense ? other_->track.get() : nullptr; }
   double origin() const { return begin(); }
   const BodyState& start() const { return start_; }
   const BodyState& start_low() const { return low_; }

@@ -131,8 +131,8 @@ LcpAnswer lemke(const RealMatrix& A, const RealVector& q, const GoOn& go_on) {
 
 LcpAnswer solve_lcp_by_lemke(const RealMatrix& A, const RealVector& q, const GoOn& go_on) {
   if (q.size() == 0 || q.minCoeff() >= 0) return {LcpAnswer::Status::solved, RealVector::Zero(q.size()), 0};
-  // scaled to a diagonal of ones and |q| <= 1
-  const RealVector scale = A.diagonal().cwiseSqrt().cwiseInverse();
+  // scaled to a diagonal of ones and |q| <= 1; a row whose diagonal is not positive is taken as it is
+  const RealVector scale = A.diagonal().unaryExpr([](Real d) { return d > 0 ? 1 / std::sqrt(d) : Real(1); });
   const RealVector scaled_q = scale.cwiseProduct(q);
   const Real q_size = scaled_q.cwiseAbs().maxCoeff();
   LcpAnswer answer = lemke(scale.asDiagonal() * A * scale.asDiagonal(), scaled_q / q_size, go_on);

@@ -30,8 +30,9 @@ LcpAnswer solve_lcp(const SparseRealMatrix& A, const RealVector& q, const GoOn& 
 
 /// Lemke's method (Cottle, Pang & Stone, "The Linear Complementarity Problem", algorithm 4.4.5) with
 /// lexicographic ratio tests, so that ties (symmetric or redundant contacts) cannot make it cycle. For a
-/// symmetric positive semidefinite A it ends with a solution, or with the proof that there is none. Cost:
-/// O(n^2) a pivot, about n pivots, and a dense tableau.
+/// positive semidefinite A, or one that is copositive plus, it ends with a solution, or with the proof that there
+/// is none; for others (Coulomb's friction) `none` means that it found none. Cost: O(n^2) a pivot, about n pivots,
+/// and a dense tableau.
 LcpAnswer solve_lcp_by_lemke(const RealMatrix& A, const RealVector& q, const GoOn& go_on = {});
 
 /// The dual active set method (Goldfarb & Idnani 1983): rows join one by one, the most violated first, as

@@ -50,7 +50,7 @@ std::string differences(const std::string& was, const std::string& is) {
 }
 
 EventKind kind_from(const std::string& word) {
-  for (int k = 0; k <= static_cast<int>(EventKind::wake); ++k) {
+  for (int k = 0; k <= static_cast<int>(EventKind::lift); ++k) {
     if (word == to_string(static_cast<EventKind>(k))) return static_cast<EventKind>(k);
   }
   throw BadInput(fmt::format("event of unknown kind '{}'", word));

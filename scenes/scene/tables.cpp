@@ -235,6 +235,9 @@ const Schema<SolverOptions>& solver_schema() {
                "gap that counts as contact, of the scene's length")
           .key("persistent", &S::persistent, flag(),
                "contacts may last (slides and rolls to first order); false: a Zeno point ends the run")
+          .count(
+              "modes_contacts", &S::modes_contacts, whole(),
+              "few bodies with at most so many contacts that last move to `tolerance`, others to first order")
           .key("rest_speed", &S::rest_speed, number(between(0.0, 1e6, "m/s")),
                "what lasting contacts hold is taken to be at rest below this speed; 0: only what is at rest")
           .count("kept_states", &S::kept_states, whole(),

@@ -4,10 +4,10 @@
 #include <limits>
 #include <map>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include "brink/scheduler/events/agenda.h"
+#include "brink/scheduler/islands/modes/mode_problem.h"
 #include "brink/scheduler/islands/near_features.h"
 #include "brink/scheduler/run/lasted_contact.h"
 
@@ -22,17 +22,25 @@ struct HeldContact {
   ContactMode mode = ContactMode::none;
   double since = 0.0;         ///< in this mode without a break [s]
   Vec2 place = Vec2::Zero();  ///< of the feature's point in the world [m]
+  /// Of a step by modes: what it does in the step, and from its end on if nothing comes between.
+  bool by_modes = false;
+  MotionMode motion = MotionMode::open, next_motion = MotionMode::open;
 
   auto order() const { return std::tuple(pair.order(), feature.sample_on_a, feature.sample, feature.site); }
 };
 
-/// Normal force [N] of a contact, and the time over which that was a mean [s]: by pair, side, sample, site.
-using WarmForces = std::map<std::tuple<PairKey, bool, int, int>, std::pair<double, double>>;
+/// What is known of contacts from the step before: by pair, side, sample, site.
+using WarmContacts = std::map<std::tuple<PairKey, bool, int, int>, HeldContact>;
+inline const HeldContact* find_warm(const WarmContacts& warm, const HeldContact& c) {
+  const auto found = warm.find({c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site});
+  return found == warm.end() ? nullptr : &found->second;
+}
 
 struct Island {
   std::vector<int> members;           ///< ascending
   std::vector<HeldContact> contacts;  ///< in order
   bool rests = false;
+  int hasty = 0;                                         ///< steps by modes in a row that hardly led on
   double due = std::numeric_limits<double>::infinity();  ///< when its step ends [s]
   /// The contact whose bounces come to their limit where the step ends; body < 0: none.
   double then = std::numeric_limits<double>::infinity();  ///< of one at rest: `due` after that [s]
@@ -42,7 +50,7 @@ struct Island {
 
 /// What islands came to.
 struct IslandTally {
-  std::uint64_t captured = 0, steps = 0, slept = 0, woken = 0, factorisations = 0;
+  std::uint64_t captured = 0, steps = 0, by_modes = 0, slept = 0, woken = 0, factorisations = 0;
   double absorbed = 0.0;           ///< the largest approach that a step took without a rebound [m/s]
   double energy_won = 0.0;         ///< that steps made, by rounding and by faces that turn [J]
   double energy_of_rest = 0.0;     ///< that the option rest_speed took [J]

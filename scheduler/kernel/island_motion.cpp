@@ -20,6 +20,8 @@ constexpr double kOfSize = 0.1;
 constexpr double kReach = 2.0, kWider = 4.0;
 constexpr int kWidenings = 4;
 constexpr int kHalvings = 16;
+/// Contact tolerances that a contact is open before its bodies are let go from modes.
+constexpr double kClear = 100.0;
 /// Looks along a contact's tangents until it arrives, or passes by.
 constexpr int kTangents = 32;
 /// Impacts of one instant inside an island, at most; what closes then is taken as plastic.
@@ -32,7 +34,7 @@ constexpr double kNoSpeed = 1e-7;
 }  // namespace
 
 IslandMotion::IslandMotion(IslandMembers members, const ContactSearch& search, CollisionResponse& response,
-                           ConeQp& solver, IslandTally& tally, WarmForces warm)
+                           ConeQp& solver, IslandTally& tally, WarmContacts warm)
     : members_(std::move(members)),
       search_(&search),
       response_(&response),
@@ -79,6 +81,7 @@ void IslandMotion::pass_on_impacts(const Impact& told) {
     for (const HeldContact& c : contacts_) {
       const double closing = members_.closing_speed(c);
       if (closing <= most || closing <= most_absorbed(c.pair) || passes_by(c, 0.0, closing)) continue;
+      if (by_modes_ && IslandModes::is_shadow(*search_, c, contacts_)) continue;
       most = closing;
       fastest = &c;
     }
@@ -140,7 +143,25 @@ double IslandMotion::kinetic_energy() const {
 
 // ---- steps
 
+bool IslandMotion::take(IslandModes& modes, double now, double h, bool on_time) {
+  if (!by_modes_ || !(h < kForever)) return false;
+  double reach = kReach;
+  for (int widening = 0; widening <= kWidenings; ++widening, reach *= kWider) {
+    h_ = h;
+    members_.look_ahead(h_, reach);
+    list(-1.0);
+    const IslandModes::Outcome outcome = modes.take(now, h, contacts_, on_time);
+    if (outcome == IslandModes::Outcome::wider) continue;
+    if (outcome == IslandModes::Outcome::none) return false;
+    contacts_ = modes.contacts();
+    h_ = modes.end() - now;
+    return true;
+  }
+  return false;
+}
+
 bool IslandMotion::take(double h) {
+  by_modes_ = false;
   contacts_.clear();
   if (!(h < kForever)) return true;  // nothing moves or pulls: nobody needs anybody
   double reach = kReach;
@@ -220,7 +241,8 @@ bool IslandMotion::passes_by(const HeldContact& c, double then, double closing) 
 /// An approach as slow as this would be back within the step [m/s].
 double IslandMotion::most_absorbed(const PairKey& pair) const {
   const double e = response_->material_of(pair).restitution;
-  return e > 0.0 ? members_.pull() * h_ / e : kForever;
+  if (!(e > 0.0)) return kForever;
+  return by_modes_ ? IslandModes::slowest_bounce(members_, *search_) : members_.pull() * h_ / e;
 }
 
 void IslandMotion::make_problem() {
@@ -245,8 +267,10 @@ IslandContact IslandMotion::island_contact(const HeldContact& c) const {
   const Material& material = response_->material_of(c.pair);
   made.friction = material.friction;
   made.rolling_resistance = material.rolling_resistance;
-  const auto warm = warm_.find({c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site});
-  if (warm != warm_.end()) std::tie(made.normal_force, made.force_lasted) = warm->second;
+  if (const HeldContact* warm = find_warm(warm_, c)) {
+    made.normal_force = warm->normal_force;
+    made.force_lasted = warm->lasted;
+  }
   made.at_end = c.feature.at_end;
   made.driven = members_.on_moving_site(c);
   if (made.driven) {  // the mean velocity of its point
@@ -292,13 +316,20 @@ bool IslandMotion::pushes(const HeldContact& c) const {
 }
 
 /// Nothing pushes, but one of the two alone, left to its parabola, could run into the other's step: that has the
-/// twist of its end from the start on, which a parabola comes to by and by.
+/// twist of its end from the start on, which a parabola comes to by and by. By modes, it has just been let go: an open
+/// contact is looked at from there on as well as any other, until it is clear of it.
 bool IslandMotion::stays_near(const HeldContact& c) const {
+  const double behind = members_.pull() * h_, tolerance = search_->limits().tolerance;
+  if (by_modes_) {
+    const double closing = members_.closing_speed(c);
+    const bool slow = closing >= -std::sqrt(kClear) * IslandModes::slowest_bounce(members_, *search_);
+    if (c.feature.gap <= kClear * tolerance && slow) return true;
+    return !c.pair.with_site() && c.feature.gap <= behind * h_ && closing >= -behind;
+  }
   if (c.pair.with_site()) return false;
-  const double behind = members_.pull() * h_;
   const double closing = members_.closing_speed(c, after(members_.place_of(c.pair.body)).twist,
                                                 after(members_.place_of(c.pair.other_body)).twist);
-  return c.feature.gap - h_ * (closing + behind) <= search_->limits().tolerance;
+  return c.feature.gap - h_ * (closing + behind) <= tolerance;
 }
 
 IslandMotion::Parts IslandMotion::parts(bool rests) const {
@@ -332,16 +363,20 @@ IslandMotion::Parts IslandMotion::parts(bool rests) const {
 ContactMode IslandMotion::mode_of(const HeldContact& c, bool rests) const {
   if (!pushes(c)) return ContactMode::none;
   if (rests) return ContactMode::rest;
-  const Twist a = as_twist(problem_.velocity[members_.place_of(c.pair.body)]);
-  const Twist b = c.pair.with_site() ? members_.other_state(c.pair).twist.rounded()
-                                     : as_twist(problem_.velocity[members_.place_of(c.pair.other_body)]);
+  const auto twist = [this](int body) {
+    const int member = members_.place_of(body);
+    return by_modes_ ? members_.state(member).twist.rounded() : as_twist(problem_.velocity[member]);
+  };
+  const Twist a = twist(c.pair.body);
+  const Twist b =
+      c.pair.with_site() ? members_.other_state(c.pair).twist.rounded() : twist(c.pair.other_body);
   const Vec2 relative = a.at(members_.arm(c).cast<double>()) - b.at(c.feature.point);
   const double slow = kNoSpeed * std::sqrt(members_.pull() * members_.size());
   if (std::abs(cross(c.feature.normal, relative)) > slow) return ContactMode::slip;
   return std::abs(a.omega - b.omega) * members_.size() > slow ? ContactMode::roll : ContactMode::stick;
 }
 
-Island IslandMotion::island_of(const std::vector<int>& together, bool rests, double now) const {
+Island IslandMotion::island_of(const std::vector<int>& together, bool rests, double end) const {
   Island island;
   const auto has = [&](int body) {
     return std::binary_search(together.begin(), together.end(), members_.place_of(body));
@@ -354,7 +389,7 @@ Island IslandMotion::island_of(const std::vector<int>& together, bool rests, dou
       held.place = members_.other_state(c.pair).position.cast<double>() + c.feature.point;
     }
   island.rests = rests;
-  if (!rests) island.due = now + h_;
+  if (!rests) island.due = end;
   if (rests)  // until forces jump
     for (const int i : together) island.due = std::min(island.due, members_.next_break(i));
   return island;

@@ -9,6 +9,7 @@
 #include "brink/scheduler/islands/island_step.h"
 #include "brink/scheduler/kernel/collision_response.h"
 #include "brink/scheduler/kernel/island_members.h"
+#include "brink/scheduler/kernel/island_modes.h"
 
 namespace brink {
 
@@ -20,7 +21,7 @@ class IslandMotion {
 
   /// What is given must outlive it. `warm`: forces of the step before.
   IslandMotion(IslandMembers members, const ContactSearch& search, CollisionResponse& response,
-               ConeQp& solver, IslandTally& tally, WarmForces warm);
+               ConeQp& solver, IslandTally& tally, WarmContacts warm);
 
   const IslandMembers& members() const { return members_; }
   /// Bodies that are to be members before it steps, see joining(). None where nothing moves or pulls.
@@ -33,6 +34,11 @@ class IslandMotion {
   /// True if the members can be taken to be at rest: what is left of their motion is gone within the contact
   /// tolerance, or slower than `rest_speed` [m/s], and their contacts hold them. They are at rest then.
   bool rests(double rest_speed);
+  /// From now on bounces end where they do not leave the contact tolerance any more, not the step.
+  void expect_modes() { by_modes_ = true; }
+  const WarmContacts& warm() const { return warm_; }
+  /// Takes a step of `h` [s] at most by modes; false: not that way. @pre sites are covered as far.
+  bool take(IslandModes& modes, double now, double h, bool on_time);
   /// Takes a step of `h` [s] at most, and less where that does not do. False: not even the shortest does.
   /// @pre sites are covered as far.
   bool take(double h);
@@ -43,8 +49,8 @@ class IslandMotion {
     std::vector<int> free;
   };
   Parts parts(bool rests) const;
-  /// The island that these are from now on, at rest or until the step ends.
-  Island island_of(const std::vector<int>& together, bool rests, double now) const;
+  /// The island that these are from now on, at rest or until the step's `end` [s].
+  Island island_of(const std::vector<int>& together, bool rests, double end) const;
   /// The state from which a member moves through the step.
   ExtendedState after(int member) const;
   double duration() const { return h_; }  ///< of the step [s]
@@ -77,7 +83,8 @@ class IslandMotion {
   CollisionResponse* response_;
   ConeQp* solver_;
   IslandTally* tally_;
-  WarmForces warm_;
+  WarmContacts warm_;
+  bool by_modes_ = false;
   double h_ = 0.0, absorbed_ = 0.0;
   std::vector<HeldContact> contacts_;
   IslandStep problem_;

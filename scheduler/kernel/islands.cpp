@@ -11,6 +11,20 @@
 
 namespace brink {
 
+namespace {
+
+/// Steps by modes that led on by less than this part of what was asked for are hasty; after so many in a row some
+/// steps at the level of velocities are taken: what buzzes without end gets on.
+constexpr double kHasty = 0.05;
+constexpr int kMostHasty = 64, kCalmed = 4;
+
+int next_hasty(int hasty, bool by_modes, bool was_short) {
+  if (by_modes) return was_short ? hasty + 1 : 0;
+  return hasty >= kMostHasty && hasty < kMostHasty + kCalmed ? hasty + 1 : 0;
+}
+
+}  // namespace
+
 Islands::Islands(const World& world, Trajectories& trajectories, ContactSearch& search,
                  CollisionResponse& response, Records& records, RunControl& run, double rest_speed)
     : world_(&world),
@@ -31,8 +45,8 @@ void Islands::gather(int body, std::set<int>& members) const {
     for (const int j : trajectories_->coupled_to(k)) gather(j, members);
 }
 
-WarmForces Islands::take_out(const std::set<int>& members) {
-  WarmForces forces;
+WarmContacts Islands::take_out(const std::set<int>& members, int& hasty) {
+  WarmContacts warm;
   for (const int k : members) {
     const auto found = islands_.find(k);
     if (found == islands_.end()) continue;
@@ -40,13 +54,14 @@ WarmForces Islands::take_out(const std::set<int>& members) {
     for (const HeldContact& c : found->second.contacts) {
       search_->search_again(c.pair);
       const Feature key{c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site};
-      forces[key] = {c.normal_force, c.lasted};
+      warm[key] = c;
       if (c.mode != ContactMode::none) taken_out_.emplace(key, c);
     }
+    hasty = std::max(hasty, found->second.hasty);
     for (const int j : found->second.members) lead_of_.erase(j);
     islands_.erase(found);
   }
-  return forces;
+  return warm;
 }
 
 void Islands::put_in(Island island) {
@@ -89,10 +104,17 @@ void Islands::note_change(EventKind kind, int lead) {
 }
 
 /// An impact inside an island is a collision like any other.
-void Islands::note_impact(const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r) {
+void Islands::note_impact(const HeldContact& c, const RealVec& from, double closing, double normal,
+                          double tangential) {
   WorkCounters& work = run_->work();
   ++work.collisions;
   ++(c.pair.with_site() ? work.collisions_body_site : work.collisions_body_body);
+  FeatureContact f = as_told(c, from);
+  f.closing_speed = closing;
+  records_->event(EventKind::collision, c.pair, f, normal, tangential, 0);
+}
+
+FeatureContact Islands::as_told(const HeldContact& c, const RealVec& from) const {
   FeatureContact f;
   f.time = run_->time();
   f.sample_on_a = c.feature.sample_on_a;
@@ -100,16 +122,30 @@ void Islands::note_impact(const HeldContact& c, const RealVec& from, double clos
   f.site = c.feature.site;
   f.point = (from + c.feature.point.cast<Real>()).cast<double>();
   f.normal = c.feature.normal;
-  f.closing_speed = closing;
   f.gap = c.feature.gap;
-  records_->event(EventKind::collision, c.pair, f, r.normal, r.tangential, 0);
+  return f;
+}
+
+/// A contact begins to stick, to slip, or is no more.
+void Islands::note_mode(const HeldContact& c, const RealVec& from, EventKind kind) {
+  records_->ending(kind, c.pair, as_told(c, from), std::max(run_->time(), records_->last_event()));
+}
+
+/// What happened at the beginning of a step by modes.
+void Islands::tell(const IslandModes& modes, const IslandMembers& members) {
+  ++tally_.by_modes;
+  for (const IslandModes::Impact& i : modes.impacts())
+    note_impact(i.contact, members.other_state(i.contact.pair).position, i.closing, i.normal, i.tangential);
+  for (const IslandModes::Change& c : modes.changes())
+    note_mode(c.contact, members.other_state(c.contact.pair).position, c.kind);
 }
 
 /// Members are held from now on, also those that join; what they push each other with is taken out.
-IslandMotion Islands::set_out(std::set<int>& members) {
-  WarmForces forces;
+IslandMotion Islands::set_out(std::set<int>& members, int& hasty) {
+  WarmContacts warm;
+  hasty = 0;
   for (;;) {
-    forces.merge(take_out(members));
+    warm.merge(take_out(members, hasty));
     std::vector<Restart> as_they_are;
     for (const int k : members)
       if (!trajectories_->is_held(k))
@@ -117,35 +153,49 @@ IslandMotion Islands::set_out(std::set<int>& members) {
     std::vector<int> held;
     trajectories_->hold(as_they_are, held);
     IslandMotion motion(IslandMembers(*world_, *trajectories_, *search_, run_->time(), members), *search_,
-                        *response_, solver_, tally_, forces);
+                        *response_, solver_, tally_, warm);
     const std::vector<int> more = motion.joining(*world_, *trajectories_, run_->time());
     if (more.empty()) return motion;
     for (const int k : more) gather(k, members);
   }
 }
 
-bool Islands::begin_step(std::set<int> members, double longest, std::vector<int>& changed) {
-  IslandMotion motion = set_out(members);
+bool Islands::begin_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time) {
+  int hasty = 0;
+  IslandMotion motion = set_out(members, hasty);
   if (run_->halt()) return false;
-  motion.pass_on_impacts([this](const HeldContact& c, const RealVec& from, double closing,
-                                const ImpulseResult& r) { note_impact(c, from, closing, r); });
+  const double now = run_->time();
+  IslandModes modes(motion.members(), *trajectories_, *search_, *response_, by_modes_, motion.warm());
+  if (hasty < kMostHasty && modes.suits()) motion.expect_modes();
+  const std::uint64_t collisions = run_->work().collisions;
+  motion.pass_on_impacts(
+      [this](const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r) {
+        note_impact(c, from, closing, r.normal, r.tangential);
+      });
+  on_time = on_time && run_->work().collisions == collisions;
   const bool rests = motion.rests(rest_speed_);
   const double h = std::min(longest, motion.longest());
-  if (!rests && std::isfinite(h) && !trajectories_->cover_sites(run_->time() + h)) return false;
-  if (!rests && !motion.take(h)) {
+  if (!rests && std::isfinite(h)) {
+    if (!trajectories_->cover_sites(now + h)) return false;
+    trajectories_->follow_sites(now + 2.0 * h);  // what is beyond the end must not depend on who has asked
+  }
+  const bool by_modes = !rests && motion.take(modes, now, h, on_time);
+  if (!rests && !by_modes && !motion.take(h)) {
     run_->stop(
         Termination::failed,
         fmt::format("an island of {} bodies, '{}' the first, finds no step at t = {:.17g} that keeps its "
                     "contacts",
-                    members.size(), world_->bodies[*members.begin()].name, run_->time()));
+                    members.size(), world_->bodies[*members.begin()].name, now));
     trajectories_->release(std::vector<int>(members.begin(), members.end()), changed);
     tell_ended();
     find_next();
     return false;
   }
   ++tally_.steps;
+  if (by_modes) tell(modes, motion.members());
+  hasty = next_hasty(hasty, by_modes, by_modes && modes.end() - now < kHasty * h);
   if (rests) note_change(EventKind::sleep, *members.begin()), ++tally_.slept;
-  part(motion, rests, changed);
+  part(motion, rests, by_modes ? &modes : nullptr, hasty, changed);
   tell_ended();
   std::sort(changed.begin(), changed.end());
   changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
@@ -154,15 +204,19 @@ bool Islands::begin_step(std::set<int> members, double longest, std::vector<int>
 }
 
 /// Members that push each other are islands; those that nothing pushes are let go, as they were.
-void Islands::part(const IslandMotion& motion, bool rests, std::vector<int>& changed) {
+void Islands::part(const IslandMotion& motion, bool rests, const IslandModes* modes, int hasty,
+                   std::vector<int>& changed) {
   const IslandMotion::Parts parts = motion.parts(rests);
   const IslandMembers& members = motion.members();
+  const double now = run_->time(), end = modes ? modes->end() : now + motion.duration();
   std::vector<Restart> held, as_they_are;
   std::vector<int> free;
   for (const std::vector<int>& together : parts.together) {
     for (const int i : together)
-      held.push_back({members.bodies()[i], rests ? members.state(i) : motion.after(i)});
-    put_in(motion.island_of(together, rests, run_->time()));
+      held.push_back({members.bodies()[i], rests || modes ? members.state(i) : motion.after(i)});
+    Island island = motion.island_of(together, rests, end);
+    island.hasty = hasty;
+    put_in(std::move(island));
   }
   for (const int i : parts.free) {
     free.push_back(members.bodies()[i]);
@@ -172,10 +226,13 @@ void Islands::part(const IslandMotion& motion, bool rests, std::vector<int>& cha
   trajectories_->hold(as_they_are, changed);
   trajectories_->release(free, changed);
   if (rests) return;
-  const double now = run_->time(), end = now + motion.duration();
   for (const std::vector<int>& together : parts.together)
-    for (const int i : together)
-      trajectories_->note_step(members.bodies()[i], {now, end, members.state(i).twist.rounded()});
+    for (const int i : together) {
+      if (modes)
+        trajectories_->follow_own(members.bodies()[i], modes->motion(i));
+      else
+        trajectories_->note_step(members.bodies()[i], {now, end, members.state(i).twist.rounded()});
+    }
 }
 
 bool Islands::capture(const PairKey& pair, const FeatureContact& contact, double limit,
@@ -236,7 +293,7 @@ bool Islands::step(std::vector<int>& changed) {
     return run_->poll();
   }
   const std::vector<int> members = island.members;
-  return begin_step({members.begin(), members.end()}, std::numeric_limits<double>::infinity(), changed);
+  return begin_step({members.begin(), members.end()}, std::numeric_limits<double>::infinity(), changed, true);
 }
 
 bool Islands::collided(const PairKey& pair, std::vector<int>& changed) {

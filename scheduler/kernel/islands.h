@@ -1,9 +1,10 @@
 #pragma once
-/// Islands: bodies joined by contacts that last. An island is at rest, or goes on in steps of constant twists.
+/// Islands: bodies joined by contacts that last. An island is at rest, or goes on in steps.
 ///
 ///   begin      bodies start touching: they are an island from the start
 ///   capture    bounces of a pair have come to their limit: its bodies are an island from now on
-///   step       what has come apart leaves; the others move on together (island_step.h), or come to rest
+///   step       what has come apart leaves; the others move on together, few by modes (island_modes.h), many at
+///              the level of velocities (island_step.h), or come to rest
 ///   collided   a member was hit: what it hit may join, and the island begins a step at once
 ///
 /// Steps begin at events and see the states of their members alone, so they are the same whoever schedules.
@@ -28,7 +29,10 @@ class Islands {
           Records& records, RunControl& run, double rest_speed);
 
   /// Contacts may last from now on: an option, and a policy that asks for next_step().
-  void allow() { allowed_ = true; }
+  void allow(const IslandModes::Limits& by_modes) {
+    allowed_ = true;
+    by_modes_ = by_modes;
+  }
   bool allowed() const { return allowed_; }
   /// When the next step of an island ends [s]; infinity: none takes steps.
   double next_step() const { return next_step_; }
@@ -67,12 +71,17 @@ class Islands {
 
  private:
   void gather(int body, std::set<int>& members) const;
-  IslandMotion set_out(std::set<int>& members);
-  bool begin_step(std::set<int> members, double longest, std::vector<int>& changed);
-  void part(const IslandMotion& motion, bool rests, std::vector<int>& changed);
+  IslandMotion set_out(std::set<int>& members, int& hasty);
+  bool begin_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time = false);
+  void part(const IslandMotion& motion, bool rests, const IslandModes* modes, int hasty,
+            std::vector<int>& changed);
+  void tell(const IslandModes& modes, const IslandMembers& members);
+  FeatureContact as_told(const HeldContact& c, const RealVec& from) const;
+  void note_mode(const HeldContact& c, const RealVec& from, EventKind kind);
   void note_change(EventKind kind, int lead);
-  void note_impact(const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r);
-  WarmForces take_out(const std::set<int>& members);
+  void note_impact(const HeldContact& c, const RealVec& from, double closing, double normal,
+                   double tangential);
+  WarmContacts take_out(const std::set<int>& members, int& hasty);
   void put_in(Island island);
   void tell_ended();
   void find_next();
@@ -86,6 +95,7 @@ class Islands {
   ConeQp solver_;
   double rest_speed_;
   bool allowed_ = false;
+  IslandModes::Limits by_modes_;
   std::map<int, Island> islands_;
   std::map<int, int> lead_of_;  ///< of every member
   using Feature = std::tuple<PairKey, bool, int, int>;

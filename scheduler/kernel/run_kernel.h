@@ -50,7 +50,9 @@ class RunKernel final : public Kernel {
   /// From now on what searches certify is checked as the run goes on (CertificateWatch).
   void hold_to_certificates() { parts_.watch.begin(); }
   /// From now on contacts may last (Islands). The policy asks for next_step().
-  void let_contacts_last() { parts_.islands.allow(); }
+  void let_contacts_last() {
+    parts_.islands.allow({options().tolerance, static_cast<std::size_t>(options().modes_contacts)});
+  }
   const IslandTally& island_tally() const { return parts_.islands.tally(); }
   /// From now on the policy is held to the contacts that it has been told of (PolicyWatch).
   void hold_to_known_contacts() { parts_.policy_watch.begin(); }

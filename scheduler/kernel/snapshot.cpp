@@ -62,6 +62,7 @@ std::uint64_t fingerprint(const World& world, const SolverOptions& options) {
   hash.add(options.absolute_tolerance);
   hash.add(options.step);
   hash.add(options.contact_tolerance);
+  hash.add(options.modes_contacts);
   hash.add(options.rest_speed);
   hash.add(static_cast<std::uint64_t>(options.persistent));
   hash.add(options.seed);
@@ -101,6 +102,7 @@ void write_islands(Writer& out, const Islands::Saved& islands) {
   out(static_cast<std::uint64_t>(islands.islands.size()));
   for (const Island& i : islands.islands) {
     out(i.rests);
+    out(i.hasty);
     out(i.due);
     out(i.then);
     out(i.series);
@@ -118,6 +120,7 @@ void read_islands(Reader& in, const Trajectories::Saved& bodies, Islands::Saved&
   for (std::uint64_t n = in.count(sizeof(double)); n > 0; --n) {
     Island i;
     in(i.rests);
+    in(i.hasty);
     in(i.due);
     in(i.then);
     in(i.series);
@@ -169,6 +172,38 @@ Trajectories::Sets read_sets(Reader& in, std::size_t bodies) {
   return sets;
 }
 
+/// What an island has a body do; pieces, where it is on a motion of its own.
+void write_held(Writer& out, const HeldStep& step, const Motion& motion) {
+  out(step);
+  const Track* track = motion.track();
+  out(static_cast<std::uint64_t>(track ? track->pieces.size() : 0));
+  if (!track) return;
+  for (const PolynomialPiece& p : track->pieces) {
+    out(p.begin);
+    out(p.end);
+    out(p.origin);
+    out(p.degree);
+    for (int i = 0; i <= p.degree; ++i) out(p.c[i]);
+  }
+}
+
+void read_held(Reader& in, HeldStep& step, Motion& motion) {
+  in(step);
+  const auto track = std::make_shared<Track>();
+  for (std::uint64_t n = in.count(3 * sizeof(double)); n > 0; --n) {
+    PolynomialPiece p;
+    in(p.begin);
+    in(p.end);
+    in(p.origin);
+    in(p.degree);
+    if (p.degree < 0 || p.degree > PolynomialPiece::kMaxDegree)
+      throw BadInput("snapshot: a motion has a piece of no such degree");
+    for (int i = 0; i <= p.degree; ++i) in(p.c[i]);
+    track->pieces.push_back(p);
+  }
+  if (!track->pieces.empty()) motion = Motion::dense(track);
+}
+
 void write(Writer& out, const Trajectories::Saved& saved) {
   write_sets(out, saved.together);
   for (const BodyTrack& b : saved.bodies) {
@@ -178,7 +213,8 @@ void write(Writer& out, const Trajectories::Saved& saved) {
     out(b.motion.origin());
     out(b.motion.start());
     out(b.motion.start_low());
-    if (b.component == BodyTrack::kHeld) out(saved.steps.at(static_cast<int>(&b - saved.bodies.data())));
+    if (b.component == BodyTrack::kHeld)
+      write_held(out, saved.steps.at(static_cast<int>(&b - saved.bodies.data())), b.motion);
   }
   for (const ComponentStart& s : saved.starts) {
     out(s.time);
@@ -211,7 +247,8 @@ Trajectories::Saved read_trajectories(Reader& in, const World& world) {
   for (std::size_t k = 0; k < world.bodies.size(); ++k) {
     bool asleep = false;
     saved.bodies.push_back(read_body(in, asleep));
-    if (saved.bodies.back().component == BodyTrack::kHeld) in(saved.steps[static_cast<int>(k)]);
+    BodyTrack& b = saved.bodies.back();
+    if (b.component == BodyTrack::kHeld) read_held(in, saved.steps[static_cast<int>(k)], b.motion);
     if (asleep) saved.asleep.push_back(static_cast<int>(k));
   }
   for (const Component& c : make_components(world, saved.together)) {

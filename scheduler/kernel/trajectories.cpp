@@ -241,7 +241,11 @@ void Trajectories::start(Coupled& c, ComponentStart from) {
 }
 
 void Trajectories::restart_free(int k, const BodyState& start, const BodyState& low) {
-  bodies_[k].motion.start_anew(run_->time(), start, low);
+  Motion& motion = bodies_[k].motion;
+  if (motion.is_ballistic())
+    motion.start_anew(run_->time(), start, low);
+  else  // held, on a motion of its own
+    motion = Motion::ballistic(run_->time(), start, {}, kForever, low);
   raise_version(bodies_[k]);
   ++run_->work().component_resets;
 }
@@ -333,6 +337,33 @@ Acceleration Trajectories::acceleration(int k) const {
   std::vector<Acceleration> all(states.size());
   c.dynamics->accelerations(run_->time(), states, all);
   return all[bodies_[k].place_in_component];
+}
+
+void Trajectories::accelerations(std::span<const int> bodies, double t, std::span<const BodyState> states,
+                                 std::span<Acceleration> out) const {
+  const auto place = [&](int k) {
+    return std::lower_bound(bodies.begin(), bodies.end(), k) - bodies.begin();
+  };
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Former& former = held_.at(bodies[i]);
+    if (former.component < 0) {
+      out[i] = former.acceleration;
+      continue;
+    }
+    const Component& c = components_[former.component].component;
+    if (c.bodies.front() != bodies[i]) continue;  // all at once, with their first
+    std::vector<BodyState> of;
+    for (const int j : c.bodies) of.push_back(states[place(j)]);
+    std::vector<Acceleration> all(of.size());
+    c.dynamics->accelerations(t, of, all);
+    for (std::size_t j = 0; j < all.size(); ++j) out[place(c.bodies[j])] = all[j];
+  }
+}
+
+double Trajectories::steady_until(int k) const {
+  const Former& former = held_.at(k);
+  if (former.component < 0) return std::numeric_limits<double>::infinity();
+  return components_[former.component].component.dynamics->steady_until(run_->time());
 }
 
 double Trajectories::next_break(int k) const {

@@ -68,7 +68,7 @@ class Trajectories {
   std::span<const int> members(int component) const { return components_[component].component.bodies; }
   /// True if the body is on a parabola for as long as it meets nothing.
   bool is_free(int k) const { return bodies_[k].component == BodyTrack::kFree; }
-  /// True if an island holds the body: its twist is constant until it is restarted.
+  /// True if an island holds the body: it knows how it moves until it is restarted.
   bool is_held(int k) const { return bodies_[k].component == BodyTrack::kHeld; }
   /// True if its motion is a closed form under constant accelerations.
   bool is_ballistic(int k) const;
@@ -97,9 +97,11 @@ class Trajectories {
   /// A free body.
   void restart_free(int k, const BodyState& start, const BodyState& low);
   // -- islands --
-  /// From now on the bodies move with constant twists from these states, whatever forces there are, until
-  /// they are restarted or released. @pre all bodies of a component, or none.
+  /// From now on the bodies move with constant twists from these states, or as follow_own() says, whatever
+  /// forces there are, until they are restarted or released. @pre all bodies of a component, or none.
   void hold(std::span<const Restart> bodies, std::vector<int>& changed);
+  /// The last hold() of the body begins a motion of its own, from the state that it was given. @pre it has no end.
+  void follow_own(int k, Motion motion) { bodies_[k].motion = std::move(motion); }
   /// The last hold() of the body begins such a step.
   void note_step(int k, const HeldStep& step) { held_.at(k).step = step; }
   /// The body's state now, in extended precision. Of one that is held its motion has the twist of the step's
@@ -109,8 +111,13 @@ class Trajectories {
   void release(std::span<const int> bodies, std::vector<int>& changed);
   /// What forces would do to a held body now.
   Acceleration acceleration(int k) const;
-  /// When that next jumps [s]; and whether until then it depends on nothing.
+  /// The same at another time, were those bodies in those states. @pre ascending; all of a component, or none.
+  void accelerations(std::span<const int> bodies, double t, std::span<const BodyState> states,
+                     std::span<Acceleration> out) const;
+  /// When that next jumps [s]; until when it changes evenly (Dynamics); and whether until then it depends on
+  /// nothing.
   double next_break(int k) const;
+  double steady_until(int k) const;
   bool is_constant(int k) const;
   /// The component that drives the body where no island holds it.
   int own_component(int k) const { return is_held(k) ? held_.at(k).component : bodies_[k].component; }

@@ -19,6 +19,12 @@ const char* to_string(EventKind kind) {
       return "sleep";
     case EventKind::wake:
       return "wake";
+    case EventKind::stick:
+      return "stick";
+    case EventKind::slip:
+      return "slip";
+    case EventKind::lift:
+      return "lift";
   }
   return "unknown";
 }

@@ -15,6 +15,9 @@ enum class EventKind {
   persist,  ///< a contact lasts from now on
   sleep,    ///< an island comes to rest: `body` is its least member
   wake,     ///< it moves again
+  stick,    ///< a contact that lasts begins to stick, or to roll
+  slip,     ///< it begins to slip
+  lift,     ///< it is no more
 };
 const char* to_string(EventKind kind);
 

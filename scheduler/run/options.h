@@ -34,6 +34,8 @@ struct SolverOptions {
   /// Contacts may last: where bounces come to their limit the run goes on, in steps of order 1 or at rest
   /// (docs/contacts-that-last.md). Else it ends there.
   bool persistent = true;
+  /// Islands of few bodies with at most so many contacts move by modes, to `tolerance`; others in steps. 0: none.
+  std::uint64_t modes_contacts = 0;
   /// Where contacts hold an island and nothing of it is faster than this, it is taken to be at rest [m/s]; the
   /// energy that goes with it is told. 0: an island is at rest where nothing of its motion is left.
   double rest_speed = 0.0;

@@ -91,7 +91,8 @@ TEST(Stack, SetDownLiesForAHundredSecondsAtNoCost) {
   for (int k = 0; k < 10; ++k) {
     EXPECT_TRUE(same_place(simulator.state(k), lies[k])) << k;
     EXPECT_NEAR(lies[k].pose.position.y(), k + 0.5, 1e-9) << k;
-    EXPECT_NEAR(lies[k].pose.position.x(), 0.0, 1e-8) << k;  // not 0: see NormalsKeepTheirDigits...
+    // not 0: each box is set down on one of its corners first, and then on both
+    EXPECT_NEAR(lies[k].pose.position.x(), 0.0, 1e-8) << k;
   }
   std::printf("in 100 s: %d collisions, %d searches, %d passes, %d horizons\n",
               static_cast<int>(after.collisions - before.collisions),

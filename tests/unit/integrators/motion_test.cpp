@@ -45,6 +45,26 @@ TEST(Drag, StateIsTheExponentialFormula) {
     EXPECT_LT(difference(motion.state(t), spinning_drag_state(t)), 1e-12) << t;
 }
 
+// Of every kind of motion, against differences of its own twist.
+TEST(Motion, RateIsTheDerivativeOfTheTwist) {
+  PolynomialPiece piece;
+  piece.end = 10.0;
+  piece.degree = 4;
+  for (int k = 0; k <= 4; ++k) piece.c[k] = Eigen::Vector3d(0.3 * k, 1 - k, 0.1) / (1 << k);
+  const auto track = std::make_shared<Track>();
+  track->pieces.push_back(piece);
+  const auto drag = Motion::drag(0.0, kThrown, {{0.0, -9.81}, 1.0}, 0.5, 0.25);
+  const auto parabola = Motion::ballistic(0.0, kThrown, {{0.5, -9.81}, 0.3});
+  const auto chain = std::make_shared<const std::vector<Motion>>(std::vector{drag});
+  for (const Motion& m : {parabola, drag, Motion::chain(chain), Motion::dense(track)})
+    for (const double t : {0.5, 1.0, 3.0}) {
+      const double h = 1e-5;
+      const Twist before = m.twist(t - h), after = m.twist(t + h);
+      EXPECT_LT((m.rate(t).linear - (after.velocity - before.velocity) / (2 * h)).norm(), 1e-8);
+      EXPECT_NEAR(m.rate(t).angular, (after.omega - before.omega) / (2 * h), 1e-8);
+    }
+}
+
 // As the drag goes to 0 the motion goes to the parabola: x = v s (1 - z/2) + a s^2 / 2 (1 - z/3) + O(z^2), z
 // = k s.
 TEST(Drag, WeakDragIsTheParabolaToFirstOrderAtEveryScale) {

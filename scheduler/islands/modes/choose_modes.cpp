@@ -1,0 +1,166 @@
+#include "brink/scheduler/islands/modes/choose_modes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brink/core/contacts/lcp.h"
+
+namespace brink {
+
+namespace {
+
+/// An acceleration below this part of those that take part is none.
+constexpr Real kNone = 1e-13;
+
+/// The problem's unknowns: of every contact that may be closed its normal force, then of the still ones with
+/// friction f+, f- and g.
+class Complementarity {
+ public:
+  Complementarity(const ModeProblem& problem, const ModeMoment& moment,
+                  const std::vector<ContactKnown>& known) {
+    const Eigen::Index size = 3 * problem.bodies();
+    inverse_mass_.resize(size);
+    for (int k = 0; k < problem.bodies(); ++k)
+      inverse_mass_.segment<3>(3 * k) = problem.inverse_mass[k].cast<Real>();
+    free_ = moment.free.cast<Real>();
+    for (std::size_t k = 0; k < known.size(); ++k)
+      if (known[k] != ContactKnown::open) add(problem, moment.contacts[k], k, known[k]);
+  }
+
+  bool solve() {
+    const auto n = static_cast<Eigen::Index>(unknowns_.size());
+    RealMatrix A(n, n);
+    RealVector q(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      q[i] = unknowns_[i].row.dot(free_) + unknowns_[i].bend;
+      for (Eigen::Index j = 0; j < n; ++j)
+        A(i, j) = unknowns_[i].row.dot(inverse_mass_.cwiseProduct(unknowns_[j].force)) + coupling(i, j);
+      size_ = std::max(size_, std::abs(q[i]));
+    }
+    const LcpAnswer answer = solve_lcp_by_lemke(A, q);
+    if (answer.status != LcpAnswer::Status::solved || !answer.z.allFinite()) return false;
+    z_ = answer.z;
+    acceleration_ = free_;
+    for (Eigen::Index j = 0; j < n; ++j)
+      acceleration_ += answer.z[j] * inverse_mass_.cwiseProduct(unknowns_[j].force);
+    return true;
+  }
+
+  const RealVector& acceleration() const { return acceleration_; }
+
+  /// Adds to forces (impulses) of each contact, of such as do not slide.
+  void add_forces(std::vector<double>& normal, std::vector<double>& tangential) const {
+    for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+      const Unknown& u = unknowns_[i];
+      const auto load = static_cast<double>(u.by * z_[static_cast<Eigen::Index>(i)]);
+      if (u.kind == Unknown::Kind::normal) normal[u.of] += load;
+      if (u.kind == Unknown::Kind::plus) tangential[u.of] += load;
+      if (u.kind == Unknown::Kind::minus) tangential[u.of] -= load;
+    }
+  }
+
+  MotionMode mode_of(std::size_t k, ContactKnown known, bool frictionless) const {
+    const auto found =
+        std::find_if(contacts_.begin(), contacts_.end(), [&](const Rows& r) { return r.of == k; });
+    if (found->normal.dot(acceleration_) + found->normal_bend > kNone * size_) return MotionMode::open;
+    if (frictionless) return MotionMode::smooth;
+    if (known == ContactKnown::slides_plus) return MotionMode::slip_plus;
+    if (known == ContactKnown::slides_minus) return MotionMode::slip_minus;
+    const Real along = found->tangent.dot(acceleration_) + found->tangential_bend;
+    if (std::abs(along) <= kNone * size_) return MotionMode::stick;
+    return along > 0 ? MotionMode::slip_plus : MotionMode::slip_minus;
+  }
+
+ private:
+  struct Unknown {
+    RealVector row, force;  ///< w = row . a + bend + couplings; force: what one unit pushes with
+    Real bend = 0;
+    enum class Kind : unsigned char { normal, plus, minus, slack } kind = Kind::normal;
+    std::size_t of = 0;
+    Real friction = 0, by = 1;
+  };
+  struct Rows {
+    std::size_t of;
+    RealVector normal, tangent;
+    Real normal_bend, tangential_bend;
+  };
+
+  void add(const ModeProblem& problem, const ContactRates& r, std::size_t k, ContactKnown known) {
+    const ModeContact& c = problem.contacts[k];
+    const RealVector n = row_of(problem, c, r.normal_on_sample, r.normal_on_site).cast<Real>();
+    const RealVector t = row_of(problem, c, r.tangent_on_sample, r.tangent_on_site).cast<Real>();
+    const Real square = n.dot(inverse_mass_.cwiseProduct(n));
+    const Real by = square > 0 ? 1 / std::sqrt(square) : Real(1);
+    const Real mu = c.friction;
+    const bool still = known == ContactKnown::still && mu > 0;
+    const Real sign = known == ContactKnown::slides_plus ? -1 : known == ContactKnown::slides_minus ? 1 : 0;
+    const Real normal_bend = by * Real(r.normal_bend), tangential_bend = by * Real(r.tangential_bend);
+    contacts_.push_back({k, by * n, by * t, normal_bend, tangential_bend});
+    unknowns_.push_back({by * n, by * (n + sign * mu * t), normal_bend, Unknown::Kind::normal, k, mu, by});
+    if (!still) return;
+    const RealVector none = RealVector::Zero(n.size());
+    unknowns_.push_back({by * t, by * t, tangential_bend, Unknown::Kind::plus, k, mu, by});
+    unknowns_.push_back({-by * t, -by * t, -tangential_bend, Unknown::Kind::minus, k, mu, by});
+    unknowns_.push_back({none, none, 0, Unknown::Kind::slack, k, mu, 1});
+  }
+
+  /// Between unknowns of one contact, beside what accelerations couple.
+  Real coupling(Eigen::Index i, Eigen::Index j) const {
+    using Kind = Unknown::Kind;
+    const Unknown &a = unknowns_[i], &b = unknowns_[j];
+    if (a.of != b.of) return 0;
+    if (b.kind == Kind::slack) return a.kind == Kind::plus || a.kind == Kind::minus ? 1 : 0;
+    if (a.kind != Kind::slack) return 0;
+    return b.kind == Kind::normal ? a.friction : -1;
+  }
+
+  RealVector inverse_mass_, free_, acceleration_, z_;
+  std::vector<Unknown> unknowns_;
+  std::vector<Rows> contacts_;
+  Real size_ = 0;
+};
+
+}  // namespace
+
+ModeChoice choose_modes(const ModeProblem& problem, const ModeMoment& moment,
+                        const std::vector<ContactKnown>& known) {
+  ModeChoice choice;
+  choice.modes.assign(known.size(), MotionMode::open);
+  Complementarity problem_of(problem, moment, known);
+  if (!problem_of.solve()) return choice;
+  choice.found = true;
+  for (std::size_t k = 0; k < known.size(); ++k)
+    if (known[k] != ContactKnown::open)
+      choice.modes[k] = problem_of.mode_of(k, known[k], problem.contacts[k].friction == 0.0);
+  return choice;
+}
+
+std::optional<PlasticImpact> plastic_impact(const ModeProblem& problem, double t,
+                                            const std::vector<BodyState>& states,
+                                            const std::vector<bool>& touching) {
+  ModeMoment m;
+  m.contacts = rates_at(problem, t, states);
+  m.free.resize(3 * problem.bodies());
+  for (int k = 0; k < problem.bodies(); ++k)
+    m.free.segment<3>(3 * k) << states[k].twist.velocity, states[k].twist.omega;
+  std::vector<ContactKnown> known;
+  for (std::size_t k = 0; k < touching.size();
+       ++k) {  // velocities for accelerations; supports are in the bends
+    ContactRates& r = m.contacts[k];
+    const ModeContact& c = problem.contacts[k];
+    known.push_back(touching[k] ? ContactKnown::still : ContactKnown::open);
+    r.normal_bend = r.normal_velocity - row_of(problem, c, r.normal_on_sample, r.normal_on_site).dot(m.free);
+    r.tangential_bend =
+        r.tangential_velocity - row_of(problem, c, r.tangent_on_sample, r.tangent_on_site).dot(m.free);
+  }
+  Complementarity impact(problem, m, known);
+  if (!impact.solve()) return std::nullopt;
+  PlasticImpact after{states, std::vector(touching.size(), 0.0), std::vector(touching.size(), 0.0)};
+  impact.add_forces(after.normal, after.tangential);
+  for (int k = 0; k < problem.bodies(); ++k)
+    after.states[k].twist = {impact.acceleration().segment<2>(3 * k).cast<double>(),
+                             static_cast<double>(impact.acceleration()[3 * k + 2])};
+  return after;
+}
+
+}  // namespace brink

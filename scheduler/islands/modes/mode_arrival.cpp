@@ -1,0 +1,147 @@
+#include "brink/scheduler/islands/modes/mode_arrival.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brink/scheduler/first_contact/pair_kinematics.h"
+#include "brink/scheduler/first_contact/safe_step.h"
+
+namespace brink {
+
+namespace {
+
+constexpr int kMostSteps = 10000;
+/// A gap that closes slower than this part of the speeds that take part does not.
+constexpr double kCloses = 1e-12;
+/// Where no bound helps (an arc's sector), so many looks along the whole.
+constexpr int kLooks = 64;
+
+/// One open contact on its owners' motions.
+class Watch {
+ public:
+  Watch(const ModeProblem& problem, const ModeContact& contact, const std::vector<PolynomialPiece>& bodies,
+        double slack, double sector_window)
+      : problem_(problem), contact_(contact), bodies_(bodies), slack_(slack), sector_window_(sector_window) {}
+
+  /// When it closes before `to`; false: it does not.
+  bool closes(double from, double to, double& when) const {
+    double t = from, clear = from;
+    for (int n = 0; n < kMostSteps && t < to; ++n) {
+      const ContactRates r = at(t);
+      if (r.within >= 0.0 && comes(r)) {
+        when = t > from ? last_clear(clear, t) : from;
+        return true;
+      }
+      if (r.gap >= 0.0 || r.within < 0.0) clear = t;
+      const double s = safe_for(r, t, to);
+      if (!(t + s > t)) {  // as near as the clock can tell
+        when = t;
+        return true;
+      }
+      t += s;
+    }
+    const ContactRates r = at(to);
+    if (!(r.within >= 0.0 && comes(r))) return false;
+    when = last_clear(clear, to);
+    return true;
+  }
+
+ private:
+  ContactRates at(double t) const {
+    return rates_of(contact_.shape, state(contact_.sample_owner, t), state(contact_.site_owner, t));
+  }
+  BodyState state(int owner, double t) const {
+    return owner < problem_.bodies() ? bodies_[owner].state(t)
+                                     : problem_.supports[owner - problem_.bodies()].state(t);
+  }
+  MotionBounds bounds(int owner, double from, double to) const {
+    return owner < problem_.bodies() ? bodies_[owner].bounds(from, to)
+                                     : problem_.supports[owner - problem_.bodies()].bounds(from, to);
+  }
+
+  bool comes(const ContactRates& r) const {
+    const double speed = std::abs(r.tangential_velocity) + std::abs(r.normal_velocity);
+    return r.gap < -0.5 * slack_ || (!contact_.passes && r.gap < 0.0 && r.normal_velocity < -kCloses * speed);
+  }
+
+  /// The last double at which the gap is not below zero, by halving.
+  double last_clear(double clear, double crossed) const {
+    for (int n = 0; n < 100; ++n) {
+      const double middle = 0.5 * (clear + crossed);
+      if (!(middle > clear && middle < crossed)) break;
+      const ContactRates r = at(middle);
+      (r.gap >= 0.0 || r.within < 0.0 ? clear : crossed) = middle;
+    }
+    return clear;
+  }
+
+  /// How long it certainly stays open, up to slack [s]: bounds of shorter windows are tighter.
+  double safe_for(const ContactRates& r, double t, double to) const {
+    double best = 0.0;
+    for (double window = to - t, tries = 0; tries < 4 && t + window > t; ++tries) {
+      const Bent b = bend(r, t, t + window);
+      double s = safe_step(std::max(r.gap + slack_, 0.0), r.normal_velocity, b.of_gap);
+      if (r.within < 0.0) s = std::max(s, until_in_range(r, t, b));
+      best = std::max(best, std::min(s, window));
+      if (s >= 0.25 * window) break;
+      window = 4.0 * s;
+    }
+    return best;
+  }
+
+  struct Bent {
+    double of_gap = 0.0, of_place = 0.0;  ///< bounds on second derivatives [m/s^2]
+    double speed = 0.0;                   ///< of the place [m/s]
+  };
+
+  Bent bend(const ContactRates& r, double from, double to) const {
+    RelativeBounds relative(bounds(contact_.sample_owner, from, to), bounds(contact_.site_owner, from, to));
+    const SmoothContact& c = contact_.shape;
+    const bool round = c.kind == SmoothContact::Kind::circle;
+    if (round && c.place.isZero(0.0))
+      relative.spin_t = relative.alpha_t = 0.0;  // looks the same at any angle
+    SamplePath path;
+    path.arm = c.sample.norm();
+    path.distance = (r.site_arm + c.sample_radius * r.normal).norm();
+    const PathBounds p = path_bounds(path, relative, to - from);
+    Bent b{p.acceleration, p.acceleration, p.speed};
+    if (!round || !c.hollow) return b;
+    const double distance = c.radius - c.sample_radius - r.gap, least = distance - p.speed * (to - from);
+    b.of_gap += p.speed * p.speed / std::max(least, 1e-3 * distance);
+    return b;
+  }
+
+  /// How long the sample stays out of the feature's range.
+  double until_in_range(const ContactRates& r, double t, const Bent& b) const {
+    const Frame frame(Pose{{0.0, 0.0}, state(contact_.site_owner, t).pose.angle});
+    const Vec2 q = frame.direction_to_local(r.site_arm + contact_.shape.sample_radius * r.normal);
+    double s = -1.0;
+    for (const HalfPlane& edge : contact_.shape.range)
+      if (const double out = -edge.within(q); out > 0.0) s = std::max(s, safe_step(out, -b.speed, 0.0));
+    return s < 0.0 ? sector_window_ : s;
+  }
+
+  const ModeProblem& problem_;
+  const ModeContact& contact_;
+  const std::vector<PolynomialPiece>& bodies_;
+  double slack_;
+  double sector_window_;
+};
+
+}  // namespace
+
+Arrival first_arrival(const ModeProblem& problem, const std::vector<MotionMode>& modes,
+                      const std::vector<PolynomialPiece>& bodies, double from, double to, double slack) {
+  Arrival first;
+  first.time = to;
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    if (is_closed(modes[k])) continue;
+    const Watch watch(problem, problem.contacts[k], bodies, slack, (to - from) / kLooks);
+    double when = 0.0;
+    if (!watch.closes(from, first.time, when) || (first.found && when >= first.time)) continue;
+    first = {true, when, static_cast<int>(k)};
+  }
+  return first;
+}
+
+}  // namespace brink

@@ -1,0 +1,243 @@
+#include "brink/scheduler/islands/modes/mode_forces.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "brink/scheduler/islands/modes/nonnegative.h"
+
+namespace brink {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Rows that depend on each other to this part are redundant.
+constexpr double kRedundant = 1e-10;
+/// What accelerations may miss of closed contacts, of the largest that takes part.
+constexpr double kConsistent = 1e-8;
+/// Forces of redundant contacts balance when they leave over this part.
+constexpr double kBalances = 1e-12;
+constexpr int kNewtonSteps = 4;
+
+/// Equations (rows) and forces (columns) of the closed contacts, in the mass metric: J M^-1/2 and M^-1/2 G, each
+/// row scaled to length one.
+struct System {
+  MatrixXd rows, columns;
+  VectorXd right;           ///< of rows . x = right, x = M^1/2 (a - f)
+  std::vector<int> of;      ///< contact of each row
+  std::vector<bool> along;  ///< true: its tangential row
+  VectorXd scale;           ///< rows were multiplied by; columns too
+};
+
+VectorXd root_of(const ModeProblem& problem) {
+  VectorXd root(3 * problem.bodies());
+  for (int k = 0; k < problem.bodies(); ++k) root.segment<3>(3 * k) = problem.inverse_mass[k].cwiseSqrt();
+  return root;
+}
+
+double friction_sign(MotionMode mode) {
+  return mode == MotionMode::slip_plus ? -1.0 : mode == MotionMode::slip_minus ? 1.0 : 0.0;
+}
+
+VectorXd normal_row(const ModeProblem& p, const ContactRates& r, std::size_t k) {
+  return row_of(p, p.contacts[k], r.normal_on_sample, r.normal_on_site);
+}
+VectorXd tangent_row(const ModeProblem& p, const ContactRates& r, std::size_t k) {
+  return row_of(p, p.contacts[k], r.tangent_on_sample, r.tangent_on_site);
+}
+
+System system_of(const ModeProblem& problem, const ModeMoment& moment, const std::vector<MotionMode>& modes) {
+  const VectorXd root = root_of(problem);
+  System s;
+  std::vector<VectorXd> rows, columns;
+  std::vector<double> right, scale;
+  const auto add = [&](std::size_t k, const VectorXd& row, const VectorXd& column, double bend, bool along) {
+    const VectorXd r = row.cwiseProduct(root);
+    const double length = r.norm(), by = length > 0.0 ? 1.0 / length : 0.0;
+    rows.push_back(by * r);
+    columns.push_back(by * column.cwiseProduct(root));
+    right.push_back(-by * (bend + row.dot(moment.free)));
+    scale.push_back(by);
+    s.of.push_back(static_cast<int>(k));
+    s.along.push_back(along);
+  };
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    if (!is_closed(modes[k])) continue;
+    const VectorXd n = normal_row(problem, moment.contacts[k], k),
+                   t = tangent_row(problem, moment.contacts[k], k);
+    const double sign = friction_sign(modes[k]) * problem.contacts[k].friction;
+    add(k, n, n + sign * t, moment.contacts[k].normal_bend, false);
+    if (modes[k] == MotionMode::stick) add(k, t, t, moment.contacts[k].tangential_bend, true);
+  }
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  s.rows.resize(count, root.size());
+  s.columns.resize(root.size(), count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    s.rows.row(i) = rows[i].transpose();
+    s.columns.col(i) = columns[i];
+  }
+  s.right = Eigen::Map<const VectorXd>(right.data(), count);
+  s.scale = Eigen::Map<const VectorXd>(scale.data(), count);
+  return s;
+}
+
+/// Forces that the system's columns give.
+void read_forces(const ModeProblem& problem, const std::vector<MotionMode>& modes, const System& s,
+                 const VectorXd& loads, ModeForces& f) {
+  for (Eigen::Index i = 0; i < loads.size(); ++i) {
+    const int k = s.of[i];
+    const double load = s.scale[i] * loads[i];
+    if (s.along[i]) {
+      f.tangential[k] = load;
+    } else {
+      f.normal[k] = load;
+      f.tangential[k] = friction_sign(modes[k]) * problem.contacts[k].friction * load;
+    }
+  }
+}
+
+/// The least room of any force, of the largest.
+void find_margin(const ModeProblem& problem, const std::vector<MotionMode>& modes, ModeForces& f) {
+  double largest = 0.0;
+  for (std::size_t k = 0; k < modes.size(); ++k)
+    largest = std::max({largest, std::abs(f.normal[k]), std::abs(f.tangential[k])});
+  f.margin = 1.0;
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    if (!is_closed(modes[k])) continue;
+    double room = f.normal[k];
+    if (modes[k] == MotionMode::stick)
+      room = std::min(room, problem.contacts[k].friction * f.normal[k] - std::abs(f.tangential[k]));
+    if (largest > 0.0) room /= largest;
+    if (room < f.margin) f.margin = room, f.worst = static_cast<int>(k);
+  }
+}
+
+/// Redundant contacts: forces within the cones, if there are any.
+void find_admissible(const ModeProblem& problem, const ModeMoment& moment,
+                     const std::vector<MotionMode>& modes, const VectorXd& pushed, ModeForces& f) {
+  const VectorXd root = root_of(problem);
+  std::vector<VectorXd> edges;
+  std::vector<std::pair<int, double>> of;  // contact, tangential part
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    if (!is_closed(modes[k])) continue;
+    const VectorXd n = normal_row(problem, moment.contacts[k], k),
+                   t = tangent_row(problem, moment.contacts[k], k);
+    const double mu = problem.contacts[k].friction;
+    const auto add = [&](double part) {
+      edges.push_back((n + part * t).cwiseProduct(root));
+      of.emplace_back(static_cast<int>(k), part);
+    };
+    if (modes[k] != MotionMode::stick) {
+      add(friction_sign(modes[k]) * mu);
+    } else {
+      add(mu);
+      add(-mu);
+    }
+  }
+  MatrixXd cone(pushed.size(), static_cast<Eigen::Index>(edges.size()));
+  VectorXd lengths(static_cast<Eigen::Index>(edges.size()));
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    lengths[i] = edges[i].norm();
+    cone.col(i) = lengths[i] > 0.0 ? VectorXd(edges[i] / lengths[i]) : edges[i];
+  }
+  const NonNegativeFit fit = fit_nonnegative(cone, pushed);
+  const double left = fit.residual / std::max(pushed.norm(), std::numeric_limits<double>::min());
+  f.margin = left <= kBalances ? kBalances : -left;
+  std::fill(f.normal.begin(), f.normal.end(), 0.0);
+  std::fill(f.tangential.begin(), f.tangential.end(), 0.0);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const double load = lengths[i] > 0.0 ? fit.x[i] / lengths[i] : 0.0;
+    f.normal[of[i].first] += load;
+    f.tangential[of[i].first] += of[i].second * load;
+  }
+}
+
+/// Positions, or velocities, that change least in the mass metric.
+std::vector<VectorXd> closed_rows(const ModeProblem& problem, const std::vector<ContactRates>& rates,
+                                  const std::vector<MotionMode>& modes, bool velocities,
+                                  std::vector<double>& off) {
+  std::vector<VectorXd> rows;
+  off.clear();
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    if (!is_closed(modes[k])) continue;
+    rows.push_back(normal_row(problem, rates[k], k));
+    off.push_back(velocities ? rates[k].normal_velocity : rates[k].gap - problem.contacts[k].kept);
+    if (!velocities || modes[k] != MotionMode::stick) continue;
+    rows.push_back(tangent_row(problem, rates[k], k));
+    off.push_back(rates[k].tangential_velocity);
+  }
+  return rows;
+}
+
+VectorXd least_change(const ModeProblem& problem, const std::vector<VectorXd>& rows,
+                      const std::vector<double>& off) {
+  const VectorXd root = root_of(problem);
+  MatrixXd system(static_cast<Eigen::Index>(rows.size()), root.size());
+  VectorXd right(system.rows());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const VectorXd row = rows[i].cwiseProduct(root);
+    const double length = row.norm(), by = length > 0.0 ? 1.0 / length : 0.0;
+    system.row(i) = by * row.transpose();
+    right[i] = -by * off[i];
+  }
+  Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver;
+  solver.setThreshold(kRedundant);
+  solver.compute(system);
+  return solver.solve(right).cwiseProduct(root);
+}
+
+}  // namespace
+
+ModeForces forces_in(const ModeProblem& problem, const ModeMoment& moment,
+                     const std::vector<MotionMode>& modes, bool with_margin) {
+  ModeForces f;
+  f.normal.assign(modes.size(), 0.0);
+  f.tangential.assign(modes.size(), 0.0);
+  f.acceleration = moment.free;
+  f.margin = 1.0;
+  const System s = system_of(problem, moment, modes);
+  if (s.right.size() == 0) return f;
+  Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver;
+  solver.setThreshold(kRedundant);
+  const MatrixXd matrix = s.rows * s.columns;
+  solver.compute(matrix);
+  const VectorXd loads = solver.solve(s.right);
+  const double missed = (matrix * loads - s.right).norm();
+  f.consistent = loads.allFinite() && missed <= kConsistent * s.right.norm();
+  const VectorXd pushed = s.columns * loads;
+  f.acceleration += pushed.cwiseProduct(root_of(problem));
+  read_forces(problem, modes, s, loads, f);
+  if (!with_margin) return f;
+  find_margin(problem, modes, f);
+  // redundant: the least forces are some of many
+  if (solver.rank() < s.right.size() && f.margin < 0.0) find_admissible(problem, moment, modes, pushed, f);
+  return f;
+}
+
+std::vector<BodyState> projected(const ModeProblem& problem, double t, std::vector<BodyState> states,
+                                 const std::vector<MotionMode>& modes) {
+  std::vector<double> off;
+  const auto move = [&](bool velocities) {
+    const std::vector<VectorXd> rows =
+        closed_rows(problem, rates_at(problem, t, states, modes), modes, velocities, off);
+    if (rows.empty()) return;
+    const VectorXd change = least_change(problem, rows, off);
+    for (int k = 0; k < problem.bodies(); ++k) {
+      Vec2& linear = velocities ? states[k].twist.velocity : states[k].pose.position;
+      double& angular = velocities ? states[k].twist.omega : states[k].pose.angle;
+      linear += change.segment<2>(3 * k);
+      angular += change[3 * k + 2];
+    }
+  };
+  for (int i = 0; i < kNewtonSteps; ++i) {
+    move(false);
+    if (std::all_of(off.begin(), off.end(), [&](double x) { return std::abs(x) <= 1e-15 * problem.size; }))
+      break;
+  }
+  move(true);
+  return states;
+}
+
+}  // namespace brink

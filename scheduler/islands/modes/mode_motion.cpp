@@ -1,0 +1,297 @@
+#include "brink/scheduler/islands/modes/mode_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "brink/integrators/dense_output.h"
+
+namespace brink {
+
+namespace {
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+/// Looks along a step: at its gaps, and at what may fail in it.
+constexpr int kGapLooks = 8, kLooks = 4;
+constexpr int kShortenings = 80, kClosings = 200, kApproaches = 8;
+/// A slip slower than this part of the speeds that take part is none.
+constexpr double kNoSlip = 1e-12;
+/// As bounces that have ended leave it.
+constexpr double kNoSpeed = 1e-9;
+/// Modes are chosen from so far ahead, of a step: what fails has failed there beyond rounding.
+constexpr double kAhead = 1e-5;
+/// Where a feature is left the step leads beyond its end, by this part of the size.
+constexpr double kBeyond = 1e-11;
+/// Changes of mode at one instant, beside a few for every contact.
+constexpr int kChanges = 8, kChangesEach = 4;
+
+double ulp(double t) { return kEps * std::max(std::abs(t), std::numeric_limits<double>::min()); }
+
+double slip_sign(MotionMode m) { return m == MotionMode::slip_plus ? 1.0 : -1.0; }
+
+Acceleration as_acceleration(const Eigen::VectorXd& a, int k) { return {a.segment<2>(3 * k), a[3 * k + 2]}; }
+
+std::vector<BodyState> states_of(const std::vector<PolynomialPiece>& pieces, double t) {
+  std::vector<BodyState> states;
+  for (const PolynomialPiece& p : pieces) states.push_back(p.state(t));
+  return states;
+}
+
+}  // namespace
+
+ModeMotion::ModeMotion(const ModeProblem& problem, const ModeLimits& limits, double t,
+                       std::vector<BodyState> states)
+    : problem_(problem),
+      limits_(limits),
+      t_(t),
+      states_(std::move(states)),
+      modes_(problem.contacts.size(), MotionMode::open),
+      size_(problem.size) {
+  set_scales();
+  h_ = limits_.longest;
+}
+
+/// Of any point, and what a fall through the size gives.
+void ModeMotion::set_scales() {
+  std::vector<Acceleration> free(states_.size());
+  problem_.free(t_, states_, free);
+  double speed = 0.0, pull = 0.0;
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    speed = std::max(speed, states_[k].twist.velocity.norm() + size_ * std::abs(states_[k].twist.omega));
+    pull = std::max(pull, free[k].linear.norm() + size_ * std::abs(free[k].angular));
+  }
+  speed_ = std::max({speed, std::sqrt(pull * size_), 1e-9 * size_});
+}
+
+bool ModeMotion::begin(const std::vector<bool>& closed) {
+  const std::vector<ContactRates> rates = rates_at(problem_, t_, states_);
+  std::vector<ContactKnown> known(closed.size(), ContactKnown::open);
+  for (std::size_t k = 0; k < closed.size(); ++k) {
+    if (!closed[k]) continue;
+    const double slip = rates[k].tangential_velocity;
+    known[k] = std::abs(slip) <= kNoSpeed * speed_ ? ContactKnown::still
+               : slip > 0.0                        ? ContactKnown::slides_plus
+                                                   : ContactKnown::slides_minus;
+  }
+  const ModeChoice choice = choose_modes(problem_, moment_at(problem_, t_, states_), known);
+  return choice.found && begin_in(choice.modes);
+}
+
+bool ModeMotion::begin_in(const std::vector<MotionMode>& modes) {
+  modes_ = modes;
+  states_ = projected(problem_, t_, std::move(states_), modes_);
+  forces_ = forces_in(problem_, moment_at(problem_, t_, states_, modes_), modes_);
+  return forces_.consistent;
+}
+
+double ModeMotion::error_of(const ModeTrial& trial) const {
+  double most = 0.0;
+  for (const BodyState& e : trial.error) {
+    most = std::max({most, e.pose.position.norm() / size_, std::abs(e.pose.angle),
+                     e.twist.velocity.norm() / speed_, std::abs(e.twist.omega) * size_ / speed_});
+  }
+  return trial.finite ? most / limits_.tolerance : std::numeric_limits<double>::infinity();
+}
+
+ModeMotion::Look ModeMotion::look_at(double t, const States& states) const {
+  const ModeMoment m = moment_at(problem_, t, states, modes_);
+  const ModeForces f = forces_in(problem_, m, modes_);
+  Look look;
+  const auto take = [&](Look::What what, std::size_t contact, double room) {
+    if (room < look.room) look = {what, static_cast<int>(contact), room};
+  };
+  if (!f.consistent) take(Look::What::force, 0, -1.0);
+  for (std::size_t k = 0; k < modes_.size(); ++k) {
+    if (!is_closed(modes_[k])) continue;
+    take(Look::What::range, k, m.contacts[k].within / size_);
+    if (is_slip(modes_[k]))
+      take(Look::What::slip, k, slip_sign(modes_[k]) * m.contacts[k].tangential_velocity / speed_);
+  }
+  if (f.margin < look.room) look = {Look::What::force, f.worst, f.margin};
+  return look;
+}
+
+bool ModeMotion::gaps_hold(const std::vector<PolynomialPiece>& pieces, double h) const {
+  for (int i = 1; i < kGapLooks; ++i) {
+    const double t = t_ + h * i / kGapLooks;
+    const std::vector<ContactRates> rates = rates_at(problem_, t, states_of(pieces, t), modes_);
+    for (std::size_t k = 0; k < modes_.size(); ++k)
+      if (is_closed(modes_[k]) && !(std::abs(rates[k].gap - problem_.contacts[k].kept) <=
+                                    std::min(limits_.gap_tolerance, problem_.contacts[k].off)))
+        return false;
+  }
+  return true;
+}
+
+/// True if something fails in the step of h; `clear` is how far it holds, to rounding.
+bool ModeMotion::fails_within(double h, const std::vector<PolynomialPiece>& pieces, double& clear,
+                              Look& failed) const {
+  clear = 0.0;
+  double room = 0.0;  // of the start nothing is asked: it was chosen so
+  for (int i = 1; i <= kLooks; ++i) {
+    const double ahead = i == kLooks ? h : h * i / kLooks;
+    failed = look_at(t_ + ahead, states_of(pieces, t_ + ahead));
+    if (failed.room < 0.0) {
+      close_in(pieces, clear, ahead, room, failed);
+      return true;
+    }
+    clear = ahead;
+    room = failed.room;
+  }
+  return false;
+}
+
+/// Regula falsi by the Illinois rule (Dowell & Jarratt 1971); every third time from what has failed alone, for rooms of
+/// redundant contacts are known on that side only; and a halving now and then.
+void ModeMotion::close_in(const std::vector<PolynomialPiece>& pieces, double& clear, double crossed,
+                          double room, Look& failed) const {
+  double below = failed.room, before = crossed, below_before = below;
+  int side = 0;
+  for (int n = 0; n < kClosings && crossed - clear > 2.0 * ulp(t_ + crossed); ++n) {
+    double h = 0.5 * (clear + crossed);
+    if (n % 3 == 0 && room > 0.0) h = clear + (crossed - clear) * (room / (room - below));
+    if (n % 3 == 1 && below_before < below) {
+      const double root = crossed + below * (before - crossed) / (below - below_before);
+      h = root - 0.01 * (crossed - root);
+    }
+    if (!(h > clear && h < crossed)) h = 0.5 * (clear + crossed);
+    if (!(h > clear && h < crossed)) break;
+    const Look look = look_at(t_ + h, states_of(pieces, t_ + h));
+    if (look.room < 0.0) {
+      if (side < 0) room *= 0.5;
+      side = -1;
+      before = crossed, below_before = below;
+      crossed = h, below = look.room, failed = look;
+    } else {
+      if (side > 0) below *= 0.5;
+      side = 1;
+      clear = h, room = look.room;
+    }
+  }
+}
+
+/// How long a step reaches to where the contact has closed to within rounding, near h.
+double ModeMotion::arrive(double h, int contact) const {
+  double reached = h;
+  for (int n = 0; n < kApproaches; ++n) {
+    const ContactRates r = rates_at(problem_, t_ + h, after(h), problem_.contacts[contact]);
+    if (r.gap >= 0.0) reached = h;
+    if (r.gap >= 0.0 && r.gap <= limits_.touch) break;
+    if (!(r.normal_velocity < 0.0)) break;
+    const double next = h + (r.gap - 0.5 * limits_.touch) / -r.normal_velocity;
+    if (!(next > 0.0) || next == h) break;
+    h = next;
+  }
+  return reached;
+}
+
+std::vector<PolynomialPiece> ModeMotion::pieces_to(double end, const States& states) const {
+  const ModeForces f = forces_in(problem_, moment_at(problem_, end, states, modes_), modes_, false);
+  std::vector<PolynomialPiece> pieces;
+  for (int k = 0; k < problem_.bodies(); ++k)
+    pieces.push_back(quintic_piece(t_, states_[k], as_acceleration(forces_.acceleration, k), end, states[k],
+                                   as_acceleration(f.acceleration, k)));
+  return pieces;
+}
+
+void ModeMotion::accept(double end, States states) {
+  if (end - t_ > 1e-9 * limits_.longest) changes_ = 0;
+  t_ = end;
+  states_ = std::move(states);
+  forces_ = forces_in(problem_, moment_at(problem_, t_, states_, modes_), modes_);
+  set_scales();
+}
+
+std::vector<ContactKnown> ModeMotion::known_now(const Look& failed) const {
+  const std::vector<ContactRates> rates = rates_at(problem_, t_, states_, modes_);
+  std::vector<ContactKnown> known(modes_.size(), ContactKnown::open);
+  for (std::size_t k = 0; k < modes_.size(); ++k) {
+    if (!is_closed(modes_[k])) continue;
+    const bool ends = failed.what == Look::What::slip && failed.contact == static_cast<int>(k);
+    known[k] = ContactKnown::still;
+    if (is_slip(modes_[k]) && !ends && std::abs(rates[k].tangential_velocity) > kNoSlip * speed_)
+      known[k] = slip_sign(modes_[k]) > 0.0 ? ContactKnown::slides_plus : ContactKnown::slides_minus;
+  }
+  return known;
+}
+
+/// Chooses modes anew where something has failed: from where the old ones would lead, a little ahead.
+bool ModeMotion::change(const Look& failed) {
+  if (++changes_ > kChanges + kChangesEach * static_cast<int>(modes_.size())) return false;
+  std::vector<ContactKnown> known = known_now(failed);
+  const double ahead = std::max(kAhead * h_, 64.0 * ulp(t_));
+  const ModeTrial trial = try_step(problem_, modes_, t_, states_, ahead);
+  if (!trial.finite) return false;
+  const ModeMoment m = moment_at(problem_, t_ + ahead, trial.states, modes_);
+  ModeChoice choice = choose_modes(problem_, m, known);
+  if (choice.found && choice.modes == modes_ && failed.contact >= 0) {
+    known[failed.contact] = ContactKnown::open;
+    choice = choose_modes(problem_, m, known);
+  }
+  if (!choice.found || choice.modes == modes_) return false;
+  modes_ = choice.modes;
+  states_ = projected(problem_, t_, std::move(states_), modes_);
+  forces_ = forces_in(problem_, moment_at(problem_, t_, states_, modes_), modes_);
+  return forces_.consistent;
+}
+
+/// A step that is accurate enough, from h_ on downwards; h <= 0: there is none.
+double ModeMotion::find_step(double until, States& end, std::vector<PolynomialPiece>& pieces) {
+  for (int n = 0; n < kShortenings; ++n) {
+    const bool last = until - t_ <= h_ * (1.0 + 1e-9);
+    const double h = last ? until - t_ : h_;
+    if (!(t_ + h > t_)) return 0.0;
+    const ModeTrial trial = try_step(problem_, modes_, t_, states_, h);
+    const double error = error_of(trial);
+    if (!(error <= 1.0)) {
+      h_ = h * (std::isfinite(error) ? std::clamp(0.9 * std::pow(error, -0.2), 0.1, 0.8) : 0.1);
+      continue;
+    }
+    end = projected(problem_, t_ + h, trial.states, modes_);
+    pieces = pieces_to(last ? until : t_ + h, end);
+    if (!gaps_hold(pieces, h)) {
+      h_ = 0.5 * h;
+      continue;
+    }
+    const double next = h * std::clamp(0.9 * std::pow(std::max(error, 1e-10), -0.2), 0.2, 4.0);
+    h_ = std::min(last ? std::max(h_, next) : next, limits_.longest);
+    return h;
+  }
+  return 0.0;
+}
+
+ModeStep ModeMotion::step(double until) {
+  ModeStep done;
+  States end;
+  const double h = find_step(until, end, done.pieces);
+  if (!(h > 0.0)) return {ModeEnd::lost, -1, {}};
+  double at = done.pieces.front().end, clear = h;
+  Look failed;
+  const bool fails = fails_within(h, done.pieces, clear, failed);
+  if (fails) at = t_ + clear;
+  if (fails && failed.what == Look::What::range) at = std::min(until, at + kBeyond * size_ / speed_);
+  if (fails && at > t_) done.pieces = pieces_to(at, end = after(at - t_));
+  Arrival arrival;
+  if (at > t_) arrival = first_arrival(problem_, modes_, done.pieces, t_, at, limits_.touch);
+  if (arrival.found) {
+    at = std::min(at, t_ + arrive(arrival.time - t_, arrival.contact));
+    if (at > t_) done.pieces = pieces_to(at, end = after(at - t_));
+  }
+  if (at > t_)
+    accept(at, std::move(end));
+  else
+    done.pieces.clear();
+  if (arrival.found) {
+    done.end = ModeEnd::arrival;
+    done.contact = arrival.contact;
+  } else if (fails) {
+    done.contact = failed.contact;
+    if (failed.what == Look::What::range)
+      done.end = ModeEnd::range;
+    else
+      done.end = change(failed) ? ModeEnd::change : ModeEnd::no_modes;
+  }
+  return done;
+}
+
+}  // namespace brink

@@ -1,0 +1,173 @@
+#include "brink/scheduler/islands/modes/smooth_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brink/core/shapes/distance.h"
+
+namespace brink {
+
+namespace {
+
+/// A point nearer to a circle's centre than this part of what it is made of has no direction from it.
+constexpr double kNoDirection = 1e-9;
+
+/// Where a contact's parts are and how they move, in world axes.
+struct Placing {
+  Frame sample_frame, site_frame;
+  Vec2 arm;       ///< of the sample's point
+  Vec2 rho;       ///< the same point from the site's owner
+  Vec2 velocity;  ///< of the sample's point against the site's owner
+  double omega_s, omega_t;
+
+  Placing(const SmoothContact& c, const BodyState& s, const BodyState& t)
+      : sample_frame(Pose{{0.0, 0.0}, s.pose.angle}),
+        site_frame(Pose{{0.0, 0.0}, t.pose.angle}),
+        arm(sample_frame.direction_to_world(c.sample)),
+        rho(arm + ((s.pose.position - t.pose.position) + c.offset)),
+        velocity(s.twist.at(arm) - t.twist.velocity),
+        omega_s(s.twist.omega),
+        omega_t(t.twist.omega) {}
+};
+
+/// Rows of the velocity at the point that touches.
+void set_rows(ContactRates& r) {
+  const Vec2 t = perp(r.normal);
+  r.normal_on_sample = Vec3(r.normal.x(), r.normal.y(), cross(r.arm, r.normal));
+  r.normal_on_site = -Vec3(r.normal.x(), r.normal.y(), cross(r.site_arm, r.normal));
+  r.tangent_on_sample = Vec3(t.x(), t.y(), cross(r.arm, t));
+  r.tangent_on_site = -Vec3(t.x(), t.y(), cross(r.site_arm, t));
+}
+
+void look_at_line(const SmoothContact& c, const Placing& at, ContactRates& r) {
+  r.normal = at.site_frame.direction_to_world(c.normal);
+  const Vec2 t = perp(r.normal);
+  r.gap = c.normal.dot(at.site_frame.direction_to_local(at.rho) - c.place) - c.radius - c.sample_radius;
+  const Vec2 w = at.velocity - cross(at.omega_t, at.rho);
+  r.normal_velocity = r.normal.dot(w);
+  r.tangential_velocity = t.dot(w) - c.sample_radius * (at.omega_s - at.omega_t);
+  const Vec2 bend =
+      -at.omega_s * at.omega_s * at.arm - 2.0 * cross(at.omega_t, w) + at.omega_t * at.omega_t * at.rho;
+  r.normal_bend = r.normal.dot(bend);
+  r.tangential_bend = t.dot(bend);
+}
+
+void look_at_circle(const SmoothContact& c, const Placing& at, ContactRates& r) {
+  const double side = c.hollow ? -1.0 : 1.0;
+  const Vec2 centre = at.site_frame.direction_to_world(c.place), way = at.rho - centre;
+  const double distance = way.norm();
+  r.normal = distance > 0.0 ? Vec2(side / distance * way) : Vec2::UnitX();
+  const Vec2 t = perp(r.normal);
+  r.gap = side * (distance - c.radius) - c.sample_radius;
+  const Vec2 u = at.velocity - cross(at.omega_t, centre);
+  const double lever = side * distance - c.sample_radius;  // from the centre to the point that touches
+  const double along = t.dot(u), turn = distance > 0.0 ? side * along / distance : 0.0;  // of the normal
+  r.normal_velocity = r.normal.dot(u);
+  r.tangential_velocity = along - c.sample_radius * at.omega_s - lever * at.omega_t;
+  const Vec2 bend = -at.omega_s * at.omega_s * at.arm + at.omega_t * at.omega_t * centre;
+  r.normal_bend = r.normal.dot(bend) + turn * along;
+  r.tangential_bend = t.dot(bend) - r.normal_velocity * (turn + at.omega_t);
+}
+
+double range_of(const SmoothContact& c, const Placing& at, const Vec2& normal) {
+  const Vec2 q = at.site_frame.direction_to_local(at.rho);
+  const Vec2 to_site = at.sample_frame.direction_to_local(-normal);
+  double within = std::min(c.range[0].within(q), c.range[1].within(q));
+  for (const HalfPlane& edge : c.sector)
+    if (!edge.inward.isZero(0.0)) within = std::min(within, c.sample_radius * edge.within(to_site));
+  return within;
+}
+
+HalfPlane beyond(const Vec2& place, const Vec2& direction) { return {direction, direction.dot(place)}; }
+
+/// Between two directions from an arc's centre, in the order in which it is travelled.
+std::array<HalfPlane, 2> sector_of(const Site& arc, const Vec2& from) {
+  const double turn = arc.sweep > 0.0 ? 1.0 : -1.0;
+  return {beyond(from, turn * perp((arc.a - arc.center).normalized())),
+          beyond(from, -turn * perp((arc.b - arc.center).normalized()))};
+}
+
+/// The straight or round interior of a site; q: the sample's point, out: the normal, both in its frame.
+SmoothContact interior_of(SmoothContact c, const Site& site, const Vec2& q, const Vec2& out) {
+  if (site.kind == SiteKind::segment) {
+    const Vec2 d = (site.b - site.a).normalized();
+    const bool right = site.solid || perp(d).dot(out) < 0.0;  // a solid lies to the left
+    c.kind = SmoothContact::Kind::line;
+    c.place = site.a;
+    c.normal = right ? Vec2(-perp(d)) : perp(d);
+    c.radius = site.radius;
+    c.range = {beyond(site.a, d), beyond(site.b, -d)};
+    return c;
+  }
+  c.kind = SmoothContact::Kind::circle;
+  c.place = site.center;
+  c.hollow = site.solid ? site.sweep < 0.0 : (q - site.center).norm() < site.arc_radius;
+  c.radius = site.arc_radius + (c.hollow ? -site.radius : site.radius);
+  c.range = sector_of(site, site.center);
+  return c;
+}
+
+/// One end of it, or a point.
+SmoothContact end_of(SmoothContact c, const Site& site, bool start, const Vec2& q) {
+  c.kind = SmoothContact::Kind::circle;
+  c.place = start ? site.a : site.b;
+  c.radius = site.radius;
+  if (site.kind == SiteKind::segment) {
+    const Vec2 d = (site.b - site.a).normalized();
+    c.range[0] = beyond(c.place, start ? Vec2(-d) : d);
+  } else if (site.kind == SiteKind::arc) {  // as long as the sample's point is outside the sector
+    const HalfPlane edge = sector_of(site, site.center)[start ? 0 : 1];
+    if (edge.within(q) < 0.0) c.range[0] = {-edge.inward, -edge.least};
+  }
+  return c;
+}
+
+/// The shapes of a site, the present one first.
+std::vector<SmoothContact> shapes_of(const SmoothContact& sample, const Site& site, const Vec2& q,
+                                     const Vec2& out) {
+  if (site.kind == SiteKind::point) return {end_of(sample, site, true, q)};
+  const Foot foot = nearest_on(site, q).foot;
+  const SmoothContact interior = interior_of(sample, site, q, out), start = end_of(sample, site, true, q),
+                      end = end_of(sample, site, false, q);
+  if (foot == Foot::interior) return {interior, start, end};
+  if (foot == Foot::start) return {start, interior, end};
+  return {end, interior, start};
+}
+
+}  // namespace
+
+ContactRates rates_of(const SmoothContact& c, const BodyState& sample_owner, const BodyState& site_owner) {
+  const Placing at(c, sample_owner, site_owner);
+  ContactRates r;
+  c.kind == SmoothContact::Kind::line ? look_at_line(c, at, r) : look_at_circle(c, at, r);
+  r.arm = at.arm - c.sample_radius * r.normal;
+  r.site_arm = at.rho - c.sample_radius * r.normal;
+  set_rows(r);
+  r.within = range_of(c, at, r.normal);
+  return r;
+}
+
+std::vector<SmoothContact> smooth_contacts(const NearFeature& f, const Outline& a,
+                                           const ExtendedState& state_a, const Outline& b,
+                                           const ExtendedState& state_b) {
+  const Outline &carrier = f.sample_on_a ? a : b, &other = f.sample_on_a ? b : a;
+  const ExtendedState &s = f.sample_on_a ? state_a : state_b, &t = f.sample_on_a ? state_b : state_a;
+  const Sample& sample = carrier.samples[f.sample];
+  ExtendedState from = s;
+  from.position -= t.position;
+  const Frame site_frame(Pose{{0.0, 0.0}, t.seen_from(Vec2::Zero()).pose.angle});
+  const Vec2 q = site_frame.to_local(Frame(from.seen_from(Vec2::Zero()).pose).to_world(sample.p));
+  const Vec2 out = site_frame.direction_to_local(f.sample_on_a ? f.normal : Vec2(-f.normal));
+  SmoothContact c;
+  c.sample = sample.p;
+  c.sample_radius = sample.radius;
+  if (sample.arc_site >= 0) c.sector = sector_of(carrier.sites[sample.arc_site], Vec2::Zero());
+  std::vector<SmoothContact> shapes = shapes_of(c, other.sites[f.site], q, out);
+  const SmoothContact& first = shapes.front();
+  const double size = carrier.bounding_radius + other.bounding_radius;
+  const bool round = first.kind == SmoothContact::Kind::circle;
+  if (round && !((q - first.place).norm() > kNoDirection * size)) shapes.clear();
+  return shapes;
+}
+
+}  // namespace brink

@@ -1,0 +1,342 @@
+#include "brink/scheduler/kernel/island_modes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "brink/core/shapes/curve_site.h"
+#include "brink/scheduler/kernel/tolerances.h"
+
+namespace brink {
+
+namespace {
+
+/// Integration steps of one island's step, at most.
+constexpr int kMostPieces = 256;
+/// A closed contact's gap may be off by this part of the contact tolerance inside a step, or of what it keeps.
+constexpr double kOff = 0.25;
+/// Where places are rounded to more than this part of a touch, gaps cannot be kept in double precision.
+constexpr double kRounding = 0.1;
+/// An approach slower than this part of the speeds that take part is rounding.
+constexpr double kNoApproach = 1e-11;
+/// A parting, after an impact.
+constexpr double kNoParting = 1e-9;
+
+/// Two features that touch within this part of the smaller size of each other are at one place.
+constexpr double kOnePlace = 1e-6;
+/// A vertex that turns by less than this is a joint.
+constexpr double kTurns = 1e-6;
+
+/// False for a joint of two pieces that hardly turns, or turns away from what may touch it.
+bool is_corner(const Outline& outline, const Sample& sample) {
+  if (sample.arc_site >= 0) return true;
+  if (sample.before >= 0 && sample.after >= 0)
+    return cross(direction_at_end(outline.sites[sample.before]),
+                 direction_at_start(outline.sites[sample.after])) > kTurns;
+  const Site *in = nullptr, *out = nullptr;  // of a wire
+  for (const Site& s : outline.sites) {
+    if (s.kind == SiteKind::point) continue;
+    if (s.b == sample.p) in = &s;
+    if (s.a == sample.p) out = &s;
+  }
+  return !in || !out || std::abs(cross(direction_at_end(*in), direction_at_start(*out))) > kTurns ||
+         direction_at_end(*in).dot(direction_at_start(*out)) < 0.0;
+}
+
+/// The polynomial that goes on from a state with its twist, for ever.
+PolynomialPiece onward(double t, const BodyState& s) {
+  PolynomialPiece piece;
+  piece.begin = piece.origin = t;
+  piece.end = std::numeric_limits<double>::infinity();
+  piece.degree = 1;
+  piece.c[0] << s.pose.position, s.pose.angle;
+  piece.c[1] << s.twist.velocity, s.twist.omega;
+  return piece;
+}
+
+}  // namespace
+
+IslandModes::IslandModes(const IslandMembers& members, const Trajectories& trajectories,
+                         const ContactSearch& search, CollisionResponse& response, const Limits& limits,
+                         const WarmContacts& warm)
+    : members_(&members),
+      trajectories_(&trajectories),
+      search_(&search),
+      response_(&response),
+      limits_(limits),
+      warm_(&warm) {}
+
+double IslandModes::slowest_bounce(const IslandMembers& members, const ContactSearch& search) {
+  return std::sqrt(2.0 * members.pull() * search.limits().tolerance);
+}
+
+bool IslandModes::is_shadow(const ContactSearch& search, const HeldContact& c,
+                            const std::vector<HeldContact>& all) {
+  const Outline &a = search.outline_of(c.pair.body), &b = search.outline_of(search.other_owner(c.pair));
+  const Outline &carrier = c.feature.sample_on_a ? a : b, &other = c.feature.sample_on_a ? b : a;
+  const Sample& sample = carrier.samples[c.feature.sample];
+  const bool sharp = sample.radius + other.sites[c.feature.site].radius == 0.0;
+  const double tolerance = search.limits().tolerance;
+  if (c.feature.at_end && sharp && c.feature.gap <= tolerance) return true;  // it has no direction
+  const bool corner = is_corner(carrier, sample);
+  if (corner && !c.feature.at_end) return false;
+  const double place = kOnePlace * std::min(a.bounding_radius, b.bounding_radius);
+  return std::any_of(all.begin(), all.end(), [&](const HeldContact& o) {
+    if (o.feature.at_end || o.feature.gap > tolerance || !(o.pair == c.pair)) return false;
+    if (o.feature.sample_on_a == c.feature.sample_on_a) return o.feature.sample == c.feature.sample && corner;
+    return (o.feature.point - c.feature.point).norm() <= place &&
+           is_corner(other, other.samples[o.feature.sample]);
+  });
+}
+
+double IslandModes::speed() const {
+  return std::max(members_->speed(), std::sqrt(members_->pull() * members_->size()));
+}
+
+bool IslandModes::suits() const {
+  if (limits_.contacts == 0 || members_->count() > kModeBodies) return false;
+  for (int i = 0; i < static_cast<int>(members_->count()); ++i)
+    if (kEpsilon * members_->state(i).position.cast<double>().norm() > kRounding * search_->limits().touch)
+      return false;
+  const std::vector<HeldContact> near = members_->contacts(search_->limits().tolerance);
+  return near.size() <= limits_.contacts &&
+         std::none_of(near.begin(), near.end(), [this](const HeldContact& c) {
+           return is_corner_on_corner(c) || response_->material_of(c.pair).rolling_resistance > 0.0;
+         });
+}
+
+/// A sharp corner at another: which side meets which is told in their place by roundings alone.
+bool IslandModes::is_corner_on_corner(const HeldContact& c) const {
+  if (!c.feature.at_end) return false;
+  const Outline &a = search_->outline_of(c.pair.body), &b = search_->outline_of(search_->other_owner(c.pair));
+  const Outline &carrier = c.feature.sample_on_a ? a : b, &other = c.feature.sample_on_a ? b : a;
+  const Sample& sample = carrier.samples[c.feature.sample];
+  const Site& site = other.sites[c.feature.site];
+  if (sample.radius + site.radius > 0.0 || !is_corner(carrier, sample)) return false;
+  return std::any_of(other.samples.begin(), other.samples.end(), [&](const Sample& end) {
+    return end.arc_site < 0 && (end.p == site.a || end.p == site.b) && is_corner(other, end);
+  });
+}
+
+// ---- the problem
+
+bool IslandModes::touches(const HeldContact& c) const {
+  const double tolerance = search_->limits().tolerance;
+  const HeldContact* warm = find_warm(*warm_, c);
+  const bool was_closed = warm && warm->by_modes && is_closed(warm->motion);
+  return c.feature.gap <= (was_closed ? 2.0 : 1.0) * tolerance;
+}
+
+void IslandModes::add_contact(const HeldContact& c) {
+  const int a = members_->place_of(c.pair.body);
+  const Outline &of_a = search_->outline_of(c.pair.body),
+                &of_b = search_->outline_of(search_->other_owner(c.pair));
+  int b = 0;
+  if (c.pair.with_site()) {
+    b = problem_.bodies() + static_cast<int>(problem_.supports.size());
+    problem_.supports.push_back(trajectories_->site(c.pair.other_site).motion());
+  } else {
+    b = members_->place_of(c.pair.other_body);
+  }
+  const bool shadow = is_shadow(*search_, c, contacts_), touching = !shadow && touches(c);
+  const Vec2 shift = search_->shift_of(c.pair);
+  place_.push_back(problem_.contacts.size());
+  bool present = true;
+  if (shadow && c.feature.gap <= search_->limits().tolerance) {  // what is there is looked at already
+    place_.back() = std::numeric_limits<std::size_t>::max();
+    return;
+  }
+  for (SmoothContact& shape :
+       smooth_contacts(c.feature, of_a, members_->state(a), of_b, members_->other_state(c.pair))) {
+    shape.offset = c.feature.sample_on_a ? Vec2(-shift) : shift;
+    ModeContact made;
+    made.shape = shape;
+    made.sample_owner = c.feature.sample_on_a ? a : b;
+    made.site_owner = c.feature.sample_on_a ? b : a;
+    made.friction = response_->material_of(c.pair).friction;
+    made.kept = std::max(c.feature.gap, c.feature.thin ? search_->limits().touch : 0.0);
+    if (c.feature.thin) made.off = kOff * made.kept;
+    made.passes = c.feature.at_end || !present;
+    problem_.contacts.push_back(made);
+    of_.push_back(place_.size() - 1);
+    touching_.push_back(present && touching);
+    present = false;
+  }
+  if (present) place_.back() = std::numeric_limits<std::size_t>::max();  // it has no one shape
+}
+
+void IslandModes::make_problem(std::vector<HeldContact> contacts) {
+  contacts_ = std::move(contacts);
+  problem_ = {};
+  impacts_.clear();
+  of_.clear();
+  place_.clear();
+  touching_.clear();
+  for (int i = 0; i < static_cast<int>(members_->count()); ++i) {
+    const Body& b = members_->body(i);
+    problem_.inverse_mass.emplace_back(b.inverse_mass_x(), b.inverse_mass_y(), b.inverse_inertia());
+  }
+  problem_.size = members_->size();
+  double jump = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < static_cast<int>(members_->count()); ++i)
+    jump = std::min(jump, members_->next_break(i));
+  problem_.free = [this, jump](double t, std::span<const BodyState> states, std::span<Acceleration> out) {
+    trajectories_->accelerations(members_->bodies(), t < jump ? t : std::nextafter(jump, now_), states, out);
+  };
+  for (const HeldContact& c : contacts_) add_contact(c);
+}
+
+// ---- its beginning
+
+IslandModes::Meeting IslandModes::meeting(const States& states) const {
+  const std::vector<ContactRates> rates = rates_at(problem_, now_, states);
+  double fastest = 0.0;
+  for (std::size_t k = 0; k < rates.size(); ++k)
+    if (touching_[k]) fastest = std::max(fastest, -rates[k].normal_velocity);
+  if (fastest <= kNoApproach * speed()) return Meeting::none;
+  return fastest <= 2.0 * slowest_bounce(*members_, *search_) ? Meeting::slow : Meeting::fast;
+}
+
+/// Everything that touches meets without a rebound. False: nothing says how.
+bool IslandModes::meet(States& states) {
+  const std::vector<ContactRates> rates = rates_at(problem_, now_, states);
+  auto after = plastic_impact(problem_, now_, states, touching_);
+  if (!after) return false;
+  const double slow = slowest_bounce(*members_, *search_);
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const std::size_t at = place_[k];
+    if (at < rates.size() && touching_[at] && -rates[at].normal_velocity > slow)
+      impacts_.push_back(
+          {contacts_[k], -rates[at].normal_velocity, after->normal[at], after->tangential[at]});
+  }
+  states = std::move(after->states);
+  return true;
+}
+
+/// Those that the step before ended in, if they speak of all that touches.
+std::optional<std::vector<MotionMode>> IslandModes::former_modes() const {
+  std::vector<MotionMode> modes(problem_.contacts.size(), MotionMode::open);
+  std::ptrdiff_t closed = 0;
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    if (place_[k] >= modes.size() || !touching_[place_[k]]) continue;
+    const HeldContact* warm = find_warm(*warm_, contacts_[k]);
+    if (!warm || !warm->by_modes) return std::nullopt;
+    modes[place_[k]] = warm->next_motion;
+    closed += is_closed(warm->next_motion);
+  }
+  const auto were_closed = std::count_if(warm_->begin(), warm_->end(), [](const auto& w) {
+    return !w.second.by_modes || is_closed(w.second.next_motion);
+  });
+  if (closed != were_closed) return std::nullopt;
+  return modes;
+}
+
+/// What touches and does not part. Where it meets slowly, or is new, what parts as slowly does not, either: bounces,
+/// and the rocking from one corner to the other, come to their end there.
+std::vector<bool> IslandModes::closed_now(const States& states, Meeting met) const {
+  const std::vector<ContactRates> rates = rates_at(problem_, now_, states);
+  const double slow = 2.0 * slowest_bounce(*members_, *search_);
+  std::vector<bool> closed(problem_.contacts.size(), false);
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const std::size_t at = place_[k];
+    if (at >= closed.size() || !touching_[at]) continue;
+    const HeldContact* warm = find_warm(*warm_, contacts_[k]);
+    const bool known = warm && warm->by_modes, was_open = known && !is_closed(warm->motion);
+    const bool slowly = met == Meeting::slow || (met == Meeting::none && !known);
+    if (met == Meeting::none && was_open) continue;
+    closed[at] = rates[at].normal_velocity <= (slowly ? slow : kNoParting * speed());
+  }
+  return closed;
+}
+
+// ---- the step
+
+IslandModes::Outcome IslandModes::take(double now, double h, std::vector<HeldContact> contacts,
+                                       bool on_time) {
+  now_ = end_ = now;
+  double until = now + h;
+  States states;
+  for (int i = 0; i < static_cast<int>(members_->count()); ++i) {
+    states.push_back(members_->state(i).rounded());
+    until = std::min({until, members_->next_break(i), trajectories_->steady_until(members_->bodies()[i])});
+  }
+  make_problem(std::move(contacts));
+  if (!(until > now)) return Outcome::none;
+  const Meeting met = meeting(states);
+  if (met != Meeting::none && !meet(states)) return Outcome::none;
+  const SearchLimits& of = search_->limits();
+  ModeMotion motion(problem_, {limits_.tolerance, kOff * of.tolerance, of.touch, until - now}, now, states);
+  const auto former = on_time && met == Meeting::none ? former_modes() : std::nullopt;
+  if (!(former ? motion.begin_in(*former) : motion.begin(closed_now(states, met)))) return Outcome::none;
+  if (!move_on(motion, until)) return Outcome::none;
+  return within_reach() ? Outcome::moved : Outcome::wider;
+}
+
+/// Modes and forces from the present time on.
+void IslandModes::note(const ModeMotion& motion) {
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    HeldContact& c = contacts_[k];
+    c.by_modes = true;
+    if (place_[k] >= motion.modes().size()) continue;
+    c.motion = c.next_motion = motion.modes()[place_[k]];
+    c.normal_force = motion.forces().normal[place_[k]];
+    c.tangential_force = motion.forces().tangential[place_[k]];
+  }
+}
+
+bool IslandModes::move_on(ModeMotion& motion, double until) {
+  tracks_.clear();
+  for (std::size_t i = 0; i < members_->count(); ++i) tracks_.push_back(std::make_shared<Track>());
+  ModeStep step;
+  for (int n = 0; n < kMostPieces && motion.time() < until; ++n) {
+    if (!(motion.time() > now_)) note(motion);
+    step = motion.step(until);
+    for (std::size_t i = 0; i < step.pieces.size(); ++i) tracks_[i]->pieces.push_back(step.pieces[i]);
+    if (step.end != ModeEnd::step && motion.time() > now_) break;
+    if (step.end != ModeEnd::step && step.end != ModeEnd::change) return false;
+  }
+  end_ = motion.time();
+  if (!(end_ > now_)) return false;
+  const bool lost = step.end == ModeEnd::no_modes || step.end == ModeEnd::lost;
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    HeldContact& c = contacts_[k];
+    c.lasted = end_ - now_;
+    const bool arrives = step.end == ModeEnd::arrival && of_[step.contact] == k;
+    if (lost || arrives) c.by_modes = false;
+    if (place_[k] >= motion.modes().size()) continue;
+    c.next_motion = motion.modes()[place_[k]];
+    c.normal_force = std::max(c.normal_force, motion.forces().normal[place_[k]]);
+  }
+  for (std::size_t i = 0; i < tracks_.size(); ++i)
+    tracks_[i]->pieces.push_back(onward(end_, motion.states()[i]));
+  return true;
+}
+
+/// True if nobody moves farther than features were listed for.
+bool IslandModes::within_reach() const {
+  for (int i = 0; i < static_cast<int>(members_->count()); ++i) {
+    double way = 0.0;
+    for (const PolynomialPiece& p : tracks_[i]->pieces) {
+      if (!(p.end <= end_)) break;
+      const MotionBounds b = p.bounds(p.begin, p.end);
+      way += (p.end - p.begin) * (b.speed() + b.spin() * members_->bounding_radius(i));
+    }
+    if (way > members_->reach_of(i)) return false;
+  }
+  return true;
+}
+
+std::vector<IslandModes::Change> IslandModes::changes() const {
+  std::vector<Change> changes;
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const HeldContact& c = contacts_[k];
+    const HeldContact* warm = find_warm(*warm_, c);
+    if (!warm || !warm->by_modes || warm->motion == c.motion || !is_closed(warm->motion)) continue;
+    if (c.motion == MotionMode::stick) changes.push_back({c, EventKind::stick});
+    if (is_slip(c.motion)) changes.push_back({c, EventKind::slip});
+    if (!is_closed(c.motion)) changes.push_back({c, EventKind::lift});
+  }
+  return changes;
+}
+
+}  // namespace brink
