@@ -21,9 +21,9 @@ struct Material {
   double restitution = 1.0;             ///< Newton, 0..1
   double friction = 0.0;                ///< Coulomb, >= 0
   double tangential_restitution = 0.0;  ///< with friction: -1..1; 1 is the elastic rough "superball"
-  double rolling_resistance = 0.0;      ///< of contacts that last: largest torque for a normal force of 1 [m]
   double slip = 1.0;                    ///< `reflection` only: scalar of the tangential rebound
   double spin = 1.0;                    ///< `reflection` only: scalar of the angular rebound
+  double rolling_resistance = 0.0;      ///< of contacts that last: largest torque for a normal force of 1 [m]
 };
 
 /// How two materials make one pair.

@@ -1,6 +1,5 @@
 #include "brink/scheduler/islands/near_features.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -155,15 +154,6 @@ bool out_of_reach(const Half& half, const Sample& sample, double reach) {
   return !half.other.bounds.grown(reach + sample.radius).contains(q);
 }
 
-/// How deep q is that has crossed a site: of a straight side of a solid to whatever side is nearest, since near a
-/// corner what is a rounding inside one side may be far behind another.
-double depth_behind(const Outline& outline, const Site& site, const Nearest& nearest, const Vec2& q) {
-  double depth = nearest.distance;
-  if (site.solid && site.kind == SiteKind::segment)
-    for (const Site& other : outline.sites) depth = std::min(depth, nearest_on(other, q).distance);
-  return depth;
-}
-
 }  // namespace
 
 std::vector<NearFeature> near_features(const Outline& a, const ExtendedState& state_a, const Outline& b,
@@ -191,8 +181,7 @@ double gap_of(const NearFeature& f, const Outline& a, const ExtendedState& state
   const bool abreast = nearest.foot == Foot::interior;  // beyond an end nothing is crossed
   const bool crossed = abreast && (site.kind == SiteKind::segment ? out.dot(q - nearest.point) < 0.0
                                                                   : side_of(site, nearest, q) < 0.0);
-  const double distance = crossed ? -depth_behind(half.other, site, nearest, q) : nearest.distance;
-  return distance - site.radius - sample.radius;
+  return (crossed ? -nearest.distance : nearest.distance) - site.radius - sample.radius;
 }
 
 }  // namespace brink
