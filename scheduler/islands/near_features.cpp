@@ -17,6 +17,9 @@ constexpr double kSinks = 1e-6;
 /// Below this part of the size two points are one, and their difference has no direction.
 constexpr double kOnePoint = 1e-12;
 
+/// Cosine between a site and the way to another that roundings may leave of a straight joint.
+constexpr double kParallel = 1e-9;
+
 /// One outline that carries the samples, and the other, each in its own frame.
 struct Half {
   const Outline& carrier;
@@ -82,14 +85,21 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
 }
 
 /// True if the nearest point of site j is an end of it, and another site that has that end, too, is nearer: a
-/// joint of two straight pieces is no corner.
-bool goes_on_nearer(const Outline& outline, std::size_t j, const std::vector<Nearest>& nearest, double tie) {
+/// joint of two straight pieces is no corner. A site that rises from there to q's side is a wall ahead.
+bool goes_on_nearer(const Outline& outline, std::size_t j, const std::vector<Nearest>& nearest, const Vec2& q,
+                    double tie) {
   const Site& site = outline.sites[j];
   if (site.kind == SiteKind::point || nearest[j].foot == Foot::interior) return false;
-  const Vec2& end = nearest[j].foot == Foot::start ? site.a : site.b;
+  const bool at_start = nearest[j].foot == Foot::start;
+  const Vec2 &end = at_start ? site.a : site.b, on = at_start ? Vec2(site.b - site.a) : Vec2(site.a - site.b);
+  const auto rises = [&](std::size_t k) {
+    const Site& other = outline.sites[k];
+    const bool sided = other.solid && other.kind == SiteKind::segment;  // wherever roundings put q
+    return (sided ? outward(other) : direction(other, nearest[k], q, tie)).dot(on) > kParallel * on.norm();
+  };
   for (std::size_t k = 0; k < nearest.size(); ++k)
     if (k != j && nearest[k].distance < nearest[j].distance - tie &&
-        (outline.sites[k].a == end || outline.sites[k].b == end))
+        (outline.sites[k].a == end || outline.sites[k].b == end) && !rises(k))
       return true;
   return false;
 }
@@ -129,7 +139,8 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
   for (std::size_t j = 0; j < nearest.size(); ++j) {
     const double side = side_of(half.other.sites[j], nearest[j], q);
     if (side < 0.0 && nearest[j].distance > tie && (outside || nearest[j].distance > least + tie)) continue;
-    if (goes_on_nearer(half.other, j, nearest, tie) || other_side_faces(half, j, nearest, q, tie)) continue;
+    if (goes_on_nearer(half.other, j, nearest, q, tie) || other_side_faces(half, j, nearest, q, tie))
+      continue;
     const auto f = feature(half, i, static_cast<int>(j), nearest[j], side, q);
     if (f && f->gap <= reach) found.push_back(*f);
   }

@@ -230,12 +230,12 @@ IslandMotion::Arrival IslandMotion::arrival(const HeldContact& c, const std::vec
   return passes_by(c, t, closing) ? Arrival{} : Arrival{t, closing};
 }
 
-/// True if what comes to the end of a site does not meet it, but goes by: some tolerances further on it is not
-/// behind it.
+/// True if what comes to the end of a site does not meet it, but goes by: some tolerances further on it is clear
+/// of it.
 bool IslandMotion::passes_by(const HeldContact& c, double then, double closing) const {
   const double tolerance = search_->limits().tolerance;
   if (!c.feature.at_end || !(closing > 0.0)) return false;
-  return members_.gap(c, then + 4.0 * tolerance / closing, velocities()) - kept(c.feature) > -tolerance;
+  return members_.gap(c, then + 4.0 * tolerance / closing, velocities()) - kept(c.feature) > 0.0;
 }
 
 /// An approach as slow as this would be back within the step [m/s].
