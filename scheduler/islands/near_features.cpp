@@ -115,6 +115,8 @@ bool other_side_faces(const Half& half, std::size_t j, const std::vector<Nearest
   for (std::size_t k = 0; k < nearest.size(); ++k) {
     const Site& next = outline.sites[k];
     if (k == j || next.kind != SiteKind::segment || nearest[k].distance > tie) continue;
+    const Vec2 on = nearest[k].foot == Foot::start ? Vec2(next.b - next.a) : Vec2(next.a - next.b);
+    if (outward(site).dot(on) > kParallel * on.norm()) continue;  // a hollow corner has both its sides
     const double more = outward(next).dot(centre) - outward(site).dot(centre);
     if (more > 0.0 || (more == 0.0 && k < j)) return true;
   }
