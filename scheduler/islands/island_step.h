@@ -28,7 +28,7 @@ struct IslandContact {
   double gap = 0.0;  ///< at the start, less what it must keep [m]
   double friction = 0.0;
   double rolling_resistance = 0.0;  ///< largest torque for a normal force of 1 [m]
-  bool driven = false;  ///< its site moves as it is told, and gives what energy that takes
+  bool driven = false;              ///< its site moves as it is told, and gives what energy that takes
   bool at_end = false;  ///< of a site: its tangent bars the way to what passes by, so that is asked for last
   double normal_force = 0.0;      ///< in: of the step before; 0: new. Out: mean over this one [N]
   double force_lasted = 0.0;      ///< how long the step before was [s]
