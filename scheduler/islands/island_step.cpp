@@ -144,8 +144,10 @@ double without_winning(const IslandStep& step, const std::vector<Vec3>& velocity
   return after > 0.0 ? std::min(1.0, (work + std::sqrt(work * work + after * before)) / after) : 1.0;
 }
 
-double residual(const IslandStep& step, const StepResult& result) {
+/// Friction beyond the cones, as a part of the largest normal or other force.
+double residual(const IslandStep& step, const StepResult& result, double h) {
   double most = 0.0, beyond = 0.0;
+  for (const Vec3& f : step.force) most = std::max(most, h * f.head<2>().norm());
   for (std::size_t k = 0; k < step.contacts.size(); ++k) {
     const ContactLoad& load = result.loads[k];
     most = std::max(most, load.normal);
@@ -199,7 +201,7 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
       outcome.won = std::max(0.0, won_here);
     }
     outcome.solved = true;
-    outcome.friction_residual = residual(step, result);
+    outcome.friction_residual = residual(step, result, h);
     step.velocity = result.velocity;
     for (std::size_t k = 0; k < step.contacts.size(); ++k) {
       step.contacts[k].normal_force = result.loads[k].normal / h;

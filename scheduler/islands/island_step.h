@@ -52,7 +52,7 @@ struct StepOutcome {
   /// Energy that the step made [J], beyond what sites that move gave: at most 1e-3 of what it turned over. 0 where
   /// none does: all is slowed by as much then.
   double won = 0.0;
-  double friction_residual = 0.0;  ///< largest |q| - mu p left by bounds that lag, of the largest p
+  double friction_residual = 0.0;  ///< largest |q| - mu p left by bounds that lag, of the largest force
 };
 
 /// Takes a step of h > 0 [s]. What is not solved is to be tried again with a shorter one.

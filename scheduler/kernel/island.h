@@ -54,7 +54,7 @@ struct IslandTally {
   double absorbed = 0.0;           ///< the largest approach that a step took without a rebound [m/s]
   double energy_won = 0.0;         ///< that steps made, by rounding and by faces that turn [J]
   double energy_of_rest = 0.0;     ///< that the option rest_speed took [J]
-  double friction_residual = 0.0;  ///< the largest, of the largest normal force of its island
+  double friction_residual = 0.0;  ///< the largest, of the largest force of its island
 };
 
 }  // namespace brink

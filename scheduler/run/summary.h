@@ -35,7 +35,7 @@ struct RunSummary {
   std::string first_taken;  ///< the first of them: its bodies and time
   /// Contacts that lasted (Islands): captured at the end of their bounces; steps of order 1 that islands took;
   /// islands that are at rest at the end, and their bodies; the fastest approach that a step took without a rebound [m/s]; how
-  /// far friction was from its cone at most, as a part of the largest normal force.
+  /// far friction was from its cone at most, as a part of the largest force there.
   std::uint64_t contacts_lasting = 0, island_steps = 0, islands_at_rest = 0, resting = 0;
   double approach_absorbed = 0.0, friction_residual = 0.0;
   double rest_energy = 0.0;    ///< that the option rest_speed took [J]
