@@ -32,16 +32,13 @@ void Endings::count_in_instant(const PairKey& pair, double now) {
   bodies_.add(pair);
 }
 
-std::optional<Ending> Endings::collided(const Outcome& o, double now, BounceLoss loss,
-                                        std::uint64_t collisions) {
+std::optional<Ending> Endings::collided(const Outcome& o, double now, BounceLoss loss) {
   if (!o.contact.seen)
     if (const auto zeno = zeno_.collided({o.pair, o.contact}, now, o.contact.closing_speed, loss, o.rest,
                                          o.contact.sink < 0.0, o.limit))
       return Ending{Ending::Kind::zeno, zeno->limit_time, zeno->bounces};
   count_in_instant(o.pair, now);
   if (in_instant_ > 2 * endless()) return Ending{Ending::Kind::endless_group, now, in_instant_};
-  if (max_collisions_ > 0 && collisions >= max_collisions_)
-    return Ending{Ending::Kind::limit, now, collisions};
   if (in_instant_ == endless() + 1) return Ending{Ending::Kind::group, now, in_instant_};
   return std::nullopt;
 }

@@ -17,9 +17,8 @@ struct Ending {
     zeno,           ///< of bounces: `time` is their limit
     group,          ///< the next collisions of this instant are to be taken together
     endless_group,  ///< taken together, they go on all the same
-    limit,          ///< max_collisions is reached
   };
-  Kind kind = Kind::limit;
+  Kind kind = Kind::zeno;
   double time = 0.0;        ///< [s]
   std::uint64_t count = 0;  ///< bounces, or collisions of the group
 };
@@ -29,11 +28,14 @@ class Endings {
   Endings(double contact_tolerance, std::uint64_t max_collisions)
       : zeno_(contact_tolerance), max_collisions_(max_collisions) {}
 
-  /// To be told of every collision at the present time, in order; `collisions`: so many so far. One that a
-  /// picture shows is in no series of bounces: flights lower than a pixel say nothing about a limit.
-  std::optional<Ending> collided(const Outcome& outcome, double now, BounceLoss loss,
-                                 std::uint64_t collisions);
-  /// Tells Ending::limit at so many collisions; 0: never.
+  /// To be told of every collision at the present time, in order. One that a picture shows is in no
+  /// series of bounces: flights lower than a pixel say nothing about a limit.
+  std::optional<Ending> collided(const Outcome& outcome, double now, BounceLoss loss);
+  /// True at so many collisions in all, or more, as set_limit() said.
+  bool at_limit(std::uint64_t collisions) const {
+    return max_collisions_ > 0 && collisions >= max_collisions_;
+  }
+  /// 0: never.
   void set_limit(std::uint64_t collisions) { max_collisions_ = collisions; }
   /// True if the present instant has had so many collisions that they are to be taken together.
   bool collapsed(double now) const;

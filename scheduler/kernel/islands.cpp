@@ -161,6 +161,11 @@ IslandMotion Islands::set_out(std::set<int>& members, int& hasty) {
 }
 
 bool Islands::begin_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time) {
+  return carry_out_step(std::move(members), longest, changed, on_time) && run_->poll();
+}
+
+bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time) {
+  const RunControl::Indivisible whole(*run_);
   int hasty = 0;
   IslandMotion motion = set_out(members, hasty);
   if (run_->halt()) return false;
@@ -200,7 +205,7 @@ bool Islands::begin_step(std::set<int> members, double longest, std::vector<int>
   std::sort(changed.begin(), changed.end());
   changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
   find_next();
-  return run_->poll();
+  return true;
 }
 
 /// Members that push each other are islands; those that nothing pushes are let go, as they were.

@@ -73,6 +73,7 @@ class Islands {
   void gather(int body, std::set<int>& members) const;
   IslandMotion set_out(std::set<int>& members, int& hasty);
   bool begin_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time = false);
+  bool carry_out_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time);
   void part(const IslandMotion& motion, bool rests, const IslandModes* modes, int hasty,
             std::vector<int>& changed);
   void tell(const IslandModes& modes, const IslandMembers& members);

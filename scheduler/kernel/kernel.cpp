@@ -158,8 +158,11 @@ bool Kernel::resolve_group(const PairKey& pair, const FeatureContact& found, std
     count(o.pair);
     parts_.records.event(EventKind::collision, o.pair, o.contact, o.impulse_n, o.impulse_t, o.delay);
   }
-  const bool goes_on = std::all_of(group->collisions.begin(), group->collisions.end(),
-                                   [&](const Outcome& o) { return judge(o, changed); });
+  bool goes_on = true;  // where the run stops for now, all of them have happened
+  for (const Outcome& o : group->collisions) {
+    goes_on = judge(o, changed) && goes_on;
+    if (halt() && halt()->termination == Termination::failed) break;
+  }
   return regroup_after(pair, changed) && goes_on;
 }
 
@@ -192,10 +195,20 @@ void Kernel::count(const PairKey& pair) {
   if (!pair.with_site()) parts_.run.mark(TraceKind::collision, pair.other_body, pair.body, time(), time());
 }
 
-/// What the collision may be the end of.
+/// What comes of the collision. Where it is the last for now, all that it brings about is done before.
 bool Kernel::judge(const Outcome& o, std::vector<int>& changed) {
-  const auto ending =
-      parts_.endings.collided(o, time(), parts_.response.loss_of(o.pair), parts_.run.work().collisions);
+  const std::uint64_t count = collisions();
+  const bool goes_on = judge_ending(o, changed);
+  if (!parts_.endings.at_limit(count)) return goes_on;
+  stop(Termination::stopped, count == options().max_collisions
+                                 ? fmt::format("max_collisions = {} reached at t = {:.15g}", count, time())
+                                 : fmt::format("a collision at t = {:.15g}", time()));
+  return false;
+}
+
+/// What it may be the end of.
+bool Kernel::judge_ending(const Outcome& o, std::vector<int>& changed) {
+  const auto ending = parts_.endings.collided(o, time(), parts_.response.loss_of(o.pair));
   if (!ending) return go_on_in_islands(o, changed) && poll();
   switch (ending->kind) {
     case Ending::Kind::zeno:
@@ -217,12 +230,6 @@ bool Kernel::judge(const Outcome& o, std::vector<int>& changed) {
       stop(Termination::failed,
            fmt::format("a group of collisions at t = {:.15g} does not end ({} so far, the last {})", time(),
                        ending->count, name_of(o.pair)));
-      return false;
-    case Ending::Kind::limit:
-      stop(Termination::stopped,
-           ending->count == options().max_collisions
-               ? fmt::format("max_collisions = {} reached at t = {:.15g}", ending->count, time())
-               : fmt::format("a collision at t = {:.15g}", time()));
       return false;
   }
   return false;

@@ -127,6 +127,7 @@ class Kernel : public KernelView {
   bool tell(const Outcome& outcome, std::vector<int>& changed);
   void count(const PairKey& pair);
   bool judge(const Outcome& outcome, std::vector<int>& changed);
+  bool judge_ending(const Outcome& outcome, std::vector<int>& changed);
   bool begin_to_last(const Outcome& outcome, double limit, std::vector<int>& changed);
   bool go_on_in_islands(const Outcome& outcome, std::vector<int>& changed);
   void trace_all(TraceKind kind, double from, double to) const;

@@ -43,10 +43,23 @@ class RunControl {
   bool poll() {
     constexpr std::uint64_t between = 4096;
     const std::uint64_t done = work_.search_iterations + 4 * work_.collisions + 64 * work_.passes + pieces_;
-    if (halt_ || (done - polled_ < between && !ask_.due())) return !halt_;
+    if (halt_ || indivisible_ > 0 || (done - polled_ < between && !ask_.due())) return !halt_;
     polled_ = done;
     return ask();
   }
+  /// While one lives nobody is asked: what has begun is carried through, as half of it could not be gone on
+  /// with.
+  class Indivisible {
+   public:
+    explicit Indivisible(RunControl& run) : run_(&run) { ++run.indivisible_; }
+    ~Indivisible() { --run_->indivisible_; }
+    Indivisible(const Indivisible&) = delete;
+    Indivisible& operator=(const Indivisible&) = delete;
+
+   private:
+    RunControl* run_;
+  };
+
   /// Asks it now.
   bool ask() {
     if (options_.progress && !options_.progress(time_, work_.collisions))
@@ -70,6 +83,7 @@ class RunControl {
   RunOptions options_;
   WorkCounters work_;
   std::optional<Halt> halt_;
+  int indivisible_ = 0;
   double time_ = 0.0;
   std::uint64_t pieces_ = 0;
   std::uint64_t polled_ = 0;  ///< work done when `progress` was last asked

@@ -156,6 +156,29 @@ Told run_in_pieces(const LastingWorld& w, const std::string& policy, std::vector
   return {events.events, summary};
 }
 
+/// Runs to the end, one collision at a time.
+Told run_by_events(const LastingWorld& w, const std::string& policy) {
+  Simulator simulator(w.world, by(policy));
+  testing::Events events;
+  RunSummary summary;
+  do {
+    RunOptions options = options_to(w.duration);
+    options.first_frame = false;
+    summary = simulator.step_to_next_event(options, &events);
+  } while (summary.termination == Termination::stopped && !::testing::Test::HasFailure());
+  return {events.events, summary};
+}
+
+TEST(Islands, SteppedFromCollisionToCollisionGoOnWithTheSameBits) {
+  int different = 0;
+  for (const std::uint64_t seed : seeds()) {
+    const LastingWorld w = make_as_far_as_it_goes(seed);
+    const std::string policy = exact_policies()[seed % exact_policies().size()];
+    different += tell(difference(run(w, policy), run_by_events(w, policy)), named(seed, w) + ", " + policy);
+  }
+  EXPECT_EQ(different, 0);
+}
+
 // Times at random lie within steps and in rests; checkpoints at every chance, between events of one instant.
 TEST(Islands, ResumedAnywhereGoOnWithTheSameBits) {
   int different = 0;
