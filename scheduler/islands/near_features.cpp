@@ -48,6 +48,12 @@ Vec2 direction(const Site& site, const Nearest& nearest, const Vec2& q, double l
   return normal_at(site, nearest, q);
 }
 
+/// True if what is nearest to an end of a solid's straight side is inside the solid: in a hollow corner, a rounding
+/// beyond the other side. How far it is from this side is for this side's own normal to say.
+bool is_beyond_hollow_end(const Site& site, const Nearest& nearest, double side) {
+  return side < 0.0 && site.solid && site.kind == SiteKind::segment && nearest.foot != Foot::interior;
+}
+
 /// Sample i of a half against site j, where it is nearest to it; side: see side_of(). Nothing of an arc that
 /// looks elsewhere.
 std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest& nearest, double side,
@@ -59,6 +65,10 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   if (side < 0.0 && nearest.distance > least) out = -out;
   const bool thin = !site.solid && site.radius + sample.radius == 0.0;
   double distance = side * nearest.distance;
+  if (is_beyond_hollow_end(site, nearest, side)) {
+    out = outward(site);
+    distance = out.dot(q - nearest.point);
+  }
   if (thin && nearest.foot == Foot::interior && nearest.distance < kSinks * half.carrier.bounding_radius) {
     // a wire has no inside that would tell: what has sunk by a rounding is on its centre's side
     const Vec2 centre = half.other_frame.to_local(half.carrier_frame.origin);

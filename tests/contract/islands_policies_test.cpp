@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -20,12 +21,15 @@ using testing::LastingWorld;
 
 /// Seeds 0 .. kWorlds - 1; BRINK_WORLDS asks for more, BRINK_SEED for one alone.
 constexpr std::uint64_t kWorlds = 32;
+/// Hollow corners and walls that rise from a joint were passed through in these.
+constexpr std::array<std::uint64_t, 8> kOnceFailed{43, 44, 51, 58, 59, 76, 84, 98};
 
 std::vector<std::uint64_t> seeds() {
   if (const char* one = std::getenv("BRINK_SEED")) return {std::stoull(one)};
   const char* more = std::getenv("BRINK_WORLDS");
   std::vector<std::uint64_t> all(more ? std::stoull(more) : kWorlds);
   std::iota(all.begin(), all.end(), 0);
+  if (!more) all.insert(all.end(), kOnceFailed.begin(), kOnceFailed.end());
   return all;
 }
 

@@ -34,6 +34,8 @@ class LastingWorldMaker {
     for (int k = 0; k < count; ++k) add_body(k);
     if (seed_ % 5 == 0 && count > 1) join();
     if (seed_ % 7 == 0) slow_down();
+    if (seed_ % 4 == 3)  // hard to roll, up to a tenth of the smallest bodies
+      for (Material& m : made_.world.materials) m.rolling_resistance = random_.uniform(0.0, 0.01);
     return made_;
   }
 

@@ -3,18 +3,12 @@
 
 #include <cmath>
 
-#include "brink/core/shapes/shapes.h"
-#include "brink/scheduler/islands/near_features.h"
+#include <algorithm>
+
+#include "tests/unit/scheduler/islands/outlines_near.h"
 
 namespace brink {
 namespace {
-
-std::vector<NearFeature> between(const Outline& a, const Pose& at_a, const Outline& b, const Pose& at_b,
-                                 double reach) {
-  return near_features(a, BodyState{at_a, {}}, b, BodyState{at_b, {}}, reach);
-}
-
-Outline wire(const Vec2& a, const Vec2& b) { return make_segment(a, b).outline; }
 
 // A normal from the difference of two points that are a gap apart has a rounding of the place in it, over the gap.
 TEST(NearFeatures, NormalsKeepTheirDigitsHoweverSmallTheGap) {
@@ -43,6 +37,45 @@ TEST(NearFeatures, JointOfTwoStraightPiecesIsNoObstacle) {
   for (const double x : {-0.05, 0.05})
     for (const NearFeature& f : between(make_point({0, 0}).outline, {{x, 1e-9}, 0}, floor, {}, 0.1))
       EXPECT_NEAR(f.normal.x(), 0.0, 1e-6) << "at " << x << ", site " << f.site << ", gap " << f.gap;
+}
+
+/// True if sample and site are among the features.
+bool lists(const std::vector<NearFeature>& found, int sample, int site) {
+  return std::any_of(found.begin(), found.end(), [&](const NearFeature& f) {
+    return f.sample_on_a && f.sample == sample && f.site == site;
+  });
+}
+
+// Still over the floor, it comes to a wall that rises from the floor's end: whatever its slope.
+TEST(NearFeatures, WallThatRisesFromAJointIsAhead) {
+  for (const Vec2& top : {Vec2(1, 1), Vec2(2, 0.1), Vec2(0, 1)}) {
+    const Outline ground = make_polygon({{-2, -1}, {3, -1}, {3, 2}, top, {0, 0}, {-2, 0}}).outline;
+    int wall = -1;
+    for (std::size_t j = 0; j < ground.sites.size(); ++j)
+      if (ground.sites[j].b == Vec2(0, 0) || ground.sites[j].a == Vec2(0, 0))
+        if (ground.sites[j].a == top || ground.sites[j].b == top) wall = static_cast<int>(j);
+    ASSERT_GE(wall, 0);
+    for (const double height : {1e-9, 1e-3})
+      EXPECT_TRUE(
+          lists(between(make_disc(0.02).outline, {{-0.05, 0.02 + height}, 0}, ground, {}, 0.1), 0, wall))
+          << top.transpose() << " at " << height;
+  }
+}
+
+// Into the corner of a room, exactly, a little short of it, or a rounding beyond: floor and wall both.
+TEST(NearFeatures, CornerInAHollowCornerTouchesBothSides) {
+  const Outline room = as_container(make_box(2.0, 2.0).outline);
+  const Outline box = make_box(0.4, 0.2).outline;
+  for (const double beside : {-1e-12, 0.0, 1e-13, 1e-11}) {
+    const auto found = between(box, {{1 - 0.2 + beside, -1 + 0.1}, 0}, room, {}, 1e-9);
+    bool floor = false, wall = false;
+    for (const NearFeature& f : found) {
+      if (!f.sample_on_a || (box.samples[f.sample].p - Vec2(0.2, -0.1)).norm() > 1e-9) continue;
+      floor = floor || f.normal.y() > 0.999;
+      wall = wall || f.normal.x() < -0.999;
+    }
+    EXPECT_TRUE(floor && wall) << beside << ": floor " << floor << ", wall " << wall;
+  }
 }
 
 // An arc's own sample speaks for its outer side alone: what is in its hollow is as far away as it is.

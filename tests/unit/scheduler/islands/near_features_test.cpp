@@ -9,16 +9,10 @@
 #include "tests/support/seeded_random.h"
 #include "tests/unit/query/query_shapes.h"
 #include "tests/unit/scheduler/islands/facing_points.h"
+#include "tests/unit/scheduler/islands/outlines_near.h"
 
 namespace brink {
 namespace {
-
-std::vector<NearFeature> between(const Outline& a, const Pose& at_a, const Outline& b, const Pose& at_b,
-                                 double reach) {
-  return near_features(a, BodyState{at_a, {}}, b, BodyState{at_b, {}}, reach);
-}
-
-Outline wire(const Vec2& a, const Vec2& b) { return make_segment(a, b).outline; }
 
 // ---- known answers
 
