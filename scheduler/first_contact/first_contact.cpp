@@ -259,7 +259,7 @@ class PairSearch {
         if (!neighbours_known) view_.find_neighbours(half, i, near.sites, path, 4.0 * band);
         neighbours_known = true;
         const Feature f = view_.vertex_feature(half, i, static_cast<int>(j), nearest, path);
-        const bool hidden = view_.belongs_to_a_neighbour(half, static_cast<int>(j), nearest, path.q);
+        const bool hidden = view_.belongs_to_a_neighbour(half, i, static_cast<int>(j), nearest, path.q);
         if (!hidden && polish(half, f, path, over_all)) continue;
         // behind what does not count it may go a part of its way there: what counts has a step of its own
         const double free_way = hidden && f.gap < 0.0 ? 0.25 * nearest.distance : 0.0;

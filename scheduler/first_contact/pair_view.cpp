@@ -152,7 +152,8 @@ bool PairView::pokes_through(const Half& half, int i, const Site& site, const Ne
          crossed_by(own[sample.after], own[sample.after].b);
 }
 
-bool PairView::belongs_to_a_neighbour(const Half& half, int j, const Nearest& nearest, const Vec2& q) const {
+bool PairView::belongs_to_a_neighbour(const Half& half, int i, int j, const Nearest& nearest,
+                                      const Vec2& q) const {
   const Outline& outline = half.sites_of();
   const Site& site = outline.sites[j];
   if (site.kind == SiteKind::point) return false;
@@ -160,6 +161,8 @@ bool PairView::belongs_to_a_neighbour(const Half& half, int j, const Nearest& ne
   const bool at_end = nearest.foot != Foot::interior, behind = side_of(site, nearest, q) < 0.0;
   if (!at_end && !behind) return false;
   const Vec2 normal = normal_at(site, nearest, q);
+  // a sliver's near side is nearer than its far side; in a notch the side in front is further than the other
+  const double sliver = 4.0 * gap_rounding(half, i, q);
   for (const SearchScratch::Neighbour& other : scratch_.neighbours) {
     if (other.site == j) continue;
     const Site& other_site = outline.sites[other.site];
@@ -167,7 +170,8 @@ bool PairView::belongs_to_a_neighbour(const Half& half, int j, const Nearest& ne
     const double further = n.distance - other_site.radius - distance;
     if (further > limits_.touch) continue;
     if (at_end && n.foot == Foot::interior) return true;
-    if (behind && other.normal.dot(normal) < 0.0 && (further < 0.0 || side_of(other_site, n, q) > 0.0))
+    if (behind && further <= sliver && other.normal.dot(normal) < 0.0 &&
+        (further < 0.0 || side_of(other_site, n, q) > 0.0))
       return true;
   }
   return false;
@@ -264,7 +268,7 @@ bool PairView::hidden_behind_others(const Half& half, const Feature& f, const Sa
   std::vector<std::uint32_t> all(half.sites_of().sites.size());
   std::iota(all.begin(), all.end(), 0U);
   find_neighbours(half, f.sample, all, path, 4.0 * limits_.tolerance);
-  return belongs_to_a_neighbour(half, f.site, nearest_on(half.site(f.site), path.q), path.q);
+  return belongs_to_a_neighbour(half, f.sample, f.site, nearest_on(half.site(f.site), path.q), path.q);
 }
 
 double PairView::sink_at_start() const {

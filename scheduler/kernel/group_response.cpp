@@ -35,6 +35,7 @@ class GroupResponse::Group {
     if (!collect()) return std::nullopt;
     place();
     result_ = ask(law);
+    if (!pushed() && !found_is_rounding() && add_as_found()) result_ = ask(law);
     if (result_.status == GroupResult::Status::stopped) return std::nullopt;
     if (result_.status == GroupResult::Status::jam) {
       parts_.run_.stop(
@@ -205,10 +206,8 @@ class GroupResponse::Group {
     return made;
   }
 
-  /// What one body is resolved by: its contact, and since when it flew.
-  void note_touched() {
-    rest_.assign(bodies_.size(), std::numeric_limits<double>::infinity());
-    touched_.assign(bodies_.size(), false);
+  /// The fastest that any of the bodies' points may be [m/s].
+  double top_speed() const {
     double speed = 0.0;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
       const ExtendedTwist& t = members_[k].twist;
@@ -216,12 +215,38 @@ class GroupResponse::Group {
                                                   std::abs(t.omega) *
                                                       parts_.search_.outline_of(bodies_[k]).bounding_radius));
     }
-    const bool pushed =
-        std::any_of(result_.normal.begin(), result_.normal.end(), [](Real p) { return p > 0; });
+    return speed;
+  }
+
+  bool pushed() const {
+    return std::any_of(result_.normal.begin(), result_.normal.end(), [](Real p) { return p > 0; });
+  }
+
+  /// True if velocities' rounding may have made the approach that was found.
+  bool found_is_rounding() const { return found_.contact.closing_speed <= kPartsOfSpeed * top_speed(); }
+
+  /// Adds the contact as it was found; false if it is there.
+  bool add_as_found() {
+    const auto same = [&](const Touch& t) {
+      return t.pair == found_.pair && t.order() == found_.order() &&
+             t.contact.normal.dot(found_.contact.normal) >= 1.0 - kSameNormal;
+    };
+    if (std::any_of(group_.begin(), group_.end(), same)) return false;
+    group_.push_back(found_);
+    contacts_.push_back(contact(found_));
+    return true;
+  }
+
+  /// What one body is resolved by: its contact, and since when it flew.
+  void note_touched() {
+    rest_.assign(bodies_.size(), std::numeric_limits<double>::infinity());
+    touched_.assign(bodies_.size(), false);
+    const bool any = pushed();
+    double speed = top_speed();
     // an approach that the law does not see was rounding, all of it
-    if (!pushed) speed += found_.contact.closing_speed / kEpsilon;
+    if (!any) speed += found_.contact.closing_speed / kEpsilon;
     for (std::size_t k = 0; k < group_.size(); ++k) {
-      if (result_.normal[k] > 0 || (!pushed && group_[k].pair == found_.pair)) events_.push_back(k);
+      if (result_.normal[k] > 0 || (!any && group_[k].pair == found_.pair)) events_.push_back(k);
     }
     for (const std::size_t k : events_) {
       const PairKey& pair = group_[k].pair;
