@@ -119,6 +119,11 @@ class Motion {
   /// True for a parabola (uniform acceleration, `still` included): closed forms may use start() and
   /// acceleration().
   bool is_ballistic() const { return kind_ == Kind::ballistic; }
+  /// True for what stands where it is, for ever.
+  bool is_still() const {
+    return is_ballistic() && start_.twist.velocity.isZero(0.0) && start_.twist.omega == 0.0 &&
+           drive_.linear.isZero(0.0) && drive_.angular == 0.0;
+  }
   /// The pieces of dense output; null: a closed form.
   const Track* track() const { return kind_ == Kind::dense ? other_->track.get() : nullptr; }
   double origin() const { return begin(); }

@@ -118,12 +118,27 @@ bool CertificateWatch::discs_resolved(const PairKey& pair, double gap) {
 }
 
 void CertificateWatch::frame(double t) {
-  near_->each_at(t, [&](const PairKey& pair) {
-    pair_at_frame(pair, t);
-    return run_->poll();
-  });
+  note_who_moved();
+  const auto same_as_before = [&](const PairKey& pair) {
+    return !moved_[pair.body] && !moved_[search_->other_owner(pair)];
+  };
+  if (std::find(moved_.begin(), moved_.end(), true) != moved_.end())
+    near_->each_at(t, [&](const PairKey& pair) {
+      if (same_as_before(pair)) return true;
+      pair_at_frame(pair, t);
+      return run_->poll();
+    });
   for (int k = 0; k < trajectories_->body_count() && !run_->halt(); ++k) flight(k, t);
   flown_until_ = t;
+  if (on_) seen_until_ = t;
+}
+
+void CertificateWatch::note_who_moved() {
+  moved_.resize(trajectories_->owner_count());
+  for (int k = 0; k < trajectories_->owner_count(); ++k) {
+    const Motion& motion = trajectories_->motion_of(k);
+    moved_[k] = !(motion.is_still() && motion.begin() < seen_until_);
+  }
 }
 
 bool CertificateWatch::pair_at_frame(const PairKey& pair, double t) {

@@ -23,6 +23,38 @@ TEST(CertificateWatch, AnOverlapAtAFrameEndsTheRunWithPairTimeAndDepth) {
   EXPECT_THAT(parts.run.halt()->why, HasSubstr("'body0' overlaps 'body1' at t = 1.5"));
 }
 
+World two_that_stand(double apart) {
+  World world = two_discs();
+  world.bodies[0].initial.twist = {};
+  world.bodies[1].initial.pose.position.x() = apart;
+  return world;
+}
+
+TEST(CertificateWatch, TwoThatStandInEachOtherAreSeenOnceItWatches) {
+  KernelParts parts(two_that_stand(0.9), {});
+  parts.watch.frame(1.0);
+  parts.watch.begin();
+  parts.watch.frame(2.0);
+  ASSERT_TRUE(parts.run.halt());
+  EXPECT_THAT(parts.run.halt()->why, HasSubstr("overlaps"));
+}
+
+TEST(CertificateWatch, WhoIsPutIntoOneThatStandsIsSeenThoughBothStandStill) {
+  KernelParts parts(two_that_stand(3.0), {});
+  parts.watch.begin();
+  for (const double t : {0.0, 0.5, 1.0}) parts.watch.frame(t);
+  EXPECT_FALSE(parts.run.halt());
+  std::vector<int> changed;
+  ExtendedState inside = parts.trajectories.body(1).motion.extended_state(1.0);
+  inside.position.x() = 0.9;
+  parts.run.set_time(1.0);
+  const Restart one[] = {{1, inside}};
+  parts.trajectories.restart(one, changed);
+  parts.watch.frame(1.5);
+  ASSERT_TRUE(parts.run.halt());
+  EXPECT_THAT(parts.run.halt()->why, HasSubstr("'body0' overlaps 'body1' at t = 1.5"));
+}
+
 TEST(CertificateWatch, AWayThroughAWireEndsTheRun) {
   World world = two_discs();
   world.bodies[1].initial.twist.velocity.x() = 50.0;
