@@ -19,8 +19,9 @@ namespace {
 
 using testing::LastingWorld;
 
-/// Seeds 0 .. kWorlds - 1; BRINK_WORLDS asks for more, BRINK_SEED for one alone.
-constexpr std::uint64_t kWorlds = 32;
+/// Seeds 0 .. kWorlds - 1; BRINK_WORLDS asks for more, BRINK_SEED for one alone. Each is broken off kBreaks times and
+/// gone on with, BRINK_BREAKS asks for more; and as often it goes on from a checkpoint.
+constexpr std::uint64_t kWorlds = 32, kBreaks = 4;
 /// Hollow corners and walls that rise from a joint were passed through in these.
 constexpr std::array<std::uint64_t, 8> kOnceFailed{43, 44, 51, 58, 59, 76, 84, 98};
 
@@ -31,6 +32,11 @@ std::vector<std::uint64_t> seeds() {
   std::iota(all.begin(), all.end(), 0);
   if (!more) all.insert(all.end(), kOnceFailed.begin(), kOnceFailed.end());
   return all;
+}
+
+std::uint64_t breaks() {
+  const char* more = std::getenv("BRINK_BREAKS");
+  return more ? std::stoull(more) : kBreaks;
 }
 
 LastingWorld make(std::uint64_t seed) { return testing::LastingWorldMaker(seed).make(); }
@@ -117,19 +123,18 @@ TEST(Islands, UnderEveryPolicyGiveTheSameEvents) {
 /// Keeps some of the checkpoints, each of all as likely, and the events told before each.
 class SomeCheckpoints : public testing::Events {
  public:
-  explicit SomeCheckpoints(Random& random) : random_(&random) {}
+  SomeCheckpoints(Random& random, std::uint64_t most) : random_(&random), most_(most) {}
   void checkpoint(double, const std::vector<std::byte>& state) override {
-    const std::uint64_t place = seen_++ < kKept ? seen_ - 1 : random_->below(seen_);
-    if (place >= kKept) return;
+    const std::uint64_t place = seen_++ < most_ ? seen_ - 1 : random_->below(seen_);
+    if (place >= most_) return;
     kept.resize(std::max<std::size_t>(kept.size(), place + 1));
     kept[place] = state;
   }
   std::vector<std::vector<std::byte>> kept;
 
  private:
-  static constexpr std::uint64_t kKept = 2;
   Random* random_;
-  std::uint64_t seen_ = 0;
+  std::uint64_t most_, seen_ = 0;
 };
 
 /// Goes on from `state` in a simulator that knows nothing else.
@@ -193,9 +198,9 @@ TEST(Islands, ResumedAnywhereGoOnWithTheSameBits) {
     const std::string name = named(seed, w) + ", " + policy;
     const Told whole = run(w, policy);
     std::vector<double> ends;
-    for (int k = 0; k < 5; ++k) ends.push_back(random.uniform(0.0, w.duration));
+    for (std::uint64_t k = 0; k < breaks(); ++k) ends.push_back(random.uniform(0.0, w.duration));
     different += tell(difference(whole, run_in_pieces(w, policy, ends)), name + ", in pieces");
-    SomeCheckpoints checkpoints(random);
+    SomeCheckpoints checkpoints(random, breaks());
     RunOptions often = options_to(w.duration);
     often.checkpoint_seconds = 0.0;
     Simulator(w.world, by(policy)).run(often, &checkpoints);
