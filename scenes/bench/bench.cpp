@@ -8,7 +8,7 @@
 #include "brink/scenes/bench/classic.h"
 #include "brink/scenes/bench/csv.h"
 #include "brink/scenes/bench/plot.h"
-#include "brink/scenes/program/command.h"
+#include "brink/scenes/program/commands.h"
 #include "brink/scenes/program/run_folder.h"
 #include "brink/scenes/program/terminal.h"
 
@@ -18,13 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 using bench::Problem;
 using bench::Row;
-
-struct BenchArguments {
-  std::vector<std::string> names;
-  std::string out;
-  int repeats = 5;
-  bool list = false;
-};
 
 /// The sweep of the classic detector: not a problem, but asked for like one, and only by name.
 constexpr const char* kClassic = "classic";
@@ -94,7 +87,9 @@ fs::path make_folder(const std::string& given) {
   return folder;
 }
 
-int run(const BenchArguments& arguments) {
+}  // namespace
+
+int bench_command(const BenchArguments& arguments) {
   const std::vector<Problem> problems = chosen(bench::problems(), arguments.names);
   if (arguments.list) {
     for (const Problem& p : problems) fmt::print("{:<14} {}; error: {}\n", p.name, p.title, p.error_of);
@@ -121,31 +116,6 @@ int run(const BenchArguments& arguments) {
   bench::write_plot(folder / "bench.png", "Error against run time", problems, rows);
   fmt::print("table {}, plot {}\n", (folder / "bench.csv").string(), (folder / "bench.png").string());
   return good ? kDone : kEndedEarly;
-}
-
-}  // namespace
-
-void add_bench_command(CLI::App& program, int& status) {
-  auto arguments = std::make_shared<BenchArguments>();
-  CLI::App* command =
-      program.add_subcommand("bench", "Error against run time on problems with known answers");
-  command->add_option("NAME", arguments->names, "Problems to run; all if left out");
-  command->add_flag("--list", arguments->list, "List the problems; runs nothing");
-  command->add_option("--out", arguments->out, "Folder for bench.csv and bench.png; default runs/bench-<n>")
-      ->type_name("DIR");
-  command->add_option("--repeats", arguments->repeats, "Most repeats of a run; the median time is given")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command->footer(
-      "Times are of the simulation alone. A run is repeated until a second has gone by at most; repeats must "
-      "give\n"
-      "the same bits. Ends with 1 if an exact run ends early or repeats differ.\n"
-      "Examples:\n"
-      "  brink bench\n"
-      "  brink bench bouncing_ball two_boxes --out runs/mine\n"
-      "  brink bench classic");
-  command->callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace brink

@@ -5,7 +5,7 @@
 #include "brink/core/base/error.h"
 #include "brink/core/base/printable.h"
 #include "brink/core/fields/stencil_overlap.h"
-#include "brink/scenes/program/command.h"
+#include "brink/scenes/program/commands.h"
 #include "brink/scenes/program/terminal.h"
 #include "brink/scenes/scene/scene.h"
 #include "brink/scheduler/simulator/simulator.h"
@@ -66,34 +66,16 @@ void print_overlaps(const Scene& scene, const std::vector<Contact>& overlaps) {
   if (overlaps.size() > kOverlapsShown) fmt::print("  and {} more\n", overlaps.size() - kOverlapsShown);
 }
 
-void check(const std::string& file, const std::vector<std::string>& overrides) {
-  const Scene scene = load_scene(file, overrides);
+}  // namespace
+
+int check_command(const CheckArguments& arguments) {
+  const Scene scene = load_scene(arguments.scene, arguments.overrides);
   const Simulator simulator(scene.world, scene.solver);
   print_contents(scene);
   heading("Plan");
   for (const std::string& line : simulator.plan().lines) fmt::print("  {}\n", printable(line));
   print_overlaps(scene, simulator.overlaps());
-}
-
-}  // namespace
-
-void add_check_command(CLI::App& program, int& status) {
-  auto scene = std::make_shared<std::string>();
-  auto overrides = std::make_shared<std::vector<std::string>>();
-  CLI::App* command = program.add_subcommand("check", "Validate a scene and print the plan; runs nothing");
-  command->add_option("SCENE", *scene, "Scene file (TOML)")->required();
-  command->add_option("--set", *overrides, "Override a key of the scene; may be repeated")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
-  command->footer(
-      "Every fault is one line, FILE:LINE:COLUMN: what is wrong, what was given, what is allowed.\n"
-      "Examples:\n"
-      "  brink check my_scene.toml\n"
-      "  brink check my_scene.toml --set solver.integrator=erk");
-  command->callback([scene, overrides, &status] {
-    check(*scene, *overrides);
-    status = kDone;
-  });
+  return kDone;
 }
 
 }  // namespace brink

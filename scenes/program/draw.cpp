@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "brink/scenes/files/written_file.h"
-#include "brink/scenes/program/command.h"
+#include "brink/scenes/program/commands.h"
 #include "brink/scenes/run_file/run_moment.h"
 #include "brink/scenes/scene/scene.h"
 #include "brink/scheduler/simulator/simulator.h"
@@ -14,12 +14,6 @@ namespace brink {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct DrawArguments {
-  std::string subject, out, layer = "scene", size = "1200x900";
-  std::optional<double> at;
-  std::vector<std::string> overrides;
-};
 
 /// The run file that `subject` names (the file, or the folder it is in), or an empty path.
 fs::path run_file_of(const fs::path& subject) {
@@ -70,7 +64,9 @@ RunMoment moment_of(const DrawArguments& arguments, const fs::path& run, FieldOp
   return moment_of_scene(arguments, scene);
 }
 
-void draw(const DrawArguments& arguments) {
+}  // namespace
+
+int draw_command(const DrawArguments& arguments) {
   DrawOptions options;
   options.layer = parse_layer(arguments.layer);
   options.size = parse_size(arguments.size);
@@ -80,36 +76,7 @@ void draw(const DrawArguments& arguments) {
   options.time = moment.t;
   if (options.layer.kind == DrawLayer::Kind::forces) options.forces = forces_of(moment);
   draw_png(arguments.out, moment.world, moment.bodies, moment.sites, options);
-}
-
-}  // namespace
-
-void add_draw_command(CLI::App& program, int& status) {
-  auto arguments = std::make_shared<DrawArguments>();
-  CLI::App* command = program.add_subcommand("draw", "A picture of a scene or a run as a PNG file");
-  command->add_option("SUBJECT", arguments->subject, "Scene file, run folder or run file")->required();
-  command->add_option("-o,--output", arguments->out, "Picture to write")->type_name("FILE.png")->required();
-  command->add_option("--at", arguments->at, "Time [s]; default: the start of a scene, the end of a run")
-      ->type_name("T");
-  command->add_option("--layer", arguments->layer, "scene, color, depth, forces or pass:BODY")
-      ->type_name("LAYER");
-  command->add_option("--size", arguments->size, "Pixels")->type_name("WxH")->capture_default_str();
-  command->add_option("--set", arguments->overrides, "Override a key of the scene; may be repeated")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
-  command->footer(
-      "A scene is simulated up to T. A run is read: between two frames its states are interpolated.\n"
-      "Examples:\n"
-      "  brink draw scenes/gallery/newtons_cradle.toml -o start.png\n"
-      "  brink draw runs/newtons_cradle-1 --at 1.5 -o later.png\n"
-      "  brink draw my_scene.toml --layer depth --size 800x600 -o depth.png\n"
-      "  brink draw my_scene.toml --layer pass:ball -o pass.png\n"
-      "  brink draw runs/pile-1 --at 3 --layer forces -o chains.png\n"
-      "Layer forces: lines from centres to the contacts that last, as wide as their normal force is large.");
-  command->callback([arguments, &status] {
-    draw(*arguments);
-    status = kDone;
-  });
+  return kDone;
 }
 
 }  // namespace brink

@@ -8,7 +8,7 @@
 #include "brink/core/base/error.h"
 #include "brink/core/base/printable.h"
 #include "brink/integrators/integrator.h"
-#include "brink/scenes/program/command.h"
+#include "brink/scenes/program/commands.h"
 #include "brink/scenes/program/gallery.h"
 #include "brink/scenes/program/terminal.h"
 #include "brink/scenes/scene/scene.h"
@@ -87,28 +87,22 @@ void print(const Topic& topic) {
   for (const Line& line : lines) fmt::print("{:<{}}  {}\n", line.name, width, line.text);
 }
 
-void list(const std::string& wanted) {
-  for (const Topic& topic : kTopics) {
-    if (!wanted.empty() && wanted != topic.name) continue;
-    if (wanted.empty()) fmt::print("{}\n", paint(stdout, Paint::heading, topic.name));
-    print(topic);
-    if (wanted.empty()) fmt::print("\n");
-  }
-}
-
 }  // namespace
 
-void add_list_command(CLI::App& program, int& status) {
-  auto topic = std::make_shared<std::string>();
+std::vector<std::string> list_topics() {
   std::vector<std::string> names;
   for (const Topic& t : kTopics) names.emplace_back(t.name);
-  CLI::App* command = program.add_subcommand("list", "What can be chosen, one line each, defaults shown");
-  command->add_option("TOPIC", *topic, "What to list; everything if left out")->check(CLI::IsMember(names));
-  command->footer("Examples:\n  brink list policies\n  brink list options | grep solver");
-  command->callback([topic, &status] {
-    list(*topic);
-    status = kDone;
-  });
+  return names;
+}
+
+int list_command(const ListArguments& arguments) {
+  for (const Topic& topic : kTopics) {
+    if (!arguments.topic.empty() && arguments.topic != topic.name) continue;
+    if (arguments.topic.empty()) fmt::print("{}\n", paint(stdout, Paint::heading, topic.name));
+    print(topic);
+    if (arguments.topic.empty()) fmt::print("\n");
+  }
+  return kDone;
 }
 
 }  // namespace brink

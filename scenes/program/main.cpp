@@ -8,10 +8,10 @@
 
 #include "brink/core/base/error.h"
 #include "brink/core/base/printable.h"
-#include "brink/scenes/program/command.h"
+#include "brink/scenes/program/command_line.h"
+#include "brink/scenes/program/commands.h"
 #include "brink/scenes/program/terminal.h"
 #include "brink/scenes/scene/scene.h"
-#include "brink/scenes/version.h"
 
 namespace {
 
@@ -26,12 +26,9 @@ int flushed(int status) {
   return fail(brink::kIoFailed, "standard output could not be written");
 }
 
-int run(CLI::App& program, int argc, char** argv, const int& status) {
+int run(int argc, char** argv) {
   try {
-    program.parse(argc, argv);
-    return flushed(status);
-  } catch (const CLI::ParseError& e) {
-    return program.exit(e) == 0 ? flushed(brink::kDone) : brink::kBadInput;
+    return flushed(brink::run_command_line(argc, argv));
   } catch (const brink::SceneFaults& e) {
     fmt::print(stderr, "{}\n", e.what());  // one line a fault, each with its place
     return brink::kBadInput;
@@ -51,25 +48,5 @@ int run(CLI::App& program, int argc, char** argv, const int& status) {
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a limit of file size is then an error of the write, which is told
-  CLI::App program("Brink: many rigid bodies in the plane, exact to the contact time.", "brink");
-  program.set_version_flag("--version", std::string(brink::version()));
-  program.require_subcommand(1);
-  program.footer(
-      "Examples:\n"
-      "  brink run scenes/gallery/newtons_cradle.toml\n"
-      "  brink check my_scene.toml\n"
-      "  brink draw my_scene.toml -o start.png\n"
-      "  brink list options\n"
-      "  brink bench bouncing_ball\n"
-      "  brink sweep scenes/experiments/policies_and_orders.toml\n"
-      "Exit status: 0 done, 1 ended early, 2 bad usage or input, 3 could not read or write.\n"
-      "`brink COMMAND --help` says more.");
-  int status = brink::kDone;
-  brink::add_run_command(program, status);
-  brink::add_check_command(program, status);
-  brink::add_draw_command(program, status);
-  brink::add_list_command(program, status);
-  brink::add_bench_command(program, status);
-  brink::add_sweep_command(program, status);
-  return run(program, argc, argv, status);
+  return run(argc, argv);
 }

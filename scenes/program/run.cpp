@@ -8,20 +8,13 @@
 #include <csignal>
 
 #include "brink/core/base/printable.h"
-#include "brink/scenes/program/command.h"
+#include "brink/scenes/program/commands.h"
 #include "brink/scenes/program/run_folder.h"
 #include "brink/scenes/program/terminal.h"
 #include "brink/scenes/run_file/run_scene.h"
 
 namespace brink {
 namespace {
-
-struct RunArguments {
-  std::string scene, out, trace;
-  std::vector<std::string> overrides;
-  std::optional<double> until;
-  bool resume = false, quiet = false, json = false;
-};
 
 volatile std::sig_atomic_t stop_asked = 0;
 
@@ -108,7 +101,9 @@ void print_report(const RunArguments& arguments, const Scene& scene, const RunRe
   if (arguments.json) fmt::print("{}\n", report.json);
 }
 
-int run(const RunArguments& arguments) {
+}  // namespace
+
+int run_command(const RunArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const Scene scene = load_scene(arguments.scene, arguments.overrides);
   RunRequest request;
@@ -134,40 +129,6 @@ int run(const RunArguments& arguments) {
   if ((arguments.quiet || arguments.json) && report.summary.groups_taken > 0)
     fmt::print(stderr, "brink: groups taken {}\n", taken(report.summary));
   return kEndedEarly;
-}
-
-}  // namespace
-
-void add_run_command(CLI::App& program, int& status) {
-  auto arguments = std::make_shared<RunArguments>();
-  CLI::App* command = program.add_subcommand("run", "Simulate a scene and write a run file");
-  command->add_option("SCENE", arguments->scene, "Scene file (TOML)")->required();
-  command->add_option("--out", arguments->out, "Folder for run.db; default runs/<scene>-<n>")
-      ->type_name("DIR");
-  command->add_option("--set", arguments->overrides, "Override a key of the scene; may be repeated")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
-  command->add_option("--until", arguments->until, "Run up to this time [s] instead of the scene's duration")
-      ->type_name("T");
-  command->add_flag(
-      "--resume", arguments->resume,
-      "Go on with the run file that is there, with the same bits; needs the same scene and options");
-  command
-      ->add_option("--trace", arguments->trace,
-                   "Write what the scheduler does, as a Chrome trace (opens in ui.perfetto.dev)")
-      ->type_name("FILE");
-  command->add_flag("--quiet", arguments->quiet, "No progress bar and no summary");
-  command->add_flag("--json", arguments->json, "The summary as one JSON object on the last line");
-  command->footer(
-      "A run file that is already in the folder is kept as run-1.db, run-2.db ... unless --resume goes on "
-      "with it.\n"
-      "Ctrl-C stops at the next chance and leaves a whole run file, which --resume can go on with.\n"
-      "Examples:\n"
-      "  brink run scenes/gallery/newtons_cradle.toml\n"
-      "  brink run my_scene.toml --out runs/a --set solver.policy=global_backup --set bodies.0.mass=2\n"
-      "  brink run my_scene.toml --out runs/a --until 60 --resume\n"
-      "  brink run my_scene.toml --json | tail -n 1");
-  command->callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace brink

@@ -9,7 +9,7 @@
 #include "brink/core/base/error.h"
 #include "brink/core/base/printable.h"
 #include "brink/scenes/files/written_file.h"
-#include "brink/scenes/program/command.h"
+#include "brink/scenes/program/commands.h"
 #include "brink/scenes/program/terminal.h"
 #include "brink/scenes/sweep/plot.h"
 #include "brink/scenes/sweep/shell_word.h"
@@ -19,12 +19,6 @@ namespace brink {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct SweepArguments {
-  std::string experiment, out;
-  int jobs = 0;
-  bool quiet = false, dry = false;
-};
 
 volatile std::sig_atomic_t stop_asked = 0;
 
@@ -94,7 +88,9 @@ std::size_t report(const Experiment& experiment, SweepStore& store, const fs::pa
   return waiting(results);
 }
 
-int run(const SweepArguments& arguments) {
+}  // namespace
+
+int sweep_command(const SweepArguments& arguments) {
   const Experiment experiment = load_experiment(arguments.experiment);
   if (arguments.dry) return list_runs(experiment), kDone;
   const fs::path folder =
@@ -118,34 +114,6 @@ int run(const SweepArguments& arguments) {
   fmt::print(stderr, "brink: {} of {} runs are not done{}; the same command goes on\n", left,
              experiment.runs.size(), stop_asked ? "" : " (another process has taken them)");
   return kEndedEarly;
-}
-
-}  // namespace
-
-void add_sweep_command(CLI::App& program, int& status) {
-  auto arguments = std::make_shared<SweepArguments>();
-  CLI::App* command = program.add_subcommand("sweep", "Many runs over options, on all cores; resumable");
-  command->add_option("EXPERIMENT", arguments->experiment, "Experiment file (TOML); see docs/sweep.md")
-      ->required();
-  command
-      ->add_option("--out", arguments->out,
-                   "Folder for sweep.db, sweep.csv and sweep.png; default runs/<experiment>")
-      ->type_name("DIR");
-  command->add_option("--jobs", arguments->jobs, "Runs at the same time; 0: one a core")
-      ->type_name("N")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
-  command->add_flag("--list", arguments->dry, "Print every run as a `brink run` command; runs nothing");
-  command->add_flag("--quiet", arguments->quiet, "No progress and no table");
-  command->footer(
-      "The same command again goes on where a sweep was stopped or killed; runs that are done are not made "
-      "again.\n"
-      "Several processes may share one folder: each run is made once.\n"
-      "Wall seconds are clean with --jobs 1.\n"
-      "Examples:\n"
-      "  brink sweep scenes/experiments/policies_and_orders.toml\n"
-      "  brink sweep my_experiment.toml --out runs/a --jobs 1");
-  command->callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace brink

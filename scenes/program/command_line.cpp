@@ -1,0 +1,174 @@
+#include "brink/scenes/program/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "brink/scenes/program/commands.h"
+#include "brink/scenes/version.h"
+
+namespace brink {
+
+namespace {
+
+void add_run(CLI::App& program, int& status) {
+  auto arguments = std::make_shared<RunArguments>();
+  CLI::App* command = program.add_subcommand("run", "Simulate a scene and write a run file");
+  command->add_option("SCENE", arguments->scene, "Scene file (TOML)")->required();
+  command->add_option("--out", arguments->out, "Folder for run.db; default runs/<scene>-<n>")
+      ->type_name("DIR");
+  command->add_option("--set", arguments->overrides, "Override a key of the scene; may be repeated")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--until", arguments->until, "Run up to this time [s] instead of the scene's duration")
+      ->type_name("T");
+  command->add_flag(
+      "--resume", arguments->resume,
+      "Go on with the run file that is there, with the same bits; needs the same scene and options");
+  command
+      ->add_option("--trace", arguments->trace,
+                   "Write what the scheduler does, as a Chrome trace (opens in ui.perfetto.dev)")
+      ->type_name("FILE");
+  command->add_flag("--quiet", arguments->quiet, "No progress bar and no summary");
+  command->add_flag("--json", arguments->json, "The summary as one JSON object on the last line");
+  command->footer(
+      "A run file that is already in the folder is kept as run-1.db, run-2.db ... unless --resume goes on "
+      "with it.\n"
+      "Ctrl-C stops at the next chance and leaves a whole run file, which --resume can go on with.\n"
+      "Examples:\n"
+      "  brink run scenes/gallery/newtons_cradle.toml\n"
+      "  brink run my_scene.toml --out runs/a --set solver.policy=global_backup --set bodies.0.mass=2\n"
+      "  brink run my_scene.toml --out runs/a --until 60 --resume\n"
+      "  brink run my_scene.toml --json | tail -n 1");
+  command->callback([arguments, &status] { status = run_command(*arguments); });
+}
+
+void add_check(CLI::App& program, int& status) {
+  auto arguments = std::make_shared<CheckArguments>();
+  CLI::App* command = program.add_subcommand("check", "Validate a scene and print the plan; runs nothing");
+  command->add_option("SCENE", arguments->scene, "Scene file (TOML)")->required();
+  command->add_option("--set", arguments->overrides, "Override a key of the scene; may be repeated")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  command->footer(
+      "Every fault is one line, FILE:LINE:COLUMN: what is wrong, what was given, what is allowed.\n"
+      "Examples:\n"
+      "  brink check my_scene.toml\n"
+      "  brink check my_scene.toml --set solver.integrator=erk");
+  command->callback([arguments, &status] { status = check_command(*arguments); });
+}
+
+void add_draw(CLI::App& program, int& status) {
+  auto arguments = std::make_shared<DrawArguments>();
+  CLI::App* command = program.add_subcommand("draw", "A picture of a scene or a run as a PNG file");
+  command->add_option("SUBJECT", arguments->subject, "Scene file, run folder or run file")->required();
+  command->add_option("-o,--output", arguments->out, "Picture to write")->type_name("FILE.png")->required();
+  command->add_option("--at", arguments->at, "Time [s]; default: the start of a scene, the end of a run")
+      ->type_name("T");
+  command->add_option("--layer", arguments->layer, "scene, color, depth, forces or pass:BODY")
+      ->type_name("LAYER");
+  command->add_option("--size", arguments->size, "Pixels")->type_name("WxH")->capture_default_str();
+  command->add_option("--set", arguments->overrides, "Override a key of the scene; may be repeated")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  command->footer(
+      "A scene is simulated up to T. A run is read: between two frames its states are interpolated.\n"
+      "Examples:\n"
+      "  brink draw scenes/gallery/newtons_cradle.toml -o start.png\n"
+      "  brink draw runs/newtons_cradle-1 --at 1.5 -o later.png\n"
+      "  brink draw my_scene.toml --layer depth --size 800x600 -o depth.png\n"
+      "  brink draw my_scene.toml --layer pass:ball -o pass.png\n"
+      "  brink draw runs/pile-1 --at 3 --layer forces -o chains.png\n"
+      "Layer forces: lines from centres to the contacts that last, as wide as their normal force is large.");
+  command->callback([arguments, &status] { status = draw_command(*arguments); });
+}
+
+void add_list(CLI::App& program, int& status) {
+  auto arguments = std::make_shared<ListArguments>();
+  CLI::App* command = program.add_subcommand("list", "What can be chosen, one line each, defaults shown");
+  command->add_option("TOPIC", arguments->topic, "What to list; everything if left out")
+      ->check(CLI::IsMember(list_topics()));
+  command->footer("Examples:\n  brink list policies\n  brink list options | grep solver");
+  command->callback([arguments, &status] { status = list_command(*arguments); });
+}
+
+void add_bench(CLI::App& program, int& status) {
+  auto arguments = std::make_shared<BenchArguments>();
+  CLI::App* command =
+      program.add_subcommand("bench", "Error against run time on problems with known answers");
+  command->add_option("NAME", arguments->names, "Problems to run; all if left out");
+  command->add_flag("--list", arguments->list, "List the problems; runs nothing");
+  command->add_option("--out", arguments->out, "Folder for bench.csv and bench.png; default runs/bench-<n>")
+      ->type_name("DIR");
+  command->add_option("--repeats", arguments->repeats, "Most repeats of a run; the median time is given")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->footer(
+      "Times are of the simulation alone. A run is repeated until a second has gone by at most; repeats must "
+      "give\n"
+      "the same bits. Ends with 1 if an exact run ends early or repeats differ.\n"
+      "Examples:\n"
+      "  brink bench\n"
+      "  brink bench bouncing_ball two_boxes --out runs/mine\n"
+      "  brink bench classic");
+  command->callback([arguments, &status] { status = bench_command(*arguments); });
+}
+
+void add_sweep(CLI::App& program, int& status) {
+  auto arguments = std::make_shared<SweepArguments>();
+  CLI::App* command = program.add_subcommand("sweep", "Many runs over options, on all cores; resumable");
+  command->add_option("EXPERIMENT", arguments->experiment, "Experiment file (TOML); see docs/sweep.md")
+      ->required();
+  command
+      ->add_option("--out", arguments->out,
+                   "Folder for sweep.db, sweep.csv and sweep.png; default runs/<experiment>")
+      ->type_name("DIR");
+  command->add_option("--jobs", arguments->jobs, "Runs at the same time; 0: one a core")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  command->add_flag("--list", arguments->dry, "Print every run as a `brink run` command; runs nothing");
+  command->add_flag("--quiet", arguments->quiet, "No progress and no table");
+  command->footer(
+      "The same command again goes on where a sweep was stopped or killed; runs that are done are not made "
+      "again.\n"
+      "Several processes may share one folder: each run is made once.\n"
+      "Wall seconds are clean with --jobs 1.\n"
+      "Examples:\n"
+      "  brink sweep scenes/experiments/policies_and_orders.toml\n"
+      "  brink sweep my_experiment.toml --out runs/a --jobs 1");
+  command->callback([arguments, &status] { status = sweep_command(*arguments); });
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
+  CLI::App program("Brink: many rigid bodies in the plane, exact to the contact time.", "brink");
+  program.set_version_flag("--version", std::string(version()));
+  program.require_subcommand(1);
+  program.footer(
+      "Examples:\n"
+      "  brink run scenes/gallery/newtons_cradle.toml\n"
+      "  brink check my_scene.toml\n"
+      "  brink draw my_scene.toml -o start.png\n"
+      "  brink list options\n"
+      "  brink bench bouncing_ball\n"
+      "  brink sweep scenes/experiments/policies_and_orders.toml\n"
+      "Exit status: 0 done, 1 ended early, 2 bad usage or input, 3 could not read or write.\n"
+      "`brink COMMAND --help` says more.");
+  int status = kDone;
+  add_run(program, status);
+  add_check(program, status);
+  add_draw(program, status);
+  add_list(program, status);
+  add_bench(program, status);
+  add_sweep(program, status);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {  // help is one, too
+    return program.exit(e) == 0 ? kDone : kBadInput;
+  }
+  return status;
+}
+
+}  // namespace brink

@@ -1,0 +1,64 @@
+#pragma once
+/// The commands of `brink`, each a file of its own: what it is asked for, and what it ends with. How the command line
+/// spells that is command_line.h's business.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace brink {
+
+/// What `brink` exits with.
+enum ExitStatus : int {
+  kDone = 0,
+  kEndedEarly = 1,  ///< the run file holds all up to there
+  kBadInput = 2,    ///< bad usage or bad input
+  kIoFailed = 3,    ///< could not read or write
+};
+
+struct RunArguments {
+  std::string scene, out, trace;
+  std::vector<std::string> overrides;
+  std::optional<double> until;
+  bool resume = false, quiet = false, json = false;
+};
+
+struct CheckArguments {
+  std::string scene;
+  std::vector<std::string> overrides;
+};
+
+struct DrawArguments {
+  std::string subject, out, layer = "scene", size = "1200x900";
+  std::optional<double> at;
+  std::vector<std::string> overrides;
+};
+
+struct ListArguments {
+  std::string topic;  ///< empty: every one
+};
+
+struct BenchArguments {
+  std::vector<std::string> names;
+  std::string out;
+  int repeats = 5;
+  bool list = false;
+};
+
+struct SweepArguments {
+  std::string experiment, out;
+  int jobs = 0;
+  bool quiet = false, dry = false;
+};
+
+/// Each returns an ExitStatus. @throws BadInput, SceneFaults (a BadInput), IoError
+int run_command(const RunArguments& arguments);
+int check_command(const CheckArguments& arguments);
+int draw_command(const DrawArguments& arguments);
+int list_command(const ListArguments& arguments);
+int bench_command(const BenchArguments& arguments);
+int sweep_command(const SweepArguments& arguments);
+/// What `brink list` can be asked for.
+std::vector<std::string> list_topics();
+
+}  // namespace brink
