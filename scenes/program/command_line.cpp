@@ -110,6 +110,7 @@ void add_bench(CLI::App& program, int& status) {
       "Examples:\n"
       "  brink bench\n"
       "  brink bench bouncing_ball two_boxes --out runs/mine\n"
+      "  brink bench rest\n"
       "  brink bench classic");
   command->callback([arguments, &status] { status = bench_command(*arguments); });
 }

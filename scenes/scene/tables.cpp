@@ -238,6 +238,9 @@ const Schema<SolverOptions>& solver_schema() {
           .count(
               "modes_contacts", &S::modes_contacts, whole(),
               "few bodies with at most so many contacts that last move to `tolerance`, others to first order")
+          .key("island_tolerance", &S::island_tolerance, number(between(0.0, 1e6, "m")),
+               "what a step of first order may be off in place; 0: steps as long as a fall by the smallest "
+               "allows")
           .key("rest_speed", &S::rest_speed, number(between(0.0, 1e6, "m/s")),
                "what lasting contacts hold is taken to be at rest below this speed; 0: only what is at rest")
           .count("kept_states", &S::kept_states, whole(),

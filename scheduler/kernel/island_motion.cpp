@@ -26,6 +26,8 @@ constexpr double kClear = 100.0;
 constexpr int kTangents = 32;
 /// Impacts of one instant inside an island, at most; what closes then is taken as plastic.
 constexpr std::size_t kFirstImpacts = 100, kImpactsEach = 20;
+/// Halving a step makes its change of velocity fall to this part at most, if forces make it.
+constexpr double kFalls = 0.75;
 /// A force below this part of the weight of the heaviest member is none.
 constexpr double kNoForce = 1e-9;
 /// A speed below this part of what the smallest member gains as it falls by its size is none.
@@ -160,11 +162,11 @@ bool IslandMotion::take(IslandModes& modes, double now, double h, bool on_time) 
   return false;
 }
 
-bool IslandMotion::take(double h) {
+bool IslandMotion::take(double h, double tolerance) {
   by_modes_ = false;
   contacts_.clear();
   if (!(h < kForever)) return true;  // nothing moves or pulls: nobody needs anybody
-  double reach = kReach;
+  double reach = kReach, change_before = kForever;
   const auto look = [&](double step) {
     h_ = step;
     members_.look_ahead(h_, reach);
@@ -180,6 +182,13 @@ bool IslandMotion::take(double h) {
     const StepOutcome outcome = take_step(*solver_, problem_, h, search_->limits().tolerance, gap);
     tally_->factorisations += outcome.factorisations;
     const bool within = outcome.solved && stays_within_reach();
+    // what forces change falls with the step; what does not is an impact
+    const double change = within ? change_of_speed() : 0.0, off = 0.5 * h_ * change;
+    if (tolerance > 0.0 && off > tolerance && change <= kFalls * change_before) {
+      change_before = change;
+      h = h_ * std::clamp(0.9 * std::sqrt(tolerance / off), 0.1, 0.5);
+      continue;
+    }
     if (within) {
       tally_->friction_residual = std::max(tally_->friction_residual, outcome.friction_residual);
       tally_->energy_won += outcome.won;
@@ -292,6 +301,16 @@ bool IslandMotion::stays_within_reach() const {
       return false;
   }
   return true;
+}
+
+/// The most that the step changes the velocity of any member's points [m/s].
+double IslandMotion::change_of_speed() const {
+  double most = 0.0;
+  for (int i = 0; i < static_cast<int>(members_.count()); ++i) {
+    const Vec3 change = problem_.velocity[i] - as_vector(members_.state(i).twist.rounded());
+    most = std::max(most, change.head<2>().norm() + std::abs(change[2]) * members_.bounding_radius(i));
+  }
+  return most;
 }
 
 void IslandMotion::take_forces() {

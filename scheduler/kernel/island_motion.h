@@ -40,8 +40,8 @@ class IslandMotion {
   /// Takes a step of `h` [s] at most by modes; false: not that way. @pre sites are covered as far.
   bool take(IslandModes& modes, double now, double h, bool on_time);
   /// Takes a step of `h` [s] at most, and less where that does not do. False: not even the shortest does.
-  /// @pre sites are covered as far.
-  bool take(double h);
+  /// `tolerance`: what its places may be off by the order of the step [m], 0: any. @pre sites are covered as far.
+  bool take(double h, double tolerance);
 
   /// Members that push each other, or are coupled to such, together; and those that nothing pushes.
   struct Parts {
@@ -71,6 +71,7 @@ class IslandMotion {
   void make_problem();
   IslandContact island_contact(const HeldContact& c) const;
   bool stays_within_reach() const;
+  double change_of_speed() const;
   void take_forces();
   double kinetic_energy() const;
   bool pushes(const HeldContact& c) const;

@@ -26,14 +26,14 @@ int next_hasty(int hasty, bool by_modes, bool was_short) {
 }  // namespace
 
 Islands::Islands(const World& world, Trajectories& trajectories, ContactSearch& search,
-                 CollisionResponse& response, Records& records, RunControl& run, double rest_speed)
+                 CollisionResponse& response, Records& records, RunControl& run, const Limits& limits)
     : world_(&world),
       trajectories_(&trajectories),
       search_(&search),
       response_(&response),
       records_(&records),
       run_(&run),
-      rest_speed_(rest_speed) {}
+      limits_(limits) {}
 
 void Islands::gather(int body, std::set<int>& members) const {
   if (members.count(body)) return;
@@ -178,14 +178,14 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
         note_impact(c, from, closing, r.normal, r.tangential);
       });
   on_time = on_time && run_->work().collisions == collisions;
-  const bool rests = motion.rests(rest_speed_);
+  const bool rests = motion.rests(limits_.rest_speed);
   const double h = std::min(longest, motion.longest());
   if (!rests && std::isfinite(h)) {
     if (!trajectories_->cover_sites(now + h)) return false;
     trajectories_->follow_sites(now + 2.0 * h);  // what is beyond the end must not depend on who has asked
   }
   const bool by_modes = !rests && motion.take(modes, now, h, on_time);
-  if (!rests && !by_modes && !motion.take(h)) {
+  if (!rests && !by_modes && !motion.take(h, limits_.tolerance)) {
     run_->stop(
         Termination::failed,
         fmt::format("an island of {} bodies, '{}' the first, finds no step at t = {:.17g} that keeps its "

@@ -24,9 +24,13 @@ namespace brink {
 
 class Islands {
  public:
+  struct Limits {
+    double rest_speed = 0.0;  ///< [m/s], 0: none
+    double tolerance = 0.0;   ///< what a step may be off in place [m], 0: any
+  };
   /// What is given must outlive it.
   Islands(const World& world, Trajectories& trajectories, ContactSearch& search, CollisionResponse& response,
-          Records& records, RunControl& run, double rest_speed);
+          Records& records, RunControl& run, const Limits& limits);
 
   /// Contacts may last from now on: an option, and a policy that asks for next_step().
   void allow(const IslandModes::Limits& by_modes) {
@@ -94,7 +98,7 @@ class Islands {
   Records* records_;
   RunControl* run_;
   ConeQp solver_;
-  double rest_speed_;
+  Limits limits_;
   bool allowed_ = false;
   IslandModes::Limits by_modes_;
   std::map<int, Island> islands_;

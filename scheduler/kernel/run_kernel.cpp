@@ -53,7 +53,8 @@ KernelParts::KernelParts(World given, SolverOptions chosen)
       speculation(trajectories, run),
       endings(search.limits().tolerance, options.max_collisions),
       records(trajectories, run),
-      islands(world, trajectories, search, response, records, run, options.rest_speed),
+      islands(world, trajectories, search, response, records, run,
+              {options.rest_speed, options.island_tolerance}),
       policy_watch(options.policy, search, speculation),
       random(options.seed) {}
 

@@ -64,6 +64,7 @@ std::uint64_t fingerprint(const World& world, const SolverOptions& options) {
   hash.add(options.contact_tolerance);
   hash.add(options.modes_contacts);
   hash.add(options.rest_speed);
+  hash.add(options.island_tolerance);
   hash.add(static_cast<std::uint64_t>(options.persistent));
   hash.add(options.seed);
   return hash.value();

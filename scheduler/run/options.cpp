@@ -81,6 +81,7 @@ bool SolverOptions::is_valid(std::string* error) const {
   }
   return known(policies(), policy, "policy", error) && known(responses(), response, "response", error) &&
          known(detectors(), detector, "detector", error) && not_negative(rest_speed, "rest_speed", error) &&
+         not_negative(island_tolerance, "island_tolerance", error) &&
          positive(contact_tolerance, "contact_tolerance", error) && positive(step, "step", error) &&
          integrator_options().is_valid(error) && field.is_valid(error);
 }

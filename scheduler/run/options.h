@@ -36,6 +36,9 @@ struct SolverOptions {
   bool persistent = true;
   /// Islands of few bodies with at most so many contacts move by modes, to `tolerance`; others in steps. 0: none.
   std::uint64_t modes_contacts = 0;
+  /// Steps of islands are so short that nobody's place is off by more in one of them [m]: half of what its change of
+  /// velocity moves it. Impacts in a step do not count. 0: steps are as long as the smallest member's fall allows.
+  double island_tolerance = 0.0;
   /// Where contacts hold an island and nothing of it is faster than this, it is taken to be at rest [m/s]; the
   /// energy that goes with it is told. 0: an island is at rest where nothing of its motion is left.
   double rest_speed = 0.0;

@@ -57,6 +57,22 @@ double error_of_way(double size, double friction) {
   return way(simulator.state(0)) - 0.5 * a;
 }
 
+// A step is off by half of what its change of velocity moves: h^2 a / 2, so errors go with the root of what is allowed.
+TEST(BlockOnAnIncline, SlidesAsExactlyAsIslandToleranceAsks) {
+  const double friction = 0.2, a = kEarth * (std::sin(kSteep) - friction * std::cos(kSteep));
+  std::vector<double> errors;
+  for (const double tolerance : {1e-5, 1e-7, 1e-9}) {
+    SolverOptions options = lasting();
+    options.island_tolerance = tolerance;
+    Simulator simulator(block_on_an_incline(0.2, friction), options);
+    EXPECT_EQ(go_on(simulator, 1.0), "");
+    errors.push_back(std::abs(way(simulator.state(0)) - 0.5 * a));
+    std::printf("island_tolerance %.0e: off by %.2e m\n", tolerance, errors.back());
+  }
+  EXPECT_LT(errors[0], 0.01);
+  for (const int k : {1, 2}) EXPECT_NEAR(errors[k - 1] / errors[k], 10.0, 4.0);
+}
+
 TEST(BlockOnAnIncline, SlidesWithTheAccelerationThatFrictionLeavesToOrderOne) {
   for (const double friction : {0.0, 0.2, 0.999 * std::tan(kSteep)}) {
     double coarser = 0.0;

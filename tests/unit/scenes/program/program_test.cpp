@@ -344,6 +344,40 @@ TEST_F(ProgramTest, BenchMeasuresAProblemWithAKnownAnswer) {
   EXPECT_EQ(brink("bench nonesuch").status, 2);
 }
 
+std::vector<std::vector<std::string>> cells_of(const std::string& csv) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream table(csv);
+  for (std::string line; std::getline(table, line);) {
+    std::istringstream row(line);
+    std::vector<std::string>& cells = rows.emplace_back();
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+  }
+  return rows;
+}
+
+// By modes every digit that is asked for, in steps two or three; heaps come to rest with nobody in anybody else.
+TEST_F(ProgramTest, BenchRestMeasuresContactsThatLast) {
+  const Outcome bench = brink("bench rest --out r");
+  ASSERT_EQ(bench.status, 0) << bench.error;
+  EXPECT_EQ(text_of(dir_ / "r" / "rest.png").substr(1, 3), "PNG");
+  int modes = 0, steps = 0, settled = 0;
+  for (const auto& row : cells_of(text_of(dir_ / "r" / "rest.csv"))) {
+    if (row.at(1) != "modes" && row.at(1) != "steps") continue;
+    const bool by_modes = row.at(1) == "modes";
+    ++(by_modes ? modes : steps);
+    EXPECT_LT(std::stod(row.at(4)), by_modes ? 1e-9 : 0.05) << row.at(0);
+  }
+  for (const auto& row : cells_of(text_of(dir_ / "r" / "settling.csv"))) {
+    if (row.at(1) != "Brink") continue;
+    ++settled;
+    EXPECT_LT(std::stod(row.at(2)), 8.0) << row.at(0);
+    EXPECT_LT(std::stod(row.at(4)), 1e-9) << row.at(0);
+  }
+  EXPECT_EQ(modes, 15);
+  EXPECT_EQ(steps, 3);
+  EXPECT_EQ(settled, 3);
+}
+
 TEST_F(ProgramTest, AKeyOfBeforeIsAFaultThatNamesTheNewOne) {
   const Outcome check = brink("check ball.toml --set solver.skip_broad_phase=false");
   EXPECT_EQ(check.status, 2);

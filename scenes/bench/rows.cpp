@@ -1,0 +1,57 @@
+#include "brink/scenes/bench/rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "brink/scenes/bench/csv.h"
+#include "brink/scenes/program/terminal.h"
+
+namespace brink::bench {
+
+namespace {
+
+std::string time_text(double seconds) {
+  if (seconds < 1e-3) return fmt::format("{:.3g} \u00b5s", 1e6 * seconds);
+  return seconds < 1.0 ? fmt::format("{:.3g} ms", 1e3 * seconds) : fmt::format("{:.3g} s", seconds);
+}
+
+bool reached(const Row& row) { return row.summary.termination == Termination::reached_end; }
+
+}  // namespace
+
+bool is_good(const Row& row) { return row.same_hash && (row.setting.approximate || reached(row)); }
+
+void print_heading(const Problem& p) {
+  fmt::print("{}  {}\n", paint(stdout, Paint::heading, p.name), p.title);
+  fmt::print("  {:<14} {:<18} {:>10} {:>10} {:>10} {:>7}  {:<16}   error: {}\n", "series", "setting", "error",
+             "wall", "collisions", "missed", "state hash", p.error_of);
+}
+
+void print(const Row& row) {
+  std::string line = fmt::format("  {:<14} {:<18} {:>10.1e} {:>10} {:>10} {:>7}  {:016x}", row.setting.series,
+                                 row.setting.label, row.error, time_text(row.wall_seconds), row.collisions,
+                                 row.missed, row.summary.state_hash);
+  if (!reached(row)) line += "  " + row.summary.termination_text();
+  if (!row.same_hash) line += "  repeats differ in their bits";
+  fmt::print("{}\n", !is_good(row) ? paint(stdout, Paint::bad, line) : line);
+  std::fflush(stdout);
+}
+
+void write_csv(const std::filesystem::path& file, const std::vector<Row>& rows) {
+  Csv csv(file,
+          "problem,series,setting,approximate,error,wall_seconds,repeats,expected,collisions,missed,end_time,"
+          "termination,state_hash,right_hand_sides");
+  for (const Row& r : rows) {
+    std::string ending = r.summary.termination_text();
+    std::replace(ending.begin(), ending.end(), '"', '\'');
+    csv.row("{},{},{},{:d},{:.17g},{:.6g},{},{},{},{},{:.17g},\"{}\",{:016x},{}", r.problem, r.setting.series,
+            r.setting.label, r.setting.approximate, r.error, r.wall_seconds, r.repeats, r.expected,
+            r.collisions, r.missed, r.summary.end_time, ending, r.summary.state_hash,
+            r.summary.work.right_hand_sides);
+  }
+  csv.close();
+}
+
+}  // namespace brink::bench

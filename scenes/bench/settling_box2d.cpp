@@ -1,0 +1,66 @@
+#include <box2d/box2d.h>
+
+#include <algorithm>
+#include <ctime>
+
+#include "brink/scenes/bench/settling.h"
+
+namespace brink::bench {
+
+namespace {
+
+b2Vec2 vector(const Vec2& v) { return {static_cast<float>(v.x()), static_cast<float>(v.y())}; }
+
+/// Gives `body` the outline of a disc or of a convex polygon. @pre it is one of these
+void add_fixture(b2Body* body, const Outline& outline, double density) {
+  b2FixtureDef fixture;
+  b2CircleShape circle;
+  b2PolygonShape polygon;
+  if (outline.is_point()) {
+    circle.m_radius = static_cast<float>(outline.bounding_radius);
+    fixture.shape = &circle;
+  } else {
+    std::vector<b2Vec2> corners;
+    for (const Sample& s : outline.samples) corners.push_back(vector(s.p));
+    polygon.Set(corners.data(), static_cast<int32>(corners.size()));
+    fixture.shape = &polygon;
+  }
+  fixture.density = static_cast<float>(density);
+  fixture.friction = 0.5f;
+  fixture.restitution = 0.0f;
+  body->CreateFixture(&fixture);
+}
+
+b2Body* add(b2World& world, b2BodyType type, const Outline& outline, const Pose& pose) {
+  b2BodyDef def;
+  def.type = type;
+  def.position = vector(pose.position);
+  def.angle = static_cast<float>(pose.angle);
+  b2Body* body = world.CreateBody(&def);
+  add_fixture(body, outline, 1.0);
+  return body;
+}
+
+}  // namespace
+
+Settled settle_with_box2d(const Heap& heap) {
+  const World& given = heap.scene.world;
+  b2World world(vector(given.gravity));
+  for (const FixedSite& site : given.sites) add(world, b2_staticBody, *site.outline, site.pose);
+  std::vector<b2Body*> bodies;
+  for (const Body& b : given.bodies) bodies.push_back(add(world, b2_dynamicBody, *b.outline, b.initial.pose));
+  Settled settled{"Box2D 2.4.1"};
+  for (int frame = 1; frame * kFrame < heap.scene.duration; ++frame) {
+    const std::clock_t begin = std::clock();
+    world.Step(static_cast<float>(kFrame), 8, 3);
+    settled.cpu_seconds += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    std::vector<Pose> poses;
+    for (const b2Body* b : bodies) poses.push_back({{b->GetPosition().x, b->GetPosition().y}, b->GetAngle()});
+    settled.overlap = std::max(settled.overlap, deepest_overlap(given, poses));
+    if (std::none_of(bodies.begin(), bodies.end(), [](const b2Body* b) { return b->IsAwake(); }))
+      settled.at_rest = std::min(settled.at_rest, frame * kFrame);
+  }
+  return settled;
+}
+
+}  // namespace brink::bench
