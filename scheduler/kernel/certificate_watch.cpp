@@ -130,15 +130,19 @@ void CertificateWatch::frame(double t) {
     });
   for (int k = 0; k < trajectories_->body_count() && !run_->halt(); ++k) flight(k, t);
   flown_until_ = t;
-  if (on_) seen_until_ = t;
 }
 
 void CertificateWatch::note_who_moved() {
-  moved_.resize(trajectories_->owner_count());
+  const int bodies = trajectories_->body_count();
+  const bool first = seen_.empty();
+  moved_.assign(trajectories_->owner_count(), true);
+  seen_.resize(bodies);
   for (int k = 0; k < trajectories_->owner_count(); ++k) {
-    const Motion& motion = trajectories_->motion_of(k);
-    moved_[k] = !(motion.is_still() && motion.begin() < seen_until_);
+    const bool same = k >= bodies || seen_[k] == trajectories_->body(k).version;
+    moved_[k] = first || !same || !trajectories_->motion_of(k).is_still();
+    if (k < bodies) seen_[k] = trajectories_->body(k).version;
   }
+  if (!on_) seen_.clear();
 }
 
 bool CertificateWatch::pair_at_frame(const PairKey& pair, double t) {

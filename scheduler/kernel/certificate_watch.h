@@ -2,7 +2,7 @@
 /// The watch over what searches have certified: overlaps and sides of the pairs just resolved, all pairs at
 /// frames, ways through wires. What it sees ends the run. Cost: below 3 %.
 
-#include <limits>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -48,6 +48,7 @@ class CertificateWatch {
   void restore(const Saved& saved) {
     max_overlap_ = saved.max_overlap;
     start_overlap_ = saved.start_overlap;
+    seen_.clear();
     flown_until_ = saved.flown_until;
   }
 
@@ -69,9 +70,9 @@ class CertificateWatch {
   bool walls_made_ = false;
   ThinWalls walls_;                    ///< of still sites
   std::vector<bool> material_centre_;  ///< of bodies whose centre of mass is in them
-  std::vector<bool> moved_;            ///< of every owner, since seen_until_
-  /// The last frame at which all pairs had been looked at; a run that goes on begins anew [s].
-  double seen_until_ = -std::numeric_limits<double>::infinity();
+  std::vector<bool> moved_;            ///< of every owner, since the last frame
+  std::vector<std::uint64_t>
+      seen_;                    ///< versions of the bodies at the last frame; empty: all pairs are to be seen
   double flown_until_ = 0.0;    ///< flights before were looked at, at the last frame [s]
   double start_overlap_ = 0.0;  ///< deepest overlap that the world started with [m]
   double max_overlap_ = 0.0;
