@@ -20,7 +20,7 @@ namespace {
 using testing::LastingWorld;
 
 /// Seeds 0 .. kWorlds - 1; BRINK_WORLDS asks for more, BRINK_SEED for one alone. Each is broken off kBreaks times and
-/// gone on with, BRINK_BREAKS asks for more; and as often it goes on from a checkpoint.
+/// gone on with, BRINK_BREAKS asks for more; and as often it goes on from a checkpoint. BRINK_MODES: solver.modes_contacts.
 constexpr std::uint64_t kWorlds = 32, kBreaks = 4;
 /// Hollow corners and walls that rise from a joint were passed through in these.
 constexpr std::array<std::uint64_t, 8> kOnceFailed{43, 44, 51, 58, 59, 76, 84, 98};
@@ -46,6 +46,7 @@ SolverOptions by(const std::string& policy) {
   options.policy = policy;
   options.persistent = true;
   options.max_collisions = 200000;
+  if (const char* modes = std::getenv("BRINK_MODES")) options.modes_contacts = std::stoull(modes);
   return options;
 }
 
