@@ -343,7 +343,7 @@ bool IslandMotion::stays_near(const HeldContact& c) const {
     const double closing = members_.closing_speed(c);
     const bool slow = closing >= -std::sqrt(kClear) * IslandModes::slowest_bounce(members_, *search_);
     if (c.feature.gap <= kClear * tolerance && slow) return true;
-    return !c.pair.with_site() && c.feature.gap <= behind * h_ && closing >= -behind;
+    return !c.pair.with_site() && c.feature.gap - h_ * (closing + behind) <= tolerance;
   }
   if (c.pair.with_site()) return false;
   const double closing = members_.closing_speed(c, after(members_.place_of(c.pair.body)).twist,
