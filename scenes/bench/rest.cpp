@@ -60,7 +60,8 @@ bool heaps_that_settle(const std::filesystem::path& folder) {
                  s.overlap);
       std::fflush(stdout);
       csv.row("{},{},{:.17g},{:.6g},{:.6g}", heap.name, s.engine, s.at_rest, s.cpu_seconds, s.overlap);
-      good = good && (settle != settle_with_brink || s.engine == "Brink");
+      if (!s.why.empty()) fmt::print("  {}\n", s.why);
+      good = good && s.why.empty();
     }
   csv.close();
 #ifndef BRINK_BOX2D

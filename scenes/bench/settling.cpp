@@ -66,7 +66,7 @@ Settled settle_with_brink(const Heap& heap) {
     const RunSummary summary = simulator.run(how);
     settled.cpu_seconds += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     if (summary.termination != Termination::reached_end) {
-      settled.engine += ", " + summary.termination_text();
+      settled.why = summary.termination_text();
       break;
     }
     std::vector<Pose> poses;

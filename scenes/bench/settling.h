@@ -17,6 +17,7 @@ struct Heap {
 /// What an engine made of a heap.
 struct Settled {
   std::string engine;
+  std::string why = {};  ///< it ended early; empty: it did not
   double at_rest =
       std::numeric_limits<double>::infinity();  ///< everybody asleep [s]; infinity: not by the end
   double cpu_seconds = 0.0;                     ///< of the steps alone, to the end

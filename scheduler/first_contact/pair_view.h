@@ -85,8 +85,8 @@ class PairView {
   /// come out any further. Never so while the two are apart.
   bool pokes_through(const Half& half, int i, const Site& site, const Nearest& nearest,
                      const Feature& f) const;
-  /// True if site j is near q, where sample i is, but what q would touch is another of the neighbours. At a joint: one that is
-  /// as near with its interior. Behind a solid: j is the far side of a sliver, whose near side q has in front
+  /// True if site j is near q, where sample i is, but what q would touch is another of the neighbours. At a
+  /// joint: one that is as near with its interior. Behind a solid: j is the far side of a sliver, whose near side q has in front
   /// of it, or is deeper in.
   bool belongs_to_a_neighbour(const Half& half, int i, int j, const Nearest& nearest, const Vec2& q) const;
   /// The same of a feature near which no neighbours were looked for yet. Cost: a look at every site.

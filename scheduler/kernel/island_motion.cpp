@@ -26,6 +26,8 @@ constexpr double kClear = 100.0;
 constexpr int kTangents = 32;
 /// Impacts of one instant inside an island, at most; what closes then is taken as plastic.
 constexpr std::size_t kFirstImpacts = 100, kImpactsEach = 20;
+/// No tolerance makes a step shorter than this part of what it would be.
+constexpr double kShortest = 1e-4;
 /// Halving a step makes its change of velocity fall to this part at most, if forces make it.
 constexpr double kFalls = 0.75;
 /// A force below this part of the weight of the heaviest member is none.
@@ -167,6 +169,8 @@ bool IslandMotion::take(double h, double tolerance) {
   contacts_.clear();
   if (!(h < kForever)) return true;  // nothing moves or pulls: nobody needs anybody
   double reach = kReach, change_before = kForever;
+  const double shortest = kShortest * h, pull = members_.pull();
+  if (tolerance > 0.0 && pull > 0.0) h = std::clamp(std::sqrt(2.0 * tolerance / pull), shortest, h);
   const auto look = [&](double step) {
     h_ = step;
     members_.look_ahead(h_, reach);
@@ -184,9 +188,9 @@ bool IslandMotion::take(double h, double tolerance) {
     const bool within = outcome.solved && stays_within_reach();
     // what forces change falls with the step; what does not is an impact
     const double change = within ? change_of_speed() : 0.0, off = 0.5 * h_ * change;
-    if (tolerance > 0.0 && off > tolerance && change <= kFalls * change_before) {
+    if (tolerance > 0.0 && off > tolerance && h_ > shortest && change <= kFalls * change_before) {
       change_before = change;
-      h = h_ * std::clamp(0.9 * std::sqrt(tolerance / off), 0.1, 0.5);
+      h = std::max(h_ * std::clamp(0.9 * std::sqrt(tolerance / off), 0.1, 0.5), shortest);
       continue;
     }
     if (within) {

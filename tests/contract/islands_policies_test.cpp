@@ -41,11 +41,12 @@ std::uint64_t breaks() {
 
 LastingWorld make(std::uint64_t seed) { return testing::LastingWorldMaker(seed).make(); }
 
-SolverOptions by(const std::string& policy) {
+SolverOptions by(const LastingWorld& w, const std::string& policy) {
   SolverOptions options;
   options.policy = policy;
   options.persistent = true;
   options.max_collisions = 200000;
+  options.island_tolerance = w.island_tolerance;
   if (const char* modes = std::getenv("BRINK_MODES")) options.modes_contacts = std::stoull(modes);
   return options;
 }
@@ -69,7 +70,7 @@ struct Told {
 };
 
 Told run(const LastingWorld& w, const std::string& policy) {
-  Simulator simulator(w.world, by(policy));
+  Simulator simulator(w.world, by(w, policy));
   testing::Events events;
   const RunSummary summary = simulator.run(options_to(w.duration, w.duration / 7.0), &events);
   return {events.events, summary};
@@ -140,7 +141,7 @@ class SomeCheckpoints : public testing::Events {
 
 /// Goes on from `state` in a simulator that knows nothing else.
 Told go_on(const LastingWorld& w, const std::string& policy, const std::vector<std::byte>& state) {
-  Simulator simulator(w.world, by(policy));
+  Simulator simulator(w.world, by(w, policy));
   simulator.restore(state);
   RunOptions options = options_to(w.duration);
   options.first_frame = false;
@@ -157,7 +158,7 @@ Told run_in_pieces(const LastingWorld& w, const std::string& policy, std::vector
   RunSummary summary;
   std::vector<std::byte> state;
   for (const double end : ends) {
-    Simulator simulator(w.world, by(policy));
+    Simulator simulator(w.world, by(w, policy));
     if (!state.empty()) simulator.restore(state);
     summary = simulator.run(options_to(end), &events);
     if (summary.termination != Termination::reached_end) break;
@@ -168,7 +169,7 @@ Told run_in_pieces(const LastingWorld& w, const std::string& policy, std::vector
 
 /// Runs to the end, one collision at a time.
 Told run_by_events(const LastingWorld& w, const std::string& policy) {
-  Simulator simulator(w.world, by(policy));
+  Simulator simulator(w.world, by(w, policy));
   testing::Events events;
   RunSummary summary;
   do {
@@ -204,7 +205,7 @@ TEST(Islands, ResumedAnywhereGoOnWithTheSameBits) {
     SomeCheckpoints checkpoints(random, breaks());
     RunOptions often = options_to(w.duration);
     often.checkpoint_seconds = 0.0;
-    Simulator(w.world, by(policy)).run(often, &checkpoints);
+    Simulator(w.world, by(w, policy)).run(often, &checkpoints);
     for (const auto& state : checkpoints.kept)
       different += tell(difference(whole, go_on(w, policy, state)), name + ", from a checkpoint");
   }
@@ -213,7 +214,7 @@ TEST(Islands, ResumedAnywhereGoOnWithTheSameBits) {
 
 /// Frames at even times, and others at random ones between.
 RunSummary watched(const LastingWorld& w, Random& random, outside::FrameWatch& watch) {
-  Simulator simulator(w.world, by("body_clocks"));
+  Simulator simulator(w.world, by(w, "body_clocks"));
   std::vector<double> ends{w.duration};
   for (int k = 0; k < 40; ++k) ends.push_back(random.uniform(0.0, w.duration));
   std::sort(ends.begin(), ends.end());

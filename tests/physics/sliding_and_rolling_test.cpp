@@ -73,6 +73,14 @@ TEST(BlockOnAnIncline, SlidesAsExactlyAsIslandToleranceAsks) {
   for (const int k : {1, 2}) EXPECT_NEAR(errors[k - 1] / errors[k], 10.0, 4.0);
 }
 
+TEST(BlockOnAnIncline, SlidesOnWhereNoStepIsExactEnough) {
+  SolverOptions options = lasting();
+  options.island_tolerance = 1e-300;
+  Simulator simulator(block_on_an_incline(0.2, 0.2), options);
+  EXPECT_EQ(go_on(simulator, 0.01), "");
+  EXPECT_GT(way(simulator.state(0)), 0.0);
+}
+
 TEST(BlockOnAnIncline, SlidesWithTheAccelerationThatFrictionLeavesToOrderOne) {
   for (const double friction : {0.0, 0.2, 0.999 * std::tan(kSteep)}) {
     double coarser = 0.0;

@@ -15,10 +15,11 @@ namespace brink::testing {
 struct LastingWorld {
   World world;
   std::string ground;
-  double duration = 2.0;      ///< [s]
-  bool moves = false;         ///< a site gives or takes energy
-  bool pulls = false;         ///< springs or drag
-  bool rebounds_rub = false;  ///< restitution with friction: Newton's law may win energy then (Kane 1984)
+  double duration = 2.0;          ///< [s]
+  double island_tolerance = 0.0;  ///< the option [m]
+  bool moves = false;             ///< a site gives or takes energy
+  bool pulls = false;             ///< springs or drag
+  bool rebounds_rub = false;      ///< restitution with friction: Newton's law may win energy then (Kane 1984)
 };
 
 class LastingWorldMaker {
@@ -36,6 +37,7 @@ class LastingWorldMaker {
     if (seed_ % 7 == 0) slow_down();
     if (seed_ % 4 == 3)  // hard to roll, up to a tenth of the smallest bodies
       for (Material& m : made_.world.materials) m.rolling_resistance = random_.uniform(0.0, 0.01);
+    if (seed_ % 6 == 4) made_.island_tolerance = seed_ % 12 == 4 ? 1e-5 : 1e-6;
     return made_;
   }
 
