@@ -173,7 +173,7 @@ Vector3d PrescribedMotion::noise(const Cell& at) const {
   Vector3d most = Vector3d::Zero();
   for (const double t : {at.begin, at.begin + 0.5 * at.width, at.begin + at.width})
     for (int i = 0; i < 3; ++i) {
-      const double spread = bound_(i, t, t, false).spread();
+      const double spread = bound_(i, t, t, BoundOf::value).spread();
       if (std::isfinite(spread)) most[i] = std::max(most[i], spread);
     }
   return most;
@@ -186,7 +186,7 @@ PrescribedMotion::Certainty PrescribedMotion::bound(const Cell& at) const {
   const double product = std::ldexp(std::pow(0.5 * at.width, kDegree + 1), 1 - kDegree);
   Certainty known;
   for (int i = 0; i < 3; ++i) {
-    const TimeBound b = bound_(i, at.begin, at.begin + at.width, true);
+    const TimeBound b = bound_(i, at.begin, at.begin + at.width, BoundOf::eleventh);
     known.spread[i] = b.spread();
     known.remainder[i] = b.eleventh == 0.0 ? 0.0 : product * b.eleventh;
   }

@@ -28,8 +28,8 @@ namespace brink {
 class PrescribedMotion {
  public:
   using Function = std::function<Eigen::Vector3d(double)>;
-  /// Of coordinate i (x, y, angle) over [from, to]; without derivatives, of its value alone.
-  using Bound = std::function<TimeBound(int i, double from, double to, bool with_derivatives)>;
+  /// Of coordinate i (x, y, angle) over [from, to], with derivatives up to the highest that is named.
+  using Bound = std::function<TimeBound(int i, double from, double to, BoundOf highest)>;
 
   /// The motion is `base` + `pose`; the base, which may be far away, does not blur the fit. `bound` holds for
   /// what `pose` gives but for a few roundings. `name` stands for the function in messages:

@@ -76,6 +76,13 @@ struct ExtendedState {
     s.position += by.cast<Real>();
     return s;
   }
+  /// Where a point of its frame is.
+  RealVec to_world(const Vec2& local) const {
+    const RealVec p = local.cast<Real>();
+    if (angle == 0) return position + p;
+    const Real c = std::cos(angle), s = std::sin(angle);
+    return position + RealVec(c * p.x() - s * p.y(), s * p.x() + c * p.y());
+  }
   /// The state `moment` later, to first order: for moments as short as a rounding of the clock.
   ExtendedState moved(Real moment) const {
     ExtendedState s = *this;

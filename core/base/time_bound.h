@@ -5,6 +5,9 @@
 
 namespace brink {
 
+/// Of which derivatives bounds are asked for: each costs about the square of its order.
+enum class BoundOf { value = 0, second = 2, eleventh = 11 };
+
 /// Bounds that hold for every time of an interval, not for samples of it.
 struct TimeBound {
   double low = 0.0, high = 0.0;  ///< of the value

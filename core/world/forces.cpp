@@ -27,7 +27,11 @@ class ForceDynamics final : public Dynamics {
   void take(int place, const DragForce& drag) { drags_.push_back({place, &drag}); }
   void take(int place, const AttractForce& attract) { attracts_.push_back({place, &attract}); }
   void take(int place, const ThrustForce& thrust) { thrusts_.push_back({place, &thrust}); }
-  void take(int place, const FormulaForce& formula) { formulas_.push_back({place, &formula}); }
+  void take(int place, const FormulaForce& formula) {
+    formulas_.push_back({place, &formula});
+    for (const std::optional<Formula>* f : {&formula.fx, &formula.fy, &formula.torque})
+      for (int part = 0; *f && part < (*f)->time_parts(); ++part) in_time_.emplace_back(**f, part);
+  }
 
   int size() const override { return static_cast<int>(bodies_.size()); }
   void accelerations(double t, std::span<const BodyState> states, std::span<Acceleration> out) const override;
@@ -64,6 +68,7 @@ class ForceDynamics final : public Dynamics {
   std::vector<On<AttractForce>> attracts_;
   std::vector<On<ThrustForce>> thrusts_;
   std::vector<On<FormulaForce>> formulas_;
+  mutable std::vector<SteadyFormula> in_time_;  ///< every part of a formula that depends on time
 };
 
 void ForceDynamics::accelerations(double t, std::span<const BodyState> states,
@@ -162,10 +167,7 @@ double ForceDynamics::next_break(double t) const {
 
 double ForceDynamics::steady_until(double t) const {
   double until = std::numeric_limits<double>::infinity();
-  for (const auto& [place, f] : formulas_)
-    for (const std::optional<Formula>* formula : {&f->fx, &f->fy, &f->torque})
-      for (int part = 0; *formula && part < (*formula)->time_parts(); ++part)
-        until = std::min(until, brink::steady_until(**formula, part, t));
+  for (SteadyFormula& f : in_time_) until = std::min(until, f.until(t));
   return until;
 }
 

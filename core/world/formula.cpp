@@ -125,12 +125,11 @@ int Formula::time_parts() const { return compiled_->tree->time_parts(); }
 
 bool Formula::depends_on_time() const { return compiled_->tree->depends_on_time(); }
 
-TimeBound Formula::time_bound(int part, double from, double to, bool with_derivatives) const {
-  const Taylor f = compiled_->tree->over(part, from, to, with_derivatives ? Taylor::kMostOrder : 0);
+TimeBound Formula::time_bound(int part, double from, double to, BoundOf highest) const {
+  const Taylor f = compiled_->tree->over(part, from, to, static_cast<int>(highest));
   TimeBound bound{f.value().lower(), f.value().upper()};
-  if (!with_derivatives) return bound;
-  bound.second = 2.0 * boost::numeric::norm(f.c[2]);
-  bound.eleventh = boost::numeric::norm(f.c[11]);
+  if (highest >= BoundOf::second) bound.second = 2.0 * boost::numeric::norm(f.c[2]);
+  if (highest >= BoundOf::eleventh) bound.eleventh = boost::numeric::norm(f.c[11]);
   return bound;
 }
 

@@ -37,8 +37,8 @@ class Formula {
   bool depends_on_time() const;
   /// What is certain of such a part over [from, to] seconds, by interval arithmetic on the formula's tree: no
   /// spike is too short for it. Of the real function; what a double makes of it may lie a few roundings
-  /// beside. Cost: some microseconds. `with_derivatives` false: its values alone, for a tenth of that.
-  TimeBound time_bound(int part, double from, double to, bool with_derivatives = true) const;
+  /// beside. Derivatives up to `highest`. Cost: some microseconds for the eleventh, a tenth of that for values.
+  TimeBound time_bound(int part, double from, double to, BoundOf highest = BoundOf::eleventh) const;
 
  private:
   struct Compiled;

@@ -200,7 +200,7 @@ bool stays_within(const Quadratic& along, double length, double s0, double s1) {
 struct DiscPath {
   Vec2 q, velocity, acceleration;
   double radius;
-  double s_from, s_to;
+  double s_from, s_to;  ///< the window, and a rounding
   double slope_noise;
 
   Vec2 at(double s) const { return q + s * (velocity + 0.5 * s * acceleration); }
@@ -237,8 +237,23 @@ void measure(const DiscPath& disc, SegmentGap& m) {
            m.normal.dot(disc.acceleration)};
 }
 
-/// False if it is for the general search: the disc's centre does not stay abreast of the segment until it
-/// meets it or the window ends.
+/// True if the quadratic stays below -`by`, or above length + `by`, on [s0, s1].
+bool stays_beyond(const Quadratic& along, double length, double by, double s0, double s1) {
+  const auto before = [&](double s) { return along.at(s) < -by; };
+  const auto behind = [&](double s) { return along.at(s) > length + by; };
+  const double turn = along.second == 0.0 ? s0 : std::clamp(-along.rate / along.second, s0, s1);
+  return (before(s0) && before(s1) && before(turn)) || (behind(s0) && behind(s1) && behind(turn));
+}
+
+/// True if a disc that does not speed up stays farther than `reach` from the place on [s0, s1].
+bool stays_away(const DiscPath& disc, const Vec2& place, double reach, double s0, double s1) {
+  const double way = (disc.q - place).dot(disc.velocity), speed2 = disc.velocity.squaredNorm();
+  const double nearest = speed2 > 0.0 ? std::clamp(-way / speed2, s0, s1) : s0;
+  return disc.acceleration.isZero(0.0) && (disc.at(nearest) - place).norm() > reach;
+}
+
+/// False if it is for the general search: the disc may come to an end of the segment; or, behind the
+/// segment's line, its centre does not stay abreast of it.
 bool meet(const DiscPath& disc, const SearchLimits& limits, double level, SegmentGap& m) {
   const Site& site = *m.site;
   const Vec2 d = site.b - site.a;
@@ -252,7 +267,16 @@ bool meet(const DiscPath& disc, const SearchLimits& limits, double level, Segmen
       contact_after(above, disc.s_from, disc.slope_noise, disc.radius + site.radius + limits.tolerance);
   if (!contact) return false;
   m.s = *contact;
-  return stays_within(along, length, disc.s_from, std::max(disc.s_from, std::min(m.s, disc.s_to)));
+  const double s_end = std::max(disc.s_from, std::min(m.s, disc.s_to));
+  const double now = above.at(disc.s_from);
+  const bool in_front = now > 0.0 || (now >= -limits.touch && above.slope(disc.s_from) > 0.0);
+  if (!in_front) return stays_within(along, length, disc.s_from, s_end);
+  if (m.s > disc.s_to || stays_within(along, length, m.s, m.s)) return true;
+  const double reach = disc.radius + site.radius + limits.tolerance;
+  const auto away = [&](const Vec2& end) { return stays_away(disc, end, reach, m.s, disc.s_to); };
+  const bool passes_by = stays_beyond(along, length, reach, m.s, disc.s_to) || (away(site.a) && away(site.b));
+  if (passes_by) m.s = kForever;
+  return passes_by;
 }
 
 bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, double from, double to,
@@ -265,7 +289,7 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
                       frame.direction_to_local(rel.acceleration),
                       radius,
                       from - rel.reference,
-                      to - rel.reference,
+                      to - rel.reference + 4.0 * ulp(to),
                       rel.noise};
   std::array<SegmentGap, kMostSites> gaps;
   int count = 0;

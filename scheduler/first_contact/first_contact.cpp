@@ -323,7 +323,13 @@ class PairSearch {
             ? band_step(outside, hull.gradient.dot(path.rate), bounds.acceleration, band, allowed)
             : 0.0;
     const double by_speed = bounds.speed > 0.0 ? 0.5 * std::max(above, allowed) / bounds.speed : kForever;
-    return std::max(by_hull, by_speed);
+    const double by_ends =
+        step_beyond_ends(site, path.q, path.rate, bounds.acceleration, [&](double distance, double rate) {
+          const double off = distance - (nearest.distance - above);
+          return off > 2.0 * band ? safe_step(off - 0.5 * band, rate, bounds.acceleration)
+                                  : band_step(off, rate, bounds.acceleration, band, allowed);
+        });
+    return std::max({by_hull, by_speed, by_ends});
   }
 
   /// Gaps up to this are close [m]: the tolerance, or what the point moves in a few roundings of the time, or

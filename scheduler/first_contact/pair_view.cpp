@@ -302,20 +302,29 @@ double PairView::sink_at_start() const {
 }
 
 double PairView::side_kept(const Site& site, const SearchScratch::Neighbour& as_found, const Nearest& now,
-                           const Vec2& q) const {
-  if (!as_found.at_end || site.kind != SiteKind::segment)
-    return as_found.normal.dot(q - now.point) < 0.0 ? -1.0 : 1.0;
-  // it came round an end, unless the straight way leads through the wire
+                           const Vec2& q, double rounding, bool at_once) const {
+  const bool segment = site.kind == SiteKind::segment, abreast = now.foot == Foot::interior;
+  if (abreast && !(as_found.at_end && segment)) return as_found.normal.dot(q - now.point) < 0.0 ? -1.0 : 1.0;
+  // it comes round an end, unless its way leads through; of what is not abreast only straight ways are known
+  return segment && (abreast || at_once) && way_leads_through(site, q, rounding) ? -1.0 : 1.0;
+}
+
+bool PairView::way_leads_through(const Site& site, const Vec2& q, double rounding) const {
   const Vec2 d = site.b - site.a, from = scratch_.looked_from;
   const double before = cross(d, from - site.a), after = cross(d, q - site.a);
-  if ((before < 0.0) == (after < 0.0)) return 1.0;
+  if ((before < 0.0) == (after < 0.0)) return false;
   const double along = d.dot(from + (before / (before - after)) * (q - from) - site.a);
-  return along >= 0.0 && along <= d.squaredNorm() ? -1.0 : 1.0;
+  // where two sites join, it leads through one of them
+  const double slack = rounding * d.norm();
+  return along >= -slack && along <= d.squaredNorm() + slack;
 }
 
 PairView::GapAndSite PairView::gap_to_neighbours(const Placing& p, const Half& half, int i,
                                                  const Vec2& q) const {
   const double sample_radius = half.sample(i).radius;
+  // within so few ticks of the clock every way is straight
+  const bool at_once = std::abs(p.time - now_.time) <= 64.0 * ulp(p.time);
+  const double rounding = gap_rounding(p, half, i, q);
   GapAndSite found;
   double least = kForever;
   for (const SearchScratch::Neighbour& neighbour : scratch_.neighbours) {
@@ -328,8 +337,8 @@ PairView::GapAndSite PairView::gap_to_neighbours(const Placing& p, const Half& h
     if (!(rank < least)) continue;
     least = rank;
     const double radius = site.radius + sample_radius;
-    const bool thin = radius == 0.0 && !site.solid && interior;  // then stay on the side it came from
-    const double side = thin ? side_kept(site, neighbour, n, q) : side_of(site, n, q);
+    const bool wire = radius == 0.0 && !site.solid && site.kind != SiteKind::point;
+    const double side = wire ? side_kept(site, neighbour, n, q, rounding, at_once) : side_of(site, n, q);
     found = {side * n.distance - radius - level_of(nominal_level(p, half, i, site, q), sink_),
              neighbour.site};
   }

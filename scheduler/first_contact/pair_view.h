@@ -149,10 +149,13 @@ class PairView {
   double gap_rounding(const Placing& placing, const Half& half, int i, const Vec2& q) const;
   double nominal_level(const Placing& placing, const Half& half, int i, const Site& site,
                        const Vec2& q) const;
-  /// Of a wire without thickness, beside which q is now: 1 where the sample has not crossed it since its
-  /// neighbours were found, else -1.
+  /// Of a wire without thickness: 1 where the sample, now at q, has not crossed it since its neighbours were
+  /// found, else -1; `at_once`: they were found just now.
   double side_kept(const Site& site, const SearchScratch::Neighbour& as_found, const Nearest& now,
-                   const Vec2& q) const;
+                   const Vec2& q, double rounding, bool at_once) const;
+  /// True if the straight way to q from where the neighbours were found crosses the segment, to `rounding` [m]
+  /// of its ends.
+  bool way_leads_through(const Site& site, const Vec2& q, double rounding) const;
   GapAndSite gap_to_neighbours(const Placing& placing, const Half& half, int i, const Vec2& q) const;
   double arc_gap(const Half& half, const Feature& f, const Vec2& center) const;
   bool out_of_reach(const Half& half, int i, double reach) const;

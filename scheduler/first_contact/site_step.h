@@ -51,6 +51,25 @@ inline double distance_rate(const Site& site, const Nearest& nearest, const Vec2
   return nearest.distance > 0.0 ? (q - nearest.point).dot(rate) / nearest.distance : 0.0;
 }
 
+/// The step of what is not abreast of an arc: until it comes to one of its ends, by `to_end` (distance [m],
+/// its rate [m/s]) -> [s], or abreast. `bend`: of q's path [m/s^2].
+template <class ToEnd>
+double step_beyond_ends(const Site& arc, const Vec2& q, const Vec2& rate, double bend, ToEnd&& to_end) {
+  const auto until = [&](const Vec2& away, auto&& step) {
+    const double distance = away.norm();
+    return distance > 0.0 ? step(distance, away.dot(rate) / distance) : 0.0;
+  };
+  const auto plain = [&](double distance, double falls) { return safe_step(distance, falls, bend); };
+  const Vec2 w = q - arc.center;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Vec2& end : {arc.a, arc.b}) {
+    const Vec2 side = (end - arc.center) / arc.arc_radius;  // of the sector that is abreast
+    const Vec2 to_side = w.dot(side) > 0.0 ? Vec2(w - w.dot(side) * side) : w;
+    least = std::min({least, until(q - end, to_end), until(to_side, plain)});
+  }
+  return least;
+}
+
 /// `df` is distance_rate() of the same place. @pre bounds hold for at least the time that the caller will use
 /// of `safe`.
 inline SiteStep site_step(const Site& site, const Nearest& nearest, const Vec2& q, const Vec2& rate,
@@ -78,6 +97,11 @@ inline SiteStep site_step(const Site& site, const Nearest& nearest, const Vec2& 
   if (hull.distance - radius + slack > 0.0 && hull.distance > 0.0)
     step.safe = std::max(
         step.safe, safe_step(hull.distance - radius + slack, hull.gradient.dot(rate), bounds.acceleration));
+  if (nearest.foot != Foot::interior)
+    step.safe = std::max(
+        step.safe, step_beyond_ends(site, q, rate, bounds.acceleration, [&](double distance, double falls) {
+          return safe_step(distance - radius + slack, falls, bounds.acceleration);
+        }));
   return step;
 }
 

@@ -28,11 +28,26 @@ double speed_of(const ImpulseSide& side) {
   return static_cast<double>(side.twist.velocity.lpNorm<1>() + std::abs(side.twist.omega) * side.arm.norm());
 }
 
-/// The state now of a motion that has twist `after` and meets the old one, now in `s`, `delay` from now.
-ExtendedState deflected(ExtendedState s, const ExtendedTwist& after, Real delay) {
-  s.position += delay * (s.twist.velocity - after.velocity);
-  s.angle += delay * (s.twist.omega - after.omega);
-  s.twist = after;
+/// The state `delay` later of what moves so. What forces do to it in so short a while counts on a parabola alone:
+/// elsewhere an integrator is off by far more.
+ExtendedState later(const ExtendedState& s, Real delay, const Motion& motion) {
+  ExtendedState then = s.moved(delay);
+  if (!motion.is_ballistic()) return then;
+  then.twist.velocity += delay * motion.acceleration().linear.cast<Real>();
+  then.twist.omega += delay * motion.acceleration().angular;
+  return then;
+}
+
+/// The state now of a motion that meets the old one, now in `s`, `delay` from now, where its twist changes
+/// from `before` to `after`.
+ExtendedState deflected(ExtendedState s, const ExtendedTwist& before, const ExtendedTwist& after,
+                        Real delay) {
+  const RealVec velocity = after.velocity - before.velocity;
+  const Real omega = after.omega - before.omega;
+  s.position -= delay * velocity;
+  s.angle -= delay * omega;
+  s.twist.velocity += velocity;
+  s.twist.omega += omega;
   return s;
 }
 
@@ -45,9 +60,10 @@ ExtendedContact as_seen(const FeatureContact& f) {
 /// How a collision is resolved.
 struct CollisionResponse::Change {
   ImpulseResult impulse;
-  Real delay = 0;             ///< from now to the moment of contact [s]
-  ExtendedState body, other;  ///< states now; of the other where its image is
-  double magnitude = 0.0;     ///< the largest speed that took part [m/s]
+  Real delay = 0;                           ///< from now to the moment of contact [s]
+  ExtendedState body, other;                ///< states now; of the other where its image is
+  ExtendedTwist body_before, other_before;  ///< at the moment of contact
+  double magnitude = 0.0;                   ///< the largest speed that took part [m/s]
 };
 
 CollisionResponse::CollisionResponse(const World& world, const SolverOptions& options,
@@ -106,7 +122,10 @@ CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const F
                                    search_->outline_of(search_->other_owner(pair)), body, other, found);
   };
   r.delay = delay_to_contact(found, look_at(r.body, r.other));
-  const ExtendedState body = r.body.moved(r.delay), other = r.other.moved(r.delay);
+  const ExtendedState body = later(r.body, r.delay, trajectories_->motion_of(pair.body)),
+                      other = later(r.other, r.delay, trajectories_->motion_of(search_->other_owner(pair)));
+  r.body_before = body.twist;
+  r.other_before = other.twist;
   const ExtendedContact c = look_at(body, other);
   const ImpulseSide side = body_side(world_->bodies[pair.body], body, c.point);
   const ImpulseSide other_side = pair.with_site()
@@ -144,8 +163,9 @@ std::pair<RealVec, RealVec> CollisionResponse::push_apart(const PairKey& pair, c
 
 void CollisionResponse::deflect(const PairKey& pair, const Change& r, std::vector<int>& changed) {
   const Restart both[] = {
-      {pair.body, deflected(r.body, r.impulse.body, r.delay)},
-      {pair.other_body, deflected(r.other, r.impulse.other, r.delay).shifted(-search_->shift_of(pair))}};
+      {pair.body, deflected(r.body, r.body_before, r.impulse.body, r.delay)},
+      {pair.other_body,
+       deflected(r.other, r.other_before, r.impulse.other, r.delay).shifted(-search_->shift_of(pair))}};
   if (pair.with_site()) return trajectories_->restart({both, 1}, changed);
   const int component = trajectories_->body(pair.body).component;
   if (component >= 0 && component == trajectories_->body(pair.other_body).component)
@@ -154,21 +174,38 @@ void CollisionResponse::deflect(const PairKey& pair, const Change& r, std::vecto
   trajectories_->restart({both + 1, 1}, changed);
 }
 
-/// The response now if the pair are two free discs without friction: a quick way to what change() says.
-std::optional<DiscRebound> CollisionResponse::disc_rebound(const PairKey& pair, double level) {
-  if (pair.with_site() || reflects_ || search_->points_meet_wires()) return std::nullopt;
-  const auto side = [&](int k) {
-    const Body& body = world_->bodies[k];
-    const bool bare =
-        trajectories_->is_free(k) && is_centred_disc(search_->outline_of(k)) && !body.lock_x && !body.lock_y;
-    return DiscSide{bare ? &trajectories_->body(k).motion : nullptr, body.outline->bounding_radius,
-                    1.0 / body.mass};
-  };
-  const DiscSide a = side(pair.body), b = side(pair.other_body);
-  const Material& material = material_of(pair);
-  if (!a.motion || !b.motion || a.radius + b.radius == 0.0 || material.friction != 0.0) return std::nullopt;
+/// The body if it is a disc in free flight, else none.
+DiscSide CollisionResponse::free_disc(int k) const {
+  const Body& body = world_->bodies[k];
+  const bool bare =
+      trajectories_->is_free(k) && is_centred_disc(search_->outline_of(k)) && !body.lock_x && !body.lock_y;
+  return {bare ? &trajectories_->body(k).motion : nullptr, body.outline->bounding_radius, 1.0 / body.mass};
+}
+
+/// The response now if a free disc meets another, or a straight wall, without friction: a quick way to what
+/// change() says.
+std::optional<DiscRebound> CollisionResponse::disc_rebound(const PairKey& pair, const FeatureContact& found) {
+  if (found.seen || reflects_ || search_->points_meet_wires()) return std::nullopt;
+  if (material_of(pair).friction != 0.0) return std::nullopt;
+  if (pair.with_site()) return wall_rebound(pair, found);
+  const DiscSide a = free_disc(pair.body), b = free_disc(pair.other_body);
+  if (!a.motion || !b.motion || a.radius + b.radius == 0.0) return std::nullopt;
   const double now = run_->time();
-  return rebound(a, b, search_->shift_of(pair), now, 4.0 * ulp(now), level, material.restitution);
+  return rebound(a, b, search_->shift_of(pair), now, 4.0 * ulp(now), found.level,
+                 material_of(pair).restitution);
+}
+
+std::optional<DiscRebound> CollisionResponse::wall_rebound(const PairKey& pair, const FeatureContact& found) {
+  const int other = search_->other_owner(pair);
+  const Site& site = search_->outline_of(other).sites[found.site];
+  const DiscSide disc = free_disc(pair.body);
+  if (!disc.motion || !found.sample_on_a || site.kind != SiteKind::segment) return std::nullopt;
+  if (disc.radius + site.radius == 0.0 || found.sunk() > 0.0) return std::nullopt;
+  if (!trajectories_->motion_of(other).is_still()) return std::nullopt;
+  const double now = run_->time();
+  const ExtendedState stands = search_->other_state(pair, now);
+  const WallSide wall{stands.to_world(site.a), stands.to_world(site.b), site.radius, found.normal};
+  return rebound(disc, wall, now, 4.0 * ulp(now), found.level, material_of(pair).restitution);
 }
 
 /// The limit of bounces in closed form, where both sides fly under constant accelerations between them: the
@@ -186,14 +223,16 @@ ForeseenLimit CollisionResponse::foresee(const PairKey& pair, const FeatureConta
   return {run_->time() + (late + 2.0 * e * v / (pull * (1.0 - e))), rounding};
 }
 
-std::optional<Outcome> CollisionResponse::part_discs(const PairKey& pair, const FeatureContact& found,
-                                                     const DiscRebound& discs, std::vector<int>& changed) {
-  double rest = note_resolve(pair.body, pair.other_body, discs.magnitude);
-  rest = std::min(rest, note_resolve(pair.other_body, pair.body, discs.magnitude));
-  trajectories_->restart_free(pair.body, discs.a.state, discs.a.low);
-  trajectories_->restart_free(pair.other_body, discs.b.state, discs.b.low);
-  changed.push_back(pair.body);
-  changed.push_back(pair.other_body);
+std::optional<Outcome> CollisionResponse::part(const PairKey& pair, const FeatureContact& found,
+                                               const DiscRebound& discs, std::vector<int>& changed) {
+  const auto start = [&](int k, int partner, const DiscRebound::Start& after) {
+    changed.push_back(k);
+    const double rest = note_resolve(k, partner, discs.magnitude);
+    trajectories_->restart_free(k, after.state, after.low);
+    return rest;
+  };
+  double rest = start(pair.body, search_->other_owner(pair), discs.a);
+  if (!pair.with_site()) rest = std::min(rest, start(pair.other_body, pair.body, discs.b));
   if (!watch_->discs_resolved(pair, discs.gap)) return std::nullopt;
   return Outcome{pair, found, discs.impulse, 0.0, discs.delay, rest, foresee(pair, found, discs.delay)};
 }
@@ -203,8 +242,7 @@ std::optional<Outcome> CollisionResponse::collide(const PairKey& pair, const Fea
   const double now = run_->time();
   if (!watch_->flight(pair.body, now) || (!pair.with_site() && !watch_->flight(pair.other_body, now)))
     return std::nullopt;
-  if (!found.seen)
-    if (const auto discs = disc_rebound(pair, found.level)) return part_discs(pair, found, *discs, changed);
+  if (const auto discs = disc_rebound(pair, found)) return part(pair, found, *discs, changed);
   const Change r = change(pair, found);
   if (!watch_->approaches(pair, found.closing_speed, kPartsOfSpeed * r.magnitude)) return std::nullopt;
   if (r.impulse.kind == ImpulseKind::jam) {

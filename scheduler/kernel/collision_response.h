@@ -46,9 +46,11 @@ class CollisionResponse {
  private:
   struct Change;
   Change change(const PairKey& pair, const FeatureContact& found);
-  std::optional<DiscRebound> disc_rebound(const PairKey& pair, double level);
-  std::optional<Outcome> part_discs(const PairKey& pair, const FeatureContact& found,
-                                    const DiscRebound& discs, std::vector<int>& changed);
+  DiscSide free_disc(int body) const;
+  std::optional<DiscRebound> disc_rebound(const PairKey& pair, const FeatureContact& found);
+  std::optional<DiscRebound> wall_rebound(const PairKey& pair, const FeatureContact& found);
+  std::optional<Outcome> part(const PairKey& pair, const FeatureContact& found, const DiscRebound& discs,
+                              std::vector<int>& changed);
   void deflect(const PairKey& pair, const Change& change, std::vector<int>& changed);
   ForeseenLimit foresee(const PairKey& pair, const FeatureContact& found, Real delay);
 

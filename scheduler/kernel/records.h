@@ -27,9 +27,10 @@ class Records {
   double last_frame() const { return last_frame_; }
 
   // -- events --
-  /// A collision, or the group that it is of, `delay` [s] after the present time.
+  /// A collision, or the group that it is of, `delay` [s] after the present time. `resolved`: its bodies have
+  /// begun their motions anew.
   void event(EventKind kind, const PairKey& pair, const FeatureContact& contact, double impulse_n,
-             double impulse_t, Real delay);
+             double impulse_t, Real delay, bool resolved);
   /// What comes to an end at a time of its own.
   void ending(EventKind kind, const PairKey& pair, const FeatureContact& contact, double time);
   /// The time of the last event, to which the next one is told not to be before [s].
@@ -55,6 +56,7 @@ class Records {
   }
 
  private:
+  EventSide side(int body) const;
   bool records_events() const { return recorder_ && run_->options().record_events; }
 
   const Trajectories* trajectories_;

@@ -63,6 +63,7 @@ RunKernel::RunKernel(World world, SolverOptions options) : Kernel(std::move(worl
 void RunKernel::begin(const RunOptions& options, Recorder* recorder) {
   parts_.run.begin(options);
   parts_.records.begin(recorder);
+  parts_.trajectories.keep_twists_before(recorder && options.record_events);
   if (options.first_frame) show_frame();
 }
 

@@ -41,9 +41,9 @@ SiteMotion::SiteMotion(const FixedSite& site) {
         [f = *formula](double t) -> Eigen::Vector3d {
           return {value(f.x, t), value(f.y, t), value(f.angle, t)};
         },
-        [f = *formula](int i, double from, double to, bool with_derivatives) {
+        [f = *formula](int i, double from, double to, BoundOf highest) {
           const std::optional<Formula>& part = i == 0 ? f.x : (i == 1 ? f.y : f.angle);
-          return part ? part->time_bound(0, from, to, with_derivatives) : TimeBound();
+          return part ? part->time_bound(0, from, to, highest) : TimeBound();
         },
         description(site, *formula));
     if (const Extent extent = extend(0.0); extent.status != Extent::Status::reached)

@@ -241,6 +241,7 @@ void Trajectories::start(Coupled& c, ComponentStart from) {
 }
 
 void Trajectories::restart_free(int k, const BodyState& start, const BodyState& low) {
+  note_twist_before(k);
   Motion& motion = bodies_[k].motion;
   if (motion.is_ballistic())
     motion.start_anew(run_->time(), start, low);
@@ -263,7 +264,10 @@ void Trajectories::restart(std::span<const Restart> touched, std::vector<int>& c
     states.push_back(bodies_[j].motion.extended_state(run_->time()));
     raise_version(bodies_[j]);
   }
-  for (const Restart& r : touched) states[bodies_[r.body].place_in_component] = r.state;
+  for (const Restart& r : touched) {
+    note_twist_before(r.body);
+    states[bodies_[r.body].place_in_component] = r.state;
+  }
   start(c, start_from(run_->time(), states, !c.begun.lows.empty()));
 }
 

@@ -94,6 +94,12 @@ class Trajectories {
   // -- starting afresh, at the present time; versions are raised --
   /// Bodies of one component, or one free body. Bodies whose motion changed are appended to `changed`.
   void restart(std::span<const Restart> touched, std::vector<int>& changed);
+  /// From now on the twist with which a body comes into its last restart is kept, or not.
+  void keep_twists_before(bool keep) { before_.assign(keep ? bodies_.size() : 0, {-1.0, {}}); }
+  /// The twist with which a body comes to the present time, whatever has been resolved now. @pre kept
+  Twist twist_before(int k) const {
+    return before_[k].first == run_->time() ? before_[k].second : state_now(k).twist.rounded();
+  }
   /// A free body.
   void restart_free(int k, const BodyState& start, const BodyState& low);
   // -- islands --
@@ -174,6 +180,10 @@ class Trajectories {
   void begin_anew(Component component, double t, std::vector<int>& changed);
   void start(Coupled& c, ComponentStart from);
   void put_to_sleep(Coupled& c);
+  void note_twist_before(int k) {
+    if (!before_.empty() && before_[k].first != run_->time())
+      before_[k] = {run_->time(), state_now(k).twist.rounded()};
+  }
   void hold_again(std::span<const int> members, const Saved& saved);
   void fetch(const Coupled& c);
   double follow(Coupled& c, double t);
@@ -193,6 +203,8 @@ class Trajectories {
   std::map<int, Former> held_;
   std::vector<SiteMotion> sites_;
   std::vector<Failure> site_failures_;
+  std::vector<std::pair<double, Twist>>
+      before_;  ///< the first restart of an instant: its time; empty: not kept
   double reach_ = std::numeric_limits<double>::infinity();
   std::uint64_t forgotten_ = 0;  ///< pieces made when forget_before() was last called
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brink/scheduler/resolve/tolerances.h"
+
 namespace brink {
 
 namespace {
@@ -10,10 +12,13 @@ namespace {
 /// A disc at one time, all but its spin.
 struct Moving {
   Real x, y, vx, vy;
+  double ax, ay;
 
   Moving(const Motion& m, double t) {
     const BodyState &s = m.start(), &low = m.start_low();
     const Vec2& a = m.acceleration().linear;
+    ax = a.x();
+    ay = a.y();
     const Real since = static_cast<Real>(t) - m.origin();
     vx = static_cast<Real>(s.twist.velocity.x()) + low.twist.velocity.x();
     vy = static_cast<Real>(s.twist.velocity.y()) + low.twist.velocity.y();
@@ -80,7 +85,8 @@ std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const V
   length = std::sqrt(dx * dx + dy * dy);
   r.gap = static_cast<double>(length - b.radius - a.radius);
   const Real nx = dx / length, ny = dy / length;
-  const Real rate = nx * wx + ny * wy;
+  const Real rate =
+      nx * (wx + r.delay * (disc_a.ax - disc_b.ax)) + ny * (wy + r.delay * (disc_a.ay - disc_b.ay));
   if (!(rate < 0)) return std::nullopt;
   const Real impulse = -(Real(1) + restitution) * rate / (static_cast<Real>(a.inverse_mass) + b.inverse_mass);
   r.impulse = static_cast<double>(impulse);
@@ -88,6 +94,31 @@ std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const V
   r.a = start_after(*a.motion, time, disc_a, disc_a.vx + push_a * nx, disc_a.vy + push_a * ny, r.delay);
   r.b = start_after(*b.motion, time, disc_b, disc_b.vx - push_b * nx, disc_b.vy - push_b * ny, r.delay);
   r.magnitude = std::max(speed_of(r.a, disc_a, a.radius), speed_of(r.b, disc_b, b.radius));
+  return r;
+}
+
+std::optional<DiscRebound> rebound(const DiscSide& disc, const WallSide& wall, double time, double latest,
+                                   double level, double restitution) {
+  const Moving at(*disc.motion, time);
+  const Real tx = wall.end.x() - wall.begin.x(), ty = wall.end.y() - wall.begin.y();
+  const Real dx = at.x - wall.begin.x(), dy = at.y - wall.begin.y();
+  const Real length2 = tx * tx + ty * ty, along = dx * tx + dy * ty;
+  if (!(along > 0) || !(along < length2)) return std::nullopt;
+  const Real length = std::sqrt(length2), side = ty * wall.normal.x() - tx * wall.normal.y() < 0 ? -1 : 1;
+  const Real nx = side * ty / length, ny = -side * tx / length;
+  if (nx * wall.normal.x() + ny * wall.normal.y() < kSameDirection) return std::nullopt;
+  const Real closing = -(nx * at.vx + ny * at.vy);
+  if (!(closing > 0)) return std::nullopt;
+  DiscRebound r;
+  const Real gap = nx * dx + ny * dy - wall.radius - disc.radius;
+  r.delay = std::clamp((gap - level) / closing, Real(-latest), Real(latest));
+  r.gap = static_cast<double>(gap - r.delay * closing);
+  const Real rate = -closing + r.delay * (nx * at.ax + ny * at.ay);
+  if (!(rate < 0)) return std::nullopt;
+  const Real change = -(Real(1) + restitution) * rate;
+  r.impulse = static_cast<double>(change / disc.inverse_mass);
+  r.a = start_after(*disc.motion, time, at, at.vx + change * nx, at.vy + change * ny, r.delay);
+  r.magnitude = speed_of(r.a, at, disc.radius);
   return r;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-/// Two centred discs in free flight that meet without friction: the response in closed form.
+/// A centred disc in free flight that meets another, or a straight wall, without friction: the response in
+/// closed form.
 
 #include <optional>
 
@@ -15,13 +16,20 @@ struct DiscSide {
   double inverse_mass = 0.0;       ///< [1/kg], > 0
 };
 
+/// The straight side of a wall that stands still, on which a disc's centre is.
+struct WallSide {
+  RealVec begin, end;   ///< of its middle line [m]
+  double radius = 0.0;  ///< half its thickness [m]
+  Vec2 normal;          ///< towards the disc, to roundings of a double
+};
+
 struct DiscRebound {
   struct Start {  ///< of the parabola after
     BodyState state, low;
   };
-  double impulse = 0.0;  ///< along the normal, which points into a [N s]
-  Real delay = 0;        ///< from the clock to the moment of contact [s]
-  Start a, b;
+  double impulse = 0.0;    ///< along the normal, which points into a [N s]
+  Real delay = 0;          ///< from the clock to the moment of contact [s]
+  Start a, b;              ///< b: not of a wall
   double gap = 0.0;        ///< at that moment [m]
   double magnitude = 0.0;  ///< the largest speed that took part [m/s]
 };
@@ -33,5 +41,10 @@ struct DiscRebound {
 /// or cosine.
 std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const Vec2& shift, double time,
                                    double latest, double level, double restitution);
+
+/// The same of disc and wall. Nothing where the disc's centre is not abreast of the wall either, or the wall's
+/// normal is not the one that is given: an end is met. Cost: one square root and two divisions.
+std::optional<DiscRebound> rebound(const DiscSide& disc, const WallSide& wall, double time, double latest,
+                                   double level, double restitution);
 
 }  // namespace brink

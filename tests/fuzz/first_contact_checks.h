@@ -356,8 +356,21 @@ class Checker {
     const bool unit = std::abs(c.normal.norm() - 1.0) < 1e-14;
     // the shift may bring another feature near, in a notch or with an arc as small as the shift: then less
     // than all of it
-    if (!unit || apart < 0.5 * shift || (!truth.passed && push <= smallest))
+    // and the tip of one may be as near to the tip of the other: the shift leads along the first one's side
+    const bool tips = at_both_tips(f, c, shift);
+    const bool shallow = !truth.passed && push <= smallest && !tips;
+    if (!unit || apart < (tips ? smallest : 0.5 * shift) || shallow)
       fail(f, tally.bad_normal, "normal", answer, truth);
+  }
+
+  /// True if an end of the site is met by the sample's point, or a place as near to it as `reach`.
+  static bool at_both_tips(const Flight& f, const FeatureContact& c, double reach) {
+    const Outline& sites = c.sample_on_a ? *f.b : *f.a;
+    const BodyState at = (c.sample_on_a ? f.motion_b : f.motion_a).state(c.time);
+    const Site& site = sites.sites[static_cast<std::size_t>(c.site)];
+    const Frame frame(at.pose);
+    return std::min((frame.to_world(site.a) - c.point).norm(), (frame.to_world(site.b) - c.point).norm()) <=
+           reach;
   }
 
   /// Distance of the two features in contact alone, a shifted: the site, and those at whose joint the sample

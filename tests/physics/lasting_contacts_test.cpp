@@ -66,9 +66,8 @@ TEST_P(BallThatBounces, TellsTheLimitOfItsBounces) {
   EXPECT_NEAR(zeno->contact.time, limit, 1e-12 * std::max(1.0, limit));
 }
 
-INSTANTIATE_TEST_SUITE_P(Restitutions, BallThatBounces, ::testing::Values(0.5, 0.9));
-// After 80 s a collision is told up to 1.4e-14 s early, always early: 1156 of them take 1e-9 s off the limit.
-INSTANTIATE_TEST_SUITE_P(DISABLED_Restitutions, BallThatBounces, ::testing::Values(0.99));
+// At 0.99 there are 1156 bounces in 90 s: what a rounding of the clock takes from one comes back with all others.
+INSTANTIATE_TEST_SUITE_P(Restitutions, BallThatBounces, ::testing::Values(0.5, 0.9, 0.99));
 
 // ---- a stack
 

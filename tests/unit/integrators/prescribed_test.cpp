@@ -30,7 +30,7 @@ PrescribedMotion prescribed(const char* x, const char* y = "0", const char* angl
         if (calls) ++*calls;
         return Vector3d(value(of[0], t), value(of[1], t), value(of[2], t));
       },
-      [=](int i, double from, double to, bool all) { return of[i].time_bound(0, from, to, all); }, name);
+      [=](int i, double from, double to, BoundOf all) { return of[i].time_bound(0, from, to, all); }, name);
 }
 
 struct Deviation {

@@ -49,7 +49,7 @@ std::string random_formula(Random& random, int depth, bool total = false) {
 
 /// What roundings may have made of the value at t, on both sides.
 double slack(const Formula& f, double t, double v) {
-  return 1e-11 * std::max(1.0, std::abs(v)) + 10.0 * f.time_bound(0, t, t, false).spread();
+  return 1e-11 * std::max(1.0, std::abs(v)) + 10.0 * f.time_bound(0, t, t, BoundOf::value).spread();
 }
 
 // At a single time the bounds are muParser's value and its roundings: tree and parser read the same.
@@ -61,7 +61,7 @@ TEST(FormulaBound, OfRandomFormulasHoldMuParsersValues) {
     const Formula f(text, {"t"});
     for (int j = 0; j < 5; ++j) {
       const double t = random.uniform(-3.0, 3.0), width = std::exp(random.uniform(-14.0, 1.0));
-      const TimeBound b = f.time_bound(0, t, t + width), here = f.time_bound(0, t, t, false);
+      const TimeBound b = f.time_bound(0, t, t + width), here = f.time_bound(0, t, t, BoundOf::value);
       for (const double at : {t, t + 0.3 * width, t + width}) {
         const double v = value(f, at);
         if (!std::isfinite(v)) continue;
@@ -151,14 +151,29 @@ TEST(FormulaBound, DeepNestingIsRefusedAndLongSumsAreNot) {
 // A smooth function far from anything: cells of the size of its waves. A spike: cells that end inside it.
 TEST(FormulaSteady, CellsAreAsSmallAsTheFormulaIsShort) {
   const Formula wave("sin(6*t)", {"t"}), still("3", {"t"}), straight("4*t", {"t"});
-  EXPECT_GT(steady_until(wave, 0, 1.0), 1.05);
-  EXPECT_LT(steady_until(wave, 0, 1.0), 3.0);
-  EXPECT_TRUE(std::isinf(steady_until(still, 0, 1.0)));
-  EXPECT_EQ(steady_until(straight, 0, 1.0), 64.0);
+  const auto steady_until = [](const Formula& f, double t) { return SteadyFormula(f, 0).until(t); };
+  EXPECT_GT(steady_until(wave, 1.0), 1.05);
+  EXPECT_LT(steady_until(wave, 1.0), 3.0);
+  EXPECT_TRUE(std::isinf(steady_until(still, 1.0)));
+  EXPECT_EQ(steady_until(straight, 1.0), 64.0);
   const Formula spike("max(0, 0.3 - abs(t - 0.7031)*300)", {"t"});
   int inside = 0;
-  for (double t = 0.0; t < 1.0; t = steady_until(spike, 0, t)) inside += t > 0.7021 && t < 0.7041;
+  for (double t = 0.0; t < 1.0; t = steady_until(spike, t)) inside += t > 0.7021 && t < 0.7041;
   EXPECT_GT(inside, 10);
+}
+
+// What was asked before is remembered, but makes no difference.
+TEST(FormulaSteady, IsAFunctionOfTimeAlone) {
+  Random random(11);
+  for (const char* text : {"sin(6*t)", "max(0, 0.3 - abs(t - 70.31)*30)", "t^3 - 40*t", "sqrt(t)"}) {
+    const Formula formula(text, {"t"});
+    SteadyFormula asked_often(formula, 0);
+    double t = 0.0;
+    for (int k = 0; k < 300; ++k) {
+      t = k % 3 == 0 ? 200.0 * random.uniform() : t + 0.1 * random.uniform();
+      EXPECT_EQ(asked_often.until(t), SteadyFormula(formula, 0).until(t)) << text << " at " << t;
+    }
+  }
 }
 
 // Outward rounding goes to the next double, as the library's nextafter does, from every kind of number.

@@ -1,4 +1,4 @@
-// Two free discs: the quick response is the general one.
+// Two free discs, or one and a wall: the quick response is the general one.
 #include "brink/scheduler/resolve/disc_rebound.h"
 
 #include <gtest/gtest.h>
@@ -115,6 +115,98 @@ TEST(DiscRebound, IsTheGeneralResponseToRoundingsOfExtendedPrecision) {
     expect_same(a, quick->a, Vec2::Zero());
     expect_same(b, quick->b, m.shift);
   }
+}
+
+/// A disc that touches a wall at `time`, to a rounding or so, and comes down on it.
+struct Landing {
+  Outline disc, wall;
+  Motion motion;
+  ExtendedState stands;
+  Vec2 normal;
+  double time, restitution, mass = 2.0;
+
+  explicit Landing(std::uint64_t seed) {
+    Random random(seed);
+    const auto upto = [&](double size) { return size * (2.0 * random.uniform() - 1.0); };
+    restitution = random.uniform();
+    time = 1.0 + 9.0 * random.uniform();
+    const double radius = 0.2 + random.uniform(), thickness = seed % 2 == 0 ? 0.1 : 0.0;
+    disc = make_disc(radius).outline;
+    wall = make_segment({-3.0, upto(1.0)}, {4.0, upto(1.0)}, thickness).outline;
+    stands.angle = seed % 3 == 0 ? 0.0 : upto(3.0);
+    stands.position = Vec2(upto(5.0), upto(5.0)).cast<Real>();
+    const Site& site = wall.sites.front();
+    const Vec2 a = stands.to_world(site.a).cast<double>(), b = stands.to_world(site.b).cast<double>();
+    normal = (seed % 5 == 0 ? -1.0 : 1.0) * perp((b - a).normalized());
+    const double along = 0.2 + 0.6 * random.uniform();
+    BodyState s;
+    s.pose.position = a + along * (b - a) + (radius + site.radius) * normal;
+    s.twist.velocity = -(0.5 + random.uniform()) * normal + 2.0 * upto(1.0) * perp(normal);
+    s.pose.angle = upto(3.0);
+    s.twist.omega = upto(2.0);
+    const double since = random.uniform();
+    const Vec2 gravity(0.3, -9.8);
+    s.twist.velocity -= since * gravity;
+    s.pose.position -= since * (s.twist.velocity + 0.5 * since * gravity);
+    s.pose.angle -= since * s.twist.omega;
+    motion = Motion::ballistic(time - since, s, {gravity, 0.0});
+  }
+
+  WallSide side() const {
+    const Site& site = wall.sites.front();
+    return {stands.to_world(site.a), stands.to_world(site.b), site.radius, normal};
+  }
+};
+
+// The law at the moment of contact, with the velocity of that moment.
+TEST(DiscRebound, OfAWallIsTheGeneralResponseToRoundingsOfExtendedPrecision) {
+  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+    SCOPED_TRACE(seed);
+    const Landing m(seed);
+    const double latest = 4.0 * ulp(m.time);
+    const auto quick = rebound({&m.motion, m.disc.bounding_radius, 1.0 / m.mass}, m.side(), m.time, latest,
+                               0.0, m.restitution);
+    ASSERT_TRUE(quick);
+
+    ExtendedState s = m.motion.extended_state(m.time);
+    FeatureContact like;
+    like.sample = like.site = 0;
+    like.normal = m.normal;
+    like.gap = contact_in(m.disc, m.wall, s, m.stands, like).gap;
+    ExtendedContact c = contact_in(m.disc, m.wall, s, m.stands, like);
+    const Real delay = std::clamp(c.gap / c.closing, Real(-latest), Real(latest));
+    ExtendedState then = s.moved(delay);
+    then.twist.velocity += delay * m.motion.acceleration().linear.cast<Real>();
+    c = contact_in(m.disc, m.wall, then, m.stands, like);
+    Material material;
+    material.restitution = m.restitution;
+    material.friction = 0.0;
+    const ImpulseResult general =
+        resolve_impulse({then.twist, c.point - then.position, 1.0 / m.mass, 1.0 / m.mass, 1.0},
+                        {m.stands.twist, c.point - m.stands.position, 0.0, 0.0, 0.0}, c.normal, material);
+
+    EXPECT_NEAR(quick->impulse, general.normal, 4e-16 * general.normal);
+    EXPECT_LE(static_cast<double>(std::abs(quick->delay - delay)), 1e-17);
+    const RealVec change = general.body.velocity - then.twist.velocity;
+    s.position -= delay * change;
+    s.twist.velocity += change;
+    expect_same(s, quick->a, Vec2::Zero());
+  }
+}
+
+TEST(DiscRebound, SaysNothingOfWhatIsNotAbreastOfAWallOrParts) {
+  const Landing m(3);
+  const DiscSide disc{&m.motion, m.disc.bounding_radius, 1.0 / m.mass};
+  const auto met = [&](const WallSide& wall) {
+    return rebound(disc, wall, m.time, 1e-15, 0.0, 1.0).has_value();
+  };
+  WallSide wall = m.side();
+  EXPECT_TRUE(met(wall));
+  const RealVec way = wall.end - wall.begin;
+  for (const double aside : {-2.0, 2.0})
+    EXPECT_FALSE(met({wall.begin + aside * way, wall.end + aside * way, wall.radius, wall.normal}));
+  wall.normal = -wall.normal;
+  EXPECT_FALSE(met(wall)) << "from behind it goes away";
 }
 
 TEST(DiscRebound, SaysNothingOfDiscsThatPart) {
