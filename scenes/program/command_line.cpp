@@ -82,6 +82,73 @@ void add_draw(CLI::App& program, int& status) {
   command->callback([arguments, &status] { status = draw_command(*arguments); });
 }
 
+void add_view(CLI::App& program, int& status) {
+  auto arguments = std::make_shared<ViewArguments>();
+  CLI::App* command = program.add_subcommand("view", "A replay page: one HTML file that plays a run");
+  command->add_option("SUBJECT", arguments->subject, "Run folder, run file, or scene file")->required();
+  command->add_option("-o,--output", arguments->out, "Page to write; default replay.html beside the run file")
+      ->type_name("FILE.html");
+  command->add_flag("--open", arguments->open, "Open it in the browser");
+  command->add_option("--set", arguments->overrides, "Override a key of the scene; may be repeated")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  command->footer(
+      "The page needs no network and no server: open it by double click, mail it, keep it.\n"
+      "Of a scene without -o the page is live: served on 127.0.0.1 to this machine alone, it follows the run "
+      "as\n"
+      "it goes into runs/<scene>-<n>, pauses it, and lets it go on to its next event, until Ctrl-C.\n"
+      "Examples:\n"
+      "  brink view runs/newtons_cradle-1 --open\n"
+      "  brink view runs/pile-1/run.db -o pile.html\n"
+      "  brink view scenes/gallery/dominoes.toml");
+  command->callback([arguments, &status] { status = view_command(*arguments); });
+}
+
+void add_film(CLI::App& program, int& status) {
+  auto arguments = std::make_shared<FilmArguments>();
+  CLI::App* command = program.add_subcommand("film", "A film of a run, through ffmpeg");
+  command->add_option("RUN", arguments->run, "Run folder or run file")->required();
+  command
+      ->add_option("-o,--output", arguments->out,
+                   "Film to write; FILE.png: a picture a frame, FILE-00001.png ...")
+      ->type_name("FILE.mp4|.gif|.png")
+      ->required();
+  command->add_option("--fps", arguments->fps, "Pictures a second")->type_name("N")->capture_default_str();
+  command->add_option("--speed", arguments->speed, "Seconds of the run in a second of the film")
+      ->type_name("X")
+      ->capture_default_str();
+  command->add_option("--from", arguments->from, "First time [s]; default: the start")->type_name("T");
+  command->add_option("--to", arguments->to, "Last time [s]; default: the end")->type_name("T");
+  command
+      ->add_option("--layer", arguments->layer,
+                   "plain, or a layer of brink draw (with cells it takes longer)")
+      ->type_name("LAYER")
+      ->capture_default_str();
+  command->add_option("--size", arguments->size, "Pixels")->type_name("WxH")->capture_default_str();
+  command->footer(
+      "The camera stands still and sees the whole run. Without ffmpeg (apt-get install ffmpeg) there are "
+      "pictures.\n"
+      "Examples:\n"
+      "  brink film runs/newtons_cradle-1 -o cradle.mp4\n"
+      "  brink film runs/dominoes-1 -o slow.gif --fps 25 --speed 0.2 --from 1 --to 2 --size 640x360\n"
+      "  brink film runs/letters-1 -o letters.mp4 --layer scene");
+  command->callback([arguments, &status] { status = film_command(*arguments); });
+}
+
+void add_export(CLI::App& program, int& status) {
+  auto arguments = std::make_shared<ExportArguments>();
+  CLI::App* command = program.add_subcommand("export", "A run's tables for other programs");
+  command->add_option("RUN", arguments->run, "Run folder or run file")->required();
+  command->add_option("--csv", arguments->csv, "Write bodies.csv, frames.csv, events.csv, contacts.csv there")
+      ->type_name("DIR")
+      ->required();
+  command->footer(
+      "Names of columns end with their units.\n"
+      "Examples:\n"
+      "  brink export runs/newtons_cradle-1 --csv cradle");
+  command->callback([arguments, &status] { status = export_command(*arguments); });
+}
+
 void add_list(CLI::App& program, int& status) {
   auto arguments = std::make_shared<ListArguments>();
   CLI::App* command = program.add_subcommand("list", "What can be chosen, one line each, defaults shown");
@@ -152,6 +219,7 @@ int run_command_line(int argc, char** argv) {
       "  brink run scenes/gallery/newtons_cradle.toml\n"
       "  brink check my_scene.toml\n"
       "  brink draw my_scene.toml -o start.png\n"
+      "  brink view runs/newtons_cradle-1 --open\n"
       "  brink list options\n"
       "  brink bench bouncing_ball\n"
       "  brink sweep scenes/experiments/policies_and_orders.toml\n"
@@ -161,6 +229,9 @@ int run_command_line(int argc, char** argv) {
   add_run(program, status);
   add_check(program, status);
   add_draw(program, status);
+  add_view(program, status);
+  add_film(program, status);
+  add_export(program, status);
   add_list(program, status);
   add_bench(program, status);
   add_sweep(program, status);

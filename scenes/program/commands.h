@@ -34,6 +34,22 @@ struct DrawArguments {
   std::vector<std::string> overrides;
 };
 
+struct ViewArguments {
+  std::string subject, out;
+  std::vector<std::string> overrides;
+  bool open = false;
+};
+
+struct FilmArguments {
+  std::string run, out, layer = "plain", size = "1280x720";
+  double fps = 60.0, speed = 1.0;
+  std::optional<double> from, to;
+};
+
+struct ExportArguments {
+  std::string run, csv;
+};
+
 struct ListArguments {
   std::string topic;  ///< empty: every one
 };
@@ -55,6 +71,9 @@ struct SweepArguments {
 int run_command(const RunArguments& arguments);
 int check_command(const CheckArguments& arguments);
 int draw_command(const DrawArguments& arguments);
+int view_command(const ViewArguments& arguments);
+int film_command(const FilmArguments& arguments);
+int export_command(const ExportArguments& arguments);
 int list_command(const ListArguments& arguments);
 int bench_command(const BenchArguments& arguments);
 int sweep_command(const SweepArguments& arguments);

@@ -6,6 +6,7 @@
 
 #include "brink/scenes/files/written_file.h"
 #include "brink/scenes/program/commands.h"
+#include "brink/scenes/program/run_folder.h"
 #include "brink/scenes/run_file/run_moment.h"
 #include "brink/scenes/scene/scene.h"
 #include "brink/scheduler/simulator/simulator.h"
@@ -14,12 +15,6 @@ namespace brink {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The run file that `subject` names (the file, or the folder it is in), or an empty path.
-fs::path run_file_of(const fs::path& subject) {
-  if (fs::is_directory(subject)) return subject / "run.db";
-  return subject.extension() == ".db" ? subject : fs::path();
-}
 
 /// Keeps the contacts that last at the end of a run.
 class LastContacts final : public Recorder {

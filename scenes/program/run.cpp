@@ -5,28 +5,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 
 #include "brink/core/base/printable.h"
 #include "brink/scenes/program/commands.h"
 #include "brink/scenes/program/run_folder.h"
+#include "brink/scenes/program/stopping.h"
 #include "brink/scenes/program/terminal.h"
 #include "brink/scenes/run_file/run_scene.h"
 
 namespace brink {
 namespace {
-
-volatile std::sig_atomic_t stop_asked = 0;
-
-/// The first SIGINT or SIGTERM asks the run to stop at the next chance; a second one ends the program at
-/// once.
-void stop_on_signals() {
-  struct sigaction action {};
-  action.sa_handler = [](int) { stop_asked = 1; };
-  action.sa_flags = SA_RESETHAND;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
 
 std::string ending(const RunSummary& s) {
   switch (s.termination) {
@@ -119,7 +107,7 @@ int run_command(const RunArguments& arguments) {
     ProgressBar bar(0.0, arguments.until.value_or(scene.duration), on_terminal(stderr) && !arguments.quiet);
     request.progress = [&bar](double t, std::uint64_t collisions) {
       bar.show(t, collisions);
-      return stop_asked == 0;
+      return !stop_asked();
     };
     report = run_scene(scene, request);
   }

@@ -17,4 +17,9 @@ fs::path default_run_folder(const fs::path& scene, bool resume) {
   return folder(last);
 }
 
+fs::path run_file_of(const fs::path& subject) {
+  if (fs::is_directory(subject)) return subject / "run.db";
+  return subject.extension() == ".db" ? subject : fs::path();
+}
+
 }  // namespace brink

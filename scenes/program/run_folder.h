@@ -1,4 +1,6 @@
 #pragma once
+/// Where runs are kept, and which one is meant.
+
 #include <filesystem>
 
 namespace brink {
@@ -6,5 +8,8 @@ namespace brink {
 /// runs/<scene>-<n>, below the present folder: the first n that is free; to resume, the last one that holds a
 /// run file (n = 1 where there is none).
 std::filesystem::path default_run_folder(const std::filesystem::path& scene, bool resume);
+
+/// The run file that `subject` names (the file, or the folder it is in), or an empty path.
+std::filesystem::path run_file_of(const std::filesystem::path& subject);
 
 }  // namespace brink

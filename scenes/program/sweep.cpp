@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <csignal>
 #include <set>
 
 #include "brink/core/base/error.h"
 #include "brink/core/base/printable.h"
 #include "brink/scenes/files/written_file.h"
 #include "brink/scenes/program/commands.h"
+#include "brink/scenes/program/stopping.h"
 #include "brink/scenes/program/terminal.h"
 #include "brink/scenes/sweep/plot.h"
 #include "brink/scenes/sweep/shell_word.h"
@@ -19,16 +19,6 @@ namespace brink {
 namespace {
 
 namespace fs = std::filesystem;
-
-volatile std::sig_atomic_t stop_asked = 0;
-
-void stop_on_signals() {
-  struct sigaction action {};
-  action.sa_handler = [](int) { stop_asked = 1; };
-  action.sa_flags = SA_RESETHAND;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
 
 std::size_t waiting(const SweepResults& results) {
   return static_cast<std::size_t>(
@@ -105,14 +95,14 @@ int sweep_command(const SweepArguments& arguments) {
                 on_terminal(stderr) && !arguments.quiet);
     SweepRequest request;
     request.jobs = arguments.jobs;
-    request.stop = [] { return stop_asked != 0; };
+    request.stop = [] { return stop_asked(); };
     request.done = [&](const SweepRun&, const SweepResult&) { tally.one_more(); };
     run_sweep(experiment, store, request);
   }
   const std::size_t left = report(experiment, store, folder, arguments.quiet);
   if (left == 0) return kDone;
   fmt::print(stderr, "brink: {} of {} runs are not done{}; the same command goes on\n", left,
-             experiment.runs.size(), stop_asked ? "" : " (another process has taken them)");
+             experiment.runs.size(), stop_asked() ? "" : " (another process has taken them)");
   return kEndedEarly;
 }
 

@@ -69,8 +69,18 @@ std::pair<double, double> hermite(double a, double va, double b, double vb, doub
   return {a + t * (va + t * (c2 + t * c3)), va + t * (2 * c2 + 3 * t * c3)};
 }
 
-BodyState between(const BodyState& a, const BodyState& b, double h, double s) {
+/// A state that is known.
+struct Knot {
+  double t = 0.0;
+  BodyState state;
+};
+
+BodyState between(const Knot& left, const Knot& right, double t) {
+  const BodyState &a = left.state, &b = right.state;
+  const double h = right.t - left.t;
+  if (!(h > 0.0)) return a;
   BodyState m;
+  const double s = (t - left.t) / h;
   for (int i = 0; i < 2; ++i) {
     std::tie(m.pose.position[i], m.twist.velocity[i]) =
         hermite(a.pose.position[i], a.twist.velocity[i], b.pose.position[i], b.twist.velocity[i], h, s);
@@ -78,6 +88,28 @@ BodyState between(const BodyState& a, const BodyState& b, double h, double s) {
   std::tie(m.pose.angle, m.twist.omega) =
       hermite(a.pose.angle, a.twist.omega, b.pose.angle, b.twist.omega, h, s);
   return m;
+}
+
+}  // namespace
+
+namespace {
+
+constexpr const char* kContactColumns =
+    "SELECT t_begin, t_end, mode, body, other, site, sample, outline_site, sample_on_body, px, py, nx, "
+    "ny, force_n, force_t FROM contact ";
+
+constexpr const char* kStateColumns =
+    ", x, y, angle, vx_before, vy_before, omega_before, vx, vy, omega, other_x, other_y, other_angle, "
+    "other_vx_before, other_vy_before, other_omega_before, other_vx, other_vy, other_omega";
+
+EventSide side_in(const Row& row, int first) {
+  EventSide side;
+  side.known = !std::isnan(row.real_or_nan(first));
+  if (!side.known) return side;
+  const auto at = [&](int i) { return row.real(first + i); };
+  side.before = {{at(3), at(4)}, at(5)};
+  side.after = {{{at(0), at(1)}, at(2)}, {{at(6), at(7)}, at(8)}};
+  return side;
 }
 
 }  // namespace
@@ -107,6 +139,13 @@ struct RunFile::Impl {
     });
   }
 
+  bool has_column(const std::string& table, const std::string& column) const {
+    SQLite::Statement get(db, "SELECT count(*) FROM pragma_table_info(?) WHERE name = ?");
+    get.bind(1, table);
+    get.bind(2, column);
+    return get.executeStep() && get.getColumn(0).getInt64() > 0;
+  }
+
   /// Whole frames in the file. Rows are numbered from 1 without holes, `bodies` rows a frame.
   std::int64_t frames() const {
     const std::int64_t rows = db.execAndGet("SELECT ifnull(max(rowid), 0) FROM frame").getInt64();
@@ -132,14 +171,28 @@ struct RunFile::Impl {
     }
     return low;
   }
-  Frame read_frame(std::int64_t index) const {
-    Frame frame;
-    SQLite::Statement get(db,
-                          "SELECT t, x, y, angle, vx, vy, omega, body FROM frame WHERE rowid > ? AND rowid "
-                          "<= ? ORDER BY rowid");
-    get.bind(1, index * bodies);
-    get.bind(2, (index + 1) * bodies);
+  /// How bodies come out of the events of [from, to], in the order of the file.
+  template <class F>
+  void each_side_between(double from, double to, F&& f) const {
+    if (!has_column("event", "other_omega")) return;  // of before
+    SQLite::Statement get(db, std::string("SELECT t, body, other") + kStateColumns +
+                                  " FROM event WHERE t BETWEEN ? AND ? ORDER BY seq");
+    get.bind(1, from);
+    get.bind(2, to);
     while (get.executeStep()) {
+      const Row row(get);
+      for (int side = 0; side < 2; ++side) {
+        const int body = row.id_or_none(1 + side, bodies);
+        if (body < 0) continue;
+        if (const EventSide how = side_in(row, 3 + 9 * side); how.known) f(row.real(0), body, how);
+      }
+    }
+  }
+
+  /// Takes the rows of frame `index` from a statement that has come there.
+  void next_frame(SQLite::Statement& get, std::int64_t index, Frame& frame) const {
+    frame.states.clear();
+    while (static_cast<std::int64_t>(frame.states.size()) < bodies && get.executeStep()) {
       const Row row(get);
       const double t = row.real(0);
       const bool next = row.count(7) == static_cast<std::int64_t>(frame.states.size());
@@ -151,7 +204,46 @@ struct RunFile::Impl {
     }
     if (static_cast<std::int64_t>(frame.states.size()) != bodies)
       throw BadInput(fmt::format("frame {} is not whole", index));
+  }
+  Frame read_frame(std::int64_t index) const {
+    Frame frame;
+    SQLite::Statement get(db,
+                          "SELECT t, x, y, angle, vx, vy, omega, body FROM frame WHERE rowid > ? AND rowid "
+                          "<= ? ORDER BY rowid");
+    get.bind(1, index * bodies);
+    get.bind(2, (index + 1) * bodies);
+    next_frame(get, index, frame);
     return frame;
+  }
+
+  /// Those that the clause chooses, once `bind` has given it its values.
+  template <class Bind>
+  std::vector<LastedContact> contacts(const char* which, Bind&& bind) const {
+    return reading(file, "contact", [&] {
+      std::vector<LastedContact> all;
+      if (!db.tableExists("contact")) return all;  // of before there was one
+      SQLite::Statement get(db, std::string(kContactColumns) + which);
+      bind(get);
+      while (get.executeStep()) {
+        const Row row(get);
+        all.push_back({row.real(0),
+                       row.real(1),
+                       mode_from(row.text(2)),
+                       static_cast<int>(row.count(3, bodies)),
+                       row.id_or_none(4, bodies),
+                       row.id_or_none(5, sites),
+                       static_cast<int>(row.count(6, std::numeric_limits<int>::max())),
+                       static_cast<int>(row.count(7, std::numeric_limits<int>::max())),
+                       row.count(8, 2) != 0,
+                       {row.real(9), row.real(10)},
+                       {row.real(11), row.real(12)},
+                       row.real(13),
+                       row.real(14)});
+        if ((all.back().other_body < 0) == (all.back().other_site < 0))
+          throw BadInput("a contact has one other owner, a body or a site");
+      }
+      return all;
+    });
   }
 };
 
@@ -246,6 +338,8 @@ World RunFile::world() const {
     body.initial = first.states.at(row.id);
   }
   world.sites = sites();
+  for (const Spring& s : springs())
+    world.forces.push_back(SpringForce{s.body, s.other, s.at, s.other_at, s.stiffness, 0.0, s.rest_length});
   world.periods.size =
       reading(impl_->file, "meta", [&] { return periods_in(meta("options").value_or("{}")); });
   return world;
@@ -254,10 +348,12 @@ World RunFile::world() const {
 std::vector<Event> RunFile::events() const {
   return reading(impl_->file, "event", [&] {
     std::vector<Event> all;
+    const bool has_states = impl_->has_column("event", "other_omega");  // files of before have none
     SQLite::Statement get(
         impl_->db,
         "SELECT seq, t, kind, body, other, site, px, py, nx, ny, closing_speed, impulse_n, impulse_t, "
-        "gap, outline_site, sample, sample_on_body, t_low FROM event ORDER BY seq");
+        "gap, outline_site, sample, sample_on_body, t_low" +
+            std::string(has_states ? kStateColumns : "") + " FROM event ORDER BY seq");
     while (get.executeStep()) {
       const Row row(get);
       Event e;
@@ -277,43 +373,47 @@ std::vector<Event> RunFile::events() const {
                    row.real_or_nan(13)};
       e.impulse_n = row.real_or_nan(11);
       e.impulse_t = row.real_or_nan(12);
+      if (has_states) {
+        e.body = side_in(row, 18);
+        e.other = side_in(row, 27);
+      }
       all.push_back(e);
     }
     return all;
   });
 }
 
-std::vector<LastedContact> RunFile::contacts_at(double t) const {
-  return reading(impl_->file, "contact", [&] {
-    std::vector<LastedContact> all;
-    if (!impl_->db.tableExists("contact")) return all;  // of before there was one
-    SQLite::Statement get(
-        impl_->db,
-        "SELECT t_begin, t_end, mode, body, other, site, sample, outline_site, sample_on_body, px, py, nx, "
-        "ny, force_n, force_t FROM contact WHERE t_begin <= ?1 AND (?1 < t_end OR t_end >= ?2) ORDER BY "
-        "rowid");
-    get.bind(1, t);
-    get.bind(2, end_time());
-    while (get.executeStep()) {
-      const Row row(get);
-      all.push_back({row.real(0),
-                     row.real(1),
-                     mode_from(row.text(2)),
-                     static_cast<int>(row.count(3, impl_->bodies)),
-                     row.id_or_none(4, impl_->bodies),
-                     row.id_or_none(5, impl_->sites),
-                     static_cast<int>(row.count(6, std::numeric_limits<int>::max())),
-                     static_cast<int>(row.count(7, std::numeric_limits<int>::max())),
-                     row.count(8, 2) != 0,
-                     {row.real(9), row.real(10)},
-                     {row.real(11), row.real(12)},
-                     row.real(13),
-                     row.real(14)});
-      if ((all.back().other_body < 0) == (all.back().other_site < 0))
-        throw BadInput("a contact has one other owner, a body or a site");
-    }
+std::vector<RunFile::Spring> RunFile::springs() const {
+  return reading(impl_->file, "meta", [&] {
+    const auto json = nlohmann::json::parse(meta("springs").value_or("[]"));
+    const auto body = [&](const nlohmann::json& j) {
+      if (j.is_null()) return -1;
+      const int id = j.get<int>();
+      if (id < 0 || id >= impl_->bodies) throw BadInput("springs: no such body");
+      return id;
+    };
+    const auto vector = [](const nlohmann::json& j) {
+      return Vec2(j.at(0).get<double>(), j.at(1).get<double>());
+    };
+    std::vector<Spring> all;
+    for (const auto& j : json)
+      all.push_back({body(j.at("body")), body(j.at("other")), vector(j.at("at")), vector(j.at("other_at")),
+                     j.at("stiffness").get<double>(), j.at("rest_length").get<double>()});
     return all;
   });
+}
+
+std::vector<LastedContact> RunFile::contacts_at(double t) const {
+  const double end = end_time();
+  return impl_->contacts("WHERE t_begin <= ?1 AND (?1 < t_end OR t_end >= ?2) ORDER BY rowid",
+                         [&](SQLite::Statement& get) {
+                           get.bind(1, t);
+                           get.bind(2, end);
+                         });
+}
+
+std::vector<LastedContact> RunFile::contacts() const {
+  return impl_->contacts("ORDER BY rowid", [](SQLite::Statement&) {});
 }
 
 std::optional<ResumePoint> RunFile::checkpoint() const {
@@ -403,6 +503,28 @@ std::pair<double, double> RunFile::time_range() const {
   });
 }
 
+std::int64_t RunFile::frame_count() const {
+  return reading(impl_->file, "frame", [&] { return impl_->frames(); });
+}
+
+void RunFile::each_frame(std::int64_t stride, const std::function<void(const Frame&)>& f) const {
+  reading(impl_->file, "frame", [&] {
+    const std::int64_t frames = impl_->some_frames(), bodies = impl_->bodies;
+    SQLite::Statement get(
+        impl_->db, "SELECT t, x, y, angle, vx, vy, omega, body FROM frame WHERE rowid <= ? ORDER BY rowid");
+    get.bind(1, frames * bodies);
+    Frame frame;
+    double before = -std::numeric_limits<double>::infinity();
+    for (std::int64_t k = 0; k < frames; ++k) {
+      impl_->next_frame(get, k, frame);
+      if (!(frame.t >= before)) throw BadInput("frames are not in the order of time");
+      before = frame.t;
+      if (k % stride == 0 || k + 1 == frames) f(frame);
+    }
+    return 0;
+  });
+}
+
 RunFile::Frame RunFile::frame_at(double t) const {
   return reading(impl_->file, "frame", [&] { return impl_->read_frame(impl_->frame_index(t)); });
 }
@@ -413,9 +535,17 @@ RunFile::Frame RunFile::states_at(double t) const {
     Frame a = impl_->read_frame(index);
     if (t <= a.t || index + 1 >= impl_->frames()) return a;
     const Frame b = impl_->read_frame(index + 1);
-    const double h = b.t - a.t, s = (t - a.t) / h;
-    if (!(h > 0.0)) throw BadInput("frames are not in the order of time");
-    for (std::size_t k = 0; k < a.states.size(); ++k) a.states[k] = between(a.states[k], b.states[k], h, s);
+    if (!(b.t > a.t)) throw BadInput("frames are not in the order of time");
+    std::vector<Knot> left, right;
+    for (const BodyState& s : a.states) left.push_back({a.t, s});
+    for (const BodyState& s : b.states) right.push_back({b.t, s});
+    impl_->each_side_between(a.t, b.t, [&](double when, int body, const EventSide& side) {
+      if (when <= t)
+        left[body] = {when, side.after};
+      else if (when < right[body].t)
+        right[body] = {when, {side.after.pose, side.before}};
+    });
+    for (std::size_t k = 0; k < a.states.size(); ++k) a.states[k] = between(left[k], right[k], t);
     a.t = t;
     return a;
   });

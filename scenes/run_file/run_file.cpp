@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
 
@@ -16,6 +17,7 @@
 #include "brink/scenes/run_file/shape_json.h"
 #include "brink/scenes/run_file/tables.h"
 #include "brink/scenes/version.h"
+#include "brink/scheduler/kernel/site_motion.h"
 
 namespace brink {
 namespace fs = std::filesystem;
@@ -25,9 +27,25 @@ using Clock = std::chrono::steady_clock;
 constexpr std::int64_t kRowsPerCommit = 20'000;
 constexpr auto kTimePerCommit = std::chrono::milliseconds(250);
 constexpr int kBusyMilliseconds = 10'000;
+constexpr std::int64_t kMostIndexed = 2'000'000;  ///< frame rows
 
 std::string hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
 std::string number(double x) { return fmt::format("{}", x); }
+
+/// What pictures need of the springs.
+std::string springs_json(const World& world) {
+  auto all = nlohmann::ordered_json::array();
+  const auto pair = [](const Vec2& v) { return nlohmann::ordered_json::array({v.x(), v.y()}); };
+  for (const Force& force : world.forces)
+    if (const auto* s = std::get_if<SpringForce>(&force))
+      all.push_back({{"body", s->body_a},
+                     {"other", s->body_b < 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(s->body_b)},
+                     {"at", pair(s->at_a)},
+                     {"other_at", pair(s->at_b)},
+                     {"stiffness", s->stiffness},
+                     {"rest_length", s->rest_length}});
+  return all.dump();
+}
 
 /// Moves DIR/run.db, with its write-ahead log, to the first free DIR/run-<n>.db.
 void keep_earlier(const fs::path& file) {
@@ -48,12 +66,13 @@ void keep_earlier(const fs::path& file) {
 struct RunFileRecorder::Impl {
   RunFolder folder;
   SQLite::Database db;
-  std::optional<SQLite::Statement> insert_frame, insert_event, insert_contact;
+  std::optional<SQLite::Statement> insert_frame, insert_site_frame, insert_event, insert_contact;
   std::optional<SQLite::Transaction> transaction;
   std::int64_t rows_waiting = 0;
   Clock::time_point waiting_since;
   std::int64_t frames = 0, events = 0, contacts = 0;  // rows in the file
   std::int64_t bodies = 0;
+  std::vector<std::pair<int, SiteMotion>> moving_sites;  ///< by id
   double wall_before = 0.0;
   std::uint64_t identity = 0;
   Clock::time_point opened = Clock::now();
@@ -117,6 +136,9 @@ struct RunFileRecorder::Impl {
   void drop_rows_after_checkpoint(const Scene& scene);
   void drop_early_end_frame(double interval);
   void prepare_inserts();
+  void put_state(SQLite::Statement& put, const BodyState& s);
+  void put_site_frames(double t);
+  void put_side(SQLite::Statement& put, int first, const EventSide& side);
 };
 
 void RunFileRecorder::Impl::write_meta(const Scene& scene) {
@@ -125,6 +147,9 @@ void RunFileRecorder::Impl::write_meta(const Scene& scene) {
   set_meta("scene", scene.path.string());
   set_meta("title", scene.world.title);
   set_meta("options", scene.options_json);
+  set_meta("scene_text", scene.text);
+  set_meta("overrides", nlohmann::json(scene.overrides).dump());
+  set_meta("springs", springs_json(scene.world));
   set_meta("world_hash", world_hash_text(scene.world));
   set_meta("duration", number(scene.duration));
   set_meta("termination", "running");
@@ -169,6 +194,7 @@ void RunFileRecorder::Impl::write_sites(const World& world) {
 void RunFileRecorder::Impl::start_fresh(const Scene& scene) {
   begin();
   db.exec(kRunFileTables);
+  db.exec(kRunFileViews);
   write_meta(scene);
   write_bodies(scene.world);
   write_sites(scene.world);
@@ -198,6 +224,8 @@ void RunFileRecorder::Impl::drop_rows_after_checkpoint(const Scene& scene) {
   db.exec(fmt::format("DELETE FROM event WHERE rowid >= {}", events));  // seq counts from 0
   db.exec(fmt::format("DELETE FROM contact WHERE rowid > {}", contacts));
   drop_early_end_frame(scene.output.frame_interval);
+  const auto moving = static_cast<std::int64_t>(moving_sites.size());
+  db.exec(fmt::format("DELETE FROM site_frame WHERE rowid > {}", bodies > 0 ? frames / bodies * moving : 0));
   db.exec("DELETE FROM checkpoint");
   if (!resume_point) return;
   resume_point->frames = frames;
@@ -210,6 +238,7 @@ void RunFileRecorder::Impl::start_again(const Scene& scene) {
   begin();
   drop_rows_after_checkpoint(scene);
   db.exec("DELETE FROM work");
+  db.exec(kDropIndices);
   set_meta("options", scene.options_json);  // the same, but for limits
   set_meta("termination", "running");
   set_meta("duration", number(scene.duration));
@@ -231,7 +260,11 @@ void RunFileRecorder::Impl::put_checkpoint(const ResumePoint& row, std::span<con
 
 void RunFileRecorder::Impl::prepare_inserts() {
   insert_frame.emplace(db, "INSERT INTO frame VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
-  insert_event.emplace(db, "INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  insert_site_frame.emplace(db, "INSERT INTO site_frame VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+  insert_event.emplace(
+      db,
+      "INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+      "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   insert_contact.emplace(db, "INSERT INTO contact VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
 }
 
@@ -242,6 +275,9 @@ void RunFileRecorder::open(RunFolder folder, const Scene& scene, Open how, std::
     impl_->identity = run_identity(std::string(version()), scene.options_json, world_hash_text(scene.world));
     impl_->bodies = static_cast<std::int64_t>(scene.world.bodies.size());
     impl_->resume_point = std::move(point);
+    for (std::size_t id = 0; id < scene.world.sites.size(); ++id)
+      if (SiteMotion motion(scene.world.sites[id]); motion.moves())
+        impl_->moving_sites.emplace_back(static_cast<int>(id), std::move(motion));
     how == Open::fresh ? impl_->start_fresh(scene) : impl_->start_again(scene);
     impl_->prepare_inserts();
   });
@@ -271,23 +307,48 @@ RunFileRecorder::~RunFileRecorder() {
 const fs::path& RunFileRecorder::file() const { return impl_->folder.file(); }
 const std::optional<ResumePoint>& RunFileRecorder::resume_point() const { return impl_->resume_point; }
 
+/// From column 3 on.
+void RunFileRecorder::Impl::put_state(SQLite::Statement& put, const BodyState& s) {
+  put.bind(3, s.pose.position.x());
+  put.bind(4, s.pose.position.y());
+  put.bind(5, s.pose.angle);
+  put.bind(6, s.twist.velocity.x());
+  put.bind(7, s.twist.velocity.y());
+  put.bind(8, s.twist.omega);
+  put.exec();
+  put.reset();
+}
+
+void RunFileRecorder::Impl::put_site_frames(double t) {
+  SQLite::Statement& put = *insert_site_frame;
+  for (auto& [id, site] : moving_sites) {
+    if (site.extend(t).status != Extent::Status::reached) continue;
+    put.bind(1, t);
+    put.bind(2, id);
+    put_state(put, site.motion().state(t));
+    site.forget_before(t);
+  }
+}
+
+void RunFileRecorder::Impl::put_side(SQLite::Statement& put, int first, const EventSide& side) {
+  const BodyState& s = side.after;
+  const Twist& b = side.before;
+  const double reals[] = {s.pose.position.x(),  s.pose.position.y(),  s.pose.angle,
+                          b.velocity.x(),       b.velocity.y(),       b.omega,
+                          s.twist.velocity.x(), s.twist.velocity.y(), s.twist.omega};
+  for (int i = 0; i < 9; ++i) side.known ? put.bind(first + i, reals[i]) : put.bind(first + i);
+}
+
 void RunFileRecorder::frame(double t, std::span<const BodyState> states) {
   impl_->writing([&] {
     impl_->begin();
     SQLite::Statement& put = *impl_->insert_frame;
     put.bind(1, t);
     for (std::size_t k = 0; k < states.size(); ++k) {
-      const BodyState& s = states[k];
       put.bind(2, static_cast<std::int64_t>(k));
-      put.bind(3, s.pose.position.x());
-      put.bind(4, s.pose.position.y());
-      put.bind(5, s.pose.angle);
-      put.bind(6, s.twist.velocity.x());
-      put.bind(7, s.twist.velocity.y());
-      put.bind(8, s.twist.omega);
-      put.exec();
-      put.reset();
+      impl_->put_state(put, states[k]);
     }
+    impl_->put_site_frames(t);
     impl_->frames += static_cast<std::int64_t>(states.size());
     impl_->rows_waiting += static_cast<std::int64_t>(states.size());
     impl_->commit_if_due();
@@ -313,6 +374,8 @@ void RunFileRecorder::event(const Event& event) {
     id_or_null(16, c.sample);
     put.bind(17, c.sample_on_body ? 1 : 0);
     put.bind(18, c.time_low);
+    impl_->put_side(put, 19, event.body);
+    impl_->put_side(put, 28, event.other);
     put.exec();
     put.reset();
     impl_->events = static_cast<std::int64_t>(event.seq) + 1;
@@ -373,8 +436,11 @@ void RunFileRecorder::finish(const RunSummary& summary, const std::string& summa
       put.exec();
       put.reset();
     });
+    impl_->db.exec(kRunFileIndices);
+    if (impl_->frames <= kMostIndexed) impl_->db.exec(kFrameIndex);
     impl_->commit();
     impl_->insert_frame.reset();
+    impl_->insert_site_frame.reset();
     impl_->insert_event.reset();
     impl_->insert_contact.reset();
     impl_->db.tryExec(

@@ -10,7 +10,9 @@
 ///     event       seq, t, kind, body, other, site, px, py, nx, ny, closing_speed, impulse_n, impulse_t, gap,
 ///                 outline_site, sample, sample_on_body, t_low   other NULL: a fixed site, and `site` is its
 ///                 id in the site table; else `site` is NULL. outline_site and sample say which Voronoi site
-///                 and which sample of the two outlines met
+///                 and which sample of the two outlines met. x .. omega: of a collision of free bodies, how
+///                 `body` comes out of it, *_before with what twist it came; other_x .. likewise; else NULL
+///     site_frame  t, site, x, y, angle, vx, vy, omega    poses of the sites that move, at every frame
 ///     contact     t_begin, t_end, body, other, site, outline_site, sample, mode, force_n, force_t,
 ///                 sample_on_body, px, py, nx, ny         contacts that lasted, in the order of their ends;
 ///                 mode: rest, stick, slip, roll. A row is one stretch of a mode, with its forces [N], place
@@ -21,7 +23,11 @@
 ///                 snapshot, sealed by a checksum (checkpoint_seal.h), and how many rows of `frame`, `event`
 ///                 and `contact` came before it
 ///
-/// meta: schema_version, brink_version, scene, title, options (JSON), world_hash, termination ("running"
+/// Views with units in their columns' names: energy_over_time, body_path, contacts_of, timeline. A run that
+/// ends makes indices by body (of frames up to 2 million rows).
+///
+/// meta: schema_version, brink_version, scene, title, options (JSON), scene_text, overrides (JSON), springs
+/// (JSON: body, other or null, at, other_at), world_hash, termination ("running"
 /// until the end), duration, end_time, state_hash, wall_seconds, summary (the JSON of `brink run --json`).
 ///
 /// Rows are committed every 20 000 rows or 0.25 s. After a kill at any moment the file opens and holds all
@@ -145,12 +151,20 @@ class RunFile {
   std::optional<std::string> meta(const std::string& key) const;
   std::vector<BodyRow> bodies() const;
   std::vector<FixedSite> sites() const;
-  /// What pictures need of the world: title, bodies with their states in the first frame, and fixed sites.
-  /// Materials and forces are not kept in a run file.
+  /// What pictures need of the world: title, bodies with their states in the first frame, fixed sites,
+  /// springs. Materials and other forces are not kept in tables of a run file, but meta's scene_text is.
   World world() const;
   std::vector<Event> events() const;
+  struct Spring {
+    int body = 0, other = -1;  ///< -1: anchored
+    Vec2 at, other_at;         ///< in the bodies' frames; the anchor in the world [m]
+    double stiffness = 0.0, rest_length = 0.0;
+  };
+  std::vector<Spring> springs() const;
   /// Those that lasted at time t [s]: from <= t < to, and at the end of the run those that last still.
   std::vector<LastedContact> contacts_at(double t) const;
+  /// All of them.
+  std::vector<LastedContact> contacts() const;
   /// The last checkpoint, its seal opened.
   std::optional<ResumePoint> checkpoint() const;
   /// meta's `end_time` [s].
@@ -167,10 +181,15 @@ class RunFile {
 
   /// Times of the first and last whole frame [s].
   std::pair<double, double> time_range() const;
+  /// Whole frames in the file.
+  std::int64_t frame_count() const;
+  /// Calls f with every `stride`-th frame from the first on, and with the last. Cost: reads every row once.
+  void each_frame(std::int64_t stride, const std::function<void(const Frame&)>& f) const;
   /// The last whole frame at or before t, or the first one. Cost: a binary search.
   Frame frame_at(double t) const;
-  /// States at t for a picture: between two frames by cubic Hermite interpolation of poses and twists, which
-  /// knows nothing of collisions in between; outside the time range, the nearest frame.
+  /// States at t for a picture: between two of a body's recorded states (frames, and its collisions with the
+  /// twist before and after) the cubic with their poses and twists; outside the time range, the nearest frame.
+  /// Exact for constant accelerations, but for files of before, which know nothing of bodies at collisions.
   Frame states_at(double t) const;
 
  private:

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "brink/core/base/printable.h"
 #include "brink/scenes/files/written_file.h"
@@ -62,6 +63,13 @@ std::optional<RunReport> finished_before(const Scene& scene, const RunFolder& fo
   return report;
 }
 
+void wait(RunFileRecorder& recorder, const RunRequest& request) {
+  while (request.waits && request.waits()) {
+    recorder.poll();
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+}
+
 RunOptions run_options(const Scene& scene, const RunRequest& request, double until,
                        RunFileRecorder& recorder) {
   RunOptions options;
@@ -72,6 +80,7 @@ RunOptions run_options(const Scene& scene, const RunRequest& request, double unt
   options.record_events = scene.output.events;
   options.progress = [&recorder, &request](double t, std::uint64_t collisions) {
     recorder.poll();
+    wait(recorder, request);
     return !request.progress || request.progress(t, collisions);
   };
   return options;
@@ -89,6 +98,24 @@ void restore(Simulator& simulator, const RunFolder& folder, const ResumePoint& p
     throw IoError(fmt::format("{}: table checkpoint: {}", folder.file().string(), e.what()));
   }
 }
+
+/// Records, and tells what has been recorded.
+class TellingRecorder final : public Recorder {
+ public:
+  TellingRecorder(RunFileRecorder& file, const RunRequest& request) : file_(&file), request_(&request) {}
+  void frame(double t, std::span<const BodyState> states) override { file_->frame(t, states); }
+  void event(const Event& event) override {
+    file_->event(event);
+    request_->happened(event);
+    wait(*file_, *request_);
+  }
+  void contact_lasted(const LastedContact& contact) override { file_->contact_lasted(contact); }
+  void checkpoint(double t, const std::vector<std::byte>& state) override { file_->checkpoint(t, state); }
+
+ private:
+  RunFileRecorder* file_;
+  const RunRequest* request_;
+};
 
 /// What the run file says of a run that an exception ended.
 void close_as_failed(RunFileRecorder& recorder, const Simulator& simulator, const std::string& why) {
@@ -135,7 +162,8 @@ RunReport run_scene(const Scene& scene, const RunRequest& request) {
   options.trace = trace ? &*trace : nullptr;
   if (request.begins) request.begins();
   try {
-    report.summary = simulator.run(options, &recorder);
+    TellingRecorder telling(recorder, request);
+    report.summary = simulator.run(options, request.happened ? static_cast<Recorder*>(&telling) : &recorder);
   } catch (const std::exception& e) {
     close_as_failed(recorder, simulator, e.what());
     throw;

@@ -23,6 +23,10 @@ struct RunRequest {
   std::function<void()> begins;
   /// Called now and then; return false to stop. May be empty.
   std::function<bool(double t, std::uint64_t collisions)> progress;
+  /// Told of every event. May be empty.
+  std::function<void(const Event&)> happened;
+  /// The run waits, its rows committed, while this is true; asked after every event and now and then. May be empty.
+  std::function<bool()> waits;
 };
 
 struct RunReport {

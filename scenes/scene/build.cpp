@@ -298,6 +298,8 @@ Scene parse_scene(std::string_view text, const std::string& name, const std::vec
   Scene scene = build_scene(file, document.faults());
   document.faults().throw_if_any(name);
   scene.path = name;
+  scene.text = text;
+  scene.overrides = overrides;
   return scene;
 }
 

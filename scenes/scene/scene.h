@@ -23,6 +23,8 @@ struct OutputOptions {
 
 struct Scene {
   std::filesystem::path path;
+  std::string text;                    ///< of the file
+  std::vector<std::string> overrides;  ///< PATH=VALUE
   World world;
   double duration = 1.0;  ///< [s]
   SolverOptions solver;

@@ -1,0 +1,159 @@
+/// brink film: a run as a film, picture by picture through ffmpeg.
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+
+#include "brink/core/base/printable.h"
+#include "brink/scenes/draw/draw.h"
+#include "brink/scenes/files/written_file.h"
+#include "brink/scenes/program/commands.h"
+#include "brink/scenes/program/run_folder.h"
+#include "brink/scenes/program/terminal.h"
+#include "brink/scenes/run_file/run_file.h"
+#include "brink/scenes/run_file/run_moment.h"
+#include "brink/scenes/sweep/shell_word.h"
+#include "brink/scheduler/kernel/site_motion.h"
+
+namespace brink {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMostPictures = 1e6;
+constexpr int kLooks = 32;  ///< at the run, for what the camera must see
+
+bool has_ffmpeg() { return std::system("ffmpeg -version >/dev/null 2>&1") == 0; }
+
+/// Takes pictures one after another.
+class Film {
+ public:
+  virtual ~Film() = default;
+  virtual void add(const Picture& picture) = 0;
+  virtual void finish() {}
+};
+
+class PictureSequence final : public Film {
+ public:
+  explicit PictureSequence(const fs::path& out) : stem_(fs::path(out).replace_extension()) {}
+  void add(const Picture& picture) override {
+    write_png(fmt::format("{}-{:05}.png", stem_.string(), ++count_), picture);
+  }
+
+ private:
+  fs::path stem_;
+  int count_ = 0;
+};
+
+class FfmpegFilm final : public Film {
+ public:
+  FfmpegFilm(const fs::path& out, PictureSize size, double fps) : out_(out) {
+    const bool gif = out.extension() == ".gif";
+    // a palette of the film's own colours; or what every player plays
+    const char* coding = gif ? "-vf 'split[a][b];[a]palettegen[p];[b][p]paletteuse'"
+                             : "-vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' -c:v libx264 -crf 18 -pix_fmt yuv420p "
+                               "-movflags +faststart";
+    const std::string command =
+        fmt::format("ffmpeg -loglevel error -y -f rawvideo -pix_fmt bgra -s {}x{} -r {} -i - {} {}",
+                    size.width, size.height, fps, coding, shell_word(fs::absolute(out).string()));
+    pipe_ = ::popen(command.c_str(), "w");
+    if (!pipe_) throw IoError("ffmpeg could not be started");
+  }
+  ~FfmpegFilm() override {
+    if (pipe_) ::pclose(pipe_);
+  }
+  void add(const Picture& picture) override {
+    if (std::fwrite(picture.pixels.data(), 4, picture.pixels.size(), pipe_) != picture.pixels.size())
+      failed();
+  }
+  void finish() override {
+    if (::pclose(std::exchange(pipe_, nullptr)) != 0) failed();
+  }
+
+ private:
+  [[noreturn]] void failed() const {
+    throw IoError(fmt::format("{}: ffmpeg could not write it (what it said is above)", out_.string()));
+  }
+  fs::path out_;
+  std::FILE* pipe_ = nullptr;
+};
+
+std::unique_ptr<Film> film_into(const fs::path& out, PictureSize size, double fps) {
+  const std::string kind = out.extension().string();
+  if (kind == ".png") return std::make_unique<PictureSequence>(out);
+  if (kind != ".mp4" && kind != ".gif")
+    throw BadInput(fmt::format("-o: {} given; allowed: FILE.mp4, FILE.gif, FILE.png", out.string()));
+  if (has_ffmpeg()) return std::make_unique<FfmpegFilm>(out, size, fps);
+  fmt::print(stderr,
+             "brink: ffmpeg is not here (apt-get install ffmpeg): pictures {}-00001.png ... instead\n",
+             printable(fs::path(out).replace_extension().string()));
+  return std::make_unique<PictureSequence>(out);
+}
+
+std::vector<Pose> site_poses(const World& world, double t) {
+  std::vector<Pose> poses;
+  for (const FixedSite& site : world.sites) poses.push_back(told_pose(site, t));
+  return poses;
+}
+
+/// All that is worth seeing between two times.
+Box camera(const RunFile& run, const World& world, double from, double to) {
+  Box all;
+  for (int k = 0; k <= kLooks; ++k) {
+    const double t = from + (to - from) * k / kLooks;
+    const Box seen = automatic_view(world, run.states_at(t).states, site_poses(world, t));
+    all.add(seen.low);
+    all.add(seen.high);
+  }
+  return all;
+}
+
+void require(bool good, const char* option, double given, const char* allowed) {
+  if (!good) throw BadInput(fmt::format("{}: {} given; allowed: {}", option, given, allowed));
+}
+
+}  // namespace
+
+int film_command(const FilmArguments& arguments) {
+  const fs::path file = run_file_of(arguments.run);
+  if (file.empty())
+    throw BadInput(fmt::format("{}: not a run; allowed: a run folder or a run file", arguments.run));
+  require(arguments.fps >= 1.0 && arguments.fps <= 1000.0, "--fps", arguments.fps, "1 .. 1000");
+  require(arguments.speed >= 1e-9 && arguments.speed <= 1e9, "--speed", arguments.speed, "1e-9 .. 1e9");
+  refuse_overwriting(arguments.out, "-o", {file});
+  const RunFile run(file);
+  const auto [first, last] = run.time_range();
+  const double from = arguments.from.value_or(first), to = arguments.to.value_or(last);
+  const std::string range = fmt::format("{} .. {} s, --from before --to", first, last);
+  require(from >= first && from <= last, "--from", from, range.c_str());
+  require(to >= from && to <= last, "--to", to, range.c_str());
+  const double pictures = std::floor((to - from) / arguments.speed * arguments.fps) + 1.0;
+  if (!(pictures <= kMostPictures))
+    throw BadInput(fmt::format(
+        "the film would have {:.3g} pictures; allowed: {:.0g}. A shorter time or a higher --speed", pictures,
+        kMostPictures));
+
+  DrawOptions options;
+  options.diagram = arguments.layer != "plain";
+  options.layer = parse_layer(options.diagram ? arguments.layer : "scene");
+  options.size = parse_size(arguments.size);
+  const World world = run.world();
+  options.view = camera(run, world, from, to);
+  const auto film = film_into(arguments.out, options.size, arguments.fps);
+  ProgressBar bar(from, to, on_terminal(stderr));
+  for (double k = 0; k < pictures; ++k) {
+    const double t = std::min(to, from + k * arguments.speed / arguments.fps);
+    const RunMoment moment{t, world, run.states_at(t).states, site_poses(world, t), run.contacts_at(t)};
+    options.time = t;
+    if (options.layer.kind == DrawLayer::Kind::forces) options.forces = forces_of(moment);
+    film->add(draw_scene(world, moment.bodies, moment.sites, options));
+    bar.show(t, 0);
+  }
+  film->finish();
+  return kDone;
+}
+
+}  // namespace brink

@@ -1,0 +1,77 @@
+/// brink view: a replay page of a run, or a page that follows a run as it goes.
+
+#include "brink/scenes/view/replay_page.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <thread>
+
+#include "brink/core/base/printable.h"
+#include "brink/scenes/files/written_file.h"
+#include "brink/scenes/program/commands.h"
+#include "brink/scenes/program/run_folder.h"
+#include "brink/scenes/program/stopping.h"
+#include "brink/scenes/program/terminal.h"
+#include "brink/scenes/run_file/run_scene.h"
+#include "brink/scenes/sweep/shell_word.h"
+#include "brink/scenes/view/live_server.h"
+
+namespace brink {
+namespace {
+
+namespace fs = std::filesystem;
+
+void open_in_browser(const std::string& page) {
+  const std::string command = "xdg-open " + shell_word(page) + " >/dev/null 2>&1";
+  if (std::system(command.c_str()) != 0)
+    fmt::print(stderr, "brink: no browser could be opened; open {} yourself\n", printable(page));
+}
+
+/// Runs the scene while its page follows it; the page is there until Ctrl-C. Returns the run file.
+fs::path run_live(const ViewArguments& arguments, bool stays) {
+  const Scene scene = load_scene(arguments.subject, arguments.overrides);
+  RunRequest request;
+  request.dir = default_run_folder(scene.path, false);
+  LiveServer server(request.dir / "run.db");
+  if (stays) fmt::print("{}\n", server.address());
+  std::fflush(stdout);
+  if (stays && arguments.open) open_in_browser(server.address());
+  request.begins = stop_on_signals;
+  RunReport report;
+  {
+    ProgressBar bar(0.0, scene.duration, on_terminal(stderr));
+    request.progress = [&](double t, std::uint64_t collisions) {
+      bar.show(t, collisions);
+      return !stop_asked();
+    };
+    request.happened = [&server](const Event&) { server.event_happened(); };
+    request.waits = [&server] { return server.paused() && !stop_asked(); };
+    report = run_scene(scene, request);
+  }
+  server.run_ended();
+  while (stays && !stop_asked()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  return report.file;
+}
+
+}  // namespace
+
+int view_command(const ViewArguments& arguments) {
+  fs::path run = run_file_of(arguments.subject);
+  if (!run.empty() && !arguments.overrides.empty())
+    throw BadInput("--set: is for scenes; a run has been made");
+  if (!arguments.out.empty())
+    refuse_overwriting(arguments.out, "-o", {run.empty() ? fs::path(arguments.subject) : run});
+  const bool live = run.empty() && arguments.out.empty();
+  if (run.empty()) run = run_live(arguments, live);
+  if (live) return kDone;
+  const fs::path page = arguments.out.empty() ? run.parent_path() / "replay.html" : fs::path(arguments.out);
+  write_replay_page(run, page);
+  fmt::print("{}\n", printable(page.string()));
+  if (arguments.open) open_in_browser(fs::absolute(page).string());
+  return kDone;
+}
+
+}  // namespace brink

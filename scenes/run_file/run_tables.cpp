@@ -1,0 +1,105 @@
+#include "brink/scenes/run_file/run_tables.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "brink/core/base/error.h"
+#include "brink/scenes/files/written_file.h"
+#include "brink/scenes/run_file/run_file.h"
+
+namespace brink {
+namespace fs = std::filesystem;
+namespace {
+
+/// A cell as it is written: text that another program could take for more than one cell, or for a formula, in quotes.
+std::string cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+std::string cell(double x) { return std::isnan(x) ? std::string() : fmt::format("{}", x); }
+std::string cell(int id) { return id < 0 ? std::string() : std::to_string(id); }
+
+class Table {
+ public:
+  Table(fs::path file, const std::string& head) : file_(std::move(file)), out_(file_, std::ios::binary) {
+    out_ << head << '\n';
+  }
+  template <class... Cells>
+  void row(const Cells&... cells) {
+    out_ << fmt::format("{}\n", fmt::join(std::vector<std::string>{cell(cells)...}, ","));
+  }
+  void finish() {
+    out_.flush();
+    if (!out_) throw_not_written(file_);
+  }
+
+ private:
+  fs::path file_;
+  std::ofstream out_;
+};
+
+void write_things(const RunFile& run, const fs::path& folder) {
+  Table bodies(folder / "bodies.csv", "body,name,mass_kg,inertia_kg_m2");
+  for (const auto& b : run.bodies()) bodies.row(b.id, b.name, b.mass, b.inertia);
+  bodies.finish();
+  Table sites(folder / "sites.csv", "site,name,kind");
+  int id = 0;
+  for (const FixedSite& s : run.sites()) sites.row(id++, s.name, s.kind);
+  sites.finish();
+}
+
+void write_frames(const RunFile& run, const fs::path& folder) {
+  Table table(folder / "frames.csv", "t_s,body,x_m,y_m,angle_rad,vx_m_per_s,vy_m_per_s,omega_rad_per_s");
+  run.each_frame(1, [&](const RunFile::Frame& f) {
+    int id = 0;
+    for (const auto& [pose, twist] : f.states)
+      table.row(f.t, id++, pose.position.x(), pose.position.y(), pose.angle, twist.velocity.x(),
+                twist.velocity.y(), twist.omega);
+  });
+  table.finish();
+}
+
+void write_events(const RunFile& run, const fs::path& folder) {
+  Table table(
+      folder / "events.csv",
+      "seq,t_s,kind,body,other,site,x_m,y_m,normal_x,normal_y,closing_speed_m_per_s,impulse_normal_Ns,"
+      "impulse_tangential_Ns,gap_m");
+  for (const Event& e : run.events()) {
+    const Contact& c = e.contact;
+    table.row(static_cast<int>(e.seq), c.time, std::string(to_string(e.kind)), c.body, c.other_body,
+              c.other_site, c.point.x(), c.point.y(), c.normal.x(), c.normal.y(), c.closing_speed,
+              e.impulse_n, e.impulse_t, c.gap);
+  }
+  table.finish();
+}
+
+void write_contacts(const RunFile& run, const fs::path& folder) {
+  Table table(folder / "contacts.csv",
+              "from_s,to_s,body,other,site,mode,x_m,y_m,normal_x,normal_y,force_normal_N,force_tangential_N");
+  for (const LastedContact& c : run.contacts())
+    table.row(c.from, c.to, c.body, c.other_body, c.other_site, std::string(to_string(c.mode)), c.point.x(),
+              c.point.y(), c.normal.x(), c.normal.y(), c.normal_force, c.tangential_force);
+  table.finish();
+}
+
+}  // namespace
+
+void write_csv_tables(const fs::path& run_file, const fs::path& folder) {
+  const RunFile run(run_file);
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw IoError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+  write_things(run, folder);
+  write_frames(run, folder);
+  write_events(run, folder);
+  write_contacts(run, folder);
+}
+
+}  // namespace brink

@@ -1,0 +1,91 @@
+#include "brink/scenes/view/live_server.h"
+
+#include <fmt/format.h>
+#include <httplib.h>
+
+#include <atomic>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "brink/core/base/error.h"
+#include "brink/scenes/view/replay_page.h"
+
+namespace brink {
+
+struct LiveServer::Impl {
+  enum class Going { on, to_next_event, paused };
+
+  std::filesystem::path run_file;
+  httplib::Server server;
+  std::thread thread;
+  int port = 0;
+  std::atomic<Going> going{Going::on};
+  std::atomic<bool> ended{false};
+  std::mutex reading;  // one reader of the run file at a time
+
+  explicit Impl(std::filesystem::path file) : run_file(std::move(file)) {
+    server.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+      return answers(request, response);
+    });
+    server.Get("/", [this](const httplib::Request&, httplib::Response& response) {
+      reply(response, "text/html; charset=utf-8", [&] { return replay_page_text(run_file, {}, true); });
+    });
+    server.Get("/data", [this](const httplib::Request&, httplib::Response& response) {
+      reply(response, "application/json", [&] { return replay_page_data(run_file, {}, !ended); });
+    });
+    const auto ask = [this](const char* path, Going how) {
+      server.Post(path, [this, how](const httplib::Request&, httplib::Response& response) {
+        going = how;
+        response.set_content("{}", "application/json");
+      });
+    };
+    ask("/pause", Going::paused);
+    ask("/go", Going::on);
+    ask("/step", Going::to_next_event);
+    port = server.bind_to_any_port("127.0.0.1");
+    if (port <= 0) throw IoError("no port of 127.0.0.1 can be had");
+    thread = std::thread([this] { server.listen_after_bind(); });
+  }
+  ~Impl() {
+    server.stop();
+    thread.join();
+  }
+
+  /// Pages of other hosts may neither read nor ask: the host must be this one, and what asks must say so in a header that
+  /// only the own page can set.
+  httplib::Server::HandlerResponse answers(const httplib::Request& request,
+                                           httplib::Response& response) const {
+    const std::string host = request.get_header_value("Host");
+    const bool own = host == fmt::format("127.0.0.1:{}", port) || host == fmt::format("localhost:{}", port);
+    const bool asks = request.method != "GET";
+    if (own && (!asks || request.get_header_value("X-Brink") == "page"))
+      return httplib::Server::HandlerResponse::Unhandled;
+    response.status = 403;
+    return httplib::Server::HandlerResponse::Handled;
+  }
+
+  template <class Text>
+  void reply(httplib::Response& response, const char* kind, Text&& text) {
+    const std::lock_guard lock(reading);
+    try {
+      response.set_content(text(), kind);
+    } catch (const std::exception& e) {  // nothing is there yet
+      response.status = 503;
+      response.set_content(e.what(), "text/plain; charset=utf-8");
+    }
+  }
+};
+
+LiveServer::LiveServer(std::filesystem::path run_file) : impl_(std::make_unique<Impl>(std::move(run_file))) {}
+LiveServer::~LiveServer() = default;
+
+std::string LiveServer::address() const { return fmt::format("http://127.0.0.1:{}/", impl_->port); }
+bool LiveServer::paused() const { return impl_->going == Impl::Going::paused; }
+void LiveServer::event_happened() {
+  auto until_now = Impl::Going::to_next_event;
+  impl_->going.compare_exchange_strong(until_now, Impl::Going::paused);
+}
+void LiveServer::run_ended() { impl_->ended = true; }
+
+}  // namespace brink

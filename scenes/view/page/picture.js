@@ -1,0 +1,352 @@
+'use strict';
+// The scene at one time on a canvas: outlines as they are (arcs as arcs), marks over them.
+
+const LAYERS = [
+  ['cells', 'Voronoi cells', true], ['bodies', 'bodies', true], ['pass', 'its pass', false],
+  ['contacts', 'contacts', true], ['forces', 'lasting forces', false], ['trails', 'trails', false],
+  ['velocities', 'velocities', false], ['springs', 'springs', true], ['images', 'periodic images', true],
+  ['names', 'names', false],
+];
+
+/** An outline as paths: what is filled, and what is stroked (thickness, crisp edge). */
+function pathsOf(shape) {
+  const fill = new Path2D(), edge = new Path2D();
+  let radius = 0;
+  for (const loop of shape.loops) {
+    let pen = null;
+    const path = new Path2D();
+    for (const site of loop.sites) {
+      radius = Math.max(radius, site.radius);
+      if (site.kind === 'point') { path.arc(...site.a, Math.max(site.radius, 0), 0, 2 * Math.PI); continue; }
+      if (!pen || Math.hypot(pen[0] - site.a[0], pen[1] - site.a[1]) > 1e-9 * shape.bounding_radius) path.moveTo(...site.a);
+      if (site.kind === 'segment') path.lineTo(...site.b);
+      else {
+        const [cx, cy] = site.center, from = Math.atan2(site.a[1] - cy, site.a[0] - cx);
+        path.arc(cx, cy, site.arc_radius, from, from + site.sweep, site.sweep < 0);
+      }
+      pen = site.b;
+    }
+    if (loop.closed && pen) path.closePath();
+    edge.addPath(path);
+    if (loop.solid || loop.sites.every(s => s.kind === 'point')) fill.addPath(path);
+  }
+  const point = shape.loops.every(l => l.sites.every(s => s.kind === 'point'));
+  return {fill, edge, thickness: point ? 0 : radius, point};
+}
+
+class Picture {
+  constructor(stage, motions, about, numbers) {
+    Object.assign(this, {motions, about, n: numbers});
+    this.canvas = stage.querySelector('#scene');
+    this.ctx = this.canvas.getContext('2d');
+    this.paths = about.shapes.map(pathsOf);
+    this.cells = new Cells(stage.querySelector('#cells'), about.shapes);
+    this.layers = Object.fromEntries(LAYERS.map(([key, , on]) => [key, on]));
+    this.view = {x: 0, y: 0, scale: 1};  // centre [m], pixels a metre
+    this.selected = -1;
+    this.resize(stage);
+    this.fit();
+  }
+
+  resize(stage) {
+    const ratio = window.devicePixelRatio || 1, box = stage.getBoundingClientRect();
+    this.ratio = ratio;
+    for (const canvas of [this.canvas, this.cells.canvas || this.canvas]) {
+      canvas.width = Math.max(1, Math.round(box.width * ratio));
+      canvas.height = Math.max(1, Math.round(box.height * ratio));
+    }
+  }
+
+  /** All that is worth seeing, with a margin. */
+  fit() {
+    const [x0, y0, x1, y1] = this.about.extent;
+    this.view = {x: (x0 + x1) / 2, y: (y0 + y1) / 2,
+      scale: 0.94 * Math.min(this.canvas.width / (x1 - x0), this.canvas.height / (y1 - y0))};
+  }
+
+  toPixels(x, y) {
+    const v = this.view;
+    return [this.canvas.width / 2 + (x - v.x) * v.scale, this.canvas.height / 2 - (y - v.y) * v.scale];
+  }
+  toWorld(px, py) {
+    const v = this.view;
+    return [v.x + (px - this.canvas.width / 2) / v.scale, v.y - (py - this.canvas.height / 2) / v.scale];
+  }
+
+  /** From now on lengths are metres of a frame at this pose. */
+  enter([x, y, angle]) {
+    const s = this.view.scale, c = s * Math.cos(angle), d = s * Math.sin(angle), [px, py] = this.toPixels(x, y);
+    this.ctx.setTransform(c, -d, -d, -c, px, py);
+  }
+  leave() { this.ctx.setTransform(1, 0, 0, 1, 0, 0); }
+
+  outline(shape, pose, ink) {
+    const {ctx} = this, paths = this.paths[shape], pixel = 1 / this.view.scale;
+    this.enter(pose);
+    ctx.lineJoin = ctx.lineCap = 'round';
+    if (this.about.shapes[shape].container) {
+      const out = new Path2D();
+      out.rect(-1e6 * pixel, -1e6 * pixel, 2e6 * pixel, 2e6 * pixel);
+      out.addPath(paths.edge);
+      ctx.fillStyle = ink.fill;
+      ctx.fill(out, 'evenodd');
+    } else {
+      if (paths.thickness > 0) {
+        ctx.strokeStyle = ink.fill;
+        ctx.lineWidth = 2 * paths.thickness;
+        ctx.stroke(paths.edge);
+      }
+      ctx.fillStyle = ink.fill;
+      ctx.fill(paths.fill, 'evenodd');
+    }
+    ctx.strokeStyle = ink.line;
+    ctx.lineWidth = Math.max(ink.width * this.ratio * pixel, paths.thickness > 0 ? 2 * paths.thickness : 0);
+    if (!(paths.thickness > 0)) ctx.stroke(paths.edge);
+    if (paths.point && ink.spoke) {
+      const r = this.about.shapes[shape].bounding_radius;
+      ctx.beginPath();
+      ctx.moveTo(0, 0);
+      ctx.lineTo(r, 0);
+      ctx.stroke();
+    }
+  }
+
+  arrow(from, to, color, width) {
+    const {ctx} = this, [ax, ay] = this.toPixels(...from), [bx, by] = this.toPixels(...to);
+    const l = Math.hypot(bx - ax, by - ay), h = Math.min(8 * this.ratio, l / 2), ux = (bx - ax) / l, uy = (by - ay) / l;
+    if (!(l > 1)) return;
+    ctx.strokeStyle = ctx.fillStyle = color;
+    ctx.lineWidth = width * this.ratio;
+    ctx.beginPath();
+    ctx.moveTo(ax, ay);
+    ctx.lineTo(bx, by);
+    ctx.moveTo(bx - h * ux + h / 2 * uy, by - h * uy - h / 2 * ux);
+    ctx.lineTo(bx, by);
+    ctx.lineTo(bx - h * ux - h / 2 * uy, by - h * uy + h / 2 * ux);
+    ctx.stroke();
+  }
+
+  /** Where the images of a thing are seen; itself first. */
+  offsets(pose) {
+    const [px, py] = this.about.periods;
+    if (!(px > 0 || py > 0)) return [[0, 0]];
+    const xs = px > 0 ? [-px, 0, px] : [0], ys = py > 0 ? [-py, 0, py] : [0];
+    // the image in the box, and those beside it
+    const inX = px > 0 ? -px * Math.floor(pose[0] / px) : 0, inY = py > 0 ? -py * Math.floor(pose[1] / py) : 0;
+    const all = [[inX, inY]];
+    if (this.layers.images)
+      for (const x of xs) for (const y of ys) if (x || y) all.push([inX + x, inY + y]);
+    return all;
+  }
+
+  draw(t) {
+    const {ctx, about, layers} = this;
+    this.leave();
+    ctx.clearRect(0, 0, this.canvas.width, this.canvas.height);
+    this.t = t;
+    this.poses = about.bodies.map((b, k) => this.motions.body(k, t));
+    this.sitePoses = about.sites.map((s, k) => this.motions.site(k, t));
+    if (this.cells.works) layers.cells || layers.pass ? this.drawCells() : this.cells.clear();
+    about.sites.forEach((s, k) => {
+      for (const [x, y] of s.shape.container ? [[0, 0]] : this.siteOffsets())
+        this.outline(s.shape, moved(this.sitePoses[k], x, y), {fill: s.fill, line: s.line, width: 1.4});
+    });
+    if (layers.springs) this.drawSprings();
+    if (layers.trails) this.drawTrails();
+    if (layers.bodies) this.drawBodies();
+    if (layers.velocities) this.drawVelocities();
+    if (layers.forces) this.drawForces();
+    if (layers.contacts) this.drawContacts();
+    if (layers.names) this.drawNames();
+    this.drawBox();
+    this.drawRuler();
+  }
+
+  siteOffsets() {
+    const [px, py] = this.about.periods, all = [];
+    if (!this.layers.images || !(px > 0 || py > 0)) return [[0, 0]];
+    for (const x of px > 0 ? [-px, 0, px] : [0]) for (const y of py > 0 ? [-py, 0, py] : [0]) all.push([x, y]);
+    return all;
+  }
+
+  /** Of a pass, the selected body is left out. */
+  drawCells() {
+    const things = [], out = this.layers.pass ? this.selected : -1;
+    this.about.sites.forEach((s, k) => {
+      for (const [x, y] of this.siteOffsets()) things.push({shape: s.shape, pose: moved(this.sitePoses[k], x, y), color: s.cell});
+    });
+    this.about.bodies.forEach((b, k) => {
+      if (k === out) return;
+      for (const [x, y] of this.offsets(this.poses[k]))
+        things.push({shape: b.shape, pose: moved(this.poses[k], x, y), color: shade(b.cell, k)});
+    });
+    const ring = 40 * this.ratio / this.view.scale, decade = 10 ** Math.floor(Math.log10(ring));
+    const step = [1, 2, 5, 10].map(m => m * decade).find(s => s >= ring) || ring;
+    this.cells.draw(things, this.view, step);
+  }
+
+  drawBodies() {
+    const pass = this.layers.pass && this.selected >= 0;
+    this.about.bodies.forEach((b, k) => {
+      const sketched = pass && k === this.selected;
+      for (const [x, y] of this.offsets(this.poses[k]))
+        this.outline(b.shape, moved(this.poses[k], x, y), {fill: sketched ? 'transparent' : b.fill,
+          line: k === this.selected ? '#d03030' : b.line, width: k === this.selected ? 2.6 : 1.2, spoke: true});
+    });
+  }
+
+  drawSprings() {
+    const {ctx} = this;
+    for (const s of this.about.springs) {
+      const a = placed(this.poses[s.body], s.at), b = s.other === null ? s.other_at : placed(this.poses[s.other], s.other_at);
+      const [ax, ay] = this.toPixels(...a), [bx, by] = this.toPixels(...b), l = Math.hypot(bx - ax, by - ay);
+      const turns = 9, w = Math.min(6 * this.ratio, l / 6), ux = (bx - ax) / l, uy = (by - ay) / l;
+      this.leave();
+      ctx.strokeStyle = '#7a6a3a';
+      ctx.lineWidth = 1.3 * this.ratio;
+      ctx.beginPath();
+      ctx.moveTo(ax, ay);
+      for (let i = 1; i < turns; ++i) {
+        const at = i / turns, side = i % 2 ? w : -w;
+        ctx.lineTo(ax + at * (bx - ax) - side * uy, ay + at * (by - ay) + side * ux);
+      }
+      ctx.lineTo(bx, by);
+      ctx.stroke();
+    }
+  }
+
+  /** Where bodies have been in the last part of the run. */
+  drawTrails() {
+    const {ctx, motions} = this, looks = 120, span = (motions.end - motions.begin) / 8;
+    const some = this.selected >= 0 ? [this.selected] : this.about.bodies.map((b, k) => k).slice(0, 200);
+    this.leave();
+    ctx.lineWidth = 1.2 * this.ratio;
+    for (const k of some) {
+      ctx.strokeStyle = this.about.bodies[k].line;
+      ctx.globalAlpha = 0.6;
+      ctx.beginPath();
+      for (let i = 0; i <= looks; ++i) {
+        const s = this.t - span * (1 - i / looks);
+        if (s < motions.begin) continue;
+        const [x, y] = motions.body(k, s);
+        ctx.lineTo(...this.toPixels(x, y));
+      }
+      ctx.stroke();
+      ctx.globalAlpha = 1;
+    }
+  }
+
+  drawVelocities() {
+    this.leave();
+    const most = Math.max(1e-300, ...this.poses.map(p => Math.hypot(p[3], p[4])));
+    const scale = 60 * this.ratio / this.view.scale / most;
+    for (const p of this.poses) this.arrow([p[0], p[1]], [p[0] + scale * p[3], p[1] + scale * p[4]], '#1f7a4d', 1.6);
+  }
+
+  /** Contacts that last now: from centres to contacts, as wide as the force. */
+  drawForces() {
+    const {ctx, n} = this, now = [];
+    for (let i = 0; i < n.contact_from.length; ++i)
+      if (n.contact_from[i] <= this.t && this.t <= n.contact_to[i]) now.push(i);
+    const most = Math.max(1e-300, ...now.map(i => n.contact_force[i]));
+    this.leave();
+    ctx.strokeStyle = '#a01f5f';
+    for (const i of now) {
+      const at = this.toPixels(n.contact_x[i], n.contact_y[i]);
+      ctx.lineWidth = Math.max(0.3, 8 * this.ratio * n.contact_force[i] / most);
+      for (const k of [n.contact_body[i], n.contact_other[i]]) {
+        if (k < 0) continue;
+        ctx.beginPath();
+        ctx.moveTo(...this.toPixels(this.poses[k][0], this.poses[k][1]));
+        ctx.lineTo(...at);
+        ctx.stroke();
+      }
+    }
+  }
+
+  /** Collisions of a moment ago: where, the normal, and its impulse. */
+  drawContacts() {
+    const {ctx, n} = this, back = this.flash, first = lastAtOrBefore(n.event_t, this.t - back) + 1;
+    this.leave();
+    let most = 0;
+    const now = [];
+    for (let k = first; k < n.event_t.length && n.event_t[k] <= this.t && now.length < 2000; ++k)
+      if (!Number.isNaN(n.event_px[k])) { now.push(k); most = Math.max(most, n.event_in[k]); }
+    for (const k of now) {
+      const fade = back > 0 ? 1 - (this.t - n.event_t[k]) / back : 1, [px, py] = this.toPixels(n.event_px[k], n.event_py[k]);
+      ctx.globalAlpha = 0.25 + 0.75 * fade;
+      ctx.fillStyle = '#d03030';
+      ctx.beginPath();
+      ctx.arc(px, py, 3.5 * this.ratio, 0, 2 * Math.PI);
+      ctx.fill();
+      const l = (12 + 36 * (most > 0 ? n.event_in[k] / most : 0)) * this.ratio / this.view.scale;
+      this.arrow([n.event_px[k], n.event_py[k]], [n.event_px[k] + l * n.event_nx[k], n.event_py[k] + l * n.event_ny[k]], '#d03030', 1.6);
+    }
+    ctx.globalAlpha = 1;
+  }
+
+  drawNames() {
+    const {ctx} = this;
+    this.leave();
+    ctx.font = `${11 * this.ratio}px sans-serif`;
+    ctx.textAlign = 'center';
+    ctx.fillStyle = '#000';
+    ctx.strokeStyle = 'rgba(255,255,255,.8)';
+    ctx.lineWidth = 3 * this.ratio;
+    this.about.bodies.forEach((b, k) => {
+      const [x, y] = this.toPixels(this.poses[k][0], this.poses[k][1]);
+      ctx.strokeText(b.name, x, y);
+      ctx.fillText(b.name, x, y);
+    });
+  }
+
+  drawBox() {
+    const [px, py] = this.about.periods, {ctx} = this;
+    if (!(px > 0 || py > 0)) return;
+    const [x0, y0, x1, y1] = this.about.extent;
+    const a = this.toPixels(px > 0 ? 0 : x0, py > 0 ? 0 : y0), b = this.toPixels(px > 0 ? px : x1, py > 0 ? py : y1);
+    this.leave();
+    ctx.setLineDash([6 * this.ratio, 4 * this.ratio]);
+    ctx.strokeStyle = '#6c7078';
+    ctx.lineWidth = this.ratio;
+    ctx.strokeRect(a[0], a[1], b[0] - a[0], b[1] - a[1]);
+    ctx.setLineDash([]);
+  }
+
+  drawRuler() {
+    const {ctx, canvas} = this, most = 140 * this.ratio / this.view.scale, decade = 10 ** Math.floor(Math.log10(most));
+    const length = [5, 2, 1].map(m => m * decade).find(l => l <= most), w = length * this.view.scale;
+    const x = 14 * this.ratio, y = canvas.height - 14 * this.ratio;
+    this.leave();
+    ctx.font = `${11 * this.ratio}px sans-serif`;
+    ctx.textAlign = 'left';
+    for (const [color, width] of [['rgba(255,255,255,.8)', 4], ['#333', 1.5]]) {
+      ctx.strokeStyle = color;
+      ctx.lineWidth = width * this.ratio;
+      ctx.strokeRect(x, y, w, 0);
+      if (width > 2) ctx.strokeText(`${Number(length.toPrecision(3))} m`, x, y - 6 * this.ratio);
+    }
+    ctx.fillStyle = '#333';
+    ctx.fillText(`${Number(length.toPrecision(3))} m`, x, y - 6 * this.ratio);
+  }
+
+  /** The body at a place of the picture; -1: none. The nearest centre of those whose discs hold it. */
+  bodyAt(px, py) {
+    const [x, y] = this.toWorld(px, py);
+    let found = -1, least = Infinity;
+    (this.poses || []).forEach((p, k) => {
+      for (const [dx, dy] of this.offsets(p)) {
+        const d = Math.hypot(p[0] + dx - x, p[1] + dy - y);
+        if (d <= this.about.shapes[this.about.bodies[k].shape].bounding_radius && d < least) [least, found] = [d, k];
+      }
+    });
+    return found;
+  }
+}
+
+/** Neighbours of one hue, told apart. */
+function shade(color, k) { return color.map(c => c * (1 - 0.03 * (k % 3))); }
+function moved(pose, x, y) { return [pose[0] + x, pose[1] + y, pose[2]]; }
+function placed([x, y, angle], [u, v]) {
+  return [x + u * Math.cos(angle) - v * Math.sin(angle), y + u * Math.sin(angle) + v * Math.cos(angle)];
+}

@@ -1,0 +1,42 @@
+#include "brink/scenes/view/page_numbers.h"
+
+#include <zlib.h>
+
+#include <bit>
+#include <boost/archive/iterators/base64_from_binary.hpp>
+#include <boost/archive/iterators/transform_width.hpp>
+
+#include "brink/core/base/error.h"
+
+namespace brink {
+
+static_assert(std::endian::native == std::endian::little, "pages hold little-endian numbers");
+
+template <class T>
+void PageNumbers::take(const std::string& name, const char* kind, std::span<const T> values) {
+  arrays_.push_back({name, kind, values.size()});
+  const auto* from = reinterpret_cast<const unsigned char*>(values.data());
+  bytes_.reserve(bytes_.size() + values.size_bytes());
+  for (std::size_t byte = 0; byte < sizeof(T); ++byte)
+    for (std::size_t i = 0; i < values.size(); ++i) bytes_.push_back(from[i * sizeof(T) + byte]);
+}
+
+template void PageNumbers::take(const std::string&, const char*, std::span<const double>);
+template void PageNumbers::take(const std::string&, const char*, std::span<const std::int32_t>);
+
+std::string PageNumbers::text() const {
+  uLongf size = compressBound(bytes_.size());
+  std::vector<unsigned char> packed(size);
+  if (compress2(packed.data(), &size, bytes_.data(), bytes_.size(), 6) != Z_OK)
+    throw IoError("the numbers of a page cannot be compressed");
+  packed.resize(size);
+  const std::size_t missing = (3 - packed.size() % 3) % 3;
+  packed.insert(packed.end(), missing, 0);
+  namespace it = boost::archive::iterators;
+  using Base64 = it::base64_from_binary<it::transform_width<const unsigned char*, 6, 8>>;
+  std::string text(Base64(packed.data()), Base64(packed.data() + packed.size()));
+  text.replace(text.size() - missing, missing, missing, '=');
+  return text;
+}
+
+}  // namespace brink

@@ -1,0 +1,331 @@
+#include "brink/scenes/view/replay_page.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "brink/core/base/error.h"
+#include "brink/scenes/draw/color.h"
+#include "brink/scenes/draw/draw.h"
+#include "brink/scenes/files/written_file.h"
+#include "brink/scenes/run_file/run_file.h"
+#include "brink/scenes/run_file/shape_json.h"
+#include "brink/scenes/version.h"
+#include "brink/scenes/view/page_assets.h"
+#include "brink/scenes/view/page_numbers.h"
+#include "brink/scenes/view/run_curves.h"
+#include "brink/scheduler/kernel/site_motion.h"
+
+namespace brink {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Column = std::vector<double>;
+
+constexpr int kViews = 32;  ///< frames that are looked at for what is worth seeing
+constexpr EventKind kKinds[] = {
+    EventKind::collision, EventKind::zeno, EventKind::group, EventKind::undecided, EventKind::persist,
+    EventKind::sleep,     EventKind::wake, EventKind::stick, EventKind::slip,      EventKind::lift};
+
+std::string hex(const draw::Color& c) { return fmt::format("#{:06x}", c.argb() & 0xffffff); }
+Json shares(const draw::Color& c) { return Json::array({c.red, c.green, c.blue}); }
+Json pair(const Vec2& v) { return Json::array({v.x(), v.y()}); }
+
+/// Columns of states, one after another: x, y, angle, vx, vy, omega.
+class StateColumns {
+ public:
+  void add(const BodyState& s) {
+    const double values[] = {s.pose.position.x(),  s.pose.position.y(),  s.pose.angle,
+                             s.twist.velocity.x(), s.twist.velocity.y(), s.twist.omega};
+    for (int c = 0; c < 6; ++c) columns_[c].push_back(values[c]);
+  }
+  void put(PageNumbers& to, const std::string& prefix) const {
+    const char* const names[] = {"x", "y", "angle", "vx", "vy", "omega"};
+    for (int c = 0; c < 6; ++c) to.add(prefix + names[c], columns_[c]);
+  }
+
+ private:
+  std::array<Column, 6> columns_;
+};
+
+/// One side of every event: a body, its place, its twist before and after; NaN where that is not known.
+class SideColumns {
+ public:
+  void add(int id, const EventSide& side) {
+    ids_.push_back(id);
+    const Pose& p = side.after.pose;
+    const Twist &b = side.before, &a = side.after.twist;
+    const double values[] = {p.position.x(), p.position.y(), p.angle,        b.velocity.x(), b.velocity.y(),
+                             b.omega,        a.velocity.x(), a.velocity.y(), a.omega};
+    for (int c = 0; c < 9; ++c)
+      columns_[c].push_back(side.known ? values[c] : std::numeric_limits<double>::quiet_NaN());
+  }
+  void put(PageNumbers& to, const std::string& who, const std::string& prefix) const {
+    const char* const names[] = {"x", "y", "angle", "vx0", "vy0", "omega0", "vx", "vy", "omega"};
+    to.add(who, ids_);
+    for (int c = 0; c < 9; ++c) to.add(prefix + names[c], columns_[c]);
+  }
+
+ private:
+  std::vector<std::int32_t> ids_;
+  std::array<Column, 9> columns_;
+};
+
+/// The page in the making.
+class ReplayPage {
+ public:
+  ReplayPage(const std::filesystem::path& file, const ReplayLimits& limits)
+      : run_(file), limits_(limits), world_(run_.world()), palette_(world_), curves_(world_, run_) {}
+
+  /// @pre gathered.
+  std::string page() const { return filled(); }
+  std::string data() const {
+    return Json{{"about", about_}, {"numbers", numbers_.text()}}.dump(-1, ' ', false,
+                                                                      Json::error_handler_t::replace);
+  }
+
+  void gather(bool live) {
+    about_["live"] = live;
+    frames();
+    events();
+    contacts();
+    curves_.put(numbers_, about_);
+    things();
+    facts();
+    about_["arrays"] = numbers_.arrays();
+  }
+
+ private:
+  // -- numbers --
+
+  void frames() {
+    const auto bodies = static_cast<std::int64_t>(world_.bodies.size());
+    const std::int64_t count = run_.frame_count();
+    const std::int64_t stride =
+        std::max<std::int64_t>(1, (count * bodies + limits_.frame_rows - 1) / limits_.frame_rows);
+    const std::int64_t per_view = std::max<std::int64_t>(1, count / (stride * kViews));
+    if (stride > 1) notices_.push_back(fmt::format("every {}. frame of {}", stride, count));
+    std::vector<SiteMotion> moving;
+    for (const FixedSite& site : world_.sites)
+      if (SiteMotion motion(site); motion.moves()) moving.push_back(std::move(motion));
+    Column times;
+    StateColumns states, site_states;
+    run_.each_frame(stride, [&](const RunFile::Frame& f) {
+      if (static_cast<std::int64_t>(times.size()) % per_view == 0) look_at(f);
+      times.push_back(f.t);
+      for (const BodyState& s : f.states) states.add(s);
+      for (SiteMotion& m : moving) site_states.add(site_at(m, f.t));
+      curves_.add(f);
+    });
+    numbers_.add("frame_t", times);
+    states.put(numbers_, "frame_");
+    site_states.put(numbers_, "site_");
+  }
+
+  static BodyState site_at(SiteMotion& site, double t) {
+    if (site.extend(t).status != Extent::Status::reached) return {};
+    const BodyState s = site.motion().state(t);
+    site.forget_before(t);
+    return s;
+  }
+
+  void look_at(const RunFile::Frame& f) {
+    std::vector<Pose> sites;
+    for (const FixedSite& site : world_.sites) sites.push_back(told_pose(site, f.t));
+    const Box box = automatic_view(world_, f.states, sites);
+    extent_.add(box.low);
+    extent_.add(box.high);
+  }
+
+  void events() {
+    std::vector<Event> all = run_.events();
+    const auto limit = static_cast<std::size_t>(limits_.events);
+    if (all.size() > limit) {
+      notices_.push_back(
+          fmt::format("the first {} events of {}: after them motions are interpolated", limit, all.size()));
+      all.resize(limit);
+    }
+    Column t, px, py, nx, ny, closing, along, across, gap;
+    std::vector<std::int32_t> kind, site;
+    SideColumns body, other;
+    bool any_known = false, any_collision = false;
+    for (const Event& e : all) {
+      const Contact& c = e.contact;
+      t.push_back(c.time);
+      kind.push_back(
+          static_cast<std::int32_t>(std::find(std::begin(kKinds), std::end(kKinds), e.kind) - kKinds));
+      body.add(c.body, e.body);
+      other.add(c.other_body, e.other);
+      site.push_back(c.other_site);
+      any_known = any_known || e.body.known;
+      any_collision = any_collision || e.kind == EventKind::collision;
+      px.push_back(c.point.x()), py.push_back(c.point.y());
+      nx.push_back(c.normal.x()), ny.push_back(c.normal.y());
+      closing.push_back(c.closing_speed), gap.push_back(c.gap);
+      along.push_back(e.impulse_n), across.push_back(e.impulse_t);
+      curves_.add(e);
+    }
+    if (any_collision && !any_known) notices_.push_back("between frames motions are interpolated");
+    numbers_.add("event_t", t);
+    numbers_.add("event_kind", kind);
+    body.put(numbers_, "event_body", "b_");
+    other.put(numbers_, "event_other", "o_");
+    numbers_.add("event_site", site);
+    for (const auto& [name, column] : {std::pair("px", &px),
+                                       {"py", &py},
+                                       {"nx", &nx},
+                                       {"ny", &ny},
+                                       {"closing", &closing},
+                                       {"in", &along},
+                                       {"it", &across},
+                                       {"gap", &gap}})
+      numbers_.add(std::string("event_") + name, *column);
+  }
+
+  void contacts() {
+    Column from, to, x, y, force;
+    std::vector<std::int32_t> body, other;
+    for (const LastedContact& c : run_.contacts()) {
+      from.push_back(c.from), to.push_back(c.to);
+      x.push_back(c.point.x()), y.push_back(c.point.y());
+      force.push_back(c.normal_force);
+      body.push_back(c.body), other.push_back(c.other_body);
+    }
+    numbers_.add("contact_from", from);
+    numbers_.add("contact_to", to);
+    numbers_.add("contact_body", body);
+    numbers_.add("contact_other", other);
+    numbers_.add("contact_x", x);
+    numbers_.add("contact_y", y);
+    numbers_.add("contact_force", force);
+  }
+
+  // -- what they are of --
+
+  int shape(const Outline& outline) {
+    const std::string json = outline_to_json(outline);
+    const auto [found, made] = shapes_.emplace(json, static_cast<int>(shapes_.size()));
+    if (made) about_["shapes"].push_back(Json::parse(json));
+    return found->second;
+  }
+
+  void things() {
+    about_["shapes"] = about_["bodies"] = about_["sites"] = about_["springs"] = Json::array();
+    for (std::size_t k = 0; k < world_.bodies.size(); ++k) {
+      const draw::Oklch color = palette_.body(k);
+      about_["bodies"].push_back({{"name", world_.bodies[k].name},
+                                  {"mass", world_.bodies[k].mass},
+                                  {"shape", shape(*world_.bodies[k].outline)},
+                                  {"fill", hex(color.rgb())},
+                                  {"line", hex(draw::Palette::line(color).rgb())},
+                                  {"cell", shares(draw::Palette::cell(color).rgb())}});
+    }
+    for (const FixedSite& site : world_.sites)
+      about_["sites"].push_back({{"name", site.name},
+                                 {"shape", shape(*site.outline)},
+                                 {"moving", SiteMotion(site).moves()},
+                                 {"fill", hex(draw::Tones::site_fill.rgb())},
+                                 {"line", hex(draw::Tones::ink.rgb())},
+                                 {"cell", shares(draw::Tones::site_cell.rgb())}});
+    for (const RunFile::Spring& s : run_.springs())
+      about_["springs"].push_back({{"body", s.body},
+                                   {"other", s.other < 0 ? Json() : Json(s.other)},
+                                   {"at", pair(s.at)},
+                                   {"other_at", pair(s.other_at)}});
+  }
+
+  void facts() {
+    const auto meta = run_.meta();
+    const auto of = [&](const char* key) { return meta.contains(key) ? meta.at(key) : std::string(); };
+    const Vec2 size = (extent_.high - extent_.low).cwiseMax(1e-12);
+    about_["title"] = world_.title.empty() ? of("scene") : world_.title;
+    about_["termination"] = fmt::format("{} at {} s", of("termination"), of("end_time"));
+    about_["periods"] = pair(world_.periods.size);
+    about_["gravity"] = pair(curves_.gravity());
+    about_["extent"] = {extent_.low.x(), extent_.low.y(), extent_.low.x() + size.x(),
+                        extent_.low.y() + size.y()};
+    about_["kinds"] = Json::array();
+    for (const EventKind kind : kKinds) about_["kinds"].push_back(to_string(kind));
+    about_["notice"] = fmt::format("{}", fmt::join(notices_, "; "));
+    about_["facts"] = Json::array();
+    const auto fact = [&](const std::string& name, const std::string& value) {
+      if (!value.empty()) about_["facts"].push_back({name, value});
+    };
+    for (const char* key :
+         {"scene", "brink_version", "termination", "end_time", "wall_seconds", "state_hash"})
+      fact(key, of(key));
+    const Json summary = Json::parse(of("summary"), nullptr, false),
+               options = Json::parse(of("options"), nullptr, false);
+    if (summary.is_object())
+      for (const auto& [name, value] : summary.items())
+        if (!value.is_object() && !meta.contains(name))
+          fact(name, value.is_string() ? value.get<std::string>() : value.dump());
+    if (options.is_object() && options.contains("solver"))
+      for (const auto& [name, value] : options["solver"].items())
+        fact("solver." + name, value.is_string() ? value.get<std::string>() : value.dump());
+    if (summary.is_object() && summary.contains("work"))
+      for (const auto& [name, value] : summary["work"].items()) fact("work." + name, value.dump());
+  }
+
+  // -- the page --
+
+  std::string filled() const {
+    std::string about = about_.dump(-1, ' ', false, Json::error_handler_t::replace);
+    for (std::size_t at = 0; (at = about.find('<', at)) != std::string::npos;)
+      about.replace(at, 1, "\\u003c");
+    std::string page(page::html());
+    const auto put = [&page](std::string_view mark, std::string_view text) {
+      page.replace(page.find(mark), mark.size(), text);
+    };
+    put("<!--TITLE-->", "Brink");  // the script sets the run's
+    put("<!--STYLE-->", std::string(page::chart_style()) + std::string(page::style()));
+    put("<!--CHARTS-->",
+        page::chart_script().empty() ? "" : fmt::format("<script>{}</script>", page::chart_script()));
+    put("<!--SCRIPT-->", page::script());
+    put("<!--ABOUT-->", about);
+    put("<!--NUMBERS-->", numbers_.text());
+    return page;
+  }
+
+  RunFile run_;
+  ReplayLimits limits_;
+  World world_;
+  draw::Palette palette_;
+  RunCurves curves_;
+  PageNumbers numbers_;
+  Json about_;
+  Box extent_;
+  std::map<std::string, int> shapes_;
+  std::vector<std::string> notices_;
+};
+
+}  // namespace
+
+std::string replay_page_text(const std::filesystem::path& run_file, const ReplayLimits& limits, bool live) {
+  ReplayPage page(run_file, limits);
+  page.gather(live);
+  return page.page();
+}
+
+std::string replay_page_data(const std::filesystem::path& run_file, const ReplayLimits& limits, bool live) {
+  ReplayPage page(run_file, limits);
+  page.gather(live);
+  return page.data();
+}
+
+void write_replay_page(const std::filesystem::path& run_file, const std::filesystem::path& page,
+                       const ReplayLimits& limits) {
+  const std::string text = replay_page_text(run_file, limits, false);
+  std::ofstream out(page, std::ios::binary);
+  out << text << std::flush;
+  if (!out) throw_not_written(page);
+}
+
+}  // namespace brink

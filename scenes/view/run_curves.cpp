@@ -1,0 +1,90 @@
+#include "brink/scenes/view/run_curves.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace brink {
+
+namespace {
+
+Vec2 gravity_in(const std::string& options) {
+  const auto json = nlohmann::json::parse(options, nullptr, false);
+  const nlohmann::json::json_pointer at("/world/gravity");
+  if (!json.is_object() || !json.contains(at)) return Vec2::Zero();
+  return {json.at(at).at(0).get<double>(), json.at(at).at(1).get<double>()};
+}
+
+}  // namespace
+
+RunCurves::RunCurves(const World& world, const RunFile& run)
+    : world_(&world), gravity_(gravity_in(run.meta("options").value_or("{}"))), springs_(run.springs()) {}
+
+double RunCurves::of_springs(const RunFile::Frame& f) const {
+  double energy = 0.0;
+  for (const RunFile::Spring& s : springs_) {
+    const Vec2 a = Frame(f.states[s.body].pose).to_world(s.at);
+    const Vec2 b = s.other < 0 ? s.other_at : Frame(f.states[s.other].pose).to_world(s.other_at);
+    const double longer = (a - b).norm() - s.rest_length;
+    energy += 0.5 * s.stiffness * longer * longer;
+  }
+  return energy;
+}
+
+void RunCurves::add(const RunFile::Frame& f) {
+  double kinetic = 0.0, lifted = 0.0, turning = 0.0;
+  Vec2 momentum = Vec2::Zero();
+  for (std::size_t k = 0; k < f.states.size(); ++k) {
+    const Body& b = world_->bodies[k];
+    const auto& [pose, twist] = f.states[k];
+    kinetic += 0.5 * (b.mass * twist.velocity.squaredNorm() + b.inertia * twist.omega * twist.omega);
+    lifted -= b.mass * gravity_.dot(pose.position);
+    momentum += b.mass * twist.velocity;
+    turning += b.mass * cross(pose.position, twist.velocity) + b.inertia * twist.omega;
+  }
+  const double sprung = of_springs(f);
+  t_.push_back(f.t);
+  kinetic_.push_back(kinetic);
+  of_gravity_.push_back(lifted);
+  of_springs_.push_back(sprung);
+  total_.push_back(kinetic + lifted + sprung);
+  px_.push_back(momentum.x()), py_.push_back(momentum.y());
+  turning_.push_back(turning);
+  collisions_.push_back(0.0);
+}
+
+void RunCurves::add(const Event& e) {
+  if (e.kind != EventKind::collision || t_.size() < 2) return;
+  const auto after = std::upper_bound(t_.begin(), t_.end(), e.contact.time);
+  const auto k =
+      std::clamp<std::ptrdiff_t>(after - t_.begin(), 1, static_cast<std::ptrdiff_t>(t_.size()) - 1);
+  if (t_[k] > t_[k - 1]) collisions_[k - 1] += 1.0 / (t_[k] - t_[k - 1]);
+}
+
+void RunCurves::put(PageNumbers& to, nlohmann::ordered_json& about) const {
+  about["curves"] = nlohmann::ordered_json::array();
+  to.add("curve_t", t_);
+  const auto curve = [&](const char* title, const char* unit, bool steps,
+                         std::vector<std::pair<const char*, const std::vector<double>*>> of) {
+    nlohmann::ordered_json names = nlohmann::ordered_json::array(), columns = names;
+    for (const auto& [name, values] : of) {
+      const std::string column = fmt::format("curve_{}", columns.size() + 10 * about["curves"].size());
+      to.add(column, *values);
+      names.push_back(name);
+      columns.push_back(column);
+    }
+    about["curves"].push_back(
+        {{"title", title}, {"unit", unit}, {"steps", steps}, {"names", names}, {"columns", columns}});
+  };
+  if (t_.size() < 2) return;
+  std::vector<std::pair<const char*, const std::vector<double>*>> energies{{"kinetic", &kinetic_}};
+  if (!gravity_.isZero(0.0)) energies.emplace_back("of gravity", &of_gravity_);
+  if (!springs_.empty()) energies.emplace_back("of springs", &of_springs_);
+  if (energies.size() > 1) energies.emplace_back("sum", &total_);
+  curve("Energy", "J", false, energies);
+  curve("Momentum", "N s", false, {{"x", &px_}, {"y", &py_}});
+  curve("Angular momentum", "N m s", false, {{"about the origin", &turning_}});
+  curve("Collisions", "1/s", true, {{"collisions a second", &collisions_}});
+}
+
+}  // namespace brink

@@ -1,0 +1,244 @@
+// What is seen of a run between its frames is what happened: states read from the run file, and those that the replay page
+// shows in a real browser, beside a simulation to the same times.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "brink/core/base/random.h"
+#include "brink/scenes/run_file/run_file.h"
+#include "brink/scenes/run_file/run_scene.h"
+#include "brink/scenes/view/replay_page.h"
+#include "brink/scheduler/simulator/simulator.h"
+
+namespace brink {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+// Frames are rare; between two of them most bodies bounce several times.
+const char* const kScene = R"(
+title = "a </script> box & a piston"
+[world]
+duration = 3.0
+gravity = [0.5, -9.0]
+[output]
+frame_interval = 0.5
+[materials.default]
+restitution = 0.9
+[[sites]]
+name = "room"
+box = { width = 4.0, height = 3.0 }
+inside_of = true
+position = [0, 1.5]
+[[sites]]
+name = "piston"
+segment = [[-0.5, 0], [0.5, 0]]
+position = [0, 0.2]
+motion = { velocity = [0, 0.3] }
+[[bodies]]
+name = "ball"
+disc = { radius = 0.2 }
+position = [-1.0, 1.5]
+velocity = [1.0, 0]
+angular_velocity = 3.0
+grid = { columns = 3, rows = 2, spacing = [0.8, 0.7] }
+[[bodies]]
+name = "plate"
+box = { width = 0.5, height = 0.2 }
+position = [1.4, 2.5]
+angle_deg = 30
+angular_velocity = -4.0
+)";
+
+class Replayed : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = fs::temp_directory_path() / fmt::format("brink-replay-{}", ::getpid());
+    scene_ = parse_scene(kScene, "replayed.toml");
+    RunRequest request;
+    request.dir = folder_;
+    ASSERT_TRUE(run_scene(scene_, request).summary.sound());
+    Random random(5);
+    for (int k = 0; k < 1000; ++k) times_.push_back(scene_.duration * random.uniform());
+    std::sort(times_.begin(), times_.end());
+    Simulator simulator(scene_.world, scene_.solver);
+    RunOptions options;
+    options.checkpoint_seconds = -1.0;
+    for (const double t : times_) {
+      options.until = t;
+      simulator.run(options);
+      states_.push_back(simulator.states());
+    }
+  }
+  static void TearDownTestSuite() { fs::remove_all(folder_); }
+
+  static fs::path run_file() { return folder_ / "run.db"; }
+
+  static double difference(const BodyState& a, const BodyState& b) {
+    return std::max({(a.pose.position - b.pose.position).norm(), std::abs(a.pose.angle - b.pose.angle),
+                     (a.twist.velocity - b.twist.velocity).norm(), std::abs(a.twist.omega - b.twist.omega)});
+  }
+
+  static inline fs::path folder_;
+  static inline Scene scene_;
+  static inline std::vector<double> times_;
+  static inline std::vector<std::vector<BodyState>> states_;
+};
+
+TEST_F(Replayed, TheRunFileKnowsEveryStateBetweenItsFrames) {
+  const RunFile run(run_file());
+  double worst = 0.0;
+  for (std::size_t k = 0; k < times_.size(); ++k) {
+    const auto seen = run.states_at(times_[k]).states;
+    for (std::size_t b = 0; b < seen.size(); ++b) worst = std::max(worst, difference(seen[b], states_[k][b]));
+  }
+  std::printf("%zu events, %lld frames; largest difference at 1000 times %.1e\n", run.events().size(),
+              static_cast<long long>(run.frame_count()), worst);
+  EXPECT_GT(run.events().size(), 50U);
+  EXPECT_LT(worst, 1e-11);
+}
+
+TEST_F(Replayed, EventsTellTwistsBeforeAndAfterOfBothOwners) {
+  const auto bodies = RunFile(run_file()).bodies();
+  int seen = 0;
+  for (const Event& e : RunFile(run_file()).events()) {
+    if (e.kind != EventKind::collision) continue;
+    ASSERT_TRUE(e.body.known);
+    ASSERT_EQ(e.other.known, e.contact.other_body >= 0);
+    const Vec2 impulse = e.impulse_n * e.contact.normal + e.impulse_t * perp(e.contact.normal);
+    const auto gained = [&](int k, const EventSide& s) {
+      return Vec2(bodies[k].mass * (s.after.twist.velocity - s.before.velocity));
+    };
+    EXPECT_LT((gained(e.contact.body, e.body) - impulse).norm(), 1e-12 * (1.0 + impulse.norm()));
+    if (e.other.known) {
+      EXPECT_LT((gained(e.contact.other_body, e.other) + impulse).norm(), 1e-12 * (1.0 + impulse.norm()));
+    }
+    ++seen;
+  }
+  EXPECT_GT(seen, 50);
+}
+
+// ---- the page
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// What chromium prints of a page once a script has written its answer (JSON) into it.
+json in_browser(const fs::path& page, const std::string& script) {
+  std::string text = text_of(page);
+  const std::string asking =
+      "<pre id=\"answer\"></pre><script>brink.ready.then(b => JSON.stringify((() => {" + script +
+      "})())).catch(e => JSON.stringify({error: String(e.stack)}))"
+      ".then(words => { const plain = words.replace(/[<>&]/g, c => '\\\\u00' + c.charCodeAt(0).toString(16));"
+      " document.getElementById('answer').textContent = '@@' + plain + '@@'; });</script></body>";
+  text.replace(text.rfind("</body>"), 7, asking);
+  const fs::path asked = page.parent_path() / "asked.html";
+  std::ofstream(asked) << text << std::flush;
+  const std::string command =
+      "timeout 120 chromium --headless=new --no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader "
+      "--user-data-dir=" +
+      (page.parent_path() / "browser").string() + " --virtual-time-budget=20000 --dump-dom file://" +
+      asked.string() + " 2>/dev/null";
+  std::FILE* pipe = ::popen(command.c_str(), "r");
+  std::string dom;
+  for (char buffer[4096]; const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe);)
+    dom.append(buffer, n);
+  ::pclose(pipe);
+  const auto from = dom.find("answer\">@@"), to = dom.find("@@", from + 10);
+  if (from == std::string::npos || to == std::string::npos)
+    return {{"error", "no answer: " + dom.substr(0, 400)}};
+  return json::parse(dom.substr(from + 10, to - from - 10));
+}
+
+bool has_browser() { return std::system("chromium --version >/dev/null 2>&1") == 0; }
+
+TEST_F(Replayed, ThePageIsOneFileThatNeedsNoOther) {
+  const fs::path page = folder_ / "alone.html";
+  write_replay_page(run_file(), page);
+  const std::string text = text_of(page);
+  for (const char* of_others : {"<script src", "<link", "<img", "@import", "url(http"})
+    EXPECT_THAT(text, Not(HasSubstr(of_others)));
+  EXPECT_THAT(text, Not(HasSubstr("a </script> box"))) << "text of a scene is data";
+}
+
+TEST_F(Replayed, ThePageShowsTheStatesOfTheRun) {
+  if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
+  const fs::path page = folder_ / "page.html";
+  write_replay_page(run_file(), page);
+  const json answer =
+      in_browser(page, "const b = window.brink, times = " + json(times_).dump() +
+                           "; return {states: times.map(t => b.state(t)), events: b.events, duration: "
+                           "b.duration, title: document.title};");
+  ASSERT_FALSE(answer.contains("error")) << answer.dump();
+  EXPECT_EQ(answer["title"], scene_.world.title);
+  EXPECT_EQ(answer["duration"], scene_.duration);
+  double worst = 0.0;
+  for (std::size_t k = 0; k < times_.size(); ++k)
+    for (std::size_t b = 0; b < states_[k].size(); ++b) {
+      const json& s = answer["states"][k][b];
+      EXPECT_EQ(s["name"], scene_.world.bodies[b].name);
+      const auto number = [&s](const char* name) { return s[name].get<double>(); };
+      BodyState seen;
+      seen.pose = {Vec2(number("x"), number("y")), number("angle")};
+      seen.twist = {Vec2(number("vx"), number("vy")), number("omega")};
+      worst = std::max(worst, difference(seen, states_[k][b]));
+    }
+  std::printf("largest difference between page and simulation at 1000 times: %.1e\n", worst);
+  EXPECT_LT(worst, 1e-9);
+  const auto events = RunFile(run_file()).events();
+  ASSERT_EQ(answer["events"].size(), events.size());
+  for (std::size_t k = 0; k < events.size(); ++k) {
+    EXPECT_EQ(answer["events"][k]["t"], events[k].contact.time);
+    EXPECT_EQ(answer["events"][k]["kind"], to_string(events[k].kind));
+  }
+}
+
+TEST_F(Replayed, ThePageStepsFromEventToEventAndPlays) {
+  if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
+  const fs::path page = folder_ / "steps.html";
+  write_replay_page(run_file(), page);
+  const json answer = in_browser(page,
+                                 "const b = window.brink, on = [], back = []; b.seek(0);"
+                                 "for (let k = 0; k < 10; ++k) { b.step(1); on.push(b.time()); }"
+                                 "for (let k = 0; k < 9; ++k) { b.step(-1); back.push(b.time()); }"
+                                 "b.seek(-5); const low = b.time(); b.seek(1e9); const high = b.time();"
+                                 "b.play(); const playing = b.player.playing; b.pause();"
+                                 "return {on, back, low, high, playing, paused: !b.player.playing};");
+  ASSERT_FALSE(answer.contains("error")) << answer.dump();
+  std::vector<double> times;
+  for (const Event& e : RunFile(run_file()).events())
+    if (times.empty() || e.contact.time != times.back()) times.push_back(e.contact.time);
+  for (int k = 0; k < 10; ++k) EXPECT_EQ(answer["on"][k], times[k]);
+  for (int k = 0; k < 9; ++k) EXPECT_EQ(answer["back"][k], times[8 - k]);
+  EXPECT_EQ(answer["low"], 0.0);
+  EXPECT_EQ(answer["high"], scene_.duration);
+  EXPECT_TRUE(answer["playing"] && answer["paused"]);
+}
+
+TEST_F(Replayed, ALongRunIsThinnedAndThePageSaysSo) {
+  if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
+  const fs::path page = folder_ / "thin.html";
+  write_replay_page(run_file(), page, {.frame_rows = 20, .events = 5});
+  const json answer = in_browser(
+      page,
+      "return {notice: document.getElementById('notice').textContent, events: window.brink.events.length};");
+  ASSERT_FALSE(answer.contains("error")) << answer.dump();
+  EXPECT_THAT(answer["notice"].get<std::string>(), HasSubstr("every 3. frame"));
+  EXPECT_THAT(answer["notice"].get<std::string>(), HasSubstr("the first 5 events"));
+  EXPECT_EQ(answer["events"], 5);
+}
+
+}  // namespace
+}  // namespace brink
