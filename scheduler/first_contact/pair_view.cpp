@@ -29,9 +29,10 @@ bool comes_to_corner(const Site& site, const Nearest& nearest, const Vec2& q, co
   return beyond.dot(bisector) > 0.0 && -d.dot(bisector) >= normal.dot(bisector) * speed;
 }
 
-/// A direction out of the site's end at which q is nearest; where they are one, that of a solid's corner.
-Vec2 outward(const Site& site, const Nearest& nearest, double side, const Vec2& q) {
-  if (nearest.distance > 0.0 || !site.solid) return side * (q - nearest.point);
+/// A direction out of the site's end at which q is nearest; where they are one, to `rounding`, that of a solid's
+/// corner.
+Vec2 outward(const Site& site, const Nearest& nearest, double side, const Vec2& q, double rounding) {
+  if (nearest.distance > rounding || !site.solid) return side * (q - nearest.point);
   return nearest.foot == Foot::start ? site.pseudo_a : site.pseudo_b;
 }
 
@@ -54,9 +55,10 @@ Feature PairView::vertex_feature(const Half& half, int i, int j, const Nearest& 
   const double side = side_of(site, nearest, path.q);
   f.gap = side * nearest.distance - site.radius - sample.radius;
   const auto comes_to_end = [&] {
+    const double rounding = 4.0 * gap_rounding(half, i, path.q);
     if (nearest.foot == Foot::interior && site.kind != SiteKind::point)
-      return comes_to_corner(site, nearest, path.q, path.rate, 4.0 * gap_rounding(half, i, path.q));
-    return outward(site, nearest, side, path.q).dot(path.rate) < 0.0;
+      return comes_to_corner(site, nearest, path.q, path.rate, rounding);
+    return outward(site, nearest, side, path.q, rounding).dot(path.rate) < 0.0;
   };
   if (site.radius + sample.radius == 0.0 && path.rate.squaredNorm() > 0.0 && f.gap > -limits_.touch &&
       nearest.distance <= limits_.tolerance && comes_to_end())
