@@ -1,6 +1,9 @@
 #include "brink/scenes/draw/canvas.h"
 
+#include <cairo-pdf.h>
+#include <cairo-svg.h>
 #include <cairo.h>
+#include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,6 +30,7 @@ double thickness(const Outline& outline, const Loop& loop) { return outline.site
 
 struct Canvas::Impl {
   View view;
+  Paper paper;
   cairo_surface_t* surface = nullptr;
   cairo_t* cairo = nullptr;
 
@@ -92,10 +96,22 @@ struct Canvas::Impl {
   }
 };
 
-Canvas::Canvas(const View& view, int width, int height, const Color& background)
+namespace {
+
+cairo_surface_t* surface_on(const Paper& paper, int width, int height) {
+  const std::string file = paper.file.string();
+  if (paper.kind == Paper::Kind::svg) return cairo_svg_surface_create(file.c_str(), width, height);
+  if (paper.kind == Paper::Kind::pdf) return cairo_pdf_surface_create(file.c_str(), width, height);
+  return cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+}
+
+}  // namespace
+
+Canvas::Canvas(const View& view, int width, int height, const Color& background, const Paper& paper)
     : impl_(std::make_unique<Impl>()) {
   impl_->view = view;
-  impl_->surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+  impl_->paper = paper;
+  impl_->surface = surface_on(paper, width, height);
   impl_->cairo = cairo_create(impl_->surface);
   cairo_set_line_join(impl_->cairo, CAIRO_LINE_JOIN_ROUND);
   cairo_set_line_cap(impl_->cairo, CAIRO_LINE_CAP_ROUND);
@@ -109,6 +125,7 @@ Canvas::~Canvas() {
 }
 
 void Canvas::paste(const Picture& image) {
+  if (impl_->paper.kind != Paper::Kind::pixels) return paste_as_image(image);
   cairo_surface_flush(impl_->surface);
   unsigned char* data = cairo_image_surface_get_data(impl_->surface);
   const int stride = cairo_image_surface_get_stride(impl_->surface);
@@ -116,6 +133,28 @@ void Canvas::paste(const Picture& image) {
     std::memcpy(data + static_cast<std::size_t>(row) * stride,
                 image.pixels.data() + static_cast<std::size_t>(row) * image.width, 4U * image.width);
   cairo_surface_mark_dirty(impl_->surface);
+}
+
+void Canvas::paste_as_image(const Picture& image) {
+  cairo_surface_t* pixels = cairo_image_surface_create(CAIRO_FORMAT_RGB24, image.width, image.height);
+  unsigned char* data = cairo_image_surface_get_data(pixels);
+  const int stride = cairo_image_surface_get_stride(pixels);
+  for (int row = 0; row < image.height; ++row)
+    std::memcpy(data + static_cast<std::size_t>(row) * stride,
+                image.pixels.data() + static_cast<std::size_t>(row) * image.width, 4U * image.width);
+  cairo_surface_mark_dirty(pixels);
+  cairo_set_source_surface(impl_->cairo, pixels, 0.0, 0.0);
+  cairo_paint(impl_->cairo);
+  cairo_surface_destroy(pixels);
+}
+
+void Canvas::finish_file() {
+  cairo_show_page(impl_->cairo);
+  cairo_surface_finish(impl_->surface);
+  for (const cairo_status_t status : {cairo_status(impl_->cairo), cairo_surface_status(impl_->surface)})
+    if (status != CAIRO_STATUS_SUCCESS)
+      throw IoError(fmt::format("{}: could not be written: {}", impl_->paper.file.string(),
+                                cairo_status_to_string(status)));
 }
 
 void Canvas::outline(const Outline& outline, const Pose& pose, const Ink& ink) {

@@ -1,6 +1,7 @@
 #pragma once
 /// The one door to Cairo: outlines, marks and text on a picture, anti-aliased, arcs as arcs.
 
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -21,10 +22,17 @@ struct Ink {
   bool dashed = false;
 };
 
+/// What a canvas becomes: pixels, or a file of lines and curves.
+struct Paper {
+  enum class Kind { pixels, svg, pdf };
+  Kind kind = Kind::pixels;
+  std::filesystem::path file;  ///< svg, pdf
+};
+
 /// A picture being drawn. World lengths in metres, line widths and text in pixels.
 class Canvas {
  public:
-  explicit Canvas(const View& view, int width, int height, const Color& background);
+  Canvas(const View& view, int width, int height, const Color& background, const Paper& paper = {});
   ~Canvas();
 
   /// Copies an image (rows from the top) over the picture's top left corner.
@@ -45,9 +53,14 @@ class Canvas {
   double text(double x, double y, const std::string& words, double size, const Color& color, Align align,
               bool bold = false);
 
+  /// @pre of pixels.
   Picture finish();
+  /// Ends the file. @pre svg or pdf. @throws IoError naming it and the cause.
+  void finish_file();
 
  private:
+  void paste_as_image(const Picture& image);
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

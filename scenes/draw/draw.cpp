@@ -85,7 +85,14 @@ std::uint32_t excluded_owner(const Sheet& sheet) {
 Picture background(Sheet& sheet) {
   const std::size_t count = sheet.world.bodies.size();
   const bool raw = sheet.options.layer.kind == Kind::color || sheet.options.layer.kind == Kind::depth;
-  const std::vector<PlacedOutline> placed = draw::placed_outlines(sheet.world, sheet.bodies, sheet.sites);
+  std::vector<PlacedOutline> placed = draw::placed_outlines(sheet.world, sheet.bodies, sheet.sites);
+  for (std::size_t k = 0, own = placed.size(); k < own; ++k) {  // their images belong to the same owners
+    const std::vector<Vec2> seen = draw::seen_at(sheet, *placed[k].outline, placed[k].pose);
+    for (std::size_t i = 1; i < seen.size(); ++i) {
+      placed.push_back(placed[k]);
+      placed.back().pose.position += seen[i];
+    }
+  }
   const FieldImage field =
       draw::render_field(placed, sheet.view, raw ? 1 : kFineness, excluded_owner(sheet), sheet.options.field);
   const double largest = draw::largest_distance(field);
@@ -144,6 +151,11 @@ void draw_mark(Canvas& canvas, const Outline& outline, const Pose& pose, const C
   canvas.dot(center, 1.7, color);
 }
 
+Pose shifted(Pose pose, const Vec2& by) {
+  pose.position += by;
+  return pose;
+}
+
 void draw_sites(Canvas& canvas, const Sheet& sheet) {
   const Color line = Tones::ink.rgb();
   Ink solid{Tones::site_fill.rgb(), line, 1.6, 1.0, false};
@@ -153,7 +165,11 @@ void draw_sites(Canvas& canvas, const Sheet& sheet) {
     for (std::size_t k = 0; k < sheet.world.sites.size(); ++k) {
       const Outline& outline = *sheet.world.sites[k].outline;
       if (outline.container != container) continue;
-      canvas.outline(outline, sheet.sites[k], container ? outside : outline.solid ? solid : wire);
+      for (const Vec2& by : draw::seen_at(sheet, outline, sheet.sites[k]))
+        canvas.outline(outline, shifted(sheet.sites[k], by),
+                       container       ? outside
+                       : outline.solid ? solid
+                                       : wire);
     }
 }
 
@@ -175,8 +191,11 @@ void draw_bodies(Canvas& canvas, const Sheet& sheet) {
     const Outline& outline = *sheet.world.bodies[k].outline;
     const bool pale = sheet.options.layer.kind == Kind::forces;
     const Ink ink = pale ? pale_ink(sheet.palette.body(k)) : body_ink(sheet.palette.body(k));
-    canvas.outline(outline, sheet.bodies[k].pose, ink);
-    if (!pale) draw_mark(canvas, outline, sheet.bodies[k].pose, ink.line, sheet.view.scale);
+    for (const Vec2& by : draw::seen_at(sheet, outline, sheet.bodies[k].pose)) {
+      const Pose pose = shifted(sheet.bodies[k].pose, by);
+      canvas.outline(outline, pose, ink);
+      if (!pale) draw_mark(canvas, outline, pose, ink.line, sheet.view.scale);
+    }
   }
 }
 
@@ -246,6 +265,7 @@ void draw_layer(Canvas& canvas, const Sheet& sheet) {
     case Kind::scene:
     case Kind::pass:
       draw_sites(canvas, sheet);
+      draw::draw_trails(canvas, sheet);
       draw_springs(canvas, sheet);
       draw_bodies(canvas, sheet);
       draw_arrows(canvas, sheet);
@@ -267,19 +287,56 @@ std::vector<BodyState> at_home(const Periods& periods, std::span<const BodyState
   return home;
 }
 
-Picture draw_scene(const World& world, std::span<const BodyState> bodies, std::span<const Pose> sites,
-                   const DrawOptions& options) {
+namespace {
+
+/// Draws the picture on what `make` makes of its view.
+template <class Make>
+void draw_with(const World& world, std::span<const BodyState> bodies, std::span<const Pose> sites,
+               const DrawOptions& options, Make&& make) {
   check(world, bodies, sites, options);
   const std::vector<BodyState> home = at_home(world.periods, bodies);
   Sheet sheet{world, home, sites, options, Palette(world), -1, 0, View{}, 0.0};
   if (options.layer.kind == Kind::pass) sheet.excluded = body_named(world, options.layer.body);
   sheet.strip = draw::strip_height(options);
   sheet.view = view_of(sheet);
-  Canvas canvas(sheet.view, options.size.width, options.size.height, Tones::paper.rgb());
+  Canvas& canvas = make(sheet.view);
   if (const std::optional<Picture> beneath = diagram(sheet)) canvas.paste(*beneath);
   draw_layer(canvas, sheet);
+  draw::draw_period(canvas, sheet);
+  draw::draw_marks(canvas, sheet);
   draw::draw_caption(canvas, sheet);
-  return canvas.finish();
+}
+
+draw::Paper paper_of(const std::filesystem::path& file) {
+  const std::string kind = file.extension().string();
+  if (kind == ".png") return {draw::Paper::Kind::pixels, file};
+  if (kind == ".svg") return {draw::Paper::Kind::svg, file};
+  if (kind == ".pdf") return {draw::Paper::Kind::pdf, file};
+  throw BadInput(fmt::format("-o: {} given; allowed: FILE.png, FILE.svg, FILE.pdf", file.string()));
+}
+
+}  // namespace
+
+Picture draw_scene(const World& world, std::span<const BodyState> bodies, std::span<const Pose> sites,
+                   const DrawOptions& options) {
+  std::optional<Canvas> canvas;
+  draw_with(world, bodies, sites, options, [&](const View& view) -> Canvas& {
+    return canvas.emplace(view, options.size.width, options.size.height, Tones::paper.rgb());
+  });
+  return canvas->finish();
+}
+
+void require_picture_name(const std::filesystem::path& file) { paper_of(file); }
+
+void draw_file(const std::filesystem::path& file, const World& world, std::span<const BodyState> bodies,
+               std::span<const Pose> sites, const DrawOptions& options) {
+  const draw::Paper paper = paper_of(file);
+  if (paper.kind == draw::Paper::Kind::pixels) return draw_png(file, world, bodies, sites, options);
+  std::optional<Canvas> canvas;
+  draw_with(world, bodies, sites, options, [&](const View& view) -> Canvas& {
+    return canvas.emplace(view, options.size.width, options.size.height, Tones::paper.rgb(), paper);
+  });
+  canvas->finish_file();
 }
 
 void draw_png(const std::filesystem::path& file, const World& world, std::span<const BodyState> bodies,

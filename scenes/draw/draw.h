@@ -45,6 +45,12 @@ struct DrawnForce {
   double newtons = 0.0;     ///< >= 0
 };
 
+/// Where two touched, and the impulse there.
+struct DrawnContact {
+  Vec2 point = Vec2::Zero(), normal = Vec2::Zero();  ///< world [m]; unit
+  double impulse = 0.0;                              ///< [N s], >= 0
+};
+
 struct DrawOptions {
   DrawLayer layer;
   PictureSize size;
@@ -52,11 +58,16 @@ struct DrawOptions {
   double margin = 0.05;     ///< left free around the view, of its longer side, 0..1
   bool caption = true;  ///< a strip below with title, time and a ruler or legend; none on pictures too small
   std::string title;    ///< empty: the world's
-  std::optional<double> time;      ///< shown in the caption [s]
-  std::vector<DrawnForce> forces;  ///< layer forces
-  double arrow_seconds = 0.0;      ///< > 0: velocity arrows, as long as the way made in this time [s]
-  bool diagram = true;             ///< scene and pass: draw the cells beneath
-  FieldOptions field;              ///< context, primitives; a band > 0 truncates the diagram to it
+  std::optional<double> time;             ///< shown in the caption [s]
+  std::vector<DrawnForce> forces;         ///< layer forces
+  double arrow_seconds = 0.0;             ///< > 0: velocity arrows, as long as the way made in this time [s]
+  bool velocities = false;                ///< velocity arrows, that of the fastest 60 pixels long
+  bool names = false;                     ///< of bodies
+  bool axes = false;                      ///< coordinates in metres along the picture's rims
+  std::vector<std::vector<Vec2>> trails;  ///< places of each body, in order [m]
+  std::vector<DrawnContact> contacts;
+  bool diagram = true;  ///< scene and pass: draw the cells beneath
+  FieldOptions field;   ///< context, primitives; a band > 0 truncates the diagram to it
 
   /// True if usable; else writes which option, its value and what is allowed into *error.
   bool is_valid(std::string* error) const;
@@ -89,6 +100,13 @@ Picture draw_scene(const World& world, std::span<const BodyState> bodies, std::s
 
 /// Writes a picture as PNG. @throws IoError naming the file and the cause.
 void write_png(const std::filesystem::path& file, const Picture& picture);
+
+/// Draws into a file, by its extension: .png, or .svg and .pdf with outlines as curves (the diagram beneath is of pixels
+/// there, too). @throws BadInput for another extension, and as draw_scene(); IoError naming the file.
+void draw_file(const std::filesystem::path& file, const World& world, std::span<const BodyState> bodies,
+               std::span<const Pose> sites, const DrawOptions& options);
+/// @throws BadInput if draw_file() would not know the extension.
+void require_picture_name(const std::filesystem::path& file);
 
 /// draw_scene, then write_png.
 void draw_png(const std::filesystem::path& file, const World& world, std::span<const BodyState> bodies,

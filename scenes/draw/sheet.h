@@ -2,6 +2,7 @@
 /// One picture in the making: what its parts need to know.
 
 #include <span>
+#include <vector>
 
 #include "brink/scenes/draw/canvas.h"
 #include "brink/scenes/draw/color.h"
@@ -31,6 +32,16 @@ double largest_force(const Sheet& sheet);
 
 /// Lines from the centres of bodies to their contacts, over the bodies.
 void draw_forces(Canvas& canvas, const Sheet& sheet);
+
+/// Trails under the bodies.
+void draw_trails(Canvas& canvas, const Sheet& sheet);
+/// Velocities, contacts, names, axes, over everything.
+void draw_marks(Canvas& canvas, const Sheet& sheet);
+/// The box of a plane that repeats itself.
+void draw_period(Canvas& canvas, const Sheet& sheet);
+/// By how much an outline at `pose` is shifted to where it is seen, itself first: in a plane that repeats itself, its images
+/// that reach into the view [m].
+std::vector<Vec2> seen_at(const Sheet& sheet, const Outline& outline, const Pose& pose);
 
 /// Title, time, and a ruler (layer depth: the legend) in the strip at the bottom.
 void draw_caption(Canvas& canvas, const Sheet& sheet);

@@ -1,9 +1,14 @@
 #include "brink/scenes/program/command_line.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 
+#include "brink/core/base/printable.h"
 #include "brink/scenes/program/commands.h"
+#include "brink/scenes/toml/faults.h"
 #include "brink/scenes/version.h"
 
 namespace brink {
@@ -13,7 +18,7 @@ namespace {
 void add_run(CLI::App& program, int& status) {
   auto arguments = std::make_shared<RunArguments>();
   CLI::App* command = program.add_subcommand("run", "Simulate a scene and write a run file");
-  command->add_option("SCENE", arguments->scene, "Scene file (TOML)")->required();
+  command->add_option("SCENE", arguments->scene, "Scene file (TOML), or a run to make again")->required();
   command->add_option("--out", arguments->out, "Folder for run.db; default runs/<scene>-<n>")
       ->type_name("DIR");
   command->add_option("--set", arguments->overrides, "Override a key of the scene; may be repeated")
@@ -59,19 +64,33 @@ void add_check(CLI::App& program, int& status) {
 
 void add_draw(CLI::App& program, int& status) {
   auto arguments = std::make_shared<DrawArguments>();
-  CLI::App* command = program.add_subcommand("draw", "A picture of a scene or a run as a PNG file");
+  CLI::App* command = program.add_subcommand("draw", "A picture of a scene or a run (PNG, SVG, PDF)");
   command->add_option("SUBJECT", arguments->subject, "Scene file, run folder or run file")->required();
-  command->add_option("-o,--output", arguments->out, "Picture to write")->type_name("FILE.png")->required();
+  command->add_option("-o,--output", arguments->out, "Picture to write")
+      ->type_name("FILE.png|.svg|.pdf")
+      ->required();
   command->add_option("--at", arguments->at, "Time [s]; default: the start of a scene, the end of a run")
       ->type_name("T");
   command->add_option("--layer", arguments->layer, "scene, color, depth, forces or pass:BODY")
       ->type_name("LAYER");
   command->add_option("--size", arguments->size, "Pixels")->type_name("WxH")->capture_default_str();
+  command
+      ->add_option("--view", arguments->view,
+                   "What is seen [m]; default: all of a scene, or of the whole run")
+      ->type_name("X0,Y0,X1,Y1");
+  command->add_flag("--plain", arguments->plain, "For papers: no cells beneath, no caption");
+  command->add_flag("--axes", arguments->axes, "Coordinates along the rims");
+  command->add_flag("--names", arguments->names, "Names of bodies");
+  command->add_flag("--trails", arguments->trails, "Where bodies of a run have been up to then");
+  command->add_flag("--velocities", arguments->velocities, "Velocities, that of the fastest 60 pixels long");
+  command->add_flag("--contacts", arguments->contacts,
+                    "Collisions of a run since the frame before, with their impulses");
   command->add_option("--set", arguments->overrides, "Override a key of the scene; may be repeated")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
   command->footer(
-      "A scene is simulated up to T. A run is read: between two frames its states are interpolated.\n"
+      "A scene is simulated up to T. A run is read; between its frames it is followed from collision to "
+      "collision.\n"
       "Examples:\n"
       "  brink draw scenes/gallery/newtons_cradle.toml -o start.png\n"
       "  brink draw runs/newtons_cradle-1 --at 1.5 -o later.png\n"
@@ -208,11 +227,32 @@ void add_sweep(CLI::App& program, int& status) {
   command->callback([arguments, &status] { status = sweep_command(*arguments); });
 }
 
+/// What to say of a command or an option that there is not, with the nearest that there is; empty: all are known.
+std::string misspelt(const CLI::App& program, const std::vector<std::string>& words) {
+  if (words.empty() || words[0].starts_with('-')) return {};
+  std::vector<std::string> commands;
+  for (const CLI::App* c : program.get_subcommands({})) commands.push_back(c->get_name());
+  if (std::find(commands.begin(), commands.end(), words[0]) == commands.end())
+    return fmt::format("{}: no such command; the nearest is \"{}\". `brink --help` lists all",
+                       printable(words[0]), nearest_word(words[0], commands));
+  std::vector<std::string> known;
+  for (const CLI::Option* o : program.get_subcommand(words[0])->get_options())
+    for (const std::string& name : o->get_lnames()) known.push_back("--" + name);
+  for (const std::string& word : words) {
+    const std::string option = word.substr(0, word.find('='));
+    if (option == "--") break;
+    if (!option.starts_with("--") || std::find(known.begin(), known.end(), option) != known.end()) continue;
+    return fmt::format("{}: brink {} has no such option; the nearest is {}. `brink {} --help` lists all",
+                       printable(option), words[0], nearest_word(option, known), words[0]);
+  }
+  return {};
+}
+
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
   CLI::App program("Brink: many rigid bodies in the plane, exact to the contact time.", "brink");
-  program.set_version_flag("--version", std::string(version()));
+  program.set_version_flag("--version", version_details());
   program.require_subcommand(1);
   program.footer(
       "Examples:\n"
@@ -235,6 +275,10 @@ int run_command_line(int argc, char** argv) {
   add_list(program, status);
   add_bench(program, status);
   add_sweep(program, status);
+  if (const std::string words = misspelt(program, {argv + 1, argv + argc}); !words.empty()) {
+    fmt::print(stderr, "{}\n", words);
+    return kBadInput;
+  }
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& e) {  // help is one, too

@@ -29,7 +29,8 @@ struct CheckArguments {
 };
 
 struct DrawArguments {
-  std::string subject, out, layer = "scene", size = "1200x900";
+  std::string subject, out, layer = "scene", size = "1200x900", view;
+  bool plain = false, axes = false, names = false, trails = false, velocities = false, contacts = false;
   std::optional<double> at;
   std::vector<std::string> overrides;
 };

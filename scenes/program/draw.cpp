@@ -4,9 +4,13 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include <cmath>
+
 #include "brink/scenes/files/written_file.h"
 #include "brink/scenes/program/commands.h"
 #include "brink/scenes/program/run_folder.h"
+#include "brink/scenes/run_file/run_file.h"
 #include "brink/scenes/run_file/run_moment.h"
 #include "brink/scenes/scene/scene.h"
 #include "brink/scheduler/simulator/simulator.h"
@@ -59,18 +63,58 @@ RunMoment moment_of(const DrawArguments& arguments, const fs::path& run, FieldOp
   return moment_of_scene(arguments, scene);
 }
 
+Box parse_view(const std::string& text) {
+  double n[4] = {};
+  const char *at = text.data(), *end = at + text.size();
+  bool good = true;
+  for (int i = 0; i < 4 && good; ++i) {
+    const auto [stop, error] = std::from_chars(at, end, n[i]);
+    good = error == std::errc() && std::isfinite(n[i]) && (i < 3 ? stop != end && *stop == ',' : stop == end);
+    at = stop + 1;
+  }
+  if (!good || !(n[0] < n[2] && n[1] < n[3]))
+    throw BadInput(
+        fmt::format("--view: {} given; allowed: X0,Y0,X1,Y1 in metres with X0 < X1 and Y0 < Y1", text));
+  Box box;
+  box.add({n[0], n[1]});
+  box.add({n[2], n[3]});
+  return box;
+}
+
+/// What a run's picture has beside its moment.
+void add_history(const DrawArguments& arguments, const fs::path& file, const RunMoment& moment,
+                 DrawOptions& options) {
+  const RunFile run(file);
+  if (!options.view && options.layer.kind != DrawLayer::Kind::pass)
+    options.view = extent_of(run, moment.world);
+  if (arguments.trails) options.trails = trails_of(run, moment.t);
+  if (arguments.contacts) options.contacts = contacts_before(run, moment.t);
+}
+
 }  // namespace
 
 int draw_command(const DrawArguments& arguments) {
+  require_picture_name(arguments.out);
   DrawOptions options;
   options.layer = parse_layer(arguments.layer);
   options.size = parse_size(arguments.size);
+  if (!arguments.view.empty()) {
+    options.view = parse_view(arguments.view);
+    options.margin = 0.0;
+  }
+  options.diagram = options.caption = !arguments.plain;
+  options.axes = arguments.axes;
+  options.names = arguments.names;
+  options.velocities = arguments.velocities;
   const fs::path run = run_file_of(arguments.subject);
+  if (run.empty() && (arguments.trails || arguments.contacts))
+    throw BadInput("--trails, --contacts: are of runs; a scene has none yet");
   refuse_overwriting(arguments.out, "-o", {run.empty() ? fs::path(arguments.subject) : run});
   const RunMoment moment = moment_of(arguments, run, options.field);
   options.time = moment.t;
   if (options.layer.kind == DrawLayer::Kind::forces) options.forces = forces_of(moment);
-  draw_png(arguments.out, moment.world, moment.bodies, moment.sites, options);
+  if (!run.empty()) add_history(arguments, run, moment, options);
+  draw_file(arguments.out, moment.world, moment.bodies, moment.sites, options);
   return kDone;
 }
 

@@ -24,7 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMostPictures = 1e6;
-constexpr int kLooks = 32;  ///< at the run, for what the camera must see
 
 bool has_ffmpeg() { return std::system("ffmpeg -version >/dev/null 2>&1") == 0; }
 
@@ -99,18 +98,6 @@ std::vector<Pose> site_poses(const World& world, double t) {
   return poses;
 }
 
-/// All that is worth seeing between two times.
-Box camera(const RunFile& run, const World& world, double from, double to) {
-  Box all;
-  for (int k = 0; k <= kLooks; ++k) {
-    const double t = from + (to - from) * k / kLooks;
-    const Box seen = automatic_view(world, run.states_at(t).states, site_poses(world, t));
-    all.add(seen.low);
-    all.add(seen.high);
-  }
-  return all;
-}
-
 void require(bool good, const char* option, double given, const char* allowed) {
   if (!good) throw BadInput(fmt::format("{}: {} given; allowed: {}", option, given, allowed));
 }
@@ -141,7 +128,7 @@ int film_command(const FilmArguments& arguments) {
   options.layer = parse_layer(options.diagram ? arguments.layer : "scene");
   options.size = parse_size(arguments.size);
   const World world = run.world();
-  options.view = camera(run, world, from, to);
+  options.view = extent_of(run, world);
   const auto film = film_into(arguments.out, options.size, arguments.fps);
   ProgressBar bar(from, to, on_terminal(stderr));
   for (double k = 0; k < pictures; ++k) {

@@ -93,7 +93,9 @@ void print_report(const RunArguments& arguments, const Scene& scene, const RunRe
 
 int run_command(const RunArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
-  const Scene scene = load_scene(arguments.scene, arguments.overrides);
+  const std::filesystem::path run = run_file_of(arguments.scene);
+  const Scene scene =
+      run.empty() ? load_scene(arguments.scene, arguments.overrides) : scene_of_run(run, arguments.overrides);
   RunRequest request;
   request.dir = arguments.out.empty() ? default_run_folder(scene.path, arguments.resume)
                                       : std::filesystem::path(arguments.out);

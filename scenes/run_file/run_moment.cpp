@@ -12,6 +12,7 @@
 namespace brink {
 namespace {
 
+constexpr int kLooks = 32, kTrailLooks = 400;
 constexpr double kFarthest = 1e20;  // [m], [rad]: squares of differences are finite
 
 bool somewhere(const Pose& pose) {
@@ -83,6 +84,46 @@ std::vector<DrawnForce> forces_of(const RunMoment& moment) {
     if (!with_site) out.push_back({c.other_body, body.position + arm - other.position, c.normal_force});
   }
   return out;
+}
+
+Box extent_of(const RunFile& run, const World& world) {
+  Box all;
+  const auto [first, last] = run.time_range();
+  for (int k = 0; k <= kLooks; ++k) {
+    const RunFile::Frame frame = run.frame_at(first + (last - first) * k / kLooks);
+    std::vector<Pose> sites;
+    for (const FixedSite& site : world.sites) sites.push_back(told_pose(site, frame.t));
+    const Box seen = automatic_view(world, frame.states, sites);
+    all.add(seen.low);
+    all.add(seen.high);
+  }
+  for (int axis = 0; axis < 2; ++axis)  // of a plane that repeats itself, one period
+    if (const double size = world.periods.size[axis]; size > 0.0) {
+      all.low[axis] = 0.0;
+      all.high[axis] = size;
+    }
+  return all;
+}
+
+std::vector<std::vector<Vec2>> trails_of(const RunFile& run, double t) {
+  const double first = run.time_range().first;
+  std::vector<std::vector<Vec2>> trails;
+  for (int k = 0; k <= kTrailLooks; ++k) {
+    const auto states = run.states_at(first + (t - first) * k / kTrailLooks).states;
+    trails.resize(states.size());
+    for (std::size_t b = 0; b < states.size(); ++b) trails[b].push_back(states[b].pose.position);
+  }
+  return trails;
+}
+
+std::vector<DrawnContact> contacts_before(const RunFile& run, double t) {
+  double since = run.frame_at(t).t;
+  if (since == t) since = run.frame_at(std::nextafter(t, -1.0)).t;
+  std::vector<DrawnContact> contacts;
+  for (const Event& e : run.events())
+    if (e.kind == EventKind::collision && e.contact.time > since && e.contact.time <= t)
+      contacts.push_back({e.contact.point, e.contact.normal, std::abs(e.impulse_n)});
+  return contacts;
 }
 
 RunMoment moment_of_run(const std::filesystem::path& file, std::optional<double> at) {

@@ -7,6 +7,7 @@
 
 #include "brink/core/world/world.h"
 #include "brink/scenes/draw/draw.h"
+#include "brink/scenes/run_file/run_file.h"
 #include "brink/scheduler/run/lasted_contact.h"
 
 namespace brink {
@@ -24,6 +25,13 @@ struct RunMoment {
 /// forces are those at the ends of their stretches.
 /// @throws BadInput if a contact names a sample or a site that its outline does not have.
 std::vector<DrawnForce> forces_of(const RunMoment& moment);
+
+/// All that is worth seeing of the run: of some thirty of its frames. Two pictures of a run with it match.
+Box extent_of(const RunFile& run, const World& world);
+/// Where each body has been at some hundreds of times up to t.
+std::vector<std::vector<Vec2>> trails_of(const RunFile& run, double t);
+/// Collisions up to t since the frame before it.
+std::vector<DrawnContact> contacts_before(const RunFile& run, double t);
 
 /// The run in `file` at time `at`, the end if not given; between two frames its states are interpolated.
 /// @throws BadInput if `at` is outside the run; IoError naming file and table where the file cannot be read,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -132,6 +133,21 @@ void close_as_failed(RunFileRecorder& recorder, const Simulator& simulator, cons
 }
 
 }  // namespace
+
+Scene scene_of_run(const std::filesystem::path& run_file, const std::vector<std::string>& more) {
+  const RunFile run(run_file);
+  const auto text = run.meta("scene_text");
+  if (!text)
+    throw BadInput(fmt::format("{}: does not hold its scene's text: it was written by an earlier Brink",
+                               run_file.string()));
+  const auto json = nlohmann::json::parse(run.meta("overrides").value_or("[]"), nullptr, false);
+  const auto is_text = [](const nlohmann::json& j) { return j.is_string(); };
+  if (!json.is_array() || !std::all_of(json.begin(), json.end(), is_text))
+    throw IoError(fmt::format("{}: table meta: overrides: not a JSON array of strings", run_file.string()));
+  auto overrides = json.get<std::vector<std::string>>();
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  return parse_scene(*text, run.meta("scene").value_or(run_file.string()), overrides);
+}
 
 RunReport run_scene(const Scene& scene, const RunRequest& request) {
   const auto start = Clock::now();

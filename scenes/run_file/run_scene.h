@@ -38,6 +38,10 @@ struct RunReport {
   bool finished_before = false;
 };
 
+/// The scene that the run in `run_file` was of, as its file has it: text and overrides, then `more` of them.
+/// @throws BadInput where it does not say; SceneFaults; IoError.
+Scene scene_of_run(const std::filesystem::path& run_file, const std::vector<std::string>& more = {});
+
 /// Runs `scene` and writes the run file. However the simulation ends, the file is closed with that ending.
 /// @throws BadInput for a scene or request that cannot run; IoError where the file cannot be written.
 RunReport run_scene(const Scene& scene, const RunRequest& request);

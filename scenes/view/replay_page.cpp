@@ -16,6 +16,7 @@
 #include "brink/scenes/draw/draw.h"
 #include "brink/scenes/files/written_file.h"
 #include "brink/scenes/run_file/run_file.h"
+#include "brink/scenes/run_file/run_moment.h"
 #include "brink/scenes/run_file/shape_json.h"
 #include "brink/scenes/version.h"
 #include "brink/scenes/view/page_assets.h"
@@ -29,7 +30,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Column = std::vector<double>;
 
-constexpr int kViews = 32;  ///< frames that are looked at for what is worth seeing
 constexpr EventKind kKinds[] = {
     EventKind::collision, EventKind::zeno, EventKind::group, EventKind::undecided, EventKind::persist,
     EventKind::sleep,     EventKind::wake, EventKind::stick, EventKind::slip,      EventKind::lift};
@@ -110,7 +110,6 @@ class ReplayPage {
     const std::int64_t count = run_.frame_count();
     const std::int64_t stride =
         std::max<std::int64_t>(1, (count * bodies + limits_.frame_rows - 1) / limits_.frame_rows);
-    const std::int64_t per_view = std::max<std::int64_t>(1, count / (stride * kViews));
     if (stride > 1) notices_.push_back(fmt::format("every {}. frame of {}", stride, count));
     std::vector<SiteMotion> moving;
     for (const FixedSite& site : world_.sites)
@@ -118,7 +117,6 @@ class ReplayPage {
     Column times;
     StateColumns states, site_states;
     run_.each_frame(stride, [&](const RunFile::Frame& f) {
-      if (static_cast<std::int64_t>(times.size()) % per_view == 0) look_at(f);
       times.push_back(f.t);
       for (const BodyState& s : f.states) states.add(s);
       for (SiteMotion& m : moving) site_states.add(site_at(m, f.t));
@@ -134,14 +132,6 @@ class ReplayPage {
     const BodyState s = site.motion().state(t);
     site.forget_before(t);
     return s;
-  }
-
-  void look_at(const RunFile::Frame& f) {
-    std::vector<Pose> sites;
-    for (const FixedSite& site : world_.sites) sites.push_back(told_pose(site, f.t));
-    const Box box = automatic_view(world_, f.states, sites);
-    extent_.add(box.low);
-    extent_.add(box.high);
   }
 
   void events() {
@@ -244,13 +234,16 @@ class ReplayPage {
   void facts() {
     const auto meta = run_.meta();
     const auto of = [&](const char* key) { return meta.contains(key) ? meta.at(key) : std::string(); };
-    const Vec2 size = (extent_.high - extent_.low).cwiseMax(1e-12);
+    const Box extent = extent_of(run_, world_);
+    const Vec2 size = (extent.high - extent.low).cwiseMax(1e-12);
     about_["title"] = world_.title.empty() ? of("scene") : world_.title;
-    about_["termination"] = fmt::format("{} at {} s", of("termination"), of("end_time"));
+    const bool running = of("termination") == "running";
+    about_["termination"] =
+        fmt::format("{} at {} s", of("termination"), running ? fmt::format("{}", curves_.end()) : of("end_time"));
     about_["periods"] = pair(world_.periods.size);
     about_["gravity"] = pair(curves_.gravity());
-    about_["extent"] = {extent_.low.x(), extent_.low.y(), extent_.low.x() + size.x(),
-                        extent_.low.y() + size.y()};
+    about_["extent"] = {extent.low.x(), extent.low.y(), extent.low.x() + size.x(),
+                        extent.low.y() + size.y()};
     about_["kinds"] = Json::array();
     for (const EventKind kind : kKinds) about_["kinds"].push_back(to_string(kind));
     about_["notice"] = fmt::format("{}", fmt::join(notices_, "; "));
@@ -301,7 +294,6 @@ class ReplayPage {
   RunCurves curves_;
   PageNumbers numbers_;
   Json about_;
-  Box extent_;
   std::map<std::string, int> shapes_;
   std::vector<std::string> notices_;
 };

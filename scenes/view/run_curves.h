@@ -16,6 +16,7 @@ class RunCurves {
   RunCurves(const World& world, const RunFile& run);
 
   const Vec2& gravity() const { return gravity_; }
+  double end() const { return t_.empty() ? 0.0 : t_.back(); }  ///< of the last frame [s]
   void add(const RunFile::Frame& frame);
   /// @pre every frame has been added.
   void add(const Event& event);

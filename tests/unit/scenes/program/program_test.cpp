@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "brink/scenes/run_file/run_file.h"
+#include "brink/scenes/run_file/run_moment.h"
 #include "brink/scheduler/policies/policy.h"
 
 namespace brink {
@@ -139,6 +140,104 @@ TEST_F(ProgramTest, BadUsageIsStatusTwo) {
 }
 
 // The limits of world.duration hold on the command line too, before anything is written.
+TEST_F(ProgramTest, WhatIsMisspeltIsToldWithTheNearestWord) {
+  for (const auto& [command, nearest] : {std::pair("rn ball.toml", "\"run\""),
+                                         {"run ball.toml --untill 2", "--until"},
+                                         {"view --opne ball.toml", "--open"},
+                                         {"drwa ball.toml", "\"draw\""}}) {
+    const Outcome run = brink(command);
+    EXPECT_EQ(run.status, 2) << command;
+    EXPECT_THAT(run.error, HasSubstr(std::string("the nearest is ") + nearest)) << command;
+  }
+}
+
+TEST_F(ProgramTest, VersionNamesCommitCompilerAndLibraries) {
+  const Outcome run = brink("--version");
+  EXPECT_EQ(run.status, 0);
+  for (const char* word : {"brink 0.", "commit", "GNU", "Eigen 3.", "SUNDIALS ", "SQLite 3.", "cairo 1."})
+    EXPECT_THAT(run.out, testing::AnyOf(HasSubstr(word), HasSubstr("Clang"))) << word;
+}
+
+TEST_F(ProgramTest, PicturesAreOfTheKindThatTheirNameSays) {
+  ASSERT_EQ(brink("run ball.toml --out a --quiet").status, 0);
+  ASSERT_EQ(
+      brink("draw a --at 0.6 -o p.png --trails --velocities --contacts --names --axes --size 320x240").status,
+      0);
+  ASSERT_EQ(brink("draw a --at 0.6 -o p.svg --plain --names --size 320x240").status, 0);
+  ASSERT_EQ(brink("draw ball.toml -o p.pdf --plain --view -1,-0.5,1,2 --size 320x240").status, 0);
+  EXPECT_EQ(text_of(dir_ / "p.png").substr(1, 3), "PNG");
+  EXPECT_THAT(text_of(dir_ / "p.svg"), testing::AllOf(HasSubstr("<svg"), HasSubstr("width=\"320")));
+  EXPECT_EQ(text_of(dir_ / "p.pdf").substr(0, 4), "%PDF");
+  for (const char* bad : {"draw a -o p.jpg", "draw a -o p", "draw a -o q.png --view 0,0,1",
+                          "draw a -o q.png --view 1,0,0,1", "draw ball.toml -o q.png --trails"}) {
+    EXPECT_EQ(brink(bad).status, 2) << bad;
+  }
+  EXPECT_FALSE(fs::exists(dir_ / "q.png"));
+}
+
+// Two pictures of a run are seen by one camera.
+TEST_F(ProgramTest, PicturesOfARunShowTheWholeRun) {
+  ASSERT_EQ(brink("run ball.toml --out a --quiet").status, 0);
+  const RunFile run(dir_ / "a/run.db");
+  const Box all = extent_of(run, run.world());
+  EXPECT_LE(all.low.y(), 0.0);
+  EXPECT_GE(all.high.y(), 2.0);
+}
+
+TEST_F(ProgramTest, AFilmIsWrittenOrItsPictures) {
+  ASSERT_EQ(brink("run ball.toml --out a --quiet").status, 0);
+  ASSERT_EQ(brink("film a -o f.png --fps 4 --size 160x120").status, 0);
+  for (const char* picture : {"f-00001.png", "f-00002.png", "f-00003.png", "f-00004.png"})
+    EXPECT_TRUE(fs::exists(dir_ / picture)) << picture;
+  EXPECT_FALSE(fs::exists(dir_ / "f-00005.png"));
+  const Outcome film = brink("film a -o f.mp4 --fps 8 --size 161x121 --speed 0.5");
+  ASSERT_EQ(film.status, 0) << film.error;
+  const bool made = fs::exists(dir_ / "f.mp4");
+  EXPECT_TRUE(made || film.error.find("apt-get install ffmpeg") != std::string::npos);
+  if (made) {
+    EXPECT_EQ(text_of(dir_ / "f.mp4").substr(4, 4), "ftyp");
+  }
+  for (const char* bad :
+       {"film a -o f.avi", "film a -o f.mp4 --fps 0", "film a -o f.mp4 --from 2", "film ball.toml -o f.mp4",
+        "film a -o f.mp4 --from 0.5 --to 0.25", "film a -o a/run.db"}) {
+    EXPECT_EQ(brink(bad).status, 2) << bad;
+  }
+}
+
+TEST_F(ProgramTest, TablesAreExportedWithUnitsInTheirHeads) {
+  ASSERT_EQ(brink("run ball.toml --out a --quiet").status, 0);
+  ASSERT_EQ(brink("export a --csv tables").status, 0);
+  EXPECT_THAT(text_of(dir_ / "tables/bodies.csv"), HasSubstr("body,name,mass_kg,inertia_kg_m2\n0,ball,1,"));
+  EXPECT_THAT(text_of(dir_ / "tables/frames.csv"), HasSubstr("\n0.25,0,0,1.25,0,0,-2,0\n"));
+  EXPECT_THAT(text_of(dir_ / "tables/events.csv"), testing::ContainsRegex("0,0.[45][0-9]*,collision,0,,0,"));
+  EXPECT_EQ(brink("export ball.toml --csv tables").status, 2);
+  EXPECT_EQ(brink("export nothing.db --csv tables").status, 3);
+}
+
+TEST_F(ProgramTest, ViewsOfARunFileAnswerWithUnits) {
+  ASSERT_EQ(brink("run ball.toml --out a --quiet").status, 0);
+  SQLite::Database db((dir_ / "a/run.db").string());
+  const double energy =
+      db.execAndGet("SELECT kinetic_J + of_gravity_J FROM energy_over_time WHERE t_s = 0.25").getDouble();
+  EXPECT_NEAR(energy, 12.0, 1e-12);
+  EXPECT_EQ(db.execAndGet("SELECT with_what FROM contacts_of WHERE body = 'ball'").getString(), "floor");
+  EXPECT_EQ(db.execAndGet("SELECT count(*) FROM body_path").getInt(), 4);
+  EXPECT_EQ(db.execAndGet("SELECT events_in_a_tenth_of_a_second FROM timeline").getInt(), 1);
+}
+
+// The scene file may be gone.
+TEST_F(ProgramTest, ARunIsRunAgainFromItsRunFile) {
+  ASSERT_EQ(brink("run ball.toml --out a --quiet --set world.duration=1.25 --set bodies.0.mass=3").status, 0);
+  fs::remove(dir_ / "ball.toml");
+  ASSERT_EQ(brink("run a/run.db --out b --quiet").status, 0);
+  const RunFile first(dir_ / "a/run.db"), again(dir_ / "b/run.db");
+  EXPECT_EQ(first.meta("state_hash"), again.meta("state_hash"));
+  EXPECT_EQ(again.end_time(), 1.25);
+  EXPECT_EQ(again.bodies()[0].mass, 3.0);
+  ASSERT_EQ(brink("run a --out c --quiet --set world.duration=0.5").status, 0);
+  EXPECT_EQ(RunFile(dir_ / "c/run.db").end_time(), 0.5);
+}
+
 TEST_F(ProgramTest, UntilHasTheLimitsOfDuration) {
   for (const char* until : {"1e13", "1e-13", "inf"}) {
     const Outcome run = brink(std::string("run ball.toml --out a --until ") + until);

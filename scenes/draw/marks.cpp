@@ -1,0 +1,124 @@
+// What is drawn over and under the bodies: trails, velocities, contacts, names, axes, the box of a plane that repeats itself.
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "brink/scenes/draw/sheet.h"
+
+namespace brink::draw {
+namespace {
+
+constexpr double kFastest = 60.0;  // [pixels], of velocity arrows
+constexpr double kNormal = 14.0,
+                 kImpulse = 36.0;  // [pixels], of a contact's arrow, and more for the largest impulse
+constexpr double kTextSize = 11.0, kTick = 5.0;  // [pixels]
+
+void draw_velocities(Canvas& canvas, const Sheet& sheet) {
+  if (!sheet.options.velocities) return;
+  double most = 0.0;
+  for (const BodyState& s : sheet.bodies) most = std::max(most, s.twist.velocity.norm());
+  if (!(most > 0.0)) return;
+  const double seconds = kFastest / sheet.view.scale / most;
+  for (const BodyState& s : sheet.bodies)
+    canvas.arrow(s.pose.position, s.pose.position + seconds * s.twist.velocity,
+                 Oklch{0.45, 0.12, 155.0}.rgb(), 1.6);
+}
+
+void draw_contacts(Canvas& canvas, const Sheet& sheet) {
+  double most = 0.0;
+  for (const DrawnContact& c : sheet.options.contacts) most = std::max(most, c.impulse);
+  const Color color = Oklch{0.52, 0.2, 25.0}.rgb();
+  for (const DrawnContact& c : sheet.options.contacts) {
+    const double pixels = kNormal + (most > 0.0 ? kImpulse * c.impulse / most : 0.0);
+    canvas.dot(c.point, 3.2, color);
+    canvas.arrow(c.point, c.point + pixels / sheet.view.scale * c.normal, color, 1.6);
+  }
+}
+
+void draw_names(Canvas& canvas, const Sheet& sheet) {
+  if (!sheet.options.names) return;
+  for (std::size_t k = 0; k < sheet.bodies.size(); ++k) {
+    const Vec2 at = sheet.view.to_picture(sheet.bodies[k].pose.position);
+    const std::string& name = sheet.world.bodies[k].name;
+    for (const Vec2& beside : {Vec2(-1, 0), Vec2(1, 0), Vec2(0, -1), Vec2(0, 1)})
+      canvas.text(at.x() + beside.x(), at.y() + beside.y() + 0.35 * kTextSize, name, kTextSize,
+                  Tones::paper.rgb(), Canvas::Align::middle);
+    canvas.text(at.x(), at.y() + 0.35 * kTextSize, name, kTextSize, Tones::ink.rgb(), Canvas::Align::middle);
+  }
+}
+
+void draw_axes(Canvas& canvas, const Sheet& sheet) {
+  if (!sheet.options.axes) return;
+  const View& view = sheet.view;
+  const Color ink = Tones::ink.rgb();
+  const double step = round_length(120.0 / view.scale);
+  const auto each = [&](double low, double high, auto&& f) {
+    for (double k = std::ceil(low / step); k * step <= high; ++k) f(k * step);
+  };
+  const auto label = [&](double x) { return fmt::format("{:.6g}", std::abs(x) < 1e-9 * step ? 0.0 : x); };
+  each(view.window.low.x(), view.window.high.x(), [&](double x) {
+    const double at = view.to_picture({x, 0.0}).x();
+    canvas.rectangle(at, view.height - kTick, 1.0, kTick, ink);
+    canvas.text(at, view.height - kTick - 3.0, label(x), kTextSize, ink, Canvas::Align::middle);
+  });
+  each(view.window.low.y(), view.window.high.y(), [&](double y) {
+    const double at = view.to_picture({0.0, y}).y();
+    canvas.rectangle(0.0, at, kTick, 1.0, ink);
+    canvas.text(kTick + 3.0, at + 0.35 * kTextSize, label(y), kTextSize, ink, Canvas::Align::left);
+  });
+  canvas.text(view.width - 4.0, view.height - kTick - kTextSize - 6.0, "x [m]", kTextSize, ink,
+              Canvas::Align::right);
+  canvas.text(kTick + 3.0, kTextSize + 2.0, "y [m]", kTextSize, ink, Canvas::Align::left);
+}
+
+}  // namespace
+
+void draw_trails(Canvas& canvas, const Sheet& sheet) {
+  const auto& trails = sheet.options.trails;
+  for (std::size_t k = 0; k < std::min(trails.size(), sheet.bodies.size()); ++k)
+    for (std::size_t i = 1; i < trails[k].size(); ++i)
+      canvas.line(trails[k][i - 1], trails[k][i], Palette::line(sheet.palette.body(k)).rgb(), 1.0);
+}
+
+void draw_marks(Canvas& canvas, const Sheet& sheet) {
+  draw_velocities(canvas, sheet);
+  draw_contacts(canvas, sheet);
+  draw_names(canvas, sheet);
+  draw_axes(canvas, sheet);
+}
+
+void draw_period(Canvas& canvas, const Sheet& sheet) {
+  const Vec2& size = sheet.world.periods.size;
+  const Box& window = sheet.view.window;
+  const Color color = Oklch{0.5, 0.02, 260.0}.rgb();
+  for (int axis = 0; axis < 2; ++axis) {
+    if (!(size[axis] > 0.0)) continue;
+    const int across = 1 - axis;
+    for (const double at : {0.0, size[axis]}) {
+      Vec2 from, to;
+      from[axis] = to[axis] = at;
+      from[across] = size[across] > 0.0 ? 0.0 : window.low[across];
+      to[across] = size[across] > 0.0 ? size[across] : window.high[across];
+      canvas.line(from, to, color, 1.2);
+    }
+  }
+}
+
+std::vector<Vec2> seen_at(const Sheet& sheet, const Outline& outline, const Pose& pose) {
+  std::vector<Vec2> shifts{Vec2::Zero()};
+  const Vec2& size = sheet.world.periods.size;
+  if (outline.container || !(size.maxCoeff() > 0.0)) return shifts;
+  Box seen = sheet.view.window.grown(outline.bounding_radius);
+  for (int right = -1; right <= 1; ++right)
+    for (int up = -1; up <= 1; ++up) {
+      const Vec2 by(right * size.x(), up * size.y());
+      if (by.isZero(0.0) || (right != 0 && size.x() == 0.0) || (up != 0 && size.y() == 0.0)) continue;
+      const Vec2 at = pose.position + by;
+      if ((at.array() >= seen.low.array()).all() && (at.array() <= seen.high.array()).all())
+        shifts.push_back(by);
+    }
+  return shifts;
+}
+
+}  // namespace brink::draw
