@@ -8,8 +8,8 @@
 namespace brink {
 
 struct ReplayLimits {
-  std::int64_t frame_rows =
-      1'000'000;                  ///< frames times bodies; a run with more is thinned, and the page says so
+  /// Frames times bodies; a run with more is thinned, and the page says so.
+  std::int64_t frame_rows = 1'200'000;
   std::int64_t events = 300'000;  ///< likewise: of more the page has the first ones
 };
 

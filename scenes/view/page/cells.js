@@ -102,15 +102,18 @@ class Cells {
     return {array, count: numbers.length / 5};
   }
 
-  /** `things`: {shape, pose: [x, y, angle], color: [r, g, b]}; `view`: {x, y, scale} in pixels of the canvas. */
-  draw(things, view, ring) {
+  /**
+   * `things`: {shape, pose: [x, y, angle], color: [r, g, b]}; `view`: {x, y, scale} in pixels of the canvas; `reach`: no place that
+   * is seen is farther from all of them [m].
+   */
+  draw(things, view, ring, reach) {
     const gl = this.gl, {width, height} = this.canvas;
     gl.viewport(0, 0, width, height);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.DEPTH_TEST);
     gl.useProgram(this.program);
-    const far = 1.5 * Math.hypot(width, height) / view.scale;
+    const far = Math.min(reach, 1.5 * Math.hypot(width, height) / view.scale);
     gl.uniform1f(this.at.far, far);
     gl.uniform1f(this.at.ring, ring);
     gl.uniform1f(this.at.pixel, 1 / view.scale);

@@ -178,11 +178,38 @@ class Picture {
     this.about.bodies.forEach((b, k) => {
       if (k === out) return;
       for (const [x, y] of this.offsets(this.poses[k]))
-        things.push({shape: b.shape, pose: moved(this.poses[k], x, y), color: shade(b.cell, k)});
+        things.push({shape: b.shape, pose: moved(this.poses[k], x, y), color: shade(b.cell, k), body: true});
     });
     const ring = 40 * this.ratio / this.view.scale, decade = 10 ** Math.floor(Math.log10(ring));
     const step = [1, 2, 5, 10].map(m => m * decade).find(s => s >= ring) || ring;
-    this.cells.draw(things, this.view, step);
+    this.cells.draw(things, this.view, step, this.reachOf(things));
+  }
+
+  /**
+   * No place in the view is farther from the nearest of the things than this [m]: cones need not be larger. By the centres of
+   * bodies, on a grid: what is between its points adds half a mesh.
+   */
+  reachOf(things) {
+    const columns = 32, rows = 20, {width, height} = this.canvas, dx = width / columns / this.view.scale, dy = height / rows / this.view.scale;
+    const [left, low] = this.toWorld(0, height);
+    // outside of a container nothing is seen of cells
+    const closed = this.about.sites.some(s => this.about.shapes[s.shape].container), [x0, y0, x1, y1] = this.about.extent;
+    const seen = things.filter(t => t.body);
+    const largest = seen.reduce((most, t) => Math.max(most, this.about.shapes[t.shape].bounding_radius), 0);
+    if (!seen.length) return Infinity;
+    let most = 0;
+    for (let j = 0; j < rows; ++j)
+      for (let k = 0; k < columns; ++k) {
+        const x = left + (k + 0.5) * dx, y = low + (j + 0.5) * dy;
+        if (closed && (x < x0 - dx || x > x1 + dx || y < y0 - dy || y > y1 + dy)) continue;
+        let least = Infinity;
+        for (const {pose} of seen) {
+          const u = x - pose[0], v = y - pose[1];
+          least = Math.min(least, u * u + v * v);
+        }
+        most = Math.max(most, least);
+      }
+    return Math.sqrt(most) + largest + 0.5 * Math.hypot(dx, dy);
   }
 
   drawBodies() {
