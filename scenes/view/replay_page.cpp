@@ -238,12 +238,11 @@ class ReplayPage {
     const Vec2 size = (extent.high - extent.low).cwiseMax(1e-12);
     about_["title"] = world_.title.empty() ? of("scene") : world_.title;
     const bool running = of("termination") == "running";
-    about_["termination"] =
-        fmt::format("{} at {} s", of("termination"), running ? fmt::format("{}", curves_.end()) : of("end_time"));
+    about_["termination"] = fmt::format("{} at {} s", of("termination"),
+                                        running ? fmt::format("{}", curves_.end()) : of("end_time"));
     about_["periods"] = pair(world_.periods.size);
     about_["gravity"] = pair(curves_.gravity());
-    about_["extent"] = {extent.low.x(), extent.low.y(), extent.low.x() + size.x(),
-                        extent.low.y() + size.y()};
+    about_["extent"] = {extent.low.x(), extent.low.y(), extent.low.x() + size.x(), extent.low.y() + size.y()};
     about_["kinds"] = Json::array();
     for (const EventKind kind : kKinds) about_["kinds"].push_back(to_string(kind));
     about_["notice"] = fmt::format("{}", fmt::join(notices_, "; "));

@@ -45,7 +45,8 @@ const std::map<std::string, Rooms>& order() {
     }
     rooms["scenes"] = {};
     before.push_back("scenes");
-    for (const char* room : {"files", "toml", "draw", "scene", "run_file", "sweep", "view", "program", "bench"}) {
+    for (const char* room :
+         {"files", "toml", "draw", "scene", "run_file", "sweep", "view", "program", "bench"}) {
       const std::string path = std::string("scenes/") + room;
       rooms[path] = before;
       before.push_back(path);

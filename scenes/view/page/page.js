@@ -285,7 +285,7 @@ class Player {
       for (const b of [n.event_body[k], n.event_other[k]]) {
         const i = place.get(b);
         if (i === undefined) continue;
-        ctx.fillStyle = about.kinds[n.event_kind[k]] === 'collision' ? about.bodies[b].line : '#d03030';
+        ctx.fillStyle = about.kinds[n.event_kind[k]] === 'collision' ? about.bodies[b].fill : '#d03030';
         ctx.fillRect((at.left + at.width * this.part(n.event_t[k])) * ratio, (i * height + 1) * ratio, Math.max(1, ratio), (height - 2) * ratio);
       }
   }
