@@ -299,16 +299,30 @@ class ReplayPage {
 
 }  // namespace
 
+namespace {
+
+/// What `of` says of the page; whatever is wrong in the run file is an IoError that names it.
+template <class Of>
+std::string gathered(const std::filesystem::path& run_file, const ReplayLimits& limits, bool live, Of&& of) {
+  try {
+    ReplayPage page(run_file, limits);
+    page.gather(live);
+    return of(page);
+  } catch (const Json::exception& e) {
+    throw IoError(fmt::format("{}: table meta: {}", run_file.string(), e.what()));
+  } catch (const BadInput& e) {
+    throw IoError(fmt::format("{}: cannot be shown: {}", run_file.string(), e.what()));
+  }
+}
+
+}  // namespace
+
 std::string replay_page_text(const std::filesystem::path& run_file, const ReplayLimits& limits, bool live) {
-  ReplayPage page(run_file, limits);
-  page.gather(live);
-  return page.page();
+  return gathered(run_file, limits, live, [](const ReplayPage& page) { return page.page(); });
 }
 
 std::string replay_page_data(const std::filesystem::path& run_file, const ReplayLimits& limits, bool live) {
-  ReplayPage page(run_file, limits);
-  page.gather(live);
-  return page.data();
+  return gathered(run_file, limits, live, [](const ReplayPage& page) { return page.data(); });
 }
 
 void write_replay_page(const std::filesystem::path& run_file, const std::filesystem::path& page,

@@ -21,7 +21,9 @@
 #include "brink/scenes/run_file/run_file.h"
 #include "brink/scenes/run_file/run_moment.h"
 #include "brink/scenes/run_file/run_scene.h"
+#include "brink/scenes/run_file/run_tables.h"
 #include "brink/scenes/sweep/sweep.h"
+#include "brink/scenes/view/replay_page.h"
 #include "tests/fuzz/mutant_process.h"
 
 namespace brink {
@@ -277,6 +279,15 @@ bool reads(const fs::path& file) {
     options.diagram = fuzz::asked("BRINK_FUZZ_DIAGRAM", 0) != 0;
     draw_scene(moment.world, moment.bodies, moment.sites, options);
   });
+  good &= fine(file, false, [&] {
+    const RunFile run(file);
+    extent_of(run, run.world());
+    trails_of(run, 0.12);
+    contacts_before(run, 0.12);
+  });
+  good &= fine(file, false, [&] { replay_page_text(file, {}, false); });
+  good &= fine(file, false, [&] { write_csv_tables(file, file.parent_path() / "tables"); });
+  good &= fine(file, true, [&] { scene_of_run(file); });
   return good;
 }
 
