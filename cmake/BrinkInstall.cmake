@@ -8,7 +8,7 @@ install(TARGETS ${rooms} EXPORT brinkTargets
 set(pending core/base/error.h core/base/random.h core/query/cast_ray.h core/query/closest_point.h
   core/query/outline_gap.h core/shapes/shapes.h core/shapes/svg_path.h core/world/forces.h
   core/world/make_body.h scheduler/policies/order.h scheduler/policies/policy.h scheduler/simulator/simulator.h
-  scenes/draw/draw.h scenes/run_file/run_scene.h scenes/scene/scene.h)
+  scenes/draw/draw.h scenes/run_file/run_scene.h scenes/scene/scene.h scenes/view/replay_page.h)
 set(headers)
 while(pending)
   list(POP_FRONT pending header)

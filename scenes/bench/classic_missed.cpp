@@ -87,7 +87,7 @@ class MissedChart {
     chart_.series.push_back({series, {}});
     chart_.panels[0].lines.push_back(std::move(line));
   }
-  void write(const std::filesystem::path& file) const { write_png(file, chart_picture(chart_)); }
+  void write(const std::filesystem::path& file) const { write_chart(file, chart_); }
 
  private:
   Chart chart_;

@@ -80,7 +80,7 @@ void write_plot(const std::filesystem::path& file, const std::string& title,
                 const std::vector<Look>& looks) {
   PlotMaker maker(title, problems, looks);
   for (const Row& row : rows) maker.add(row);
-  write_png(file, chart_picture(maker.chart()));
+  write_chart(file, maker.chart());
 }
 
 }  // namespace brink::bench

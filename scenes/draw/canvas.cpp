@@ -199,6 +199,33 @@ void Canvas::line(const Vec2& from, const Vec2& to, const Color& color, double w
   cairo_stroke(impl_->cairo);
 }
 
+void Canvas::path(std::span<const Vec2> points, const Color& color, double width,
+                  std::span<const double> dash) {
+  if (points.empty()) return;
+  cairo_save(impl_->cairo);
+  set_color(impl_->cairo, color);
+  cairo_set_line_width(impl_->cairo, width);
+  if (!dash.empty()) {
+    cairo_set_line_cap(impl_->cairo, CAIRO_LINE_CAP_BUTT);
+    cairo_set_dash(impl_->cairo, dash.data(), static_cast<int>(dash.size()), 0.0);
+  }
+  cairo_new_path(impl_->cairo);
+  impl_->move_to(points.front());
+  for (const Vec2& p : points.subspan(1)) impl_->line_to(p);
+  cairo_stroke(impl_->cairo);
+  cairo_restore(impl_->cairo);
+}
+
+void Canvas::area(std::span<const Vec2> points, const Color& color) {
+  if (points.empty()) return;
+  set_color(impl_->cairo, color);
+  cairo_new_path(impl_->cairo);
+  impl_->move_to(points.front());
+  for (const Vec2& p : points.subspan(1)) impl_->line_to(p);
+  cairo_close_path(impl_->cairo);
+  cairo_fill(impl_->cairo);
+}
+
 void Canvas::dot(const Vec2& at, double pixels, const Color& color) {
   const Vec2 p = impl_->view.to_picture(at);
   set_color(impl_->cairo, color);

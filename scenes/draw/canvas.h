@@ -41,6 +41,10 @@ class Canvas {
   /// An outline with its thickness; of a container, all that lies outside.
   void outline(const Outline& outline, const Pose& pose, const Ink& ink);
   void line(const Vec2& from, const Vec2& to, const Color& color, double width);
+  /// Through all points; `dash`: lengths of strokes and gaps [pixels], empty: none.
+  void path(std::span<const Vec2> points, const Color& color, double width, std::span<const double> dash);
+  /// A filled polygon.
+  void area(std::span<const Vec2> points, const Color& color);
   void dot(const Vec2& at, double pixels, const Color& color);
   void arrow(const Vec2& from, const Vec2& to, const Color& color, double width);
   /// A zigzag between two points.

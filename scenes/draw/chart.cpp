@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "brink/scenes/draw/canvas.h"
 
@@ -23,6 +24,8 @@ constexpr int kMostTicks = 8;
 
 const Color kInk = Tones::ink.rgb(), kPale = Oklch{0.52, 0.015, 260.0}.rgb();
 const Color kGrid = Oklch{0.90, 0.006, 260.0}.rgb(), kPage = Tones::paper.rgb(), kPanel{1.0, 1.0, 1.0};
+
+const std::vector<double> kDashes[] = {{}, {9, 4}, {2, 3}, {9, 3, 2, 3}, {14, 4}};  ///< one a series [pixels]
 
 struct Tick {
   double place;  ///< 0..1
@@ -119,16 +122,25 @@ class Sheet {
 
   Picture picture() const {
     Canvas canvas(view(), width_, height_, kPage);
+    draw(canvas);
+    return canvas.finish();
+  }
+  void write_svg(const std::filesystem::path& file) const {
+    Canvas canvas(view(), width_, height_, kPage, {draw::Paper::Kind::svg, file});
+    draw(canvas);
+    canvas.finish_file();
+  }
+
+ private:
+  void draw(Canvas& canvas) const {
     canvas.text(kMargin, 38, chart_.title, 21, kInk, Align::left, true);
     canvas.text(width_ - kMargin, 38, chart_.note, 13, kPale, Align::right);
     place_legend(&canvas);
     for (int k = 0; k < static_cast<int>(chart_.panels.size()); ++k)
       draw_panel(canvas, kMargin + (k % columns_) * (kPanelWidth + kMargin),
                  top_ + (k / columns_) * (kPanelHeight + kMargin), chart_.panels[k]);
-    return canvas.finish();
   }
 
- private:
   /// A world of pixels.
   draw::View view() const {
     draw::View view;
@@ -142,7 +154,7 @@ class Sheet {
 
   Color color(std::size_t series) const {
     const auto& given = chart_.series[series].color;
-    return (given ? *given : Oklch{0.58, 0.16, 265.0 + 137.5 * static_cast<double>(series)}).rgb();
+    return (given ? *given : series_color(series)).rgb();
   }
 
   /// Writes the legend, or without a canvas only counts its lines.
@@ -156,7 +168,7 @@ class Sheet {
       if (x > kMargin && x + wide > width_ - kMargin) x = kMargin, ++line;
       if (canvas) {
         const double y = kHead + (line + 0.5) * kLegendLine;
-        canvas->dot(at(x + 6, y - 5), 5.0, color(k));
+        draw_spot(*canvas, at(x + 6, y - 5), 5.0, k, color(k));
         canvas->text(x + 18, y, name, 14, kInk, Align::left);
       }
       x += wide;
@@ -171,7 +183,7 @@ class Sheet {
     const Frame frame{x0 + kLeft, x0 + kPanelWidth - kRight, y0 + kTop, y0 + kPanelHeight - kBottom};
     const Scale x(panel.x, all_x(panel)), y(panel.y, all_y(panel));
     draw_grid(canvas, frame, panel, x, y);
-    for (const ChartLine& line : panel.lines) draw_line(canvas, frame, x, y, line);
+    for (const ChartLine& line : panel.lines) draw_line(canvas, frame, x, y, line, !panel.x.names.empty());
   }
 
   void draw_grid(Canvas& canvas, const Frame& f, const ChartPanel& panel, const Scale& x,
@@ -190,34 +202,58 @@ class Sheet {
     canvas.text(f.right, f.top - 18, panel.y.title, 12.5, kPale, Align::right);
   }
 
-  void draw_line(Canvas& canvas, const Frame& frame, const Scale& x, const Scale& y,
-                 const ChartLine& line) const {
+  void draw_line(Canvas& canvas, const Frame& frame, const Scale& x, const Scale& y, const ChartLine& line,
+                 bool categories) const {
     const Color ink = color(line.series);
     const auto spot = [&](const ChartPoint& p, double value) {
       return at(frame.x(x.place(p.x)), frame.y(y.place(value)));
     };
-    for (std::size_t k = 1; line.joined && k < line.points.size(); ++k)
-      canvas.line(spot(line.points[k - 1], line.points[k - 1].y), spot(line.points[k], line.points[k].y), ink,
-                  2.0);
+    std::vector<Vec2> way;  // through what is finite; categories have nothing between them
+    const auto draw_way = [&] {
+      if (way.size() > 1) canvas.path(way, ink, 2.0, kDashes[line.series % std::size(kDashes)]);
+      way.clear();
+    };
+    for (const ChartPoint& p : line.points)
+      if (line.joined && !categories && !std::isnan(p.y))
+        way.push_back(spot(p, p.y));
+      else
+        draw_way();
+    draw_way();
     for (const ChartPoint& p : line.points) {
+      if (std::isnan(p.y)) continue;
       if (p.high > p.low) canvas.line(spot(p, p.low), spot(p, p.high), ink, 1.2);
-      draw_mark(canvas, spot(p, p.y), p.mark, ink);
+      draw_mark(canvas, spot(p, p.y), p.mark, line.series, ink);
     }
   }
 
-  static void draw_mark(Canvas& canvas, const Vec2& p, ChartPoint::Mark mark, const Color& ink) {
+  static void draw_mark(Canvas& canvas, const Vec2& p, ChartPoint::Mark mark, std::size_t series,
+                        const Color& ink) {
     switch (mark) {
       case ChartPoint::Mark::dot:
-        return canvas.dot(p, 5.0, ink);
+        return draw_spot(canvas, p, 5.0, series, ink);
       case ChartPoint::Mark::small_dot:
-        return canvas.dot(p, 3.0, ink);
+        return draw_spot(canvas, p, 3.0, series, ink);
       case ChartPoint::Mark::ring:
-        canvas.dot(p, 5.0, ink);
-        return canvas.dot(p, 3.0, kPanel);
+        draw_spot(canvas, p, 5.0, series, ink);
+        return draw_spot(canvas, p, 2.6, series, kPanel);
       case ChartPoint::Mark::cross:
         canvas.line(p + Vec2(-4, -4), p + Vec2(4, 4), ink, 2.0);
         canvas.line(p + Vec2(-4, 4), p + Vec2(4, -4), ink, 2.0);
     }
+  }
+
+  /// One form a series, told apart without colour: disc, square, triangle, diamond, triangle on its tip, hexagon.
+  static void draw_spot(Canvas& canvas, const Vec2& p, double size, std::size_t series, const Color& ink) {
+    static constexpr int corners[] = {0, 4, 3, 4, 3, 6};
+    static constexpr double turned[] = {0.0, 0.125, 0.25, 0.25, 0.75, 0.0};
+    const std::size_t form = series % std::size(corners);
+    if (corners[form] == 0) return canvas.dot(p, size, ink);
+    std::vector<Vec2> points;
+    for (int k = 0; k < corners[form]; ++k) {
+      const double angle = 2.0 * std::numbers::pi * (turned[form] + static_cast<double>(k) / corners[form]);
+      points.push_back(p + 1.25 * size * Vec2(std::cos(angle), std::sin(angle)));
+    }
+    canvas.area(points, ink);
   }
 
   const Chart& chart_;
@@ -234,6 +270,18 @@ std::string power_text(int exponent) {
   return text;
 }
 
+Oklch series_color(std::size_t series) {
+  // lightness differs where hues look alike to some
+  static constexpr double lightness[] = {0.50, 0.68, 0.38, 0.78, 0.58, 0.46};
+  return {lightness[series % std::size(lightness)], 0.16, 265.0 + 137.5 * static_cast<double>(series)};
+}
+
 Picture chart_picture(const Chart& chart) { return Sheet(chart).picture(); }
+
+void write_chart(const std::filesystem::path& png, const Chart& chart) {
+  const Sheet sheet(chart);
+  write_png(png, sheet.picture());
+  sheet.write_svg(std::filesystem::path(png).replace_extension(".svg"));
+}
 
 }  // namespace brink

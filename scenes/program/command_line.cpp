@@ -158,13 +158,19 @@ void add_export(CLI::App& program, int& status) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = program.add_subcommand("export", "A run's tables for other programs");
   command->add_option("RUN", arguments->run, "Run folder or run file")->required();
-  command->add_option("--csv", arguments->csv, "Write bodies.csv, frames.csv, events.csv, contacts.csv there")
-      ->type_name("DIR")
-      ->required();
+  command
+      ->add_option("--csv", arguments->csv,
+                   "Write bodies.csv, sites.csv, frames.csv, events.csv, contacts.csv there")
+      ->type_name("DIR");
+  command
+      ->add_option("--hdf5", arguments->hdf5,
+                   "Write run.h5 there: bodies, frames, events, contacts, with units")
+      ->type_name("DIR");
   command->footer(
       "Names of columns end with their units.\n"
       "Examples:\n"
-      "  brink export runs/newtons_cradle-1 --csv cradle");
+      "  brink export runs/newtons_cradle-1 --csv cradle\n"
+      "  brink export runs/newtons_cradle-1 --hdf5 cradle");
   command->callback([arguments, &status] { status = export_command(*arguments); });
 }
 

@@ -48,7 +48,7 @@ struct FilmArguments {
 };
 
 struct ExportArguments {
-  std::string run, csv;
+  std::string run, csv, hdf5;
 };
 
 struct ListArguments {

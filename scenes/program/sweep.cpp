@@ -68,7 +68,7 @@ std::vector<fs::path> files_read(const Experiment& experiment) {
 std::size_t report(const Experiment& experiment, SweepStore& store, const fs::path& folder, bool quiet) {
   const SweepResults results = store.results(experiment);
   write_sweep_csv(folder / "sweep.csv", experiment, results);
-  write_png(folder / "sweep.png", sweep_picture(experiment, results));
+  write_chart(folder / "sweep.png", sweep_chart(experiment, results));
   if (quiet) return waiting(results);
   fmt::print("{}\n{}", paint(stdout, Paint::heading, experiment.title), sweep_table(experiment, results));
   if (const std::string agreement = policy_agreement(experiment, results); !agreement.empty())
@@ -85,7 +85,7 @@ int sweep_command(const SweepArguments& arguments) {
   if (arguments.dry) return list_runs(experiment), kDone;
   const fs::path folder =
       arguments.out.empty() ? fs::path("runs") / experiment.path.stem() : fs::path(arguments.out);
-  for (const char* name : {"sweep.csv", "sweep.png"})
+  for (const char* name : {"sweep.csv", "sweep.png", "sweep.svg"})
     refuse_overwriting(folder / name, "--out", files_read(experiment));
   stop_on_signals();
   SweepStore store(folder, experiment);

@@ -74,7 +74,7 @@ std::vector<std::vector<SweepPoint>> sweep_lines(const Experiment& experiment, c
   return lines;
 }
 
-Picture sweep_picture(const Experiment& experiment, const SweepResults& results) {
+Chart sweep_chart(const Experiment& experiment, const SweepResults& results) {
   Chart chart{experiment.title, "median and range", {}, {}};
   const std::size_t series = axis_named(experiment, experiment.plot.series);
   if (series == experiment.axes.size()) {
@@ -84,7 +84,7 @@ Picture sweep_picture(const Experiment& experiment, const SweepResults& results)
   }
   for (const std::string& column : experiment.plot.y)
     chart.panels.push_back(panel_of(experiment, results, column));
-  return chart_picture(chart);
+  return chart;
 }
 
 }  // namespace brink

@@ -1,7 +1,7 @@
 #pragma once
 /// A sweep as a picture: one panel a column, one line a value of the series axis.
 
-#include "brink/scenes/draw/draw.h"
+#include "brink/scenes/draw/chart.h"
 #include "brink/scenes/sweep/table.h"
 
 namespace brink {
@@ -19,6 +19,6 @@ std::vector<std::vector<SweepPoint>> sweep_lines(const Experiment& experiment, c
 
 /// Along x and y: logarithmic where all values are > 0 and span more than a factor of 20; x by name where its
 /// values are not numbers. Of energy_drift the magnitude is drawn.
-Picture sweep_picture(const Experiment& experiment, const SweepResults& results);
+Chart sweep_chart(const Experiment& experiment, const SweepResults& results);
 
 }  // namespace brink

@@ -34,5 +34,13 @@ TEST(RandomWorlds, ThatOnceFailedAreSound) {
   std::cout << tally;
 }
 
+// Two that rest on each other within a rounding of their gap approach at 2e-10 m/s, sink by less than that rounding, and part:
+// whether that is a collision is told by where a search looks. The deepest place of such a dip, found from the motions alone, would
+// say it in one way.
+TEST(RandomWorlds, DISABLED_DipsOfLessThanARoundingAreTheSameInEveryWay) {
+  worlds::Tally tally;
+  EXPECT_TRUE(worlds::examine_seed(40534, {}, tally));
+}
+
 }  // namespace
 }  // namespace brink

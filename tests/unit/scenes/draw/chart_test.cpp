@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 namespace brink {
 namespace {
 
@@ -67,6 +71,54 @@ TEST(Chart, WithoutPointsOrPanelsItIsStillAPicture) {
 TEST(Chart, PowersArePrintedRaised) {
   EXPECT_EQ(power_text(-12), "10\u207b\u00b9\u00b2");
   EXPECT_EQ(power_text(3), "10\u00b3");
+}
+
+// Red-blind and green-blind eyes (Vienot, Brettel & Mollon 1999) tell the first six series apart, too.
+TEST(Chart, SeriesDifferForColourBlindEyes) {
+  const auto linear = [](double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); };
+  const auto seen = [&](std::size_t k, bool deuteranope) {
+    const draw::Color c = series_color(k).rgb();
+    const double r = linear(c.red), g = linear(c.green), b = linear(c.blue);
+    if (!deuteranope) return std::array<double, 3>{r, g, b};
+    const double yellow = 0.29275 * r + 0.70725 * g;
+    return std::array<double, 3>{yellow, yellow, -0.02234 * r + 0.02234 * g + b};
+  };
+  for (const bool deuteranope : {false, true})
+    for (std::size_t a = 0; a < 6; ++a)
+      for (std::size_t b = a + 1; b < 6; ++b) {
+        const auto x = seen(a, deuteranope), y = seen(b, deuteranope);
+        double apart = 0.0;
+        for (int i = 0; i < 3; ++i) apart = std::max(apart, std::abs(std::cbrt(x[i]) - std::cbrt(y[i])));
+        EXPECT_GT(apart, 0.08) << "series " << a << " and " << b << (deuteranope ? " for a deuteranope" : "");
+      }
+}
+
+TEST(Chart, SeriesHaveMarksOfTheirOwn) {
+  std::vector<std::vector<bool>> marks;
+  for (std::size_t k = 0; k < 6; ++k) {
+    Chart chart = chart_of({{1.0, 1.0}});
+    chart.series.assign(k + 1, {"", draw::Oklch{0.628, 0.2577, 29.23}});
+    chart.panels[0].lines[0].series = k;
+    const Picture picture = chart_picture(chart);
+    std::vector<bool>& mark = marks.emplace_back();
+    for (int row = 100; row < picture.height; ++row)
+      for (int column = 0; column < picture.width; ++column) mark.push_back(is_red(picture.at(column, row)));
+    for (std::size_t other = 0; other < k; ++other) EXPECT_NE(mark, marks[other]) << other << " and " << k;
+  }
+}
+
+// What stands side by side by name has nothing between; what is no number is not drawn.
+TEST(Chart, CategoriesAreNotJoinedAndWhatIsNoNumberIsLeftOut) {
+  const auto joined = [](ChartAxis x, double middle) {
+    Chart chart = chart_of({{0.0, 1.0}, {1.0, middle}, {2.0, 1.0}}, std::move(x));
+    chart.panels[0].lines[0].joined = true;
+    return Red(chart_picture(chart)).count;
+  };
+  ChartAxis names_of_three;
+  names_of_three.names = {"a", "b", "c"};
+  const int numbers = joined({}, 1.0), names = joined(names_of_three, 1.0), gap = joined({}, std::nan(""));
+  EXPECT_GT(numbers, 3 * names);
+  EXPECT_LT(gap, names);
 }
 
 }  // namespace

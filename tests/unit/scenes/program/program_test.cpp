@@ -211,6 +211,12 @@ TEST_F(ProgramTest, TablesAreExportedWithUnitsInTheirHeads) {
   EXPECT_THAT(text_of(dir_ / "tables/frames.csv"), HasSubstr("\n0.25,0,0,1.25,0,0,-2,0\n"));
   EXPECT_THAT(text_of(dir_ / "tables/events.csv"), testing::ContainsRegex("0,0.[45][0-9]*,collision,0,,0,"));
   EXPECT_EQ(brink("export ball.toml --csv tables").status, 2);
+  EXPECT_EQ(brink("export a").status, 2);
+  const Outcome hdf5 = brink("export a --hdf5 tables");
+  EXPECT_TRUE(hdf5.status == 0 || hdf5.error.find("libhdf5-dev") != std::string::npos) << hdf5.error;
+  if (hdf5.status == 0) {
+    EXPECT_EQ(text_of(dir_ / "tables/run.h5").substr(1, 3), "HDF");
+  }
   EXPECT_EQ(brink("export nothing.db --csv tables").status, 3);
 }
 

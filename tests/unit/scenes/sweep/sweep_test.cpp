@@ -257,7 +257,7 @@ TEST_F(SweepTest, PlotShowsMedianAndRangeOverSeeds) {
   EXPECT_EQ(lines[0][0].low, 10.0);
   EXPECT_EQ(lines[0][0].middle, 20.0);
   EXPECT_EQ(lines[0][0].high, 30.0);
-  const Picture picture = sweep_picture(e, results);
+  const Picture picture = chart_picture(sweep_chart(e, results));
   EXPECT_GT(picture.width, 0);
 }
 

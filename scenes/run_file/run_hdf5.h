@@ -1,0 +1,19 @@
+#pragma once
+/// A run as an HDF5 file. The one door to HDF5.
+
+#include <filesystem>
+
+namespace brink {
+
+/// Writes `file`:
+///
+///     bodies/    name, mass [kg], inertia [kg m^2]                                       one a body
+///     frames/    t [s]; x, y [m], angle [rad], vx, vy [m/s], omega [rad/s]               frames x bodies
+///     events/    t, kind, body, other, site, x, y, normal_x, normal_y, closing_speed, impulse_normal, impulse_tangential, gap
+///     contacts/  from, to, mode, body, other, site, x, y, normal_x, normal_y, force_normal, force_tangential
+///
+/// Every array has an attribute `unit`; ids that are not there are -1.
+/// @throws BadInput where Brink was built without HDF5; IoError where the run cannot be read or the file not written.
+void write_hdf5(const std::filesystem::path& run_file, const std::filesystem::path& file);
+
+}  // namespace brink
