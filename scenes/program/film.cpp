@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <utility>
 
 #include "brink/core/base/printable.h"
 #include "brink/scenes/draw/draw.h"

@@ -415,11 +415,40 @@ class PairSearch {
       beyond_by = by;
       if (beyond_by > rounding) break;
     }
+    if (beyond_by <=
+        rounding) {  // a dip of less than a rounding: its deepest place says what it is, not who looked where
+      const double deepest = deepest_after(half, f, later, last);
+      if (deepest > low) high = gap(deepest) <= 0.0 ? deepest : low;
+    }
     if (high <= low) return false;  // passes by
     const double t = last_clear_time(gap, low, high);
     // at the end of its neighbourhood a sample changes sides without having come near
     if (gap(t) > touching_band(half, f.sample, path)) return false;
     return remember(half, f, t, 2.0 * moment);
+  }
+
+  /// Where the gap, which falls now, is smallest, if it rises again within eight times what is left until `about`, and not
+  /// after `last`; 0 if it does not. On a grid of 1024 ticks of the clock, which is wider than what roundings of the rate make of
+  /// it, and much narrower than the dip.
+  double deepest_after(const Half& half, const Feature& f, double about, double last) const {
+    PairView there = view_;
+    const auto rises = [&](double t) {
+      there.place(t);
+      return there.look_again(half, f, t).closing_speed <= 0.0;
+    };
+    double falling = t_, rising = about;
+    for (int k = 0; !(rising > falling && rises(std::min(rising, last))); ++k) {
+      if (k == 3 || rising >= last) return 0.0;
+      falling = std::max(falling, rising);
+      rising = t_ + 2.0 * (rising - t_);
+    }
+    rising = std::min(rising, last);
+    const double grid = 1024.0 * ulp(rising);
+    while (rising - falling > 0.25 * grid) {
+      const double middle = falling + 0.5 * (rising - falling);
+      (rises(middle) ? rising : falling) = middle;
+    }
+    return std::clamp(std::round(rising / grid) * grid, t_, last);
   }
 
   /// Two sharp corners of solids that come upon each other, to rounding: what lies beyond is for roundings to

@@ -24,22 +24,15 @@ TEST(RandomWorlds, AreSoundAndTheSameInEveryWay) {
   EXPECT_LT(tally.refused, static_cast<long>(count) / 10);
 }
 
-// Worlds in which something was once missed, or told otherwise in another way of running them.
+// Worlds in which something was once missed, or told otherwise in another way of running them (40534: a dip of less than
+// a rounding below the level of a contact).
 TEST(RandomWorlds, ThatOnceFailedAreSound) {
   worlds::Tally tally;
   for (const std::uint64_t seed :
-       {1022, 1032, 1079, 1278, 1312, 1357, 1447, 1501, 1589, 1711, 1723, 1745, 1791,
-        1889, 1899, 1993, 2320, 2426, 3184, 3738, 3748, 5639, 8225, 9393, 10359})
+       {1022, 1032, 1079, 1278, 1312, 1357, 1447, 1501, 1589, 1711, 1723, 1745,  1791,
+        1889, 1899, 1993, 2320, 2426, 3184, 3738, 3748, 5639, 8225, 9393, 10359, 40534})
     EXPECT_TRUE(worlds::examine_seed(seed, {}, tally)) << "seed " << seed;
   std::cout << tally;
-}
-
-// Two that rest on each other within a rounding of their gap approach at 2e-10 m/s, sink by less than that rounding, and part:
-// whether that is a collision is told by where a search looks. The deepest place of such a dip, found from the motions alone, would
-// say it in one way.
-TEST(RandomWorlds, DISABLED_DipsOfLessThanARoundingAreTheSameInEveryWay) {
-  worlds::Tally tally;
-  EXPECT_TRUE(worlds::examine_seed(40534, {}, tally));
 }
 
 }  // namespace
