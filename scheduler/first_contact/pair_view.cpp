@@ -258,11 +258,13 @@ bool PairView::beyond_doubt() const {
 bool PairView::out_of_reach(const Half& half, int i, double reach) const {
   const Outline& outline = half.sites_of();
   if (outline.container || !(reach < kForever)) return false;
-  const SamplePath now = path(half, i);
-  const double radius = half.sample(i).radius;
-  if (now.distance - outline.bounding_radius - radius > reach) return true;
+  // its place alone: most are far
+  const Frame &s = placed(half.s).frame, &t = placed(half.t).frame;
+  const Vec2 q = t.direction_to_local(s.direction_to_world(half.sample(i).p) + (s.origin - t.origin));
+  const double radius = half.sample(i).radius, far = reach + outline.bounding_radius + radius;
+  if (q.squaredNorm() > far * far) return true;
   return !outline.facets.empty() &&
-         facing_convex(outline, now.q, now.rate).gap - outline.sites[0].radius - radius > reach;
+         facing_convex(outline, q, Vec2::Zero()).gap - outline.sites[0].radius - radius > reach;
 }
 
 bool PairView::hidden_behind_others(const Half& half, const Feature& f, const SamplePath& path) {
