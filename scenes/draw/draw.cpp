@@ -199,14 +199,6 @@ void draw_bodies(Canvas& canvas, const Sheet& sheet) {
   }
 }
 
-void draw_arrows(Canvas& canvas, const Sheet& sheet) {
-  if (!(sheet.options.arrow_seconds > 0.0)) return;
-  for (const BodyState& state : sheet.bodies)
-    canvas.arrow(state.pose.position,
-                 state.pose.position + sheet.options.arrow_seconds * state.twist.velocity, Tones::ink.rgb(),
-                 1.5);
-}
-
 /// The body left out of a pass: its edge dashed, its samples as dots.
 void draw_excluded(Canvas& canvas, const Sheet& sheet) {
   const Outline& outline = *sheet.world.bodies[sheet.excluded].outline;
@@ -268,7 +260,6 @@ void draw_layer(Canvas& canvas, const Sheet& sheet) {
       draw::draw_trails(canvas, sheet);
       draw_springs(canvas, sheet);
       draw_bodies(canvas, sheet);
-      draw_arrows(canvas, sheet);
       draw_particles(canvas, sheet);
       if (sheet.excluded >= 0) draw_excluded(canvas, sheet);
   }

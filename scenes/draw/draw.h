@@ -61,7 +61,7 @@ struct DrawOptions {
   std::optional<double> time;             ///< shown in the caption [s]
   std::vector<DrawnForce> forces;         ///< layer forces
   double arrow_seconds = 0.0;             ///< > 0: velocity arrows, as long as the way made in this time [s]
-  bool velocities = false;                ///< velocity arrows, that of the fastest 60 pixels long
+  bool velocities = false;                ///< the same, that of the fastest body 60 pixels long
   bool names = false;                     ///< of bodies
   bool axes = false;                      ///< coordinates in metres along the picture's rims
   std::vector<std::vector<Vec2>> trails;  ///< places of each body, in order [m]

@@ -14,12 +14,17 @@ constexpr double kNormal = 14.0,
                  kImpulse = 36.0;  // [pixels], of a contact's arrow, and more for the largest impulse
 constexpr double kTextSize = 11.0, kTick = 5.0;  // [pixels]
 
-void draw_velocities(Canvas& canvas, const Sheet& sheet) {
-  if (!sheet.options.velocities) return;
+/// How long the way is that arrows show [s]; 0: none are asked for, or nothing moves.
+double seconds_of_arrows(const Sheet& sheet) {
+  if (!sheet.options.velocities) return sheet.options.arrow_seconds;
   double most = 0.0;
   for (const BodyState& s : sheet.bodies) most = std::max(most, s.twist.velocity.norm());
-  if (!(most > 0.0)) return;
-  const double seconds = kFastest / sheet.view.scale / most;
+  return most > 0.0 ? kFastest / sheet.view.scale / most : 0.0;
+}
+
+void draw_velocities(Canvas& canvas, const Sheet& sheet) {
+  const double seconds = seconds_of_arrows(sheet);
+  if (!(seconds > 0.0)) return;
   for (const BodyState& s : sheet.bodies)
     canvas.arrow(s.pose.position, s.pose.position + seconds * s.twist.velocity,
                  Oklch{0.45, 0.12, 155.0}.rgb(), 1.6);
@@ -77,8 +82,7 @@ void draw_axes(Canvas& canvas, const Sheet& sheet) {
 void draw_trails(Canvas& canvas, const Sheet& sheet) {
   const auto& trails = sheet.options.trails;
   for (std::size_t k = 0; k < std::min(trails.size(), sheet.bodies.size()); ++k)
-    for (std::size_t i = 1; i < trails[k].size(); ++i)
-      canvas.line(trails[k][i - 1], trails[k][i], Palette::line(sheet.palette.body(k)).rgb(), 1.0);
+    canvas.path(trails[k], Palette::line(sheet.palette.body(k)).rgb(), 1.0, {});
 }
 
 void draw_marks(Canvas& canvas, const Sheet& sheet) {

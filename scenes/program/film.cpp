@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -59,6 +60,7 @@ class FfmpegFilm final : public Film {
     const std::string command =
         fmt::format("ffmpeg -loglevel error -y -f rawvideo -pix_fmt bgra -s {}x{} -r {} -i - {} {}",
                     size.width, size.height, fps, coding, shell_word(fs::absolute(out).string()));
+    std::signal(SIGPIPE, SIG_IGN);  // where ffmpeg gives up, writing fails, which is told
     pipe_ = ::popen(command.c_str(), "w");
     if (!pipe_) throw IoError("ffmpeg could not be started");
   }
@@ -134,9 +136,12 @@ int film_command(const FilmArguments& arguments) {
   ProgressBar bar(from, to, on_terminal(stderr));
   for (double k = 0; k < pictures; ++k) {
     const double t = std::min(to, from + k * arguments.speed / arguments.fps);
-    const RunMoment moment{t, world, run.states_at(t).states, site_poses(world, t), run.contacts_at(t)};
+    RunMoment moment{t, world, run.states_at(t).states, site_poses(world, t), {}};
     options.time = t;
-    if (options.layer.kind == DrawLayer::Kind::forces) options.forces = forces_of(moment);
+    if (options.layer.kind == DrawLayer::Kind::forces) {
+      moment.contacts = run.contacts_at(t);
+      options.forces = forces_of(moment);
+    }
     film->add(draw_scene(world, moment.bodies, moment.sites, options));
     bar.show(t, 0);
   }

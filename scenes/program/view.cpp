@@ -30,8 +30,8 @@ void open_in_browser(const std::string& page) {
     fmt::print(stderr, "brink: no browser could be opened; open {} yourself\n", printable(page));
 }
 
-/// Runs the scene while its page follows it; the page is there until Ctrl-C. Returns the run file.
-fs::path run_live(const ViewArguments& arguments, bool stays) {
+/// Runs the scene while its page follows it; the page is there until Ctrl-C.
+RunReport run_live(const ViewArguments& arguments, bool stays) {
   const Scene scene = load_scene(arguments.subject, arguments.overrides);
   RunRequest request;
   request.dir = default_run_folder(scene.path, false);
@@ -53,7 +53,7 @@ fs::path run_live(const ViewArguments& arguments, bool stays) {
   }
   server.run_ended();
   while (stays && !stop_asked()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  return report.file;
+  return report;
 }
 
 }  // namespace
@@ -65,13 +65,23 @@ int view_command(const ViewArguments& arguments) {
   if (!arguments.out.empty())
     refuse_overwriting(arguments.out, "-o", {run.empty() ? fs::path(arguments.subject) : run});
   const bool live = run.empty() && arguments.out.empty();
-  if (run.empty()) run = run_live(arguments, live);
-  if (live) return kDone;
-  const fs::path page = arguments.out.empty() ? run.parent_path() / "replay.html" : fs::path(arguments.out);
-  write_replay_page(run, page);
-  fmt::print("{}\n", printable(page.string()));
-  if (arguments.open) open_in_browser(fs::absolute(page).string());
-  return kDone;
+  RunSummary summary;  // of the run that is made here, if one is
+  if (run.empty()) {
+    const RunReport report = run_live(arguments, live);
+    summary = report.summary;
+    run = report.file;
+  }
+  if (!live) {
+    const fs::path page = arguments.out.empty() ? run.parent_path() / "replay.html" : fs::path(arguments.out);
+    write_replay_page(run, page);
+    fmt::print("{}\n", printable(page.string()));
+    if (arguments.open) open_in_browser(fs::absolute(page).string());
+  }
+  if (summary.termination == Termination::not_run || summary.sound()) return kDone;
+  const bool stopped = summary.termination == Termination::stopped && !summary.why.empty();
+  fmt::print(stderr, "brink: {}{} (t = {} s)\n", summary.termination_text(),
+             stopped ? ": " + printable(summary.why) : "", summary.end_time);
+  return kEndedEarly;
 }
 
 }  // namespace brink

@@ -118,6 +118,7 @@ struct RunFile::Impl {
   fs::path file;
   mutable SQLite::Database db;
   std::int64_t bodies = 0, sites = 0;
+  bool has_states = false;  ///< of bodies at collisions; files of before have none
 
   explicit Impl(const fs::path& f) : file(f), db(open_database(f, SQLite::OPEN_READONLY, kBusyMilliseconds)) {
     for (const char* table : {"meta", "body", "site", "frame", "event", "work", "checkpoint"})
@@ -125,6 +126,7 @@ struct RunFile::Impl {
         throw IoError(fmt::format("{}: not a run file: table {} is missing", f.string(), table));
     bodies = rows_numbered_from_zero("body");
     sites = rows_numbered_from_zero("site");
+    has_states = has_column("event", "other_omega");
   }
 
   /// How many rows a table of things has, whose ids are 0, 1, 2 ...
@@ -174,7 +176,7 @@ struct RunFile::Impl {
   /// How bodies come out of the events of [from, to], in the order of the file.
   template <class F>
   void each_side_between(double from, double to, F&& f) const {
-    if (!has_column("event", "other_omega")) return;  // of before
+    if (!has_states) return;  // of before
     SQLite::Statement get(db, std::string("SELECT t, body, other") + kStateColumns +
                                   " FROM event WHERE t BETWEEN ? AND ? ORDER BY seq");
     get.bind(1, from);
@@ -348,12 +350,11 @@ World RunFile::world() const {
 std::vector<Event> RunFile::events() const {
   return reading(impl_->file, "event", [&] {
     std::vector<Event> all;
-    const bool has_states = impl_->has_column("event", "other_omega");  // files of before have none
     SQLite::Statement get(
         impl_->db,
         "SELECT seq, t, kind, body, other, site, px, py, nx, ny, closing_speed, impulse_n, impulse_t, "
         "gap, outline_site, sample, sample_on_body, t_low" +
-            std::string(has_states ? kStateColumns : "") + " FROM event ORDER BY seq");
+            std::string(impl_->has_states ? kStateColumns : "") + " FROM event ORDER BY seq");
     while (get.executeStep()) {
       const Row row(get);
       Event e;
@@ -373,7 +374,7 @@ std::vector<Event> RunFile::events() const {
                    row.real_or_nan(13)};
       e.impulse_n = row.real_or_nan(11);
       e.impulse_t = row.real_or_nan(12);
-      if (has_states) {
+      if (impl_->has_states) {
         e.body = side_in(row, 18);
         e.other = side_in(row, 27);
       }
@@ -537,13 +538,15 @@ RunFile::Frame RunFile::states_at(double t) const {
     const Frame b = impl_->read_frame(index + 1);
     if (!(b.t > a.t)) throw BadInput("frames are not in the order of time");
     std::vector<Knot> left, right;
+    std::vector<bool> met(a.states.size(), false);  // after t
     for (const BodyState& s : a.states) left.push_back({a.t, s});
     for (const BodyState& s : b.states) right.push_back({b.t, s});
     impl_->each_side_between(a.t, b.t, [&](double when, int body, const EventSide& side) {
       if (when <= t)
         left[body] = {when, side.after};
-      else if (when < right[body].t)
+      else if (!met[body])
         right[body] = {when, {side.after.pose, side.before}};
+      if (when > t) met[body] = true;
     });
     for (std::size_t k = 0; k < a.states.size(); ++k) a.states[k] = between(left[k], right[k], t);
     a.t = t;

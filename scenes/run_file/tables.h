@@ -51,12 +51,14 @@ CREATE VIEW IF NOT EXISTS timeline AS
 
 /// Made when a run ends, dropped when it goes on.
 inline constexpr const char* kRunFileIndices = R"(
+CREATE INDEX IF NOT EXISTS event_in_time ON event (t);
 CREATE INDEX IF NOT EXISTS event_of_body ON event (body);
 CREATE INDEX IF NOT EXISTS event_of_other ON event (other) WHERE other IS NOT NULL;
 )";
 inline constexpr const char* kFrameIndex = "CREATE INDEX IF NOT EXISTS frame_of_body ON frame (body)";
 inline constexpr const char* kDropIndices =
-    "DROP INDEX IF EXISTS event_of_body; DROP INDEX IF EXISTS event_of_other; DROP INDEX IF EXISTS "
+    "DROP INDEX IF EXISTS event_in_time; DROP INDEX IF EXISTS event_of_body; DROP INDEX IF EXISTS "
+    "event_of_other; DROP INDEX IF EXISTS "
     "frame_of_body";
 
 }  // namespace brink

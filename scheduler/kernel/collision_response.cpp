@@ -223,6 +223,14 @@ ForeseenLimit CollisionResponse::foresee(const PairKey& pair, const FeatureConta
   return {run_->time() + (late + 2.0 * e * v / (pull * (1.0 - e))), rounding};
 }
 
+/// The outcome with what its bodies came to. @pre both have been restarted by it.
+Outcome CollisionResponse::with_sides(Outcome outcome) const {
+  const PairKey& pair = outcome.pair;
+  outcome.body = trajectories_->last_restart(pair.body);
+  if (!pair.with_site()) outcome.other = trajectories_->last_restart(pair.other_body);
+  return outcome;
+}
+
 std::optional<Outcome> CollisionResponse::part(const PairKey& pair, const FeatureContact& found,
                                                const DiscRebound& discs, std::vector<int>& changed) {
   const auto start = [&](int k, int partner, const DiscRebound::Start& after) {
@@ -234,7 +242,7 @@ std::optional<Outcome> CollisionResponse::part(const PairKey& pair, const Featur
   double rest = start(pair.body, search_->other_owner(pair), discs.a);
   if (!pair.with_site()) rest = std::min(rest, start(pair.other_body, pair.body, discs.b));
   if (!watch_->discs_resolved(pair, discs.gap)) return std::nullopt;
-  return Outcome{pair, found, discs.impulse, 0.0, discs.delay, rest, foresee(pair, found, discs.delay)};
+  return with_sides({pair, found, discs.impulse, 0.0, discs.delay, rest, foresee(pair, found, discs.delay)});
 }
 
 std::optional<Outcome> CollisionResponse::collide(const PairKey& pair, const FeatureContact& found,
@@ -254,8 +262,8 @@ std::optional<Outcome> CollisionResponse::collide(const PairKey& pair, const Fea
   if (!pair.with_site()) rest = std::min(rest, note_resolve(pair.other_body, pair.body, r.magnitude));
   deflect(pair, r, changed);
   if (!watch_->resolved(pair, found, r.delay)) return std::nullopt;
-  return Outcome{
-      pair, found, r.impulse.normal, r.impulse.tangential, r.delay, rest, foresee(pair, found, r.delay)};
+  return with_sides(
+      {pair, found, r.impulse.normal, r.impulse.tangential, r.delay, rest, foresee(pair, found, r.delay)});
 }
 
 }  // namespace brink

@@ -51,6 +51,7 @@ class CollisionResponse {
   std::optional<DiscRebound> wall_rebound(const PairKey& pair, const FeatureContact& found);
   std::optional<Outcome> part(const PairKey& pair, const FeatureContact& found, const DiscRebound& discs,
                               std::vector<int>& changed);
+  Outcome with_sides(Outcome outcome) const;
   void deflect(const PairKey& pair, const Change& change, std::vector<int>& changed);
   ForeseenLimit foresee(const PairKey& pair, const FeatureContact& found, Real delay);
 

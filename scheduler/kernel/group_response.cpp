@@ -289,6 +289,13 @@ class GroupResponse::Group {
     });
   }
 
+  /// Of one whom nothing pushed, as it was.
+  EventSide side(int body) const {
+    EventSide side = parts_.trajectories_.last_restart(body);
+    if (!touched_[index_of(body)]) side.before = side.after.twist;
+    return side;
+  }
+
   GroupOutcome outcome() const {
     GroupOutcome told;
     told.endless = result_.status == GroupResult::Status::endless;
@@ -304,7 +311,9 @@ class GroupResponse::Group {
                                  static_cast<double>(result_.tangential[k]),
                                  delay_,
                                  rest,
-                                 {}});
+                                 {},
+                                 side(pair.body),
+                                 pair.with_site() ? EventSide{} : side(pair.other_body)});
     }
     return told;
   }

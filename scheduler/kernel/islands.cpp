@@ -111,7 +111,7 @@ void Islands::note_impact(const HeldContact& c, const RealVec& from, double clos
   ++(c.pair.with_site() ? work.collisions_body_site : work.collisions_body_body);
   FeatureContact f = as_told(c, from);
   f.closing_speed = closing;
-  records_->event(EventKind::collision, c.pair, f, normal, tangential, 0, false);
+  records_->event(EventKind::collision, c.pair, f, normal, tangential, 0);
 }
 
 FeatureContact Islands::as_told(const HeldContact& c, const RealVec& from) const {

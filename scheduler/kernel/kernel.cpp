@@ -146,7 +146,7 @@ bool Kernel::resolve_group(const PairKey& pair, const FeatureContact& found, std
   const auto group = parts_.groups.resolve(pair, found, law, changed);
   if (!group) return false;
   if (group->endless) {
-    parts_.records.event(EventKind::group, pair, found, 0.0, 0.0, group->delay, false);
+    parts_.records.event(EventKind::group, pair, found, 0.0, 0.0, group->delay);
     if (group->lost > 0.0 && parts_.taken.count++ == 0) {
       parts_.taken.first = pair;
       parts_.taken.time = time();
@@ -156,7 +156,8 @@ bool Kernel::resolve_group(const PairKey& pair, const FeatureContact& found, std
   for (const Outcome& o : group->collisions) {
     parts_.watch.note_overlap(o.contact.gap);
     count(o.pair);
-    parts_.records.event(EventKind::collision, o.pair, o.contact, o.impulse_n, o.impulse_t, o.delay, true);
+    parts_.records.event(EventKind::collision, o.pair, o.contact, o.impulse_n, o.impulse_t, o.delay, o.body,
+                         o.other);
   }
   bool goes_on = true;  // where the run stops for now, all of them have happened
   for (const Outcome& o : group->collisions) {
@@ -182,7 +183,8 @@ bool Kernel::regroup(std::vector<std::vector<int>> together, std::vector<int>& c
 bool Kernel::tell(const Outcome& o, std::vector<int>& changed) {
   parts_.watch.note_overlap(o.contact.gap);
   count(o.pair);
-  parts_.records.event(EventKind::collision, o.pair, o.contact, o.impulse_n, o.impulse_t, o.delay, true);
+  parts_.records.event(EventKind::collision, o.pair, o.contact, o.impulse_n, o.impulse_t, o.delay, o.body,
+                       o.other);
   return judge(o, changed);
 }
 

@@ -36,7 +36,7 @@ void Records::frame(double t) {
 }
 
 void Records::event(EventKind kind, const PairKey& pair, const FeatureContact& contact, double impulse_n,
-                    double impulse_t, Real delay, bool resolved) {
+                    double impulse_t, Real delay, const EventSide& body, const EventSide& other) {
   Event event;
   event.seq = seq_++;
   last_event_ = std::max(last_event_, run_->time());
@@ -47,15 +47,9 @@ void Records::event(EventKind kind, const PairKey& pair, const FeatureContact& c
   event.contact.time_low = static_cast<double>(run_->time() - last_event_ + delay);
   event.impulse_n = impulse_n;
   event.impulse_t = impulse_t;
-  if (resolved) {
-    event.body = side(pair.body);
-    if (!pair.with_site()) event.other = side(pair.other_body);
-  }
+  event.body = body;
+  event.other = other;
   recorder_->event(event);
-}
-
-EventSide Records::side(int k) const {
-  return {true, trajectories_->state_now(k).rounded(), trajectories_->twist_before(k)};
 }
 
 void Records::ending(EventKind kind, const PairKey& pair, const FeatureContact& contact, double time) {

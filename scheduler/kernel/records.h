@@ -27,10 +27,10 @@ class Records {
   double last_frame() const { return last_frame_; }
 
   // -- events --
-  /// A collision, or the group that it is of, `delay` [s] after the present time. `resolved`: its bodies have
-  /// begun their motions anew.
+  /// A collision, or the group that it is of, `delay` [s] after the present time. `body`, `other`: what they came
+  /// to, where they have begun their motions anew.
   void event(EventKind kind, const PairKey& pair, const FeatureContact& contact, double impulse_n,
-             double impulse_t, Real delay, bool resolved);
+             double impulse_t, Real delay, const EventSide& body = {}, const EventSide& other = {});
   /// What comes to an end at a time of its own.
   void ending(EventKind kind, const PairKey& pair, const FeatureContact& contact, double time);
   /// The time of the last event, to which the next one is told not to be before [s].
@@ -56,7 +56,6 @@ class Records {
   }
 
  private:
-  EventSide side(int body) const;
   bool records_events() const { return recorder_ && run_->options().record_events; }
 
   const Trajectories* trajectories_;

@@ -20,6 +20,7 @@ struct Outcome {
   Real delay = 0;                           ///< from the clock to the moment of contact [s]
   double rest = 0.0;                        ///< since one of the two was last resolved [s]
   ForeseenLimit limit;                      ///< of a series of bounces that this is one of
+  EventSide body = {}, other = {};          ///< if somebody is to be told
 };
 
 /// One collision ahead of time: what it will tell when it is certain, and what it changed.

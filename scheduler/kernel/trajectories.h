@@ -19,6 +19,7 @@
 #include "brink/scheduler/kernel/body_track.h"
 #include "brink/scheduler/kernel/run_control.h"
 #include "brink/scheduler/kernel/site_motion.h"
+#include "brink/scheduler/run/event.h"
 #include "brink/scheduler/run/options.h"
 
 namespace brink {
@@ -95,10 +96,11 @@ class Trajectories {
   /// Bodies of one component, or one free body. Bodies whose motion changed are appended to `changed`.
   void restart(std::span<const Restart> touched, std::vector<int>& changed);
   /// From now on the twist with which a body comes into its last restart is kept, or not.
-  void keep_twists_before(bool keep) { before_.assign(keep ? bodies_.size() : 0, {-1.0, {}}); }
-  /// The twist with which a body comes to the present time, whatever has been resolved now. @pre kept
-  Twist twist_before(int k) const {
-    return before_[k].first == run_->time() ? before_[k].second : state_now(k).twist.rounded();
+  void keep_twists_before(bool keep) { before_.assign(keep ? bodies_.size() : 0, {}); }
+  /// How a body comes out of its restart of this moment; not known where twists are not kept.
+  EventSide last_restart(int k) const {
+    if (before_.empty()) return {};
+    return {true, state_now(k).rounded(), before_[k]};
   }
   /// A free body.
   void restart_free(int k, const BodyState& start, const BodyState& low);
@@ -181,8 +183,7 @@ class Trajectories {
   void start(Coupled& c, ComponentStart from);
   void put_to_sleep(Coupled& c);
   void note_twist_before(int k) {
-    if (!before_.empty() && before_[k].first != run_->time())
-      before_[k] = {run_->time(), state_now(k).twist.rounded()};
+    if (!before_.empty()) before_[k] = state_now(k).twist.rounded();
   }
   void hold_again(std::span<const int> members, const Saved& saved);
   void fetch(const Coupled& c);
@@ -203,8 +204,7 @@ class Trajectories {
   std::map<int, Former> held_;
   std::vector<SiteMotion> sites_;
   std::vector<Failure> site_failures_;
-  std::vector<std::pair<double, Twist>>
-      before_;  ///< the first restart of an instant: its time; empty: not kept
+  std::vector<Twist> before_;  ///< each body's last restart; empty: not kept
   double reach_ = std::numeric_limits<double>::infinity();
   std::uint64_t forgotten_ = 0;  ///< pieces made when forget_before() was last called
 };

@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 
@@ -97,6 +99,73 @@ TEST_F(Replays, OfRandomWorldsAreWhatHappened) {
   if (count >= 40) {
     EXPECT_GT(compared, static_cast<int>(count) / 10);
   }
+}
+
+/// Of single collisions of two free bodies: what each gained is the impulse, and the place is where the other stands off.
+void check_momentum(const std::vector<Event>& events, const World& world) {
+  for (std::size_t k = 0; k < events.size(); ++k) {
+    const Event& e = events[k];
+    if (e.kind != EventKind::collision || !e.body.known) continue;
+    const auto at_this_time = [&](const Event& o) {
+      return std::abs(o.contact.time - e.contact.time) <= 1e-12 * (1.0 + e.contact.time);
+    };
+    const bool alone =
+        (k == 0 || !at_this_time(events[k - 1])) && (k + 1 == events.size() || !at_this_time(events[k + 1]));
+    const Body& body = world.bodies[e.contact.body];
+    if (!alone || body.lock_x || body.lock_y) continue;
+    const Vec2 impulse = e.impulse_n * e.contact.normal + e.impulse_t * perp(e.contact.normal);
+    const Vec2 gained = body.mass * (e.body.after.twist.velocity - e.body.before.velocity);
+    const double scale =
+        body.mass * (e.body.after.twist.velocity.norm() + e.body.before.velocity.norm()) + impulse.norm();
+    EXPECT_LT((gained - impulse).norm(), 1e-9 * scale + 1e-300) << "event " << k << " at " << e.contact.time;
+  }
+}
+
+bool same(const EventSide& a, const EventSide& b) {
+  const auto numbers = [](const EventSide& s) {
+    const Pose& p = s.after.pose;
+    const Twist &v = s.after.twist, &w = s.before;
+    return std::array<double, 9>{p.position.x(), p.position.y(), p.angle,
+                                 v.velocity.x(), v.velocity.y(), v.omega,
+                                 w.velocity.x(), w.velocity.y(), w.omega};
+  };
+  return a.known == b.known && (!a.known || numbers(a) == numbers(b));
+}
+
+// States at collisions are a part of what every exact policy and every resume gives with the same bits, contacts that last
+// included.
+TEST_F(Replays, StatesAtCollisionsAreTheSameInEveryWay) {
+  const std::uint64_t first = from_environment("BRINK_SEED", 1), count = from_environment("BRINK_WORLDS", 25);
+  int sides = 0;
+  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+    SCOPED_TRACE(seed);
+    std::vector<Event> told;
+    for (const char* policy : {"body_clocks", "global_backup", "island_backup", "timewarp"}) {
+      SCOPED_TRACE(policy);
+      Scene scene;
+      try {
+        scene = parse_scene(worlds::random_world(seed), "random.toml");
+        scene.solver.policy = policy;
+        scene.solver.max_collisions = 300;
+        scene.solver.persistent = seed % 2 == 0;
+        scene.duration = std::min(scene.duration, 1.0);
+        run(scene, 0.37 * scene.duration);
+      } catch (const BadInput&) {
+        break;  // refused
+      }
+      const std::vector<Event> events = RunFile(folder_ / "run.db").events();
+      check_momentum(events, scene.world);
+      if (told.empty()) told = events;
+      ASSERT_EQ(events.size(), told.size());
+      for (std::size_t k = 0; k < events.size(); ++k) {
+        EXPECT_TRUE(same(events[k].body, told[k].body) && same(events[k].other, told[k].other))
+            << "event " << k;
+        sides += events[k].body.known + events[k].other.known;
+      }
+    }
+  }
+  std::cout << "seeds " << first << " .. " << first + count - 1 << ": " << sides << " sides\n";
+  EXPECT_GT(sides, 0);
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ class Motions {
       tl = this.eventTimes[e];
     }
     const g = e >= from ? e + 1 : from;
-    if (g < to && this.eventTimes[g] < tr) {
+    if (g < to && this.eventTimes[g] <= tr) {
       right = Array.from(rows.subarray(9 * g, 9 * g + 6));
       tr = this.eventTimes[g];
     }

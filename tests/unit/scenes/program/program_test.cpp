@@ -202,6 +202,9 @@ TEST_F(ProgramTest, AFilmIsWrittenOrItsPictures) {
         "film a -o f.mp4 --from 0.5 --to 0.25", "film a -o a/run.db"}) {
     EXPECT_EQ(brink(bad).status, 2) << bad;
   }
+  const Outcome nowhere = brink("film a -o nowhere/f.mp4 --size 1280x720");
+  EXPECT_EQ(nowhere.status, 3) << "ffmpeg, or the pictures in its place, cannot be written";
+  EXPECT_THAT(nowhere.error, HasSubstr("nowhere/f"));
 }
 
 TEST_F(ProgramTest, TablesAreExportedWithUnitsInTheirHeads) {
@@ -229,6 +232,15 @@ TEST_F(ProgramTest, ViewsOfARunFileAnswerWithUnits) {
   EXPECT_EQ(db.execAndGet("SELECT with_what FROM contacts_of WHERE body = 'ball'").getString(), "floor");
   EXPECT_EQ(db.execAndGet("SELECT count(*) FROM body_path").getInt(), 4);
   EXPECT_EQ(db.execAndGet("SELECT events_in_a_tenth_of_a_second FROM timeline").getInt(), 1);
+}
+
+// The page of a run that ends early is written, and the status says how the run ended.
+TEST_F(ProgramTest, AViewOfASceneThatEndsEarlyIsStatusOne) {
+  const Outcome view = brink("view ball.toml -o page.html --set solver.max_collisions=1");
+  EXPECT_EQ(view.status, 1) << view.error;
+  EXPECT_THAT(view.error, HasSubstr("max_collisions"));
+  EXPECT_TRUE(fs::exists(dir_ / "page.html"));
+  EXPECT_EQ(brink("view ball.toml -o page2.html").status, 0);
 }
 
 // The scene file may be gone.

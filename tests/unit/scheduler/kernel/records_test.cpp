@@ -31,9 +31,9 @@ TEST(Records, EventsAreNeverToldBeforeTheLast) {
   parts.records.begin(&told);
   const FeatureContact contact = meeting(parts).contact;
   parts.run.set_time(1.0);
-  parts.records.event(EventKind::collision, kDiscs, contact, 1.0, 0.0, Real(0), false);
+  parts.records.event(EventKind::collision, kDiscs, contact, 1.0, 0.0, Real(0));
   parts.run.set_time(std::nextafter(1.0, 0.0));
-  parts.records.event(EventKind::collision, kDiscs, contact, 2.0, 0.0, Real(0), false);
+  parts.records.event(EventKind::collision, kDiscs, contact, 2.0, 0.0, Real(0));
   ASSERT_EQ(told.events.size(), 2U);
   EXPECT_EQ(told.events[1].seq, 1U);
   EXPECT_EQ(told.events[1].contact.time, 1.0);
@@ -47,7 +47,7 @@ TEST(Records, EventsThatNobodyWantsAreCountedAllTheSame) {
   parts.run.begin(options);
   Events told;
   parts.records.begin(&told);
-  parts.records.event(EventKind::collision, kDiscs, {}, 1.0, 0.0, Real(0), false);
+  parts.records.event(EventKind::collision, kDiscs, {}, 1.0, 0.0, Real(0));
   EXPECT_TRUE(told.events.empty());
   EXPECT_EQ(parts.records.saved().seq, 1U);
 }
