@@ -150,9 +150,8 @@ Motion Motion::chain(std::shared_ptr<const std::vector<Motion>> pieces) {
   return m;
 }
 
-double Motion::begin() const {
-  if (kind_ == Kind::dense) return other_->track->begin();
-  return kind_ == Kind::chain ? other_->chain->front().t0_ : t0_;
+double Motion::begin_of_pieces() const {
+  return kind_ == Kind::dense ? other_->track->begin() : other_->chain->front().t0_;
 }
 double Motion::end() const {
   if (kind_ == Kind::dense) return other_->track->end();

@@ -95,7 +95,7 @@ class Motion {
   /// What the rounding of its start left over: only extended_state() sees it.
   void keep_low(const Pose& low) { low_.pose = low; }
 
-  double begin() const;
+  double begin() const { return kind_ <= Kind::drag ? t0_ : begin_of_pieces(); }
   double end() const;
   /// False for a time of dense output whose pieces are gone (Track::forget_before).
   bool remembers(double t) const;
@@ -104,6 +104,12 @@ class Motion {
   /// and Horner (dense).
   BodyState state(double t) const;
   Pose pose(double t) const { return state(t).pose; }
+  /// state(t)'s position, to the bit; quicker of a parabola.
+  Vec2 place(double t) const {
+    if (!is_ballistic()) return state(t).pose.position;
+    const double s = t - t0_;
+    return start_.pose.position + s * (start_.twist.velocity + 0.5 * s * drive_.linear);
+  }
   Twist twist(double t) const { return state(t).twist; }
 
   /// The exact derivative of twist(t); where pieces of dense output meet, that of the later one.
@@ -133,6 +139,7 @@ class Motion {
 
  private:
   enum class Kind : unsigned char { ballistic, drag, dense, chain };
+  double begin_of_pieces() const;
   const Motion& link(double t) const;  ///< of a chain: the last that begins at or before t
 
   Kind kind_ = Kind::ballistic;

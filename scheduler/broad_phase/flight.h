@@ -61,10 +61,11 @@ inline MeetingTimes meeting(const Course& a, const Flight& b, const Vec2& shift,
   const double dy = a.place.y() - shift.y() - (b.y + s * (b.vy + 0.5 * gy));
   const double wx = a.velocity.x() - (b.vx + gx), wy = a.velocity.y() - (b.vy + gy);
   const double approach = dx * wx + dy * wy;  // half the rate of the squared distance
+  if (approach >= 0.0 && a.disc && b.disc) return {};
   const double reach = a.radius + b.radius * (1.0 + kFlightMargin) +
                        kFlightRounding * (b.magnitude(s) + std::abs(s) * (std::abs(gx) + std::abs(gy)));
   const double distance2 = dx * dx + dy * dy, beyond = distance2 - reach * reach;
-  if (approach >= 0.0 && (beyond > 0.0 || (a.disc && b.disc))) return {};
+  if (approach >= 0.0 && beyond > 0.0) return {};
   const double speed2 = wx * wx + wy * wy, offset = dx * wy - dy * wx;
   const double square = speed2 * reach * reach - offset * offset;  // free of cancellation
   if (square < 0.0) return {};

@@ -1,7 +1,7 @@
 #include "brink/scheduler/first_contact/closed_forms.h"
 
 #include <algorithm>
-#include <array>
+#include <boost/container/static_vector.hpp>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -30,7 +30,7 @@ bool only_segments(const Outline& o) {
          });
 }
 
-/// A ballistic motion's places, with Motion::state's own bits, at hand in a loop.
+/// A ballistic motion's places and velocities, with Motion::state's own bits, at hand in a loop.
 struct Parabola {
   double origin;
   Vec2 place, velocity, acceleration;
@@ -44,6 +44,7 @@ struct Parabola {
     const double s = t - origin;
     return place + s * (velocity + 0.5 * s * acceleration);
   }
+  Vec2 velocity_at(double t) const { return velocity + (t - origin) * acceleration; }
 };
 
 /// The pair on its common clock s = t - reference.
@@ -93,18 +94,26 @@ bool too_fast(const Vec2& velocity, double t, double radius) {
   return !(velocity.norm() * same_instant(t) <= kSlowOfSize * radius);
 }
 
-/// True if places at time t are told well enough in doubles for what is computed here.
-bool near_enough(const Mover& a, const Mover& b, double t, const Vec2& place_a, const Vec2& place_b,
-                 const SearchLimits& limits) {
-  return place_rounding(*a.motion, t, place_a) + place_rounding(*b.motion, t, place_b) <=
-         kFarOfTolerance * limits.tolerance;
+/// Rounding of one place against the other [m], of two parabolas at one time.
+class PlaceNoise {
+ public:
+  PlaceNoise(const Mover& a, const Mover& b) : a_(*a.motion, false), b_(*b.motion, false) {}
+  double operator()(double t, const Vec2& place_a, const Vec2& place_b) const {
+    return a_.place(t, place_a) + b_.place(t, place_b);
+  }
+
+ private:
+  MotionRounding a_, b_;
+};
+
+/// True if places with that rounding are told well enough in doubles for what is computed here.
+bool near_enough(double place_noise, const SearchLimits& limits) {
+  return place_noise <= kFarOfTolerance * limits.tolerance;
 }
 
 /// Rounding of a gap [m] between a disc and a site, one seen at q from the other: PairView::gap_rounding().
-double gap_noise(const Mover& a, const Mover& b, double t, const Vec2& place_a, const Vec2& place_b,
-                 const Vec2& q, const Vec2& site) {
-  return place_rounding(*a.motion, t, place_a) + place_rounding(*b.motion, t, place_b) +
-         kRoundoff * (6.0 * q.lpNorm<1>() + 2.0 * site.lpNorm<1>());
+double gap_noise(double place_noise, const Vec2& q, const Vec2& site) {
+  return place_noise + kRoundoff * (6.0 * q.lpNorm<1>() + 2.0 * site.lpNorm<1>());
 }
 
 /// The general search's time near the root t, so that it does not matter which of the two a window was given
@@ -115,7 +124,7 @@ template <class Gap>
 std::optional<double> canonical_root(Gap&& gap, double t, double begin, double rounding, double speed) {
   if (t <= begin) return t;
   const double moment = rounding / speed + 4.0 * ulp(t);
-  for (const double reach : {8.0 * moment, 64.0 * moment})
+  for (const double reach : {2.0 * moment, 8.0 * moment, 64.0 * moment})
     if (t - reach > begin && gap(t - reach) > rounding && gap(t + reach) <= 0.0)
       return last_clear_time(gap, t - reach, t + reach);
   if (gap(begin) > rounding && gap(t + 8.0 * moment) <= 0.0)
@@ -124,18 +133,20 @@ std::optional<double> canonical_root(Gap&& gap, double t, double begin, double r
 }
 
 /// Two centred discs as the general search sees them at time t: the same operations in the same order.
-FeatureContact disc_contact(const Mover& a, const Mover& b, double t) {
-  const BodyState sa = a.motion->state(t), sb = b.motion->state(t);
+FeatureContact disc_contact(const Mover& a, const Parabola& path_a, const Mover& b, const Parabola& path_b,
+                            double t) {
   const double radius_a = a.outline().sites[0].radius, radius_b = b.outline().sites[0].radius;
-  const Vec2 offset = sa.pose.position - sb.pose.position;
+  const Vec2 at_b = path_b.at(t), offset = path_a.at(t) - at_b;
+  const double spin_b =
+      b.motion->start().twist.omega + (t - path_b.origin) * b.motion->acceleration().angular;
   const double distance = offset.norm();
   FeatureContact c;
   c.time = t;
   c.sample = c.site = 0;
   c.gap = distance - radius_b - radius_a;
   c.normal = offset * (1.0 / distance);
-  c.point = sb.pose.position + (offset - c.normal * (c.gap + radius_a));
-  c.closing_speed = -c.normal.dot(sa.twist.velocity - sb.twist.at(offset));
+  c.point = at_b + (offset - c.normal * (c.gap + radius_a));
+  c.closing_speed = -c.normal.dot(path_a.velocity_at(t) - Twist{path_b.velocity_at(t), spin_b}.at(offset));
   return c;
 }
 
@@ -167,7 +178,8 @@ bool discs(const Mover& a, const Mover& b, double from, double to, const SearchL
   const double nearest = t <= to                    ? t
                          : rel.velocity.isZero(0.0) ? from
                                                     : std::clamp(rel.reference - way / speed2, from, to);
-  if (!near_enough(a, b, nearest, path_a.at(nearest), path_b.at(nearest), limits)) return false;
+  const double place_noise = PlaceNoise(a, b)(nearest, path_a.at(nearest), path_b.at(nearest));
+  if (!near_enough(place_noise, limits)) return false;
   if (!(t <= to)) return true;
   if (too_fast(rel.velocity, t, smallest_radius(a.outline(), b.outline()))) return false;
   const Vec2 then = rel.offset + s * rel.velocity;
@@ -175,11 +187,11 @@ bool discs(const Mover& a, const Mover& b, double from, double to, const SearchL
   if (doubtful(closing, rel.noise)) return false;
   if (closing < 0.0) return true;
   const auto gap = [=](double time) { return (path_a.at(time) - path_b.at(time)).norm() - reach - level; };
-  const double rounding = gap_noise(a, b, t, path_a.at(t), path_b.at(t), then, Vec2::Zero());
+  const double rounding = gap_noise(place_noise, then, Vec2::Zero());  // t is the nearest
   const auto root = canonical_root(gap, t, std::max(rel.reference, 0.0), rounding, closing);
   if (!root) return false;
   t = *root;
-  answer = {PairAnswer::Status::contact, t, disc_contact(a, b, t)};
+  answer = {PairAnswer::Status::contact, t, disc_contact(a, path_a, b, path_b, t)};
   answer.contact.level = answer.contact.sink = level;
   return true;
 }
@@ -228,13 +240,16 @@ struct SegmentGap {
 };
 
 /// The gap of the disc to a segment.
-void measure(const DiscPath& disc, SegmentGap& m) {
-  const Site& site = *m.site;
+SegmentGap measured(const DiscPath& disc, const Site& site, int index) {
   const Vec2 d = site.b - site.a;
-  m.normal = -perp(d / d.norm());  // right of travel: out of a solid
-  if (!site.solid && m.normal.dot(disc.at(disc.s_from) - site.a) < 0.0) m.normal = -m.normal;
-  m.gap = {m.normal.dot(disc.q - site.a) - disc.radius - site.radius, m.normal.dot(disc.velocity),
-           m.normal.dot(disc.acceleration)};
+  Vec2 normal = -perp(d / d.norm());  // right of travel: out of a solid
+  if (!site.solid && normal.dot(disc.at(disc.s_from) - site.a) < 0.0) normal = -normal;
+  return {&site,
+          index,
+          normal,
+          {normal.dot(disc.q - site.a) - disc.radius - site.radius, normal.dot(disc.velocity),
+           normal.dot(disc.acceleration)},
+          kForever};
 }
 
 /// True if the quadratic stays below -`by`, or above length + `by`, on [s0, s1].
@@ -291,25 +306,20 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
                       from - rel.reference,
                       to - rel.reference + 4.0 * ulp(to),
                       rel.noise};
-  std::array<SegmentGap, kMostSites> gaps;
-  int count = 0;
+  boost::container::static_vector<SegmentGap, kMostSites> gaps;
   double earliest = kForever;
   Vec2 normal = Vec2::Zero();
   bool clear = true;
   for (const Site& site : other.outline().sites) {
     if (radius + site.radius == 0.0) return false;  // a point on a wire: the search knows its level
-    SegmentGap& m = gaps[static_cast<std::size_t>(count)];
-    m.site = &site;
-    m.index = count++;
-    measure(path, m);
+    const SegmentGap& m = gaps.emplace_back(measured(path, site, static_cast<int>(gaps.size())));
     clear = clear && starts_clear(std::abs(m.gap.value), m.gap.rate, std::abs(m.gap.second), rel.noise,
                                   limits.tolerance);
   }
   const double level = clear       ? 0.0
                        : disc_is_a ? sink_at_start(disc, other, limits, scratch)
                                    : sink_at_start(other, disc, limits, scratch);
-  for (int k = 0; k < count; ++k) {
-    SegmentGap& m = gaps[static_cast<std::size_t>(k)];
+  for (SegmentGap& m : gaps) {
     if (!meet(path, limits, level, m)) return false;
     if (m.s < earliest) {
       earliest = m.s;
@@ -319,22 +329,25 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
   answer = {PairAnswer::Status::clear, to, {}};
   const Parabola parabola(*disc.motion), parabola_of_other(*other.motion);
   double t = std::max(rel.reference + earliest, from);
-  for (const double time : {from, std::min(t, to)})
-    if (!near_enough(disc, other, time, parabola.at(time), parabola_of_other.at(time), limits)) return false;
+  const PlaceNoise noise(disc, other);
+  double place_noise = 0.0;
+  for (const double time : {from, std::min(t, to)}) {
+    place_noise = noise(time, parabola.at(time), parabola_of_other.at(time));
+    if (!near_enough(place_noise, limits)) return false;
+  }
   if (!(t <= to)) return true;
   const double speed =
       std::max(-normal.dot(path.velocity + (t - rel.reference) * path.acceleration), rel.noise);
   const Vec2 at_disc = parabola.at(t), at_other = parabola_of_other.at(t);
   const Vec2 far_off = Vec2::Constant(other.outline().bounding_radius);
-  const double rounding = gap_noise(disc, other, t, at_disc, at_other, at_disc - at_other, far_off);
+  const double rounding = gap_noise(place_noise, at_disc - at_other, far_off);
   const double moment = rounding / speed + 4.0 * ulp(t);
   // segments that are met at the same time to rounding (a notch) count together, as in the general search
   const auto nearest_at = [&](double time) {
     const Vec2 q = frame.direction_to_local(parabola.at(time) - parabola_of_other.at(time));
     double least = kForever;
     std::pair<double, const SegmentGap*> nearest{kForever, nullptr};
-    for (int k = 0; k < count; ++k) {
-      const SegmentGap& m = gaps[static_cast<std::size_t>(k)];
+    for (const SegmentGap& m : gaps) {
       if (!(m.s <= earliest + 64.0 * moment)) continue;
       const SegmentGap::Seen seen = m.seen(q, radius, limits.touch);
       if (!(seen.rank < least)) continue;

@@ -107,7 +107,7 @@ class PairSearch {
   }
 
   void advance() {
-    long_bounds_ = bounds_over(from_, to_);
+    long_bounds_ = BothWays(bounds_over(from_, to_));
     short_window_ = to_ - from_;
     reached_ = from_;
     for (int iteration = 0;; ++iteration) {
@@ -124,7 +124,7 @@ class PairSearch {
       next_ = next_after(t);
       view_.place(t);
       short_end_ = std::min(to_, t + short_window_);
-      short_bounds_ = bounds_over(t, short_end_);
+      short_bounds_ = BothWays(bounds_over(t, short_end_));
       const double due = t + 0.25 * std::min(short_window_, to_ - t);
       least_ = kForever;
       // the nearest ones first: beside their steps most others are seen to be far at a glance
@@ -170,6 +170,15 @@ class PairSearch {
     least_ = std::min(least_, safe_until(half, i));
   }
 
+  /// How a moves against b, and b against a.
+  struct BothWays {
+    RelativeBounds of_a, of_b;
+
+    BothWays() = default;
+    explicit BothWays(const RelativeBounds& a_against_b) : of_a(a_against_b), of_b(a_against_b.swapped()) {}
+    const RelativeBounds& of(const Half& half) const { return half.s_is_a ? of_a : of_b; }
+  };
+
   RelativeBounds bounds_over(double from, double to) const {
     return RelativeBounds::over(a_.outline(), *a_.motion, b_.outline(), *b_.motion, from, to);
   }
@@ -185,22 +194,23 @@ class PairSearch {
     const Sample& sample = half.sample(i);
     const SamplePath path = view_.path(half, i);
     const double long_window = to_ - t_, short_window = short_end_ - t_;
-    const RelativeBounds relative = half.s_is_a ? long_bounds_ : long_bounds_.swapped();
-    const RelativeBounds near = half.s_is_a ? short_bounds_ : short_bounds_.swapped();
+    const RelativeBounds &relative = long_bounds_.of(half), &near = short_bounds_.of(half);
     const PathBounds over_all = path_bounds(path, relative, long_window);
-    const Facing line = line_between(half, i, path);
+    const double band = view_.touching_band(half, i, path);
+    const Facing line = line_between(half, i, path, band);
     const double apart = line.gap > 0.0 ? safe_step(line.gap, line.rate, over_all.acceleration)
-                                        : clear_of_disc(half, i, path, over_all);
+                                        : clear_of_disc(half, i, path, band, over_all);
     if (apart >= long_window || apart > 2.0 * (least_ - t_)) return apart * (1.0 - 4.0 * kEpsilon);
     const PathBounds over_short = path_bounds(path, near, short_window);
     double safe = apart, again = 0.0;
     if (line.gap > 0.0) {
       if (safe < short_window) again = safe_step(line.gap, line.rate, over_short.acceleration);
     } else if (sample.arc_site < 0) {
-      std::tie(safe, again) = vertex_steps(half, i, path, over_all, over_short, long_window, short_window);
+      std::tie(safe, again) =
+          vertex_steps(half, i, path, band, over_all, over_short, long_window, short_window);
     } else {
-      safe = arc_sample_step(half, i, path, relative, over_all);
-      if (safe < short_window) again = arc_sample_step(half, i, path, near, over_short);
+      safe = arc_sample_step(half, i, path, band, relative, over_all);
+      if (safe < short_window) again = arc_sample_step(half, i, path, band, near, over_short);
     }
     if (safe < short_window) safe = std::max(safe, std::min(again, short_window));
     return safe * (1.0 - 4.0 * kEpsilon);
@@ -208,17 +218,17 @@ class PairSearch {
 
   /// How long a sample is sure to stay out of the disc that holds the other outline; 0 if it is in it. As
   /// other steps, this one does not lead onto the surface.
-  double clear_of_disc(const Half& half, int i, const SamplePath& path, const PathBounds& bounds) const {
+  double clear_of_disc(const Half& half, int i, const SamplePath& path, double band,
+                       const PathBounds& bounds) const {
     const Outline& outline = half.sites_of();
-    const Sample& sample = half.sample(i);
-    const double f = path.distance - outline.bounding_radius - sample.radius - touching_band(half, i, path);
+    const double f = path.distance - outline.bounding_radius - half.sample(i).radius - band;
     if (outline.container || outline.is_point() || !(f > 0.0)) return 0.0;
     return safe_step(f, path.q.dot(path.rate) / path.distance, bounds.acceleration);
   }
 
   /// The line between a vertex sample and a convex outline, as far out as a step may lead; gap 0 where there
   /// is none, or the sample is so near that its features must be told apart.
-  Facing line_between(const Half& half, int i, const SamplePath& path) {
+  Facing line_between(const Half& half, int i, const SamplePath& path, double band) {
     const Outline& outline = half.sites_of();
     const Sample& sample = half.sample(i);
     if (outline.facets.empty() || sample.arc_site >= 0) return {};
@@ -226,20 +236,18 @@ class PairSearch {
     ++work_.candidate_evaluations;
     Facing line = facing_convex(outline, path.q, path.rate);
     line.gap -= outline.sites[0].radius + sample.radius;
-    const double band = touching_band(half, i, path);
     line.gap = line.gap > 2.0 * band ? line.gap - 0.5 * band : 0.0;
     return line;
   }
 
   /// Safe steps by the bounds over the whole window and by those over the short one; every site is looked at
   /// once.
-  std::pair<double, double> vertex_steps(const Half& half, int i, const SamplePath& path,
+  std::pair<double, double> vertex_steps(const Half& half, int i, const SamplePath& path, double band,
                                          const PathBounds& over_all, const PathBounds& over_short,
                                          double window, double short_window) {
     const Sample& sample = half.sample(i);
     const Outline& sites = half.sites_of();
     ++work_.distance_queries;
-    const double band = touching_band(half, i, path);
     const double reach = over_all.speed * window + sample.radius + 2.0 * band;
     Candidates near = half.t->index->candidates(path.q, reach, scratch_.index);
     // what is not named is too near to be left out: two things are met, and one of them alone is named
@@ -268,8 +276,8 @@ class PairSearch {
           const double step = close_step(half, site, nearest, f, above, path, band, relative, bounds);
           return free_way > 0.0 ? std::max(step, free_way / bounds.speed) : step;
         };
-        safe = std::min(safe, step_by(half.s_is_a ? long_bounds_ : long_bounds_.swapped(), over_all));
-        again = std::min(again, step_by(half.s_is_a ? short_bounds_ : short_bounds_.swapped(), over_short));
+        safe = std::min(safe, step_by(long_bounds_.of(half), over_all));
+        again = std::min(again, step_by(short_bounds_.of(half), over_short));
         continue;
       }
       const double beyond = gap - 0.5 * band;  // too far to matter at any speed?
@@ -332,19 +340,11 @@ class PairSearch {
     return std::max({by_hull, by_speed, by_ends});
   }
 
-  /// Gaps up to this are close [m]: the tolerance, or what the point moves in a few roundings of the time, or
-  /// more than any level.
-  double touching_band(const Half& half, int i, const SamplePath& path) const {
-    return std::max(
-        {limits_.tolerance, 8.0 * path.rate.norm() * ulp(t_), 16.0 * view_.gap_rounding(half, i, path.q)});
-  }
-
-  double arc_sample_step(const Half& half, int i, const SamplePath& path, const RelativeBounds& relative,
-                         const PathBounds& bounds) {
+  double arc_sample_step(const Half& half, int i, const SamplePath& path, double band,
+                         const RelativeBounds& relative, const PathBounds& bounds) {
     const Sample& sample = half.sample(i);
     const Site& arc = half.samples_of().sites[sample.arc_site];
     const Outline& sites = half.sites_of();
-    const double band = touching_band(half, i, path);
     double safe = kForever;
     for (std::size_t j = 0; j < sites.sites.size(); ++j) {
       ++work_.candidate_evaluations;
@@ -400,14 +400,17 @@ class PairSearch {
         }
         low = std::max(low - back, floor);
       }
+    } else if (const double before = guess - 2.0 * noise; before > t_ && gap(before) > rounding) {
+      low = before;  // it falls all the way, as far as it bends: the fewer probes
     }
     const double last = std::min(a_.motion->end(), b_.motion->end());
     // beyond the surface, by more than rounding if one of these is; where two points meet, when they are
     // nearest; where a bent path meets it later; and where a tip is grazed, for less than a rounding
     const double nearest = t_ + now / speed, later = t_ + 4.0 * std::max(0.0, now) / speed + 64.0 * noise;
     double high = low, beyond_by = 0.0;
-    for (const double beyond : {guess + 8.0 * noise, nearest, later, nearest + 0.125 * noise,
-                                nearest + 0.25 * noise, nearest + 0.5 * noise, nearest + noise}) {
+    for (const double beyond :
+         {guess + 2.0 * noise, guess + 8.0 * noise, nearest, later, nearest + 0.125 * noise,
+          nearest + 0.25 * noise, nearest + 0.5 * noise, nearest + noise}) {
       const double then = std::min(beyond, last);
       const double by = then > low ? -gap(then) : -1.0;
       if (!(by >= 0.0) || (high > low && by <= rounding)) continue;
@@ -423,7 +426,7 @@ class PairSearch {
     if (high <= low) return false;  // passes by
     const double t = last_clear_time(gap, low, high);
     // at the end of its neighbourhood a sample changes sides without having come near
-    if (gap(t) > touching_band(half, f.sample, path)) return false;
+    if (gap(t) > view_.touching_band(half, f.sample, path)) return false;
     return remember(half, f, t, 2.0 * moment);
   }
 
@@ -532,7 +535,7 @@ class PairSearch {
   SearchScratch& scratch_;
   WorkCounters& work_;
   double* safe_until_[2];  ///< one a sample of each half
-  RelativeBounds long_bounds_, short_bounds_;
+  BothWays long_bounds_, short_bounds_;
   double short_window_ = 0.0, short_end_ = 0.0;
   double t_ = 0.0, next_ = 0.0, reached_ = 0.0;
   double least_ = kForever;  ///< of the samples looked at from t_, how long all are safe

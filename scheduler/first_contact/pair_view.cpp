@@ -39,7 +39,12 @@ Vec2 outward(const Site& site, const Nearest& nearest, double side, const Vec2& 
 }  // namespace
 
 PairView::PairView(const Mover& a, const Mover& b, const SearchLimits& limits, SearchScratch& scratch)
-    : a_(a), b_(b), limits_(limits), scratch_(scratch) {
+    : a_(a),
+      b_(b),
+      of_a_(*a.motion, !is_centred_disc(a.outline())),
+      of_b_(*b.motion, !is_centred_disc(b.outline())),
+      limits_(limits),
+      scratch_(scratch) {
   // A core of one point needs no reverse test: its one sample against the other's sites is the whole
   // distance.
   const bool point_a = a.outline().is_point(), point_b = !point_a && b.outline().is_point();
@@ -181,20 +186,24 @@ bool PairView::belongs_to_a_neighbour(const Half& half, int i, int j, const Near
 
 void PairView::put(Placing& p, double t) const {
   p.time = t;
+  p.tick = ulp(t);
   const BodyState sa = a_.motion->state(t), sb = b_.motion->state(t);
-  p.place_noise =
-      place_rounding(*a_.motion, t, sa.pose.position) + place_rounding(*b_.motion, t, sb.pose.position);
-  const auto turned = [&](const Mover& m, double angle) {
-    return is_centred_disc(m.outline()) ? 0.0 : angle_rounding(*m.motion, t, angle);
-  };
-  p.angle_noise_a = turned(a_, sa.pose.angle);
-  p.angle_noise_b = turned(b_, sb.pose.angle);
+  p.place_noise = of_a_.place(t, sa.pose.position) + of_b_.place(t, sb.pose.position);
+  p.angle_noise_a = of_a_.angle(t, sa.pose.angle);
+  p.angle_noise_b = of_b_.angle(t, sb.pose.angle);
   const double noise = p.place_noise + p.angle_noise_a * a_.outline().bounding_radius +
                        p.angle_noise_b * b_.outline().bounding_radius;
   if (noise > kFarOfTolerance * limits_.tolerance) return put_relative(p, t);
   p.base.setZero();
   p.a.move(a_.outline(), sa);
   p.b.move(b_.outline(), sb);
+  p.note_turning();
+}
+
+void PairView::Placing::note_turning() {
+  const auto turned = [](const Placed& placed) { return placed.angle == 0.0 ? 0.0 : 4.0 * kRoundoff; };
+  turn_noise_a = angle_noise_a + turned(a);
+  turn_noise_b = angle_noise_b + turned(b);
 }
 
 namespace {
@@ -210,27 +219,17 @@ void PairView::put_relative(Placing& p, double t) const {
   p.base = sb.position.cast<double>();
   p.a.move(a_.outline(), sa.seen_from(p.base));
   p.b.move(b_.outline(), sb.seen_from(p.base));
-  p.place_noise = place_rounding(*a_.motion, t, sa.position.cast<double>()) * finer(*a_.motion) +
-                  place_rounding(*b_.motion, t, p.base) * finer(*b_.motion);
+  p.place_noise = of_a_.place(t, sa.position.cast<double>()) * finer(*a_.motion) +
+                  of_b_.place(t, p.base) * finer(*b_.motion);
   p.angle_noise_a *= finer(*a_.motion);
   p.angle_noise_b *= finer(*b_.motion);
-}
-
-double PairView::gap_rounding(const Placing& p, const Half& half, int i, const Vec2& q) const {
-  const double arm = half.sample(i).p.lpNorm<1>(), distance = q.lpNorm<1>();
-  const double of_s = half.s_is_a ? p.angle_noise_a : p.angle_noise_b;
-  const double of_t = half.s_is_a ? p.angle_noise_b : p.angle_noise_a;
-  const auto turning = [](const Placed& placed) { return placed.angle == 0.0 ? 0.0 : 4.0 * kRoundoff; };
-  const double turn_s = turning(half.s_is_a ? p.a : p.b), turn_t = turning(half.s_is_a ? p.b : p.a);
-  // sines and turning, where anything is turned; then the distance to a site as far off
-  return p.place_noise + (of_s + turn_s) * arm + (of_t + turn_t + 2.0 * kRoundoff) * distance +
-         2.0 * kRoundoff * half.sites_of().bounding_radius;
+  p.note_turning();
 }
 
 double PairView::nominal_level(const Placing& p, const Half& half, int i, const Site& site,
                                const Vec2& q) const {
   const bool thin = !site.solid && site.radius + half.sample(i).radius == 0.0;
-  return brink::nominal_level(limits_.touch, limits_.tolerance, gap_rounding(p, half, i, q), thin);
+  return brink::nominal_level(limits_.touch, limits_.tolerance, p.gap_rounding(half, i, q), thin);
 }
 
 PairView::Doubt PairView::doubt(const Half& half, const Feature& f) const {
@@ -255,16 +254,23 @@ bool PairView::beyond_doubt() const {
          speed * same_instant(now_.time) <= by_far * kSlowOfSize * smallest_radius(a, b);
 }
 
-bool PairView::out_of_reach(const Half& half, int i, double reach) const {
-  const Outline& outline = half.sites_of();
-  if (outline.container || !(reach < kForever)) return false;
-  // its place alone: most are far
-  const Frame &s = placed(half.s).frame, &t = placed(half.t).frame;
-  const Vec2 q = t.direction_to_local(s.direction_to_world(half.sample(i).p) + (s.origin - t.origin));
-  const double radius = half.sample(i).radius, far = reach + outline.bounding_radius + radius;
-  if (q.squaredNorm() > far * far) return true;
-  return !outline.facets.empty() &&
-         facing_convex(outline, q, Vec2::Zero()).gap - outline.sites[0].radius - radius > reach;
+PairView::Reach::Reach(const PairView& view, const Half& half, double reach)
+    : half_(half),
+      s_(view.placed(half.s).frame),
+      t_(view.placed(half.t).frame),
+      reach_(half.sites_of().container ? kForever : reach),
+      far_(reach_ + half.sites_of().bounding_radius),
+      origin_(s_.direction_to_local(t_.origin - s_.origin)) {}
+
+bool PairView::Reach::leaves_out(int i) const {
+  if (!(reach_ < kForever)) return false;
+  const Outline& outline = half_.sites_of();
+  const Sample& sample = half_.sample(i);
+  const double far = far_ + sample.radius;
+  if ((sample.p - origin_).squaredNorm() > far * far) return true;  // most are far
+  if (outline.facets.empty()) return false;
+  const Vec2 q = t_.direction_to_local(s_.direction_to_world(sample.p) + (s_.origin - t_.origin));
+  return facing_convex(outline, q, Vec2::Zero()).gap - outline.sites[0].radius - sample.radius > reach_;
 }
 
 bool PairView::hidden_behind_others(const Half& half, const Feature& f, const SamplePath& path) {
@@ -275,9 +281,20 @@ bool PairView::hidden_behind_others(const Half& half, const Feature& f, const Sa
   return belongs_to_a_neighbour(half, f.sample, f.site, nearest_on(half.site(f.site), path.q), path.q);
 }
 
+/// True if no features can have been within the tolerance when the motions began, by their bounding discs.
+bool PairView::discs_were_apart() const {
+  const Outline &a = a_.outline(), &b = b_.outline();
+  if (a.container || b.container) return false;
+  const Vec2 at_a = a_.motion->place(start()), at_b = b_.motion->place(start());
+  const double rounding = of_a_.place(start(), at_a) + of_b_.place(start(), at_b);
+  const double reach = (a.bounding_radius + b.bounding_radius) * (1.0 + 1e-9);
+  return (at_a - at_b).norm() > reach + 2.0 * limits_.tolerance + 2.0 * rounding;
+}
+
 double PairView::sink_at_start() const {
   // what was pressed then has met since; of thousands of steps ago nothing is left to tell
   if (!a_.motion->remembers(start()) || !b_.motion->remembers(start())) return 0.0;
+  if (discs_were_apart()) return 0.0;
   PairView then = *this;
   then.place(start());
   const RelativeBounds at_once =
@@ -328,7 +345,7 @@ PairView::GapAndSite PairView::gap_to_neighbours(const Placing& p, const Half& h
   const double sample_radius = half.sample(i).radius;
   // within so few ticks of the clock every way is straight
   const bool at_once = std::abs(p.time - now_.time) <= 64.0 * ulp(p.time);
-  const double rounding = gap_rounding(p, half, i, q);
+  const double rounding = p.gap_rounding(half, i, q);
   GapAndSite found;
   double least = kForever;
   for (const SearchScratch::Neighbour& neighbour : scratch_.neighbours) {

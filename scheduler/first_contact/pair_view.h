@@ -55,14 +55,16 @@ class PairView {
   /// of arcs all. Brute force over samples.
   template <class Visit>
   void each_feature(double tolerance, Visit&& visit) const {
-    for (const Half& half : halves_)
+    for (const Half& half : halves_) {
+      const Reach reach(*this, half, tolerance);
       for (int i = 0; i < half.count; ++i)
-        if (out_of_reach(half, i, tolerance))
+        if (reach.leaves_out(i))
           continue;
         else if (half.sample(i).arc_site >= 0)
           each_arc_feature(half, i, tolerance, visit);
         else if (const Feature f = nearest_feature(half, i); f.site >= 0 && f.gap <= tolerance)
           visit(half, f);
+    }
   }
 
   /// Vertex sample i against site j, whose nearest point is given.
@@ -121,7 +123,14 @@ class PairView {
 
   /// Bound on the rounding of the gap of sample i, at q, to any site now [m]: one for all sites, or the
   /// nearest by level might not be the nearest.
-  double gap_rounding(const Half& half, int i, const Vec2& q) const { return gap_rounding(now_, half, i, q); }
+  double gap_rounding(const Half& half, int i, const Vec2& q) const { return now_.gap_rounding(half, i, q); }
+  /// Gaps up to this are close [m]: the tolerance, or what the point moves in a few roundings of the time, or
+  /// more than any level.
+  double touching_band(const Half& half, int i, const SamplePath& path) const {
+    const double moved2 = 64.0 * now_.tick * now_.tick * path.rate.squaredNorm();
+    const double band = std::max(limits_.tolerance, 16.0 * gap_rounding(half, i, path.q));
+    return moved2 > band * band ? std::sqrt(moved2) : band;
+  }
 
  private:
   template <class Visit>
@@ -138,15 +147,27 @@ class PairView {
     Placed a, b;
     double time = 0.0;                                ///< [s]
     Vec2 base = Vec2::Zero();                         ///< world [m]
+    double tick = 0.0;                                ///< from `time` to the next double [s]
     double place_noise = 0.0;                         ///< rounding of one place against the other [m]
     double angle_noise_a = 0.0, angle_noise_b = 0.0;  ///< [rad]
+    double turn_noise_a = 0.0, turn_noise_b = 0.0;    ///< likewise, with those of sines and of turning
+
+    void note_turning();
+    double gap_rounding(const Half& half, int i, const Vec2& q) const {
+      const double arm = half.sample(i).p.lpNorm<1>(), distance = q.lpNorm<1>();
+      const double of_s = half.s_is_a ? turn_noise_a : turn_noise_b;
+      const double of_t = half.s_is_a ? turn_noise_b : turn_noise_a;
+      // the distance to a site as far off comes last
+      return place_noise + of_s * arm + (of_t + 2.0 * kRoundoff) * distance +
+             2.0 * kRoundoff * half.sites_of().bounding_radius;
+    }
   };
 
+  bool discs_were_apart() const;
   Feature nearest_feature(const Half& half, int i) const;
   ArcStep arc_now(const Half& half, int i, int j) const;
   void put(Placing& placing, double t) const;
   void put_relative(Placing& placing, double t) const;
-  double gap_rounding(const Placing& placing, const Half& half, int i, const Vec2& q) const;
   double nominal_level(const Placing& placing, const Half& half, int i, const Site& site,
                        const Vec2& q) const;
   /// Of a wire without thickness: 1 where the sample, now at q, has not crossed it since its neighbours were
@@ -158,9 +179,22 @@ class PairView {
   bool way_leads_through(const Site& site, const Vec2& q, double rounding) const;
   GapAndSite gap_to_neighbours(const Placing& placing, const Half& half, int i, const Vec2& q) const;
   double arc_gap(const Half& half, const Feature& f, const Vec2& center) const;
-  bool out_of_reach(const Half& half, int i, double reach) const;
+  /// Which samples of a half may be within reach [m] of a site, told by their places alone.
+  class Reach {
+   public:
+    Reach(const PairView& view, const Half& half, double reach);
+    bool leaves_out(int i) const;
+
+   private:
+    const Half& half_;
+    const Frame &s_, &t_;
+    double reach_;
+    double far_;   ///< of S's core from T's origin [m]
+    Vec2 origin_;  ///< T's, seen from S [m]
+  };
 
   const Mover &a_, &b_;
+  MotionRounding of_a_, of_b_;
   const SearchLimits& limits_;
   SearchScratch& scratch_;
   Half halves_[2];

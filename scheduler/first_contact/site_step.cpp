@@ -8,9 +8,8 @@ Facing facing_convex(const Outline& outline, const Vec2& q, const Vec2& rate) {
   double gap = -std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < count; ++k) {
     const double outside = outline.facets[k].dot(q - outline.sites[k].a);
-    if (!(outside > gap)) continue;
-    gap = outside;
-    side = k;
+    side = outside > gap ? k : side;  // two selects: which is farthest cannot be predicted
+    gap = outside > gap ? outside : gap;
   }
   const Site& site = outline.sites[side];
   const Vec2 d = site.b - site.a;
@@ -18,7 +17,8 @@ Facing facing_convex(const Outline& outline, const Vec2& q, const Vec2& rate) {
   const Facing of_side{gap, outline.facets[side].dot(rate)};
   const bool past_b = along > d.squaredNorm();
   if (gap <= 0.0 || (along >= 0.0 && !past_b)) return of_side;
-  const Site& next = outline.sites[(past_b ? side + 1 : side + count - 1) % count];
+  const std::size_t after = side + 1 == count ? 0 : side + 1, before = side == 0 ? count - 1 : side - 1;
+  const Site& next = outline.sites[past_b ? after : before];
   const Vec2 from_corner = q - (past_b ? site.b : site.a);
   const Vec2 next_side = past_b ? Vec2(next.b - next.a) : Vec2(next.a - next.b);
   if (from_corner.dot(next_side) > 0.0) return of_side;  // the next side is nearer than their corner

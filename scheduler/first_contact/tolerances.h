@@ -37,25 +37,53 @@ inline constexpr double kOverlapAtStart = 1e4;
 /// Bound on the rounding of start + s (rate + s / 2 bent), `now` in the end, in arithmetic of unit roundoff
 /// u: four roundings of the way, one of the sum. All numbers are sums of sizes. None of what stands still and
 /// is a double (`low`: what its start's rounding left over).
-inline double rounding_of_way(double low, double rate, double bent, double s, double now, double u) {
-  const double way = std::abs(s) * (rate + 0.5 * std::abs(s) * bent);
-  return way + low > 0.0 ? u * (4.0 * way + now) : 0.0;
-}
+struct WayRounding {
+  double low, rate, bent;
 
-/// Bound on the rounding of a motion's place at time t, `now` [m], in double precision. Dense output is as
-/// exact as its coefficients: eight roundings of the place, joins of pieces among them.
+  double operator()(double s, double now, double u) const {
+    const double way = std::abs(s) * (rate + 0.5 * std::abs(s) * bent);
+    return way + low > 0.0 ? u * (4.0 * way + now) : 0.0;
+  }
+};
+
+/// Bounds on the rounding of a motion's places and angles, in double precision, at hand for many times.
+/// Dense output is as exact as its coefficients: eight roundings of the place, joins of pieces among them.
+class MotionRounding {
+ public:
+  /// `turns`: false for what looks the same at any angle, whose rounding is none.
+  explicit MotionRounding(const Motion& m, bool turns = true)
+      : parabola_(m.is_ballistic()),
+        turns_(turns),
+        origin_(m.origin()),
+        place_{m.start_low().pose.position.lpNorm<1>(), m.start().twist.velocity.lpNorm<1>(),
+               m.acceleration().linear.lpNorm<1>()},
+        angle_{std::abs(m.start_low().pose.angle), std::abs(m.start().twist.omega),
+               std::abs(m.acceleration().angular)} {}
+
+  /// Of its place at time t, `now` [m].
+  double place(double t, const Vec2& now, double u = kRoundoff) const {
+    return parabola_ ? place_(t - origin_, now.lpNorm<1>(), u) : 8.0 * kRoundoff * now.lpNorm<1>();
+  }
+  /// Of its angle at time t, `now` [rad].
+  double angle(double t, double now, double u = kRoundoff) const {
+    if (!turns_) return 0.0;
+    return parabola_ ? angle_(t - origin_, std::abs(now), u) : 8.0 * kRoundoff * std::abs(now);
+  }
+
+ private:
+  bool parabola_, turns_;
+  double origin_;
+  WayRounding place_, angle_;
+};
+
+/// Bound on the rounding of a motion's place at time t, `now` [m].
 inline double place_rounding(const Motion& motion, double t, const Vec2& now, double u = kRoundoff) {
-  if (!motion.is_ballistic()) return 8.0 * kRoundoff * now.lpNorm<1>();
-  return rounding_of_way(motion.start_low().pose.position.lpNorm<1>(),
-                         motion.start().twist.velocity.lpNorm<1>(), motion.acceleration().linear.lpNorm<1>(),
-                         t - motion.origin(), now.lpNorm<1>(), u);
+  return MotionRounding(motion).place(t, now, u);
 }
 
 /// Likewise of its angle [rad].
 inline double angle_rounding(const Motion& motion, double t, double now, double u = kRoundoff) {
-  if (!motion.is_ballistic()) return 8.0 * kRoundoff * std::abs(now);
-  return rounding_of_way(std::abs(motion.start_low().pose.angle), std::abs(motion.start().twist.omega),
-                         std::abs(motion.acceleration().angular), t - motion.origin(), std::abs(now), u);
+  return MotionRounding(motion).angle(t, now, u);
 }
 
 /// Places are taken relative to the pair, in extended precision, where their rounding in double is more than

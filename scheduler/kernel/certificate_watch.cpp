@@ -49,6 +49,7 @@ void CertificateWatch::make_walls() {
     const bool solid = o.is_point() ? o.sites[0].radius > 0.0 : o.solid;
     material_centre_.push_back(solid && !o.container && gap_by_brute_force(o, Vec2::Zero()) < 0.0);
   }
+  clear_.resize(world_->bodies.size());
 }
 
 std::vector<Contact> CertificateWatch::overlaps(std::size_t most) {
@@ -89,7 +90,10 @@ bool CertificateWatch::flight(int k, double to) {
   const Motion& motion = trajectories_->body(k).motion;
   const double from = std::max(motion.begin(), flown_until_);
   if (!(from < to)) return true;
-  const auto site = walls_.crossed([&](double t) { return motion.pose(t).position; }, from, to);
+  const Vec2 p = motion.place(from), q = motion.place(to);
+  if (clear_[k].contains(p) && clear_[k].contains(q)) return true;
+  clear_[k] = walls_.clear_around(q);
+  const auto site = walls_.crossed([&](double t) { return motion.place(t); }, from, to);
   if (!site || !search_->may_meet(k, trajectories_->body_count() + *site)) return true;
   return report({k, -1, *site, {}}, 0.0, to, "went through a wire of");
 }

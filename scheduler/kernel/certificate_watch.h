@@ -70,6 +70,7 @@ class CertificateWatch {
   bool walls_made_ = false;
   ThinWalls walls_;                    ///< of still sites
   std::vector<bool> material_centre_;  ///< of bodies whose centre of mass is in them
+  std::vector<Box> clear_;             ///< about each body, of walls
   std::vector<bool> moved_;            ///< of every owner, since the last frame
   std::vector<std::uint64_t>
       seen_;                    ///< versions of the bodies at the last frame; empty: all pairs are to be seen

@@ -110,7 +110,8 @@ Real CollisionResponse::delay_to_contact(const FeatureContact& found, const Exte
   return std::clamp((c.gap - found.level) / c.closing, -late, late);
 }
 
-CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const FeatureContact& found) {
+CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const FeatureContact& found,
+                                                    const Material& material) {
   Change r;
   const double now = run_->time();
   r.body = trajectories_->state_now(pair.body);
@@ -132,7 +133,7 @@ CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const F
                                      ? site_side(other, c.point)
                                      : body_side(world_->bodies[pair.other_body], other, c.point);
   const auto law = reflects_ ? resolve_reflection : resolve_impulse;
-  r.impulse = law(side, other_side, c.normal, material_of(pair));
+  r.impulse = law(side, other_side, c.normal, material);
   r.magnitude = std::max(speed_of(side), speed_of(other_side));
   // an approach that the law does not see was rounding, all of it
   const bool held = trajectories_->is_held(pair.body) ||
@@ -184,18 +185,19 @@ DiscSide CollisionResponse::free_disc(int k) const {
 
 /// The response now if a free disc meets another, or a straight wall, without friction: a quick way to what
 /// change() says.
-std::optional<DiscRebound> CollisionResponse::disc_rebound(const PairKey& pair, const FeatureContact& found) {
+std::optional<DiscRebound> CollisionResponse::disc_rebound(const PairKey& pair, const FeatureContact& found,
+                                                           const Material& material) {
   if (found.seen || reflects_ || search_->points_meet_wires()) return std::nullopt;
-  if (material_of(pair).friction != 0.0) return std::nullopt;
-  if (pair.with_site()) return wall_rebound(pair, found);
+  if (material.friction != 0.0) return std::nullopt;
+  if (pair.with_site()) return wall_rebound(pair, found, material);
   const DiscSide a = free_disc(pair.body), b = free_disc(pair.other_body);
   if (!a.motion || !b.motion || a.radius + b.radius == 0.0) return std::nullopt;
   const double now = run_->time();
-  return rebound(a, b, search_->shift_of(pair), now, 4.0 * ulp(now), found.level,
-                 material_of(pair).restitution);
+  return rebound(a, b, search_->shift_of(pair), now, 4.0 * ulp(now), found.level, material.restitution);
 }
 
-std::optional<DiscRebound> CollisionResponse::wall_rebound(const PairKey& pair, const FeatureContact& found) {
+std::optional<DiscRebound> CollisionResponse::wall_rebound(const PairKey& pair, const FeatureContact& found,
+                                                           const Material& material) {
   const int other = search_->other_owner(pair);
   const Site& site = search_->outline_of(other).sites[found.site];
   const DiscSide disc = free_disc(pair.body);
@@ -205,15 +207,15 @@ std::optional<DiscRebound> CollisionResponse::wall_rebound(const PairKey& pair, 
   const double now = run_->time();
   const ExtendedState stands = search_->other_state(pair, now);
   const WallSide wall{stands.to_world(site.a), stands.to_world(site.b), site.radius, found.normal};
-  return rebound(disc, wall, now, 4.0 * ulp(now), found.level, material_of(pair).restitution);
+  return rebound(disc, wall, now, 4.0 * ulp(now), found.level, material.restitution);
 }
 
 /// The limit of bounces in closed form, where both sides fly under constant accelerations between them: the
-/// next flight lasts 2 e v / a, each one after e times as long.
-ForeseenLimit CollisionResponse::foresee(const PairKey& pair, const FeatureContact& found, Real delay) {
+/// next flight lasts 2 e v / a, each one after e times as long. `e`: the pair's restitution.
+ForeseenLimit CollisionResponse::foresee(const PairKey& pair, const FeatureContact& found, double e,
+                                         Real delay) {
   const Motion &motion = trajectories_->motion_of(pair.body),
                &other = trajectories_->motion_of(search_->other_owner(pair));
-  const double e = material_of(pair).restitution;
   if (!(e < 1.0) || !motion.is_ballistic() || !other.is_ballistic()) return {};
   const double pull = -found.normal.dot(motion.acceleration().linear - other.acceleration().linear);
   if (!(pull > 0.0)) return {};
@@ -223,16 +225,17 @@ ForeseenLimit CollisionResponse::foresee(const PairKey& pair, const FeatureConta
   return {run_->time() + (late + 2.0 * e * v / (pull * (1.0 - e))), rounding};
 }
 
-/// The outcome with what its bodies came to. @pre both have been restarted by it.
-Outcome CollisionResponse::with_sides(Outcome outcome) const {
+/// Notes what its bodies came to. @pre both have been restarted by it.
+void CollisionResponse::note_sides(Outcome& outcome) const {
+  if (!trajectories_->keeps_twists_before()) return;
   const PairKey& pair = outcome.pair;
   outcome.body = trajectories_->last_restart(pair.body);
   if (!pair.with_site()) outcome.other = trajectories_->last_restart(pair.other_body);
-  return outcome;
 }
 
 std::optional<Outcome> CollisionResponse::part(const PairKey& pair, const FeatureContact& found,
-                                               const DiscRebound& discs, std::vector<int>& changed) {
+                                               const Material& material, const DiscRebound& discs,
+                                               std::vector<int>& changed) {
   const auto start = [&](int k, int partner, const DiscRebound::Start& after) {
     changed.push_back(k);
     const double rest = note_resolve(k, partner, discs.magnitude);
@@ -242,7 +245,10 @@ std::optional<Outcome> CollisionResponse::part(const PairKey& pair, const Featur
   double rest = start(pair.body, search_->other_owner(pair), discs.a);
   if (!pair.with_site()) rest = std::min(rest, start(pair.other_body, pair.body, discs.b));
   if (!watch_->discs_resolved(pair, discs.gap)) return std::nullopt;
-  return with_sides({pair, found, discs.impulse, 0.0, discs.delay, rest, foresee(pair, found, discs.delay)});
+  std::optional<Outcome> outcome{{pair, found, discs.impulse, 0.0, discs.delay, rest,
+                                  foresee(pair, found, material.restitution, discs.delay)}};
+  note_sides(*outcome);
+  return outcome;
 }
 
 std::optional<Outcome> CollisionResponse::collide(const PairKey& pair, const FeatureContact& found,
@@ -250,8 +256,10 @@ std::optional<Outcome> CollisionResponse::collide(const PairKey& pair, const Fea
   const double now = run_->time();
   if (!watch_->flight(pair.body, now) || (!pair.with_site() && !watch_->flight(pair.other_body, now)))
     return std::nullopt;
-  if (const auto discs = disc_rebound(pair, found)) return part(pair, found, *discs, changed);
-  const Change r = change(pair, found);
+  const Material& material = material_of(pair);
+  if (const auto discs = disc_rebound(pair, found, material))
+    return part(pair, found, material, *discs, changed);
+  const Change r = change(pair, found, material);
   if (!watch_->approaches(pair, found.closing_speed, kPartsOfSpeed * r.magnitude)) return std::nullopt;
   if (r.impulse.kind == ImpulseKind::jam) {
     run_->stop(Termination::failed,
@@ -262,8 +270,10 @@ std::optional<Outcome> CollisionResponse::collide(const PairKey& pair, const Fea
   if (!pair.with_site()) rest = std::min(rest, note_resolve(pair.other_body, pair.body, r.magnitude));
   deflect(pair, r, changed);
   if (!watch_->resolved(pair, found, r.delay)) return std::nullopt;
-  return with_sides(
-      {pair, found, r.impulse.normal, r.impulse.tangential, r.delay, rest, foresee(pair, found, r.delay)});
+  std::optional<Outcome> outcome{{pair, found, r.impulse.normal, r.impulse.tangential, r.delay, rest,
+                                  foresee(pair, found, material.restitution, r.delay)}};
+  note_sides(*outcome);
+  return outcome;
 }
 
 }  // namespace brink

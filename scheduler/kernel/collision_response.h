@@ -45,15 +45,17 @@ class CollisionResponse {
 
  private:
   struct Change;
-  Change change(const PairKey& pair, const FeatureContact& found);
+  Change change(const PairKey& pair, const FeatureContact& found, const Material& material);
   DiscSide free_disc(int body) const;
-  std::optional<DiscRebound> disc_rebound(const PairKey& pair, const FeatureContact& found);
-  std::optional<DiscRebound> wall_rebound(const PairKey& pair, const FeatureContact& found);
-  std::optional<Outcome> part(const PairKey& pair, const FeatureContact& found, const DiscRebound& discs,
-                              std::vector<int>& changed);
-  Outcome with_sides(Outcome outcome) const;
+  std::optional<DiscRebound> disc_rebound(const PairKey& pair, const FeatureContact& found,
+                                          const Material& material);
+  std::optional<DiscRebound> wall_rebound(const PairKey& pair, const FeatureContact& found,
+                                          const Material& material);
+  std::optional<Outcome> part(const PairKey& pair, const FeatureContact& found, const Material& material,
+                              const DiscRebound& discs, std::vector<int>& changed);
+  void note_sides(Outcome& outcome) const;
   void deflect(const PairKey& pair, const Change& change, std::vector<int>& changed);
-  ForeseenLimit foresee(const PairKey& pair, const FeatureContact& found, Real delay);
+  ForeseenLimit foresee(const PairKey& pair, const FeatureContact& found, double e, Real delay);
 
   const World* world_;
   Trajectories* trajectories_;

@@ -10,12 +10,14 @@ namespace {
 
 /// In an instant of so many the next are taken together, however many bodies there are: it takes seconds.
 constexpr std::uint64_t kLongestInstant = 200000;
+/// So many collisions in an instant are nothing unusual.
+constexpr std::uint64_t kPlainInstant = 2000;
 
 }  // namespace
 
 std::uint64_t Endings::endless() const {
   const std::uint64_t bodies = bodies_.count() + 2;  // a row may have ends yet to be reached
-  return 2000 + std::min(10 * bodies * bodies, kLongestInstant);
+  return kPlainInstant + std::min(10 * bodies * bodies, kLongestInstant);
 }
 
 bool Endings::collapsed(double now) const {
@@ -38,6 +40,7 @@ std::optional<Ending> Endings::collided(const Outcome& o, double now, BounceLoss
                                          o.contact.sink < 0.0, o.limit))
       return Ending{Ending::Kind::zeno, zeno->limit_time, zeno->bounces};
   count_in_instant(o.pair, now);
+  if (in_instant_ <= kPlainInstant) return std::nullopt;
   if (in_instant_ > 2 * endless()) return Ending{Ending::Kind::endless_group, now, in_instant_};
   if (in_instant_ == endless() + 1) return Ending{Ending::Kind::group, now, in_instant_};
   return std::nullopt;

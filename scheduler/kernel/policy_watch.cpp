@@ -18,8 +18,7 @@ bool PolicyWatch::alive(const Certificate& c) const {
          (c.pair.with_site() || speculation_->track(c.pair.other_body, c.version_other));
 }
 
-void PolicyWatch::going_to(double t) {
-  if (!known_) return;
+void PolicyWatch::look_before(double t) {
   std::vector<Certificate> ahead;
   while (!known_->empty() && known_->earliest().time + 2.0 * same_instant(t) < t) {
     const Certificate c = known_->pop();

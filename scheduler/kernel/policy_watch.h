@@ -29,11 +29,14 @@ class PolicyWatch {
   }
   /// @throws BadInput, naming the pair and both times, if a contact that is known and still holds comes
   /// before t.
-  void going_to(double t);
+  void going_to(double t) {
+    if (known_) look_before(t);
+  }
   /// The same at the end of a run. @throws BadInput also if the policy came back at `now`, before it.
   void returned(double now, double until);
 
  private:
+  void look_before(double t);
   bool alive(const Certificate& c) const;
 
   std::string policy_;

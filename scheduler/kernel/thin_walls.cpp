@@ -7,6 +7,8 @@
 #include <boost/geometry/index/rtree.hpp>
 #include <cmath>
 #include <iterator>
+#include <limits>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -22,7 +24,20 @@ using BoxOfPoints = boost::geometry::model::box<Point>;
 struct Wall {
   Vec2 a, b;
   int site;
+  Box box;
+
+  Wall(const Vec2& from, const Vec2& to, int of) : a(from), b(to), site(of) {
+    box.add(a);
+    box.add(b);
+  }
 };
+
+constexpr std::size_t kFewWalls = 16;  ///< which are looked at one by one
+
+/// How far p is from the box, along the axis in which that is more [m]; 0 inside.
+double distance_to(const Box& box, const Vec2& p) {
+  return (box.low - p).cwiseMax(p - box.high).cwiseMax(0.0).maxCoeff();
+}
 
 BoxOfPoints box_of(const Vec2& p, const Vec2& q) {
   const Vec2 low = p.cwiseMin(q), high = p.cwiseMax(q);
@@ -55,7 +70,20 @@ ThinWalls::~ThinWalls() = default;
 
 void ThinWalls::add(const Vec2& a, const Vec2& b, int site) {
   tree_->boxes.insert({box_of(a, b), count_++});
-  tree_->walls.push_back({a, b, site});
+  tree_->walls.emplace_back(a, b, site);
+}
+
+Box ThinWalls::clear_around(const Vec2& p) const {
+  double room = std::numeric_limits<double>::infinity();
+  if (tree_->walls.size() <= kFewWalls) {
+    for (const Wall& wall : tree_->walls) room = std::min(room, distance_to(wall.box, p));
+  } else {
+    std::vector<std::pair<BoxOfPoints, int>> nearest;
+    tree_->boxes.query(boost::geometry::index::nearest(Point(p.x(), p.y()), 1), std::back_inserter(nearest));
+    const Box& box = tree_->walls[static_cast<std::size_t>(nearest.front().second)].box;
+    room = (box.low - p).cwiseMax(p - box.high).cwiseMax(0.0).norm() * std::numbers::sqrt2 * 0.5;
+  }
+  return Box{p, p}.grown(room * (1.0 - 1e-9));
 }
 
 std::optional<int> ThinWalls::crossed(const std::function<Vec2(double)>& place, double from, double to,

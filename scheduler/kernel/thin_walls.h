@@ -20,6 +20,10 @@ class ThinWalls {
   void add(const Vec2& a, const Vec2& b, int site);
   bool empty() const { return count_ == 0; }
 
+  /// A box about p whose inside no wall reaches; that place alone if one is there. Cost: a look at every wall
+  /// if they are few, else a search in a tree.
+  Box clear_around(const Vec2& p) const;
+
   /// The site of a wall that a point went through on its way; nothing if there is none. `place` is where the
   /// point is at a time of [from, to]; `turns`: how often it turns about its centre on the way. Cost: a
   /// search in a tree of boxes along the straight line between the ends (O(log walls)); only a wall that this

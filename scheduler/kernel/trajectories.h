@@ -97,9 +97,10 @@ class Trajectories {
   void restart(std::span<const Restart> touched, std::vector<int>& changed);
   /// From now on the twist with which a body comes into its last restart is kept, or not.
   void keep_twists_before(bool keep) { before_.assign(keep ? bodies_.size() : 0, {}); }
+  bool keeps_twists_before() const { return !before_.empty(); }
   /// How a body comes out of its restart of this moment; not known where twists are not kept.
   EventSide last_restart(int k) const {
-    if (before_.empty()) return {};
+    if (!keeps_twists_before()) return {};
     return {true, state_now(k).rounded(), before_[k]};
   }
   /// A free body.

@@ -9,18 +9,10 @@ namespace brink {
 
 namespace {
 
-/// An outline's frame in extended precision; a centred disc looks the same at any angle.
-struct Turn {
-  Real cosine = 1, sine = 0;
-  Turn(const Outline& o, Real angle) {
-    if (is_centred_disc(o) || angle == 0) return;
-    cosine = std::cos(angle);
-    sine = std::sin(angle);
-  }
-  RealVec to_world(const RealVec& d) const {
-    return {cosine * d.x() - sine * d.y(), sine * d.x() + cosine * d.y()};
-  }
-};
+/// A centred disc looks the same at any angle.
+ExtendedRotation rotation_of(const Outline& o, Real angle) {
+  return is_centred_disc(o) ? ExtendedRotation() : ExtendedRotation(angle);
+}
 
 RealVec aligned(const RealVec& n, const RealVec& with) { return n.dot(with) < 0 ? RealVec(-n) : n; }
 
@@ -30,9 +22,9 @@ struct Away {
   Real distance;
 };
 
-Away away_from(const Site& site, const Turn& turn, const RealVec& origin, const RealVec& p,
+Away away_from(const Site& site, const ExtendedRotation& turned, const RealVec& origin, const RealVec& p,
                const RealVec& out, Real least) {
-  const auto place = [&](const Vec2& local) -> RealVec { return origin + turn.to_world(local.cast<Real>()); };
+  const auto place = [&](const Vec2& local) -> RealVec { return origin + turned * local.cast<Real>(); };
   const auto from_point = [&](const Vec2& local) -> Away {
     const RealVec d = p - place(local);
     const Real length = d.norm();
@@ -79,11 +71,11 @@ ExtendedContact contact_in(const Outline& a, const Outline& b, const ExtendedSta
   const Site& site = other.sites[like.site];
   const ExtendedContact known{like.point.cast<Real>(), like.normal.cast<Real>(), like.gap,
                               like.closing_speed};
-  const RealVec p = s.position + Turn(carrier, s.angle).to_world(sample.p.cast<Real>());
+  const RealVec p = s.position + rotation_of(carrier, s.angle) * sample.p.cast<Real>();
   const RealVec out =
       like.sample_on_a ? known.normal : RealVec(-known.normal);  // from the site to the sample
   const Real size = carrier.bounding_radius + std::max(sample.radius, site.radius);
-  const Away away = away_from(site, Turn(other, t.angle), t.position, p, out, kNoDirection * size);
+  const Away away = away_from(site, rotation_of(other, t.angle), t.position, p, out, kNoDirection * size);
   ExtendedContact c;
   c.gap = away.distance - site.radius - sample.radius;
   if (std::abs(c.gap - known.gap) > kNoDirection * size) return known;  // another feature's neighbourhood

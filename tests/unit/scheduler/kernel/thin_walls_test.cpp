@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
+#include <utility>
+#include <vector>
 
 namespace brink {
 namespace {
@@ -58,6 +61,45 @@ TEST(ThinWalls, OneOfManyIsFound) {
     const Vec2 middle = at + Vec2(-0.005, 0.01), across(0.002, 0.001);
     EXPECT_EQ(walls.crossed(straight(middle - across, middle + across), 0.0, 1.0), i);
   }
+}
+
+// Whatever the way within a clear box, no wall is crossed; and the box is as wide as the nearest wall lets it.
+TEST(ThinWalls, ABoxThatIsClearHoldsNoWall) {
+  std::mt19937_64 random(31);
+  std::uniform_real_distribution<double> place(-10.0, 10.0), part(0.0, 1.0);
+  for (const int count : {1, 4, 16, 17, 300})
+    for (int i = 0; i < 300; ++i) {
+      ThinWalls walls;
+      std::vector<std::pair<Vec2, Vec2>> ends;
+      for (int k = 0; k < count; ++k) {
+        ends.emplace_back(Vec2(place(random), place(random)), Vec2(place(random), place(random)));
+        walls.add(ends.back().first, ends.back().second, k);
+      }
+      const Vec2 p(place(random), place(random));
+      const Box clear = walls.clear_around(p);
+      for (const auto& [a, b] : ends)
+        for (int m = 0; m <= 100; ++m) {
+          const Vec2 on_wall = a + 0.01 * m * (b - a);
+          const bool inside =
+              (on_wall.array() > clear.low.array()).all() && (on_wall.array() < clear.high.array()).all();
+          ASSERT_FALSE(inside) << count << " walls, " << i;
+        }
+      if (clear.extent().x() == 0.0) continue;
+      const auto within = [&] {
+        return Vec2(clear.low + Vec2(part(random), part(random)).cwiseProduct(clear.extent()));
+      };
+      const Vec2 from = within(), to = within();
+      ASSERT_FALSE(walls.crossed([&](double t) { return Vec2(from + t * (to - from)); }, 0.0, 1.0));
+    }
+}
+
+TEST(ThinWalls, AClearBoxReachesToTheNearestWall) {
+  ThinWalls walls;
+  walls.add({3.0, -1.0}, {3.0, 1.0}, 0);
+  const Box clear = walls.clear_around({0.5, 0.0});
+  EXPECT_NEAR(clear.high.x(), 3.0, 1e-8);
+  EXPECT_NEAR(clear.low.x(), -2.0, 1e-8);
+  EXPECT_LT(clear.high.x(), 3.0);
 }
 
 }  // namespace
