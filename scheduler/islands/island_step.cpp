@@ -200,6 +200,7 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
     } else {
       outcome.won = std::max(0.0, won_here);
     }
+    outcome.lost = std::max(0.0, -won_here);
     outcome.solved = true;
     outcome.friction_residual = residual(step, result, h);
     step.velocity = result.velocity;

@@ -1,6 +1,7 @@
 #pragma once
 /// What an island is made of: bodies joined by contacts that last.
 
+#include <algorithm>
 #include <limits>
 #include <map>
 #include <tuple>
@@ -20,7 +21,9 @@ struct HeldContact {
   double normal_force = 0.0, tangential_force = 0.0;  ///< [N]
   double lasted = 0.0;                                ///< the step over which they are means [s]
   ContactMode mode = ContactMode::none;
-  double since = 0.0;         ///< in this mode without a break [s]
+  double since = 0.0;  ///< in this mode without a break [s]
+  /// Of an impact that a step stopped: how fast the two part where it ends [m/s], and what it took of them [J].
+  double rebound = 0.0, stopped = 0.0;
   Vec2 place = Vec2::Zero();  ///< of the feature's point in the world [m]
   /// Of a step by modes: what it does in the step, and from its end on if nothing comes between.
   bool by_modes = false;
@@ -36,11 +39,23 @@ inline const HeldContact* find_warm(const WarmContacts& warm, const HeldContact&
   return found == warm.end() ? nullptr : &found->second;
 }
 
+/// How an island came on in the steps that it took last.
+struct IslandPace {
+  int hasty = 0;      ///< steps by modes in a row that hardly led on
+  int agitation = 0;  ///< raised by a step that an impact cuts short, lowered by one in which there is none
+
+  /// Of islands that go on as one.
+  void join(const IslandPace& other) {
+    hasty = std::max(hasty, other.hasty);
+    agitation = std::max(agitation, other.agitation);
+  }
+};
+
 struct Island {
   std::vector<int> members;           ///< ascending
   std::vector<HeldContact> contacts;  ///< in order
   bool rests = false;
-  int hasty = 0;                                         ///< steps by modes in a row that hardly led on
+  IslandPace pace;
   double due = std::numeric_limits<double>::infinity();  ///< when its step ends [s]
   /// The contact whose bounces come to their limit where the step ends; body < 0: none.
   double then = std::numeric_limits<double>::infinity();  ///< of one at rest: `due` after that [s]

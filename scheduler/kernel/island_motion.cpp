@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "brink/core/base/disjoint_sets.h"
@@ -32,6 +33,12 @@ constexpr double kShortest = 1e-4;
 constexpr double kFalls = 0.75;
 /// A force below this part of the weight of the heaviest member is none.
 constexpr double kNoForce = 1e-9;
+/// A step that an impact cuts to less than this part is cut short.
+constexpr double kWorthwhile = 0.25;
+/// Members of an agitated island that are closer than this part of the smallest member's size stay together.
+constexpr double kRattles = 0.25;
+/// What a step stopped may be so far apart at its end, of the smallest member's size, and rebounds all the same.
+constexpr double kStoppedNear = 0.01;
 /// A speed below this part of what the smallest member gains as it falls by its size is none.
 constexpr double kNoSpeed = 1e-7;
 
@@ -58,7 +65,7 @@ std::vector<int> IslandMotion::joining(const World& world, Trajectories& traject
   if (!(h_ < kForever)) return {};
   members_.look_ahead(h_, kReach);
   return brink::joining(world, trajectories, *search_, members_, now, h_,
-                        [this](const PairKey& pair) { return most_absorbed(pair); });
+                        [this](const PairKey& pair) { return agitated_ ? kForever : most_absorbed(pair); });
 }
 
 void IslandMotion::list(double reach) {
@@ -78,6 +85,7 @@ std::vector<Vec3> IslandMotion::velocities() const {
 void IslandMotion::pass_on_impacts(const Impact& told) {
   h_ = longest();
   members_.look_ahead(0.0, kReach);
+  rebound_those_stopped(told);
   list(search_->limits().tolerance);
   for (std::size_t k = 0; k < kFirstImpacts + kImpactsEach * contacts_.size(); ++k) {
     const HeldContact* fastest = nullptr;
@@ -112,6 +120,76 @@ void IslandMotion::collide(const HeldContact& c, double closing, const Impact& t
   members_.set_twist(a, r.body);
   if (b >= 0) members_.set_twist(b, r.other);
   told(c, other.position, closing, r);
+}
+
+/// Those that the last step stopped part now, the fastest first, as fast as they would have rebounded then; but all
+/// together win no more than the step took of them.
+void IslandMotion::rebound_those_stopped(const Impact& told) {
+  const auto owes = [](const auto& warm) { return warm.second.rebound > 0.0; };
+  if (std::none_of(warm_.begin(), warm_.end(), owes)) return;
+  list(kStoppedNear * members_.size());
+  std::vector<std::pair<double, const HeldContact*>> owing;
+  double budget = 0.0;
+  bool driven = false;
+  for (const HeldContact& c : contacts_)
+    if (const HeldContact* stopped = find_warm(warm_, c); stopped && stopped->rebound > 0.0) {
+      owing.emplace_back(stopped->rebound, &c);
+      budget += stopped->stopped;
+      driven = driven || members_.on_moving_site(c);
+    }
+  std::stable_sort(owing.begin(), owing.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<ExtendedTwist> before;
+  for (int i = 0; i < static_cast<int>(members_.count()); ++i) before.push_back(members_.state(i).twist);
+  const double energy = kinetic_energy();
+  for (const auto& [speed, contact] : owing) part_with(*contact, speed, told);
+  if (!driven) slow_to(energy + budget, before);
+  for (auto& [feature, contact] : warm_) contact.rebound = 0.0;
+}
+
+/// Two that touch, or nearly so, part at that speed from now on, if they do not faster: by the impulse of an elastic
+/// impact of half the change, whatever they do now.
+void IslandMotion::part_with(const HeldContact& c, double speed, const Impact& told) {
+  const double closing = members_.closing_speed(c);
+  if (-closing >= speed) return;
+  const double faster = 0.5 * (speed - closing);
+  const int a = members_.place_of(c.pair.body),
+            b = c.pair.with_site() ? -1 : members_.place_of(c.pair.other_body);
+  const RealVec normal = c.feature.normal.cast<Real>(), other_arm = c.feature.point.cast<Real>();
+  const ExtendedState other = members_.other_state(c.pair);
+  Material elastic = response_->material_of(c.pair);
+  elastic.restitution = 1.0;
+  ImpulseSide side = side_of(a, members_.arm(c));
+  side.twist.velocity -= Real(faster) * normal;
+  ImpulseResult r = resolve_impulse(
+      side, b < 0 ? ImpulseSide{other.twist, other_arm, 0.0, 0.0, 0.0} : side_of(b, other_arm), normal,
+      elastic);
+  r.body.velocity += Real(faster) * normal;
+  members_.set_twist(a, r.body);
+  if (b >= 0) members_.set_twist(b, r.other);
+  const double e = response_->material_of(c.pair).restitution;
+  told(c, other.position, speed / e, r);
+}
+
+/// Takes back as much of what was changed since as leaves that kinetic energy.
+void IslandMotion::slow_to(double energy, const std::vector<ExtendedTwist>& before) {
+  const double now = kinetic_energy();
+  if (now <= energy) return;
+  std::vector<ExtendedTwist> after;
+  for (int i = 0; i < static_cast<int>(members_.count()); ++i) after.push_back(members_.state(i).twist);
+  const auto take_part = [&](double part) {
+    for (int i = 0; i < static_cast<int>(members_.count()); ++i)
+      members_.set_twist(i, {before[i].velocity + Real(part) * (after[i].velocity - before[i].velocity),
+                             before[i].omega + Real(part) * (after[i].omega - before[i].omega)});
+  };
+  // a parabola in the part: through none, a half and all
+  take_part(0.0);
+  const double none = kinetic_energy();
+  take_part(0.5);
+  const double half = kinetic_energy();
+  const double bend = 2.0 * (now - 2.0 * half + none), slope = now - none - bend, room = energy - none;
+  const double root = std::sqrt(std::max(0.0, slope * slope + 4.0 * bend * room));
+  take_part(std::clamp(slope < 0.0 ? (root - slope) / (2.0 * bend) : 2.0 * room / (slope + root), 0.0, 1.0));
 }
 
 // ---- rest
@@ -176,9 +254,14 @@ bool IslandMotion::take(double h, double tolerance) {
     members_.look_ahead(h_, reach);
     list(-1.0);
   };
+  const double worthwhile = kWorthwhile * h;
   for (int halving = 0, widening = 0; halving <= kHalvings;) {
     look(h);
-    if (const double first = next_arrival(); first < h) look(h = first);  // an impact ends the step
+    if (const double first = next_arrival(); first < h) {  // an impact ends the step
+      impacts_in_step_ = impacts_in_step_ || first < worthwhile;
+      if (!agitated_) look(h = first);
+    }
+    if (agitated_) stop_arrivals();
     make_problem();
     const auto gap = [this](std::size_t k, double later, const std::vector<Vec3>& velocity) {
       return members_.gap(contacts_[k], later, velocity) - kept(contacts_[k].feature);
@@ -198,6 +281,7 @@ bool IslandMotion::take(double h, double tolerance) {
       tally_->energy_won += outcome.won;
       tally_->absorbed = std::max(tally_->absorbed, absorbed_);
       take_forces();
+      note_stopped(outcome.lost);
       return true;
     }
     if (outcome.solved && ++widening <= kWidenings) {
@@ -225,6 +309,32 @@ double IslandMotion::next_arrival() {
       absorbed_ = std::max(absorbed_, come.closing);
   }
   return first;
+}
+
+/// What arrives within the step, though too fast to be taken as plastic, is stopped until its end.
+void IslandMotion::stop_arrivals() {
+  const std::vector<Vec3> velocity = velocities();
+  for (HeldContact& c : contacts_) {
+    c.rebound = 0.0;
+    if (c.feature.gap - kept(c.feature) <= search_->limits().tolerance) continue;
+    const Arrival come = arrival(c, velocity);
+    if (come.time < h_ && come.closing > most_absorbed(c.pair))
+      c.rebound = response_->material_of(c.pair).restitution * come.closing;
+  }
+}
+
+/// What the step took of those that it stopped, of all that it took (`lost` [J]); none of those that it did not.
+void IslandMotion::note_stopped(double lost) {
+  double all = 0.0;
+  for (HeldContact& c : contacts_) {
+    if (!(c.normal_force > 0.0)) c.rebound = 0.0;
+    if (!(c.rebound > 0.0)) continue;
+    const double e = response_->material_of(c.pair).restitution;
+    c.stopped = 0.5 * c.normal_force * h_ * (c.rebound / e + std::max(0.0, c.feature.gap / h_));
+    all += c.stopped;
+  }
+  for (HeldContact& c : contacts_)
+    if (c.rebound > 0.0 && all > lost) c.stopped *= lost / all;
 }
 
 /// When the two features meet if the members go on as they do now, by its tangents: those of a convex gap lead
@@ -355,6 +465,29 @@ bool IslandMotion::stays_near(const HeldContact& c) const {
   return c.feature.gap - h_ * (closing + behind) <= tolerance;
 }
 
+/// Pairs of members whose bounding discs are so near that they stay together while the island is agitated: who
+/// rattles would be back at once.
+std::vector<std::pair<int, int>> IslandMotion::neighbours() const {
+  const double near = kRattles * members_.size();
+  const auto left = [&](int i) {
+    return static_cast<double>(members_.state(i).position.x()) - members_.bounding_radius(i);
+  };
+  std::vector<int> by_left(members_.count());
+  std::iota(by_left.begin(), by_left.end(), 0);
+  std::sort(by_left.begin(), by_left.end(),
+            [&](int a, int b) { return std::pair(left(a), a) < std::pair(left(b), b); });
+  std::vector<std::pair<int, int>> found;
+  for (std::size_t x = 0; x < by_left.size(); ++x)
+    for (std::size_t y = x + 1; y < by_left.size(); ++y) {
+      const int a = by_left[x], b = by_left[y];
+      const double reach = members_.bounding_radius(a) + members_.bounding_radius(b) + near;
+      if (left(b) > left(a) + 2.0 * members_.bounding_radius(a) + near) break;
+      const RealVec apart = members_.state(a).position - members_.state(b).position;
+      if (static_cast<double>(apart.norm()) <= reach) found.emplace_back(a, b);
+    }
+  return found;
+}
+
 IslandMotion::Parts IslandMotion::parts(bool rests) const {
   const int count = static_cast<int>(members_.count());
   DisjointSets joined;
@@ -367,6 +500,11 @@ IslandMotion::Parts IslandMotion::parts(bool rests) const {
     pushed[a] = pushed[b] = true;
     joined.unite(a, b);
   }
+  if (agitated_ && !rests)
+    for (const auto& [a, b] : neighbours()) {
+      pushed[a] = pushed[b] = true;
+      joined.unite(a, b);
+    }
   for (int i = 0; i < count; ++i)
     for (const int j : members_.coupled_to(i)) joined.unite(i, j);
   Parts parts;

@@ -36,6 +36,11 @@ class IslandMotion {
   bool rests(double rest_speed);
   /// From now on bounces end where they do not leave the contact tolerance any more, not the step.
   void expect_modes() { by_modes_ = true; }
+  /// From now on impacts do not end steps: they wait for the ends of steps, and members for whom a step comes to
+  /// are stopped by it until then (Moreau 1988).
+  void expect_agitation() { agitated_ = true; }
+  /// True if impacts cut the step short, or waited for its end.
+  bool impacts_in_step() const { return impacts_in_step_; }
   const WarmContacts& warm() const { return warm_; }
   /// Takes a step of `h` [s] at most by modes; false: not that way. @pre sites are covered as far.
   bool take(IslandModes& modes, double now, double h, bool on_time);
@@ -61,9 +66,14 @@ class IslandMotion {
     double closing = 0.0;                                   ///< then, or a little before [m/s]
   };
   void list(double reach);
+  void rebound_those_stopped(const Impact& told);
+  void part_with(const HeldContact& c, double speed, const Impact& told);
+  void slow_to(double energy, const std::vector<ExtendedTwist>& before);
+  void note_stopped(double lost);
   void collide(const HeldContact& c, double closing, const Impact& told);
   ImpulseSide side_of(int member, const RealVec& arm) const;
   double next_arrival();
+  void stop_arrivals();
   Arrival arrival(const HeldContact& c, const std::vector<Vec3>& velocity) const;
   bool passes_by(const HeldContact& c, double then, double closing) const;
   double most_absorbed(const PairKey& pair) const;
@@ -76,6 +86,7 @@ class IslandMotion {
   double kinetic_energy() const;
   bool pushes(const HeldContact& c) const;
   bool stays_near(const HeldContact& c) const;
+  std::vector<std::pair<int, int>> neighbours() const;
   ContactMode mode_of(const HeldContact& c, bool rests) const;
   std::vector<Vec3> velocities() const;
 
@@ -85,7 +96,7 @@ class IslandMotion {
   ConeQp* solver_;
   IslandTally* tally_;
   WarmContacts warm_;
-  bool by_modes_ = false;
+  bool by_modes_ = false, agitated_ = false, impacts_in_step_ = false;
   double h_ = 0.0, absorbed_ = 0.0;
   std::vector<HeldContact> contacts_;
   IslandStep problem_;

@@ -18,6 +18,19 @@ namespace {
 constexpr double kHasty = 0.05;
 constexpr int kMostHasty = 64, kCalmed = 4;
 
+/// From this many members on, an island of which so many steps were cut short by impacts is agitated: its impacts
+/// wait for the end of a step then. It stays so until some steps more had none.
+constexpr std::size_t kCrowd = 8;
+constexpr int kAgitated = 8, kMostAgitation = 32;
+
+bool is_agitated(const IslandPace& pace, std::size_t members) {
+  return members >= kCrowd && pace.agitation >= kAgitated;
+}
+
+int next_agitation(int agitation, bool impacts) {
+  return std::clamp(agitation + (impacts ? 1 : -1), 0, kMostAgitation);
+}
+
 int next_hasty(int hasty, bool by_modes, bool was_short) {
   if (by_modes) return was_short ? hasty + 1 : 0;
   return hasty >= kMostHasty && hasty < kMostHasty + kCalmed ? hasty + 1 : 0;
@@ -45,7 +58,7 @@ void Islands::gather(int body, std::set<int>& members) const {
     for (const int j : trajectories_->coupled_to(k)) gather(j, members);
 }
 
-WarmContacts Islands::take_out(const std::set<int>& members, int& hasty) {
+WarmContacts Islands::take_out(const std::set<int>& members, IslandPace& pace) {
   WarmContacts warm;
   for (const int k : members) {
     const auto found = islands_.find(k);
@@ -57,7 +70,9 @@ WarmContacts Islands::take_out(const std::set<int>& members, int& hasty) {
       warm[key] = c;
       if (c.mode != ContactMode::none) taken_out_.emplace(key, c);
     }
-    hasty = std::max(hasty, found->second.hasty);
+    const bool cut_short = !found->second.rests && found->second.due > run_->time();
+    if (cut_short) found->second.pace.agitation += 2;
+    pace.join(found->second.pace);
     for (const int j : found->second.members) lead_of_.erase(j);
     islands_.erase(found);
   }
@@ -141,11 +156,11 @@ void Islands::tell(const IslandModes& modes, const IslandMembers& members) {
 }
 
 /// Members are held from now on, also those that join; what they push each other with is taken out.
-IslandMotion Islands::set_out(std::set<int>& members, int& hasty) {
+IslandMotion Islands::set_out(std::set<int>& members, IslandPace& pace) {
   WarmContacts warm;
-  hasty = 0;
+  pace = {};
   for (;;) {
-    warm.merge(take_out(members, hasty));
+    warm.merge(take_out(members, pace));
     std::vector<Restart> as_they_are;
     for (const int k : members)
       if (!trajectories_->is_held(k))
@@ -154,6 +169,7 @@ IslandMotion Islands::set_out(std::set<int>& members, int& hasty) {
     trajectories_->hold(as_they_are, held);
     IslandMotion motion(IslandMembers(*world_, *trajectories_, *search_, run_->time(), members), *search_,
                         *response_, solver_, tally_, warm);
+    if (is_agitated(pace, members.size())) motion.expect_agitation();
     const std::vector<int> more = motion.joining(*world_, *trajectories_, run_->time());
     if (more.empty()) return motion;
     for (const int k : more) gather(k, members);
@@ -166,12 +182,12 @@ bool Islands::begin_step(std::set<int> members, double longest, std::vector<int>
 
 bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time) {
   const RunControl::Indivisible whole(*run_);
-  int hasty = 0;
-  IslandMotion motion = set_out(members, hasty);
+  IslandPace pace;
+  IslandMotion motion = set_out(members, pace);
   if (run_->halt()) return false;
   const double now = run_->time();
   IslandModes modes(motion.members(), *trajectories_, *search_, *response_, by_modes_, motion.warm());
-  if (hasty < kMostHasty && modes.suits()) motion.expect_modes();
+  if (pace.hasty < kMostHasty && modes.suits()) motion.expect_modes();
   const std::uint64_t collisions = run_->work().collisions;
   motion.pass_on_impacts(
       [this](const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r) {
@@ -198,9 +214,10 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   }
   ++tally_.steps;
   if (by_modes) tell(modes, motion.members());
-  hasty = next_hasty(hasty, by_modes, by_modes && modes.end() - now < kHasty * h);
+  pace.hasty = next_hasty(pace.hasty, by_modes, by_modes && modes.end() - now < kHasty * h);
+  pace.agitation = next_agitation(pace.agitation, motion.impacts_in_step());
   if (rests) note_change(EventKind::sleep, *members.begin()), ++tally_.slept;
-  part(motion, rests, by_modes ? &modes : nullptr, hasty, changed);
+  part(motion, rests, by_modes ? &modes : nullptr, pace, changed);
   tell_ended();
   std::sort(changed.begin(), changed.end());
   changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
@@ -209,7 +226,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
 }
 
 /// Members that push each other are islands; those that nothing pushes are let go, as they were.
-void Islands::part(const IslandMotion& motion, bool rests, const IslandModes* modes, int hasty,
+void Islands::part(const IslandMotion& motion, bool rests, const IslandModes* modes, const IslandPace& pace,
                    std::vector<int>& changed) {
   const IslandMotion::Parts parts = motion.parts(rests);
   const IslandMembers& members = motion.members();
@@ -220,7 +237,7 @@ void Islands::part(const IslandMotion& motion, bool rests, const IslandModes* mo
     for (const int i : together)
       held.push_back({members.bodies()[i], rests || modes ? members.state(i) : motion.after(i)});
     Island island = motion.island_of(together, rests, end);
-    island.hasty = hasty;
+    island.pace = pace;
     put_in(std::move(island));
   }
   for (const int i : parts.free) {

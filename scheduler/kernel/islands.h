@@ -75,10 +75,10 @@ class Islands {
 
  private:
   void gather(int body, std::set<int>& members) const;
-  IslandMotion set_out(std::set<int>& members, int& hasty);
+  IslandMotion set_out(std::set<int>& members, IslandPace& pace);
   bool begin_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time = false);
   bool carry_out_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time);
-  void part(const IslandMotion& motion, bool rests, const IslandModes* modes, int hasty,
+  void part(const IslandMotion& motion, bool rests, const IslandModes* modes, const IslandPace& pace,
             std::vector<int>& changed);
   void tell(const IslandModes& modes, const IslandMembers& members);
   FeatureContact as_told(const HeldContact& c, const RealVec& from) const;
@@ -86,7 +86,7 @@ class Islands {
   void note_change(EventKind kind, int lead);
   void note_impact(const HeldContact& c, const RealVec& from, double closing, double normal,
                    double tangential);
-  WarmContacts take_out(const std::set<int>& members, int& hasty);
+  WarmContacts take_out(const std::set<int>& members, IslandPace& pace);
   void put_in(Island island);
   void tell_ended();
   void find_next();

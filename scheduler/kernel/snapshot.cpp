@@ -11,7 +11,7 @@ namespace brink {
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x314b4e4952420009ULL;  // "\11\0BRINK1"
+constexpr std::uint64_t kMagic = 0x314b4e495242000aULL;  // "\12\0BRINK1"
 
 class Writer {
  public:
@@ -103,7 +103,7 @@ void write_islands(Writer& out, const Islands::Saved& islands) {
   out(static_cast<std::uint64_t>(islands.islands.size()));
   for (const Island& i : islands.islands) {
     out(i.rests);
-    out(i.hasty);
+    out(i.pace);
     out(i.due);
     out(i.then);
     out(i.series);
@@ -121,7 +121,7 @@ void read_islands(Reader& in, const Trajectories::Saved& bodies, Islands::Saved&
   for (std::uint64_t n = in.count(sizeof(double)); n > 0; --n) {
     Island i;
     in(i.rests);
-    in(i.hasty);
+    in(i.pace);
     in(i.due);
     in(i.then);
     in(i.series);

@@ -19,9 +19,9 @@ namespace {
 
 using testing::LastingWorld;
 
-/// Seeds 0 .. kWorlds - 1; BRINK_WORLDS asks for more, BRINK_SEED for one alone. Each is broken off kBreaks times and
+/// Seeds 0 .. kWorlds - 1; BRINK_WORLDS asks for more, BRINK_SEED for one alone; and heaps, BRINK_HEAPS asks for more. Each is broken off kBreaks times and
 /// gone on with, BRINK_BREAKS asks for more; and as often it goes on from a checkpoint. BRINK_MODES: solver.modes_contacts.
-constexpr std::uint64_t kWorlds = 32, kBreaks = 4;
+constexpr std::uint64_t kWorlds = 32, kBreaks = 4, kHeaps = 8;
 /// Hollow corners and walls that rise from a joint were passed through in these.
 constexpr std::array<std::uint64_t, 8> kOnceFailed{43, 44, 51, 58, 59, 76, 84, 98};
 
@@ -31,6 +31,9 @@ std::vector<std::uint64_t> seeds() {
   std::vector<std::uint64_t> all(more ? std::stoull(more) : kWorlds);
   std::iota(all.begin(), all.end(), 0);
   if (!more) all.insert(all.end(), kOnceFailed.begin(), kOnceFailed.end());
+  const char* heaps = std::getenv("BRINK_HEAPS");
+  for (std::uint64_t k = 0; k < (heaps ? std::stoull(heaps) : kHeaps); ++k)
+    all.push_back(testing::LastingWorldMaker::kHeaps + k);
   return all;
 }
 

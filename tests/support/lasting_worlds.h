@@ -24,14 +24,19 @@ struct LastingWorld {
 
 class LastingWorldMaker {
  public:
-  explicit LastingWorldMaker(std::uint64_t seed) : seed_(seed), random_(seed) {}
+  /// Seeds from this one on are of heaps: 16 to 25 bodies at once, not one to twelve.
+  static constexpr std::uint64_t kHeaps = 1000000;
+
+  explicit LastingWorldMaker(std::uint64_t seed)
+      : seed_(seed), random_(seed), columns_(seed < kHeaps ? 3 : 5) {}
 
   LastingWorld make() {
     made_.duration = random_.uniform(2.0, 5.0);
     made_.world.gravity = {0.0, -9.81};
     materials();
     ground();
-    const int count = 1 + static_cast<int>(random_.below(12));
+    const int count =
+        seed_ < kHeaps ? 1 + static_cast<int>(random_.below(12)) : 16 + static_cast<int>(random_.below(10));
     for (int k = 0; k < count; ++k) add_body(k);
     if (seed_ % 5 == 0 && count > 1) join();
     if (seed_ % 7 == 0) slow_down();
@@ -161,7 +166,9 @@ class LastingWorldMaker {
 
   void add_body(int k) {
     const double base = made_.ground == "slope" ? 4.5 : made_.ground == "groove" ? 0.5 : 0.3;
-    const Vec2 at(0.6 * (k % 3 - 1) + random_.uniform(-0.02, 0.02), base + 0.55 * (k / 3));
+    const double pitch = columns_ == 3 ? 0.6 : 0.46;
+    const Vec2 at(pitch * (k % columns_ - columns_ / 2) + random_.uniform(-0.01, 0.01),
+                  base + 0.55 * (k / columns_));
     const bool flat = random_.below(3) == 0;
     Body b =
         body(shape(), at, {random_.uniform(-1.0, 1.0), random_.uniform(-1.0, 0.5)}, random_.uniform(0.5, 2.0),
@@ -193,6 +200,7 @@ class LastingWorldMaker {
 
   std::uint64_t seed_;
   Random random_;
+  int columns_;  ///< that bodies start in
   LastingWorld made_;
 };
 
