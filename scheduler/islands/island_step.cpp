@@ -10,6 +10,8 @@ namespace brink {
 namespace {
 
 constexpr int kLooks = 8;        ///< along a step
+constexpr double kSoon = 0.05;   ///< after the first look
+constexpr int kBisections = 16;  ///< until a corner is found that was cut between two looks
 constexpr int kCorrections = 6;  ///< of gaps that were missed
 constexpr double kAimHigher = 1.001;
 /// What the solver may miss, of the step's speed: gaps and energy are looked at themselves.
@@ -83,6 +85,19 @@ double lowest(double before, double here, double after) {
   return bend > 0.0 && std::abs(at) < 1.0 ? at : 0.0;
 }
 
+/// A gap that falls so from a look on would be gone before the next, where it is not: the sample has come to the end
+/// of the site between the two, and may have cut its corner. Looks as near before that as counts.
+template <class Look>
+void look_for_end(double from, double seen, double slope, Look&& look) {
+  double falling = from, past = from + 1.0;
+  for (int n = 0; n < kBisections; ++n) {
+    const double middle = 0.5 * (falling + past), there = look(middle);
+    if (there < 0.0) return;
+    const double expected = seen + (middle - from) * slope;
+    (there - expected <= 0.25 * (seen - expected) ? falling : past) = middle;
+  }
+}
+
 /// By looks along the step, and where parabolas through them dip in between.
 Miss missed(std::size_t k, double h, const std::vector<Vec3>& velocity, const GapAlong& gap) {
   Miss miss;
@@ -96,6 +111,11 @@ Miss missed(std::size_t k, double h, const std::vector<Vec3>& velocity, const Ga
   for (int i = 0; i <= kLooks; ++i) seen[i] = i == 0 ? gap(k, 0.0, velocity) : look(i);
   for (int i = 1; i < kLooks; ++i)
     if (const double at = lowest(seen[i - 1], seen[i], seen[i + 1]); at != 0.0) look(i + at);
+  for (int i = 0; i < kLooks; ++i) {
+    if (!(seen[i] > 0.0 && seen[i + 1] > 0.0)) continue;
+    const double slope = i > 0 ? seen[i] - seen[i - 1] : (look(kSoon) - seen[0]) / kSoon;
+    if (seen[i] + slope < 0.0) look_for_end(i, seen[i], slope, look);
+  }
   return miss;
 }
 
@@ -200,7 +220,6 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
     } else {
       outcome.won = std::max(0.0, won_here);
     }
-    outcome.lost = std::max(0.0, -won_here);
     outcome.solved = true;
     outcome.friction_residual = residual(step, result, h);
     step.velocity = result.velocity;

@@ -52,7 +52,6 @@ struct StepOutcome {
   /// Energy that the step made [J], beyond what sites that move gave: at most 1e-3 of what it turned over. 0 where
   /// none does: all is slowed by as much then.
   double won = 0.0;
-  double lost = 0.0;               ///< energy that it took [J], if it made none
   double friction_residual = 0.0;  ///< largest |q| - mu p left by bounds that lag, of the largest force
 };
 

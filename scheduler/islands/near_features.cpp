@@ -17,6 +17,9 @@ constexpr double kSinks = 1e-6;
 /// Below this part of the size two points are one, and their difference has no direction.
 constexpr double kOnePoint = 1e-12;
 
+/// Corners of solids that are so near, of their sizes, lie on each other: contacts keep their gaps no better.
+constexpr double kOneCorner = 1e-10;
+
 /// Cosine between a site and the way to another that roundings may leave of a straight joint.
 constexpr double kParallel = 1e-9;
 
@@ -114,23 +117,38 @@ bool goes_on_nearer(const Outline& outline, std::size_t j, const std::vector<Nea
   return false;
 }
 
-/// True if the sample is on the end of site j, a straight side of a solid, and the side that goes on from there
-/// faces the sample's owner more: corner on corner, each lies on the face below it.
-bool other_side_faces(const Half& half, std::size_t j, const std::vector<Nearest>& nearest, const Vec2& q,
-                      double tie) {
+/// Where a sample lies that is upon a corner of a solid.
+enum class OnCorner { nowhere, this_side, other_side };
+
+/// Of a sample upon an end of site j, a straight side of a solid, where it has a convex corner with another: on that of
+/// the two that faces the sample's owner more. Corner on corner, each lies on the face below it.
+OnCorner on_corner(const Half& half, std::size_t j, const Vec2& q, double tie) {
   const Outline& outline = half.other;
   const Site& site = outline.sites[j];
-  if (!site.solid || site.kind != SiteKind::segment || nearest[j].distance > tie) return false;
+  if (!site.solid || site.kind != SiteKind::segment) return OnCorner::nowhere;
+  const bool at_start = (q - site.a).squaredNorm() < (q - site.b).squaredNorm();
+  const Vec2& end = at_start ? site.a : site.b;
+  if (!((q - end).norm() <= tie)) return OnCorner::nowhere;
   const Vec2 centre = half.other_frame.to_local(half.carrier_frame.origin) - q;
-  for (std::size_t k = 0; k < nearest.size(); ++k) {
+  OnCorner where = OnCorner::nowhere;
+  for (std::size_t k = 0; k < outline.sites.size(); ++k) {
     const Site& next = outline.sites[k];
-    if (k == j || next.kind != SiteKind::segment || nearest[k].distance > tie) continue;
-    const Vec2 on = nearest[k].foot == Foot::start ? Vec2(next.b - next.a) : Vec2(next.a - next.b);
+    if (k == j || next.kind != SiteKind::segment || (next.a != end && next.b != end)) continue;
+    const Vec2 on = next.a == end ? Vec2(next.b - next.a) : Vec2(next.a - next.b);
     if (outward(site).dot(on) > kParallel * on.norm()) continue;  // a hollow corner has both its sides
     const double more = outward(next).dot(centre) - outward(site).dot(centre);
-    if (more > 0.0 || (more == 0.0 && k < j)) return true;
+    if (more > 0.0 || (more == 0.0 && k < j)) return OnCorner::other_side;
+    where = OnCorner::this_side;
   }
-  return false;
+  return where;
+}
+
+/// The feature of a sample upon the corner is that of the side on which it lies.
+void turn_outward(const Half& half, const Vec2& q, NearFeature& f) {
+  const Site& site = half.other.sites[f.site];
+  const Vec2 out = outward(site), world = half.other_frame.direction_to_world(out);
+  f.gap = out.dot(q - site.a) - site.radius - half.carrier.samples[f.sample].radius;
+  f.normal = half.on_a ? world : Vec2(-world);
 }
 
 /// Adds the features of sample i: sites that face it; and where it lies inside by roundings, those that are
@@ -148,12 +166,17 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
   for (std::size_t j = 0; j < nearest.size(); ++j)
     outside =
         outside || (nearest[j].distance <= least + tie && side_of(half.other.sites[j], nearest[j], q) > 0.0);
+  const bool bare = half.carrier.samples[i].arc_site < 0;
   for (std::size_t j = 0; j < nearest.size(); ++j) {
     const double side = side_of(half.other.sites[j], nearest[j], q);
-    if (side < 0.0 && nearest[j].distance > tie && (outside || nearest[j].distance > least + tie)) continue;
-    if (goes_on_nearer(half.other, j, nearest, q, tie) || other_side_faces(half, j, nearest, q, tie))
-      continue;
-    const auto f = feature(half, i, static_cast<int>(j), nearest[j], side, q);
+    const OnCorner where = bare ? on_corner(half, j, q, tie * (kOneCorner / kOnePoint)) : OnCorner::nowhere;
+    if (where == OnCorner::other_side) continue;
+    if (where == OnCorner::nowhere) {
+      if (side < 0.0 && nearest[j].distance > tie && (outside || nearest[j].distance > least + tie)) continue;
+      if (goes_on_nearer(half.other, j, nearest, q, tie)) continue;
+    }
+    auto f = feature(half, i, static_cast<int>(j), nearest[j], side, q);
+    if (where == OnCorner::this_side) turn_outward(half, q, *f);
     if (f && f->gap <= reach) found.push_back(*f);
   }
 }

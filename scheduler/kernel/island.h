@@ -21,9 +21,7 @@ struct HeldContact {
   double normal_force = 0.0, tangential_force = 0.0;  ///< [N]
   double lasted = 0.0;                                ///< the step over which they are means [s]
   ContactMode mode = ContactMode::none;
-  double since = 0.0;  ///< in this mode without a break [s]
-  /// Of an impact that a step stopped: how fast the two part where it ends [m/s], and what it took of them [J].
-  double rebound = 0.0, stopped = 0.0;
+  double since = 0.0;         ///< in this mode without a break [s]
   Vec2 place = Vec2::Zero();  ///< of the feature's point in the world [m]
   /// Of a step by modes: what it does in the step, and from its end on if nothing comes between.
   bool by_modes = false;

@@ -37,8 +37,6 @@ constexpr double kNoForce = 1e-9;
 constexpr double kWorthwhile = 0.25;
 /// Members of an agitated island that are closer than this part of the smallest member's size stay together.
 constexpr double kRattles = 0.25;
-/// What a step stopped may be so far apart at its end, of the smallest member's size, and rebounds all the same.
-constexpr double kStoppedNear = 0.01;
 /// A speed below this part of what the smallest member gains as it falls by its size is none.
 constexpr double kNoSpeed = 1e-7;
 
@@ -84,23 +82,45 @@ std::vector<Vec3> IslandMotion::velocities() const {
 
 void IslandMotion::pass_on_impacts(const Impact& told) {
   h_ = longest();
-  members_.look_ahead(0.0, kReach);
-  rebound_those_stopped(told);
-  list(search_->limits().tolerance);
-  for (std::size_t k = 0; k < kFirstImpacts + kImpactsEach * contacts_.size(); ++k) {
-    const HeldContact* fastest = nullptr;
-    double most = 0.0;
-    for (const HeldContact& c : contacts_) {
-      const double closing = members_.closing_speed(c);
-      if (closing <= most || closing <= most_absorbed(c.pair) || passes_by(c, 0.0, closing)) continue;
-      if (by_modes_ && IslandModes::is_shadow(*search_, c, contacts_)) continue;
-      most = closing;
-      fastest = &c;
-    }
-    if (!fastest) break;
-    collide(*fastest, most, told);
+  members_.look_ahead(agitated_ ? h_ : 0.0, kReach);
+  list(agitated_ ? -1.0 : search_->limits().tolerance);
+  std::vector<std::vector<std::size_t>> contacts_of(members_.count());
+  const auto each_member = [&](const HeldContact& c, auto&& visit) {
+    visit(members_.place_of(c.pair.body));
+    if (!c.pair.with_site()) visit(members_.place_of(c.pair.other_body));
+  };
+  std::vector<Vec3> velocity = velocities();
+  std::vector<double> impact;  // how fast each contact closes that is an impact now
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    impact.push_back(impact_of(contacts_[k], velocity));
+    each_member(contacts_[k], [&](int member) { contacts_of[member].push_back(k); });
+  }
+  for (std::size_t n = 0; n < kFirstImpacts + kImpactsEach * contacts_.size(); ++n) {
+    const auto fastest = std::max_element(impact.begin(), impact.end());
+    if (fastest == impact.end() || !(*fastest > 0.0)) break;
+    const HeldContact& c = contacts_[static_cast<std::size_t>(fastest - impact.begin())];
+    collide(c, *fastest, told);
+    impacts_in_step_ = impacts_in_step_ || !touches(c);
+    each_member(c, [&](int member) { velocity[member] = as_vector(members_.state(member).twist.rounded()); });
+    each_member(c, [&](int member) {
+      for (const std::size_t k : contacts_of[member]) impact[k] = impact_of(contacts_[k], velocity);
+    });
   }
   members_.find_speeds();
+}
+
+bool IslandMotion::touches(const HeldContact& c) const {
+  return c.feature.gap - kept(c.feature) <= search_->limits().tolerance;
+}
+
+/// How fast the two close if that is an impact now [m/s], else 0: they touch, or are to meet within the step of an
+/// agitated island, and faster than a step takes as plastic.
+double IslandMotion::impact_of(const HeldContact& c, const std::vector<Vec3>& velocity) const {
+  const double closing = members_.closing_speed(c);
+  if (closing <= most_absorbed(c.pair)) return 0.0;
+  if (!touches(c)) return arrival(c, velocity).time < h_ ? closing : 0.0;
+  if (passes_by(c, 0.0, closing)) return 0.0;
+  return by_modes_ && IslandModes::is_shadow(*search_, c, contacts_) ? 0.0 : closing;
 }
 
 ImpulseSide IslandMotion::side_of(int member, const RealVec& arm) const {
@@ -120,76 +140,6 @@ void IslandMotion::collide(const HeldContact& c, double closing, const Impact& t
   members_.set_twist(a, r.body);
   if (b >= 0) members_.set_twist(b, r.other);
   told(c, other.position, closing, r);
-}
-
-/// Those that the last step stopped part now, the fastest first, as fast as they would have rebounded then; but all
-/// together win no more than the step took of them.
-void IslandMotion::rebound_those_stopped(const Impact& told) {
-  const auto owes = [](const auto& warm) { return warm.second.rebound > 0.0; };
-  if (std::none_of(warm_.begin(), warm_.end(), owes)) return;
-  list(kStoppedNear * members_.size());
-  std::vector<std::pair<double, const HeldContact*>> owing;
-  double budget = 0.0;
-  bool driven = false;
-  for (const HeldContact& c : contacts_)
-    if (const HeldContact* stopped = find_warm(warm_, c); stopped && stopped->rebound > 0.0) {
-      owing.emplace_back(stopped->rebound, &c);
-      budget += stopped->stopped;
-      driven = driven || members_.on_moving_site(c);
-    }
-  std::stable_sort(owing.begin(), owing.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::vector<ExtendedTwist> before;
-  for (int i = 0; i < static_cast<int>(members_.count()); ++i) before.push_back(members_.state(i).twist);
-  const double energy = kinetic_energy();
-  for (const auto& [speed, contact] : owing) part_with(*contact, speed, told);
-  if (!driven) slow_to(energy + budget, before);
-  for (auto& [feature, contact] : warm_) contact.rebound = 0.0;
-}
-
-/// Two that touch, or nearly so, part at that speed from now on, if they do not faster: by the impulse of an elastic
-/// impact of half the change, whatever they do now.
-void IslandMotion::part_with(const HeldContact& c, double speed, const Impact& told) {
-  const double closing = members_.closing_speed(c);
-  if (-closing >= speed) return;
-  const double faster = 0.5 * (speed - closing);
-  const int a = members_.place_of(c.pair.body),
-            b = c.pair.with_site() ? -1 : members_.place_of(c.pair.other_body);
-  const RealVec normal = c.feature.normal.cast<Real>(), other_arm = c.feature.point.cast<Real>();
-  const ExtendedState other = members_.other_state(c.pair);
-  Material elastic = response_->material_of(c.pair);
-  elastic.restitution = 1.0;
-  ImpulseSide side = side_of(a, members_.arm(c));
-  side.twist.velocity -= Real(faster) * normal;
-  ImpulseResult r = resolve_impulse(
-      side, b < 0 ? ImpulseSide{other.twist, other_arm, 0.0, 0.0, 0.0} : side_of(b, other_arm), normal,
-      elastic);
-  r.body.velocity += Real(faster) * normal;
-  members_.set_twist(a, r.body);
-  if (b >= 0) members_.set_twist(b, r.other);
-  const double e = response_->material_of(c.pair).restitution;
-  told(c, other.position, speed / e, r);
-}
-
-/// Takes back as much of what was changed since as leaves that kinetic energy.
-void IslandMotion::slow_to(double energy, const std::vector<ExtendedTwist>& before) {
-  const double now = kinetic_energy();
-  if (now <= energy) return;
-  std::vector<ExtendedTwist> after;
-  for (int i = 0; i < static_cast<int>(members_.count()); ++i) after.push_back(members_.state(i).twist);
-  const auto take_part = [&](double part) {
-    for (int i = 0; i < static_cast<int>(members_.count()); ++i)
-      members_.set_twist(i, {before[i].velocity + Real(part) * (after[i].velocity - before[i].velocity),
-                             before[i].omega + Real(part) * (after[i].omega - before[i].omega)});
-  };
-  // a parabola in the part: through none, a half and all
-  take_part(0.0);
-  const double none = kinetic_energy();
-  take_part(0.5);
-  const double half = kinetic_energy();
-  const double bend = 2.0 * (now - 2.0 * half + none), slope = now - none - bend, room = energy - none;
-  const double root = std::sqrt(std::max(0.0, slope * slope + 4.0 * bend * room));
-  take_part(std::clamp(slope < 0.0 ? (root - slope) / (2.0 * bend) : 2.0 * room / (slope + root), 0.0, 1.0));
 }
 
 // ---- rest
@@ -261,7 +211,6 @@ bool IslandMotion::take(double h, double tolerance) {
       impacts_in_step_ = impacts_in_step_ || first < worthwhile;
       if (!agitated_) look(h = first);
     }
-    if (agitated_) stop_arrivals();
     make_problem();
     const auto gap = [this](std::size_t k, double later, const std::vector<Vec3>& velocity) {
       return members_.gap(contacts_[k], later, velocity) - kept(contacts_[k].feature);
@@ -281,7 +230,6 @@ bool IslandMotion::take(double h, double tolerance) {
       tally_->energy_won += outcome.won;
       tally_->absorbed = std::max(tally_->absorbed, absorbed_);
       take_forces();
-      note_stopped(outcome.lost);
       return true;
     }
     if (outcome.solved && ++widening <= kWidenings) {
@@ -300,41 +248,14 @@ double IslandMotion::next_arrival() {
   double first = kForever;
   const std::vector<Vec3> velocity = velocities();
   for (const HeldContact& c : contacts_) {
-    const bool touches = c.feature.gap - kept(c.feature) <= search_->limits().tolerance;
-    const Arrival come = touches ? Arrival{0.0, members_.closing_speed(c)} : arrival(c, velocity);
+    const Arrival come = touches(c) ? Arrival{0.0, members_.closing_speed(c)} : arrival(c, velocity);
     if (!(come.time <= h_)) continue;
-    if (!touches && come.closing > most_absorbed(c.pair))
+    if (!touches(c) && come.closing > most_absorbed(c.pair))
       first = std::min(first, come.time);
     else
       absorbed_ = std::max(absorbed_, come.closing);
   }
   return first;
-}
-
-/// What arrives within the step, though too fast to be taken as plastic, is stopped until its end.
-void IslandMotion::stop_arrivals() {
-  const std::vector<Vec3> velocity = velocities();
-  for (HeldContact& c : contacts_) {
-    c.rebound = 0.0;
-    if (c.feature.gap - kept(c.feature) <= search_->limits().tolerance) continue;
-    const Arrival come = arrival(c, velocity);
-    if (come.time < h_ && come.closing > most_absorbed(c.pair))
-      c.rebound = response_->material_of(c.pair).restitution * come.closing;
-  }
-}
-
-/// What the step took of those that it stopped, of all that it took (`lost` [J]); none of those that it did not.
-void IslandMotion::note_stopped(double lost) {
-  double all = 0.0;
-  for (HeldContact& c : contacts_) {
-    if (!(c.normal_force > 0.0)) c.rebound = 0.0;
-    if (!(c.rebound > 0.0)) continue;
-    const double e = response_->material_of(c.pair).restitution;
-    c.stopped = 0.5 * c.normal_force * h_ * (c.rebound / e + std::max(0.0, c.feature.gap / h_));
-    all += c.stopped;
-  }
-  for (HeldContact& c : contacts_)
-    if (c.rebound > 0.0 && all > lost) c.stopped *= lost / all;
 }
 
 /// When the two features meet if the members go on as they do now, by its tangents: those of a convex gap lead

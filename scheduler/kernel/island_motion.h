@@ -36,10 +36,10 @@ class IslandMotion {
   bool rests(double rest_speed);
   /// From now on bounces end where they do not leave the contact tolerance any more, not the step.
   void expect_modes() { by_modes_ = true; }
-  /// From now on impacts do not end steps: they wait for the ends of steps, and members for whom a step comes to
-  /// are stopped by it until then (Moreau 1988).
+  /// From now on impacts do not end steps: those that would come within a step are taken where it begins, as far apart
+  /// as the two still are.
   void expect_agitation() { agitated_ = true; }
-  /// True if impacts cut the step short, or waited for its end.
+  /// True if impacts cut the step short, or were taken before they came.
   bool impacts_in_step() const { return impacts_in_step_; }
   const WarmContacts& warm() const { return warm_; }
   /// Takes a step of `h` [s] at most by modes; false: not that way. @pre sites are covered as far.
@@ -66,14 +66,11 @@ class IslandMotion {
     double closing = 0.0;                                   ///< then, or a little before [m/s]
   };
   void list(double reach);
-  void rebound_those_stopped(const Impact& told);
-  void part_with(const HeldContact& c, double speed, const Impact& told);
-  void slow_to(double energy, const std::vector<ExtendedTwist>& before);
-  void note_stopped(double lost);
+  bool touches(const HeldContact& c) const;
+  double impact_of(const HeldContact& c, const std::vector<Vec3>& velocity) const;
   void collide(const HeldContact& c, double closing, const Impact& told);
   ImpulseSide side_of(int member, const RealVec& arm) const;
   double next_arrival();
-  void stop_arrivals();
   Arrival arrival(const HeldContact& c, const std::vector<Vec3>& velocity) const;
   bool passes_by(const HeldContact& c, double then, double closing) const;
   double most_absorbed(const PairKey& pair) const;

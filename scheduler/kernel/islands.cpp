@@ -19,7 +19,7 @@ constexpr double kHasty = 0.05;
 constexpr int kMostHasty = 64, kCalmed = 4;
 
 /// From this many members on, an island of which so many steps were cut short by impacts is agitated: its impacts
-/// wait for the end of a step then. It stays so until some steps more had none.
+/// are taken where a step begins then. It stays so until some steps more had none.
 constexpr std::size_t kCrowd = 8;
 constexpr int kAgitated = 8, kMostAgitation = 32;
 

@@ -138,7 +138,7 @@ class LastingWorldMaker {
   }
 
   Shape shape() {
-    const double size = random_.uniform(0.1, 0.22);
+    const double size = random_.uniform(0.1, 0.22) * (columns_ == 3 ? 1.0 : 0.8);
     switch (random_.below(7)) {
       case 0:
       case 1:
