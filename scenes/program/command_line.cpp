@@ -33,6 +33,10 @@ void add_run(CLI::App& program, int& status) {
       ->add_option("--trace", arguments->trace,
                    "Write what the scheduler does, as a Chrome trace (opens in ui.perfetto.dev)")
       ->type_name("FILE");
+  command->add_flag(
+      "--watch", arguments->watch,
+      "Serve a page that follows the run, as brink view SCENE does; its address comes first, and "
+      "it stays until Ctrl-C");
   command->add_flag("--quiet", arguments->quiet, "No progress bar and no summary");
   command->add_flag("--json", arguments->json, "The summary as one JSON object on the last line");
   command->footer(
@@ -166,11 +170,15 @@ void add_export(CLI::App& program, int& status) {
       ->add_option("--hdf5", arguments->hdf5,
                    "Write run.h5 there: bodies, frames, events, contacts, with units")
       ->type_name("DIR");
+  command
+      ->add_option("--vtk", arguments->vtk,
+                   "Write run.pvd there for ParaView: bodies and sites at every frame, and events")
+      ->type_name("DIR");
   command->footer(
       "Names of columns end with their units.\n"
       "Examples:\n"
       "  brink export runs/newtons_cradle-1 --csv cradle\n"
-      "  brink export runs/newtons_cradle-1 --hdf5 cradle");
+      "  brink export runs/newtons_cradle-1 --hdf5 cradle --vtk cradle");
   command->callback([arguments, &status] { status = export_command(*arguments); });
 }
 

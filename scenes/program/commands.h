@@ -20,7 +20,7 @@ struct RunArguments {
   std::string scene, out, trace;
   std::vector<std::string> overrides;
   std::optional<double> until;
-  bool resume = false, quiet = false, json = false;
+  bool resume = false, quiet = false, json = false, watch = false;
 };
 
 struct CheckArguments {
@@ -48,7 +48,7 @@ struct FilmArguments {
 };
 
 struct ExportArguments {
-  std::string run, csv, hdf5;
+  std::string run, csv, hdf5, vtk;
 };
 
 struct ListArguments {

@@ -3,29 +3,39 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <string>
 
 #include "brink/core/base/error.h"
 #include "brink/scenes/program/commands.h"
 #include "brink/scenes/program/run_folder.h"
 #include "brink/scenes/run_file/run_hdf5.h"
 #include "brink/scenes/run_file/run_tables.h"
+#include "brink/scenes/run_file/run_vtk.h"
 
 namespace brink {
+
+namespace {
+
+/// The folder, made if need be.
+std::filesystem::path made(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw IoError(fmt::format("{}: cannot be made: {}", folder, error.message()));
+  return folder;
+}
+
+}  // namespace
 
 int export_command(const ExportArguments& arguments) {
   namespace fs = std::filesystem;
   const fs::path file = run_file_of(arguments.run);
   if (file.empty())
     throw BadInput(fmt::format("{}: not a run; allowed: a run folder or a run file", arguments.run));
-  if (arguments.csv.empty() && arguments.hdf5.empty())
-    throw BadInput("nothing to write; allowed: --csv DIR, --hdf5 DIR");
+  if (arguments.csv.empty() && arguments.hdf5.empty() && arguments.vtk.empty())
+    throw BadInput("nothing to write; allowed: --csv DIR, --hdf5 DIR, --vtk DIR");
   if (!arguments.csv.empty()) write_csv_tables(file, arguments.csv);
-  if (!arguments.hdf5.empty()) {
-    std::error_code error;
-    fs::create_directories(arguments.hdf5, error);
-    if (error) throw IoError(fmt::format("{}: cannot be made: {}", arguments.hdf5, error.message()));
-    write_hdf5(file, fs::path(arguments.hdf5) / "run.h5");
-  }
+  if (!arguments.hdf5.empty()) write_hdf5(file, made(arguments.hdf5) / "run.h5");
+  if (!arguments.vtk.empty()) write_vtk(file, made(arguments.vtk));
   return kDone;
 }
 

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <optional>
+#include <thread>
 
 #include "brink/core/base/printable.h"
 #include "brink/scenes/program/commands.h"
@@ -12,6 +15,7 @@
 #include "brink/scenes/program/stopping.h"
 #include "brink/scenes/program/terminal.h"
 #include "brink/scenes/run_file/run_scene.h"
+#include "brink/scenes/view/live_server.h"
 
 namespace brink {
 namespace {
@@ -104,6 +108,13 @@ int run_command(const RunArguments& arguments) {
   request.resume = arguments.resume;
   request.begins = stop_on_signals;  // a signal before that ends the program at once: nothing is lost
   request.load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  std::optional<LiveServer> page;
+  if (arguments.watch) {
+    page.emplace(request.dir / "run.db");
+    fmt::print(stderr, "{}\n", page->address());
+    request.happened = [&page](const Event&) { page->event_happened(); };
+    request.waits = [&page] { return page->paused() && !stop_asked(); };
+  }
   RunReport report;
   {
     ProgressBar bar(0.0, arguments.until.value_or(scene.duration), on_terminal(stderr) && !arguments.quiet);
@@ -113,7 +124,10 @@ int run_command(const RunArguments& arguments) {
     };
     report = run_scene(scene, request);
   }
+  if (page) page->run_ended();
   print_report(arguments, scene, report);
+  std::fflush(stdout);
+  while (page && !stop_asked()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   if (report.summary.sound()) return kDone;
   if (arguments.quiet || arguments.json) fmt::print(stderr, "brink: {}\n", ending(report.summary));
   if ((arguments.quiet || arguments.json) && report.summary.groups_taken > 0)

@@ -144,10 +144,10 @@ OnCorner on_corner(const Half& half, std::size_t j, const Vec2& q, double tie) {
 }
 
 /// The feature of a sample upon the corner is that of the side on which it lies.
-void turn_outward(const Half& half, const Vec2& q, NearFeature& f) {
+void turn_outward(const Half& half, const Vec2& q, double side, NearFeature& f) {
   const Site& site = half.other.sites[f.site];
   const Vec2 out = outward(site), world = half.other_frame.direction_to_world(out);
-  f.gap = out.dot(q - site.a) - site.radius - half.carrier.samples[f.sample].radius;
+  if (side < 0.0) f.gap = out.dot(q - site.a) - site.radius - half.carrier.samples[f.sample].radius;
   f.normal = half.on_a ? world : Vec2(-world);
 }
 
@@ -176,7 +176,7 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
       if (goes_on_nearer(half.other, j, nearest, q, tie)) continue;
     }
     auto f = feature(half, i, static_cast<int>(j), nearest[j], side, q);
-    if (where == OnCorner::this_side) turn_outward(half, q, *f);
+    if (where == OnCorner::this_side) turn_outward(half, q, side, *f);
     if (f && f->gap <= reach) found.push_back(*f);
   }
 }

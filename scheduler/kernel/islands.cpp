@@ -23,8 +23,10 @@ constexpr int kMostHasty = 64, kCalmed = 4;
 constexpr std::size_t kCrowd = 8;
 constexpr int kAgitated = 8, kMostAgitation = 32;
 
-bool is_agitated(const IslandPace& pace, std::size_t members) {
-  return members >= kCrowd && pace.agitation >= kAgitated;
+bool is_agitated(const World& world, const IslandPace& pace, const std::set<int>& members) {
+  const auto bounces = [&](int k) { return world.materials[world.bodies[k].material].restitution > 0.0; };
+  return members.size() >= kCrowd && pace.agitation >= kAgitated &&
+         std::any_of(members.begin(), members.end(), bounces);
 }
 
 int next_agitation(int agitation, bool impacts) {
@@ -169,7 +171,7 @@ IslandMotion Islands::set_out(std::set<int>& members, IslandPace& pace) {
     trajectories_->hold(as_they_are, held);
     IslandMotion motion(IslandMembers(*world_, *trajectories_, *search_, run_->time(), members), *search_,
                         *response_, solver_, tally_, warm);
-    if (is_agitated(pace, members.size())) motion.expect_agitation();
+    if (is_agitated(*world_, pace, members)) motion.expect_agitation();
     const std::vector<int> more = motion.joining(*world_, *trajectories_, run_->time());
     if (more.empty()) return motion;
     for (const int k : more) gather(k, members);

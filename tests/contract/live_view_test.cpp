@@ -1,4 +1,4 @@
-// `brink view SCENE`: a page that follows a run, served to this machine alone.
+// `brink view SCENE`, `brink run SCENE --watch`: a page that follows a run, served to this machine alone.
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <sys/socket.h>
@@ -43,7 +43,8 @@ void wait_ms(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)
 
 bool begins(const std::string& text, const char* with) { return text.rfind(with, 0) == 0; }
 
-class Live : public testing::Test {
+/// "view", or "watch".
+class Live : public testing::TestWithParam<const char*> {
  protected:
   Live() {
     std::string name = (fs::temp_directory_path() / "brink-live-XXXXXX").string();
@@ -54,15 +55,19 @@ class Live : public testing::Test {
       fs::current_path(folder_);
       (void)!std::freopen("out.txt", "w", stdout);
       (void)!std::freopen("error.txt", "w", stderr);
-      ::execl(BRINK_BINARY_DIR "/bin/brink", "brink", "view", "long.toml", nullptr);
+      if (watches())
+        ::execl(BRINK_BINARY_DIR "/bin/brink", "brink", "run", "long.toml", "--watch", nullptr);
+      else
+        ::execl(BRINK_BINARY_DIR "/bin/brink", "brink", "view", "long.toml", nullptr);
       ::_exit(127);
     }
     for (int k = 0; k < 500 && port_ == 0; ++k, wait_ms(20)) {
-      std::ifstream in(folder_ / "out.txt");
+      std::ifstream in(folder_ / (watches() ? "error.txt" : "out.txt"));
       std::string address;
       if (std::getline(in, address) && !in.eof()) port_ = std::stoi(address.substr(address.rfind(':') + 1));
     }
   }
+  static bool watches() { return std::string(GetParam()) == "watch"; }
   ~Live() override {
     ::kill(program_, SIGKILL);
     ::waitpid(program_, nullptr, 0);
@@ -116,7 +121,7 @@ class Live : public testing::Test {
   int port_ = 0;
 };
 
-TEST_F(Live, ThePageFollowsPausesAndStepsTheRun) {
+TEST_P(Live, ThePageFollowsPausesAndStepsTheRun) {
   ASSERT_GT(port_, 0);
   ASSERT_TRUE(begins(order("pause"), "HTTP/1.1 200"));
   wait_ms(500);
@@ -137,7 +142,7 @@ TEST_F(Live, ThePageFollowsPausesAndStepsTheRun) {
   EXPECT_THAT(ask("GET /", own()), HasSubstr("<canvas id=\"scene\""));
 }
 
-TEST_F(Live, NobodyElseIsServed) {
+TEST_P(Live, NobodyElseIsServed) {
   ASSERT_GT(port_, 0);
   for (const char* what : {"GET /", "GET /data", "POST /pause"})
     EXPECT_TRUE(begins(ask(what, "evil.example", "X-Brink: page\r\n"), "HTTP/1.1 403")) << what;
@@ -147,7 +152,7 @@ TEST_F(Live, NobodyElseIsServed) {
     EXPECT_TRUE(begins(ask(what, own()), "HTTP/1.1 404")) << what;
 }
 
-TEST_F(Live, ASignalEndsItAlsoWhilePaused) {
+TEST_P(Live, ASignalEndsItAlsoWhilePaused) {
   ASSERT_GT(port_, 0);
   order("pause");
   ASSERT_FALSE(soon().is_null());
@@ -157,5 +162,8 @@ TEST_F(Live, ASignalEndsItAlsoWhilePaused) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(1500));
   EXPECT_TRUE(fs::exists(folder_ / "runs/long-1/run.db"));
 }
+
+INSTANTIATE_TEST_SUITE_P(Program, Live, ::testing::Values("view", "watch"),
+                         [](const auto& of) { return std::string(of.param); });
 
 }  // namespace

@@ -220,6 +220,13 @@ TEST_F(ProgramTest, TablesAreExportedWithUnitsInTheirHeads) {
   if (hdf5.status == 0) {
     EXPECT_EQ(text_of(dir_ / "tables/run.h5").substr(1, 3), "HDF");
   }
+  const Outcome vtk = brink("export a --vtk shown");
+  EXPECT_TRUE(vtk.status == 0 || vtk.error.find("libvtk9-dev") != std::string::npos) << vtk.error;
+  if (vtk.status == 0) {
+    EXPECT_THAT(text_of(dir_ / "shown/run.pvd"), HasSubstr("timestep=\"0.25\" file=\"frame_000001.vtp\""));
+    EXPECT_THAT(text_of(dir_ / "shown/frame_000001.vtp"), HasSubstr("Name=\"thickness\""));
+    EXPECT_THAT(text_of(dir_ / "shown/events.vtp"), HasSubstr("NumberOfPoints=\"1\""));
+  }
   EXPECT_EQ(brink("export nothing.db --csv tables").status, 3);
 }
 
