@@ -112,6 +112,10 @@ void add_view(CLI::App& program, int& status) {
   command->add_option("-o,--output", arguments->out, "Page to write; default replay.html beside the run file")
       ->type_name("FILE.html");
   command->add_flag("--open", arguments->open, "Open it in the browser");
+  command
+      ->add_option("--trace", arguments->trace,
+                   "Of a run: what brink run --trace wrote, shown as a lane a body under the events")
+      ->type_name("FILE");
   command->add_option("--set", arguments->overrides, "Override a key of the scene; may be repeated")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);

@@ -36,7 +36,7 @@ struct DrawArguments {
 };
 
 struct ViewArguments {
-  std::string subject, out;
+  std::string subject, out, trace;
   std::vector<std::string> overrides;
   bool open = false;
 };

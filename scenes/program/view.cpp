@@ -62,6 +62,8 @@ int view_command(const ViewArguments& arguments) {
   fs::path run = run_file_of(arguments.subject);
   if (!run.empty() && !arguments.overrides.empty())
     throw BadInput("--set: is for scenes; a run has been made");
+  if (run.empty() && !arguments.trace.empty())
+    throw BadInput("--trace: is for runs; of a scene: brink run SCENE --trace FILE first");
   if (!arguments.out.empty())
     refuse_overwriting(arguments.out, "-o", {run.empty() ? fs::path(arguments.subject) : run});
   const bool live = run.empty() && arguments.out.empty();
@@ -73,7 +75,9 @@ int view_command(const ViewArguments& arguments) {
   }
   if (!live) {
     const fs::path page = arguments.out.empty() ? run.parent_path() / "replay.html" : fs::path(arguments.out);
-    write_replay_page(run, page);
+    ReplayLimits limits;
+    limits.trace = arguments.trace;
+    write_replay_page(run, page, limits);
     fmt::print("{}\n", printable(page.string()));
     if (arguments.open) open_in_browser(fs::absolute(page).string());
   }

@@ -72,6 +72,7 @@ class Column {
 class Picture {
  public:
   Picture() {
+    points_->SetDataTypeToDouble();
     data_->SetPoints(points_.GetPointer());
     data_->SetLines(lines_.GetPointer());
   }
@@ -147,6 +148,7 @@ void write_events(const RunFile& run, const fs::path& folder) {
   const vtkNew<vtkPolyData> data;
   const vtkNew<vtkPoints> points;
   const vtkNew<vtkCellArray> vertices;
+  points->SetDataTypeToDouble();
   data->SetPoints(points.GetPointer());
   data->SetVerts(vertices.GetPointer());
   vtkPointData* of = data->GetPointData();

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "brink/core/base/error.h"
@@ -61,6 +64,40 @@ void TraceFile::finish() {
   out_ << "\n]\n";
   out_.close();
   if (!out_) throw_not_written(file_);
+}
+
+std::vector<TraceMark> read_trace(const std::filesystem::path& file, int bodies) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw IoError(fmt::format("{}: cannot be read", file.string()));
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const auto parsed = [](const std::string& json) { return nlohmann::json::parse(json, nullptr, false); };
+  nlohmann::json all = parsed(text);
+  if (all.is_discarded()) all = parsed(text + "]");  // of a run that was killed
+  if (!all.is_array()) throw IoError(fmt::format("{}: is not a trace of brink run --trace", file.string()));
+  std::vector<TraceMark> marks;
+  const auto number = [](const nlohmann::json& of, const char* key, double otherwise) {
+    return of.contains(key) && of[key].is_number() ? of[key].get<double>() : otherwise;
+  };
+  for (const nlohmann::json& event : all) {
+    if (!event.is_object() || !event.contains("args") || !event["args"].is_object()) continue;
+    if (!event.contains("name") || !event["name"].is_string()) continue;
+    const std::string name = event["name"];
+    for (const TraceKind kind : {TraceKind::advance, TraceKind::back_up, TraceKind::roll_back,
+                                 TraceKind::pass, TraceKind::search, TraceKind::collision}) {
+      if (name != to_string(kind)) continue;
+      TraceMark mark;
+      mark.kind = kind;
+      const double body = number(event, "tid", -1.0);
+      mark.body = body >= 0.0 && body < bodies ? static_cast<int>(body) : -1;
+      mark.from = number(event["args"], "from", std::nan(""));
+      mark.to = number(event["args"], "to", std::nan(""));
+      if (mark.body < 0 || !std::isfinite(mark.from) || !std::isfinite(mark.to))
+        throw IoError(fmt::format("{}: a {} of body {} over [{}, {}] s is not of this run", file.string(),
+                                  name, body, mark.from, mark.to));
+      marks.push_back(mark);
+    }
+  }
+  return marks;
 }
 
 }  // namespace brink

@@ -38,4 +38,8 @@ class TraceFile final : public TraceSink {
   std::chrono::steady_clock::time_point begin_;
 };
 
+/// What a trace tells, in its order; wall-clock times are left out. @throws IoError if the file cannot be read, is no
+/// trace, or tells of a body beyond `bodies`, or of a time that is none. Cost: reads the whole file.
+std::vector<TraceMark> read_trace(const std::filesystem::path& file, int bodies);
+
 }  // namespace brink

@@ -18,6 +18,7 @@
 #include "brink/scenes/run_file/run_file.h"
 #include "brink/scenes/run_file/run_moment.h"
 #include "brink/scenes/run_file/shape_json.h"
+#include "brink/scenes/run_file/trace_file.h"
 #include "brink/scenes/version.h"
 #include "brink/scenes/view/page_assets.h"
 #include "brink/scenes/view/page_numbers.h"
@@ -96,6 +97,7 @@ class ReplayPage {
     frames();
     events();
     contacts();
+    if (!limits_.trace.empty()) trace();
     curves_.put(numbers_, about_);
     things();
     facts();
@@ -195,6 +197,31 @@ class ReplayPage {
     numbers_.add("contact_x", x);
     numbers_.add("contact_y", y);
     numbers_.add("contact_force", force);
+  }
+
+  /// What the scheduler did; collisions are events.
+  void trace() {
+    std::vector<TraceMark> marks = read_trace(limits_.trace, static_cast<int>(world_.bodies.size()));
+    std::erase_if(marks, [](const TraceMark& m) { return m.kind == TraceKind::collision; });
+    const auto limit = static_cast<std::size_t>(limits_.marks);
+    if (marks.size() > limit) {
+      notices_.push_back(fmt::format("the first {} marks of {} in the trace", limit, marks.size()));
+      marks.resize(limit);
+    }
+    Column from, to;
+    std::vector<std::int32_t> body, kind;
+    for (const TraceMark& m : marks) {
+      body.push_back(m.body);
+      kind.push_back(static_cast<std::int32_t>(m.kind));
+      from.push_back(m.from), to.push_back(m.to);
+    }
+    numbers_.add("trace_body", body);
+    numbers_.add("trace_kind", kind);
+    numbers_.add("trace_from", from);
+    numbers_.add("trace_to", to);
+    about_["trace_kinds"] = Json::array();
+    for (int k = 0; k <= static_cast<int>(TraceKind::collision); ++k)
+      about_["trace_kinds"].push_back(to_string(static_cast<TraceKind>(k)));
   }
 
   // -- what they are of --

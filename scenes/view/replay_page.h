@@ -11,6 +11,9 @@ struct ReplayLimits {
   /// Frames times bodies; a run with more is thinned, and the page says so.
   std::int64_t frame_rows = 1'200'000;
   std::int64_t events = 300'000;  ///< likewise: of more the page has the first ones
+  std::filesystem::path
+      trace;  ///< what `brink run --trace` wrote: lanes of what the scheduler did; empty: none
+  std::int64_t marks = 300'000;  ///< of the trace, likewise
 };
 
 /// Writes the page of the run in `run_file`. Between two of a body's recorded states (frames, and its collisions

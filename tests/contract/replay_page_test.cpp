@@ -230,7 +230,10 @@ TEST_F(Replayed, ThePageStepsFromEventToEventAndPlays) {
 TEST_F(Replayed, ALongRunIsThinnedAndThePageSaysSo) {
   if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
   const fs::path page = folder_ / "thin.html";
-  write_replay_page(run_file(), page, {.frame_rows = 20, .events = 5});
+  ReplayLimits few;
+  few.frame_rows = 20;
+  few.events = 5;
+  write_replay_page(run_file(), page, few);
   const json answer = in_browser(
       page,
       "return {notice: document.getElementById('notice').textContent, events: window.brink.events.length};");

@@ -266,6 +266,7 @@ class Player {
     const {n} = this, canvas = byId('lanes'), ratio = window.devicePixelRatio || 1, counts = new Map();
     for (let k = 0; k < n.event_t.length; ++k)
       for (const b of [n.event_body[k], n.event_other[k]]) if (b >= 0) counts.set(b, (counts.get(b) || 0) + 1);
+    for (const b of n.trace_body || []) counts.set(b, (counts.get(b) || 0) + 1e-6);
     this.lanes = [...counts].sort((a, b) => b[1] - a[1]).slice(0, 12).map(([b]) => b).sort((a, b) => a - b);
     const height = 9, rows = this.lanes.length;
     canvas.style.height = `${rows * height}px`;
@@ -281,6 +282,7 @@ class Player {
       ctx.fillText(about.bodies[b].name, 2, (i + 0.85) * height * ratio, 60 * ratio);
       ctx.fillRect(at.left * ratio, (i + 1) * height * ratio - 1, canvas.width, 1);
     });
+    this.drawTrace(ctx, at, place, height, ratio);
     for (let k = 0; k < n.event_t.length; ++k)
       for (const b of [n.event_body[k], n.event_other[k]]) {
         const i = place.get(b);
@@ -288,6 +290,23 @@ class Player {
         ctx.fillStyle = about.kinds[n.event_kind[k]] === 'collision' ? about.bodies[b].fill : '#d03030';
         ctx.fillRect((at.left + at.width * this.part(n.event_t[k])) * ratio, (i * height + 1) * ratio, Math.max(1, ratio), (height - 2) * ratio);
       }
+  }
+
+  /** What the scheduler did, where there is a trace: spans of simulated time under the events. */
+  drawTrace(ctx, at, place, height, ratio) {
+    const {n} = this;
+    if (!n.trace_body) return;
+    const inks = {advance: '#c4ccd6', pass: '#6f93c4', search: '#a9bddb', 'back up': '#e69f00', 'roll back': '#d55e00'};
+    byId('lanes').title = 'events over what the scheduler did: grey advances, blue passes and searches, orange backups, red rollbacks';
+    for (let k = 0; k < n.trace_body.length; ++k) {
+      const i = place.get(n.trace_body[k]), kind = about.trace_kinds[n.trace_kind[k]];
+      if (i === undefined) continue;
+      const a = Math.min(n.trace_from[k], n.trace_to[k]), b = Math.min(this.end, Math.max(n.trace_from[k], n.trace_to[k]));
+      const left = at.left + at.width * this.part(a), wide = at.width * (this.part(b) - this.part(a));
+      const back = kind === 'back up' || kind === 'roll back', top = kind === 'advance' ? 5 : back ? 1 : 3;
+      ctx.fillStyle = inks[kind] || '#a9bddb';
+      ctx.fillRect(left * ratio, (i * height + top) * ratio, Math.max(ratio, wide * ratio), (back ? 3 : 2) * ratio);
+    }
   }
 
   part(t) { return this.end > this.begin ? (t - this.begin) / (this.end - this.begin) : 0; }

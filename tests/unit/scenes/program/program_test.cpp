@@ -241,6 +241,21 @@ TEST_F(ProgramTest, ViewsOfARunFileAnswerWithUnits) {
   EXPECT_EQ(db.execAndGet("SELECT events_in_a_tenth_of_a_second FROM timeline").getInt(), 1);
 }
 
+TEST_F(ProgramTest, APageShowsATraceInItsLanes) {
+  ASSERT_EQ(brink("run ball.toml --out a --quiet --trace trace.json").status, 0);
+  ASSERT_EQ(brink("view a --trace trace.json -o page.html").status, 0);
+  EXPECT_THAT(text_of(dir_ / "page.html"), HasSubstr("\"trace_kinds\":[\"advance\",\"back up\""));
+  ASSERT_EQ(brink("view a -o plain.html").status, 0);
+  EXPECT_THAT(text_of(dir_ / "plain.html"), testing::Not(HasSubstr("\"trace_kinds\"")));
+  EXPECT_EQ(brink("view ball.toml --trace trace.json").status, 2);
+  EXPECT_EQ(brink("view a --trace nothing.json -o page.html").status, 3);
+  EXPECT_EQ(brink("view a --trace ball.toml -o page.html").status, 3) << "no trace";
+  std::ofstream(dir_ / "far.json") << R"([{"name":"pass","tid":7,"args":{"from":0,"to":1}}])";
+  const Outcome far = brink("view a --trace far.json -o page.html");
+  EXPECT_EQ(far.status, 3);
+  EXPECT_THAT(far.error, HasSubstr("far.json: a pass of body 7"));
+}
+
 // The page of a run that ends early is written, and the status says how the run ended.
 TEST_F(ProgramTest, AViewOfASceneThatEndsEarlyIsStatusOne) {
   const Outcome view = brink("view ball.toml -o page.html --set solver.max_collisions=1");
