@@ -194,6 +194,7 @@ void PairView::put(Placing& p, double t) const {
   const double noise = p.place_noise + p.angle_noise_a * a_.outline().bounding_radius +
                        p.angle_noise_b * b_.outline().bounding_radius;
   if (noise > kFarOfTolerance * limits_.tolerance) return put_relative(p, t);
+  p.in_double = 0.0;
   p.base.setZero();
   p.a.move(a_.outline(), sa);
   p.b.move(b_.outline(), sb);
@@ -217,6 +218,7 @@ double finer(const Motion& m) { return m.is_ballistic() ? kRealRoundoff / kRound
 void PairView::put_relative(Placing& p, double t) const {
   const ExtendedState sa = a_.motion->extended_state(t), sb = b_.motion->extended_state(t);
   p.base = sb.position.cast<double>();
+  p.in_double = kFarOfTolerance * limits_.tolerance;
   p.a.move(a_.outline(), sa.seen_from(p.base));
   p.b.move(b_.outline(), sb.seen_from(p.base));
   p.place_noise = of_a_.place(t, sa.position.cast<double>()) * finer(*a_.motion) +
@@ -229,7 +231,9 @@ void PairView::put_relative(Placing& p, double t) const {
 double PairView::nominal_level(const Placing& p, const Half& half, int i, const Site& site,
                                const Vec2& q) const {
   const bool thin = !site.solid && site.radius + half.sample(i).radius == 0.0;
-  return brink::nominal_level(limits_.touch, limits_.tolerance, p.gap_rounding(half, i, q), thin);
+  const double rounding = p.gap_rounding(half, i, q);
+  return brink::nominal_level(limits_.touch, limits_.tolerance,
+                              thin ? std::max(rounding, p.in_double) : rounding, thin);
 }
 
 PairView::Doubt PairView::doubt(const Half& half, const Feature& f) const {

@@ -151,6 +151,9 @@ class PairView {
     double place_noise = 0.0;                         ///< rounding of one place against the other [m]
     double angle_noise_a = 0.0, angle_noise_b = 0.0;  ///< [rad]
     double turn_noise_a = 0.0, turn_noise_b = 0.0;    ///< likewise, with those of sines and of turning
+    /// Seen in extended precision, what is seen in double may be rounded by [m]: wires are met at a level above that, or
+    /// what is met here would have no side there.
+    double in_double = 0.0;
 
     void note_turning();
     double gap_rounding(const Half& half, int i, const Vec2& q) const {

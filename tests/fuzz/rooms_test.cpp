@@ -23,5 +23,13 @@ TEST(RoomsOfWires, NobodyLeaves) {
   EXPECT_LT(tally.refused, tally.rooms / 10 + 1);
 }
 
+// 80301: at a place where doubles are just too coarse, a needle met a wire nearer than doubles tell, a moment later
+// places were seen in doubles again, and its corner was on the other side.
+TEST(RoomsOfWires, ThoseThatOnceWereLeftHold) {
+  rooms::Tally tally;
+  rooms::stay(80301, 10000, tally);
+  EXPECT_EQ(tally.escaped + tally.energy_lost + tally.ended + tally.refused, 0);
+}
+
 }  // namespace
 }  // namespace brink
