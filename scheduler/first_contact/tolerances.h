@@ -4,7 +4,8 @@
 ///
 /// A gap is computed with some rounding `nu` (gap_rounding). Three margins keep it from mattering:
 ///   - a thin wire has no inside that would tell that it was crossed; so it is met at a *level* of at least
-///     8 nu before it (nominal_level): what stays beyond the level is never in doubt about its side;
+///     8 nu before it (nominal_level): what stays beyond the level is never in doubt about its side; nor is it
+///     where places are seen in extended precision now and in doubles a moment later: nu is that of doubles there;
 ///   - a pair that starts touching, pressed together or all but at rest, has its next contact when it has
 ///     sunk by a *sink step* of at least 2.5 nu (sink_step), but a quarter of the wire's level is left: so
 ///     every contact is a crossing of its level from clear above, and what has sunk is pushed out again as it

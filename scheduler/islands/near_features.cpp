@@ -155,7 +155,8 @@ void turn_outward(const Half& half, const Vec2& q, double side, NearFeature& f) 
 /// nearest. What it is merely behind, beyond a tip, is none.
 void add_features(const Half& half, int i, double reach, std::vector<NearFeature>& found) {
   const Vec2 q = half.other_frame.to_local(half.carrier_frame.to_world(half.carrier.samples[i].p));
-  const double tie = kOnePoint * (half.carrier.bounding_radius + half.other.bounding_radius);
+  const double size = half.carrier.bounding_radius + half.other.bounding_radius;
+  const double tie = kOnePoint * size, corner = kOneCorner * size;
   std::vector<Nearest> nearest;
   double least = std::numeric_limits<double>::infinity();
   for (const Site& site : half.other.sites) {
@@ -169,14 +170,14 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
   const bool bare = half.carrier.samples[i].arc_site < 0;
   for (std::size_t j = 0; j < nearest.size(); ++j) {
     const double side = side_of(half.other.sites[j], nearest[j], q);
-    const OnCorner where = bare ? on_corner(half, j, q, tie * (kOneCorner / kOnePoint)) : OnCorner::nowhere;
+    const OnCorner where = bare ? on_corner(half, j, q, corner) : OnCorner::nowhere;
     if (where == OnCorner::other_side) continue;
     if (where == OnCorner::nowhere) {
       if (side < 0.0 && nearest[j].distance > tie && (outside || nearest[j].distance > least + tie)) continue;
       if (goes_on_nearer(half.other, j, nearest, q, tie)) continue;
     }
     auto f = feature(half, i, static_cast<int>(j), nearest[j], side, q);
-    if (where == OnCorner::this_side) turn_outward(half, q, side, *f);
+    if (f && where == OnCorner::this_side) turn_outward(half, q, side, *f);
     if (f && f->gap <= reach) found.push_back(*f);
   }
 }

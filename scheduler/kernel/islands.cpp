@@ -72,6 +72,7 @@ WarmContacts Islands::take_out(const std::set<int>& members, IslandPace& pace) {
       warm[key] = c;
       if (c.mode != ContactMode::none) taken_out_.emplace(key, c);
     }
+    // what cuts a step short may be others, too: one more than its end takes off
     const bool cut_short = !found->second.rests && found->second.due > run_->time();
     if (cut_short) found->second.pace.agitation += 2;
     pace.join(found->second.pace);
@@ -171,11 +172,19 @@ IslandMotion Islands::set_out(std::set<int>& members, IslandPace& pace) {
     trajectories_->hold(as_they_are, held);
     IslandMotion motion(IslandMembers(*world_, *trajectories_, *search_, run_->time(), members), *search_,
                         *response_, solver_, tally_, warm);
-    if (is_agitated(*world_, pace, members)) motion.expect_agitation();
+    // who asked for a tolerance has exact impacts
+    if (limits_.tolerance == 0.0 && is_agitated(*world_, pace, members)) motion.expect_agitation();
     const std::vector<int> more = motion.joining(*world_, *trajectories_, run_->time());
     if (more.empty()) return motion;
     for (const int k : more) gather(k, members);
   }
+}
+
+/// Sites are known through a step of h [s]. False on a halt.
+bool Islands::follow_sites(double now, double h) {
+  if (!trajectories_->cover_sites(now + h)) return false;
+  trajectories_->follow_sites(now + 2.0 * h);  // what is beyond the end must not depend on who has asked
+  return true;
 }
 
 bool Islands::begin_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time) {
@@ -191,6 +200,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   IslandModes modes(motion.members(), *trajectories_, *search_, *response_, by_modes_, motion.warm());
   if (pace.hasty < kMostHasty && modes.suits()) motion.expect_modes();
   const std::uint64_t collisions = run_->work().collisions;
+  if (const double ahead = motion.longest(); std::isfinite(ahead) && !follow_sites(now, ahead)) return false;
   motion.pass_on_impacts(
       [this](const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r) {
         note_impact(c, from, closing, r.normal, r.tangential);
@@ -198,10 +208,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   on_time = on_time && run_->work().collisions == collisions;
   const bool rests = motion.rests(limits_.rest_speed);
   const double h = std::min(longest, motion.longest());
-  if (!rests && std::isfinite(h)) {
-    if (!trajectories_->cover_sites(now + h)) return false;
-    trajectories_->follow_sites(now + 2.0 * h);  // what is beyond the end must not depend on who has asked
-  }
+  if (!rests && std::isfinite(h) && !follow_sites(now, h)) return false;
   const bool by_modes = !rests && motion.take(modes, now, h, on_time);
   if (!rests && !by_modes && !motion.take(h, limits_.tolerance)) {
     run_->stop(

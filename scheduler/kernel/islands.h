@@ -76,6 +76,7 @@ class Islands {
  private:
   void gather(int body, std::set<int>& members) const;
   IslandMotion set_out(std::set<int>& members, IslandPace& pace);
+  bool follow_sites(double now, double h);
   bool begin_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time = false);
   bool carry_out_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time);
   void part(const IslandMotion& motion, bool rests, const IslandModes* modes, const IslandPace& pace,
