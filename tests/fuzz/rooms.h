@@ -25,14 +25,21 @@ struct Case {
   double seconds = 1;      ///< a rough time for one hit [s]
 };
 
+/// How far rooms are from the origin.
+enum class Away {
+  any,     ///< at it, or to 1e4 m
+  coarse,  ///< about where the rounding of a place is 1/1024 of the contact tolerance, so that doubles and
+           ///< extended precision take turns (`kFarOfTolerance`)
+};
+
 class Maker {
  public:
-  explicit Maker(std::uint64_t seed) : seed_(seed), random_(seed) {}
+  explicit Maker(std::uint64_t seed, Away away = Away::any) : seed_(seed), away_(away), random_(seed) {}
 
   Case make() {
     Case c;
     size_ = log_uniform(0.2, 20.0);
-    const double far = random_.below(3) == 0 ? 0.0 : log_uniform(1.0, 1e4);
+    const double far = how_far();
     x_ = random_.uniform(-far, far);
     y_ = random_.uniform(-far, far);
     c.place = {x_, y_};
@@ -53,6 +60,11 @@ class Maker {
   }
 
  private:
+  double how_far() {
+    if (away_ == Away::coarse) return size_ * log_uniform(30.0, 3e5);
+    return random_.below(3) == 0 ? 0.0 : log_uniform(1.0, 1e4);
+  }
+
   double log_uniform(double low, double high) { return low * std::pow(high / low, random_.uniform()); }
   std::string at(double x, double y) const {
     std::ostringstream s;
@@ -124,6 +136,7 @@ class Maker {
   }
 
   std::uint64_t seed_;
+  Away away_;
   Random random_;
   std::ostringstream out_;
   double size_ = 1, x_ = 0, y_ = 0, heading_ = 0;
@@ -157,8 +170,8 @@ inline std::ostream& operator<<(std::ostream& out, const Tally& t) {
 }
 
 /// Runs a room for about `hits` hits; tells what went wrong.
-inline void stay(std::uint64_t seed, std::uint64_t hits, Tally& tally) {
-  const Case c = Maker(seed).make();
+inline void stay(std::uint64_t seed, std::uint64_t hits, Tally& tally, Away away = Away::any) {
+  const Case c = Maker(seed, away).make();
   const Scene scene = parse_scene(c.text, "room_" + std::to_string(seed) + ".toml");
   const outside::Shape body = outside::shape_of(*scene.world.bodies[0].outline);
   Simulator simulator(scene.world, scene.solver);

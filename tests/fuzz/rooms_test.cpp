@@ -23,6 +23,17 @@ TEST(RoomsOfWires, NobodyLeaves) {
   EXPECT_LT(tally.refused, tally.rooms / 10 + 1);
 }
 
+// There a pair is seen now in doubles, now in extended precision.
+TEST(RoomsOfWires, NobodyLeavesWhereThePrecisionChanges) {
+  const std::uint64_t first = from_environment("BRINK_SEED", 1), count = from_environment("BRINK_ROOMS", 30);
+  const std::uint64_t hits = from_environment("BRINK_HITS", 500);
+  rooms::Tally tally;
+  for (std::uint64_t k = 0; k < count; ++k) rooms::stay(first + k, hits, tally, rooms::Away::coarse);
+  std::cout << "seeds " << first << " .. " << first + count - 1 << ": " << tally;
+  EXPECT_EQ(tally.escaped + tally.energy_lost + tally.ended, 0);
+  EXPECT_LT(tally.refused, tally.rooms / 3 + 1);
+}
+
 // 80301: at a place where doubles are just too coarse, a needle met a wire nearer than doubles tell, a moment later
 // places were seen in doubles again, and its corner was on the other side.
 TEST(RoomsOfWires, ThoseThatOnceWereLeftHold) {
