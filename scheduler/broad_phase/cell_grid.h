@@ -6,9 +6,11 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <vector>
 
+#include "brink/core/base/large_vector.h"
 #include "brink/core/base/periodic.h"
 
 namespace brink {
@@ -27,11 +29,19 @@ struct CellBlock {
   }
 };
 
+/// Bodies of one cell: the first few at hand, without gaps; the others in a list of their own.
+struct CellBodies {
+  static constexpr int kAtHand = 3;
+  static constexpr int kNone = -1;
+  int first[kAtHand] = {kNone, kNone, kNone};
+  unsigned count : 2 = 0;  ///< at hand
+  int more : 30 = kNone;   ///< the first of the list
+};
+
 /// One level of the grid: cells of one size for bodies of like size. A body stays in its cell while its
 /// centre is in the cell's box grown by slack(): it does not flutter on a border.
 class CellGrid {
  public:
-  static constexpr int kNone = -1;
   static constexpr double kSlack = 0.05;  ///< of a cell's size
 
   CellGrid() = default;
@@ -40,7 +50,7 @@ class CellGrid {
   CellGrid(double size, const Vec2& spread, const Periods& periods)
       : x_(size, spread.x(), periods.size.x()), y_(size, spread.y(), periods.size.y()) {
     slack_ = kSlack * std::min(x_.size, y_.size);
-    heads_.assign(static_cast<std::size_t>(x_.count) * y_.count, kNone);
+    cells_.assign(static_cast<std::size_t>(x_.count) * y_.count, {});
   }
 
   double size() const { return std::min(x_.size, y_.size); }
@@ -57,9 +67,9 @@ class CellGrid {
     return {cell_of(box.low.array() - slack_), cell_of(box.high.array() + slack_)};
   }
 
-  /// Calls visit(cell, first body of its list) for the cells of the block. Where the plane does not repeat,
-  /// each list once; they hold bodies of cells a torus away too. Where it does, a list once for each of its
-  /// cells in the block.
+  /// Calls visit(cell, its bodies) for the cells of the block. Where the plane does not repeat, each set of
+  /// bodies once; it holds those of cells a torus away too. Where it does, once for each of its cells in the
+  /// block.
   template <class Visit>
   void lists(const CellBlock& block, Visit&& visit) const {
     const int columns = x_.lists(block.low.column, block.high.column);
@@ -67,14 +77,35 @@ class CellGrid {
     const int first = x_.wrapped(block.low.column);
     int row = y_.wrapped(block.low.row);
     for (int r = 0; r < rows; ++r) {
-      const int* heads = heads_.data() + static_cast<std::size_t>(row) * x_.count;
+      const CellBodies* cells = cells_.data() + static_cast<std::size_t>(row) * x_.count;
       int column = first;
       for (int c = 0; c < columns; ++c) {
-        visit(Cell{block.low.column + c, block.low.row + r}, heads[column]);
+        visit(Cell{block.low.column + c, block.low.row + r}, cells[column]);
         if (++column == x_.count) column = 0;
       }
       if (++row == y_.count) row = 0;
     }
+  }
+
+  /// True if around() holds: the plane does not repeat, and is wide enough.
+  bool has_around() const { return x_.count >= 4 && y_.count >= 4 && !x_.repeats && !y_.repeats; }
+  static constexpr int kMostAround = 9 * CellBodies::kAtHand;
+  /// Bodies of the cell and the eight about it, written to `bodies`, which has room for kMostAround and one:
+  /// how many; or -1 where a cell has more than are at hand. Without a branch: how many a cell has cannot be
+  /// foreseen. @pre has_around().
+  int around(const Cell& c, int* bodies) const {
+    int count = 0, more = CellBodies::kNone;
+    for (int r = -1; r <= 1; ++r) {
+      const CellBodies* cells =
+          cells_.data() + static_cast<std::size_t>((c.row + r) & (y_.count - 1)) * x_.count;
+      for (int q = -1; q <= 1; ++q) {
+        const CellBodies& cell = cells[(c.column + q) & (x_.count - 1)];
+        std::memcpy(bodies + count, &cell, sizeof cell);
+        count += cell.count;
+        more = std::max<int>(more, cell.more);
+      }
+    }
+    return more == CellBodies::kNone ? count : -1;
   }
 
   /// True if the block is so wide that one list holds several of its cells, and is visited once.
@@ -82,8 +113,8 @@ class CellGrid {
     return x_.wraps(b.low.column, b.high.column) || y_.wraps(b.low.row, b.high.row);
   }
 
-  int& head(const Cell& c) {
-    return heads_[static_cast<std::size_t>(y_.wrapped(c.row)) * x_.count + x_.wrapped(c.column)];
+  CellBodies& bodies(const Cell& c) {
+    return cells_[static_cast<std::size_t>(y_.wrapped(c.row)) * x_.count + x_.wrapped(c.column)];
   }
 
   /// Where a plane repeats: the cell's image in the first period, and how many periods it is from there.
@@ -96,7 +127,7 @@ class CellGrid {
   struct Axis {
     double size = 1.0;
     double per_metre = 0.0;  ///< cells; 0: an only one
-    int count = 1;           ///< lists; a power of two where the axis does not repeat
+    int count = 1;           ///< sets of bodies; a power of two where the axis does not repeat
     bool repeats = false;
 
     Axis() = default;
@@ -132,11 +163,11 @@ class CellGrid {
     int periods(int cells) const { return repeats ? cells / count : 0; }
   };
   static constexpr double kFar = 1e9;     ///< cells from the origin; all beyond is one
-  static constexpr double kMost = 16384;  ///< lists along an axis
+  static constexpr double kMost = 16384;  ///< sets of bodies along an axis
 
   Axis x_, y_;
   double slack_ = 0.0;
-  std::vector<int> heads_;
+  LargeVector<CellBodies> cells_;
 };
 
 }  // namespace brink

@@ -1,5 +1,6 @@
 #include "brink/scheduler/broad_phase/neighbourhood.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace brink {
@@ -35,9 +36,10 @@ Neighbourhood::Neighbourhood(std::span<Flight> flights, std::span<BodyClock> clo
       periods_(periods),
       repeats_(periods.any()) {
   make_levels(places, by_place && flights.size() > kFew);
+  around_ = levels_.size() == 1 && levels_[0].grid.has_around();
   for (int k = 0; k < static_cast<int>(flights.size()); ++k) {
     flights_[k].cell = grid(k).cell_of(places[k]);
-    link(k);
+    put_in(k);
   }
 }
 
@@ -75,23 +77,44 @@ void Neighbourhood::make_levels(std::span<const Vec2> places, bool by_place) {
 bool Neighbourhood::put_into_cell(int k, const Vec2& p) {
   const Cell cell = grid(k).cell_of(p);
   if (clocks_[k].sites && cell == flights_[k].cell) return false;
-  unlink(k);
+  take_out(k);
   flights_[k].cell = cell;
-  link(k);
+  put_in(k);
   return true;
 }
 
-void Neighbourhood::unlink(int k) {
-  int* from = &grid(k).head(flights_[k].cell);
-  while (*from != k) from = &flights_[*from].next;
-  *from = flights_[k].next;
+void Neighbourhood::take_out(int k) {
+  CellBodies& bodies = grid(k).bodies(flights_[k].cell);
+  int* const end = bodies.first + bodies.count;
+  int* const at = std::find(bodies.first, end, k);
+  if (at == end) {  // in the list
+    if (bodies.more == k) {
+      bodies.more = flights_[k].next;
+      return;
+    }
+    int* from = &flights_[bodies.more].next;
+    while (*from != k) from = &flights_[*from].next;
+    *from = flights_[k].next;
+    return;
+  }
+  *at = end[-1];
+  end[-1] = bodies.more;
+  if (bodies.more == CellBodies::kNone)
+    --bodies.count;
+  else
+    bodies.more = flights_[bodies.more].next;
 }
 
-void Neighbourhood::link(int k) {
+void Neighbourhood::put_in(int k) {
   Level& level = levels_[clocks_[k].level];
-  int& head = level.grid.head(flights_[k].cell);
-  flights_[k].next = head;
-  head = k;
+  CellBodies& bodies = level.grid.bodies(flights_[k].cell);
+  if (bodies.count < CellBodies::kAtHand) {
+    bodies.first[bodies.count] = k;
+    ++bodies.count;
+  } else {
+    flights_[k].next = bodies.more;
+    bodies.more = k;
+  }
   clocks_[k].sites = &level.sites->of(flights_[k].cell);
 }
 

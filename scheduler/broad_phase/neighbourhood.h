@@ -32,23 +32,18 @@ class Neighbourhood {
   /// their cells; with `except`, without those of its former cell's blocks.
   template <class Visit>
   void near(int k, Visit&& visit, const Cell* except = nullptr) const {
-    for (std::size_t m = 0; m < levels_.size(); ++m) {
-      const CellBlock block = block_of(k, flights_[k].cell, m);
-      constexpr CellBlock none{{1, 1}, {0, 0}};
-      const CellBlock former = except && !levels_[m].grid.wraps(block) ? block_of(k, *except, m) : none;
-      levels_[m].grid.lists(block, [&](const Cell& c, int first) {
-        if (first == CellGrid::kNone || former.contains(c)) return;
-        for (int j = first; j != CellGrid::kNone; j = flights_[j].next)
-          if (j != k) visit(j, image_in(levels_[m].grid, j, c));
-      });
-    }
+    repeats_ ? near_in<true>(k, visit, except) : near_in<false>(k, visit, except);
   }
+
+  /// What near(k) visits, body k itself included, at once: see CellGrid::around(), whose answer this is. -1, too,
+  /// where there is more than one level, or no place for it.
+  int around(int k, int* bodies) const { return around_ ? levels_[0].grid.around(flights_[k].cell, bodies) : -1; }
 
   /// Starts to fetch what near(k) will visit: at many bodies, waiting for their memory is what looking costs.
   void expect(int k) const {
     for (std::size_t m = 0; m < levels_.size(); ++m)
-      levels_[m].grid.lists(block_of(k, flights_[k].cell, m), [&](const Cell&, int first) {
-        if (first != CellGrid::kNone) prefetch(&flights_[first]);
+      levels_[m].grid.lists(block_of(k, flights_[k].cell, m), [&](const Cell&, const CellBodies& bodies) {
+        if (bodies.first[0] != CellBodies::kNone) prefetch(&flights_[bodies.first[0]]);
       });
   }
 
@@ -67,9 +62,57 @@ class Neighbourhood {
     double radius = 0.0;  ///< the largest of its bodies' [m]
     std::unique_ptr<SiteLists> sites;
   };
-  /// Which image of body j is in cell c, whose list j is in.
+  /// Bodies of some cells, collected without a branch: how many a cell has cannot be foreseen.
+  template <bool repeats>
+  struct Found {
+    static constexpr int kMost = 64;
+    int count = 0;
+    int body[kMost];
+    Cell cell[repeats ? kMost : 1];
+
+    bool full() const { return count > kMost - CellBodies::kAtHand; }
+    void add(const Cell& c, const CellBodies& bodies) {
+      for (int i = 0; i < CellBodies::kAtHand; ++i) {
+        body[count + i] = bodies.first[i];
+        if constexpr (repeats) cell[count + i] = c;
+      }
+      count += bodies.count;
+    }
+  };
+  template <bool repeats, class Visit>
+  void near_in(int k, Visit& visit, const Cell* except) const {
+    for (std::size_t m = 0; m < levels_.size(); ++m) {
+      const CellGrid& grid = levels_[m].grid;
+      const CellBlock block = block_of(k, flights_[k].cell, m);
+      constexpr CellBlock none{{1, 1}, {0, 0}};
+      const CellBlock former = except && !grid.wraps(block) ? block_of(k, *except, m) : none;
+      Found<repeats> found;
+      const auto tell = [&] {
+        for (int i = 0; i < found.count; ++i) {
+          const int j = found.body[i];
+          if (j == k) continue;
+          if constexpr (repeats)
+            visit(j, image_in(grid, j, found.cell[i]));
+          else
+            visit(j, Image{});
+        }
+        found.count = 0;
+      };
+      grid.lists(block, [&](const Cell& c, const CellBodies& bodies) {
+        if (former.contains(c)) return;
+        found.add(c, bodies);
+        for (int j = bodies.more; j != CellBodies::kNone; j = flights_[j].next) {
+          if (found.full()) tell();
+          found.add(c, {{j}, 1});
+        }
+        if (found.full()) tell();
+      });
+      tell();
+    }
+  }
+  /// Which image of body j is in cell c, one of whose bodies it is.
   Image image_in(const CellGrid& grid, int j, const Cell& c) const {
-    return !repeats_ || flights_[j].cell == c ? Image{} : grid.periods_between(flights_[j].cell, c);
+    return flights_[j].cell == c ? Image{} : grid.periods_between(flights_[j].cell, c);
   }
   const CellGrid& grid(int k) const { return levels_[clocks_[k].level].grid; }
   CellGrid& grid(int k) { return levels_[clocks_[k].level].grid; }
@@ -82,14 +125,15 @@ class Neighbourhood {
     return levels_[level].grid.block_of(own.grid.box_of(cell).grown(reach));
   }
   void make_levels(std::span<const Vec2> places, bool by_place);
-  void unlink(int k);
-  void link(int k);
+  void take_out(int k);
+  void put_in(int k);
 
   std::span<Flight> flights_;
   std::span<BodyClock> clocks_;
   std::vector<SiteLists::Placed> still_sites_;
   Periods periods_;
   bool repeats_;
+  bool around_ = false;  ///< around() has an answer
   std::vector<Level> levels_;
 };
 

@@ -1,10 +1,12 @@
-// What the queue of local clocks costs: the 4-ary heap that is used, beside a binary heap and a calendar
-// queue. A serving takes the first body, gives it a later time, and gives another body one too, as a
+// What the queue of local clocks costs: the tournament that is used, beside heaps and a calendar queue. A serving takes the first body, gives it a later time, and gives another body one too, as a
 // collision does.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "brink/core/base/random.h"
@@ -13,7 +15,73 @@
 namespace brink {
 namespace {
 
-/// The same interface as EventQueue's, with two children a node.
+/// The same interface as EventQueue's, with the place of every body; four children share a cache line.
+class FourAryHeap {
+ public:
+  /// Holds bodies 0 .. n - 1, all at `time`.
+  void reset(std::size_t n, double time) {
+    heap_.resize(n);
+    place_.resize(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      heap_[k] = {time, static_cast<int>(k)};
+      place_[k] = static_cast<int>(k);
+    }
+  }
+  /// The least time of all bodies; infinite where there are none.
+  double time() const { return heap_.empty() ? std::numeric_limits<double>::infinity() : heap_.front().time; }
+  /// The body whose time that is. @pre there are bodies.
+  int body() const { return heap_.front().body; }
+
+  /// Changes a body's time.
+  void update(int body, double time) {
+    std::size_t k = place_[body];
+    const bool earlier = Entry{time, body} < heap_[k];
+    heap_[k].time = time;
+    earlier ? up(k) : down(k);
+  }
+
+ private:
+  struct Entry {
+    double time;
+    int body;
+    /// Without a branch: which of two comes first cannot be foreseen.
+    bool operator<(const Entry& e) const { return (time < e.time) | ((time == e.time) & (body < e.body)); }
+  };
+
+  void up(std::size_t k) {
+    const Entry e = heap_[k];
+    while (k > 0) {
+      const std::size_t parent = (k - 1) / 4;
+      if (!(e < heap_[parent])) break;
+      set(k, heap_[parent]);
+      k = parent;
+    }
+    set(k, e);
+  }
+  void down(std::size_t k) {
+    const Entry e = heap_[k];
+    for (;;) {
+      const std::size_t first = 4 * k + 1;
+      if (first >= heap_.size()) break;
+      const std::size_t last = std::min(first + 4, heap_.size());
+      std::size_t least = first;
+      for (std::size_t c = first + 1; c < last; ++c) least = heap_[c] < heap_[least] ? c : least;
+      if (!(heap_[least] < e)) break;
+      set(k, heap_[least]);
+      k = least;
+    }
+    set(k, e);
+  }
+  void set(std::size_t k, const Entry& e) {
+    heap_[k] = e;
+    place_[e.body] = static_cast<int>(k);
+  }
+
+  std::vector<Entry> heap_;
+  std::vector<int> place_;
+};
+
+/// The same interface, with two children a node.
 class BinaryHeap {
  public:
   void reset(std::size_t n, double time) {
@@ -148,11 +216,13 @@ void serve(benchmark::State& state, Queue queue) {
   }
 }
 
-void four_ary_heap(benchmark::State& state) { serve(state, EventQueue()); }
+void tournament(benchmark::State& state) { serve(state, EventQueue()); }
+void four_ary_heap(benchmark::State& state) { serve(state, FourAryHeap()); }
 void binary_heap(benchmark::State& state) { serve(state, BinaryHeap()); }
 void calendar_queue(benchmark::State& state) {
   serve(state, CalendarQueue(0.5 / static_cast<double>(state.range(0))));
 }
+BENCHMARK(tournament)->RangeMultiplier(10)->Range(100, 1000000);
 BENCHMARK(four_ary_heap)->RangeMultiplier(10)->Range(100, 1000000);
 BENCHMARK(binary_heap)->RangeMultiplier(10)->Range(100, 1000000);
 BENCHMARK(calendar_queue)->RangeMultiplier(10)->Range(100, 10000);

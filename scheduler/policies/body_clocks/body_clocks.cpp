@@ -104,7 +104,8 @@ class BodyClocks final : public Policy {
 
   void serve(int k) {
     const Due due = due_of(k);
-    expect(k);
+    const EventQueue::Entry second = queue_.second();
+    expect(k, second.body);
     switch (due.kind) {
       case Due::Kind::leaves_cell:
         views_->look_ahead(k, due.time);
@@ -114,10 +115,10 @@ class BodyClocks final : public Policy {
         break;
       case Due::Kind::may_meet:
         sharpen(k);
-        if (is_next(k)) return meet(k);
+        if (is_next(k, second.time)) return meet(k, second.time);
         break;
       case Due::Kind::meets:
-        return meet(k);
+        return meet(k, second.time);
     }
     wait_for(k);
   }
@@ -148,8 +149,8 @@ class BodyClocks final : public Policy {
   }
 
   /// Waiting for the memory of bodies that are met in no order is much of what an event costs.
-  void expect(int k) const {
-    views_->expect(queue_.second());
+  void expect(int k, int next) const {
+    if (next < kernel_->body_count()) views_->expect(next);
     const BodyClock& clock = views_->clock(k);
     if (clock.candidates.empty()) return;
     kernel_->expect(k);
@@ -159,15 +160,15 @@ class BodyClocks final : public Policy {
     views_->expect(other);
   }
 
-  /// True if body k's first candidate is a contact and comes before everything else, without asking the
-  /// queue.
-  bool is_next(int k) const {
+  /// True if body k's first candidate is a contact and comes before everything else, of which the queue's
+  /// second is due first.
+  bool is_next(int k, double second) const {
     const BodyClock& clock = views_->clock(k);
     if (clock.candidates.empty() || kernel_->halt()) return false;
     const Candidate& c = clock.candidates.front();
     if (!c.exact || views_->stale(c)) return false;
     const double time = c.time;
-    return time <= std::min(end(), kernel_->next_step()) && time < queue_.second_time() &&
+    return time <= std::min(end(), kernel_->next_step()) && time < second &&
            time < std::min(clock.exit, clock.horizon);
   }
 
@@ -204,10 +205,10 @@ class BodyClocks final : public Policy {
   }
 
   /// Body k's first candidate is a contact, and nothing is due before it.
-  void meet(int k) {
+  void meet(int k, double second) {
     const BodyClock& clock = views_->clock(k);
     const double now = found_->of(k).time, instant = now + same_instant(now);
-    const bool alone = !picks_among_all(kernel_->order()) && queue_.second_time() > instant &&
+    const bool alone = !picks_among_all(kernel_->order()) && second > instant &&
                        clock.exit > instant && clock.horizon > instant &&
                        (clock.candidates.size() == 1 || clock.candidates[1].time > instant);
     if (alone) return collide(Certificate(found_->of(k)));

@@ -99,6 +99,7 @@ void Views::take_up(int k) {
   f.free = kernel_->is_free(k) && motion.acceleration().linear == gravity_ && !kernel_->by_passes();
   f.disc = f.free && is_centred_disc(kernel_->outline_of(k));
   if (!kernel_->is_free(k)) note_start(k, motion.begin());
+  f.x = std::numeric_limits<double>::quiet_NaN();
   if (!f.free) return;
   const BodyState& s = motion.start();
   f.x = s.pose.position.x();
@@ -129,18 +130,26 @@ void Views::see_bodies(int k, double now) {
 /// Bodies near body k in free flight; with `former`, its former cell, those alone that were not near it
 /// there.
 void Views::see_bodies(int k, const Course& here, double now, const Cell* former) {
-  BodyClock& clock = clocks_[k];
-  const auto see = [&](int j, const Image& image) {
-    const Flight& b = flights_[j];
-    if (!b.free) {
-      if (sees(k, j, image)) see_bounded(k, j, image, now);
-      return;
-    }
-    const MeetingTimes m = meeting(here, b, periods_.shift(image), now);
-    if (m.begin < clock.horizon && sees(k, j, image))
-      clock.see({m.begin, m.begin, j, image, b.version, 0}, now);
+  const auto see = [&](int j, const Image& image, double begin) {
+    if (!sees(k, j, image)) return;
+    if (flights_[j].free)
+      clocks_[k].see({begin, begin, j, image, flights_[j].version, 0}, now);
+    else
+      see_bounded(k, j, image, now);
   };
-  near_->near(k, see, former);
+  int bodies[CellGrid::kMostAround + 1];
+  if (const int count = former ? -1 : near_->around(k, bodies); count >= 0) {
+    batch_.gather({bodies, bodies + count}, k, flights_);
+    batch_.meet(here, now);
+    for (int i = 0; i < batch_.size(); ++i)
+      if (batch_.begin(i) < clocks_[k].horizon) see(batch_.body(i), {}, batch_.begin(i));
+    return;
+  }
+  const auto compare = [&](int j, const Image& image) {
+    const double begin = meeting(here, flights_[j], periods_.shift(image), now).begin;
+    if (begin < clocks_[k].horizon) see(j, image, begin);
+  };
+  near_->near(k, compare, former);
 }
 
 void Views::look_around(int k, double now) {

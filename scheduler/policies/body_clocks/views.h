@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "brink/scheduler/broad_phase/flight_batch.h"
 #include "brink/scheduler/broad_phase/neighbourhood.h"
 #include "brink/scheduler/kernel/kernel.h"
 
@@ -91,6 +92,7 @@ class Views {
   std::vector<std::uint64_t> looked_;  ///< the round in which each body looked around
   std::uint64_t round_ = 0;
   std::optional<Neighbourhood> near_;
+  FlightBatch batch_;  ///< empty but while a body looks around
 };
 
 }  // namespace brink
