@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kCellsPerBox = 2.0;                        ///< a cell is this many times the median box
 constexpr int kMostCellsAcross = 4;                         ///< boxes wider than this many cells are large
+constexpr std::size_t kFew = 16;                            ///< boxes that need no cells
 constexpr std::int64_t kMostCells = std::int64_t{1} << 60;  ///< only those that hold a box take room
 
 /// Cells of a window, counted row by row.
@@ -125,6 +126,13 @@ bool each_with_large(const std::vector<Box>& boxes, const Sorted& sorted,
   return true;
 }
 
+bool each_of_few(const std::vector<Box>& boxes, const std::function<bool(int, int)>& visit) {
+  for (int i = 0; i < static_cast<int>(boxes.size()); ++i)
+    for (int j = i + 1; j < static_cast<int>(boxes.size()); ++j)
+      if (boxes[i].overlaps(boxes[j]) && !visit(i, j)) return false;
+  return true;
+}
+
 }  // namespace
 
 Box swept_box(const Outline& outline, const Motion& motion, double from, double to) {
@@ -142,6 +150,7 @@ Box swept_box(const Outline& outline, const Motion& motion, double from, double 
 }
 
 bool each_overlapping(const std::vector<Box>& boxes, const std::function<bool(int i, int j)>& visit) {
+  if (boxes.size() <= kFew) return each_of_few(boxes, visit);
   const Grid grid = make_grid(boxes);
   Sorted sorted(boxes, grid);
   return each_in_cells(boxes, grid, sorted.entries, visit) && each_with_large(boxes, sorted, visit);
@@ -159,18 +168,19 @@ std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<Box>& boxes
 
 bool each_overlapping(const std::vector<Box>& boxes, const Periods& periods,
                       const std::function<bool(const ImagePair&)>& visit) {
+  if (!periods.any()) return each_overlapping(boxes, [&](int i, int j) { return visit({i, j, {}}); });
   const int n = static_cast<int>(boxes.size());
   std::vector<Image> images;
   std::vector<Box> copies;  // every box at home, then those images that reach into the homes
   std::vector<int> owner(n);
   Box homes;
   for (int k = 0; k < n; ++k) {
-    images.push_back(periods.any() ? image_at_home(boxes[k], periods) : Image{});
+    images.push_back(image_at_home(boxes[k], periods));
     copies.push_back(moved(boxes[k], periods.shift(images[k])));
     owner[k] = k;
-    if (periods.any()) homes.add(copies[k]);
+    homes.add(copies[k]);
   }
-  for (int k = 0; k < n && periods.any(); ++k)
+  for (int k = 0; k < n; ++k)
     periods.overlaps(homes, boxes[k], [&](const Image& image) {
       if (image == images[k]) return;
       images.push_back(image);

@@ -37,7 +37,9 @@ class Neighbourhood {
 
   /// What near(k) visits, body k itself included, at once: see CellGrid::around(), whose answer this is. -1, too,
   /// where there is more than one level, or no place for it.
-  int around(int k, int* bodies) const { return around_ ? levels_[0].grid.around(flights_[k].cell, bodies) : -1; }
+  int around(int k, int* bodies) const {
+    return around_ ? levels_[0].grid.around(flights_[k].cell, bodies) : -1;
+  }
 
   /// Starts to fetch what near(k) will visit: at many bodies, waiting for their memory is what looking costs.
   void expect(int k) const {

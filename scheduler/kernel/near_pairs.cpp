@@ -146,6 +146,7 @@ std::vector<PairKey> NearPairs::by_pass(int body, double from, double to) {
 
 void NearPairs::each_at(double t, const std::function<bool(const PairKey&)>& visit) const {
   std::vector<Box> now;
+  now.reserve(trajectories_->owner_count());
   for (int k = 0; k < trajectories_->owner_count(); ++k) now.push_back(box_at(k, t));
   each_overlapping(now, world_->periods, [&](const ImagePair& p) {
     const auto pair = search_->pair_of(p.a, p.b, p.image);

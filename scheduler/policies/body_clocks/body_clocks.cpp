@@ -208,8 +208,8 @@ class BodyClocks final : public Policy {
   void meet(int k, double second) {
     const BodyClock& clock = views_->clock(k);
     const double now = found_->of(k).time, instant = now + same_instant(now);
-    const bool alone = !picks_among_all(kernel_->order()) && second > instant &&
-                       clock.exit > instant && clock.horizon > instant &&
+    const bool alone = !picks_among_all(kernel_->order()) && second > instant && clock.exit > instant &&
+                       clock.horizon > instant &&
                        (clock.candidates.size() == 1 || clock.candidates[1].time > instant);
     if (alone) return collide(Certificate(found_->of(k)));
     wait_for(k);  // a contact may be told for a little before the time that the queue knows

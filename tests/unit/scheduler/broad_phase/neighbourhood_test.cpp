@@ -9,6 +9,7 @@
 #include "brink/core/base/random.h"
 #include "brink/core/shapes/shapes.h"
 #include "brink/scheduler/broad_phase/flight.h"
+#include "brink/scheduler/broad_phase/flight_batch.h"
 #include "brink/scheduler/broad_phase/neighbourhood.h"
 #include "tests/support/seeded_random.h"
 
@@ -55,6 +56,40 @@ TEST(Flight, MeetingHoldsEveryOverlapOfTheBoundingDiscs) {
     }
   }
   EXPECT_GT(met, 500);
+}
+
+// However many the processor compares at once: bare discs and others, resting, touching, and not free.
+TEST(FlightBatch, TellsTheBitsOfMeetingsOneByOne) {
+  SeededRandom random(16);
+  FlightBatch batch;
+  for (int trial = 0; trial < 3000; ++trial) {
+    std::vector<Flight> flights;
+    std::vector<int> bodies;
+    const int count = static_cast<int>(random.below(FlightBatch::kMost));
+    for (int j = 0; j < count + 1; ++j) {
+      flights.push_back(random_flight(random));
+      Flight& f = flights.back();
+      f.disc = random.below(2);
+      if (random.below(5) == 0) f.vx = f.vy = 0.0;
+      if (random.below(9) == 0) f.x += 1e6;
+      if (random.below(9) == 0) {
+        f.free = 0;
+        f.x = std::numeric_limits<double>::quiet_NaN();
+      }
+      bodies.push_back(j);
+    }
+    const double now = random.uniform(0, 3);
+    const Course course(random_flight(random), Vec2(0.0, trial % 3 ? 0.0 : -9.8), now);
+    batch.gather(bodies, count, flights);
+    batch.meet(course, now);
+    ASSERT_EQ(batch.size(), count);
+    for (int i = 0; i < count; ++i) {
+      const Flight& f = flights[i];
+      ASSERT_EQ(batch.body(i), i);
+      ASSERT_EQ(batch.begin(i), f.free ? meeting(course, f, Vec2::Zero(), now).begin : now)
+          << "trial " << trial;
+    }
+  }
 }
 
 TEST(Flight, StaysInABoxUntilTheTimeItIsTold) {
@@ -125,6 +160,30 @@ TEST(Neighbourhood, BodiesThatOverlapSeeEachOtherWhereverTheyGo) {
         }
       }
     }
+}
+
+TEST(Neighbourhood, BodiesAroundAreThoseNear) {
+  SeededRandom random(17);
+  int asked = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    Crowd crowd(random, 20 + random.below(200), random.uniform(8.0, 60.0));
+    for (Flight& f : crowd.flights) f.radius = 0.4;  // one level
+    Neighbourhood near(crowd.flights, crowd.clocks, crowd.places, {}, {}, true);
+    for (int step = 0; step < 10; ++step)
+      for (int k = 0; k < static_cast<int>(crowd.places.size()); ++k) {
+        int around[CellGrid::kMostAround + 1];
+        if (const int count = near.around(k, around); count >= 0) {
+          ++asked;
+          std::set<int> expected{k};
+          near.near(k, [&](int j, const Image&) { expected.insert(j); });
+          ASSERT_EQ(std::set<int>(around, around + count), expected);
+          ASSERT_EQ(static_cast<int>(expected.size()), count) << "twice";
+        }
+        crowd.places[k] += Vec2(random.uniform(-2, 2), random.uniform(-2, 2));
+        near.put_into_cell(k, crowd.places[k]);
+      }
+  }
+  EXPECT_GT(asked, 5000);
 }
 
 }  // namespace
