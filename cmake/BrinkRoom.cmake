@@ -16,6 +16,7 @@ endfunction()
 function(brink_flags target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -ffp-contract=off
     -fno-math-errno -fno-trapping-math  # change no bit of a result
+    $<$<AND:$<BOOL:${BRINK_UNITY}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>  # each source is still one of its own
     $<$<BOOL:${BRINK_WERROR}>:-Werror>)
   if(BRINK_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=undefined

@@ -6,6 +6,7 @@
 /// 64 bits, and collisions are resolved in them. Where long double is double, nothing is lost but this.
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "brink/core/base/geometry.h"
@@ -13,6 +14,8 @@
 namespace brink {
 
 using Real = long double;
+/// The distance from 1 to the next Real.
+inline constexpr Real kRealEpsilon = std::numeric_limits<Real>::epsilon();
 using RealVec = Eigen::Matrix<Real, 2, 1>;
 
 /// The plane's products once more, in a namespace of their own: expressions of doubles must not come here.

@@ -4,10 +4,13 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace brink {
 
 using Vec2 = Eigen::Vector2d;
+
+inline constexpr double kQuarterTurn = std::numbers::pi / 2;  ///< [rad]
 
 /// z component of a x b.
 inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }

@@ -12,7 +12,7 @@ constexpr int kMostSteps = 80;
 /// Accelerations below this part of the unit are rest; the search goes on to the lesser one where it can.
 constexpr double kRest = 1e-8, kSure = 1e-10;
 /// Rounding of what loads add up to, as a part of them.
-constexpr double kRounding = 1e-13;
+constexpr double kRoundingOfLoads = 1e-13;
 /// Of w.M w: the gap at which w is known to the square root of this; where that does if rounding hinders; and
 /// at which w is known not to be 0.
 constexpr double kExact = 1e-18, kNearly = 1e-14, kProof = 1e-8;
@@ -106,7 +106,7 @@ class Verdict {
   bool rests(double bound) const {
     if (!(acceleration_ <= bound)) return false;
     for (int k = 0; k < bodies(); ++k)
-      if (!(left_over(k) <= bound * own(k) + kRounding * carried_[k])) return false;
+      if (!(left_over(k) <= bound * own(k) + kRoundingOfLoads * carried_[k])) return false;
     return true;
   }
   bool moves(double part) const {

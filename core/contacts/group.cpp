@@ -11,7 +11,7 @@ namespace brink {
 namespace {
 
 /// Speeds below this part of the group's largest are rounding.
-constexpr Real kRounding = 64 * std::numeric_limits<Real>::epsilon();
+constexpr Real kRoundingOfSpeed = 64 * std::numeric_limits<Real>::epsilon();
 
 /// A group in motion: contacts as rows, bodies' twists as they stand.
 class Group {
@@ -32,7 +32,7 @@ class Group {
   int size() const { return static_cast<int>(contacts_.size()); }
   const std::vector<ExtendedTwist>& twists() const { return twists_; }
   /// What rounding alone may make of a velocity at a contact [m/s].
-  Real rounding() const { return kRounding * speed_; }
+  Real rounding() const { return kRoundingOfSpeed * speed_; }
 
   RealVec velocity(int k) const {
     const GroupContact& c = contacts_[k];

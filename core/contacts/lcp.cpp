@@ -9,7 +9,6 @@ namespace brink {
 
 namespace {
 
-constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
 
 /// Lemke's tableau: every row is one equation of w - A z - d z0 = q, solved for its basic variable. Columns
 /// are w, z, z0, and the right-hand side.
@@ -70,7 +69,7 @@ class Tableau {
 
  private:
   static constexpr Real kPivot = 1e-13;  ///< of entries that begin at 1: below is rounding
-  static constexpr Real kTie = 1e3 * kEpsilon;
+  static constexpr Real kTie = 1e3 * kRealEpsilon;
 
   int right() const { return 2 * n_ + 1; }
 
@@ -95,7 +94,7 @@ class Tableau {
 };
 
 /// z0 below this is 0, where |q| <= 1.
-constexpr Real kRounding = 1e5 * kEpsilon;
+constexpr Real kZeroOnRay = 1e5 * kRealEpsilon;
 
 /// Below this many rows a dense tableau is as quick as anything.
 constexpr Eigen::Index kFewRows = 48;
@@ -113,7 +112,7 @@ LcpAnswer lemke(const RealMatrix& A, const RealVector& q, const GoOn& go_on) {
     const int row = tableau.leaving_row(entering);
     const bool ray = row < 0;
     const int left = ray ? tableau.z0() : tableau.pivot(row, entering);
-    if (ray && tableau.z0_value() > kRounding) {
+    if (ray && tableau.z0_value() > kZeroOnRay) {
       answer.status = LcpAnswer::Status::none;
       return answer;
     }

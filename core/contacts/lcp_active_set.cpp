@@ -10,12 +10,11 @@ namespace brink {
 
 namespace {
 
-constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
 // of problems with a diagonal of ones and |q| <= 1:
-constexpr Real kViolated = 1e3 * kEpsilon;  ///< w below minus this is violated
+constexpr Real kViolated = 1e3 * kRealEpsilon;  ///< w below minus this is violated
 constexpr Real kDependent = 1e-13;          ///< a row with less of its own hangs on those that have joined
 constexpr Real kYields = 1e-13;             ///< less is rounding, where entries begin at 1
-constexpr Real kHopeless = 1e5 * kEpsilon;  ///< violated by more, and nothing can be done: no solution
+constexpr Real kHopeless = 1e5 * kRealEpsilon;  ///< violated by more, and nothing can be done: no solution
 constexpr int kMostPolishes = 8;
 
 /// z and w = A z + q as they stand, and the rows that have joined: w = 0 there.

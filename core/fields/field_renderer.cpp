@@ -12,6 +12,9 @@ namespace brink::detail {
 
 namespace {
 
+/// Larger targets are of pictures: as large as they must be, not powers of two, which are four times as much.
+constexpr unsigned kMostSquare = 1024;
+constexpr int kPictureStep = 64;  ///< their sides are whole multiples of this [pixels]
 constexpr int kUnitFirst = 0, kUnitNearest = 0, kUnitOwners = 1;
 
 struct Attribute {
@@ -112,11 +115,12 @@ FieldRenderer::Program& FieldRenderer::use(FieldProgram kind, const PixelGrid& g
   return program;
 }
 
-GLuint FieldRenderer::texture(GLenum internal, GLenum format, GLenum type, int size) {
+GLuint FieldRenderer::texture(GLenum internal, GLenum format, GLenum type, const Target& target) {
   GLuint name = 0;
   gl_.GenTextures(1, &name);
   gl_.BindTexture(GL_TEXTURE_2D, name);
-  gl_.TexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internal), size, size, 0, format, type, nullptr);
+  gl_.TexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internal), target.width, target.height, 0, format, type,
+                 nullptr);
   gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   return name;
@@ -130,8 +134,9 @@ void FieldRenderer::destroy(Target& target) {
   target = Target();
 }
 
-void FieldRenderer::make_target(Target& target, int size, bool with_ids) {
-  target.size = size;
+void FieldRenderer::make_target(Target& target, int width, int height, bool with_ids) {
+  target.width = width;
+  target.height = height;
   gl_.ActiveTexture(GL_TEXTURE0);
   gl_.GenFramebuffers(1, &target.framebuffer);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
@@ -141,14 +146,14 @@ void FieldRenderer::make_target(Target& target, int size, bool with_ids) {
     gl_.FramebufferTexture2D(GL_FRAMEBUFFER, slot, GL_TEXTURE_2D, name, 0);
     buffers.push_back(slot);
   };
-  if (with_ids) attach(target.ids = texture(GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, target.size));
-  attach(target.values = texture(GL_R32F, GL_RED, GL_FLOAT, target.size));
-  target.depth = texture(GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, target.size);
+  if (with_ids) attach(target.ids = texture(GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, target));
+  attach(target.values = texture(GL_R32F, GL_RED, GL_FLOAT, target));
+  target.depth = texture(GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, target);
   gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target.depth, 0);
   gl_.DrawBuffers(static_cast<GLsizei>(buffers.size()), buffers.data());
   if (gl_.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-    throw IoError("the framebuffer of a field (" + std::to_string(target.size) +
-                  " pixels a side) is incomplete on " + context_->description());
+    throw IoError("the framebuffer of a field (" + std::to_string(width) + " x " + std::to_string(height) +
+                  " pixels) is incomplete on " + context_->description());
   }
 }
 
@@ -156,7 +161,13 @@ void FieldRenderer::make_target(Target& target, int size, bool with_ids) {
 void FieldRenderer::fit(Targets& targets, const PixelGrid& grid, bool with_ids) {
   const auto size = std::bit_ceil(static_cast<unsigned>(std::max({grid.width, grid.height, 32})));
   Target& target = targets[static_cast<std::size_t>(std::bit_width(size)) - 1];
-  if (target.framebuffer == 0) make_target(target, static_cast<int>(size), with_ids);
+  const bool picture = size > kMostSquare;
+  const auto side = [&](int pixels) {
+    return picture ? (pixels + kPictureStep - 1) / kPictureStep * kPictureStep : static_cast<int>(size);
+  };
+  const int width = side(grid.width), height = side(grid.height);
+  if (target.width != width || target.height != height) destroy(target);
+  if (target.framebuffer == 0) make_target(target, width, height, with_ids);
   current_ = &target;
   gl_.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
   gl_.Viewport(0, 0, grid.width, grid.height);

@@ -35,8 +35,9 @@ class FieldRenderer {
                   const std::vector<std::uint32_t>& owners);
   /// Reads a rectangle of the layer drawn last, row-major from the bottom.
   void read_image(int x, int y, int width, int height, std::uint32_t* ids, float* values);
-  /// Side of the square target that holds the image (at least the window).
-  int target_size() const { return current_->size; }
+  /// The target that holds the image: at least the window [pixels].
+  int target_width() const { return current_->width; }
+  int target_height() const { return current_->height; }
 
   /// Draws the nearest upper bounds; infinity where nothing is drawn. The result lives until the next call.
   const std::vector<float>& draw_bounds(const PixelGrid& grid, const SiteBatch& batch);
@@ -60,22 +61,22 @@ class FieldRenderer {
   };
   struct Target {
     GLuint framebuffer = 0, ids = 0, values = 0, depth = 0;
-    int size = 0;
+    int width = 0, height = 0;
   };
 
   template <class Attributes>
   void make_array(const Attributes& attributes, std::size_t stride, GLuint step, GLuint& array,
                   GLuint& buffer);
   Program& use(FieldProgram kind, const PixelGrid& grid, const SiteBatch& batch);
-  /// Targets of one use by size: powers of two. A clear costs the whole target, so a small window gets a
-  /// small one.
+  /// Targets of one use by size: squares of powers of two, and larger ones as their windows are. A clear costs
+  /// the whole target, so a small window gets a small one.
   using Targets = std::array<Target, 14>;
 
   void fit(Targets& targets, const PixelGrid& grid, bool with_ids);
-  void make_target(Target& target, int size, bool with_ids);
+  void make_target(Target& target, int width, int height, bool with_ids);
   void upload(const SiteBatch& batch);
   void draw(const PixelGrid& grid, const SiteBatch& batch);
-  GLuint texture(GLenum internal, GLenum format, GLenum type, int size);
+  GLuint texture(GLenum internal, GLenum format, GLenum type, const Target& target);
   void destroy(Target& target);
   void bind_storage(std::size_t bytes);
 

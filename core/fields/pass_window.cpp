@@ -116,7 +116,8 @@ struct PassRenderer::Impl {
   /// Reads the window into ids and values; returns the length of their rows.
   int read(const PixelGrid& grid) {
     const bool full = options.readback == "full";
-    const int width = full ? renderer.target_size() : grid.width, height = full ? width : grid.height;
+    const int width = full ? renderer.target_width() : grid.width,
+              height = full ? renderer.target_height() : grid.height;
     ids.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     values.resize(ids.size());
     renderer.read_image(0, 0, width, height, ids.data(), values.data());
@@ -175,7 +176,7 @@ struct PassRenderer::Impl {
     const bool one_by_one = options.readback == "pixel";
     if (!one_by_one && !drawn.was_read) read(grid);
     drawn.was_read = !one_by_one;
-    const std::size_t row = options.readback == "full" ? renderer.target_size() : grid.width;
+    const std::size_t row = options.readback == "full" ? renderer.target_width() : grid.width;
     std::vector<PixelValue> picked;
     picked.reserve(points.size());
     for (const Vec2& p : points) {

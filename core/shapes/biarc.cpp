@@ -12,7 +12,6 @@ namespace brink {
 
 namespace {
 
-constexpr double quarter = std::numbers::pi / 2;
 
 struct Piece {
   double t0 = 0.0, t1 = 0.0;
@@ -95,7 +94,7 @@ bool Fitter::add_tangent_arc(const Vec2& a, const Vec2& direction, const Vec2& b
   const double size = chord.norm();
   if (!(size > 0.0)) return true;
   const double half = std::atan2(cross(direction, chord), direction.dot(chord));
-  if (std::abs(half) > quarter / 2) return false;
+  if (std::abs(half) > kQuarterTurn / 2) return false;
   const double sagitta = size / 2 * std::tan(std::abs(half) / 2);
   if (sagitta <= std::max(0.02 * tolerance_, 1e-8 * size)) {
     fitted.push_back(segment_site(a, b, radius_));

@@ -7,7 +7,6 @@ namespace brink {
 
 namespace {
 
-constexpr double quarter = std::numbers::pi / 2;
 
 Vec2 turned(const Vec2& v, double angle) {
   const Vec2 u = unit_at(angle);
@@ -22,8 +21,8 @@ Vec2 tangent(const Site& arc, const Vec2& p) {
 }  // namespace
 
 Vec2 unit_at(double angle) {
-  const double quarters = std::round(angle / quarter);
-  if (std::abs(angle - quarters * quarter) > 4e-16 * std::max(1.0, std::abs(angle)))
+  const double quarters = std::round(angle / kQuarterTurn);
+  if (std::abs(angle - quarters * kQuarterTurn) > 4e-16 * std::max(1.0, std::abs(angle)))
     return {std::cos(angle), std::sin(angle)};
   static const std::array<Vec2, 4> axes{Vec2(1, 0), Vec2(0, 1), Vec2(-1, 0), Vec2(0, -1)};
   return axes[static_cast<int>(std::fmod(quarters, 4.0) + 4.0) % 4];
@@ -47,7 +46,7 @@ Site segment_site(const Vec2& a, const Vec2& b, double radius) {
 
 void add_arc(std::vector<Site>& sites, const Vec2& a, const Vec2& b, const Vec2& center, double arc_radius,
              double sweep, double radius) {
-  const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / quarter - 1e-9)));
+  const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / kQuarterTurn - 1e-9)));
   Site s;
   s.kind = SiteKind::arc;
   s.radius = radius;
@@ -105,7 +104,7 @@ Box core_bounds(const Site& site) {
   box.add(site.b);
   if (site.kind != SiteKind::arc) return box;
   for (int k = 0; k < 4; ++k) {
-    const Vec2 axis = unit_at(k * quarter);
+    const Vec2 axis = unit_at(k * kQuarterTurn);
     if (in_sector(site, axis)) box.add(Vec2(site.center + site.arc_radius * axis));
   }
   return box;

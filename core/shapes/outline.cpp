@@ -16,10 +16,9 @@ namespace {
 std::string name_of(int k) { return "outline: site " + std::to_string(k); }
 
 void check_arc(const Site& s, int k) {
-  constexpr double quarter = std::numbers::pi / 2;
   if (!(s.center.allFinite() && std::isfinite(s.arc_radius) && s.arc_radius > 0.0))
     throw BadInput(name_of(k) + " is an arc of radius " + text(s.arc_radius) + "; it must be > 0 and finite");
-  if (!(std::abs(s.sweep) > 0.0 && std::abs(s.sweep) <= quarter * (1 + 1e-12)))
+  if (!(std::abs(s.sweep) > 0.0 && std::abs(s.sweep) <= kQuarterTurn * (1 + 1e-12)))
     throw BadInput(name_of(k) + " turns by " + text(s.sweep) +
                    " rad; an arc site turns by at most a quarter turn");
   const double off =

@@ -67,11 +67,10 @@ Vec2 EllipticalArc::derivative(double t) const {
 }
 
 std::vector<double> EllipticalArc::breaks() const {
-  constexpr double quarter = std::numbers::pi / 2;
   const double low = std::min(from_, to_), high = std::max(from_, to_);
   std::vector<double> ts{low};
-  for (double k = std::ceil(low / quarter); k * quarter < high - 1e-9; ++k)
-    if (k * quarter > low + 1e-9) ts.push_back(k * quarter);
+  for (double k = std::ceil(low / kQuarterTurn); k * kQuarterTurn < high - 1e-9; ++k)
+    if (k * kQuarterTurn > low + 1e-9) ts.push_back(k * kQuarterTurn);
   ts.push_back(high);
   if (from_ > to_) std::reverse(ts.begin(), ts.end());
   return ts;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kBoxes = 60;
 constexpr double kReach = 0.2;  // [m] beyond first contact, in boxes of side 1
-constexpr std::uint64_t kSeed = 1;
+constexpr std::uint64_t kSeedOfMissed = 1;
 
 double half_tangent(double degrees) { return std::tan(0.5 * degrees * std::numbers::pi / 180.0); }
 
@@ -28,7 +28,7 @@ double missed_share(double spacing, double degrees, const char* detector) {
   const Shape wedge = make_polygon({{-half, -0.6}, {half, -0.6}, {0.0, 0.0}});
   SolverOptions options = backing_up(detector);
   options.max_collisions = 1;
-  Random random(kSeed);
+  Random random(kSeedOfMissed);
   int missed = 0;
   for (int k = 0; k < kBoxes; ++k) {
     World world;
@@ -40,7 +40,7 @@ double missed_share(double spacing, double degrees, const char* detector) {
   return static_cast<double>(missed) / kBoxes;
 }
 
-constexpr double kSpacings[] = {0.5, 0.25, 0.125, 0.0625, 0.03125};
+constexpr double kFineSpacings[] = {0.5, 0.25, 0.125, 0.0625, 0.03125};
 
 /// Shares missed at one wedge, per cent.
 struct Shares {
@@ -52,7 +52,7 @@ struct Shares {
 Shares measure_wedge(double degrees, Csv& csv) {
   Shares shares;
   fmt::print("  wedge {:>3} deg:", degrees);
-  for (const double spacing : kSpacings) {
+  for (const double spacing : kFineSpacings) {
     const double missed = missed_share(spacing, degrees, "depth");
     // a particle at distance u from the tip meets the flank u / tan(half angle) beyond the first contact
     const double expected = std::max(0.0, 1.0 - 2.0 * kReach * half_tangent(degrees) / spacing);
@@ -77,7 +77,7 @@ class MissedChart {
   explicit MissedChart(const std::string& what) {
     chart_.title = "Missed contacts";
     chart_.panels.push_back({"share against spacing", what, {}, {}, {}});
-    for (const double spacing : kSpacings)
+    for (const double spacing : kFineSpacings)
       chart_.panels[0].x.names.push_back(fmt::format("1/{:g} m", std::round(1.0 / spacing)));
   }
   void add(const std::string& series, const std::vector<double>& shares) {
@@ -107,7 +107,7 @@ void measure_missed(const std::filesystem::path& folder) {
     chart.add(fmt::format("depth, {:g}\u00b0", degrees), shares.depth);
     exact = std::max(exact, shares.exact);
   }
-  chart.add("pass, field", std::vector<double>(std::size(kSpacings), exact));
+  chart.add("pass, field", std::vector<double>(std::size(kFineSpacings), exact));
   chart.write(folder / "classic_missed.png");
   csv.close();
   fmt::print("table {}, plot {}\n\n", (folder / "classic_missed.csv").string(),

@@ -8,15 +8,16 @@
 #include "brink/scenes/bench/classic.h"
 #include "brink/scenes/bench/classic_worlds.h"
 #include "brink/scenes/bench/csv.h"
+#include "brink/scenes/bench/problems.h"
 #include "brink/scenes/program/terminal.h"
 
 namespace brink::bench {
 namespace {
 
 constexpr int kFalls = 16;
-constexpr double kGravity = 9.81, kUntil = 0.62;  // [s]: beyond the latest first contact
+constexpr double kBeyondFirst = 0.62;  // [s]: beyond the latest first contact
 constexpr double kFine = 1.0 / 256;               // side of pixels where something else is varied [m]
-constexpr std::uint64_t kSeed = 3;
+constexpr std::uint64_t kSeedOfOrders = 3;
 
 /// Least-squares slope of log error against log of the varied quantity.
 double fitted_order(const std::vector<double>& x, const std::vector<double>& error) {
@@ -33,7 +34,7 @@ double fitted_order(const std::vector<double>& x, const std::vector<double>& err
 /// heights drawn at random; one that never came is late by what was left of the run.
 double fall_error(SolverOptions options, const Sampling& sampling) {
   options.max_collisions = 1;
-  Random random(kSeed);
+  Random random(kSeedOfOrders);
   double sum = 0.0;
   for (int k = 0; k < kFalls; ++k) {
     const double height = random.uniform(0.8, 1.2), angle = random.uniform(0.0, 6.0);
@@ -42,8 +43,8 @@ double fall_error(SolverOptions options, const Sampling& sampling) {
     world.bodies.push_back(sampled_body(make_disc(0.5), {{0.0, 0.5 + height}, angle}, Twist(), 0.1));
     world.bodies[0].sampling = sampling;
     add_fixed(world, make_box(2.0, 0.5), {{0.0, -0.25}, 0.0});
-    const std::vector<double> hits = hits_of(world, options, kUntil);
-    const double off = (hits.empty() ? kUntil : hits[0]) - std::sqrt(2.0 * height / kGravity);
+    const std::vector<double> hits = hits_of(world, options, kBeyondFirst);
+    const double off = (hits.empty() ? kBeyondFirst : hits[0]) - std::sqrt(2.0 * height / kGravity);
     sum += off * off;
   }
   return std::sqrt(sum / kFalls);

@@ -14,7 +14,6 @@ namespace brink::bench {
 
 namespace {
 
-constexpr double kGravity = 9.81;
 
 World world_of(double friction, const Shape& ground, const Pose& pose, const Shape& shape,
                const BodyState& start) {

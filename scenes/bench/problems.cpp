@@ -12,7 +12,6 @@
 namespace brink::bench {
 namespace {
 
-constexpr double kGravity = 9.81;
 
 void add_body(World& world, const Shape& shape, const Vec2& position, const Vec2& velocity,
               double angle = 0.0, double omega = 0.0) {

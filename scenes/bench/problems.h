@@ -9,6 +9,8 @@
 
 namespace brink::bench {
 
+inline constexpr double kGravity = 9.81;  ///< [m/s^2]
+
 /// What a run of a problem gave.
 struct Outcome {
   RunSummary summary;

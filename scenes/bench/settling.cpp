@@ -12,13 +12,13 @@ namespace brink::bench {
 
 namespace {
 
-constexpr double kUntil = 8.0;
+constexpr double kSettled = 8.0;
 
 Heap heap(std::string name, const std::string& shape, int count, double width) {
   std::string text = fmt::format(
       "[world]\nduration = {}\ngravity = [0, -9.81]\nseed = 7\n[materials.default]\nrestitution = "
       "0\nfriction = 0.5\n",
-      kUntil);
+      kSettled);
   const double height = 20.0, thick = 0.5;
   const auto wall = [&](double x, double y, double w, double h) {
     text += fmt::format("[[sites]]\nbox = {{ width = {}, height = {} }}\nposition = [{}, {}]\n", w, h, x, y);

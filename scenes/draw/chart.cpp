@@ -102,15 +102,15 @@ std::vector<double> all_y(const ChartPanel& panel) {
 }
 
 /// Where one panel's plot lies on the picture [pixels from the top left corner].
-struct Frame {
+struct PanelFrame {
   double left, right, top, bottom;
   double x(double place) const { return left + place * (right - left); }
   double y(double place) const { return bottom - place * (bottom - top); }
 };
 
-class Sheet {
+class ChartSheet {
  public:
-  explicit Sheet(const Chart& chart)
+  explicit ChartSheet(const Chart& chart)
       : chart_(chart),
         columns_(std::clamp(static_cast<int>(chart.panels.size()), 1, kColumns)),
         width_(columns_ * (kPanelWidth + kMargin) + kMargin),
@@ -180,13 +180,13 @@ class Sheet {
     canvas.rectangle(x0, y0, kPanelWidth, kPanelHeight, kPanel);
     canvas.text(x0 + 18, y0 + 26, panel.title, 14.5, kInk, Align::left, true);
     canvas.text(x0 + 18, y0 + 46, panel.note, 12.5, kPale, Align::left);
-    const Frame frame{x0 + kLeft, x0 + kPanelWidth - kRight, y0 + kTop, y0 + kPanelHeight - kBottom};
+    const PanelFrame frame{x0 + kLeft, x0 + kPanelWidth - kRight, y0 + kTop, y0 + kPanelHeight - kBottom};
     const Scale x(panel.x, all_x(panel)), y(panel.y, all_y(panel));
     draw_grid(canvas, frame, panel, x, y);
     for (const ChartLine& line : panel.lines) draw_line(canvas, frame, x, y, line, !panel.x.names.empty());
   }
 
-  void draw_grid(Canvas& canvas, const Frame& f, const ChartPanel& panel, const Scale& x,
+  void draw_grid(Canvas& canvas, const PanelFrame& f, const ChartPanel& panel, const Scale& x,
                  const Scale& y) const {
     for (const Tick& tick : x.ticks()) {
       const double px = f.x(tick.place);
@@ -202,7 +202,7 @@ class Sheet {
     canvas.text(f.right, f.top - 18, panel.y.title, 12.5, kPale, Align::right);
   }
 
-  void draw_line(Canvas& canvas, const Frame& frame, const Scale& x, const Scale& y, const ChartLine& line,
+  void draw_line(Canvas& canvas, const PanelFrame& frame, const Scale& x, const Scale& y, const ChartLine& line,
                  bool categories) const {
     const Color ink = color(line.series);
     const auto spot = [&](const ChartPoint& p, double value) {
@@ -276,10 +276,10 @@ Oklch series_color(std::size_t series) {
   return {lightness[series % std::size(lightness)], 0.16, 265.0 + 137.5 * static_cast<double>(series)};
 }
 
-Picture chart_picture(const Chart& chart) { return Sheet(chart).picture(); }
+Picture chart_picture(const Chart& chart) { return ChartSheet(chart).picture(); }
 
 void write_chart(const std::filesystem::path& png, const Chart& chart) {
-  const Sheet sheet(chart);
+  const ChartSheet sheet(chart);
   write_png(png, sheet.picture());
   sheet.write_svg(std::filesystem::path(png).replace_extension(".svg"));
 }

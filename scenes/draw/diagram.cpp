@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace brink::draw {
 namespace {
@@ -9,6 +11,7 @@ namespace {
 constexpr Color kEdge{1.0, 1.0, 1.0};
 constexpr Oklch kNothing{0.90, 0.0, 0.0};   // no site anywhere
 constexpr Oklch kSolid{0.13, 0.02, 300.0};  // inside solids on the depth layer
+constexpr int kStripRows = 256;             // of the field, at a time
 constexpr double kEdgeStrength = 0.85;      // white of the lines where owners meet
 constexpr double kContourStrength = 0.055;  // darkness of the lines of equal distance
 
@@ -36,12 +39,12 @@ Picture painted(const FieldImage& field, ColorOf&& color_of) {
 }
 
 /// The quiet colour of every owner, taken once.
-std::vector<Color> cell_colors(const FieldImage& field, const Palette& palette, std::size_t body_count) {
-  std::uint32_t last = 0;
-  for (const std::uint32_t owner : field.owner)
-    if (owner != FieldImage::kNone) last = std::max(last, owner);
+std::vector<Color> cell_colors(std::span<const PlacedOutline> placed, const Palette& palette,
+                               std::size_t body_count) {
+  std::size_t owners = 0;
+  for (const PlacedOutline& p : placed) owners = std::max<std::size_t>(owners, p.owner + 1);
   std::vector<Color> colors;
-  for (std::size_t k = 0; k <= last; ++k)
+  for (std::size_t k = 0; k < owners; ++k)
     colors.push_back(k < body_count ? Palette::cell(palette.body(k)).rgb() : Tones::site_cell.rgb());
   return colors;
 }
@@ -60,6 +63,66 @@ double contour_cover(const FieldImage& field, std::size_t i, int fineness, doubl
   return std::clamp(0.5 * fineness + 0.5 - away, 0.0, 1.0);
 }
 
+/// What a coarse rendering tells.
+struct CoarseLook {
+  double band;     ///< no pixel is farther than this from a site [m]
+  double largest;  ///< distance outside solids [m]
+};
+
+CoarseLook look(PassRenderer& renderer, std::span<const PlacedOutline> placed, const View& view,
+                std::uint32_t excluded, const FieldOptions& options) {
+  const int coarse = std::max(1, std::max(view.width, view.height) / 64);
+  const int width = (view.width + coarse - 1) / coarse, height = (view.height + coarse - 1) / coarse;
+  const double pixel = coarse / view.scale;
+  const Box window{view.window.low, view.window.low + pixel * Vec2(width, height)};
+  const double given = options.band > 0.0 ? options.band : std::numeric_limits<double>::infinity();
+  const FieldImage seen = renderer.render(window, width, height, placed, excluded, given);
+  float farthest = 0.0F;
+  for (const float d : seen.distance) farthest = std::max(farthest, std::abs(d));
+  // distance changes by at most the way from a coarse pixel's centre to its corner
+  return {std::min(given, farthest + 1.01 * pixel), largest_distance(seen)};
+}
+
+/// The cells of a strip of a picture: its rows from `first` to before `last`, the field's with one row more
+/// above where there is one.
+class CellPainter {
+ public:
+  CellPainter(std::vector<Color> cells, int fineness, double step)
+      : cells_(std::move(cells)), fineness_(fineness), step_(step) {}
+
+  void paint(const FieldImage& field, int first, int last, Picture& picture) const {
+    for (int row = first; row < last; ++row)
+      for (int column = 0; column < picture.width; ++column)
+        picture.pixels[static_cast<std::size_t>(row) * picture.width + column] =
+            mean(field, column * fineness_, (last - 1 - row) * fineness_).argb();
+  }
+
+ private:
+  /// Of the field's pixels that make one of the picture's.
+  Color mean(const FieldImage& field, int x, int y) const {
+    Color sum;
+    for (int j = 0; j < fineness_; ++j)
+      for (int i = 0; i < fineness_; ++i) {
+        const Color c = color_at(field, x + i, y + j);
+        sum = {sum.red + c.red, sum.green + c.green, sum.blue + c.blue};
+      }
+    const double n = fineness_ * fineness_;
+    return {sum.red / n, sum.green / n, sum.blue / n};
+  }
+  Color color_at(const FieldImage& field, int x, int y) const {
+    const std::size_t i = static_cast<std::size_t>(y) * field.width + x;
+    if (field.owner[i] == FieldImage::kNone) return nothing_;
+    const Color cell = mixed(cells_[field.owner[i]], ink_,
+                             kContourStrength * 2.0 * contour_cover(field, i, fineness_, step_));
+    return at_edge(field, x, y, i) ? mixed(cell, kEdge, kEdgeStrength) : cell;
+  }
+
+  std::vector<Color> cells_;
+  int fineness_;
+  double step_;
+  Color ink_ = Tones::ink.rgb(), nothing_ = kNothing.rgb();
+};
+
 }  // namespace
 
 std::vector<PlacedOutline> placed_outlines(const World& world, std::span<const BodyState> bodies,
@@ -73,26 +136,11 @@ std::vector<PlacedOutline> placed_outlines(const World& world, std::span<const B
   return placed;
 }
 
-FieldImage render_field(std::span<const PlacedOutline> placed, const View& view, int fineness,
-                        std::uint32_t excluded, const FieldOptions& options) {
+FieldImage render_field(std::span<const PlacedOutline> placed, const View& view, std::uint32_t excluded,
+                        const FieldOptions& options) {
   PassRenderer renderer(options);
-  if (options.band > 0.0)
-    return renderer.render(view.window, view.width * fineness, view.height * fineness, placed, excluded,
-                           options.band);
-  const int coarse = std::max(1, std::max(view.width, view.height) / 64);
-  View small = view;
-  small.width = (view.width + coarse - 1) / coarse;
-  small.height = (view.height + coarse - 1) / coarse;
-  const double pixel = coarse / view.scale;
-  small.window.high.x() = small.window.low.x() + small.width * pixel;
-  small.window.high.y() = small.window.low.y() + small.height * pixel;
-  const FieldImage seen = renderer.render(small.window, small.width, small.height, placed, excluded,
-                                          std::numeric_limits<double>::infinity());
-  float farthest = 0.0F;
-  for (const float d : seen.distance) farthest = std::max(farthest, std::abs(d));
-  // distance changes by at most the way from a coarse pixel's centre to its corner
-  const double band = std::isinf(farthest) ? farthest : farthest + 1.01 * pixel;
-  return renderer.render(view.window, view.width * fineness, view.height * fineness, placed, excluded, band);
+  const double band = look(renderer, placed, view, excluded, options).band;
+  return renderer.render(view.window, view.width, view.height, placed, excluded, band);
 }
 
 double largest_distance(const FieldImage& field) {
@@ -102,30 +150,24 @@ double largest_distance(const FieldImage& field) {
   return largest;
 }
 
-Picture cells_picture(const FieldImage& field, int fineness, const Palette& palette, std::size_t body_count,
-                      double contour_step) {
-  const std::vector<Color> cells = cell_colors(field, palette, body_count);
-  const Color ink = Tones::ink.rgb(), nothing = kNothing.rgb();
-  const auto color_at = [&](int x, int y) {
-    const std::size_t i = static_cast<std::size_t>(y) * field.width + x;
-    if (field.owner[i] == FieldImage::kNone) return nothing;
-    const Color cell = mixed(cells[field.owner[i]], ink,
-                             kContourStrength * 2.0 * contour_cover(field, i, fineness, contour_step));
-    return at_edge(field, x, y, i) ? mixed(cell, kEdge, kEdgeStrength) : cell;
-  };
-  Picture picture = blank(field.width / fineness, field.height / fineness);
-  for (int row = 0; row < picture.height; ++row)
-    for (int column = 0; column < picture.width; ++column) {
-      Color sum;
-      for (int k = 0; k < fineness * fineness; ++k) {
-        const Color c =
-            color_at(column * fineness + k % fineness, (picture.height - 1 - row) * fineness + k / fineness);
-        sum = {sum.red + c.red, sum.green + c.green, sum.blue + c.blue};
-      }
-      const double n = fineness * fineness;
-      picture.pixels[static_cast<std::size_t>(row) * picture.width + column] =
-          Color{sum.red / n, sum.green / n, sum.blue / n}.argb();
-    }
+Picture cells_picture(std::span<const PlacedOutline> placed, const View& view, int fineness,
+                      std::uint32_t excluded, const FieldOptions& options, const Palette& palette,
+                      std::size_t body_count, const std::function<double(double)>& contour_step) {
+  PassRenderer renderer(options);
+  const CoarseLook seen = look(renderer, placed, view, excluded, options);
+  const CellPainter painter(cell_colors(placed, palette, body_count), fineness, contour_step(seen.largest));
+  Picture picture = blank(view.width, view.height);
+  const double pixel = 1.0 / (view.scale * fineness);
+  const int strip = std::max(1, (kStripRows - 1) / fineness);
+  for (int first = 0; first < view.height; first += strip) {
+    const int last = std::min(first + strip, view.height);
+    const int below = (view.height - last) * fineness, rows = (last - first) * fineness + (first > 0);
+    const Vec2 low = view.window.low + Vec2(0.0, below * pixel);
+    const int columns = view.width * fineness;
+    painter.paint(
+        renderer.render({low, low + pixel * Vec2(columns, rows)}, columns, rows, placed, excluded, seen.band),
+        first, last, picture);
+  }
   return picture;
 }
 

@@ -93,15 +93,14 @@ Picture background(Sheet& sheet) {
       placed.back().pose.position += seen[i];
     }
   }
-  const FieldImage field =
-      draw::render_field(placed, sheet.view, raw ? 1 : kFineness, excluded_owner(sheet), sheet.options.field);
-  const double largest = draw::largest_distance(field);
+  if (!raw)
+    return draw::cells_picture(placed, sheet.view, kFineness, excluded_owner(sheet), sheet.options.field,
+                               sheet.palette, count,
+                               [&](double largest) { return contour_step(largest, sheet.view); });
+  const FieldImage field = draw::render_field(placed, sheet.view, excluded_owner(sheet), sheet.options.field);
   if (sheet.options.layer.kind == Kind::color) return draw::ids_picture(field, sheet.palette, count);
-  if (sheet.options.layer.kind == Kind::depth) {
-    sheet.full_scale = largest;
-    return draw::distance_picture(field, largest);
-  }
-  return draw::cells_picture(field, kFineness, sheet.palette, count, contour_step(largest, sheet.view));
+  sheet.full_scale = draw::largest_distance(field);
+  return draw::distance_picture(field, sheet.full_scale);
 }
 
 /// The diagram if there is one to be drawn and a context to draw it.

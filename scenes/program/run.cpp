@@ -7,15 +7,14 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
-#include <thread>
 
 #include "brink/core/base/printable.h"
 #include "brink/scenes/program/commands.h"
+#include "brink/scenes/program/live_page.h"
 #include "brink/scenes/program/run_folder.h"
 #include "brink/scenes/program/stopping.h"
 #include "brink/scenes/program/terminal.h"
 #include "brink/scenes/run_file/run_scene.h"
-#include "brink/scenes/view/live_server.h"
 
 namespace brink {
 namespace {
@@ -108,26 +107,15 @@ int run_command(const RunArguments& arguments) {
   request.resume = arguments.resume;
   request.begins = stop_on_signals;  // a signal before that ends the program at once: nothing is lost
   request.load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  std::optional<LiveServer> page;
+  std::optional<LivePage> page;
   if (arguments.watch) {
-    page.emplace(request.dir / "run.db");
+    page.emplace(request);
     fmt::print(stderr, "{}\n", page->address());
-    request.happened = [&page](const Event&) { page->event_happened(); };
-    request.waits = [&page] { return page->paused() && !stop_asked(); };
   }
-  RunReport report;
-  {
-    ProgressBar bar(0.0, arguments.until.value_or(scene.duration), on_terminal(stderr) && !arguments.quiet);
-    request.progress = [&bar](double t, std::uint64_t collisions) {
-      bar.show(t, collisions);
-      return !stop_asked();
-    };
-    report = run_scene(scene, request);
-  }
-  if (page) page->run_ended();
+  const RunReport report = run_shown(scene, request, on_terminal(stderr) && !arguments.quiet);
   print_report(arguments, scene, report);
   std::fflush(stdout);
-  while (page && !stop_asked()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  if (page) page->stay();
   if (report.summary.sound()) return kDone;
   if (arguments.quiet || arguments.json) fmt::print(stderr, "brink: {}\n", ending(report.summary));
   if ((arguments.quiet || arguments.json) && report.summary.groups_taken > 0)

@@ -4,20 +4,19 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <thread>
+#include <optional>
 
 #include "brink/core/base/printable.h"
 #include "brink/scenes/files/written_file.h"
 #include "brink/scenes/program/commands.h"
+#include "brink/scenes/program/live_page.h"
 #include "brink/scenes/program/run_folder.h"
 #include "brink/scenes/program/stopping.h"
 #include "brink/scenes/program/terminal.h"
 #include "brink/scenes/run_file/run_scene.h"
 #include "brink/scenes/sweep/shell_word.h"
-#include "brink/scenes/view/live_server.h"
 
 namespace brink {
 namespace {
@@ -30,29 +29,21 @@ void open_in_browser(const std::string& page) {
     fmt::print(stderr, "brink: no browser could be opened; open {} yourself\n", printable(page));
 }
 
-/// Runs the scene while its page follows it; the page is there until Ctrl-C.
-RunReport run_live(const ViewArguments& arguments, bool stays) {
+/// Runs the scene; `stays`: while its page follows it, which is there until Ctrl-C.
+RunReport run_here(const ViewArguments& arguments, bool stays) {
   const Scene scene = load_scene(arguments.subject, arguments.overrides);
   RunRequest request;
   request.dir = default_run_folder(scene.path, false);
-  LiveServer server(request.dir / "run.db");
-  if (stays) fmt::print("{}\n", server.address());
-  std::fflush(stdout);
-  if (stays && arguments.open) open_in_browser(server.address());
   request.begins = stop_on_signals;
-  RunReport report;
-  {
-    ProgressBar bar(0.0, scene.duration, on_terminal(stderr));
-    request.progress = [&](double t, std::uint64_t collisions) {
-      bar.show(t, collisions);
-      return !stop_asked();
-    };
-    request.happened = [&server](const Event&) { server.event_happened(); };
-    request.waits = [&server] { return server.paused() && !stop_asked(); };
-    report = run_scene(scene, request);
+  std::optional<LivePage> page;
+  if (stays) {
+    page.emplace(request);
+    fmt::print("{}\n", page->address());
+    std::fflush(stdout);
+    if (arguments.open) open_in_browser(page->address());
   }
-  server.run_ended();
-  while (stays && !stop_asked()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  RunReport report = run_shown(scene, request, on_terminal(stderr));
+  if (page) page->stay();
   return report;
 }
 
@@ -69,7 +60,7 @@ int view_command(const ViewArguments& arguments) {
   const bool live = run.empty() && arguments.out.empty();
   RunSummary summary;  // of the run that is made here, if one is
   if (run.empty()) {
-    const RunReport report = run_live(arguments, live);
+    const RunReport report = run_here(arguments, live);
     summary = report.summary;
     run = report.file;
   }

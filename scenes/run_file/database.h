@@ -13,6 +13,9 @@
 
 namespace brink {
 
+/// How long a run file waits for another program that writes it [ms].
+inline constexpr int kBusyMilliseconds = 10'000;
+
 /// Opens `file` as it is called: never as a URI ("file:x?mode=ro") or as ":memory:". Triggers, views and
 /// functions of the file's own schema are not run, and damaged pages are looked for.
 /// @throws SQLite::Exception.

@@ -20,7 +20,6 @@ namespace brink {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kBusyMilliseconds = 10'000;
 
 constexpr const char* kWhat = "a run file";
 

@@ -26,7 +26,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::int64_t kRowsPerCommit = 20'000;
 constexpr auto kTimePerCommit = std::chrono::milliseconds(250);
-constexpr int kBusyMilliseconds = 10'000;
 constexpr std::int64_t kMostIndexed = 2'000'000;  ///< frame rows
 
 std::string hex(std::uint64_t value) { return fmt::format("{:016x}", value); }

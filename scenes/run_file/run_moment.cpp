@@ -13,10 +13,10 @@ namespace brink {
 namespace {
 
 constexpr int kLooks = 32, kTrailLooks = 400;
-constexpr double kFarthest = 1e20;  // [m], [rad]: squares of differences are finite
+constexpr double kFarthestPlace = 1e20;  // [m], [rad]: squares of differences are finite
 
 bool somewhere(const Pose& pose) {
-  return pose.position.norm() <= kFarthest && std::abs(pose.angle) <= kFarthest;
+  return pose.position.norm() <= kFarthestPlace && std::abs(pose.angle) <= kFarthestPlace;
 }
 
 [[noreturn]] void nowhere(const std::filesystem::path& file, const char* table, const std::string& name,

@@ -90,7 +90,7 @@ void read_motion(const nlohmann::json& motion, FixedSite& site) {
 }
 
 /// Beyond this coordinates are no scene's [m]; their squares are still finite.
-constexpr double kFarthest = 1e20;
+constexpr double kFarthestReach = 1e20;
 
 /// The pose that undoes `pose`.
 Pose inverse(const Pose& pose) { return {-Frame(pose).direction_to_local(pose.position), -pose.angle}; }
@@ -123,7 +123,7 @@ Outline outline_from_json(const std::string& text) {
     throw BadInput(std::string("shape: not an outline in JSON: ") + e.what());
   }
   finish_outline(outline);
-  if (!(outline.bounding_radius <= kFarthest)) throw BadInput("shape: it reaches farther than any scene");
+  if (!(outline.bounding_radius <= kFarthestReach)) throw BadInput("shape: it reaches farther than any scene");
   return outline;
 }
 

@@ -7,7 +7,7 @@
 namespace brink {
 namespace {
 
-constexpr double kShortest = 1e-12;
+constexpr double kShortestLength = 1e-12;
 
 struct DiscTable {
   double radius = 0.0;
@@ -37,7 +37,7 @@ struct ArcTable {
   Given<double> from, to, from_deg, to_deg;
 };
 
-Codec<double> length() { return number(positive("m", kShortest)); }
+Codec<double> length() { return number(positive("m", kShortestLength)); }
 Codec<double> thickness() { return number(not_negative("m")); }
 
 const Schema<DiscTable>& disc_schema() {

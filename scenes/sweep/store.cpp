@@ -19,7 +19,7 @@ namespace brink {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kBusyMilliseconds = 60'000;
+constexpr int kLongestWait = 60'000;
 constexpr const char* kWhat = "results of a sweep";
 
 constexpr const char* kTables = R"(
@@ -91,7 +91,7 @@ struct SweepStore::Impl {
   explicit Impl(const fs::path& dir)
       : file(made_folder(dir) / "sweep.db"),
         locks(dir / "sweep.lock"),
-        db(open_database(file, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyMilliseconds)) {
+        db(open_database(file, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kLongestWait)) {
     require_ours();
     locks.hold(kOpening);  // turning the write-ahead log on does not wait for others
     db.exec("PRAGMA journal_mode = WAL");

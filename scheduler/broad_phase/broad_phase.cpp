@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kCellsPerBox = 2.0;                        ///< a cell is this many times the median box
 constexpr int kMostCellsAcross = 4;                         ///< boxes wider than this many cells are large
-constexpr std::size_t kFew = 16;                            ///< boxes that need no cells
+constexpr std::size_t kFewBoxes = 16;                            ///< boxes that need no cells
 constexpr std::int64_t kMostCells = std::int64_t{1} << 60;  ///< only those that hold a box take room
 
 /// Cells of a window, counted row by row.
@@ -150,7 +150,7 @@ Box swept_box(const Outline& outline, const Motion& motion, double from, double 
 }
 
 bool each_overlapping(const std::vector<Box>& boxes, const std::function<bool(int i, int j)>& visit) {
-  if (boxes.size() <= kFew) return each_of_few(boxes, visit);
+  if (boxes.size() <= kFewBoxes) return each_of_few(boxes, visit);
   const Grid grid = make_grid(boxes);
   Sorted sorted(boxes, grid);
   return each_in_cells(boxes, grid, sorted.entries, visit) && each_with_large(boxes, sorted, visit);

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "brink/core/base/geometry.h"
+#include "brink/core/base/limits.h"
 #include "brink/scheduler/broad_phase/cell_grid.h"
 #include "brink/scheduler/broad_phase/tolerances.h"
 
@@ -32,8 +32,8 @@ struct alignas(64) Flight {
 
 /// A span of time in which two outlines may touch; never: begin = infinity.
 struct MeetingTimes {
-  double begin = std::numeric_limits<double>::infinity();
-  double end = std::numeric_limits<double>::infinity();
+  double begin = kForever;
+  double end = kForever;
 };
 
 /// A flight seen from the present: where its centre is now.
@@ -59,7 +59,6 @@ struct Course {
 template <bool early>
 inline MeetingTimes meeting(const Course& a, double bx, double by, double bvx, double bvy, double b_start,
                             double b_radius, bool b_disc, double shift_x, double shift_y, double now) {
-  constexpr double never = std::numeric_limits<double>::infinity();
   const double s = now - b_start, gx = s * a.gravity.x(), gy = s * a.gravity.y();
   const double dx = a.place.x() - shift_x - (bx + s * (bvx + 0.5 * gx));
   const double dy = a.place.y() - shift_y - (by + s * (bvy + 0.5 * gy));
@@ -79,8 +78,8 @@ inline MeetingTimes meeting(const Course& a, double bx, double by, double bvx, d
   const double wait = beyond <= 0.0 ? 0.0 : beyond / (root - approach);
   // never later than it is, by a rounding of the clock
   const double begin = std::max(now, now + wait - kFlightRounding * (now + wait));
-  const double end = speed2 > 0.0 ? now + (root - approach) / speed2 : never;
-  return {parts | misses ? never : begin, parts | misses ? never : end};
+  const double end = speed2 > 0.0 ? now + (root - approach) / speed2 : kForever;
+  return {parts | misses ? kForever : begin, parts | misses ? kForever : end};
 }
 inline MeetingTimes meeting(const Course& a, const Flight& b, const Vec2& shift, double now) {
   return meeting<true>(a, b.x, b.y, b.vx, b.vy, b.start, b.radius, b.disc, shift.x(), shift.y(), now);
@@ -88,8 +87,7 @@ inline MeetingTimes meeting(const Course& a, const Flight& b, const Vec2& shift,
 
 /// Times s >= 0, ascending, at which p + s (v + s a / 2) == 0; infinity where there are fewer than two.
 inline std::array<double, 2> zeros(double p, double v, double a) {
-  constexpr double never = std::numeric_limits<double>::infinity();
-  std::array<double, 2> s{never, never};
+  std::array<double, 2> s{kForever, kForever};
   if (a == 0.0) {
     if (v != 0.0) s[0] = -p / v;
   } else {
@@ -104,14 +102,14 @@ inline std::array<double, 2> zeros(double p, double v, double a) {
     }
   }
   for (double& x : s)
-    if (!(x >= 0.0)) x = never;
+    if (!(x >= 0.0)) x = kForever;
   if (s[1] < s[0]) std::swap(s[0], s[1]);
   return s;
 }
 
 /// How long from now the centre stays in the box; infinity: for ever. @pre it is in it.
 inline double stay_in(const Box& box, const Course& c) {
-  double stay = std::numeric_limits<double>::infinity();
+  double stay = kForever;
   for (int axis = 0; axis < 2; ++axis) {
     if (c.gravity[axis] == 0.0) {  // straight on, to the edge ahead
       const double v = c.velocity[axis];
@@ -132,7 +130,7 @@ inline double stay_in(const Box& box, const Course& c) {
 /// How long from now until the centre can be in the box; infinity: never.
 inline double time_to(const Box& box, const Course& c) {
   if (box.contains(c.place)) return 0.0;
-  double first = std::numeric_limits<double>::infinity();
+  double first = kForever;
   const double margin = kFlightMargin * (box.extent().lpNorm<1>() + c.place.lpNorm<1>());
   for (int axis = 0; axis < 2; ++axis)
     for (const double edge : {box.low[axis], box.high[axis]})

@@ -7,7 +7,7 @@ namespace brink {
 
 namespace {
 
-constexpr int kFew = 6;            ///< bodies that need no cells
+constexpr int kFewBodies = 6;            ///< bodies that need no cells
 constexpr double kLevelRatio = 4;  ///< of radii, from level to level
 constexpr double kTopLevel = 24;   ///< holds all that is larger still
 
@@ -35,7 +35,7 @@ Neighbourhood::Neighbourhood(std::span<Flight> flights, std::span<BodyClock> clo
       still_sites_(std::move(still_sites)),
       periods_(periods),
       repeats_(periods.any()) {
-  make_levels(places, by_place && flights.size() > kFew);
+  make_levels(places, by_place && flights.size() > kFewBodies);
   around_ = levels_.size() == 1 && levels_[0].grid.has_around();
   for (int k = 0; k < static_cast<int>(flights.size()); ++k) {
     flights_[k].cell = grid(k).cell_of(places[k]);

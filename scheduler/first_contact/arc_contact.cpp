@@ -2,13 +2,13 @@
 
 #include <numbers>
 
+#include "brink/core/base/limits.h"
 #include "brink/scheduler/first_contact/safe_step.h"
 
 namespace brink {
 
 namespace {
 
-constexpr double kForever = std::numeric_limits<double>::infinity();
 
 /// How far (>= 0) the direction d lies outside the arc's sector [rad]; 0 inside.
 double angle_outside(const Site& arc, const Vec2& d) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "brink/core/base/limits.h"
 #include "brink/core/shapes/distance.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/first_contact/pair_kinematics.h"
@@ -16,8 +17,6 @@ namespace brink {
 
 namespace {
 
-constexpr double kForever = std::numeric_limits<double>::infinity();
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr std::size_t kMostSites = 16;
 
 bool keeps_angle(const Motion& m) {

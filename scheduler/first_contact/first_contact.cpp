@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "brink/core/base/limits.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/first_contact/closed_forms.h"
 #include "brink/scheduler/first_contact/corners.h"
@@ -24,8 +25,6 @@ using detail::Feature;
 using detail::Half;
 using detail::PairView;
 
-constexpr double kForever = std::numeric_limits<double>::infinity();
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// Iterations that a search may take if it has found a contact, whatever its cap.
 constexpr int kMostAfterContact = 1000;

@@ -2,6 +2,7 @@
 
 #include <numeric>
 
+#include "brink/core/base/limits.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/first_contact/site_step.h"
 
@@ -9,8 +10,6 @@ namespace brink::detail {
 
 namespace {
 
-constexpr double kForever = std::numeric_limits<double>::infinity();
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// Sine of an angle between an edge and a face that roundings may make of two that lie flush.
 constexpr double kParallel = 1e-6;
 

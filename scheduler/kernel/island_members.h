@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "brink/core/base/limits.h"
 #include "brink/core/contacts/cone_qp.h"
 #include "brink/scheduler/kernel/contact_search.h"
 #include "brink/scheduler/kernel/island.h"
@@ -80,7 +81,6 @@ class IslandMembers {
   void add_images(Listing& to, int a, const Box& box_a, int b, const Box& box_b) const;
   void add_pair(Listing& to, int a, int b, const Image& image) const;
 
-  static constexpr double kForever = std::numeric_limits<double>::infinity();
   const World* world_;
   const Trajectories* trajectories_;
   const ContactSearch* search_;

@@ -6,13 +6,13 @@
 #include <utility>
 
 #include "brink/core/base/disjoint_sets.h"
+#include "brink/core/base/limits.h"
 #include "brink/scheduler/kernel/island_joining.h"
 
 namespace brink {
 
 namespace {
 
-constexpr double kForever = std::numeric_limits<double>::infinity();
 /// A step lasts this part of the time in which the smallest member falls by its size ...
 constexpr double kOfFall = 0.05;
 /// ... and moves nobody by more than this part of it.

@@ -2,12 +2,9 @@
 /// What the kernel takes for rounding, all in one place. Every one is a part of something of the scene or of the
 /// pair; the margins of the search itself stand in scheduler/first_contact/tolerances.h.
 
-#include <limits>
+#include "brink/core/base/limits.h"
 
 namespace brink {
-
-/// The distance from 1 to the next double: speeds are told to a few of these of what they are summed from.
-inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// Of features that meet together with others, one that approaches slower than this part of their speed does
 /// not approach: that is rounding, some thousand times kEpsilon for speeds a thousand times their difference.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "brink/core/base/error.h"
+#include "brink/core/base/limits.h"
 #include "brink/scheduler/kernel/stage_clock.h"
 
 namespace brink {
@@ -15,7 +16,6 @@ namespace {
 
 /// Pieces of motion that one round of instalments makes at most, of all bodies together: some 50 MB.
 constexpr std::uint64_t kMostPieces = 1U << 17;
-constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kShortest = 16, kLongest = 4096;  ///< instalments [steps]
 
 BodyState held(const Body& body, BodyState s) {

@@ -23,12 +23,12 @@
 #include "brink/scheduler/policies/horizon.h"
 #include "brink/scheduler/policies/order.h"
 #include "brink/scheduler/policies/policy.h"
+#include "brink/scheduler/policies/tolerances.h"
 
 namespace brink {
 
 namespace {
 
-constexpr int kMostUndecided = 100;
 
 /// Contacts closer than this in time are left to the order [s].
 double too_close(double t) { return 4.0 * same_instant(t); }

@@ -12,4 +12,7 @@ inline constexpr double kShortestHorizon = 1e-9;
 /// itself, so up to ten million steps are counted right.
 inline constexpr double kSameStep = 1e-9;
 
+/// Searches in a row that may end undecided, each beginning where the last ended, before the run says so.
+inline constexpr int kMostUndecided = 100;
+
 }  // namespace brink

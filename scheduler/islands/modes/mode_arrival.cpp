@@ -14,7 +14,7 @@ constexpr int kMostSteps = 10000;
 /// A gap that closes slower than this part of the speeds that take part does not.
 constexpr double kCloses = 1e-12;
 /// Where no bound helps (an arc's sector), so many looks along the whole.
-constexpr int kLooks = 64;
+constexpr int kLooksOfArrival = 64;
 
 /// One open contact on its owners' motions.
 class Watch {
@@ -136,7 +136,7 @@ Arrival first_arrival(const ModeProblem& problem, const std::vector<MotionMode>&
   first.time = to;
   for (std::size_t k = 0; k < modes.size(); ++k) {
     if (is_closed(modes[k])) continue;
-    const Watch watch(problem, problem.contacts[k], bodies, slack, (to - from) / kLooks);
+    const Watch watch(problem, problem.contacts[k], bodies, slack, (to - from) / kLooksOfArrival);
     double when = 0.0;
     if (!watch.closes(from, first.time, when) || (first.found && when >= first.time)) continue;
     first = {true, when, static_cast<int>(k)};

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 /// Looks along a step: at its gaps, and at what may fail in it.
-constexpr int kGapLooks = 8, kLooks = 4;
+constexpr int kGapLooks = 8, kLooksAStep = 4;
 constexpr int kShortenings = 80, kClosings = 200, kApproaches = 8;
 /// A slip slower than this part of the speeds that take part is none.
 constexpr double kNoSlip = 1e-12;
@@ -128,8 +128,8 @@ bool ModeMotion::fails_within(double h, const std::vector<PolynomialPiece>& piec
                               Look& failed) const {
   clear = 0.0;
   double room = 0.0;  // of the start nothing is asked: it was chosen so
-  for (int i = 1; i <= kLooks; ++i) {
-    const double ahead = i == kLooks ? h : h * i / kLooks;
+  for (int i = 1; i <= kLooksAStep; ++i) {
+    const double ahead = i == kLooksAStep ? h : h * i / kLooksAStep;
     failed = look_at(t_ + ahead, states_of(pieces, t_ + ahead));
     if (failed.room < 0.0) {
       close_in(pieces, clear, ahead, room, failed);

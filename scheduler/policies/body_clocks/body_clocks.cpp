@@ -16,6 +16,7 @@
 #include <optional>
 #include <set>
 
+#include "brink/core/base/limits.h"
 #include "brink/scheduler/events/event_queue.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/policies/body_clocks/found_contacts.h"
@@ -27,13 +28,12 @@ namespace brink {
 
 namespace {
 
-constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kBetweenPauses = 2048;  ///< servings between places where a run may be resumed from
 constexpr std::uint64_t kBetweenPolls = 64;
 constexpr int kInstalment = 3;      ///< search steps at a time: most contacts ahead are overtaken by others
 constexpr unsigned kPlain = 16;     ///< of instalments in a row of one search; then they double:
 constexpr unsigned kDoublings = 8;  ///< so often, if it comes to no end
-constexpr unsigned kMostUndecided = 1000000 / (kInstalment << kDoublings);
+constexpr unsigned kMostInstalments = 1000000 / (kInstalment << kDoublings);
 
 /// Steps of the next instalment of a search that so many in a row have brought to no end.
 constexpr int instalment(unsigned undecided) {
@@ -186,7 +186,7 @@ class BodyClocks final : public Policy {
         kernel_->search(*kernel_->pair_of(k, c.other, c.image), c.clear, to, instalment(clock.undecided));
     const bool undecided = found && found->kind == Certificate::Kind::undecided;
     clock.undecided = undecided ? clock.undecided + 1 : 0;
-    if (undecided && (found->time <= c.clear || clock.undecided > kMostUndecided))
+    if (undecided && (found->time <= c.clear || clock.undecided > kMostInstalments))
       return kernel_->give_up(*found);
     if (found) {
       c.time = found->time;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brink/core/base/limits.h"
 #include "brink/scheduler/broad_phase/broad_phase.h"
 #include "brink/scheduler/first_contact/pair_kinematics.h"
 
@@ -10,7 +11,6 @@ namespace brink {
 
 namespace {
 
-constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMostBoxes = 16;
 
 /// Boxes of an outline's sites; empty where they would not narrow anything down.
