@@ -11,7 +11,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "brink/core/base/limits.h"
 #include "brink/core/base/random.h"
+#include "brink/core/shapes/distance.h"
 #include "brink/scenes/run_file/run_file.h"
 #include "brink/scenes/run_file/run_scene.h"
 #include "brink/scenes/view/replay_page.h"
@@ -241,6 +243,101 @@ TEST_F(Replayed, ALongRunIsThinnedAndThePageSaysSo) {
   EXPECT_THAT(answer["notice"].get<std::string>(), HasSubstr("every 3. frame"));
   EXPECT_THAT(answer["notice"].get<std::string>(), HasSubstr("the first 5 events"));
   EXPECT_EQ(answer["events"], 5);
+}
+
+// Every kind of site: points, segments and arcs, with and without thickness, open and closed, corners both ways.
+const char* const kCells = R"(
+[world]
+duration = 0.01
+[[sites]]
+name = "wire"
+polyline = [[-2.6, -1.9], [-2.7, 0.4], [-2.0, 1.8]]
+[[sites]]
+name = "thick"
+segment = [[-1.5, -1.8], [0.8, -1.6]]
+radius = 0.1
+[[sites]]
+name = "arc"
+arc = { center = [2.0, -1.0], radius = 0.8, from_deg = -40, to_deg = 210 }
+[[bodies]]
+name = "bracket"
+polygon = { vertices = [[0, 0], [1.2, 0], [1.2, 0.4], [0.4, 0.4], [0.4, 1.1], [0, 1.1]] }
+position = [-1.2, 0.3]
+angle_deg = 25
+[[bodies]]
+name = "rounded"
+box = { width = 0.7, height = 0.5, radius = 0.12 }
+position = [0.6, 1.2]
+angle_deg = -35
+[[bodies]]
+name = "frame"
+path = { d = "M0 0 C0.6 -0.4 1.2 0.3 1.0 0.9 S0.1 1.1 0 0 Z M0.4 0.3 H0.8 V0.7 H0.4 Z" }
+position = [1.6, 0.5]
+[[bodies]]
+name = "disc"
+disc = { radius = 0.15 }
+position = [0.2, -0.6]
+grid = { columns = 2, rows = 1, spacing = [0.6, 0.5] }
+[[bodies]]
+name = "capsule"
+capsule = { length = 0.8, radius = 0.1 }
+position = [-0.4, -1.0]
+angle_deg = 70
+[[bodies]]
+name = "loose"
+chain = { vertices = [[0, 0], [0.5, 0.1], [0.3, 0.5]], closed = false, radius = 0.05 }
+position = [-1.9, -0.8]
+)";
+
+TEST(Replay, CellsOfThePageBelongToWhomTheyAreNearest) {
+  if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
+  const fs::path folder = fs::temp_directory_path() / fmt::format("brink-cells-{}", ::getpid());
+  const Scene scene = parse_scene(kCells, "cells.toml");
+  RunRequest request;
+  request.dir = folder;
+  run_scene(scene, request);
+  write_replay_page(folder / "run.db", folder / "cells.html");
+  const json answer = in_browser(folder / "cells.html", R"(
+    const p = window.brink.player.picture, seen = [];
+    p.resize({getBoundingClientRect: () => ({width: 800, height: 600})});
+    p.layers.cells = true;
+    p.fit();
+    p.draw(0);
+    for (let k = 0; k < 3000; ++k) {
+      const column = (k * 331) % 800, row = (k * 197) % 600, cell = p.cells.at(column, row);
+      const [x, y] = p.toWorld(column + 0.5, 600 - row - 0.5);
+      seen.push([x, y, cell ? cell.owner : -1, cell ? cell.distance : 0]);
+    }
+    return {seen, pixel: 1 / p.view.scale};)");
+  fs::remove_all(folder);
+  ASSERT_FALSE(answer.contains("error")) << answer.dump();
+  const double pixel = answer["pixel"];
+  std::vector<std::pair<const Outline*, Frame>> owners;  // sites first, as the page counts
+  for (const FixedSite& s : scene.world.sites) owners.emplace_back(s.outline.get(), Frame(s.pose));
+  for (const Body& b : scene.world.bodies) owners.emplace_back(b.outline.get(), Frame(b.initial.pose));
+  int of_others = 0;
+  double off = 0.0;
+  for (const json& s : answer["seen"]) {
+    std::vector<std::pair<double, int>> by_distance;
+    for (std::size_t k = 0; k < owners.size(); ++k) {
+      double nearest = kForever;  // from outside: to any site, less its thickness
+      const Vec2 q = owners[k].second.to_local(Vec2(s[0], s[1]));
+      for (const Site& site : owners[k].first->sites)
+        nearest = std::min(nearest, nearest_on(site, q).distance - site.radius);
+      by_distance.emplace_back(nearest, static_cast<int>(k));
+    }
+    std::sort(by_distance.begin(), by_distance.end());
+    const double distance = by_distance[0].first,
+                 tells = 6e-4 * (std::abs(distance) + 1.0) + 0.02 * pixel;  // no arc is larger than 1 m
+    off = std::max(off, std::abs(s[3].get<double>() - distance) / tells);
+    const bool clear = by_distance[1].first - distance > tells;
+    of_others += clear && s[2] != by_distance[0].second;
+  }
+  std::printf(
+      "3000 pixels: %d in the cell of another, distances off by %.2g of what cones of 96 triangles may be\n",
+      of_others, off);
+  EXPECT_EQ(of_others, 0);
+  EXPECT_LT(off, 1.0);
 }
 
 }  // namespace

@@ -171,45 +171,49 @@ class Picture {
 
   /** Of a pass, the selected body is left out. */
   drawCells() {
-    const things = [], out = this.layers.pass ? this.selected : -1;
-    this.about.sites.forEach((s, k) => {
-      for (const [x, y] of this.siteOffsets()) things.push({shape: s.shape, pose: moved(this.sitePoses[k], x, y), color: s.cell});
+    const {sites, bodies} = this.about, things = [], out = this.layers.pass ? this.selected : -1;
+    sites.forEach((s, k) => {
+      for (const [x, y] of this.siteOffsets()) things.push({shape: s.shape, pose: moved(this.sitePoses[k], x, y), owner: k});
     });
-    this.about.bodies.forEach((b, k) => {
+    bodies.forEach((b, k) => {
       if (k === out) return;
       for (const [x, y] of this.offsets(this.poses[k]))
-        things.push({shape: b.shape, pose: moved(this.poses[k], x, y), color: shade(b.cell, k), body: true});
+        things.push({shape: b.shape, pose: moved(this.poses[k], x, y), owner: sites.length + k, body: true});
     });
+    this.cellColors ||= [...sites.map(s => s.cell), ...bodies.map((b, k) => shade(b.cell, k))];
     const ring = 40 * this.ratio / this.view.scale, decade = 10 ** Math.floor(Math.log10(ring));
     const step = [1, 2, 5, 10].map(m => m * decade).find(s => s >= ring) || ring;
-    this.cells.draw(things, this.view, step, this.reachOf(things));
+    this.findReach(things);
+    this.cells.draw(things, this.cellColors, this.view, step);
   }
 
   /**
-   * No place in the view is farther from the nearest of the things than this [m]: cones need not be larger. By the centres of
-   * bodies, on a grid: what is between its points adds half a mesh.
+   * How far the cell of each thing reaches in the view [m]: its cones need not be larger. By bounding discs on a grid: where a
+   * body is so far off that another is nearer whatever their outlines, it has no part.
    */
-  reachOf(things) {
+  findReach(things) {
     const columns = 32, rows = 20, {width, height} = this.canvas, dx = width / columns / this.view.scale, dy = height / rows / this.view.scale;
-    const [left, low] = this.toWorld(0, height);
+    const [left, low] = this.toWorld(0, height), half = 0.5 * Math.hypot(dx, dy);
     // outside of a container nothing is seen of cells
     const closed = this.about.sites.some(s => this.about.shapes[s.shape].container), [x0, y0, x1, y1] = this.about.extent;
-    const seen = things.filter(t => t.body);
-    const largest = seen.reduce((most, t) => Math.max(most, this.about.shapes[t.shape].bounding_radius), 0);
-    if (!seen.length) return Infinity;
-    let most = 0;
+    const bodies = things.filter(t => t.body);
+    for (const t of things) t.reach = t.body ? 0 : Infinity;
+    const from = new Float64Array(bodies.length), radii = bodies.map(t => this.about.shapes[t.shape].bounding_radius);
+    let farthest = 0;
     for (let j = 0; j < rows; ++j)
       for (let k = 0; k < columns; ++k) {
         const x = left + (k + 0.5) * dx, y = low + (j + 0.5) * dy;
         if (closed && (x < x0 - dx || x > x1 + dx || y < y0 - dy || y > y1 + dy)) continue;
-        let least = Infinity;
-        for (const {pose} of seen) {
-          const u = x - pose[0], v = y - pose[1];
-          least = Math.min(least, u * u + v * v);
-        }
-        most = Math.max(most, least);
+        let nearest = Infinity;
+        bodies.forEach(({pose}, i) => {
+          from[i] = Math.hypot(x - pose[0], y - pose[1]);
+          nearest = Math.min(nearest, from[i] + radii[i]);
+        });
+        nearest += half;  // from anywhere here to the nearest outline
+        farthest = Math.max(farthest, nearest);
+        bodies.forEach((t, i) => { if (from[i] - radii[i] - half <= nearest) t.reach = Math.max(t.reach, nearest); });
       }
-    return Math.sqrt(most) + largest + 0.5 * Math.hypot(dx, dy);
+    if (bodies.length) for (const t of things) if (!t.body) t.reach = farthest;
   }
 
   drawBodies() {
