@@ -3,7 +3,8 @@
 // (a cone about a point, tents over a segment, a funnel over an arc); seen from below, the nearest wins. A first pass keeps of
 // every pixel whose cell it is and how far it is, a second one makes colours of it, once a pixel.
 
-const CONE = 96;  // triangles of a whole turn
+const FINE = 96, COARSE = 24;  // triangles of a whole turn: of what is small on the screen fewer will do
+const SMALL = 30;  // pixels: a cone of COARSE triangles is a quarter of one off at most
 const COLORS = 1024;  // in a row of their texture
 const OVERLAP = 0.03;  // [rad], of what meets at a vertex: no pixel falls between
 
@@ -20,10 +21,10 @@ function directionAt(site, point) {
  * Triangles of a loop of sites: base point, direction of growth, and height. Each site covers what is abreast of it, each vertex
  * the sector between its sites' normals: what is nearest to anything is nearest to what covers it.
  */
-function loopMesh(loop, out) {
+function loopMesh(loop, cone, out) {
   const vertex = (x, y, dx, dy, z) => out.push(x, y, dx, dy, z);
   const fan = ([x, y], from, sweep, r) => {
-    const steps = Math.max(1, Math.ceil(CONE * Math.abs(sweep) / (2 * Math.PI))), m = 1 / Math.cos(sweep / steps / 2);
+    const steps = Math.max(1, Math.ceil(cone * Math.abs(sweep) / (2 * Math.PI))), m = 1 / Math.cos(sweep / steps / 2);
     for (let i = 0; i < steps; ++i) {
       const a = from + sweep * i / steps, b = from + sweep * (i + 1) / steps;
       vertex(x, y, 0, 0, -r);
@@ -43,7 +44,7 @@ function loopMesh(loop, out) {
       return;
     }
     const [cx, cy] = site.center, R = site.arc_radius, from = directionOf([site.a[0] - cx, site.a[1] - cy]);
-    const steps = Math.max(2, Math.ceil(CONE * Math.abs(site.sweep) / (2 * Math.PI)));
+    const steps = Math.max(2, Math.ceil(cone * Math.abs(site.sweep) / (2 * Math.PI)));
     for (let i = 0; i < steps; ++i) {
       const a = from + site.sweep * i / steps, b = from + site.sweep * (i + 1) / steps;
       const A = [Math.cos(a), Math.sin(a)], B = [Math.cos(b), Math.sin(b)];
@@ -121,7 +122,8 @@ class Cells {
     this.meshProgram = this.program(MESH_VERTEX, MESH_FRAGMENT, ['view', 'deepest']);
     this.paintProgram = this.program(PAINT_VERTEX, PAINT_FRAGMENT, ['seen', 'colors', 'ring', 'pixel']);
     if (!this.meshProgram || !this.paintProgram) { this.gl = null; return; }
-    this.meshes = shapes.map(shape => this.mesh(shape));
+    this.meshes = [FINE, COARSE].flatMap(cone => shapes.map(shape => this.mesh(shape, cone)));
+    this.radii = shapes.map(shape => shape.bounding_radius);
     this.nothing = gl.createVertexArray();
     this.seen = this.texture();
     this.colors = this.texture();
@@ -165,9 +167,9 @@ class Cells {
 
   get works() { return !!this.gl; }
 
-  mesh(shape) {
+  mesh(shape, cone) {
     const gl = this.gl, numbers = [];
-    for (const loop of shape.loops) loopMesh(loop, numbers);
+    for (const loop of shape.loops) loopMesh(loop, cone, numbers);
     const array = gl.createVertexArray(), places = gl.createBuffer();
     gl.bindVertexArray(array);
     const attributes = (buffer, stride, step, list) => {
@@ -225,17 +227,18 @@ class Cells {
     for (const {shape, pose, owner, reach} of things) {
       const far = Math.min(reach, all);
       deepest = Math.max(deepest, far);
+      const small = Math.max(far, this.radii[shape]) * view.scale < SMALL;
       // places relative to the view: nothing is lost far from the origin
-      of[shape].push(pose[0] - view.x, pose[1] - view.y, Math.cos(pose[2]), Math.sin(pose[2]), owner, far);
+      of[small ? shape + this.radii.length : shape].push(pose[0] - view.x, pose[1] - view.y, Math.cos(pose[2]), Math.sin(pose[2]), owner, far);
     }
     gl.uniform1f(at.deepest, deepest);
     gl.uniform2f(at.view, 2 * view.scale / this.width, 2 * view.scale / this.height);
-    this.meshes.forEach((mesh, shape) => {
-      if (!of[shape].length) return;
+    this.meshes.forEach((mesh, k) => {
+      if (!of[k].length) return;
       gl.bindVertexArray(mesh.array);
       gl.bindBuffer(gl.ARRAY_BUFFER, mesh.places);
-      gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(of[shape]), gl.STREAM_DRAW);
-      gl.drawArraysInstanced(gl.TRIANGLES, 0, mesh.count, of[shape].length / 6);
+      gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(of[k]), gl.STREAM_DRAW);
+      gl.drawArraysInstanced(gl.TRIANGLES, 0, mesh.count, of[k].length / 6);
     });
   }
 

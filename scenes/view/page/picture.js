@@ -189,31 +189,53 @@ class Picture {
 
   /**
    * How far the cell of each thing reaches in the view [m]: its cones need not be larger. By bounding discs on a grid: where a
-   * body is so far off that another is nearer whatever their outlines, it has no part.
+   * body is so far off that another is nearer whatever their outlines, its cell is not.
    */
   findReach(things) {
-    const columns = 32, rows = 20, {width, height} = this.canvas, dx = width / columns / this.view.scale, dy = height / rows / this.view.scale;
-    const [left, low] = this.toWorld(0, height), half = 0.5 * Math.hypot(dx, dy);
+    const columns = 96, rows = 60, {width, height} = this.canvas, {shapes, sites, extent} = this.about;
+    const dx = width / columns / this.view.scale, dy = height / rows / this.view.scale, half = 0.5 * Math.hypot(dx, dy);
+    const [left, low] = this.toWorld(0, height), bodies = things.filter(t => t.body), n = bodies.length;
     // outside of a container nothing is seen of cells
-    const closed = this.about.sites.some(s => this.about.shapes[s.shape].container), [x0, y0, x1, y1] = this.about.extent;
-    const bodies = things.filter(t => t.body);
-    for (const t of things) t.reach = t.body ? 0 : Infinity;
-    const from = new Float64Array(bodies.length), radii = bodies.map(t => this.about.shapes[t.shape].bounding_radius);
-    let farthest = 0;
-    for (let j = 0; j < rows; ++j)
-      for (let k = 0; k < columns; ++k) {
-        const x = left + (k + 0.5) * dx, y = low + (j + 0.5) * dy;
-        if (closed && (x < x0 - dx || x > x1 + dx || y < y0 - dy || y > y1 + dy)) continue;
-        let nearest = Infinity;
-        bodies.forEach(({pose}, i) => {
-          from[i] = Math.hypot(x - pose[0], y - pose[1]);
-          nearest = Math.min(nearest, from[i] + radii[i]);
-        });
-        nearest += half;  // from anywhere here to the nearest outline
-        farthest = Math.max(farthest, nearest);
-        bodies.forEach((t, i) => { if (from[i] - radii[i] - half <= nearest) t.reach = Math.max(t.reach, nearest); });
+    const closed = sites.some(s => shapes[s.shape].container), [x0, y0, x1, y1] = extent;
+    const seen = new Uint8Array(columns * rows).fill(1);
+    if (closed)
+      for (let j = 0; j < rows; ++j)
+        for (let k = 0; k < columns; ++k) {
+          const x = left + (k + 0.5) * dx, y = low + (j + 0.5) * dy;
+          if (x < x0 - dx || x > x1 + dx || y < y0 - dy || y > y1 + dy) seen[j * columns + k] = 0;
+        }
+    // from anywhere in a cell of the grid to the nearest outline: of bodies no farther than `way`, which grows till all is known
+    const nearest = new Float64Array(columns * rows).fill(Infinity), reach = new Float64Array(n);
+    const visit = (way, note) => {
+      for (let i = 0; i < n; ++i) {
+        const [px, py] = bodies[i].pose, r = shapes[bodies[i].shape].bounding_radius, most = way + r + half;
+        const first = Math.max(0, Math.floor((px - most - left) / dx)), last = Math.min(columns, Math.ceil((px + most - left) / dx));
+        const bottom = Math.max(0, Math.floor((py - most - low) / dy)), top = Math.min(rows, Math.ceil((py + most - low) / dy));
+        note(i, px - left - 0.5 * dx, py - low - 0.5 * dy, r, first, last, bottom, top);
       }
-    if (bodies.length) for (const t of things) if (!t.body) t.reach = farthest;
+    };
+    let way = Math.sqrt(width * height / Math.max(1, n)) / this.view.scale, farthest = Infinity;
+    for (const all = Math.hypot(width, height) / this.view.scale; n && farthest > way && way < 4 * all; way *= 2) {
+      visit(way, (i, x, y, r, first, last, bottom, top) => {
+        for (let j = bottom; j < top; ++j)
+          for (let k = first, c = j * columns + first; k < last; ++k, ++c) {
+            const u = k * dx - x, v = j * dy - y, d = Math.sqrt(u * u + v * v) + r + half;
+            if (d < nearest[c]) nearest[c] = d;
+          }
+      });
+      farthest = 0;
+      for (let c = 0; c < nearest.length; ++c) if (seen[c] && nearest[c] > farthest) farthest = nearest[c];
+    }
+    visit(Math.min(way, farthest) + half, (i, x, y, r, first, last, bottom, top) => {
+      for (let j = bottom; j < top; ++j)
+        for (let k = first, c = j * columns + first; k < last; ++k, ++c) {
+          if (!seen[c] || nearest[c] <= reach[i]) continue;
+          const u = k * dx - x, v = j * dy - y;
+          if (Math.sqrt(u * u + v * v) - r - half <= nearest[c]) reach[i] = nearest[c];
+        }
+    });
+    for (const t of things) t.reach = farthest;
+    bodies.forEach((t, i) => { t.reach = reach[i]; });
   }
 
   drawBodies() {
