@@ -56,7 +56,7 @@ gate_headers() {
   local compiler=c++ flags
   if has clang++ clang; then compiler=clang++; fi
   # shellcheck disable=SC2046
-  flags="$(flags_of scenes/program/main.cpp) $(pkg-config --cflags cairo 2>/dev/null)"
+  flags="$(flags_of scenes/program) $(pkg-config --cflags cairo 2>/dev/null)"
   xargs -P "$jobs" -I{} sh -c "printf '#include \"brink/%s\"\n' {} | $compiler -x c++ - $flags -fsyntax-only || { echo '{}: does not compile by itself' >&2; exit 255; }" <build/release/public_headers.txt
 }
 
@@ -82,7 +82,7 @@ PY
 gate_sanitizers() {
   local build=build/sanitize
   cmake -S . -B "$build" $(command -v ninja >/dev/null && echo -G Ninja) -DCMAKE_BUILD_TYPE=None \
-    -DCMAKE_CXX_FLAGS="-O1 -g1" -DBRINK_SANITIZE=ON -DBRINK_TESTS=ON >build/sanitize.log 2>&1
+    -DCMAKE_CXX_FLAGS="-O1 -g1" -DBRINK_UNITY=ON -DBRINK_SANITIZE=ON -DBRINK_TESTS=ON >build/sanitize.log 2>&1
   cmake --build "$build" -j "$jobs" --target brink_program fuzz_scene_mutation_test fuzz_run_file_mutation_test \
     fuzz_random_worlds_test fuzz_first_contact_test >>build/sanitize.log 2>&1 || { tail -n 40 build/sanitize.log >&2; return 1; }
   export UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS=suppressions=$PWD/tests/leaks.supp:print_suppressions=0

@@ -9,7 +9,6 @@ namespace brink {
 
 namespace {
 
-
 /// Lemke's tableau: every row is one equation of w - A z - d z0 = q, solved for its basic variable. Columns
 /// are w, z, z0, and the right-hand side.
 class Tableau {

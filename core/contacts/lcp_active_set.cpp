@@ -12,8 +12,8 @@ namespace {
 
 // of problems with a diagonal of ones and |q| <= 1:
 constexpr Real kViolated = 1e3 * kRealEpsilon;  ///< w below minus this is violated
-constexpr Real kDependent = 1e-13;          ///< a row with less of its own hangs on those that have joined
-constexpr Real kYields = 1e-13;             ///< less is rounding, where entries begin at 1
+constexpr Real kDependent = 1e-13;  ///< a row with less of its own hangs on those that have joined
+constexpr Real kYields = 1e-13;     ///< less is rounding, where entries begin at 1
 constexpr Real kHopeless = 1e5 * kRealEpsilon;  ///< violated by more, and nothing can be done: no solution
 constexpr int kMostPolishes = 8;
 

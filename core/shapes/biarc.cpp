@@ -12,7 +12,6 @@ namespace brink {
 
 namespace {
 
-
 struct Piece {
   double t0 = 0.0, t1 = 0.0;
   Vec2 p0 = Vec2::Zero(), p1 = Vec2::Zero();

@@ -7,7 +7,6 @@ namespace brink {
 
 namespace {
 
-
 Vec2 turned(const Vec2& v, double angle) {
   const Vec2 u = unit_at(angle);
   return {u.x() * v.x() - u.y() * v.y(), u.y() * v.x() + u.x() * v.y()};

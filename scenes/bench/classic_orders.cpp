@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kFalls = 16;
 constexpr double kBeyondFirst = 0.62;  // [s]: beyond the latest first contact
-constexpr double kFine = 1.0 / 256;               // side of pixels where something else is varied [m]
+constexpr double kFine = 1.0 / 256;    // side of pixels where something else is varied [m]
 constexpr std::uint64_t kSeedOfOrders = 3;
 
 /// Least-squares slope of log error against log of the varied quantity.

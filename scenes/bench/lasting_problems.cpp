@@ -14,7 +14,6 @@ namespace brink::bench {
 
 namespace {
 
-
 World world_of(double friction, const Shape& ground, const Pose& pose, const Shape& shape,
                const BodyState& start) {
   World world;

@@ -12,7 +12,6 @@
 namespace brink::bench {
 namespace {
 
-
 void add_body(World& world, const Shape& shape, const Vec2& position, const Vec2& velocity,
               double angle = 0.0, double omega = 0.0) {
   Body body = make_body(shape, Mass{1.0});

@@ -202,8 +202,8 @@ class ChartSheet {
     canvas.text(f.right, f.top - 18, panel.y.title, 12.5, kPale, Align::right);
   }
 
-  void draw_line(Canvas& canvas, const PanelFrame& frame, const Scale& x, const Scale& y, const ChartLine& line,
-                 bool categories) const {
+  void draw_line(Canvas& canvas, const PanelFrame& frame, const Scale& x, const Scale& y,
+                 const ChartLine& line, bool categories) const {
     const Color ink = color(line.series);
     const auto spot = [&](const ChartPoint& p, double value) {
       return at(frame.x(x.place(p.x)), frame.y(y.place(value)));

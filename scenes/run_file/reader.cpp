@@ -20,7 +20,6 @@ namespace brink {
 namespace fs = std::filesystem;
 namespace {
 
-
 constexpr const char* kWhat = "a run file";
 
 /// Options that a run may be gone on with at another value: they decide what is refused, not what happens.

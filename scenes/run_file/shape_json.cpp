@@ -123,7 +123,8 @@ Outline outline_from_json(const std::string& text) {
     throw BadInput(std::string("shape: not an outline in JSON: ") + e.what());
   }
   finish_outline(outline);
-  if (!(outline.bounding_radius <= kFarthestReach)) throw BadInput("shape: it reaches farther than any scene");
+  if (!(outline.bounding_radius <= kFarthestReach))
+    throw BadInput("shape: it reaches farther than any scene");
   return outline;
 }
 

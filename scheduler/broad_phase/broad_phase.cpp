@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kCellsPerBox = 2.0;                        ///< a cell is this many times the median box
 constexpr int kMostCellsAcross = 4;                         ///< boxes wider than this many cells are large
-constexpr std::size_t kFewBoxes = 16;                            ///< boxes that need no cells
+constexpr std::size_t kFewBoxes = 16;                       ///< boxes that need no cells
 constexpr std::int64_t kMostCells = std::int64_t{1} << 60;  ///< only those that hold a box take room
 
 /// Cells of a window, counted row by row.

@@ -7,7 +7,7 @@ namespace brink {
 
 namespace {
 
-constexpr int kFewBodies = 6;            ///< bodies that need no cells
+constexpr int kFewBodies = 6;      ///< bodies that need no cells
 constexpr double kLevelRatio = 4;  ///< of radii, from level to level
 constexpr double kTopLevel = 24;   ///< holds all that is larger still
 

@@ -9,7 +9,6 @@ namespace brink {
 
 namespace {
 
-
 /// How far (>= 0) the direction d lies outside the arc's sector [rad]; 0 inside.
 double angle_outside(const Site& arc, const Vec2& d) {
   const Vec2 middle = (arc.a - arc.center) + (arc.b - arc.center);

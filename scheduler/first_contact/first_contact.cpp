@@ -25,7 +25,6 @@ using detail::Feature;
 using detail::Half;
 using detail::PairView;
 
-
 /// Iterations that a search may take if it has found a contact, whatever its cap.
 constexpr int kMostAfterContact = 1000;
 

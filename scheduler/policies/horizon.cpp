@@ -10,7 +10,6 @@ namespace brink {
 
 namespace {
 
-
 /// About the time in which the fastest body crosses itself.
 double first_length(const KernelView& kernel, double until) {
   double horizon = until;

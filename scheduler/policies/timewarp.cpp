@@ -29,7 +29,6 @@ namespace brink {
 
 namespace {
 
-
 /// Contacts closer than this in time are left to the order [s].
 double too_close(double t) { return 4.0 * same_instant(t); }
 
