@@ -79,7 +79,8 @@ inline MeetingTimes meeting(const Course& a, double bx, double by, double bvx, d
   // never later than it is, by a rounding of the clock
   const double begin = std::max(now, now + wait - kFlightRounding * (now + wait));
   const double end = speed2 > 0.0 ? now + (root - approach) / speed2 : kForever;
-  return {parts | misses ? kForever : begin, parts | misses ? kForever : end};
+  const bool never = parts | misses;
+  return {never ? kForever : begin, never ? kForever : end};
 }
 inline MeetingTimes meeting(const Course& a, const Flight& b, const Vec2& shift, double now) {
   return meeting<true>(a, b.x, b.y, b.vx, b.vy, b.start, b.radius, b.disc, shift.x(), shift.y(), now);
