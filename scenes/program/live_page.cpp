@@ -11,6 +11,7 @@ namespace brink {
 RunReport run_shown(const Scene& scene, RunRequest& request, bool bar) {
   ProgressBar progress(0.0, request.until.value_or(scene.duration), bar);
   request.progress = [&progress](double t, std::uint64_t collisions) {
+    if (stop_asked()) progress.stopping();
     progress.show(t, collisions);
     return !stop_asked();
   };

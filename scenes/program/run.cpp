@@ -92,13 +92,21 @@ void print_report(const RunArguments& arguments, const Scene& scene, const RunRe
   if (arguments.json) fmt::print("{}\n", report.json);
 }
 
+/// The scene, of a run from its run file.
+Scene loaded(const RunArguments& arguments, bool shown) {
+  StatusLine line(shown);
+  line.say("loading " + printable(arguments.scene));
+  const std::filesystem::path run = run_file_of(arguments.scene);
+  return run.empty() ? load_scene(arguments.scene, arguments.overrides)
+                     : scene_of_run(run, arguments.overrides);
+}
+
 }  // namespace
 
 int run_command(const RunArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
-  const std::filesystem::path run = run_file_of(arguments.scene);
-  const Scene scene =
-      run.empty() ? load_scene(arguments.scene, arguments.overrides) : scene_of_run(run, arguments.overrides);
+  const bool shown = on_terminal(stderr) && !arguments.quiet;
+  const Scene scene = loaded(arguments, shown);
   RunRequest request;
   request.dir = arguments.out.empty() ? default_run_folder(scene.path, arguments.resume)
                                       : std::filesystem::path(arguments.out);
@@ -112,7 +120,7 @@ int run_command(const RunArguments& arguments) {
     page.emplace(request);
     fmt::print(stderr, "{}\n", page->address());
   }
-  const RunReport report = run_shown(scene, request, on_terminal(stderr) && !arguments.quiet);
+  const RunReport report = run_shown(scene, request, shown);
   print_report(arguments, scene, report);
   std::fflush(stdout);
   if (page) page->stay();

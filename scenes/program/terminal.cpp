@@ -49,24 +49,36 @@ std::string paint(std::FILE* stream, Paint how, std::string_view text) {
   return has_colours(stream) ? fmt::format("{}{}\033[0m", code(how), shown) : shown;
 }
 
-ProgressBar::ProgressBar(double from, double until, bool shown) : from_(from), until_(until), shown_(shown) {}
-
-ProgressBar::~ProgressBar() {
+StatusLine::~StatusLine() {
   if (drawn_) fmt::print(stderr, "\r\033[K");
+}
+
+void StatusLine::say(const std::string& text) {
+  if (!shown_) return;
+  drawn_ = true;
+  fmt::print(stderr, "\r\033[K{}", text);
+  std::fflush(stderr);
+}
+
+ProgressBar::ProgressBar(double from, double until, bool shown) : line_(shown), from_(from), until_(until) {
+  show(from, 0);
 }
 
 void ProgressBar::show(double t, std::uint64_t collisions) {
   const auto now = Clock::now();
-  if (!shown_ || now < next_) return;
+  if (stopping_ || now < next_) return;
   next_ = now + kRedraw;
-  drawn_ = true;
   const double part = until_ > from_ ? std::clamp((t - from_) / (until_ - from_), 0.0, 1.0) : 1.0;
   const int full = static_cast<int>(part * kBarWidth);
   const double spent = std::chrono::duration<double>(now - start_).count();
   const std::string left = part > 0.01 ? remaining(spent / part * (1 - part)) : std::string();
-  fmt::print(stderr, "\r\033[K[{}{}] {:3.0f}%  t = {:.4g} s  {} collisions  {}", std::string(full, '='),
-             std::string(kBarWidth - full, ' '), 100 * part, t, collisions, left);
-  std::fflush(stderr);
+  line_.say(fmt::format("[{}{}] {:3.0f}%  t = {:.4g} s  {} collisions  {}", std::string(full, '='),
+                        std::string(kBarWidth - full, ' '), 100 * part, t, collisions, left));
+}
+
+void ProgressBar::stopping() {
+  if (!stopping_) line_.say("stopping: a checkpoint is written, to go on from");
+  stopping_ = true;
 }
 
 }  // namespace brink

@@ -17,21 +17,34 @@ enum class Paint { heading, good, bad, faint };
 /// `text`, printable, in colour if `stream` is a terminal that has colours and NO_COLOR is not set.
 std::string paint(std::FILE* stream, Paint how, std::string_view text);
 
-/// One line on standard error, redrawn at most ten times a second, wiped at the end. Draws nothing if not
-/// `shown`.
+/// One line on standard error that says what is going on, wiped at the end. Draws nothing if not `shown`.
+class StatusLine {
+ public:
+  explicit StatusLine(bool shown) : shown_(shown) {}
+  ~StatusLine();
+  StatusLine(const StatusLine&) = delete;
+  StatusLine& operator=(const StatusLine&) = delete;
+
+  void say(const std::string& text);
+
+ private:
+  bool shown_, drawn_ = false;
+};
+
+/// How far a run has come, from the beginning on, redrawn at most ten times a second.
 class ProgressBar {
  public:
   ProgressBar(double from, double until, bool shown);
-  ~ProgressBar();
-  ProgressBar(const ProgressBar&) = delete;
-  ProgressBar& operator=(const ProgressBar&) = delete;
 
   void show(double t, std::uint64_t collisions);
+  /// It has been asked to stop; what it is, it will not show any more.
+  void stopping();
 
  private:
   using Clock = std::chrono::steady_clock;
+  StatusLine line_;
   double from_, until_;
-  bool shown_, drawn_ = false;
+  bool stopping_ = false;
   Clock::time_point start_ = Clock::now(), next_ = start_;
 };
 

@@ -90,9 +90,11 @@ std::function<std::vector<Pose>(const Vec2&)> standing_poses(const PlannedThing&
 }
 
 void Placer::place(std::vector<PlannedThing>& sites, std::vector<PlannedThing>& bodies) {
-  for (auto* things : {&sites, &bodies})
+  for (auto* things : {&sites, &bodies}) {
+    total_ = 0;
     for (PlannedThing& thing : *things)
       if (counted(thing) && !is_random(*thing.table) && !thing.table->touching.given) stand(thing);
+  }
   if (!faults_.empty()) return;
   put_on_others(sites, bodies, rules_, faults_);
   for (auto* things : {&sites, &bodies})

@@ -525,5 +525,16 @@ TEST(SceneOptions, NoKeyIsDeclaredTwice) {
     EXPECT_TRUE(seen.emplace(option.table, option.key).second) << option.table << '.' << option.key;
 }
 
+// As many of each as a file may hold, not of both together.
+TEST(SceneFile, AMillionBodiesStandBesideASite) {
+  const Scene scene = parse_scene(
+      "[world]\nduration = 1\n[output]\nframe_interval = 0\n[[sites]]\nsegment = [[-1, -9], [1, "
+      "-9]]\n[[bodies]]\nname = \"d\"\n"
+      "disc = { radius = 0.1 }\ngrid = { columns = 1000, rows = 1000, spacing = [1, 1] }\n",
+      "million.toml");
+  EXPECT_EQ(scene.world.bodies.size(), 1000000U);
+  EXPECT_EQ(scene.world.sites.size(), 1U);
+}
+
 }  // namespace
 }  // namespace brink
