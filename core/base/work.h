@@ -37,10 +37,13 @@ struct WorkCounters {
   std::uint64_t collisions_body_body = 0;
   std::uint64_t collisions_body_site = 0;
   std::uint64_t let_go = 0;  ///< overlapping but receding contacts let go (Bannerman et al. 2012)
-  // seconds a stage
-  double seconds_search = 0.0;
-  double seconds_motion = 0.0;
-  double seconds_record = 0.0;
+  // wall-clock seconds of the stages, each without those within it; what is left is the policy's own
+  double seconds_look = 0.0;      ///< who is near whom: broad phase, views, passes
+  double seconds_search = 0.0;    ///< first contacts of pairs
+  double seconds_motion = 0.0;    ///< integrators
+  double seconds_response = 0.0;  ///< collisions and groups
+  double seconds_islands = 0.0;   ///< contacts that last
+  double seconds_record = 0.0;    ///< frames with their checks, checkpoints
 
   /// Calls visit(name, member, unit) for every counter, in a fixed order. `Self` may be const.
   template <class Self, class Visit>
@@ -70,8 +73,11 @@ struct WorkCounters {
     visit("collisions_body_body", w.collisions_body_body, "1");
     visit("collisions_body_site", w.collisions_body_site, "1");
     visit("let_go", w.let_go, "1");
+    visit("seconds_look", w.seconds_look, "s");
     visit("seconds_search", w.seconds_search, "s");
     visit("seconds_motion", w.seconds_motion, "s");
+    visit("seconds_response", w.seconds_response, "s");
+    visit("seconds_islands", w.seconds_islands, "s");
     visit("seconds_record", w.seconds_record, "s");
   }
 };

@@ -37,6 +37,8 @@ void add_run(CLI::App& program, int& status) {
       "--watch", arguments->watch,
       "Serve a page that follows the run, as brink view SCENE does; its address comes first, and "
       "it stays until Ctrl-C");
+  command->add_flag("--profile", arguments->profile,
+                    "Where the time went, by stages; --json and the run file have it always");
   command->add_flag("--quiet", arguments->quiet, "No progress bar and no summary");
   command->add_flag("--json", arguments->json, "The summary as one JSON object on the last line");
   command->footer(

@@ -20,7 +20,7 @@ struct RunArguments {
   std::string scene, out, trace;
   std::vector<std::string> overrides;
   std::optional<double> until;
-  bool resume = false, quiet = false, json = false, watch = false;
+  bool resume = false, quiet = false, json = false, watch = false, profile = false;
 };
 
 struct CheckArguments {

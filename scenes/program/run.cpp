@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
 #include "brink/core/base/printable.h"
 #include "brink/scenes/program/commands.h"
@@ -63,6 +64,23 @@ void print_work(const WorkCounters& w) {
       w.backups, w.rollbacks, w.body_seconds_thrown_away, w.certificates_stale);
 }
 
+/// Wall-clock seconds by stages.
+void print_profile(const RunSummary& s) {
+  const WorkCounters& w = s.work;
+  const std::pair<const char*, double> stages[] = {
+      {"looking around", w.seconds_look},      {"first contacts", w.seconds_search},
+      {"integrators", w.seconds_motion},       {"collisions", w.seconds_response},
+      {"lasting contacts", w.seconds_islands}, {"recording", w.seconds_record}};
+  double rest = s.wall_seconds;
+  const auto line = [&](const char* name, double seconds) {
+    fmt::print("    {:<17}{:<9.3g} {:3.0f} %\n", name, seconds, 100.0 * seconds / s.wall_seconds);
+    rest -= seconds;
+  };
+  fmt::print("  seconds by stage\n");
+  for (const auto& [name, seconds] : stages) line(name, seconds);
+  line("policy, the rest", std::max(0.0, rest));
+}
+
 void print_summary(const Scene& scene, const RunReport& report) {
   const RunSummary& s = report.summary;
   const std::string title = scene.world.title.empty() ? scene.path.stem().string() : scene.world.title;
@@ -88,6 +106,7 @@ void print_report(const RunArguments& arguments, const Scene& scene, const RunRe
                report.summary.end_time);
   } else if (!arguments.quiet && !arguments.json) {
     print_summary(scene, report);
+    if (arguments.profile) print_profile(report.summary);
   }
   if (arguments.json) fmt::print("{}\n", report.json);
 }

@@ -110,7 +110,7 @@ std::optional<Certificate> ContactSearch::search(const PairKey& pair, const Body
   SearchLimits limits = limits_;
   if (most_steps > 0) limits.max_iterations = most_steps;
   WorkCounters& work = run_->work();
-  const SampledClock::Scope timed(clock_, work.seconds_search);
+  const StageTimer::Sampled timed(run_->timer(), work.seconds_search, timed_);
   const PairAnswer answer = first_contact(sides.a, sides.b, from, to, limits, scratch_, work);
   if (answer.status == PairAnswer::Status::clear) return std::nullopt;
   Certificate c;

@@ -91,7 +91,7 @@ class ContactSearch {
   SearchScratch scratch_;
   PairFilter filter_;
   std::set<PairKey> left_out_;
-  SampledClock clock_;
+  unsigned timed_ = 0;  ///< searches, for one in some of them
 };
 
 /// The contact of a pair as it is told to the world.

@@ -83,6 +83,7 @@ void Kernel::back_up(std::span<const int> bodies, double from, double t) {
 // -- passes and searches --
 
 std::vector<PairKey> Kernel::near_pairs(double from, double to) {
+  const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_look);
   ++parts_.run.work().horizons;
   parts_.run.work().passes += body_count();
   trace_all(TraceKind::pass, from, to);
@@ -90,6 +91,7 @@ std::vector<PairKey> Kernel::near_pairs(double from, double to) {
 }
 
 std::vector<PairKey> Kernel::near_pairs_of(int body, double from, double to) {
+  const StageTimer::Sampled timed = looking();
   ++parts_.run.work().passes;
   const TraceScope scope(parts_.run.trace(), {TraceKind::pass, body, -1, from, to});
   return parts_.near.of(body, from, to, !parts_.speculation.empty());
@@ -133,16 +135,23 @@ bool Kernel::resolve(const PairKey& pair, const FeatureContact& found, std::vect
     roll_back_all();
     return resolve_group(pair, found, changed);
   }
-  const auto outcome = parts_.response.collide(pair, found, changed);
+  const auto outcome = respond(pair, found, changed);
   if (!outcome) return false;
   const bool goes_on = tell(*outcome, changed);
   return regroup_after(pair, changed) && goes_on;
+}
+
+std::optional<Outcome> Kernel::respond(const PairKey& pair, const FeatureContact& found,
+                                       std::vector<int>& changed) {
+  const StageTimer::Sampled timed(parts_.run.timer(), parts_.run.work().seconds_response, responses_timed_);
+  return parts_.response.collide(pair, found, changed);
 }
 
 bool Kernel::resolve_group(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed) {
   const GroupLaw law = parts_.endings.collapsed(time()) ? GroupLaw::collapsed
                        : order() == Order::lcp          ? GroupLaw::complementarity
                                                         : GroupLaw::reflections;
+  const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_response);
   const auto group = parts_.groups.resolve(pair, found, law, changed);
   if (!group) return false;
   if (group->endless) {
@@ -183,8 +192,11 @@ bool Kernel::regroup(std::vector<std::vector<int>> together, std::vector<int>& c
 bool Kernel::tell(const Outcome& o, std::vector<int>& changed) {
   parts_.watch.note_overlap(o.contact.gap);
   count(o.pair);
-  parts_.records.event(EventKind::collision, o.pair, o.contact, o.impulse_n, o.impulse_t, o.delay, o.body,
-                       o.other);
+  {
+    const StageTimer::Sampled timed(parts_.run.timer(), parts_.run.work().seconds_record, events_timed_);
+    parts_.records.event(EventKind::collision, o.pair, o.contact, o.impulse_n, o.impulse_t, o.delay, o.body,
+                         o.other);
+  }
   return judge(o, changed);
 }
 
@@ -239,6 +251,7 @@ bool Kernel::judge_ending(const Outcome& o, std::vector<int>& changed) {
 
 /// The pair's bounces have their limit: a contact that lasts begins.
 bool Kernel::begin_to_last(const Outcome& o, double limit, std::vector<int>& changed) {
+  const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_islands);
   roll_back_all();
   parts_.records.ending(EventKind::persist, o.pair, o.contact, parts_.records.last_event());
   return parts_.islands.capture(o.pair, o.contact, limit, changed);
@@ -248,6 +261,7 @@ bool Kernel::begin_to_last(const Outcome& o, double limit, std::vector<int>& cha
 bool Kernel::go_on_in_islands(const Outcome& o, std::vector<int>& changed) {
   const bool concerned = is_held(o.pair.body) || (!o.pair.with_site() && is_held(o.pair.other_body));
   if (!concerned) return true;
+  const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_islands);
   roll_back_all();
   return parts_.islands.collided(o.pair, changed);
 }
@@ -255,6 +269,7 @@ bool Kernel::go_on_in_islands(const Outcome& o, std::vector<int>& changed) {
 bool Kernel::step_island(std::vector<int>& changed) {
   parts_.run.set_time(next_step());
   parts_.policy_watch.going_to(time());
+  const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_islands);
   roll_back_all();
   return parts_.islands.step(changed);
 }
@@ -306,7 +321,7 @@ bool Kernel::resolve_ahead(const Certificate& c, double end, std::vector<int>& c
   const double present = time();
   advance_pair(c.pair, c.time);
   const Speculation::Entry entry = parts_.speculation.before(c.pair);
-  const auto outcome = parts_.response.collide(c.pair, c.contact, changed);
+  const auto outcome = respond(c.pair, c.contact, changed);
   bool done = outcome.has_value();
   for (const int k : changed) done = done && extend_motion(k, end);
   parts_.run.set_time(present);
@@ -340,7 +355,7 @@ bool Kernel::record_frames(double t) {
   while (!halt()) {
     const auto due = parts_.records.frame_due(t);
     if (!due) break;
-    const StageClock clock(parts_.run.work().seconds_record);
+    const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_record);
     parts_.speculation.swap_with_certain();
     parts_.records.frame_of_clock(*due);
     parts_.watch.frame(*due);
@@ -351,13 +366,17 @@ bool Kernel::record_frames(double t) {
 }
 
 void Kernel::show_frame() {
+  const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_record);
   parts_.records.frame(time());
   parts_.watch.frame(time());
 }
 
 bool Kernel::pause_point() {
   if (halt() || !parts_.run.ask()) return false;
-  if (parts_.records.checkpoint_due()) parts_.records.checkpoint(snapshot());
+  if (parts_.records.checkpoint_due()) {
+    const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_record);
+    parts_.records.checkpoint(snapshot());
+  }
   return true;
 }
 

@@ -50,6 +50,10 @@ class Kernel : public KernelView {
     ++parts_.run.work().passes;
     parts_.run.mark(TraceKind::pass, body, -1, t, t);
   }
+  /// While it lives a policy looks around, with a method of its own: its seconds are counted.
+  [[nodiscard]] StageTimer::Sampled looking() {
+    return StageTimer::Sampled(parts_.run.timer(), parts_.run.work().seconds_look, looks_timed_);
+  }
   /// Searches one pair; the certificate of a contact or an undecided end, or nothing if clear to the end.
   /// With `most_steps` > 0 the search stops after so many of its steps, undecided: to go on later, if it then
   /// still matters.
@@ -122,6 +126,7 @@ class Kernel : public KernelView {
   bool regroup(std::vector<std::vector<int>> together, std::vector<int>& changed);
 
  private:
+  std::optional<Outcome> respond(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed);
   bool regroup_after(const PairKey& pair, std::vector<int>& changed);
   bool resolve_group(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed);
   bool tell(const Outcome& outcome, std::vector<int>& changed);
@@ -131,6 +136,9 @@ class Kernel : public KernelView {
   bool begin_to_last(const Outcome& outcome, double limit, std::vector<int>& changed);
   bool go_on_in_islands(const Outcome& outcome, std::vector<int>& changed);
   void trace_all(TraceKind kind, double from, double to) const;
+
+  unsigned looks_timed_ = 0, responses_timed_ = 0,
+           events_timed_ = 0;  ///< how many there were, for one in some of them
 };
 
 }  // namespace brink

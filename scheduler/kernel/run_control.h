@@ -6,6 +6,7 @@
 
 #include "brink/core/base/work.h"
 #include "brink/scheduler/kernel/ask_clock.h"
+#include "brink/scheduler/kernel/stage_clock.h"
 #include "brink/scheduler/run/run_options.h"
 #include "brink/scheduler/run/summary.h"
 
@@ -68,6 +69,7 @@ class RunControl {
   }
 
   WorkCounters& work() { return work_; }
+  StageTimer& timer() { return timer_; }
   const WorkCounters& work() const { return work_; }
   /// Pieces of motion that integrators have made: body-steps, and cells of moving sites.
   std::uint64_t pieces() const { return pieces_; }
@@ -82,6 +84,7 @@ class RunControl {
  private:
   RunOptions options_;
   WorkCounters work_;
+  StageTimer timer_;
   std::optional<Halt> halt_;
   int indivisible_ = 0;
   double time_ = 0.0;

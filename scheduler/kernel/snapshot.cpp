@@ -11,7 +11,7 @@ namespace brink {
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x314b4e495242000aULL;  // "\12\0BRINK1"
+constexpr std::uint64_t kMagic = 0x324b4e495242000aULL;  // "\12\0BRINK2"
 
 class Writer {
  public:

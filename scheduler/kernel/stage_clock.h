@@ -1,45 +1,61 @@
 #pragma once
-/// Wall-clock seconds of a stage, added to a counter at the end of a scope.
+/// Wall-clock seconds of the stages of a run, each without those within it.
 
 #include <chrono>
-#include <cstdint>
-#include <optional>
 
 namespace brink {
 
-class StageClock {
+/// Which stage goes on. One of every run.
+class StageTimer {
  public:
-  explicit StageClock(double& seconds, double weight = 1.0)
-      : seconds_(seconds), weight_(weight), begin_(std::chrono::steady_clock::now()) {}
-  ~StageClock() {
-    seconds_ += weight_ * std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-  }
-  StageClock(const StageClock&) = delete;
-  StageClock& operator=(const StageClock&) = delete;
-
- private:
-  double& seconds_;
-  double weight_;
-  std::chrono::steady_clock::time_point begin_;
-};
-
-/// The same for a stage so short that reading the clock would be a part of it: one scope in sixteen is timed,
-/// and counts for all of them.
-class SampledClock {
- public:
+  /// From here to the end of the scope is that stage's, whose seconds it adds to.
   class Scope {
    public:
-    Scope(SampledClock& clock, double& seconds) {
-      if (clock.scopes_++ % kEvery == 0) timed_.emplace(seconds, kEvery);
+    Scope(StageTimer& timer, double& seconds) : Scope(timer, seconds, 1.0) {}
+    ~Scope() {
+      if (weight_ == 0.0) return;
+      const Time now = Clock::now();
+      leave(now);
+      timer_.innermost_ = outer_;
+      if (outer_) outer_->begin_ = now;
+    }
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+
+   protected:
+    /// `weight`: how many like it are counted by this one; 0: it is counted by another.
+    Scope(StageTimer& timer, double& seconds, double weight)
+        : timer_(timer), seconds_(seconds), weight_(weight) {
+      if (weight_ == 0.0) return;
+      begin_ = Clock::now();
+      outer_ = timer_.innermost_;
+      if (outer_) outer_->leave(begin_);
+      timer_.innermost_ = this;
     }
 
    private:
-    std::optional<StageClock> timed_;
+    using Clock = std::chrono::steady_clock;
+    using Time = Clock::time_point;
+    void leave(Time now) { seconds_ += weight_ * std::chrono::duration<double>(now - begin_).count(); }
+
+    StageTimer& timer_;
+    double& seconds_;
+    double weight_;
+    Time begin_;
+    Scope* outer_ = nullptr;
+  };
+
+  /// Of a stage so short that reading the clock would be a part of it one in sixteen is timed, and counts for
+  /// all. Each place has a counter of its own.
+  class Sampled : public Scope {
+   public:
+    static constexpr unsigned kEvery = 16;
+    Sampled(StageTimer& timer, double& seconds, unsigned& count)
+        : Scope(timer, seconds, count++ % kEvery == 0 ? kEvery : 0.0) {}
   };
 
  private:
-  static constexpr unsigned kEvery = 16;
-  unsigned scopes_ = 0;
+  Scope* innermost_ = nullptr;
 };
 
 }  // namespace brink

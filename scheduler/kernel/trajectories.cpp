@@ -144,7 +144,7 @@ double Trajectories::follow_site(int s, double t) {
 double Trajectories::follow_body(int k, double t) {
   const BodyTrack& b = bodies_[k];
   if (b.component < 0 || b.motion.end() >= t) return t;
-  const StageClock clock(run_->work().seconds_motion);
+  const StageTimer::Scope timed(run_->timer(), run_->work().seconds_motion);
   const double covered = follow(components_[b.component], t);
   run_->poll();
   return covered;
@@ -157,7 +157,7 @@ double Trajectories::follow_sites(double t) {
 }
 
 double Trajectories::follow(double t) {
-  const StageClock clock(run_->work().seconds_motion);
+  const StageTimer::Scope timed(run_->timer(), run_->work().seconds_motion);
   double covered = t;
   for (Coupled& c : components_) {
     if (!run_->poll()) return run_->time();
@@ -175,7 +175,7 @@ bool Trajectories::cover(Coupled& c, double t) {
 bool Trajectories::cover_body(int k, double t) {
   const BodyTrack& b = bodies_[k];
   if (b.component < 0 || b.motion.end() >= t) return true;
-  const StageClock clock(run_->work().seconds_motion);
+  const StageTimer::Scope timed(run_->timer(), run_->work().seconds_motion);
   return cover(components_[b.component], t);
 }
 
@@ -187,7 +187,7 @@ bool Trajectories::cover_sites(double t) {
 }
 
 bool Trajectories::cover(double t) {
-  const StageClock clock(run_->work().seconds_motion);
+  const StageTimer::Scope timed(run_->timer(), run_->work().seconds_motion);
   for (Coupled& c : components_)
     if (!cover(c, t)) return false;
   return cover_sites(t);

@@ -153,6 +153,7 @@ void Views::see_bodies(int k, const Course& here, double now, const Cell* former
 }
 
 void Views::look_around(int k, double now) {
+  const auto timed = kernel_->looking();
   BodyClock& clock = clocks_[k];
   kernel_->note_pass(k, now);
   looked_[k] = round_;
@@ -173,6 +174,7 @@ void Views::look_around(int k, double now) {
 }
 
 void Views::look_ahead(int k, double now) {
+  const auto timed = kernel_->looking();
   BodyClock& clock = clocks_[k];
   const Course course(flights_[k], gravity_, now);
   const Cell former = flights_[k].cell;
