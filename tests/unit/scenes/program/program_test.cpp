@@ -106,6 +106,16 @@ TEST_F(ProgramTest, QuietRunPrintsNothing) {
   EXPECT_EQ(run.out + run.error, "");
 }
 
+TEST_F(ProgramTest, ProfileTellsEveryStage) {
+  const Outcome run = brink("run ball.toml --profile");
+  for (const char* stage : {"looking around", "first contacts", "integrators", "collisions",
+                            "lasting contacts", "recording", "policy, the rest"})
+    EXPECT_THAT(run.out, HasSubstr(stage));
+  const auto summary = nlohmann::json::parse(last_line(brink("run ball.toml --json").out));
+  for (const char* stage : {"look", "search", "response", "record"})
+    EXPECT_GT(summary["work"][std::string("seconds_") + stage], 0.0) << stage;
+}
+
 TEST_F(ProgramTest, OutputThatIsNoTerminalHasNoColours) {
   const Outcome run = brink("run ball.toml");
   EXPECT_THAT(run.out, HasSubstr("reached the end at t = 0.75 s"));
