@@ -34,7 +34,8 @@ bool displayable(const std::array<double, 3>& rgb) {
 
 /// "disc[3]" and "disc_3" belong to the group "disc".
 std::string group_of(std::string name) {
-  if (!name.empty() && name.back() == ']') name.erase(name.rfind('['));
+  const auto copy = name.rfind('[');  // any name may end so
+  if (copy != std::string::npos && name.back() == ']') name.erase(copy);
   const std::size_t end = name.find_last_not_of("0123456789_");
   if (end != std::string::npos) name.erase(end + 1);
   return name;

@@ -106,6 +106,12 @@ TEST_F(ProgramTest, QuietRunPrintsNothing) {
   EXPECT_EQ(run.out + run.error, "");
 }
 
+TEST_F(ProgramTest, ANameThatEndsLikeACopysIsDrawn) {
+  write("odd.toml", "[world]\nduration = 0.1\n[[bodies]]\nname = \"odd]\"\ndisc = { radius = 0.5 }\n");
+  const Outcome drawn = brink("draw odd.toml -o odd.png --plain");
+  EXPECT_EQ(drawn.status, 0) << drawn.error;
+}
+
 TEST_F(ProgramTest, ProfileTellsEveryStage) {
   const Outcome run = brink("run ball.toml --profile");
   for (const char* stage : {"looking around", "first contacts", "integrators", "collisions",
