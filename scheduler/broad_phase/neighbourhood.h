@@ -32,7 +32,20 @@ class Neighbourhood {
   /// their cells; with `except`, without those of its former cell's blocks.
   template <class Visit>
   void near(int k, Visit&& visit, const Cell* except = nullptr) const {
-    repeats_ ? near_in<true>(k, visit, except) : near_in<false>(k, visit, except);
+    for (std::size_t m = 0; m < levels_.size(); ++m) {
+      const CellGrid& grid = levels_[m].grid;
+      const CellBlock block = block_of(k, flights_[k].cell, m);
+      constexpr CellBlock none{{1, 1}, {0, 0}};
+      const CellBlock former = except && !grid.wraps(block) ? block_of(k, *except, m) : none;
+      grid.lists(block, [&](const Cell& c, const CellBodies& bodies) {
+        if (former.contains(c)) return;
+        const auto tell = [&](int j) {
+          if (j != k) visit(j, image_in(grid, j, c));
+        };
+        for (unsigned i = 0; i < bodies.count; ++i) tell(bodies.first[i]);
+        for (int j = bodies.more; j != CellBodies::kNone; j = flights_[j].next) tell(j);
+      });
+    }
   }
 
   /// What near(k) visits, body k itself included, at once: see CellGrid::around(), whose answer this is. -1, too,
@@ -64,57 +77,9 @@ class Neighbourhood {
     double radius = 0.0;  ///< the largest of its bodies' [m]
     std::unique_ptr<SiteLists> sites;
   };
-  /// Bodies of some cells, collected without a branch: how many a cell has cannot be foreseen.
-  template <bool repeats>
-  struct Found {
-    static constexpr int kMost = 64;
-    int count = 0;
-    int body[kMost];
-    Cell cell[repeats ? kMost : 1];
-
-    bool full() const { return count > kMost - CellBodies::kAtHand; }
-    void add(const Cell& c, const CellBodies& bodies) {
-      for (int i = 0; i < CellBodies::kAtHand; ++i) {
-        body[count + i] = bodies.first[i];
-        if constexpr (repeats) cell[count + i] = c;
-      }
-      count += bodies.count;
-    }
-  };
-  template <bool repeats, class Visit>
-  void near_in(int k, Visit& visit, const Cell* except) const {
-    for (std::size_t m = 0; m < levels_.size(); ++m) {
-      const CellGrid& grid = levels_[m].grid;
-      const CellBlock block = block_of(k, flights_[k].cell, m);
-      constexpr CellBlock none{{1, 1}, {0, 0}};
-      const CellBlock former = except && !grid.wraps(block) ? block_of(k, *except, m) : none;
-      Found<repeats> found;
-      const auto tell = [&] {
-        for (int i = 0; i < found.count; ++i) {
-          const int j = found.body[i];
-          if (j == k) continue;
-          if constexpr (repeats)
-            visit(j, image_in(grid, j, found.cell[i]));
-          else
-            visit(j, Image{});
-        }
-        found.count = 0;
-      };
-      grid.lists(block, [&](const Cell& c, const CellBodies& bodies) {
-        if (former.contains(c)) return;
-        found.add(c, bodies);
-        for (int j = bodies.more; j != CellBodies::kNone; j = flights_[j].next) {
-          if (found.full()) tell();
-          found.add(c, {{j}, 1});
-        }
-        if (found.full()) tell();
-      });
-      tell();
-    }
-  }
   /// Which image of body j is in cell c, one of whose bodies it is.
   Image image_in(const CellGrid& grid, int j, const Cell& c) const {
-    return flights_[j].cell == c ? Image{} : grid.periods_between(flights_[j].cell, c);
+    return !repeats_ || flights_[j].cell == c ? Image{} : grid.periods_between(flights_[j].cell, c);
   }
   const CellGrid& grid(int k) const { return levels_[clocks_[k].level].grid; }
   CellGrid& grid(int k) { return levels_[clocks_[k].level].grid; }
