@@ -76,17 +76,18 @@ bool SundialsStepper::begin_segment() {
   pack(states(), N_VGetArrayPointer(y_));
   message_.clear();
   if (!accelerations(time(), states(), first_)) return fail(why());
-  steady_end_ = time();
+  stop_ = time();
   if (restart_solver() == 0) return true;
   return fail("the solver cannot start: " + message_);
 }
 
-/// No step crosses a break, nor goes farther than the forces are known to change evenly.
+/// No step crosses a break, nor goes farther than the forces are known to change evenly. Asked at every step:
+/// what is known reaches farther the later it is asked, and steps that are short enough never end at its end.
 bool SundialsStepper::limit_step() {
-  if (time() < steady_end_) return true;
-  steady_end_ = steady_until();
   // the largest number stands for "never": it also clears a stop time left from before
-  const double stop = std::min({steady_end_, segment_end(), std::numeric_limits<double>::max()});
+  const double stop = std::min({steady_until(), segment_end(), std::numeric_limits<double>::max()});
+  if (stop == stop_) return true;
+  stop_ = stop;
   return set_stop_time(stop) == 0 ||
          fail("the solver cannot stop at t = " + time_text(stop) + ": " + message_);
 }

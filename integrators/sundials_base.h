@@ -57,7 +57,7 @@ class SundialsStepper : public SteppingIntegrator {
   std::vector<BodyState> scratch_states_, ends_;
   std::vector<Acceleration> scratch_accelerations_, first_;
   std::string message_;
-  double steady_end_ = 0.0;  ///< no step goes beyond this [s]
+  double stop_ = 0.0;  ///< no step goes beyond this [s]
 };
 
 }  // namespace brink

@@ -33,6 +33,8 @@ bool changes_by(double least, const Formula& f, int part, double begin, double w
 
 }  // namespace
 
+bool SteadyFormula::Cell::holds(double t) const { return begin_of_cell(t, width) == begin; }
+
 bool SteadyFormula::is_steady(double begin, double width) const {
   const TimeBound bound = formula_->time_bound(part_, begin, begin + width, BoundOf::second);
   const double beside = bound.second * width * width / 8.0;
@@ -41,27 +43,32 @@ bool SteadyFormula::is_steady(double begin, double width) const {
 }
 
 /// The widest cell around t that may be steady: those that hold the cell of last time were not.
-double SteadyFormula::width_to_try(double t) {
+double SteadyFormula::width_to_try(double t, const Cell& last) {
   const double minute = begin_of_cell(t, kWidest);
   if (minute != minute_) {
     minute_ = minute;
     size_ = largest_value(*formula_, part_, minute, kWidest);
-    return kWidest;
   }
-  double common = width_;
-  while (begin_of_cell(t, common) != begin_of_cell(begin_, common)) common *= 2.0;
+  if (begin_of_cell(last.begin, kWidest) != minute) return kWidest;
+  double common = last.width;
+  while (begin_of_cell(t, common) != begin_of_cell(last.begin, common)) common *= 2.0;
   return 0.5 * common;
+}
+
+SteadyFormula::Cell SteadyFormula::find(double t, const Cell& last) {
+  double width = width_to_try(t, last);
+  while (width > kNarrowest && !is_steady(begin_of_cell(t, width), width)) width *= 0.5;
+  return {begin_of_cell(t, width), width};
 }
 
 double SteadyFormula::until(double t) {
   if (!formula_->depends_on_time()) return std::numeric_limits<double>::infinity();
-  const bool same = begin_of_cell(t, kWidest) == minute_ && begin_of_cell(t, width_) == begin_;
-  if (!same) {
-    width_ = width_to_try(t);
-    while (width_ > kNarrowest && !is_steady(begin_of_cell(t, width_), width_)) width_ *= 0.5;
-    begin_ = begin_of_cell(t, width_);
+  if (!here_.holds(t)) {
+    here_ = next_.holds(t) ? next_ : find(t, here_);
+    next_ = find(here_.end(), here_);
   }
-  return std::max(begin_ + width_, std::nextafter(t, std::numeric_limits<double>::infinity()));
+  const double end = next_.width < here_.width ? here_.end() : next_.end();
+  return std::max(end, std::nextafter(t, std::numeric_limits<double>::infinity()));
 }
 
 }  // namespace brink
