@@ -11,20 +11,20 @@ namespace brink {
 
 namespace {
 
-using Arguments = std::vector<Taylor>;
+using Arguments = std::vector<const Taylor*>;
 
 template <Taylor (*f)(const Taylor&)>
-Taylor one(Arguments& a) {
-  return f(a[0]);
+Taylor one(const Arguments& a) {
+  return f(*a[0]);
 }
 template <Taylor (*f)(const Taylor&, const Taylor&)>
-Taylor two(Arguments& a) {
-  return f(a[0], a[1]);
+Taylor two(const Arguments& a) {
+  return f(*a[0], *a[1]);
 }
 template <Taylor (*f)(const Taylor&, const Taylor&)>
-Taylor folded(Arguments& a) {
-  Taylor r = a[0];
-  for (std::size_t i = 1; i < a.size(); ++i) r = f(r, a[i]);
+Taylor folded(const Arguments& a) {
+  Taylor r = *a[0];
+  for (std::size_t i = 1; i < a.size(); ++i) r = f(r, *a[i]);
   return r;
 }
 
@@ -40,13 +40,15 @@ Taylor unequal(const Taylor& a, const Taylor& b) { return negation(equal(a, b));
 // muParser's && and || cut their sides to whole numbers first where both are constants, and else do not
 Taylor both(const Taylor& a, const Taylor& b) { return negation(max(small(a), small(b))); }
 Taylor either(const Taylor& a, const Taylor& b) { return negation(min(small(a), small(b))); }
-Taylor chosen(Arguments& a) { return choose(a[0], a[1], a[2]); }
+Taylor chosen(const Arguments& a) { return choose(*a[0], *a[1], *a[2]); }
 
 Taylor constant(double x, int order) { return Taylor::constant(Interval(x), order); }
 Taylor log_to(const Taylor& a, double base) { return log(a) / log(constant(base, a.order)); }
 Taylor log2_of(const Taylor& a) { return log_to(a, 2.0); }
 Taylor log10_of(const Taylor& a) { return log_to(a, 10.0); }
-Taylor mean(Arguments& a) { return folded<plus>(a) / constant(static_cast<double>(a.size()), a[0].order); }
+Taylor mean(const Arguments& a) {
+  return folded<plus>(a) / constant(static_cast<double>(a.size()), a[0]->order);
+}
 Taylor triangle_cosine(const Taylor& a) {  // acos(cos(a))
   const Interval half = boost::numeric::interval_lib::pi<Interval>() / 2.0;
   const Taylor quarter = Taylor::constant(half, a.order);
@@ -304,10 +306,11 @@ Taylor FormulaTree::over(int part, double from, double to, int order) const {
   static thread_local std::vector<Taylor> values;
   static thread_local Arguments arguments;
   values.clear();
+  values.reserve(root - first + 1);  // arguments point into it
   for (int i = first; i <= root; ++i) {
     const Node& n = nodes_[i];
     arguments.clear();
-    for (const int a : n.arguments) arguments.push_back(values[a - first]);
+    for (const int a : n.arguments) arguments.push_back(&values[a - first]);
     if (n.kind == Node::Kind::call)
       values.push_back(n.function->apply(arguments));
     else

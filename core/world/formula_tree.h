@@ -29,7 +29,7 @@ class FormulaTree {
   struct Function {
     std::string_view name;
     int least, most;  ///< arguments
-    Taylor (*apply)(std::vector<Taylor>& arguments);
+    Taylor (*apply)(const std::vector<const Taylor*>& arguments);
   };
   struct Node {
     enum class Kind { number, time, other_variable, call } kind = Kind::number;

@@ -82,9 +82,9 @@ Pair waves(const Taylor& a, const Interval& s0, const Interval& c0, double sign)
   }
   return w;
 }
-Pair circular(const Taylor& a) {
-  return waves(a, within(lib::sin(a.c[0]), -1.0, 1.0), within(lib::cos(a.c[0]), -1.0, 1.0), -1.0);
-}
+Interval sine(const Interval& x) { return within(lib::sin(x), -1.0, 1.0); }
+Interval cosine(const Interval& x) { return within(lib::cos(x), -1.0, 1.0); }
+Pair circular(const Taylor& a) { return waves(a, sine(a.c[0]), cosine(a.c[0]), -1.0); }
 Pair hyperbolic(const Taylor& a) {
   const auto& [low, high] = std::pair(a.c[0].lower(), a.c[0].upper());
   OutwardRounding to;
@@ -204,8 +204,11 @@ Taylor log(const Taylor& a) {
   return from_slope(lib::log(a.c[0]), a, number(1.0, a.order) / a);
 }
 
-Taylor sin(const Taylor& a) { return circular(a).first; }
-Taylor cos(const Taylor& a) { return circular(a).second; }
+// the sister is needed for derivatives alone
+Taylor sin(const Taylor& a) { return a.order == 0 ? Taylor::constant(sine(a.c[0]), 0) : circular(a).first; }
+Taylor cos(const Taylor& a) {
+  return a.order == 0 ? Taylor::constant(cosine(a.c[0]), 0) : circular(a).second;
+}
 
 Taylor tan(const Taylor& a) {
   const Pair w = circular(a);
