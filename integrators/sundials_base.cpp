@@ -75,7 +75,9 @@ int SundialsStepper::right_hand_side(double t, const double* y, double* rate,
 bool SundialsStepper::begin_segment() {
   pack(states(), N_VGetArrayPointer(y_));
   message_.clear();
+  // Before the solver: at the start no smaller step helps, and this says which body and where.
   if (!accelerations(time(), states(), first_)) return fail(why());
+  // not later than now, so that limit_step() asks anew before the first step
   steady_end_ = time();
   if (restart_solver() == 0) return true;
   return fail("the solver cannot start: " + message_);
@@ -83,6 +85,7 @@ bool SundialsStepper::begin_segment() {
 
 /// No step crosses a break, nor goes farther than the forces are known to change evenly.
 bool SundialsStepper::limit_step() {
+  // the stop time of before still holds
   if (time() < steady_end_) return true;
   steady_end_ = steady_until();
   // the largest number stands for "never": it also clears a stop time left from before
@@ -95,9 +98,11 @@ bool SundialsStepper::step() {
   if (!limit_step()) return false;
   double t = time();
   const int flag = solver_step(&t);
+  // A step that does not move t would repeat for ever.
   if (flag < 0 || !(t > time())) {
     std::string what =
         flag < 0 ? "the solver gave up: " + message_ : "its steps became too small to move time";
+    // what the forces said comes first: the solver's own words only say that its steps failed
     return fail(why().empty() ? what : why() + "; " + what);
   }
   unpack(N_VGetArrayPointer(y_), ends_);
