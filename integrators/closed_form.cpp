@@ -28,6 +28,7 @@ class ClosedForm final : public Integrator {
 
   using Integrator::extend;
   Extent extend(double t, std::uint64_t most_steps) override {
+    // Infinity is allowed here, unlike for integrators that step: the last piece reaches it.
     if (std::isnan(t)) check_finite_time(t);
     for (std::uint64_t n = 0; time_ < t && failure_.empty() && n < most_steps; ++n) next_piece();
     return extent_at(time_, t, failure_);
@@ -38,6 +39,7 @@ class ClosedForm final : public Integrator {
 
   Motion motion(int k) const override {
     const auto& chain = chains_.at(k);
+    // before the first extend(): the starting time alone
     if (chain->empty()) return Motion::ballistic(time_, states_[k], {}, time_);
     return chained_ ? Motion::chain(chain) : chain->front();
   }
@@ -45,9 +47,11 @@ class ClosedForm final : public Integrator {
  private:
   void next_piece() {
     const double end = dynamics_->next_break(time_);
+    // A break that is not later would make a piece without length, and no progress.
     const std::vector<Motion> pieces = end > time_ ? pieces_until(end) : std::vector<Motion>{};
     for (std::size_t k = 0; k < pieces.size(); ++k) {
       chains_[k]->push_back(pieces[k]);
+      // The next piece starts where this one ends: pose and twist go on without a jump.
       if (std::isfinite(end)) states_[k] = pieces[k].state(end);
     }
     if (pieces.empty()) {
@@ -63,6 +67,7 @@ class ClosedForm final : public Integrator {
     std::vector<Motion> pieces;
     if (work_) ++work_->right_hand_sides;
     if (!dynamics_->constant()) {
+      // asked at each break: a thrust that starts or stops changes the drive
       const Dynamics::LinearDrag drag = dynamics_->linear_drag(time_);
       const bool finite = is_finite(drag.drive) && std::isfinite(drag.linear) && std::isfinite(drag.angular);
       if (drag.valid && finite)

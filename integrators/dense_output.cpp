@@ -31,9 +31,11 @@ void add_cubic(PolynomialPiece& piece, const Vector3d& pose_begin, const Vector3
   cubic.degree = 3;
   cubic.c[0] = pose_begin;
   cubic.c[1] = rate_begin;
+  // Hermite's cubic, by what the tangent at the begin misses at the end, in pose and in rate.
   cubic.c[2] = (3.0 * pose_error - h * rate_error) / (h * h);
   cubic.c[3] = (h * rate_error - 2.0 * pose_error) / (h * h * h);
   if (piece.origin != piece.begin) move_origin(cubic, piece.origin);
+  // coefficients beyond the degree are not initialised
   for (int k = piece.degree + 1; k <= 3; ++k) piece.c[k].setZero();
   piece.degree = std::max(piece.degree, 3);
   for (int k = 0; k <= 3; ++k) piece.c[k] += cubic.c[k];
@@ -42,6 +44,8 @@ void add_cubic(PolynomialPiece& piece, const Vector3d& pose_begin, const Vector3
 void match_ends(PolynomialPiece& piece, const BodyState& from, const BodyState& to) {
   for (int k = piece.degree + 1; k <= 1; ++k) piece.c[k].setZero();
   piece.degree = std::max(piece.degree, 1);
+  // With its origin at the begin the first two coefficients are pose and twist there:
+  // exact, not to rounding.
   piece.c[0] = stacked(from.pose);
   piece.c[1] = stacked(from.twist);
   const Vector3d target = stacked(to.pose);
@@ -77,6 +81,7 @@ PolynomialPiece quintic_piece(double begin, const BodyState& from, const Acceler
   const Vector3d v = h * (v1 - (v0 + h * a0));
   const Vector3d a = h * h * (a1 - a0);
   for (int i = 0; i < 3; ++i) {
+    // The solution of (1 1 1), (3 4 5), (6 12 20) times (third, fourth, fifth) = x, v, a.
     double third = 10.0 * x[i] - 4.0 * v[i] + 0.5 * a[i];
     double fourth = -15.0 * x[i] + 7.0 * v[i] - a[i];
     double fifth = 6.0 * x[i] - 3.0 * v[i] + 0.5 * a[i];
@@ -93,6 +98,8 @@ PolynomialPiece quintic_piece(double begin, const BodyState& from, const Acceler
 }
 
 void move_origin(PolynomialPiece& piece, double origin) {
+  // Taylor's coefficients about the new origin: each pass divides by (t - origin) once,
+  // its remainder is the next.
   const double s = origin - piece.origin;
   for (int i = 0; i < piece.degree; ++i)
     for (int k = piece.degree - 1; k >= i; --k) piece.c[k] += s * piece.c[k + 1];

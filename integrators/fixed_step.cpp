@@ -10,6 +10,7 @@ namespace {
 using States = std::vector<BodyState>;
 using Accelerations = std::vector<Acceleration>;
 
+/// One step of x' = twist, v' = a from `from`: every method here is made of these.
 BodyState moved(const BodyState& from, const Twist& twist, const Acceleration& a, double h) {
   return {{from.pose.position + h * twist.velocity, from.pose.angle + h * twist.omega},
           {from.twist.velocity + h * a.linear, from.twist.omega + h * a.angular}};
@@ -33,7 +34,9 @@ class FixedStep : public SteppingIntegrator {
   }
 
   bool step() final {
+    // A product, not a sum: after a million steps t is off by one rounding, not by a million.
     double t = origin_ + static_cast<double>(++taken_) * step_;
+    // A rest of less than a millionth of a step would be a step of its own, of nothing but rounding.
     if (t > segment_end() - 1e-6 * step_) t = segment_end();
     if (!(t > time())) return fail("step " + time_text(step_) + " s is lost in rounding");
     if (!advance(time(), states(), t - time(), end_)) return fail(why());
@@ -104,6 +107,8 @@ class Rk4 final : public FixedStep {
   };
 
   bool advance(double t, std::span<const BodyState> from, double h, States& end) override {
+    // Stage i + 1 starts from the step's begin with the rates of stage i alone, so that
+    // nodes serve as the tableau.
     static constexpr double nodes[] = {0.0, 0.5, 0.5, 1.0};
     static constexpr double weights[] = {1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
     Accelerations& a = scratch();

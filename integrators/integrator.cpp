@@ -28,6 +28,8 @@ constexpr std::array<IntegratorInfo, 8> kIntegrators{{
 
 /// Levenshtein distance: single-letter changes between two names.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
+  // row[j]: changes from the first letters of a to the first j of b (Wagner & Fischer
+  // 1974); one row is enough
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0);
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -79,6 +81,7 @@ std::unique_ptr<Integrator> make_integrator(std::string_view name, std::shared_p
     throw BadInput("make_integrator: dynamics of no body; allowed: at least one");
   std::string error;
   if (!options.is_valid(&error)) throw BadInput("integrator option " + error);
+  // `auto` goes by the forces alone, never by states: the choice is the same whenever it is made.
   const bool closed = has_closed_form(*dynamics);
   if (name == "auto") name = closed ? "ballistic" : "erk";
   if (name == "ballistic") {

@@ -19,6 +19,7 @@ double mean_decay(double z) { return z < 1e-16 ? 1.0 : -std::expm1(-z) / z; }
 
 /// (z - (1 - e^-z)) / z^2; its Taylor series 1/2 - z/6 + z^2/24 - ... where the difference would cancel.
 double mean_rise(double z) {
+  // z - (1 - e^-z) is about z^2 / 2: at 0.5 the difference still has all but three of its bits.
   if (z > 0.5) return (z + std::expm1(-z)) / (z * z);
   double term = 0.5, sum = 0.5;
   for (int k = 3; std::abs(term) > 1e-18; ++k) sum += term *= -z / k;
@@ -27,18 +28,21 @@ double mean_rise(double z) {
 
 Relaxed relax(double rate0, double drive, double k, double s) {
   const double z = k * s, decay = mean_decay(z);
+  // with v = v0 e^-kt + (drive / k)(1 - e^-kt), integrated once; never divided by k, which may be 0
   return {s * (rate0 * decay + s * (drive * mean_rise(z))), rate0 * std::exp(-z) + s * (drive * decay)};
 }
 
 /// Smallest disc-like enclosure that holds both.
 void merge(Vec2& center, double& radius, const Vec2& other_center, double other_radius) {
   const double distance = (other_center - center).norm();
+  // one of the discs may hold the other already
   if (distance + other_radius <= radius) return;
   if (distance + radius <= other_radius) {
     center = other_center;
     radius = other_radius;
     return;
   }
+  // the disc whose diameter runs from the far side of the one to the far side of the other
   const double merged = 0.5 * (distance + radius + other_radius);
   center += (other_center - center) * ((merged - radius) / distance);
   radius = merged * (1.0 + 1e-15);
@@ -59,6 +63,7 @@ void merge(MotionBounds& into, const MotionBounds& b) {
 BodyState PolynomialPiece::state(double t) const {
   const double s = t - origin;
   Eigen::Vector3d value = c[degree], rate = Eigen::Vector3d::Zero();
+  // Horner for value and derivative at once: the twist is the exact derivative of this polynomial.
   for (int k = degree - 1; k >= 0; --k) {
     rate = rate * s + value;
     value = value * s + c[k];
@@ -81,6 +86,7 @@ MotionBounds PolynomialPiece::bounds(double from, double to) const {
     for (int k = degree - 1; k >= i; --k) m[k] += s * m[k + 1];
   MotionBounds b;
   Eigen::Vector3d rate_radius = Eigen::Vector3d::Zero(), second_radius = Eigen::Vector3d::Zero();
+  // |p'(u) - p'(0)| <= sum of k |m_k| h^(k-1) for |u| <= h, and likewise for p''
   double power = h;  // h^(k-1)
   for (int k = 2; k <= degree; ++k, power *= h) {
     rate_radius += k * power * m[k].cwiseAbs();
@@ -103,6 +109,7 @@ const PolynomialPiece& Track::at(double t) const {
   auto it = std::upper_bound(pieces.begin(), pieces.end(), t,
                              [](double time, const PolynomialPiece& p) { return time < p.begin; });
   if (it != pieces.begin()) return *std::prev(it);
+  // Before the first piece: by rounding, and the first piece goes on; or it was forgotten.
   if (begun_) throw std::logic_error("a motion was asked for a time that it has forgotten");
   return *it;
 }
@@ -112,6 +119,7 @@ void Track::forget_before(double t) {
   const auto kept =
       std::partition_point(pieces.begin(), pieces.end(), [&](const PolynomialPiece& p) { return p.end < t; });
   const std::ptrdiff_t gone = kept - pieces.begin();
+  // Erasing moves all that is kept. Done when half is gone, its cost a piece does not depend on the length.
   if (gone < fewest || 2 * gone < std::ssize(pieces)) return;
   begun_ = begin();
   pieces.erase(pieces.begin(), kept);
@@ -159,10 +167,12 @@ double Motion::end() const {
 }
 
 bool Motion::remembers(double t) const {
+  // begin() of a track may be earlier than its first piece: see Track::forget_before
   return kind_ != Kind::dense || t >= other_->track->pieces.front().begin;
 }
 
 const Motion& Motion::link(double t) const {
+  // as Track::at(): at a join the later piece answers
   auto it = std::upper_bound(other_->chain->begin(), other_->chain->end(), t,
                              [](double time, const Motion& m) { return time < m.t0_; });
   return it == other_->chain->begin() ? *it : *std::prev(it);
@@ -218,6 +228,7 @@ Acceleration Motion::rate(double t) const {
 
 Motion Motion::displaced(const Vec2& by) const {
   Motion m = *this;
+  // Pieces are shared and stay where they are; an offset is added to what they answer.
   if (kind_ == Kind::dense || kind_ == Kind::chain) {
     Other other = *other_;
     other.offset += by;
@@ -232,6 +243,7 @@ Motion Motion::displaced(const Vec2& by) const {
 
 ExtendedState Motion::extended_state(double t) const {
   if (kind_ != Kind::ballistic) return {state(t), low_};
+  // as state(t), operation for operation, with the low-order part of the start and 64 bits throughout
   const Real s = static_cast<Real>(t) - t0_;
   ExtendedState e(start_, low_);
   const RealVec a = drive_.linear.cast<Real>();
@@ -247,6 +259,8 @@ MotionBounds Motion::bounds(double from, double to) const {
   MotionBounds b;
   switch (kind_) {
     case Kind::ballistic: {
+      // the velocity is linear in time: its centre is that of the middle, its radius the
+      // change over half the way
       const double middle = 0.5 * (from + to) - t0_, half = 0.5 * (to - from);
       b.velocity = start_.twist.velocity + middle * drive_.linear;
       b.omega = start_.twist.omega + middle * drive_.angular;
@@ -259,6 +273,8 @@ MotionBounds Motion::bounds(double from, double to) const {
     }
     case Kind::drag: {  // rates relax monotonically: each lies between its values at the ends
       const Twist start = twist(from), end = twist(to);
+      // v goes along a straight line towards drive / k, and dv/dt = drive - k v along one towards 0:
+      // each lies in the disc that has its values at the two ends for a diameter.
       const auto rate = [&](const Twist& w) -> Vec2 { return drive_.linear - other_->linear * w.velocity; };
       b.velocity = 0.5 * (start.velocity + end.velocity);
       b.velocity_radius = 0.5 * (end.velocity - start.velocity).norm();
@@ -271,6 +287,7 @@ MotionBounds Motion::bounds(double from, double to) const {
       return b;
     }
     case Kind::chain: {
+      // Accelerations may jump where pieces meet: each has an enclosure of its own, and one holds them all.
       const Motion* piece = &link(from);
       const Motion* last = &link(to);
       b = piece->bounds(from, std::min(to, piece->t1_));

@@ -34,6 +34,7 @@ struct Nodes {
 
   Nodes() {
     for (int j = 0; j <= kDegree; ++j) at[j] = -std::cos(kPi * j / kDegree);
+    // cos() of these is off by a rounding; neighbouring cells must share their ends to the bit
     at[0] = -1.0, at[kDegree / 2] = 0.0, at[kDegree] = 1.0;
     for (int j = 0; j < kDegree; ++j) check[j] = -std::cos(kPi * (j + 0.5) / kDegree);
     const auto half_at_ends = [](int i) { return i == 0 || i == kDegree ? 0.5 : 1.0; };
@@ -98,6 +99,8 @@ Extent PrescribedMotion::extend(double t, std::uint64_t most_cells) {
   const auto end = [this] { return begun() ? track_->end() : 0.0; };
   for (std::uint64_t n = 0; (!begun() || end() < t) && failure_.empty() && n < most_cells; ++n) {
     fit_next();
+    // Nothing follows: what was fitted before the failure ends with its own rate, so that
+    // the motion covers it.
     if (failure_.empty() || !last_) continue;
     close(*last_, last_->rate_end);
     last_.reset();
@@ -117,6 +120,7 @@ void PrescribedMotion::fit_next() {
   Fitted cell;
   const bool finite = interpolate(at, cell);
   const Certainty known = bound(at);
+  // Cells are taken depth first, so that at each lesser depth there stands the cell that holds this one.
   spreads_[at.depth] = known.spread;
   if (finite && (known.remainder.array() <= cell.tolerance.array()).all()) {
     corners_in_a_row_ = 0;
@@ -124,6 +128,7 @@ void PrescribedMotion::fit_next() {
   }
   const double half = 0.5 * at.width;
   if (at.depth + 1 < kDepths) {
+    // a stack: the left half is to be fitted first
     cells_.push_back({at.begin + half, half, at.depth + 1});
     cells_.push_back({at.begin, half, at.depth + 1});
     return;
@@ -145,6 +150,7 @@ bool PrescribedMotion::interpolate(const Cell& at, Fitted& cell) {
   cell.piece.origin = middle;
   cell.piece.degree = kDegree;
   while (cell.piece.degree > 1 && monomials.row(cell.piece.degree).isZero(0.0)) --cell.piece.degree;
+  // from u in [-1, 1] to seconds: u = (t - middle) / half
   double power = 1.0;
   for (int k = 0; k <= kDegree; ++k, power /= half) cell.piece.c[k] = power * monomials.row(k).transpose();
   cell.value_begin = y.row(0).transpose();
@@ -152,6 +158,7 @@ bool PrescribedMotion::interpolate(const Cell& at, Fitted& cell) {
   cell.rate_begin = rates(cell.piece.state(cell.piece.begin).twist);
   cell.rate_end = rates(cell.piece.state(cell.piece.end).twist);
   cell.scale = y.cwiseAbs().colwise().maxCoeff().transpose();
+  // The function's own roundings cannot be followed, and are allowed for: no halving would make them less.
   cell.tolerance = kFitTolerance * cell.scale + noise(at) + Vector3d::Constant(kNothing);
   return check(cell);
 }
@@ -201,6 +208,8 @@ void PrescribedMotion::take_corner(Fitted cell, const Certainty& known) {
     return fail(cell.piece.begin,
                 "cannot be bounded by interval arithmetic (it may have corners everywhere)");
   for (int i = 0; i < 3; ++i) {
+    // The cell eight halvings above was 256 times as wide. Over a corner the range has shrunk to 1/256,
+    // over a square root's foot to 1/16, over a jump not at all: 0.03 lies between the first two.
     const bool small = known.spread[i] <= kNoiseTolerance * cell.scale[i] + 8.0 * cell.tolerance[i];
     const bool shrinks = known.spread[i] < 0.03 * spreads_[kDepths - 9][i];
     if (!small && !shrinks) return fail(cell.piece.begin, "jumps, or is infinitely fast,");
@@ -218,8 +227,10 @@ void PrescribedMotion::join_next(const Fitted& next) {
     return;
   }
   Fitted& last = *last_;
+  // Both rates are right to their fits; the wider cell's is the better, as rate errors go by 1 / width.
   Vector3d rate =
       (last.width() * last.rate_end + next.width() * next.rate_begin) / (last.width() + next.width());
+  // a corner's own rate is a chord's: the smooth neighbour's is right
   if (last.corner != next.corner) rate = last.corner ? next.rate_begin : last.rate_end;
   const Vector3d jump = (next.rate_begin - last.rate_end).cwiseAbs();
   const bool smooth = (jump.array() <= (last.rate_tolerance() + next.rate_tolerance()).array()).all();
@@ -247,6 +258,7 @@ void PrescribedMotion::join_next(const Fitted& next) {
 /// the rounding of the base.
 void PrescribedMotion::close(const Fitted& fitted, const Vector3d& rate_end) {
   PolynomialPiece piece = fitted.piece;
+  // Hermite's cubic of end values and rates: what is between is not followed
   if (fitted.corner) {
     piece.origin = piece.begin;
     piece.degree = 0;
@@ -255,6 +267,7 @@ void PrescribedMotion::close(const Fitted& fitted, const Vector3d& rate_end) {
   const BodyState begin = piece.state(piece.begin), end = piece.state(piece.end);
   add_cubic(piece, fitted.value_begin - values(begin.pose), rate_begin_ - rates(begin.twist),
             fitted.value_end - values(end.pose), rate_end - rates(end.twist));
+  // last: beside a base far away the fit would have lost its digits
   piece.c[0] += base_;
   track_->pieces.push_back(piece);
 }

@@ -14,6 +14,7 @@ bool is_finite(const BodyState& s) {
 bool is_finite(const Acceleration& a) { return a.linear.allFinite() && std::isfinite(a.angular); }
 
 bool is_in_range(const BodyState& s) {
+  // Energies are sums of squares of such numbers: 1e300 each, while the largest double is 1.8e308.
   constexpr double most = 1e150;
   const auto ok = [](double x) { return std::abs(x) <= most; };
   return ok(s.pose.position.x()) && ok(s.pose.position.y()) && ok(s.pose.angle) && ok(s.twist.velocity.x()) &&
@@ -64,6 +65,8 @@ Extent SteppingIntegrator::extend(double t, std::uint64_t most_steps) {
   check_finite_time(t);
   for (std::uint64_t n = 0; time_ < t && failure_.empty() && n < most_steps; ++n) {
     why_.clear();
+    // One step at a time until t is covered; t itself is not told to the method, so that
+    // steps cannot depend on it.
     if (in_segment_ || next_segment()) step();
   }
   return extent_at(time_, t, failure_);
@@ -74,6 +77,7 @@ void SteppingIntegrator::forget_before(double t) {
 }
 
 Motion SteppingIntegrator::motion(int k) const {
+  // before the first step: the starting time alone
   if (tracks_.at(k)->pieces.empty()) return Motion::ballistic(time_, states_[k], {}, time_);
   return Motion::dense(tracks_[k]);
 }
@@ -88,6 +92,8 @@ bool SteppingIntegrator::next_segment() {
 bool SteppingIntegrator::accelerations(double t, std::span<const BodyState> states,
                                        std::span<Acceleration> out) {
   if (work_) ++work_->right_hand_sides;
+  // A stage at the segment's end belongs to it: the forces after the jump would be those
+  // of the next segment.
   const double inside = t < segment_end_ ? t : std::nextafter(segment_end_, time_);
   dynamics_->accelerations(inside, states, out);
   for (std::size_t k = 0; k < out.size(); ++k) {
@@ -104,6 +110,7 @@ bool SteppingIntegrator::accept(double t, std::span<const BodyState> states) {
   states_.assign(states.begin(), states.end());
   time_ = t;
   if (work_) ++work_->solver_steps;
+  // at a break the method starts afresh with the next step
   if (time_ >= segment_end_) in_segment_ = false;
   return true;
 }

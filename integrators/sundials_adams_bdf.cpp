@@ -39,6 +39,7 @@ class Cvode : public SundialsStepper {
     memory_ = CVodeCreate(method_, context());
     if (!memory_) return -1;
     // more trials than the defaults before giving up: forces may have corners
+    // A braced list is evaluated from left to right, which is the order that CVODE wants, and to its end.
     for (int flag : {CVodeSetErrHandlerFn(memory_, keep_message, static_cast<SundialsStepper*>(this)),
                      CVodeInit(memory_, evaluate, time(), y()),
                      CVodeSetUserData(memory_, static_cast<SundialsStepper*>(this)),
@@ -49,6 +50,7 @@ class Cvode : public SundialsStepper {
     return 0;
   }
 
+  /// CV_ONE_STEP: returns after one step of its own length, however far the target is.
   int solver_step(double* t) final { return CVode(memory_, first_target(), y(), t, CV_ONE_STEP); }
 
   bool append_pieces(double t, std::span<const BodyState> ends) final {
@@ -56,6 +58,8 @@ class Cvode : public SundialsStepper {
     int order = 0;
     if (CVodeGetLastOrder(memory_, &order) != 0) return false;
     double factorial = 1.0;
+    // CVODE's polynomial is of the order of the step, about its end: Taylor's
+    // coefficients are its derivatives there.
     for (int k = 0; k <= order; ++k, factorial *= k) {
       if (CVodeGetDky(memory_, t, k, derivative()) != 0) return false;
       const double* d = N_VGetArrayPointer(derivative());
@@ -67,6 +71,7 @@ class Cvode : public SundialsStepper {
       piece.begin = time();
       piece.end = piece.origin = t;
       piece.degree = order;
+      // It meets the accepted states of both ends to the local error only; match_ends() makes pieces C1.
       move_origin(piece, time());
       match_ends(piece, states()[body], ends[body]);
       append(body, piece);

@@ -75,8 +75,9 @@ int SundialsStepper::right_hand_side(double t, const double* y, double* rate,
 bool SundialsStepper::begin_segment() {
   pack(states(), N_VGetArrayPointer(y_));
   message_.clear();
+  // Before the solver: at the start no smaller step helps, and this says which body and where.
   if (!accelerations(time(), states(), first_)) return fail(why());
-  stop_ = time();
+  stop_ = time();  // no stop is set: limit_step() sets one before the first step
   if (restart_solver() == 0) return true;
   return fail("the solver cannot start: " + message_);
 }
@@ -96,9 +97,11 @@ bool SundialsStepper::step() {
   if (!limit_step()) return false;
   double t = time();
   const int flag = solver_step(&t);
+  // A step that does not move t would repeat for ever.
   if (flag < 0 || !(t > time())) {
     std::string what =
         flag < 0 ? "the solver gave up: " + message_ : "its steps became too small to move time";
+    // what the forces said comes first: the solver's own words only say that its steps failed
     return fail(why().empty() ? what : why() + "; " + what);
   }
   unpack(N_VGetArrayPointer(y_), ends_);

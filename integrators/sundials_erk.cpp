@@ -46,10 +46,13 @@ class Erk final : public SundialsStepper {
     return 0;
   }
 
+  /// ARK_ONE_STEP: returns after one step of its own length, however far the target is.
   int solver_step(double* t) override { return ERKStepEvolve(memory_, first_target(), y(), t, ARK_ONE_STEP); }
 
   bool append_pieces(double t, std::span<const BodyState> ends) override {
     if (fresh_) before_.assign(first_accelerations().begin(), first_accelerations().end());
+    // One evaluation a step: what was found at the end of a step is the begin of the
+    // next, but across a break.
     if (!accelerations(t, ends, after_)) return false;
     fresh_ = false;
     for (int k = 0; k < size(); ++k)

@@ -28,6 +28,7 @@ void subtract_transposed(Vec3& x, const Block& A, const Vec3& y) {
 }  // namespace
 
 void BlockLdl::analyse(int n, std::vector<Edge> edges) {
+  // in one order and without repeats, so that equal graphs have equal lists
   for (Edge& e : edges) e = std::minmax({e.first, e.second});
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
@@ -54,9 +55,12 @@ void BlockLdl::find_order() {
   Eigen::AMDOrdering<int>::PermutationType order;
   if (n > 0) Eigen::AMDOrdering<int>()(graph, order);
   place_.resize(n);
+  // Any permutation gives a right factor; how much fills in depends on it.
   for (int k = 0; k < n; ++k) place_[order_[k] = order.indices()[k]] = k;
 }
 
+/// Symbolic factorisation along the elimination tree. The parent of a column is its first row below the
+/// diagonal. Source: Davis 2006, "Direct methods for sparse linear systems", ch. 4.
 void BlockLdl::find_blocks() {
   const int n = size();
   std::vector<std::vector<int>> columns(n), children(n);
@@ -79,6 +83,8 @@ void BlockLdl::find_blocks() {
   }
 }
 
+/// Walks through pairs in the very order in which factor_column() will use up the list. Eliminating column
+/// k joins any two of its rows, so that block (q, p) of such a pair is sure to be found in column p.
 void BlockLdl::find_targets() {
   targets_.clear();
   for (int k = 0; k < size(); ++k)
@@ -118,6 +124,8 @@ void BlockLdl::factor_diagonal(int k) {
   double(&a)[3][3] = diagonal_[k].at;
   const Vec3& least = least_[k];
   a[0][0] = std::max(a[0][0], least[0]);
+  // a10, a20, a21: entries of L D, before the division. Only what lies on or below the
+  // diagonal is ever read.
   const double a10 = a[0][1], a20 = a[0][2];
   a[0][1] /= a[0][0];
   a[0][2] /= a[0][0];
@@ -131,6 +139,8 @@ void BlockLdl::factor_diagonal(int k) {
 void BlockLdl::factor_column(int k) {
   const int begin = begins_[k], end = begins_[k + 1];
   const double(&d)[3][3] = diagonal_[k].at;
+  // With A = L D L^T: each row of undivided_ becomes a row of L D by forward substitution with the unit
+  // triangle of the diagonal block, and of L by division.
   undivided_.assign(below_.begin() + begin, below_.begin() + end);
   for (int p = begin; p < end; ++p) {
     Block &undivided = undivided_[p - begin], &L = below_[p];
@@ -141,6 +151,7 @@ void BlockLdl::factor_column(int k) {
       for (int c = 0; c < 3; ++c) L.at[c][r] = *u[c] / d[c][c];
     }
   }
+  // What column k takes from the rest: L_p D L_p^T from diagonals, L_q D L_p^T below them.
   for (int p = begin; p < end; ++p) {
     const Block& column = undivided_[p - begin];
     subtract_product(diagonal_[rows_[p]], below_[p], column);
@@ -156,6 +167,7 @@ void BlockLdl::solve(std::vector<Vec3>& b) const {
     x[2] -= d[0][2] * x[0] + d[1][2] * x[1];
     for (int p = begins_[k]; p < begins_[k + 1]; ++p) subtract_product(b[rows_[p]], below_[p], x);
   }
+  // L^T from the last place back; D is divided out on the way
   for (int k = size() - 1; k >= 0; --k) {
     const double(&d)[3][3] = diagonal_[k].at;
     Vec3& x = b[k];

@@ -5,6 +5,7 @@
 namespace brink {
 
 void GrowingCholesky::solve_lower(RealVector& b) const {
+  // what comes here most, a column of a sparse matrix, begins with many zeros
   int first = 0;  // leading zeros stay
   while (first < size() && b[first] == 0) ++first;
   for (int i = first; i < size(); ++i) {
@@ -25,6 +26,7 @@ void GrowingCholesky::solve_upper(RealVector& y) const {
 }
 
 void GrowingCholesky::append(const RealVector& y, Real rest) {
+  // The new row r of L has L r = a and r.r + d^2 = A's diagonal entry, so that d^2 is `rest`.
   rows_.emplace_back(y.data(), y.data() + y.size());
   rows_.back().push_back(std::sqrt(rest));
 }
@@ -34,6 +36,7 @@ void GrowingCholesky::remove(int k) {
   // every row from k on has an entry too many: turned into the one before it, column by column
   for (int column = k; column < size(); ++column) {
     const Real a = rows_[column][column], b = rows_[column][column + 1];
+    // A Givens rotation of two columns of L leaves L L^T as it is, brings b to 0 and keeps the diagonal > 0.
     const Real length = std::hypot(a, b), c = a / length, s = b / length;
     for (int i = column; i < size(); ++i) {
       std::vector<Real>& row = rows_[i];

@@ -7,6 +7,7 @@ LastingContact contact_at(int body, int other, const Vec2& normal, const Vec2& a
   LastingContact c;
   c.body = body;
   c.other = other;
+  // d . (v + omega x r) = d . v + omega (r x d), so that the angle's coefficient of a direction d is r x d
   c.normal_on_body = {normal.x(), normal.y(), cross(arm, normal)};
   c.tangent_on_body = {tangent.x(), tangent.y(), cross(arm, tangent)};
   if (other < 0) return c;

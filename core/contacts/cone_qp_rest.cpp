@@ -21,6 +21,7 @@ constexpr double kExact = 1e-18, kNearly = 1e-14, kProof = 1e-8;
 class Cones {
  public:
   Cones(const RestProblem& given) : given_(given), units_(given.mass) {
+    // the unit of `residual`: what the largest force would give the largest mass
     units_.set_speed(units_.largest(given.force) / units_.mass());
     for (int k = 0; k < static_cast<int>(given.mass.size()); ++k) {
       problem_.mass.push_back(units_.scaled_mass(k));
@@ -32,6 +33,8 @@ class Cones {
   const QpProblem& problem() const { return problem_; }
   const IslandUnits& units() const { return units_; }
 
+  /// Forces within a cone are sums of its edges with weights x >= 0: normal sum of x,
+  /// tangential sum of +-mu x.
   std::vector<ContactLoad> loads(const InteriorPoint& solver) const {
     std::vector<ContactLoad> loads(given_.contacts.size());
     for (std::size_t r = 0; r < edges_.size(); ++r) {
@@ -50,6 +53,8 @@ class Cones {
     double tangential, rolling;  ///< for a normal force of 1
   };
 
+  /// 1, 2 or 4 edges: (1, +-mu, +-r) in normal, tangential and rolling parts. In the plane the cone of
+  /// friction is spanned by two edges exactly; it is no approximation as a pyramid in space would be.
   void add_contact(int k) {
     const LastingContact& c = given_.contacts[k];
     for (const double q : signs(c.friction))
@@ -103,12 +108,15 @@ class Verdict {
     return most;
   }
 
+  /// Both: w is 0 to `bound`, and the forces balance to as much, but for what their own roundings leave.
   bool rests(double bound) const {
     if (!(acceleration_ <= bound)) return false;
     for (int k = 0; k < bodies(); ++k)
       if (!(left_over(k) <= bound * own(k) + kRoundingOfLoads * carried_[k])) return false;
     return true;
   }
+  /// The cost is convex, with second derivative M, so that for the true w*: (w - w*).M (w - w*) <= gap.
+  /// Within part * w.M w the relative error of w is at most sqrt(part), and w* is not 0.
   bool moves(double part) const {
     return acceleration_ > kRest && solver_.gap() <= part * solver_.energy() &&
            std::max(solver_.row_residual(), solver_.body_residual()) <= std::sqrt(part) * acceleration_;
@@ -142,6 +150,7 @@ RestResult ConeQp::rest_forces(const RestProblem& problem) {
 
   RestResult result;
   const Verdict verdict(cones.problem(), solver_);
+  // Not both: moves() asks for an acceleration above kRest, rests() for one up to it.
   if (verdict.rests(kRest)) result.status = RestResult::Status::rests;
   if (verdict.moves(kProof)) result.status = RestResult::Status::moves;
   const bool rests = result.status == RestResult::Status::rests;

@@ -11,11 +11,12 @@ namespace {
 constexpr int kMostSteps = 80;
 /// Bounds on friction below this part of the step's largest impulse are none.
 constexpr double kNoFriction = 1e-12;
-/// Of products, in units of the step (residuals: a hundredth of their roots): where the search ends; where it does if
-/// rounding hinders; and what will do.
+/// Of products, in units of the step (residuals: a hundredth of their roots): where the search ends; where it
+/// does if rounding hinders; and what will do.
 constexpr double kExact = 1e-16, kNearly = 1e-14, kEnough = 1e-10;
-/// Nothing changes by so many units of the step's speed: what has more room, or slips faster, is taken to have
-/// no more. (A short step's unit is small beside what else moves, and roundings of that would be beside it large.)
+/// Nothing changes by so many units of the step's speed: what has more room, or slips faster, is taken to
+/// have no more. (A short step's unit is small beside what else moves, and roundings of that would be large
+/// beside it.)
 constexpr double kFar = 1e8;
 
 /// The step's rows, in w - v: so that what is held keeps its velocity.
@@ -25,6 +26,7 @@ class StepRows {
     units_.set_speed(speed());
     for (int k = 0; k < static_cast<int>(given.mass.size()); ++k) {
       problem_.mass.push_back(units_.scaled_mass(k));
+      // with u = w - v: M u = h f + J^T x, and a row's y = J u + (J v + gap / h - that of the support)
       problem_.force.push_back(units_.scaled_force(k, given.duration * given.force[k]));
     }
     for (int k = 0; k < static_cast<int>(given.contacts.size()); ++k) add_contact(k);
@@ -61,6 +63,7 @@ class StepRows {
   /// Of the changes that forces and contacts ask for.
   double speed() const {
     double most = given_.duration * units_.largest(given_.force) / units_.mass();
+    // Negative room has to be made by the step; room that is there asks for nothing.
     for (const StepContact& s : given_.contacts) most = std::max(most, -room(s));
     return most;
   }
@@ -68,6 +71,7 @@ class StepRows {
   void add_contact(int k) {
     const StepContact& s = given_.contacts[k];
     const LastingContact& c = s.contact;
+    // Turning as the speed at one unit of length, so that the row is of order 1 like the others.
     const Vec3 turn(0.0, 0.0, units_.length());
     add_row({k, &ContactLoad::normal, 1.0}, c.normal_on_body, c.normal_on_other, room(s), kNone);
     add_row({k, &ContactLoad::tangential, 1.0}, c.tangent_on_body, c.tangent_on_other,
@@ -86,6 +90,8 @@ class StepRows {
     if (c.other >= 0) row.on_other = units_.scaled_row(c.other, on_other);
     row.offset = std::clamp(speed / units_.speed(), -kFar, kFar);
     row.bound = bound / units_.force();
+    // A row's pairs (bound - x, bound + x) begin at its bound, which must not be 0. So contacts without
+    // friction have no tangential row, and without rolling resistance none that turns.
     if (row.bound <= kNoFriction) return;
     if (row.on_body.isZero(0.0) && row.on_other.isZero(0.0)) return;  // between what is held
     sources_.push_back(source);
@@ -105,6 +111,8 @@ double residual(const InteriorPoint& solver) {
 }
 
 bool solved(const InteriorPoint& solver, double part) {
+  // Products go by force times speed and residuals by speed, all of order 1 in the step's
+  // units: hence the root.
   return solver.mean_product() <= part && residual(solver) <= 0.01 * std::sqrt(part);
 }
 

@@ -19,6 +19,7 @@ class Group {
   Group(const std::vector<GroupBody>& bodies, const std::vector<GroupContact>& contacts)
       : bodies_(bodies), contacts_(contacts) {
     for (const GroupBody& b : bodies) twists_.push_back(b.twist);
+    // |v| + |omega| |r|, not the point's speed: where the two parts cancel, the roundings of both remain.
     for (const GroupContact& c : contacts) {
       const auto speed = [](const ExtendedTwist& t, const RealVec& arm) {
         return t.velocity.norm() + std::abs(t.omega) * arm.norm();
@@ -49,6 +50,8 @@ class Group {
   /// Change of velocity along u at contact i's point, per unit impulse along v at contact j.
   Real mobility(int i, const RealVec& u, int j, const RealVec& v) const {
     const GroupContact &a = contacts_[i], &b = contacts_[j];
+    // An impulse acts on `body`, and with the opposite sign on `other`; relative
+    // velocities have the same signs.
     Real sum = shared(a.body, a.arm, u, b.body, b.arm, v);
     if (b.other >= 0) sum -= shared(a.body, a.arm, u, b.other, b.other_arm, v);
     if (a.other >= 0) sum -= shared(a.other, a.other_arm, u, b.body, b.arm, v);
@@ -58,6 +61,7 @@ class Group {
   /// Of the contacts of `set`: entries only where two of them share a body that can move.
   SparseRealMatrix normal_mobilities(const std::vector<int>& set) const {
     const auto n = static_cast<int>(set.size());
+    // at[body]: the contacts before i that lie on it, so that each pair of contacts is met once
     std::vector<std::vector<int>> at(bodies_.size());
     std::vector<Eigen::Triplet<Real>> entries;
     for (int i = 0; i < n; ++i) {
@@ -67,6 +71,7 @@ class Group {
         sharing.insert(sharing.end(), at[body].begin(), at[body].end());
         at[body].push_back(i);
       }
+      // Two contacts may share both bodies, and setFromTriplets adds up what is entered twice.
       std::sort(sharing.begin(), sharing.end());
       sharing.erase(std::unique(sharing.begin(), sharing.end()), sharing.end());
       for (const int j : sharing) add_mobility(set, i, j, entries);
@@ -95,6 +100,7 @@ class Group {
               const RealVec& v) const {
     if (a != b) return 0;
     const GroupBody& body = bodies_[a];
+    // u.M^-1 v + (r_a x u)(r_b x v) / I
     const RealVec mass(body.inverse_mass_x, body.inverse_mass_y);
     return mass.dot(u.cwiseProduct(v)) +
            body.inverse_inertia * extended::cross(arm_a, u) * extended::cross(arm_b, v);
@@ -125,6 +131,7 @@ LcpAnswer impulses(const Group& group, const std::vector<int>& set, const RealVe
   RealVector q(target.size());
   for (std::size_t k = 0; k < set.size(); ++k) {
     q[k] = group.normal_velocity(set[k]) + target[k];
+    // Within rounding the sign is chance, and a contact that rests would be pushed or not by it.
     if (std::abs(q[k]) <= group.rounding()) q[k] = 0;
   }
   return solve_lcp(group.normal_mobilities(set), q, go_on);
@@ -141,6 +148,7 @@ GroupResult::Status status_of(const LcpAnswer& answer) {
   }
 }
 
+/// Twists as they were, and no impulses.
 GroupResult unresolved(const Group& group, GroupResult::Status status) {
   GroupResult result;
   result.status = status;
@@ -153,6 +161,7 @@ GroupResult unresolved(const Group& group, GroupResult::Status status) {
 /// True if a contact approaches that nothing can turn round.
 bool has_jam(const Group& group, const std::vector<int>& set) {
   for (int k = 0; k < group.size(); ++k)
+    // `set` is ascending, as movable() makes it
     if (group.normal_velocity(k) < -group.rounding() && !std::binary_search(set.begin(), set.end(), k))
       return true;
   return false;
@@ -173,6 +182,9 @@ void add_friction(Group& group, const std::vector<GroupContact>& contacts, Group
     const RealVec tangent = extended::perp(contacts[k].normal);
     const Real yield = group.mobility(k, tangent, k, tangent);
     if (!(bound > 0) || !(yield > 0)) continue;
+    // Of this contact alone, with the velocities that the contacts before it have left. The impulse lies
+    // between 0 and the one that makes v_t into -e_t v_t, so that its work pt (v_t + v_t') / 2 is <= 0
+    // for |e_t| <= 1.
     const Real wanted = -(1 + static_cast<Real>(m.tangential_restitution)) * group.velocity(k).dot(tangent);
     result.tangential[k] = std::clamp(wanted / yield, -bound, bound);
     group.push(k, result.tangential[k] * tangent);
@@ -183,6 +195,7 @@ void add_friction(Group& group, const std::vector<GroupContact>& contacts, Group
 Real work_of(const Group& before, const Group& after, const std::vector<int>& set, const RealVector& normal) {
   Real work = 0;
   for (std::size_t k = 0; k < set.size(); ++k)
+    // exact: kinetic energy is quadratic in the twists, so that impulses p change it by p.(v + v') / 2
     work += normal[k] * (before.normal_velocity(set[k]) + after.normal_velocity(set[k])) / 2;
   return work;
 }
@@ -221,6 +234,8 @@ LcpAnswer::Status reflect(Group& group, const std::vector<int>& set, RealVector&
       }
     if (approaching.empty()) return LcpAnswer::Status::solved;
     const auto n = static_cast<Eigen::Index>(approaching.size());
+    // z >= 0, w = v + A z >= 0 and z.w = 0 stop them. Given twice, with v' = v + 2 A z, they do the work
+    // z.(v + v') = 2 z.w = 0: a reflection keeps the energy.
     const LcpAnswer stop = impulses(group, approaching, RealVector::Zero(n), go_on);
     if (stop.status != LcpAnswer::Status::solved) return stop.status;
     for (Eigen::Index k = 0; k < n; ++k) {
@@ -244,6 +259,7 @@ GroupResult without_end(const Group& group, const std::vector<GroupBody>& bodies
     const Group after = pushed(group, set, normal);
     if (std::none_of(set.begin(), set.end(), [&](int k) { return approaches(after, k); })) return together;
   }
+  // Nothing approaches after the inelastic law, whatever the group; what it costs in energy is in `lost`.
   const LcpAnswer stop = impulses(group, set, RealVector::Zero(static_cast<Eigen::Index>(set.size())), go_on);
   if (stop.status != LcpAnswer::Status::solved) return unresolved(group, status_of(stop));
   GroupResult result = given(group, contacts, set, stop.z);
@@ -264,6 +280,8 @@ GroupResult resolve_together(const std::vector<GroupBody>& bodies, const std::ve
       target[k] = restitution(set[k]) * group.normal_velocity(set[k]);
     return impulses(group, set, target, go_on);
   };
+  // With one e complementarity says p.v' = -e p.v; as v' = v + A p, (1 + e) p.v = -p.A p <= 0, and the
+  // work p.(v + v') / 2 = (1 - e) p.v / 2 is not positive. With several e it can be.
   LcpAnswer found = newton([&](int k) { return static_cast<Real>(contacts[k].material.restitution); });
   const auto solved = [&] { return found.status == LcpAnswer::Status::solved; };
   if (solved() &&
@@ -290,9 +308,12 @@ GroupResult resolve_reflections(const std::vector<GroupBody>& bodies,
   if (e > 0) {
     const LcpAnswer::Status status = reflect(mirrored, set, elastic, reflections, go_on);
     if (status == LcpAnswer::Status::stopped) return unresolved(group, GroupResult::Status::stopped);
+    // reflections at their cap are no failure: without_end() follows
     if (status != LcpAnswer::Status::solved && reflections < kMostReflections)
       return unresolved(group, GroupResult::Status::jam);
   }
+  // Velocities are linear in impulses, so v' = e v_elastic + (1 - e) v_inelastic. Nothing approaches in
+  // either, hence not in v', whose kinetic energy is by convexity at most the same mixture of theirs.
   GroupResult result = reflections < kMostReflections
                            ? given(group, contacts, set, e * elastic + (1 - e) * inelastic.z)
                            : without_end(group, bodies, contacts, set, go_on);

@@ -15,6 +15,8 @@ struct ContactSpace {
   Real knn = 0, knt = 0, ktt = 0;  ///< velocity change per unit impulse [1/kg]
 };
 
+/// Inverse masses in x and y differ where a body is held in one of them: M^-1 is diagonal in the world's
+/// axes, not in the contact's, so that k_nt need not vanish even where the arm does.
 void add_side(ContactSpace& c, const ImpulseSide& side) {
   const RealVec mobility(side.inverse_mass_x, side.inverse_mass_y);
   const Real rn = extended::cross(side.arm, c.n), rt = extended::cross(side.arm, c.t),
@@ -44,6 +46,7 @@ ExtendedTwist pushed(const ImpulseSide& side, const RealVec& impulse) {
 
 ImpulseResult apply(ImpulseKind kind, const ContactSpace& c, const ImpulseSide& body,
                     const ImpulseSide& other, Real pn, Real pt) {
+  // Only what is told of the impulse is rounded to double; the twists, from which motions start, are not.
   const RealVec impulse = pn * c.n + pt * c.t;
   return {kind, static_cast<double>(pn), static_cast<double>(pt), pushed(body, impulse),
           pushed(other, -impulse)};
@@ -55,6 +58,7 @@ ImpulseResult resolve_impulse(const ImpulseSide& body, const ImpulseSide& other,
                               const Material& material) {
   const ContactSpace c = contact_space(body, other, normal);
   if (c.vn >= 0.0) return {ImpulseKind::separating, 0.0, 0.0, body.twist, other.twist};
+  // k_nn sums inverse masses times squares: it is 0 only where neither side can move along the normal.
   if (!(c.knn > 0.0)) return {ImpulseKind::jam, 0.0, 0.0, body.twist, other.twist};
 
   // Wanted changes of the relative velocity: -(1 + e) vn along the normal, -(1 + et) vt along the tangent.
@@ -65,6 +69,9 @@ ImpulseResult resolve_impulse(const ImpulseSide& body, const ImpulseSide& other,
   // Sticking: both components are met at once; a 2x2 solve.
   const Real dt = -(Real(1) + material.tangential_restitution) * c.vt;
   const Real determinant = c.knn * c.ktt - c.knt * c.knt;
+  // The determinant is >= 0 (Cauchy-Schwarz), and 0 where everything that yields does so along one
+  // direction: a body that can only slide along x, hit on a slanted side. There v_n' = -e v_n alone
+  // settles the motion, and friction could change nothing but p_n.
   if (determinant > 1e-14 * c.knn * c.ktt) {
     const Real pn = (c.ktt * dn - c.knt * dt) / determinant;
     const Real pt = (c.knn * dt - c.knt * dn) / determinant;
@@ -78,6 +85,10 @@ ImpulseResult resolve_impulse(const ImpulseSide& body, const ImpulseSide& other,
   // at the end: it slides still in the first direction (slip), or has come to rest on the way and slid off
   // the other way (reverse).
   const Real opposing = c.vt > 0.0 ? -1.0 : 1.0;
+  // The second sign needs no test: as a function of pt / pn between -mu and mu, what is left of the
+  // wanted change is a quotient of linear functions, hence monotone, and its zero, the sticking
+  // solution, lies outside. So where one sign overshoots, the other one opposes the sliding at the end
+  // (as long as both denominators are > 0).
   for (const Real s : {opposing, -opposing}) {
     const Real denominator = c.knn + s * material.friction * c.knt;
     if (denominator <= 0.0)
@@ -87,6 +98,8 @@ ImpulseResult resolve_impulse(const ImpulseSide& body, const ImpulseSide& other,
     if (s * wanted <= 0.0 || s != opposing)
       return apply(s == opposing ? ImpulseKind::slip : ImpulseKind::reverse, c, body, other, pn, pt);
   }
+  // Friction against the sliding overshoots, and the other sign lies in Painleve's wedge. Not both signs
+  // do: the two denominators add up to 2 k_nn > 0.
   return apply(ImpulseKind::slip, c, body, other, frictionless, 0);
 }
 
@@ -97,6 +110,8 @@ ImpulseResult resolve_reflection(const ImpulseSide& body, const ImpulseSide& oth
   if (!(c.knn > 0.0)) return {ImpulseKind::jam, 0.0, 0.0, body.twist, other.twist};
   // Mirror: the relative velocity's normal part turns round. The impulse that does so is shared between
   // linear and angular parts by the inertia; `slip` scales the tangential rest, `spin` the angular rebound.
+  // Each direction is taken for itself: with k_nt != 0 and slip != 1 the normal's mirror
+  // is missed by k_nt pt.
   const Real pn = -2.0 * c.vn / c.knn;
   const Real pt = c.ktt > 0.0 ? (material.slip - 1.0) * c.vt / c.ktt : Real(0);
   ImpulseResult result = apply(ImpulseKind::slip, c, body, other, pn, pt);

@@ -10,9 +10,9 @@ namespace {
 /// Of the way to where a first pair meets 0: nearly all of it when the products are small.
 double part_of_way(double product) { return 1.0 - std::clamp(product, 1e-8, 0.005); }
 
-/// What a row yields under a force of 1, at least: bounds the weights, so that stiff rows leave something of the
-/// masses. It changes the way to the solution, not the solution. Source: Friedlander &
-/// Orban 2012, "A primal-dual regularized interior-point method for convex quadratic programs".
+/// What a row yields under a force of 1, at least: bounds the weights, so that stiff rows leave something of
+/// the masses. It changes the way to the solution, not the solution. Source: Friedlander & Orban 2012, "A
+/// primal-dual regularized interior-point method for convex quadratic programs".
 constexpr double kYield = 1e-12;
 
 /// Weights below this, of order 1 where a row matters, are left out of the factor: chains of them underflow.
@@ -41,6 +41,8 @@ void InteriorPoint::Row::apply(double force, std::vector<Vec3>& to) const {
 }
 
 void InteriorPoint::Row::set_weight() {
+  // dx = push - weight dy follows from z ds + s dz = aim with ds = sign dx: dz = (aim - z ds) / s, and
+  // sum of sign dz = dy + residual.
   double yields = kYield;
   for (int p = 0; p < pairs; ++p) yields += z[p] / s[p];
   weight = 1.0 / yields;
@@ -49,6 +51,7 @@ void InteriorPoint::Row::set_weight() {
 void InteriorPoint::Row::set_push(double product, bool corrected) {
   double dy = -residual;
   for (int p = 0; p < pairs; ++p) {
+    // (s + ds)(z + dz) = product, with the term ds dz of second order as the predictor has left it
     aim[p] = product - s[p] * z[p] - (corrected ? ds[p] * dz[p] : 0.0);
     dy += sign[p] * aim[p] / s[p];
   }
@@ -64,6 +67,7 @@ void InteriorPoint::Row::set_direction(double dx) {
 
 void InteriorPoint::begin(const QpProblem& problem) {
   const int n = static_cast<int>(problem.mass.size());
+  // J^T W J couples two bodies only where a row sees both.
   std::vector<BlockLdl::Edge> edges;
   for (const QpRow& row : problem.rows)
     if (row.other >= 0) edges.emplace_back(row.body, row.other);
@@ -92,6 +96,7 @@ InteriorPoint::Row InteriorPoint::ordered(const QpRow& given) const {
   row.pairs = std::isinf(given.bound) ? 1 : 2;
   row.sign[0] = row.pairs == 1 ? 1.0 : -1.0;
   row.sign[1] = 1.0;
+  // x = 0, in the middle of -bound .. bound
   if (row.pairs == 2) row.s[0] = row.s[1] = given.bound;
   if (given.other < 0) return row;
   row.first = factor_.place(given.other);
@@ -113,6 +118,8 @@ void InteriorPoint::start_pairs() {
   pairs_ = 0;
   for (Row& row : rows_) {
     pairs_ += row.pairs;
+    // s is x where there is no bound, and z is y; else s stands at its bound already.
+    // Either way s z = product.
     if (row.pairs == 1) {
       row.z[0] = std::max(row.offset, speed);
       row.s[0] = product / row.z[0];
@@ -124,6 +131,7 @@ void InteriorPoint::start_pairs() {
 
 void InteriorPoint::measure() {
   imbalance_.resize(u_.size());
+  // All afresh from u, s and z: what a step leaves unsolved by rounding is a residual of the next one.
   for (std::size_t k = 0; k < u_.size(); ++k) imbalance_[k] = f_[k] - mass_[k].cwiseProduct(u_[k]);
   gap_ = 0.0;
   for (Row& row : rows_) {
@@ -137,16 +145,23 @@ void InteriorPoint::measure() {
 }
 
 bool InteriorPoint::step() {
+  // The first step is made always: without rows it is the whole solution, M u = f, at a gap of 0.
   if (steps_ > 0 && gap_ < kNothing) return false;
   ++steps_;
   factor();
+  // Predictor: how far does the direction to products of 0 lead? Mehrotra's (gap after / gap)^3 says
+  // from that how much of the centre the step proper needs.
   find_direction(0.0, false);
   const double reach = std::min(1.0, longest_step());
   double centre = rows_.empty() ? 0.0 : std::min(1.0, std::pow(gap_after(reach) / gap_, 3));
+  // A predictor that gets nowhere says little of the way: then the step keeps to the centre, without the
+  // term of second order. After a step that was next to none, one step only makes the products alike.
   if (reach < 0.1 || steps_ > kQuick) centre = std::max(centre, 0.3);
   if (last_length_ < 0.05) centre = 1.0;
   const bool corrected = reach > 0.1 && centre < 1.0 && steps_ <= kQuick;
   find_direction(centre, corrected);
+  // One length for u, s and z alike: the residuals, linear in them, then shrink by 1 -
+  // length (up to kYield dx).
   last_length_ = std::min(1.0, part_of_way(gap_ / std::max(1, pairs_)) * longest_step());
   take(last_length_);
   measure();
@@ -169,6 +184,7 @@ void InteriorPoint::factor() {
 /// Newton's direction towards products that all are `centre` times their mean; `corrected` by the products of
 /// the direction before.
 void InteriorPoint::find_direction(double centre, bool corrected) {
+  // (M + J^T W J) du = imbalance + J^T push, from M du = imbalance + J^T dx and dx = push - W J du
   const double product = rows_.empty() ? 0.0 : centre * gap_ / pairs_;
   du_ = imbalance_;
   for (Row& row : rows_) {
@@ -180,6 +196,7 @@ void InteriorPoint::find_direction(double centre, bool corrected) {
 }
 
 double InteriorPoint::longest_step() const {
+  // More than 1, so that part_of_way() of what meets no bound still is a whole Newton step.
   double most = 2.0;
   for (const Row& row : rows_)
     for (int p = 0; p < row.pairs; ++p) {

@@ -7,6 +7,7 @@ namespace brink {
 
 namespace {
 
+/// The largest power of two that is not above x; 1 for what is not positive.
 double power_of_two(double x) { return x > 0.0 ? std::exp2(std::ilogb(x)) : 1.0; }
 
 /// Per coordinate, 1 and 1 and the angle's.
@@ -17,6 +18,7 @@ Vec3 by_length(double angle) { return {1.0, 1.0, angle}; }
 IslandUnits::IslandUnits(const std::vector<Vec3>& masses) : masses_(masses) {
   double mass = 0.0, length = 0.0;
   for (int k = 0; k < static_cast<int>(masses.size()); ++k) {
+    // A radius of gyration is of a body that can turn and move; what is held has no part in the units.
     double heaviest = 0.0;
     for (int c = 0; c < 2; ++c)
       if (!held(k, c)) heaviest = std::max(heaviest, masses[k][c]);
@@ -41,6 +43,7 @@ double IslandUnits::largest(const std::vector<Vec3>& forces) const {
 
 Vec3 IslandUnits::scaled_mass(int body) const {
   Vec3 m = masses_[body].cwiseQuotient(mass_ * by_length(length_ * length_));
+  // 1 instead of infinity: without force and without any part in a row, the velocity stays 0 all the same.
   for (int c = 0; c < 3; ++c)
     if (held(body, c)) m[c] = 1.0;
   return m;
@@ -54,6 +57,8 @@ Vec3 IslandUnits::scaled_force(int body, const Vec3& force) const {
 }
 
 Vec3 IslandUnits::scaled_row(int body, const Vec3& on) const {
+  // y = on . w is a speed; with w's angle in units of speed / length, its coefficient [m]
+  // is divided by length.
   Vec3 row = on.cwiseQuotient(by_length(length_));
   for (int c = 0; c < 3; ++c)
     if (held(body, c)) row[c] = 0.0;

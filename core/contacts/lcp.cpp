@@ -13,6 +13,8 @@ namespace {
 /// are w, z, z0, and the right-hand side.
 class Tableau {
  public:
+  // The covering vector d is all ones, so that the first pivot on z0 lifts all other
+  // right-hand sides by the same amount.
   Tableau(const RealMatrix& A, const RealVector& q) : n_(static_cast<int>(q.size())), rows_(n_, 2 * n_ + 2) {
     rows_.setZero();
     rows_.leftCols(n_).setIdentity();
@@ -49,6 +51,7 @@ class Tableau {
     return entering;
   }
 
+  /// w_k and z_k are complementary: at most one of them is ever basic, which keeps z.w = 0 all the way.
   int complement(int variable) const { return variable < n_ ? variable + n_ : variable - n_; }
   int z0() const { return 2 * n_; }
 
@@ -62,6 +65,7 @@ class Tableau {
   RealVector solution() const {
     RealVector z = RealVector::Zero(n_);
     for (int k = 0; k < n_; ++k)
+      // What is not basic is 0. A basic z below 0 is rounding: every pivot keeps the right-hand side >= 0.
       if (basic_[k] >= n_ && basic_[k] < z0()) z[basic_[k] - n_] = std::max(Real(0), rows_(k, right()));
     return z;
   }
@@ -82,6 +86,7 @@ class Tableau {
     };
     if (const int order = compare(right()); order != 0) return order < 0;
     if (basic_[a] == z0() || basic_[b] == z0()) return basic_[a] == z0();
+    // The first n columns began as the identity: they hold the inverse of the basis.
     for (int column = 0; column < n_; ++column)
       if (const int order = compare(column); order != 0) return order < 0;
     return false;
@@ -99,9 +104,13 @@ constexpr Real kZeroOnRay = 1e5 * kRealEpsilon;
 constexpr Eigen::Index kFewRows = 48;
 
 LcpAnswer lemke(const RealMatrix& A, const RealVector& q, const GoOn& go_on) {
+  // About n pivots are usual. The cap is for matrices of no class for which the method is known to end.
   const int n = static_cast<int>(q.size()), most = 50 * n + 100;
   LcpAnswer answer;
   Tableau tableau(A, q);
+  // From here on exactly one pair (w_k, z_k) has neither of its variables basic. One of
+  // the two has just left, so the other one enters: there is no choice. The path ends
+  // where z0 leaves, or where nothing limits what enters.
   int entering = tableau.complement(tableau.begin());
   for (answer.pivots = 1; answer.pivots < most; ++answer.pivots) {
     if (go_on && !go_on()) {
@@ -109,6 +118,8 @@ LcpAnswer lemke(const RealMatrix& A, const RealVector& q, const GoOn& go_on) {
       return answer;
     }
     const int row = tableau.leaving_row(entering);
+    // On a ray z0 may be 0 to rounding all the same, in a row whose pivot lies below
+    // kPivot: also a solution.
     const bool ray = row < 0;
     const int left = ray ? tableau.z0() : tableau.pivot(row, entering);
     if (ray && tableau.z0_value() > kZeroOnRay) {
@@ -129,7 +140,9 @@ LcpAnswer lemke(const RealMatrix& A, const RealVector& q, const GoOn& go_on) {
 
 LcpAnswer solve_lcp_by_lemke(const RealMatrix& A, const RealVector& q, const GoOn& go_on) {
   if (q.size() == 0 || q.minCoeff() >= 0) return {LcpAnswer::Status::solved, RealVector::Zero(q.size()), 0};
-  // scaled to a diagonal of ones and |q| <= 1; a row whose diagonal is not positive is taken as it is
+  // Scaled to a diagonal of ones and |q| <= 1; a row whose diagonal is not positive is taken as it is. With
+  // D = diag(scale) and s = q_size: A' = D A D, q' = D q / s and z = s D z' give w' = D w / s, so that
+  // signs and complementarity are kept, and tolerances can be absolute.
   const RealVector scale = A.diagonal().unaryExpr([](Real d) { return d > 0 ? 1 / std::sqrt(d) : Real(1); });
   const RealVector scaled_q = scale.cwiseProduct(q);
   const Real q_size = scaled_q.cwiseAbs().maxCoeff();

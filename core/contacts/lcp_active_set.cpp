@@ -42,6 +42,7 @@ class ActiveSet {
  private:
   static constexpr int kOutside = -1, kGivenUp = -2;
 
+  /// -1: none is violated. Rows that were given up are not asked again.
   int most_violated() const {
     int worst = -1;
     for (int i = 0; i < q_.size(); ++i)
@@ -54,6 +55,9 @@ class ActiveSet {
     for (;;) {
       ++answer.pivots;
       if (go_on && !go_on()) return ended(answer, LcpAnswer::Status::stopped);
+      // With J the rows that have joined, A_JJ = L L^T and a this row's column in J: y = L^-1 a. `own`
+      // is the Schur complement A_rr - a.A_JJ^-1 a, the rate at which w of this row rises with its z
+      // while w of J is held at 0.
       RealVector y = column(row);
       factor_.solve_lower(y);
       const Real own = A_.coeff(row, row) - y.squaredNorm();
@@ -61,14 +65,21 @@ class ActiveSet {
       factor_.solve_upper(yielding);
       const int first = first_to_leave(yielding);
       const bool independent = own > kDependent;
+      // `full` brings w of this row to 0; `part` brings the first z of J to 0. The
+      // shorter of the two is taken.
       const Real full = independent ? -w_[row] / own : kForever;
       const Real part = first < 0 ? kForever : z_[joined_[first]] / yielding[first];
       if (first < 0 && !independent) {
+        // The direction d (1 in this row, -yielding in J) has d.A d = own = 0, so A d = 0 and no w
+        // changes along it; all z stay >= 0 for ever, and the dual objective rises by -w of this row a
+        // unit. So it has no bound, and the primal problem no solution.
         if (-w_[row] > kHopeless) return ended(answer, LcpAnswer::Status::none);
         place_[row] = kGivenUp;  // it was rounding
         return true;
       }
       step(row, yielding, std::min(full, part));
+      // On a tie the row joins; the one whose z came to 0 stays with z = 0, and leaves by
+      // a step of 0 if it must.
       if (full <= part) {
         place_[row] = static_cast<int>(joined_.size());
         joined_.push_back(row);
@@ -76,6 +87,7 @@ class ActiveSet {
         w_[row] = 0;
         return true;
       }
+      // `row` is violated still; the next round goes on with one row less in J.
       leave(first);
     }
   }
@@ -108,6 +120,7 @@ class ActiveSet {
     return first;
   }
 
+  /// z of `row` grows by `by`, and z of J gives way so that w of J stays 0.
   void step(int row, const RealVector& yielding, Real by) {
     if (by == 0) return;
     push(row, by);
@@ -117,6 +130,7 @@ class ActiveSet {
     if (by == 0) return;
     z_[row] = std::max(Real(0), z_[row] + by);
     for (SparseRealMatrix::InnerIterator it(A_, row); it; ++it)
+      // in J w is 0 by the choice of the direction; sums would only gather roundings there
       if (place_[it.row()] < 0) w_[it.row()] += it.value() * by;
   }
 
@@ -132,6 +146,8 @@ class ActiveSet {
 
   /// Takes out what roundings have left in w of the rows that have joined. True if one is violated by then.
   bool polish() {
+    // One round of iterative refinement, A_JJ dz = -w_J with w computed afresh. Afterwards w of the
+    // other rows is afresh too, without the roundings that push() has summed up.
     RealVector w = A_ * z_ + q_;
     RealVector wrong(static_cast<Eigen::Index>(joined_.size()));
     for (std::size_t k = 0; k < joined_.size(); ++k) wrong[k] = w[joined_[k]];
@@ -158,6 +174,7 @@ class ActiveSet {
 
 LcpAnswer solve_lcp_by_active_set(const SparseRealMatrix& A, const RealVector& q, const GoOn& go_on) {
   if (q.size() == 0 || q.minCoeff() >= 0) return {LcpAnswer::Status::solved, RealVector::Zero(q.size()), 0};
+  // to a diagonal of ones and |q| <= 1, as in solve_lcp_by_lemke; here every diagonal entry is > 0
   const RealVector scale = A.diagonal().cwiseSqrt().cwiseInverse();
   const RealVector scaled_q = scale.cwiseProduct(q);
   const Real q_size = scaled_q.cwiseAbs().maxCoeff();

@@ -36,6 +36,7 @@ double typical_length(const Outline& outline, double size) {
 
 /// Where the search for a resolution starts: two pixels a typical site, and a pixel a site.
 int first_resolution(const Outline& outline, double size) {
+  // 1.3: the window is larger than the outline by a band of a seventh of its size on either side
   const double pixels =
       std::max(2.0 * 1.3 * size / typical_length(outline, size), static_cast<double>(outline.sites.size()));
   return static_cast<int>(std::clamp(pixels, static_cast<double>(kLeastResolution), 1.0 * kMostResolution));
@@ -63,6 +64,8 @@ BodyFieldPlan plan_body_field(const Outline& outline, const FieldOptions& option
   if (plan.band == 0.0) {
     const double pixel = size * 1.3 / resolution;
     plan.band = size / 7.0;
+    // Narrower bands cost fewer fragments; what lies beyond is answered by the tree,
+    // which is slower but exact.
     while (plan.band > 4.0 * pixel && 2.0 * fragments(outline, pixel, plan.band) > kFragments)
       plan.band *= 0.8;
   }
@@ -88,6 +91,7 @@ Candidates BodyField::candidates(const Vec2& q, double reach, Scratch& scratch) 
   const double x = (q.x() - lists_.grid.low.x()) * per_pixel_, y = (q.y() - lists_.grid.low.y()) * per_pixel_;
   if (!(x >= 0.0 && x < lists_.grid.width && y >= 0.0 && y < lists_.grid.height))
     return outside(q, reach, scratch);
+  // Which pixel q is put into may be wrong by a rounding; snap_ and the slack of the lists allow for that.
   const int i = static_cast<int>(x), j = static_cast<int>(y);
   const CandidateLists::Cell cell =
       lists_.cells[static_cast<std::size_t>(j) * static_cast<std::size_t>(lists_.grid.width) +
@@ -95,11 +99,14 @@ Candidates BodyField::candidates(const Vec2& q, double reach, Scratch& scratch) 
   // |v| <= max + (sqrt 2 - 1) min: no square root.
   const double dx = std::abs(x - i - 0.5), dy = std::abs(y - j - 0.5);
   const double off = std::max(dx, dy) + 0.41421357 * std::min(dx, dy) + snap_;
+  // distances are 1-Lipschitz: from the pixel's centre to q each changes by |q - centre| at most
   const double others = cell.others - off * lists_.grid.pixel;
   const std::uint32_t count = cell.count();
   if (count != 0 && count != CandidateLists::kTree) [[likely]] {
     return {std::span(lists_.sites.data() + cell.first(), count), others};
   }
+  // Out of the band the picture only says that everything is at least so far. That will
+  // do for a short reach.
   if (count == 0 && others >= reach) return {{}, others};
   return by_tree(q, scratch);
 }
@@ -109,6 +116,7 @@ Candidates BodyField::outside(const Vec2& q, double reach, Scratch& scratch) con
   const Box& box = outline_->bounds;
   const Vec2 away = (box.low - q).cwiseMax(q - box.high).cwiseMax(Vec2::Zero());
   const double rounding = 0x1.0p-50 * (box.low.cwiseAbs().maxCoeff() + box.high.cwiseAbs().maxCoeff());
+  // A lower bound for what is computed site by site: less by the rounding of both.
   const double distance = away.norm() * (1.0 - 0x1.0p-48) - rounding;
   if (distance >= reach) return {{}, distance};
   return by_tree(q, scratch);

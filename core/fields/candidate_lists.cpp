@@ -35,6 +35,7 @@ std::vector<PixelEntry> collect_on_cpu(const Outline& outline, const PixelGrid& 
         const auto pixel = static_cast<std::uint32_t>(j * grid.width + i);
         const Vec2 p = grid.low + grid.pixel * Vec2(i + 0.5, j + 0.5);
         const double value = (nearest_on(site, p).distance - site.radius) / grid.pixel + batch.offset;
+        // the plain value: in double precision its rounding is far below that of the drawn upper bound
         if (value <= bounds[pixel] + slack) entries.push_back({pixel, instance.id});
       }
     }
@@ -45,6 +46,7 @@ std::vector<PixelEntry> collect_on_cpu(const Outline& outline, const PixelGrid& 
 /// Sorts entries by pixel into `sites` (each list ascending) and returns where every pixel's list starts.
 std::vector<std::uint32_t> sort_by_pixel(const std::vector<PixelEntry>& entries, std::size_t pixels,
                                          std::vector<std::uint32_t>& sites) {
+  // Counting sort: fragments of many threads arrive in any order, and lists must not depend on it.
   std::vector<std::uint32_t> start(pixels + 1, 0);
   for (const PixelEntry& e : entries) ++start[e.pixel + 1];
   for (std::size_t i = 0; i < pixels; ++i) start[i + 1] += start[i];
@@ -68,6 +70,8 @@ void fill_cells(const std::vector<std::uint32_t>& start, const std::vector<std::
                 const std::vector<float>& bounds, const SiteBatch& batch, const ListRules& rules,
                 CandidateLists& lists) {
   const double band = rules.band / lists.grid.pixel;
+  // Where no upper bound is within the band, each distance exceeds the band less twice the error: an
+  // upper bound is above the true distance by that much at most.
   const float out_of_band = round_down((band - 2.0 * batch.largest_error) * lists.grid.pixel);
   lists.cells.resize(bounds.size());
   std::uint32_t last_first = 0, last_count = 0;
@@ -79,12 +83,15 @@ void fill_cells(const std::vector<std::uint32_t>& start, const std::vector<std::
       cell.others = out_of_band;
       continue;
     }
+    // A site that is not listed has its lower bound, and so its distance, above U + slack >= U + 2 h.
     cell.others = round_down((nearest + 2.0 * kHalfDiagonal) * lists.grid.pixel);
     const std::uint32_t count = start[i + 1] - start[i];
     if (nearest < 2.0) {
       near_entries += count;
       near_pixels += 1.0;
     }
+    // A pixel with a bound lists at least the site that gave it. Should a driver say
+    // otherwise, the tree is right.
     if (count == 0 || count > static_cast<std::uint32_t>(rules.list_cap)) {
       cell.packed = CandidateLists::kTree;
       ++lists.pixels_over_cap;
@@ -93,6 +100,7 @@ void fill_cells(const std::vector<std::uint32_t>& start, const std::vector<std::
     ++lists.pixels_listed;
     lists.entries += count;
     const auto list = sorted.begin() + start[i];
+    // Only the list before is compared: along a row, neighbours are mostly alike.
     if (count != last_count || !std::equal(list, list + count, lists.sites.begin() + last_first)) {
       last_first = static_cast<std::uint32_t>(lists.sites.size());
       last_count = count;
@@ -112,6 +120,8 @@ CandidateLists render_lists(FieldRenderer& renderer, const Outline& outline, con
   CandidateLists lists;
   lists.grid = grid;
   const PlacedOutline placed{&outline, Pose(), 0};
+  // A site that can be nearest in a pixel of the band lies within band + 2 h of the centre: the quads of
+  // the second draw must reach that far, so those of the first do as well (the two draws use one batch).
   const BatchRules batch_rules{rules.band, 2.0 * (kHalfDiagonal + grid.snap()) + 0.01, /*bounds=*/true};
   const SiteBatch batch = make_batch(grid, std::span(&placed, 1), FieldImage::kNone, batch_rules);
   // The sum of bound and slack is rounded to single precision in the shader: a few units in the last place.

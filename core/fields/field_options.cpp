@@ -29,6 +29,7 @@ bool fail(std::string* error, const std::string& message) {
 bool FieldOptions::is_valid(std::string* error) const {
   std::string ignored;
   if (error == nullptr) error = &ignored;
+  // 16 and 1024: the range in which a resolution is chosen by shape (body_field.cpp)
   if (resolution != 0 && (resolution < 16 || resolution > 1024)) {
     return fail(error, "field.resolution is " + std::to_string(resolution) +
                            "; allowed: 0 (by shape), or 16 to 1024 pixels");
@@ -41,6 +42,7 @@ bool FieldOptions::is_valid(std::string* error) const {
     return fail(error, "field.brute_force_below is " + std::to_string(brute_force_below) +
                            "; allowed: 0 or more sites");
   }
+  // A count is one byte of CandidateLists::Cell, and 255 means "ask the tree".
   if (list_cap < 1 || list_cap > 254) {
     return fail(error, "field.list_cap is " + std::to_string(list_cap) + "; allowed: 1 to 254 sites");
   }

@@ -15,6 +15,7 @@ namespace {
 /// Larger targets are of pictures: as large as they must be, not powers of two, which are four times as much.
 constexpr unsigned kMostSquare = 1024;
 constexpr int kPictureStep = 64;  ///< their sides are whole multiples of this [pixels]
+/// Texture units. `first` and `nearest` are never in one program, so they share one.
 constexpr int kUnitFirst = 0, kUnitNearest = 0, kUnitOwners = 1;
 
 struct Attribute {
@@ -23,6 +24,7 @@ struct Attribute {
   bool integer;
 };
 
+/// In the order of the locations in the shaders.
 constexpr std::array<Attribute, 7> kAttributes = {{{4, offsetof(SiteInstance, frame), false},
                                                    {4, offsetof(SiteInstance, extent), false},
                                                    {4, offsetof(SiteInstance, ends), false},
@@ -72,7 +74,9 @@ FieldRenderer::FieldRenderer(std::unique_ptr<GlContext> context) : context_(std:
   make_array(kAttributes, sizeof(SiteInstance), 1, vertices_, instances_);
   gl_.GenBuffers(1, &owner_buffer_);
   gl_.GenTextures(1, &owner_texture_);
+  // texels have 4 bytes, so that rows are read without gaps
   gl_.PixelStorei(GL_PACK_ALIGNMENT, 4);
+  // Of equal depths the first drawn stays: sites come in ascending order, so the lowest index wins ties.
   gl_.DepthFunc(GL_LESS);
 }
 
@@ -98,6 +102,7 @@ FieldRenderer::Program& FieldRenderer::use(FieldProgram kind, const PixelGrid& g
     program.name = make_program(gl_, vertex_shader(kind, primitives), fragment_shader(kind, primitives));
     gl_.UseProgram(program.name);
     const auto at = [&](const char* name) { return gl_.GetUniformLocation(program.name, name); };
+    // Of a uniform that the program does not have the location is -1, and setting it does nothing.
     program.half_size = at("half_size");
     program.depth_scale = at("depth_scale");
     program.limit = at("limit");
@@ -121,6 +126,7 @@ GLuint FieldRenderer::texture(GLenum internal, GLenum format, GLenum type, const
   gl_.BindTexture(GL_TEXTURE_2D, name);
   gl_.TexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internal), target.width, target.height, 0, format, type,
                  nullptr);
+  // without mipmaps, and with integers, any other filter leaves a texture incomplete
   gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   return name;
@@ -146,6 +152,8 @@ void FieldRenderer::make_target(Target& target, int width, int height, bool with
     gl_.FramebufferTexture2D(GL_FRAMEBUFFER, slot, GL_TEXTURE_2D, name, 0);
     buffers.push_back(slot);
   };
+  // The order of attachments is that of the shaders' outputs: ids at 0 and values at 1,
+  // or values alone at 0.
   if (with_ids) attach(target.ids = texture(GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, target));
   attach(target.values = texture(GL_R32F, GL_RED, GL_FLOAT, target));
   target.depth = texture(GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, target);
@@ -161,6 +169,8 @@ void FieldRenderer::make_target(Target& target, int width, int height, bool with
 void FieldRenderer::fit(Targets& targets, const PixelGrid& grid, bool with_ids) {
   const auto size = std::bit_ceil(static_cast<unsigned>(std::max({grid.width, grid.height, 32})));
   Target& target = targets[static_cast<std::size_t>(std::bit_width(size)) - 1];
+  // One target for each power of two, the smallest of 32 pixels; larger windows of the same power of two
+  // share a slot, and the target is made again when their sides differ.
   const bool picture = size > kMostSquare;
   const auto side = [&](int pixels) {
     return picture ? (pixels + kPictureStep - 1) / kPictureStep * kPictureStep : static_cast<int>(size);
@@ -170,6 +180,7 @@ void FieldRenderer::fit(Targets& targets, const PixelGrid& grid, bool with_ids) 
   if (target.framebuffer == 0) make_target(target, width, height, with_ids);
   current_ = &target;
   gl_.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+  // The viewport cuts to the window. Clears do not heed it: they cost the whole target.
   gl_.Viewport(0, 0, grid.width, grid.height);
   const GLuint none[4] = {0xffffffffU, 0, 0, 0};
   const float far = 1.0F, infinite[4] = {std::numeric_limits<float>::infinity(), 0, 0, 0};
@@ -200,9 +211,11 @@ void FieldRenderer::draw(const PixelGrid& grid, const SiteBatch& batch) {
 void FieldRenderer::draw_image(const PixelGrid& grid, const SiteBatch& batch, double limit, int layer,
                                const std::vector<std::uint32_t>& owners) {
   context_->make_current();
+  // before fit() makes the other layer's target the current one
   const GLuint first_ids = layer == 1 ? current_->ids : 0;
   fit(image_[layer], grid, /*with_ids=*/true);
   Program& program = use(layer == 0 ? FieldProgram::first : FieldProgram::second, grid, batch);
+  // a power of two: scaling changes no bit of a value, so that depths compare as values do
   gl_.Uniform1f(program.depth_scale, static_cast<float>(batch.depth_scale));
   gl_.Uniform1f(program.limit, static_cast<float>(limit));
   gl_.Uniform1f(program.offset, static_cast<float>(batch.offset));
@@ -248,6 +261,7 @@ const std::vector<float>& FieldRenderer::draw_bounds(const PixelGrid& grid, cons
 /// A storage buffer of at least this size at binding 0.
 void FieldRenderer::bind_storage(std::size_t bytes) {
   if (storage_ == 0) gl_.GenBuffers(1, &storage_);
+  // binds the general target as well, which BufferData and the calls after this one work on
   gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, storage_);
   if (storage_bytes_ < bytes) {
     gl_.BufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_READ);
@@ -262,15 +276,19 @@ const std::vector<PixelEntry>& FieldRenderer::draw_candidates(const PixelGrid& g
   gl_.Uniform1ui(program.width, static_cast<GLuint>(grid.width));
   gl_.ActiveTexture(GL_TEXTURE0 + kUnitNearest);
   gl_.BindTexture(GL_TEXTURE_2D, current_->values);
+  // No colour is written while the shader reads the values of the same target. Without a depth test
+  // every site has its fragment, not only the nearest.
   gl_.Disable(GL_DEPTH_TEST);
   gl_.DrawBuffers(0, nullptr);
   std::array<std::uint32_t, 2> head{};
+  // At most two rounds: how many entries there are does not depend on the room.
   for (bool fits = false; !fits;) {
     bind_storage(8 + capacity * sizeof(PixelEntry));
     head = {0, 0};
     gl_.BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof(head), head.data());
     gl_.Uniform1ui(program.capacity, static_cast<GLuint>(capacity));
     draw(grid, batch);
+    // without it GetBufferSubData may not see what the shaders wrote
     gl_.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     gl_.GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof(head), head.data());
     fits = head[0] <= capacity;
@@ -280,6 +298,7 @@ const std::vector<PixelEntry>& FieldRenderer::draw_candidates(const PixelGrid& g
   entries_.resize(head[0]);
   gl_.GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 8, static_cast<GLsizeiptr>(head[0] * sizeof(PixelEntry)),
                        entries_.data());
+  // The draw buffers are state of the target, which draw_bounds() will use again.
   const GLenum first = GL_COLOR_ATTACHMENT0;
   gl_.DrawBuffers(1, &first);
   return entries_;
@@ -309,6 +328,8 @@ std::vector<std::uint32_t> FieldRenderer::draw_marks(const PixelGrid& grid, cons
 }
 
 FieldRenderer& thread_renderer(const std::string& backend) {
+  // A context belongs to its thread, and opening one costs milliseconds: it is kept as
+  // long as the thread lives.
   static thread_local std::map<std::string, std::unique_ptr<FieldRenderer>> renderers;
   auto& renderer = renderers[backend];
   if (!renderer) renderer = std::make_unique<FieldRenderer>(open_gl_context(backend));

@@ -4,6 +4,8 @@ namespace brink::detail {
 
 namespace {
 
+// Four corners of a strip from gl_VertexID alone: the oriented rectangle of a site's band, in pixels
+// from the window's centre. z is 0: the fragment shader writes the depth.
 constexpr const char* kVertex = R"(
 layout(location = 0) in vec4 frame;
 layout(location = 1) in vec4 extent;
@@ -54,6 +56,7 @@ float drawn_value(out float side) { side = height.y; return height.x; }
 void write_depth(float t) {}
 )";
 
+// What the fragment needs of its site, flat: interpolation would round.
 constexpr const char* kInputs = R"(
 flat in vec4 ends;
 flat in vec4 arc;
@@ -97,6 +100,8 @@ float core_distance(vec2 q, out float side) {
 }
 )";
 
+// "inside" is the id's top bit: the solid side of the nearest site, or within its thickness (values
+// below the offset are distances below the radius). tag.y & 4 is "solid".
 constexpr const char* kImage = R"(
 layout(location = 0) out uint site;
 layout(location = 1) out float value;
@@ -120,6 +125,8 @@ float drawn_value(out float side) { return core_distance(gl_FragCoord.xy - half_
 void write_depth(float t) { gl_FragDepth = t * depth_scale; }
 )";
 
+// layer 0 shows every site; layer 1 those of another owner than layer 0 shows, and
+// nothing where that is empty
 constexpr const char* kFirst = R"(
 bool wanted() { return true; }
 )";
@@ -135,6 +142,7 @@ bool wanted() {
 }
 )";
 
+// shift.x makes an upper bound of the distance here: the depth test keeps the least of them.
 constexpr const char* kBound = R"(
 layout(location = 0) out float value;
 uniform float depth_scale;
@@ -146,6 +154,9 @@ void main() {
 }
 )";
 
+// shift.y makes a lower bound. The counter goes on past the capacity, so that after a
+// draw which overflowed it says how much room the next one needs. `unused` puts entries
+// on the 8 bytes that std430 aligns uvec2 to.
 constexpr const char* kAppend = R"(
 layout(std430, binding = 0) buffer List {
   uint count;
@@ -169,6 +180,7 @@ void main() {
 }
 )";
 
+// Fragments may write the same flag at once; they all write 1.
 constexpr const char* kMark = R"(
 layout(std430, binding = 0) buffer Marks { uint marks[]; };
 uniform float limit;
@@ -180,6 +192,7 @@ void main() {
 )";
 
 std::string version(FieldProgram program) {
+  // buffer blocks need 4.3; all else runs where only 3.3 is there
   const bool storage = program == FieldProgram::append || program == FieldProgram::mark;
   return storage ? "#version 430 core\n" : "#version 330 core\n";
 }

@@ -14,6 +14,7 @@ GlContext*& current_context() {
   return current;
 }
 
+/// Every context made here is a Releasable, so the cast holds.
 void release_current() {
   if (current_context() != nullptr) static_cast<Releasable*>(current_context())->release();
   current_context() = nullptr;
@@ -53,6 +54,7 @@ std::unique_ptr<GlContext> open_gl_context(std::string_view backend, GlLevel lev
     throw BadInput("field.context is \"" + std::string(backend) +
                    "\"; allowed are \"auto\", \"osmesa\", \"egl\"");
   }
+  // Before a context is opened: llvmpipe reads it then. What the user has set stays.
   setenv("LP_NUM_THREADS", "0", /*overwrite=*/0);
   std::string answers;
   for (const std::string_view name : gl_backends()) {
@@ -61,6 +63,7 @@ std::unique_ptr<GlContext> open_gl_context(std::string_view backend, GlLevel lev
     if (auto context = open_named(name, level, &why)) return context;
     answers += "; " + std::string(name) + ": " + why;
   }
+  // nothing was tried: the backend was named, and is not in this build
   if (answers.empty()) answers = "; this build has no such backend";
   throw IoError("no OpenGL context for field.context = \"" + std::string(backend) + "\"" + answers);
 }

@@ -21,6 +21,7 @@ class EglContext final : public Releasable {
   EglContext(EGLDisplay display, EGLContext context, int version)
       : display_(display), context_(context), asked_(version) {}
   ~EglContext() override {
+    // destroying a context that is current only marks it, and would leave current_context() dangling
     if (current_context() == this) release_current();
     eglDestroyContext(display_, context_);
   }
@@ -50,6 +51,8 @@ class EglContext final : public Releasable {
     int major = 0, minor = 0;
     get_integer(kGlMajorVersion, &major);
     get_integer(kGlMinorVersion, &minor);
+    // A driver may give a newer version than the one asked for. Asked for 3.3, storage is declared
+    // absent all the same: that is what GlLevel::only_33 is for.
     storage_ = asked_ >= 43 && 10 * major + minor >= 43;
     description_ = "EGL surfaceless, OpenGL ";
     for (const unsigned name : {kGlVersion, kGlRenderer}) {
@@ -87,6 +90,7 @@ EGLContext create(EGLDisplay display, int version) {
                                             EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                             EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                             EGL_NONE};
+  // no configuration: nothing is drawn to a surface, only to framebuffer objects
   return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
 }
 

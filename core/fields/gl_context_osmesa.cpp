@@ -45,6 +45,7 @@ class OsmesaContext final : public Releasable {
     int major = 0, minor = 0;
     get_integer(0x821B /* GL_MAJOR_VERSION */, &major);
     get_integer(0x821C /* GL_MINOR_VERSION */, &minor);
+    // asked for 3.3, storage is declared absent even where the driver gives more (GlLevel::only_33)
     storage_ = asked_ >= 43 && 10 * major + minor >= 43;
     const auto* version = reinterpret_cast<const char*>(get_string(GL_VERSION));
     description_ = std::string("OSMesa, OpenGL ") + (version != nullptr ? version : "?");
@@ -60,6 +61,7 @@ class OsmesaContext final : public Releasable {
 };
 
 OSMesaContext create(int version) {
+  // 0 bits of depth: depth belongs to the framebuffer objects. Zeros at the end close the list.
   const std::array<int, 13> attributes = {OSMESA_FORMAT,
                                           OSMESA_RGBA,
                                           OSMESA_DEPTH_BITS,

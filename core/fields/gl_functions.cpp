@@ -35,6 +35,7 @@ GlFunctions load_gl_functions(const GlContext& context) {
   GlFunctions gl;
 #define BRINK_GL_LOAD(name, type) load(context, "gl" #name, gl.name);
   BRINK_GL_FUNCTIONS(BRINK_GL_LOAD)
+  // of GL 4.3; a 3.3 context need not have them
   if (context.has_storage_buffers()) {
     BRINK_GL_STORAGE_FUNCTIONS(BRINK_GL_LOAD)
   }
@@ -47,6 +48,7 @@ GLuint make_program(const GlFunctions& gl, const std::string& vertex, const std:
   for (const auto& [kind, source] : {std::pair{GL_VERTEX_SHADER, &vertex}, {GL_FRAGMENT_SHADER, &fragment}}) {
     const GLuint shader = compile(gl, static_cast<GLenum>(kind), *source);
     gl.AttachShader(program, shader);
+    // only marked: it goes with the program
     gl.DeleteShader(shader);
   }
   gl.LinkProgram(program);

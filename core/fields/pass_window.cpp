@@ -115,6 +115,7 @@ struct PassRenderer::Impl {
 
   /// Reads the window into ids and values; returns the length of their rows.
   int read(const PixelGrid& grid) {
+    // "full" reads the target, whose rows may be longer than the window's
     const bool full = options.readback == "full";
     const int width = full ? renderer.target_width() : grid.width,
               height = full ? renderer.target_height() : grid.height;
@@ -151,6 +152,7 @@ struct PassRenderer::Impl {
       }
     }
     out.tessellation = static_cast<float>(1.001 * batch.tessellation * grid.pixel);
+    // 2^-23 of the farthest: decode() rounds to single precision once more
     out.rounding = static_cast<float>(1.001 * batch.largest_error * grid.pixel + 0x1.0p-23 * farthest);
     return out;
   }
@@ -174,6 +176,7 @@ struct PassRenderer::Impl {
     const PixelGrid& grid = drawn.grid;
     const Decoder decoder{drawn.names, grid, drawn.batch};
     const bool one_by_one = options.readback == "pixel";
+    // the picture is read once, however often points of it are asked for
     if (!one_by_one && !drawn.was_read) read(grid);
     drawn.was_read = !one_by_one;
     const std::size_t row = options.readback == "full" ? renderer.target_width() : grid.width;
@@ -181,6 +184,7 @@ struct PassRenderer::Impl {
     picked.reserve(points.size());
     for (const Vec2& p : points) {
       const Vec2 at = (p - grid.low) / grid.pixel;
+      // a point outside: its nearest pixel
       const int i = static_cast<int>(std::clamp(at.x(), 0.0, grid.width - 1.0));
       const int j = static_cast<int>(std::clamp(at.y(), 0.0, grid.height - 1.0));
       std::uint32_t id = 0;
@@ -255,6 +259,7 @@ std::array<FieldImage, 2> PassRenderer::render_two_layers(const Box& window, int
   const SiteBatch batch = impl_->draw_first(grid, scene, FieldImage::kNone, band, names, 2);
   std::array<FieldImage, 2> layers;
   layers[0] = impl_->image(grid, batch, names);
+  // After layer 0 was read: read_image() reads the target drawn last.
   impl_->renderer.draw_image(grid, batch, band / grid.pixel + batch.offset, 1, names.owner);
   layers[1] = impl_->image(grid, batch, names);
   impl_->count(2, drawn, read);
@@ -266,6 +271,8 @@ namespace {
 /// A grid of about kNearResolution pixels that covers the window; a window of no size gets one tiny pixel.
 PixelGrid near_grid(const Box& window, double margin) {
   const Vec2 extent = window.extent();
+  // A window of no size has a pixel too, one beside which neither the margin (1e-3) nor the place (1e-9)
+  // is so large that roundings count.
   const double scale = std::max({extent.maxCoeff(), 1e-3 * margin, 1e-9 * window.center().norm(), 1e-12});
   PixelGrid grid;
   grid.pixel = scale / kNearResolution;
@@ -302,6 +309,7 @@ std::vector<std::uint32_t> mark_on_cpu(const PixelGrid& grid, const SiteBatch& b
 bool holds(const PlacedOutline& item, const Vec2& center) {
   if (!item.outline->solid) return false;
   const Vec2 local = Frame(item.pose).to_local(center);
+  // beyond its bounding circle only a container is solid; saves the walk over all sites
   if (!item.outline->container && local.norm() > item.outline->bounding_radius) return false;
   return gap_by_brute_force(*item.outline, local) < 0.0;
 }
@@ -334,9 +342,12 @@ NearOwners PassRenderer::near_owners(const Box& window, double margin, std::span
     const bool marked = std::find(mark, end, 1U) != end;
     mark = end;
     if (item.owner == excluded) continue;
+    // Where no outline comes near the window, all of the window is inside the solid or
+    // none of it is: its centre tells.
     if (marked || holds(item, window.center())) {
       near.owners.push_back(item.owner);
     } else {
+      // one that is not named exists, and is beyond the margin; without any the bound stays infinite
       near.others_at_least = margin;
     }
   }

@@ -47,8 +47,11 @@ class Cutter {
       low = std::min(low, t);
       high = std::max(high, t);
     }
+    // all points of the window have their feet at the start, or all at the end
     if (!(high > 0.0)) return make_point(s, s.a, s.pseudo_a);
     if (!(low < 1.0)) return make_point(s, s.b, s.pseudo_b);
+    // A new end is no vertex: beside it the side is that of the segment, so that its pseudo-normal is
+    // the segment's outward normal.
     const Vec2 a = s.a, outward = -perp(d).normalized();
     if (low > 0.0) {
       s.a = a + low * d;
@@ -58,6 +61,7 @@ class Cutter {
       s.b = a + high * d;
       s.pseudo_b = outward;
     }
+    // shorter than a millionth of a pixel: its direction would be rounding
     if ((s.b - s.a).squaredNorm() < 1e-12) make_point(s, s.a, s.pseudo_a);
   }
 
@@ -74,16 +78,22 @@ class Cutter {
     const Vec2 from = s.a - s.center;
     const Vec2 view = -s.center;  // towards the window's centre
     double low = 0.0, high = 0.0;
+    // Angles are about the arc's centre, measured from the direction to the window's and
+    // in the arc's sense of turning.
     for (const Vec2& corner : corners_of(grid_)) {
       const Vec2 w = corner - s.center;
       const double angle = turn * std::atan2(cross(view, w), view.dot(w));
       low = std::min(low, angle);
       high = std::max(high, angle);
     }
+    // 1.5 < pi / 2: low and high lie in (-1.5, 1.5), and an arc of a quarter turn that begins at an
+    // angle up to pi and runs past it comes to -pi / 2 at most: nothing need be wrapped. The centre must
+    // lie outside the window's circle, as from within it there is no bounded view.
     if (!(high - low < 1.5) || !(view.norm() > grid_.half_diagonal())) return;
     const double start = turn * std::atan2(cross(view, from), view.dot(from)),
                  end = start + std::abs(s.sweep);
     const double first = std::max(start, low), last = std::min(end, high);
+    // Nothing of it is seen, or nearly: nearest are ends, and the whole arc has them.
     if (!(last - first > 1e-9)) return;
     const auto at = [&](double angle) {
       const Vec2 unit = view.normalized();

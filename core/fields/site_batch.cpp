@@ -22,6 +22,7 @@ class BatchMaker {
     fill(s, id, batch.offset, instance);
     batch.instances.push_back(instance);
     batch.largest_error = std::max(batch.largest_error, s.error);
+    // error >= kRounding S, and a value within the window is no larger than S
     batch.largest_value = std::max(batch.largest_value, s.error / kRounding);
   }
 
@@ -29,9 +30,13 @@ class BatchMaker {
   /// The rounding allowance, and the chord in place of a very flat arc.
   void bound_error(PixelSite& s, double offset, const Vec2& origin) const {
     const double ends = grid_.half_diagonal() + s.a.norm() + s.b.norm() + s.radius + offset;
+    // Places are rounded in metres before anything is measured in pixels from the window's centre: far
+    // from the origin that may be more than all the rest.
     const double placing = 0x1.0p-48 * (origin.norm() + center_.norm()) / grid_.pixel;
     if (s.kind == SiteKind::arc) {
       const double sagitta = s.arc_radius * (1.0 - std::cos(0.5 * s.sweep));
+      // A flat arc's centre and radius are large numbers whose roundings would count; its
+      // chord is off by the sagitta.
       const double chord = kRounding * ends + sagitta * 1.001;
       s.error = kRounding * (ends + s.center.norm() + s.arc_radius);
       if (chord < s.error) {
@@ -46,16 +51,20 @@ class BatchMaker {
 
   /// The tight oriented quad of the site's band. Returns false if it lies beside the window.
   bool place_quad(const PixelSite& s, SiteInstance& instance) const {
+    // Distances and the quad's corners are rounded (2 error), and the rasteriser rounds corners once
+    // more (1.5): every pixel centre within band and margin is to be covered.
     const double grow = rules_.band / grid_.pixel + s.radius + rules_.margin + 2.0 * s.error + 1.5;
     const Vec2 chord = s.b - s.a, middle = 0.5 * (s.a + s.b);
     const double length = chord.norm();
     const Vec2 axis = length > 0.0 ? Vec2(chord / length) : Vec2(1.0, 0.0);
     double below = grow, above = grow;
     if (s.kind == SiteKind::arc) {
+      // The chord is the quad's axis. An arc that turns to the left bulges to the right of its chord.
       (s.sweep > 0 ? below : above) += s.arc_radius * (1.0 - std::cos(0.5 * s.sweep));
     }
     const double along = 0.5 * length + grow;
     const double reach = std::hypot(along, std::max(below, above));
+    // Much larger than the window, or infinite: cut to the window, as single precision would place it badly.
     if (!(reach < 4.0 * grid_.half_diagonal())) {
       instance.frame = {0.0F, 0.0F, 1.0F, 0.0F};
       instance.extent = {-f(half_.x() + 1), f(half_.x() + 1), -f(half_.y() + 1), f(half_.y() + 1)};
@@ -79,10 +88,12 @@ class BatchMaker {
     if (s.kind == SiteKind::arc) {
       instance.arc = {f(s.center.x()), f(s.center.y()), f(s.arc_radius), s.sweep > 0 ? 1.0F : -1.0F};
     } else if (s.kind == SiteKind::segment) {
+      // a point keeps 0 there, which makes its foot's parameter 0
       instance.arc[0] = f(1.0 / (s.b - s.a).squaredNorm());
     }
     instance.pseudo = {f(s.pseudo_a.x()), f(s.pseudo_a.y()), f(s.pseudo_b.x()), f(s.pseudo_b.y())};
     const double plain = offset - s.radius;
+    // upper and lower bound; both the plain value where no bounds are wanted
     instance.shift = {f(plain + (rules_.bounds ? s.error : 0.0)), f(plain - (rules_.bounds ? s.error : 0.0))};
     instance.id = id;
     instance.kind = static_cast<std::uint32_t>(s.kind) + (s.solid ? 4U : 0U);
@@ -114,7 +125,10 @@ SiteBatch empty_batch(const PixelGrid& grid, std::span<const PlacedOutline> scen
       batch.offset = std::max(batch.offset, site.radius / grid.pixel);
       batch.has_arcs = batch.has_arcs || site.kind == SiteKind::arc;
     }
+  // At least the largest radius, so that no drawn value is negative.
   batch.offset = std::ceil(batch.offset * 1.001);
+  // A power of two below 1 / (4 times anything drawn): depths keep the bits of values, and stay well
+  // below 1, where the depth buffer was cleared to.
   batch.depth_scale = std::exp2(-std::ceil(std::log2(4.0 * (farthest(grid, scene) + batch.offset) + 16.0)));
   return batch;
 }
@@ -130,6 +144,7 @@ SiteBatch make_batch(const PixelGrid& grid, std::span<const PlacedOutline> scene
   for (const PlacedOutline& item : scene) {
     const Frame frame(item.pose);
     for (const Site& site : item.outline->sites) {
+      // ids count on over what is left out: a site has the same id whoever is excluded
       if (item.drawn && item.owner != excluded) maker.add(site, frame, id, batch);
       ++id;
     }

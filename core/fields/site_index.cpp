@@ -30,6 +30,7 @@ bool can_be_drawn(const Outline& outline) {
   const double size = outline.bounds.extent().maxCoeff();
   const double farthest =
       std::max(outline.bounds.low.cwiseAbs().maxCoeff(), outline.bounds.high.cwiseAbs().maxCoeff());
+  // 1e-9: pixels, up to some thousand a side, are then wider than the rounding of a coordinate by far.
   return size > 1e-100 && size > 1e-9 * farthest && farthest < 1e100;
 }
 
@@ -38,6 +39,8 @@ bool can_be_drawn(const Outline& outline) {
 SiteIndex::SiteIndex(std::shared_ptr<const Outline> outline) : outline_(std::move(outline)) {
   right_.reserve(outline_->sites.size());
   for (const Site& site : outline_->sites) {
+    // normal_at() normalises the segment at every query; of a solid one the answer is the
+    // same everywhere on it.
     const bool known = site.solid && site.kind == SiteKind::segment;
     right_.push_back(known ? Vec2(-perp((site.b - site.a).normalized())) : Vec2(Vec2::Zero()));
   }
@@ -51,6 +54,7 @@ FieldAnswer SiteIndex::query(const Vec2& q, Scratch& scratch) const {
   Nearest nearest;
   for (const std::uint32_t i : found.sites) {
     const Site& site = outline_->sites[i];
+    // Lists ascend (the tree's: nearest first, then by index), so that with < the lowest index wins ties.
     const Nearest n = nearest_on(site, q);
     const double distance = n.distance - site.radius;
     if (distance < best) {
@@ -69,6 +73,7 @@ FieldAnswer SiteIndex::query(const Vec2& q, Scratch& scratch) const {
   answer.normal = nearest.foot == Foot::interior && site.solid && site.kind == SiteKind::segment
                       ? right_[static_cast<std::size_t>(answer.site)]
                       : normal_at(site, nearest, q);
+  // The second nearest may be a site that is not listed.
   answer.runner_up = std::min(second, found.others_at_least);
   return answer;
 }
@@ -84,6 +89,7 @@ std::unique_ptr<SiteIndex> make_site_index(std::shared_ptr<const Outline> outlin
   const bool few = outline->sites.size() < static_cast<std::size_t>(options.brute_force_below);
   if (few || !can_be_drawn(*outline)) return make_brute_force_index(std::move(outline));
   detail::FieldRenderer& renderer = detail::thread_renderer(options.context);
+  // the renderer counts since it was made; this field's share is the difference
   const std::uint64_t drawn = renderer.pixels_drawn(), read = renderer.pixels_read();
   auto field = detail::render_body_field(std::move(outline), options, renderer);
   if (work != nullptr) {

@@ -45,6 +45,7 @@ class MeshMaker {
     } else if (s.kind == SiteKind::segment) {
       add_tent(s.a, s.b);
     }
+    // Each vertex has one cone, that of the site which starts there: the same depths twice would only cost.
     cone(s.a, s.pseudo_a, error_);
     if (last_point && s.kind != SiteKind::point) cone(s.b, s.pseudo_b, error_);
     const double lengths = grid_.half_diagonal() + s.a.norm() + s.b.norm() + s.radius + batch_.offset;
@@ -68,6 +69,8 @@ class MeshMaker {
 
   /// The angles in which the window is seen from p; all round from within, or from close by.
   std::pair<double, double> view_from(const Vec2& p) const {
+    // the window's corners lie on a circle of half its diagonal; seen from outside it they span less
+    // than half a turn
     if (p.norm() < grid_.half_diagonal() + 2.0) return {0.0, 2.0 * kPi};
     const double middle = std::atan2(-p.y(), -p.x());
     double half = 0.0;
@@ -85,6 +88,7 @@ class MeshMaker {
 
   void sector(const Vec2& p, const Vec2& pseudo, double from, double to, double error) {
     const double rim = rim_about(p);
+    // too far for the band: nothing of the cone lies in the window
     if (p.norm() - rim > grid_.half_diagonal()) return;
     const int facets = std::max(1, static_cast<int>(std::ceil((to - from) / (2.0 * half_angle(rim, error)))));
     const double length = rim / std::cos(0.5 * (to - from) / facets);
@@ -93,6 +97,7 @@ class MeshMaker {
       return Vec2(length * Vec2(std::cos(angle), std::sin(angle)));
     };
     for (int k = 0; k < facets; ++k) {
+      // `side` is (place - p) . pseudo-normal, linear, so that interpolation keeps its sign
       corner(p, 0.0, 0.0);
       for (const int end : {k, k + 1}) corner(p + arm(end), rim, arm(end).dot(pseudo));
     }
@@ -124,6 +129,7 @@ class MeshMaker {
     };
     for (int k = 0; k < chords; ++k) {
       add_tent(at(k), at(k + 1));
+      // At the chords' joints only: the arc's own ends have cones of their own from add().
       if (k == 0) continue;
       const double middle = start + k * step, wide = 0.5 * std::abs(step) + kOverlap / rim_about(at(k));
       sector(at(k), turn * (at(k) - s.center).normalized(), middle - wide, middle + wide, 0.5 * error_);
@@ -150,6 +156,7 @@ SiteBatch make_mesh_batch(const PixelGrid& grid, std::span<const PlacedOutline> 
   for (const PlacedOutline& item : scene) {
     const Frame frame(item.pose);
     for (const Loop& loop : item.outline->loops)
+      // Loops cover all sites in order, so that ids count as in make_batch().
       for (int k = loop.first; k < loop.first + loop.count; ++k, ++id)
         if (item.drawn && item.owner != excluded)
           maker.add(item.outline->sites[k], frame, id, !loop.closed && k + 1 == loop.first + loop.count);

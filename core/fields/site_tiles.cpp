@@ -31,6 +31,7 @@ struct TwoNearest {
 
   void offer(double value, std::uint32_t by) {
     if (value < first) {
+      // the same owner nearer still: the nearest of the others stays what it was
       if (by != owner) second = first;
       first = value;
       owner = by;
@@ -58,7 +59,11 @@ void cut_into_tiles(SiteBatch& batch, const PixelGrid& grid, const std::vector<s
         values[i] = nearest_on(sites[i], center).distance + batch.instances[i].shift[0] - batch.offset;
         nearest.offer(values[i], owners[batch.instances[i].id]);
       }
+      // 2 R is the tile's diagonal. Two distances are compared, each off by the error of what is drawn
+      // and of this one.
       const double slack = size.norm() + 4.0 * batch.largest_error + 0.01;
+      // of the tile's pixels none is farther from its centre than R, so that beyond band
+      // + R nothing is drawn
       const double limit =
           std::min((layers == 2 ? nearest.second : nearest.first) + slack, band + 0.5 * slack + 0.01);
       for (std::size_t i = 0; i < sites.size(); ++i) {
@@ -66,6 +71,8 @@ void cut_into_tiles(SiteBatch& batch, const PixelGrid& grid, const std::vector<s
         SiteInstance instance = batch.instances[i];
         const auto w = static_cast<float>(0.5 * size.x()), h = static_cast<float>(0.5 * size.y());
         instance.frame = {static_cast<float>(center.x()), static_cast<float>(center.y()), 1.0F, 0.0F};
+        // Tiles meet edge to edge, and edges run between pixel centres: every pixel is in one tile.
+        // Within a tile sites stay in ascending order, which is what decides ties.
         instance.extent = {-w, w, -h, h};
         kept.push_back(instance);
       }

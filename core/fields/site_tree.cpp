@@ -35,6 +35,7 @@ SiteTree::SiteTree(const Outline& outline) {
     largest =
         std::max({largest, boxes.back().low.cwiseAbs().maxCoeff(), boxes.back().high.cwiseAbs().maxCoeff()});
   }
+  // some roundings of the largest coordinate: what coordinates of boxes and sites may be off by
   rounding_ = 0x1.0p-49 * largest;
   order_.resize(outline.sites.size());
   std::iota(order_.begin(), order_.end(), 0U);
@@ -61,12 +62,15 @@ void SiteTree::build(const Outline& outline, std::uint32_t node, std::uint32_t f
   const int axis = centers.extent().x() >= centers.extent().y() ? 0 : 1;
   const std::uint32_t half = count / 2;
   const auto begin = order_.begin() + first;
+  // Halves by number, not by place: the depth is log2 of the number of sites whatever their arrangement.
+  // Ties go by index, so that the tree does not depend on the library's selection.
   std::nth_element(begin, begin + half, begin + count, [&](std::uint32_t a, std::uint32_t b) {
     const double x = boxes[a].center()[axis], y = boxes[b].center()[axis];
     return x != y ? x < y : a < b;
   });
   made.first = static_cast<std::uint32_t>(nodes_.size());
   nodes_[node] = made;
+  // Only after `made` is stored, and by index: references into nodes_ do not outlive this line.
   nodes_.resize(nodes_.size() + 2);
   build(outline, made.first, first, half, boxes);
   build(outline, made.first + 1, first + half, count - half, boxes);
@@ -92,6 +96,7 @@ struct SiteTree::Search {
 
   double limit() const { return best.back().distance; }
   void offer(const Found& found) {
+    // insertion into four sorted entries; kListed + 1, as the last of them bounds all others
     if (!(found < best.back())) return;
     std::size_t i = best.size() - 1;
     for (; i > 0 && found < best[i - 1]; --i) best[i] = best[i - 1];
@@ -110,6 +115,7 @@ double SiteTree::nearest(const Outline& outline, const Vec2& q, std::vector<std:
   stack[open++] = {0, lower_bound(nodes_[0], q)};
   while (open > 0) {
     const Open top = stack[--open];
+    // not >=: a site as far as the last entry, with a lower index, takes its place
     if (top.bound > search.limit()) continue;
     const Node& node = nodes_[top.node];
     if (node.count > 0) {
@@ -123,6 +129,7 @@ double SiteTree::nearest(const Outline& outline, const Vec2& q, std::vector<std:
     Open near{node.first, lower_bound(nodes_[node.first], q)};
     Open far{node.first + 1, lower_bound(nodes_[node.first + 1], q)};
     if (far.bound < near.bound) std::swap(near, far);
+    // the nearer child on top: the sooner the limit falls, the more is left out
     stack[open++] = far;
     stack[open++] = near;
   }

@@ -33,10 +33,12 @@ StencilOverlap stencil_overlap(PassRenderer& renderer, const PlacedOutline& a, c
   std::vector<std::uint8_t> stencil(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
   std::size_t near_edge = 0;
   for (const PlacedOutline* item : {&a, &b}) {
+    // each alone: in one picture the nearest site would hide on which side of the other a pixel lies
     const FieldImage image = renderer.render(window, width, height, {item, 1}, FieldImage::kNone,
                                              std::numeric_limits<double>::infinity());
     for (std::size_t k = 0; k < stencil.size(); ++k) {
       stencil[k] += image.inside[k];
+      // A pixel's centre stands for all of it unless a boundary passes within half its diagonal.
       near_edge += std::abs(image.distance[k]) <= std::sqrt(0.5) * image.pixel + image.rounding;
     }
   }

@@ -7,10 +7,12 @@ namespace brink {
 
 namespace {
 
+/// Held coordinates have no velocity, so that mass and inertia count as they are.
 double kinetic(const Body& body, const Twist& twist) {
   return 0.5 * body.mass * twist.velocity.squaredNorm() + 0.5 * body.inertia * twist.omega * twist.omega;
 }
 
+/// k (length - rest)^2 / 2: the conservative part; a damper stores nothing.
 double potential(const World&, const SpringForce& spring, std::span<const BodyState> states) {
   const Vec2 a = Frame(states[spring.body_a].pose).to_world(spring.at_a);
   const Vec2 b = spring.body_b < 0 ? spring.at_b : Frame(states[spring.body_b].pose).to_world(spring.at_b);
@@ -29,6 +31,7 @@ double potential(const World& world, const AttractForce& attract, std::span<cons
   return sum;
 }
 
+/// Drag, thrusts and formulas have none that is counted; conservative() tells whether there are any.
 template <class Other>
 double potential(const World&, const Other&, std::span<const BodyState>) {
   return 0.0;
@@ -46,6 +49,7 @@ double total_energy(const World& world, std::span<const BodyState> states) {
   double energy = 0.0;
   for (std::size_t k = 0; k < world.bodies.size(); ++k) {
     const Body& body = world.bodies[k];
+    // uniform gravity: potential 0 at the world's origin
     energy += kinetic(body, states[k].twist) - body.mass * world.gravity.dot(states[k].pose.position);
   }
   for (const Force& force : world.forces)

@@ -30,6 +30,7 @@ class ForceDynamics final : public Dynamics {
   void take(int place, const FormulaForce& formula) {
     formulas_.push_back({place, &formula});
     for (const std::optional<Formula>* f : {&formula.fx, &formula.fy, &formula.torque})
+      // steady_until() is asked step by step: which parts depend on time is found out here, once
       for (int part = 0; *f && part < (*f)->time_parts(); ++part) in_time_.emplace_back(**f, part);
   }
 
@@ -79,6 +80,7 @@ void ForceDynamics::accelerations(double t, std::span<const BodyState> states,
   add_attractors(states, out);
   add_thrusts(t, out);
   add_formulas(t, states, out);
+  // last, as it overrules what all the forces have added to a held coordinate
   hold_locked(out);
 }
 
@@ -108,10 +110,12 @@ void ForceDynamics::add_springs(std::span<const BodyState> states, std::span<Acc
     }
     const Vec2 span = end_b - (a.pose.position + arm_a);
     const double length = span.norm();
+    // no direction there; a division would make the accelerations NaN and end the integration
     if (length == 0.0) continue;
     const Vec2 along = span / length;
     const double pull =
         s.stiffness * (length - s.rest_length) + s.damping * along.dot(velocity_b - a.twist.at(arm_a));
+    // on a, towards b where the spring is stretched: `pull` > 0
     const Vec2 force = pull * along;
     add(s.body_a, {force, cross(arm_a, force)}, out);
     if (s.body_b >= 0) add(s.body_b, {-force, -cross(arm_b, force)}, out);
@@ -130,13 +134,18 @@ void ForceDynamics::add_attractors(std::span<const BodyState> states, std::span<
   for (const auto& [place, attract] : attracts_) {
     const Vec2 inward = attract->center - states[place].pose.position;
     const double r = inward.norm();
+    // pow(0, power - 1) is infinite for power < 1, and times 0 no number. Below power 0
+    // that is left to end the integration.
     if (r == 0.0 && attract->power >= 0.0) continue;
+    // an acceleration: the force is proportional to the mass, as gravity is
     out[place].linear += attract->strength * std::pow(r, attract->power - 1.0) * inward;
   }
 }
 
 void ForceDynamics::add_thrusts(double t, std::span<Acceleration> out) const {
   for (const auto& [place, thrust] : thrusts_)
+    // half open: at `to` it is off, and steps that end there ask just before
+    // (SteppingIntegrator::accelerations)
     if (t >= thrust->from && t < thrust->to) add(place, {thrust->force, thrust->torque}, out);
 }
 
@@ -177,10 +186,12 @@ Dynamics::LinearDrag ForceDynamics::linear_drag(double t) const {
   LinearDrag form;
   if (size() != 1 || !springs_.empty() || !attracts_.empty() || !formulas_.empty()) return form;
   for (const auto& [place, drag] : drags_) {
+    // linear only if all are; rates of several drags on one body add up
     if (drag->quadratic != 0.0) return {};
     form.linear += drag->linear / bodies_[place]->mass;
     form.angular += drag->angular / bodies_[place]->inertia;
   }
+  // At rest drag is 0 and what is left is the drive: gravity and the thrusts that are on at t.
   const BodyState at_rest;
   accelerations(t, {&at_rest, 1}, {&form.drive, 1});
   form.valid = true;
@@ -212,6 +223,7 @@ struct Assembly {
   };
   std::vector<Place> of_body;
 
+  /// Springs refer to places in their component; both ends are in one, as coupled_bodies() has joined them.
   void give(const SpringForce& spring) {
     SpringForce placed = spring;
     placed.body_a = of_body[spring.body_a].place;

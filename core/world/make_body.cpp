@@ -25,7 +25,9 @@ Body make_body(const Shape& shape, Mass mass) {
   Shape about_centre = centered(shape);
   body.outline = std::make_shared<const Outline>(std::move(about_centre.outline));
   body.mass = mass.value;
+  // The measure is of density 1: mass / size is the density, by which the second moment is scaled.
   body.inertia = mass.value * shape.measure.second_moment / shape.measure.size;
+  // The outline moves by minus its centroid and the pose by plus it: the shape stays where it was drawn.
   body.initial.pose.position = shape.measure.centroid;
   return body;
 }

@@ -9,6 +9,7 @@ namespace {
 
 /// True if the frame of a site turns with time or stands at an angle.
 bool turned(const FixedSite& site) {
+  // In a turned frame the shift would be turned too, and would no longer be exact.
   if (site.pose.angle != 0.0) return true;
   if (const auto* constant = std::get_if<ConstantMotion>(&site.motion)) return constant->twist.omega != 0.0;
   const auto* told = std::get_if<FormulaMotion>(&site.motion);
@@ -19,11 +20,13 @@ bool turned(const FixedSite& site) {
 Vec2 round_place_in(const Box& box) {
   const Vec2 middle = 0.5 * (box.low + box.high);
   const double size = (box.high - box.low).maxCoeff();
+  // A box nearer than two of its sizes gains a bit or two at most.
   if (!(size > 0.0) || middle.lpNorm<Eigen::Infinity>() <= 2.0 * size) return Vec2::Zero();
   const double unit = std::exp2(std::ceil(std::log2(size)));
   return {unit * std::round(middle.x() / unit), unit * std::round(middle.y() / unit)};
 }
 
+/// True if p + by is not rounded: the error term of Knuth's two-sum is 0.
 bool exactly_moved(const Vec2& p, const Vec2& by) { return (p + by) - by == p && (p + by) - p == by; }
 
 bool exactly_moved(const Outline& outline, const Vec2& by) {
@@ -38,6 +41,7 @@ bool exactly_moved(const Outline& outline, const Vec2& by) {
 FixedSite recentred(const FixedSite& site) {
   if (turned(site)) return site;
   const Vec2 to = round_place_in(site.outline->bounds), back = -to;
+  // All or nothing: were one coordinate rounded, the site would not be the one that was given.
   if (to.isZero(0.0) || !exactly_moved(*site.outline, back) || !exactly_moved(site.pose.position, to))
     return site;
   FixedSite moved = site;

@@ -44,6 +44,7 @@ Material combined(const World& world, int material_a, int material_b) {
   const Material& a = world.materials.at(material_a);
   const Material& b = world.materials.at(material_b);
   Material pair;
+  // Only the name depends on the order: a pair has the same law whichever of the two is the body.
   pair.name = a.name == b.name ? a.name : a.name + "/" + b.name;
   pair.restitution = combine(world.restitution_rule, a.restitution, b.restitution);
   pair.friction = combine(world.friction_rule, a.friction, b.friction);

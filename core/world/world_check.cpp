@@ -11,6 +11,7 @@ namespace brink {
 
 namespace {
 
+/// Six digits where they are read back to the same number, else 17: 0.1, not 0.10000000000000001.
 std::string text_of(double value) {
   std::ostringstream out;
   out.precision(17);
@@ -41,6 +42,7 @@ struct Checker {
   void not_negative(const char* parameter, double value) const {
     require(std::isfinite(value) && value >= 0.0, parameter, value, "finite numbers >= 0");
   }
+  /// NaN fails.
   void between(const char* parameter, double value, double low, double high, const char* allowed) const {
     require(value >= low && value <= high, parameter, value, allowed);
   }
@@ -51,6 +53,7 @@ struct Checker {
   }
 };
 
+/// `body "ball"`, or `body 3` where it has no name.
 std::string called(const char* kind, std::size_t index, const std::string& name) {
   std::string text = kind;
   text += ' ';
@@ -92,6 +95,7 @@ void check_locks(const Checker& check, const Body& body) {
   const auto held = [&](bool lock, const char* parameter, double value) {
     check.require(!lock || value == 0.0, parameter, value, "0, as lock holds this coordinate");
   };
+  // Of a held coordinate only the acceleration is left out: a velocity would carry it away for ever.
   held(body.lock_x, "velocity in x", twist.velocity.x());
   held(body.lock_y, "velocity in y", twist.velocity.y());
   held(body.lock_angle, "angular_velocity", twist.omega);
@@ -100,6 +104,7 @@ void check_locks(const Checker& check, const Body& body) {
 void check_body(const World& world, const Body& body, std::size_t i) {
   const Checker check{called("body", i, body.name)};
   check_outline(check, body.outline);
+  // a container is solid out to infinity, and has no mass
   if (body.outline->container) check.fail("is a container; allowed: containers are fixed sites only");
   check.positive("mass", body.mass);
   check.positive("inertia", body.inertia);
@@ -128,6 +133,7 @@ void check_site_in_periods(const Periods& periods, const Checker& check, const F
   const Box bounds = transformed(*site.outline, site.pose).bounds;
   check_place_in_periods(periods, check, bounds.center());
   const Vec2 extent = bounds.extent();
+  // A floor may be longer than a period; every image of it that reaches into one period is looked at.
   double images = 1.0;
   for (const int axis : {0, 1})
     if (periods.size[axis] > 0.0) images *= 1.0 + std::floor(extent[axis] / periods.size[axis]);
@@ -164,6 +170,7 @@ void check_motion(const Checker& check, const ConstantMotion& motion) {
 void check_motion(const Checker& check, const FormulaMotion& motion) {
   const auto starts = [&](const char* parameter, const std::optional<Formula>& formula) {
     if (!formula) return;
+    // Of later times nothing is said here: the motion ends where the formula does, and says so.
     const double t = 0.0;
     const double value = (*formula)({&t, 1});
     if (!std::isfinite(value))
@@ -245,6 +252,7 @@ void World::check() const {
   for (std::size_t i = 0; i < materials.size(); ++i) check_material(materials[i], i);
   for (std::size_t i = 0; i < bodies.size(); ++i) check_body(*this, bodies[i], i);
   for (std::size_t i = 0; i < sites.size(); ++i) check_site(*this, sites[i], i);
+  // after bodies and sites: it relies on their outlines and finite places
   check_periods(*this);
   for (std::size_t i = 0; i < forces.size(); ++i)
     std::visit([&](const auto& force) { check_force(*this, force, {"force " + std::to_string(i)}); },

@@ -24,6 +24,7 @@ class WorldHasher {
   void one(int n) { hash_.add(static_cast<std::uint64_t>(n)); }
   void one(bool b) { hash_.add(std::uint64_t{b}); }
   void one(std::string_view text) {
+    // the length first, so that "ab", "c" and "a", "bc" differ
     hash_.add(static_cast<std::uint64_t>(text.size()));
     for (const char c : text) hash_.add(static_cast<std::uint64_t>(c));
   }
@@ -38,6 +39,7 @@ class WorldHasher {
     add(m.restitution, m.friction, m.tangential_restitution, m.rolling_resistance, m.slip, m.spin);
   }
   void one(const Site& s) {
+    // Pseudo-normals, samples, facets and bounds follow from these (finish_outline).
     add(static_cast<int>(s.kind), s.solid, s.radius, s.a, s.b, s.center, s.arc_radius, s.sweep);
   }
   void one(const Outline& o) {
@@ -47,6 +49,7 @@ class WorldHasher {
   /// Copies share an outline: it is walked once.
   void one(const std::shared_ptr<const Outline>& outline) {
     if (outline.get() != last_) {
+      // A hash of its own, added as one word: whether an outline is shared or repeated does not show.
       StateHash sites;
       std::swap(sites, hash_);
       one(*outline);
@@ -66,6 +69,7 @@ class WorldHasher {
   void one(const ConstantMotion& m) { add(m.twist.velocity, m.twist.omega); }
   void one(const FormulaMotion& m) { add(m.x, m.y, m.angle); }
   void one(const FixedSite& s) {
+    // the kind of motion as well: one that stands still has no numbers of its own
     add(s.outline, s.pose, s.material, static_cast<int>(s.motion.index()));
     std::visit([this](const auto& motion) { one(motion); }, s.motion);
   }
@@ -94,6 +98,7 @@ StateHash hash_of(const World& world) {
   WorldHasher h;
   if (world.periods.any()) h.add(world.periods.size);
   h.add(world.gravity, static_cast<int>(world.restitution_rule), static_cast<int>(world.friction_rule));
+  // Counts before the lists: a body more and a site less must not look alike.
   h.add(static_cast<int>(world.materials.size()), static_cast<int>(world.bodies.size()));
   h.add(static_cast<int>(world.sites.size()), static_cast<int>(world.forces.size()));
   for (const Material& m : world.materials) h.add(m);

@@ -46,6 +46,7 @@ Grid make_grid(const std::vector<Box>& boxes) {
   if (all.empty()) return g;
   g.low = all.low;
   const auto cells = [&](double extent) { return std::floor(extent / g.cell) + 1.0; };
+  // A few boxes far away widen the window: larger cells then, so that their numbers fit 64 bits.
   while (cells(all.extent().x()) * cells(all.extent().y()) > static_cast<double>(kMostCells)) g.cell *= 2.0;
   g.columns = static_cast<std::int64_t>(cells(all.extent().x()));
   g.rows = static_cast<std::int64_t>(cells(all.extent().y()));
@@ -87,6 +88,7 @@ struct Sorted {
         is_large[i] = 1;
       }
     }
+    // By box within a cell, so that pairs come with i < j.
     std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
       return std::pair(a.cell, a.box) < std::pair(b.cell, b.box);
     });
@@ -144,6 +146,8 @@ Box swept_box(const Outline& outline, const Motion& motion, double from, double 
   box.add(motion.pose(from).position);
   box.add(motion.pose(to).position);
   const MotionBounds b = motion.bounds(from, to);
+  // A path leaves its chord by e(t) with e = 0 at both ends and |e''| <= a, so |e| <= a t (T - t) / 2,
+  // which is a T^2 / 8 at most.
   const double bulge = (b.acceleration.norm() + b.acceleration_radius) * (to - from) * (to - from) / 8.0;
   const double scale = box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
   return box.grown(outline.bounding_radius + bulge + kBoxMargin * (scale + outline.bounding_radius));
@@ -180,6 +184,7 @@ bool each_overlapping(const std::vector<Box>& boxes, const Periods& periods,
     owner[k] = k;
     homes.add(copies[k]);
   }
+  // What reaches a box at home reaches the box of all homes.
   for (int k = 0; k < n; ++k)
     periods.overlaps(homes, boxes[k], [&](const Image& image) {
       if (image == images[k]) return;
@@ -188,7 +193,8 @@ bool each_overlapping(const std::vector<Box>& boxes, const Periods& periods,
       owner.push_back(k);
     });
   return each_overlapping(copies, [&](int i, int j) {
-    // of the pair's images, the one whose first box is at home: the same is met with the second at home, too
+    // of the pair's images, the one whose first box is at home: the same is met with the second at home, too;
+    // a body does not meet images of its own
     if (i >= n || owner[i] >= owner[j]) return true;
     return visit({owner[i], owner[j], images[j] + -images[i]});
   });

@@ -20,6 +20,7 @@ double median_radius(std::span<const Flight> flights) {
   return *middle;
 }
 
+/// Level 0 holds radii up to twice the median, level m > 0 those up to 2 median kLevelRatio^m.
 int level_of(double radius, double median) {
   if (!(radius > 2.0 * median) || median == 0.0) return 0;
   return 1 + static_cast<int>(std::min(std::log(radius / (2.0 * median)) / std::log(kLevelRatio), kTopLevel));
@@ -60,12 +61,15 @@ void Neighbourhood::make_levels(std::span<const Vec2> places, bool by_place) {
   }
   for (std::size_t m = 0; m < levels_.size(); ++m) {
     Level& level = levels_[m];
+    // Between bodies of cells that are no neighbours lies at least a cell, less the slack on both sides:
+    // size (1 - 2 kSlack). Two of the level's largest must not bridge that.
     const double tightest = 2.0 * level.radius * (1.0 + 8.0 * kFlightMargin) / (1.0 - 2.0 * CellGrid::kSlack);
     Vec2 extent = all.extent().cwiseMax(tightest);
     for (int axis = 0; axis < 2; ++axis)
       if (periods_.size[axis] > 0.0) extent[axis] = periods_.size[axis];
     const double roomy =
         std::sqrt(extent.x() * extent.y() / static_cast<double>(std::max<std::size_t>(counts[m], 1)));
+    // `roomy` is the side of one body's share of the area; 0.8 of it has two thirds of that area.
     double size = std::max(tightest, 0.8 * roomy);
     if (!by_place || !(size > 0.0)) size = std::numeric_limits<double>::infinity();
     level.grid = CellGrid(size, extent, periods_);
@@ -84,6 +88,8 @@ bool Neighbourhood::put_into_cell(int k, const Vec2& p) {
 }
 
 void Neighbourhood::take_out(int k) {
+  // The list is in use only while the places at hand are full, and those have no gaps. So the free place
+  // gets the last one at hand, and that one's place the first of the list, or kNone.
   CellBodies& bodies = grid(k).bodies(flights_[k].cell);
   int* const end = bodies.first + bodies.count;
   int* const at = std::find(bodies.first, end, k);

@@ -7,9 +7,12 @@
 namespace brink {
 
 bool SiteLists::reaches(const Outline& outline, const Box& box) const {
+  // No place of the box is farther than `half` from its centre, and a distance changes by no more than
+  // the way. The outermost cells have no end, nor has an only one: everything is in reach of them.
   const double half = 0.5 * box.extent().norm();
   if (!std::isfinite(half)) return true;
   if (!outline.container && !outline.bounds.grown(reach_).overlaps(box)) return false;
+  // Deep in a solid, too, nothing can be met: a body's centre comes there only through its surface.
   return std::abs(gap_by_brute_force(outline, box.center())) <= (half + reach_) * (1.0 + kFlightMargin);
 }
 

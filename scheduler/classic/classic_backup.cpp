@@ -4,7 +4,8 @@
 ///     advance all bodies by one step and look
 ///     while something touches and approaches
 ///       halve the time since it did not, drawing again at each try, and back all bodies up to the first
-///       touch resolve what touches there; advance to the step's end and look again
+///       touch
+///       resolve what touches there; advance to the step's end and look again
 ///
 /// What touches and parts again inside a step is missed.
 #include <cmath>
@@ -44,6 +45,8 @@ class ClassicBackup final : public ClassicPolicy {
 
   /// The first time in (clear, touching] at which something touches and approaches, within kHalvings.
   double first_touch(double clear, double touching) {
+    // Every try is seen against this one moment before, in which nothing approached: on which side of a
+    // wire a particle was must not depend on the halving.
     const double from = clear;
     for (int k = 0; k < kHalvings; ++k) {
       const double middle = 0.5 * (clear + touching);

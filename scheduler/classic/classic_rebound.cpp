@@ -83,6 +83,7 @@ bool resolve_all(Kernel& kernel, const std::vector<DepthContact>& contacts) {
   for (const DepthContact& c : contacts) fastest = std::max(fastest, c.contact.closing_speed);
   std::vector<int> changed;
   for (std::size_t turn = 0; turn < kTurns * contacts.size(); ++turn) {
+    // Each turn anew: the last rebound may have made others part, or approach.
     const std::vector<DepthContact> all = approaching_patches(kernel, contacts, kSettled * fastest);
     if (all.empty()) return true;
     const DepthContact& next = first_by_order(kernel, all);

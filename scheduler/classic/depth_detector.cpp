@@ -79,6 +79,9 @@ const DepthSight& DepthDetector::look(std::span<const OwnerMoment> owners, doubl
   double coarsest = 0.0;
   for (int k = 0; k < static_cast<int>(particles_.size()); ++k)
     coarsest = std::max(coarsest, pictures_.pixel(k));
+  // Three pixels: half a diagonal by which a touching depth may exceed tolerance_ (tolerance()), as much
+  // by which a particle is off its pixel's centre, and one to the neighbours of which the slope is made:
+  // 2.42 in all.
   const double band = tolerance_ + largest_particle_ + travel + 3.0 * coarsest;
   std::vector<PlacedOutline> scene;
   for (int k = 0; k < static_cast<int>(owners.size()); ++k)
@@ -123,6 +126,8 @@ struct DepthDetector::Reader {
     const std::vector<PixelValue> values = detector.pictures_.read(around);
     std::array<double, 4> depth{};
     for (std::size_t k = 0; k < 4; ++k) depth[k] = gap(values[k], around[k]);
+    // A neighbour that sees nobody is infinitely deep: no slope then, and geometry answers
+    // (kLeastSlope).
     const Vec2 difference(depth[0] - depth[1], depth[2] - depth[3]);
     return difference.allFinite() ? Vec2(difference / (2.0 * pixel)) : Vec2(Vec2::Zero());
   }
@@ -141,6 +146,7 @@ struct DepthDetector::Reader {
     const Vec2 normal = there.direction_to_world(found.normal);
     const int other_owner = static_cast<int>(value.owner), n = static_cast<int>(detector.particles_.size());
     DepthContact c;
+    // The first of a pair is the body with the lower number: the one that carries the particle, or not.
     const bool on_a = other_owner >= n || body < other_owner;
     c.pair = other_owner >= n ? PairKey{body, -1, other_owner - n}
              : on_a           ? PairKey{body, other_owner, -1}
@@ -191,10 +197,12 @@ void DepthDetector::note_overlap(const DepthContact& contact, double area, bool 
   }
   auto& [by_body, by_other] = areas_[place];
   (on_a ? by_body : by_other) += area;
+  // Either body's particles measure the same overlap: two measures have a mean, one stands alone.
   overlap.area = by_body > 0.0 && by_other > 0.0 ? 0.5 * (by_body + by_other) : by_body + by_other;
 }
 
 std::vector<std::string> DepthDetector::describe() const {
+  // Bodies of one outline with as many particles are told in one line, by the first one's name.
   std::map<std::pair<const Outline*, std::size_t>, std::pair<std::string, int>> kinds;
   for (std::size_t k = 0; k < particles_.size(); ++k) {
     auto& [name, bodies] = kinds[{world_.bodies[k].outline.get(), particles_[k].size()}];

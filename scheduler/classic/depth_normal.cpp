@@ -27,6 +27,7 @@ DepthNormal normal_of(const Site& site, const ParticlePlace& particle,
     if (slope.norm() > kLeastSlope && slope.dot(answer.normal) > 0.0) answer.normal = slope.normalized();
   }
   if (site.solid || particle.velocity.dot(answer.normal) <= 0.0) return answer;
+  // It recedes: on its own side it has bounced, on the other it is going through.
   if (side_of_line(site, particle.now) * side_of_line(site, particle.before) < 0.0) {
     answer.normal = -answer.normal;
     answer.crossed = true;

@@ -60,6 +60,7 @@ void DepthPictures::open(int body, const std::vector<int>& near) {
     for (const int owner : near) scene_[owner].drawn = true;
   }
   const Box window = window_of(body);
+  // A whole number, rim included: the body's diameter is one of its pixels.
   const int across = static_cast<int>(std::lround(window.extent().x() / pixel(body)));
   renderer_.draw(window, across, across, scene_, static_cast<std::uint32_t>(body), band_);
 }
@@ -70,6 +71,7 @@ PixelValue DepthPictures::value_at(const Vec2& p) const {
   const int i = static_cast<int>(std::clamp(at.x(), 0.0, first.width - 1.0));
   const int j = static_cast<int>(std::clamp(at.y(), 0.0, first.height - 1.0));
   const std::size_t place = static_cast<std::size_t>(j) * first.width + i;
+  // The second layer is the nearest of another owner than the first's.
   const FieldImage& seen = layers_[first.owner[place] == static_cast<std::uint32_t>(body_) ? 1 : 0];
   return {seen.owner[place], seen.site[place], seen.distance[place], seen.inside[place] != 0};
 }

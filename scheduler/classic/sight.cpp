@@ -12,6 +12,7 @@ const DepthSight& Sight::look(double from, double t) {
   double fastest = 0.0;
   for (int k = 0; k < kernel_.owner_count(); ++k) {
     const Motion& motion = kernel_.motion_of(k);
+    // A motion that has begun since the last look knows no earlier moment than its beginning.
     const double before = std::clamp(from, std::min(motion.begin(), t), t);
     owners.push_back({motion.state(t), motion.state(before)});
     const Outline& outline = kernel_.outline_of(k);

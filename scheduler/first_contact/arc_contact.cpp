@@ -11,11 +11,13 @@ namespace {
 
 /// How far (>= 0) the direction d lies outside the arc's sector [rad]; 0 inside.
 double angle_outside(const Site& arc, const Vec2& d) {
+  // The two radii are a quarter turn apart at most: their sum does not vanish, and halves the sector.
   const Vec2 middle = (arc.a - arc.center) + (arc.b - arc.center);
   const double off = std::abs(std::atan2(cross(middle, d), middle.dot(d)));
   return std::max(0.0, off - 0.5 * std::abs(arc.sweep));
 }
 
+/// A direction of T's frame, seen from S.
 Vec2 to_s(const Placed& s, const Placed& t, const Vec2& d) {
   return s.frame.direction_to_local(t.frame.direction_to_world(d));
 }
@@ -31,6 +33,8 @@ bool is_through(double gap, const Site& arc, const Site& site, double band) {
   return gap < -(arc.radius + site.radius) - band;
 }
 
+/// Of a circle the point nearest to a line lies straight across from the centre. So the pair is active
+/// if that direction is in the arc's sector and the centre is abreast of the segment.
 ArcStep against_segment(const Site& arc, const Site& site, const SamplePath& path, const Placed& s,
                         const Placed& t, double band, const RelativeBounds& relative,
                         const PathBounds& bounds) {
@@ -50,10 +54,15 @@ ArcStep against_segment(const Site& arc, const Site& site, const SamplePath& pat
   step.active = beyond == 0.0 && outside == 0.0 && !through;
   step.point = path.q - step.normal * (side * offset - site.radius);
   step.curvature = bounds.acceleration;
+  // While the whole circle is clear of the line, its sector does not matter. A distance from a line has
+  // no curvature of its own: only the path's counts.
   if (step.active || step.gap > 0.0)
     step.safe = safe_step(short_of(step.gap, band), step.rate, step.curvature);
   if (!step.active) {
+    // The pair is not active for one or more of three reasons, and cannot come to be while any of them
+    // lasts: so the longest of their times counts. Directions turn against each other at `spin` at most.
     const double spin = relative.spin_s + relative.spin_t;
+    // The foot has to come onto the segment first.
     if (beyond > 0.0) step.safe = std::max(step.safe, bounds.speed > 0.0 ? beyond / bounds.speed : kForever);
     if (outside > 0.0) {
       // a wire may come to be touched from its other side, in the opposite direction
@@ -88,8 +97,13 @@ ArcStep against_arc(const Site& arc, const Site& site, bool hollow, const Sample
   const bool through = is_through(step.gap, arc, site, band);
   step.active = outside == 0.0 && distance > 0.0 && !through;
   step.point = site.center + u * (site.arc_radius + (hollow ? -site.radius : site.radius));
+  // Seen from inside, the gap is R - |w| with w = q - centre. Over a step |w + w' h + w'' h^2 / 2| grows
+  // by no more than its last term beyond |w + w' h|, and as sqrt(rho^2 + x) <= rho + x / (2 rho), that
+  // is at most rho + rho' h + v^2 h^2 / (2 rho). So the present rho serves for the whole step, however
+  // near to the centre the path leads.
   step.curvature =
       bounds.acceleration + (hollow && distance > 0.0 ? bounds.speed * bounds.speed / distance : 0.0);
+  // At the very centre rho is 0 and there is no such bound: speed alone holds a hollow's gap there.
   if ((step.active || step.gap > 0.0) && (distance > 0.0 || !hollow))
     step.safe = safe_step(short_of(step.gap, band), step.rate, step.curvature);
   if (step.gap > 0.0 || through)
@@ -112,10 +126,13 @@ ArcStep arc_step(const Site& arc, const Site& site, const SamplePath& path, cons
   none.safe = kForever;
   if (!touches_convex(arc) || site.kind == SiteKind::point) return none;
   if (site.kind == SiteKind::segment) return against_segment(arc, site, path, s, t, band, relative, bounds);
+  // A wider arc in a hollow comes nearest at an end of one of the two, and ends are vertex samples: only
+  // a tighter one touches it with its inside.
   ArcStep outer = none, inner = none;
   if (touches_convex(site)) outer = against_arc(arc, site, false, path, s, t, band, relative, bounds);
   if (touches_concave(site) && arc.arc_radius < site.arc_radius)
     inner = against_arc(arc, site, true, path, s, t, band, relative, bounds);
+  // What is told is the nearer of the two ways that count; the step must be safe for both.
   ArcStep& first = outer.active && (!inner.active || outer.gap <= inner.gap) ? outer
                    : inner.active                                            ? inner
                                                                              : outer;

@@ -17,6 +17,8 @@ namespace brink {
 
 namespace {
 
+/// Outlines of more segments are for the general search: here each is looked at, there an index names a
+/// few.
 constexpr std::size_t kMostSites = 16;
 
 bool keeps_angle(const Motion& m) {
@@ -85,6 +87,8 @@ std::optional<double> contact_after(const Quadratic& g, double s_from, double no
 
 /// True if a gap that starts at `gap` with the given rate is sure to need no sink_at_start().
 bool starts_clear(double gap, double rate, double acceleration, double noise, double tolerance) {
+  // Rising against `acceleration` all the way, it comes to rate^2 / (2 acceleration) >= 2 tolerances: by
+  // far more than the half of a sink step that start_sink() asks for.
   return gap >= tolerance || (rate > noise && rate * rate >= 4.0 * acceleration * tolerance);
 }
 
@@ -151,12 +155,15 @@ FeatureContact disc_contact(const Mover& a, const Parabola& path_a, const Mover&
 
 bool discs(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
            SearchScratch& scratch, PairAnswer& answer) {
+  // Under unequal accelerations the squared distance is of fourth degree in time; two bare points meet at
+  // a level of their own (nominal_level()).
   const double reach = b.outline().sites[0].radius + a.outline().sites[0].radius;
   if (!(reach > 0.0) || a.motion->acceleration().linear != b.motion->acceleration().linear) return false;
   const RelativeParabola rel(a, b);
   answer = {PairAnswer::Status::clear, to, {}};
   const double speed2 = rel.velocity.squaredNorm(), way = rel.offset.dot(rel.velocity);
   const double distance0 = rel.offset.norm(), s_from = from - rel.reference;
+  // Seen from each other they go straight on: who parts has parted for good.
   if (way > rel.noise * distance0 && distance0 >= 0.5 * reach) return true;  // they part
   const bool in_touch = distance0 - reach < limits.touch && way < 0.0;       // a graze, or not: by a rounding
   if (in_touch || (distance0 - reach < limits.tolerance && doubtful(way / distance0, rel.noise)))
@@ -174,6 +181,7 @@ bool discs(const Mover& a, const Mover& b, double from, double to, const SearchL
   }
   const Parabola path_a(*a.motion), path_b(*b.motion);
   double t = std::max(rel.reference + s, from);
+  // The rounding of places matters where the two are nearest within the window.
   const double nearest = t <= to                    ? t
                          : rel.velocity.isZero(0.0) ? from
                                                     : std::clamp(rel.reference - way / speed2, from, to);
@@ -185,6 +193,8 @@ bool discs(const Mover& a, const Mover& b, double from, double to, const SearchL
   const double closing = -then.dot(rel.velocity) / then.norm();
   if (doubtful(closing, rel.noise)) return false;
   if (closing < 0.0) return true;
+  // The general search's own operations in its own order, less the level: bisected, it has the same sign
+  // at every double.
   const auto gap = [=](double time) { return (path_a.at(time) - path_b.at(time)).norm() - reach - level; };
   const double rounding = gap_noise(place_noise, then, Vec2::Zero());  // t is the nearest
   const auto root = canonical_root(gap, t, std::max(rel.reference, 0.0), rounding, closing);
@@ -204,6 +214,7 @@ bool stays_within(const Quadratic& along, double length, double s0, double s1) {
   if (!inside(s0) || !inside(s1)) return false;
   if (along.second == 0.0) return true;
   const double turn = -along.rate / along.second;
+  // A quadratic is extreme at the ends, or where it turns.
   return turn <= s0 || turn >= s1 || inside(turn);
 }
 
@@ -285,6 +296,8 @@ bool meet(const DiscPath& disc, const SearchLimits& limits, double level, Segmen
   const double now = above.at(disc.s_from);
   const bool in_front = now > 0.0 || (now >= -limits.touch && above.slope(disc.s_from) > 0.0);
   if (!in_front) return stays_within(along, length, disc.s_from, s_end);
+  // In front, with above > 0, the disc is clear of the whole line, ends included, until m.s. What counts
+  // is where its centre is then: abreast, or on its way past both ends.
   if (m.s > disc.s_to || stays_within(along, length, m.s, m.s)) return true;
   const double reach = disc.radius + site.radius + limits.tolerance;
   const auto away = [&](const Vec2& end) { return stays_away(disc, end, reach, m.s, disc.s_to); };
@@ -315,6 +328,7 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
     clear = clear && starts_clear(std::abs(m.gap.value), m.gap.rate, std::abs(m.gap.second), rel.noise,
                                   limits.tolerance);
   }
+  // Asked in the order of the pair, as the general search does: the level must have the same bits.
   const double level = clear       ? 0.0
                        : disc_is_a ? sink_at_start(disc, other, limits, scratch)
                                    : sink_at_start(other, disc, limits, scratch);
@@ -386,6 +400,10 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
 }  // namespace
 
 double falling_root(const Quadratic& g) {
+  // Where g falls through 0 its slope, g.rate + g.second s, is minus the root of the discriminant. With a
+  // rate < 0 that s is (root^2 - rate^2) / (-second (root - rate)), in which `second` cancels: nothing is
+  // lost where it is small or 0. With a rate >= 0 and a curve that does not bend down, g has fallen in the
+  // past, if ever, and rises since.
   const double discriminant = g.rate * g.rate - 2.0 * g.second * g.value;
   if (discriminant < 0.0) return kForever;
   const double root = std::sqrt(discriminant);

@@ -79,12 +79,15 @@ class PairSearch {
   /// not onto the discs' contact: it may be the pair's, and wants polishing from before.
   bool apart_by_bounding_discs() {
     const Outline &oa = a_.outline(), &ob = b_.outline();
+    // What is in a container is in its disc from the start.
     if (oa.container || ob.container) return false;
     const double reach = oa.bounding_radius + ob.bounding_radius;
     const double near = 1e-3 * reach + limits_.tolerance;  // as near as makes no difference
     const bool straight = a_.motion->is_ballistic() && b_.motion->is_ballistic() &&
                           a_.motion->acceleration().linear == b_.motion->acceleration().linear;
     double t = from_;
+    // Each step is certified, so wherever the loop ends the pair is clear up to there, and the samples
+    // go on.
     for (int i = 0; i < 64 && t < to_; ++i) {
       const BodyState sa = a_.motion->state(t), sb = b_.motion->state(t);
       const Vec2 d = sa.pose.position - sb.pose.position, v = sa.twist.velocity - sb.twist.velocity;
@@ -96,6 +99,8 @@ class PairSearch {
       }
       const RelativeBounds bounds = bounds_over(t, to_);
       const double df = d.dot(v) / distance;
+      // Rounded down by more than the step's own roundings, here and in step(): it may be shorter than
+      // what is safe, never longer.
       t += safe_step(f - 0.5 * near, df, bounds.acceleration) * (1.0 - 4.0 * kEpsilon);
     }
     if (t >= to_) return true;
@@ -105,6 +110,7 @@ class PairSearch {
   }
 
   void advance() {
+    // Over all that is left. A contact that is found brings to_ nearer; the bounds hold for that, too.
     long_bounds_ = BothWays(bounds_over(from_, to_));
     short_window_ = to_ - from_;
     reached_ = from_;
@@ -123,6 +129,7 @@ class PairSearch {
       view_.place(t);
       short_end_ = std::min(to_, t + short_window_);
       short_bounds_ = BothWays(bounds_over(t, short_end_));
+      // Who is due soon is looked at now: the outlines are placed once for all of these.
       const double due = t + 0.25 * std::min(short_window_, to_ - t);
       least_ = kForever;
       // the nearest ones first: beside their steps most others are seen to be far at a glance
@@ -132,12 +139,15 @@ class PairSearch {
       if (first_b >= 0) advance_sample(of_b, first_b);
       advance_due(of_a, due, first_a);
       advance_due(of_b, due, first_b);
+      // A step by the short bounds is no longer than their window: fourfold lets steps grow where there
+      // is room, and bounds stay tight where there is none.
       short_window_ = std::max(4.0 * (least_ - t), 64.0 * ulp(t));
     }
   }
 
   /// Features have come close: from now on levels count.
   void look_closely() {
+    // Before neighbours are looked for: it uses the same memory of the scratch.
     if (!sink_known_) view_.set_sink(view_.sink_at_start());
     sink_known_ = true;
   }
@@ -198,6 +208,8 @@ class PairSearch {
     const Facing line = line_between(half, i, path, band);
     const double apart = line.gap > 0.0 ? safe_step(line.gap, line.rate, over_all.acceleration)
                                         : clear_of_disc(half, i, path, band, over_all);
+    // Clear to the end; or so long that the pair will be placed again, for nearer samples, long before:
+    // a coarse bound is enough.
     if (apart >= long_window || apart > 2.0 * (least_ - t_)) return apart * (1.0 - 4.0 * kEpsilon);
     const PathBounds over_short = path_bounds(path, near, short_window);
     double safe = apart, again = 0.0;
@@ -210,6 +222,7 @@ class PairSearch {
       safe = arc_sample_step(half, i, path, band, relative, over_all);
       if (safe < short_window) again = arc_sample_step(half, i, path, band, near, over_short);
     }
+    // The short bounds say nothing of what lies beyond their window.
     if (safe < short_window) safe = std::max(safe, std::min(again, short_window));
     return safe * (1.0 - 4.0 * kEpsilon);
   }
@@ -251,6 +264,8 @@ class PairSearch {
     // what is not named is too near to be left out: two things are met, and one of them alone is named
     if (near.others_at_least - sample.radius <= 2.0 * band) near = all_of(sites);
     work_.candidate_evaluations += near.sites.size();
+    // Sites that are not named are at least so far away; as any step, one towards them ends half a band
+    // before.
     const double others = std::max(0.0, near.others_at_least - sample.radius - 0.5 * band);
     double safe = over_all.speed > 0.0 ? others / over_all.speed : kForever;
     double again = over_short.speed > 0.0 ? others / over_short.speed : kForever;
@@ -282,6 +297,7 @@ class PairSearch {
       if (beyond > band && beyond >= safe * over_all.speed &&
           beyond >= std::min(again, short_window) * over_short.speed)
         continue;
+      // From outside a step leads to the middle of the band.
       const double slack = -0.5 * band;
       const double rate = distance_rate(site, nearest, path.q, path.rate);
       safe = std::min(safe, site_step(site, nearest, path.q, path.rate, rate, radius, slack, over_all).safe);
@@ -306,6 +322,9 @@ class PairSearch {
                     const PathBounds& bounds) const {
     const double allowed = 0.25 * sink_step(limits_.touch, 0.0);
     if (site.kind == SiteKind::segment || site.kind == SiteKind::point) {
+      // A convex distance never lies below its support line at the present foot. So of the path's
+      // acceleration only the part along the present normal bends the gap towards zero, though the
+      // normal may turn.
       double bend = bounds.acceleration;
       if (relative.spin_t == 0.0 && relative.alpha_t == 0.0) {  // only what pulls against the normal counts
         const double along = view_.placed(half.t).frame.direction_to_world(f.normal).dot(relative.pull);
@@ -321,6 +340,7 @@ class PairSearch {
     if (nearest.foot == Foot::interior)
       return band_step(above, f.rate, bounds.acceleration + bend, band, allowed);
     const HullDistance hull = distance_to_arc_hull(site, nearest, path.q);
+    // nearest.distance - above: where the sample meets the core, by both thicknesses and the level.
     const double outside = hull.distance - (nearest.distance - above);
     // what reaches over the chord to an end is in the hull already, however that moves
     const bool by_end = hull.distance == nearest.distance;
@@ -335,6 +355,7 @@ class PairSearch {
           return off > 2.0 * band ? safe_step(off - 0.5 * band, rate, bounds.acceleration)
                                   : band_step(off, rate, bounds.acceleration, band, allowed);
         });
+    // Each of the three is certain by itself.
     return std::max({by_hull, by_speed, by_ends});
   }
 
@@ -380,11 +401,16 @@ class PairSearch {
     const double begin = view_.start();
     if (t_ <= begin && now <= 0.0) return remember(half, f, t_);  // touching from the start, and approaching
     if (meets_tip(half, f, path, bounds)) return true;
+    // Newton's last step, `guess`; by how much the bending of the gap can make it wrong, `bend` (over
+    // the time `off` the rate changes by a part a off / speed of itself); and in what time the gap falls
+    // by its own rounding, `moment`, a few ticks of the clock included.
     const double guess = t_ + now / speed;
     const double off = std::abs(now) / speed;
     const double bend = std::min(1.0, bounds.acceleration * off / speed) * off;
     const double rounding = view_.gap_rounding(half, f.sample, path.q);
     const double moment = rounding / speed + 4.0 * ulp(t_), noise = moment + bend;
+    // A canonical time needs an interval that holds this crossing alone, with a gap beyond rounding at both
+    // ends. Its lower end:
     // clear now, or a little before, but not before it rose; it was clear until the search began
     const double floor = std::max(begin, from_ - 1024.0 * moment);
     double low = t_;
@@ -428,9 +454,9 @@ class PairSearch {
     return remember(half, f, t, 2.0 * moment);
   }
 
-  /// Where the gap, which falls now, is smallest, if it rises again within eight times what is left until `about`, and not
-  /// after `last`; 0 if it does not. On a grid of 1024 ticks of the clock, which is wider than what roundings of the rate make of
-  /// it, and much narrower than the dip.
+  /// Where the gap, which falls now, is smallest, if it rises again within eight times what is left until
+  /// `about`, and not after `last`; 0 if it does not. On a grid of 1024 ticks of the clock, which is wider
+  /// than what roundings of the rate make of it, and much narrower than the dip.
   double deepest_after(const Half& half, const Feature& f, double about, double last) const {
     PairView there = view_;
     const auto rises = [&](double t) {
@@ -464,6 +490,8 @@ class PairSearch {
     const Vec2 tip = at_a ? site.a : site.b, way = path.q - tip;
     const double slow = path.rate.norm(), off = way.norm() / slow,
                  noise = view_.gap_rounding(half, f.sample, path.q);
+    // A first look: along the straight way they pass each other at this distance. If that is more than
+    // rounding and bending explain, they do not meet.
     if (std::abs(cross(path.rate, way)) / slow > 8.0 * noise + bounds.acceleration * off * off) return false;
     PairView there = view_;
     const auto to_tip = [&](double t) {
@@ -472,6 +500,8 @@ class PairSearch {
       then.q -= tip;
       return then;
     };
+    // They are nearest to each other where way . rate = 0: found by Newton's steps, from here and twice
+    // from there.
     double nearest = t_ - way.dot(path.rate) / path.rate.squaredNorm();
     SamplePath then;
     for (int i = 0; i < 2; ++i) {
@@ -483,6 +513,7 @@ class PairSearch {
     if (!corners_cross(half, f, at_a, then.rate, there)) return false;
     const double rounding = there.gap_rounding(half, f.sample, then.q + tip);
     if (!(nearest <= window_end_ && then.q.norm() <= 4.0 * rounding)) return false;
+    // The gap at which a sharp sample meets a wire (nominal_level()).
     const double before = std::max(0.5 * limits_.touch, 8.0 * rounding), speed = then.rate.norm();
     const auto clear = [&](double t) { return to_tip(t).q.norm() - before; };
     const double low = nearest - 2.0 * before / speed;
@@ -490,7 +521,8 @@ class PairSearch {
     return remember(half, f, last_clear_time(clear, low, nearest), 2.0 * rounding / speed);
   }
 
-  /// True if the sample's corner, at the site's end, comes to overlap with that as it moves along d (T's frame).
+  /// True if the sample's corner, at the site's end, comes to overlap with that as it moves along d (T's
+  /// frame).
   bool corners_cross(const Half& half, const Feature& f, bool at_a, const Vec2& d,
                      const PairView& there) const {
     const Frame &s = there.placed(half.s).frame, &t = there.placed(half.t).frame;
@@ -568,6 +600,8 @@ std::vector<FeatureContact> touching_features(const Mover& a, const Mover& b, do
   std::vector<FeatureContact> found;
   PairView view(a, b, limits, scratch);
   view.place(t);
+  // Gaps are asked for, levels are counted after: where gaps can be held, a level is half a tolerance at
+  // most (can_hold()).
   view.each_feature(tolerance + limits.tolerance, [&](const Half& half, const Feature& f) {
     const FeatureContact c = view.contact_of(half, f, t);
     if (c.gap - c.level <= tolerance) found.push_back(c);

@@ -25,11 +25,14 @@ bool comes_to_corner(const Site& site, const Nearest& nearest, const Vec2& q, co
   const Vec2 &bisector = at_a ? site.pseudo_a : site.pseudo_b, normal = normal_at(site, nearest, q);
   const Vec2 beyond = at_a ? Vec2(-perp(normal)) : perp(normal);  // the site's way on beyond its end
   const double speed = d.norm();
+  // The corner is convex if its bisector leans on beyond the end. The site's own normal is an edge of
+  // the cone of the corner's normals, so -d lies in the cone if it is no farther from the bisector than
+  // that normal.
   return beyond.dot(bisector) > 0.0 && -d.dot(bisector) >= normal.dot(bisector) * speed;
 }
 
-/// A direction out of the site's end at which q is nearest; where they are one, to `rounding`, that of a solid's
-/// corner.
+/// A direction out of the site's end at which q is nearest; where they are one, to `rounding`, that of a
+/// solid's corner.
 Vec2 outward(const Site& site, const Nearest& nearest, double side, const Vec2& q, double rounding) {
   if (nearest.distance > rounding || !site.solid) return side * (q - nearest.point);
   return nearest.foot == Foot::start ? site.pseudo_a : site.pseudo_b;
@@ -82,6 +85,7 @@ Feature PairView::nearest_feature(const Half& half, int i) const {
 
 ArcStep PairView::arc_now(const Half& half, int i, int j) const {
   const Site& arc = half.samples_of().sites[static_cast<std::size_t>(half.sample(i).arc_site)];
+  // With bounds of nothing: the gap, its rate and its place are used, how long they are safe is not.
   return arc_step(arc, half.site(j), path(half, i), placed(half.s), placed(half.t), limits_.tolerance, {},
                   {0.0, 0.0});
 }
@@ -129,6 +133,9 @@ void PairView::find_neighbours(const Half& half, int i, std::span<const std::uin
     if (nearest.distance - site.radius - radius > reach) continue;
     const Feature f = vertex_feature(half, i, static_cast<int>(k), nearest, path);
     if (pokes_through(half, i, site, nearest, f)) continue;
+    // What is touched and left is the nearest for a while yet: it would hide a neighbour that is
+    // approached (a disc that goes from wall to wall of a corner), so gap_to_neighbours() passes over
+    // it.
     const bool leaving = f.gap - level(half, i, site, path.q) <= limits_.touch && !approaching(f, path);
     scratch_.neighbours.push_back({f.site, f.normal, leaving, nearest.foot != Foot::interior});
   }
@@ -144,6 +151,8 @@ bool PairView::pokes_through(const Half& half, int i, const Site& site, const Ne
       site.radius + sample.radius > 0.0 || !(f.gap > 0.0))
     return false;
   const Vec2 along = site.b - site.a;
+  // The corner is `gap` before the face. An edge that comes nearer by more than that on its way to its
+  // other end crosses the face's line, when it has gone the part gap / falls of this way.
   const auto crossed_by = [&](const Site& edge, const Vec2& other_end) {
     if (edge.kind != SiteKind::segment) return false;
     const Vec2 way = placed(half.t).frame.direction_to_local(
@@ -190,6 +199,7 @@ void PairView::put(Placing& p, double t) const {
   p.place_noise = of_a_.place(t, sa.pose.position) + of_b_.place(t, sb.pose.position);
   p.angle_noise_a = of_a_.angle(t, sa.pose.angle);
   p.angle_noise_b = of_b_.angle(t, sb.pose.angle);
+  // As a gap shows it: a rounding of an angle moves a point by that times its arm.
   const double noise = p.place_noise + p.angle_noise_a * a_.outline().bounding_radius +
                        p.angle_noise_b * b_.outline().bounding_radius;
   if (noise > kFarOfTolerance * limits_.tolerance) return put_relative(p, t);
@@ -201,6 +211,8 @@ void PairView::put(Placing& p, double t) const {
 }
 
 void PairView::Placing::note_turning() {
+  // An angle of 0 has an exact sine and cosine, and turning by them rounds nothing. Else four roundings
+  // hold those of the sine and cosine, of their products with a coordinate, and of the sum.
   const auto turned = [](const Placed& placed) { return placed.angle == 0.0 ? 0.0 : 4.0 * kRoundoff; };
   turn_noise_a = angle_noise_a + turned(a);
   turn_noise_b = angle_noise_b + turned(b);
@@ -248,11 +260,14 @@ bool PairView::beyond_doubt() const {
   constexpr double by_far = 1e-2;
   const Outline &a = a_.outline(), &b = b_.outline();
   if (a.container || b.container) return false;
+  // Longer than any arm, and than the distance of any place of contact from either origin.
   const double reach = 2.0 * (a.bounding_radius + b.bounding_radius);
   const double noise =
       now_.place_noise + (now_.angle_noise_a + now_.angle_noise_b + 16.0 * kRoundoff) * reach;
   const double speed = (now_.a.twist.velocity - now_.b.twist.velocity).norm() +
                        (std::abs(now_.a.twist.omega) + std::abs(now_.b.twist.omega)) * reach;
+  // 16: the most that can_hold() asks for, of a pressed pair; of a wire, whose level is 8 roundings, it
+  // asks for twice that level.
   return 16.0 * noise <= by_far * limits_.tolerance &&
          speed * same_instant(now_.time) <= by_far * kSlowOfSize * smallest_radius(a, b);
 }
@@ -272,6 +287,8 @@ bool PairView::Reach::leaves_out(int i) const {
   const double far = far_ + sample.radius;
   if ((sample.p - origin_).squaredNorm() > far * far) return true;  // most are far
   if (outline.facets.empty()) return false;
+  // The disc is wide beside what is slender. A convex outline is told more closely by the line between
+  // it and the sample.
   const Vec2 q = t_.direction_to_local(s_.direction_to_world(sample.p) + (s_.origin - t_.origin));
   return facing_convex(outline, q, Vec2::Zero()).gap - outline.sites[0].radius - sample.radius > reach_;
 }
@@ -298,6 +315,8 @@ double PairView::sink_at_start() const {
   // what was pressed then has met since; of thousands of steps ago nothing is left to tell
   if (!a_.motion->remembers(start()) || !b_.motion->remembers(start())) return 0.0;
   if (discs_were_apart()) return 0.0;
+  // One sink for the pair, whichever of its features is met: start_sink() is given the least favourable of
+  // each number.
   PairView then = *this;
   then.place(start());
   const RelativeBounds at_once =
@@ -311,6 +330,7 @@ double PairView::sink_at_start() const {
     const double own_step = sink_step(limits_.touch, rounding);
     const double above = f.gap - then.nominal_level(then.now_, half, f.sample, site, path.q);
     if (!(above < own_step) || above < -kOverlapAtStart * limits_.tolerance) return;
+    // A pair that collides at once has no need to sink until it does.
     now = now || (above <= 0.0 && then.approaching(f, path) && !then.hidden_behind_others(half, f, path));
     const PathBounds bounds = path_bounds(path, half.s_is_a ? at_once : at_once.swapped(), 0.0);
     const bool of_arc = site.kind == SiteKind::arc;
@@ -328,6 +348,8 @@ double PairView::sink_at_start() const {
 double PairView::side_kept(const Site& site, const SearchScratch::Neighbour& as_found, const Nearest& now,
                            const Vec2& q, double rounding, bool at_once) const {
   const bool segment = site.kind == SiteKind::segment, abreast = now.foot == Foot::interior;
+  // Found abreast of the wire, as_found.normal points to the side on which the sample was then. Found at
+  // an end of a segment, it was on neither side yet.
   if (abreast && !(as_found.at_end && segment)) return as_found.normal.dot(q - now.point) < 0.0 ? -1.0 : 1.0;
   // it comes round an end, unless its way leads through; of what is not abreast only straight ways are known
   return segment && (abreast || at_once) && way_leads_through(site, q, rounding) ? -1.0 : 1.0;
@@ -362,6 +384,8 @@ PairView::GapAndSite PairView::gap_to_neighbours(const Placing& p, const Half& h
     least = rank;
     const double radius = site.radius + sample_radius;
     const bool wire = radius == 0.0 && !site.solid && site.kind != SiteKind::point;
+    // A wire has no inside, so its distance has no sign of its own: measured from the side that the
+    // sample was on, its gap falls through 0 where it crosses, and the bisection has something to find.
     const double side = wire ? side_kept(site, neighbour, n, q, rounding, at_once) : side_of(site, n, q);
     found = {side * n.distance - radius - level_of(nominal_level(p, half, i, site, q), sink_),
              neighbour.site};
@@ -374,6 +398,7 @@ double PairView::arc_gap(const Half& half, const Feature& f, const Vec2& c) cons
   const Site& site = half.site(f.site);
   const double reach = arc.arc_radius + arc.radius + site.radius;
   if (site.kind == SiteKind::segment) {
+    // On the side that f has, not on the nearer one: past the surface the gap has to go on falling.
     const Vec2 d = site.b - site.a;
     const double offset = cross(d, c - site.a) / d.norm();
     return (perp(d).dot(f.normal) > 0.0 ? offset : -offset) - reach;
@@ -384,6 +409,8 @@ double PairView::arc_gap(const Half& half, const Feature& f, const Vec2& c) cons
 }
 
 PairView::GapAndSite PairView::gap_at(const Half& half, const Feature& f, double t) const {
+  // A copy of the present one: the sine and cosine of an angle that has not changed are kept
+  // (Placed::move()).
   Placing then = now_;
   put(then, t);
   const Placed &s = half.s_is_a ? then.a : then.b, &u = half.s_is_a ? then.b : then.a;

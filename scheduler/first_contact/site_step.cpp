@@ -4,6 +4,9 @@ namespace brink {
 
 Facing facing_convex(const Outline& outline, const Vec2& q, const Vec2& rate) {
   const std::size_t count = outline.sites.size();
+  // A convex polygon lies behind the line of each of its sides. So the largest of the signed distances
+  // to these lines is a lower bound of the distance to the polygon, and is that distance where the foot
+  // lies on the side.
   std::size_t side = 0;
   double gap = -std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < count; ++k) {
@@ -17,11 +20,15 @@ Facing facing_convex(const Outline& outline, const Vec2& q, const Vec2& rate) {
   const Facing of_side{gap, outline.facets[side].dot(rate)};
   const bool past_b = along > d.squaredNorm();
   if (gap <= 0.0 || (along >= 0.0 && !past_b)) return of_side;
+  // Past an end of the side its line tells less than there is, at a sharp corner next to nothing, and
+  // steps by it would creep. If q is past this end of both sides that meet there, it lies between their
+  // normals, and the line through the corner across the direction to q has the whole polygon behind it.
   const std::size_t after = side + 1 == count ? 0 : side + 1, before = side == 0 ? count - 1 : side - 1;
   const Site& next = outline.sites[past_b ? after : before];
   const Vec2 from_corner = q - (past_b ? site.b : site.a);
   const Vec2 next_side = past_b ? Vec2(next.b - next.a) : Vec2(next.a - next.b);
   if (from_corner.dot(next_side) > 0.0) return of_side;  // the next side is nearer than their corner
+  // Not 0: it is no less than the gap, which is > 0.
   const double distance = from_corner.norm();
   return {distance, from_corner.dot(rate) / distance};
 }
@@ -41,7 +48,10 @@ HullDistance distance_to_arc_hull(const Site& arc, const Nearest& nearest, const
   } else if (nearest.foot == Foot::interior && beyond_circle(arc, q, q - arc.center) <= 0.0) {
     return {};  // between chord and arc
   }
+  // Abreast of the arc and outside its circle. The centre itself is not met here: the sector is no wider
+  // than a quarter turn, so the centre is on the concave side, abreast of the chord.
   if (nearest.foot == Foot::interior) return {nearest.distance, (q - arc.center).normalized()};
+  // Nearest to an end, which is a corner of the hull, too.
   if (nearest.distance == 0.0) return {};
   return {nearest.distance, Vec2((q - nearest.point) / nearest.distance)};
 }

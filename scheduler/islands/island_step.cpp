@@ -13,6 +13,7 @@ constexpr int kLooks = 8;        ///< along a step
 constexpr double kSoon = 0.05;   ///< after the first look
 constexpr int kBisections = 16;  ///< until a corner is found that was cut between two looks
 constexpr int kCorrections = 6;  ///< of gaps that were missed
+/// A correction lifts by so much of what was missed.
 constexpr double kAimHigher = 1.001;
 /// What the solver may miss, of the step's speed: gaps and energy are looked at themselves.
 constexpr double kResidual = 1e-6;
@@ -29,6 +30,8 @@ struct Part {
   double lift = 0.0;  ///< how much higher than its gap it aims [m]
 };
 
+/// The convex problem of one solve: the contacts that take part, with friction bounds from the step
+/// before.
 StepProblem problem_of(const IslandStep& step, double h, const std::vector<Part>& parts) {
   StepProblem p;
   p.duration = h;
@@ -39,7 +42,11 @@ StepProblem problem_of(const IslandStep& step, double h, const std::vector<Part>
     const IslandContact& c = step.contacts[part.contact];
     StepContact s;
     s.contact = c.rows;
+    // A gap below zero by a rounding must not be opened within the step: that takes a speed of gap / h,
+    // and the energy of it. Only what a look along the step has missed is made up for.
     s.gap = std::max(c.gap, 0.0) - part.lift;
+    // The impulse, if the force goes on as it was. A step before that was shorter than this one counts
+    // with its own impulse alone: where it took an impact, its mean force is as large as it was short.
     const double expected = c.normal_force * std::min(h, c.force_lasted);
     s.friction_bound = c.friction * expected;
     s.rolling_bound = c.rolling_resistance * expected;
@@ -57,6 +64,9 @@ StepResult with_friction(ConeQp& solver, StepProblem& p, const IslandStep& step,
     result = solver.step(p);
     factorisations += result.factorisations;
     if (!(result.residual <= kResidual)) break;
+    // Where no bound changes any more the forces obey Coulomb's law with themselves: one more solve would
+    // give them again. After the last solve the bounds are left as they are, since its result was found
+    // with those.
     bool same = true;
     for (std::size_t k = 0; k < p.contacts.size(); ++k) {
       const IslandContact& c = step.contacts[parts[k].contact];
@@ -80,6 +90,7 @@ struct Miss {
 };
 
 /// Where a parabola through three looks, one apart, is lowest, from the middle one; 0: at none between them.
+/// With x from the middle look the parabola is here + (after - before) x / 2 + bend x^2 / 2.
 double lowest(double before, double here, double after) {
   const double bend = before - 2.0 * here + after, at = 0.5 * (before - after) / bend;
   return bend > 0.0 && std::abs(at) < 1.0 ? at : 0.0;
@@ -92,8 +103,10 @@ void look_for_end(double from, double seen, double slope, Look&& look) {
   double falling = from, past = from + 1.0;
   for (int n = 0; n < kBisections; ++n) {
     const double middle = 0.5 * (falling + past), there = look(middle);
+    // the look has noted the miss
     if (there < 0.0) return;
     const double expected = seen + (middle - from) * slope;
+    // still on the line on which it fell, but for a quarter of its fall: the end comes later
     (there - expected <= 0.25 * (seen - expected) ? falling : past) = middle;
   }
 }
@@ -105,14 +118,19 @@ Miss missed(std::size_t k, double h, const std::vector<Vec3>& velocity, const Ga
   const auto look = [&](double at) {
     const double part = at / kLooks, there = gap(k, h * part, velocity);
     miss.most = std::max(miss.most, -there);
+    // A contact aims for a gap at the end of the step; with constant twists a part of the way has that
+    // part of the lift. The least part keeps a miss close to the start from asking for a lift without
+    // bound.
     miss.lift = std::max(miss.lift, -there / std::max(part, 0.5 / kLooks));
     return there;
   };
+  // the gap at the start is what it is: no velocity changes it, and it counts as no miss
   for (int i = 0; i <= kLooks; ++i) seen[i] = i == 0 ? gap(k, 0.0, velocity) : look(i);
   for (int i = 1; i < kLooks; ++i)
     if (const double at = lowest(seen[i - 1], seen[i], seen[i + 1]); at != 0.0) look(i + at);
   for (int i = 0; i < kLooks; ++i) {
     if (!(seen[i] > 0.0 && seen[i + 1] > 0.0)) continue;
+    // before the first look there is none to take a slope from: a look a short way on gives it
     const double slope = i > 0 ? seen[i] - seen[i - 1] : (look(kSoon) - seen[0]) / kSoon;
     if (seen[i] + slope < 0.0) look_for_end(i, seen[i], slope, look);
   }
@@ -135,14 +153,20 @@ double won(const IslandStep& step, const StepResult& result, const std::vector<P
   for (std::size_t i = 0; i < step.mass.size(); ++i)
     for (int k = 0; k < 3; ++k) {
       if (std::isinf(step.mass[i][k])) continue;
+      // Kinetic energy as m (after - before) (after + before) / 2, without the cancellation of two
+      // squares. The work of a force is h f . after, as the step goes with the twist of its end.
       const double before = step.velocity[i][k], after = result.velocity[i][k];
       change += 0.5 * step.mass[i][k] * (after - before) * (after + before) - h * step.force[i][k] * after;
+      // The last term is what the force alone makes of a body at rest: a step from rest is measured by
+      // that. The tolerance stands for the way by which gaps may be off.
       of += 0.5 * step.mass[i][k] * (before * before + after * after) +
             std::abs(step.force[i][k]) * (std::abs(h * after) + (k < 2 ? tolerance : 0.0)) +
             h * h * step.force[i][k] * step.force[i][k] / step.mass[i][k];
     }
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const IslandContact& c = step.contacts[parts[k].contact];
+    // A contact that pushes has J_n w = support + (lift - gap) / h. The support's part and the lift are
+    // work of the site; the gap's part is a loss of the bodies and stays in the sum.
     if (c.driven)
       change -= result.loads[k].normal * (c.normal_support + parts[k].lift / h) +
                 result.loads[k].tangential * c.tangential_support;
@@ -160,6 +184,7 @@ double without_winning(const IslandStep& step, const std::vector<Vec3>& velocity
       after += step.mass[i][k] * velocity[i][k] * velocity[i][k];
       work += h * step.force[i][k] * velocity[i][k];
     }
+  // At s times the velocities the kinetic energy less the work, which has s times the way, is what it was:
   // after s^2 / 2 - work s - before / 2 = 0
   return after > 0.0 ? std::min(1.0, (work + std::sqrt(work * work + after * before)) / after) : 1.0;
 }
@@ -187,6 +212,7 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
       waiting.push_back(k);
     else
       parts.push_back({k});
+  // Contacts that wait join once each and are not counted as corrections, so that the loop ends.
   for (int again = 0; again < kCorrections && !outcome.solved;) {
     StepProblem p = problem_of(step, h, parts);
     StepResult result = with_friction(solver, p, step, parts, outcome.factorisations);
@@ -210,10 +236,14 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
     if (worst > tolerance) continue;
     double of = 0.0;
     const double won_here = won(step, result, parts, h, tolerance, of);
+    // The caller tries a shorter step: by what faces that turn are missed is of second order in h.
     if (won_here > kWonOf * of) return outcome;
     result.loads = of_all(result.loads, parts, step.contacts.size());
     const bool driven = std::any_of(parts.begin(), parts.end(),
                                     [&](const Part& part) { return step.contacts[part.contact].driven; });
+    // Slower by one factor, constant twists lead through the same poses, only not as far: no gap is missed
+    // that was not before. A site that moves by the clock would be elsewhere at those poses, so its steps
+    // keep what they won, and tell it.
     if (won_here > 0.0 && !driven) {
       const double slower = without_winning(step, result.velocity, h);
       for (Vec3& v : result.velocity) v *= slower;

@@ -65,6 +65,8 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   const Site& site = half.other.sites[j];
   const double least = kOnePoint * (half.carrier.bounding_radius + half.other.bounding_radius);
   Vec2 out = direction(site, nearest, q, least);
+  // the way from the core leads inwards where q lies inside; what stands in for too short a way leads
+  // outwards
   if (side < 0.0 && nearest.distance > least) out = -out;
   const bool thin = !site.solid && site.radius + sample.radius == 0.0;
   double distance = side * nearest.distance;
@@ -79,6 +81,8 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
     distance = out.dot(q - nearest.point);
   }
   const Vec2 outward = half.other_frame.direction_to_world(out);
+  // An arc's sample speaks for its convex side: for what lies in its sector, and not nearer than its
+  // circle.
   if (sample.arc_site >= 0) {
     const Vec2 towards = half.carrier_frame.direction_to_local(-outward);
     const Site& arc = half.carrier.sites[sample.arc_site];
@@ -129,6 +133,8 @@ OnCorner on_corner(const Half& half, std::size_t j, const Vec2& q, double tie) {
   const bool at_start = (q - site.a).squaredNorm() < (q - site.b).squaredNorm();
   const Vec2& end = at_start ? site.a : site.b;
   if (!((q - end).norm() <= tie)) return OnCorner::nowhere;
+  // Both sides are equally near there, and roundings alone would choose between them, in every step anew.
+  // Where the owner's centre lies is no matter of roundings.
   const Vec2 centre = half.other_frame.to_local(half.carrier_frame.origin) - q;
   OnCorner where = OnCorner::nowhere;
   for (std::size_t k = 0; k < outline.sites.size(); ++k) {
@@ -137,6 +143,7 @@ OnCorner on_corner(const Half& half, std::size_t j, const Vec2& q, double tie) {
     const Vec2 on = next.a == end ? Vec2(next.b - next.a) : Vec2(next.a - next.b);
     if (outward(site).dot(on) > kParallel * on.norm()) continue;  // a hollow corner has both its sides
     const double more = outward(next).dot(centre) - outward(site).dot(centre);
+    // a tie goes to the site that comes first, so that exactly one of the two has the sample
     if (more > 0.0 || (more == 0.0 && k < j)) return OnCorner::other_side;
     where = OnCorner::this_side;
   }
@@ -165,6 +172,8 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
   }
   bool outside = false;
   for (std::size_t j = 0; j < nearest.size(); ++j)
+    // Outside if any of the nearest says so: at a convex corner a sample beside one face lies behind the
+    // other.
     outside =
         outside || (nearest[j].distance <= least + tie && side_of(half.other.sites[j], nearest[j], q) > 0.0);
   const bool bare = half.carrier.samples[i].arc_site < 0;
@@ -173,6 +182,8 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
     const OnCorner where = bare ? on_corner(half, j, q, corner) : OnCorner::nowhere;
     if (where == OnCorner::other_side) continue;
     if (where == OnCorner::nowhere) {
+      // Behind a site and not on it: a feature only if the sample is inside the solid, and then of the
+      // sites that are nearest, as those are what it sank through.
       if (side < 0.0 && nearest[j].distance > tie && (outside || nearest[j].distance > least + tie)) continue;
       if (goes_on_nearer(half.other, j, nearest, q, tie)) continue;
     }
@@ -182,6 +193,7 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
   }
 }
 
+/// Both outlines as carrier and as other, in frames that are seen from b's position.
 std::array<Half, 2> halves(const Outline& a, const ExtendedState& state_a, const Outline& b,
                            const ExtendedState& state_b) {
   const ExtendedState origin = state_b;
@@ -196,6 +208,7 @@ std::array<Half, 2> halves(const Outline& a, const ExtendedState& state_a, const
 
 /// True if the sample is clear of the other's box, a quick look.
 bool out_of_reach(const Half& half, const Sample& sample, double reach) {
+  // a container is solid beyond its bounds: nothing is clear of it there
   if (half.other.container) return false;
   const Vec2 q = half.other_frame.to_local(half.carrier_frame.to_world(sample.p));
   return !half.other.bounds.grown(reach + sample.radius).contains(q);

@@ -18,6 +18,8 @@ constexpr std::size_t kMostCrossings = 4096;
 /// The search for overlaps at the start ends after so many: all bodies may be in one place.
 constexpr std::size_t kOverlapsCounted = 1000;
 
+/// True for a sharp sample at a wire without thickness: met at a level before it, as it has no inside
+/// whose sign would tell the side (first_contact/tolerances.h).
 bool thin(const Outline& samples, const Outline& sites, const FeatureContact& f) {
   return !sites.sites[f.site].solid && sites.sites[f.site].radius + samples.samples[f.sample].radius == 0.0;
 }
@@ -46,6 +48,8 @@ void CertificateWatch::make_walls() {
   }
   for (const Body& b : world_->bodies) {
     const Outline& o = *b.outline;
+    // A ring may hang on a wire, which goes through its hollow with the centre on either side: of a body
+    // whose centre is not in it no flight is judged.
     const bool solid = o.is_point() ? o.sites[0].radius > 0.0 : o.solid;
     material_centre_.push_back(solid && !o.container && gap_by_brute_force(o, Vec2::Zero()) < 0.0);
   }
@@ -59,6 +63,7 @@ std::vector<Contact> CertificateWatch::overlaps(std::size_t most) {
     const auto contacts = search_->touching(pair, 0.0, now);
     if (!contacts.empty() && contacts.front().gap < 0.0)
       found.push_back(world_contact(pair, contacts.front()));
+    // bars that cross, with no vertex of one in the other
     else if (const auto crossing = search_->crossing(pair, now))
       found.push_back(*crossing);
     return found.size() < most;
@@ -72,6 +77,7 @@ std::vector<Contact> CertificateWatch::overlaps(std::size_t most) {
 std::string CertificateWatch::start_fault() {
   const double allowed = kStartOverlap * world_->length();
   const std::vector<Contact> found = overlaps(kOverlapsCounted);
+  // what the run starts with it may keep (allowed())
   if (!found.empty()) start_overlap_ = -found.front().gap;
   if (found.empty() || found.front().gap >= -allowed) return {};
   const Contact& c = found.front();
@@ -88,12 +94,15 @@ std::string CertificateWatch::start_fault() {
 bool CertificateWatch::flight(int k, double to) {
   if (!on_ || walls_.empty() || !material_centre_[k]) return true;
   const Motion& motion = trajectories_->body(k).motion;
+  // flights up to the last frame were looked at there
   const double from = std::max(motion.begin(), flown_until_);
   if (!(from < to)) return true;
   const Vec2 p = motion.place(from), q = motion.place(to);
+  // the straight line between the two, by which walls are looked up, lies in the box then: it meets none
   if (clear_[k].contains(p) && clear_[k].contains(q)) return true;
   clear_[k] = walls_.clear_around(q);
   const auto site = walls_.crossed([&](double t) { return motion.place(t); }, from, to);
+  // only the first wall is told; one that the body may pass is no fault
   if (!site || !search_->may_meet(k, trajectories_->body_count() + *site)) return true;
   return report({k, -1, *site, {}}, 0.0, to, "went through a wire of");
 }
@@ -107,12 +116,15 @@ bool CertificateWatch::resolved(const PairKey& pair, const FeatureContact& found
   if (!on_) return true;
   const Outline &a = search_->outline_of(pair.body), &b = search_->outline_of(search_->other_owner(pair));
   const double t = run_->time();
+  // in the states that the collision left, at the moment at which it was resolved
   const ExtendedContact now =
       contact_in(a, b, trajectories_->body(pair.body).motion.extended_state(t).moved(delay),
                  search_->other_state(pair, t).moved(delay), found);
   const bool on_wire = found.sample_on_a ? thin(a, b, found) : thin(b, a, found);
   const double gap = static_cast<double>(now.gap);
   note_overlap(gap);
+  // At a wire the sign of the gap is the side, and a level of it is always left; a solid may sink by
+  // roundings.
   if (on_wire ? gap > 0.0 : gap >= -allowed()) return true;
   return report(pair, on_wire ? std::max(0.0, -gap) : -gap, t,
                 on_wire ? "is on the other side of a wire of" : "overlaps");
@@ -127,6 +139,7 @@ void CertificateWatch::frame(double t) {
   const auto same_as_before = [&](const PairKey& pair) {
     return !moved_[pair.body] && !moved_[search_->other_owner(pair)];
   };
+  // of bodies that are all at rest a frame costs a look at their versions
   if (std::find(moved_.begin(), moved_.end(), true) != moved_.end())
     near_->each_at(t, [&](const PairKey& pair) {
       if (same_as_before(pair)) return true;
@@ -143,10 +156,12 @@ void CertificateWatch::note_who_moved() {
   moved_.assign(trajectories_->owner_count(), true);
   seen_.resize(bodies);
   for (int k = 0; k < trajectories_->owner_count(); ++k) {
+    // a site has no version: it is still or it is not
     const bool same = k >= bodies || seen_[k] == trajectories_->body(k).version;
     moved_[k] = first || !same || !trajectories_->motion_of(k).is_still();
     if (k < bodies) seen_[k] = trajectories_->body(k).version;
   }
+  // overlaps of still pairs were measured, not judged: once judged, they are to be seen again
   if (!on_) seen_.clear();
 }
 
@@ -158,6 +173,7 @@ bool CertificateWatch::pair_at_frame(const PairKey& pair, double t) {
   const std::size_t sites = search_->outline_of(pair.body).sites.size() *
                             search_->outline_of(search_->other_owner(pair)).sites.size();
   if (sites > kMostCrossings) return true;
+  // samples do not see bars that cross, as no vertex of either is in the other
   const auto crossing = search_->crossing(pair, t);
   if (!crossing || -crossing->gap <= allowed()) return true;
   note_overlap(crossing->gap);

@@ -19,6 +19,7 @@ ImpulseSide body_side(const Body& body, const ExtendedState& state, const RealVe
           body.inverse_inertia()};
 }
 
+/// It gives way to nothing; its twist is what a moving site does at the contact.
 ImpulseSide site_side(const ExtendedState& state, const RealVec& point) {
   return {state.twist, point - state.position, 0.0, 0.0, 0.0};
 }
@@ -51,6 +52,7 @@ ExtendedState deflected(ExtendedState s, const ExtendedTwist& before, const Exte
   return s;
 }
 
+/// A contact that a picture shows is resolved as it was seen: there are no features to look at again.
 ExtendedContact as_seen(const FeatureContact& f) {
   return {f.point.cast<Real>(), f.normal.cast<Real>(), f.gap, f.closing_speed};
 }
@@ -84,8 +86,10 @@ const Material& CollisionResponse::material_of(const PairKey& pair) {
 
 BounceLoss CollisionResponse::loss_of(const PairKey& pair) {
   const Material& m = material_of(pair);
+  // slip or spin of another value take energy, or give it: a series of bounces may come to an end
   if (reflects_) return m.slip == 1.0 && m.spin == 1.0 ? BounceLoss::none : BounceLoss::some;
   if (m.restitution == 0.0) return BounceLoss::all;
+  // with e = 1 friction may still take energy from the sliding
   const bool rubs = m.friction > 0.0 && m.tangential_restitution < 1.0;
   return m.restitution < 1.0 || rubs ? BounceLoss::some : BounceLoss::none;
 }
@@ -94,6 +98,8 @@ double CollisionResponse::note_resolve(int k, int partner, double magnitude) {
   BodyTrack& b = trajectories_->body(k);
   const double now = run_->time();
   const double rest = b.resolved_at < 0.0 ? std::numeric_limits<double>::infinity() : now - b.resolved_at;
+  // An approach that is no faster than this is none to the search (Mover), so that it does not find the
+  // same contact again.
   const double rounding = 16.0 * kEpsilon * magnitude;
   // within one instant velocities are differences of larger ones: the largest rounding stays
   b.velocity_rounding =
@@ -106,6 +112,8 @@ double CollisionResponse::note_resolve(int k, int partner, double magnitude) {
 
 Real CollisionResponse::delay_to_contact(const FeatureContact& found, const ExtendedContact& c) const {
   if (found.seen || search_->points_meet_wires() || !(c.closing > 0)) return 0;
+  // The contact is told at the last double before its gap is closed: the rest of that rounding, and what
+  // the gap was computed wrong by. A closing speed next to 0 would ask for more than that means.
   const Real late = 4.0 * ulp(run_->time());
   return std::clamp((c.gap - found.level) / c.closing, -late, late);
 }
@@ -116,7 +124,9 @@ CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const F
   const double now = run_->time();
   r.body = trajectories_->state_now(pair.body);
   r.other = search_->other_state(pair, now);
+  // of one that an island holds what its step has brought by now
   if (!pair.with_site()) r.other.twist = trajectories_->state_now(pair.other_body).twist;
+  // First where the pair is now, for the delay; then again at the moment of contact, for the impulse.
   const auto look_at = [&](const ExtendedState& body, const ExtendedState& other) {
     return found.seen ? as_seen(found)
                       : contact_in(search_->outline_of(pair.body),
@@ -138,6 +148,9 @@ CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const F
   // an approach that the law does not see was rounding, all of it
   const bool held = trajectories_->is_held(pair.body) ||
                     (!pair.with_site() && trajectories_->is_held(pair.other_body));  // by state_now()
+  // It raises velocity_rounding above the approach, so that no search finds it again. Of held bodies the
+  // search sees the twist of their step's end, the law what they have come to by now: those may well
+  // differ in earnest.
   if (r.impulse.kind == ImpulseKind::separating && !held)
     r.magnitude += std::max(0.0, found.closing_speed) / kEpsilon;
   const auto [way, way_of_other] = push_apart(pair, found, c.normal);
@@ -149,6 +162,7 @@ CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const F
 std::pair<RealVec, RealVec> CollisionResponse::push_apart(const PairKey& pair, const FeatureContact& found,
                                                           const RealVec& n) {
   const RealVec none = RealVec::Zero();
+  // of a picture's contact nobody knows how deep it is to roundings
   if (found.seen || !(found.sunk() > 0.0)) return {none, none};
   const auto given = [&](int body) {
     const Body& b = world_->bodies[body];
@@ -158,6 +172,7 @@ std::pair<RealVec, RealVec> CollisionResponse::push_apart(const PairKey& pair, c
   const Real sum = n.dot(of_body) + n.dot(of_other);
   if (!(sum > 0)) return {none, none};
   const double e = material_of(pair).restitution;
+  // 1 - e^2 is the part of the energy along the normal that the collision takes
   const Real by = push_of(found.sunk(), found.nominal(), search_->limits().tolerance, 1.0 - e * e);
   return {of_body * (by / sum), -of_other * (by / sum)};
 }
@@ -169,6 +184,7 @@ void CollisionResponse::deflect(const PairKey& pair, const Change& r, std::vecto
        deflected(r.other, r.other_before, r.impulse.other, r.delay).shifted(-search_->shift_of(pair))}};
   if (pair.with_site()) return trajectories_->restart({both, 1}, changed);
   const int component = trajectories_->body(pair.body).component;
+  // in one component: two restarts would be two motions, the first of them with one side's new twist alone
   if (component >= 0 && component == trajectories_->body(pair.other_body).component)
     return trajectories_->restart(both, changed);
   trajectories_->restart({both, 1}, changed);
@@ -187,6 +203,7 @@ DiscSide CollisionResponse::free_disc(int k) const {
 /// change() says.
 std::optional<DiscRebound> CollisionResponse::disc_rebound(const PairKey& pair, const FeatureContact& found,
                                                            const Material& material) {
+  // where the general response has no delay to the moment of contact, this one must have none either
   if (found.seen || reflects_ || search_->points_meet_wires()) return std::nullopt;
   if (material.friction != 0.0) return std::nullopt;
   if (pair.with_site()) return wall_rebound(pair, found, material);
@@ -201,7 +218,10 @@ std::optional<DiscRebound> CollisionResponse::wall_rebound(const PairKey& pair, 
   const int other = search_->other_owner(pair);
   const Site& site = search_->outline_of(other).sites[found.site];
   const DiscSide disc = free_disc(pair.body);
+  // of a closed form: the disc's centre over a straight side that stands, not over a corner or an arc
   if (!disc.motion || !found.sample_on_a || site.kind != SiteKind::segment) return std::nullopt;
+  // a bare point on a bare line has no normal of its own there; what has sunk is pushed apart by the
+  // general response
   if (disc.radius + site.radius == 0.0 || found.sunk() > 0.0) return std::nullopt;
   if (!trajectories_->motion_of(other).is_still()) return std::nullopt;
   const double now = run_->time();
@@ -217,11 +237,13 @@ ForeseenLimit CollisionResponse::foresee(const PairKey& pair, const FeatureConta
   const Motion &motion = trajectories_->motion_of(pair.body),
                &other = trajectories_->motion_of(search_->other_owner(pair));
   if (!(e < 1.0) || !motion.is_ballistic() || !other.is_ballistic()) return {};
+  // what presses the two together [m/s^2]
   const double pull = -found.normal.dot(motion.acceleration().linear - other.acceleration().linear);
   if (!(pull > 0.0)) return {};
   const double late = static_cast<double>(delay), v = found.closing_speed + pull * late;
   // what a rounding of the gap takes to fall comes back with every bounce
   const double rounding = 4.0 * search_->limits().touch / (v * (1.0 - e));
+  // 2 e v / a (1 + e + e^2 + ...)
   return {run_->time() + (late + 2.0 * e * v / (pull * (1.0 - e))), rounding};
 }
 
@@ -254,6 +276,7 @@ std::optional<Outcome> CollisionResponse::part(const PairKey& pair, const Featur
 std::optional<Outcome> CollisionResponse::collide(const PairKey& pair, const FeatureContact& found,
                                                   std::vector<int>& changed) {
   const double now = run_->time();
+  // before anything is restarted: the flight is the one that ends here
   if (!watch_->flight(pair.body, now) || (!pair.with_site() && !watch_->flight(pair.other_body, now)))
     return std::nullopt;
   const Material& material = material_of(pair);

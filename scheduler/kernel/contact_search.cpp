@@ -14,6 +14,7 @@ namespace brink {
 namespace {
 
 /// True if a sharp vertex of one owner may meet a wire without thickness of another.
+/// Two sites never meet, so one of the two must be a body.
 bool points_may_meet_wires(const std::vector<const Outline*>& outlines, std::size_t bodies) {
   const auto sharp = [](const Outline* o) {
     return std::any_of(o->samples.begin(), o->samples.end(),
@@ -32,6 +33,7 @@ bool points_may_meet_wires(const std::vector<const Outline*>& outlines, std::siz
 
 }  // namespace
 
+/// Not to be copied: b.motion may point to `image` beside it.
 struct ContactSearch::Sides {
   Motion image;  ///< of the other, where it is one
   Mover a, b;
@@ -54,6 +56,7 @@ struct ContactSearch::Sides {
 ContactSearch::ContactSearch(const World& world, const SolverOptions& options,
                              const Trajectories& trajectories, RunControl& run)
     : world_(&world), trajectories_(&trajectories), run_(&run) {
+  // relative to the scene, so that its unit of length does not matter
   limits_.tolerance = options.contact_tolerance * world.length();
   limits_.touch = kTouchOfTolerance * limits_.tolerance;
   limits_.closed_forms = options.closed_forms;
@@ -62,6 +65,7 @@ ContactSearch::ContactSearch(const World& world, const SolverOptions& options,
   std::map<const Outline*, const SiteIndex*> made;
   const auto add = [&](const std::shared_ptr<const Outline>& outline) {
     const SiteIndex*& index = made[outline.get()];
+    // by the outline's address: copies of a body share it. The order of the map is never looked at.
     if (!index || !options.share_fields) {
       indices_.push_back(make_site_index(outline, field, &run.work()));
       index = indices_.back().get();
@@ -76,6 +80,7 @@ ContactSearch::ContactSearch(const World& world, const SolverOptions& options,
 
 std::optional<PairKey> ContactSearch::pair_of(int a, int b, const Image& image) const {
   const int n = trajectories_->body_count();
+  // the image of b that a meets is seen from b the image of a as far the other way
   if (a > b) return pair_of(b, a, -image);
   if (a >= n || a == b || !may_meet(a, b)) return std::nullopt;
   return b < n ? PairKey{a, b, -1, image} : PairKey{a, -1, b - n, image};
@@ -95,6 +100,7 @@ std::string ContactSearch::name_of(const PairKey& pair) const {
 Mover ContactSearch::mover(int owner) const {
   const int n = trajectories_->body_count();
   if (owner < n) return mover(owner, trajectories_->body(owner));
+  // no resolve has computed a site's velocity
   return {indices_of_[owner], &trajectories_->site(owner - n).motion(), 0.0};
 }
 
@@ -108,6 +114,7 @@ std::optional<Certificate> ContactSearch::search(const PairKey& pair, const Body
   if (from > to) return std::nullopt;
   const TraceScope scope(run_->trace(), {TraceKind::search, pair.body, other_owner(pair), from, to});
   SearchLimits limits = limits_;
+  // the answer "undecided" at the cap is what makes an instalment
   if (most_steps > 0) limits.max_iterations = most_steps;
   WorkCounters& work = run_->work();
   const StageTimer::Sampled timed(run_->timer(), work.seconds_search, timed_);
@@ -136,6 +143,7 @@ std::vector<Certificate> ContactSearch::simultaneous(const Certificate& c, const
        touching_features(sides.a, sides.b, c.time, limits_.touch, limits_, scratch_)) {
     if (f.sample == c.contact.sample && f.sample_on_a == c.contact.sample_on_a) continue;
     if (f.closing_speed <= kApproaches * c.contact.closing_speed) continue;
+    // time and versions of the one that was found: all are one instant
     others.push_back(c);
     others.back().contact = f;
   }

@@ -17,6 +17,7 @@ constexpr std::uint64_t kPlainInstant = 2000;
 
 std::uint64_t Endings::endless() const {
   const std::uint64_t bodies = bodies_.count() + 2;  // a row may have ends yet to be reached
+  // twenty times the n^2 / 2 of a row
   return kPlainInstant + std::min(10 * bodies * bodies, kLongestInstant);
 }
 
@@ -35,13 +36,16 @@ void Endings::count_in_instant(const PairKey& pair, double now) {
 }
 
 std::optional<Ending> Endings::collided(const Outcome& o, double now, BounceLoss loss) {
+  // a bounce that ends its series is not counted: what comes of it is no collision of this instant
   if (!o.contact.seen)
     if (const auto zeno = zeno_.collided({o.pair, o.contact}, now, o.contact.closing_speed, loss, o.rest,
                                          o.contact.sink < 0.0, o.limit))
       return Ending{Ending::Kind::zeno, zeno->limit_time, zeno->bounces};
   count_in_instant(o.pair, now);
   if (in_instant_ <= kPlainInstant) return std::nullopt;
+  // as many again may be taken together
   if (in_instant_ > 2 * endless()) return Ending{Ending::Kind::endless_group, now, in_instant_};
+  // told once, where the bound is passed: the count grows by one at a time
   if (in_instant_ == endless() + 1) return Ending{Ending::Kind::group, now, in_instant_};
   return std::nullopt;
 }

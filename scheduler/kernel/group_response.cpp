@@ -35,6 +35,9 @@ class GroupResponse::Group {
     if (!collect()) return std::nullopt;
     place();
     result_ = ask(law);
+    // Joint contacts have other normals than the one that was found (two corners), and by those nothing
+    // may approach. If the found approach is no rounding, leaving it would find it again at this instant,
+    // for ever.
     if (!pushed() && !found_is_rounding() && add_as_found()) result_ = ask(law);
     if (result_.status == GroupResult::Status::stopped) return std::nullopt;
     if (result_.status == GroupResult::Status::jam) {
@@ -53,8 +56,12 @@ class GroupResponse::Group {
  private:
   double now() const { return parts_.run_.time(); }
 
+  /// Impulses at all contacts at once. What is asked twice is asked of the same twists: a law changes
+  /// nothing.
   GroupResult ask(GroupLaw law) {
     const GoOn go_on = [this] { return parts_.run_.poll(); };
+    // An elastic contact that lost its rebound would lose energy that its material keeps: then all
+    // reflect.
     const auto loses = [](const GroupContact& c) { return c.material.restitution < 1.0; };
     if (law == GroupLaw::collapsed && std::all_of(contacts_.begin(), contacts_.end(), loses))
       for (GroupContact& c : contacts_) c.material.restitution = 0.0;
@@ -62,7 +69,7 @@ class GroupResponse::Group {
                                             : resolve_reflections(members_, contacts_, go_on);
   }
 
-  /// False on a halt.
+  /// From body to body: whoever touches one of the group is of it. False on a halt.
   bool collect() {
     if (!place_boxes()) return false;
     add_found();
@@ -105,6 +112,7 @@ class GroupResponse::Group {
 
   template <class Visit>
   void each_image_near(int a, int b, Visit&& visit) const {
+    // its solid part is everywhere outside: no box tells that it is not near
     if (parts_.search_.outline_of(b).container) return visit(Image{});
     parts_.world_.periods.overlaps(boxes_[a].grown(parts_.search_.limits().tolerance), boxes_[b], visit);
   }
@@ -115,6 +123,7 @@ class GroupResponse::Group {
     bool any = pair == found_.pair;
     const std::size_t first = group_.size();
     for (const FeatureContact& f : parts_.search_.touching(pair, limits.tolerance, now())) {
+      // Of this instant: it touches to rounding, or closes within what counts as one instant.
       const double above = f.gap - f.level;
       if (above > limits.touch && above > f.closing_speed * same_instant(now())) continue;
       any = true;
@@ -155,6 +164,8 @@ class GroupResponse::Group {
              (t.contact.point - f.point).norm() <= kSamePlace * parts_.search_.limits().tolerance &&
              t.contact.normal.dot(f.normal) >= 1.0 - kSameNormal;
     };
+    // A pair is met once, so its contacts are the last ones; only those of the found pair lie in front as
+    // well.
     const auto from = group_.begin() + static_cast<std::ptrdiff_t>(pair == found_.pair ? 0 : first);
     if (std::none_of(from, group_.end(), same)) group_.push_back({pair, f});
   }
@@ -165,6 +176,7 @@ class GroupResponse::Group {
       for (const int k : {t.pair.body, t.pair.other_body})
         if (k >= 0) bodies.insert(k);
     bodies_.assign(bodies.begin(), bodies.end());
+    // all of the group are taken to the moment of the contact that was found: one moment for one instant
     delay_ = parts_.response_.delay_to_contact(found_.contact, geometry(found_));
     for (const int k : bodies_) {
       const Body& b = parts_.world_.bodies[k];
@@ -184,6 +196,7 @@ class GroupResponse::Group {
                       parts_.search_.outline_of(parts_.search_.other_owner(t.pair)), state(t.pair.body),
                       other_state(t), t.contact);
   }
+  /// Of a body among those of the group.
   int index_of(int body) const {
     return static_cast<int>(std::lower_bound(bodies_.begin(), bodies_.end(), body) - bodies_.begin());
   }
@@ -246,6 +259,8 @@ class GroupResponse::Group {
     // an approach that the law does not see was rounding, all of it
     if (!any) speed += found_.contact.closing_speed / kEpsilon;
     for (std::size_t k = 0; k < group_.size(); ++k) {
+      // Where nothing pushes, the found pair's contacts are told all the same, without impulse: a search
+      // has found a collision, and versions must rise for it not to be found again.
       if (result_.normal[k] > 0 || (!any && group_[k].pair == found_.pair)) events_.push_back(k);
     }
     for (const std::size_t k : events_) {
@@ -257,6 +272,7 @@ class GroupResponse::Group {
 
   void touch(int body, int partner, double speed) {
     const int k = index_of(body);
+    // once for each body: a second note_resolve() of this instant would find a rest of 0
     if (!touched_[k]) rest_[k] = parts_.response_.note_resolve(body, partner, speed);
     touched_[k] = true;
   }
@@ -273,6 +289,7 @@ class GroupResponse::Group {
 
   bool restart(std::vector<int>& changed) {
     std::map<int, std::vector<Restart>> by_component;  // a free body is one of its own
+    // Bodies of one component are restarted together, as each restart starts its integrator.
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       if (!touched_[i]) continue;
       if (!parts_.watch_.flight(bodies_[i], now())) return false;

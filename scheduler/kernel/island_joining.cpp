@@ -20,6 +20,7 @@ class Outsider {
     const BodyState rounded = state_.rounded();
     const double radius = search.outline_of(body).bounding_radius;
     const double speed = rounded.twist.velocity.norm() + std::abs(rounded.twist.omega) * radius;
+    // the members' largest pull stands for its own
     reach_ = h * (speed + members.pull() * h);
     box_.add(rounded.pose.position);
     box_ = box_.grown(radius + reach_ + search.limits().tolerance);
@@ -47,6 +48,8 @@ class Outsider {
     const Vec2 shift = search_.shift_of(*pair);
     const ExtendedState &of_member = members_.state(member), a = member_first ? of_member : state_,
                         b = (member_first ? state_ : of_member).shifted(shift);
+    // a member has its last twist from the start on, ahead of the present one by what forces make in the
+    // step
     const double behind = members_.pull() * h_, most = most_absorbed(*pair);
     const double far = search_.limits().tolerance + reach_ + members_.reach_of(member);
     for (const NearFeature& f :
@@ -54,6 +57,8 @@ class Outsider {
       const RealVec arm = f.point.cast<Real>() + (b.position - a.position);
       const double closing =
           static_cast<double>(f.normal.cast<Real>().dot(b.twist.at(f.point.cast<Real>()) - a.twist.at(arm)));
+      // What closes faster is an impact and meets the island by itself. What parts now may still be caught
+      // up with.
       if (closing <= most && f.gap - h_ * (closing + behind) <= search_.limits().tolerance) return true;
     }
     return false;
@@ -82,6 +87,7 @@ std::vector<int> joining(const World& world, Trajectories& trajectories, const C
   std::vector<int> found;
   for (int k = 0; k < trajectories.body_count(); ++k) {
     if (members.has(k)) continue;
+    // bodies with clocks of their own may not have been followed so far
     if (!trajectories.cover_body(k, now)) return {};
     const Outsider outsider(world, trajectories, search, members, k, h);
     bool near = false;

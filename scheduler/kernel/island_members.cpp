@@ -25,6 +25,7 @@ IslandMembers::IslandMembers(const World& world, const Trajectories& trajectorie
     states_.push_back(trajectories.state_now(k));
     accelerations_.push_back(trajectories.acceleration(k));
     const double radius = search.outline_of(k).bounding_radius;
+    // a mere point has no size: the scene's
     size_ = std::min(size_, radius > 0.0 ? 2.0 * radius : world.length());
     pulls_.push_back(accelerations_.back().linear.norm() + std::abs(accelerations_.back().angular) * radius);
     pull_ = std::max(pull_, pulls_.back());
@@ -43,6 +44,8 @@ void IslandMembers::find_speeds() {
 }
 
 double IslandMembers::reach_of(int member) const {
+  // Its speed with what forces on it make of that in the step, the largest pull of anybody, which contacts
+  // may hand on, and a hundredth of the fastest member's speed. A guess: steps are checked against it.
   return reach_ * h_ * (speeds_[member] + pulls_[member] * h_ + pull_ * h_ + 0.01 * speed_);
 }
 
@@ -66,6 +69,7 @@ std::vector<HeldContact> IslandMembers::contacts(double reach) const {
   for (std::size_t x = 0; x < by_left.size(); ++x)
     for (std::size_t y = x + 1; y < by_left.size(); ++y) {
       const auto [a, b] = std::minmax(by_left[x], by_left[y]);
+      // sorted along x: none that follows begins before this one's right edge, either. Images may.
       if (!repeats && boxes[by_left[y]].low.x() > boxes[by_left[x]].high.x()) break;
       add_images(to, bodies_[a], boxes[a], bodies_[b], boxes[b]);
     }
@@ -74,6 +78,7 @@ std::vector<HeldContact> IslandMembers::contacts(double reach) const {
     const Box box = box_of(owner, site_way(s));
     for (std::size_t i = 0; i < bodies_.size(); ++i) add_images(to, bodies_[i], boxes[i], owner, box);
   }
+  // in an order of their own, whatever the boxes: the solver's rounding depends on it
   std::sort(to.contacts.begin(), to.contacts.end(),
             [](const HeldContact& a, const HeldContact& b) { return a.order() < b.order(); });
   return std::move(to.contacts);
@@ -83,6 +88,8 @@ Box IslandMembers::box_of(int owner, double reach) const {
   const Outline& outline = search_->outline_of(owner);
   const Pose pose = trajectories_->motion_of(owner).pose(now_);
   Box box;
+  // a body's bounding disc holds it at any angle; a site may lie far from its frame's origin, so its own
+  // box is turned
   if (outline.is_point() || owner < trajectories_->body_count()) {
     box.add(pose.position);
     return box.grown(outline.bounding_radius + reach);
@@ -105,6 +112,7 @@ double IslandMembers::site_way(int s) const {
 }
 
 void IslandMembers::add_images(Listing& to, int a, const Box& box_a, int b, const Box& box_b) const {
+  // solid everywhere beyond its loops: a box does not tell
   if (search_->outline_of(b).container) return add_pair(to, a, b, Image{});
   world_->periods.overlaps(box_a, box_b, [&](const Image& image) { add_pair(to, a, b, image); });
 }
@@ -114,6 +122,7 @@ void IslandMembers::add_pair(Listing& to, int a, int b, const Image& image) cons
   if (!pair) return;
   const int member = place_of(pair->body);
   double far = to.reach;
+  // both may come that far towards each other, and a gap of the tolerance is a contact still
   if (far < 0.0)
     far = search_->limits().tolerance + reach_of(member) +
           (pair->with_site() ? site_way(pair->other_site) : reach_of(place_of(pair->other_body)));
@@ -155,6 +164,7 @@ double IslandMembers::gap(const HeldContact& c, double later, const std::vector<
 }
 
 RealVec IslandMembers::arm(const HeldContact& c) const {
+  // the feature's point is seen from the other's position (near_features.h)
   return c.feature.point.cast<Real>() +
          (other_state(c.pair).position - states_[place_of(c.pair.body)].position);
 }

@@ -29,10 +29,12 @@ constexpr double kTurns = 1e-6;
 
 /// False for a joint of two pieces that hardly turns, or turns away from what may touch it.
 bool is_corner(const Outline& outline, const Sample& sample) {
+  // an arc's sample is no joint
   if (sample.arc_site >= 0) return true;
   if (sample.before >= 0 && sample.after >= 0)
     return cross(direction_at_end(outline.sites[sample.before]),
                  direction_at_start(outline.sites[sample.after])) > kTurns;
+  // before and after are of solids (outline.h): a wire's neighbours are looked for by their ends
   const Site *in = nullptr, *out = nullptr;  // of a wire
   for (const Site& s : outline.sites) {
     if (s.kind == SiteKind::point) continue;
@@ -67,6 +69,7 @@ IslandModes::IslandModes(const IslandMembers& members, const Trajectories& traje
       warm_(&warm) {}
 
 double IslandModes::slowest_bounce(const IslandMembers& members, const ContactSearch& search) {
+  // what rebounds with it rises by v^2 / 2 a, which is the tolerance
   return std::sqrt(2.0 * members.pull() * search.limits().tolerance);
 }
 
@@ -83,6 +86,8 @@ bool IslandModes::is_shadow(const ContactSearch& search, const HeldContact& c,
   const double place = kOnePlace * std::min(a.bounding_radius, b.bounding_radius);
   return std::any_of(all.begin(), all.end(), [&](const HeldContact& o) {
     if (o.feature.at_end || o.feature.gap > tolerance || !(o.pair == c.pair)) return false;
+    // the same corner over the inside of another site; or, with the roles exchanged, the other's corner
+    // there
     if (o.feature.sample_on_a == c.feature.sample_on_a) return o.feature.sample == c.feature.sample && corner;
     return (o.feature.point - c.feature.point).norm() <= place &&
            is_corner(other, other.samples[o.feature.sample]);
@@ -90,6 +95,7 @@ bool IslandModes::is_shadow(const ContactSearch& search, const HeldContact& c,
 }
 
 double IslandModes::speed() const {
+  // of the fastest point, or of a fall by the size: not 0 where nothing moves yet
   return std::max(members_->speed(), std::sqrt(members_->pull() * members_->size()));
 }
 
@@ -99,6 +105,7 @@ bool IslandModes::suits() const {
     if (kEpsilon * members_->state(i).position.cast<double>().norm() > kRounding * search_->limits().touch)
       return false;
   const std::vector<HeldContact> near = members_->contacts(search_->limits().tolerance);
+  // rolling resistance has no mode here, and between corners roundings choose the side
   return near.size() <= limits_.contacts &&
          std::none_of(near.begin(), near.end(), [this](const HeldContact& c) {
            return is_corner_on_corner(c) || response_->material_of(c.pair).rolling_resistance > 0.0;
@@ -124,6 +131,8 @@ bool IslandModes::touches(const HeldContact& c) const {
   const double tolerance = search_->limits().tolerance;
   const HeldContact* warm = find_warm(*warm_, c);
   const bool was_closed = warm && warm->by_modes && is_closed(warm->motion);
+  // A closed gap keeps what it had to a quarter of the tolerance: one that began at the tolerance must not
+  // open by that.
   return c.feature.gap <= (was_closed ? 2.0 : 1.0) * tolerance;
 }
 
@@ -133,11 +142,13 @@ void IslandModes::add_contact(const HeldContact& c) {
                 &of_b = search_->outline_of(search_->other_owner(c.pair));
   int b = 0;
   if (c.pair.with_site()) {
+    // one support for each contact, though several may be on one site
     b = problem_.bodies() + static_cast<int>(problem_.supports.size());
     problem_.supports.push_back(trajectories_->site(c.pair.other_site).motion());
   } else {
     b = members_->place_of(c.pair.other_body);
   }
+  // A shadow that touches says what another contact says; one that is apart may come to be met by itself.
   const bool shadow = is_shadow(*search_, c, contacts_), touching = !shadow && touches(c);
   const Vec2 shift = search_->shift_of(c.pair);
   place_.push_back(problem_.contacts.size());
@@ -148,18 +159,23 @@ void IslandModes::add_contact(const HeldContact& c) {
   }
   for (SmoothContact& shape :
        smooth_contacts(c.feature, of_a, members_->state(a), of_b, members_->other_state(c.pair))) {
+    // of the sample's owner against the site's: the image is the other owner's, whichever of the two that
+    // is
     shape.offset = c.feature.sample_on_a ? Vec2(-shift) : shift;
     ModeContact made;
     made.shape = shape;
     made.sample_owner = c.feature.sample_on_a ? a : b;
     made.site_owner = c.feature.sample_on_a ? b : a;
     made.friction = response_->material_of(c.pair).friction;
+    // a closed contact keeps the gap that it has; at a wire, which has no inside, never less than a touch
     made.kept = std::max(c.feature.gap, c.feature.thin ? search_->limits().touch : 0.0);
     if (c.feature.thin) made.off = kOff * made.kept;
+    // what a sample is not abreast of now it may go by
     made.passes = c.feature.at_end || !present;
     problem_.contacts.push_back(made);
     of_.push_back(place_.size() - 1);
     touching_.push_back(present && touching);
+    // the first shape is where the sample is; the others are what it may come to
     present = false;
   }
   if (present) place_.back() = std::numeric_limits<std::size_t>::max();  // it has no one shape
@@ -181,6 +197,7 @@ void IslandModes::make_problem(std::vector<HeldContact> contacts) {
   for (int i = 0; i < static_cast<int>(members_->count()); ++i)
     jump = std::min(jump, members_->next_break(i));
   problem_.free = [this, jump](double t, std::span<const BodyState> states, std::span<Acceleration> out) {
+    // a step that ends where forces jump has the force before it up to its end
     trajectories_->accelerations(members_->bodies(), t < jump ? t : std::nextafter(jump, now_), states, out);
   };
   for (const HeldContact& c : contacts_) add_contact(c);
@@ -205,6 +222,7 @@ bool IslandModes::meet(States& states) {
   const double slow = slowest_bounce(*members_, *search_);
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     const std::size_t at = place_[k];
+    // what is slower is the end of a series of bounces and no event of its own
     if (at < rates.size() && touching_[at] && -rates[at].normal_velocity > slow)
       impacts_.push_back(
           {contacts_[k], -rates[at].normal_velocity, after->normal[at], after->tangential[at]});
@@ -220,10 +238,12 @@ std::optional<std::vector<MotionMode>> IslandModes::former_modes() const {
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     if (place_[k] >= modes.size() || !touching_[place_[k]]) continue;
     const HeldContact* warm = find_warm(*warm_, contacts_[k]);
+    // new, or not from a step by modes: what it does is to be chosen
     if (!warm || !warm->by_modes) return std::nullopt;
     modes[place_[k]] = warm->next_motion;
     closed += is_closed(warm->next_motion);
   }
+  // one that was closed and no longer touches has come apart in another way: the former modes are void
   const auto were_closed = std::count_if(warm_->begin(), warm_->end(), [](const auto& w) {
     return !w.second.by_modes || is_closed(w.second.next_motion);
   });
@@ -243,6 +263,7 @@ std::vector<bool> IslandModes::closed_now(const States& states, Meeting met) con
     const HeldContact* warm = find_warm(*warm_, contacts_[k]);
     const bool known = warm && warm->by_modes, was_open = known && !is_closed(warm->motion);
     const bool slowly = met == Meeting::slow || (met == Meeting::none && !known);
+    // open in the step before and touching still: it has just been let go, and only an approach closes it
     if (met == Meeting::none && was_open) continue;
     closed[at] = rates[at].normal_velocity <= (slowly ? slow : kNoParting * speed());
   }
@@ -258,6 +279,7 @@ IslandModes::Outcome IslandModes::take(double now, double h, std::vector<HeldCon
   States states;
   for (int i = 0; i < static_cast<int>(members_->count()); ++i) {
     states.push_back(members_->state(i).rounded());
+    // no integration step may lead over a jump of a force, or over a change too short for it to see
     until = std::min({until, members_->next_break(i), trajectories_->steady_until(members_->bodies()[i])});
   }
   make_problem(std::move(contacts));
@@ -289,9 +311,11 @@ bool IslandModes::move_on(ModeMotion& motion, double until) {
   for (std::size_t i = 0; i < members_->count(); ++i) tracks_.push_back(std::make_shared<Track>());
   ModeStep step;
   for (int n = 0; n < kMostPieces && motion.time() < until; ++n) {
+    // modes may change at the beginning without time going on: the last ones are the step's
     if (!(motion.time() > now_)) note(motion);
     step = motion.step(until);
     for (std::size_t i = 0; i < step.pieces.size(); ++i) tracks_[i]->pieces.push_back(step.pieces[i]);
+    // a change ends the island's step: it is an event, from which the next step begins
     if (step.end != ModeEnd::step && motion.time() > now_) break;
     if (step.end != ModeEnd::step && step.end != ModeEnd::change) return false;
   }
@@ -302,12 +326,15 @@ bool IslandModes::move_on(ModeMotion& motion, double until) {
     HeldContact& c = contacts_[k];
     c.lasted = end_ - now_;
     const bool arrives = step.end == ModeEnd::arrival && of_[step.contact] == k;
+    // its next mode is not known: the next step chooses anew (former_modes)
     if (lost || arrives) c.by_modes = false;
     if (place_[k] >= motion.modes().size()) continue;
     c.next_motion = motion.modes()[place_[k]];
+    // of begin and end the larger: what presses at either belongs to the island (IslandMotion::pushes)
     c.normal_force = std::max(c.normal_force, motion.forces().normal[place_[k]]);
   }
   for (std::size_t i = 0; i < tracks_.size(); ++i)
+    // a held motion has no end (Trajectories::follow_own)
     tracks_[i]->pieces.push_back(onward(end_, motion.states()[i]));
   return true;
 }
@@ -318,6 +345,7 @@ bool IslandModes::within_reach() const {
     double way = 0.0;
     for (const PolynomialPiece& p : tracks_[i]->pieces) {
       if (!(p.end <= end_)) break;
+      // bounds, not the ends: a quintic may swing out between them
       const MotionBounds b = p.bounds(p.begin, p.end);
       way += (p.end - p.begin) * (b.speed() + b.spin() * members_->bounding_radius(i));
     }

@@ -53,6 +53,7 @@ IslandMotion::IslandMotion(IslandMembers members, const ContactSearch& search, C
 
 double IslandMotion::longest() const {
   const double pull = members_.pull(), speed = members_.speed();
+  // the time of the fall is sqrt(2 size / pull): but for the root of 2
   const double fall = pull > 0.0 ? kOfFall * std::sqrt(members_.size() / pull) : kForever;
   const double way = speed > 0.0 ? kOfSize * members_.size() / speed : kForever;
   return std::min(fall, way);
@@ -82,8 +83,10 @@ std::vector<Vec3> IslandMotion::velocities() const {
 
 void IslandMotion::pass_on_impacts(const Impact& told) {
   h_ = longest();
+  // of an agitated island what would meet within a step, of any other what touches
   members_.look_ahead(agitated_ ? h_ : 0.0, kReach);
   list(agitated_ ? -1.0 : search_->limits().tolerance);
+  // after an impact only contacts of its two bodies close differently: the others are not asked again
   std::vector<std::vector<std::size_t>> contacts_of(members_.count());
   const auto each_member = [&](const HeldContact& c, auto&& visit) {
     visit(members_.place_of(c.pair.body));
@@ -95,11 +98,14 @@ void IslandMotion::pass_on_impacts(const Impact& told) {
     impact.push_back(impact_of(contacts_[k], velocity));
     each_member(contacts_[k], [&](int member) { contacts_of[member].push_back(k); });
   }
+  // Impacts of one instant may go on without end (a body between two others): what is left then is
+  // plastic.
   for (std::size_t n = 0; n < kFirstImpacts + kImpactsEach * contacts_.size(); ++n) {
     const auto fastest = std::max_element(impact.begin(), impact.end());
     if (fastest == impact.end() || !(*fastest > 0.0)) break;
     const HeldContact& c = contacts_[static_cast<std::size_t>(fastest - impact.begin())];
     collide(c, *fastest, told);
+    // taken before it came: it would have cut the step
     impacts_in_step_ = impacts_in_step_ || !touches(c);
     each_member(c, [&](int member) { velocity[member] = as_vector(members_.state(member).twist.rounded()); });
     each_member(c, [&](int member) {
@@ -119,6 +125,7 @@ double IslandMotion::impact_of(const HeldContact& c, const std::vector<Vec3>& ve
   const double closing = members_.closing_speed(c);
   if (closing <= most_absorbed(c.pair)) return 0.0;
   if (!touches(c)) return arrival(c, velocity).time < h_ ? closing : 0.0;
+  // at a joint of two floors the tangent at an end bars the way to what slides over it
   if (passes_by(c, 0.0, closing)) return 0.0;
   return by_modes_ && IslandModes::is_shadow(*search_, c, contacts_) ? 0.0 : closing;
 }
@@ -146,19 +153,25 @@ void IslandMotion::collide(const HeldContact& c, double closing, const Impact& t
 
 bool IslandMotion::rests(double rest_speed) {
   const double tolerance = search_->limits().tolerance, pull = members_.pull(), speed = members_.speed();
+  // An implicit step of 2 v / a can stop it, and moves nobody by more than v * 2 v / a: within the
+  // tolerance.
   const bool fades = 2.0 * speed * speed <= tolerance * pull;
   if (!(pull > 0.0) || !(fades || speed <= rest_speed)) return false;
   const int count = static_cast<int>(members_.count());
   for (int i = 0; i < count; ++i)
+    // forces that change with time or place would have to be balanced ever anew
     if (!members_.is_constant(i)) return false;
   h_ = longest();
   members_.look_ahead(0.0, kReach);
   list(tolerance);
   for (const HeldContact& c : contacts_)
+    // who stands on a site that moves is not at rest
     if (members_.on_moving_site(c)) return false;
   make_problem();
   if (!stays_at_rest(*solver_, problem_)) return false;
   take_forces();
+  // what fades is less than the tolerance times a weight; what the option rest_speed stops may be more,
+  // and is told
   if (!fades) tally_->energy_of_rest += kinetic_energy();
   for (int i = 0; i < count; ++i) members_.set_twist(i, ExtendedTwist());
   return true;
@@ -183,6 +196,7 @@ bool IslandMotion::take(IslandModes& modes, double now, double h, bool on_time) 
     members_.look_ahead(h_, reach);
     list(-1.0);
     const IslandModes::Outcome outcome = modes.take(now, h, contacts_, on_time);
+    // farther than features were listed: with a longer list, from the same states
     if (outcome == IslandModes::Outcome::wider) continue;
     if (outcome == IslandModes::Outcome::none) return false;
     contacts_ = modes.contacts();
@@ -192,12 +206,16 @@ bool IslandMotion::take(IslandModes& modes, double now, double h, bool on_time) 
   return false;
 }
 
+/// Tries until a step is accepted: one that ends at an impact, one short enough for `tolerance`, one with
+/// a longer list of features where somebody goes beyond it, one of half the length where there is no
+/// solution.
 bool IslandMotion::take(double h, double tolerance) {
   by_modes_ = false;
   contacts_.clear();
   if (!(h < kForever)) return true;  // nothing moves or pulls: nobody needs anybody
   double reach = kReach, change_before = kForever;
   const double shortest = kShortest * h, pull = members_.pull();
+  // h^2 a / 2 = tolerance for a body that falls: what places may be off in a step that begins at rest
   if (tolerance > 0.0 && pull > 0.0) h = std::clamp(std::sqrt(2.0 * tolerance / pull), shortest, h);
   const auto look = [&](double step) {
     h_ = step;
@@ -209,6 +227,7 @@ bool IslandMotion::take(double h, double tolerance) {
     look(h);
     if (const double first = next_arrival(); first < h) {  // an impact ends the step
       impacts_in_step_ = impacts_in_step_ || first < worthwhile;
+      // up to the impact, with which the next step begins; features are listed for the shorter way
       if (!agitated_) look(h = first);
     }
     make_problem();
@@ -222,6 +241,7 @@ bool IslandMotion::take(double h, double tolerance) {
     const double change = within ? change_of_speed() : 0.0, off = 0.5 * h_ * change;
     if (tolerance > 0.0 && off > tolerance && h_ > shortest && change <= kFalls * change_before) {
       change_before = change;
+      // off goes with the square of the step; at least halved, so that it ends
       h = std::max(h_ * std::clamp(0.9 * std::sqrt(tolerance / off), 0.1, 0.5), shortest);
       continue;
     }
@@ -232,6 +252,7 @@ bool IslandMotion::take(double h, double tolerance) {
       take_forces();
       return true;
     }
+    // solved, but somebody went where no features were listed: the same step with more of them
     if (outcome.solved && ++widening <= kWidenings) {
       reach *= kWider;
       continue;
@@ -263,9 +284,11 @@ double IslandMotion::next_arrival() {
 IslandMotion::Arrival IslandMotion::arrival(const HeldContact& c, const std::vector<Vec3>& velocity) const {
   double closing = members_.closing_speed(c), gap = c.feature.gap - kept(c.feature), t = 0.0;
   for (int k = 0; k < kTangents; ++k) {
+    // where the line through the gap reaches 0
     const double way = gap / closing;
     if (!(closing > 0.0 && t + way <= h_)) return {};
     const double next = members_.gap(c, t + way, velocity) - kept(c.feature);
+    // the secant's slope: no derivative of the gap is at hand there
     closing = (gap - next) / way;
     t += way;
     gap = next;
@@ -282,7 +305,7 @@ bool IslandMotion::passes_by(const HeldContact& c, double then, double closing) 
   return members_.gap(c, then + 4.0 * tolerance / closing, velocities()) - kept(c.feature) > 0.0;
 }
 
-/// An approach as slow as this would be back within the step [m/s].
+/// An approach as slow as this rebounds with e v <= a h: it has turned back by the end of the step [m/s].
 double IslandMotion::most_absorbed(const PairKey& pair) const {
   const double e = response_->material_of(pair).restitution;
   if (!(e > 0.0)) return kForever;
@@ -295,6 +318,7 @@ void IslandMotion::make_problem() {
   for (std::size_t i = 0; i < members_.count(); ++i) {
     const Body& b = members_.body(static_cast<int>(i));
     const Acceleration& a = members_.acceleration(static_cast<int>(i));
+    // infinity: held (RestProblem)
     problem_.mass.emplace_back(b.lock_x ? kForever : b.mass, b.lock_y ? kForever : b.mass,
                                b.lock_angle ? kForever : b.inertia);
     problem_.force.emplace_back(b.mass * a.linear.x(), b.mass * a.linear.y(), b.inertia * a.angular);
@@ -319,6 +343,7 @@ IslandContact IslandMotion::island_contact(const HeldContact& c) const {
   made.driven = members_.on_moving_site(c);
   if (made.driven) {  // the mean velocity of its point
     const ExtendedState from = members_.other_state(c.pair), to = members_.other_state(c.pair, h_, {});
+    // the site's own motion over the step, as one turn and shift of the point that touches
     const Frame step(
         {(to.position - from.position).cast<double>(), static_cast<double>(to.angle - from.angle)});
     const Vec2 v = (step.to_world(c.feature.point) - c.feature.point) / h_;
@@ -376,10 +401,12 @@ bool IslandMotion::stays_near(const HeldContact& c) const {
   const double behind = members_.pull() * h_, tolerance = search_->limits().tolerance;
   if (by_modes_) {
     const double closing = members_.closing_speed(c);
+    // a parting of this speed rises kClear tolerances: v^2 / 2 a
     const bool slow = closing >= -std::sqrt(kClear) * IslandModes::slowest_bounce(members_, *search_);
     if (c.feature.gap <= kClear * tolerance && slow) return true;
     return !c.pair.with_site() && c.feature.gap - h_ * (closing + behind) <= tolerance;
   }
+  // a site takes no step: whoever is let go meets it by the ordinary search
   if (c.pair.with_site()) return false;
   const double closing = members_.closing_speed(c, after(members_.place_of(c.pair.body)).twist,
                                                 after(members_.place_of(c.pair.other_body)).twist);
@@ -415,6 +442,8 @@ IslandMotion::Parts IslandMotion::parts(bool rests) const {
   joined.reset(count);
   std::vector<bool> pushed(members_.count(), false), seen(members_.count(), false);
   for (const HeldContact& c : contacts_) {
+    // at rest all that touch stay together: forces of redundant contacts are one choice of many, and 0 for
+    // some
     if (!rests && !pushes(c) && !stays_near(c)) continue;
     const int a = members_.place_of(c.pair.body);
     const int b = c.pair.with_site() ? a : members_.place_of(c.pair.other_body);
@@ -427,6 +456,7 @@ IslandMotion::Parts IslandMotion::parts(bool rests) const {
       joined.unite(a, b);
     }
   for (int i = 0; i < count; ++i)
+    // springs hold a component together, and an island holds it whole or not at all
     for (const int j : members_.coupled_to(i)) joined.unite(i, j);
   Parts parts;
   for (int i = 0; i < count; ++i) {
@@ -452,6 +482,7 @@ ContactMode IslandMotion::mode_of(const HeldContact& c, bool rests) const {
   const Twist a = twist(c.pair.body);
   const Twist b =
       c.pair.with_site() ? members_.other_state(c.pair).twist.rounded() : twist(c.pair.other_body);
+  // with the twists that the step has: those of its end, or of its beginning by modes
   const Vec2 relative = a.at(members_.arm(c).cast<double>()) - b.at(c.feature.point);
   const double slow = kNoSpeed * std::sqrt(members_.pull() * members_.size());
   if (std::abs(cross(c.feature.normal, relative)) > slow) return ContactMode::slip;

@@ -23,6 +23,8 @@ constexpr int kMostHasty = 64, kCalmed = 4;
 constexpr std::size_t kCrowd = 8;
 constexpr int kAgitated = 8, kMostAgitation = 32;
 
+/// Asks for a member that bounces: where restitution is 0 a step takes every approach as plastic, and no
+/// impact cuts it.
 bool is_agitated(const World& world, const IslandPace& pace, const std::set<int>& members) {
   const auto bounces = [&](int k) { return world.materials[world.bodies[k].material].restitution > 0.0; };
   return members.size() >= kCrowd && pace.agitation >= kAgitated &&
@@ -33,6 +35,8 @@ int next_agitation(int agitation, bool impacts) {
   return std::clamp(agitation + (impacts ? 1 : -1), 0, kMostAgitation);
 }
 
+/// After kMostHasty steps by modes it counts on through kCalmed steps of the other kind, and begins at 0
+/// again.
 int next_hasty(int hasty, bool by_modes, bool was_short) {
   if (by_modes) return was_short ? hasty + 1 : 0;
   return hasty >= kMostHasty && hasty < kMostHasty + kCalmed ? hasty + 1 : 0;
@@ -50,6 +54,8 @@ Islands::Islands(const World& world, Trajectories& trajectories, ContactSearch& 
       run_(&run),
       limits_(limits) {}
 
+/// The body, the island that it is in, and what springs couple to any of those, over and over: an island
+/// holds components whole (Trajectories::hold).
 void Islands::gather(int body, std::set<int>& members) const {
   if (members.count(body)) return;
   const auto lead = lead_of_.find(body);
@@ -63,6 +69,7 @@ void Islands::gather(int body, std::set<int>& members) const {
 WarmContacts Islands::take_out(const std::set<int>& members, IslandPace& pace) {
   WarmContacts warm;
   for (const int k : members) {
+    // islands are listed by their least member: each is met once
     const auto found = islands_.find(k);
     if (found == islands_.end()) continue;
     if (found->second.rests) note_change(EventKind::wake, k), ++tally_.woken;
@@ -70,6 +77,8 @@ WarmContacts Islands::take_out(const std::set<int>& members, IslandPace& pace) {
       search_->search_again(c.pair);
       const Feature key{c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site};
       warm[key] = c;
+      // told when it has ended (tell_ended); one that presses on in the same mode goes on as one stretch
+      // (put_in)
       if (c.mode != ContactMode::none) taken_out_.emplace(key, c);
     }
     // what cuts a step short may be others, too: one more than its end takes off
@@ -162,6 +171,7 @@ void Islands::tell(const IslandModes& modes, const IslandMembers& members) {
 IslandMotion Islands::set_out(std::set<int>& members, IslandPace& pace) {
   WarmContacts warm;
   pace = {};
+  // who joins brings an island of its own along, and may be near to others in turn
   for (;;) {
     warm.merge(take_out(members, pace));
     std::vector<Restart> as_they_are;
@@ -191,7 +201,11 @@ bool Islands::begin_step(std::set<int> members, double longest, std::vector<int>
   return carry_out_step(std::move(members), longest, changed, on_time) && run_->poll();
 }
 
+/// Members gather and are held; what closes fast meets; then they are at rest, or move on by modes, or at
+/// the level of velocities; and who pushes whom makes the islands from here on.
 bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time) {
+  // Islands are out of their list while this goes on: a stop in between would leave their bodies held by
+  // nobody.
   const RunControl::Indivisible whole(*run_);
   IslandPace pace;
   IslandMotion motion = set_out(members, pace);
@@ -200,13 +214,16 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   IslandModes modes(motion.members(), *trajectories_, *search_, *response_, by_modes_, motion.warm());
   if (pace.hasty < kMostHasty && modes.suits()) motion.expect_modes();
   const std::uint64_t collisions = run_->work().collisions;
+  // before impacts: those of an agitated island are looked for along the step
   if (const double ahead = motion.longest(); std::isfinite(ahead) && !follow_sites(now, ahead)) return false;
   motion.pass_on_impacts(
       [this](const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r) {
         note_impact(c, from, closing, r.normal, r.tangential);
       });
+  // an impact here is news: modes that the step before ended in do not hold
   on_time = on_time && run_->work().collisions == collisions;
   const bool rests = motion.rests(limits_.rest_speed);
+  // anew: impacts have changed speeds
   const double h = std::min(longest, motion.longest());
   if (!rests && std::isfinite(h) && !follow_sites(now, h)) return false;
   const bool by_modes = !rests && motion.take(modes, now, h, on_time);
@@ -228,6 +245,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   if (rests) note_change(EventKind::sleep, *members.begin()), ++tally_.slept;
   part(motion, rests, by_modes ? &modes : nullptr, pace, changed);
   tell_ended();
+  // a body that was held, let go and held again is in it more than once
   std::sort(changed.begin(), changed.end());
   changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
   find_next();
@@ -254,10 +272,14 @@ void Islands::part(const IslandMotion& motion, bool rests, const IslandModes* mo
     as_they_are.push_back({members.bodies()[i], members.state(i)});
   }
   trajectories_->hold(held, changed);
+  // Those that are let go as well: their impacts of this instant are in their states, and release() goes
+  // on from what is held.
   trajectories_->hold(as_they_are, changed);
   trajectories_->release(free, changed);
   if (rests) return;
   for (const std::vector<int>& together : parts.together)
+    // a step by modes is a motion of its own; one of constant twists notes what it began with, for
+    // collisions within it
     for (const int i : together) {
       if (modes)
         trajectories_->follow_own(members.bodies()[i], modes->motion(i));
@@ -273,14 +295,19 @@ bool Islands::capture(const PairKey& pair, const FeatureContact& contact, double
   if (!pair.with_site()) gather(pair.other_body, members);
   ++tally_.captured;
   const double left = limit - run_->time();
+  // The limit may still lie ahead. The island begins now, and its first step ends there at the latest:
+  // that is where the event is told.
   const bool later = left > same_instant(limit);
   if (!later) records_->ending(EventKind::zeno, pair, contact, records_->last_event());
   if (!begin_step(members, later ? left : std::numeric_limits<double>::infinity(), changed)) return false;
   const auto lead = lead_of_.find(pair.body);
   if (!later || lead == lead_of_.end()) return true;
   Island& island = islands_.at(lead->second);
+  // something else ends the step before: no limit is told that bounces did not come to
   if (!island.rests && std::abs(island.due - limit) > same_instant(limit)) return true;
+  // forces jump before: it is woken then
   if (island.due <= limit && island.rests) return true;
+  // one at rest has its next step at the limit, only to tell it, and what it waited for afterwards
   island.then = island.due;
   island.due = limit;
   island.series = pair;
@@ -323,6 +350,7 @@ bool Islands::step(std::vector<int>& changed) {
     find_next();
     return run_->poll();
   }
+  // a copy: the island is taken out
   const std::vector<int> members = island.members;
   return begin_step({members.begin(), members.end()}, std::numeric_limits<double>::infinity(), changed, true);
 }
@@ -348,6 +376,7 @@ Islands::Saved Islands::saved() const {
 
 void Islands::restore(const Saved& saved) {
   for (const auto& [lead, island] : islands_)
+    // what the present islands keep is searched again before others take over
     for (const HeldContact& c : island.contacts) search_->search_again(c.pair);
   islands_.clear();
   lead_of_.clear();

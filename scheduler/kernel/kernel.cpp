@@ -32,6 +32,7 @@ double Kernel::follow_motions_all_the_way(double t) {
 }
 
 bool Kernel::fail_before(double until) {
+  // Only once the clock is there: a collision on the way may start the motion that fails afresh.
   return reach() < until && time() >= reach() && parts_.trajectories.stop_at_reach();
 }
 
@@ -43,6 +44,7 @@ void Kernel::trace_all(TraceKind kind, double from, double to) const {
 }
 
 void Kernel::advance_all(double t) {
+  // within an instant t may lie a rounding before the clock: that is no advance
   if (t > time()) {
     parts_.run.work().advances += body_count();
     trace_all(TraceKind::advance, time(), t);
@@ -131,6 +133,8 @@ std::vector<Certificate> Kernel::simultaneous(const Certificate& c) {
 
 bool Kernel::resolve(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed) {
   parts_.policy_watch.going_to(time());
+  // A group is made of everything that touches now, so nobody may be on a motion that is only guessed. A
+  // contact that a picture shows names no features from which a group could be collected.
   if (takes_together(order()) || (!found.seen && parts_.endings.collapsed(time()))) {
     roll_back_all();
     return resolve_group(pair, found, changed);
@@ -156,12 +160,14 @@ bool Kernel::resolve_group(const PairKey& pair, const FeatureContact& found, std
   if (!group) return false;
   if (group->endless) {
     parts_.records.event(EventKind::group, pair, found, 0.0, 0.0, group->delay);
+    // one that lost nothing is an event all the same, but no energy was taken that the summary should tell
     if (group->lost > 0.0 && parts_.taken.count++ == 0) {
       parts_.taken.first = pair;
       parts_.taken.time = time();
     }
     parts_.taken.energy += std::max(0.0, group->lost);
   }
+  // all are told before any is judged: an island that steps from one of them tells impacts of its own
   for (const Outcome& o : group->collisions) {
     parts_.watch.note_overlap(o.contact.gap);
     count(o.pair);
@@ -171,6 +177,7 @@ bool Kernel::resolve_group(const PairKey& pair, const FeatureContact& found, std
   bool goes_on = true;  // where the run stops for now, all of them have happened
   for (const Outcome& o : group->collisions) {
     goes_on = judge(o, changed) && goes_on;
+    // a stop may be gone on from, so what follows from the others is done; a failure may not
     if (halt() && halt()->termination == Termination::failed) break;
   }
   return regroup_after(pair, changed) && goes_on;
@@ -184,6 +191,7 @@ bool Kernel::regroup_after(const PairKey& pair, std::vector<int>& changed) {
 }
 
 bool Kernel::regroup(std::vector<std::vector<int>> together, std::vector<int>& changed) {
+  // what was done ahead was done by components that may be no more
   roll_back_all();
   ++parts_.groupings;
   return parts_.trajectories.regroup(std::move(together), changed);
@@ -211,9 +219,11 @@ void Kernel::count(const PairKey& pair) {
 
 /// What comes of the collision. Where it is the last for now, all that it brings about is done before.
 bool Kernel::judge(const Outcome& o, std::vector<int>& changed) {
+  // before the judgement: impacts in an island that steps because of it are counted, too
   const std::uint64_t count = collisions();
   const bool goes_on = judge_ending(o, changed);
   if (!parts_.endings.at_limit(count)) return goes_on;
+  // a limit below the option's is that of stop_after_collisions()
   stop(Termination::stopped, count == options().max_collisions
                                  ? fmt::format("max_collisions = {} reached at t = {:.15g}", count, time())
                                  : fmt::format("a collision at t = {:.15g}", time()));
@@ -253,6 +263,7 @@ bool Kernel::judge_ending(const Outcome& o, std::vector<int>& changed) {
 bool Kernel::begin_to_last(const Outcome& o, double limit, std::vector<int>& changed) {
   const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_islands);
   roll_back_all();
+  // the collision itself has been told already: not before it
   parts_.records.ending(EventKind::persist, o.pair, o.contact, parts_.records.last_event());
   return parts_.islands.capture(o.pair, o.contact, limit, changed);
 }
@@ -262,6 +273,7 @@ bool Kernel::go_on_in_islands(const Outcome& o, std::vector<int>& changed) {
   const bool concerned = is_held(o.pair.body) || (!o.pair.with_site() && is_held(o.pair.other_body));
   if (!concerned) return true;
   const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_islands);
+  // An island steps from the present states of its members, and takes in who comes near.
   roll_back_all();
   return parts_.islands.collided(o.pair, changed);
 }
@@ -317,6 +329,7 @@ void Kernel::give_up(const Certificate& c) {
 // -- resolving ahead of time --
 
 bool Kernel::resolve_ahead(const Certificate& c, double end, std::vector<int>& changed) {
+  // an island's step is taken when it is certain, so its members are never ahead
   if (is_held(c.pair.body) || (!c.pair.with_site() && is_held(c.pair.other_body))) return false;
   const double present = time();
   advance_pair(c.pair, c.time);
@@ -324,9 +337,11 @@ bool Kernel::resolve_ahead(const Certificate& c, double end, std::vector<int>& c
   const auto outcome = respond(c.pair, c.contact, changed);
   bool done = outcome.has_value();
   for (const int k : changed) done = done && extend_motion(k, end);
+  // responses work at the clock's time; for everybody else it has not moved
   parts_.run.set_time(present);
   if (outcome) entry->outcome = *outcome;
   entry->end = end;
+  // also where it failed: undo() takes it out again
   parts_.speculation.add(entry);
   WorkCounters& work = parts_.run.work();
   work.states_kept = std::max<std::uint64_t>(work.states_kept, states_kept());
@@ -351,11 +366,13 @@ bool Kernel::confirm(const Certificate& c, std::vector<int>& changed) {
 // -- the run --
 
 bool Kernel::record_frames(double t) {
+  // a policy that shows frames up to t says that nothing is left before
   parts_.policy_watch.going_to(t);
   while (!halt()) {
     const auto due = parts_.records.frame_due(t);
     if (!due) break;
     const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_record);
+    // shown and watched are the motions that are certain; the newest may have begun after the frame
     parts_.speculation.swap_with_certain();
     parts_.records.frame_of_clock(*due);
     parts_.watch.frame(*due);

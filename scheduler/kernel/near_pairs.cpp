@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kMostPairs = 1e7;  ///< that are kept at once: 400 MB
 
+/// `body_clocks` has views of its own and never asks for all pairs at once.
 void check_pairs(const World& world, const SolverOptions& options) {
   const auto bodies = static_cast<double>(world.bodies.size()),
              sites = static_cast<double>(world.sites.size());
@@ -72,10 +73,12 @@ void NearPairs::box_all(double from, double to) {
 void NearPairs::box_changed(double to, bool several_motions) {
   for (int k = 0; k < trajectories_->body_count(); ++k) {
     const BodyTrack& b = trajectories_->body(k);
+    // the motion of which the box was made, for the whole horizon
     if (versions_[k] == b.version) continue;
     // in front of what is certain, bodies have several motions at a time, which begin when they begin
     const Box box = swept_box(search_->outline_of(k), b.motion, std::max(b.motion.begin(), boxes_from_), to);
     if (several_motions)
+      // the motions before may come to be again: their boxes stay
       boxes_[k].add(box);
     else
       boxes_[k] = box;
@@ -99,6 +102,7 @@ std::vector<PairKey> NearPairs::all(double from, double to) {
   box_all(from, to);
   std::vector<PairKey> pairs;
   if (passes_) {
+    // a pair of two bodies is seen from both, or from one of them alone
     for (int k = 0; k < trajectories_->body_count() && run_->poll(); ++k) {
       const auto seen = by_pass(k, from, to);
       pairs.insert(pairs.end(), seen.begin(), seen.end());
@@ -136,6 +140,7 @@ std::vector<PairKey> NearPairs::by_pass(int body, double from, double to) {
     travel = std::max(travel, (b.speed() + b.spin() * reach) * (to - from));
   }
   const Box window = swept_box(search_->outline_of(body), trajectories_->body(body).motion, from, to);
+  // others are drawn where they are at `from`; the window holds the body's own way to `to`
   const double near = travel + search_->limits().tolerance;
   std::vector<PairKey> pairs;
   for (const std::uint32_t owner :

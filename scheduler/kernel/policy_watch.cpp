@@ -20,6 +20,7 @@ bool PolicyWatch::alive(const Certificate& c) const {
 
 void PolicyWatch::look_before(double t) {
   std::vector<Certificate> ahead;
+  // contacts of one instant may be taken in any order: that is the option `order`
   while (!known_->empty() && known_->earliest().time + 2.0 * same_instant(t) < t) {
     const Certificate c = known_->pop();
     if (is_fresh(*speculation_, c))
@@ -27,6 +28,7 @@ void PolicyWatch::look_before(double t) {
           fmt::format("policy \"{}\" skips a contact: it goes on to t = {:.17g}, but {} meet at t = {:.17g}, "
                       "as a search has found",
                       policy_, t, search_->name_of(c.pair), c.time));
+    // of a motion that is only guessed it may yet come to nothing: kept until that is known
     if (alive(c)) ahead.push_back(c);
   }
   for (const Certificate& c : ahead) known_->insert(c);

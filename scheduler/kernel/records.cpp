@@ -21,6 +21,7 @@ void Records::begin(Recorder* recorder) {
 std::optional<double> Records::frame_due(double t) const {
   const double interval = run_->options().frame_interval;
   if (!(interval > 0.0)) return std::nullopt;
+  // a product, not a sum of intervals: no drift over many frames
   const double due = static_cast<double>(frame_ + 1) * interval;
   return due > t ? std::nullopt : std::optional(due);
 }
@@ -38,7 +39,10 @@ void Records::frame(double t) {
 void Records::event(EventKind kind, const PairKey& pair, const FeatureContact& contact, double impulse_n,
                     double impulse_t, Real delay, const EventSide& body, const EventSide& other) {
   Event event;
+  // numbered whether or not anybody records: snapshots hold the number
   event.seq = seq_++;
+  // Within an instant the clock may go back by a rounding; told times do not, and the low part makes up
+  // for it.
   last_event_ = std::max(last_event_, run_->time());
   if (!records_events()) return;
   event.kind = kind;
@@ -52,6 +56,7 @@ void Records::event(EventKind kind, const PairKey& pair, const FeatureContact& c
   recorder_->event(event);
 }
 
+/// Its time may lie ahead (a Zeno limit), so later events are not held to it.
 void Records::ending(EventKind kind, const PairKey& pair, const FeatureContact& contact, double time) {
   Event event;
   event.seq = seq_++;

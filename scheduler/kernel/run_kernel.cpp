@@ -27,6 +27,7 @@ World checked(World world, const SolverOptions& options) {
 }
 
 /// Moves the frame of each site near it; by how much.
+/// Distances are taken in a site's own frame: one written far from its origin would lose digits in each.
 std::vector<Vec2> recentre_sites(World& world) {
   std::vector<Vec2> moved;
   for (FixedSite& s : world.sites) {
@@ -68,6 +69,7 @@ void RunKernel::begin(const RunOptions& options, Recorder* recorder) {
 }
 
 void RunKernel::let_touching_last() {
+  // a run that goes on has its islands from before
   if (!parts_.islands.allowed() || time() != 0.0) return;
   const double tolerance = parts_.search.limits().tolerance;
   if (world().gravity.isZero(0.0) && world().forces.empty()) return;  // nothing presses
@@ -75,10 +77,12 @@ void RunKernel::let_touching_last() {
   parts_.near.each_at(time(), [&](const PairKey& pair) {
     if (parts_.search.is_left_out(pair)) return true;
     for (const FeatureContact& c : parts_.search.touching(pair, tolerance, time()))
+      // one is enough: the island lists the pair's features itself
       if (std::abs(c.closing_speed) <= kStillAtStart) return touching.emplace_back(pair, c), true;
     return true;
   });
   if (touching.empty()) return;
+  // events in the order of pairs, whatever the order in which boxes met
   std::sort(touching.begin(), touching.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<int> changed;
   parts_.islands.begin(touching, changed);
@@ -112,6 +116,7 @@ void RunKernel::go_on_from(int k, const ExtendedState& state) {
   std::vector<int> changed;
   parts_.trajectories.restart({&restart, 1}, changed);
   if (parts_.islands.is_member(k)) parts_.islands.disturbed(k, changed);
+  // given, not computed: what collisions left behind is no longer in these velocities
   for (const int j : changed) parts_.trajectories.body(j).velocity_rounding = 0.0;
   parts_.policy_watch.forget_all();
   ++parts_.revision;
@@ -144,6 +149,8 @@ void RunKernel::restore(std::span<const std::byte> bytes) {
   SavedRun saved = decode(bytes, world(), options());
   const WorkCounters before = work();
   try {
+    // Made beside the present ones, so that nothing has changed if a motion cannot be made again; the
+    // integrators count their work into the run's counters all the same, which are put back.
     Trajectories again(world(), options(), parts_.run);
     again.restore(saved.trajectories, saved.time);
     parts_.trajectories = std::move(again);

@@ -9,10 +9,12 @@ namespace brink {
 
 namespace {
 
+/// A coordinate without a formula stays as it is in the site's pose.
 double value(const std::optional<Formula>& formula, double t) {
   return formula ? (*formula)(std::span<const double>(&t, 1)) : 0.0;
 }
 
+/// What messages call it: its formulas as written.
 std::string description(const FixedSite& site, const FormulaMotion& m) {
   std::string text = fmt::format("site '{}'", site.name);
   const auto add = [&](const char* what, const std::optional<Formula>& f) {
@@ -46,6 +48,7 @@ SiteMotion::SiteMotion(const FixedSite& site) {
           return part ? part->time_bound(0, from, to, highest) : TimeBound();
         },
         description(site, *formula));
+    // formulas that have no motion at t = 0 are a fault of the world, not the end of a run
     if (const Extent extent = extend(0.0); extent.status != Extent::Status::reached)
       throw BadInput(extent.why);
   }

@@ -11,8 +11,10 @@ namespace brink {
 
 namespace {
 
+/// With a newline and a zero in front of the letters: no text file begins so.
 constexpr std::uint64_t kMagic = 0x324b4e495242000aULL;  // "\12\0BRINK2"
 
+/// Objects as they lie in memory: a snapshot is read by the program that wrote it.
 class Writer {
  public:
   template <class T>
@@ -40,6 +42,7 @@ class Reader {
   std::uint64_t count(std::size_t least) {
     std::uint64_t n = 0;
     (*this)(n);
+    // before anything of that size is made: a damaged count would ask for all memory
     if (n > bytes_.size() / least) throw BadInput("snapshot: it ends early");
     return n;
   }
@@ -50,6 +53,8 @@ class Reader {
 };
 
 /// What a snapshot must agree on with the world it is restored into: everything that decides the motion.
+/// What only decides how much work is done (broad phase, closed forms, shared fields) is left out: events
+/// are the same with it on or off.
 std::uint64_t fingerprint(const World& world, const SolverOptions& options) {
   StateHash hash;
   hash.add(world_hash(world));
@@ -129,6 +134,8 @@ void read_islands(Reader& in, const Trajectories::Saved& bodies, Islands::Saved&
     i.members.resize(in.count(sizeof(int)));
     for (int& k : i.members) {
       in(k);
+      // Islands::restore and Trajectories look members up by number: one that is not held has nothing
+      // there.
       const bool held = k >= 0 && k < static_cast<int>(bodies.bodies.size()) &&
                         bodies.bodies[k].component == BodyTrack::kHeld;
       if (!held) throw BadInput("snapshot: an island has no such body");
@@ -174,6 +181,7 @@ Trajectories::Sets read_sets(Reader& in, std::size_t bodies) {
 }
 
 /// What an island has a body do; pieces, where it is on a motion of its own.
+/// A motion by modes is kept whole: no integrator makes it again.
 void write_held(Writer& out, const HeldStep& step, const Motion& motion) {
   out(step);
   const Track* track = motion.track();
@@ -210,6 +218,7 @@ void write(Writer& out, const Trajectories::Saved& saved) {
   for (const BodyTrack& b : saved.bodies) {
     track(out, b);
     out(kind_of(saved, b, static_cast<int>(&b - saved.bodies.data())));
+    // made again from the start of its component, below
     if (b.component >= 0) continue;
     out(b.motion.origin());
     out(b.motion.start());
@@ -217,6 +226,7 @@ void write(Writer& out, const Trajectories::Saved& saved) {
     if (b.component == BodyTrack::kHeld)
       write_held(out, saved.steps.at(static_cast<int>(&b - saved.bodies.data())), b.motion);
   }
+  // the numbers of bodies are not written: they follow from the world and the sets above
   for (const ComponentStart& s : saved.starts) {
     out(s.time);
     for (const BodyState& state : s.states) out(state);
@@ -230,6 +240,7 @@ BodyTrack read_body(Reader& in, bool& asleep) {
   track(in, b);
   Kind kind = Kind::driven;
   in(kind);
+  // which component is found when it is made again; here it says only that there is one
   b.component = kind == Kind::driven ? 0 : kind == Kind::free ? BodyTrack::kFree : BodyTrack::kHeld;
   asleep = kind == Kind::asleep;
   if (b.component >= 0) return b;
@@ -238,6 +249,7 @@ BodyTrack read_body(Reader& in, bool& asleep) {
   in(origin);
   in(start);
   in(low);
+  // without acceleration: of a free body it is found from the world again, a held one has none
   b.motion = Motion::ballistic(origin, start, {}, std::numeric_limits<double>::infinity(), low);
   return b;
 }

@@ -5,6 +5,7 @@
 
 namespace brink {
 
+/// What it was before the first collision that is not certain.
 const BodyTrack& Speculation::certain(int k) const {
   const auto collisions = of(k);
   return collisions.empty() ? trajectories_->body(k) : collisions.front()->former_of(k);
@@ -36,6 +37,8 @@ Speculation::Entry Speculation::before(const PairKey& pair) const {
   entry->time = run_->time();
   const auto keep = [&](int k) {
     const BodyTrack& b = trajectories_->body(k);
+    // A collision restarts a component whole: all its bodies are kept, and where its integrator began,
+    // once.
     if (b.component < 0) return entry->former.push_back({k, b});
     const auto kept = [&](const ComponentStart& s) { return s.component == b.component; };
     if (std::any_of(entry->starts.begin(), entry->starts.end(), kept)) return;
@@ -64,10 +67,13 @@ void Speculation::remove(const Entry& entry) {
 void Speculation::undo(const Entry& entry) {
   for (const AheadCollision::Former& f : entry->former) {
     BodyTrack& b = trajectories_->body(f.body);
+    // the track that is put back knows nothing of the versions that are undone here, which must not be
+    // given again
     const std::uint64_t undone = std::max(b.version, b.last_undone);
     b = f.track;
     b.last_undone = undone;
   }
+  // an integrator has no former state: it is started again where it began, and makes the same steps
   for (const ComponentStart& s : entry->starts) trajectories_->go_back_to(s);
   remove(entry);
 }
@@ -76,6 +82,7 @@ void Speculation::undo(const Entry& entry) {
 void Speculation::undo_last(int body, std::vector<Undone>& taken_back) {
   const Entry entry = of(body).back();
   for (const AheadCollision::Former& f : entry->former)
+    // later collisions of any of its bodies began from what this one left: they go first
     while (of(f.body).back() != entry) undo_last(f.body, taken_back);
   for (const AheadCollision::Former& f : entry->former) {
     const auto known =
@@ -83,6 +90,7 @@ void Speculation::undo_last(int body, std::vector<Undone>& taken_back) {
     if (known == taken_back.end())
       taken_back.push_back({f.body, entry->end, entry->time});
     else
+      // later ones are undone first: the way that is taken back grows towards earlier times
       known->to = entry->time;
   }
   undo(entry);
@@ -92,6 +100,7 @@ void Speculation::roll_back(int body, std::uint64_t version, double t, std::vect
   std::vector<Undone> taken_back;
   while (trajectories_->body(body).version != version) undo_last(body, taken_back);
   for (Undone& u : taken_back) {
+    // the body goes on within the motion that it is left with, up to t
     if (u.body == body) u.to = t;
     const double from = std::max(u.from, u.to);
     ++run_->work().rollbacks;

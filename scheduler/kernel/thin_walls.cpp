@@ -55,6 +55,7 @@ int side(const Wall& wall, const Vec2& p) {
 /// True if the straight way from p to q crosses the wall between its ends. @pre p and q lie on two sides.
 bool crosses(const Wall& wall, const Vec2& p, const Vec2& q) {
   const Vec2 way = q - p;
+  // the wall's ends lie on two sides of the way
   return (cross(way, wall.a - p) > 0.0) != (cross(way, wall.b - p) > 0.0);
 }
 
@@ -81,8 +82,11 @@ Box ThinWalls::clear_around(const Vec2& p) const {
     std::vector<std::pair<BoxOfPoints, int>> nearest;
     tree_->boxes.query(boost::geometry::index::nearest(Point(p.x(), p.y()), 1), std::back_inserter(nearest));
     const Box& box = tree_->walls[static_cast<std::size_t>(nearest.front().second)].box;
+    // A disc of that radius meets no wall's box; the square inside it reaches 1 / sqrt(2) of it along the
+    // axes.
     room = (box.low - p).cwiseMax(p - box.high).cwiseMax(0.0).norm() * std::numbers::sqrt2 * 0.5;
   }
+  // by a little less, so that no rounding puts a wall inside
   return Box{p, p}.grown(room * (1.0 - 1e-9));
 }
 
@@ -91,6 +95,9 @@ std::optional<int> ThinWalls::crossed(const std::function<Vec2(double)>& place, 
   const Vec2 p = place(from), q = place(to);
   std::vector<std::pair<BoxOfPoints, int>> near;
   tree_->boxes.query(boost::geometry::index::intersects(box_of(p, q)), std::back_inserter(near));
+  // A path that comes back to the side where it began has crossed nothing for good, so ends on two sides
+  // are asked for first. Then each crossing between two places changes the side, and an odd number has led
+  // through.
   for (const auto& [box, k] : near) {
     const Wall& wall = tree_->walls[static_cast<std::size_t>(k)];
     if (side(wall, p) * side(wall, q) >= 0 || !crosses(wall, p, q)) continue;
@@ -102,6 +109,7 @@ std::optional<int> ThinWalls::crossed(const std::function<Vec2(double)>& place, 
     for (int i = 1; i <= steps; ++i) {
       const Vec2 next = i == steps ? q : place(from + (to - from) * i / steps);
       const int next_side = side(wall, next);
+      // too near to tell: the way to the next place that tells counts as one
       if (next_side == 0) continue;
       if (next_side != last_side && crosses(wall, last, next)) through = !through;
       last = next;

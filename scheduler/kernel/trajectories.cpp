@@ -18,6 +18,7 @@ namespace {
 constexpr std::uint64_t kMostPieces = 1U << 17;
 constexpr std::uint64_t kShortest = 16, kLongest = 4096;  ///< instalments [steps]
 
+/// A locked coordinate has no velocity: nothing would ever take it away.
 BodyState held(const Body& body, BodyState s) {
   if (body.lock_x) s.twist.velocity.x() = 0.0;
   if (body.lock_y) s.twist.velocity.y() = 0.0;
@@ -25,6 +26,8 @@ BodyState held(const Body& body, BodyState s) {
   return s;
 }
 
+/// Above all versions that were undone, too: a certificate of one of those must not seem to speak of this
+/// motion.
 void raise_version(BodyTrack& b) { b.version = std::max(b.version, b.last_undone) + 1; }
 
 ComponentStart start_from(double t, std::span<const ExtendedState> states, bool with_lows) {
@@ -37,6 +40,8 @@ ComponentStart start_from(double t, std::span<const ExtendedState> states, bool 
   return start;
 }
 
+/// True for a parabola that no break ends: it needs no integrator. One whose thrust starts or stops is
+/// made of several.
 bool moves_in_closed_form(const SolverOptions& options, const Dynamics& dynamics, double t) {
   const bool asked = options.integrator == "auto" || options.integrator == "ballistic";
   return asked && dynamics.size() == 1 && dynamics.constant() && std::isinf(dynamics.next_break(t));
@@ -104,11 +109,14 @@ bool Trajectories::is_ballistic(int k) const {
 
 // -- going on --
 
+/// The more bodies there are, the fewer steps each makes in a round.
 std::uint64_t Trajectories::instalment() const {
   const std::uint64_t movers = bodies_.size() + sites_.size();
   return std::clamp(kMostPieces / std::max<std::uint64_t>(movers, 1), kShortest, kLongest);
 }
 
+/// A motion taken before the first extend() does not grow (Integrator::motion), so it is taken anew each
+/// time. What the rounding of a grouped body's place left over is kept beside the integrator.
 void Trajectories::fetch(const Coupled& c) {
   for (std::size_t i = 0; i < c.component.bodies.size(); ++i) {
     Motion& motion = bodies_[c.component.bodies[i]].motion;
@@ -117,10 +125,14 @@ void Trajectories::fetch(const Coupled& c) {
   }
 }
 
+/// One instalment. A failure is noted, not acted on: its time may never come, if a collision before starts
+/// the component afresh.
 double Trajectories::follow(Coupled& c, double t) {
+  // an island moves its bodies: the integrator is not asked until it is started afresh
   if (c.dormant) return t;
   const int first = c.component.bodies.front();
   const double covered = bodies_[first].motion.end();
+  // also beyond t: steps are the integrator's own
   if (covered >= t) return t;
   if (covered >= c.failure.time) return covered;
   const std::uint64_t before = run_->work().solver_steps;
@@ -135,6 +147,7 @@ double Trajectories::follow(Coupled& c, double t) {
 double Trajectories::follow_site(int s, double t) {
   if (!sites_[s].is_prescribed() || sites_[s].motion().end() >= t) return t;
   const Extent extent = sites_[s].extend(t, instalment());
+  // cells are not counted one by one: as many as there may have been
   run_->count_pieces(instalment());
   if (extent.status == Extent::Status::failed)
     note_failure(site_failures_[s], extent.end, "site '" + world_->sites[s].name + "'", extent.why);
@@ -160,6 +173,7 @@ double Trajectories::follow(double t) {
   const StageTimer::Scope timed(run_->timer(), run_->work().seconds_motion);
   double covered = t;
   for (Coupled& c : components_) {
+    // on a halt: all cover the present time at least
     if (!run_->poll()) return run_->time();
     covered = std::min(covered, follow(c, t));
   }
@@ -200,6 +214,7 @@ void Trajectories::note_failure(Failure& of, double end, const std::string& name
 
 void Trajectories::find_reach() {
   reach_ = std::numeric_limits<double>::infinity();
+  // from all: the failure that was nearest may have gone with a fresh start
   for (const Coupled& c : components_) reach_ = std::min(reach_, c.failure.time);
   for (const Failure& f : site_failures_) reach_ = std::min(reach_, f.time);
 }
@@ -233,6 +248,7 @@ void Trajectories::start(Coupled& c, ComponentStart from) {
   c.begun = std::move(from);
   c.integrator->start(c.begun.time, c.begun.states);
   fetch(c);
+  // the failure was of the motion that ends here
   if (std::isfinite(c.failure.time)) {
     c.failure = {};
     find_reach();
@@ -243,6 +259,7 @@ void Trajectories::start(Coupled& c, ComponentStart from) {
 void Trajectories::restart_free(int k, const BodyState& start, const BodyState& low) {
   note_twist_before(k);
   Motion& motion = bodies_[k].motion;
+  // The acceleration stays: a free body's own, or none of one that an island holds.
   if (motion.is_ballistic())
     motion.start_anew(run_->time(), start, low);
   else  // held, on a motion of its own
@@ -252,6 +269,8 @@ void Trajectories::restart_free(int k, const BodyState& start, const BodyState& 
 }
 
 void Trajectories::restart(std::span<const Restart> touched, std::vector<int>& changed) {
+  // A component has one integrator: where one body is touched, all begin anew with it, the others as they
+  // are.
   const int first = touched.front().body, component = bodies_[first].component;
   if (component < 0) {
     changed.push_back(first);
@@ -276,6 +295,7 @@ void Trajectories::restart(std::span<const Restart> touched, std::vector<int>& c
 void Trajectories::hold(std::span<const Restart> bodies, std::vector<int>& changed) {
   for (const Restart& r : bodies) {
     BodyTrack& b = bodies_[r.body];
+    // One that is held already keeps what it was before its island: it is let go to that.
     if (b.component != BodyTrack::kHeld) {
       held_[r.body] = {b.component, b.component < 0 ? b.motion.acceleration() : Acceleration{}, {}};
       if (b.component >= 0) put_to_sleep(components_[b.component]);
@@ -297,6 +317,8 @@ ExtendedState Trajectories::state_now(int k) const {
   const HeldStep& step = held_.at(k).step;
   // a collision has started it afresh since, or its step is over
   if (step.start != motion.begin() || !(now < step.end)) return s;
+  // The motion has the twist of the step's end from the start on. One that is hit halfway has had half of
+  // the step's change of velocity by then: the part of it that is left is taken off.
   const Real left = (step.end - std::max(now, step.start)) / (step.end - step.start);
   const ExtendedTwist before(step.before);
   s.twist.velocity += left * (before.velocity - s.twist.velocity);
@@ -318,12 +340,14 @@ void Trajectories::release(std::span<const int> bodies, std::vector<int>& change
     raise_version(b);
     changed.push_back(k);
     b.component = former.component;
+    // its component is started below, when all its bodies are free of islands
     if (former.component >= 0) continue;
     const ExtendedState s = b.motion.extended_state(run_->time());
     b.motion = Motion::ballistic(run_->time(), s.rounded(), former.acceleration,
                                  std::numeric_limits<double>::infinity(), s.low());
   }
   for (Coupled& c : components_) {
+    // all bodies of a component are held, or none: the first tells of all
     if (!c.dormant || bodies_[c.component.bodies.front()].component < 0) continue;
     c.dormant = false;
     std::vector<ExtendedState> states;
@@ -332,6 +356,7 @@ void Trajectories::release(std::span<const int> bodies, std::vector<int>& change
   }
 }
 
+/// Forces of a component see all its bodies, at the places that their island gives them.
 Acceleration Trajectories::acceleration(int k) const {
   const Former& former = held_.at(k);
   if (former.component < 0) return former.acceleration;
@@ -390,6 +415,7 @@ std::vector<int> Trajectories::coupled_to(int k) const {
 
 /// True if these bodies are a component already.
 bool Trajectories::stays(const Component& component) const {
+  // one without an integrator that is alone now was alone before
   const int former = bodies_[component.bodies.front()].component;
   return former < 0 ? component.bodies.size() == 1 : components_[former].component.bodies == component.bodies;
 }
@@ -423,7 +449,9 @@ bool Trajectories::regroup(Sets together, std::vector<int>& changed) {
     stay.push_back(stays(c));
     if (!stay.back() && !catch_up(c, now)) return false;
   }
+  // all are at the present, so nothing can fail from here on
   together_ = std::move(together);
+  // Components are numbered in the order of make_components, as after a restore from a snapshot.
   std::vector<Coupled> before = std::exchange(components_, {});
   for (std::size_t i = 0; i < after.size(); ++i) {
     const int former = bodies_[after[i].bodies.front()].component;
@@ -448,6 +476,7 @@ ComponentStart Trajectories::start_of(int component) const {
 
 void Trajectories::go_back_to(const ComponentStart& s) {
   Coupled& c = components_[s.component];
+  // as far as the motions that have been put back had come
   const double end = bodies_[c.component.bodies.front()].motion.end();
   start(c, s);
   cover(c, end);
@@ -479,23 +508,27 @@ void Trajectories::restore(const Saved& saved, double t) {
   for (Component& c : make_components(*world_, together_)) {
     const Motion& m = saved.bodies[c.bodies.front()].motion;
     const std::vector<int> members = c.bodies;
+    // One that an island holds gets what it had before the island first, and is then taken from it again.
     const bool held = saved.bodies[members.front()].component == BodyTrack::kHeld;
     if (saved.bodies[members.front()].component < 0 && !saved.is_asleep(members.front())) {
       add_free(c, m.origin(), m.start(), m.start_low());
     } else {
       add_coupled(std::move(c), saved.starts[components_.size()]);
+      // asleep: it is started afresh when it is let go, so nothing of its motion will be asked for
       if (!held) follow_again(components_.back(), t);
     }
     if (held) hold_again(members, saved);
   }
   for (SiteMotion& s : sites_) {
     Extent extent = s.extend(t, instalment());
+    // a site's motion is a function of time alone: only the part from t on is kept
     for (; extent.status == Extent::Status::unfinished; extent = s.extend(t, instalment()))
       s.forget_before(t);
     if (extent.end < t) throw BadInput("snapshot: " + extent.why);
   }
 }
 
+/// As hold() would, but for the motions, which are those of the snapshot.
 void Trajectories::hold_again(std::span<const int> members, const Saved& saved) {
   for (const int k : members) {
     BodyTrack& b = bodies_[k];

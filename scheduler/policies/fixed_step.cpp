@@ -28,6 +28,8 @@ class FixedStep final : public Policy {
       const double end = kernel.follow_motions_all_the_way(std::min(until, step_end(from, step)));
       if (kernel.halt()) return;
       const std::vector<PairKey> pairs = kernel.near_pairs(from, end);
+      // Frames within the step are of the motions before it is answered; one at its very end shows what
+      // has been pushed apart.
       if (kernel.halt() || !kernel.record_frames(std::nextafter(end, 0.0))) return;
       kernel.advance_all(end);
       for (const PairKey& pair : pairs)
@@ -41,6 +43,7 @@ class FixedStep final : public Policy {
   bool separate(Kernel& kernel, const PairKey& pair) {
     const auto overlaps = kernel.touching(pair, 0.0);
     if (overlaps.empty()) return true;
+    // Resolved before it is pushed: the contact was found where the bodies are now.
     const FeatureContact& deepest = overlaps.front();
     changed_.clear();
     if (deepest.closing_speed > 0.0 && !kernel.resolve(pair, deepest, changed_)) return false;

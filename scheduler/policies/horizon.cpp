@@ -30,6 +30,7 @@ double within_periods(const KernelView& kernel) {
   double fastest = 0.0;
   for (int k = 0; k < kernel.body_count(); ++k)
     fastest = std::max(fastest, kernel.state(k, kernel.time()).twist.velocity.norm());
+  // v t + g t^2 / 2 = length, solved for t without cancellation.
   const double root = std::sqrt(fastest * fastest + 2.0 * kernel.world().gravity.norm() * length);
   return std::max(2.0 * length / (fastest + root), kShortestHorizon);
 }
@@ -94,6 +95,8 @@ void HorizonAgenda::test(Kernel& kernel, const PairKey& pair, double from, doubl
   const auto certificate = kernel.search(pair, from, end);
   if (!certificate) return;
   agenda_.insert(*certificate);
+  // A search names one feature; an order that picks among all contacts of an instant must see the pair's
+  // others.
   if (certificate->kind != Certificate::Kind::contact || !picks_among_all(kernel.order())) return;
   for (const Certificate& other : kernel.simultaneous(*certificate)) agenda_.insert(other);
 }
@@ -106,6 +109,7 @@ bool HorizonAgenda::search_on(Kernel& kernel, const Certificate& c, double end) 
   const auto again = kernel.search(c.pair, c.time, end);
   const bool undecided = again && again->kind == Certificate::Kind::undecided;
   undecided_ = undecided ? undecided_ + 1 : 0;
+  // No headway, or too many searches in a row without an answer.
   if (undecided && (again->time <= c.time || undecided_ > kMostUndecided)) kernel.give_up(*again);
   if (again) agenda_.insert(*again);
   return kernel.poll();

@@ -3,8 +3,8 @@
 ///   until the end
 ///     choose a horizon
 ///     pass: certificates of every pair that can meet before it; those pairs, and bodies that a force
-///     couples, make islands; advance all bodies to the horizon while the agenda has a contact before the
-///     horizon
+///     couples, make islands; advance all bodies to the horizon
+///     while the agenda has a contact before the horizon
 ///       back up the island of the earliest; resolve that one collision
 ///       pass again for the bodies it concerned: islands that they may now reach become one
 ///       advance the island to the horizon again
@@ -36,6 +36,8 @@ class IslandBackup final : public Policy {
     kernel.advance_all(end);
     while (const auto next = agenda_.take_earliest(kernel, end)) {
       if (!kernel.record_frames(next->time)) return std::nullopt;
+      // A copy: islands grow as the contact is dealt with, but these bodies alone are taken back, and
+      // forward again.
       island_.assign(islands_.of(next->pair.body).begin(), islands_.of(next->pair.body).end());
       kernel.back_up(island_, end, next->time);
       if (!deal_with(kernel, *next, end)) return std::nullopt;

@@ -17,6 +17,7 @@ std::size_t first_by(Kernel& kernel, const std::vector<Certificate>& group) {
                          [&](const Certificate& a, const Certificate& b) { return key(a) < key(b); }) -
         group.begin());
   };
+  // Without the time: within one instant times differ by roundings alone, and must not decide.
   const auto by_index = [](const Certificate& c) {
     return std::tuple(c.kind, c.pair.order(), c.contact.site, c.contact.sample);
   };
@@ -39,6 +40,8 @@ Certificate end_of_step(const KernelView& kernel, double time) {
 }  // namespace
 
 std::size_t first_by_order(Kernel& kernel, const std::vector<Certificate>& group) {
+  // Nothing is drawn where there is no choice: the policies have the same numbers only if they draw as
+  // often.
   return group.size() == 1 ? 0 : first_by(kernel, group);
 }
 
@@ -50,6 +53,8 @@ Certificate at_its_time(const KernelView& kernel, Certificate c, double earliest
 std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda, double end) {
   std::vector<Certificate> group;
   const double step = kernel.next_step();
+  // A contact at the very end of a step comes before the step; one that comes after it waits. With a
+  // contact in hand its instant is completed, whatever ends in it.
   while (!agenda.empty() && agenda.earliest().time <= (group.empty() ? std::min(step, end) : end)) {
     if (!group.empty() && agenda.earliest().time > group.front().time + same_instant(group.front().time))
       break;
@@ -64,6 +69,7 @@ std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda, double 
   if (group.empty()) return std::nullopt;
   const std::size_t chosen = first_by_order(kernel, group);
   const Certificate first = at_its_time(kernel, group[chosen], group.front().time);
+  // The others wait: the response may make them stale, or leave them as they are.
   for (std::size_t i = 0; i < group.size(); ++i)
     if (i != chosen) agenda.insert(group[i]);
   return first;

@@ -36,6 +36,7 @@ class Registry {
   PolicyMaker maker(std::string_view name) {
     const std::lock_guard lock(mutex_);
     const Entry* entry = find(name);
+    // A copy, to be called without the lock: a maker may ask for policies itself.
     return entry ? entry->make : PolicyMaker();
   }
 
@@ -60,6 +61,7 @@ class Registry {
   }
 
   std::mutex mutex_;
+  // A deque: the names and summaries that choices() gives out stay where they are as others are added.
   std::deque<Entry> entries_{
       {"body_clocks",
        "every body keeps its own time; a collision advances two (Lubachevsky 1991; Mirtich & Canny 1995)",

@@ -7,6 +7,8 @@
 namespace brink {
 
 double step_end(double from, double step) {
+  // At the end of a step, from / step can be a rounding less than a whole number: without kSameStep the
+  // next step would be next to nothing.
   const double end = (std::floor(from / step + kSameStep) + 1.0) * step;
   return end > from ? end : from + step;
 }
@@ -22,6 +24,8 @@ void push_apart(Kernel& kernel, const PairKey& pair, const Vec2& way) {
   const Vec2 normal = way / length;
   const double yield = normal.cwiseAbs2().dot(a + b);
   if (!(yield > 0.0)) return;
+  // Body and other move by push a and -push b, axis by axis: against each other by normal . (a + b) push
+  // along the normal, which is all of the way.
   const Vec2 push = way / yield;
   kernel.displace(pair.body, push.cwiseProduct(a));
   if (!pair.with_site()) kernel.displace(pair.other_body, -push.cwiseProduct(b));

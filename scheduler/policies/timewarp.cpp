@@ -86,6 +86,7 @@ class Timewarp final : public Policy {
       count_from_now_on();
       return true;
     }
+    // Nobody has resolved it: what its bodies did after it cannot stand.
     for (const int k : {next.pair.body, next.pair.other_body})
       if (k >= 0) roll_back(k, kernel_->versions(k).front(), next.time);
     kernel_->advance_pair(next.pair, next.time);
@@ -108,6 +109,7 @@ class Timewarp final : public Policy {
     for (const int k : changed_)
       for (const Certificate& c : known_[k]) {
         const int other = other_body(c, k);
+        // Of two changed bodies both know it: it joins with the lower one.
         const bool twice = other >= 0 && other < k && is_changed(other);
         if (!twice && kernel_->fresh(c)) put_on_agenda(c);
       }
@@ -119,6 +121,7 @@ class Timewarp final : public Policy {
     const bool undecided = again && again->kind == Certificate::Kind::undecided;
     undecided_ = undecided ? undecided_ + 1 : 0;
     if (undecided && (again->time <= c.time || undecided_ > kMostUndecided)) kernel_->give_up(*again);
+    // Certificates of searches that stopped before are answered now: may_be() passes over them.
     searched_on_ = c.time;
     if (again) note(*again);
     return kernel_->poll();
@@ -186,6 +189,8 @@ class Timewarp final : public Policy {
   /// Everyone to whom something is new has a turn.
   void run_ahead() {
     if (takes_together(kernel_->order()) || kernel_->by_passes()) return;
+    // One turn for each who waits now. Turns that these give to others come after the next contact that
+    // is certain.
     for (std::size_t turns = restless_.size(); turns > 0 && !kernel_->halt(); --turns) {
       const int k = restless_.front();
       restless_.pop_front();
@@ -208,6 +213,8 @@ class Timewarp final : public Policy {
     const int other = other_body(c, k);
     if (other < 0) return false;
     const std::uint64_t version = other == c.pair.body ? c.version_body : c.version_other;
+    // Left in the same instant: the order says what comes first. (The motion is known: first_of() has
+    // dropped what speaks of others.)
     if (*kernel_->end_of_version(other, version) <= c.time + too_close(c.time)) return false;
     if (kernel_->body(other).version == version) return false;
     roll_back(other, version, c.time);
@@ -228,6 +235,7 @@ class Timewarp final : public Policy {
       if (body < 0) continue;
       for (const int k : group_of(body)) {
         ++concerned;
+        // A motion that has begun in this instant: both collisions belong to one group.
         if (kernel_->body(k).motion.begin() + too_close(c.time) >= c.time) return false;
         if (!is_clear_of_others(k, c)) return false;
       }

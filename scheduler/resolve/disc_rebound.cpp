@@ -47,11 +47,14 @@ void split(Real value, double& high, double& low) {
 DiscRebound::Start start_after(const Motion& motion, double time, const Moving& disc, Real vx, Real vy,
                                Real delay) {
   DiscRebound::Start start;
+  // Both parabolas have the same acceleration. So they are at one place `delay` from now if their places
+  // now differ by what their velocities make of it.
   BodyState &s = start.state, &low = start.low;
   split(disc.x + delay * (disc.vx - vx), s.pose.position.x(), low.pose.position.x());
   split(disc.y + delay * (disc.vy - vy), s.pose.position.y(), low.pose.position.y());
   split(vx, s.twist.velocity.x(), low.twist.velocity.x());
   split(vy, s.twist.velocity.y(), low.twist.velocity.y());
+  // Without friction nothing turns at the rim: angle and spin go on as they were.
   const BodyState &before = motion.start(), &before_low = motion.start_low();
   const double alpha = motion.acceleration().angular;
   const Real omega = static_cast<Real>(before.twist.omega) + before_low.twist.omega;
@@ -79,6 +82,8 @@ std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const V
   const Real closing = -(dx * wx + dy * wy) / length;
   if (!(closing > 0) || !(a.inverse_mass + b.inverse_mass > 0.0)) return std::nullopt;
   DiscRebound r;
+  // To first order, as in the general response: the delay is a few ticks of the clock, and what an
+  // acceleration adds to the way goes with their square.
   r.delay = std::clamp((length - b.radius - a.radius - level) / closing, Real(-latest), Real(latest));
   dx += r.delay * wx;
   dy += r.delay * wy;
@@ -88,6 +93,7 @@ std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const V
   const Real rate =
       nx * (wx + r.delay * (disc_a.ax - disc_b.ax)) + ny * (wy + r.delay * (disc_a.ay - disc_b.ay));
   if (!(rate < 0)) return std::nullopt;
+  // The rate is that of the moment of contact, and -restitution times it the one after.
   const Real impulse = -(Real(1) + restitution) * rate / (static_cast<Real>(a.inverse_mass) + b.inverse_mass);
   r.impulse = static_cast<double>(impulse);
   const Real push_a = a.inverse_mass * impulse, push_b = b.inverse_mass * impulse;
@@ -104,8 +110,10 @@ std::optional<DiscRebound> rebound(const DiscSide& disc, const WallSide& wall, d
   const Real dx = at.x - wall.begin.x(), dy = at.y - wall.begin.y();
   const Real length2 = tx * tx + ty * ty, along = dx * tx + dy * ty;
   if (!(along > 0) || !(along < length2)) return std::nullopt;
+  // The wall's normal is (ty, -tx) / length or its opposite: the one that points to the disc.
   const Real length = std::sqrt(length2), side = ty * wall.normal.x() - tx * wall.normal.y() < 0 ? -1 : 1;
   const Real nx = side * ty / length, ny = -side * tx / length;
+  // Abreast, but met with a normal that is not the wall's: the contact is with an end, to rounding.
   if (nx * wall.normal.x() + ny * wall.normal.y() < kSameDirection) return std::nullopt;
   const Real closing = -(nx * at.vx + ny * at.vy);
   if (!(closing > 0)) return std::nullopt;

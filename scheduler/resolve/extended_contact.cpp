@@ -28,6 +28,7 @@ Away away_from(const Site& site, const ExtendedRotation& turned, const RealVec& 
   const auto from_point = [&](const Vec2& local) -> Away {
     const RealVec d = p - place(local);
     const Real length = d.norm();
+    // Two points in one place have no direction: the contact's stays.
     if (length <= least) return {out, d.dot(out)};
     const RealVec n = aligned(d / length, out);
     return {n, d.dot(n)};
@@ -47,6 +48,8 @@ Away away_from(const Site& site, const ExtendedRotation& turned, const RealVec& 
     const RealVec from = place(site.a) - c, to = place(site.b) - c;
     const Real sense = site.sweep > 0 ? 1 : -1, length = w.norm();
     if (sense * extended::cross(from, w) > 0 && sense * extended::cross(w, to) > 0 && length > least) {
+      // `n` has the side of `out`, so seen from inside the circle the distance changes its sign with it.
+      // Where the two directions differ, an end of the arc is met, to rounding.
       const RealVec radial = w / length, n = aligned(radial, out);
       if (n.dot(out) >= kSameDirection)
         return {n, n.dot(radial) * (length - static_cast<Real>(site.arc_radius))};

@@ -20,6 +20,8 @@ struct Wedge {
 };
 
 Wedge wedge_at(const Outline& outline, const Vec2& vertex) {
+  // Sites join bit for bit, and vertex samples are copies of their ends: to compare for equality finds
+  // all that meet there, several corners where a union pinches.
   Wedge w;
   const auto add = [&](const Vec2& travel, double sense) {
     w.edges.push_back(sense * travel);
@@ -45,6 +47,8 @@ bool parts(const Vec2& n, const Wedge& front, const Wedge& behind) {
 std::optional<Vec2> parting_normal(const Wedge& front, const Wedge& behind, const Vec2& wanted) {
   if (front.edges.empty() || behind.edges.empty()) return std::nullopt;
   if (parts(wanted, front, behind)) return wanted;
+  // The directions that part the wedges make up an arc of the circle, from one edge's normal to
+  // another's. If `wanted` is not on it, the nearest of it is one of its ends.
   std::optional<Vec2> best;
   const auto consider = [&](const Vec2& n) {
     if (parts(n, front, behind) && (!best || n.dot(wanted) > best->dot(wanted))) best = n;
@@ -72,6 +76,8 @@ class Joint {
   std::vector<FeatureContact> contacts() {
     for (int j = 0; j < static_cast<int>(outline_t_.sites.size()); ++j) look_at(j);
     const bool interior = std::any_of(near_.begin(), near_.end(), [](const Near& n) { return !n.at_end; });
+    // The sites of a corner meet at one place: it is looked at once. Of a joint that is touched on the
+    // inside of a site, the other site's end, as near as that, says nothing new.
     bool corner_done = false;
     for (const Near& n : near_) {
       if (!n.at_end) {
@@ -101,6 +107,7 @@ class Joint {
     const double gap = side_of(site(j), n, path_.q) * n.distance - site(j).radius - sample_.radius;
     if (j != f_.site && std::abs(gap) > tolerance_) return;
     const auto close = [&](const Vec2& end) { return (path_.q - end).norm() <= tolerance_; };
+    // As near to a sharp end as the tolerance, whether the foot is on the end or beside it is rounding.
     const bool corner = sharp(j) && site(j).solid && (close(site(j).a) || close(site(j).b));
     near_.push_back({j, n, gap, corner || n.foot != Foot::interior || site(j).kind == SiteKind::point});
   }
@@ -124,6 +131,7 @@ class Joint {
   }
 
   void add(int j, const Vec2& normal, double gap) {
+    // Time, level and sink are those of the contact that was found.
     FeatureContact c = f_;
     const Vec2 out = t_.frame.direction_to_world(normal);
     c.site = j;

@@ -22,6 +22,7 @@ void end_run(ZenoWatch::Bounce& b) {
 std::optional<ZenoEnding> ZenoWatch::collided(const Feature& feature, double time, double closing_speed,
                                               BounceLoss loss, double rest, bool sunk,
                                               const ForeseenLimit& foreseen) {
+  // A flight of duration T on a parabola that ends with v = g T / 2 rose by v^2 / (2 g) = v T / 4.
   if (loss == BounceLoss::none || 0.25 * closing_speed * rest > kHighFlight * tolerance_) return std::nullopt;
   Bounce& b = bounces_[feature];
   const double left = foreseen.time - time;
@@ -38,6 +39,7 @@ std::optional<ZenoEnding> ZenoWatch::collided(const Feature& feature, double tim
     end_run(b);
     return std::nullopt;
   }
+  // the flights to come last interval (r + r^2 + ...) = interval r / (1 - r)
   if (b.limit_time == 0.0 && loss != BounceLoss::all && ratio < 1.0 - kAlike)
     b.limit_time = time + interval * ratio / (1.0 - ratio);
   const bool pressed = sunk || loss == BounceLoss::all || (rest >= interval && ratio <= 1.0 + kAlike);
@@ -47,6 +49,7 @@ std::optional<ZenoEnding> ZenoWatch::collided(const Feature& feature, double tim
   const bool run_out = b.limit_time > 0.0 && b.low_flights >= kShortSeries &&
                        0.25 * closing_speed * interval < kTouchOfTolerance * tolerance_;
   if (b.low_flights < kLowFlights && !run_out) return std::nullopt;
+  // a limit foreseen in closed form is the finer one, if these flights follow that form at all
   const double seen = std::max(b.limit_time, time);
   const double beside = std::abs(foreseen.time - seen);
   const bool alike = foreseen.time > 0.0 && beside <= kAlikeForm * (seen - time) + foreseen.rounding;

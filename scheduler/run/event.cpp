@@ -26,6 +26,7 @@ const char* to_string(EventKind kind) {
     case EventKind::lift:
       return "lift";
   }
+  // Behind the switch, not a default case in it: so compilers warn of a kind that has no name.
   return "unknown";
 }
 

@@ -70,6 +70,7 @@ Order order_of(std::string_view name) {
 }
 
 bool SolverOptions::is_valid(std::string* error) const {
+  // First: order_of() throws on a name that is not known.
   if (!known(orders(), order, "order", error)) return false;
   if (takes_together(order_of(order)) && (response == "reflection" || detector == "depth")) {
     *error = fmt::format(

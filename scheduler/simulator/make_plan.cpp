@@ -41,6 +41,7 @@ Plan make_plan(const KernelView& kernel, const std::vector<std::string>& of_poli
       discs.push_back(k);
   std::uint64_t disc_bodies = 0, partners = 0, disc_sites = 0,
                 site_partners = 0;  // partners: of discs, no discs
+  // What k's motion and outline allow does not depend on which disc it meets: one is asked for all.
   for (int k = 0; k < kernel.owner_count() && !discs.empty(); ++k) {
     const bool is_site = k >= n;
     if (!(is_site || kernel.is_ballistic(k)) ||

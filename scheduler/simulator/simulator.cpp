@@ -18,6 +18,8 @@ struct Simulator::Impl {
       : kernel(std::move(world), options), policy(make_policy(options.policy, options.detector)) {
     policy->prepare(kernel);
     if (options.persistent && policy->steps_islands()) kernel.let_contacts_last();
+    // What may miss contacts is not held to certificates; Brink's own exact policies are held to the
+    // order of known contacts in their tests, not in every run.
     if (policy->approximate()) return;
     kernel.hold_to_certificates();
     if (is_added_policy(options.policy)) kernel.hold_to_known_contacts();
@@ -42,6 +44,7 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
   if (!(options.frame_interval >= 0.0))
     throw BadInput(fmt::format("frame_interval = {} must be >= 0", options.frame_interval));
   RunKernel& kernel = impl_->kernel;
+  // At the start alone: a policy that may miss contacts can stand in overlaps later on.
   if (time() == 0.0)
     if (const std::string why = start_fault(); !why.empty()) throw BadInput(why);
   const auto begin = std::chrono::steady_clock::now();
@@ -58,6 +61,7 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
   } else {
     summary.termination = Termination::reached_end;
   }
+  // Whatever the wall clock says: from here the run can be gone on with.
   if (recorder) recorder->checkpoint(time(), kernel.snapshot());
   kernel.tell_lasting_contacts();  // beyond the checkpoint: a run that goes on tells them again
   const std::vector<BodyState> last = states();

@@ -34,6 +34,7 @@ class Complementarity {
     for (Eigen::Index i = 0; i < n; ++i) {
       q[i] = unknowns_[i].row.dot(free_) + unknowns_[i].bend;
       for (Eigen::Index j = 0; j < n; ++j)
+        // w = A z + q: what each unit of force adds to the acceleration along a row
         A(i, j) = unknowns_[i].row.dot(inverse_mass_.cwiseProduct(unknowns_[j].force)) + coupling(i, j);
       size_ = std::max(size_, std::abs(q[i]));
     }
@@ -62,10 +63,12 @@ class Complementarity {
   MotionMode mode_of(std::size_t k, ContactKnown known, bool frictionless) const {
     const auto found =
         std::find_if(contacts_.begin(), contacts_.end(), [&](const Rows& r) { return r.of == k; });
+    // complementarity: where a_n > 0 the normal force is 0, and the contact opens
     if (found->normal.dot(acceleration_) + found->normal_bend > kNone * size_) return MotionMode::open;
     if (frictionless) return MotionMode::smooth;
     if (known == ContactKnown::slides_plus) return MotionMode::slip_plus;
     if (known == ContactKnown::slides_minus) return MotionMode::slip_minus;
+    // what starts to slip slips the way in which its tangential acceleration leads
     const Real along = found->tangent.dot(acceleration_) + found->tangential_bend;
     if (std::abs(along) <= kNone * size_) return MotionMode::stick;
     return along > 0 ? MotionMode::slip_plus : MotionMode::slip_minus;
@@ -89,10 +92,13 @@ class Complementarity {
     const ModeContact& c = problem.contacts[k];
     const RealVector n = row_of(problem, c, r.normal_on_sample, r.normal_on_site).cast<Real>();
     const RealVector t = row_of(problem, c, r.tangent_on_sample, r.tangent_on_site).cast<Real>();
+    // Normal rows have length one in the mass metric, so that light and heavy bodies are pivoted alike.
+    // The tangent has the same factor: mu p >= f+ + f- is the same inequality in scaled forces then.
     const Real square = n.dot(inverse_mass_.cwiseProduct(n));
     const Real by = square > 0 ? 1 / std::sqrt(square) : Real(1);
     const Real mu = c.friction;
     const bool still = known == ContactKnown::still && mu > 0;
+    // of what slides already the friction is at its bound: the normal force's column carries it
     const Real sign = known == ContactKnown::slides_plus ? -1 : known == ContactKnown::slides_minus ? 1 : 0;
     const Real normal_bend = by * Real(r.normal_bend), tangential_bend = by * Real(r.tangential_bend);
     contacts_.push_back({k, by * n, by * t, normal_bend, tangential_bend});
@@ -105,6 +111,7 @@ class Complementarity {
   }
 
   /// Between unknowns of one contact, beside what accelerations couple.
+  /// Rows +-a_t + g of f+ and f-, and mu p - f+ - f- of g (choose_modes.h).
   Real coupling(Eigen::Index i, Eigen::Index j) const {
     using Kind = Unknown::Kind;
     const Unknown &a = unknowns_[i], &b = unknowns_[j];
@@ -149,6 +156,7 @@ std::optional<PlasticImpact> plastic_impact(const ModeProblem& problem, double t
     ContactRates& r = m.contacts[k];
     const ModeContact& c = problem.contacts[k];
     known.push_back(touching[k] ? ContactKnown::still : ContactKnown::open);
+    // what of v_n is not the bodies' own: with it "a_n" is v_n after the impact, and forces are impulses
     r.normal_bend = r.normal_velocity - row_of(problem, c, r.normal_on_sample, r.normal_on_site).dot(m.free);
     r.tangential_bend =
         r.tangential_velocity - row_of(problem, c, r.tangent_on_sample, r.tangent_on_site).dot(m.free);

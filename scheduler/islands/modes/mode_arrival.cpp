@@ -32,6 +32,8 @@ class Watch {
         when = t > from ? last_clear(clear, t) : from;
         return true;
       }
+      // Steps may lead to a gap of down to -slack; the crossing is told by halving from the last place
+      // where it was not below zero.
       if (r.gap >= 0.0 || r.within < 0.0) clear = t;
       const double s = safe_for(r, t, to);
       if (!(t + s > t)) {  // as near as the clock can tell
@@ -40,6 +42,7 @@ class Watch {
       }
       t += s;
     }
+    // the last step may have ended at `to` itself, which the loop does not look at
     const ContactRates r = at(to);
     if (!(r.within >= 0.0 && comes(r))) return false;
     when = last_clear(clear, to);
@@ -59,6 +62,8 @@ class Watch {
                                      : problem_.supports[owner - problem_.bodies()].bounds(from, to);
   }
 
+  /// Below zero by less than half the slack it comes only if it closes: what has just been let go, or
+  /// passes by the end of a site, starts there by roundings.
   bool comes(const ContactRates& r) const {
     const double speed = std::abs(r.tangential_velocity) + std::abs(r.normal_velocity);
     return r.gap < -0.5 * slack_ || (!contact_.passes && r.gap < 0.0 && r.normal_velocity < -kCloses * speed);
@@ -80,10 +85,14 @@ class Watch {
     double best = 0.0;
     for (double window = to - t, tries = 0; tries < 4 && t + window > t; ++tries) {
       const Bent b = bend(r, t, t + window);
+      // The slack on top of the gap keeps the step from shrinking to nothing at a gap of 0; comes() tells
+      // at half of it.
       double s = safe_step(std::max(r.gap + slack_, 0.0), r.normal_velocity, b.of_gap);
       if (r.within < 0.0) s = std::max(s, until_in_range(r, t, b));
       best = std::max(best, std::min(s, window));
       if (s >= 0.25 * window) break;
+      // bounds over a long window are loose: over one not much longer than their answer they are nearly as
+      // good as there are
       window = 4.0 * s;
     }
     return best;
@@ -102,10 +111,14 @@ class Watch {
       relative.spin_t = relative.alpha_t = 0.0;  // looks the same at any angle
     SamplePath path;
     path.arm = c.sample.norm();
+    // site_arm leads to the point that touches; the sample's point is its radius further along the normal
     path.distance = (r.site_arm + c.sample_radius * r.normal).norm();
     const PathBounds p = path_bounds(path, relative, to - from);
     Bent b{p.acceleration, p.acceleration, p.speed};
     if (!round || !c.hollow) return b;
+    // Inside a circle the gap bends down by v^2 / distance, too. The sample comes no nearer to the centre
+    // in the window than `least`; right at the centre the bound says nothing, and a thousandth stands for
+    // it.
     const double distance = c.radius - c.sample_radius - r.gap, least = distance - p.speed * (to - from);
     b.of_gap += p.speed * p.speed / std::max(least, 1e-3 * distance);
     return b;
@@ -114,6 +127,7 @@ class Watch {
   /// How long the sample stays out of the feature's range.
   double until_in_range(const ContactRates& r, double t, const Bent& b) const {
     const Frame frame(Pose{{0.0, 0.0}, state(contact_.site_owner, t).pose.angle});
+    // all edges must be met: it is out for as long as the one that takes longest
     const Vec2 q = frame.direction_to_local(r.site_arm + contact_.shape.sample_radius * r.normal);
     double s = -1.0;
     for (const HalfPlane& edge : contact_.shape.range)
@@ -138,6 +152,7 @@ Arrival first_arrival(const ModeProblem& problem, const std::vector<MotionMode>&
     if (is_closed(modes[k])) continue;
     const Watch watch(problem, problem.contacts[k], bodies, slack, (to - from) / kLooksOfArrival);
     double when = 0.0;
+    // nobody is followed past the first that was found; of two at one time the earlier in order stays
     if (!watch.closes(from, first.time, when) || (first.found && when >= first.time)) continue;
     first = {true, when, static_cast<int>(k)};
   }

@@ -31,12 +31,14 @@ struct System {
   VectorXd scale;           ///< rows were multiplied by; columns too
 };
 
+/// M^-1/2. 0 where a coordinate is held: a row has nothing there, and nothing is moved along it.
 VectorXd root_of(const ModeProblem& problem) {
   VectorXd root(3 * problem.bodies());
   for (int k = 0; k < problem.bodies(); ++k) root.segment<3>(3 * k) = problem.inverse_mass[k].cwiseSqrt();
   return root;
 }
 
+/// Tangential force for mu times the normal one: against the slip.
 double friction_sign(MotionMode mode) {
   return mode == MotionMode::slip_plus ? -1.0 : mode == MotionMode::slip_minus ? 1.0 : 0.0;
 }
@@ -48,6 +50,8 @@ VectorXd tangent_row(const ModeProblem& p, const ContactRates& r, std::size_t k)
   return row_of(p, p.contacts[k], r.tangent_on_sample, r.tangent_on_site);
 }
 
+/// One row and one column a normal force, one more where it sticks. With slip the column n -+ mu t is not
+/// the row n: the matrix is not symmetric then, and need not be definite (Painleve 1895).
 System system_of(const ModeProblem& problem, const ModeMoment& moment, const std::vector<MotionMode>& modes) {
   const VectorXd root = root_of(problem);
   System s;
@@ -55,6 +59,8 @@ System system_of(const ModeProblem& problem, const ModeMoment& moment, const std
   std::vector<double> right, scale;
   const auto add = [&](std::size_t k, const VectorXd& row, const VectorXd& column, double bend, bool along) {
     const VectorXd r = row.cwiseProduct(root);
+    // The column is scaled as its row is, so that loads are forces divided by the scale (read_forces); a
+    // row between what is held on both sides is 0.
     const double length = r.norm(), by = length > 0.0 ? 1.0 / length : 0.0;
     rows.push_back(by * r);
     columns.push_back(by * column.cwiseProduct(root));
@@ -99,6 +105,8 @@ void read_forces(const ModeProblem& problem, const std::vector<MotionMode>& mode
 }
 
 /// The least room of any force, of the largest.
+/// Normal forces may fall to 0; friction that sticks may grow to mu times them. Friction that slips is at
+/// its bound by construction and has no room of its own.
 void find_margin(const ModeProblem& problem, const std::vector<MotionMode>& modes, ModeForces& f) {
   double largest = 0.0;
   for (std::size_t k = 0; k < modes.size(); ++k)
@@ -115,6 +123,9 @@ void find_margin(const ModeProblem& problem, const std::vector<MotionMode>& mode
 }
 
 /// Redundant contacts: forces within the cones, if there are any.
+/// The least-squares forces of a rank-deficient system may pull at one leg of four. What all forces
+/// together push with is unique, so it is asked whether it lies in the cone that the contacts' own cones
+/// span: two edges (1, +-mu) where it sticks, one where it slips.
 void find_admissible(const ModeProblem& problem, const ModeMoment& moment,
                      const std::vector<MotionMode>& modes, const VectorXd& pushed, ModeForces& f) {
   const VectorXd root = root_of(problem);
@@ -144,6 +155,7 @@ void find_admissible(const ModeProblem& problem, const ModeMoment& moment,
   }
   const NonNegativeFit fit = fit_nonnegative(cone, pushed);
   const double left = fit.residual / std::max(pushed.norm(), std::numeric_limits<double>::min());
+  // it says no more than yes or no: forces that are inside have no room that could be followed to 0
   f.margin = left <= kBalances ? kBalances : -left;
   std::fill(f.normal.begin(), f.normal.end(), 0.0);
   std::fill(f.tangential.begin(), f.tangential.end(), 0.0);
@@ -154,7 +166,8 @@ void find_admissible(const ModeProblem& problem, const ModeMoment& moment,
   }
 }
 
-/// Positions, or velocities, that change least in the mass metric.
+/// Rows of the closed contacts, and what they are off: gaps, or velocities that must be 0 (a contact that
+/// sticks has its tangential one, too).
 std::vector<VectorXd> closed_rows(const ModeProblem& problem, const std::vector<ContactRates>& rates,
                                   const std::vector<MotionMode>& modes, bool velocities,
                                   std::vector<double>& off) {
@@ -171,6 +184,7 @@ std::vector<VectorXd> closed_rows(const ModeProblem& problem, const std::vector<
   return rows;
 }
 
+/// M^-1/2 times the shortest y with (J M^-1/2) y = -off: of all corrections the one with the least x.M x.
 VectorXd least_change(const ModeProblem& problem, const std::vector<VectorXd>& rows,
                       const std::vector<double>& off) {
   const VectorXd root = root_of(problem);
@@ -205,6 +219,7 @@ ModeForces forces_in(const ModeProblem& problem, const ModeMoment& moment,
   solver.compute(matrix);
   const VectorXd loads = solver.solve(s.right);
   const double missed = (matrix * loads - s.right).norm();
+  // a singular system may have no solution: contacts that contradict each other, or slip that jams
   f.consistent = loads.allFinite() && missed <= kConsistent * s.right.norm();
   const VectorXd pushed = s.columns * loads;
   f.acceleration += pushed.cwiseProduct(root_of(problem));
@@ -231,6 +246,8 @@ std::vector<BodyState> projected(const ModeProblem& problem, double t, std::vect
       angular += change[3 * k + 2];
     }
   };
+  // gaps are not linear in places: Newton, to the rounding of places; velocities are linear, once is
+  // enough
   for (int i = 0; i < kNewtonSteps; ++i) {
     move(false);
     if (std::all_of(off.begin(), off.end(), [&](double x) { return std::abs(x) <= 1e-15 * problem.size; }))

@@ -25,6 +25,7 @@ constexpr double kBeyond = 1e-11;
 /// Changes of mode at one instant, beside a few for every contact.
 constexpr int kChanges = 8, kChangesEach = 4;
 
+/// What times near t are rounded to [s].
 double ulp(double t) { return kEps * std::max(std::abs(t), std::numeric_limits<double>::min()); }
 
 double slip_sign(MotionMode m) { return m == MotionMode::slip_plus ? 1.0 : -1.0; }
@@ -68,6 +69,7 @@ bool ModeMotion::begin(const std::vector<bool>& closed) {
   std::vector<ContactKnown> known(closed.size(), ContactKnown::open);
   for (std::size_t k = 0; k < closed.size(); ++k) {
     if (!closed[k]) continue;
+    // a slip that is no more than what ended bounces leave is none: it may stick
     const double slip = rates[k].tangential_velocity;
     known[k] = std::abs(slip) <= kNoSpeed * speed_ ? ContactKnown::still
                : slip > 0.0                        ? ContactKnown::slides_plus
@@ -84,6 +86,8 @@ bool ModeMotion::begin_in(const std::vector<MotionMode>& modes) {
   return forces_.consistent;
 }
 
+/// The difference of the two orders in units of the tolerance: places by the size, angles by a radian,
+/// velocities by the speed.
 double ModeMotion::error_of(const ModeTrial& trial) const {
   double most = 0.0;
   for (const BodyState& e : trial.error) {
@@ -100,6 +104,7 @@ ModeMotion::Look ModeMotion::look_at(double t, const States& states) const {
   const auto take = [&](Look::What what, std::size_t contact, double room) {
     if (room < look.room) look = {what, static_cast<int>(contact), room};
   };
+  // forces that do not exist fail by as much as can be
   if (!f.consistent) take(Look::What::force, 0, -1.0);
   for (std::size_t k = 0; k < modes_.size(); ++k) {
     if (!is_closed(modes_[k])) continue;
@@ -111,6 +116,7 @@ ModeMotion::Look ModeMotion::look_at(double t, const States& states) const {
   return look;
 }
 
+/// The ends are on their gaps by projection; in between the quintic does not know of them.
 bool ModeMotion::gaps_hold(const std::vector<PolynomialPiece>& pieces, double h) const {
   for (int i = 1; i < kGapLooks; ++i) {
     const double t = t_ + h * i / kGapLooks;
@@ -150,6 +156,8 @@ void ModeMotion::close_in(const std::vector<PolynomialPiece>& pieces, double& cl
   for (int n = 0; n < kClosings && crossed - clear > 2.0 * ulp(t_ + crossed); ++n) {
     double h = 0.5 * (clear + crossed);
     if (n % 3 == 0 && room > 0.0) h = clear + (crossed - clear) * (room / (room - below));
+    // The secant through the last two that failed, taken a hundredth of the bracket's rest short of its
+    // root, so that it falls on the clear side.
     if (n % 3 == 1 && below_before < below) {
       const double root = crossed + below * (before - crossed) / (below - below_before);
       h = root - 0.01 * (crossed - root);
@@ -158,6 +166,8 @@ void ModeMotion::close_in(const std::vector<PolynomialPiece>& pieces, double& cl
     if (!(h > clear && h < crossed)) break;
     const Look look = look_at(t_ + h, states_of(pieces, t_ + h));
     if (look.room < 0.0) {
+      // Illinois: an end of the bracket that stays twice in a row counts half, else regula falsi moves one
+      // end alone
       if (side < 0) room *= 0.5;
       side = -1;
       before = crossed, below_before = below;
@@ -174,10 +184,13 @@ void ModeMotion::close_in(const std::vector<PolynomialPiece>& pieces, double& cl
 double ModeMotion::arrive(double h, int contact) const {
   double reached = h;
   for (int n = 0; n < kApproaches; ++n) {
+    // A step taken anew to h ends beside what the dense output of the longer one says, so Newton goes over
+    // steps themselves.
     const ContactRates r = rates_at(problem_, t_ + h, after(h), problem_.contacts[contact]);
     if (r.gap >= 0.0) reached = h;
     if (r.gap >= 0.0 && r.gap <= limits_.touch) break;
     if (!(r.normal_velocity < 0.0)) break;
+    // aims for the middle of what counts as touching: on the clear side of 0
     const double next = h + (r.gap - 0.5 * limits_.touch) / -r.normal_velocity;
     if (!(next > 0.0) || next == h) break;
     h = next;
@@ -195,6 +208,7 @@ std::vector<PolynomialPiece> ModeMotion::pieces_to(double end, const States& sta
 }
 
 void ModeMotion::accept(double end, States states) {
+  // a step of next to no time does not count: modes that change into each other without end must run out
   if (end - t_ > 1e-9 * limits_.longest) changes_ = 0;
   t_ = end;
   states_ = std::move(states);
@@ -207,6 +221,8 @@ std::vector<ContactKnown> ModeMotion::known_now(const Look& failed) const {
   std::vector<ContactKnown> known(modes_.size(), ContactKnown::open);
   for (std::size_t k = 0; k < modes_.size(); ++k) {
     if (!is_closed(modes_[k])) continue;
+    // What stops slipping may stick or turn round, so its sign is open; what slips on keeps its sign. A
+    // contact that is open stays open: it closes by an arrival.
     const bool ends = failed.what == Look::What::slip && failed.contact == static_cast<int>(k);
     known[k] = ContactKnown::still;
     if (is_slip(modes_[k]) && !ends && std::abs(rates[k].tangential_velocity) > kNoSlip * speed_)
@@ -219,11 +235,14 @@ std::vector<ContactKnown> ModeMotion::known_now(const Look& failed) const {
 bool ModeMotion::change(const Look& failed) {
   if (++changes_ > kChanges + kChangesEach * static_cast<int>(modes_.size())) return false;
   std::vector<ContactKnown> known = known_now(failed);
+  // Right where a force comes to 0 its contact may be open or closed, but for roundings. Where the old
+  // modes would lead a little later the one that has failed is wrong beyond doubt.
   const double ahead = std::max(kAhead * h_, 64.0 * ulp(t_));
   const ModeTrial trial = try_step(problem_, modes_, t_, states_, ahead);
   if (!trial.finite) return false;
   const ModeMoment m = moment_at(problem_, t_ + ahead, trial.states, modes_);
   ModeChoice choice = choose_modes(problem_, m, known);
+  // the same again would fail again at once: without the contact that failed
   if (choice.found && choice.modes == modes_ && failed.contact >= 0) {
     known[failed.contact] = ContactKnown::open;
     choice = choose_modes(problem_, m, known);
@@ -238,12 +257,14 @@ bool ModeMotion::change(const Look& failed) {
 /// A step that is accurate enough, from h_ on downwards; h <= 0: there is none.
 double ModeMotion::find_step(double until, States& end, std::vector<PolynomialPiece>& pieces) {
   for (int n = 0; n < kShortenings; ++n) {
+    // no rest of a rounding is left for a step of its own
     const bool last = until - t_ <= h_ * (1.0 + 1e-9);
     const double h = last ? until - t_ : h_;
     if (!(t_ + h > t_)) return 0.0;
     const ModeTrial trial = try_step(problem_, modes_, t_, states_, h);
     const double error = error_of(trial);
     if (!(error <= 1.0)) {
+      // the error of a step is of order h^5
       h_ = h * (std::isfinite(error) ? std::clamp(0.9 * std::pow(error, -0.2), 0.1, 0.8) : 0.1);
       continue;
     }
@@ -253,6 +274,8 @@ double ModeMotion::find_step(double until, States& end, std::vector<PolynomialPi
       h_ = 0.5 * h;
       continue;
     }
+    // a step that was cut to end at `until` says that a longer one would do, not that it should be as
+    // short
     const double next = h * std::clamp(0.9 * std::pow(std::max(error, 1e-10), -0.2), 0.2, 4.0);
     h_ = std::min(last ? std::max(h_, next) : next, limits_.longest);
     return h;
@@ -269,9 +292,13 @@ ModeStep ModeMotion::step(double until) {
   Look failed;
   const bool fails = fails_within(h, done.pieces, clear, failed);
   if (fails) at = t_ + clear;
+  // beyond the end of the feature by more than a rounding of places, so that the next look finds it left
   if (fails && failed.what == Look::What::range) at = std::min(until, at + kBeyond * size_ / speed_);
+  // A step of its own to there, not the first part of the longer one: states and forces at its end are
+  // those of the method, and its motion ends in them.
   if (fails && at > t_) done.pieces = pieces_to(at, end = after(at - t_));
   Arrival arrival;
+  // on the motion that is taken; where something fails before, an arrival after it does not come to be
   if (at > t_) arrival = first_arrival(problem_, modes_, done.pieces, t_, at, limits_.touch);
   if (arrival.found) {
     at = std::min(at, t_ + arrive(arrival.time - t_, arrival.contact));

@@ -7,6 +7,8 @@ namespace {
 Vec3 as_vector(const Acceleration& a) { return {a.linear.x(), a.linear.y(), a.angular}; }
 
 /// What a support's own acceleration adds to the bends.
+/// A support has no columns (row_of): its acceleration is known, and goes into the bends. A body's own is
+/// an unknown of the problem.
 void add_support(const ModeProblem& problem, int owner, double t, const Vec3& normal, const Vec3& tangent,
                  ContactRates& r) {
   if (owner < problem.bodies()) return;
@@ -31,6 +33,7 @@ ContactRates rates_at(const ModeProblem& problem, double t, std::span<const Body
 }
 
 std::vector<ContactRates> rates_at(const ModeProblem& problem, double t, std::span<const BodyState> states) {
+  // any closed mode: all contacts are looked at
   return rates_at(problem, t, states, std::vector(problem.contacts.size(), MotionMode::stick));
 }
 
@@ -55,6 +58,7 @@ ModeMoment moment_at(const ModeProblem& problem, double t, std::span<const BodyS
   m.free.resize(3 * bodies);
   for (int k = 0; k < bodies; ++k)
     for (int i = 0; i < 3; ++i)
+      // a locked coordinate has no acceleration, whatever forces pull at it
       m.free[3 * k + i] = problem.inverse_mass[k][i] == 0.0 ? 0.0 : as_vector(free[k])[i];
   m.contacts = rates_at(problem, t, states, modes);
   return m;

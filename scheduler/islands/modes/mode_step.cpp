@@ -8,6 +8,9 @@ namespace {
 
 using Eigen::VectorXd;
 
+/// The coefficients of Dormand and Prince (1980). The last row of kWeights is the fifth-order solution
+/// itself (first same as last), so that the place of the seventh stage is the step's end; kError is the
+/// fifth-order minus the fourth-order weights.
 constexpr int kStages = 7;
 constexpr std::array<double, kStages> kNodes{0, 1. / 5, 3. / 10, 4. / 5, 8. / 9, 1, 1};
 constexpr std::array<std::array<double, kStages - 1>, kStages> kWeights{{
@@ -57,6 +60,8 @@ ModeTrial try_step(const ModeProblem& problem, const std::vector<MotionMode>& mo
     place = start;
     for (int j = 0; j < i; ++j)
       if (kWeights[i][j] != 0.0) place += (h * kWeights[i][j]) * slopes[j];
+    // Forces of closed contacts follow from the stage's state alone; no gap is looked at, and what they
+    // drift by is put back by projected() afterwards.
     const ModeForces f =
         forces_in(problem, moment_at(problem, t + kNodes[i] * h, as_states(place), modes), modes, false);
     slopes[i].resize(2 * n);

@@ -23,6 +23,7 @@ VectorXd solve_joined(const MatrixXd& A, const VectorXd& b, const std::vector<bo
     if (joined[j]) columns.push_back(j);
   MatrixXd part(A.rows(), static_cast<Index>(columns.size()));
   for (std::size_t i = 0; i < columns.size(); ++i) part.col(i) = A.col(columns[i]);
+  // redundant contacts make columns depend on each other: of all that fit this is the shortest
   const VectorXd some = part.completeOrthogonalDecomposition().solve(b);
   VectorXd x = VectorXd::Zero(A.cols());
   for (std::size_t i = 0; i < columns.size(); ++i) x[columns[i]] = some[i];
@@ -30,6 +31,9 @@ VectorXd solve_joined(const MatrixXd& A, const VectorXd& b, const std::vector<bo
 }
 
 /// The unjoined column that reduces the residual most; -1: none does.
+/// A column's product with what is left of b is the rate at which half the residual's square falls as its
+/// x grows. Where none of those that have not joined has one > 0, the fit is least (Karush, Kuhn and
+/// Tucker).
 Index steepest(const MatrixXd& A, const VectorXd& left, const std::vector<bool>& joined, double least) {
   Index best = -1;
   for (Index j = 0; j < A.cols(); ++j) {
@@ -48,6 +52,7 @@ void go_towards(VectorXd& x, const VectorXd& z, std::vector<bool>& joined) {
       if (const double p = x[j] / (x[j] - z[j]); first < 0 || p < part) part = p, first = j;
   x += part * (z - x);
   for (Index j = 0; j < x.size(); ++j)
+    // the first leaves by name: roundings may leave its x a little above 0
     if (joined[j] && (j == first || x[j] <= 0.0)) {
       x[j] = 0.0;
       joined[j] = false;
@@ -60,6 +65,7 @@ NonNegativeFit fit_nonnegative(const MatrixXd& A, const VectorXd& b) {
   NonNegativeFit fit;
   fit.x = VectorXd::Zero(A.cols());
   std::vector<bool> joined(A.cols(), false);
+  // Each round has a lesser residual, so no set of columns comes twice: the bound is there for roundings.
   const Index most = 3 * A.cols() + 10;
   double least_residual = b.norm();
   for (Index round = 0; round < most; ++round) {
@@ -67,6 +73,7 @@ NonNegativeFit fit_nonnegative(const MatrixXd& A, const VectorXd& b) {
     if (next < 0) break;
     const NonNegativeFit before = fit;
     joined[next] = true;
+    // each pass that does not end lets a column go
     for (Index inner = 0; inner <= A.cols(); ++inner) {
       const VectorXd z = solve_joined(A, b, joined);
       bool inside = true;

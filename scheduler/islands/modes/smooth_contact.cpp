@@ -31,6 +31,7 @@ struct Placing {
 };
 
 /// Rows of the velocity at the point that touches.
+/// With r an arm and n the normal: n.(v + omega x r) = n.v + omega (r x n).
 void set_rows(ContactRates& r) {
   const Vec2 t = perp(r.normal);
   r.normal_on_sample = Vec3(r.normal.x(), r.normal.y(), cross(r.arm, r.normal));
@@ -39,12 +40,16 @@ void set_rows(ContactRates& r) {
   r.tangent_on_site = -Vec3(t.x(), t.y(), cross(r.site_arm, t));
 }
 
+/// Second derivative: the place from T in T's turning frame has rho'' - alpha_T x rho - 2 omega_T x w +
+/// omega_T^2 rho, with rho'' = a_S - a_T + alpha_S x arm - omega_S^2 arm. What holds accelerations is in
+/// the rows, the others are the bend.
 void look_at_line(const SmoothContact& c, const Placing& at, ContactRates& r) {
   r.normal = at.site_frame.direction_to_world(c.normal);
   const Vec2 t = perp(r.normal);
   r.gap = c.normal.dot(at.site_frame.direction_to_local(at.rho) - c.place) - c.radius - c.sample_radius;
   const Vec2 w = at.velocity - cross(at.omega_t, at.rho);
   r.normal_velocity = r.normal.dot(w);
+  // of the points that touch: the sample's surface is at -radius n from its point
   r.tangential_velocity = t.dot(w) - c.sample_radius * (at.omega_s - at.omega_t);
   const Vec2 bend =
       -at.omega_s * at.omega_s * at.arm - 2.0 * cross(at.omega_t, w) + at.omega_t * at.omega_t * at.rho;
@@ -52,10 +57,13 @@ void look_at_line(const SmoothContact& c, const Placing& at, ContactRates& r) {
   r.tangential_bend = t.dot(bend);
 }
 
+/// The centre takes the place of the line: its own acceleration has -omega_T^2 centre, and the normal
+/// turns with the way from it.
 void look_at_circle(const SmoothContact& c, const Placing& at, ContactRates& r) {
   const double side = c.hollow ? -1.0 : 1.0;
   const Vec2 centre = at.site_frame.direction_to_world(c.place), way = at.rho - centre;
   const double distance = way.norm();
+  // for a hollow circle the normal leads to the centre, so the way is side * distance * normal for both
   r.normal = distance > 0.0 ? Vec2(side / distance * way) : Vec2::UnitX();
   const Vec2 t = perp(r.normal);
   r.gap = side * (distance - c.radius) - c.sample_radius;
@@ -66,6 +74,7 @@ void look_at_circle(const SmoothContact& c, const Placing& at, ContactRates& r) 
   r.tangential_velocity = along - c.sample_radius * at.omega_s - lever * at.omega_t;
   const Vec2 bend = -at.omega_s * at.omega_s * at.arm + at.omega_t * at.omega_t * centre;
   r.normal_bend = r.normal.dot(bend) + turn * along;
+  // the second part is the rates of t and of the lever: none while the contact stays closed
   r.tangential_bend = t.dot(bend) - r.normal_velocity * (turn + at.omega_t);
 }
 
@@ -74,6 +83,7 @@ double range_of(const SmoothContact& c, const Placing& at, const Vec2& normal) {
   const Vec2 to_site = at.sample_frame.direction_to_local(-normal);
   double within = std::min(c.range[0].within(q), c.range[1].within(q));
   for (const HalfPlane& edge : c.sector)
+    // a direction, times the radius: how far the touching point is inside [m]
     if (!edge.inward.isZero(0.0)) within = std::min(within, c.sample_radius * edge.within(to_site));
   return within;
 }
@@ -82,6 +92,7 @@ HalfPlane beyond(const Vec2& place, const Vec2& direction) { return {direction, 
 
 /// Between two directions from an arc's centre, in the order in which it is travelled.
 std::array<HalfPlane, 2> sector_of(const Site& arc, const Vec2& from) {
+  // Two half planes bound it, as an arc is at most a quarter turn.
   const double turn = arc.sweep > 0.0 ? 1.0 : -1.0;
   return {beyond(from, turn * perp((arc.a - arc.center).normalized())),
           beyond(from, -turn * perp((arc.b - arc.center).normalized()))};
@@ -101,7 +112,10 @@ SmoothContact interior_of(SmoothContact c, const Site& site, const Vec2& q, cons
   }
   c.kind = SmoothContact::Kind::circle;
   c.place = site.center;
+  // A solid lies to the left, so an arc that turns clockwise has its free side towards the centre. A wire
+  // is free on both: the side is the one on which the sample is.
   c.hollow = site.solid ? site.sweep < 0.0 : (q - site.center).norm() < site.arc_radius;
+  // the thickness lies on both sides of the core
   c.radius = site.arc_radius + (c.hollow ? -site.radius : site.radius);
   c.range = sector_of(site, site.center);
   return c;
@@ -114,9 +128,12 @@ SmoothContact end_of(SmoothContact c, const Site& site, bool start, const Vec2& 
   c.radius = site.radius;
   if (site.kind == SiteKind::segment) {
     const Vec2 d = (site.b - site.a).normalized();
+    // beyond the end, where the interior no longer has the nearest point
     c.range[0] = beyond(c.place, start ? Vec2(-d) : d);
   } else if (site.kind == SiteKind::arc) {  // as long as the sample's point is outside the sector
     const HalfPlane edge = sector_of(site, site.center)[start ? 0 : 1];
+    // a q inside this edge is over the arc or beyond its other edge: then nothing bounds the range of
+    // this end
     if (edge.within(q) < 0.0) c.range[0] = {-edge.inward, -edge.least};
   }
   return c;
@@ -155,6 +172,7 @@ std::vector<SmoothContact> smooth_contacts(const NearFeature& f, const Outline& 
   const Sample& sample = carrier.samples[f.sample];
   ExtendedState from = s;
   from.position -= t.position;
+  // both seen from the site's owner, in extended precision: far from the origin nothing of the gap is lost
   const Frame site_frame(Pose{{0.0, 0.0}, t.seen_from(Vec2::Zero()).pose.angle});
   const Vec2 q = site_frame.to_local(Frame(from.seen_from(Vec2::Zero()).pose).to_world(sample.p));
   const Vec2 out = site_frame.direction_to_local(f.sample_on_a ? f.normal : Vec2(-f.normal));

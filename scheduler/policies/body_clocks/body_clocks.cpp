@@ -33,6 +33,7 @@ constexpr std::uint64_t kBetweenPolls = 64;
 constexpr int kInstalment = 3;      ///< search steps at a time: most contacts ahead are overtaken by others
 constexpr unsigned kPlain = 16;     ///< of instalments in a row of one search; then they double:
 constexpr unsigned kDoublings = 8;  ///< so often, if it comes to no end
+// At their longest, so many instalments make a million steps: then the search is given up.
 constexpr unsigned kMostInstalments = 1000000 / (kInstalment << kDoublings);
 
 /// Steps of the next instalment of a search that so many in a row have brought to no end.
@@ -51,6 +52,7 @@ class BodyClocks final : public Policy {
     while (!kernel.halt() && std::min(queue_.time(), kernel.next_step()) <= end()) {
       if (++served_ % kBetweenPauses == 0 || kernel.much_to_forget()) pause();
       if (served_ % kBetweenPolls == 0 && !kernel.poll()) break;
+      // A contact at the very end of a step comes before the step, as in take_earliest().
       if (kernel.next_step() < queue_.time())
         step_island();
       else
@@ -198,6 +200,8 @@ class BodyClocks final : public Policy {
       return;
     }
     if (c.exact) {
+      // Of each body one contact is kept. An earlier find is a time to search from again: its `clear` is
+      // still where its search must begin.
       for (std::size_t i = 0; i < clock.candidates.size(); ++i) clock.candidates[i].exact = 0;
       found_->set(k, *found);
     }
@@ -208,6 +212,8 @@ class BodyClocks final : public Policy {
   void meet(int k, double second) {
     const BodyClock& clock = views_->clock(k);
     const double now = found_->of(k).time, instant = now + same_instant(now);
+    // Alone in its instant: nobody else is due in it, and nothing else of body k, so there is nothing to
+    // choose from.
     const bool alone = !picks_among_all(kernel_->order()) && second > instant && clock.exit > instant &&
                        clock.horizon > instant &&
                        (clock.candidates.size() == 1 || clock.candidates[1].time > instant);
@@ -230,6 +236,7 @@ class BodyClocks final : public Policy {
       if (settled && clock.candidates.front().exact && !views_->stale(clock.candidates.front())) {
         add_contacts(k, std::min(instant, kernel_->reach()), group);
         asked.push_back(k);
+        // Out of the way, so that the next one of the instant comes up; put back below.
         queue_.update(k, kForever);
       } else {
         take_next_step(k, looked_again);
@@ -278,6 +285,7 @@ class BodyClocks final : public Policy {
     for (std::size_t i = 1; i < candidates.size() && candidates[i].time <= instant; ++i) {
       const Candidate& c = candidates[i];
       if (views_->stale(c)) continue;
+      // Not in instalments: here it must be known whether it belongs to the instant.
       const auto found = kernel_->search(*kernel_->pair_of(k, c.other, c.image), c.clear,
                                          std::min(views_->end_of(k, c), beyond(instant)));
       if (found && found->kind == Certificate::Kind::contact && found->time <= instant) add(*found);

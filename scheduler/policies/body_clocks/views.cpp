@@ -22,6 +22,7 @@ std::vector<Box> boxes_of(const Outline& outline) {
     Box box;
     box.add(site.a);
     box.add(site.b);
+    // An arc of a quarter turn at most reaches beyond the box of its ends by less than its radius.
     if (site.kind == SiteKind::arc) box = box.grown(site.arc_radius);
     boxes.push_back(box.grown(site.radius));
   }
@@ -33,6 +34,8 @@ std::vector<Box> boxes_of(const Outline& outline) {
 double time_within(double room, const Motion& motion, double now, double end) {
   for (double span = end - now;; span *= 0.5) {
     const double fastest = motion.bounds(now, now + span).speed();
+    // Halved until the room is at least half of what the bound allows for: room / fastest lies within
+    // the span then, for which alone the bound holds.
     if (room >= fastest * span) return span;
     if (room >= 0.5 * fastest * span || !(now + 0.5 * span > now)) return room / fastest;
   }
@@ -99,6 +102,8 @@ void Views::take_up(int k) {
   f.free = kernel_->is_free(k) && motion.acceleration().linear == gravity_ && !kernel_->by_passes();
   f.disc = f.free && is_centred_disc(kernel_->outline_of(k));
   if (!kernel_->is_free(k)) note_start(k, motion.begin());
+  // In meeting() every comparison with it is false, and max(now, NaN) is now: who is not free may be met
+  // at once, without a branch that asks.
   f.x = std::numeric_limits<double>::quiet_NaN();
   if (!f.free) return;
   const BodyState& s = motion.start();
@@ -180,6 +185,7 @@ void Views::look_ahead(int k, double now) {
   const Cell former = flights_[k].cell;
   const bool moved = near_->put_into_cell(k, course.place);
   clock.exit = now + stay_in(near_->box_of(k), course);
+  // Nobody has looked around in this round: all that comes near is to be in k's view.
   begin_round();
   if (moved) see_bodies(k, course, now, &former);
   near_->sites_near(k, [&](int s, const Image& image) { see_site(k, s, image, now); });
@@ -276,6 +282,7 @@ double Views::stride(int k, double now) const {
 void Views::limit_view(int k, double now, double closing, double stride) {
   const double cell = near_->cell_size(k),
                length = std::isfinite(cell) ? cell : 4.0 * kernel_->world().length();
+  // 100 s at most, however slow the two are.
   const double window = length / (closing + 1e-2 * length);
   const double age = kernel_->is_free(k) ? 0.0 : now - paces_[k].start;
   const double end = now + std::max({std::min(window, stride), 1e-3 * window, 1e-3 * age});
