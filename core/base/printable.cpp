@@ -18,19 +18,26 @@ Character first_of(std::string_view text) {
   const unsigned char lead = byte(0);
   if (lead < 0x80) return {lead, 1};
   const std::size_t bytes = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
+  // 0x80 .. 0xbf continue a character, 0xc0 and 0xc1 could only begin
+  // overlong forms, and beyond 0xf4 there are no characters
   if (lead < 0xc2 || lead > 0xf4 || text.size() < bytes) return {};
   std::uint32_t code = lead & (0x7fU >> bytes);
   for (std::size_t k = 1; k < bytes; ++k) {
     if ((byte(k) & 0xc0) != 0x80) return {};
     code = code << 6 | (byte(k) & 0x3fU);
   }
+  // of each length the least code that needs it: below is an overlong
+  // form, by which a control would have more than one spelling
   constexpr std::array<std::uint32_t, 5> least{0, 0, 0x80, 0x800, 0x10000};
   const bool surrogate = code >= 0xd800 && code <= 0xdfff;
   return code < least[bytes] || code > 0x10ffff || surrogate ? Character{} : Character{code, bytes};
 }
 
-/// Characters that are acted upon or not seen: controls, separators of lines, controls of direction and other
-/// format characters (Unicode categories Cc, Zl, Zp and Cf but for the soft hyphen).
+/// Characters that are acted upon or not seen: all of the Unicode categories Cc (controls),
+/// Zl and Zp (separators of lines and paragraphs), and of Cf (format characters) marks and
+/// controls of direction, zero-width spaces and joiners, invisible operators, the Mongolian
+/// vowel separator, the byte order mark, annotations and tags. The soft hyphen and the
+/// format characters of other scripts and notations stay.
 bool hidden(std::uint32_t code) {
   struct Range {
     std::uint32_t first, last;
@@ -68,6 +75,7 @@ std::string printable(std::string_view text) {
       out += escaped(c.code);
     else
       out += text.substr(0, c.bytes);
+    // of what is no UTF-8 one byte at a time: the next may begin a character
     text.remove_prefix(c.bytes == 0 ? 1 : c.bytes);
   }
   return out;

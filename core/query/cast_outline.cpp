@@ -22,6 +22,7 @@ struct Passage {
   double enters = 0.0, leaves = -1.0;  ///< leaves < enters: never within
 };
 
+/// The roots of t^2 - 2 along t + |d|^2 - reach^2, for a unit direction.
 Passage passage(const Vec2& center, double reach, const Mover& mover) {
   const Vec2 d = mover.from - center;
   const double along = -d.dot(mover.direction), beside = cross(d, mover.direction);
@@ -46,6 +47,8 @@ class Candidates {
                         sites_at.direction_to_local(direction)};
       for (const Site& site : sites_of.sites) {
         const double reach = site.radius + sample.radius;
+        // roots are those of whole lines and circles: they count where the
+        // site itself is, and for an arc's sample where its sector looks
         const auto keep = [&](double distance) {
           if (distance < -slack_ || !touches(site, mover, distance, reach)) return;
           if (sample.arc_site >= 0 && !sees(samples_of, samples_at, sample, sites_at, site, mover, distance))
@@ -63,6 +66,8 @@ class Candidates {
   }
 
  private:
+  /// Every distance at which the mover may come within reach of the site
+  /// from outside. Of a disc only the way in: leaving it is no contact.
   template <class Keep>
   static void look_at(const Site& site, double reach, const Mover& mover, Keep&& keep) {
     const auto enter = [&](const Vec2& center, double radius) {
@@ -72,18 +77,22 @@ class Candidates {
     if (site.kind == SiteKind::point) return;
     enter(site.b, reach);
     if (site.kind == SiteKind::segment) {
+      // of the two lines at `reach` from the segment the one that faces the mover
       Vec2 normal = perp((site.b - site.a).normalized());
       if (normal.dot(mover.direction) > 0.0) normal = -normal;
       const double approach = -normal.dot(mover.direction);
       if (approach > 0.0) keep((normal.dot(mover.from - site.a) - reach) / approach);
       return;
     }
+    // from the hollow side a mover comes within reach where it leaves the circle
+    // that is `reach` smaller; there is none where it does not fit in
     enter(site.center, site.arc_radius + reach);
     if (const Passage p = passage(site.center, site.arc_radius - reach, mover);
         site.arc_radius >= reach && p.leaves >= p.enters)
       keep(p.leaves);
   }
 
+  /// At the distance the site itself, not its line or circle beyond the ends, is `reach` away.
   bool touches(const Site& site, const Mover& mover, double distance, double reach) const {
     const Nearest nearest = nearest_on(site, mover.from + distance * mover.direction);
     return std::abs(nearest.distance - reach) <= slack_;
@@ -102,6 +111,7 @@ class Candidates {
   std::vector<double> distances_;
 };
 
+/// Radius of the largest circle [m]; 0 without arcs.
 double largest_arc(const Outline& outline) {
   double radius = 0.0;
   for (const Site& site : outline.sites) radius = std::max(radius, site.arc_radius);
@@ -111,7 +121,8 @@ double largest_arc(const Outline& outline) {
 /// Wires have no inside, and no end that reaches through what is exactly as wide as they are.
 bool is_thin(const Outline& outline) { return !outline.solid && outline.sites[0].radius == 0.0; }
 
-/// How the two are told to touch: a little further on they are in each other.
+/// How the two are told to touch: a little further on they are in each other. `noise` is what roundings
+/// make of a gap, `further` how far beyond a candidate is looked, and a gap below -deep is an overlap.
 struct Trial {
   const Outline& a;
   const Outline& b;
@@ -123,10 +134,14 @@ struct Trial {
       : a(a_), b(b_), b_from_a(b_from_a_), direction(direction_) {
     const double largest = a.bounding_radius + b.bounding_radius;
     double least = std::min(a.bounding_radius, b.bounding_radius);
+    // a bare point has no size: the other's counts, and of two points a metre
     if (!(least > 0.0)) least = largest > 0.0 ? largest : 1.0;
     noise = 8e-16 * (largest + b_from_a.position.norm());
-    // flush edges share an inside from 1e-7 of the size on; where flat arcs cross is told to the root of their rounding
+    // flush edges share an inside from 1e-7 of the size on; where
+    // flat arcs cross is told to the root of its rounding
     const double flat = 5e-8 * std::sqrt(least * std::max(largest_arc(a), largest_arc(b)));
+    // a straight face met at an angle x is further * sin x deep a little further on: where rounding does
+    // not decide, 1e-5 rad and more are told from grazing
     further = std::max({1e-5 * least, 1e3 * noise, flat});
     deep = std::max(1e-10 * least, noise);
   }
@@ -145,6 +160,9 @@ struct Trial {
   bool enters_at(double distance) const {
     const double on = distance + further, beside = 0.5 * further;
     if (gap_after(on) < -deep) return true;
+    // a wire that lies flush on a face of its own width has its ends on the sides of
+    // it: no sample is inside and nothing crosses; moved aside by half as far as it
+    // went in, one end is inside. To both sides: what grazes enters on one alone
     return (is_thin(a) || is_thin(b)) && gap_after(on, beside) < -deep && gap_after(on, -beside) < -deep;
   }
 };
@@ -165,11 +183,14 @@ OutlineHit cast_outline(const Outline& a, const Pose& pose_a, const Vec2& direct
   const Pose b_from_a{frame.to_local(pose_b.position), pose_b.angle - pose_a.angle};
   const Vec2 along = frame.direction_to_local(direction);
   const Trial trial(a, b, b_from_a, along);
+  // what touches may have a gap of a rounding below 0: only what is deeper overlaps
   if (trial.gap_after(0.0) < -trial.deep) return {OutlineHit::Status::overlaps, 0.0};
   Candidates candidates(trial.deep);
   candidates.look(a, Frame(), b, Frame(b_from_a), along);
   candidates.look(b, Frame(b_from_a), a, Frame(), -along);
   const std::vector<double>& at = candidates.in_order();
+  // the first that leads into b is the contact, those before it graze;
+  // outline_gap(), the slow part, is asked in order and no farther than that
   for (std::size_t k = 0; k < at.size(); ++k) {
     if (k > 0 && at[k] - at[k - 1] < trial.noise) continue;  // looked at
     if (trial.enters_at(at[k])) return {OutlineHit::Status::touches, trial.last_clear(at, k)};

@@ -20,9 +20,12 @@ void check(const Ray& ray) {
 
 std::optional<RayHit> cast_ray(const Outline& outline, const Pose& pose, const Ray& ray) {
   check(ray);
+  // first_hit() wants a start outside; what is on the surface is hit where it starts
   const SurfacePoint start = closest_point(outline, pose, ray.origin);
   if (start.gap <= 0.0) return RayHit{0.0, ray.origin, start.normal, start.site, start.gap < 0.0};
   const Frame frame(pose);
+  // check() lets its length be off by 1e-9, and the frame's
+  // sine and cosine are rounded; first_hit() wants 1
   const HalfLine local{frame.to_local(ray.origin), frame.direction_to_local(ray.direction).normalized()};
   SiteHit first;
   int at = -1;

@@ -15,6 +15,7 @@ SurfacePoint closest_point(const Outline& outline, const Pose& pose, const Vec2&
   const Site& site = outline.sites[static_cast<std::size_t>(found.site)];
   const Nearest nearest = nearest_on(site, local);
   const Vec2 normal = normal_at(site, nearest, local);
+  // from the core: as q - gap * normal it would be rounded as q is, however far away that is
   found.point = frame.to_world(nearest.point + site.radius * normal);
   found.normal = frame.direction_to_world(normal);
   return found;

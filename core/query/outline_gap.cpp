@@ -24,6 +24,7 @@ struct Side {
 void keep_least(const Side& side, int sample, int site, double gap, const Vec2& on_sites, const Vec2& out,
                 OutlineGap& least) {
   if (!(gap < least.gap)) return;
+  // OutlineGap's normal points from b into a: with b's samples on a's sites it is the reverse of `out`
   const Vec2 on_sample = on_sites + gap * out;
   least = side.samples_are_a ? OutlineGap{gap, on_sample, on_sites, out, sample, true, site}
                              : OutlineGap{gap, on_sites, on_sample, -out, sample, false, site};
@@ -45,6 +46,7 @@ void look_at_arc(const Side& side, int i, OutlineGap& least) {
   for (std::size_t k = 0; k < side.sites_of.sites.size(); ++k) {
     const Site& site = side.sites_of.sites[k];
     const Nearest nearest = nearest_on(site, center);
+    // nearer the centre it is on the arc's concave side, where samples of the site's outline come nearest
     if (nearest.distance < arc.arc_radius) continue;
     const Vec2 toward = (center - nearest.point) / nearest.distance;
     if (!in_sector(arc, from.direction_to_local(to.direction_to_world(-toward)))) continue;
@@ -61,12 +63,15 @@ void look_at_samples(const Side& side, OutlineGap& least) {
       look_at_arc(side, i, least);
 }
 
+/// `depth` is that of the cores; thickness adds to it. The two surface points lie on either side of the
+/// crossing, so that point_a = point_b + gap * normal as it is for samples.
 void keep_crossing(double depth, const Vec2& point, const Vec2& normal, double thickness, OutlineGap& least) {
   const double gap = -depth - thickness;
   if (!(gap < least.gap)) return;
   least = {gap, point + 0.5 * gap * normal, point - 0.5 * gap * normal, normal};
 }
 
+/// The site placed in a's frame; pseudo-normals are not turned, as crossings do not ask for them.
 Site moved(Site site, const Frame& frame) {
   site.a = frame.to_world(site.a);
   site.b = frame.to_world(site.b);
@@ -94,6 +99,7 @@ constexpr double kSeemsToTouch = 1e-6;
 
 void look_below_common_edges(const Outline& a, const Outline& b, const Pose& pose, OutlineGap& least) {
   if (std::abs(least.gap) > kSeemsToTouch * std::min(a.bounding_radius, b.bounding_radius)) return;
+  // in a's frame, as all answers before to_world()
   const OutlineCrossing shared = deepest_crossing(a, Pose(), b, pose);
   if (shared.depth > 0.0) keep_crossing(shared.depth, shared.point, shared.normal, 0.0, least);
 }
@@ -121,6 +127,7 @@ OutlineGap outline_gap(const Outline& a, const Pose& pose_a, const Outline& b, c
   const Pose from_a{Frame(pose_a).to_local(pose_b.position), pose_b.angle - pose_a.angle};
   OutlineGap least;
   least.gap = std::numeric_limits<double>::infinity();
+  // samples first: where a crossing or a common edge is no deeper, the features are a sample's
   look_at_samples({a, b, Pose(), from_a, true}, least);
   look_at_samples({b, a, from_a, Pose(), false}, least);
   look_at_crossings(a, b, from_a, least);

@@ -16,6 +16,7 @@ struct Meeting {
   double bulge = -1.0;  ///< how far one reaches over the other [m]; < 0: they do not meet
 };
 
+/// The bulge is the cap of the circle beyond the line: of its two caps the one without the centre.
 Meeting line_and_circle(const Site& line, const Site& arc) {
   const Vec2 u = (line.b - line.a).normalized(), w = arc.center - line.a;
   const double height = std::abs(cross(u, w)), r = arc.arc_radius;
@@ -25,11 +26,14 @@ Meeting line_and_circle(const Site& line, const Site& arc) {
   return {{foot - half * u, foot + half * u}, r - height};
 }
 
+/// The bulge is the width of the lens that the discs share, or, where one is nearly within the other, how
+/// far it looks out. Circles about one centre do not cross.
 Meeting two_circles(const Site& s, const Site& t) {
   const Vec2 w = t.center - s.center;
   const double d = w.norm(), r = s.arc_radius, q = t.arc_radius;
   const double bulge = std::min(r + q - d, d - std::abs(r - q));
   if (bulge < 0.0 || d == 0.0) return {};
+  // from r^2 - along^2 = q^2 - (d - along)^2: both points are so far along the line of the centres
   const double along = 0.5 * (d + (r - q) * (r + q) / d);
   const double half = std::sqrt(std::max(0.0, (r - along) * (r + along)));
   const Vec2 u = w / d, foot = s.center + along * u;
@@ -43,11 +47,13 @@ bool abreast(const Site& site, const Vec2& p) {
   return d.dot(p - site.a) >= 0.0 && d.dot(p - site.b) <= 0.0;
 }
 
+/// The least way over an end: the distance of an end of either from the other's core [m].
 double nearest_end(const Site& s, const Site& t) {
   return std::min({nearest_on(s, t.a).distance, nearest_on(s, t.b).distance, nearest_on(t, s.a).distance,
                    nearest_on(t, s.b).distance});
 }
 
+/// Unit normal to the right of the direction of travel at p, which is on the core.
 Vec2 right_of(const Site& site, const Vec2& p) {
   if (site.kind == SiteKind::segment) return -perp((site.b - site.a).normalized());
   const Vec2 radial = (p - site.center).normalized();
@@ -59,6 +65,8 @@ SiteCrossing two_segments(const Site& s, const Site& t) {
   const Vec2 ds = (s.b - s.a).normalized(), dt = (t.b - t.a).normalized();
   const double ta = cross(ds, t.a - s.a), tb = cross(ds, t.b - s.a);
   const double sa = cross(dt, s.a - t.a), sb = cross(dt, s.b - t.a);
+  // signed distances of t's ends from the line of s, and the reverse: they cross if both pairs have two
+  // signs. An end on the other's line does not cross it
   if (ta * tb >= 0.0 || sa * sb >= 0.0) return {};
   return {std::min({std::abs(ta), std::abs(tb), std::abs(sa), std::abs(sb)}),
           s.a + (s.b - s.a) * (sa / (sa - sb)), -perp(dt)};
@@ -69,6 +77,7 @@ SiteCrossing with_arc(const Site& s, const Site& t) {
   const Meeting meeting =
       s_is_arc && t_is_arc ? two_circles(s, t) : line_and_circle(s_is_arc ? t : s, s_is_arc ? s : t);
   if (meeting.bulge < 0.0) return {};
+  // depth and bulge belong to the pair: of two points on both cores the first tells as much
   for (const Vec2& p : meeting.points)
     if (abreast(s, p) && abreast(t, p))
       return {std::min(meeting.bulge, nearest_end(s, t)), p, right_of(t, p)};

@@ -9,6 +9,7 @@ namespace brink {
 
 namespace {
 
+/// What lies behind the origin is not met.
 void keep_first(SiteHit& hit, double distance, const Vec2& normal) {
   if (distance >= 0.0 && distance < hit.distance) hit = {distance, normal};
 }
@@ -17,6 +18,7 @@ void meet_disc(const Vec2& center, double radius, const HalfLine& ray, SiteHit& 
   const Vec2 from = ray.origin - center;
   const double distance = time_until_within(from, ray.direction, radius);
   if (!(distance < hit.distance)) return;
+  // a bare point has no normal of its own: against the ray
   keep_first(hit, distance,
              radius > 0.0 ? Vec2((from + distance * ray.direction).normalized()) : Vec2(-ray.direction));
 }
@@ -25,6 +27,8 @@ void meet_disc(const Vec2& center, double radius, const HalfLine& ray, SiteHit& 
 void meet_segment(const Vec2& a, const Vec2& b, const Vec2& normal, const HalfLine& ray, SiteHit& hit) {
   const Vec2 to_a = a - ray.origin, to_b = b - ray.origin;
   const double side_a = cross(ray.direction, to_a), side_b = cross(ray.direction, to_b);
+  // both ends beyond one side of the ray's line. At an end that sharp sites share,
+  // the neighbour computes the same sign: no ray passes between the two
   if (std::max(side_a, side_b) < 0.0 || std::min(side_a, side_b) > 0.0) return;
   const double along_a = ray.direction.dot(to_a), along_b = ray.direction.dot(to_b);
   const double approach = -normal.dot(ray.direction), height = -normal.dot(to_a);
@@ -49,6 +53,7 @@ class OffsetArc {
     const Vec2 w = site_.center - ray.origin;
     const double along = ray.direction.dot(w), beside = cross(ray.direction, w);
     const double height = std::abs(beside), side = beside >= 0.0 ? 1.0 : -1.0;
+    // 0 where rounding has the line miss the circle although an end of the arc is beyond the line
     const double half = std::sqrt(std::max(0.0, (radius_ - height) * (radius_ + height)));
     const Vec2 a = end(site_.a) - ray.origin, b = end(site_.b) - ray.origin;
     const double side_a = side * cross(ray.direction, a), side_b = side * cross(ray.direction, b);
@@ -60,6 +65,8 @@ class OffsetArc {
     if (!twice && a_in_cap == b_in_cap) return;
     // the cap's end that is counter-clockwise is the far one where the centre is on the left
     const bool at_far_end = (a_in_cap == (site_.sweep > 0.0)) == (side > 0.0);
+    // a ray goes into a circle at its near meeting and out at its far one:
+    // it comes from outside to the one and from inside to the other
     if (from_outside_ && (twice || !at_far_end)) meet_circle(ray, near(w, along, half, ray), 1.0, hit);
     if (from_inside_ && (twice || at_far_end)) meet_circle(ray, far(w, along, half, ray), -1.0, hit);
   }
@@ -74,6 +81,8 @@ class OffsetArc {
   double product(const Vec2& w, const HalfLine& ray) const {
     return (beyond_circle(site_, ray.origin, -w) - offset_) * (w.norm() + radius_);
   }
+  /// With far() the roots along -+ half of t^2 - 2 along t + product = 0. Where the difference would
+  /// cancel, the root is the product over the other root.
   double near(const Vec2& w, double along, double half, const HalfLine& ray) const {
     return along > 0.0 ? product(w, ray) / (along + half) : along - half;
   }
@@ -100,6 +109,8 @@ bool is_sharp_solid(const Site& site) { return site.solid && site.radius == 0.0;
 
 void meet_segment_site(const Site& site, const HalfLine& ray, SiteHit& hit) {
   Vec2 normal = -perp((site.b - site.a).normalized());
+  // seen from behind: a ray from outside has met another side of a sharp
+  // solid before; wires, and what is thick, are met from either side
   if (normal.dot(ray.direction) > 0.0) {
     if (is_sharp_solid(site)) return;
     normal = -normal;
@@ -109,10 +120,12 @@ void meet_segment_site(const Site& site, const HalfLine& ray, SiteHit& hit) {
 
 void meet_arc_site(const Site& site, const HalfLine& ray, SiteHit& hit) {
   if (site.radius > 0.0) {
+    // thick: the outer offset from outside and the inner one from inside; none where the hollow is filled
     OffsetArc(site, site.radius, true, false).meet(ray, hit);
     if (site.arc_radius > site.radius) OffsetArc(site, -site.radius, false, true).meet(ray, hit);
     return;
   }
+  // a solid lies to the left of its arcs: those that turn left are round toward its free side
   const bool both = !is_sharp_solid(site);
   OffsetArc(site, 0.0, both || site.sweep > 0.0, both || site.sweep < 0.0).meet(ray, hit);
 }
@@ -123,6 +136,7 @@ SiteHit first_hit(const Site& site, const HalfLine& ray) {
   SiteHit hit;
   if (site.kind == SiteKind::segment) meet_segment_site(site, ray, hit);
   if (site.kind == SiteKind::arc) meet_arc_site(site, ray, hit);
+  // ends of sharp sites are met as parts of them
   if (site.kind == SiteKind::point || site.radius > 0.0) meet_disc(site.a, site.radius, ray, hit);
   if (site.kind != SiteKind::point && site.radius > 0.0) meet_disc(site.b, site.radius, ray, hit);
   return hit;

@@ -12,6 +12,7 @@ namespace brink {
 
 namespace {
 
+/// The curve between two parameters; the ends are given, so that pieces join bit for bit.
 struct Piece {
   double t0 = 0.0, t1 = 0.0;
   Vec2 p0 = Vec2::Zero(), p1 = Vec2::Zero();
@@ -32,6 +33,8 @@ class Fitter {
   double distance_at(double t, const std::vector<Site>& fitted) const;
   double most_bend(const std::vector<Site>& fitted) const;
   Vec2 direction(double t, double towards) const;
+  /// No longer than the tolerance. As that is at least 1e-10 of the speed bound, halving ends: a piece
+  /// whose parameters span a quarter turn is tiny after 34 times.
   bool is_tiny(const Piece& piece) const {
     return curve_.speed_bound() * std::abs(piece.t1 - piece.t0) <= tolerance_;
   }
@@ -46,6 +49,7 @@ class Fitter {
 Vec2 Fitter::direction(double t, double towards) const {
   const Vec2 d = curve_.derivative(t);
   if (d.norm() > 1e-7 * curve_.speed_bound()) return d.normalized();
+  // where B' = 0, B'(t + h) = h B'' + ...: a little further in it has the direction of the limit
   return curve_.derivative(t + 1e-4 * (towards - t)).normalized();
 }
 
@@ -59,6 +63,7 @@ double Fitter::distance_at(double t, const std::vector<Site>& fitted) const {
 /// Bound on the second derivative, in t, of the distance from the curve to a line or circle: the curve's own,
 /// and speed^2 over the distance to the circle's centre.
 double Fitter::most_bend(const std::vector<Site>& fitted) const {
+  // d = |p - c| - R has d'' = p'' . u + (|p'|^2 - (p' . u)^2) / |p - c|, u the unit vector from c to p
   double bend = curve_.bend_bound();
   for (const Site& s : fitted)
     if (s.kind == SiteKind::arc) {
@@ -70,9 +75,13 @@ double Fitter::most_bend(const std::vector<Site>& fitted) const {
 
 bool Fitter::accept_if_near(const Piece& piece, const std::vector<Site>& fitted) {
   constexpr int coarse = 8, most = 20000;
+  // a piece that is far off is turned down by few places
   for (int k = 1; k < coarse; ++k)
     if (distance_at(std::lerp(piece.t0, piece.t1, double(k) / coarse), fitted) > tolerance_) return false;
   const double span = std::abs(piece.t1 - piece.t0), bend = most_bend(fitted);
+  // between places h apart in t the distance exceeds the greater of the two
+  // by at most bend h^2 / 8: so many places that this is a 32nd of the
+  // tolerance. Where `most` allows fewer it is more, and is counted
   const double wanted = span * std::sqrt(bend / (8 * tolerance_ / 32));
   const int n = static_cast<int>(std::clamp(std::ceil(wanted), 2.0 * coarse, double(most)));
   double worst = 0.0;
@@ -92,9 +101,12 @@ bool Fitter::add_tangent_arc(const Vec2& a, const Vec2& direction, const Vec2& b
   const Vec2 chord = b - a;
   const double size = chord.norm();
   if (!(size > 0.0)) return true;
+  // the angle of tangent and chord is half of the arc's turn
   const double half = std::atan2(cross(direction, chord), direction.dot(chord));
   if (std::abs(half) > kQuarterTurn / 2) return false;
   const double sagitta = size / 2 * std::tan(std::abs(half) / 2);
+  // off by a fiftieth of the tolerance, which accept_if_near() measures with the rest; or so flat that
+  // the radius, chord^2 / (8 sagitta), is more than 1e7 chords and its centre's digits are lost
   if (sagitta <= std::max(0.02 * tolerance_, 1e-8 * size)) {
     fitted.push_back(segment_site(a, b, radius_));
     return true;
@@ -108,7 +120,11 @@ bool Fitter::add_tangent_arc(const Vec2& a, const Vec2& direction, const Vec2& b
 bool Fitter::try_biarc(const Piece& piece) {
   const Vec2 d0 = direction(piece.t0, piece.t1), d1 = direction(piece.t1, piece.t0);
   const Vec2 chord = piece.p1 - piece.p0;
+  // ends that turn by a quarter or more, or back against the chord, are left to halving
   if (!(d0.dot(d1) > 0.0) || !(chord.dot(d0) > 0.0 && chord.dot(d1) > 0.0)) return false;
+  // the two tangents have one length l: the joint is the middle of p0 + l d0
+  // and p1 - l d1, which are 2 l apart, so slack l^2 + 2 along l = c2. This
+  // form of the positive root holds for slack = 0 (d0 = d1) too
   const double along = chord.dot(d0 + d1), c2 = chord.squaredNorm();
   const double slack = (d0 - d1).squaredNorm();  // = 2 (1 - d0 . d1)
   const double reach = c2 / (along + std::sqrt(along * along + slack * c2));
@@ -139,6 +155,7 @@ void Fitter::fit(const Piece& piece) {
 
 double fit_arcs(const SmoothCurve& curve, const Vec2& start, const Vec2& end, double tolerance, double radius,
                 std::vector<Site>& sites) {
+  // of the curve's coordinates, up to a small factor
   const double size = curve.speed_bound() + start.cwiseAbs().maxCoeff();
   if (!(tolerance >= 1e-10 * size))
     throw BadInput("curve_tolerance is " + text(tolerance) +

@@ -14,7 +14,8 @@ namespace {
 /// Points nearer to each other than this, of the spacing, are one.
 constexpr double kSame = 1e-6;
 
-/// Keeps points that are not kept already.
+/// Keeps points that are not kept already: on a grid of cells of `size`, those whose cell is not taken,
+/// nor one of the eight around it, into which an equal point may have been rounded.
 class Distinct {
  public:
   explicit Distinct(double size) : size_(size) {}
@@ -57,6 +58,7 @@ std::vector<Vec2> walk(const std::vector<Site>& pieces, double spacing) {
   std::vector<Vec2> points;
   Distinct distinct(kSame * spacing);
   for (const Site& piece : pieces) {
+    // a length of whole spacings up to rounding gets no part more
     const int parts = std::max(1, static_cast<int>(std::ceil(length_of(piece) / spacing - kSame)));
     for (int k = 0; k <= parts; ++k) {
       const Vec2 p = along(piece, static_cast<double>(k) / parts);
@@ -72,6 +74,7 @@ Vec2 point_at(const std::vector<Site>& pieces, double way) {
     if (way <= own && own > 0.0) return along(piece, way / own);
     way -= own;
   }
+  // rounding left a little of the way
   return along(pieces.back(), 1.0);
 }
 

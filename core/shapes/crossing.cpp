@@ -14,6 +14,7 @@ namespace {
 
 using Points = std::vector<Vec2>;
 
+/// Parallel lines add nothing: where two segments overlap, an end of one lies on the other.
 void add_line_line(const Site& s, const Site& t, Points& points) {
   const Vec2 d = s.b - s.a, e = t.b - t.a;
   const double turn = cross(d, e);
@@ -35,10 +36,12 @@ void add_line_circle(const Site& line, const Site& arc, double tolerance, Points
   add_chord(foot, u, cross(u, arc.center - line.a), arc.arc_radius, tolerance, points);
 }
 
+/// Circles about one centre add nothing, for the same reason as parallel lines.
 void add_circle_circle(const Site& s, const Site& t, double tolerance, Points& points) {
   const Vec2 w = t.center - s.center;
   const double d = w.norm(), r = s.arc_radius, q = t.arc_radius;
   if (d == 0.0 || d > r + q + tolerance || d < std::abs(r - q) - tolerance) return;
+  // from r^2 - along^2 = q^2 - (d - along)^2; beyond r the two are tangent within the tolerance
   const double along = (d + (r - q) * (r + q) / d) / 2;
   const Vec2 u = w / d;
   const double clamped = std::clamp(along, -r, r);
@@ -64,7 +67,10 @@ std::vector<BoxedSite> by_left_edge(const std::vector<Site>& sites, double margi
 /// tolerance of each other for a while, and cannot meet again as each turns by at most a quarter.
 bool is_hand_over_of(const Site& in, const Site& out, const Vec2& p) {
   if (in.b != out.a) return false;
+  // two sites that make a loop do meet again, at the other joint: they are held to the distance
   if (direction_at_end(in).dot(direction_at_start(out)) > 1 - 1e-6 && out.b != in.a) return true;
+  // at a corner of angle x the two are within the tolerance of each other for tolerance / x: a thousandth
+  // of the shorter one lets needles of 1e-9 rad pass, if their sides are as long as the outline
   return (p - in.b).norm() <= 1e-3 * std::min(length(in), length(out));
 }
 
@@ -89,6 +95,7 @@ void add_meeting_points(const Site& s, const Site& t, double tolerance, Points& 
     add_line_circle(s_is_arc ? t : s, s_is_arc ? s : t, tolerance, candidates);
   else
     add_line_line(s, t, candidates);
+  // candidates are on the lines and circles; those count that are on both cores
   for (const Vec2& p : candidates)
     if (nearest_on(s, p).distance <= tolerance && nearest_on(t, p).distance <= tolerance) points.push_back(p);
 }
@@ -98,6 +105,7 @@ void require_simple(const Outline& outline, const std::string& what) {
   const std::vector<BoxedSite> boxed = by_left_edge(outline.sites, tolerance);
   Points points;
   for (std::size_t i = 0; i < boxed.size(); ++i)
+    // by left edges: from the first box that begins beyond this one on, none overlaps it
     for (std::size_t j = i + 1; j < boxed.size() && boxed[j].box.low.x() <= boxed[i].box.high.x(); ++j) {
       if (!boxed[i].box.overlaps(boxed[j].box)) continue;
       const Site &s = outline.sites[boxed[i].site], &t = outline.sites[boxed[j].site];

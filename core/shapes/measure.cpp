@@ -11,7 +11,9 @@ namespace {
 
 /// x - sin x, without cancellation for small x.
 double less_sine(double x) {
+  // x / (x - sin x) is 12.5 at 0.7 and less above: the difference loses at most four bits
   if (std::abs(x) > 0.7) return x - std::sin(x);
+  // the series x^3 / 3! - x^5 / 5! + ...
   double term = x * x * x / 6, sum = 0.0;
   for (int n = 4; std::abs(term) > 1e-18 * std::abs(sum); n += 2) {
     sum += term;
@@ -37,6 +39,8 @@ Moments between_arc_and_chord(const Site& arc) {
   const double r = arc.arc_radius, angle = arc.sweep;
   const double half_sine = std::sin(angle / 2);
   Moments m;
+  // signed as the sweep is; the second moment is r^4 angle / 4 of the sector less r^4
+  // (2 sin + sin cos) / 12 of the triangle, as two differences x - sin x
   m.size = r * r / 2 * less_sine(angle);
   m.first = 2.0 / 3.0 * r * r * r * half_sine * half_sine * half_sine * bisector(arc);
   m.second = r * r * r * r / 12 * (2 * less_sine(angle) + less_sine(2 * angle) / 2);
@@ -52,6 +56,7 @@ Measure measure_of_disc(const Site& s) {
 
 void add_region(Moments& sums, const Site& site, const Vec2& about) {
   const Vec2 a = site.a - about, b = site.b - about;
+  // the triangle from `about` over a and b: round a closed boundary what is covered outside of it cancels
   const double twice = cross(a, b);
   sums.size += twice / 2;
   sums.first += twice / 6 * (a + b);
@@ -76,12 +81,15 @@ void add_wire(Moments& sums, const Site& site, const Vec2& about) {
 
 Measure finish_measure(const Moments& sums, const Vec2& about) {
   if (sums.size == 0.0) return {0.0, about, 0.0};
+  // by the parallel axis theorem
   const Vec2 offset = sums.first / sums.size;
   return {sums.size, about + offset, sums.second - sums.size * offset.squaredNorm()};
 }
 
 Measure measure_of(const Outline& outline) {
   if (outline.is_point()) return measure_of_disc(outline.sites[0]);
+  // near the centroid, where finish_measure() takes off little: about an origin
+  // 1e8 m away, the second moment of 1 m would be what is left of 1e16
   const Vec2 about = outline.bounds.center();
   bool thick = false;
   for (const Site& s : outline.sites) thick |= s.radius > 0.0;
@@ -89,10 +97,12 @@ Measure measure_of(const Outline& outline) {
   if (thick) {
     for (const Site& piece : thick_boundary(outline)) add_region(sums, piece, about);
   } else if (outline.solid) {
+    // a container's loops run clockwise round the free region
     for (const Site& s : outline.sites) add_region(sums, outline.container ? reversed(s) : s, about);
   } else {
     for (const Site& s : outline.sites) add_wire(sums, s, about);
   }
+  // thick_boundary() too has the solid on its left, so the free region counts negative
   if (thick && outline.container) sums = {-sums.size, -sums.first, -sums.second};
   return finish_measure(sums, about);
 }

@@ -18,11 +18,14 @@ std::string name_of(int k) { return "outline: site " + std::to_string(k); }
 void check_arc(const Site& s, int k) {
   if (!(s.center.allFinite() && std::isfinite(s.arc_radius) && s.arc_radius > 0.0))
     throw BadInput(name_of(k) + " is an arc of radius " + text(s.arc_radius) + "; it must be > 0 and finite");
+  // a quarter of a split circle may be a rounding more
   if (!(std::abs(s.sweep) > 0.0 && std::abs(s.sweep) <= kQuarterTurn * (1 + 1e-12)))
     throw BadInput(name_of(k) + " turns by " + text(s.sweep) +
                    " rad; an arc site turns by at most a quarter turn");
+  // the end is looked for where the sweep takes the start: being on the circle somewhere is not enough
   const double off =
       std::max(std::abs((s.a - s.center).norm() - s.arc_radius), (point_along(s, 1.0) - s.b).norm());
+  // |centre| too: coordinates of an outline that was moved far away are rounded to their own size
   if (!(off <= 1e-9 * (s.arc_radius + s.center.norm())))
     throw BadInput(name_of(k) + " is an arc whose ends lie " + text(off) + " m off its circle");
 }
@@ -46,6 +49,7 @@ void check_loop(const Outline& outline, const Loop& loop, int expected_first) {
     throw BadInput("outline: a loop covers sites " + std::to_string(loop.first) + " .. " +
                    std::to_string(loop.first + loop.count - 1) + "; loops must cover all sites in order");
   for (int k = loop.first; k + 1 < loop.first + loop.count; ++k)
+    // bit for bit: what two neighbours compute from their common vertex is then the same
     if (sites[k].b != sites[k + 1].a)
       throw BadInput(name_of(k) + " ends at " + text(sites[k].b) + " but the next starts at " +
                      text(sites[k + 1].a));
@@ -69,6 +73,8 @@ void check(const Outline& outline) {
                    " sites; there must be at least one, and each must be in a loop");
   if (!outline.solid) return;
   for (const Site& s : outline.sites)
+    // gap_by_brute_force() takes the site of the least distance - radius; inside, the nearest surface
+    // is that of the least distance + radius, which is sure to be the same site if radii are equal
     if (s.kind == SiteKind::point || s.radius != outline.sites[0].radius)
       throw BadInput("outline: the sites of a solid must be segments and arcs that share one radius");
 }
@@ -79,7 +85,10 @@ void check(const Outline& outline) {
 Vec2 pseudo_normal(const Site& in, const Site& out) {
   const Vec2 arrive = direction_at_end(in), leave = direction_at_start(out);
   const Vec2 sum = -perp(arrive) - perp(leave);
+  // |sum| is about the angle between the two sides of a tip [rad]
   if (sum.norm() > 1e-9) return sum;
+  // with x along `arrive`, `in` is y = k_in x^2 / 2 and `out` is y = -k_out x^2 / 2 behind the vertex, to
+  // second order. The solid is above `in` and below `out`: the needle between them where k_in + k_out < 0
   const bool slot = curvature(in) + curvature(out) > 0.0;
   return slot ? leave : arrive;
 }
@@ -146,6 +155,7 @@ std::vector<Vec2> facets_of(const Outline& outline) {
     turned += std::atan2(cross(along, then), along.dot(then));
     facets.push_back(-perp(along).normalized());
   }
+  // a pentagram turns left at every vertex too, but its normals go twice round
   constexpr double once_round = 6.283185307179586;
   return turned < 1.5 * once_round ? facets : std::vector<Vec2>{};
 }
@@ -153,6 +163,7 @@ std::vector<Vec2> facets_of(const Outline& outline) {
 }  // namespace
 
 void finish_outline(Outline& outline) {
+  // first: what follows relies on loops that join up and on sites with a length
   check(outline);
   outline.samples.clear();
   outline.bounds = Box();
@@ -181,6 +192,7 @@ double gap_by_brute_force(const Outline& outline, const Vec2& q, int* site) {
   for (std::size_t k = 0; k < outline.sites.size(); ++k) {
     const Nearest n = nearest_on(outline.sites[k], q);
     const double unsigned_gap = n.distance - outline.sites[k].radius;
+    // without signs: a side that is not the nearest may be seen from behind by a q that is outside
     if (!(unsigned_gap < least)) continue;
     least = unsigned_gap;
     nearest_site = static_cast<int>(k);
@@ -195,6 +207,7 @@ Outline as_container(Outline outline) {
   if (!outline.solid)
     throw BadInput("container: the outline has no inside; it must be a solid shape with closed loops");
   if (outline.container) throw BadInput("container: the outline is one already");
+  // travelled the other way, the solid on the left is what was free
   for (const Loop& loop : outline.loops) reverse_loop(outline.sites, loop);
   outline.container = true;
   finish_outline(outline);
@@ -204,6 +217,7 @@ Outline as_container(Outline outline) {
 Outline transformed(const Outline& outline, const Pose& pose) {
   const Frame frame(pose);
   Outline moved = outline;
+  // a vertex that two sites share is moved twice by the same arithmetic: they still join bit for bit
   for (Site& s : moved.sites) {
     s.a = frame.to_world(s.a);
     s.b = frame.to_world(s.b);

@@ -14,7 +14,11 @@ struct Segment {
 double reach_through(const Segment& s, const Segment& t, Vec2& point) {
   const Vec2 ds = s.b - s.a, dt = t.b - t.a;
   const double ls = ds.norm(), lt = dt.norm();
+  // far from the origin two ends may be rounded to one place
   if (ls == 0.0 || lt == 0.0) return 0.0;
+  // signed distances of t's ends from the line of s, and the reverse: the two
+  // cross if both pairs have two signs. An end on the other's line is no
+  // crossing; deepest_crossing() looks below edges for what that hides
   const double ta = cross(ds, t.a - s.a) / ls, tb = cross(ds, t.b - s.a) / ls;
   const double sa = cross(dt, s.a - t.a) / lt, sb = cross(dt, s.b - t.a) / lt;
   if (ta * tb >= 0.0 || sa * sb >= 0.0) return 0.0;
@@ -30,7 +34,9 @@ std::vector<Segment> segments(const Outline& outline, const Pose& pose) {
   return all;
 }
 
-/// This part of a solid's size is looked below its edges.
+/// This part of a solid's size is looked below its edges: more than the
+/// roundings of a depth, by which neighbours whose edges coincide would be
+/// in each other. An overlap along an edge is seen if it is thicker.
 constexpr double kBelow = 1e-7;
 
 /// An outline where it stands.
@@ -47,7 +53,8 @@ bool is_sharp_solid(const Outline& o) {
          std::all_of(o.sites.begin(), o.sites.end(), [](const Site& s) { return s.radius == 0.0; });
 }
 
-/// Fractions of s at which others' ends lie on it, and its own ends, ascending.
+/// Fractions of s at which others' ends lie on it, and its own ends, ascending. Where nothing crosses s,
+/// what two solids share borders on all of it between two cuts, or on nothing of it: the middle tells.
 std::vector<double> cuts(const Segment& s, const std::vector<Segment>& others, double tolerance) {
   const Vec2 d = s.b - s.a;
   const double length2 = d.squaredNorm();
@@ -64,6 +71,9 @@ std::vector<double> cuts(const Segment& s, const std::vector<Segment>& others, d
 OutlineCrossing look_below(const PlacedSolid& a, const PlacedSolid& b, const Vec2& p, const Vec2& n,
                            double below) {
   OutlineCrossing deepest;
+  // doubling comes through the lesser of the two in some two dozen looks. In
+  // convex shapes the depth along n is a concave function that starts at 0:
+  // what is found, if anything, is at least half of its maximum
   for (;; below *= 2.0) {
     const Vec2 q = p + below * n;
     const double depth = std::min(a.depth_of(q), b.depth_of(q));
@@ -78,6 +88,7 @@ OutlineCrossing shared_below_edges(const PlacedSolid& a, const std::vector<Segme
   const double size = std::min(a.outline.bounding_radius, b.outline.bounding_radius);
   OutlineCrossing deepest;
   for (const Segment& s : of_a) {
+    // placed far from the origin, as in reach_through()
     if ((s.b - s.a).isZero(0.0)) continue;
     const std::vector<double> at = cuts(s, of_b, kBelow * size);
     for (std::size_t k = 1; k < at.size(); ++k) {
@@ -102,8 +113,11 @@ OutlineCrossing deepest_crossing(const Outline& a, const Pose& pose_a, const Out
     }
   // edges that coincide may cross by a rounding
   const bool is_clear = deepest.depth > kBelow * std::min(a.bounding_radius, b.bounding_radius);
+  // wires share no inside; of a thick outline, a vertex on an edge's core is a sample that tells
   if (is_clear || !is_sharp_solid(a) || !is_sharp_solid(b)) return deepest;
   const PlacedSolid solid_a{a, pose_a}, solid_b{b, pose_b};
+  // from both: what they share may border on edges of one
+  // alone, as where a diamond has its corners on a box
   const OutlineCrossing below_a = shared_below_edges(solid_a, of_a, solid_b, of_b);
   const OutlineCrossing below_b = shared_below_edges(solid_b, of_b, solid_a, of_a);
   for (const OutlineCrossing& c : {below_a, below_b})

@@ -30,17 +30,20 @@ struct CenterArc {
 CenterArc center_of(const PathPiece& piece, const Upward& up) {
   const Vec2 a = up(piece.from), b = up(piece.to);
   const double rotation = std::fmod(piece.rotation, 360.0) * std::numbers::pi / 180;
+  // an ellipse is its own mirror image in its axes, so y_axis may point either way
   const Vec2 x_axis = unit_at(-rotation), y_axis = perp(x_axis);
   double rx = up.scale * piece.rx, ry = up.scale * piece.ry;
   const Vec2 half = 0.5 * (a - b);
   // in units of the half axes the ellipse is the unit circle
   Vec2 h(half.dot(x_axis) / rx, half.dot(y_axis) / ry);
   const double reach = h.norm();
+  // half axes too short for the chord are scaled up until they just reach (SVG 2, appendix B.2.5)
   if (reach > 1.0) {
     rx *= reach;
     ry *= reach;
     h /= reach;
   }
+  // from the chord's middle to the centre, in units of half the chord: Pythagoras in the unit circle
   const double offset = reach >= 1.0 ? 0.0 : std::sqrt((1 - reach) * (1 + reach)) / reach;
   // travelling clockwise on screen is clockwise here too; the short way round keeps the centre on its right
   const bool counter_clockwise = !piece.sweep;
@@ -51,6 +54,7 @@ CenterArc center_of(const PathPiece& piece, const Upward& up) {
   arc.v = ry * y_axis;
   arc.center = 0.5 * (a + b) + c.x() * arc.u + c.y() * arc.v;
   const Vec2 from = h - c, to = -h - c;
+  // from the centre to the start and to the end, still in units of the half axes
   arc.start = std::atan2(from.y(), from.x());
   double sweep = std::atan2(cross(from, to), from.dot(to));
   if (counter_clockwise && sweep < 0.0) sweep += 2 * std::numbers::pi;
@@ -83,6 +87,7 @@ class PathBuilder {
         break;
     }
     const CenterArc arc = center_of(piece, up_);
+    // circles stay exact, also those that center_of() has scaled up
     if (piece.rx == piece.ry)
       add_arc(sites, a, b, arc.center, arc.u.norm(), arc.sweep, 0.0);
     else
@@ -105,11 +110,13 @@ void close_rounding_gap(Subpath& subpath) {
   for (const PathPiece& piece : subpath.pieces) box.add(piece.to);
   const Vec2 start = subpath.pieces.front().from;
   box.add(start);
+  // the places of some hundred relative commands, each rounded to the size of the coordinates
   const double rounding = 1e-13 * (box.extent().norm() + start.norm());
   while (subpath.pieces.size() > 2) {
     PathPiece& last = subpath.pieces.back();
     const bool closes = (last.to - start).norm() <= rounding;
     if (!closes) return;
+    // else it is what Z drew over the rounding: it goes, and the piece before it ends at the start
     if (last.kind != PathPieceKind::line || (last.from - start).norm() > rounding) {
       last.to = start;
       subpath.closed = true;
@@ -119,6 +126,7 @@ void close_rounding_gap(Subpath& subpath) {
   }
 }
 
+/// @pre the loop runs counter-clockwise.
 bool loop_contains(const std::vector<Site>& loop, const Vec2& p) {
   Outline outline;
   add_loop(outline, loop, true);
@@ -134,8 +142,10 @@ void orient_even_odd(std::vector<std::vector<Site>>& loops) {
   std::vector<bool> hole(loops.size(), false);
   for (std::size_t k = 0; k < loops.size(); ++k)
     for (std::size_t j = 0; j < loops.size(); ++j)
+      // one place tells of the whole loop: require_simple() refuses loops that cross or touch afterwards
       if (j != k && loop_contains(loops[j], loops[k].front().a)) hole[k] = !hole[k];
   for (std::size_t k = 0; k < loops.size(); ++k)
+    // not before all are told, as loop_contains() wants them counter-clockwise
     if (hole[k]) loops[k] = reversed(loops[k]);
 }
 
@@ -159,6 +169,7 @@ Shape make_path(std::string_view d, double scale, double curve_tolerance) {
   for (std::size_t k = 0; k < loops.size(); ++k) add_loop(outline, loops[k], subpaths[k].closed);
   outline.curve_deviation = builder.deviation();
   finish_outline(outline);
+  // needs the bounds that finish_outline() fills; wires may cross themselves
   if (outline.solid) require_simple(outline, "path");
   return finish_shape(std::move(outline));
 }

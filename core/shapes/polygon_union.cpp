@@ -14,6 +14,7 @@ namespace {
 
 using Polygon = std::vector<Vec2>;
 
+/// An edge of a polygon, or a piece of one, between two of the vertices; the polygon is on its left.
 struct Edge {
   int from = 0, to = 0;
   int polygon = 0;
@@ -25,6 +26,8 @@ class Union {
 
   std::vector<Polygon> loops() {
     take_edges();
+    // cut at a computed vertex an edge bends by up to the weld, and may come
+    // to lie on a vertex that it missed: again, until nothing is cut
     for (int round = 0; cut_edges(); ++round)
       if (round == 20) throw BadInput("polygons: edges nearly coincide in a way that cannot be cut apart");
     keep_boundary();
@@ -54,10 +57,13 @@ class Union {
   const std::vector<Polygon>& polygons_;
   std::vector<Box> boxes_;  ///< of polygons
   std::vector<Vec2> points_;
+  /// The polygons' edges; cut, their pieces; in the end the pieces of the union's boundary (polygon -1).
   std::vector<Edge> edges_;
+  /// Vertices, and a vertex and an edge, that are nearer to each other are one [m].
   double weld_ = 0.0;
 };
 
+/// The vertex within the weld of p, or a new one. The first found keeps its bits.
 int Union::vertex_at(const Vec2& p) {
   for (std::size_t k = 0; k < points_.size(); ++k)
     if ((points_[k] - p).squaredNorm() <= weld_ * weld_) return static_cast<int>(k);
@@ -85,6 +91,7 @@ void Union::take_edges() {
     for (const Vec2& v : polygons_[k]) ids.push_back(vertex_at(v));
     for (std::size_t j = 0; j < ids.size(); ++j) {
       const int to = ids[(j + 1) % ids.size()];
+      // an edge shorter than the weld has gone
       if (ids[j] != to) edges_.push_back({ids[j], to, static_cast<int>(k)});
     }
   }
@@ -102,6 +109,8 @@ bool Union::cut_at_vertex(int e, int v, std::vector<std::vector<int>>& cuts) con
 }
 
 void Union::cut_pair(int e, int f, std::vector<std::vector<int>>& cuts) {
+  // two edges share one place at most, unless they lie on each other, and then
+  // ends lie on edges: a crossing is computed only where no end touches
   bool touch = cut_at_vertex(e, edges_[f].from, cuts);
   touch |= cut_at_vertex(e, edges_[f].to, cuts);
   touch |= cut_at_vertex(f, edges_[e].from, cuts);
@@ -113,6 +122,7 @@ void Union::cut_pair(int e, int f, std::vector<std::vector<int>>& cuts) {
   if (turn == 0.0) return;
   const double s = cross(c - a, g) / turn, t = cross(c - a, d) / turn;
   if (!(s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0)) return;
+  // may move points_, to which a and c refer: they are not used again
   const int v = vertex_at(a + s * d);
   if (v != edges_[e].from && v != edges_[e].to) cuts[e].push_back(v);
   if (v != edges_[f].from && v != edges_[f].to) cuts[f].push_back(v);
@@ -144,6 +154,7 @@ bool Union::cut_edges() {
     int from = edge.from;
     cuts[k].push_back(edge.to);
     for (int v : cuts[k]) {
+      // several pairs may have found the same cut
       if (v != from) pieces.push_back({from, v, edge.polygon});
       from = v;
     }
@@ -156,6 +167,7 @@ bool Union::cut_edges() {
 /// Whether any polygon covers the left (right) side of the piece u -> v; `winding` counts, for each polygon
 /// that has the piece, how often it runs along u -> v less how often against it.
 bool Union::covered_beside(int u, int v, const std::map<int, int>& winding, bool left) const {
+  // cut at all others, the piece crosses no boundary: its middle speaks for it
   const Vec2 middle = 0.5 * (points_[u] + points_[v]);
   for (std::size_t k = 0; k < polygons_.size(); ++k) {
     const auto own = winding.find(static_cast<int>(k));
@@ -170,12 +182,14 @@ bool Union::covered_beside(int u, int v, const std::map<int, int>& winding, bool
 
 /// Keeps the pieces with exactly one side covered, once each, with that side on their left.
 void Union::keep_boundary() {
+  // in order of vertices, which are numbered as they are given: the loops come in an order of the input
   std::map<std::pair<int, int>, std::map<int, int>> pieces;
   for (const Edge& e : edges_) pieces[std::minmax(e.from, e.to)][e.polygon] += e.from < e.to ? 1 : -1;
   edges_.clear();
   for (const auto& [ends, winding] : pieces) {
     const auto [u, v] = ends;
     const bool left = covered_beside(u, v, winding, true), right = covered_beside(u, v, winding, false);
+    // both: inside of the union; neither: a fold of no width
     if (left && !right) edges_.push_back({u, v, -1});
     if (right && !left) edges_.push_back({v, u, -1});
   }
@@ -198,6 +212,7 @@ void Union::pair_at(int vertex, const std::vector<int>& out, const std::vector<i
   bool reflex = false;
   for (int k = 0; k < n; ++k) {
     const Ray &ray = rays[k], &following = rays[(k + 1) % n];
+    // of two leaving ones in a row the second would have solid on both sides, of two arriving ones none
     if (ray.leaves == following.leaves)
       throw BadInput("polygons: the union does not close at " + text(points_[vertex]) +
                      "; parts there overlap by about 1e-12 of the extent");
@@ -205,6 +220,8 @@ void Union::pair_at(int vertex, const std::vector<int>& out, const std::vector<i
     reflex |= ray.leaves && opening > std::numbers::pi;
   }
   for (int k = 0; k < n; ++k)
+    // an arriving piece goes on along the other side of its own wedge of solid, or, where one wedge is
+    // reflex, across the free wedge; of one wedge alone both are the same
     if (!rays[k].leaves) next[rays[k].edge] = rays[(k + (reflex ? 1 : n - 1)) % n].edge;
 }
 
@@ -240,6 +257,7 @@ Polygon Union::without_collinear(const std::vector<int>& loop, const std::vector
     const Vec2 &p = points_[kept[k]], &after = points_[kept[(k + 1) % kept.size()]];
     const double off = std::abs(cross(after - before, p - before)) / (after - before).norm();
     const bool between = (p - before).dot(after - p) > 0.0;
+    // a few roundings of the extent: a bend as small as the weld, which was given, stays
     if (degree[kept[k]] == 1 && between && off <= 1e-3 * weld_)
       kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(k));
     else

@@ -86,9 +86,11 @@ class Reader {
   double number(const Word& word) {
     double value = 0.0;
     std::string_view digits = word.text;
+    // from_chars() takes no plus sign; one before a minus is left for it to refuse
     if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
     const char* end = digits.data() + digits.size();
     const auto [stop, error] = std::from_chars(digits.data(), end, value);
+    // inf and nan, which it does take, are not <= kLargest
     if (error == std::errc() && stop == end && std::abs(value) <= kLargest) return value;
     fault(word, "not a number", "a finite number of at most 1e15");
     return 0.0;
@@ -124,6 +126,7 @@ class Reader {
                                       " samples, allowed: the " + std::to_string(count) +
                                       " that its first line promises"});
       const std::vector<double> v = numbers(2, "x y of a sample");
+      // the lines after a wrong one are read all the same, for their own faults
       if (faults_.size() != before) continue;
       const Line& line = lines_[next_ - 1];
       const auto [place, is_new] = taken.try_emplace({v[0] + 0.0, v[1] + 0.0}, line.number);
@@ -132,6 +135,7 @@ class Reader {
               "each place once");
       out.emplace_back(v[0], v[1]);
     }
+    // one fault for all lines too many
     if (next_ < lines_.size())
       fault(lines_[next_].words[0], "more than the " + std::to_string(count) + " samples of the first line",
             "comments after the last sample");
@@ -141,6 +145,7 @@ class Reader {
   int last_;
   std::vector<SampleFileFault>& faults_;
   std::size_t next_ = 0;
+  /// The file has ended, or its head is wrong: what follows would be misread.
   bool stopped_ = false;
 };
 
@@ -155,6 +160,7 @@ std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
     hull.push_back(p);
   };
   for (const Vec2& p : points) add(p, 0);
+  // the upper chain starts at the last point, and takes nothing of the lower one away
   const std::size_t lower = hull.size() - 1;
   for (auto p = points.rbegin() + 1; p != points.rend(); ++p) add(*p, lower);
   hull.pop_back();

@@ -17,6 +17,7 @@ namespace {
 
 /// The spacing asked for [m], or what `count` makes of a length.
 double spacing_of(const char* kind, const Sampling& sampling, double of_count) {
+  // infinite for a count of 0, or NaN where the length is 0 too
   const double spacing = sampling.spacing > 0.0 ? sampling.spacing : of_count / sampling.count;
   if (std::isfinite(spacing) && sampling.spacing >= 0.0 && sampling.count >= 0 && spacing >= 0.0)
     return spacing;
@@ -45,6 +46,7 @@ std::vector<Particle> vertices(const Outline& outline) {
 }
 
 std::vector<Particle> boundary(const std::vector<Site>& pieces, double spacing) {
+  // parts are rounded up, by at most one a piece; ends that meet are kept once
   check_number("boundary", total_length(pieces) / spacing + static_cast<double>(pieces.size()));
   return on(walk(pieces, spacing));
 }
@@ -60,7 +62,9 @@ std::vector<Particle> volume(const Outline& outline, const Sampling& sampling) {
   const double spacing = spacing_of("volume", sampling, extent.maxCoeff());
   check_number("volume", extent.x() * extent.y() / (spacing * spacing));
   std::vector<Particle> particles = boundary(boundary_pieces(outline), spacing);
+  // its solid goes on for ever
   if (outline.container) return particles;
+  // 1e-6: whole cells up to rounding are no cell more
   const Vec2 cells = (extent.array() / spacing - 1e-6).ceil().max(1.0);
   const Vec2 low = outline.bounds.center() - 0.5 * spacing * cells;
   for (double j = 0.5; j < cells.y(); ++j)
@@ -80,6 +84,7 @@ std::vector<Particle> random(const Outline& outline, const Sampling& sampling) {
   Random draw(sampling.seed);
   std::vector<Vec2> points;
   for (int k = 0; k < static_cast<int>(std::max(count, 1.0)); ++k)
+    // by length, so that every place of the boundary is equally likely
     points.push_back(point_at(pieces, draw.uniform(0.0, whole)));
   return on(points);
 }
@@ -88,6 +93,7 @@ std::vector<Particle> random(const Outline& outline, const Sampling& sampling) {
 std::vector<Particle> raster(const Outline& outline, const Sampling& sampling) {
   const double pixel = spacing_of("raster", sampling, outline.bounds.extent().maxCoeff());
   const std::vector<Site> pieces = boundary_pieces(outline);
+  // the places of the walk, which are more than the pixels they fall into
   check_number("raster", 8.0 * total_length(pieces) / pixel);
   std::set<std::pair<double, double>> drawn;  // row, column
   for (const Vec2& p : walk(pieces, pixel / 8.0)) {
@@ -124,6 +130,8 @@ double widest_gap(const Outline& outline, const std::vector<Particle>& particles
   const std::vector<Site> pieces = boundary_pieces(outline);
   const double whole = total_length(pieces);
   double widest = 0.0;
+  // the distance to the nearest particle changes by no more than the way along the boundary, and no place
+  // is farther than half a step from one that is looked at
   for (int k = 0; k <= steps; ++k) {
     const Vec2 q = point_at(pieces, whole * k / steps);
     double nearest = std::numeric_limits<double>::infinity();

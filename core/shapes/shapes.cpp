@@ -17,6 +17,7 @@ namespace {
 
 constexpr double whole_turn = 2 * std::numbers::pi;
 
+/// @pre the loops have the solid on their left.
 Shape solid_of(const std::vector<std::vector<Vec2>>& loops, double radius) {
   Outline outline;
   outline.solid = true;
@@ -24,6 +25,7 @@ Shape solid_of(const std::vector<std::vector<Vec2>>& loops, double radius) {
   return finish_shape(std::move(outline));
 }
 
+/// Also of a single point site.
 Shape wire_of(const std::vector<Site>& sites, bool closed, double deviation = 0.0) {
   Outline outline;
   outline.curve_deviation = deviation;
@@ -86,9 +88,11 @@ Shape make_polygon(std::vector<Vec2> vertices, double radius) {
 
 Shape make_polygons(const std::vector<std::vector<Vec2>>& polygons) {
   if (polygons.empty()) throw BadInput("polygons: the list is empty; at least one polygon is needed");
+  // each counter-clockwise, as the union wants them
   std::vector<std::vector<Vec2>> parts;
   for (std::size_t k = 0; k < polygons.size(); ++k)
     parts.push_back(checked_polygon(polygons[k], "polygons[" + std::to_string(k) + "]"));
+  // alone it is simple already, and keeps vertices that are collinear
   if (parts.size() == 1) return solid_of(parts, 0.0);
   Shape shape = solid_of(union_of_polygons(parts), 0.0);
   require_plausible_area(shape.measure.size, parts);
@@ -115,10 +119,12 @@ Shape make_arc(const Vec2& center, double arc_radius, double from, double to, do
     throw BadInput("arc: runs from " + text(from) + " to " + text(to) +
                    " rad; angles must be finite and differ");
   double sweep = to - from;
+  // whole turns until it is past `from`; 0 then means that the two are whole turns apart
   if (sweep < 0.0) sweep += whole_turn * std::ceil(-sweep / whole_turn);
   const bool whole = sweep == 0.0 || sweep >= whole_turn * (1 - 1e-15);
   if (whole) sweep = whole_turn;
   const Vec2 a = center + arc_radius * unit_at(from);
+  // a closed loop ends where it starts bit for bit
   const Vec2 b = whole ? a : Vec2(center + arc_radius * unit_at(from + sweep));
   std::vector<Site> sites;
   add_arc(sites, a, b, center, arc_radius, sweep, radius);
@@ -134,6 +140,7 @@ Shape make_bezier(const std::array<Vec2, 4>& control, double curve_tolerance, do
     throw BadInput("bezier: all four control points are " + text(control[0]) + "; some must differ");
   std::vector<Site> sites;
   const double deviation = fit_arcs(curve, control[0], control[3], curve_tolerance, radius, sites);
+  // fit_arcs() leaves out what is shorter than the tolerance and comes back to its start
   if (sites.empty())
     throw BadInput("bezier: the whole curve is shorter than curve_tolerance, " + text(curve_tolerance));
   return wire_of(sites, false, deviation);

@@ -35,6 +35,7 @@ class Scanner {
     const std::size_t start = at_;
     std::size_t digits = at_;
     if (peek() == '+' || peek() == '-') ++digits;
+    // from_chars() would take "inf" and "nan" too
     const bool has_digit =
         digits < d_.size() && (is_digit(digits) || (d_[digits] == '.' && is_digit(digits + 1)));
     if (!has_digit) fail("expected a number");
@@ -43,10 +44,12 @@ class Scanner {
     const auto [end, error] = std::from_chars(first, d_.data() + d_.size(), value);
     if (error != std::errc()) fail("this number is out of range");
     at_ = static_cast<std::size_t>(end - d_.data());
+    // so that squares of lengths stay finite
     if (!(std::abs(value) <= 1e150)) fail_at(start, "this number is out of range");
     return value;
   }
 
+  /// One character: flags may follow each other, and numbers them, without a separator.
   bool flag() {
     if (peek() != '0' && peek() != '1') fail("expected a flag, 0 or 1");
     return take() == '1';
@@ -122,9 +125,11 @@ class Parser {
   Scanner scan_;
   std::vector<Subpath> subpaths_;
   Subpath open_;
+  // where the pen is, and where the subpath began: what follows Z without M starts there again
   Vec2 current_ = Vec2::Zero(), start_ = Vec2::Zero();
   Vec2 last_cubic_ = Vec2::Zero(), last_quadratic_ = Vec2::Zero();  ///< control points that S and T mirror
   bool relative_ = false;
+  /// What comes next is the first argument of a command: no comma may stand before it.
   bool first_argument_ = false;
 };
 
@@ -146,6 +151,7 @@ void Parser::run_command() {
       if (comma) scan_.fail("expected a number after the comma");
       return;
     }
+    // the separator before it has been taken
     first_argument_ = true;
   }
 }
@@ -166,6 +172,7 @@ void Parser::run_once(char command) {
     }
     case 'S': {
       const Vec2 c2 = next_point(), p = next_point();
+      // after anything but C and S the control point is the current point, and so is its mirror image
       return cubic_to(2 * current_ - last_cubic_, c2, p);
     }
     case 'Q': {
@@ -186,6 +193,7 @@ void Parser::move_to(const Vec2& p) {
 
 void Parser::end_subpath() {
   if (!open_.pieces.empty()) {
+    // a subpath that comes back to its start is closed without Z as well
     open_.closed = open_.closed || open_.pieces.back().to == open_.pieces.front().from;
     subpaths_.push_back(std::move(open_));
   }
@@ -199,6 +207,7 @@ void Parser::close() {
 }
 
 void Parser::line_to(const Vec2& p) {
+  // no piece of length 0, which could not be a site; so Z after a closing line draws nothing
   if (p != current_) {
     PathPiece piece;
     piece.from = current_;
@@ -221,6 +230,7 @@ void Parser::cubic_to(const Vec2& c1, const Vec2& c2, const Vec2& p) {
 }
 
 void Parser::quadratic_to(const Vec2& c, const Vec2& p) {
+  // degree elevation
   const Vec2 c1 = current_ + 2.0 / 3.0 * (c - current_), c2 = p + 2.0 / 3.0 * (c - p);
   cubic_to(c1, c2, p);
   last_cubic_ = p;
@@ -238,6 +248,7 @@ void Parser::arc_to() {
   piece.sweep = next_flag();
   piece.to = next_point();
   if (piece.rx == 0.0 || piece.ry == 0.0) return line_to(piece.to);  // SVG 2, 9.5.1
+  // to where it starts it is left out (SVG 2, 9.5.1)
   if (piece.to != current_) open_.pieces.push_back(piece);
   current_ = last_cubic_ = last_quadratic_ = piece.to;
 }

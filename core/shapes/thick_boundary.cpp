@@ -36,6 +36,7 @@ std::vector<Site> candidates(const Outline& outline) {
   for (const Site& s : outline.sites) {
     if (s.kind == SiteKind::point) continue;
     add_right_offset(s, pieces);
+    // a solid's left offset is covered: by the solid, or by the thickness of its far side
     if (!s.solid) add_right_offset(reversed(s), pieces);
   }
   for (const Sample& sample : outline.samples)
@@ -49,6 +50,7 @@ double fraction_of(const Site& piece, const Vec2& p) {
     const Vec2 d = piece.b - piece.a;
     return std::clamp((p - piece.a).dot(d) / d.squaredNorm(), 0.0, 1.0);
   }
+  // the angle from the start, signed as the sweep is where p is on the arc
   const Vec2 from = piece.a - piece.center, w = p - piece.center;
   return std::clamp(std::atan2(cross(from, w), from.dot(w)) / piece.sweep, 0.0, 1.0);
 }
@@ -69,9 +71,11 @@ bool is_repeat(const std::vector<Site>& pieces, const std::vector<Box>& boxes, s
   for (std::size_t j = 0; j < k; ++j) {
     if (!boxes[j].contains(middle)) continue;
     const Nearest n = nearest_on(pieces[j], middle);
+    // at its end the other piece does not run along; what goes on there is a piece of its own
     if (n.distance > tolerance || n.foot != Foot::interior) continue;
     const Site rest = part_of(pieces[j], fraction_of(pieces[j], middle), 1.0);
     const Site own = part_of(part, 0.5, 1.0);
+    // to 1.4e-3 rad; what crosses the part at its middle would have cut it there
     if (direction_at_start(rest).dot(direction_at_start(own)) > 0.999999) return true;
   }
   return false;
@@ -79,6 +83,7 @@ bool is_repeat(const std::vector<Site>& pieces, const std::vector<Box>& boxes, s
 
 std::vector<double> cuts_of(const std::vector<Site>& pieces, const std::vector<Box>& boxes, std::size_t k,
                             double tolerance) {
+  // also where another only touches or starts to run along: its ends are among the meeting points
   std::vector<Vec2> points;
   for (std::size_t j = 0; j < pieces.size(); ++j)
     if (j != k && boxes[k].overlaps(boxes[j])) add_meeting_points(pieces[k], pieces[j], tolerance, points);
@@ -98,6 +103,7 @@ class Cover {
   bool exposed(const Vec2& p) const {
     for (std::size_t k = 0; k < boxes_.size(); ++k) {
       const Site& s = outline_.sites[k];
+      // short of the radius by more than the tolerance: every candidate lies on a surface, its own
       if (boxes_[k].contains(p) && nearest_on(s, p).distance < s.radius - tolerance_) return false;
     }
     return !outline_.solid || gap_by_brute_force(outline_, p) >= -tolerance_;
@@ -119,9 +125,12 @@ std::vector<Site> thick_boundary(const Outline& outline) {
   for (const Site& piece : pieces) boxes.push_back(core_bounds(piece).grown(tolerance));
   std::vector<Site> boundary;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
+    // between two cuts a piece is exposed all along or nowhere: it goes under cover only through the
+    // surface of another site, which is a candidate too
     const std::vector<double> cuts = cuts_of(pieces, boxes, k, tolerance);
     for (std::size_t c = 0; c + 1 < cuts.size(); ++c) {
       const Site part = part_of(pieces[k], cuts[c], cuts[c + 1]);
+      // between two findings of one crossing
       if ((cuts[c + 1] - cuts[c]) * length(pieces[k]) <= tolerance) continue;
       if (cover.exposed(point_along(part, 0.5)) && !is_repeat(pieces, boxes, k, part, tolerance))
         boundary.push_back(part);

@@ -30,6 +30,7 @@ std::vector<Problem> chosen(std::vector<Problem> all, const std::vector<std::str
   if (names.empty()) return all;
   std::string known, faults;
   for (const Problem& p : all) known += (known.empty() ? "" : ", ") + p.name;
+  // The two sweeps are allowed names, but no problems of the list.
   known += fmt::format(", {}, {}", kRest, kClassic);
   for (const std::string& name : names)
     if (name != kClassic && name != kRest &&
@@ -69,8 +70,10 @@ int bench_command(const BenchArguments& arguments) {
   const auto asked = [&](const char* name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
+  // Each runs though one before has ended early: all results are written.
   bool good = !asked(kClassic) || bench::run_classic(folder);
   if (asked(kRest)) good = bench::run_rest(folder) && good;
+  // Only sweeps were asked for.
   if (problems.empty()) return good ? kDone : kEndedEarly;
   std::vector<Row> rows;
   for (const Problem& problem : problems) {

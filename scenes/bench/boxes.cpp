@@ -28,6 +28,8 @@ void look(const SpinningBox& carrier, const SpinningBox& hit, bool of_first, Cor
       const Point world{carrier.x + cc * p.x - cs * p.y, carrier.y + cs * p.x + cc * p.y};
       const Point d{world.x - hit.x, world.y - hit.y};
       const Point q{hc * d.x + hs * d.y, -hs * d.x + hc * d.y};
+      // In the frame of the box that is hit: how far out along either axis. The larger is the gap: exact in
+      // sign, and beside a side in size; off a corner less than the distance, which bisection does not mind.
       const long double out_x = std::abs(q.x) - hit.half_width, out_y = std::abs(q.y) - hit.half_height;
       const long double gap = std::max(out_x, out_y);
       if (gap >= nearest.gap) continue;
@@ -37,6 +39,7 @@ void look(const SpinningBox& carrier, const SpinningBox& hit, bool of_first, Cor
     }
 }
 
+// Two convex polygons that come together touch first at a corner of one of them.
 Corner nearest_corner(const SpinningBox& a, const SpinningBox& b) {
   Corner nearest;
   look(a, b, true, nearest);
@@ -51,10 +54,12 @@ long double first_contact(const SpinningBox& a, const SpinningBox& b, long doubl
   while (high < end && apart(high)) high += kLook;
   if (high >= end) return INFINITY;
   long double low = high - kLook;
+  // 1e-4 / 2^70 s is far below a rounding of any time here.
   for (int k = 0; k < 70; ++k) {
     const long double middle = 0.5L * (low + high);
     (apart(middle) ? low : high) = middle;
   }
+  // The last time apart, so that the pair is not found again at once.
   return low;
 }
 
@@ -64,10 +69,13 @@ void collide(SpinningBox& a, SpinningBox& b) {
   const long double turn = c.of_first ? 1.0L : -1.0L;  // the normal points into a
   const Point n{turn * c.normal.x, turn * c.normal.y};
   const Point ra{c.place.x - a.x, c.place.y - a.y}, rb{c.place.x - b.x, c.place.y - b.y};
+  // Lengths of the arms across the normal: rates of the contact points along it are v.n + omega arm.
   const long double arm_a = ra.x * n.y - ra.y * n.x, arm_b = rb.x * n.y - rb.y * n.x;
   const long double rate = (a.vx - b.vx) * n.x + (a.vy - b.vy) * n.y + a.omega * arm_a - b.omega * arm_b;
+  // What the relative rate changes by for an impulse of 1 N s.
   const long double yield =
       1.0L / a.mass + 1.0L / b.mass + arm_a * arm_a / a.inertia + arm_b * arm_b / b.inertia;
+  // Elastic: the rate is to become its own opposite.
   const long double impulse = -2.0L * rate / yield;
   a.vx += impulse * n.x / a.mass;
   a.vy += impulse * n.y / a.mass;
@@ -104,6 +112,7 @@ BoxMeeting meet(const SpinningBox& a, const SpinningBox& b, double end) {
   if (!std::isfinite(t)) throw BadInput("the boxes of the benchmark do not meet");
   SpinningBox a1 = a.at(t), b1 = b.at(t);
   collide(a1, b1);
+  // A second meeting would make the end depend on more than this reference knows.
   if (std::isfinite(first_contact(a1, b1, 0.0L, end - t)))
     throw BadInput("the boxes of the benchmark meet twice");
   return {t, {a1.at(end - t), b1.at(end - t)}};

@@ -73,6 +73,7 @@ ClassicRow measure_at(const Problem& problem, const Classic& at, const std::stri
   setting.options.field.primitives = at.primitives;
   setting.options.field.readback = at.readback;
   ClassicRow row{at, measure(sampled(problem, at.spacing), setting, 1)};
+  // A body that rattles in a wall ends anywhere: its error has no size.
   if (astray(row.row)) row.row.error = std::numeric_limits<double>::infinity();
   return row;
 }
@@ -98,6 +99,7 @@ void sweep(const Problem& problem, const std::function<void(ClassicRow)>& take) 
           for (const double spacing : kSpacings)
             take(measure_at(problem, {spacing, resolution, step, primitives, readback, "global_backup"},
                             fmt::format("depth {} px", resolution)));
+  // fixed_step at the middle spacing and resolution alone.
   for (const double step : {0.02, 0.01, 0.005, 0.002})
     take(measure_at(problem, {kSpacings[1], kResolutions[1], step, "exact", "window", "fixed_step"},
                     "fixed_step"));
@@ -157,7 +159,7 @@ std::vector<Look> looks() {
   return all;
 }
 
-/// ", missed 6 of 216 contacts" over all runs of the classic detector on a problem.
+/// "; depth missed 6 of 216 contacts" over all runs of the classic detector on a problem.
 std::string missed_text(const Problem& problem, const std::vector<ClassicRow>& rows) {
   std::size_t missed = 0, expected = 0;
   for (const ClassicRow& r : rows) {
@@ -189,6 +191,7 @@ bool run_classic(const std::filesystem::path& folder) {
   measure_missed(folder);
   measure_orders(folder);
   measure_options(folder);
+  // The exact detectors must have reached the end; of the classic one nothing is asked.
   return std::all_of(rows.begin(), rows.end(), [](const ClassicRow& r) {
     return r.at.spacing > 0.0 || r.row.summary.termination == Termination::reached_end;
   });

@@ -32,6 +32,7 @@ std::vector<Vec2> star(int points, double outer, double inner) {
 }
 
 /// Bodies of four kinds, each with its own cell of a frame of short walls.
+/// The seed is fixed, so that state hashes can be compared between runs of the program.
 World crowd() {
   Random random(5);
   World world;
@@ -42,9 +43,11 @@ World crowd() {
     const Vec2 shift(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1));
     const Pose pose{kApart * cell - Vec2(kHalf, kHalf) + shift, random.uniform(0.0, 6.0)};
     const Twist twist{{random.uniform(-4, 4), random.uniform(-4, 4)}, random.uniform(-4.0, 4.0)};
+    // The star's radius and the shift make 0.5 m at most, half a cell: nothing overlaps at the start.
     world.bodies.push_back(sampled_body(shapes[k % 4], pose, twist, kSpacing));
     world.bodies.back().name = fmt::format("body{}", k);
   }
+  // The walls of the lower side, turned to all four.
   for (int side = 0; side < 4; ++side)
     for (int k = 0; k < kSide; ++k)
       add_fixed(world, make_segment({-kHalf + k * kApart, -kHalf}, {-kHalf + (k + 1) * kApart, -kHalf}),
@@ -70,6 +73,7 @@ void all_together(SolverOptions& o) {
   o.broad_phase = o.field.truncated = true;
 }
 
+// The first is the one that others are compared with.
 std::vector<Saving> savings() {
   return {{"none: full read-back, whole diagram, every body", [](SolverOptions&) {}, {}, {}},
           {"read-back of the window", [](SolverOptions& o) { o.field.readback = "window"; }, {}, {}},
@@ -98,6 +102,7 @@ std::vector<Saving> savings() {
 /// Everything off.
 SolverOptions plain() {
   SolverOptions none = backing_up("depth", kStep);
+  // fixed_step: the number of pictures is the number of steps, whatever the contacts.
   none.policy = "fixed_step";
   none.broad_phase = false;
   none.field.truncated = false;
@@ -124,6 +129,7 @@ void measure_options(const std::filesystem::path& folder) {
       paint(stdout, Paint::heading, "options"), kSide * kSide, kUntil / kStep, 1e3 * kStep, kRounds);
   const World world = crowd();
   std::vector<Saving> all = savings();
+  // In rounds, so that a busy moment of the machine does not fall on one option alone.
   for (int round = 0; round < kRounds; ++round)
     for (Saving& saving : all) time_once(world, saving);
   Csv csv(folder / "classic_options.csv",

@@ -34,6 +34,7 @@ double fitted_order(const std::vector<double>& x, const std::vector<double>& err
 /// heights drawn at random; one that never came is late by what was left of the run.
 double fall_error(SolverOptions options, const Sampling& sampling) {
   options.max_collisions = 1;
+  // The same falls for every setting: the errors differ by the setting alone.
   Random random(kSeedOfOrders);
   double sum = 0.0;
   for (int k = 0; k < kFalls; ++k) {
@@ -44,6 +45,7 @@ double fall_error(SolverOptions options, const Sampling& sampling) {
     world.bodies[0].sampling = sampling;
     add_fixed(world, make_box(2.0, 0.5), {{0.0, -0.25}, 0.0});
     const std::vector<double> hits = hits_of(world, options, kBeyondFirst);
+    // A drop from rest through `height` to first contact.
     const double off = (hits.empty() ? kBeyondFirst : hits[0]) - std::sqrt(2.0 * height / kGravity);
     sum += off * off;
   }
@@ -55,6 +57,7 @@ double error_with(const char* policy, double step, double pixel, const char* int
   SolverOptions options = backing_up("depth", step);
   options.policy = policy;
   options.integrator = integrator;
+  // A disc of radius 1/2 is 1 m across: so many pixels of that side.
   options.field.resolution = static_cast<int>(std::lround(1.0 / pixel));
   return fall_error(options, sampling);
 }

@@ -4,6 +4,7 @@
 namespace brink::bench {
 namespace {
 
+/// Times of collisions, and nothing else.
 class Hits : public Recorder {
  public:
   void frame(double, std::span<const BodyState>) override {}
@@ -34,6 +35,7 @@ void add_fixed(World& world, const Shape& shape, const Pose& pose) {
 
 SolverOptions backing_up(const char* detector, double step) {
   SolverOptions options;
+  // The classic detector backs up under every policy but fixed_step; this one is the reference.
   options.policy = "global_backup";
   options.detector = detector;
   options.step = step;
@@ -45,6 +47,7 @@ std::vector<double> hits_of(const World& world, const SolverOptions& options, do
   Hits hits;
   RunOptions run;
   run.until = until;
+  // No checkpoints: they would take time.
   run.checkpoint_seconds = -1.0;
   simulator.run(run, &hits);
   return hits.times;

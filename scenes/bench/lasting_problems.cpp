@@ -14,6 +14,7 @@ namespace brink::bench {
 
 namespace {
 
+/// One body on one site, without rebound.
 World world_of(double friction, const Shape& ground, const Pose& pose, const Shape& shape,
                const BodyState& start) {
   World world;
@@ -36,6 +37,8 @@ World world_of(double friction, const Shape& ground, const Pose& pose, const Sha
 Problem rolling_in_a_bowl() {
   const double R = 2.0, r = 0.25, from = std::numbers::pi / 3, until = 5.0;
   const double k = std::sin(from / 2), rate = std::sqrt(2.0 / 3 * kGravity / (R - r));
+  // phi(t) = 2 asin(k sn(K(k) - rate t, k)), k = sin(phi(0) / 2): the pendulum from rest, by
+  // Jacobi's function.
   const double known = 2 * std::asin(k * boost::math::jacobi_sn(k, boost::math::ellint_1(k) - rate * until));
   Problem p;
   p.name = "rolling_bowl";
@@ -58,6 +61,7 @@ Problem sliding_to_rest() {
   p.name = "stopping_block";
   p.title = "block slides to rest from 2 m/s, friction 0.3, 3 s";
   p.error_of = "place at the end [m]";
+  // The block's middle is half its height above y = 0; the ground's upper side is y = 0.
   p.world = world_of(mu, make_box(40.0, 1.0), {{0.0, -0.5}, 0.0}, make_box(1.0, 0.5),
                      {{{0.0, 0.25}, 0.0}, {{v, 0.0}, 0.0}});
   p.until = 3.0;
@@ -79,6 +83,7 @@ Problem rolling_down() {
                      {{r * up, 0.0}, {Vec2::Zero(), 0.0}});
   p.until = until;
   p.error = [slope, r, until, up](const Problem&, const Outcome& o) {
+    // Two thirds of g sin(slope): the disc's inertia about its rim is 3/2 m r^2.
     const double way = 0.5 * (2.0 / 3) * kGravity * std::sin(slope) * until * until;
     return (o.states[0].pose.position - (r * up - way * Vec2(std::cos(slope), std::sin(slope)))).norm();
   };
@@ -93,8 +98,10 @@ std::vector<Setting> lasting_settings() {
   std::vector<Setting> all;
   for (const int digits : {4, 6, 8, 10, 12}) {
     Setting s{"modes", fmt::format("tolerance 1e-{}", digits), false, {}};
+    // Far more than one body has: all of it moves by modes.
     s.options.modes_contacts = 16;
     s.options.tolerance = std::pow(10.0, -digits);
+    // Two digits below the relative one, for places near 0.
     s.options.absolute_tolerance = 0.01 * s.options.tolerance;
     all.push_back(s);
   }

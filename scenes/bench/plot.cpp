@@ -11,10 +11,12 @@ namespace {
 std::string seconds_text(double seconds) {
   static const char* const units[] = {"ns", "\u00b5s", "ms", "s"};
   const int exponent = static_cast<int>(std::lround(std::log10(seconds)));
+  // Powers of a thousand from 1 ns on.
   const int unit = std::clamp((exponent + 9) / 3, 0, 3);
   return fmt::format("{:g} {}", std::pow(10.0, exponent + 9 - 3 * unit), units[unit]);
 }
 
+// A tick's value is a power taken of its exponent, and may be a rounding above the least error.
 std::string error_text(double error) {
   return error <= 1.0001 * kLeastError ? "none"
                                        : power_text(static_cast<int>(std::lround(std::log10(error))));
@@ -34,12 +36,14 @@ class PlotMaker {
       : problems_(problems), looks_(looks) {
     chart_.title = title;
     chart_.note = "left and low is better; rings: contacts were missed; crosses: the run went astray";
+    // Series with looks come first, in their order; others as they come.
     for (const Look& look : looks) chart_.series.push_back({look.series, look.color});
   }
 
   void add(const Row& row) {
     const Problem& p = *std::find_if(problems_.begin(), problems_.end(),
                                      [&](const Problem& q) { return q.name == row.problem; });
+    // Rows of a problem follow each other: another title begins a panel.
     if (chart_.panels.empty() || chart_.panels.back().title != p.title) {
       const ChartAxis time{"wall time of the simulation", {}, true, seconds_text};
       chart_.panels.push_back({p.title, p.error_of, time, {"", {}, true, error_text}, {}});

@@ -71,6 +71,7 @@ Problem bouncing_ball() {
 
 Problem dropped_disc() {
   const auto height_error = [](const Problem& p, const Outcome& o) {
+    // Elastic: after an impact it leaves with the speed sqrt(2 g h) of a fall through h = 9.5 m.
     const long double g = kGravity, s = static_cast<long double>(p.until) - p.hits.back();
     const long double v = std::sqrt(2.0L * 9.5L * g);
     return static_cast<double>(std::abs(o.states[0].pose.position.y() - (0.5L + v * s - 0.5L * g * s * s)));
@@ -91,6 +92,7 @@ double distance(const Vec2& at, long double x, long double y) {
 
 /// A coordinate that runs to and fro between -half and half.
 struct Unfolded {
+  // Reflections unfolded: a straight flight, folded back every width, from left to right and back.
   long double start, speed, half;
   long double at(long double t) const {
     const long double width = 2.0L * half, u = std::fmod(start + half + speed * t, 2.0L * width);
@@ -105,6 +107,7 @@ struct Unfolded {
 Problem rectangle() {
   const double radius = 0.25, until = 50.0;
   const Vec2 half(2.0, 1.5), p(0.3, 0.2), v(1.0, 0.83);
+  // Without friction x and y do not depend on each other: two unfolded flights.
   Problem problem;
   problem.name = "rectangle";
   problem.title = "disc in a rectangle without gravity, 50 s";
@@ -113,6 +116,7 @@ Problem rectangle() {
   add_body(problem.world, make_disc(radius), p, v);
   const Vec2 corners[] = {-half, {half.x(), -half.y()}, half, {-half.x(), half.y()}};
   for (int k = 0; k < 4; ++k) add_wall(problem.world, corners[k], corners[(k + 1) % 4]);
+  // The centre runs between walls moved inward by the radius.
   const Unfolded x{p.x(), v.x(), half.x() - radius}, y{p.y(), v.y(), half.y() - radius};
   x.add_hits(until, problem.hits);
   y.add_hits(until, problem.hits);
@@ -128,6 +132,7 @@ Problem rectangle() {
 Problem cradle() {
   const int discs = 5;
   const double gap = 0.0625, speed = 1.7, until = 1.0;
+  // Short binary fractions, so that places are exact; the first disc stands 1/4 m further off.
   const auto place = [gap](int k) { return k * (1.0 + gap) - (k == 0 ? 0.25 : 0.0); };
   Problem problem;
   problem.name = "cradle";
@@ -136,6 +141,7 @@ Problem cradle() {
   problem.until = until;
   for (int k = 0; k < discs; ++k)
     add_body(problem.world, make_disc(0.5), {place(k), 0.0}, {k == 0 ? speed : 0.0, 0.0});
+  // At the k-th contact whoever moved has come 1/4 m and k gaps in all.
   for (int k = 1; k < discs; ++k)
     problem.hits.push_back(static_cast<double>((0.25L + k * static_cast<long double>(gap)) / speed));
   problem.error = [=](const Problem& p, const Outcome& o) {
@@ -167,6 +173,7 @@ Problem shaken_spring() {
   spring.rest_length = 3.0 - radius - static_cast<double>(b.rest);
   FormulaForce shaking;
   shaking.bodies = {0};
+  // F cos(w t) with the reference's numbers.
   shaking.fy = Formula("4*cos(7*t)", force_formula_variables());
   world.forces = {spring, shaking};
   return impacts("shaken_spring", "ball pressed to a floor by a damped spring and shaken, 5 s", world, 5.0,
@@ -188,6 +195,7 @@ Problem two_boxes() {
   World world;
   add_body(world, make_box(1.0, 0.5), {-2.0, 0.125}, {1.5, 0.0}, 0.3, 1.5);
   add_body(world, make_box(0.75, 0.75), {2.0, -0.125}, {-1.0, 0.0625}, 1.1, -0.75);
+  // No closed form: the meeting is found in extended precision (boxes.h).
   const BoxMeeting meeting =
       meet(SpinningBox(world.bodies[0], 1.0, 0.5), SpinningBox(world.bodies[1], 0.75, 0.75), 4.0);
   const auto place_error = [meeting](const Problem&, const Outcome& o) {

@@ -34,6 +34,7 @@ bool problems_with_answers(const std::filesystem::path& folder) {
   return good;
 }
 
+// Peers stand beside Brink in the same process, one after another on the same heap.
 using Settle = Settled (*)(const Heap&);
 constexpr Settle kEngines[] = {
     settle_with_brink,
@@ -76,6 +77,7 @@ bool heaps_that_settle(const std::filesystem::path& folder) {
 }  // namespace
 
 bool run_rest(const std::filesystem::path& folder) {
+  // Both are run, whatever the first says.
   const bool answers = problems_with_answers(folder);
   return heaps_that_settle(folder) && answers;
 }

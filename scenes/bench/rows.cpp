@@ -21,6 +21,7 @@ bool reached(const Row& row) { return row.summary.termination == Termination::re
 
 }  // namespace
 
+// An approximate policy may end early; its repeats must give the same bits all the same.
 bool is_good(const Row& row) { return row.same_hash && (row.setting.approximate || reached(row)); }
 
 void print_heading(const Problem& p) {
@@ -36,6 +37,7 @@ void print(const Row& row) {
   if (!reached(row)) line += "  " + row.summary.termination_text();
   if (!row.same_hash) line += "  repeats differ in their bits";
   fmt::print("{}\n", !is_good(row) ? paint(stdout, Paint::bad, line) : line);
+  // A run may take long: each line is seen as it comes.
   std::fflush(stdout);
 }
 
@@ -45,6 +47,7 @@ void write_csv(const std::filesystem::path& file, const std::vector<Row>& rows) 
           "termination,state_hash,right_hand_sides");
   for (const Row& r : rows) {
     std::string ending = r.summary.termination_text();
+    // Within quotes, a quote would end the cell.
     std::replace(ending.begin(), ending.end(), '"', '\'');
     csv.row("{},{},{},{:d},{:.17g},{:.6g},{},{},{},{},{:.17g},\"{}\",{:016x},{}", r.problem, r.setting.series,
             r.setting.label, r.setting.approximate, r.error, r.wall_seconds, r.repeats, r.expected,

@@ -10,6 +10,7 @@
 namespace brink::bench {
 namespace {
 
+/// Steps beyond which a setting is left out, as it would take too long.
 constexpr double kMostSteps = 1e6, kMostIntegratorSteps = 1e5;
 constexpr double kMostSeconds = 1.0;
 
@@ -41,6 +42,7 @@ void add_tolerances(const char* integrator, bool driven, std::vector<Setting>& a
     Setting s{integrator, fmt::format("tolerance 1e-{}", digits), false, {}};
     s.options.integrator = integrator;
     s.options.tolerance = std::pow(10.0, -digits);
+    // Two digits below the relative one, for places near 0.
     s.options.absolute_tolerance = 0.01 * s.options.tolerance;
     all.push_back(s);
   }
@@ -60,6 +62,7 @@ void add_steps(const Problem& problem, const char* series, bool approximate,
 
 std::vector<Setting> settings(const Problem& problem) {
   std::vector<Setting> all;
+  // Every policy that is exact, also one that the program has added.
   for (const Choice& policy : policies()) {
     if (make_policy(policy.name)->approximate()) continue;
     Setting s{std::string(policy.name), problem.driven ? "default tolerance" : "closed form", false, {}};
@@ -84,8 +87,10 @@ Row measure(const Problem& problem, const Setting& setting, int repeats) {
   row.expected = problem.hits.size();
   std::vector<double> seconds;
   double spent = 0.0;
+  // At least once, however long it takes.
   for (int k = 0; k < repeats && (k == 0 || spent < kMostSeconds); ++k) {
     const Outcome outcome = run_once(problem, setting.options);
+    // The simulation must not depend on what was run before in this process.
     if (k > 0 && outcome.summary.state_hash != row.summary.state_hash) row.same_hash = false;
     row.summary = outcome.summary;
     row.error = problem.error(problem, outcome);
@@ -93,6 +98,7 @@ Row measure(const Problem& problem, const Setting& setting, int repeats) {
     seconds.push_back(outcome.summary.wall_seconds);
     spent += seconds.back();
   }
+  // Contacts that are more than expected are none that were missed.
   row.missed = row.expected - std::min(row.expected, row.collisions);
   row.repeats = static_cast<int>(seconds.size());
   std::nth_element(seconds.begin(), seconds.begin() + row.repeats / 2, seconds.end());

@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kSettled = 8.0;
 
+/// A bin of three walls, and bodies in a pile above it to fall; as a scene file, so that
+/// anybody can make it.
 Heap heap(std::string name, const std::string& shape, int count, double width) {
   std::string text = fmt::format(
       "[world]\nduration = {}\ngravity = [0, -9.81]\nseed = 7\n[materials.default]\nrestitution = "
@@ -44,6 +46,7 @@ double deepest_overlap(const World& world, const std::vector<Pose>& bodies) {
   const auto look = [&](std::size_t i, const Outline& other, const Pose& at, bool site) {
     const Outline& outline = *world.bodies[i].outline;
     const double reach = outline.bounding_radius + other.bounding_radius;
+    // Far bodies by their discs alone. Sites are few, and a wall's disc would reach all of the bin.
     if (!site && (bodies[i].position - at.position).squaredNorm() > reach * reach) return;
     deepest = std::max(deepest, -outline_gap(outline, bodies[i], other, at).gap);
   };
@@ -58,10 +61,12 @@ Settled settle_with_brink(const Heap& heap) {
   const World& world = heap.scene.world;
   Simulator simulator(world, heap.scene.solver);
   Settled settled{"Brink"};
+  // Steps of a frame each, as the peers have; Brink's own events lie between.
   for (int frame = 1; frame * kFrame < heap.scene.duration; ++frame) {
     RunOptions how;
     how.until = frame * kFrame;
     how.checkpoint_seconds = -1.0;
+    // Of the run alone, as with the peers.
     const std::clock_t begin = std::clock();
     const RunSummary summary = simulator.run(how);
     settled.cpu_seconds += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
@@ -72,6 +77,7 @@ Settled settle_with_brink(const Heap& heap) {
     std::vector<Pose> poses;
     for (const BodyState& s : simulator.states()) poses.push_back(s.pose);
     settled.overlap = std::max(settled.overlap, deepest_overlap(world, poses));
+    // Everybody asleep: the first time that they are.
     if (summary.resting == world.bodies.size()) settled.at_rest = std::min(settled.at_rest, how.until);
   }
   return settled;

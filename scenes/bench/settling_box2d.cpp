@@ -20,11 +20,13 @@ void add_fixture(b2Body* body, const Outline& outline, double density) {
     circle.m_radius = static_cast<float>(outline.bounding_radius);
     fixture.shape = &circle;
   } else {
+    // The samples of a convex polygon are its vertices.
     std::vector<b2Vec2> corners;
     for (const Sample& s : outline.samples) corners.push_back(vector(s.p));
     polygon.Set(corners.data(), static_cast<int32>(corners.size()));
     fixture.shape = &polygon;
   }
+  // Box2D combines frictions by their geometric mean, so 0.5 and 0.5 make 0.5.
   fixture.density = static_cast<float>(density);
   fixture.friction = 0.5f;
   fixture.restitution = 0.0f;
@@ -37,6 +39,7 @@ b2Body* add(b2World& world, b2BodyType type, const Outline& outline, const Pose&
   def.position = vector(pose.position);
   def.angle = static_cast<float>(pose.angle);
   b2Body* body = world.CreateBody(&def);
+  // The density of the scene is 1 kg/m^2.
   add_fixture(body, outline, 1.0);
   return body;
 }

@@ -33,6 +33,7 @@ struct Space {
     cpSpaceAddBody(space, body);
     bodies.push_back(body);
     cpShape* shape = nullptr;
+    // A disc is one point with a radius; the samples of a convex polygon are its vertices.
     if (outline.is_point()) {
       shape = cpCircleShapeNew(body, outline.bounding_radius, cpvzero);
     } else {
@@ -55,12 +56,15 @@ Settled settle_with_chipmunk(const Heap& heap) {
   Space world;
   cpSpaceSetGravity(world.space, vector(given.gravity));
   cpSpaceSetCollisionSlop(world.space, 0.005);
+  // Bodies sleep after half a second at rest, as Box2D's do; without this they never do.
   cpSpaceSetSleepTimeThreshold(world.space, 0.5);
   for (const FixedSite& site : given.sites) world.add(cpBodyNewStatic(), *site.outline, site.pose);
+  // Sites come first in the list of bodies, and have no state to look at.
   const std::size_t first = world.bodies.size();
   for (const Body& b : given.bodies) world.add(cpBodyNew(b.mass, b.inertia), *b.outline, b.initial.pose);
   Settled settled{"Chipmunk 7"};
   for (int frame = 1; frame * kFrame < heap.scene.duration; ++frame) {
+    // Processor time of the step alone, without the look at overlaps.
     const std::clock_t begin = std::clock();
     cpSpaceStep(world.space, kFrame);
     settled.cpu_seconds += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
@@ -72,6 +76,7 @@ Settled settle_with_chipmunk(const Heap& heap) {
       asleep = asleep && cpBodyIsSleeping(world.bodies[k]);
     }
     settled.overlap = std::max(settled.overlap, deepest_overlap(given, poses));
+    // The first time; who wakes again has still been at rest once.
     if (asleep) settled.at_rest = std::min(settled.at_rest, frame * kFrame);
   }
   return settled;

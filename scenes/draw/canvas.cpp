@@ -48,6 +48,8 @@ struct Canvas::Impl {
     if (site.kind != SiteKind::arc) return line_to(frame.to_world(site.b));
     const Vec2 center = view.to_picture(frame.to_world(site.center));
     const Vec2 from = frame.direction_to_world(site.a - site.center);
+    // Angles change their sign on the picture, so counter-clockwise in the world is
+    // cairo_arc_negative there.
     const double start = std::atan2(-from.y(), from.x());  // the picture's y runs downward
     const auto arc = site.sweep > 0 ? cairo_arc_negative : cairo_arc;
     arc(cairo, center.x(), center.y(), site.arc_radius * view.scale, start, start - site.sweep);
@@ -56,6 +58,7 @@ struct Canvas::Impl {
   void trace(const Outline& outline, const Loop& loop, const Frame& frame) const {
     if (only_point(outline, loop)) {
       const Vec2 at = view.to_picture(frame.to_world(outline.sites[loop.first].a));
+      // A new sub-path, or Cairo would draw a line to the circle's start.
       cairo_new_sub_path(cairo);
       cairo_arc(cairo, at.x(), at.y(), thickness(outline, loop) * view.scale, 0.0, 2.0 * std::numbers::pi);
       return;
@@ -68,6 +71,8 @@ struct Canvas::Impl {
   /// Everything of the picture, with a border so that its own edge is not seen.
   void trace_page() const { cairo_rectangle(cairo, -50.0, -50.0, view.width + 100.0, view.height + 100.0); }
 
+  // Even-odd with the page around it: of a container what lies outside its loops is filled;
+  // holes of solids stay.
   void fill(const Outline& outline, const Frame& frame, const Color& color, double opacity) const {
     cairo_new_path(cairo);
     if (outline.container) trace_page();
@@ -82,6 +87,8 @@ struct Canvas::Impl {
     set_color(cairo, color);
     for (const Loop& loop : outline.loops) {
       const bool point = only_point(outline, loop);
+      // One loop at a time, as widths differ with the loops' thickness. A point has its
+      // thickness in its circle.
       cairo_new_path(cairo);
       trace(outline, loop, frame);
       cairo_set_line_width(cairo, point ? extra : 2.0 * thickness(outline, loop) * view.scale + extra);
@@ -115,6 +122,7 @@ Canvas::Canvas(const View& view, int width, int height, const Color& background,
   impl_->cairo = cairo_create(impl_->surface);
   cairo_set_line_join(impl_->cairo, CAIRO_LINE_JOIN_ROUND);
   cairo_set_line_cap(impl_->cairo, CAIRO_LINE_CAP_ROUND);
+  // [pixels], how far a curve may be off its lines; half of Cairo's own.
   cairo_set_tolerance(impl_->cairo, 0.05);
   rectangle(0, 0, width, height, background);
 }
@@ -125,6 +133,7 @@ Canvas::~Canvas() {
 }
 
 void Canvas::paste(const Picture& image) {
+  // Pixels are copied, so that cells have the bits that they were made with.
   if (impl_->paper.kind != Paper::Kind::pixels) return paste_as_image(image);
   cairo_surface_flush(impl_->surface);
   unsigned char* data = cairo_image_surface_get_data(impl_->surface);
@@ -165,6 +174,7 @@ void Canvas::outline(const Outline& outline, const Pose& pose, const Ink& ink) {
   cairo_clip(cairo);
   double radius = 0.0;
   for (const Site& site : outline.sites) radius = std::max(radius, site.radius);
+  // A thickness below half a line cannot be seen beside the line itself.
   const bool thin = outline.is_point() || radius * impl_->view.scale < 0.5 * ink.line_width;
   if (ink.dashed) {
     const double dash[] = {5.0, 4.0};
@@ -175,7 +185,8 @@ void Canvas::outline(const Outline& outline, const Pose& pose, const Ink& ink) {
       impl_->fill(outline, frame, ink.fill, ink.opacity);
     impl_->stroke(outline, frame, ink.line, ink.line_width);
   } else {
-    // the edge of a thick outline: the whole a line wider, then the inside over it
+    // The edge of a thick outline: the whole a line wider, then the inside over it. In a group, as with
+    // opacity 0 the inside is cleared again, which must not clear what lies below.
     cairo_push_group(cairo);
     impl_->shape(outline, frame, ink.line, 1.0, ink.line_width);
     if (ink.opacity > 0.0) {
@@ -206,6 +217,7 @@ void Canvas::path(std::span<const Vec2> points, const Color& color, double width
   set_color(impl_->cairo, color);
   cairo_set_line_width(impl_->cairo, width);
   if (!dash.empty()) {
+    // Butt caps: round ones would fill the gaps of short dashes.
     cairo_set_line_cap(impl_->cairo, CAIRO_LINE_CAP_BUTT);
     cairo_set_dash(impl_->cairo, dash.data(), static_cast<int>(dash.size()), 0.0);
   }
@@ -236,6 +248,7 @@ void Canvas::dot(const Vec2& at, double pixels, const Color& color) {
 
 void Canvas::arrow(const Vec2& from, const Vec2& to, const Color& color, double width) {
   const Vec2 tip = impl_->view.to_picture(to), way = tip - impl_->view.to_picture(from);
+  // Shorter arrows would be nothing but a head.
   if (way.norm() < 2.0 * width) return;
   line(from, to, color, width);
   const Vec2 back = -way.normalized() * std::min(4.5 * width, 0.5 * way.norm());
@@ -251,6 +264,7 @@ void Canvas::spring(const Vec2& from, const Vec2& to, const Color& color, double
   const Vec2 a = impl_->view.to_picture(from), b = impl_->view.to_picture(to);
   const double length = (b - a).norm();
   if (length < 4.0) return line(from, to, color, width);
+  // A turn each 6 pixels, 5 to 60 of them; the ends stay straight over 15 % each.
   const int turns = std::clamp(static_cast<int>(length / 6.0), 5, 60);
   const Vec2 side = perp(b - a) / length * std::min(0.12 * length, 3.5);
   cairo_new_path(impl_->cairo);
@@ -278,12 +292,14 @@ double Canvas::text(double x, double y, const std::string& words, double size, c
                          bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
   cairo_set_font_size(cairo, size);
   cairo_text_extents_t extents;
+  // Names come from files: nothing of them may be taken for a line break or a direction.
   const std::string shown = printable(words);
   cairo_text_extents(cairo, shown.c_str(), &extents);
   set_color(cairo, color);
   const double share = align == Align::left ? 0.0 : align == Align::middle ? 0.5 : 1.0;
   cairo_move_to(cairo, x - share * extents.x_advance, y);
   cairo_show_text(cairo, shown.c_str());
+  // Showing text leaves a point on the path.
   cairo_new_path(cairo);
   return extents.x_advance;
 }
@@ -299,6 +315,7 @@ Picture Canvas::finish() {
   for (int row = 0; row < picture.height; ++row)
     std::memcpy(&picture.pixels[static_cast<std::size_t>(row) * picture.width],
                 data + static_cast<std::size_t>(row) * stride, 4U * picture.width);
+  // RGB24 leaves the upper byte undefined; pictures are opaque.
   for (std::uint32_t& pixel : picture.pixels) pixel |= 0xff000000U;
   return picture;
 }

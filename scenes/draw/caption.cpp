@@ -18,6 +18,7 @@ std::string length_text(double metres) {
 }
 
 /// Left of x: a bar `length` metres long with its size. Returns where it begins.
+/// Parts at the right are set from right to left: each returns where the next one ends.
 double draw_ruler(Canvas& canvas, const Sheet& sheet, double x, double y, double size) {
   const double length = draw::round_length(0.22 * sheet.options.size.width / sheet.view.scale);
   const double pixels = length * sheet.view.scale;
@@ -34,6 +35,7 @@ double draw_legend(Canvas& canvas, const Sheet& sheet, double x, double y, doubl
   const Color ink = Tones::ink.rgb();
   x -= canvas.text(x, y, length_text(sheet.full_scale), size, ink, Canvas::Align::right) + 0.6 * size;
   const int width = std::max(40, sheet.options.size.width / 5);
+  // A column of 1.5 pixels a step of 1: no gaps between them where edges are smoothed.
   for (int k = 0; k < width; ++k)
     canvas.rectangle(x - width + k, y - 0.85 * size, 1.5, size, draw::distance_color(k / (width - 1.0)));
   x -= width + 0.6 * size;
@@ -43,6 +45,7 @@ double draw_legend(Canvas& canvas, const Sheet& sheet, double x, double y, doubl
 }  // namespace
 
 int strip_height(const DrawOptions& options) {
+  // Pictures smaller than this have no room for words.
   if (!options.caption || options.size.height < 120 || options.size.width < 160) return 0;
   return std::clamp(options.size.height / 20, 26, 60);
 }
@@ -68,6 +71,7 @@ void draw_caption(Canvas& canvas, const Sheet& sheet) {
     const std::string words = most > 0.0 ? fmt::format("widest line: {:.3g} N", most) : "no contact lasts";
     x += size + canvas.text(x + size, y, words, size, Oklch{0.45, 0.17, 25.0}.rgb(), Canvas::Align::left);
   }
+  // Words go first; the ruler only where it does not run into them.
   if (x > kRoomForWords * o.size.width) return;
   depth ? draw_legend(canvas, sheet, o.size.width - edge, y, size)
         : draw_ruler(canvas, sheet, o.size.width - edge, y, size);

@@ -17,6 +17,7 @@ using draw::Oklch;
 using draw::Tones;
 using Align = Canvas::Align;
 
+/// Of panels, and of the plot within one [pixels].
 constexpr int kPanelWidth = 560, kPanelHeight = 390, kColumns = 2, kMargin = 28, kHead = 56, kLegendLine = 26;
 constexpr double kLeft = 70.0, kRight = 22.0, kTop = 64.0, kBottom = 56.0;
 constexpr double kLogSpan = 20.0;  // beyond this factor axes are logarithmic
@@ -47,6 +48,7 @@ class Scale {
   }
 
   double place(double value) const {
+    // What is infinite stands on the upper rim.
     if (std::isinf(value)) return 1.0;
     return ((log_ ? std::log10(value) : value) - low_) / (high_ - low_);
   }
@@ -56,8 +58,11 @@ class Scale {
     for (std::size_t k = 0; k < axis_.names.size(); ++k)
       ticks.push_back({place(static_cast<double>(k)), axis_.names[k]});
     if (!ticks.empty()) return ticks;
+    // Decades: so many to a tick that there are at most kMostTicks. Numbers: four to ten steps
+    // of a round length.
     const double step =
         log_ ? std::ceil((high_ - low_) / kMostTicks) : draw::round_length((high_ - low_) / 4.0);
+    // A tick at the upper end must not be lost to a rounding.
     for (double k = std::ceil(low_ / step); k * step <= high_ + 1e-9 * (high_ - low_); ++k)
       ticks.push_back({(k * step - low_) / (high_ - low_), label(k * step)});
     return ticks;
@@ -66,12 +71,16 @@ class Scale {
  private:
   void span_decades(double least, double most) {
     low_ = std::floor(std::log10(least));
+    // At least one decade, though all values are equal.
     high_ = std::max(low_ + 1.0, std::ceil(std::log10(most)));
   }
   void span_numbers(double least, double most) {
+    // Values that reach below half of the largest are shown from 0.
     if (least > 0.0 && least < 0.5 * most) least = 0.0;
+    // All equal: room by their own size, so that they stand in the middle.
     const double room = most > least ? 0.05 * (most - least) : std::max(1.0, std::abs(most));
     high_ = most + room;
+    // An axis that begins at 0 has no room below it.
     low_ = least == 0.0 ? 0.0 : least - room;
   }
   std::string label(double at) const {
@@ -114,6 +123,7 @@ class ChartSheet {
       : chart_(chart),
         columns_(std::clamp(static_cast<int>(chart.panels.size()), 1, kColumns)),
         width_(columns_ * (kPanelWidth + kMargin) + kMargin),
+        // The legend's lines decide where panels begin: it is laid out once without being drawn.
         legend_lines_(place_legend(nullptr)),
         top_(kHead + legend_lines_ * kLegendLine + 10) {
     const int rows = (static_cast<int>(chart.panels.size()) + columns_ - 1) / columns_;
@@ -142,6 +152,7 @@ class ChartSheet {
   }
 
   /// A world of pixels.
+  /// Charts are laid out in pixels from the top left; the canvas is a plane with y upward.
   draw::View view() const {
     draw::View view;
     view.window.add(Vec2(0.0, 0.0));
@@ -164,6 +175,7 @@ class ChartSheet {
     for (std::size_t k = 0; k < chart_.series.size(); ++k) {
       const std::string& name = chart_.series[k].name;
       if (name.empty()) continue;
+      // An estimate: without a canvas the widths of letters are not known.
       const double wide = 40.0 + 8.6 * static_cast<double>(name.size());
       if (x > kMargin && x + wide > width_ - kMargin) x = kMargin, ++line;
       if (canvas) {
@@ -208,6 +220,7 @@ class ChartSheet {
     const auto spot = [&](const ChartPoint& p, double value) {
       return at(frame.x(x.place(p.x)), frame.y(y.place(value)));
     };
+    // A NaN parts a line into pieces.
     std::vector<Vec2> way;  // through what is finite; categories have nothing between them
     const auto draw_way = [&] {
       if (way.size() > 1) canvas.path(way, ink, 2.0, kDashes[line.series % std::size(kDashes)]);
@@ -244,6 +257,7 @@ class ChartSheet {
 
   /// One form a series, told apart without colour: disc, square, triangle, diamond, triangle on its tip, hexagon.
   static void draw_spot(Canvas& canvas, const Vec2& p, double size, std::size_t series, const Color& ink) {
+    // Corners of each form, and by what part of a turn it is turned.
     static constexpr int corners[] = {0, 4, 3, 4, 3, 6};
     static constexpr double turned[] = {0.0, 0.125, 0.25, 0.25, 0.75, 0.0};
     const std::size_t form = series % std::size(corners);

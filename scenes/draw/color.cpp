@@ -9,10 +9,12 @@
 namespace brink::draw {
 namespace {
 
+/// The transfer function of sRGB (IEC 61966-2-1).
 double encoded(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
 }
 
+/// The two matrices of OKLab's definition (Ottosson 2020), inverted.
 /// Linear sRGB of an OKLab colour; components outside 0..1 have no sRGB.
 std::array<double, 3> linear_rgb(double lightness, double a, double b) {
   const double l = std::pow(lightness + 0.3963377774 * a + 0.2158037573 * b, 3);
@@ -28,6 +30,7 @@ std::array<double, 3> linear_rgb(const Oklch& c, double chroma) {
   return linear_rgb(c.lightness, chroma * std::cos(hue), chroma * std::sin(hue));
 }
 
+// Roundings of the matrices take white and black a little beyond.
 bool displayable(const std::array<double, 3>& rgb) {
   return std::all_of(rgb.begin(), rgb.end(), [](double x) { return x >= -1e-6 && x <= 1.0 + 1e-6; });
 }
@@ -61,6 +64,8 @@ constexpr std::array<Oklch, 6> kMap{{{0.215, 0.075, 305.0},
 /// Evenly spread in -1..1 for k = 0, 1, 2 ... (multiples of the golden ratio).
 double spread(std::size_t k) {
   const double turns = 0.6180339887498949 * static_cast<double>(k) + 0.5;
+  // Fractional parts of multiples of the golden ratio fill the circle without clusters,
+  // however many are asked.
   return 2.0 * (turns - std::floor(turns)) - 1.0;
 }
 
@@ -75,6 +80,7 @@ std::uint32_t Color::argb() const {
 
 Color Oklch::rgb() const {
   std::array<double, 3> rgb = linear_rgb(*this, chroma);
+  // Bisection of the chroma: at 0 every lightness is a grey, which sRGB has.
   for (double low = 0.0, high = chroma; !displayable(rgb) && high - low > 1e-4;) {
     const double middle = 0.5 * (low + high);
     (displayable(linear_rgb(*this, middle)) ? low : high) = middle;
@@ -86,6 +92,7 @@ Color Oklch::rgb() const {
 
 Color distance_color(double fraction) {
   const double x = std::clamp(fraction, 0.0, 1.0) * (kMap.size() - 1);
+  // The last colour belongs to the last piece.
   const std::size_t k = std::min(static_cast<std::size_t>(x), kMap.size() - 2);
   const double t = x - static_cast<double>(k);
   const Oklch low = kMap[k], high = kMap[k + 1];
@@ -102,9 +109,12 @@ Palette::Palette(const World& world) {
     const std::size_t g = groups.emplace(group_of(body.name), groups.size()).first->second;
     if (g == members.size()) members.push_back(0);
     group.push_back(g);
+    // Members of a group are counted in the order of the world: copies keep their shade as long as
+    // those before stay.
     place.push_back(members[g]++);
   }
   for (std::size_t k = 0; k < world.bodies.size(); ++k) {
+    // Where all bodies have one name a hue for the group would make them all alike.
     const std::size_t hue = members.size() > 1 ? group[k] : k;
     Oklch color = kHues[hue % kHues.size()];
     const double shift = members.size() > 1 ? spread(place[k]) : spread(k / kHues.size());
@@ -122,6 +132,7 @@ Oklch Palette::strong(std::size_t k) const {
 }
 
 Oklch Palette::site(std::size_t k) const {
+  // Multiples of the golden angle, 137.5 degrees.
   return {0.66 + 0.06 * spread(k), 0.085, 165.0 + 137.5 * static_cast<double>(k)};
 }
 

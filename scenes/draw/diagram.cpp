@@ -19,6 +19,7 @@ Color mixed(const Color& a, const Color& b, double t) {
   return {a.red + t * (b.red - a.red), a.green + t * (b.green - a.green), a.blue + t * (b.blue - a.blue)};
 }
 
+/// Distances have no sign for solids, which `inside` tells; within a thickness they are below 0.
 bool solid_at(const FieldImage& field, std::size_t i) {
   return field.inside[i] != 0 || field.distance[i] < 0.0F;
 }
@@ -31,6 +32,7 @@ Picture blank(int width, int height) {
 template <class ColorOf>
 Picture painted(const FieldImage& field, ColorOf&& color_of) {
   Picture picture = blank(field.width, field.height);
+  // Fields have row 0 at the bottom, pictures at the top.
   for (int row = 0; row < field.height; ++row)
     for (int column = 0; column < field.width; ++column)
       picture.pixels[static_cast<std::size_t>(row) * field.width + column] =
@@ -50,6 +52,7 @@ std::vector<Color> cell_colors(std::span<const PlacedOutline> placed, const Pale
 }
 
 /// True if the pixel to the right or above belongs to another owner.
+/// Of these two alone, so that a border is one pixel wide, not two.
 bool at_edge(const FieldImage& field, int x, int y, std::size_t i) {
   return (x + 1 < field.width && field.owner[i] != field.owner[i + 1]) ||
          (y + 1 < field.height && field.owner[i] != field.owner[i + field.width]);
@@ -58,8 +61,10 @@ bool at_edge(const FieldImage& field, int x, int y, std::size_t i) {
 /// How much of a line of equal distance, as wide as a picture pixel, covers this field pixel: 0..1.
 double contour_cover(const FieldImage& field, std::size_t i, int fineness, double step) {
   const double d = field.distance[i];
+  // Half a step about the sites has no line: it would be the sites' own edge.
   if (!(step > 0.0) || !(d > 0.5 * step) || std::isinf(d)) return 0.0;
   const double away = std::abs(d - step * std::round(d / step)) / field.pixel;
+  // 1 in the middle of the line, falling to 0 over one field pixel: its edge is smooth.
   return std::clamp(0.5 * fineness + 0.5 - away, 0.0, 1.0);
 }
 
@@ -71,15 +76,18 @@ struct CoarseLook {
 
 CoarseLook look(PassRenderer& renderer, std::span<const PlacedOutline> placed, const View& view,
                 std::uint32_t excluded, const FieldOptions& options) {
+  // At least 64 pixels along the longer side; a smaller picture as it is.
   const int coarse = std::max(1, std::max(view.width, view.height) / 64);
   const int width = (view.width + coarse - 1) / coarse, height = (view.height + coarse - 1) / coarse;
   const double pixel = coarse / view.scale;
+  // The coarse window may be larger than the view by less than a coarse pixel: it is whole pixels.
   const Box window{view.window.low, view.window.low + pixel * Vec2(width, height)};
   const double given = options.band > 0.0 ? options.band : std::numeric_limits<double>::infinity();
   const FieldImage seen = renderer.render(window, width, height, placed, excluded, given);
   float farthest = 0.0F;
   for (const float d : seen.distance) farthest = std::max(farthest, std::abs(d));
-  // distance changes by at most the way from a coarse pixel's centre to its corner
+  // Distances are 1-Lipschitz, and no place of the view is farther from a coarse pixel's centre than its
+  // half diagonal, 0.71 pixels: 1.01 are enough, rounding included.
   return {std::min(given, farthest + 1.01 * pixel), largest_distance(seen)};
 }
 
@@ -91,6 +99,7 @@ class CellPainter {
       : cells_(std::move(cells)), fineness_(fineness), step_(step) {}
 
   void paint(const FieldImage& field, int first, int last, Picture& picture) const {
+    // Row `last - 1` of the picture is the lowest of the strip, where its field begins.
     for (int row = first; row < last; ++row)
       for (int column = 0; column < picture.width; ++column)
         picture.pixels[static_cast<std::size_t>(row) * picture.width + column] =
@@ -158,9 +167,11 @@ Picture cells_picture(std::span<const PlacedOutline> placed, const View& view, i
   const CellPainter painter(cell_colors(placed, palette, body_count), fineness, contour_step(seen.largest));
   Picture picture = blank(view.width, view.height);
   const double pixel = 1.0 / (view.scale * fineness);
+  // A strip is so many whole picture rows as kStripRows field rows hold, but for the one above.
   const int strip = std::max(1, (kStripRows - 1) / fineness);
   for (int first = 0; first < view.height; first += strip) {
     const int last = std::min(first + strip, view.height);
+    // The row above lets at_edge() see borders that lie between two strips.
     const int below = (view.height - last) * fineness, rows = (last - first) * fineness + (first > 0);
     const Vec2 low = view.window.low + Vec2(0.0, below * pixel);
     const int columns = view.width * fineness;
@@ -176,6 +187,8 @@ Picture ids_picture(const FieldImage& field, const Palette& palette, std::size_t
     if (field.owner[i] == FieldImage::kNone) return kNothing.rgb();
     const std::size_t owner = field.owner[i];
     Oklch color = owner < body_count ? palette.strong(owner) : palette.site(owner - body_count);
+    // Sites of one owner differ in lightness, in the order of the golden ratio: neighbours in
+    // number are far apart.
     const double turns = 0.6180339887498949 * field.site[i];
     color.lightness += 0.16 * (turns - std::floor(turns)) - 0.08;
     if (solid_at(field, i)) color.lightness *= 0.62;

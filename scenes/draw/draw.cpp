@@ -62,6 +62,7 @@ View view_of(const Sheet& sheet) {
   const DrawOptions& o = sheet.options;
   Box box = o.view ? *o.view : automatic_view(sheet.world, sheet.bodies, sheet.sites);
   double margin = o.margin;
+  // A pass is seen about its body, without a margin.
   if (sheet.excluded >= 0 && !o.view) {
     const double reach = kPassWindow * sheet.world.bodies[sheet.excluded].outline->bounding_radius;
     box = Box{};
@@ -72,8 +73,10 @@ View view_of(const Sheet& sheet) {
   return draw::fitted(box, margin, o.size.width, o.size.height - sheet.strip);
 }
 
-/// Distance between lines of equal distance: about eight to the farthest point, not closer than 9 pixels.
+/// Distance between lines of equal distance: about eight to the farthest point, not much
+/// closer than 9 pixels.
 double contour_step(double largest, const View& view) {
+  // round_length() gives from 2/5 of what it is asked to all of it: 0.8 to 2 times what is wanted.
   const double wanted = std::max(largest / 8.0, 9.0 / view.scale);
   return draw::round_length(2.0 * wanted);
 }
@@ -93,6 +96,7 @@ Picture background(Sheet& sheet) {
       placed.back().pose.position += seen[i];
     }
   }
+  // Raw layers are of one field pixel a picture pixel: a mean of two owners' colours would be nobody's.
   if (!raw)
     return draw::cells_picture(placed, sheet.view, kFineness, excluded_owner(sheet), sheet.options.field,
                                sheet.palette, count,
@@ -114,6 +118,7 @@ std::optional<Picture> diagram(Sheet& sheet) {
   try {
     return background(sheet);
   } catch (const IoError& error) {
+    // Only layer `scene` can do without: the others are the diagram.
     if (kind != Kind::scene) throw;
     log().warn("drawn without the Voronoi diagram: {}", error.what());
     return std::nullopt;
@@ -138,7 +143,9 @@ Ink pale_ink(Oklch color) {
 void draw_mark(Canvas& canvas, const Outline& outline, const Pose& pose, const Color& color, double scale) {
   if (outline.bounding_radius * scale < kMarkFrom || !(outline.solid || outline.is_point())) return;
   const Vec2 center = pose.position;
+  // The centre must lie two pixels inside: that of a horseshoe is outside of it.
   if (gap_by_brute_force(outline, Vec2::Zero()) > -2.0 / scale) return;
+  // In steps along the axis, as outlines may be hollow: the mark ends before the first edge.
   const double steps = 64.0;
   double reach = 0.0;
   for (int k = 1; k <= steps; ++k) {
@@ -160,6 +167,7 @@ void draw_sites(Canvas& canvas, const Sheet& sheet) {
   Ink solid{Tones::site_fill.rgb(), line, 1.6, 1.0, false};
   Ink outside{Tones::paper.rgb(), line, 2.4, 1.0, false};
   Ink wire{Tones::site_fill.rgb(), line, 2.2, 1.0, false};
+  // Containers first: they fill everything outside of them, and would cover the other sites.
   for (const bool container : {true, false})
     for (std::size_t k = 0; k < sheet.world.sites.size(); ++k) {
       const Outline& outline = *sheet.world.sites[k].outline;
@@ -234,6 +242,7 @@ void draw_particles(Canvas& canvas, const Sheet& sheet) {
     if (body.sampling.kind == Sampling::Kind::vertices || static_cast<int>(k) == sheet.excluded) continue;
     const Frame frame(sheet.bodies[k].pose);
     for (const Particle& particle : make_particles(*body.outline, body.sampling)) {
+      // Two discs make a rim that is seen on dark and on light ground.
       const bool inside = particle.area > 0.0;
       canvas.dot(frame.to_world(particle.p), 3.8, inside ? dark : pale);
       canvas.dot(frame.to_world(particle.p), 2.6, inside ? pale : dark);
@@ -289,6 +298,7 @@ void draw_with(const World& world, std::span<const BodyState> bodies, std::span<
   if (options.layer.kind == Kind::pass) sheet.excluded = body_named(world, options.layer.body);
   sheet.strip = draw::strip_height(options);
   sheet.view = view_of(sheet);
+  // The sheet must know its view before there is a canvas to draw on; the rest is drawn from below upward.
   Canvas& canvas = make(sheet.view);
   if (const std::optional<Picture> beneath = diagram(sheet)) canvas.paste(*beneath);
   draw_layer(canvas, sheet);

@@ -33,6 +33,7 @@ std::vector<DrawnForce> merged(const Sheet& sheet) {
 }
 
 /// The width of the widest line [pixels].
+/// Of the median body, so that one huge body does not make all lines wide.
 double widest(const Sheet& sheet) {
   std::vector<double> radii;
   for (const Body& body : sheet.world.bodies) radii.push_back(body.outline->bounding_radius);
@@ -49,6 +50,7 @@ double largest(const std::vector<DrawnForce>& forces) {
 
 }  // namespace
 
+// The legend names the same force that the widest line has: both are of merged forces.
 double largest_force(const Sheet& sheet) { return largest(merged(sheet)); }
 
 void draw_forces(Canvas& canvas, const Sheet& sheet) {

@@ -18,6 +18,8 @@ constexpr double kTextSize = 11.0, kTick = 5.0;  // [pixels]
 double seconds_of_arrows(const Sheet& sheet) {
   if (!sheet.options.velocities) return sheet.options.arrow_seconds;
   double most = 0.0;
+  // The scale turns pixels into metres: the fastest body's arrow is kFastest pixels long at any
+  // size of picture.
   for (const BodyState& s : sheet.bodies) most = std::max(most, s.twist.velocity.norm());
   return most > 0.0 ? kFastest / sheet.view.scale / most : 0.0;
 }
@@ -46,6 +48,7 @@ void draw_names(Canvas& canvas, const Sheet& sheet) {
   for (std::size_t k = 0; k < sheet.bodies.size(); ++k) {
     const Vec2 at = sheet.view.to_picture(sheet.bodies[k].pose.position);
     const std::string& name = sheet.world.bodies[k].name;
+    // Once in paper colour to every side, then in ink: names can be read over bodies of any colour.
     for (const Vec2& beside : {Vec2(-1, 0), Vec2(1, 0), Vec2(0, -1), Vec2(0, 1)})
       canvas.text(at.x() + beside.x(), at.y() + beside.y() + 0.35 * kTextSize, name, kTextSize,
                   Tones::paper.rgb(), Canvas::Align::middle);
@@ -57,10 +60,13 @@ void draw_axes(Canvas& canvas, const Sheet& sheet) {
   if (!sheet.options.axes) return;
   const View& view = sheet.view;
   const Color ink = Tones::ink.rgb();
+  // A tick every 48 to 120 pixels: steps of 1, 2 and 5 are at most a factor of 2.5 apart.
   const double step = round_length(120.0 / view.scale);
   const auto each = [&](double low, double high, auto&& f) {
+    // Whole steps by a product, so that far ticks are as round as the first.
     for (double k = std::ceil(low / step); k * step <= high; ++k) f(k * step);
   };
+  // What should be 0 is a rounding of the step.
   const auto label = [&](double x) { return fmt::format("{:.6g}", std::abs(x) < 1e-9 * step ? 0.0 : x); };
   each(view.window.low.x(), view.window.high.x(), [&](double x) {
     const double at = view.to_picture({x, 0.0}).x();
@@ -101,6 +107,8 @@ void draw_period(Canvas& canvas, const Sheet& sheet) {
     const int across = 1 - axis;
     for (const double at : {0.0, size[axis]}) {
       Vec2 from, to;
+      // Across the other axis: from edge to edge of the box where that repeats, too, else
+      // through the whole view.
       from[axis] = to[axis] = at;
       from[across] = size[across] > 0.0 ? 0.0 : window.low[across];
       to[across] = size[across] > 0.0 ? size[across] : window.high[across];
@@ -113,7 +121,10 @@ std::vector<Vec2> seen_at(const Sheet& sheet, const Outline& outline, const Pose
   std::vector<Vec2> shifts{Vec2::Zero()};
   const Vec2& size = sheet.world.periods.size;
   if (outline.container || !(size.maxCoeff() > 0.0)) return shifts;
+  // An image is seen if its disc reaches the window.
   Box seen = sheet.view.window.grown(outline.bounding_radius);
+  // Neighbouring periods alone: bodies are drawn in the first one (at_home()); a view that reaches
+  // beyond its neighbours shows nothing there.
   for (int right = -1; right <= 1; ++right)
     for (int up = -1; up <= 1; ++up) {
       const Vec2 by(right * size.x(), up * size.y());

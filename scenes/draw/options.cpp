@@ -25,11 +25,13 @@ DrawLayer parse_layer(std::string_view text) {
 
 PictureSize parse_size(std::string_view text) {
   PictureSize size;
+  // The height is read only after a width and an `x`; nothing may follow it.
   const char* end = text.data() + text.size();
   const auto [cross_at, first] = std::from_chars(text.data(), end, size.width);
   const bool crossed = first == std::errc() && cross_at != end && *cross_at == 'x';
   const auto [stop, second] = crossed ? std::from_chars(cross_at + 1, end, size.height)
                                       : std::from_chars_result{end, std::errc::invalid_argument};
+  // The limits are those of the options, told in one place.
   DrawOptions options;
   options.size = size;
   std::string error;

@@ -25,6 +25,8 @@ Box bounds_at(const Outline& outline, const Pose& pose) {
     if (site.kind == SiteKind::arc) {
       const Vec2 center = frame.to_world(site.center);
       const Vec2 from = frame.direction_to_world(site.a - site.center);
+      // An arc reaches farthest right, up, left, down where it passes these directions: angles are
+      // counted from its start in the direction in which it runs.
       for (int quarter = 0; quarter < 4; ++quarter) {
         const Vec2 axis = quarter % 2 == 0 ? Vec2(quarter < 2 ? 1 : -1, 0) : Vec2(0, quarter < 2 ? 1 : -1);
         const double turn = std::atan2(cross(from, axis), from.dot(axis)) * (site.sweep > 0 ? 1.0 : -1.0);
@@ -59,12 +61,15 @@ Box automatic_view(const World& world, std::span<const BodyState> bodies, std::s
   Box core;
   for (std::size_t k = 0; k < world.bodies.size(); ++k)
     core.add(bounds_at(*world.bodies[k].outline, bodies[k].pose));
+  // Without bodies everything is shown.
   if (core.empty()) {
     for (const Box& box : whole) core.add(box);
     return core;
   }
   Box near = core;
   std::vector<std::size_t> shown;
+  // By the nearest point of each site, as a floor 1000 m long may begin far away and still pass
+  // below the bodies.
   for (std::size_t k = 0; k < world.sites.size(); ++k) {
     const Vec2 point = nearest_point(*world.sites[k].outline, sites[k], core.center());
     if ((point - core.center()).norm() > kFar * longer_side(core)) continue;
@@ -72,6 +77,7 @@ Box automatic_view(const World& world, std::span<const BodyState> bodies, std::s
     shown.push_back(k);
   }
   Box view = near;
+  // Of what is larger than kWhole times the near box only the part beside it is seen.
   const Box surroundings = near.grown(0.25 * longer_side(near));
   for (const std::size_t k : shown) {
     Box box = whole[k];
@@ -92,6 +98,7 @@ View fitted(const Box& box, double margin, int width, int height) {
   const Vec2 extent = box.empty() ? Vec2(1.0, 1.0) : box.extent();
   const double side = extent.maxCoeff() > 0.0 ? extent.maxCoeff() : 1.0;
   const Vec2 wanted = extent.array() + 2.0 * margin * side;
+  // A flat box (bodies on a line) is as wide as its other side asks; the floor keeps divisions finite.
   const double floor = 1e-9 * side;
   View view;
   view.width = width;

@@ -12,12 +12,15 @@ namespace brink {
 namespace fs = std::filesystem;
 namespace {
 
+/// By identity where both exist, which sees through links; by resolved name where one is
+/// still to be written.
 bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code missing;
   if (fs::equivalent(a, b, missing)) return true;
   return fs::weakly_canonical(a, missing) == fs::weakly_canonical(b, missing);
 }
 
+/// By the first bytes of SQLite's file format. A shorter file leaves NULs at the end of `first`.
 bool is_database(const fs::path& file) {
   std::error_code missing;
   if (!fs::is_regular_file(file, missing)) return false;
@@ -40,6 +43,7 @@ void refuse_overwriting(const fs::path& file, const std::string& option, const s
 }
 
 void throw_not_written(const fs::path& file) {
+  // Callers come here right after the write that failed, while errno is still its own.
   const std::string why = errno == ENOSPC ? "disk full" : std::strerror(errno);
   throw IoError(fmt::format("{}: could not be written: {}", file.string(), why));
 }

@@ -34,6 +34,7 @@ std::string other_name(const World& world, const Contact& c) {
   return c.other_body >= 0 ? world.bodies[c.other_body].name : world.sites[c.other_site].name;
 }
 
+/// Owner 0 is the contact's body, 1 the other.
 PlacedOutline placed(const World& world, int body, int site) {
   if (body >= 0) return {world.bodies[body].outline.get(), world.bodies[body].initial.pose, 0};
   return {world.sites[site].outline.get(), world.sites[site].pose, 1};
@@ -70,6 +71,7 @@ void print_overlaps(const Scene& scene, const std::vector<Contact>& overlaps) {
 
 int check_command(const CheckArguments& arguments) {
   const Scene scene = load_scene(arguments.scene, arguments.overrides);
+  // Planned by its constructor; nothing is run.
   const Simulator simulator(scene.world, scene.solver);
   print_contents(scene);
   heading("Plan");

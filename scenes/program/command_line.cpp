@@ -15,12 +15,14 @@ namespace brink {
 
 namespace {
 
+// Arguments are shared with the callback, which CLI11 calls while it parses; the command runs in it.
 void add_run(CLI::App& program, int& status) {
   auto arguments = std::make_shared<RunArguments>();
   CLI::App* command = program.add_subcommand("run", "Simulate a scene and write a run file");
   command->add_option("SCENE", arguments->scene, "Scene file (TOML), or a run to make again")->required();
   command->add_option("--out", arguments->out, "Folder for run.db; default runs/<scene>-<n>")
       ->type_name("DIR");
+  // One value each time: `--set A=1 SCENE` must not take the scene for a second override.
   command->add_option("--set", arguments->overrides, "Override a key of the scene; may be repeated")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
@@ -191,6 +193,7 @@ void add_export(CLI::App& program, int& status) {
 void add_list(CLI::App& program, int& status) {
   auto arguments = std::make_shared<ListArguments>();
   CLI::App* command = program.add_subcommand("list", "What can be chosen, one line each, defaults shown");
+  // Checked here, so that a wrong topic is told with those that there are.
   command->add_option("TOPIC", arguments->topic, "What to list; everything if left out")
       ->check(CLI::IsMember(list_topics()));
   command->footer("Examples:\n  brink list policies\n  brink list options | grep solver");
@@ -249,6 +252,7 @@ void add_sweep(CLI::App& program, int& status) {
 
 /// What to say of a command or an option that there is not, with the nearest that there is; empty: all are known.
 std::string misspelt(const CLI::App& program, const std::vector<std::string>& words) {
+  // A bare word first is a command; --help and --version are left to the library.
   if (words.empty() || words[0].starts_with('-')) return {};
   std::vector<std::string> commands;
   for (const CLI::App* c : program.get_subcommands({})) commands.push_back(c->get_name());
@@ -256,10 +260,12 @@ std::string misspelt(const CLI::App& program, const std::vector<std::string>& wo
     return fmt::format("{}: no such command; the nearest is \"{}\". `brink --help` lists all",
                        printable(words[0]), nearest_word(words[0], commands));
   std::vector<std::string> known;
+  // Long names alone: short options are few, and nothing is near them.
   for (const CLI::Option* o : program.get_subcommand(words[0])->get_options())
     for (const std::string& name : o->get_lnames()) known.push_back("--" + name);
   for (const std::string& word : words) {
     const std::string option = word.substr(0, word.find('='));
+    // After "--" everything is a value.
     if (option == "--") break;
     if (!option.starts_with("--") || std::find(known.begin(), known.end(), option) != known.end()) continue;
     return fmt::format("{}: brink {} has no such option; the nearest is {}. `brink {} --help` lists all",
@@ -299,9 +305,11 @@ int run_command_line(int argc, char** argv) {
     fmt::print(stderr, "{}\n", words);
     return kBadInput;
   }
+  // Before the library, whose message for an unknown word does not name the nearest.
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& e) {  // help is one, too
+    // The library's own numbers are above 100; ours are those of the contract.
     return program.exit(e) == 0 ? kDone : kBadInput;
   }
   return status;

@@ -33,15 +33,18 @@ class LastContacts final : public Recorder {
   double end_;
 };
 
+// A scene is run up to the time without recording anything but what lasts then.
 RunMoment moment_of_scene(const DrawArguments& arguments, const Scene& scene) {
   const double t = arguments.at.value_or(0.0);
   if (!(t >= 0.0 && t <= kLongestRun))
     throw BadInput(fmt::format("--at: {} given; allowed: 0 .. {} s", t, kLongestRun));
   Simulator simulator(scene.world, scene.solver);
+  // Contacts that outlast the run are told last, with its end as their own.
   LastContacts last(t);
   RunOptions options;
   options.until = t;
   options.checkpoint_seconds = -1.0;
+  // At 0 the simulator stands at the start: nothing to run, and overlaps may be looked at.
   if (t > 0.0) {
     const RunSummary summary = simulator.run(options, &last);
     if (summary.termination != Termination::reached_end) {
@@ -85,6 +88,7 @@ Box parse_view(const std::string& text) {
 void add_history(const DrawArguments& arguments, const fs::path& file, const RunMoment& moment,
                  DrawOptions& options) {
   const RunFile run(file);
+  // One camera for all pictures of a run; a pass has its own.
   if (!options.view && options.layer.kind != DrawLayer::Kind::pass)
     options.view = extent_of(run, moment.world);
   if (arguments.trails) options.trails = trails_of(run, moment.t);
@@ -94,6 +98,7 @@ void add_history(const DrawArguments& arguments, const fs::path& file, const Run
 }  // namespace
 
 int draw_command(const DrawArguments& arguments) {
+  // Names of layers, sizes and files are checked before a scene is run, which may take long.
   require_picture_name(arguments.out);
   DrawOptions options;
   options.layer = parse_layer(arguments.layer);

@@ -33,6 +33,7 @@ int export_command(const ExportArguments& arguments) {
     throw BadInput(fmt::format("{}: not a run; allowed: a run folder or a run file", arguments.run));
   if (arguments.csv.empty() && arguments.hdf5.empty() && arguments.vtk.empty())
     throw BadInput("nothing to write; allowed: --csv DIR, --hdf5 DIR, --vtk DIR");
+  // Each kind is written for itself: what was written before one fails stays.
   if (!arguments.csv.empty()) write_csv_tables(file, arguments.csv);
   if (!arguments.hdf5.empty()) write_hdf5(file, made(arguments.hdf5) / "run.h5");
   if (!arguments.vtk.empty()) write_vtk(file, made(arguments.vtk));

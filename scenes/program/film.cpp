@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 
 constexpr double kMostPictures = 1e6;
 
+/// By the shell, as ffmpeg may be anywhere on its path.
 bool has_ffmpeg() { return std::system("ffmpeg -version >/dev/null 2>&1") == 0; }
 
 /// Takes pictures one after another.
@@ -53,10 +54,13 @@ class FfmpegFilm final : public Film {
  public:
   FfmpegFilm(const fs::path& out, PictureSize size, double fps) : out_(out) {
     const bool gif = out.extension() == ".gif";
-    // a palette of the film's own colours; or what every player plays
+    // A palette of the film's own colours; or what every player plays, which wants even sides: odd
+    // ones are padded.
     const char* coding = gif ? "-vf 'split[a][b];[a]palettegen[p];[b][p]paletteuse'"
                              : "-vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' -c:v libx264 -crf 18 -pix_fmt yuv420p "
                                "-movflags +faststart";
+    // A picture's pixels are 0xAARRGGBB: in the memory of a little-endian machine B, G, R, A. An
+    // absolute path cannot be taken for an option of ffmpeg.
     const std::string command =
         fmt::format("ffmpeg -loglevel error -y -f rawvideo -pix_fmt bgra -s {}x{} -r {} -i - {} {}",
                     size.width, size.height, fps, coding, shell_word(fs::absolute(out).string()));
@@ -72,6 +76,7 @@ class FfmpegFilm final : public Film {
       failed();
   }
   void finish() override {
+    // ffmpeg's own exit status: it may fail after the last picture was taken.
     if (::pclose(std::exchange(pipe_, nullptr)) != 0) failed();
   }
 
@@ -120,6 +125,7 @@ int film_command(const FilmArguments& arguments) {
   const std::string range = fmt::format("{} .. {} s, --from before --to", first, last);
   require(from >= first && from <= last, "--from", from, range.c_str());
   require(to >= from && to <= last, "--to", to, range.c_str());
+  // As many as begin within the time, the first included.
   const double pictures = std::floor((to - from) / arguments.speed * arguments.fps) + 1.0;
   if (!(pictures <= kMostPictures))
     throw BadInput(fmt::format(
@@ -131,9 +137,11 @@ int film_command(const FilmArguments& arguments) {
   options.layer = parse_layer(options.diagram ? arguments.layer : "scene");
   options.size = parse_size(arguments.size);
   const World world = run.world();
+  // One camera for all pictures: the run's extent, not each picture's.
   options.view = extent_of(run, world);
   const auto film = film_into(arguments.out, options.size, arguments.fps);
   ProgressBar bar(from, to, on_terminal(stderr));
+  // By a product: the last picture is not off by the sum of all steps.
   for (double k = 0; k < pictures; ++k) {
     const double t = std::min(to, from + k * arguments.speed / arguments.fps);
     RunMoment moment{t, world, run.states_at(t).states, site_poses(world, t), {}};

@@ -11,6 +11,7 @@ namespace {
 fs::path gallery_folder() {
   if (const char* chosen = std::getenv("BRINK_GALLERY")) return chosen;
   std::error_code error;
+  // An installed program stands in PREFIX/bin.
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   const fs::path installed = program.parent_path().parent_path() / "share/brink/gallery";
   return fs::is_directory(installed) ? installed : fs::path(BRINK_SOURCE_GALLERY);
@@ -22,6 +23,7 @@ std::string title_of(const fs::path& scene) {
   std::ifstream in(scene);
   for (std::string line; std::getline(in, line);) {
     if (line.rfind("title", 0) != 0) continue;
+    // Of both quotes, as titles may hold the other kind.
     const auto first = line.find_first_of("\"'"), last = line.find_last_of("\"'");
     if (first < last && last != std::string::npos) return line.substr(first + 1, last - first - 1);
   }
@@ -35,6 +37,7 @@ std::vector<GalleryScene> gallery_scenes() {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(gallery_folder(), error)) {
     if (entry.path().extension() != ".toml") continue;
+    // Paths below the present folder are short ones, to be typed.
     const fs::path near = entry.path().lexically_proximate(fs::current_path());
     const bool below = !near.empty() && *near.begin() != "..";
     scenes.push_back({below ? near : entry.path(), title_of(entry.path())});

@@ -22,6 +22,7 @@ struct Line {
 };
 using Lines = std::vector<Line>;
 
+/// What can be chosen by name, with the default marked from the struct that has it.
 template <class Registry>
 Lines from_registry(const Registry& registry, std::string_view chosen) {
   Lines lines;
@@ -43,6 +44,8 @@ Lines option_lines() {
 
 /// The kinds of [[forces]], each with its keys. A table of a force is one whose `kind` may be its own name.
 Lines force_lines() {
+  // A force has a key `kind` whose type lists all kinds, so its table's name is among them; `sampling`
+  // has one, too, but is no kind of its own.
   const std::vector<OptionInfo> options = scene_options();
   Lines lines;
   for (const OptionInfo& kind : options) {
@@ -63,11 +66,13 @@ Lines scene_lines() {
   return lines;
 }
 
+// A topic is found when it is asked for: the list of policies may have grown.
 struct Topic {
   const char* name;
   Lines (*lines)();
 };
 
+// SolverOptions is the only home of the defaults.
 const SolverOptions kDefaults;
 const Topic kTopics[] = {
     {"policies", [] { return from_registry(policies(), kDefaults.policy); }},

@@ -9,6 +9,7 @@
 namespace brink {
 
 RunReport run_shown(const Scene& scene, RunRequest& request, bool bar) {
+  // The bar counts from 0 also where a run is resumed: how much of the whole is done.
   ProgressBar progress(0.0, request.until.value_or(scene.duration), bar);
   request.progress = [&progress](double t, std::uint64_t collisions) {
     if (stop_asked()) progress.stopping();
@@ -19,12 +20,15 @@ RunReport run_shown(const Scene& scene, RunRequest& request, bool bar) {
 }
 
 LivePage::LivePage(RunRequest& request) : server_(request.dir / "run.db") {
+  // Called from the thread that runs; the page's orders come by the server's.
   request.happened = [this](const Event&) { server_.event_happened(); };
+  // A run that waits for the page must hear Ctrl-C.
   request.waits = [this] { return server_.paused() && !stop_asked(); };
 }
 
 void LivePage::stay() {
   server_.run_ended();
+  // A run that has ended by itself leaves its page up.
   while (!stop_asked()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
 }
 

@@ -21,6 +21,7 @@ int fail(brink::ExitStatus status, const char* what) {
 }
 
 /// What was printed must have got out: a full disk behind standard output is told.
+/// printf fails silently, and the exit status would say that all is well.
 int flushed(int status) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
   return fail(brink::kIoFailed, "standard output could not be written");
@@ -40,6 +41,7 @@ int run(int argc, char** argv) {
   } catch (const std::system_error& e) {  // what fmt says of a stream that cannot be written
     return fail(brink::kIoFailed, e.what());
   } catch (const std::exception& e) {
+    // What nobody expected: the run file, if there is one, holds all up to there.
     return fail(brink::kEndedEarly, e.what());
   }
 }

@@ -35,6 +35,7 @@ std::string ending(const RunSummary& s) {
   return paint(stdout, Paint::bad, "did not run");
 }
 
+/// Of the larger of the two, as energy may pass 0.
 std::string change(double before, double after) {
   const double scale = std::max(std::abs(before), std::abs(after));
   return scale > 0 ? fmt::format("{:.3g} of it", (after - before) / scale) : std::string("none");
@@ -71,6 +72,7 @@ void print_profile(const RunSummary& s) {
       {"looking around", w.seconds_look},      {"first contacts", w.seconds_search},
       {"integrators", w.seconds_motion},       {"collisions", w.seconds_response},
       {"lasting contacts", w.seconds_islands}, {"recording", w.seconds_record}};
+  // What no stage has counted. Stages are timed by samples, so it may come out a little below 0.
   double rest = s.wall_seconds;
   const auto line = [&](const char* name, double seconds) {
     fmt::print("    {:<17}{:<9.3g} {:3.0f} %\n", name, seconds, 100.0 * seconds / s.wall_seconds);
@@ -108,6 +110,7 @@ void print_report(const RunArguments& arguments, const Scene& scene, const RunRe
     print_summary(scene, report);
     if (arguments.profile) print_profile(report.summary);
   }
+  // With --json nothing else stands on standard output, whose last line a program reads.
   if (arguments.json) fmt::print("{}\n", report.json);
 }
 
@@ -116,6 +119,7 @@ Scene loaded(const RunArguments& arguments, bool shown) {
   StatusLine line(shown);
   line.say("loading " + printable(arguments.scene));
   const std::filesystem::path run = run_file_of(arguments.scene);
+  // A run file is a scene, too: the one that it was made of.
   return run.empty() ? load_scene(arguments.scene, arguments.overrides)
                      : scene_of_run(run, arguments.overrides);
 }
@@ -124,6 +128,7 @@ Scene loaded(const RunArguments& arguments, bool shown) {
 
 int run_command(const RunArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
+  // A bar is drawn on standard error, which may be a terminal though standard output is a pipe.
   const bool shown = on_terminal(stderr) && !arguments.quiet;
   const Scene scene = loaded(arguments, shown);
   RunRequest request;
@@ -134,6 +139,7 @@ int run_command(const RunArguments& arguments) {
   request.resume = arguments.resume;
   request.begins = stop_on_signals;  // a signal before that ends the program at once: nothing is lost
   request.load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  // Before the run: the address can be opened from its first moment.
   std::optional<LivePage> page;
   if (arguments.watch) {
     page.emplace(request);
@@ -141,9 +147,11 @@ int run_command(const RunArguments& arguments) {
   }
   const RunReport report = run_shown(scene, request, shown);
   print_report(arguments, scene, report);
+  // Before waiting for Ctrl-C: the summary is read by then.
   std::fflush(stdout);
   if (page) page->stay();
   if (report.summary.sound()) return kDone;
+  // Without a summary a bad ending would be told by the exit status alone.
   if (arguments.quiet || arguments.json) fmt::print(stderr, "brink: {}\n", ending(report.summary));
   if ((arguments.quiet || arguments.json) && report.summary.groups_taken > 0)
     fmt::print(stderr, "brink: groups taken {}\n", taken(report.summary));

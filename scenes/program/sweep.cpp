@@ -49,6 +49,7 @@ class Tally {
 
 void list_runs(const Experiment& experiment) {
   for (const SweepRun& run : experiment.runs) {
+    // A path that begins with a dash would be taken for an option.
     const std::string scene = run.scene.string();
     std::string line = "brink run " + shell_word((scene.starts_with('-') ? "./" : "") + scene);
     for (const std::string& o : run.overrides) line += " --set " + shell_word(o);
@@ -58,6 +59,7 @@ void list_runs(const Experiment& experiment) {
 }
 
 /// The experiment and its scenes.
+/// What the results must not be written over.
 std::vector<fs::path> files_read(const Experiment& experiment) {
   std::set<fs::path> files{experiment.path};
   for (const SweepRun& run : experiment.runs) files.insert(run.scene);
@@ -85,12 +87,15 @@ int sweep_command(const SweepArguments& arguments) {
   if (arguments.dry) return list_runs(experiment), kDone;
   const fs::path folder =
       arguments.out.empty() ? fs::path("runs") / experiment.path.stem() : fs::path(arguments.out);
+  // Before the folder is made: nothing of the experiment may be lost.
   for (const char* name : {"sweep.csv", "sweep.png", "sweep.svg"})
     refuse_overwriting(folder / name, "--out", files_read(experiment));
   stop_on_signals();
   SweepStore store(folder, experiment);
+  // The tally is wiped before the report is printed.
   {
     const std::size_t left = waiting(store.results(experiment));
+    // Runs of an earlier sweep in the same folder count as done.
     Tally tally(experiment.runs.size() - left, experiment.runs.size(),
                 on_terminal(stderr) && !arguments.quiet);
     SweepRequest request;
@@ -101,6 +106,7 @@ int sweep_command(const SweepArguments& arguments) {
   }
   const std::size_t left = report(experiment, store, folder, arguments.quiet);
   if (left == 0) return kDone;
+  // What was not stopped here has been taken by another process, which may go on.
   fmt::print(stderr, "brink: {} of {} runs are not done{}; the same command goes on\n", left,
              experiment.runs.size(), stop_asked() ? "" : " (another process has taken them)");
   return kEndedEarly;

@@ -44,6 +44,7 @@ std::string remaining(double seconds) {
 
 bool on_terminal(std::FILE* stream) { return ::isatty(::fileno(stream)) != 0; }
 
+// Made printable before colours are added, which are escapes themselves.
 std::string paint(std::FILE* stream, Paint how, std::string_view text) {
   const std::string shown = printable(text);
   return has_colours(stream) ? fmt::format("{}{}\033[0m", code(how), shown) : shown;
@@ -71,12 +72,14 @@ void ProgressBar::show(double t, std::uint64_t collisions) {
   const double part = until_ > from_ ? std::clamp((t - from_) / (until_ - from_), 0.0, 1.0) : 1.0;
   const int full = static_cast<int>(part * kBarWidth);
   const double spent = std::chrono::duration<double>(now - start_).count();
+  // An estimate from less than a hundredth would jump.
   const std::string left = part > 0.01 ? remaining(spent / part * (1 - part)) : std::string();
   line_.say(fmt::format("[{}{}] {:3.0f}%  t = {:.4g} s  {} collisions  {}", std::string(full, '='),
                         std::string(kBarWidth - full, ' '), 100 * part, t, collisions, left));
 }
 
 void ProgressBar::stopping() {
+  // Once; show() keeps away from then on.
   if (!stopping_) line_.say("stopping: a checkpoint is written, to go on from");
   stopping_ = true;
 }

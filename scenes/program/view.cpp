@@ -23,6 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Quoted for the shell: paths come from people.
 void open_in_browser(const std::string& page) {
   const std::string command = "xdg-open " + shell_word(page) + " >/dev/null 2>&1";
   if (std::system(command.c_str()) != 0)
@@ -51,12 +52,14 @@ RunReport run_here(const ViewArguments& arguments, bool stays) {
 
 int view_command(const ViewArguments& arguments) {
   fs::path run = run_file_of(arguments.subject);
+  // What a run was made of cannot be changed any more.
   if (!run.empty() && !arguments.overrides.empty())
     throw BadInput("--set: is for scenes; a run has been made");
   if (run.empty() && !arguments.trace.empty())
     throw BadInput("--trace: is for runs; of a scene: brink run SCENE --trace FILE first");
   if (!arguments.out.empty())
     refuse_overwriting(arguments.out, "-o", {run.empty() ? fs::path(arguments.subject) : run});
+  // Of a scene without -o the page is served as the run goes; with -o it is written when the run has ended.
   const bool live = run.empty() && arguments.out.empty();
   RunSummary summary;  // of the run that is made here, if one is
   if (run.empty()) {
@@ -72,6 +75,7 @@ int view_command(const ViewArguments& arguments) {
     fmt::print("{}\n", printable(page.string()));
     if (arguments.open) open_in_browser(fs::absolute(page).string());
   }
+  // No run was made here, or it came to a sound end.
   if (summary.termination == Termination::not_run || summary.sound()) return kDone;
   const bool stopped = summary.termination == Termination::stopped && !summary.why.empty();
   fmt::print(stderr, "brink: {}{} (t = {} s)\n", summary.termination_text(),

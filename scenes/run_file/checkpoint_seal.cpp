@@ -9,6 +9,7 @@
 namespace brink {
 namespace {
 
+// Copied byte by byte, so its layout is that of the file: no padding, as the assertion says.
 struct Header {
   char magic[8] = {'B', 'R', 'I', 'N', 'K', 'C', 'P', '\n'};
   std::uint32_t version = 1, unused = 0;
@@ -16,6 +17,8 @@ struct Header {
 };
 static_assert(sizeof(Header) == 32);
 
+// The last word is filled with zeros. Lengths are hashed before, so that zeros at the end of one text
+// are not taken for padding.
 void add_bytes(StateHash& hash, std::span<const std::byte> bytes) {
   for (; bytes.size() >= 8; bytes = bytes.subspan(8)) {
     std::uint64_t word = 0;
@@ -63,6 +66,7 @@ std::vector<std::byte> sealed(const ResumePoint& row, std::span<const std::byte>
 }
 
 std::vector<std::byte> unsealed(const ResumePoint& point, std::uint64_t identity) {
+  // The cheap checks first: the checksum reads everything, and its length must be right.
   const Header known;
   Header header;
   if (point.state.size() < sizeof header) throw BadInput("the state is cut");

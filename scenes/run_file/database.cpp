@@ -8,6 +8,8 @@ namespace fs = std::filesystem;
 SQLite::Database open_database(const fs::path& file, int flags, int busy_milliseconds) {
   // Debian's SQLite reads names that begin with "file:" as URIs; an absolute path begins with a slash.
   SQLite::Database db(fs::absolute(file).string(), flags, busy_milliseconds);
+  // Against a file made to do harm: no statement may corrupt it (DEFENSIVE), and what its schema would
+  // run (functions, triggers, views) is not run.
   sqlite3_db_config(db.getHandle(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(db.getHandle(), SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   sqlite3_db_config(db.getHandle(), SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
@@ -20,6 +22,8 @@ std::string why_failed(const SQLite::Exception& e, const fs::path& file) {
   constexpr std::uintmax_t kLittle = 1 << 16;  // less than a page and its log need
   std::error_code unknown;
   const fs::space_info space = fs::space(fs::absolute(file).parent_path(), unknown);
+  // Extended codes hold the primary one in their low byte. On a full disk a log may fail as an i/o
+  // error, or as a file that cannot be opened.
   const bool io = (e.getErrorCode() & 0xff) == SQLITE_IOERR || (e.getErrorCode() & 0xff) == SQLITE_CANTOPEN;
   const bool full = (e.getErrorCode() & 0xff) == SQLITE_FULL || (io && !unknown && space.available < kLittle);
   return full ? "disk full" : e.what();

@@ -21,6 +21,7 @@ class LogsAsTheyWere {
  public:
   explicit LogsAsTheyWere(const fs::path& file)
       : log_(file.string() + "-wal"), index_(file.string() + "-shm"), had_log_(fs::exists(log_)) {}
+  // A log that was there, or that holds something, stays.
   ~LogsAsTheyWere() {
     std::error_code none;
     if (had_log_ || fs::file_size(log_, none) != 0 || none) return;
@@ -40,6 +41,7 @@ int locked(const fs::path& dir) {
   const int fd = ::open(dir.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (fd < 0)
     throw IoError(fmt::format("{}: cannot open the folder: {}", dir.string(), std::strerror(errno)));
+  // Without waiting: the other run holds it to its end.
   if (::flock(fd, LOCK_EX | LOCK_NB) == 0) return fd;
   ::close(fd);
   throw IoError(
@@ -63,6 +65,7 @@ bool holds_nothing(const fs::path& file) {
 
 }  // namespace
 
+// The folder is locked, not a file in it, so that the lock leaves nothing behind.
 RunFolder::RunFolder(const fs::path& dir) : file_(made_folder(dir) / "run.db"), lock_(locked(dir)) {}
 RunFolder::RunFolder(RunFolder&& other) noexcept
     : file_(std::move(other.file_)), lock_(std::exchange(other.lock_, -1)) {}
@@ -72,12 +75,14 @@ RunFolder::~RunFolder() {
 
 void RunFolder::read(const std::function<void(const RunFile&)>& f) const {
   if (!fs::exists(file_)) return;
+  // Made before the database is opened, destroyed after it is closed.
   const LogsAsTheyWere tidy(file_);
   if (!holds_nothing(file_)) f(RunFile(file_));
 }
 
 std::optional<ResumePoint> RunFolder::resume_point(const Scene& scene) const {
   std::optional<ResumePoint> point;
+  // Another scene is told before damage: it is what a person can change.
   read([&](const RunFile& earlier) {
     earlier.require_same(scene);
     earlier.require_sound();

@@ -29,8 +29,10 @@ constexpr const char* kFree[] = {"/output/max_frame_rows"};
 /// @throws BadInput if `was` is not JSON.
 std::string differences(const std::string& was, const std::string& is) {
   if (was == is) return {};
+  // parse() without exceptions gives a discarded value, which is no object.
   const auto a = nlohmann::json::parse(was, nullptr, false), b = nlohmann::json::parse(is, nullptr, false);
   if (!a.is_object()) throw BadInput("options: not a JSON object");
+  // Flat, {"/solver/order": "index"}: every leaf has one key in both, whatever the nesting.
   const auto old_values = a.flatten(), new_values = b.flatten();
   std::string text;
   const auto value = [](const nlohmann::json& j, const std::string& key) {
@@ -48,6 +50,7 @@ std::string differences(const std::string& was, const std::string& is) {
 }
 
 EventKind kind_from(const std::string& word) {
+  // `lift` is the last of the enum.
   for (int k = 0; k <= static_cast<int>(EventKind::lift); ++k) {
     if (word == to_string(static_cast<EventKind>(k))) return static_cast<EventKind>(k);
   }
@@ -55,14 +58,17 @@ EventKind kind_from(const std::string& word) {
 }
 
 ContactMode mode_from(const std::string& word) {
+  // `none` (0) is never recorded.
   for (int k = 1; k <= static_cast<int>(ContactMode::roll); ++k)
     if (word == to_string(static_cast<ContactMode>(k))) return static_cast<ContactMode>(k);
   throw BadInput(fmt::format("contact of unknown mode '{}'", word));
 }
 
 /// Value and slope at time t of the cubic through (0, a, va) and (h, b, vb), s = t / h.
+/// Exact for motions of constant acceleration, which are quadratic; a cubic holds them.
 std::pair<double, double> hermite(double a, double va, double b, double vb, double h, double s) {
   const double d = (b - a) / h;
+  // With d the mean slope: c2 and c3 are fixed by value and slope at t = h.
   const double c2 = (3 * d - 2 * va - vb) / h, c3 = (va + vb - 2 * d) / (h * h), t = s * h;
   return {a + t * (va + t * (c2 + t * c3)), va + t * (2 * c2 + 3 * t * c3)};
 }
@@ -103,6 +109,7 @@ constexpr const char* kStateColumns =
 EventSide side_in(const Row& row, int first) {
   EventSide side;
   side.known = !std::isnan(row.real_or_nan(first));
+  // x alone tells: a side is recorded whole or not at all.
   if (!side.known) return side;
   const auto at = [&](int i) { return row.real(first + i); };
   side.before = {{at(3), at(4)}, at(5)};
@@ -118,6 +125,7 @@ struct RunFile::Impl {
   std::int64_t bodies = 0, sites = 0;
   bool has_states = false;  ///< of bodies at collisions; files of before have none
 
+  // Looked for at once, so that any other database is told as what it is not.
   explicit Impl(const fs::path& f) : file(f), db(open_database(f, SQLite::OPEN_READONLY, kBusyMilliseconds)) {
     for (const char* table : {"meta", "body", "site", "frame", "event", "work", "checkpoint"})
       if (!db.tableExists(table))
@@ -134,6 +142,7 @@ struct RunFile::Impl {
       get.executeStep();
       const Row row(get);
       const std::int64_t rows = row.count(0, std::numeric_limits<int>::max());
+      // Three numbers tell it, as `id` is the primary key of what a run makes: no two are equal.
       if (rows > 0 && (row.count(1) != 0 || row.count(2) != rows - 1)) throw BadInput("rows are missing");
       return rows;
     });
@@ -148,6 +157,7 @@ struct RunFile::Impl {
 
   /// Whole frames in the file. Rows are numbered from 1 without holes, `bodies` rows a frame.
   std::int64_t frames() const {
+    // Rows beyond the last whole frame are those of a frame that was under way.
     const std::int64_t rows = db.execAndGet("SELECT ifnull(max(rowid), 0) FROM frame").getInt64();
     return bodies > 0 && rows > 0 ? rows / bodies : 0;
   }
@@ -175,6 +185,7 @@ struct RunFile::Impl {
   template <class F>
   void each_side_between(double from, double to, F&& f) const {
     if (!has_states) return;  // of before
+    // Inclusive at both ends: a frame may stand before or after a collision of its own time.
     SQLite::Statement get(db, std::string("SELECT t, body, other") + kStateColumns +
                                   " FROM event WHERE t BETWEEN ? AND ? ORDER BY seq");
     get.bind(1, from);
@@ -195,6 +206,8 @@ struct RunFile::Impl {
     while (static_cast<std::int64_t>(frame.states.size()) < bodies && get.executeStep()) {
       const Row row(get);
       const double t = row.real(0);
+      // Rows come by number; body ids must come as they were written, or states would go to
+      // the wrong bodies.
       const bool next = row.count(7) == static_cast<std::int64_t>(frame.states.size());
       if (!next || (!frame.states.empty() && t != frame.t))
         throw BadInput(fmt::format("frame {} is mixed up", index));
@@ -328,6 +341,7 @@ Vec2 periods_in(const std::string& options) {
 World RunFile::world() const {
   World world;
   world.title = meta("title").value_or("");
+  // Bodies start as in the first frame; pictures of other times bring their own states.
   const Frame first = frame_at(0.0);
   for (BodyRow& row : bodies()) {
     Body& body = world.bodies.emplace_back();
@@ -338,6 +352,7 @@ World RunFile::world() const {
     body.initial = first.states.at(row.id);
   }
   world.sites = sites();
+  // Damping is not stored, as no picture shows it.
   for (const Spring& s : springs())
     world.forces.push_back(SpringForce{s.body, s.other, s.at, s.other_at, s.stiffness, 0.0, s.rest_length});
   world.periods.size =
@@ -348,6 +363,7 @@ World RunFile::world() const {
 std::vector<Event> RunFile::events() const {
   return reading(impl_->file, "event", [&] {
     std::vector<Event> all;
+    // A run file of before has no columns of states.
     SQLite::Statement get(
         impl_->db,
         "SELECT seq, t, kind, body, other, site, px, py, nx, ny, closing_speed, impulse_n, impulse_t, "
@@ -404,6 +420,7 @@ std::vector<RunFile::Spring> RunFile::springs() const {
 
 std::vector<LastedContact> RunFile::contacts_at(double t) const {
   const double end = end_time();
+  // [t_begin, t_end), but that those that outlast the run count at its end, too.
   return impl_->contacts("WHERE t_begin <= ?1 AND (?1 < t_end OR t_end >= ?2) ORDER BY rowid",
                          [&](SQLite::Statement& get) {
                            get.bind(1, t);
@@ -427,6 +444,7 @@ std::optional<ResumePoint> RunFile::checkpoint() const {
     const auto* bytes = static_cast<const std::byte*>(blob.getBlob());
     ResumePoint point{row.real(0), {bytes, bytes + blob.getBytes()}, row.real(4), row.count(2), row.count(3),
                       row.count(5)};
+    // A seal that does not hold throws: what is damaged is never given out.
     point.state = unsealed(point, run_identity(text("brink_version"), text("options"), text("world_hash")));
     if (get.executeStep()) throw BadInput("more than one row");
     return point;
@@ -456,6 +474,7 @@ namespace {
 
 /// Every table is made as Brink makes it: what is inserted finds its columns.
 void require_tables(const fs::path& file, SQLite::Database& db) {
+  // SQLite keeps the text of each CREATE statement: equal texts, equal tables.
   SQLite::Database made(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   made.exec(kRunFileTables);
   SQLite::Statement wanted(made, "SELECT name, sql FROM sqlite_master WHERE type = 'table'");
@@ -472,6 +491,7 @@ void require_tables(const fs::path& file, SQLite::Database& db) {
 }  // namespace
 
 void RunFile::require_sound() const {
+  // The first fault is enough.
   const auto pages = [&] { return impl_->db.execAndGet("PRAGMA integrity_check(1)").getString(); };
   if (const std::string found = guarded(impl_->file, pages, kWhat); found != "ok")
     throw IoError(fmt::format("{}: the database is damaged: {}", impl_->file.string(), found));
@@ -479,6 +499,7 @@ void RunFile::require_sound() const {
   const auto point = checkpoint();
   const auto require = [&](const char* table, std::int64_t first, std::int64_t counted) {
     reading(impl_->file, table, [&] {
+      // Counting between two row numbers finds holes that max(rowid) would not.
       SQLite::Statement get(impl_->db,
                             fmt::format("SELECT count(*) FROM {} WHERE rowid BETWEEN ? AND ?", table));
       get.bind(1, first);
@@ -490,6 +511,7 @@ void RunFile::require_sound() const {
     });
   };
   require("frame", 1, point ? point->frames : 0);
+  // Events are numbered from 0, by their own key; the others by SQLite, from 1.
   require("event", 0, point ? point->events : 0);
   require("contact", 1, point ? point->contacts : 0);
 }
@@ -535,11 +557,14 @@ RunFile::Frame RunFile::states_at(double t) const {
     if (t <= a.t || index + 1 >= impl_->frames()) return a;
     const Frame b = impl_->read_frame(index + 1);
     if (!(b.t > a.t)) throw BadInput("frames are not in the order of time");
+    // What is known of each body before and after t: first the frames around it, then its own
+    // collisions between.
     std::vector<Knot> left, right;
     std::vector<bool> met(a.states.size(), false);  // after t
     for (const BodyState& s : a.states) left.push_back({a.t, s});
     for (const BodyState& s : b.states) right.push_back({b.t, s});
     impl_->each_side_between(a.t, b.t, [&](double when, int body, const EventSide& side) {
+      // The last of before t, and the first of after it: with its twist as it came.
       if (when <= t)
         left[body] = {when, side.after};
       else if (!met[body])

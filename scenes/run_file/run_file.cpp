@@ -24,10 +24,12 @@ namespace fs = std::filesystem;
 namespace {
 
 using Clock = std::chrono::steady_clock;
+/// Rows are committed after so many, or after so long: what a kill can take.
 constexpr std::int64_t kRowsPerCommit = 20'000;
 constexpr auto kTimePerCommit = std::chrono::milliseconds(250);
 constexpr std::int64_t kMostIndexed = 2'000'000;  ///< frame rows
 
+/// The state hash as the summary prints it.
 std::string hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
 std::string number(double x) { return fmt::format("{}", x); }
 
@@ -47,6 +49,8 @@ std::string springs_json(const World& world) {
 }
 
 /// Moves DIR/run.db, with its write-ahead log, to the first free DIR/run-<n>.db.
+/// The log goes first: killed in between, the next try finds run-<n>.db still free and brings
+/// the two together.
 void keep_earlier(const fs::path& file) {
   if (!fs::exists(file)) return;
   int n = 1;
@@ -57,12 +61,15 @@ void keep_earlier(const fs::path& file) {
   if (fs::exists(wal)) fs::rename(wal, kept().string() + "-wal", error);
   if (!error) fs::rename(file, kept(), error);
   if (error) throw IoError(fmt::format("{}: cannot be moved aside: {}", file.string(), error.message()));
+  // SQLite makes the log's index anew.
   fs::remove(file.string() + "-shm", error);
 }
 
 }  // namespace
 
 struct RunFileRecorder::Impl {
+  // In this order: the folder is locked before the database opens and until it is closed; statements and
+  // the transaction go before the database that they belong to.
   RunFolder folder;
   SQLite::Database db;
   std::optional<SQLite::Statement> insert_frame, insert_site_frame, insert_event, insert_contact;
@@ -84,6 +91,7 @@ struct RunFileRecorder::Impl {
     db.exec("PRAGMA synchronous = NORMAL");
   }
 
+  // A fresh run moves what is there aside, before SQLite could go on with its log.
   SQLite::Database opened_file(Open how) const {
     if (how == Open::fresh) keep_earlier(folder.file());
     return open_database(folder.file(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyMilliseconds);
@@ -97,11 +105,13 @@ struct RunFileRecorder::Impl {
       guarded(folder.file(), f);
     } catch (const IoError& e) {
       failed = e.what();
+      // Rolls back: the file stays at its last commit.
       transaction.reset();
       throw;
     }
   }
 
+  // A transaction is begun by its first row, so that an idle run holds none.
   void begin() {
     if (transaction) return;
     transaction.emplace(db);
@@ -151,6 +161,7 @@ void RunFileRecorder::Impl::write_meta(const Scene& scene) {
   set_meta("springs", springs_json(scene.world));
   set_meta("world_hash", world_hash_text(scene.world));
   set_meta("duration", number(scene.duration));
+  // Until finish(). Of a run that is killed these stay, but for time and seconds, which checkpoints tell.
   set_meta("termination", "running");
   set_meta("end_time", "0");
   set_meta("state_hash", "");
@@ -204,8 +215,11 @@ void RunFileRecorder::Impl::start_fresh(const Scene& scene) {
 /// clock says so.
 void RunFileRecorder::Impl::drop_early_end_frame(double interval) {
   const double t = resume_point ? resume_point->t : 0.0;
+  // Frame times are whole multiples of the interval, by one product (Records::frame_due()): so
+  // equality is exact.
   const bool on_the_clock = t == 0.0 || (interval > 0.0 && std::round(t / interval) * interval == t);
   if (on_the_clock) return;
+  // Of the rows that the checkpoint counts only the last frame can be it.
   SQLite::Statement drop(db, "DELETE FROM frame WHERE t = ? AND rowid > ?");
   drop.bind(1, t);
   drop.bind(2, frames - bodies);
@@ -224,19 +238,23 @@ void RunFileRecorder::Impl::drop_rows_after_checkpoint(const Scene& scene) {
   db.exec(fmt::format("DELETE FROM contact WHERE rowid > {}", contacts));
   drop_early_end_frame(scene.output.frame_interval);
   const auto moving = static_cast<std::int64_t>(moving_sites.size());
+  // Every frame has one row of each moving site.
   db.exec(fmt::format("DELETE FROM site_frame WHERE rowid > {}", bodies > 0 ? frames / bodies * moving : 0));
   db.exec("DELETE FROM checkpoint");
   if (!resume_point) return;
+  // The seal covers the counts: with another number of frames the checkpoint is sealed anew.
   resume_point->frames = frames;
   put_checkpoint(*resume_point, resume_point->state);
 }
 
 /// All of it in one transaction: killed before its next checkpoint, the run goes on from the same rows again.
 void RunFileRecorder::Impl::start_again(const Scene& scene) {
+  // A run killed before its first commit leaves a database without tables.
   if (!db.tableExists("meta")) return start_fresh(scene);
   begin();
   drop_rows_after_checkpoint(scene);
   db.exec("DELETE FROM work");
+  // Indices slow down inserting; finish() makes them again.
   db.exec(kDropIndices);
   set_meta("options", scene.options_json);  // the same, but for limits
   set_meta("termination", "running");
@@ -260,6 +278,7 @@ void RunFileRecorder::Impl::put_checkpoint(const ResumePoint& row, std::span<con
 void RunFileRecorder::Impl::prepare_inserts() {
   insert_frame.emplace(db, "INSERT INTO frame VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
   insert_site_frame.emplace(db, "INSERT INTO site_frame VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+  // Nine columns a side from x on; NULL in all of them where nothing is known of the side.
   insert_event.emplace(
       db,
       "INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
@@ -274,6 +293,7 @@ void RunFileRecorder::open(RunFolder folder, const Scene& scene, Open how, std::
     impl_->identity = run_identity(std::string(version()), scene.options_json, world_hash_text(scene.world));
     impl_->bodies = static_cast<std::int64_t>(scene.world.bodies.size());
     impl_->resume_point = std::move(point);
+    // Motions of their own, beside those of the simulator: poses at frames are functions of time alone.
     for (std::size_t id = 0; id < scene.world.sites.size(); ++id)
       if (SiteMotion motion(scene.world.sites[id]); motion.moves())
         impl_->moving_sites.emplace_back(static_cast<int>(id), std::move(motion));
@@ -295,6 +315,7 @@ RunFileRecorder::RunFileRecorder(const fs::path& dir, const Scene& scene, Open h
 }
 
 RunFileRecorder::~RunFileRecorder() {
+  // What could not be written once is not tried again: the transaction has been given up.
   if (!impl_ || !impl_->failed.empty()) return;
   try {
     impl_->commit();
@@ -315,6 +336,7 @@ void RunFileRecorder::Impl::put_state(SQLite::Statement& put, const BodyState& s
   put.bind(7, s.twist.velocity.y());
   put.bind(8, s.twist.omega);
   put.exec();
+  // reset() keeps what is bound: the time is bound once for all rows of a frame.
   put.reset();
 }
 
@@ -330,6 +352,7 @@ void RunFileRecorder::Impl::put_site_frames(double t) {
 }
 
 void RunFileRecorder::Impl::put_side(SQLite::Statement& put, int first, const EventSide& side) {
+  // In the order of the columns: place, twist before, twist after.
   const BodyState& s = side.after;
   const Twist& b = side.before;
   const double reals[] = {s.pose.position.x(),  s.pose.position.y(),  s.pose.angle,
@@ -362,6 +385,7 @@ void RunFileRecorder::event(const Event& event) {
     const auto id_or_null = [&put](int column, int id) { id < 0 ? put.bind(column) : put.bind(column, id); };
     put.bind(1, static_cast<std::int64_t>(event.seq));
     put.bind(2, c.time);
+    // Words of enums are literals: they outlive the statement.
     put.bindNoCopy(3, to_string(event.kind));
     id_or_null(4, c.body);
     id_or_null(5, c.other_body);
@@ -377,6 +401,7 @@ void RunFileRecorder::event(const Event& event) {
     impl_->put_side(put, 28, event.other);
     put.exec();
     put.reset();
+    // Numbers count from 0 without holes, also over a resume: the last one says how many rows there are.
     impl_->events = static_cast<std::int64_t>(event.seq) + 1;
     ++impl_->rows_waiting;
     impl_->commit_if_due();
@@ -409,6 +434,7 @@ void RunFileRecorder::checkpoint(double t, const std::vector<std::byte>& state) 
   impl_->writing([&] {
     impl_->begin();
     impl_->put_checkpoint({t, {}, impl_->wall(), impl_->frames, impl_->events, impl_->contacts}, state);
+    // For a run that is killed: how far it had come.
     impl_->set_meta("end_time", number(t));
     impl_->set_meta("wall_seconds", number(impl_->wall()));
     impl_->commit();
@@ -435,6 +461,7 @@ void RunFileRecorder::finish(const RunSummary& summary, const std::string& summa
       put.exec();
       put.reset();
     });
+    // Made once all rows are in, rather than kept up to date row by row.
     impl_->db.exec(kRunFileIndices);
     if (impl_->frames <= kMostIndexed) impl_->db.exec(kFrameIndex);
     impl_->commit();

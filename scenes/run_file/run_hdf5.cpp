@@ -42,6 +42,7 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
+/// What failed is told by write_hdf5(), which knows the file.
 void require(herr_t status) {
   if (status < 0) throw IoError("HDF5 refuses");
 }
@@ -60,6 +61,7 @@ class Group {
     const hsize_t size = values.size();
     require(H5LTmake_dataset_int(id_, name, 1, &size, values.data()));
   }
+  // Variable-length UTF-8; the pointers need to live until H5Dwrite() has returned.
   void put(const char* name, const std::vector<std::string>& words) const {
     std::vector<const char*> pointers;
     for (const std::string& w : words) pointers.push_back(w.c_str());
@@ -78,6 +80,7 @@ class Group {
 };
 
 /// A table of frames x bodies, written row by row.
+/// A run's frames may be more than memory holds: one row of each table is in memory at a time.
 class Rows {
  public:
   Rows(const Group& group, const char* name, const char* unit, hsize_t frames, hsize_t bodies)
@@ -89,6 +92,7 @@ class Rows {
     require(H5LTset_attribute_string(group, name, "unit", unit));
   }
   void put(hsize_t frame, const std::vector<double>& values) const {
+    // Selects the row in the file's space; in memory it is the whole of row_.
     const std::array<hsize_t, 2> from{frame, 0}, count{1, size_[1]};
     require(H5Sselect_hyperslab(space_, H5S_SELECT_SET, from.data(), nullptr, count.data(), nullptr));
     require(H5Dwrite(set_, H5T_NATIVE_DOUBLE, row_, space_, H5P_DEFAULT, values.data()));
@@ -185,6 +189,7 @@ void put_contacts(hid_t file, const RunFile& run) {
 
 void write_hdf5(const std::filesystem::path& run_file, const std::filesystem::path& file) {
   const RunFile run(run_file);
+  // Else the library prints its own stack of errors.
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what goes wrong is told below
   try {
     const Handle out(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
@@ -192,6 +197,7 @@ void write_hdf5(const std::filesystem::path& run_file, const std::filesystem::pa
     put_frames(out, run);
     put_events(out, run);
     put_contacts(out, run);
+    // Errors of writing come now, while they can be told; closing tells nobody.
     require(H5Fflush(out, H5F_SCOPE_GLOBAL));
   } catch (const IoError& e) {
     if (std::string(e.what()) != "HDF5 refuses") throw;

@@ -12,6 +12,7 @@
 namespace brink {
 namespace {
 
+/// Frames looked at for what is worth seeing; times at which a trail is asked.
 constexpr int kLooks = 32, kTrailLooks = 400;
 constexpr double kFarthestPlace = 1e20;  // [m], [rad]: squares of differences are finite
 
@@ -50,6 +51,8 @@ const T& feature_at(const std::vector<T>& all, int index, const char* what) {
 }
 
 /// Where the two features touch, nearest to the sample.
+/// The sample may have left the site a little since, or sunk into it: the surface point is the nearest
+/// one to it, the site's thickness towards the sample.
 Vec2 place_of(const LastedContact& c, const Carrier& samples, const Carrier& sites) {
   const Sample& sample = feature_at(samples.outline.samples, c.sample, "sample");
   const Site& site = feature_at(sites.outline.sites, c.site, "site");
@@ -81,6 +84,7 @@ std::vector<DrawnForce> forces_of(const RunMoment& moment) {
         if (const double size = moment.world.periods.size[axis]; size > 0.0)
           arm[axis] -= size * std::round(arm[axis] / size);
     out.push_back({c.body, arm, c.normal_force});
+    // The same place, from the other's centre.
     if (!with_site) out.push_back({c.other_body, body.position + arm - other.position, c.normal_force});
   }
   return out;
@@ -108,6 +112,7 @@ Box extent_of(const RunFile& run, const World& world) {
 std::vector<std::vector<Vec2>> trails_of(const RunFile& run, double t) {
   const double first = run.time_range().first;
   std::vector<std::vector<Vec2>> trails;
+  // Between frames along the bodies' collisions: a ball's trail has its corners where it bounced.
   for (int k = 0; k <= kTrailLooks; ++k) {
     const auto states = run.states_at(first + (t - first) * k / kTrailLooks).states;
     trails.resize(states.size());
@@ -117,6 +122,7 @@ std::vector<std::vector<Vec2>> trails_of(const RunFile& run, double t) {
 }
 
 std::vector<DrawnContact> contacts_before(const RunFile& run, double t) {
+  // On a frame's own time: collisions since the one before it.
   double since = run.frame_at(t).t;
   if (since == t) since = run.frame_at(std::nextafter(t, -1.0)).t;
   std::vector<DrawnContact> contacts;
@@ -136,6 +142,8 @@ RunMoment moment_of_run(const std::filesystem::path& file, std::optional<double>
   for (const FixedSite& site : moment.world.sites) moment.sites.push_back(told_pose(site, t));
   require_drawable(file, moment);
   try {
+    // For its faults alone: features that an outline does not have are told of the file, before
+    // anything is drawn.
     forces_of(moment);
   } catch (const BadInput& e) {
     throw IoError(fmt::format("{}: table contact: {}", file.string(), e.what()));

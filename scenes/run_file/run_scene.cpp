@@ -40,12 +40,14 @@ double end_of(const Scene& scene, const RunRequest& request) {
 
 /// The report of a run file that has already got to `until`, or nothing.
 std::optional<RunReport> finished_report(const RunFolder& folder, const RunFile& run, double until) {
+  // A run that was stopped or failed is not finished, whatever its time.
   if (run.meta("termination") != "reached_end") return std::nullopt;
   RunReport report;
   report.summary.end_time = run.end_time();
   if (report.summary.end_time < until) return std::nullopt;
   report.summary.termination = Termination::reached_end;
   report.json = run.summary();
+  // sound() asks for it: a run that was finished before has the exit status that it had.
   if (const auto j = nlohmann::json::parse(report.json, nullptr, false);
       j.is_object() && j.contains("groups_taken") && j["groups_taken"].is_number_unsigned())
     report.summary.groups_taken = j["groups_taken"];
@@ -58,12 +60,14 @@ std::optional<RunReport> finished_report(const RunFolder& folder, const RunFile&
 std::optional<RunReport> finished_before(const Scene& scene, const RunFolder& folder, double until) {
   std::optional<RunReport> report;
   folder.read([&](const RunFile& run) {
+    // A file of another scene is no answer to this one.
     run.require_same(scene);
     report = finished_report(folder, run, until);
   });
   return report;
 }
 
+/// While the run waits its rows are committed, so that who reads the file sees all up to here.
 void wait(RunFileRecorder& recorder, const RunRequest& request) {
   while (request.waits && request.waits()) {
     recorder.poll();
@@ -77,6 +81,7 @@ RunOptions run_options(const Scene& scene, const RunRequest& request, double unt
   options.until = until;
   options.frame_interval = scene.output.frame_interval;
   options.checkpoint_seconds = request.checkpoint_seconds;
+  // The frame of the checkpoint's time, if the clock has one there, is in the file.
   options.first_frame = !recorder.resume_point();
   options.record_events = scene.output.events;
   options.progress = [&recorder, &request](double t, std::uint64_t collisions) {
@@ -89,11 +94,13 @@ RunOptions run_options(const Scene& scene, const RunRequest& request, double unt
 
 /// Takes the simulator to where the run file has got to.
 void restore(Simulator& simulator, const RunFolder& folder, const ResumePoint& point, double until) {
+  // What is recorded up to the checkpoint stays.
   if (until < point.t)
     throw BadInput(
         fmt::format("--until: {} given, but the run file is already at t = {} s; allowed: that or later",
                     until, point.t));
   try {
+    // The seal holds, but the snapshot may still be none of this simulator's.
     simulator.restore(point.state);
   } catch (const BadInput& e) {
     throw IoError(fmt::format("{}: table checkpoint: {}", folder.file().string(), e.what()));
@@ -119,6 +126,7 @@ class TellingRecorder final : public Recorder {
 };
 
 /// What the run file says of a run that an exception ended.
+/// Energies and counters stay those of a summary that was never filled.
 void close_as_failed(RunFileRecorder& recorder, const Simulator& simulator, const std::string& why) {
   RunSummary summary;
   summary.termination = Termination::failed;
@@ -146,25 +154,31 @@ Scene scene_of_run(const std::filesystem::path& run_file, const std::vector<std:
     throw IoError(fmt::format("{}: table meta: overrides: not a JSON array of strings", run_file.string()));
   auto overrides = json.get<std::vector<std::string>>();
   overrides.insert(overrides.end(), more.begin(), more.end());
+  // With the scene's own path: data files that it names are found beside it.
   return parse_scene(*text, run.meta("scene").value_or(run_file.string()), overrides);
 }
 
 RunReport run_scene(const Scene& scene, const RunRequest& request) {
   const auto start = Clock::now();
   const double until = end_of(scene, request);
+  // What is read or kept by this run must not be written over before it is read.
   refuse_overwriting(request.trace, "--trace", {scene.path, request.dir / "run.db"});
   std::optional<RunFolder> folder;
   if (request.resume) {
+    // A resume that has nothing to do is told before the world is planned.
     folder.emplace(request.dir);
     if (auto report = finished_before(scene, *folder, until)) return *report;
   }
   Simulator simulator(scene.world, scene.solver);
+  // No run file has been touched yet: a scene that cannot start leaves the earlier one in its place.
   if (const std::string why = simulator.start_fault(); !why.empty())
     throw SceneFaults(scene.path, {{1, 1, printable(why), {}}});
   std::optional<ResumePoint> point;
   if (request.resume) point = folder->resume_point(scene);
   if (point) restore(simulator, *folder, *point, until);
   std::optional<TraceFile> trace;
+  // Before the recorder, which moves an earlier run file aside: a trace that cannot be opened
+  // changes nothing.
   if (!request.trace.empty()) trace.emplace(request.trace, simulator.world());
   if (!folder) folder.emplace(request.dir);
   RunFileRecorder recorder(std::move(*folder), scene,
@@ -184,6 +198,7 @@ RunReport run_scene(const Scene& scene, const RunRequest& request) {
     close_as_failed(recorder, simulator, e.what());
     throw;
   }
+  // The simulator has counted from the checkpoint on.
   if (recorder.resume_point()) report.summary.wall_seconds += recorder.resume_point()->wall_seconds;
   report.json = summary_to_json(report.summary, load_seconds);
   recorder.finish(report.summary, report.json);

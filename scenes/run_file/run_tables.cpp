@@ -16,13 +16,14 @@ namespace brink {
 namespace fs = std::filesystem;
 namespace {
 
-/// A cell as it is written: text that another program could take for more than one cell, or for a formula, in quotes.
+/// A cell as it is written: text that would be more than one cell or line, in quotes (RFC 4180).
 std::string cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + '"';
 }
+// NaN and ids that are not there are empty cells.
 std::string cell(double x) { return std::isnan(x) ? std::string() : fmt::format("{}", x); }
 std::string cell(int id) { return id < 0 ? std::string() : std::to_string(id); }
 
@@ -35,6 +36,7 @@ class Table {
   void row(const Cells&... cells) {
     out_ << fmt::format("{}\n", fmt::join(std::vector<std::string>{cell(cells)...}, ","));
   }
+  // Errors of the stream stay set until then, so rows need not ask.
   void finish() {
     out_.flush();
     if (!out_) throw_not_written(file_);

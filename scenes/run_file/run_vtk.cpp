@@ -41,6 +41,7 @@ namespace fs = std::filesystem;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 /// An arc is off from its chords by a thousandth of its radius.
+/// A chord over the angle a is off by r (1 - cos(a / 2)): 1e-3 r for this one.
 const double kMostTurn = 2.0 * std::acos(1.0 - 1e-3);
 
 void write(vtkPolyData* data, const fs::path& file) {
@@ -51,6 +52,7 @@ void write(vtkPolyData* data, const fs::path& file) {
 }
 
 /// Numbers that VTK keeps by name: of cells, or of points.
+/// Values are added in the order of the cells or points that they belong to.
 template <class Array>
 class Column {
  public:
@@ -101,6 +103,7 @@ class Picture {
       add_point(frame.to_world(s.b));
     } else {
       const bool disc = s.kind == SiteKind::point;
+      // A disc turns by a whole circle from its right end; an arc from `a` by its sweep.
       const Vec2 center = disc ? s.a : s.center, from = disc ? Vec2(s.radius, 0.0) : Vec2(s.a - s.center);
       const double sweep = disc ? kTurn : s.sweep;
       const int count = 1 + static_cast<int>(std::ceil(std::abs(sweep) / kMostTurn));
@@ -127,6 +130,7 @@ void write_frames(const RunFile& run, const fs::path& folder) {
   const std::vector<FixedSite> sites = run.sites();
   const fs::path index = folder / "run.pvd";
   std::ofstream out(index, std::ios::binary);
+  // The list of ParaView: a time and a file a line.
   out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
   int frame = 0;
   run.each_frame(1, [&](const RunFile::Frame& f) {

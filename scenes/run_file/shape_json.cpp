@@ -54,6 +54,7 @@ ordered_json loop_object(const Outline& outline, const Loop& loop) {
   return {{"closed", loop.closed}, {"solid", solid}, {"sites", std::move(sites)}};
 }
 
+// The bounding radius is for other programs; reading works it out again.
 ordered_json outline_object(const Outline& outline) {
   auto loops = ordered_json::array();
   for (const Loop& loop : outline.loops) loops.push_back(loop_object(outline, loop));
@@ -63,6 +64,7 @@ ordered_json outline_object(const Outline& outline) {
           {"loops", std::move(loops)}};
 }
 
+/// A formula that is not there does not move: 0.
 ordered_json formula(const std::optional<Formula>& f) {
   return f ? ordered_json(f->text()) : ordered_json("0");
 }
@@ -93,6 +95,7 @@ void read_motion(const nlohmann::json& motion, FixedSite& site) {
 constexpr double kFarthestReach = 1e20;
 
 /// The pose that undoes `pose`.
+/// p becomes R^T (p - position) = R^T p - R^T position.
 Pose inverse(const Pose& pose) { return {-Frame(pose).direction_to_local(pose.position), -pose.angle}; }
 
 }  // namespace
@@ -109,6 +112,8 @@ std::string fixed_site_to_json(const FixedSite& site) {
 Outline outline_from_json(const std::string& text) {
   Outline outline;
   try {
+    // nlohmann's accessors throw where a key is missing or of another type: that is the whole
+    // check of the form.
     const auto j = nlohmann::json::parse(text);
     outline.solid = j.at("solid");
     outline.container = j.at("container");
@@ -122,6 +127,7 @@ Outline outline_from_json(const std::string& text) {
   } catch (const nlohmann::json::exception& e) {
     throw BadInput(std::string("shape: not an outline in JSON: ") + e.what());
   }
+  // Checks what makes an outline of sites: loops that join, arcs on their circles, no NaN.
   finish_outline(outline);
   if (!(outline.bounding_radius <= kFarthestReach))
     throw BadInput("shape: it reaches farther than any scene");
@@ -133,6 +139,8 @@ FixedSite fixed_site_from_json(const std::string& text) {
   FixedSite site;
   try {
     const auto j = nlohmann::json::parse(text);
+    // A site that stands still stays in the world, at the identity: so no rounding is added by
+    // turning it back.
     if (!j.at("motion").is_null()) {
       const auto& pose = j.at("pose");
       site.pose = {vector(pose), pose.at(2).get<double>()};

@@ -17,6 +17,7 @@ std::string json_text(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+/// What takes a body to another simulated time.
 bool moves_a_body(TraceKind kind) {
   return kind == TraceKind::advance || kind == TraceKind::back_up || kind == TraceKind::roll_back;
 }
@@ -26,6 +27,8 @@ bool moves_a_body(TraceKind kind) {
 TraceFile::TraceFile(const std::filesystem::path& file, const World& world)
     : file_(file), out_(file), begin_(std::chrono::steady_clock::now()) {
   if (!out_) throw IoError(fmt::format("{}: cannot be written", file.string()));
+  // The array form of the format. Each entry begins with its comma, so after any of them only the
+  // bracket is missing, which viewers do not need.
   out_ << "[\n"
        << R"({"ph":"M","name":"process_name","pid":1,"args":{"name":)" << json_text(world.title) << "}}";
   for (const Body& b : world.bodies) owners_.push_back(json_text(b.name));
@@ -33,6 +36,7 @@ TraceFile::TraceFile(const std::filesystem::path& file, const World& world)
   for (const FixedSite& s : world.sites) owners_.push_back(json_text(s.name));
 }
 
+// Metadata entries (ph "M"): the lane's name, and its place in the order of ids.
 void TraceFile::name_lane(int body) {
   out_ << fmt::format(
       ",\n"
@@ -46,12 +50,15 @@ void TraceFile::mark(const TraceMark& m) {
   const double now = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   std::string arguments = fmt::format(R"("from":{},"to":{})", m.from, m.to);
   if (m.other >= 0) arguments += fmt::format(R"(,"other":{})", owners_[static_cast<std::size_t>(m.other)]);
+  // Marks come at the ends of what they tell: a slice (ph "X") begins earlier. What is not
+  // measured is an instant.
   const std::string how = m.seconds > 0.0 ? fmt::format(R"("ph":"X","dur":{:.3f})", 1e6 * m.seconds)
                                           : std::string(R"("ph":"i","s":"t")");
   out_ << fmt::format(
       ",\n"
       R"({{"name":"{}",{},"ts":{:.3f},"pid":1,"tid":{},"args":{{{}}}}})",
       to_string(m.kind), how, 1e6 * (now - m.seconds), m.body, arguments);
+  // Passes and searches move nobody. The counter (ph "C") needs no entry where its value stays.
   if (!moves_a_body(m.kind) || m.to == shown_time_) return;
   shown_time_ = m.to;
   out_ << fmt::format(
@@ -79,6 +86,7 @@ std::vector<TraceMark> read_trace(const std::filesystem::path& file, int bodies)
     return of.contains(key) && of[key].is_number() ? of[key].get<double>() : otherwise;
   };
   for (const nlohmann::json& event : all) {
+    // Metadata and counters have no simulated times: by their names they are none of the kinds below.
     if (!event.is_object() || !event.contains("args") || !event["args"].is_object()) continue;
     if (!event.contains("name") || !event["name"].is_string()) continue;
     const std::string name = event["name"];

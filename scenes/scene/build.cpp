@@ -11,6 +11,8 @@
 namespace brink {
 namespace {
 
+/// Builds a scene part by part. It goes on after a fault, so that all of them are told at once; what
+/// needs a part that has failed is left out.
 class SceneBuilder {
  public:
   SceneBuilder(const FileTable& file, FaultList& faults)
@@ -21,6 +23,7 @@ class SceneBuilder {
     materials();
     std::vector<PlannedThing> sites = plan(file_.sites, false), bodies = plan(file_.bodies, true);
     count(bodies);
+    // @pre of place_rules and Placer: no faults, so every thing has its outline.
     if (faults_.empty()) Placer(file_.world.seed, place_rules(bodies), faults_).place(sites, bodies);
     const bool placed = faults_.empty();
     if (placed) {
@@ -32,6 +35,8 @@ class SceneBuilder {
     }
     build_forces(file_.forces, names_, origins_, placed, scene_.world, faults_);
     for (std::string& note : shapes_.take_notes()) scene_.notes.push_back(std::move(note));
+    // World::check() and the frame count need the whole world; after a fault they would tell
+    // its consequences.
     if (faults_.empty()) last_check();
     if (faults_.empty()) check_frames();
     return std::move(scene_);
@@ -51,15 +56,19 @@ class SceneBuilder {
     scene_.solver.seed = file_.world.seed;
     scene_.solver.field = file_.field.options;
     std::string error;
+    // After a fault in the keys some options are defaults; what they would be together is not known.
     if (faults_.empty() && !scene_.solver.is_valid(&error)) faults_.add(file_.solver_place, error);
     options_json();
   }
 
   PlaceRules place_rules(const std::vector<PlannedThing>& bodies) const {
+    // World::length() of the bodies to come: the world has none yet, and the rows of a stack
+    // must know the gap.
     double largest = 0.0;
     for (const PlannedThing& thing : bodies)
       largest = std::max(largest, 2.0 * thing.shape.outline->bounding_radius);
-    // more than half the touching distance, at which such pairs meet, and less than the whole
+    // Sharp corners and wires without thickness meet at half the touching distance (nominal_level(),
+    // tolerances.h) and count as touching up to the whole: three quarters are clear of both.
     const double thin = 0.75 * kTouchOfTolerance * scene_.solver.contact_tolerance * largest;
     return {scene_.world.gravity, scene_.world.periods, thin};
   }
@@ -79,6 +88,7 @@ class SceneBuilder {
     scene_.options_json = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   }
 
+  /// Index 0 is the material of whatever names none; [materials.default] takes its place.
   void materials() {
     for (const MaterialTable& entry : file_.materials) {
       if (entry.material.name == scene_.world.materials[0].name)
@@ -106,6 +116,7 @@ class SceneBuilder {
     for (const ThingTable& table : tables) {
       PlannedThing thing;
       thing.table = &table;
+      // Even for sites and odd for bodies: no two entries of a scene draw from the same random stream.
       thing.ordinal = 2 * out.size() + (body ? 1 : 0);
       thing.name =
           table.name.given ? table.name.value : (body ? "body" : "site") + std::to_string(out.size());
@@ -119,6 +130,8 @@ class SceneBuilder {
       if (table.scatter.given && table.position.given)
         scene_.notes.push_back("position of " + in_quotes(table.name.value) +
                                " is not used: scatter places the copies");
+      // A thing whose shape failed stays in the list without an outline: its name, copies and material
+      // are still checked.
       if (const auto shape = shapes_.build(table, thing.name, body)) {
         thing.shape = *shape;
         if (body) thing.body = body_of(thing);
@@ -135,12 +148,15 @@ class SceneBuilder {
     pose.position = table.position.value;
     pose.angle =
         table.angle_deg.given ? table.angle_deg.value * (std::numbers::pi / 180.0) : table.angle.value;
+    // Only a body's or a centred site's outline is about the centroid; else the shift is 0 and this
+    // changes nothing.
     const bool keep_origin = table.centered.given && !table.centered.value;
     if (keep_origin) pose.position = Frame(pose).to_world(shape.shift);
     return pose;
   }
 
   // Gives every body its place among the names.
+  // Counted before anything is placed, so that the names in forces are checked even where placing fails.
   void count(const std::vector<PlannedThing>& things) {
     std::int64_t total = 0;
     for (const PlannedThing& thing : things) {
@@ -170,6 +186,7 @@ class SceneBuilder {
       }
   }
 
+  // The order of bodies here is that of count(): ids of BodyNames are indices into World::bodies.
   void add_bodies(const std::vector<PlannedThing>& things) {
     for (const PlannedThing& thing : things) {
       for (std::size_t k = 0; k < thing.copies.size(); ++k) {
@@ -193,6 +210,7 @@ class SceneBuilder {
     body.mass = table.density.given ? table.density.value * measure.size
                 : table.mass.given  ? table.mass.value
                                     : 1.0;
+    // second_moment and size are at unit density, so mass / size is the density, per area or per length.
     body.inertia =
         table.inertia.given ? table.inertia.value : body.mass / measure.size * measure.second_moment;
     for (const std::string& word : table.lock.value) {
@@ -205,6 +223,9 @@ class SceneBuilder {
     return body;
   }
 
+  /// Limits: the densest that a file may give is 1e40 kg/m^2, lengths are up to 1e15 m; so a mass comes
+  /// to about 1e70 kg, and an inertia to 1e100 kg m^2. Up to there products of two are finite. NaN fails
+  /// both comparisons.
   void check_inertia(const Body& body, const ThingTable& table, const std::string& name) {
     const auto sound = [](double x) { return std::isfinite(x) && x >= 1e-100 && x <= 1e100; };
     if (sound(body.mass) && sound(body.inertia)) return;
@@ -236,6 +257,7 @@ class SceneBuilder {
   }
 
   Sampling sampling(const PlannedThing& thing) const {
+    // In the order of Sampling::Kind; `file` is not asked for by name.
     static const std::vector<std::string> kinds{"vertices", "boundary", "volume", "random", "raster"};
     const SamplingTable& table = thing.table->sampling.value;
     Sampling sampling;
@@ -245,12 +267,14 @@ class SceneBuilder {
     sampling.count = static_cast<int>(table.count);
     sampling.seed = file_.world.seed + 0x9e3779b97f4a7c15ULL * thing.ordinal;  // a stream of its own
     if (thing.table->sampling.given) return sampling;
+    // Samples of a text data file are themselves the particles; the outline's frame is about the centroid.
     sampling.points = thing.table->shapes[0].samples;
     if (!sampling.points.empty()) sampling.kind = Sampling::Kind::file;
     for (Vec2& p : sampling.points) p -= thing.shape.shift;
     return sampling;
   }
 
+  // Makes the particles once for nothing but their faults (no spacing, too many of them).
   void check_sampling(const Body& body, const ThingTable& table) {
     if (!table.sampling.given) return;
     try {
@@ -270,6 +294,8 @@ class SceneBuilder {
     }
   }
 
+  /// The first entry whose name the message quotes; without the closing quote, since copies
+  /// are called NAME[k].
   Where place_named_in(const std::string& message) const {
     for (const auto* things : {&file_.bodies, &file_.sites})
       for (const ThingTable& table : *things)
@@ -291,6 +317,7 @@ Scene build_scene(const FileTable& file, FaultList& faults) { return SceneBuilde
 
 Scene parse_scene(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
   TomlDocument document(text, overrides);
+  // After a syntax error there are no tables; every other fault leaves the rest of the file readable.
   if (!document.readable()) document.faults().throw_if_any(name);
   FileTable file;
   file_schema().read(document.root(), {1, 1}, document, file);

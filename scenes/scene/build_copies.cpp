@@ -14,6 +14,7 @@ std::uint64_t stream(std::uint64_t seed, std::size_t ordinal, std::uint64_t purp
   return Random(seed ^ (0x9e3779b97f4a7c15ULL * (2 * ordinal + purpose + 1))).next();
 }
 
+/// Has no place before everything else has one.
 bool is_random(const ThingTable& table) { return table.scatter.given || table.pile.given; }
 
 std::vector<Obstacle> obstacles_of(const std::vector<PlannedThing>& sites,
@@ -25,6 +26,8 @@ std::vector<Obstacle> obstacles_of(const std::vector<PlannedThing>& sites,
   return out;
 }
 
+/// Copies in each row of a stack, pyramid or wall, lowest first; none of them asked for: empty. Their
+/// sum is that of copies_of().
 std::vector<std::int64_t> lengths_of_rows(const ThingTable& table) {
   if (table.stack.given) return std::vector<std::int64_t>(static_cast<std::size_t>(table.stack.value), 1);
   std::vector<std::int64_t> out;
@@ -37,6 +40,7 @@ std::vector<std::int64_t> lengths_of_rows(const ThingTable& table) {
   return out;
 }
 
+// Without the key `grid` the table says one column and one row: a single copy at the position.
 std::vector<Pose> grid_poses(const PlannedThing& thing, const Vec2& position) {
   const GridTable& grid = thing.table->grid.value;
   std::vector<Pose> out;
@@ -48,6 +52,7 @@ std::vector<Pose> grid_poses(const PlannedThing& thing, const Vec2& position) {
   return out;
 }
 
+// A spacing of 0 is all right along an axis that has one copy alone.
 bool in_one_place(const GridTable& grid) {
   return (grid.columns > 1 && grid.spacing.x() == 0.0) || (grid.rows > 1 && grid.spacing.y() == 0.0);
 }
@@ -63,6 +68,7 @@ CopyCount copies_of(const ThingTable& table) {
     return {table.pyramid.value * (table.pyramid.value + 1) / 2, table.pyramid.where, true};
   if (!table.wall.given) return {1, table.place, false};
   const auto [columns, rows] = table.wall.value;
+  // Odd counts from the top down: rows 1, 3, 5 ... are short, (rows + 1) / 2 of them.
   const std::int64_t shorter = rows > 1 && columns > 1 ? (rows + 1) / 2 : 0;
   return {columns * rows - shorter, table.wall.where, true};
 }
@@ -70,6 +76,8 @@ CopyCount copies_of(const ThingTable& table) {
 std::optional<Vec2> down_of(const ThingTable& table, const Vec2& gravity) {
   const Vec2 down = table.touching_direction.given ? table.touching_direction.value : gravity;
   if (down.isZero(0.0)) return std::nullopt;
+  // Scaled before its length is taken: squares of 1e-200 m/s^2 would be 0, and gravity would
+  // have no direction.
   return Vec2((down / down.lpNorm<Eigen::Infinity>()).normalized());
 }
 
@@ -78,6 +86,7 @@ BodyState start_of(const PlannedThing& thing) {
   return {thing.pose, {table.velocity.value, table.angular_velocity.value}};
 }
 
+// Rows are found once, here; the function that is returned only shifts them.
 std::function<std::vector<Pose>(const Vec2&)> standing_poses(const PlannedThing& thing,
                                                              const PlaceRules& rules) {
   const ThingTable& table = *thing.table;
@@ -91,10 +100,12 @@ std::function<std::vector<Pose>(const Vec2&)> standing_poses(const PlannedThing&
 
 void Placer::place(std::vector<PlannedThing>& sites, std::vector<PlannedThing>& bodies) {
   for (auto* things : {&sites, &bodies}) {
+    // A scene may have a million of each. counted() comes first below: it also adds up what is placed later.
     total_ = 0;
     for (PlannedThing& thing : *things)
       if (counted(thing) && !is_random(*thing.table) && !thing.table->touching.given) stand(thing);
   }
+  // Random copies must keep clear of all that stands or lies, so they come last, each after those before it.
   if (!faults_.empty()) return;
   put_on_others(sites, bodies, rules_, faults_);
   for (auto* things : {&sites, &bodies})
@@ -130,6 +141,7 @@ void Placer::scatter(PlannedThing& thing, const std::vector<Obstacle>& obstacles
   ScatterAsk ask{
       thing.shape.outline.get(), {}, asked.count, thing.pose.angle, asked.random_angle, rules_.periods};
   for (const Vec2& corner : asked.region) ask.region.add(corner);
+  // Speeds have a stream of their own: how many numbers places take depends on what is in the way.
   Random where_to(stream(seed_, thing.ordinal, 0)), how(stream(seed_, thing.ordinal, 1));
   std::int64_t room = 0;
   const auto poses = scatter_poses(ask, obstacles, where_to, &room);
@@ -140,6 +152,8 @@ void Placer::scatter(PlannedThing& thing, const std::vector<Obstacle>& obstacles
                            " m, allowed: about " + std::to_string(room) + " beside what is there already");
   for (const Pose& pose : *poses) {
     BodyState state = start_of(thing);
+    // Drawn even where speeds are 0, so that a speed given later leaves the directions of all
+    // copies as they are.
     const double heading = how.uniform(0.0, 2.0 * std::numbers::pi);
     const double way = how.below(2) == 0 ? 1.0 : -1.0;
     state.pose = pose;
@@ -151,16 +165,20 @@ void Placer::scatter(PlannedThing& thing, const std::vector<Obstacle>& obstacles
 
 // A scatter in a column above the position that is as high as it takes, seen with down along -y.
 void Placer::pile(PlannedThing& thing, const std::vector<Obstacle>& obstacles) {
+  // Filled less than the 45 % up to which scatter_poses() inserts at random; the last height is 1.25^39,
+  // some 6000 times the first, which leaves whatever else reaches into the column behind.
   constexpr double kFilled = 0.4;  // of the column, by the discs about the copies
   constexpr int kHeights = 40;     // that are tried
   const PileTable& asked = thing.table->pile.value;
   const Vec2 up = -down_of(*thing.table, rules_.gravity).value_or(-Vec2::UnitY());
+  // Turned so that the frame's y axis points up: (-sin, cos) of its angle is `up`.
   const Frame frame({thing.pose.position, std::atan2(-up.x(), up.y())});
   const double turn = std::atan2(frame.sine, frame.cosine), radius = thing.shape.outline->bounding_radius;
   if (turn != 0.0 && rules_.periods.any())
     return faults_.add(thing.table->pile.where, "pile: the plane repeats; given a way down of [" +
                                                     number_text(-up.x()) + ", " + number_text(-up.y()) +
                                                     "], allowed there: [0, -1]");
+  // Upright, the frame is the world's: no turning to and fro, and no roundings by it.
   const bool upright = turn == 0.0;
   std::vector<Obstacle> seen = obstacles;
   if (!upright)
@@ -172,12 +190,16 @@ void Placer::pile(PlannedThing& thing, const std::vector<Obstacle>& obstacles) {
                  thing.pose.angle - turn,
                  asked.random_angle,
                  rules_.periods};
+  // The height at which the discs fill kFilled of a column that is a radius wider to each side.
   double height = std::numbers::pi * radius * radius * static_cast<double>(asked.count) /
                   (kFilled * (asked.width + 2.0 * radius));
   for (int k = 0; k < kHeights; ++k, height = 1.25 * height + radius) {
+    // Centres are a radius above the position at least, so that no copy reaches below it.
     ask.region = Box();
     ask.region.add(base + Vec2(-0.5 * asked.width, radius));
     ask.region.add(base + Vec2(0.5 * asked.width, radius + height));
+    // The stream begins anew for each height: the poses depend on the height that sufficed, not
+    // on those before.
     Random random(stream(seed_, thing.ordinal, 0));
     std::int64_t room = 0;
     const auto poses = scatter_poses(ask, seen, random, &room);

@@ -49,6 +49,8 @@ class ForceBuilder {
 
  private:
   void spring(const ForceTable& table) {
+    // Either `bodies`, or `body` and `anchor`, and not half of the latter: the first comparison finds
+    // both or neither, the second a body without an anchor or an anchor without a body.
     SpringForce force = table.spring;
     if (table.bodies.given == (table.body.given || table.anchor.given) ||
         table.body.given != table.anchor.given)
@@ -96,6 +98,7 @@ class ForceBuilder {
   }
 
   // A place given in the file's frame of a body, in the frame of its outline. Not given: the centre of mass.
+  // `centered = false` moves the file's frame against the outline's.
   Vec2 in_outline(int body, const Vec2& p, bool was_given) const {
     return was_given ? Vec2(p + origins_[static_cast<std::size_t>(body)]) : p;
   }
@@ -113,6 +116,7 @@ class ForceBuilder {
                   "for every body");
     for (const std::string& name : table.bodies.value)
       for (const int k : names_.find(name, table.bodies.where, faults_)) out.push_back(k);
+    // Sorted, a body that is named twice stands beside itself.
     std::sort(out.begin(), out.end());
     if (std::adjacent_find(out.begin(), out.end()) != out.end())
       faults_.add(table.bodies.where, "bodies: names a body twice; given " +
@@ -130,6 +134,7 @@ class ForceBuilder {
     AttractForce force = table.attract;
     force.bodies = targets(table);
     for (const int k : force.bodies)
+      // Bodies that have not been placed stand at the origin, which would be a false alarm.
       if (placed_ && force.power < 0.0 &&
           world_.bodies[static_cast<std::size_t>(k)].initial.pose.position == force.center)
         faults_.add(table.place, "attract: the pull is infinite at its centre; given the body " +
@@ -165,11 +170,13 @@ class ForceBuilder {
     world_.forces.emplace_back(std::move(force));
   }
 
+  /// What is not finite at the start is a fault with its place; what becomes so later ends the run.
   void check_start(const FormulaForce& force, const std::optional<Formula>& f, const Where& where) {
     if (!f || !placed_) return;
     for (const int k : force.bodies) {
       const Body& body = world_.bodies[static_cast<std::size_t>(k)];
       const BodyState& s = body.initial;
+      // In the order of force_formula_variables().
       const std::array values{0.0,
                               s.pose.position.x(),
                               s.pose.position.y(),
@@ -204,7 +211,7 @@ std::vector<int> BodyNames::find(const std::string& name, const Where& where, Fa
     for (int k = 0; k < found->second.count; ++k) out.push_back(found->second.first + k);
     return out;
   }
-  // NAME[k]: one copy
+  // NAME[k]: one copy. The name as written went first, since a body may itself be called "a[0]".
   const std::size_t bracket = name.rfind('[');
   if (bracket != std::string::npos && name.back() == ']') {
     const auto found = entries_.find(name.substr(0, bracket));
@@ -241,6 +248,7 @@ namespace {
 /// A formula by which a site cannot even begin to move (it jumps there, or cannot be bounded) is a fault.
 void must_begin(std::optional<Formula> FormulaMotion::*part, const FormulaMotion& motion,
                 const std::string& site, const Where& where, FaultList& faults) {
+  // A formula alone, without the others of the site: so the fault stands at the key that is wrong.
   FormulaMotion alone;
   alone.*part = motion.*part;
   FixedSite moved;
@@ -272,6 +280,7 @@ PrescribedPath build_motion(const Given<MotionTable>& given_motion, const std::s
   FormulaMotion motion{formula(table.x, {"t"}, faults), formula(table.y, {"t"}, faults),
                        formula(table.angle, {"t"}, faults)};
   const auto check = [&](const std::optional<Formula>& f, const Where& at) {
+    // A jump between these times is met by the run itself, which then ends there.
     for (const double t : {0.0, 0.5 * duration, duration})
       if (f) must_be_finite((*f)({&t, 1}), *f, at, "at t = " + number_text(t), faults);
   };

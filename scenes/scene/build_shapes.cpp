@@ -26,17 +26,22 @@ std::optional<BuiltShape> ShapeBuilder::build(const ThingTable& thing, const std
     return std::nullopt;
   }
   const ShapeSpec& spec = thing.shapes[0];
+  // A shape without `build` was faulty already (add_shape).
   if (!spec.build || !fits(thing, spec, body)) return std::nullopt;
   ShapeContext context{thing.curve_tolerance.given ? thing.curve_tolerance.value : curve_tolerance_,
                        thing.radius.value, thing.inside_of.value};
   const bool about_centre = body || thing.centered.value;
+  // Everything that make() depends on; equal keys share one outline, and with it one field.
   const Json key = {spec.kind,      spec.parameters,
                     context.radius, spec.takes_curve_tolerance ? context.curve_tolerance : 0.0,
                     about_centre,   thing.inside_of.value};
+  // JSON throws on what is no UTF-8, which an override may bring in: such bytes become
+  // replacement characters.
   const std::string text = key.dump(-1, ' ', false, Json::error_handler_t::replace);
   if (const auto found = built_.find(text); found != built_.end()) return found->second;
   std::optional<BuiltShape> made = make(thing, spec, context, about_centre);
   if (!made) return std::nullopt;
+  // Told of the first thing of each distinct shape.
   if (made->outline->curve_deviation > 0.0)
     notes_.push_back(name + ": " + spec.kind + " is drawn by " + std::to_string(made->outline->sites.size()) +
                      " sites within " + number_text(made->outline->curve_deviation) + " m of its curves");
@@ -68,6 +73,7 @@ bool ShapeBuilder::fits(const ThingTable& thing, const ShapeSpec& spec, bool bod
 std::optional<BuiltShape> ShapeBuilder::make(const ThingTable& thing, const ShapeSpec& spec,
                                              const ShapeContext& context, bool about_centre) {
   try {
+    // Measured before it is turned inside out: a container has the measure of its free inside.
     Shape shape = spec.build(context);
     BuiltShape built;
     if (about_centre) {
@@ -80,6 +86,7 @@ std::optional<BuiltShape> ShapeBuilder::make(const ThingTable& thing, const Shap
     built.outline = std::make_shared<const Outline>(std::move(shape.outline));
     return built;
   } catch (const BadInput& error) {
+    // What a shape refuses (sides that cross, no area) stands at its key.
     faults_.add(spec.where, error.what());
   }
   return std::nullopt;

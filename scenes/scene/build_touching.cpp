@@ -22,6 +22,7 @@ class Touching {
       : bodies_(bodies), rules_(rules), faults_(faults) {
     for (auto* things : {&sites, &bodies})
       for (PlannedThing& thing : *things) {
+        // A site and a body may share a name, two bodies may not: who is meant is told in find().
         called_[thing.name].push_back(&thing);
         words_.push_back(thing.name);
       }
@@ -30,6 +31,8 @@ class Touching {
   }
 
   /// Each after what it is put on; what is left over waits for itself.
+  /// Kahn's algorithm (1962): `missing` counts the grounds that are not placed yet, `above` says who
+  /// waits for whom. Maps by pointer are looked up, never walked, so the order is that of the file.
   void place() {
     if (!faults_.empty()) return;
     std::map<const PlannedThing*, std::vector<PlannedThing*>> above;
@@ -38,6 +41,7 @@ class Touching {
     for (PlannedThing& thing : bodies_) {
       if (!waiting_.contains(&thing)) continue;
       for (const Ground& ground : waiting_.at(&thing)) {
+        // What does not wait itself is placed already, or is a site.
         if (!waiting_.contains(ground.thing)) continue;
         ++missing[&thing];
         above[ground.thing].push_back(&thing);
@@ -50,6 +54,7 @@ class Touching {
       for (PlannedThing* thing : above[ready[placed]])
         if (--missing[thing] == 0) ready.push_back(thing);
     }
+    // Whoever is left has a ground that is left, too: somewhere they wait in a circle.
     if (placed < waiting_.size()) tell_circle(missing);
   }
 
@@ -72,6 +77,7 @@ class Touching {
     const Where& where = thing.table->touching.where;
     Ground ground;
     std::string called = name;
+    // A thing that is itself called "a[0]" goes before the first copy of "a".
     if (!called_.contains(name)) std::tie(called, ground.copy) = apart(name);
     const auto found = called_.find(called);
     if (found == called_.end() || (ground.copy && !has_copy(*found->second.front(), *ground.copy))) {
@@ -96,6 +102,7 @@ class Touching {
     const std::size_t bracket = name.rfind('[');
     if (bracket == std::string::npos || name.back() != ']') return {name, std::nullopt};
     const std::string digits = name.substr(bracket + 1, name.size() - bracket - 2);
+    // Seven digits hold kMostCopies, and stoul cannot overflow.
     if (digits.empty() || digits.size() > 7 || digits.find_first_not_of("0123456789") != std::string::npos)
       return {name, std::nullopt};
     return {name.substr(0, bracket), std::stoul(digits)};
@@ -111,6 +118,7 @@ class Touching {
     LandingAsk ask;
     ask.outline = thing.shape.outline.get();
     ask.position = thing.pose.position;
+    // Of a stack or a pyramid, all its copies: they move as one, and land when the first of them does.
     ask.copies = standing_poses(thing, rules_);
     ask.direction = *down_of(*thing.table, rules_.gravity);
     ask.periods = rules_.periods;
@@ -128,6 +136,7 @@ class Touching {
   static void add_obstacles(const Ground& ground, std::vector<Obstacle>& out) {
     for (std::size_t k = 0; k < ground.thing->copies.size(); ++k) {
       if (ground.copy && *ground.copy != k) continue;
+      // Bodies have no motion, and are where they are written at the start.
       FixedSite site;
       site.pose = ground.thing->copies[k].pose;
       site.motion = ground.thing->motion;
@@ -160,6 +169,8 @@ class Touching {
     const PlannedThing* at = nullptr;
     for (const PlannedThing& thing : bodies_)
       if (at == nullptr && waits(&thing)) at = &thing;
+    // From anyone who waits to someone that it waits for, until one comes again: what was walked before
+    // the first visit of that one is not part of the circle.
     std::vector<const PlannedThing*> way;
     while (std::find(way.begin(), way.end(), at) == way.end()) {
       way.push_back(at);

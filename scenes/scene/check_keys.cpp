@@ -5,6 +5,7 @@ namespace brink {
 namespace {
 
 void check_copies(const ThingTable& table, FaultList& faults) {
+  // The fault stands at the last of them in this list.
   std::vector<std::string> asked;
   Where last;
   const auto ask = [&](const char* key, const auto& given) {

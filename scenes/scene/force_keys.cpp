@@ -4,6 +4,7 @@
 namespace brink {
 namespace {
 
+/// Of stiffnesses, drags and strengths; as kHeaviest in tables.cpp.
 constexpr double kStrongest = 1e40;
 
 // Binds a key to a member of one of the force structs inside ForceTable.
@@ -17,6 +18,8 @@ class Part {
   template <class V>
   Part& key(const std::string& name, V F::*value, Codec<V> codec, const std::string& meaning,
             bool needed = false) {
+    // A schema of one key, nested at once: keys of the force's own struct come among those of
+    // ForceTable, in the order in which they are declared.
     Schema<F> one("");
     needed ? one.required(name, value, codec, meaning) : one.key(name, value, codec, meaning);
     schema_.nested(member_, one);
@@ -40,6 +43,7 @@ Codec<std::vector<Vec2>> attachment() {
   both.read = [pair = points(1, 2), one = point()](const toml::node& node, TomlDocument& doc,
                                                    const std::string& key, std::vector<Vec2>& out) {
     const toml::array* array = node.as_array();
+    // Two numbers are one place, two arrays are two.
     const bool flat = array != nullptr && !array->empty() && !(*array)[0].is_array();
     return flat ? one.read(node, doc, key, out.emplace_back()) : pair.read(node, doc, key, out);
   };
@@ -88,6 +92,7 @@ Schema<ForceTable> attract_schema() {
 
 Schema<ForceTable> thrust_schema() {
   Part<ThrustForce> part("thrust", &ForceTable::thrust);
+  // Not `required`: that it is missing is told where the body is looked up (build_forces.cpp).
   (*part).optional("body", &ForceTable::body, text("name of a body"), "needed", "the body it acts on");
   part.key("force", &ThrustForce::force, point("N"), "in the world's axes")
       .key("torque", &ThrustForce::torque, signed_strength("N m"), "counter-clockwise")

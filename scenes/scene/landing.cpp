@@ -11,10 +11,13 @@ namespace brink {
 
 namespace {
 
+// Doublings of one rounding: the last step is 2^59 epsilon, 128 times the place itself.
 constexpr int kTries = 60;               // each twice as far as the one before
 constexpr double kMostPeriods = 1000.0;  // on the way of what falls across images
 constexpr double kNear = 1e-6;           // of a copy's radius: what touches, and what all but does
 
+/// Step by which a place is moved at least: a rounding of its coordinates, or of the shape's where it
+/// stands at the origin.
 double rounding_at(const Vec2& place, const Outline& outline) {
   return std::numeric_limits<double>::epsilon() *
          std::max(place.lpNorm<Eigen::Infinity>(), 0.25 * outline.bounding_radius);
@@ -32,7 +35,8 @@ class Descent {
 
   Landing land() {
     Vec2 position = ask_.position;
-    // the second time from nearby, where the way has no rounding of its own
+    // The first fall is told to a rounding of its length, which may be 1e6 sizes; the second one starts
+    // beside the ground, where distances are small.
     for (int time = 0; time < 2; ++time) {
       const Landing::Status status = fall(position);
       if (status != Landing::Status::lands) return {status, position};
@@ -56,9 +60,11 @@ class Descent {
         least = std::min(least, hit.distance);
         found.push_back({hit.distance, {k, ground}});
       });
+    // One copy that overlaps is a fault, though others would land.
     if (overlaps) return Landing::Status::overlaps;
     if (!std::isfinite(least)) return Landing::Status::never;
     touched_.clear();
+    // Those that all but touch as well: after the roundings of the move one of them may have the least gap.
     for (const auto& [distance, meeting] : found)
       if (distance <= least + kNear * ask_.outline->bounding_radius) touched_.push_back(meeting);
     position += least * ask_.direction;
@@ -73,6 +79,8 @@ class Descent {
       const double reach = own + ground.outline->bounding_radius;
       const auto look = [&](const Obstacle& there) {
         const Vec2 to = there.pose.position - from;
+        // The strip that the copy's disc sweeps, and everything ahead of it. A container is solid
+        // outside its disc, so its disc says nothing.
         const bool beside = std::abs(cross(ask_.direction, to)) > reach * (1.0 + kNear);
         const bool behind = ask_.direction.dot(to) < -reach;
         if (there.outline->container || (!beside && !behind)) visit(there);
@@ -81,6 +89,7 @@ class Descent {
         look(ground);
         continue;
       }
+      // Periods::overlaps() wants boxes: of the way, and of the ground's disc.
       Box around;
       around.add(ground.pose.position);
       ask_.periods.overlaps(way_of(from, own), around.grown(ground.outline->bounding_radius),
@@ -94,6 +103,8 @@ class Descent {
 
   /// A box about the way, as far as images are looked at.
   Box way_of(const Vec2& from, double radius) const {
+    // No coordinate of a scene is larger (kLargest, toml/codec.h). In a plane that repeats the way is
+    // cut at kMostPeriods, since every image along it is looked at.
     Vec2 way = 1e15 * ask_.direction;
     for (int axis = 0; axis < 2; ++axis)
       if (const double size = ask_.periods.size[axis]; size > 0.0 && ask_.direction[axis] != 0.0)
@@ -115,6 +126,7 @@ class Descent {
     return least;
   }
 
+  /// Backs up along the way, by a rounding first and then by ever more, until no gap is too small.
   void back_up(Vec2& position) const {
     double step = rounding_at(position, *ask_.outline);
     const Vec2 from = position;
@@ -145,6 +157,7 @@ double gap_of_touching(const Obstacle& a, const Obstacle& b, double thin) {
       (is_thin(*a.outline) && is_sharp(*b.outline)) || (is_thin(*b.outline) && is_sharp(*a.outline));
   if (on_wire) return thin;
   if (is_upright(a.pose) && is_upright(b.pose)) return 0.0;
+  // Only the part of b that is near a has roundings that matter: a floor may be 1e6 m long.
   const double apart = (a.pose.position - b.pose.position).norm() + a.outline->bounding_radius;
   return kTurnedRounding * (a.outline->bounding_radius + std::min(apart, b.outline->bounding_radius));
 }
@@ -156,6 +169,7 @@ void push_apart(const Outline& outline, Pose& pose, const std::vector<Touched>& 
     pose = written;
     double step = rounding_at(pose.position, outline);
     for (int time = 0; time < kTries; ++time) {
+      // Always out of the deepest; that may lead into another by a rounding, so the least step grows.
       double worst = 0.0;
       Vec2 away = Vec2::Zero();
       for (const Touched& t : touched) {

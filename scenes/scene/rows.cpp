@@ -32,7 +32,8 @@ TouchingRows::TouchingRows(RowsAsk ask)
   }
 }
 
-/// At least a copy's size along a direction.
+/// At least a copy's size along a direction; an arc counts as its whole circle. It decides who is looked
+/// at, so more is safe.
 double TouchingRows::extent_along(const Vec2& direction) const {
   const Vec2 local = Frame({Vec2::Zero(), ask_.angle}).direction_to_local(direction);
   double least = std::numeric_limits<double>::infinity(), most = -least;
@@ -48,6 +49,7 @@ double TouchingRows::extent_along(const Vec2& direction) const {
   return (most - least) * (1.0 + kNear);
 }
 
+/// From copy to copy in a row; where the one that comes only grazes the other, as far as their discs.
 double TouchingRows::distance_in_row() const {
   const double far = far_away(*ask_.outline);
   const OutlineHit hit = cast_outline(*ask_.outline, {far * along_, ask_.angle}, -along_, *ask_.outline,
@@ -69,8 +71,11 @@ double TouchingRows::drop(std::int64_t halves) {
 
 /// visit(halves) for every distance to the side at which a copy of `row` and one of `below` are, as far as
 /// they can touch.
+/// The copies of a row of n stand at 1 - n, 3 - n ... n - 1 half distances, so rows whose lengths differ
+/// by one are shifted by half a distance, and distances between two rows are all odd or all even.
 template <class Visit>
 void TouchingRows::for_offsets(std::size_t row, std::size_t below, Visit&& visit) const {
+  // Beyond this many halves the two are more than a copy's width apart.
   const auto reach = static_cast<std::int64_t>(2.0 * wide_ / width_) + 1;
   std::int64_t low = first(row) - last(below);
   const std::int64_t high = std::min(last(row) - first(below), reach);
@@ -81,12 +86,15 @@ void TouchingRows::for_offsets(std::size_t row, std::size_t below, Visit&& visit
 double TouchingRows::height_of(std::size_t row) {
   if (row == 0) return 0.0;
   double height = -std::numeric_limits<double>::infinity();
+  // Rows are looked at from the top down, as far as a copy that stands on one of them could be higher
+  // than what has been found. Where everything falls past them it is put on the row below by its size.
   for (std::size_t below = row; below-- > 0 && heights_[below] + high_ > height;)
     for_offsets(row, below,
                 [&](std::int64_t halves) { height = std::max(height, heights_[below] + drop(halves)); });
   return std::isfinite(height) ? height : heights_[row - 1] + high_;
 }
 
+/// Copies beside and below that may touch one of this row, found once for all places of the row.
 std::vector<TouchingRows::Neighbour> TouchingRows::neighbours_of(std::size_t row) const {
   std::vector<Neighbour> out;
   const Pose here{Vec2::Zero(), ask_.angle};
@@ -95,6 +103,7 @@ std::vector<TouchingRows::Neighbour> TouchingRows::neighbours_of(std::size_t row
     if (outline_gap(*ask_.outline, there, *ask_.outline, here).gap < kNear * ask_.outline->bounding_radius)
       out.push_back({below, halves});
   };
+  // Of its own row only those that at() has placed before it.
   for_offsets(row, row, [&](std::int64_t halves) {
     if (halves > 0) look(row, halves);  // those before it
   });
@@ -112,12 +121,14 @@ std::vector<Pose> TouchingRows::at(const Vec2& middle) const {
       Pose pose{middle + offset(place, heights_[row]), ask_.angle};
       std::vector<Touched> touched;
       for (const Neighbour& neighbour : neighbours_[row]) {
+        // A place at the end of a row has no copy where one in the middle has.
         const std::int64_t other = place - neighbour.halves;
         if (other < first(neighbour.row) || other > last(neighbour.row)) continue;
         const auto k = static_cast<std::size_t>((other - first(neighbour.row)) / 2);
         touched.push_back(
             {{ask_.outline, out[begin[neighbour.row] + k]}, neighbour.row == row ? along_ : ask_.up});
       }
+      // Those that it may touch stand already, and stay: only this one is pushed.
       push_apart(*ask_.outline, pose, touched, ask_.thin);
       out.push_back(pose);
     }

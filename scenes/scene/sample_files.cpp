@@ -8,8 +8,10 @@
 namespace brink {
 namespace {
 
+/// As text_file.cpp allows of a scene.
 constexpr std::uintmax_t kLargestFile = 100'000'000;  // bytes
 
+/// What the scene itself says goes before what its data file says.
 template <class V>
 void fill(Given<V>& key, const V& value, const Where& where) {
   if (!key.given) key = {value, where, true};
@@ -17,8 +19,10 @@ void fill(Given<V>& key, const V& value, const Where& where) {
 
 void fill_state(ThingTable& thing, const SampledBody& body, const Where& where, bool is_body) {
   fill(thing.position, body.position, where);
+  // angle and angle_deg are one: either keeps the file's away.
   if (!thing.angle.given) fill(thing.angle_deg, body.rotation_degrees, where);
   if (!is_body) return;
+  // A density gives the mass. A site has neither mass nor velocities.
   if (!thing.density.given) fill(thing.mass, body.mass, where);
   fill(thing.velocity, body.velocity, where);
   fill(thing.angular_velocity, body.omega, where);
@@ -50,6 +54,7 @@ void take(ThingTable& thing, ShapeSpec& spec, const std::filesystem::path& folde
   if (!found.empty()) return;
   fill_state(thing, body, spec.where, is_body);
   spec.samples = body.samples;
+  // Equal samples make equal shapes: bodies from copies of one file share an outline.
   spec.parameters = points(1).write(body.samples);
   spec.build = [samples = body.samples](const ShapeContext&) { return shape_of_samples(samples); };
 }

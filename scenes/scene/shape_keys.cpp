@@ -107,6 +107,7 @@ const Schema<ArcTable>& arc_schema() {
   return schema;
 }
 
+/// A thickness in the shape's own table goes before the one beside it.
 double own_or(const Given<double>& own, const ShapeContext& context) {
   return own.given ? own.value : context.radius;
 }
@@ -128,6 +129,7 @@ void add_shape(Schema<ThingTable>& schema, ShapeSpec spec, const Codec<V>& codec
       });
 }
 
+// Which keys beside the shape have a meaning: a thickness, a curve tolerance, or that it is for sites alone.
 ShapeSpec shape_kind(std::string kind) {
   ShapeSpec spec;
   spec.kind = std::move(kind);
@@ -159,6 +161,7 @@ Codec<std::vector<VerticesTable>> parts_codec() {
                                                        "an array of one or more {vertices = [[x, y], ...]}"));
           return false;
         }
+        // The array is faulty if any of its parts is, but every part is read.
         const std::size_t faults = doc.faults().size();
         for (const toml::node& element : *array) part_schema().read_node(element, doc, out.emplace_back());
         return doc.faults().size() == faults;
@@ -178,6 +181,7 @@ Shape build_polygons(const std::vector<VerticesTable>& parts) {
 
 Shape build_arc(const ArcTable& arc, const ShapeContext& context) {
   constexpr double degree = std::numbers::pi / 180.0;
+  // Left to the building, as it concerns two keys: the fault stands at the shape.
   if ((arc.from.given && arc.from_deg.given) || (arc.to.given && arc.to_deg.given))
     throw BadInput("arc: angles are given twice; given radians and degrees, allowed: one of them");
   const double from = arc.from.given ? arc.from.value : arc.from_deg.value * degree;
@@ -214,6 +218,7 @@ void add_body_shapes(Schema<ThingTable>& schema) {
   add_shape(
       schema, curved(shape_kind("path")), path_schema().codec(), "an outline from SVG path data",
       [](const PathTable& t, const ShapeContext& c) { return make_path(t.d, t.scale, c.curve_tolerance); });
+  // Not by add_shape(): how it is built is in another file, which is read once the scene's folder is known.
   schema.custom("samples", samples_schema().codec().type, "", "the classic text data file",
                 [](const toml::node& node, TomlDocument& doc, ThingTable& out) {
                   ShapeSpec made = shape_kind("samples");
@@ -246,6 +251,7 @@ void add_shape_keys(Schema<ThingTable>& schema, bool site) {
   if (site) add_site_shapes(schema);
 }
 
+// Shapes whose value is no table (point, segment, polyline, bezier) have no keys of their own to list.
 void list_shape_keys(std::vector<OptionInfo>& out) {
   disc_schema().list(out);
   box_schema().list(out);

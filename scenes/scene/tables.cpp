@@ -27,6 +27,8 @@ Codec<std::int64_t> whole(std::int64_t low = 0,
 
 Range heavy(std::string unit) { return {kLightest, kHeaviest, false, std::move(unit)}; }
 
+/// An entry that is no table is left out; one with faulty keys stays, so that what names it is
+/// not faulty, too.
 void read_materials(const toml::node& node, TomlDocument& doc, FileTable& out) {
   const toml::table* table = node.as_table();
   if (table == nullptr)
@@ -68,6 +70,7 @@ auto things_reader(const std::string& key, const Schema<ThingTable>& schema,
   };
 }
 
+/// A force's kind says which keys it may have: it is read before the others.
 void read_force(const toml::table& table, TomlDocument& doc, std::vector<ForceTable>& out) {
   ForceTable force;
   force.place = doc.where(table);
@@ -80,6 +83,7 @@ void read_force(const toml::table& table, TomlDocument& doc, std::vector<ForceTa
   out.push_back(std::move(force));
 }
 
+/// `place`: kept for faults that concern the table as a whole.
 template <class T>
 auto table_reader(const Schema<T>& schema, T FileTable::*member, Where FileTable::*place = nullptr) {
   return [&schema, member, place](const toml::node& node, TomlDocument& doc, FileTable& out) {
@@ -88,6 +92,7 @@ auto table_reader(const Schema<T>& schema, T FileTable::*member, Where FileTable
   };
 }
 
+// Each schema is built when it is first asked for: those that hold codecs of others find them whole.
 const Schema<GridTable>& grid_schema() {
   static const Schema<GridTable> schema =
       Schema<GridTable>("grid")
@@ -188,6 +193,7 @@ Combine combine_rule(const std::string& name) {
 
 Range duration_range() { return {kShortest, kLongestRun, false, "s"}; }
 
+/// Frames at 0, at every interval, and at the end. A world without bodies has frames, too.
 std::string too_many_frames(const OutputOptions& output, double duration, std::size_t bodies) {
   if (output.frame_interval <= 0.0) return {};
   const double frames = std::floor(duration / output.frame_interval) + 2.0;  // and the first and the last
@@ -251,6 +257,8 @@ const Schema<SolverOptions>& solver_schema() {
           .key("share_fields", &S::share_fields, flag(), "one field a distinct shape, not one a body")
           .key("fields_for_small_shapes", &S::fields_for_small_shapes, flag(),
                "a field, not brute force, for shapes of few sites, too")
+          // Keys of before: a file that has one is told the new name, and of the last that its
+          // meaning has changed.
           .former("skip_closed_forms", "closed_forms")
           .former("skip_broad_phase", "broad_phase")
           .former("skip_shared_fields", "share_fields")

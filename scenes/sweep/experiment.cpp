@@ -18,6 +18,7 @@ namespace brink {
 namespace fs = std::filesystem;
 namespace {
 
+/// One value of an axis, as people see it and as an override says it.
 struct Value {
   std::string text;  ///< for people
   std::string toml;  ///< for an override
@@ -46,6 +47,7 @@ struct ExperimentTable {
   PlotTable plot;
 };
 
+/// A value as TOML on one line that reads back as the same value: what --set and --list need.
 std::string toml_text(const toml::node& node) {
   if (const auto* number = node.as_floating_point()) {
     const std::string text = number_text(number->get());
@@ -59,11 +61,13 @@ std::string toml_text(const toml::node& node) {
   }
   if (const toml::table* table = node.as_table()) {
     std::string text;
+    // A JSON string is a TOML basic string: the same escapes.
     for (const auto& [key, value] : *table)
       text += (text.empty() ? "" : ", ") + Json(std::string(key.str())).dump() + " = " + toml_text(value);
     return "{" + text + "}";
   }
   std::ostringstream out;
+  // Whole numbers, flags, dates, strings inside of arrays: as toml++ writes them.
   node.visit([&](const auto& value) {
     if constexpr (toml::is_value<decltype(value)>) out << toml::default_formatter{value};
   });
@@ -92,6 +96,7 @@ std::vector<Value> values_of(const toml::node& node, TomlDocument& doc, const st
   std::vector<Value> values;
   for (const toml::node& element : *array) {
     Value value = value_of(element, doc);
+    // Compared as overrides: 1 and 1.0 are two values, as they would be two in the scene.
     if (std::any_of(values.begin(), values.end(), [&](const Value& v) { return v.toml == value.toml; }))
       fault(doc, value.where, key, "twice the same value", value.toml, "each value once");
     values.push_back(std::move(value));
@@ -112,6 +117,7 @@ void read_seeds(const toml::node& node, TomlDocument& doc, ExperimentTable& out)
   if (!node.is_integer())
     return axis_reader(&ExperimentTable::seeds, "seeds", "seed", "world.seed")(node, doc, out);
   const std::int64_t count = node.as_integer()->get();
+  // Beyond kMostSweepRuns check_count() would refuse all the same, but only after they have been made.
   if (count < 1 || count > static_cast<std::int64_t>(kMostSweepRuns))
     return fault(doc, doc.where(node), "seeds", "out of range", given(node),
                  "a count >= 1, for the seeds 1, 2 ... , or an array of seeds");
@@ -136,6 +142,7 @@ void read_scenes(const toml::node& node, TomlDocument& doc, ExperimentTable& out
     scene.toml = scene.text;
     stems.insert(fs::path(scene.toml).stem().string());
   }
+  // By their stems while these tell them apart.
   if (stems.size() == out.scenes.values.size())
     for (Value& scene : out.scenes.values) scene.text = fs::path(scene.toml).stem().string();
 }
@@ -157,6 +164,8 @@ bool earlier(const Where& a, const Where& b) {
   return std::tie(a.line, a.column) < std::tie(b.line, b.column);
 }
 
+// A scene's path may be given dotted (solver.step = [...]) or by tables ([axes.solver]): both
+// are walked alike.
 void read_axes(const toml::node& node, TomlDocument& doc, ExperimentTable& out) {
   const toml::table* table = node.as_table();
   if (table == nullptr)
@@ -167,6 +176,7 @@ void read_axes(const toml::node& node, TomlDocument& doc, ExperimentTable& out) 
       [&](const std::string& path, const toml::node& values) {
         axis_reader(&ExperimentTable::axes, "axes." + path, path, path)(values, doc, out);
       });
+  // A table's entries come in the order of their names; the file's order is that of their places.
   std::sort(out.axes.begin(), out.axes.end(),
             [](const Axis& a, const Axis& b) { return earlier(a.where, b.where); });
 }
@@ -177,6 +187,7 @@ void read_settings(const toml::node& node, TomlDocument& doc, ExperimentTable& o
     return fault(doc, doc.where(node), "set", "wrong type", given(node),
                  "a table of dotted paths of the scene file, each with its value");
   walk(
+      // An inline table is a value (disc = {radius = 1}), any other a part of the path.
       *table, "", [](const toml::node& inner) { return inner.as_table()->is_inline(); },
       [&](const std::string& path, const toml::node& value) {
         out.settings.push_back({path, value_of(value, doc)});
@@ -221,6 +232,7 @@ const Schema<ExperimentTable>& experiment_schema() {
   return schema;
 }
 
+/// In the order of Experiment::axes: the last varies fastest, so seeds of one setting follow each other.
 std::vector<Axis> all_axes(ExperimentTable& table) {
   std::vector<Axis> axes{table.scenes};
   for (auto* group : {&table.policies, &table.orders, &table.axes, &table.seeds})
@@ -230,6 +242,7 @@ std::vector<Axis> all_axes(ExperimentTable& table) {
 
 /// Faults of axes and settings among themselves.
 void check_paths(const std::vector<Axis>& axes, const ExperimentTable& table, TomlDocument& doc) {
+  // The scene axis (0) has no path.
   for (std::size_t k = 1; k < axes.size(); ++k)
     for (std::size_t j = 1; j < k; ++j)
       if (axes[j].path == axes[k].path)
@@ -242,6 +255,7 @@ void check_paths(const std::vector<Axis>& axes, const ExperimentTable& table, To
 }
 
 void check_count(const std::vector<Axis>& axes, TomlDocument& doc) {
+  // As a number that cannot overflow.
   double runs = 1.0;
   for (const Axis& axis : axes) runs *= static_cast<double>(axis.values.size());
   if (runs > static_cast<double>(kMostSweepRuns))
@@ -253,6 +267,7 @@ void check_count(const std::vector<Axis>& axes, TomlDocument& doc) {
 SweepPlot plot_of(const PlotTable& table, const std::vector<Axis>& axes, TomlDocument& doc) {
   std::vector<std::string> names, useful;
   for (const Axis& axis : axes) names.push_back(axis.name);
+  // A stream takes a leading number of "1e-3 s", too: all of the text must have been read.
   const auto numeric = [](const Axis& axis) {
     return std::all_of(axis.values.begin(), axis.values.end(), [](const Value& v) {
       double x = 0.0;
@@ -260,6 +275,8 @@ SweepPlot plot_of(const PlotTable& table, const std::vector<Axis>& axes, TomlDoc
       return (in >> x) && in.eof();
     });
   };
+  // Numbers first: the x axis is one if there is one. Axes of one value and the seed tell
+  // nothing along a plot.
   for (const bool numbers : {true, false})
     for (const Axis& axis : axes)
       if (axis.values.size() > 1 && axis.path != "world.seed" && numeric(axis) == numbers)
@@ -299,10 +316,13 @@ class SceneTrial {
       const Scene loaded = load_scene(folder_ / scene.toml, common_);
       StateHash hash;
       hash.add(world_hash(loaded.world));
+      // Options and world: a title or a comment that is changed does not make a run another one.
       for (const char c : loaded.options_json) hash.add(static_cast<std::uint64_t>(c));
       return hash.value();
     } catch (const SceneFaults& faults) {
       for (const Setting& s : settings_) tell(faults, s.path, s.value.where, "set." + s.path);
+      // Faults of an override have been put where the experiment file asked for it; any others
+      // are the scene's.
       if (doc_.faults().empty()) throw;  // the scene file's own faults, with their places there
     } catch (const IoError& e) {
       doc_.faults().add(scene.where, std::string("scenes: ") + e.what());
@@ -310,6 +330,7 @@ class SceneTrial {
     return std::nullopt;
   }
 
+  /// Tries one value alone, with every other axis as the scene has it.
   void value(const Value& scene, const Axis& axis, const Value& value) {
     std::vector<std::string> overrides = common_;
     overrides.push_back(override_text(axis.path, value));
@@ -324,6 +345,7 @@ class SceneTrial {
 
  private:
   void tell(const SceneFaults& faults, const std::string& path, const Where& where, const std::string& what) {
+    // As FaultList::add() begins the message of a fault in an override, made printable.
     const std::string mark = printable("--set " + path + ": ");
     for (const SceneFault& f : faults.faults())
       if (f.line == 0 && f.message.starts_with(mark))
@@ -346,6 +368,7 @@ std::vector<std::uint64_t> try_scenes(const std::vector<Axis>& axes, const Exper
     if (!identity) continue;
     identities.push_back(*identity);
     for (std::size_t k = 1; k < axes.size(); ++k)
+      // Seeds are not tried, as there may be a million of them.
       if (axes[k].path != "world.seed")
         for (const Value& value : axes[k].values) trial.value(scene, axes[k], value);
   }
@@ -358,6 +381,7 @@ std::string key_of(std::uint64_t identity, const SweepRun& run, const Experiment
   std::string text(version());
   for (const std::string& o : run.overrides) text += '\n' + o;
   for (const char c : text) hash.add(static_cast<std::uint64_t>(c));
+  // -1 is no time that may be given.
   hash.add(table.until.given ? table.until.value : -1.0);
   hash.add(table.seconds_limit);
   return hash.text();
@@ -378,6 +402,7 @@ std::vector<SweepRun> product(const std::vector<Axis>& axes, const ExperimentTab
     }
     run.key = key_of(identities[at.front()], run, table);
     runs.push_back(std::move(run));
+    // An odometer over the axes: the last counts up, and at its end carries to the one before.
     std::size_t k = axes.size();
     while (k > 0 && ++at[k - 1] == axes[k - 1].values.size()) at[--k] = 0;
     if (k == 0) return runs;
@@ -388,6 +413,7 @@ std::vector<SweepRun> product(const std::vector<Axis>& axes, const ExperimentTab
 
 Experiment load_experiment(const fs::path& file) {
   TomlDocument doc(text_of_file(file), {});
+  // Syntax first, then keys, then axes, then scenes: each needs that those before are sound.
   const auto stop_on_faults = [&] { doc.faults().throw_if_any(file.string()); };
   stop_on_faults();
   ExperimentTable table;

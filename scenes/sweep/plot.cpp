@@ -9,6 +9,7 @@
 namespace brink {
 namespace {
 
+/// The number of axes where there is none of that name: "" means no series.
 std::size_t axis_named(const Experiment& experiment, const std::string& name) {
   for (std::size_t k = 0; k < experiment.axes.size(); ++k)
     if (experiment.axes[k].name == name) return k;
@@ -24,6 +25,7 @@ std::optional<double> as_number(const std::string& text) {
 /// Numbers by their value, names side by side.
 ChartAxis x_axis_of(const SweepAxis& axis) {
   const auto numeric = [](const std::string& v) { return as_number(v).has_value(); };
+  // A single number is a name: an axis of numbers needs two.
   const bool numbers = axis.values.size() > 1 && std::all_of(axis.values.begin(), axis.values.end(), numeric);
   return {axis.name, numbers ? std::vector<std::string>() : axis.values, false, {}};
 }
@@ -52,6 +54,7 @@ std::vector<std::vector<SweepPoint>> sweep_lines(const Experiment& experiment, c
   const std::vector<std::string> single{""};
   const std::vector<std::string>& names = one ? single : experiment.axes[series].values;
   const auto& values = experiment.axes[x].values;
+  // By series and place along x; several seeds meet in one place.
   std::vector<std::vector<std::vector<double>>> found(names.size(),
                                                       std::vector<std::vector<double>>(values.size()));
   const auto index = [](const std::vector<std::string>& all, const std::string& v) {
@@ -59,6 +62,7 @@ std::vector<std::vector<SweepPoint>> sweep_lines(const Experiment& experiment, c
   };
   for (std::size_t k = 0; k < experiment.runs.size(); ++k) {
     if (!results[k]) continue;
+    // Rows that could not start, and columns that an earlier Brink did not know, are NaN.
     const double value = results[k]->numbers.at(column);
     if (!std::isfinite(value)) continue;
     const auto& at = experiment.runs[k].values;

@@ -9,6 +9,7 @@ namespace brink {
 namespace {
 
 /// Visits every number of a summary by name, each name once.
+/// One function for names and values: a column cannot be missing in one of them.
 template <class Visit>
 void for_each_number(const RunSummary& s, Visit&& visit) {
   const double scale = std::max(std::abs(s.energy_initial), std::abs(s.energy_final));
@@ -17,6 +18,7 @@ void for_each_number(const RunSummary& s, Visit&& visit) {
   visit("wall_seconds", s.wall_seconds);
   visit("energy_initial", s.energy_initial);
   visit("energy_final", s.energy_final);
+  // Of the larger: a drift from 0 to something is all of it, and both 0 is none.
   visit("energy_drift", scale > 0.0 ? (s.energy_final - s.energy_initial) / scale : 0.0);
   visit("momentum_x", s.momentum.x());
   visit("momentum_y", s.momentum.y());
@@ -33,6 +35,7 @@ void for_each_number(const RunSummary& s, Visit&& visit) {
   visit("island_energy", s.island_energy);
   visit("rest_energy", s.rest_energy);
   WorkCounters::for_each(s.work, [&](const char* name, auto value, const char*) {
+    // The work counter of that name is the summary's number, told above.
     if (std::string_view(name) != "collisions") visit(name, static_cast<double>(value));
   });
 }
@@ -51,6 +54,7 @@ const std::vector<std::string>& sweep_columns() {
 SweepResult sweep_result(const RunSummary& summary) {
   SweepResult result;
   result.termination = summary.termination_text();
+  // Of `failed` termination_text() has the reason already.
   if (summary.termination == Termination::stopped) result.termination += ": " + summary.why;
   result.state_hash = fmt::format("{:016x}", summary.state_hash);
   for_each_number(summary, [&](const char* name, double value) { result.numbers[name] = value; });
@@ -60,6 +64,7 @@ SweepResult sweep_result(const RunSummary& summary) {
 SweepResult sweep_failure(const std::string& why) {
   SweepResult result;
   result.termination = "failed: " + why;
+  // A line break would part a row of the table.
   std::replace(result.termination.begin(), result.termination.end(), '\n', ' ');
   for (const std::string& name : sweep_columns()) result.numbers[name] = std::nan("");
   return result;

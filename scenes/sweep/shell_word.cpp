@@ -7,6 +7,8 @@
 namespace brink {
 namespace {
 
+// Characters that no POSIX shell gives a meaning to inside a word. `~` is missing, as it has
+// one at the start.
 bool is_bare(std::string_view text) {
   return !text.empty() && text.find_first_not_of(
                               "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
@@ -33,6 +35,7 @@ std::string dollar_quoted(std::string_view text) {
 std::string shell_word(std::string_view text) {
   if (is_bare(text)) return std::string(text);
   if (printable(text) != text) return dollar_quoted(text);
+  // In single quotes nothing has a meaning but the quote itself: out, an escaped one, in again.
   std::string word = "'";
   for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return word + "'";

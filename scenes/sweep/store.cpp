@@ -19,6 +19,7 @@ namespace brink {
 namespace fs = std::filesystem;
 namespace {
 
+/// [ms] for another process that writes; many may begin at once.
 constexpr int kLongestWait = 60'000;
 constexpr const char* kWhat = "results of a sweep";
 
@@ -31,6 +32,8 @@ CREATE TABLE IF NOT EXISTS run (id INTEGER PRIMARY KEY, key TEXT UNIQUE, scene T
 constexpr std::int64_t kOpening = 0;  ///< the byte of whoever opens the file; workers count from 1
 
 /// Which workers are alive: one byte of a file each, locked while its process lives.
+/// Locks of open file descriptions (F_OFD), not of the process: threads share them, and the system drops
+/// them when the last descriptor closes, however the process ends.
 class WorkerLocks {
  public:
   explicit WorkerLocks(const fs::path& file) : fd_(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
@@ -44,6 +47,7 @@ class WorkerLocks {
   void hold(std::int64_t worker) const { set(worker, F_WRLCK); }
   void let_go(std::int64_t worker) const { set(worker, F_UNLCK); }
   /// @pre not this process's own worker.
+  /// Its lock does not stand in its own way: it would be told as gone.
   bool held_by_another(std::int64_t worker) const {
     struct flock lock = byte(worker, F_WRLCK);
     return ::fcntl(fd_, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
@@ -81,6 +85,7 @@ std::string settings_json(const Experiment& experiment, const SweepRun& run) {
 
 }  // namespace
 
+// In this order: the lock file is opened before the database and closed after it.
 struct SweepStore::Impl {
   fs::path file;
   WorkerLocks locks;
@@ -108,6 +113,7 @@ struct SweepStore::Impl {
             fmt::format("{}: not the results of a sweep: table {} is missing", file.string(), table));
   }
 
+  // Another version may have more counters: their columns are added, and are NULL in rows of before.
   void make_tables() {
     db.exec(kTables);
     std::set<std::string> present;
@@ -117,6 +123,7 @@ struct SweepStore::Impl {
       if (!present.contains(name)) db.exec(fmt::format("ALTER TABLE run ADD COLUMN {} REAL", name));
   }
 
+  // AUTOINCREMENT never gives a number twice: a row's worker is one process for ever.
   void add_worker() {
     db.exec("INSERT INTO worker (started) VALUES (datetime('now'))");
     worker = db.getLastInsertRowid();
@@ -124,6 +131,7 @@ struct SweepStore::Impl {
   }
 
   void add_runs(const Experiment& experiment) {
+    // What is there already, done or not, stays: keys are unique.
     SQLite::Statement insert(db,
                              "INSERT OR IGNORE INTO run (key, scene, settings, overrides, state) "
                              "VALUES (?, ?, ?, ?, 'waiting')");
@@ -144,6 +152,7 @@ struct SweepStore::Impl {
   }
 
   int reclaim() {
+    // IMMEDIATE: two processes that reclaim at once would both read before either writes.
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     std::vector<std::int64_t> gone;
     SQLite::Statement workers(db, "SELECT DISTINCT worker FROM run WHERE state = 'running'");
@@ -163,6 +172,7 @@ struct SweepStore::Impl {
   }
 
   static SweepResult row_of(SQLite::Statement& select) {
+    // What stands in a column is checked, as the file may come from anywhere.
     SweepResult row;
     const auto require = [](bool right, const std::string& column) {
       if (!right) throw BadInput(column + " is not of the type that stands there");
@@ -192,6 +202,7 @@ struct SweepStore::Impl {
 SweepStore::SweepStore(const fs::path& dir, const Experiment& experiment) {
   const auto open = [&] {
     impl_ = std::make_unique<Impl>(dir);
+    // All in one transaction: a second process sees either nothing or a worker with its lock and runs.
     SQLite::Transaction transaction(impl_->db, SQLite::TransactionBehavior::IMMEDIATE);
     impl_->make_tables();
     impl_->add_worker();
@@ -206,6 +217,7 @@ SweepStore::~SweepStore() = default;
 
 bool SweepStore::take(const SweepRun& run) {
   return impl_->locked([&] {
+    // One statement: of two processes only one finds the run waiting.
     SQLite::Statement update(
         impl_->db, "UPDATE run SET state = 'running', worker = ? WHERE key = ? AND state = 'waiting'");
     update.bind(1, impl_->worker);
@@ -231,6 +243,7 @@ void SweepStore::finish(const SweepRun& run, const SweepResult& result) {
 
 void SweepStore::let_go(const SweepRun& run) {
   impl_->locked([&] {
+    // Its own runs alone: another process may have reclaimed and taken this one meanwhile.
     SQLite::Statement update(impl_->db,
                              "UPDATE run SET state = 'waiting', worker = NULL WHERE key = ? AND worker = ? "
                              "AND state = 'running'");
@@ -251,6 +264,7 @@ std::vector<std::optional<SweepResult>> SweepStore::results(const Experiment& ex
     SQLite::Statement select(
         impl_->db, "SELECT termination, state_hash" + columns + " FROM run WHERE key = ? AND state = 'done'");
     return reading(impl_->file, "run", [&] {
+      // Looked for in the whole table: a run of another state would never be made, and nobody would say why.
       if (impl_->db
               .execAndGet("SELECT count(*) FROM run WHERE state IS NULL OR state NOT IN ('waiting', "
                           "'running', 'done')")

@@ -23,6 +23,7 @@ class Crew {
       : experiment_(experiment), store_(store), request_(request) {}
 
   /// Goes through the list once. Returns how many runs were made.
+  /// A run that another thread or process has taken is passed over: the list is gone through once.
   std::size_t work() {
     next_ = 0;
     made_ = 0;
@@ -35,6 +36,7 @@ class Crew {
     if (error_) std::rethrow_exception(error_);
     return made_;
   }
+  // Asked by every thread: failed_ is atomic, and `stop` may be called from several (SweepRequest).
   bool stopped() const { return failed_ || (request_.stop && request_.stop()); }
 
  private:
@@ -43,6 +45,7 @@ class Crew {
       for (std::size_t k = next_++; k < experiment_.runs.size() && !stopped(); k = next_++)
         if (store_.take(experiment_.runs[k])) make(experiment_.runs[k]);
     } catch (...) {
+      // The first failure is rethrown by work(); those of other threads are dropped.
       const std::lock_guard lock(mutex_);
       if (!error_) error_ = std::current_exception();
       failed_ = true;
@@ -52,9 +55,11 @@ class Crew {
   void make(const SweepRun& run) {
     try {
       const SweepResult result = make_sweep_run(experiment_, run, [this] { return stopped(); });
+      // A stopped run has no result: what it reached depends on the moment.
       if (stopped()) return store_.let_go(run);
       store_.finish(run, result);
       ++made_;
+      // One thread at a time tells; the runs themselves share nothing.
       const std::lock_guard lock(mutex_);
       if (request_.done) request_.done(run, result);
     } catch (...) {
@@ -84,6 +89,7 @@ class Crew {
 
 SweepResult make_sweep_run(const Experiment& experiment, const SweepRun& run,
                            const std::function<bool()>& stop) {
+  // The seconds_limit counts the simulation alone, as wall_seconds does: the clock starts after planning.
   try {
     const Scene scene = load_scene(run.scene, run.overrides);
     Simulator simulator(scene.world, scene.solver);
@@ -92,6 +98,7 @@ SweepResult make_sweep_run(const Experiment& experiment, const SweepRun& run,
     RunOptions options;
     options.until = experiment.until.value_or(scene.duration);
     options.frame_interval = scene.output.frame_interval;
+    // Nothing but the summary is kept of a run.
     options.checkpoint_seconds = -1.0;
     options.record_events = false;
     options.progress = [&](double, std::uint64_t) {
@@ -100,15 +107,20 @@ SweepResult make_sweep_run(const Experiment& experiment, const SweepRun& run,
       return !late && !(stop && stop());
     };
     RunSummary summary = simulator.run(options);
+    // A run that `stop` ended is given back, so its reason is never seen; one that was late is a
+    // result that says so.
     if (late) summary.why = fmt::format("seconds_limit = {} s", experiment.seconds_limit);
     return sweep_result(summary);
   } catch (const BadInput& e) {
+    // What this combination of options cannot do is a row of the table. An IoError is none:
+    // it ends the sweep.
     return sweep_failure(e.what());
   }
 }
 
 void run_sweep(const Experiment& experiment, SweepStore& store, const SweepRequest& request) {
   Crew crew(experiment, store, request);
+  // Once more as long as something was made: meanwhile another process may have ended and left runs behind.
   do store.reclaim();
   while (crew.work() > 0 && !crew.stopped());
 }

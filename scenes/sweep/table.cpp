@@ -16,6 +16,7 @@
 namespace brink {
 namespace {
 
+// "failed: why" counts as "failed", whatever the reason.
 std::string bare_ending(const SweepResult& result) {
   return result.termination.substr(0, result.termination.find(':'));
 }
@@ -44,7 +45,8 @@ std::string hash_text(const SweepGroup& group, const SweepResults& results) {
 
 /// Lines of cells, each column as wide as its widest; the first line is the heading.
 std::string aligned(const std::vector<std::vector<std::string>>& lines) {
-  // counts code points, as a terminal does
+  // Counts code points, as a terminal does: bytes that continue a character of UTF-8
+  // (10xxxxxx) have no width.
   const auto width = [](const std::string& s) {
     return static_cast<std::size_t>(
         std::count_if(s.begin(), s.end(), [](char c) { return (c & 0xc0) != 0x80; }));
@@ -67,12 +69,14 @@ std::string aligned(const std::vector<std::vector<std::string>>& lines) {
 std::vector<std::size_t> telling_axes(const Experiment& experiment) {
   std::vector<std::size_t> axes;
   for (std::size_t k = 0; k < experiment.axes.size(); ++k)
+    // The scene is named even where there is one alone, so that every line says something.
     if (experiment.axes[k].path != "world.seed" && (k == 0 || experiment.axes[k].values.size() > 1))
       axes.push_back(k);
   return axes;
 }
 
 /// Those that are to give the same events: not known to be approximate.
+/// A policy that this program does not have is taken to be exact: then a difference is told.
 bool exact(const std::string& policy) {
   for (const Choice& choice : policies())
     if (choice.name == policy) return !make_policy(policy)->approximate();
@@ -92,6 +96,7 @@ std::string in_csv(const std::string& text) {
 double median(std::vector<double> values) {
   std::erase_if(values, [](double x) { return std::isnan(x); });
   if (values.empty()) return std::nan("");
+  // The lower middle: a value that some run has, where a mean of two would be nobody's.
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -103,6 +108,7 @@ std::vector<SweepGroup> sweep_groups(const Experiment& experiment, const SweepRe
   for (std::size_t k = 0; k < experiment.runs.size(); ++k) {
     std::vector<std::string> values = experiment.runs[k].values;
     for (std::size_t a = 0; a < values.size(); ++a)
+      // One group a setting: the seed's value is left out.
       if (experiment.axes[a].path == "world.seed") values[a].clear();
     const auto [at, fresh] = index.try_emplace(values, groups.size());
     if (fresh) groups.push_back({values, {}, 0});
@@ -146,6 +152,7 @@ std::string policy_agreement(const Experiment& experiment, const SweepResults& r
   std::map<std::vector<std::string>, std::map<std::string, std::string>> hashes;  // of exact policies
   std::set<std::string> compared;
   for (std::size_t k = 0; k < experiment.runs.size(); ++k) {
+    // The same settings without the policy: what all exact policies must agree in.
     std::vector<std::string> rest = experiment.runs[k].values;
     const std::string name = std::exchange(rest[policy], "");
     if (!results[k] || !exact(name)) continue;

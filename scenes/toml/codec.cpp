@@ -16,6 +16,8 @@ bool read_number(const toml::node& node, TomlDocument& doc, const std::string& k
                  double& out) {
   if (!node.is_number()) return wrong_type(node, doc, key, range.text()), false;
   out = node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
+  // A range ends at finite numbers, and every comparison with NaN is false: so what is not finite is out
+  // of range, and only the message tells the two apart.
   if (range.holds(out)) return true;
   const char* wrong = std::isfinite(out) ? "out of range" : "not a finite number";
   doc.faults().add(doc.where(node), fault_text(key, wrong, given(node), range.text()));
@@ -28,6 +30,7 @@ bool read_point(const toml::node& node, TomlDocument& doc, const std::string& ke
   if (array == nullptr || array->size() != 2)
     return wrong_type(node, doc, key, "two numbers [x, y]" + (range.unit.empty() ? "" : " in " + range.unit)),
            false;
+  // Both are read though the first is wrong: both faults are told.
   const bool x = read_number((*array)[0], doc, key, range, out.x());
   const bool y = read_number((*array)[1], doc, key, range, out.y());
   return x && y;
@@ -152,6 +155,7 @@ Codec<std::string> choice(std::vector<std::string> allowed, std::vector<std::str
           [](const std::string& x) { return Json(x); }};
 }
 
+// The list for people is that of now; a policy that a program registers later is allowed all the same.
 Codec<std::string> open_choice(std::function<std::vector<std::string>()> allowed) {
   return {listed(allowed()),
           [=](const toml::node& node, TomlDocument& doc, const std::string& key, std::string& out) {
@@ -192,6 +196,7 @@ Codec<std::vector<Vec2>> points(std::size_t least, std::size_t most, std::string
             const toml::array* array = node.as_array();
             if (array == nullptr || array->size() < least || array->size() > most)
               return wrong_type(node, doc, key, type), false;
+            // Every element is read, whatever those before it are: all faults are told.
             bool good = true;
             for (const toml::node& element : *array) {
               out.emplace_back(Vec2::Zero());

@@ -7,6 +7,7 @@
 namespace brink {
 namespace {
 
+/// Parts of one path, also of an override's. bodies.gas.scatter.region.0.1 has six.
 constexpr int kMaxKeyDepth = 64;
 
 std::vector<std::string> paths_of(const std::vector<std::string>& overrides) {
@@ -22,6 +23,8 @@ class KeyDepthScan {
   explicit KeyDepthScan(std::string_view text) : text_(text) {}
 
   /// Line of the first key that is too deep, or 0.
+  /// Dots are counted since the last character that ends a key or a value: those of a number, too, which
+  /// reaches the next comma or line long before the limit.
   int first_too_deep() {
     for (; at_ < text_.size(); ++at_) {
       const char c = text_[at_];
@@ -45,6 +48,7 @@ class KeyDepthScan {
   void skip_string(char quote) {
     const std::string triple(3, quote);
     const bool multi = text_.substr(at_, 3) == triple;
+    // Ends on the last quote, or on the newline that an open string ends at, which the caller counts.
     at_ += multi ? 3 : 1;
     for (; at_ < text_.size(); ++at_) {
       if (text_[at_] == '\\' && quote == '"')
@@ -84,6 +88,8 @@ std::vector<std::string> path_parts(std::string_view path) {
 }
 
 // The value of an override: as TOML if it reads as one value, else the text itself.
+// A second line would go on to keys of its own (`--set "title=1\nworld.seed=2"`), which nobody would
+// read: such a value is a string.
 toml::table as_value(std::string_view text) {
   if (text.find('\n') == std::string_view::npos) {
     const std::string line = "value = " + std::string(text);
@@ -102,6 +108,8 @@ int line_of(std::string_view text) {
   for (std::size_t at = text.find('\n'); at != std::string_view::npos; at = text.find('\n', at + 1))
     ends.push_back(at + 1);
   ends.push_back(text.size());
+  // The parser reads from front to back, so a beginning that fails its assertion makes every longer one
+  // fail, and bisection over the number of lines finds the first. The whole text is known to fail.
   std::size_t sound = 0, fault = ends.size();  // so many lines
   while (fault - sound > 1) {
     const std::size_t middle = (sound + fault) / 2;
@@ -118,6 +126,7 @@ int line_of(std::string_view text) {
 }
 
 bool is_index(const std::string& part, std::size_t size, std::size_t* index) {
+  // Nine digits at most: stoul cannot overflow.
   if (part.empty() || part.size() > 9 || part.find_first_not_of("0123456789") != std::string::npos)
     return false;
   *index = std::stoul(part);
@@ -139,6 +148,7 @@ TomlDocument::TomlDocument(std::string_view text, const std::vector<std::string>
     : faults_(paths_of(overrides)) {
   parse(text);
   readable_ = faults_.empty();
+  // After a syntax error there is nothing to override, and an override's fault would hide it among others.
   for (std::size_t i = 0; readable_ && i < overrides.size(); ++i) apply(overrides[i], static_cast<int>(i));
 }
 
@@ -170,6 +180,8 @@ void TomlDocument::apply(const std::string& override_text, int index) {
   toml::node* node = &root_;
   for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
     toml::node* next = step(*node, parts[i]);
+    // A table that the file does not have is made ("world.gravity=..." in a scene without [world]). An
+    // array never grows.
     if (next == nullptr && node->is_table()) {
       node->as_table()->insert_or_assign(parts[i], toml::table{});
       next = node->as_table()->get(parts[i]);
@@ -214,6 +226,8 @@ void TomlDocument::assign(toml::node& parent, const std::string& part, const tom
 }
 
 void TomlDocument::mark(const toml::node& node, int index) {
+  // By address: toml++ keeps nodes apart from the tables that hold them, so they stay where they are as
+  // other keys come in.
   override_of_[&node] = index;
   if (const toml::array* array = node.as_array())
     for (const toml::node& element : *array) mark(element, index);
@@ -223,6 +237,7 @@ void TomlDocument::mark(const toml::node& node, int index) {
 
 Where TomlDocument::where(const toml::node& node) const {
   if (const auto found = override_of_.find(&node); found != override_of_.end()) return {0, 0, found->second};
+  // What the parser has not placed has line 0.
   const auto& at = node.source().begin;
   return {std::max(1, static_cast<int>(at.line)), std::max(1, static_cast<int>(at.column))};
 }

@@ -21,7 +21,8 @@ std::string joined(const std::filesystem::path& file, const std::vector<SceneFau
   return text;
 }
 
-// Levenshtein distance, two rows.
+// Levenshtein distance, row by row in one array: `diagonal` is the entry of the row above that row[j]
+// overwrites, kept for the next column.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -45,6 +46,8 @@ SceneFaults::SceneFaults(const std::filesystem::path& file, std::vector<SceneFau
 void FaultList::add(const Where& where, std::string message) {
   if (where.override_index >= 0)
     message = "--set " + paths_[static_cast<std::size_t>(where.override_index)] + ": " + message;
+  // Made printable here as well as in joined(): a program may show faults() by itself. Printable text is
+  // not changed by being made so again.
   faults_.push_back({where.line, where.column, printable(message), {}});
 }
 
@@ -54,6 +57,8 @@ void FaultList::add_elsewhere(const std::string& file, int line, int column, con
 
 void FaultList::throw_if_any(const std::string& file) {
   if (faults_.empty()) return;
+  // Faults of the scene file itself have no file name and come first, those of overrides (line 0) before
+  // all. Stable: what is wrong at one place stays in the order in which it was found.
   std::stable_sort(faults_.begin(), faults_.end(), [](const SceneFault& a, const SceneFault& b) {
     return std::tie(a.file, a.line, a.column) < std::tie(b.file, b.line, b.column);
   });
@@ -89,6 +94,7 @@ std::string in_quotes(std::string_view text) {
 std::string number_text(double x) {
   if (std::isnan(x)) return "nan";
   if (std::isinf(x)) return x > 0 ? "inf" : "-inf";
+  // At least 24, the longest of the shortest texts ("-2.2250738585072014e-308").
   char buffer[40];
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr};
 }

@@ -31,6 +31,7 @@ struct LiveServer::Impl {
     server.Get("/", [this](const httplib::Request&, httplib::Response& response) {
       reply(response, "text/html; charset=utf-8", [&] { return replay_page_text(run_file, {}, true); });
     });
+    // Of a run that has ended the data say so, and the page stops asking.
     server.Get("/data", [this](const httplib::Request&, httplib::Response& response) {
       reply(response, "application/json", [&] { return replay_page_data(run_file, {}, !ended); });
     });
@@ -43,11 +44,13 @@ struct LiveServer::Impl {
     ask("/pause", Going::paused);
     ask("/go", Going::on);
     ask("/step", Going::to_next_event);
+    // Bound before the thread starts: the address is known when the constructor returns.
     port = server.bind_to_any_port("127.0.0.1");
     if (port <= 0) throw IoError("no port of 127.0.0.1 can be had");
     thread = std::thread([this] { server.listen_after_bind(); });
   }
   ~Impl() {
+    // Ends listen_after_bind().
     server.stop();
     thread.join();
   }
@@ -56,6 +59,9 @@ struct LiveServer::Impl {
   /// only the own page can set.
   httplib::Server::HandlerResponse answers(const httplib::Request& request,
                                            httplib::Response& response) const {
+    // A page of another site may come here under a name of its own that resolves to 127.0.0.1 (DNS
+    // rebinding): Host is then that name. And its scripts cannot set X-Brink without a preflight (CORS),
+    // which is refused.
     const std::string host = request.get_header_value("Host");
     const bool own = host == fmt::format("127.0.0.1:{}", port) || host == fmt::format("localhost:{}", port);
     const bool asks = request.method != "GET";
@@ -83,6 +89,7 @@ LiveServer::~LiveServer() = default;
 std::string LiveServer::address() const { return fmt::format("http://127.0.0.1:{}/", impl_->port); }
 bool LiveServer::paused() const { return impl_->going == Impl::Going::paused; }
 void LiveServer::event_happened() {
+  // Only from to_next_event: a page that has asked to go on, or to pause, meanwhile is not overruled.
   auto until_now = Impl::Going::to_next_event;
   impl_->going.compare_exchange_strong(until_now, Impl::Going::paused);
 }

@@ -17,6 +17,7 @@ void PageNumbers::take(const std::string& name, const char* kind, std::span<cons
   arrays_.push_back({name, kind, values.size()});
   const auto* from = reinterpret_cast<const unsigned char*>(values.data());
   bytes_.reserve(bytes_.size() + values.size_bytes());
+  // Bytes of equal significance follow each other: exponents of neighbours are nearly equal and pack well.
   for (std::size_t byte = 0; byte < sizeof(T); ++byte)
     for (std::size_t i = 0; i < values.size(); ++i) bytes_.push_back(from[i * sizeof(T) + byte]);
 }
@@ -30,6 +31,7 @@ std::string PageNumbers::text() const {
   if (compress2(packed.data(), &size, bytes_.data(), bytes_.size(), 6) != Z_OK)
     throw IoError("the numbers of a page cannot be compressed");
   packed.resize(size);
+  // Base64 takes three bytes at a time: zeros fill the last group, and their digits become the padding.
   const std::size_t missing = (3 - packed.size() % 3) % 3;
   packed.insert(packed.end(), missing, 0);
   namespace it = boost::archive::iterators;

@@ -31,6 +31,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Column = std::vector<double>;
 
+/// The page knows kinds by their place in this list.
 constexpr EventKind kKinds[] = {
     EventKind::collision, EventKind::zeno, EventKind::group, EventKind::undecided, EventKind::persist,
     EventKind::sleep,     EventKind::wake, EventKind::stick, EventKind::slip,      EventKind::lift};
@@ -110,10 +111,12 @@ class ReplayPage {
   void frames() {
     const auto bodies = static_cast<std::int64_t>(world_.bodies.size());
     const std::int64_t count = run_.frame_count();
+    // Rounded up: as few frames as the limit asks for, or fewer.
     const std::int64_t stride =
         std::max<std::int64_t>(1, (count * bodies + limits_.frame_rows - 1) / limits_.frame_rows);
     if (stride > 1) notices_.push_back(fmt::format("every {}. frame of {}", stride, count));
     std::vector<SiteMotion> moving;
+    // In the order of the sites, as the page takes them (motion.js).
     for (const FixedSite& site : world_.sites)
       if (SiteMotion motion(site); motion.moves()) moving.push_back(std::move(motion));
     Column times;
@@ -132,6 +135,7 @@ class ReplayPage {
   static BodyState site_at(SiteMotion& site, double t) {
     if (site.extend(t).status != Extent::Status::reached) return {};
     const BodyState s = site.motion().state(t);
+    // Frames come in time order: nobody asks for an earlier one any more.
     site.forget_before(t);
     return s;
   }
@@ -164,6 +168,7 @@ class ReplayPage {
       along.push_back(e.impulse_n), across.push_back(e.impulse_t);
       curves_.add(e);
     }
+    // A run file of before the states at collisions.
     if (any_collision && !any_known) notices_.push_back("between frames motions are interpolated");
     numbers_.add("event_t", t);
     numbers_.add("event_kind", kind);
@@ -226,6 +231,7 @@ class ReplayPage {
 
   // -- what they are of --
 
+  // Equal outlines are one shape of the page: copies tell theirs by a number.
   int shape(const Outline& outline) {
     const std::string json = outline_to_json(outline);
     const auto [found, made] = shapes_.emplace(json, static_cast<int>(shapes_.size()));
@@ -261,9 +267,11 @@ class ReplayPage {
   void facts() {
     const auto meta = run_.meta();
     const auto of = [&](const char* key) { return meta.contains(key) ? meta.at(key) : std::string(); };
+    // An extent of 0 has no scale.
     const Box extent = extent_of(run_, world_);
     const Vec2 size = (extent.high - extent.low).cwiseMax(1e-12);
     about_["title"] = world_.title.empty() ? of("scene") : world_.title;
+    // meta's end_time is that of the last checkpoint while the run goes on; the last frame is later.
     const bool running = of("termination") == "running";
     about_["termination"] = fmt::format("{} at {} s", of("termination"),
                                         running ? fmt::format("{}", curves_.end()) : of("end_time"));
@@ -282,6 +290,7 @@ class ReplayPage {
       fact(key, of(key));
     const Json summary = Json::parse(of("summary"), nullptr, false),
                options = Json::parse(of("options"), nullptr, false);
+    // Numbers of the summary that meta tells, too, are shown once.
     if (summary.is_object())
       for (const auto& [name, value] : summary.items())
         if (!value.is_object() && !meta.contains(name))
@@ -296,10 +305,12 @@ class ReplayPage {
   // -- the page --
 
   std::string filled() const {
+    // "</script>" in a name would end the page's data; JSON reads \u003c as the same character.
     std::string about = about_.dump(-1, ' ', false, Json::error_handler_t::replace);
     for (std::size_t at = 0; (at = about.find('<', at)) != std::string::npos;)
       about.replace(at, 1, "\\u003c");
     std::string page(page::html());
+    // The data come last: nothing in a run can look like a mark that is still to be filled.
     const auto put = [&page](std::string_view mark, std::string_view text) {
       page.replace(page.find(mark), mark.size(), text);
     };

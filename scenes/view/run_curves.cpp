@@ -8,6 +8,7 @@ namespace brink {
 
 namespace {
 
+/// world.gravity of the options; a run file has no column of it.
 Vec2 gravity_in(const std::string& options) {
   const auto json = nlohmann::json::parse(options, nullptr, false);
   const nlohmann::json::json_pointer at("/world/gravity");
@@ -25,6 +26,7 @@ double RunCurves::of_springs(const RunFile::Frame& f) const {
   for (const RunFile::Spring& s : springs_) {
     const Vec2 a = Frame(f.states[s.body].pose).to_world(s.at);
     const Vec2 b = s.other < 0 ? s.other_at : Frame(f.states[s.other].pose).to_world(s.other_at);
+    // As core/world/energy.cpp: half k times the square of what it is longer than at rest.
     const double longer = (a - b).norm() - s.rest_length;
     energy += 0.5 * s.stiffness * longer * longer;
   }
@@ -54,8 +56,10 @@ void RunCurves::add(const RunFile::Frame& f) {
 }
 
 void RunCurves::add(const Event& e) {
+  // Collisions of an interval of frames are told as a rate, at its left end.
   if (e.kind != EventKind::collision || t_.size() < 2) return;
   const auto after = std::upper_bound(t_.begin(), t_.end(), e.contact.time);
+  // An event at the last frame's time belongs to the last interval.
   const auto k =
       std::clamp<std::ptrdiff_t>(after - t_.begin(), 1, static_cast<std::ptrdiff_t>(t_.size()) - 1);
   if (t_[k] > t_[k - 1]) collisions_[k - 1] += 1.0 / (t_[k] - t_[k - 1]);
@@ -68,6 +72,7 @@ void RunCurves::put(PageNumbers& to, nlohmann::ordered_json& about) const {
                          std::vector<std::pair<const char*, const std::vector<double>*>> of) {
     nlohmann::ordered_json names = nlohmann::ordered_json::array(), columns = names;
     for (const auto& [name, values] : of) {
+      // A name of its own for each column: no panel has ten.
       const std::string column = fmt::format("curve_{}", columns.size() + 10 * about["curves"].size());
       to.add(column, *values);
       names.push_back(name);
@@ -76,10 +81,12 @@ void RunCurves::put(PageNumbers& to, nlohmann::ordered_json& about) const {
     about["curves"].push_back(
         {{"title", title}, {"unit", unit}, {"steps", steps}, {"names", names}, {"columns", columns}});
   };
+  // One frame makes no curve.
   if (t_.size() < 2) return;
   std::vector<std::pair<const char*, const std::vector<double>*>> energies{{"kinetic", &kinetic_}};
   if (!gravity_.isZero(0.0)) energies.emplace_back("of gravity", &of_gravity_);
   if (!springs_.empty()) energies.emplace_back("of springs", &of_springs_);
+  // A sum of one is that one.
   if (energies.size() > 1) energies.emplace_back("sum", &total_);
   curve("Energy", "J", false, energies);
   curve("Momentum", "N s", false, {{"x", &px_}, {"y", &py_}});
