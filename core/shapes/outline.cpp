@@ -102,13 +102,19 @@ void set_pseudo_normals(Outline& outline) {
     }
 }
 
+/// The boundary turns right there by more than roundings make of a straight joint, and the solid is to its left.
+bool is_notch(const Site& before, const Site& after) {
+  constexpr double kStraight = 1e-9;
+  return cross(direction_at_end(before), direction_at_start(after)) < -kStraight;
+}
+
 /// One sample a corner: where a union pinches, each of the corners that meet there has its own.
 void add_corner_samples(Outline& outline, const Loop& loop) {
   for (int k = 0; k < loop.count; ++k) {
     const Site& after = outline.sites[loop.first + k];
     const int before = loop.first + (k + loop.count - 1) % loop.count;
-    outline.samples.push_back(
-        {after.a, std::max(after.radius, outline.sites[before].radius), -1, before, loop.first + k});
+    outline.samples.push_back({after.a, std::max(after.radius, outline.sites[before].radius), -1, before,
+                               loop.first + k, is_notch(outline.sites[before], after)});
   }
 }
 

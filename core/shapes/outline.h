@@ -32,6 +32,8 @@ struct Sample {
   int arc_site =
       -1;  ///< -1: vertex (counts in every direction); else the arc's site: counts in its sector only
   int before = -1, after = -1;  ///< of a solid's vertex: the sites that end and begin there
+  /// A solid's vertex at the bottom of a notch: whatever comes from outside meets one of its sides before.
+  bool hollow = false;
 };
 
 /// The sites of a shape in its own frame; immutable once built, shared by every body of that shape.

@@ -57,7 +57,9 @@ Grid make_grid(const std::vector<Box>& boxes) {
 Image image_at_home(const Box& box, const Periods& periods) {
   const auto along = [&](int axis) {
     const double size = periods.size[axis];
-    return size > 0.0 ? -static_cast<int>(std::floor(box.center()[axis] / size)) : 0;
+    if (!(size > 0.0)) return 0;
+    const double whole = std::floor(box.center()[axis] / size);
+    return -static_cast<int>(std::clamp(whole, -Periods::kFarthest, Periods::kFarthest));
   };
   return {along(0), along(1)};
 }

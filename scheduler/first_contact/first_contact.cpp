@@ -174,7 +174,7 @@ class PairSearch {
 
   void advance_sample(const Half& half, int i) {
     // never less than the next double, or the search would stand still
-    safe_until(half, i) = std::max(t_ + step(half, i), next_);
+    safe_until(half, i) = half.sample(i).hollow ? kForever : std::max(t_ + step(half, i), next_);
     least_ = std::min(least_, safe_until(half, i));
   }
 

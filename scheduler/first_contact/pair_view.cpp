@@ -4,6 +4,7 @@
 
 #include "brink/core/base/limits.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
+#include "brink/scheduler/first_contact/corners.h"
 #include "brink/scheduler/first_contact/site_step.h"
 
 namespace brink::detail {
@@ -29,6 +30,13 @@ bool comes_to_corner(const Site& site, const Nearest& nearest, const Vec2& q, co
   // the cone of the corner's normals, so -d lies in the cone if it is no farther from the bisector than
   // that normal.
   return beyond.dot(bisector) > 0.0 && -d.dot(bisector) >= normal.dot(bisector) * speed;
+}
+
+/// True if the solid's boundary goes on from that end of the site towards the site's free side: what lies there meets
+/// a face, not a tip.
+bool is_hollow(const Site& site, bool at_a) {
+  const Vec2 inward = at_a ? direction_at_start(site) : Vec2(-direction_at_end(site));
+  return inward.dot(at_a ? site.pseudo_a : site.pseudo_b) > kParallel;
 }
 
 /// A direction out of the site's end at which q is nearest; where they are one, to `rounding`, that of a
@@ -61,6 +69,17 @@ Feature PairView::vertex_feature(const Half& half, int i, int j, const Nearest& 
   Feature f{i, j, 0.0, 0.0, normal_at(site, nearest, path.q), nearest.point};
   const double side = side_of(site, nearest, path.q);
   f.gap = side * nearest.distance - site.radius - sample.radius;
+  const bool at_end = nearest.foot != Foot::interior && site.kind != SiteKind::point;
+  if (at_end && site.solid && nearest.distance <= limits_.tolerance &&
+      is_hollow(site, nearest.foot == Foot::start) &&
+      nearest.distance <= 4.0 * gap_rounding(half, i, path.q)) {
+    // In a hollow corner each side is a face: the way from the corner itself is rounding, and between the two
+    // normals lies one that says of neither how long it is clear.
+    f.normal = right_of(nearest.foot == Foot::start ? direction_at_start(site) : direction_at_end(site));
+    f.rate = f.normal.dot(path.rate);
+    f.point = nearest.point;
+    return f;
+  }
   const auto comes_to_end = [&] {
     const double rounding = 4.0 * gap_rounding(half, i, path.q);
     if (nearest.foot == Foot::interior && site.kind != SiteKind::point)

@@ -58,7 +58,7 @@ class PairView {
     for (const Half& half : halves_) {
       const Reach reach(*this, half, tolerance);
       for (int i = 0; i < half.count; ++i)
-        if (reach.leaves_out(i))
+        if (half.sample(i).hollow || reach.leaves_out(i))
           continue;
         else if (half.sample(i).arc_site >= 0)
           each_arc_feature(half, i, tolerance, visit);

@@ -1,5 +1,6 @@
 #include "brink/scheduler/islands/near_features.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -7,12 +8,14 @@
 
 #include "brink/core/shapes/curve_site.h"
 #include "brink/core/shapes/distance.h"
+#include "brink/scheduler/resolve/wedge.h"
 
 namespace brink {
 
 namespace {
 
-/// What lies nearer to a wire than this part of its own radius may be on either side by roundings.
+/// What lies nearer to a wire than this part of its own radius may be on either side by roundings, and what is
+/// nearer by it to the centre of a solid's arc than the arc is has sunk into it.
 constexpr double kSinks = 1e-6;
 /// Below this part of the size two points are one, and their difference has no direction.
 constexpr double kOnePoint = 1e-12;
@@ -86,8 +89,9 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   if (sample.arc_site >= 0) {
     const Vec2 towards = half.carrier_frame.direction_to_local(-outward);
     const Site& arc = half.carrier.sites[sample.arc_site];
-    if (nearest.distance < arc.arc_radius * (1.0 - kOnePoint) || !in_sector(arc, towards))
-      return std::nullopt;
+    // a wire's other side is outside as well: what is a little nearer touches it from there
+    const double sunk = arc.solid ? kSinks * half.carrier.bounding_radius : kOnePoint * arc.arc_radius;
+    if (nearest.distance < arc.arc_radius - sunk || !in_sector(arc, towards)) return std::nullopt;
   }
   NearFeature f;
   f.sample = i;
@@ -150,6 +154,21 @@ OnCorner on_corner(const Half& half, std::size_t j, const Vec2& q, double tie) {
   return where;
 }
 
+/// True if sample i, upon the corner at an end of site j, parts from the corner by no other of its sides: behind site
+/// j the two overlap, be it by a strip of no width (a box right upon another that is as wide).
+bool has_no_way_by(const Half& half, int i, std::size_t j, const Vec2& q) {
+  const Site& site = half.other.sites[j];
+  const Vec2& corner = (q - site.a).squaredNorm() < (q - site.b).squaredNorm() ? site.a : site.b;
+  const Wedge of_sample = turned(wedge_at(half.carrier, half.carrier.samples[i].p), [&](const Vec2& d) {
+    return half.other_frame.direction_to_local(half.carrier_frame.direction_to_world(d));
+  });
+  const Wedge of_corner = wedge_at(half.other, corner);
+  if (!half.carrier.solid || of_sample.edges.empty()) return false;
+  return std::none_of(of_corner.normals.begin(), of_corner.normals.end(), [&](const Vec2& n) {
+    return n.dot(outward(site)) < 1.0 - kParallel && parts(n, of_sample, of_corner);
+  });
+}
+
 /// The feature of a sample upon the corner is that of the side on which it lies.
 void turn_outward(const Half& half, const Vec2& q, double side, NearFeature& f) {
   const Site& site = half.other.sites[f.site];
@@ -188,7 +207,10 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
       if (goes_on_nearer(half.other, j, nearest, q, tie)) continue;
     }
     auto f = feature(half, i, static_cast<int>(j), nearest[j], side, q);
-    if (f && where == OnCorner::this_side) turn_outward(half, q, side, *f);
+    if (f && where == OnCorner::this_side) {
+      turn_outward(half, q, side, *f);
+      f->no_way_by = has_no_way_by(half, i, j, q);
+    }
     if (f && f->gap <= reach) found.push_back(*f);
   }
 }
@@ -214,6 +236,13 @@ bool out_of_reach(const Half& half, const Sample& sample, double reach) {
   return !half.other.bounds.grown(reach + sample.radius).contains(q);
 }
 
+/// How far q is beyond the ends of a straight site, along it [m].
+double beyond_ends(const Site& site, const Vec2& q) {
+  const Vec2 d = site.b - site.a;
+  const double length = d.norm(), along = d.dot(q - site.a) / length;
+  return std::max({0.0, -along, along - length});
+}
+
 }  // namespace
 
 std::vector<NearFeature> near_features(const Outline& a, const ExtendedState& state_a, const Outline& b,
@@ -224,7 +253,8 @@ std::vector<NearFeature> near_features(const Outline& a, const ExtendedState& st
     const bool both = half.carrier.is_point() && half.other.is_point();
     if (half.other.is_point() && !(both && half.on_a)) continue;
     for (int i = 0; i < static_cast<int>(half.carrier.samples.size()); ++i)
-      if (!out_of_reach(half, half.carrier.samples[i], reach)) add_features(half, i, reach, found);
+      if (const Sample& s = half.carrier.samples[i]; !s.hollow && !out_of_reach(half, s, reach))
+        add_features(half, i, reach, found);
   }
   return found;
 }
@@ -238,7 +268,10 @@ double gap_of(const NearFeature& f, const Outline& a, const ExtendedState& state
   const Nearest nearest = nearest_on(site, q);
   const Vec2 out = half.other_frame.direction_to_local(half.on_a ? f.normal : Vec2(-f.normal));
   // a wire's side, and a solid's too, is the one on which the sample was
-  const bool abreast = nearest.foot == Foot::interior;  // beyond an end nothing is crossed
+  // Beyond an end nothing is crossed. Where there is no way by, roundings do not make one.
+  const double size = half.carrier.bounding_radius + half.other.bounding_radius;
+  const bool abreast =
+      nearest.foot == Foot::interior || (f.no_way_by && beyond_ends(site, q) <= kOneCorner * size);
   const bool crossed = abreast && (site.kind == SiteKind::segment ? out.dot(q - nearest.point) < 0.0
                                                                   : side_of(site, nearest, q) < 0.0);
   return (crossed ? -nearest.distance : nearest.distance) - site.radius - sample.radius;

@@ -19,6 +19,9 @@ struct NearFeature {
   double gap = 0.0;            ///< [m]
   bool thin = false;           ///< a sharp sample and a wire without thickness
   bool at_end = false;         ///< of a site that goes on from there: the sample may pass by
+  /// A corner upon a corner of which no other side parts the two: along this side's end there is no way by, even
+  /// where both are flush to the last bit.
+  bool no_way_by = false;
 };
 
 /// Features of a and b with a gap up to `reach` [m], in the order of samples of a, then of b, and of sites.

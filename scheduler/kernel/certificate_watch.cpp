@@ -32,7 +32,6 @@ CertificateWatch::CertificateWatch(const World& world, const Trajectories& traje
 
 void CertificateWatch::begin() {
   on_ = true;
-  seen_.clear();  // who is let through whom may be another since
   if (!world_->periods.any() && !walls_made_) make_walls();
 }
 

@@ -21,6 +21,8 @@ class CertificateWatch {
   /// From now on what is seen ends the run. Before, and under a policy that may miss contacts, overlaps are
   /// measured alone.
   void begin();
+  /// Who is let through whom may be another: all pairs are to be seen at the next frame.
+  void look_again() { seen_.clear(); }
   /// The deepest overlap at any event or frame so far [m].
   double max_overlap() const { return max_overlap_; }
   void note_overlap(double gap) { max_overlap_ = std::max(max_overlap_, -gap); }

@@ -185,9 +185,7 @@ class GroupResponse::Group {
     for (const Touch& t : group_) contacts_.push_back(contact(t));
   }
 
-  ExtendedState state(int body) const {
-    return parts_.trajectories_.motion_of(body).extended_state(now()).moved(delay_);
-  }
+  ExtendedState state(int body) const { return parts_.trajectories_.state_now(body).moved(delay_); }
   ExtendedState other_state(const Touch& t) const {
     return parts_.search_.other_state(t.pair, now()).moved(delay_);
   }

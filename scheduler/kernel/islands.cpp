@@ -23,12 +23,9 @@ constexpr int kMostHasty = 64, kCalmed = 4;
 constexpr std::size_t kCrowd = 8;
 constexpr int kAgitated = 8, kMostAgitation = 32;
 
-/// Asks for a member that bounces: where restitution is 0 a step takes every approach as plastic, and no
-/// impact cuts it.
-bool is_agitated(const World& world, const IslandPace& pace, const std::set<int>& members) {
-  const auto bounces = [&](int k) { return world.materials[world.bodies[k].material].restitution > 0.0; };
-  return members.size() >= kCrowd && pace.agitation >= kAgitated &&
-         std::any_of(members.begin(), members.end(), bounces);
+/// Where restitution is 0 a step takes every approach as plastic, and no impact cuts it: agitation stays 0.
+bool is_agitated(const IslandPace& pace, const std::set<int>& members) {
+  return members.size() >= kCrowd && pace.agitation >= kAgitated;
 }
 
 int next_agitation(int agitation, bool impacts) {
@@ -183,14 +180,14 @@ IslandMotion Islands::set_out(std::set<int>& members, IslandPace& pace) {
     IslandMotion motion(IslandMembers(*world_, *trajectories_, *search_, run_->time(), members), *search_,
                         *response_, solver_, tally_, warm);
     // who asked for a tolerance has exact impacts
-    if (limits_.tolerance == 0.0 && is_agitated(*world_, pace, members)) motion.expect_agitation();
+    if (limits_.tolerance == 0.0 && is_agitated(pace, members)) motion.expect_agitation();
     const std::vector<int> more = motion.joining(*world_, *trajectories_, run_->time());
     if (more.empty()) return motion;
     for (const int k : more) gather(k, members);
   }
 }
 
-/// Sites are known through a step of h [s]. False on a halt.
+/// Sites are known through a step of h [s]. False where a site's motion fails.
 bool Islands::follow_sites(double now, double h) {
   if (!trajectories_->cover_sites(now + h)) return false;
   trajectories_->follow_sites(now + 2.0 * h);  // what is beyond the end must not depend on who has asked
@@ -209,13 +206,19 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   const RunControl::Indivisible whole(*run_);
   IslandPace pace;
   IslandMotion motion = set_out(members, pace);
-  if (run_->halt()) return false;
+  const auto give_up = [&] {
+    trajectories_->release(std::vector<int>(members.begin(), members.end()), changed);
+    tell_ended();
+    find_next();
+    return false;
+  };
   const double now = run_->time();
   IslandModes modes(motion.members(), *trajectories_, *search_, *response_, by_modes_, motion.warm());
   if (pace.hasty < kMostHasty && modes.suits()) motion.expect_modes();
   const std::uint64_t collisions = run_->work().collisions;
   // before impacts: those of an agitated island are looked for along the step
-  if (const double ahead = motion.longest(); std::isfinite(ahead) && !follow_sites(now, ahead)) return false;
+  if (const double ahead = motion.longest(); std::isfinite(ahead) && !follow_sites(now, ahead))
+    return give_up();
   motion.pass_on_impacts(
       [this](const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r) {
         note_impact(c, from, closing, r.normal, r.tangential);
@@ -225,7 +228,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   const bool rests = motion.rests(limits_.rest_speed);
   // anew: impacts have changed speeds
   const double h = std::min(longest, motion.longest());
-  if (!rests && std::isfinite(h) && !follow_sites(now, h)) return false;
+  if (!rests && std::isfinite(h) && !follow_sites(now, h)) return give_up();
   const bool by_modes = !rests && motion.take(modes, now, h, on_time);
   if (!rests && !by_modes && !motion.take(h, limits_.tolerance)) {
     run_->stop(
@@ -233,10 +236,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
         fmt::format("an island of {} bodies, '{}' the first, finds no step at t = {:.17g} that keeps its "
                     "contacts",
                     members.size(), world_->bodies[*members.begin()].name, now));
-    trajectories_->release(std::vector<int>(members.begin(), members.end()), changed);
-    tell_ended();
-    find_next();
-    return false;
+    return give_up();
   }
   ++tally_.steps;
   if (by_modes) tell(modes, motion.members());

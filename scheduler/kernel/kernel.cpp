@@ -224,7 +224,7 @@ bool Kernel::judge(const Outcome& o, std::vector<int>& changed) {
   const bool goes_on = judge_ending(o, changed);
   if (!parts_.endings.at_limit(count)) return goes_on;
   // a limit below the option's is that of stop_after_collisions()
-  stop(Termination::stopped, count == options().max_collisions
+  stop(Termination::stopped, options().max_collisions > 0 && count >= options().max_collisions
                                  ? fmt::format("max_collisions = {} reached at t = {:.15g}", count, time())
                                  : fmt::format("a collision at t = {:.15g}", time()));
   return false;

@@ -136,7 +136,10 @@ std::vector<PairKey> NearPairs::by_pass(int body, double from, double to) {
     scene.push_back({&outline, motion.pose(from), static_cast<std::uint32_t>(k)});
     if (k == body) continue;
     const MotionBounds b = motion.bounds(from, to);
-    const double reach = outline.container ? outline.bounds.extent().norm() : outline.bounding_radius;
+    // a container's solid part is everywhere outside: what is drawn of it are its sites
+    const Box& box = outline.bounds;
+    const double reach =
+        outline.container ? box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).norm() : outline.bounding_radius;
     travel = std::max(travel, (b.speed() + b.spin() * reach) * (to - from));
   }
   const Box window = swept_box(search_->outline_of(body), trajectories_->body(body).motion, from, to);

@@ -16,6 +16,19 @@ double wall_clock() {
 void Records::begin(Recorder* recorder) {
   recorder_ = recorder;
   next_checkpoint_ = wall_clock() + run_->options().checkpoint_seconds;
+  wind_frame_clock(run_->time());
+}
+
+/// To the last frame up to time t, or, where that is due right now, the one before: another interval than the
+/// last run's, or none in that run, must bring back nothing that is past.
+void Records::wind_frame_clock(double t) {
+  const double interval = run_->options().frame_interval;
+  if (!(interval > 0.0) || t / interval >= 0x1p53) return;
+  auto k = static_cast<std::uint64_t>(t / interval);
+  if (static_cast<double>(k) * interval > t) --k;  // the quotient was rounded up
+  if (static_cast<double>(k + 1) * interval <= t) ++k;
+  const bool due_now = k > 0 && static_cast<double>(k) * interval == t && last_frame_ != t;
+  frame_ = due_now ? k - 1 : k;
 }
 
 std::optional<double> Records::frame_due(double t) const {

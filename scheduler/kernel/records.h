@@ -56,6 +56,7 @@ class Records {
   }
 
  private:
+  void wind_frame_clock(double t);
   bool records_events() const { return recorder_ && run_->options().record_events; }
 
   const Trajectories* trajectories_;

@@ -43,13 +43,14 @@ class RunControl {
   /// second in loops that do neither. Cheap: to be called in every loop that may take long. False on a halt.
   bool poll() {
     constexpr std::uint64_t between = 4096;
+    if (indivisible_ > 0) return !halt_ || halt_->termination != Termination::failed;
     const std::uint64_t done = work_.search_iterations + 4 * work_.collisions + 64 * work_.passes + pieces_;
-    if (halt_ || indivisible_ > 0 || (done - polled_ < between && !ask_.due())) return !halt_;
+    if (halt_ || (done - polled_ < between && !ask_.due())) return !halt_;
     polled_ = done;
     return ask();
   }
-  /// While one lives nobody is asked: what has begun is carried through, as half of it could not be gone on
-  /// with.
+  /// While one lives nobody is asked, and only a failure ends anything: what has begun is carried through, as
+  /// half of it could not be gone on with.
   class Indivisible {
    public:
     explicit Indivisible(RunControl& run) : run_(&run) { ++run.indivisible_; }

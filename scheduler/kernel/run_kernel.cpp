@@ -108,6 +108,7 @@ void RunKernel::set_pair_filter(PairFilter filter) {
   if (options().detector == "depth")
     throw BadInput("set_pair_filter: detector = \"depth\" sees everybody; allowed: \"field\", \"pass\"");
   parts_.search.set_filter(std::move(filter));
+  parts_.watch.look_again();
   ++parts_.revision;
 }
 
@@ -138,7 +139,7 @@ void RunKernel::apply_impulse(int k, const Vec2& impulse, const Vec2& point) {
   const Body& b = world().bodies[k];
   if (!impulse.allFinite() || !point.allFinite())
     throw BadInput(fmt::format("apply_impulse to '{}': every number must be finite", b.name));
-  ExtendedState s = body(k).motion.extended_state(time());
+  ExtendedState s = parts_.trajectories.state_now(k);
   const RealVec p = impulse.cast<Real>(), arm = point.cast<Real>() - s.position;
   s.twist.velocity += RealVec(b.inverse_mass_x() * p.x(), b.inverse_mass_y() * p.y());
   s.twist.omega += b.inverse_inertia() * extended::cross(arm, p);

@@ -12,7 +12,7 @@ namespace brink {
 namespace {
 
 /// With a newline and a zero in front of the letters: no text file begins so.
-constexpr std::uint64_t kMagic = 0x324b4e495242000aULL;  // "\12\0BRINK2"
+constexpr std::uint64_t kMagic = 0x334b4e495242000aULL;  // "\12\0BRINK3"
 
 /// Objects as they lie in memory: a snapshot is read by the program that wrote it.
 class Writer {
@@ -37,6 +37,12 @@ class Reader {
     if (bytes_.size() < sizeof(T)) throw BadInput("snapshot: it ends early");
     std::memcpy(static_cast<void*>(&value), bytes_.data(), sizeof(T));
     bytes_ = bytes_.subspan(sizeof(T));
+  }
+  /// A byte that is neither 0 nor 1 is no bool.
+  void operator()(bool& value) {
+    std::uint8_t byte = 0;
+    (*this)(byte);
+    value = byte != 0;
   }
   /// A count of things of which each takes at least so many bytes.
   std::uint64_t count(std::size_t least) {
@@ -120,8 +126,31 @@ void write_islands(Writer& out, const Islands::Saved& islands) {
   }
 }
 
-/// @throws BadInput on a member that is none, or that is not held.
-void read_islands(Reader& in, const Trajectories::Saved& bodies, Islands::Saved& islands) {
+/// @throws BadInput on a pair that this world has not.
+void check(const PairKey& pair, const World& world) {
+  const int bodies = static_cast<int>(world.bodies.size()), sites = static_cast<int>(world.sites.size());
+  const bool with_body = pair.other_body >= 0 && pair.other_body < bodies && pair.other_site == -1;
+  const bool with_site = pair.other_site >= 0 && pair.other_site < sites && pair.other_body == -1;
+  if (pair.body < 0 || pair.body >= bodies || with_body == with_site)
+    throw BadInput("snapshot: a contact is of no such pair");
+}
+
+/// @throws BadInput on features that the pair's outlines do not have.
+void check(const PairKey& pair, bool sample_on_a, int sample, int site, const World& world) {
+  check(pair, world);
+  const Outline& a = *world.bodies[pair.body].outline;
+  const Outline& b =
+      pair.with_site() ? *world.sites[pair.other_site].outline : *world.bodies[pair.other_body].outline;
+  const auto& samples = (sample_on_a ? a : b).samples;
+  const auto& sites = (sample_on_a ? b : a).sites;
+  if (sample < 0 || sample >= static_cast<int>(samples.size()) || site < 0 ||
+      site >= static_cast<int>(sites.size()))
+    throw BadInput("snapshot: a contact is of no such features");
+}
+
+/// @throws BadInput on a member that is none, or that is not held, and on contacts that there cannot be.
+void read_islands(Reader& in, const Trajectories::Saved& bodies, const World& world,
+                  Islands::Saved& islands) {
   in(islands.tally);
   for (std::uint64_t n = in.count(sizeof(double)); n > 0; --n) {
     Island i;
@@ -142,7 +171,11 @@ void read_islands(Reader& in, const Trajectories::Saved& bodies, Islands::Saved&
     }
     if (i.members.empty()) throw BadInput("snapshot: an island has no body");
     i.contacts.resize(in.count(sizeof(HeldContact)));
-    for (HeldContact& c : i.contacts) in(c);
+    for (HeldContact& c : i.contacts) {
+      in(c);
+      check(c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site, world);
+    }
+    if (i.series.body >= 0) check(i.series, world);
     islands.islands.push_back(std::move(i));
   }
 }
@@ -313,10 +346,14 @@ SavedRun decode(std::span<const std::byte> bytes, const World& world, const Solv
   SavedRun saved;
   scalars(in, saved);
   saved.trajectories = read_trajectories(in, world);
-  read_islands(in, saved.trajectories, saved.islands);
+  read_islands(in, saved.trajectories, world, saved.islands);
   in(saved.endings.often);
   saved.endings.bodies.resize(in.count(sizeof(int)));
-  for (int& k : saved.endings.bodies) in(k);
+  for (int& k : saved.endings.bodies) {
+    in(k);
+    if (k < 0 || k >= static_cast<int>(world.bodies.size()))
+      throw BadInput("snapshot: a group of contacts is of no such body");
+  }
   for (std::uint64_t n = in.count(sizeof(ZenoWatch::Feature)); n > 0; --n) {
     ZenoWatch::Feature feature;
     ZenoWatch::Bounce bounce;

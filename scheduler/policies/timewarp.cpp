@@ -37,6 +37,8 @@ class Timewarp final : public Policy {
   bool steps_islands() const override { return true; }
   void run(Kernel& kernel, double until) override {
     kernel_ = &kernel;
+    undecided_ = 0;
+    searched_on_ = -1.0;  // of another run, or of later than now
     group_bodies();
     run_horizons(kernel, until, [&](double end) {
       end_ = end;

@@ -8,40 +8,11 @@
 #include "brink/core/shapes/distance.h"
 #include "brink/scheduler/first_contact/pair_kinematics.h"
 #include "brink/scheduler/resolve/tolerances.h"
+#include "brink/scheduler/resolve/wedge.h"
 
 namespace brink {
 
 namespace {
-
-/// A solid's boundary at one of its vertices.
-struct Wedge {
-  std::vector<Vec2> edges;    ///< unit directions away from the vertex
-  std::vector<Vec2> normals;  ///< of those edges, out of the solid
-};
-
-Wedge wedge_at(const Outline& outline, const Vec2& vertex) {
-  // Sites join bit for bit, and vertex samples are copies of their ends: to compare for equality finds
-  // all that meet there, several corners where a union pinches.
-  Wedge w;
-  const auto add = [&](const Vec2& travel, double sense) {
-    w.edges.push_back(sense * travel);
-    w.normals.push_back(-perp(travel));
-  };
-  for (const Site& site : outline.sites) {
-    if (site.kind == SiteKind::point) continue;
-    if (site.a == vertex) add(direction_at_start(site), 1.0);
-    if (site.b == vertex) add(direction_at_end(site), -1.0);
-  }
-  return w;
-}
-
-/// True if the line across n has the one wedge before it and the other behind.
-bool parts(const Vec2& n, const Wedge& front, const Wedge& behind) {
-  return std::all_of(front.edges.begin(), front.edges.end(),
-                     [&](const Vec2& e) { return n.dot(e) >= -kParallel; }) &&
-         std::all_of(behind.edges.begin(), behind.edges.end(),
-                     [&](const Vec2& e) { return n.dot(e) <= kParallel; });
-}
 
 /// The normal, out of `behind`, that parts the wedges and is nearest to `wanted`; nothing if none does.
 std::optional<Vec2> parting_normal(const Wedge& front, const Wedge& behind, const Vec2& wanted) {
@@ -75,16 +46,12 @@ class Joint {
 
   std::vector<FeatureContact> contacts() {
     for (int j = 0; j < static_cast<int>(outline_t_.sites.size()); ++j) look_at(j);
-    const bool interior = std::any_of(near_.begin(), near_.end(), [](const Near& n) { return !n.at_end; });
-    // The sites of a corner meet at one place: it is looked at once. Of a joint that is touched on the
-    // inside of a site, the other site's end, as near as that, says nothing new.
+    // The sites of a corner meet at one place: it is looked at once.
     bool corner_done = false;
     for (const Near& n : near_) {
-      if (!n.at_end) {
-        add(n.site, normal_at(site(n.site), n.nearest, path_.q), n.gap);
-      } else if (sharp(n.site)) {
+      if (n.at_end && sharp(n.site)) {
         if (!std::exchange(corner_done, true)) add_corner(n);
-      } else if (!interior) {
+      } else if (!n.at_end || !is_told(n)) {
         add(n.site, normal_at(site(n.site), n.nearest, path_.q), n.gap);
       }
     }
@@ -101,6 +68,16 @@ class Joint {
 
   const Site& site(int j) const { return outline_t_.sites[j]; }
   bool sharp(int j) const { return site(j).radius + sample_.radius == 0.0; }
+
+  /// True if another site that has this end, too, says all of it: one that is touched beside the end, or of two
+  /// that are touched right there the first.
+  bool is_told(const Near& n) const {
+    return std::any_of(near_.begin(), near_.end(), [&](const Near& m) {
+      if (&m == &n || (m.at_end && &m > &n)) return false;
+      const auto is_end = [&](const Vec2& end) { return (end - n.nearest.point).norm() <= tolerance_; };
+      return m.at_end ? is_end(m.nearest.point) : is_end(site(m.site).a) || is_end(site(m.site).b);
+    });
+  }
 
   void look_at(int j) {
     const Nearest n = nearest_on(site(j), path_.q);
@@ -119,15 +96,11 @@ class Joint {
     const Vec2 wanted = t_.frame.direction_to_local(out);
     std::optional<Vec2> normal;
     if (outline_s_.solid && outline_t_.solid && sample_.arc_site < 0)
-      normal = parting_normal(turned(wedge_at(outline_s_, sample_.p)), wedge_at(outline_t_, vertex), wanted);
+      normal = parting_normal(
+          turned(wedge_at(outline_s_, sample_.p),
+                 [&](const Vec2& d) { return t_.frame.direction_to_local(s_.frame.direction_to_world(d)); }),
+          wedge_at(outline_t_, vertex), wanted);
     add(n.site, normal.value_or(wanted), n.gap);
-  }
-
-  /// From S's frame to T's.
-  Wedge turned(Wedge w) const {
-    for (auto* directions : {&w.edges, &w.normals})
-      for (Vec2& d : *directions) d = t_.frame.direction_to_local(s_.frame.direction_to_world(d));
-    return w;
   }
 
   void add(int j, const Vec2& normal, double gap) {

@@ -20,8 +20,12 @@ namespace {
 using testing::LastingWorld;
 
 /// Seeds 0 .. kWorlds - 1; BRINK_WORLDS asks for more, BRINK_SEED for one alone; and heaps, BRINK_HEAPS asks for more. Each is broken off kBreaks times and
-/// gone on with, BRINK_BREAKS asks for more; and as often it goes on from a checkpoint. BRINK_MODES: solver.modes_contacts.
-constexpr std::uint64_t kWorlds = 32, kBreaks = 4, kHeaps = 8;
+/// gone on with, BRINK_BREAKS asks for more; and as often it goes on from a checkpoint. BRINK_MODES:
+/// solver.modes_contacts. The first kOrdered worlds and BRINK_ORDERED more come once more under each of the other orders
+/// in turn.
+constexpr std::uint64_t kWorlds = 32, kBreaks = 4, kHeaps = 8, kOrdered = 15;
+/// Seeds from this one on: of another order than "index".
+constexpr std::uint64_t kOtherOrder = 2 * testing::LastingWorldMaker::kHeaps;
 /// Hollow corners and walls that rise from a joint were passed through in these.
 constexpr std::array<std::uint64_t, 8> kOnceFailed{43, 44, 51, 58, 59, 76, 84, 98};
 
@@ -34,6 +38,9 @@ std::vector<std::uint64_t> seeds() {
   const char* heaps = std::getenv("BRINK_HEAPS");
   for (std::uint64_t k = 0; k < (heaps ? std::stoull(heaps) : kHeaps); ++k)
     all.push_back(testing::LastingWorldMaker::kHeaps + k);
+  const char* ordered = std::getenv("BRINK_ORDERED");
+  for (std::uint64_t k = 0; k < (ordered ? std::stoull(ordered) : kOrdered); ++k)
+    all.push_back(kOtherOrder + k);
   return all;
 }
 
@@ -42,11 +49,18 @@ std::uint64_t breaks() {
   return more ? std::stoull(more) : kBreaks;
 }
 
-LastingWorld make(std::uint64_t seed) { return testing::LastingWorldMaker(seed).make(); }
+LastingWorld make(std::uint64_t seed) {
+  const bool ordered = seed >= kOtherOrder;
+  const std::uint64_t of_world = ordered ? seed - kOtherOrder : seed;
+  LastingWorld w = testing::LastingWorldMaker(of_world).make();
+  if (ordered) w.order = orders()[1 + of_world % (orders().size() - 1)].name;
+  return w;
+}
 
 SolverOptions by(const LastingWorld& w, const std::string& policy) {
   SolverOptions options;
   options.policy = policy;
+  options.order = w.order;
   options.persistent = true;
   options.max_collisions = 200000;
   options.island_tolerance = w.island_tolerance;
@@ -104,7 +118,8 @@ LastingWorld make_as_far_as_it_goes(std::uint64_t seed) {
 }
 
 std::string named(std::uint64_t seed, const LastingWorld& w) {
-  return "seed " + std::to_string(seed) + ", " + w.ground + " of " + std::to_string(w.world.bodies.size());
+  return "seed " + std::to_string(seed) + ", " + w.ground + " of " + std::to_string(w.world.bodies.size()) +
+         ", order " + w.order;
 }
 
 /// Tells of a difference; 1 if there is one.

@@ -17,6 +17,7 @@ struct LastingWorld {
   std::string ground;
   double duration = 2.0;          ///< [s]
   double island_tolerance = 0.0;  ///< the option [m]
+  std::string order = "index";    ///< the option
   bool moves = false;             ///< a site gives or takes energy
   bool pulls = false;             ///< springs or drag
   bool rebounds_rub = false;      ///< restitution with friction: Newton's law may win energy then (Kane 1984)

@@ -23,14 +23,24 @@ class Watch {
         double slack, double sector_window)
       : problem_(problem), contact_(contact), bodies_(bodies), slack_(slack), sector_window_(sector_window) {}
 
-  /// When it closes before `to`; false: it does not.
-  bool closes(double from, double to, double& when) const {
+  enum class Fate {
+    stays_open,
+    closes,     ///< at `when`
+    undecided,  ///< open up to `when`, where the most steps had been made
+  };
+
+  /// What becomes of it before `to`.
+  Fate look(double from, double to, double& when) const {
     double t = from, clear = from;
-    for (int n = 0; n < kMostSteps && t < to; ++n) {
+    for (int n = 0; t < to; ++n) {
       const ContactRates r = at(t);
       if (r.within >= 0.0 && comes(r)) {
         when = t > from ? last_clear(clear, t) : from;
-        return true;
+        return Fate::closes;
+      }
+      if (n == kMostSteps) {
+        when = t;
+        return Fate::undecided;
       }
       // Steps may lead to a gap of down to -slack; the crossing is told by halving from the last place
       // where it was not below zero.
@@ -38,15 +48,15 @@ class Watch {
       const double s = safe_for(r, t, to);
       if (!(t + s > t)) {  // as near as the clock can tell
         when = t;
-        return true;
+        return Fate::closes;
       }
       t += s;
     }
     // the last step may have ended at `to` itself, which the loop does not look at
     const ContactRates r = at(to);
-    if (!(r.within >= 0.0 && comes(r))) return false;
+    if (!(r.within >= 0.0 && comes(r))) return Fate::stays_open;
     when = last_clear(clear, to);
-    return true;
+    return Fate::closes;
   }
 
  private:
@@ -87,7 +97,8 @@ class Watch {
       const Bent b = bend(r, t, t + window);
       // The slack on top of the gap keeps the step from shrinking to nothing at a gap of 0; comes() tells
       // at half of it.
-      double s = safe_step(std::max(r.gap + slack_, 0.0), r.normal_velocity, b.of_gap);
+      // What is beyond the surface already, beside what there is of it, is safe only as long as it stays beside.
+      double s = r.gap > -slack_ ? safe_step(r.gap + slack_, r.normal_velocity, b.of_gap) : 0.0;
       if (r.within < 0.0) s = std::max(s, until_in_range(r, t, b));
       best = std::max(best, std::min(s, window));
       if (s >= 0.25 * window) break;
@@ -99,22 +110,26 @@ class Watch {
   }
 
   struct Bent {
-    double of_gap = 0.0, of_place = 0.0;  ///< bounds on second derivatives [m/s^2]
-    double speed = 0.0;                   ///< of the place [m/s]
+    double of_gap = 0.0;  ///< bound on its second derivative [m/s^2]
+    double speed = 0.0;   ///< of the sample, as the site's owner sees it [m/s]
   };
 
   Bent bend(const ContactRates& r, double from, double to) const {
     RelativeBounds relative(bounds(contact_.sample_owner, from, to), bounds(contact_.site_owner, from, to));
     const SmoothContact& c = contact_.shape;
     const bool round = c.kind == SmoothContact::Kind::circle;
-    if (round && c.place.isZero(0.0))
-      relative.spin_t = relative.alpha_t = 0.0;  // looks the same at any angle
     SamplePath path;
     path.arm = c.sample.norm();
     // site_arm leads to the point that touches; the sample's point is its radius further along the normal
     path.distance = (r.site_arm + c.sample_radius * r.normal).norm();
-    const PathBounds p = path_bounds(path, relative, to - from);
-    Bent b{p.acceleration, p.acceleration, p.speed};
+    PathBounds p = path_bounds(path, relative, to - from);
+    const double speed = p.speed;
+    if (round && c.place.isZero(0.0)) {
+      // the gap looks the same at any angle of the circle, though what there is of an arc turns with it
+      relative.spin_t = relative.alpha_t = 0.0;
+      p = path_bounds(path, relative, to - from);
+    }
+    Bent b{p.acceleration, speed};
     if (!round || !c.hollow) return b;
     // Inside a circle the gap bends down by v^2 / distance, too. The sample comes no nearer to the centre
     // in the window than `least`; right at the centre the bound says nothing, and a thousandth stands for
@@ -153,8 +168,12 @@ Arrival first_arrival(const ModeProblem& problem, const std::vector<MotionMode>&
     const Watch watch(problem, problem.contacts[k], bodies, slack, (to - from) / kLooksOfArrival);
     double when = 0.0;
     // nobody is followed past the first that was found; of two at one time the earlier in order stays
-    if (!watch.closes(from, first.time, when) || (first.found && when >= first.time)) continue;
-    first = {true, when, static_cast<int>(k)};
+    const Watch::Fate fate = watch.look(from, first.time, when);
+    if (fate == Watch::Fate::stays_open || (first.found && when >= first.time)) continue;
+    if (fate == Watch::Fate::closes)
+      first = {true, when, static_cast<int>(k)};
+    else
+      first = {false, when, -1};
   }
   return first;
 }

@@ -104,8 +104,8 @@ ModeMotion::Look ModeMotion::look_at(double t, const States& states) const {
   const auto take = [&](Look::What what, std::size_t contact, double room) {
     if (room < look.room) look = {what, static_cast<int>(contact), room};
   };
-  // forces that do not exist fail by as much as can be
-  if (!f.consistent) take(Look::What::force, 0, -1.0);
+  // forces that do not exist fail by as much as can be, and no contact more than another
+  if (!f.consistent) look = {Look::What::force, -1, -1.0};
   for (std::size_t k = 0; k < modes_.size(); ++k) {
     if (!is_closed(modes_[k])) continue;
     take(Look::What::range, k, m.contacts[k].within / size_);
@@ -290,7 +290,7 @@ ModeStep ModeMotion::step(double until) {
   if (!(h > 0.0)) return {ModeEnd::lost, -1, {}};
   double at = done.pieces.front().end, clear = h;
   Look failed;
-  const bool fails = fails_within(h, done.pieces, clear, failed);
+  bool fails = fails_within(h, done.pieces, clear, failed);
   if (fails) at = t_ + clear;
   // beyond the end of the feature by more than a rounding of places, so that the next look finds it left
   if (fails && failed.what == Look::What::range) at = std::min(until, at + kBeyond * size_ / speed_);
@@ -302,6 +302,11 @@ ModeStep ModeMotion::step(double until) {
   if (at > t_) arrival = first_arrival(problem_, modes_, done.pieces, t_, at, limits_.touch);
   if (arrival.found) {
     at = std::min(at, t_ + arrive(arrival.time - t_, arrival.contact));
+    if (at > t_) done.pieces = pieces_to(at, end = after(at - t_));
+  } else if (at > t_ && arrival.time < at) {
+    // nobody knows what is open beyond: a step to there, and the next looks on
+    fails = false;
+    at = arrival.time;
     if (at > t_) done.pieces = pieces_to(at, end = after(at - t_));
   }
   if (at > t_)

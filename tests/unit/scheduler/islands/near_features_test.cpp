@@ -51,6 +51,19 @@ TEST(NearFeatures, WhatIsBehindATipIsNone) {
   }
 }
 
+// A half disc on its round side, sunk by what steps leave of a contact.
+TEST(NearFeatures, RoundSideThatHasSunkALittleIsStillSeen) {
+  const Outline half = make_path("M-1 0 A1 1 0 0 0 1 0 Z", 1.0, 1e-6).outline;
+  const Vec2 low = half.bounds.low;
+  ASSERT_GT(-low.y(), half.bounds.high.y());  // the round side is below
+  for (const double sunk : {0.0, 1e-13, 1e-11, 1e-9}) {
+    const auto found = between(half, {{0, -low.y() - sunk}, 0}, wire({-5, 0}, {5, 0}), {}, 0.1);
+    const bool seen = std::any_of(found.begin(), found.end(),
+                                  [&](const NearFeature& f) { return std::abs(f.gap + sunk) < 1e-14; });
+    EXPECT_TRUE(seen) << sunk;
+  }
+}
+
 // A sample that roundings have put into a solid is met by the side that it crossed, from inside.
 TEST(NearFeatures, SampleInsideByARoundingIsSeenFromTheSideThatItCrossed) {
   const auto found =

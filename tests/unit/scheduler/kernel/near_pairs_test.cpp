@@ -19,6 +19,22 @@ TEST(NearPairs, ThoseWhoseBoundsMeetInTheTimeAsked) {
   EXPECT_EQ(parts.near.of(1, 0.0, 1.1, false), std::vector<PairKey>{kDiscs});
 }
 
+// A container far from the place that it turns about: the whole arm counts.
+TEST(NearPairs, APassSeesAContainerThatTurnsAboutAFarPlace) {
+  World world;
+  testing::add(world, testing::body(make_disc(0.2), {11.0, 1.0}, {0.0, 0.0}));
+  FixedSite room = testing::site(make_disc(1.0));
+  room.outline = std::make_shared<Outline>(
+      as_container(transformed(make_box(2, 2).outline, {{11.0, 1.0}, 0.0})));
+  room.motion = ConstantMotion{{{0.0, 0.0}, 0.2}};
+  testing::add(world, room);
+  SolverOptions options;
+  options.detector = "pass";
+  KernelParts parts(world, options);
+  // its lower side rises at 2.2 m/s
+  EXPECT_EQ(parts.near.of(0, 0.0, 0.4, false).size(), 1U);
+}
+
 TEST(NearPairs, EveryPairWithoutTheBroadPhase) {
   SolverOptions options;
   options.broad_phase = false;

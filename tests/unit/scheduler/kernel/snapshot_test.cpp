@@ -27,6 +27,32 @@ TEST(Snapshot, GoesOnWithTheSameBitsAndRefusesEveryShorterOne) {
   EXPECT_EQ(b.state_hash(), a.state_hash());
 }
 
+// Any byte behind the fingerprint: refused, or a snapshot of another state; never a read beyond the end.
+TEST(Snapshot, DamagedInAnyByteIsRefusedOrRead) {
+  World world;
+  world.gravity = {0.0, -10.0};
+  world.materials[0].restitution = 0.0;
+  add(world, body(make_box(1.0, 1.0), {0.0, 0.5}, {0.0, 0.0}));
+  add(world, body(make_box(1.0, 1.0), {0.0, 1.6}, {0.1, 0.0}));
+  add(world, site(make_segment({-9, 0}, {9, 0})));
+  Simulator a(world, {});
+  a.run(until(1.0));
+  const std::vector<std::byte> bytes = a.snapshot();
+  int refused = 0;
+  for (std::size_t n = 16; n < bytes.size(); ++n)
+    for (const unsigned char to : {0x00, 0x01, 0x7f, 0xff}) {
+      std::vector<std::byte> damaged = bytes;
+      damaged[n] = static_cast<std::byte>(to);
+      Simulator b(world, {});
+      try {
+        b.restore(damaged);
+      } catch (const BadInput&) {
+        ++refused;
+      }
+    }
+  EXPECT_GT(refused, 0);
+}
+
 // What decides the motion must be the same: materials, forces, periods, geometry, detector, seed.
 TEST(Snapshot, OfAnotherWorldIsRefused) {
   Simulator a(on_a_spring(), {});

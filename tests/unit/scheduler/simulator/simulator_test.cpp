@@ -268,6 +268,65 @@ TEST(Simulator, FramesComeOnTheFrameClockAndAtTheEnd) {
   EXPECT_EQ(events.frame_times, (std::vector<double>{0.0, 0.25, 0.5, 0.75, 1.0, 1.05}));
 }
 
+// Another interval, or none before: frames are those of the time that is run, each once and in order.
+TEST(Simulator, FramesOfASecondRunAreNotThoseOfThePast) {
+  const auto frames = [](double first_interval, double first_end, double interval) {
+    Simulator simulator(crowd(5), {});
+    RunOptions options = testing::until(first_end);
+    options.frame_interval = first_interval;
+    simulator.run(options);
+    Events events;
+    options = testing::until(2.0);
+    options.frame_interval = interval;
+    options.first_frame = false;
+    simulator.run(options, &events);
+    return events.frame_times;
+  };
+  using Times = std::vector<double>;
+  EXPECT_EQ(frames(0.0, 1.0, 0.25), (Times{1.25, 1.5, 1.75, 2.0}));
+  EXPECT_EQ(frames(0.125, 1.0, 0.5), (Times{1.5, 2.0}));
+  EXPECT_EQ(frames(0.5, 1.0, 0.25), (Times{1.25, 1.5, 1.75, 2.0}));
+  EXPECT_EQ(frames(0.25, 1.1, 0.25), (Times{1.25, 1.5, 1.75, 2.0}));
+}
+
+// A box that rests on a floor is pushed right after the run has stopped at an event; and a pair of boxes on it comes
+// to its limit of collisions as a group. The island is still there, and goes on.
+TEST(Simulator, IslandIsKeptThroughAStopAtAnEvent) {
+  for (const char* order : {"index", "lcp", "reflections"}) {
+    World world;
+    world.gravity = {0.0, -10.0};
+    world.materials[0].restitution = 0.0;
+    add(world, body(make_box(1.0, 1.0), {0.0, 0.5}, {0.0, 0.0}));
+    add(world, body(make_box(1.0, 1.0), {0.0, 3.0}, {0.0, 0.0}));
+    add(world, site(make_segment({-9, 0}, {9, 0})));
+    SolverOptions options;
+    options.order = order;
+    Simulator simulator(world, options);
+    Events events;
+    for (int k = 0; k < 6; ++k) {
+      simulator.step_to_next_event(testing::until(4.0), &events);
+      simulator.apply_impulse(0, {0.0, -1e-3}, simulator.state(0).pose.position);
+    }
+    const RunSummary s = simulator.run(testing::until(4.0));
+    EXPECT_EQ(s.termination, Termination::reached_end) << order << ": " << s.why;
+    EXPECT_NEAR(simulator.state(0).pose.position.y(), 0.5, 1e-9) << order;
+    EXPECT_NEAR(simulator.state(1).pose.position.y(), 1.5, 1e-9) << order;
+  }
+}
+
+// The limit may be passed by a group: it is still the limit that is named.
+TEST(Simulator, LimitPassedByAGroupIsNamed) {
+  World world;
+  for (int k = 0; k < 4; ++k) add(world, body(make_disc(0.5), {1.0 * k, 0.0}, {k == 0 ? 1.0 : 0.0, 0.0}));
+  SolverOptions options;
+  options.order = "lcp";
+  options.max_collisions = 2;
+  Simulator simulator(world, options);
+  const RunSummary s = simulator.run(testing::until(1.0));
+  EXPECT_EQ(s.termination, Termination::stopped);
+  EXPECT_NE(s.why.find("max_collisions"), std::string::npos) << s.why;
+}
+
 // Bodies of infinite mass along x and in angle fall straight down whatever they hit.
 // Two pairs on springs far apart, and a free disc that hits one of them once: what is started afresh is the
 // disc and the pair that it hit.

@@ -72,5 +72,42 @@ TEST(FirstArrival, DiscInABowlMeetsItFromInside) {
   EXPECT_NEAR(a.time, (-b + std::sqrt(b * b - 1.25 * c)) / 1.25, 1e-12);
 }
 
+// A quarter of a ring that turns comes under a disc that stands still, in the way of where the ring is: what is out
+// of range now is in range later.
+TEST(FirstArrival, ArcOfASpinningOwnerTurnsUnderWhatStands) {
+  ModeScene s;
+  s.add_body(1, 1, {});
+  SmoothContact c;
+  c.kind = SmoothContact::Kind::circle;
+  c.radius = 2.0;
+  c.sample_radius = 0.5;
+  c.range = {HalfPlane{{1, 0}, 0.0}, HalfPlane{{0, 1}, 0.0}};  // the first quadrant of the ring's own frame
+  const double omega = 1.0;
+  s.add(c, 0, s.add_support(Motion::ballistic(0.0, {{}, {{0, 0}, omega}}, {})), 0.0);
+  // to the right and below, a tenth within the ring's radius: met when the quadrant's lower edge is gone past
+  const Arrival a = arrival_of(s, piece(8.0, {{2.4 * std::cos(1.0), -2.4 * std::sin(1.0), 0}}));
+  ASSERT_TRUE(a.found);
+  EXPECT_NEAR(a.time, 2.0 * std::numbers::pi - 1.0 - std::numbers::pi / 2.0, 1e-9);
+}
+
+// A point that hovers within the slack, for longer than steps can be made so short, and comes down at the end: it is
+// not told to stay open.
+TEST(FirstArrival, WhatHoversForLongIsNotTakenForOpen) {
+  ModeScene s;
+  s.add_body(1, 1, {});
+  s.add(point_on_line({0, 0}, {0, 0}, {0, 1}), 0, s.add_still(), 0.0);
+  // turning fast about itself bends every bound, and moves nothing
+  s.problem.contacts[0].shape.sample = {1e-3, 0};
+  const double down = 0.5;
+  PolynomialPiece p = piece(1.0, {{0, 2e-3, 0}, {0, 0, 1e5}, {0, -down, 0}});
+  Arrival a = first_arrival(s.problem, {MotionMode::open}, {p}, 0.0, 1.0, 1e-13);
+  EXPECT_TRUE(a.found || a.time < 1.0);
+  // gone on with from there as often as need be, it is found
+  for (int n = 0; n < 10000 && !a.found && a.time < 1.0; ++n)
+    a = first_arrival(s.problem, {MotionMode::open}, {p}, a.time, 1.0, 1e-13);
+  ASSERT_TRUE(a.found);
+  EXPECT_NEAR(a.time, std::sqrt((2e-3 - 1e-3) / down), 1e-4);
+}
+
 }  // namespace
 }  // namespace brink

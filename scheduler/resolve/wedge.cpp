@@ -1,0 +1,33 @@
+#include "brink/scheduler/resolve/wedge.h"
+
+#include <algorithm>
+
+#include "brink/core/shapes/curve_site.h"
+#include "brink/scheduler/resolve/tolerances.h"
+
+namespace brink {
+
+Wedge wedge_at(const Outline& outline, const Vec2& vertex) {
+  // Sites join bit for bit, and vertex samples are copies of their ends: to compare for equality finds
+  // all that meet there, several corners where a union pinches.
+  Wedge w;
+  const auto add = [&](const Vec2& travel, double sense) {
+    w.edges.push_back(sense * travel);
+    w.normals.push_back(-perp(travel));
+  };
+  for (const Site& site : outline.sites) {
+    if (site.kind == SiteKind::point) continue;
+    if (site.a == vertex) add(direction_at_start(site), 1.0);
+    if (site.b == vertex) add(direction_at_end(site), -1.0);
+  }
+  return w;
+}
+
+bool parts(const Vec2& n, const Wedge& front, const Wedge& behind) {
+  return std::all_of(front.edges.begin(), front.edges.end(),
+                     [&](const Vec2& e) { return n.dot(e) >= -kParallel; }) &&
+         std::all_of(behind.edges.begin(), behind.edges.end(),
+                     [&](const Vec2& e) { return n.dot(e) <= kParallel; });
+}
+
+}  // namespace brink
