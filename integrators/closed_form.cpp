@@ -47,8 +47,13 @@ class ClosedForm final : public Integrator {
  private:
   void next_piece() {
     const double end = dynamics_->next_break(time_);
-    // A break that is not later would make a piece without length, and no progress.
-    const std::vector<Motion> pieces = end > time_ ? pieces_until(end) : std::vector<Motion>{};
+    // it would make a piece without length, and no progress
+    if (!(end > time_)) {
+      failure_ = "no closed form goes on from t = " + time_text(time_) +
+                 ": the forces' next break is at t = " + time_text(end) + ", which is not later";
+      return;
+    }
+    const std::vector<Motion> pieces = pieces_until(end);
     for (std::size_t k = 0; k < pieces.size(); ++k) {
       chains_[k]->push_back(pieces[k]);
       // The next piece starts where this one ends: pose and twist go on without a jump.

@@ -72,7 +72,7 @@ std::span<const IntegratorInfo> integrators();
 /// into. `auto` is a parabola where Dynamics::constant(), closed-form drag where linear_drag().valid, else
 /// `erk`.
 /// @throws BadInput on an unknown name (naming those allowed), bad options, or `ballistic` where the dynamics
-/// are not constant.
+/// have no closed form.
 std::unique_ptr<Integrator> make_integrator(std::string_view name, std::shared_ptr<const Dynamics> dynamics,
                                             const IntegratorOptions& options, WorkCounters* work = nullptr);
 

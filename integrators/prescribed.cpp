@@ -24,19 +24,19 @@ constexpr double kPi = 3.14159265358979323846;
 using Matrix = Eigen::Matrix<double, kDegree + 1, kDegree + 1>;
 using Columns = Eigen::Matrix<double, kDegree + 1, 3>;  // x, y, angle
 
-/// Chebyshev-Lobatto points on [-1, 1] and the checking points between them; the maps from values at the
+/// Chebyshev-Lobatto points on [-1, 1] and one between each two of them; the maps from values at the
 /// former to Chebyshev coefficients, and from those to monomials. Two maps, because their product would
 /// cancel.
 struct Nodes {
   std::array<double, kDegree + 1> at;
-  std::array<double, kDegree> check;
+  std::array<double, kDegree> between;
   Matrix to_chebyshev, to_monomial = Matrix::Zero();
 
   Nodes() {
     for (int j = 0; j <= kDegree; ++j) at[j] = -std::cos(kPi * j / kDegree);
     // cos() of these is off by a rounding; neighbouring cells must share their ends to the bit
     at[0] = -1.0, at[kDegree / 2] = 0.0, at[kDegree] = 1.0;
-    for (int j = 0; j < kDegree; ++j) check[j] = -std::cos(kPi * (j + 0.5) / kDegree);
+    for (int j = 0; j < kDegree; ++j) between[j] = -std::cos(kPi * (j + 0.5) / kDegree);
     const auto half_at_ends = [](int i) { return i == 0 || i == kDegree ? 0.5 : 1.0; };
     for (int k = 0; k <= kDegree; ++k)
       for (int j = 0; j <= kDegree; ++j)
@@ -81,7 +81,6 @@ struct PrescribedMotion::Fitted {
   Vector3d rate_begin = Vector3d::Zero(), rate_end = Vector3d::Zero();
   Vector3d tolerance = Vector3d::Zero();  ///< of the fit
   Vector3d scale = Vector3d::Zero();      ///< largest value
-  double worst = 0.0;                     ///< misfit met at the checking points, in units of the pose
 
   double width() const { return piece.end - piece.begin; }
   /// What the end rates may be off by: n^2 times the fit over the half width (Markov's inequality).
@@ -137,7 +136,7 @@ void PrescribedMotion::fit_next() {
   take_corner(std::move(cell), known);
 }
 
-/// Interpolates the function on the cell. False where a value is not finite.
+/// Interpolates the function on the cell. False where a value is not finite, at the nodes or between them.
 bool PrescribedMotion::interpolate(const Cell& at, Fitted& cell) {
   const Nodes& n = nodes();
   const double half = 0.5 * at.width, middle = at.begin + half;
@@ -160,19 +159,8 @@ bool PrescribedMotion::interpolate(const Cell& at, Fitted& cell) {
   cell.scale = y.cwiseAbs().colwise().maxCoeff().transpose();
   // The function's own roundings cannot be followed, and are allowed for: no halving would make them less.
   cell.tolerance = kFitTolerance * cell.scale + noise(at) + Vector3d::Constant(kNothing);
-  return check(cell);
-}
-
-/// Measures the misfit between the nodes. False where a value is not finite.
-bool PrescribedMotion::check(Fitted& cell) {
-  const double half = 0.5 * cell.width(), middle = cell.piece.origin;
-  for (const double u : nodes().check) {
-    const Vector3d value = pose_(middle + half * u);
-    if (!value.allFinite()) return false;
-    const Vector3d fitted = values(cell.piece.state(middle + half * u).pose);
-    cell.worst = std::max(cell.worst, (value - fitted).cwiseAbs().maxCoeff());
-  }
-  return true;
+  return std::all_of(n.between.begin(), n.between.end(),
+                     [&](double u) { return pose_(middle + half * u).allFinite(); });
 }
 
 /// What roundings make of the function's value: its bounds at single times.

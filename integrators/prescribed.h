@@ -64,7 +64,6 @@ class PrescribedMotion {
 
   void fit_next();
   bool interpolate(const Cell& at, Fitted& cell);
-  bool check(Fitted& cell);
   Eigen::Vector3d noise(const Cell& at) const;
   Certainty bound(const Cell& at) const;
   void take_corner(Fitted cell, const Certainty& known);

@@ -12,7 +12,8 @@ namespace brink {
 
 namespace {
 
-/// A rate that no error test passes, and whose weighted square still does not overflow.
+/// A rate that no error test passes. Where the weight of a tiny absolute tolerance makes its square infinite,
+/// that fails it as well.
 constexpr double kEnormous = 1e60;
 
 void pack(std::span<const BodyState> states, double* y) {

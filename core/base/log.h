@@ -1,6 +1,6 @@
 #pragma once
 /// The one door to spdlog. Messages go to standard error, coloured on a terminal only; level from BRINK_LOG
-/// (trace, debug, info, warn, error, off), "warn" when unset.
+/// (trace, debug, info, warn, error, off), "warn" when unset or, with a warning that says so, unknown.
 
 #include <spdlog/logger.h>
 

@@ -33,18 +33,20 @@ Character first_of(std::string_view text) {
   return code < least[bytes] || code > 0x10ffff || surrogate ? Character{} : Character{code, bytes};
 }
 
-/// Characters that are acted upon or not seen: all of the Unicode categories Cc (controls),
-/// Zl and Zp (separators of lines and paragraphs), and of Cf (format characters) marks and
-/// controls of direction, zero-width spaces and joiners, invisible operators, the Mongolian
-/// vowel separator, the byte order mark, annotations and tags. The soft hyphen and the
-/// format characters of other scripts and notations stay.
+/// Characters that are acted upon or not seen: all of the Unicode categories Cc (controls), Zl and Zp
+/// (separators of lines and paragraphs), annotations, and what has the property
+/// Default_Ignorable_Code_Point: marks and controls of direction, zero-width spaces and joiners, fillers,
+/// variation selectors, the soft hyphen, tags, controls of shorthand and of music. Format characters that
+/// are seen, as of Arabic numbers, stay.
 bool hidden(std::uint32_t code) {
   struct Range {
     std::uint32_t first, last;
   };
-  static constexpr Range ranges[] = {{0x00, 0x1f},     {0x7f, 0x9f},      {0x61c, 0x61c},   {0x180e, 0x180e},
-                                     {0x200b, 0x200f}, {0x2028, 0x202e},  {0x2060, 0x206f}, {0xfeff, 0xfeff},
-                                     {0xfff9, 0xfffb}, {0xe0000, 0xe007f}};
+  static constexpr Range ranges[] = {
+      {0x00, 0x1f},     {0x7f, 0x9f},       {0xad, 0xad},       {0x34f, 0x34f},    {0x61c, 0x61c},
+      {0x115f, 0x1160}, {0x17b4, 0x17b5},   {0x180b, 0x180f},   {0x200b, 0x200f},  {0x2028, 0x202e},
+      {0x2060, 0x206f}, {0x3164, 0x3164},   {0xfe00, 0xfe0f},   {0xfeff, 0xfeff},  {0xffa0, 0xffa0},
+      {0xfff0, 0xfffb}, {0x1bca0, 0x1bca3}, {0x1d173, 0x1d17a}, {0xe0000, 0xe0fff}};
   for (const Range& r : ranges)
     if (code >= r.first && code <= r.last) return true;
   return false;

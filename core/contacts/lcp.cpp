@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 namespace brink {
@@ -24,11 +23,13 @@ class Tableau {
     for (int k = 0; k < n_; ++k) basic_.push_back(k);
   }
 
-  /// Brings z0 in where q is most negative: from there on the right-hand side is >= 0.
+  /// Brings z0 in where q is most negative: from there on the right-hand side is >= 0. Of rows alike in that
+  /// the last: its unit vector is the least, so that all others are lexicographically positive from there
+  /// on, without which first() does not keep ties from cycling.
   int begin() {
-    int row = 0;
-    for (int k = 1; k < n_; ++k)
-      if (rows_(k, right()) < rows_(row, right())) row = k;
+    const Real least = rows_.col(right()).minCoeff();
+    int row = n_ - 1;
+    while (rows_(row, right()) > least + kTie) --row;
     return pivot(row, z0());
   }
 

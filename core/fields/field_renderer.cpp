@@ -160,6 +160,8 @@ void FieldRenderer::make_target(Target& target, int width, int height, bool with
   gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target.depth, 0);
   gl_.DrawBuffers(static_cast<GLsizei>(buffers.size()), buffers.data());
   if (gl_.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    // else the next window of this size would find it made
+    destroy(target);
     throw IoError("the framebuffer of a field (" + std::to_string(width) + " x " + std::to_string(height) +
                   " pixels) is incomplete on " + context_->description());
   }

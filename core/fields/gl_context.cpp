@@ -24,28 +24,29 @@ void release_current() {
 
 namespace {
 
-std::unique_ptr<GlContext> open_named(std::string_view backend, GlLevel level, std::string* why) {
+struct Backend {
+  std::string_view name;
+  std::unique_ptr<GlContext> (*open)(GlLevel level, std::string* why);
+};
+
+/// Those of this build, the first choice first.
+const std::vector<Backend>& backends() {
+  static const std::vector<Backend> all{
 #ifdef BRINK_HAS_OSMESA
-  if (backend == "osmesa") return detail::open_osmesa(level, why);
+      {"osmesa", detail::open_osmesa},
 #endif
 #ifdef BRINK_HAS_EGL
-  if (backend == "egl") return detail::open_egl(level, why);
+      {"egl", detail::open_egl},
 #endif
-  (void)level;
-  *why = "this build has no backend \"" + std::string(backend) + "\"";
-  return nullptr;
+  };
+  return all;
 }
 
 }  // namespace
 
 std::vector<std::string_view> gl_backends() {
   std::vector<std::string_view> names;
-#ifdef BRINK_HAS_OSMESA
-  names.push_back("osmesa");
-#endif
-#ifdef BRINK_HAS_EGL
-  names.push_back("egl");
-#endif
+  for (const Backend& each : backends()) names.push_back(each.name);
   return names;
 }
 
@@ -57,11 +58,11 @@ std::unique_ptr<GlContext> open_gl_context(std::string_view backend, GlLevel lev
   // Before a context is opened: llvmpipe reads it then. What the user has set stays.
   setenv("LP_NUM_THREADS", "0", /*overwrite=*/0);
   std::string answers;
-  for (const std::string_view name : gl_backends()) {
-    if (backend != "auto" && backend != name) continue;
+  for (const Backend& each : backends()) {
+    if (backend != "auto" && backend != each.name) continue;
     std::string why;
-    if (auto context = open_named(name, level, &why)) return context;
-    answers += "; " + std::string(name) + ": " + why;
+    if (auto context = each.open(level, &why)) return context;
+    answers += "; " + std::string(each.name) + ": " + why;
   }
   // nothing was tried: the backend was named, and is not in this build
   if (answers.empty()) answers = "; this build has no such backend";

@@ -9,6 +9,7 @@
 #include "brink/core/fields/site_mesh.h"
 #include "brink/core/fields/site_tiles.h"
 #include "brink/core/shapes/distance.h"
+#include "brink/core/shapes/text.h"
 
 namespace brink {
 
@@ -183,6 +184,9 @@ struct PassRenderer::Impl {
     std::vector<PixelValue> picked;
     picked.reserve(points.size());
     for (const Vec2& p : points) {
+      // it would pass through clamp(), and has no pixel
+      if (p.hasNaN())
+        throw BadInput("a pass window is read at " + text(p) + "; allowed: places that are numbers");
       const Vec2 at = (p - grid.low) / grid.pixel;
       // a point outside: its nearest pixel
       const int i = static_cast<int>(std::clamp(at.x(), 0.0, grid.width - 1.0));

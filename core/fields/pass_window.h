@@ -61,7 +61,7 @@ struct PixelValue {
 /// whoever is excluded.
 ///
 /// All calls throw BadInput on an empty or infinite window, a size outside 1 .. 8192 pixels, a band or margin
-/// that is negative or NaN, or a scene entry without an outline.
+/// that is negative or NaN, a scene entry without an outline, or a point to be read that is NaN.
 class PassRenderer {
  public:
   /// @throws BadInput if the options are not valid; IoError if no GL context opens.

@@ -27,15 +27,20 @@ StencilOverlap stencil_overlap(PassRenderer& renderer, const PlacedOutline& a, c
   StencilOverlap found;
   const Box window = common_window(a, b);
   if (window.empty() || !(window.extent().minCoeff() > 0.0)) return found;
-  const double pixel = window.extent().maxCoeff() / resolution;
-  const auto across = [&](double length) { return std::max(1, static_cast<int>(std::ceil(length / pixel))); };
+  const double wanted = window.extent().maxCoeff() / resolution;
+  // the longer side is `resolution` pixels, and by rounding would be one more
+  const auto across = [&](double length) {
+    return std::clamp(static_cast<int>(std::ceil(length / wanted)), 1, resolution);
+  };
   const int width = across(window.extent().x()), height = across(window.extent().y());
   std::vector<std::uint8_t> stencil(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
   std::size_t near_edge = 0;
+  double pixel = 0.0;
   for (const PlacedOutline* item : {&a, &b}) {
     // each alone: in one picture the nearest site would hide on which side of the other a pixel lies
     const FieldImage image = renderer.render(window, width, height, {item, 1}, FieldImage::kNone,
                                              std::numeric_limits<double>::infinity());
+    pixel = image.pixel;  // the same of both: it goes by the window
     for (std::size_t k = 0; k < stencil.size(); ++k) {
       stencil[k] += image.inside[k];
       // A pixel's centre stands for all of it unless a boundary passes within half its diagonal.

@@ -26,7 +26,8 @@ struct OutlineHit {
 /// of the distance over the sine of the angle at which the surfaces meet; gaps after the move may be that much
 /// below 0. An image in a plane that repeats is the caller's: shift a pose. Cost: samples of each times sites
 /// of the other, and outline_gap() a few times.
-/// @throws BadInput if the direction is not finite or its length is off 1 by more than 1e-9.
+/// @throws BadInput if the direction is not finite or its length is off 1 by more than 1e-9, or if one stands
+/// so far from the other that closest_point() would.
 OutlineHit cast_outline(const Outline& a, const Pose& pose_a, const Vec2& direction, const Outline& b,
                         const Pose& pose_b);
 

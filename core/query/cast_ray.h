@@ -32,8 +32,8 @@ struct RayHit {
 /// Closed forms: a line or a circle a site, its offsets and a circle about each end where it has a thickness.
 /// Errors: a rounding of the distances involved over the sine of the angle at which the ray meets the surface.
 /// Cost: all sites, twice. An image in a plane that repeats is the caller's: shift the pose.
-/// @throws BadInput if origin or direction is not finite, the direction's length is off 1 by more than 1e-9, or
-/// length is < 0 or NaN.
+/// @throws BadInput if origin or direction is not finite, the direction's length is off 1 by more than 1e-9,
+/// length is < 0 or NaN, or the origin is farther than kFarthestQuery (closest_point.h) from the outline's.
 std::optional<RayHit> cast_ray(const Outline& outline, const Pose& pose, const Ray& ray);
 
 }  // namespace brink

@@ -10,11 +10,17 @@ SurfacePoint closest_point(const Outline& outline, const Pose& pose, const Vec2&
   if (!q.allFinite()) throw BadInput("closest point: the place is " + text(q) + "; it must be finite");
   const Frame frame(pose);
   const Vec2 local = frame.to_local(q);
+  if (!(local.lpNorm<Eigen::Infinity>() <= kFarthestQuery))
+    throw BadInput("closest point: the place is " + text(q) + "; it must be within " + text(kFarthestQuery) +
+                   " m of the outline's origin");
   SurfacePoint found;
   found.gap = gap_by_brute_force(outline, local, &found.site);
   const Site& site = outline.sites[static_cast<std::size_t>(found.site)];
   const Nearest nearest = nearest_on(site, local);
-  const Vec2 normal = normal_at(site, nearest, local);
+  // far from a solid the site does not tell the side: gap_by_brute_force() does
+  const bool is_far = site.solid && is_beyond(outline, nearest.distance);
+  const Vec2 away = (found.gap < 0.0 ? -1.0 : 1.0) * (local - nearest.point);
+  const Vec2 normal = is_far ? away.normalized() : normal_at(site, nearest, local);
   // from the core: as q - gap * normal it would be rounded as q is, however far away that is
   found.point = frame.to_world(nearest.point + site.radius * normal);
   found.normal = frame.direction_to_world(normal);

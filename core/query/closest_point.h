@@ -13,6 +13,9 @@ struct SurfacePoint {
   int site = -1;               ///< into Outline::sites; of sites equally near the first
 };
 
+/// Places farther from an outline's origin than this have no distance from it [m]: their squares overflow.
+inline constexpr double kFarthestQuery = 1e150;
+
 /// The closest point of `outline`, standing at `pose`, to q. The gap is that of gap_by_brute_force().
 ///
 /// Outside, the answer is exact. Inside a thickness where others of the outline's sites lie too (the filled
@@ -21,7 +24,7 @@ struct SurfacePoint {
 /// right of the site's direction. An image in a plane that repeats is the caller's: shift the pose.
 ///
 /// Errors: a rounding of the distance between q and the outline, and of pose.position. Cost: all sites.
-/// @throws BadInput if q is not finite.
+/// @throws BadInput if q is not finite, or farther than kFarthestQuery from the outline's origin.
 SurfacePoint closest_point(const Outline& outline, const Pose& pose, const Vec2& q);
 
 }  // namespace brink

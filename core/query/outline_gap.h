@@ -29,6 +29,7 @@ struct OutlineGap {
 /// far away from the world's origin they are costs no digits but those of the poses themselves. Two images in a
 /// plane that repeats are the caller's: shift a pose. Cost: samples of each times sites of the other, and pairs
 /// of sites.
+/// @throws BadInput if one stands so far from the other that closest_point() would.
 OutlineGap outline_gap(const Outline& a, const Pose& pose_a, const Outline& b, const Pose& pose_b);
 
 /// True if the two are surely apart by more than `margin` [m]: quicker than outline_gap(), and stops at the

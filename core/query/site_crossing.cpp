@@ -53,13 +53,6 @@ double nearest_end(const Site& s, const Site& t) {
                    nearest_on(t, s.b).distance});
 }
 
-/// Unit normal to the right of the direction of travel at p, which is on the core.
-Vec2 right_of(const Site& site, const Vec2& p) {
-  if (site.kind == SiteKind::segment) return -perp((site.b - site.a).normalized());
-  const Vec2 radial = (p - site.center).normalized();
-  return site.sweep > 0.0 ? radial : Vec2(-radial);
-}
-
 /// How far the nearest end of either reaches over the other's line.
 SiteCrossing two_segments(const Site& s, const Site& t) {
   const Vec2 ds = (s.b - s.a).normalized(), dt = (t.b - t.a).normalized();
@@ -80,7 +73,7 @@ SiteCrossing with_arc(const Site& s, const Site& t) {
   // depth and bulge belong to the pair: of two points on both cores the first tells as much
   for (const Vec2& p : meeting.points)
     if (abreast(s, p) && abreast(t, p))
-      return {std::min(meeting.bulge, nearest_end(s, t)), p, right_of(t, p)};
+      return {std::min(meeting.bulge, nearest_end(s, t)), p, right_normal(t, p)};
   return {};
 }
 

@@ -18,6 +18,19 @@ struct Piece {
   Vec2 p0 = Vec2::Zero(), p1 = Vec2::Zero();
 };
 
+/// How near a point of the curve is to what was fitted.
+struct Nearness {
+  double distance = std::numeric_limits<double>::infinity();
+  std::size_t site = 0;
+};
+
+/// Places h apart in parameter, and the most by which the distance between two of them exceeds the greater of
+/// the two, as long as one site is the nearest.
+struct Step {
+  int places = 0;
+  double rise = 0.0;
+};
+
 class Fitter {
  public:
   Fitter(const SmoothCurve& curve, double tolerance, double radius, std::vector<Site>& sites)
@@ -30,8 +43,9 @@ class Fitter {
   bool try_biarc(const Piece& piece);
   bool accept_if_near(const Piece& piece, const std::vector<Site>& fitted);
   bool add_tangent_arc(const Vec2& a, const Vec2& direction, const Vec2& b, std::vector<Site>& fitted) const;
-  double distance_at(double t, const std::vector<Site>& fitted) const;
-  double most_bend(const std::vector<Site>& fitted) const;
+  Nearness at(double t, const std::vector<Site>& fitted) const;
+  double most_between(double from, double to, const std::vector<Site>& fitted) const;
+  Step step_for(double span, const std::vector<Site>& fitted) const;
   Vec2 direction(double t, double towards) const;
   /// No longer than the tolerance. As that is at least 1e-10 of the speed bound, halving ends: a piece
   /// whose parameters span a quarter turn is tiny after 34 times.
@@ -53,41 +67,64 @@ Vec2 Fitter::direction(double t, double towards) const {
   return curve_.derivative(t + 1e-4 * (towards - t)).normalized();
 }
 
-double Fitter::distance_at(double t, const std::vector<Site>& fitted) const {
+Nearness Fitter::at(double t, const std::vector<Site>& fitted) const {
   const Vec2 p = curve_.point(t);
-  double least = std::numeric_limits<double>::infinity();
-  for (const Site& s : fitted) least = std::min(least, nearest_on(s, p).distance);
-  return least;
+  Nearness nearest;
+  for (std::size_t k = 0; k < fitted.size(); ++k)
+    if (const double d = nearest_on(fitted[k], p).distance; d < nearest.distance) nearest = {d, k};
+  return nearest;
 }
 
-/// Bound on the second derivative, in t, of the distance from the curve to a line or circle: the curve's own,
-/// and speed^2 over the distance to the circle's centre.
-double Fitter::most_bend(const std::vector<Site>& fitted) const {
+/// The distance where the curve passes from one site to the next: it may be greater than before and after.
+double Fitter::most_between(double from, double to, const std::vector<Site>& fitted) const {
+  const std::size_t before = at(from, fitted).site;
+  double most = 0.0;
+  // to 1e-6 of the step
+  for (int k = 0; k < 20; ++k) {
+    const double middle = std::lerp(from, to, 0.5);
+    const Nearness there = at(middle, fitted);
+    most = std::max(most, there.distance);
+    (there.site == before ? from : to) = middle;
+  }
+  return most;
+}
+
+/// So many places that the rise is a 32nd of the tolerance, where that is not too many.
+Step Fitter::step_for(double span, const std::vector<Site>& fitted) const {
+  constexpr int least = 16, most = 20000;
+  const double speed = curve_.speed_bound(), allowed = tolerance_ / 32;
   // d = |p - c| - R has d'' = p'' . u + (|p'|^2 - (p' . u)^2) / |p - c|, u the unit vector from c to p
   double bend = curve_.bend_bound();
-  for (const Site& s : fitted)
-    if (s.kind == SiteKind::arc) {
-      const double closest = std::max(s.arc_radius - tolerance_, s.arc_radius / 2);
-      bend = std::max(bend, curve_.bend_bound() + curve_.speed_bound() * curve_.speed_bound() / closest);
-    }
-  return bend;
+  bool is_tight = false;
+  for (const Site& s : fitted) {
+    if (s.kind != SiteKind::arc) continue;
+    is_tight |= s.arc_radius < 2 * tolerance_;
+    bend = std::max(bend, curve_.bend_bound() + speed * speed / (s.arc_radius - tolerance_));
+  }
+  // within the tolerance of a tight arc the curve may come to its centre, where the bend has no bound; but no
+  // place is farther than h / 2 of the way from one that is looked at
+  const double wanted = is_tight ? span * speed / (2 * allowed) : span * std::sqrt(bend / (8 * allowed));
+  const int n = static_cast<int>(std::clamp(std::ceil(wanted), double(least), double(most)));
+  return {n, is_tight ? span / n * speed / 2 : span / n * span / n * bend / 8};
 }
 
 bool Fitter::accept_if_near(const Piece& piece, const std::vector<Site>& fitted) {
-  constexpr int coarse = 8, most = 20000;
+  constexpr int coarse = 8;
   // a piece that is far off is turned down by few places
   for (int k = 1; k < coarse; ++k)
-    if (distance_at(std::lerp(piece.t0, piece.t1, double(k) / coarse), fitted) > tolerance_) return false;
-  const double span = std::abs(piece.t1 - piece.t0), bend = most_bend(fitted);
-  // between places h apart in t the distance exceeds the greater of the two
-  // by at most bend h^2 / 8: so many places that this is a 32nd of the
-  // tolerance. Where `most` allows fewer it is more, and is counted
-  const double wanted = span * std::sqrt(bend / (8 * tolerance_ / 32));
-  const int n = static_cast<int>(std::clamp(std::ceil(wanted), 2.0 * coarse, double(most)));
-  double worst = 0.0;
-  for (int k = 0; k <= n; ++k)
-    worst = std::max(worst, distance_at(std::lerp(piece.t0, piece.t1, double(k) / n), fitted));
-  worst += span / n * span / n * bend / 8;
+    if (at(std::lerp(piece.t0, piece.t1, double(k) / coarse), fitted).distance > tolerance_) return false;
+  const Step step = step_for(std::abs(piece.t1 - piece.t0), fitted);
+  const auto parameter = [&](int k) { return std::lerp(piece.t0, piece.t1, double(k) / step.places); };
+  Nearness before = at(piece.t0, fitted);
+  double worst = before.distance;
+  for (int k = 1; k <= step.places; ++k) {
+    const Nearness now = at(parameter(k), fitted);
+    worst = std::max(worst, now.distance);
+    if (now.site != before.site)
+      worst = std::max(worst, most_between(parameter(k - 1), parameter(k), fitted));
+    before = now;
+  }
+  worst += step.rise;
   if (worst > tolerance_) return false;
   deviation_ = std::max(deviation_, worst);
   sites_.insert(sites_.end(), fitted.begin(), fitted.end());

@@ -34,12 +34,6 @@ class Distinct {
   std::set<std::pair<double, double>> cells_;
 };
 
-double length_of(const Site& piece) { return piece.kind == SiteKind::point ? 0.0 : length(piece); }
-
-Vec2 along(const Site& piece, double fraction) {
-  return piece.kind == SiteKind::point ? piece.a : point_along(piece, fraction);
-}
-
 }  // namespace
 
 std::vector<Site> boundary_pieces(const Outline& outline) {
@@ -50,7 +44,7 @@ std::vector<Site> boundary_pieces(const Outline& outline) {
 
 double total_length(const std::vector<Site>& pieces) {
   double sum = 0.0;
-  for (const Site& piece : pieces) sum += length_of(piece);
+  for (const Site& piece : pieces) sum += length(piece);
   return sum;
 }
 
@@ -59,9 +53,9 @@ std::vector<Vec2> walk(const std::vector<Site>& pieces, double spacing) {
   Distinct distinct(kSame * spacing);
   for (const Site& piece : pieces) {
     // a length of whole spacings up to rounding gets no part more
-    const int parts = std::max(1, static_cast<int>(std::ceil(length_of(piece) / spacing - kSame)));
+    const int parts = std::max(1, static_cast<int>(std::ceil(length(piece) / spacing - kSame)));
     for (int k = 0; k <= parts; ++k) {
-      const Vec2 p = along(piece, static_cast<double>(k) / parts);
+      const Vec2 p = point_along(piece, static_cast<double>(k) / parts);
       if (distinct.take(p)) points.push_back(p);
     }
   }
@@ -70,12 +64,12 @@ std::vector<Vec2> walk(const std::vector<Site>& pieces, double spacing) {
 
 Vec2 point_at(const std::vector<Site>& pieces, double way) {
   for (const Site& piece : pieces) {
-    const double own = length_of(piece);
-    if (way <= own && own > 0.0) return along(piece, way / own);
+    const double own = length(piece);
+    if (way <= own && own > 0.0) return point_along(piece, way / own);
     way -= own;
   }
   // rounding left a little of the way
-  return along(pieces.back(), 1.0);
+  return point_along(pieces.back(), 1.0);
 }
 
 }  // namespace brink

@@ -1,9 +1,9 @@
 #include "brink/core/shapes/crossing.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "brink/core/base/error.h"
+#include "brink/core/shapes/box_sweep.h"
 #include "brink/core/shapes/curve_site.h"
 #include "brink/core/shapes/distance.h"
 #include "brink/core/shapes/text.h"
@@ -48,21 +48,6 @@ void add_circle_circle(const Site& s, const Site& t, double tolerance, Points& p
   add_chord(s.center + u * clamped, perp(u), clamped, r, tolerance, points);
 }
 
-struct BoxedSite {
-  Box box;
-  int site = 0;
-};
-
-/// Sites by the left edge of their boxes, each box grown by `margin`.
-std::vector<BoxedSite> by_left_edge(const std::vector<Site>& sites, double margin) {
-  std::vector<BoxedSite> boxed(sites.size());
-  for (std::size_t k = 0; k < sites.size(); ++k)
-    boxed[k] = {core_bounds(sites[k]).grown(margin), static_cast<int>(k)};
-  std::stable_sort(boxed.begin(), boxed.end(),
-                   [](const BoxedSite& p, const BoxedSite& q) { return p.box.low.x() < q.box.low.x(); });
-  return boxed;
-}
-
 /// Whether p, on both sites, is where `in` hands over to `out`. Arcs that join smoothly stay within any
 /// tolerance of each other for a while, and cannot meet again as each turns by at most a quarter.
 bool is_hand_over_of(const Site& in, const Site& out, const Vec2& p) {
@@ -102,18 +87,16 @@ void add_meeting_points(const Site& s, const Site& t, double tolerance, Points& 
 
 void require_simple(const Outline& outline, const std::string& what) {
   const double tolerance = 1e-12 * outline.bounds.extent().norm();
-  const std::vector<BoxedSite> boxed = by_left_edge(outline.sites, tolerance);
+  std::vector<Box> boxes;
+  for (const Site& s : outline.sites) boxes.push_back(core_bounds(s).grown(tolerance));
   Points points;
-  for (std::size_t i = 0; i < boxed.size(); ++i)
-    // by left edges: from the first box that begins beyond this one on, none overlaps it
-    for (std::size_t j = i + 1; j < boxed.size() && boxed[j].box.low.x() <= boxed[i].box.high.x(); ++j) {
-      if (!boxed[i].box.overlaps(boxed[j].box)) continue;
-      const Site &s = outline.sites[boxed[i].site], &t = outline.sites[boxed[j].site];
-      points.clear();
-      add_meeting_points(s, t, tolerance, points);
-      for (const Vec2& p : points)
-        if (!is_hand_over(s, t, p)) report(what, boxed[i].site, boxed[j].site, p);
-    }
+  for_overlapping(boxes, [&](int i, int j) {
+    const Site &s = outline.sites[i], &t = outline.sites[j];
+    points.clear();
+    add_meeting_points(s, t, tolerance, points);
+    for (const Vec2& p : points)
+      if (!is_hand_over(s, t, p)) report(what, i, j, p);
+  });
 }
 
 }  // namespace brink

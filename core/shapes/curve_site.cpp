@@ -51,7 +51,7 @@ Site segment_site(const Vec2& a, const Vec2& b, double radius) {
 void add_arc(std::vector<Site>& sites, const Vec2& a, const Vec2& b, const Vec2& center, double arc_radius,
              double sweep, double radius) {
   // quarter turns with a rounding are as many pieces, not one more
-  const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / kQuarterTurn - 1e-9)));
+  const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / kMostArcSweep)));
   Site s;
   s.kind = SiteKind::arc;
   s.radius = radius;
@@ -74,6 +74,12 @@ Vec2 direction_at_start(const Site& site) {
 
 Vec2 direction_at_end(const Site& site) {
   return site.kind == SiteKind::arc ? tangent(site, site.b) : Vec2((site.b - site.a).normalized());
+}
+
+Vec2 right_normal(const Site& site, const Vec2& p) {
+  if (site.kind == SiteKind::segment) return -perp((site.b - site.a).normalized());
+  const Vec2 radial = (p - site.center).normalized();
+  return site.sweep > 0 ? radial : Vec2(-radial);
 }
 
 double curvature(const Site& site) {

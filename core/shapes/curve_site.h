@@ -11,8 +11,11 @@ namespace brink {
 Site point_site(const Vec2& p, double radius);
 Site segment_site(const Vec2& a, const Vec2& b, double radius);
 
+/// What an arc site turns by at most [rad]: a quarter turn with a rounding, as a circle's split may leave it.
+inline constexpr double kMostArcSweep = kQuarterTurn * (1 + 1e-12);
+
 /// Appends the arc from a to b on the circle (center, arc_radius) that turns by sweep [rad], split evenly
-/// into pieces of at most a quarter turn that share their end points bit for bit. @pre a and b lie on the
+/// into pieces of at most kMostArcSweep that share their end points bit for bit. @pre a and b lie on the
 /// circle; sweep != 0.
 void add_arc(std::vector<Site>& sites, const Vec2& a, const Vec2& b, const Vec2& center, double arc_radius,
              double sweep, double radius);
@@ -24,10 +27,14 @@ Vec2 unit_at(double angle);
 Vec2 direction_at_start(const Site& site);
 Vec2 direction_at_end(const Site& site);
 
+/// Unit normal to the right of the direction of travel at p, which is on the core: outward on solid loops.
+/// @pre segment or arc.
+Vec2 right_normal(const Site& site, const Vec2& p);
+
 /// Signed curvature [1/m], > 0 where travel turns left; 0 on a segment.
 double curvature(const Site& site);
 
-/// Length of the core [m].
+/// Length of the core [m]; 0 of a point.
 double length(const Site& site);
 
 /// Point of the core at a fraction of its length, 0 at a and 1 at b.

@@ -1,23 +1,14 @@
 #include "brink/core/shapes/distance.h"
 
+#include "brink/core/shapes/curve_site.h"
+
 namespace brink {
-
-namespace {
-
-/// Unit normal to the right of the direction of travel at the foot: outward on solid loops.
-Vec2 right_normal(const Site& site, const Nearest& nearest) {
-  if (site.kind == SiteKind::segment) return -perp((site.b - site.a).normalized());
-  const Vec2 radial = (nearest.point - site.center).normalized();
-  return site.sweep > 0 ? radial : Vec2(-radial);
-}
-
-}  // namespace
 
 Vec2 normal_at(const Site& site, const Nearest& nearest, const Vec2& q) {
   const double side = side_of(site, nearest, q);
   if (nearest.foot == Foot::interior && site.kind != SiteKind::point) {
     // from the site, not from q - point, which near the surface is all rounding
-    const Vec2 right = right_normal(site, nearest);
+    const Vec2 right = right_normal(site, nearest.point);
     if (site.solid) return right;
     return (q - nearest.point).dot(right) < 0.0 ? Vec2(-right) : right;
   }
@@ -27,7 +18,7 @@ Vec2 normal_at(const Site& site, const Nearest& nearest, const Vec2& q) {
   if (site.kind == SiteKind::point) return {1.0, 0.0};
   const Vec2& pseudo = nearest.foot == Foot::start ? site.pseudo_a : site.pseudo_b;
   const double length = pseudo.norm();
-  return site.solid && length > 0.0 ? Vec2(pseudo / length) : right_normal(site, nearest);
+  return site.solid && length > 0.0 ? Vec2(pseudo / length) : right_normal(site, nearest.point);
 }
 
 }  // namespace brink

@@ -18,8 +18,8 @@ std::string name_of(int k) { return "outline: site " + std::to_string(k); }
 void check_arc(const Site& s, int k) {
   if (!(s.center.allFinite() && std::isfinite(s.arc_radius) && s.arc_radius > 0.0))
     throw BadInput(name_of(k) + " is an arc of radius " + text(s.arc_radius) + "; it must be > 0 and finite");
-  // a quarter of a split circle may be a rounding more
-  if (!(std::abs(s.sweep) > 0.0 && std::abs(s.sweep) <= kQuarterTurn * (1 + 1e-12)))
+  // 1e-15: what add_arc() has split may be a rounding of its own more
+  if (!(std::abs(s.sweep) > 0.0 && std::abs(s.sweep) <= kMostArcSweep * (1 + 1e-15)))
     throw BadInput(name_of(k) + " turns by " + text(s.sweep) +
                    " rad; an arc site turns by at most a quarter turn");
   // the end is looked for where the sweep takes the start: being on the circle somewhere is not enough
@@ -198,15 +198,18 @@ double gap_by_brute_force(const Outline& outline, const Vec2& q, int* site) {
   for (std::size_t k = 0; k < outline.sites.size(); ++k) {
     const Nearest n = nearest_on(outline.sites[k], q);
     const double unsigned_gap = n.distance - outline.sites[k].radius;
-    // without signs: a side that is not the nearest may be seen from behind by a q that is outside
-    if (!(unsigned_gap < least)) continue;
+    // without signs: a side that is not the nearest may be seen from behind by a q that is outside.
+    // The first counts as it is: of a q too far to have a distance all are equally near
+    if (k > 0 && !(unsigned_gap < least)) continue;
     least = unsigned_gap;
     nearest_site = static_cast<int>(k);
     nearest = n;
   }
   if (site) *site = nearest_site;
   const Site& s = outline.sites[nearest_site];
-  return side_of(s, nearest, q) * nearest.distance - s.radius;
+  const bool is_far = s.solid && is_beyond(outline, nearest.distance);
+  const double side = is_far ? (outline.container ? -1.0 : 1.0) : side_of(s, nearest, q);
+  return side * nearest.distance - s.radius;
 }
 
 Outline as_container(Outline outline) {

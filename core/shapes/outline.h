@@ -61,9 +61,17 @@ struct Outline {
 ///   join up, a solid with an open chain, a point, or sites of different radii, or NaN.
 void finish_outline(Outline& outline);
 
+/// True of a distance from the nearest site that no place inside a solid has, nor any in a container's room.
+/// Much farther, all sites are equally near by rounding, and the side of one of them says nothing.
+inline bool is_beyond(const Outline& outline, double distance) {
+  return distance > 2.0 * outline.bounding_radius;
+}
+
 /// Signed gap [m] from q to the whole outline by brute force over its sites (the reference the fields are
 /// tested against), with the nearest site in `*site` if given. The sign is the nearest site's side; of sites
-/// equally near, as at a vertex, the first is taken (pseudo-normals make them agree). Cost: all sites.
+/// equally near, as at a vertex, the first is taken (pseudo-normals make them agree). Beyond a solid's size,
+/// what it is tells the sign. Cost: all sites.
+/// @pre |q| < 1e150 m: beyond, squares overflow and the gap means nothing.
 double gap_by_brute_force(const Outline& outline, const Vec2& q, int* site = nullptr);
 
 /// Reverses every loop and marks the outline as a container: what was inside is now free, all else solid.

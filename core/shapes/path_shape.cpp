@@ -1,5 +1,6 @@
 /// make_path: subpaths to loops of segments and arcs, in the frame with y upward.
 
+#include <algorithm>
 #include <numbers>
 
 #include "brink/core/base/error.h"
@@ -103,27 +104,37 @@ class PathBuilder {
   double deviation_ = 0.0;
 };
 
-/// Relative commands come back to the start only up to rounding: the last end is put onto the first start
-/// then.
-void close_rounding_gap(Subpath& subpath) {
+/// What roundings make of the places of some hundred relative commands, each rounded to the size of the
+/// coordinates [as written].
+double rounding_of(const Subpath& subpath) {
   Box box;
   for (const PathPiece& piece : subpath.pieces) box.add(piece.to);
   const Vec2 start = subpath.pieces.front().from;
   box.add(start);
-  // the places of some hundred relative commands, each rounded to the size of the coordinates
-  const double rounding = 1e-13 * (box.extent().norm() + start.norm());
-  while (subpath.pieces.size() > 2) {
-    PathPiece& last = subpath.pieces.back();
-    const bool closes = (last.to - start).norm() <= rounding;
-    if (!closes) return;
-    // else it is what Z drew over the rounding: it goes, and the piece before it ends at the start
-    if (last.kind != PathPieceKind::line || (last.from - start).norm() > rounding) {
-      last.to = start;
-      subpath.closed = true;
-      return;
-    }
-    subpath.pieces.pop_back();
-  }
+  return 1e-13 * (box.extent().norm() + start.norm());
+}
+
+/// Relative commands come back to the start only up to rounding: the last end is put onto the first start
+/// then.
+void close_rounding_gap(Subpath& subpath) {
+  std::vector<PathPiece>& pieces = subpath.pieces;
+  const Vec2 start = pieces.front().from;
+  const double rounding = rounding_of(subpath);
+  const auto is_there = [&](const Vec2& p) { return (p - start).norm() <= rounding; };
+  // a line from there to there is what Z drew over the rounding: the piece before it ends at the start
+  std::size_t kept = pieces.size();
+  const auto is_line = [](const PathPiece& piece) { return piece.kind == PathPieceKind::line; };
+  const auto is_gap = [&](const PathPiece& p) { return is_line(p) && is_there(p.from) && is_there(p.to); };
+  while (kept > 0 && is_gap(pieces[kept - 1])) --kept;
+  // two lines enclose nothing
+  if (kept == 0 || (kept < 3 && std::all_of(pieces.begin(), pieces.begin() + kept, is_line))) return;
+  PathPiece& last = pieces[kept - 1];
+  if (!is_there(last.to)) return;
+  // the chord of an arc places its circle: of one that is all but whole it must stay
+  if (last.kind == PathPieceKind::arc && is_there(last.from)) return;
+  last.to = start;
+  pieces.resize(kept);
+  subpath.closed = true;
 }
 
 /// @pre the loop runs counter-clockwise.
@@ -163,6 +174,11 @@ Shape make_path(std::string_view d, double scale, double curve_tolerance) {
   for (Subpath& subpath : subpaths) {
     close_rounding_gap(subpath);
     loops.push_back(builder.sites_of(subpath));
+    // fit_arcs() leaves out what is shorter than the tolerance and comes back to its start
+    if (loops.back().empty())
+      throw BadInput("path: subpath " + std::to_string(loops.size()) +
+                     " (from 1) is shorter than curve_tolerance, " + text(curve_tolerance) +
+                     " m, and comes back to its start; allowed: subpaths that are longer");
     outline.solid = outline.solid && subpath.closed;
   }
   if (outline.solid) orient_even_odd(loops);

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "brink/core/base/error.h"
+#include "brink/core/shapes/box_sweep.h"
 #include "brink/core/shapes/polygon.h"
 #include "brink/core/shapes/text.h"
 
@@ -128,15 +129,11 @@ void Union::cut_pair(int e, int f, std::vector<std::vector<int>>& cuts) {
   if (v != edges_[f].from && v != edges_[f].to) cuts[f].push_back(v);
 }
 
-/// Every pair of edges whose boxes overlap, by a sweep over their left ends.
+/// Every pair of edges whose boxes overlap.
 void Union::find_cuts(std::vector<std::vector<int>>& cuts) {
-  std::vector<std::pair<Box, int>> boxed;
-  for (std::size_t k = 0; k < edges_.size(); ++k) boxed.emplace_back(box_of(edges_[k]), static_cast<int>(k));
-  std::stable_sort(boxed.begin(), boxed.end(),
-                   [](const auto& p, const auto& q) { return p.first.low.x() < q.first.low.x(); });
-  for (std::size_t i = 0; i < boxed.size(); ++i)
-    for (std::size_t j = i + 1; j < boxed.size() && boxed[j].first.low.x() <= boxed[i].first.high.x(); ++j)
-      if (boxed[i].first.overlaps(boxed[j].first)) cut_pair(boxed[i].second, boxed[j].second, cuts);
+  std::vector<Box> boxes;
+  for (const Edge& edge : edges_) boxes.push_back(box_of(edge));
+  for_overlapping(boxes, [&](int e, int f) { cut_pair(e, f, cuts); });
 }
 
 /// One round: cuts every edge at the vertices found on it. True if any was cut.

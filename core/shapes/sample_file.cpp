@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "brink/core/base/error.h"
@@ -62,7 +63,7 @@ class Reader {
   SampledBody read() {
     SampledBody body;
     const std::vector<double> count = numbers(1, "the number of samples");
-    if (stopped_) return body;
+    if (stopped_ || std::isnan(count[0])) return body;
     const double most = kMostParticles;
     if (!(count[0] >= 1.0 && count[0] <= most && count[0] == std::floor(count[0])))
       return fault(lines_[0].words[0], "the number of samples is no count",
@@ -71,7 +72,7 @@ class Reader {
     const std::vector<double> v = numbers(7, "mass x y vx vy rotation omega");
     if (stopped_) return body;
     body = {v[0], {v[1], v[2]}, {v[3], v[4]}, v[5], v[6], {}};
-    if (!(body.mass > 0.0)) fault(lines_[1].words[0], "the mass is not > 0", "a number > 0 in kg");
+    if (body.mass <= 0.0) fault(lines_[1].words[0], "the mass is not > 0", "a number > 0 in kg");
     samples(static_cast<std::size_t>(count[0]), body.samples);
     return body;
   }
@@ -93,7 +94,8 @@ class Reader {
     // inf and nan, which it does take, are not <= kLargest
     if (error == std::errc() && stop == end && std::abs(value) <= kLargest) return value;
     fault(word, "not a number", "a finite number of at most 1e15");
-    return 0.0;
+    // no check of its size complains of the same word again
+    return std::numeric_limits<double>::quiet_NaN();
   }
 
   /// The numbers of the next line, which must be `wanted` many.
@@ -129,7 +131,7 @@ class Reader {
       // the lines after a wrong one are read all the same, for their own faults
       if (faults_.size() != before) continue;
       const Line& line = lines_[next_ - 1];
-      const auto [place, is_new] = taken.try_emplace({v[0] + 0.0, v[1] + 0.0}, line.number);
+      const auto [place, is_new] = taken.try_emplace({v[0], v[1]}, line.number);
       if (!is_new)
         fault(line.words[0], "the sample is that of line " + std::to_string(place->second),
               "each place once");
@@ -167,6 +169,28 @@ std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
   return hull;
 }
 
+/// The point that is farthest from p.
+const Vec2& farthest(const std::vector<Vec2>& points, const Vec2& p) {
+  return *std::max_element(points.begin(), points.end(), [&](const Vec2& a, const Vec2& b) {
+    return (a - p).squaredNorm() < (b - p).squaredNorm();
+  });
+}
+
+/// The ends of the line that all the points are on, up to the roundings of their coordinates; nothing if they
+/// are on none. @pre the points are a convex hull's.
+std::vector<Vec2> line_through(const std::vector<Vec2>& hull) {
+  if (hull.size() == 2) return hull;
+  const Vec2 from = farthest(hull, hull[0]), to = farthest(hull, from);
+  double largest = 0.0, off = 0.0;
+  for (const Vec2& p : hull) {
+    largest = std::max(largest, p.norm());
+    off = std::max(off, std::abs(cross(to - from, p - from)) / (to - from).norm());
+  }
+  // each coordinate is rounded to half of 2.2e-16 of itself, those of the ends too
+  if (off > 8e-16 * largest) return {};
+  return {from, to};
+}
+
 }  // namespace
 
 SampledBody read_sample_file(std::string_view text, std::vector<SampleFileFault>& faults) {
@@ -177,7 +201,7 @@ Shape shape_of_samples(const std::vector<Vec2>& samples) {
   if (samples.empty()) throw BadInput("samples: none given; allowed: one or more");
   if (samples.size() == 1) return make_point(samples[0]);
   const std::vector<Vec2> hull = convex_hull(samples);
-  if (hull.size() == 2) return make_chain(hull);
+  if (const std::vector<Vec2> ends = line_through(hull); !ends.empty()) return make_chain(ends);
   try {
     return make_polygon(samples);
   } catch (const BadInput&) {  // not simple in this order

@@ -35,8 +35,9 @@ struct SampleFileFault {
 SampledBody read_sample_file(std::string_view text, std::vector<SampleFileFault>& faults);
 
 /// The shape that the samples stand for. In this order:
+/// - one sample alone: a point; all on one line, up to the roundings of their coordinates: a wire from end to
+///   end;
 /// - the polygon through them in file order, if that is simple;
-/// - all on one line: a wire from end to end; one sample alone: a point;
 /// - else their convex hull (a file that lists the samples row by row, or inner ones too).
 Shape shape_of_samples(const std::vector<Vec2>& samples);
 

@@ -72,14 +72,15 @@ std::vector<Particle> volume(const Outline& outline, const Sampling& sampling) {
       const Vec2 p = low + spacing * Vec2(i, j);
       if (gap_by_brute_force(outline, p) < 0.0) particles.push_back({p, 0.0, spacing * spacing});
     }
+  check_number("volume", static_cast<double>(particles.size()));
   return particles;
 }
 
 std::vector<Particle> random(const Outline& outline, const Sampling& sampling) {
   const std::vector<Site> pieces = boundary_pieces(outline);
   const double whole = total_length(pieces);
-  const double count =
-      sampling.count > 0 ? sampling.count : std::ceil(whole / spacing_of("random", sampling, whole));
+  const double spacing = spacing_of("random", sampling, whole);
+  const double count = sampling.spacing > 0.0 ? std::ceil(whole / spacing) : sampling.count;
   check_number("random", count);
   Random draw(sampling.seed);
   std::vector<Vec2> points;
@@ -93,22 +94,33 @@ std::vector<Particle> random(const Outline& outline, const Sampling& sampling) {
 std::vector<Particle> raster(const Outline& outline, const Sampling& sampling) {
   const double pixel = spacing_of("raster", sampling, outline.bounds.extent().maxCoeff());
   const std::vector<Site> pieces = boundary_pieces(outline);
-  // the places of the walk, which are more than the pixels they fall into
-  check_number("raster", 8.0 * total_length(pieces) / pixel);
+  // before the walk, about as many as there will be: as many as lie along the axes
+  check_number("raster", total_length(pieces) / pixel);
   std::set<std::pair<double, double>> drawn;  // row, column
   for (const Vec2& p : walk(pieces, pixel / 8.0)) {
     const Vec2 at = ((p - outline.bounds.low) / pixel).array().floor();
     drawn.insert({at.y(), at.x()});
   }
+  check_number("raster", static_cast<double>(drawn.size()));
   std::vector<Vec2> points;
   for (const auto& [row, column] : drawn)
     points.emplace_back(outline.bounds.low + pixel * Vec2(column + 0.5, row + 0.5));
   return on(points);
 }
 
+/// True where a count is to divide what has no length: a bare point, which is its one particle then.
+bool divides_a_point(const Outline& outline, const Sampling& sampling) {
+  using Kind = Sampling::Kind;
+  return (sampling.kind == Kind::boundary || sampling.kind == Kind::volume ||
+          sampling.kind == Kind::raster) &&
+         outline.is_point() && outline.sites[0].radius == 0.0 && sampling.spacing == 0.0 &&
+         sampling.count > 0;
+}
+
 }  // namespace
 
 std::vector<Particle> make_particles(const Outline& outline, const Sampling& sampling) {
+  if (divides_a_point(outline, sampling)) return vertices(outline);
   switch (sampling.kind) {
     case Sampling::Kind::vertices:
       break;

@@ -154,12 +154,7 @@ Shape make_disc_container(double radius) {
   const Vec2 start(radius, 0);
   add_arc(sites, start, start, Vec2::Zero(), radius, whole_turn, 0.0);
   add_loop(outline, sites, true);
-  Shape shape;
-  shape.outline = std::move(outline);
-  finish_outline(shape.outline);
-  shape.outline = as_container(std::move(shape.outline));
-  shape.measure = measure_of(shape.outline);
-  return shape;
+  return finish_shape(as_container(std::move(outline)));
 }
 
 Shape centered(Shape shape) {

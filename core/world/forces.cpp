@@ -198,10 +198,11 @@ Dynamics::LinearDrag ForceDynamics::linear_drag(double t) const {
   return form;
 }
 
-/// Disjoint sets with path halving (Tarjan & van Leeuwen 1984); a set is named by its smallest member.
-class DisjointSets {
+/// Disjoint sets with path halving (Tarjan & van Leeuwen 1984); a set is named by its smallest member. Beside
+/// DisjointSets no set knows its members: of a million bodies most are alone, and need no list each.
+class SetNames {
  public:
-  explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+  explicit SetNames(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
   int find(int k) {
     while (parent_[k] != k) k = parent_[k] = parent_[parent_[k]];
     return k;
@@ -239,8 +240,8 @@ struct Assembly {
   }
 };
 
-DisjointSets coupled_bodies(const World& world) {
-  DisjointSets sets(world.bodies.size());
+SetNames coupled_bodies(const World& world) {
+  SetNames sets(world.bodies.size());
   for (const Force& force : world.forces)
     if (const auto* spring = std::get_if<SpringForce>(&force); spring && spring->body_b >= 0)
       sets.join(spring->body_a, spring->body_b);
@@ -251,7 +252,7 @@ DisjointSets coupled_bodies(const World& world) {
 
 std::vector<Component> make_components(const World& world, std::span<const std::vector<int>> together) {
   const int count = static_cast<int>(world.bodies.size());
-  DisjointSets sets = coupled_bodies(world);
+  SetNames sets = coupled_bodies(world);
   for (const std::vector<int>& set : together)
     for (const int k : set) sets.join(set.front(), k);
   std::vector<Component> components;

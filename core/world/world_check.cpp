@@ -2,24 +2,14 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <sstream>
 
 #include "brink/core/base/error.h"
+#include "brink/core/shapes/text.h"
 #include "brink/core/world/world.h"
 
 namespace brink {
 
 namespace {
-
-/// Six digits where they are read back to the same number, else 17: 0.1, not 0.10000000000000001.
-std::string text_of(double value) {
-  std::ostringstream out;
-  out.precision(17);
-  out << value;
-  std::ostringstream brief;
-  brief << value;
-  return std::stod(std::isfinite(value) ? brief.str() : "0") == value ? brief.str() : out.str();
-}
 
 /// Checks of one thing ("body \"ball\""): each throws BadInput unless its condition holds.
 struct Checker {
@@ -27,7 +17,7 @@ struct Checker {
 
   [[noreturn]] void fail(const std::string& what) const { throw BadInput(subject + ": " + what); }
   void require(bool ok, const char* parameter, double value, const char* allowed) const {
-    if (!ok) fail(std::string(parameter) + " is " + text_of(value) + "; allowed: " + allowed);
+    if (!ok) fail(std::string(parameter) + " is " + text(value) + "; allowed: " + allowed);
   }
   void finite(const char* parameter, double value) const {
     require(std::isfinite(value), parameter, value, "finite numbers");
@@ -138,23 +128,23 @@ void check_site_in_periods(const Periods& periods, const Checker& check, const F
   for (const int axis : {0, 1})
     if (periods.size[axis] > 0.0) images *= 1.0 + std::floor(extent[axis] / periods.size[axis]);
   if (images > kMostImages)
-    check.fail("is " + text_of(extent.x()) + " m by " + text_of(extent.y()) + " m: it covers " +
-               text_of(images) + " periods; allowed: up to " + text_of(kMostImages));
+    check.fail("is " + text(extent.x()) + " m by " + text(extent.y()) + " m: it covers " + text(images) +
+               " periods; allowed: up to " + text(kMostImages));
 }
 
 void check_periods(const World& world) {
   for (const double period : world.periods.size)
     if (!(period >= 0.0) || !std::isfinite(period))
-      throw BadInput("world: periodic = " + text_of(period) +
+      throw BadInput("world: periodic = " + text(period) +
                      "; allowed: a finite length > 0 [m], or 0 along an axis that does not repeat");
   if (!world.periods.any()) return;
   const double least = world.periods.least();
   for (std::size_t i = 0; i < world.bodies.size(); ++i) {
     const double size = 2.0 * world.bodies[i].outline->bounding_radius;
     if (size > 0.5 * least)
-      Checker{called("body", i, world.bodies[i].name)}.fail(
-          "is " + text_of(size) + " m across; allowed in a " + "periodic world: up to half a period, " +
-          text_of(0.5 * least) + " m");
+      Checker{called("body", i, world.bodies[i].name)}.fail("is " + text(size) + " m across; allowed in a " +
+                                                            "periodic world: up to half a period, " +
+                                                            text(0.5 * least) + " m");
   }
   for (std::size_t i = 0; i < world.bodies.size(); ++i)
     check_place_in_periods(world.periods, Checker{called("body", i, world.bodies[i].name)},
@@ -174,7 +164,7 @@ void check_motion(const Checker& check, const FormulaMotion& motion) {
     const double t = 0.0;
     const double value = (*formula)({&t, 1});
     if (!std::isfinite(value))
-      check.fail(std::string(parameter) + " = \"" + formula->text() + "\" is " + text_of(value) +
+      check.fail(std::string(parameter) + " = \"" + formula->text() + "\" is " + text(value) +
                  " at t = 0; allowed: formulas in t that are finite throughout the run");
   };
   starts("motion x", motion.x);

@@ -62,8 +62,14 @@ class WorldHasher {
   void one(const Body& b) {
     add(b.outline, b.mass, b.inertia, b.lock_x, b.lock_y, b.lock_angle, b.material, b.initial);
     add(static_cast<int>(b.sampling.kind), b.sampling.spacing, b.sampling.count);
-    one(static_cast<double>(b.sampling.seed));
+    add_seed(b.sampling.seed);
     for (const Vec2& p : b.sampling.points) one(p);
+  }
+  /// As a double, as run files have it, as far as doubles tell all integers apart.
+  void add_seed(std::uint64_t seed) {
+    constexpr std::uint64_t held = std::uint64_t{1} << 53;
+    if (seed <= held) return hash_.add(static_cast<double>(seed));
+    hash_.add(seed);
   }
   void one(const std::monostate&) {}
   void one(const ConstantMotion& m) { add(m.twist.velocity, m.twist.omega); }

@@ -25,6 +25,14 @@ TEST(Printable, ControlsOfDirectionAndLineSeparatorsAreEscaped) {
   EXPECT_EQ(printable("a\u2028b\u200bc\ufeff"), "a\\u2028b\\u200bc\\ufeff");
 }
 
+// What has the property Default_Ignorable_Code_Point shows nothing: names would look alike and differ.
+TEST(Printable, CharactersThatAreNotSeenAreEscaped) {
+  EXPECT_EQ(printable("a\u00adb\u034f\u115f\u17b4\u180b\u3164\uffa0"),
+            "a\\u00adb\\u034f\\u115f\\u17b4\\u180b\\u3164\\uffa0");
+  EXPECT_EQ(printable("x\ufe00y\ufe0f"), "x\\ufe00y\\ufe0f");
+  EXPECT_EQ(printable("\U0001bca0\U0001d173\U000e0100\U000e01ef"), "\\u1bca0\\u1d173\\ue0100\\ue01ef");
+}
+
 // Bytes that are no UTF-8: a lone continuation, an overlong slash, a surrogate, a cut character.
 TEST(Printable, BytesThatAreNoUtf8AreEscaped) {
   EXPECT_EQ(printable("\x80z"), "\\x80z");

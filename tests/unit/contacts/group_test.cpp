@@ -328,6 +328,34 @@ TEST(Lcp, ActiveSetAndLemkeAgree) {
   }
 }
 
+// Rows alike in q: Lemke's method cycles unless it begins at the last of them.
+TEST(Lcp, TiesAtTheBeginDoNotCycle) {
+  RealMatrix A(4, 4);
+  A << 1, 1, -1, -1, 1, 1, -1, 0, -1, 0, 1, 1, 0, 1, 1, 1;
+  const LcpAnswer answer = solve_lcp_by_lemke(A, RealVector::Constant(4, -1));
+  ASSERT_EQ(answer.status, LcpAnswer::Status::solved);
+  EXPECT_LE(answer.pivots, 5);
+  const RealVector w = A * answer.z + RealVector::Constant(4, -1);
+  EXPECT_GE(std::min(answer.z.minCoeff(), w.minCoeff()), -1e-15);
+  EXPECT_LE(std::abs(w.dot(answer.z)), 1e-15);
+}
+
+// Small integers make ties everywhere, whatever class the matrix is of.
+TEST(Lcp, RandomTiesAreNeverCapped) {
+  Random r(12);
+  for (int i = 0; i < 20000; ++i) {
+    const int n = 2 + static_cast<int>(r.below(5));
+    RealMatrix A = RealMatrix::Identity(n, n);
+    RealVector q(n);
+    for (int j = 0; j < n; ++j) {
+      q[j] = static_cast<int>(r.below(3)) - 2;
+      for (int k = 0; k < n; ++k)
+        if (j != k) A(j, k) = static_cast<int>(r.below(3)) - 1;
+    }
+    ASSERT_NE(solve_lcp_by_lemke(A, q).status, LcpAnswer::Status::capped) << "case " << i << " of seed 12";
+  }
+}
+
 TEST(Lcp, WithoutSolutionSaysSo) {
   RealMatrix A(2, 2);
   A << 1, -1, -1, 1;  // z0 - z1 >= 1 and z1 - z0 >= 1

@@ -248,6 +248,8 @@ TEST_P(PassWindow, BadWindowsAreRefusedByName) {
   EXPECT_THROW(renderer_->render(square(0, 1), 0, 8, scene.placed, 0, 1.0), BadInput);
   EXPECT_THROW(renderer_->render(square(0, 1), 8, 9000, scene.placed, 0, 1.0), BadInput);
   EXPECT_THROW(renderer_->render(square(0, 1), 8, 8, scene.placed, 0, -1.0), BadInput);
+  const std::vector<Vec2> no_place{Vec2(0.5, std::nan(""))};
+  EXPECT_THROW(renderer_->render_at(square(0, 1), 8, 8, scene.placed, 0, 1.0, no_place), BadInput);
   EXPECT_THROW(renderer_->near_owners(square(0, 1), std::nan(""), scene.placed, 0), BadInput);
 }
 

@@ -11,9 +11,10 @@
 namespace brink {
 namespace {
 
-StencilOverlap overlap(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
+StencilOverlap overlap(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
+                       int resolution = 512) {
   PassRenderer renderer{FieldOptions()};
-  return stencil_overlap(renderer, {&a.outline, pose_a, 0}, {&b.outline, pose_b, 1});
+  return stencil_overlap(renderer, {&a.outline, pose_a, 0}, {&b.outline, pose_b, 1}, resolution);
 }
 
 // Two unit discs with centres 1 apart share a lens of 2 pi / 3 - sqrt(3) / 2.
@@ -30,6 +31,15 @@ TEST(StencilOverlap, LensOfTwoDiscsHasItsArea) {
 TEST(StencilOverlap, TurnedSquaresShareAnOctagon) {
   const auto found = overlap(make_box(1, 1), Pose(), make_box(1, 1), {Vec2(0, 0), std::numbers::pi / 4});
   EXPECT_NEAR(found.area, 2.0 * (std::sqrt(2.0) - 1.0), 2e-3);
+}
+
+// 1 / (1 / 49) is more than 49 by a rounding: still 49 pixels a side.
+TEST(StencilOverlap, WindowIsAsManyPixelsAsAskedFor) {
+  for (int resolution = 40; resolution <= 110; ++resolution) {
+    const auto found = overlap(make_box(1, 1), Pose(), make_box(1, 1), Pose(), resolution);
+    EXPECT_EQ(found.pixels, static_cast<std::size_t>(resolution) * resolution);
+    EXPECT_NEAR(found.area, 1.0, 1e-12) << resolution;
+  }
 }
 
 TEST(StencilOverlap, ContainersAreSolidOutside) {

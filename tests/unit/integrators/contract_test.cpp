@@ -285,6 +285,21 @@ TEST_P(IntegratorContract, ForceThatIsNotANumberOnTheWayFailsThereAndKeepsTheMot
   }
 }
 
+// Weights of error tests are up to 1 / absolute_tolerance: their squares overflow.
+TEST_P(IntegratorContract, ForceThatIsNotANumberFailsUnderATinyAbsoluteTolerance) {
+  if (GetParam() == "ballistic") GTEST_SKIP() << "a closed form cannot depend on the place";
+  const IntegratorOptions tiny{1e-9, 1e-200, 1.0 / 64.0};
+  const auto integrator = make_integrator(GetParam(), std::make_shared<Poisoned>(false), tiny);
+  // what moves is not near 0, where it would be held to the absolute tolerance
+  const BodyState state{{{0.05, 5.0}, 0.0}, {{1.0, 3.0}, 0.0}};
+  integrator->start(0.0, std::vector<BodyState>{state});
+  const Extent extent = integrator->extend(10.0);
+  EXPECT_EQ(extent.status, Extent::Status::failed);
+  EXPECT_THAT(extent.why, testing::HasSubstr("not finite"));
+  EXPECT_NEAR(extent.end, 0.45, 0.15);
+  EXPECT_TRUE(std::isfinite(difference(integrator->motion(0).state(extent.end), BodyState{})));
+}
+
 TEST_P(IntegratorContract, BadStartIsRefused) {
   const auto integrator = make();
   auto states = spring_pair_start();
@@ -322,6 +337,21 @@ TEST(Integrators, UnknownNameIsRefusedAndTheNearestNamed) {
 
 TEST(Integrators, BallisticWithoutAClosedFormIsRefused) {
   EXPECT_THROW(make_integrator("ballistic", spring_pair(), {}), BadInput);
+}
+
+/// Names a break that is not later than it was asked.
+class Standing : public Falling {
+ public:
+  double next_break(double t) const override { return t; }
+};
+
+TEST(Integrators, BreakThatIsNotLaterIsNamed) {
+  const auto integrator = make_integrator("ballistic", std::make_shared<Standing>(), {});
+  integrator->start(0.25, spring_pair_start());
+  const Extent extent = integrator->extend(1.0);
+  EXPECT_EQ(extent.status, Extent::Status::failed);
+  EXPECT_EQ(extent.end, 0.25);
+  EXPECT_THAT(extent.why, testing::HasSubstr("next break is at t = 0.25, which is not later"));
 }
 
 TEST(Integrators, BadOptionsAreRefusedAndNamed) {

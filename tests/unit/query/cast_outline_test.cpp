@@ -77,6 +77,18 @@ TEST(CastOutline, AnArcIsThereInItsSectorAlone) {
   EXPECT_NEAR(way(arch, {{0, 9}, 0.0}, {0, -1}, post), 9.0 + std::sqrt(2.9 * 2.9 - 0.25) - 1.0, 1e-14);
 }
 
+// 1 / sqrt(2) written with nine digits is 2.6e-10 short.
+TEST(CastOutline, ADirectionOfNearlyUnitLengthCountsAsUnit) {
+  const Outline ball = make_disc(1.0).outline;
+  EXPECT_NEAR(way(ball, {{-7, -7}, 0.0}, {0.707106781, 0.707106781}, ball), 7 * std::sqrt(2.0) - 2, 1e-14);
+  EXPECT_NEAR(way(ball, {{-7, -7}, 2.0}, {0.707106782, 0.707106781}, ball), 7 * std::sqrt(2.0) - 2, 1e-14);
+}
+
+TEST(CastOutline, PlacesTooFarToHaveADistanceAreRefused) {
+  const Outline ball = make_disc(1.0).outline;
+  EXPECT_THROW(cast_outline(ball, {{1e200, 0}, 0.0}, {-1, 0}, ball, {}), BadInput);
+}
+
 TEST(CastOutline, ADirectionThatIsNoUnitVectorIsRefused) {
   const Outline ball = make_disc(1.0).outline;
   EXPECT_THROW(cast_outline(ball, {}, {0, -2}, ball, {}), BadInput);

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "brink/core/base/error.h"
+#include "brink/core/query/cast_ray.h"
 #include "tests/unit/query/query_shapes.h"
 
 namespace brink {
@@ -90,6 +91,33 @@ TEST(ClosestPoint, AgreesWithDistancesThatShareNoCode) {
 
 TEST(ClosestPoint, APlaceThatIsNotFiniteIsRefused) {
   EXPECT_THROW(closest_point(make_disc(1.0).outline, {}, {NAN, 0}), BadInput);
+}
+
+// From 1e16 sizes on, all sites are equally near, by rounding.
+TEST(ClosestPoint, TheSideOfFarPlacesIsTheOutlinesOwn) {
+  Random random(32);
+  for (const NamedOutline& o : query_outlines())
+    for (double away = 10.0; away < 1e149; away *= 30.0) {
+      SCOPED_TRACE(o.name + ", seed 32, " + std::to_string(away));
+      const double angle = random.below(2) == 0 ? kQuarterTurn * random.below(4) : random.uniform(-pi, pi);
+      const Vec2 q = away * Vec2(std::cos(angle), std::sin(angle));
+      const SurfacePoint p = closest_point(o.outline, {}, q);
+      const double size = o.outline.bounding_radius, outward = o.outline.container ? -1.0 : 1.0;
+      if (away < 10.0 * size) continue;
+      EXPECT_NEAR(p.gap * outward, away, 2.0 * size + 1e-15 * away);
+      EXPECT_GT(p.normal.dot(q) * outward, 0.0);
+    }
+}
+
+TEST(ClosestPoint, APlaceTooFarToHaveADistanceIsRefusedAndOneLessFarIsNot) {
+  for (const NamedOutline& o : query_outlines()) {
+    SCOPED_TRACE(o.name);
+    const Vec2 far(1e149, 1e149), too_far(1e200, 0);
+    EXPECT_NEAR(std::abs(closest_point(o.outline, {}, far).gap) / far.norm(), 1.0, 1e-14);
+    EXPECT_EQ(closest_point(o.outline, {}, far).gap < 0.0, o.outline.container);
+    EXPECT_THROW(closest_point(o.outline, {}, too_far), BadInput);
+    EXPECT_THROW(cast_ray(o.outline, {}, {too_far, {-1, 0}}), BadInput);
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <iostream>
 #include <numbers>
 
@@ -53,6 +54,25 @@ TEST(Biarc, RandomCubicsStayWithinToleranceAndTheBoundHolds) {
     }
   }
   std::cout << "largest deviation / tolerance over random cubics: " << worst_ratio << "\n";
+}
+
+// A tolerance of the size of the curve: arcs tighter than it, and few places that are looked at.
+TEST(Biarc, BoundHoldsWhereTheToleranceIsCoarse) {
+  Random random(10);
+  for (int k = 0; k < 3000; ++k) {
+    std::array<Vec2, 4> control;
+    for (Vec2& p : control) p = Vec2(random.uniform(-1, 1), random.uniform(-1, 1));
+    // every third nearly has a cusp, every third nearly comes back
+    if (k % 3 == 1) control[3] = control[0] + 0.05 * control[3];
+    if (k % 3 == 2) control[2] = control[0] + 0.02 * control[2], control[1] = control[3] + 0.02 * control[1];
+    const double tolerance = std::pow(10.0, random.uniform(-2.5, 0.0));
+    const CubicBezier curve(control);
+    std::vector<Site> sites;
+    const double bound = fit_arcs(curve, control[0], control[3], tolerance, 0, sites);
+    EXPECT_LE(bound, tolerance) << "case " << k << " of seed 10";
+    if (sites.empty()) continue;
+    EXPECT_LE(dense_deviation(curve, sites, 1000), bound * (1 + 1e-9)) << "case " << k << " of seed 10";
+  }
 }
 
 TEST(Biarc, ArcsStayOnTheCurveToo) {

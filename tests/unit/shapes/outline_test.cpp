@@ -199,6 +199,8 @@ TEST(Shapes, SizesWithoutAMeasureAreRefused) {
   EXPECT_THAT(fault([] { make_disc(1e100); }), HasSubstr("too far"));
   EXPECT_THAT(fault([] { make_disc(1e-100); }), HasSubstr("both must be > 0"));
   EXPECT_EQ(fault([] { make_point({1, 2}); }), "no fault");
+  EXPECT_THAT(fault([] { make_disc_container(1e100); }), HasSubstr("too far"));
+  EXPECT_THAT(fault([] { make_disc_container(1e-100); }), HasSubstr("both must be > 0"));
 }
 
 TEST(Shapes, RepeatedVerticesMerge) {
@@ -215,6 +217,17 @@ TEST(Shapes, ThinSawIsAccepted) {
   saw.emplace_back(1, 0);
   const Shape shape = make_polygon(saw);
   EXPECT_NEAR(shape.measure.size, 1 + 1000 * 0.001 * 0.1 / 2, 1e-12);
+}
+
+// Whatever the sweep, no piece turns by more than an arc site may.
+TEST(Shapes, ArcsOfAHairMoreThanQuarterTurnsAreSplit) {
+  for (const double quarters : {1.0, 2.0, 3.0})
+    for (double more = 1e-16; more < 1e-6; more *= 3.0) {
+      const double sweep = quarters * kQuarterTurn * (1 + more);
+      const Shape arc = make_arc({0, 0}, 1, 0, sweep);
+      EXPECT_NEAR(arc.measure.size, sweep, 1e-14) << more;
+      EXPECT_EQ(arc.outline.sites.size(), quarters + (more > 1e-12 ? 1 : 0)) << more;
+    }
 }
 
 TEST(Shapes, ArcGivenBackwardsGoesTheLongWayRound) {

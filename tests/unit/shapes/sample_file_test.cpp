@@ -4,6 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "brink/core/base/random.h"
+
 namespace brink {
 namespace {
 
@@ -52,6 +56,35 @@ TEST(SampleFile, SamplesStandForTheShapeTheyGoRound) {
   }
   EXPECT_FALSE(shape_of_samples({{0, 0}, {1, 1}, {0.5, 0.5}}).outline.solid);  // a wire
   EXPECT_TRUE(shape_of_samples({{2, 3}}).outline.is_point());
+}
+
+// Decimal places of one line are off it by roundings, near the origin and far away; wherever the line goes.
+TEST(SampleFile, SamplesOnOneLineUpToRoundingAreAWireFromEndToEnd) {
+  EXPECT_NEAR(shape_of_samples({{0.1, 0.3}, {0.3, 0.9}, {0.2, 0.6}}).measure.size, 0.2 * std::sqrt(10),
+              1e-15);
+  Random random(71);
+  for (int k = 0; k < 500; ++k) {
+    const Vec2 from(random.uniform(-1, 1), random.uniform(-1e3, 1e3));
+    const Vec2 along = k % 5 == 0 ? Vec2(0, 1) : Vec2(random.uniform(-1, 1), random.uniform(-1, 1));
+    std::vector<Vec2> samples{from + 2 * along, from};
+    for (int j = 0; j < 6; ++j) samples.push_back(from + random.uniform(0, 2) * along);
+    const Shape wire = shape_of_samples(samples);
+    EXPECT_FALSE(wire.outline.solid) << "case " << k << " of seed 71";
+    EXPECT_NEAR(wire.measure.size, 2 * along.norm(), 1e-12) << "case " << k << " of seed 71";
+  }
+}
+
+TEST(SampleFile, SamplesAHairOffOneLineStandForASolid) {
+  EXPECT_TRUE(shape_of_samples({{0, 0}, {1, 0}, {0.5, 1e-9}}).outline.solid);
+}
+
+TEST(SampleFile, WordThatIsNoNumberIsOneFault) {
+  for (const char* text :
+       {"three\n1 0 0 0 0 0 0\n0 0\n", "1\nheavy 0 0 0 0 0 0\n0 0\n", "1\n1 0 0 0 0 0 0\n0 here\n"}) {
+    std::vector<SampleFileFault> faults;
+    read_sample_file(text, faults);
+    EXPECT_EQ(faults.size(), 1U) << text;
+  }
 }
 
 struct FaultCase {

@@ -122,6 +122,45 @@ TEST(Sampling, RasterParticlesArePixelsOnTheOutline) {
   EXPECT_EQ(make_particles(star, by_count(Kind::raster, 64)).size(), particles.size());
 }
 
+// Where both are given, the spacing counts.
+TEST(Sampling, CountIsOnlyAskedWhereThereIsNoSpacing) {
+  const Outline box = make_box(1, 1).outline;
+  for (const Kind kind : {Kind::boundary, Kind::volume, Kind::random, Kind::raster}) {
+    Sampling both = by_spacing(kind, 0.1);
+    both.count = 7;
+    EXPECT_EQ(make_particles(box, both).size(), make_particles(box, by_spacing(kind, 0.1)).size());
+  }
+  EXPECT_EQ(make_particles(box, by_spacing(Kind::random, 0.1)).size(), 40U);
+}
+
+TEST(Sampling, BarePointSampledByCountIsItself) {
+  const Outline point = make_point({1, 2}).outline;
+  for (const Kind kind : {Kind::boundary, Kind::volume, Kind::raster}) {
+    const auto particles = make_particles(point, by_count(kind, 5));
+    ASSERT_EQ(particles.size(), 1U);
+    EXPECT_EQ(particles[0].p, Vec2(1, 2));
+  }
+}
+
+// 4 m of boundary in pixels of 2e-5 m: 200 000 of them, walked in eighths.
+TEST(Sampling, RasterIsHeldToItsPixelsNotToTheStepsOfItsWalk) {
+  const Outline box = make_box(1, 1).outline;
+  EXPECT_NEAR(make_particles(box, by_spacing(Kind::raster, 2e-5)).size(), 200000.0, 10.0);
+  EXPECT_THAT(refusal(box, by_spacing(Kind::raster, 3.9e-6)), HasSubstr("at most 1000000"));
+}
+
+// A comb has more boundary than cells: neither alone is too much.
+TEST(Sampling, VolumeIsHeldToLatticeAndBoundaryTogether) {
+  std::vector<Vec2> comb{{1, -0.1}, {0, -0.1}};
+  for (int k = 0; k < 200; ++k) {
+    comb.emplace_back(k / 200.0, 0.0);
+    comb.emplace_back((k + 0.5) / 200.0, 9.0);
+  }
+  comb.emplace_back(1, 0);
+  EXPECT_THAT(refusal(make_polygon(comb).outline, by_spacing(Kind::volume, 4e-3)),
+              HasSubstr("at most 1000000"));
+}
+
 TEST(Sampling, MissingAndAbsurdNumbersAreRefusedByName) {
   const Outline box = make_box(1, 1).outline;
   EXPECT_THAT(refusal(box, by_spacing(Kind::boundary, 0.0)),

@@ -203,6 +203,46 @@ TEST(PathShape, RelativeRoundingAtTheEndStillCloses) {
   EXPECT_NEAR(box.measure.size, 0.09, 1e-15);
 }
 
+// The usual circle of SVG: two arcs, whose ends are a rounding apart.
+TEST(PathShape, RoundingAtTheEndOfTwoArcsStillCloses) {
+  for (const char* d :
+       {"M.1 0a.3 .3 0 0 1 .6 0a.3 .3 0 0 1-.6 0z", "M.1 0a.3 .3 0 0 1 .6 0a.3 .3 0 0 1-.6 0"}) {
+    const Shape disc = make_path(d, 1, 1e-6);
+    EXPECT_TRUE(disc.outline.solid) << d;
+    EXPECT_NEAR(disc.measure.size, 0.09 * pi, 1e-15) << d;
+  }
+}
+
+TEST(PathShape, RoundingAtTheEndOfAnArcAndALineStillCloses) {
+  const Shape half = make_path("M.1 0a.3 .3 0 0 1 .6 0h-.6z", 1, 1e-6);
+  EXPECT_EQ(half.outline.sites.size(), 3u);
+  EXPECT_NEAR(half.measure.size, 0.045 * pi, 1e-15);
+}
+
+// An arc whose chord is a rounding: where its circle lies, the chord alone tells.
+TEST(PathShape, ArcThatIsAllButWholeKeepsItsCircle) {
+  const Shape wire = make_path("M1 0A1 1 0 1 1 1 1e-14", 1, 1e-6);
+  EXPECT_NEAR(wire.measure.size, 2 * pi, 1e-6);
+}
+
+TEST(PathShape, TwoLinesThereAndBackUpToRoundingStayAWire) {
+  const Shape wire = make_path("m.1 0l.6 0-.6 0", 1, 1e-6);  // .1 + .6 - .6 is a rounding short of .1
+  EXPECT_FALSE(wire.outline.solid);
+  EXPECT_NEAR(wire.measure.size, 1.2, 1e-15);
+}
+
+TEST(PathShape, SubpathShorterThanTheToleranceIsRefusedByNumber) {
+  for (const char* d : {"M5 5c1e-9 0 0 1e-9 0 0zM0 0h1v1h-1z", "M0 0h1v1h-1zM5 5c1e-9 0 0 1e-9 0 0z",
+                        "M5 5c1e-9 0 0 1e-9 0 0M0 0h1"}) {
+    try {
+      make_path(d, 1, 1e-3);
+      ADD_FAILURE() << "accepted: " << d;
+    } catch (const BadInput& e) {
+      EXPECT_THAT(e.what(), HasSubstr("is shorter than curve_tolerance, 0.001 m")) << d;
+    }
+  }
+}
+
 TEST(PathShape, CrossingSubpathsAreRefused) {
   EXPECT_THROW(make_path("M0 0L2 2H0L2 0Z", 1, 1e-6), BadInput);
   EXPECT_THROW(make_path("M0 0H2V2H0ZM1 1H3V3H1Z", 1, 1e-6), BadInput);

@@ -96,6 +96,8 @@ TEST(World, EveryFaultIsNamed) {
        }},
       {{"material \"default\"", "restitution is 1.1", "0 to 1"},
        [](World& w) { w.materials[0].restitution = 1.1; }},
+      {{"material \"default\"", "restitution is -1e-310"},  // subnormal
+       [](World& w) { w.materials[0].restitution = -1e-310; }},
       {{"material \"default\"", "restitution is nan"}, [=](World& w) { w.materials[0].restitution = nan; }},
       {{"material \"default\"", "friction is -0.1"}, [](World& w) { w.materials[0].friction = -0.1; }},
       {{"material \"default\"", "tangential_restitution is -2", "-1 to 1"},

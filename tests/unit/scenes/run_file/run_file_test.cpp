@@ -659,6 +659,9 @@ TEST(WorldHash, ChangesWithEveryPartButNames) {
   EXPECT_TRUE(is_new([](World& w) { w.sites[0].motion = FormulaMotion{{}, Formula("sin(t)", {"t"}), {}}; }));
   EXPECT_TRUE(is_new([](World& w) { w.forces.push_back(DragForce{{0}, 1, 0, 0}); }));
   EXPECT_TRUE(is_new([](World& w) { w.forces.push_back(DragForce{{0}, 0, 1, 0}); }));
+  constexpr std::uint64_t held = std::uint64_t{1} << 53;  // above, doubles do not tell all integers apart
+  for (const std::uint64_t seed : {held, held + 1, held + 2, ~std::uint64_t{0}, ~std::uint64_t{1}})
+    EXPECT_TRUE(is_new([&](World& w) { w.bodies[0].sampling.seed = seed; })) << seed;
   EXPECT_FALSE(is_new([](World& w) { w.bodies[0].name = "another"; }));
 }
 
