@@ -9,6 +9,7 @@
 #include "brink/scenes/bench/plot.h"
 #include "brink/scenes/bench/rest.h"
 #include "brink/scenes/bench/rows.h"
+#include "brink/scenes/files/written_file.h"
 #include "brink/scenes/program/commands.h"
 #include "brink/scenes/program/run_folder.h"
 #include "brink/scenes/program/terminal.h"
@@ -46,8 +47,7 @@ std::vector<Problem> chosen(std::vector<Problem> all, const std::vector<std::str
 fs::path make_folder(const std::string& given) {
   const fs::path folder = given.empty() ? default_run_folder("bench", false) : fs::path(given);
   std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw IoError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+  made_folder(folder);
   return folder;
 }
 

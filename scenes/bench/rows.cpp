@@ -7,15 +7,11 @@
 
 #include "brink/scenes/bench/csv.h"
 #include "brink/scenes/program/terminal.h"
+#include "brink/scenes/sweep/table.h"
 
 namespace brink::bench {
 
 namespace {
-
-std::string time_text(double seconds) {
-  if (seconds < 1e-3) return fmt::format("{:.3g} \u00b5s", 1e6 * seconds);
-  return seconds < 1.0 ? fmt::format("{:.3g} ms", 1e3 * seconds) : fmt::format("{:.3g} s", seconds);
-}
 
 bool reached(const Row& row) { return row.summary.termination == Termination::reached_end; }
 
@@ -32,8 +28,8 @@ void print_heading(const Problem& p) {
 
 void print(const Row& row) {
   std::string line = fmt::format("  {:<14} {:<18} {:>10.1e} {:>10} {:>10} {:>7}  {:016x}", row.setting.series,
-                                 row.setting.label, row.error, time_text(row.wall_seconds), row.collisions,
-                                 row.missed, row.summary.state_hash);
+                                 row.setting.label, row.error, duration_text(row.wall_seconds),
+                                 row.collisions, row.missed, row.summary.state_hash);
   if (!reached(row)) line += "  " + row.summary.termination_text();
   if (!row.same_hash) line += "  repeats differ in their bits";
   fmt::print("{}\n", !is_good(row) ? paint(stdout, Paint::bad, line) : line);

@@ -162,6 +162,12 @@ Pose shifted(Pose pose, const Vec2& by) {
   return pose;
 }
 
+/// The outline, and its images that are seen.
+void draw_images(Canvas& canvas, const Sheet& sheet, const Outline& outline, const Pose& pose,
+                 const Ink& ink) {
+  for (const Vec2& by : draw::seen_at(sheet, outline, pose)) canvas.outline(outline, shifted(pose, by), ink);
+}
+
 void draw_sites(Canvas& canvas, const Sheet& sheet) {
   const Color line = Tones::ink.rgb();
   Ink solid{Tones::site_fill.rgb(), line, 1.6, 1.0, false};
@@ -172,11 +178,7 @@ void draw_sites(Canvas& canvas, const Sheet& sheet) {
     for (std::size_t k = 0; k < sheet.world.sites.size(); ++k) {
       const Outline& outline = *sheet.world.sites[k].outline;
       if (outline.container != container) continue;
-      for (const Vec2& by : draw::seen_at(sheet, outline, sheet.sites[k]))
-        canvas.outline(outline, shifted(sheet.sites[k], by),
-                       container       ? outside
-                       : outline.solid ? solid
-                                       : wire);
+      draw_images(canvas, sheet, outline, sheet.sites[k], container ? outside : outline.solid ? solid : wire);
     }
 }
 
@@ -186,9 +188,16 @@ void draw_springs(Canvas& canvas, const Sheet& sheet) {
     const auto* spring = std::get_if<SpringForce>(&force);
     if (spring == nullptr) continue;
     const Vec2 a = Frame(sheet.bodies[spring->body_a].pose).to_world(spring->at_a);
-    const Vec2 b =
-        spring->body_b < 0 ? spring->at_b : Frame(sheet.bodies[spring->body_b].pose).to_world(spring->at_b);
-    canvas.spring(a, b, color, 1.1);
+    Vec2 b = spring->at_b;
+    if (spring->body_b >= 0)
+      b = Frame(sheet.bodies[spring->body_b].pose).to_world(b) - sheet.moves[spring->body_b];
+    // It pulls between the places that are given, however many periods these are apart: its other end is moved as
+    // its first one is.
+    b += sheet.moves[spring->body_a];
+    Box box;
+    box.add(a);
+    box.add(b);
+    for (const Vec2& by : draw::images_of(sheet, box)) canvas.spring(a + by, b + by, color, 1.1);
   }
 }
 
@@ -221,9 +230,9 @@ void draw_edges(Canvas& canvas, const Sheet& sheet) {
   const Color line = Oklch{0.80, 0.01, 300.0}.rgb();
   const Ink ink{line, line, 0.9, 0.0, false};
   for (std::size_t k = 0; k < sheet.world.sites.size(); ++k)
-    canvas.outline(*sheet.world.sites[k].outline, sheet.sites[k], ink);
+    draw_images(canvas, sheet, *sheet.world.sites[k].outline, sheet.sites[k], ink);
   for (std::size_t k = 0; k < sheet.world.bodies.size(); ++k)
-    canvas.outline(*sheet.world.bodies[k].outline, sheet.bodies[k].pose, ink);
+    draw_images(canvas, sheet, *sheet.world.bodies[k].outline, sheet.bodies[k].pose, ink);
 }
 
 /// Fixed wires over the colour layer, where they show as the middle of their cells alone.
@@ -231,7 +240,8 @@ void draw_wires(Canvas& canvas, const Sheet& sheet) {
   const Color line = Tones::ink.rgb();
   for (std::size_t k = 0; k < sheet.world.sites.size(); ++k)
     if (!sheet.world.sites[k].outline->solid)
-      canvas.outline(*sheet.world.sites[k].outline, sheet.sites[k], {line, line, 1.6, 0.0, false});
+      draw_images(canvas, sheet, *sheet.world.sites[k].outline, sheet.sites[k],
+                  {line, line, 1.6, 0.0, false});
 }
 
 /// Particles of the classic detector, where a sampling is asked for: dark on the boundary, pale inside.
@@ -241,12 +251,14 @@ void draw_particles(Canvas& canvas, const Sheet& sheet) {
     const Body& body = sheet.world.bodies[k];
     if (body.sampling.kind == Sampling::Kind::vertices || static_cast<int>(k) == sheet.excluded) continue;
     const Frame frame(sheet.bodies[k].pose);
-    for (const Particle& particle : make_particles(*body.outline, body.sampling)) {
-      // Two discs make a rim that is seen on dark and on light ground.
-      const bool inside = particle.area > 0.0;
-      canvas.dot(frame.to_world(particle.p), 3.8, inside ? dark : pale);
-      canvas.dot(frame.to_world(particle.p), 2.6, inside ? pale : dark);
-    }
+    const std::vector<Vec2> images = draw::seen_at(sheet, *body.outline, sheet.bodies[k].pose);
+    for (const Particle& particle : make_particles(*body.outline, body.sampling))
+      for (const Vec2& by : images) {
+        // Two discs make a rim that is seen on dark and on light ground.
+        const bool inside = particle.area > 0.0;
+        canvas.dot(frame.to_world(particle.p) + by, 3.8, inside ? dark : pale);
+        canvas.dot(frame.to_world(particle.p) + by, 2.6, inside ? pale : dark);
+      }
   }
 }
 
@@ -273,28 +285,18 @@ void draw_layer(Canvas& canvas, const Sheet& sheet) {
   }
 }
 
-}  // namespace
-
-/// The bodies' images whose centres are in the period that begins at the origin; in a plane that does not
-/// repeat the bodies themselves.
-std::vector<BodyState> at_home(const Periods& periods, std::span<const BodyState> bodies) {
-  std::vector<BodyState> home(bodies.begin(), bodies.end());
-  for (BodyState& state : home)
-    for (int axis = 0; axis < 2; ++axis)
-      if (const double size = periods.size[axis]; size > 0.0)
-        state.pose.position[axis] -= size * std::floor(state.pose.position[axis] / size);
-  return home;
-}
-
-namespace {
-
 /// Draws the picture on what `make` makes of its view.
 template <class Make>
 void draw_with(const World& world, std::span<const BodyState> bodies, std::span<const Pose> sites,
                const DrawOptions& options, Make&& make) {
   check(world, bodies, sites, options);
-  const std::vector<BodyState> home = at_home(world.periods, bodies);
-  Sheet sheet{world, home, sites, options, Palette(world), -1, 0, View{}, 0.0};
+  std::vector<BodyState> home(bodies.begin(), bodies.end());
+  std::vector<Vec2> moves;
+  for (BodyState& state : home) {
+    moves.push_back(draw::way_home(world.periods, state.pose.position));
+    state.pose.position += moves.back();
+  }
+  Sheet sheet{world, home, moves, sites, options, Palette(world), -1, 0, View{}, 0.0};
   if (options.layer.kind == Kind::pass) sheet.excluded = body_named(world, options.layer.body);
   sheet.strip = draw::strip_height(options);
   sheet.view = view_of(sheet);

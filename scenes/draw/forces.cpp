@@ -61,7 +61,10 @@ void draw_forces(Canvas& canvas, const Sheet& sheet) {
     const double pixels = most > 0.0 ? width * f.newtons / most : 0.0;
     if (pixels < kThinnest) continue;
     const Vec2 from = sheet.bodies[f.body].pose.position;
-    canvas.line(from, from + f.arm, color, pixels);
+    Box box;
+    box.add(from);
+    box.add(from + f.arm);
+    for (const Vec2& by : images_of(sheet, box)) canvas.line(from + by, from + by + f.arm, color, pixels);
   }
 }
 

@@ -14,6 +14,13 @@ constexpr double kNormal = 14.0,
                  kImpulse = 36.0;  // [pixels], of a contact's arrow, and more for the largest impulse
 constexpr double kTextSize = 11.0, kTick = 5.0;  // [pixels]
 
+Box box_of(const Vec2& from, const Vec2& to) {
+  Box box;
+  box.add(from);
+  box.add(to);
+  return box;
+}
+
 /// How long the way is that arrows show [s]; 0: none are asked for, or nothing moves.
 double seconds_of_arrows(const Sheet& sheet) {
   if (!sheet.options.velocities) return sheet.options.arrow_seconds;
@@ -27,9 +34,11 @@ double seconds_of_arrows(const Sheet& sheet) {
 void draw_velocities(Canvas& canvas, const Sheet& sheet) {
   const double seconds = seconds_of_arrows(sheet);
   if (!(seconds > 0.0)) return;
-  for (const BodyState& s : sheet.bodies)
-    canvas.arrow(s.pose.position, s.pose.position + seconds * s.twist.velocity,
-                 Oklch{0.45, 0.12, 155.0}.rgb(), 1.6);
+  for (const BodyState& s : sheet.bodies) {
+    const Vec2 from = s.pose.position, to = from + seconds * s.twist.velocity;
+    for (const Vec2& by : images_of(sheet, box_of(from, to)))
+      canvas.arrow(from + by, to + by, Oklch{0.45, 0.12, 155.0}.rgb(), 1.6);
+  }
 }
 
 void draw_contacts(Canvas& canvas, const Sheet& sheet) {
@@ -38,21 +47,57 @@ void draw_contacts(Canvas& canvas, const Sheet& sheet) {
   const Color color = Oklch{0.52, 0.2, 25.0}.rgb();
   for (const DrawnContact& c : sheet.options.contacts) {
     const double pixels = kNormal + (most > 0.0 ? kImpulse * c.impulse / most : 0.0);
-    canvas.dot(c.point, 3.2, color);
-    canvas.arrow(c.point, c.point + pixels / sheet.view.scale * c.normal, color, 1.6);
+    const Vec2 from = c.point + way_home(sheet.world.periods, c.point);
+    const Vec2 to = from + pixels / sheet.view.scale * c.normal;
+    for (const Vec2& by : images_of(sheet, box_of(from, to))) {
+      canvas.dot(from + by, 3.2, color);
+      canvas.arrow(from + by, to + by, color, 1.6);
+    }
   }
+}
+
+void draw_name(Canvas& canvas, const std::string& name, const Vec2& at) {
+  // Once in paper colour to every side, then in ink: names can be read over bodies of any colour.
+  for (const Vec2& beside : {Vec2(-1, 0), Vec2(1, 0), Vec2(0, -1), Vec2(0, 1)})
+    canvas.text(at.x() + beside.x(), at.y() + beside.y() + 0.35 * kTextSize, name, kTextSize,
+                Tones::paper.rgb(), Canvas::Align::middle);
+  canvas.text(at.x(), at.y() + 0.35 * kTextSize, name, kTextSize, Tones::ink.rgb(), Canvas::Align::middle);
 }
 
 void draw_names(Canvas& canvas, const Sheet& sheet) {
   if (!sheet.options.names) return;
   for (std::size_t k = 0; k < sheet.bodies.size(); ++k) {
-    const Vec2 at = sheet.view.to_picture(sheet.bodies[k].pose.position);
-    const std::string& name = sheet.world.bodies[k].name;
-    // Once in paper colour to every side, then in ink: names can be read over bodies of any colour.
-    for (const Vec2& beside : {Vec2(-1, 0), Vec2(1, 0), Vec2(0, -1), Vec2(0, 1)})
-      canvas.text(at.x() + beside.x(), at.y() + beside.y() + 0.35 * kTextSize, name, kTextSize,
-                  Tones::paper.rgb(), Canvas::Align::middle);
-    canvas.text(at.x(), at.y() + 0.35 * kTextSize, name, kTextSize, Tones::ink.rgb(), Canvas::Align::middle);
+    const Vec2& at = sheet.bodies[k].pose.position;
+    for (const Vec2& by : images_of(sheet, box_of(at, at)))
+      draw_name(canvas, sheet.world.bodies[k].name, sheet.view.to_picture(at + by));
+  }
+}
+
+/// The trail at home: a piece ends where it leaves the period, and the next goes on from there on the other side.
+std::vector<std::vector<Vec2>> pieces_of(const Periods& periods, const std::vector<Vec2>& trail) {
+  std::vector<std::vector<Vec2>> pieces;
+  Vec2 home = Vec2::Zero();
+  for (std::size_t k = 0; k < trail.size(); ++k) {
+    const Vec2 way = way_home(periods, trail[k]);
+    if (k > 0) pieces.back().push_back(trail[k] + home);
+    if (k == 0 || way != home) {
+      pieces.emplace_back();
+      if (k > 0) pieces.back().push_back(trail[k - 1] + way);
+      pieces.back().push_back(trail[k] + way);
+    }
+    home = way;
+  }
+  return pieces;
+}
+
+/// The piece, and its images that are seen.
+void draw_piece(Canvas& canvas, const Sheet& sheet, const std::vector<Vec2>& piece, const Color& color) {
+  Box box;
+  for (const Vec2& p : piece) box.add(p);
+  for (const Vec2& by : images_of(sheet, box)) {
+    std::vector<Vec2> there = piece;
+    for (Vec2& p : there) p += by;
+    canvas.path(there, color, 1.0, {});
   }
 }
 
@@ -88,7 +133,8 @@ void draw_axes(Canvas& canvas, const Sheet& sheet) {
 void draw_trails(Canvas& canvas, const Sheet& sheet) {
   const auto& trails = sheet.options.trails;
   for (std::size_t k = 0; k < std::min(trails.size(), sheet.bodies.size()); ++k)
-    canvas.path(trails[k], Palette::line(sheet.palette.body(k)).rgb(), 1.0, {});
+    for (const std::vector<Vec2>& piece : pieces_of(sheet.world.periods, trails[k]))
+      draw_piece(canvas, sheet, piece, Palette::line(sheet.palette.body(k)).rgb());
 }
 
 void draw_marks(Canvas& canvas, const Sheet& sheet) {
@@ -117,23 +163,33 @@ void draw_period(Canvas& canvas, const Sheet& sheet) {
   }
 }
 
-std::vector<Vec2> seen_at(const Sheet& sheet, const Outline& outline, const Pose& pose) {
+Vec2 way_home(const Periods& periods, const Vec2& place) {
+  Vec2 way = Vec2::Zero();
+  for (int axis = 0; axis < 2; ++axis)
+    if (const double size = periods.size[axis]; size > 0.0)
+      way[axis] = -size * std::floor(place[axis] / size);
+  return way;
+}
+
+std::vector<Vec2> images_of(const Sheet& sheet, const Box& box) {
   std::vector<Vec2> shifts{Vec2::Zero()};
   const Vec2& size = sheet.world.periods.size;
-  if (outline.container || !(size.maxCoeff() > 0.0)) return shifts;
-  // An image is seen if its disc reaches the window.
-  Box seen = sheet.view.window.grown(outline.bounding_radius);
-  // Neighbouring periods alone: bodies are drawn in the first one (at_home()); a view that reaches
-  // beyond its neighbours shows nothing there.
+  if (!(size.maxCoeff() > 0.0)) return shifts;
+  // Neighbouring periods alone: a view that reaches beyond them shows nothing there.
   for (int right = -1; right <= 1; ++right)
     for (int up = -1; up <= 1; ++up) {
       const Vec2 by(right * size.x(), up * size.y());
       if (by.isZero(0.0) || (right != 0 && size.x() == 0.0) || (up != 0 && size.y() == 0.0)) continue;
-      const Vec2 at = pose.position + by;
-      if ((at.array() >= seen.low.array()).all() && (at.array() <= seen.high.array()).all())
-        shifts.push_back(by);
+      if (Box{box.low + by, box.high + by}.overlaps(sheet.view.window)) shifts.push_back(by);
     }
   return shifts;
+}
+
+std::vector<Vec2> seen_at(const Sheet& sheet, const Outline& outline, const Pose& pose) {
+  // A container fills all that is outside of it, whichever image is meant.
+  if (outline.container) return {Vec2::Zero()};
+  // An image is seen if its disc reaches the window.
+  return images_of(sheet, box_of(pose.position, pose.position).grown(outline.bounding_radius));
 }
 
 }  // namespace brink::draw

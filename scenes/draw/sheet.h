@@ -14,7 +14,8 @@ namespace brink::draw {
 /// One picture in the making.
 struct Sheet {
   const World& world;
-  std::span<const BodyState> bodies;
+  std::span<const BodyState> bodies;  ///< moved home (way_home())
+  std::span<const Vec2> moves;        ///< by how much each of them was moved [m]
   std::span<const Pose> sites;
   const DrawOptions& options;
   Palette palette;
@@ -39,8 +40,12 @@ void draw_trails(Canvas& canvas, const Sheet& sheet);
 void draw_marks(Canvas& canvas, const Sheet& sheet);
 /// The box of a plane that repeats itself.
 void draw_period(Canvas& canvas, const Sheet& sheet);
-/// By how much an outline at `pose` is shifted to where it is seen, itself first: in a plane that repeats itself, its images
-/// that reach into the view [m].
+/// By how much what lies at `place` is moved into the period that begins at the origin [m]; 0 in a plane that does not repeat.
+Vec2 way_home(const Periods& periods, const Vec2& place);
+/// By how much what fills `box` is shifted to where it is seen, itself first: in a plane that repeats itself, its images that
+/// reach into the view [m]. @pre it is at home, or near it: images in neighbouring periods are looked at, no others.
+std::vector<Vec2> images_of(const Sheet& sheet, const Box& box);
+/// The same of an outline at `pose`.
 std::vector<Vec2> seen_at(const Sheet& sheet, const Outline& outline, const Pose& pose);
 
 /// Title, time, and a ruler (layer depth: the legend) in the strip at the bottom.

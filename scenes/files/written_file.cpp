@@ -42,6 +42,13 @@ void refuse_overwriting(const fs::path& file, const std::string& option, const s
   if (is_database(file)) refuse("a database");
 }
 
+fs::path made_folder(const fs::path& dir) {
+  std::error_code error;
+  fs::create_directories(dir, error);
+  if (error) throw IoError(fmt::format("{}: cannot make the folder: {}", dir.string(), error.message()));
+  return dir;
+}
+
 void throw_not_written(const fs::path& file) {
   // Callers come here right after the write that failed, while errno is still its own.
   const std::string why = errno == ENOSPC ? "disk full" : std::strerror(errno);

@@ -13,6 +13,9 @@ namespace brink {
 void refuse_overwriting(const std::filesystem::path& file, const std::string& option,
                         const std::vector<std::filesystem::path>& kept);
 
+/// The folder, made if need be. @throws IoError naming it and the cause.
+std::filesystem::path made_folder(const std::filesystem::path& dir);
+
 /// After a write that went wrong: @throws IoError naming the file and what the system says of it ("disk
 /// full").
 [[noreturn]] void throw_not_written(const std::filesystem::path& file);

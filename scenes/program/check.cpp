@@ -8,6 +8,7 @@
 #include "brink/scenes/program/commands.h"
 #include "brink/scenes/program/terminal.h"
 #include "brink/scenes/scene/scene.h"
+#include "brink/scheduler/kernel/site_motion.h"
 #include "brink/scheduler/simulator/simulator.h"
 
 namespace brink {
@@ -37,7 +38,7 @@ std::string other_name(const World& world, const Contact& c) {
 /// Owner 0 is the contact's body, 1 the other.
 PlacedOutline placed(const World& world, int body, int site) {
   if (body >= 0) return {world.bodies[body].outline.get(), world.bodies[body].initial.pose, 0};
-  return {world.sites[site].outline.get(), world.sites[site].pose, 1};
+  return {world.sites[site].outline.get(), told_pose(world.sites[site], 0.0), 1};
 }
 
 /// ", 0.02 m^2" by a stencil count; nothing where no GL context opens or there is no area.

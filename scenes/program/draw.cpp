@@ -112,6 +112,9 @@ int draw_command(const DrawArguments& arguments) {
   options.names = arguments.names;
   options.velocities = arguments.velocities;
   const fs::path run = run_file_of(arguments.subject);
+  // What a run was made of cannot be changed any more.
+  if (!run.empty() && !arguments.overrides.empty())
+    throw BadInput("--set: is for scenes; a run has been made");
   if (run.empty() && (arguments.trails || arguments.contacts))
     throw BadInput("--trails, --contacts: are of runs; a scene has none yet");
   refuse_overwriting(arguments.out, "-o", {run.empty() ? fs::path(arguments.subject) : run});

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "brink/core/base/error.h"
+#include "brink/scenes/files/written_file.h"
 #include "brink/scenes/program/commands.h"
 #include "brink/scenes/program/run_folder.h"
 #include "brink/scenes/run_file/run_hdf5.h"
@@ -13,18 +14,6 @@
 #include "brink/scenes/run_file/run_vtk.h"
 
 namespace brink {
-
-namespace {
-
-/// The folder, made if need be.
-std::filesystem::path made(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw IoError(fmt::format("{}: cannot be made: {}", folder, error.message()));
-  return folder;
-}
-
-}  // namespace
 
 int export_command(const ExportArguments& arguments) {
   namespace fs = std::filesystem;
@@ -35,8 +24,8 @@ int export_command(const ExportArguments& arguments) {
     throw BadInput("nothing to write; allowed: --csv DIR, --hdf5 DIR, --vtk DIR");
   // Each kind is written for itself: what was written before one fails stays.
   if (!arguments.csv.empty()) write_csv_tables(file, arguments.csv);
-  if (!arguments.hdf5.empty()) write_hdf5(file, made(arguments.hdf5) / "run.h5");
-  if (!arguments.vtk.empty()) write_vtk(file, made(arguments.vtk));
+  if (!arguments.hdf5.empty()) write_hdf5(file, made_folder(arguments.hdf5) / "run.h5");
+  if (!arguments.vtk.empty()) write_vtk(file, made_folder(arguments.vtk));
   return kDone;
 }
 

@@ -5,17 +5,36 @@
 namespace brink {
 namespace fs = std::filesystem;
 
+namespace {
+
+/// n of a folder called <stem>-<n>; 0 for any other name.
+int number_of(const std::string& name, const std::string& stem) {
+  if (!name.starts_with(stem + '-')) return 0;
+  const std::string digits = name.substr(stem.size() + 1);
+  // Written as default_run_folder() writes it; of nine digits at most, stoi cannot overflow.
+  if (digits.empty() || digits.size() > 9 || digits.find_first_not_of("0123456789") != std::string::npos)
+    return 0;
+  return digits[0] == '0' ? 0 : std::stoi(digits);
+}
+
+}  // namespace
+
 fs::path default_run_folder(const fs::path& scene, bool resume) {
-  const auto folder = [&scene](int n) {
-    return fs::path("runs") / fmt::format("{}-{}", scene.stem().string(), n);
-  };
-  // Numbers are looked at from 1 up to the first that is free.
-  int free = 1;
-  while (fs::exists(folder(free))) ++free;
-  if (!resume) return folder(free);
-  int last = free;
-  while (last > 1 && !fs::exists(folder(last) / "run.db")) --last;
-  return folder(last);
+  const fs::path runs = "runs";
+  const std::string stem = scene.stem().string();
+  const auto folder = [&](int n) { return runs / fmt::format("{}-{}", stem, n); };
+  int n = 1;
+  if (!resume) {
+    while (fs::exists(folder(n))) ++n;
+    return folder(n);
+  }
+  // Folders before the last one may have been deleted, so all that there are are looked at.
+  std::error_code none;
+  for (const fs::directory_entry& entry : fs::directory_iterator(runs, none))
+    if (const int found = number_of(entry.path().filename().string(), stem);
+        found > n && fs::exists(entry.path() / "run.db"))
+      n = found;
+  return folder(n);
 }
 
 // A file is a run by its extension; whether it is one is found on opening it.

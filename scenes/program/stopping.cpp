@@ -8,13 +8,18 @@ namespace {
 // Of a kind that a signal handler may write to.
 volatile std::sig_atomic_t asked = 0;
 
+/// Gives the default action back to both: a second signal ends the program, of whichever kind it is.
+void ask(int) {
+  asked = 1;
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+}
+
 }  // namespace
 
 void stop_on_signals() {
   struct sigaction action {};
-  action.sa_handler = [](int) { asked = 1; };
-  // The default action comes back after the first signal: the second of a kind ends the program.
-  action.sa_flags = SA_RESETHAND;
+  action.sa_handler = ask;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <utility>
 
+#include "brink/scenes/files/written_file.h"
 #include "brink/scenes/run_file/database.h"
 #include "brink/scenes/run_file/run_file.h"
 
@@ -46,13 +47,6 @@ int locked(const fs::path& dir) {
   ::close(fd);
   throw IoError(
       fmt::format("{}: another run is writing into this folder; choose another --out", dir.string()));
-}
-
-fs::path made_folder(const fs::path& dir) {
-  std::error_code error;
-  fs::create_directories(dir, error);
-  if (error) throw IoError(fmt::format("{}: cannot make the folder: {}", dir.string(), error.message()));
-  return dir;
 }
 
 /// True if there is a database without anything in it.

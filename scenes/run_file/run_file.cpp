@@ -65,6 +65,11 @@ void keep_earlier(const fs::path& file) {
   fs::remove(file.string() + "-shm", error);
 }
 
+/// Frame times are whole multiples of the interval, by one product (Records::frame_due()): so equality is exact.
+bool on_the_clock(double t, double interval) {
+  return t == 0.0 || (interval > 0.0 && std::round(t / interval) * interval == t);
+}
+
 }  // namespace
 
 struct RunFileRecorder::Impl {
@@ -79,7 +84,7 @@ struct RunFileRecorder::Impl {
   std::int64_t frames = 0, events = 0, contacts = 0;  // rows in the file
   std::int64_t bodies = 0;
   std::vector<std::pair<int, SiteMotion>> moving_sites;  ///< by id
-  double wall_before = 0.0;
+  double wall_before = 0.0, waited = 0.0;                // [s]
   std::uint64_t identity = 0;
   Clock::time_point opened = Clock::now();
   std::optional<ResumePoint> resume_point;
@@ -128,7 +133,9 @@ struct RunFileRecorder::Impl {
     if (rows_waiting >= kRowsPerCommit || Clock::now() - waiting_since >= kTimePerCommit) commit();
   }
   void put_checkpoint(const ResumePoint& row, std::span<const std::byte> snapshot);
-  double wall() const { return wall_before + std::chrono::duration<double>(Clock::now() - opened).count(); }
+  double wall() const {
+    return wall_before + std::chrono::duration<double>(Clock::now() - opened).count() - waited;
+  }
 
   void set_meta(const std::string& key, const std::string& value) {
     SQLite::Statement put(db, "INSERT OR REPLACE INTO meta VALUES (?, ?)");
@@ -144,6 +151,7 @@ struct RunFileRecorder::Impl {
   void start_again(const Scene& scene);
   void drop_rows_after_checkpoint(const Scene& scene);
   void drop_early_end_frame(double interval);
+  void drop_site_frames(double interval);
   void prepare_inserts();
   void put_state(SQLite::Statement& put, const BodyState& s);
   void put_site_frames(double t);
@@ -215,15 +223,26 @@ void RunFileRecorder::Impl::start_fresh(const Scene& scene) {
 /// clock says so.
 void RunFileRecorder::Impl::drop_early_end_frame(double interval) {
   const double t = resume_point ? resume_point->t : 0.0;
-  // Frame times are whole multiples of the interval, by one product (Records::frame_due()): so
-  // equality is exact.
-  const bool on_the_clock = t == 0.0 || (interval > 0.0 && std::round(t / interval) * interval == t);
-  if (on_the_clock) return;
+  if (on_the_clock(t, interval)) return;
   // Of the rows that the checkpoint counts only the last frame can be it.
   SQLite::Statement drop(db, "DELETE FROM frame WHERE t = ? AND rowid > ?");
   drop.bind(1, t);
   drop.bind(2, frames - bodies);
   frames -= drop.exec();
+}
+
+/// Those of the frames that have been dropped. By time, as a site that cannot be moved on has no row at a frame; of
+/// a world without bodies, whose frames have no rows either, what is kept is what the frame clock says.
+void RunFileRecorder::Impl::drop_site_frames(double interval) {
+  if (bodies > 0) {
+    db.exec("DELETE FROM site_frame WHERE t > (SELECT coalesce(max(t), -1) FROM frame)");
+    return;
+  }
+  const double t = resume_point ? resume_point->t : -1.0;
+  SQLite::Statement drop(db, fmt::format("DELETE FROM site_frame WHERE t {} ?",
+                                         resume_point && on_the_clock(t, interval) ? ">" : ">="));
+  drop.bind(1, t);
+  drop.exec();
 }
 
 void RunFileRecorder::Impl::drop_rows_after_checkpoint(const Scene& scene) {
@@ -237,9 +256,7 @@ void RunFileRecorder::Impl::drop_rows_after_checkpoint(const Scene& scene) {
   db.exec(fmt::format("DELETE FROM event WHERE rowid >= {}", events));  // seq counts from 0
   db.exec(fmt::format("DELETE FROM contact WHERE rowid > {}", contacts));
   drop_early_end_frame(scene.output.frame_interval);
-  const auto moving = static_cast<std::int64_t>(moving_sites.size());
-  // Every frame has one row of each moving site.
-  db.exec(fmt::format("DELETE FROM site_frame WHERE rowid > {}", bodies > 0 ? frames / bodies * moving : 0));
+  drop_site_frames(scene.output.frame_interval);
   db.exec("DELETE FROM checkpoint");
   if (!resume_point) return;
   // The seal covers the counts: with another number of frames the checkpoint is sealed anew.
@@ -444,6 +461,8 @@ void RunFileRecorder::checkpoint(double t, const std::vector<std::byte>& state) 
 void RunFileRecorder::poll() {
   impl_->writing([&] { impl_->commit_if_due(); });
 }
+
+void RunFileRecorder::leave_out(double seconds) { impl_->waited += seconds; }
 
 void RunFileRecorder::finish(const RunSummary& summary, const std::string& summary_json) {
   impl_->writing([&] {

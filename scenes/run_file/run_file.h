@@ -117,6 +117,9 @@ class RunFileRecorder final : public Recorder {
   /// Commits what has waited longer than 0.25 s. Call now and then where rows are rare.
   void poll();
 
+  /// So many wall-clock seconds were not the simulation's: checkpoints do not count them.
+  void leave_out(double seconds);
+
   /// Closes the run: its termination, its counters, and `summary_json` as it is printed.
   void finish(const RunSummary& summary, const std::string& summary_json);
 

@@ -60,6 +60,7 @@ class Group {
   void put(const char* name, const std::vector<int>& values) const {
     const hsize_t size = values.size();
     require(H5LTmake_dataset_int(id_, name, 1, &size, values.data()));
+    require(H5LTset_attribute_string(id_, name, "unit", "1"));
   }
   // Variable-length UTF-8; the pointers need to live until H5Dwrite() has returned.
   void put(const char* name, const std::vector<std::string>& words) const {
@@ -72,6 +73,7 @@ class Group {
     const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
     const Handle set(H5Dcreate2(id_, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
     if (!words.empty()) require(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()));
+    require(H5LTset_attribute_string(id_, name, "unit", ""));
   }
   operator hid_t() const { return id_; }  // NOLINT: what the library takes
 

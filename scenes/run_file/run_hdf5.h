@@ -12,7 +12,8 @@ namespace brink {
 ///     events/    t, kind, body, other, site, x, y, normal_x, normal_y, closing_speed, impulse_normal, impulse_tangential, gap
 ///     contacts/  from, to, mode, body, other, site, x, y, normal_x, normal_y, force_normal, force_tangential
 ///
-/// Every array has an attribute `unit`; ids that are not there are -1.
+/// Every array has an attribute `unit`: "1" of ids and of parts of a direction, empty of words. Ids that are not
+/// there are -1.
 /// @throws BadInput where Brink was built without HDF5; IoError where the run cannot be read or the file not written.
 void write_hdf5(const std::filesystem::path& run_file, const std::filesystem::path& file);
 

@@ -7,6 +7,7 @@
 #include "brink/core/base/error.h"
 #include "brink/core/shapes/distance.h"
 #include "brink/scenes/run_file/run_file.h"
+#include "brink/scenes/run_file/shape_json.h"
 #include "brink/scheduler/kernel/site_motion.h"
 
 namespace brink {
@@ -14,7 +15,6 @@ namespace {
 
 /// Frames looked at for what is worth seeing; times at which a trail is asked.
 constexpr int kLooks = 32, kTrailLooks = 400;
-constexpr double kFarthestPlace = 1e20;  // [m], [rad]: squares of differences are finite
 
 bool somewhere(const Pose& pose) {
   return pose.position.norm() <= kFarthestPlace && std::abs(pose.angle) <= kFarthestPlace;

@@ -67,16 +67,33 @@ std::optional<RunReport> finished_before(const Scene& scene, const RunFolder& fo
   return report;
 }
 
-/// While the run waits its rows are committed, so that who reads the file sees all up to here.
-void wait(RunFileRecorder& recorder, const RunRequest& request) {
-  while (request.waits && request.waits()) {
-    recorder.poll();
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-}
+/// Waits as long as the request says, and knows how long that was, since it is no part of the simulation.
+class Pause {
+ public:
+  Pause(RunFileRecorder& recorder, const RunRequest& request) : recorder_(&recorder), request_(&request) {}
 
-RunOptions run_options(const Scene& scene, const RunRequest& request, double until,
-                       RunFileRecorder& recorder) {
+  /// Rows are committed meanwhile, so that who reads the file sees all up to here.
+  void wait() {
+    if (!request_->waits || !request_->waits()) return;
+    const auto begin = Clock::now();
+    do {
+      recorder_->poll();
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    } while (request_->waits());
+    const double waited = seconds_since(begin);
+    recorder_->leave_out(waited);
+    seconds_ += waited;
+  }
+  double seconds() const { return seconds_; }
+
+ private:
+  RunFileRecorder* recorder_;
+  const RunRequest* request_;
+  double seconds_ = 0.0;
+};
+
+RunOptions run_options(const Scene& scene, const RunRequest& request, double until, RunFileRecorder& recorder,
+                       Pause& pause) {
   RunOptions options;
   options.until = until;
   options.frame_interval = scene.output.frame_interval;
@@ -84,9 +101,9 @@ RunOptions run_options(const Scene& scene, const RunRequest& request, double unt
   // The frame of the checkpoint's time, if the clock has one there, is in the file.
   options.first_frame = !recorder.resume_point();
   options.record_events = scene.output.events;
-  options.progress = [&recorder, &request](double t, std::uint64_t collisions) {
+  options.progress = [&recorder, &request, &pause](double t, std::uint64_t collisions) {
     recorder.poll();
-    wait(recorder, request);
+    pause.wait();
     return !request.progress || request.progress(t, collisions);
   };
   return options;
@@ -110,12 +127,13 @@ void restore(Simulator& simulator, const RunFolder& folder, const ResumePoint& p
 /// Records, and tells what has been recorded.
 class TellingRecorder final : public Recorder {
  public:
-  TellingRecorder(RunFileRecorder& file, const RunRequest& request) : file_(&file), request_(&request) {}
+  TellingRecorder(RunFileRecorder& file, const RunRequest& request, Pause& pause)
+      : file_(&file), request_(&request), pause_(&pause) {}
   void frame(double t, std::span<const BodyState> states) override { file_->frame(t, states); }
   void event(const Event& event) override {
     file_->event(event);
     request_->happened(event);
-    wait(*file_, *request_);
+    pause_->wait();
   }
   void contact_lasted(const LastedContact& contact) override { file_->contact_lasted(contact); }
   void checkpoint(double t, const std::vector<std::byte>& state) override { file_->checkpoint(t, state); }
@@ -123,6 +141,7 @@ class TellingRecorder final : public Recorder {
  private:
   RunFileRecorder* file_;
   const RunRequest* request_;
+  Pause* pause_;
 };
 
 /// What the run file says of a run that an exception ended.
@@ -188,16 +207,18 @@ RunReport run_scene(const Scene& scene, const RunRequest& request) {
   report.file = recorder.file();
   if (recorder.resume_point()) report.resumed_from = recorder.resume_point()->t;
   const double load_seconds = request.load_seconds + seconds_since(start);
-  RunOptions options = run_options(scene, request, until, recorder);
+  Pause pause(recorder, request);
+  RunOptions options = run_options(scene, request, until, recorder, pause);
   options.trace = trace ? &*trace : nullptr;
   if (request.begins) request.begins();
   try {
-    TellingRecorder telling(recorder, request);
+    TellingRecorder telling(recorder, request, pause);
     report.summary = simulator.run(options, request.happened ? static_cast<Recorder*>(&telling) : &recorder);
   } catch (const std::exception& e) {
     close_as_failed(recorder, simulator, e.what());
     throw;
   }
+  report.summary.wall_seconds -= pause.seconds();
   // The simulator has counted from the checkpoint on.
   if (recorder.resume_point()) report.summary.wall_seconds += recorder.resume_point()->wall_seconds;
   report.json = summary_to_json(report.summary, load_seconds);

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "brink/core/base/error.h"
+#include "brink/scenes/files/csv_cell.h"
 #include "brink/scenes/files/written_file.h"
 #include "brink/scenes/run_file/run_file.h"
 
@@ -16,12 +16,10 @@ namespace brink {
 namespace fs = std::filesystem;
 namespace {
 
-/// A cell as it is written: text that would be more than one cell or line, in quotes (RFC 4180).
+/// A run may come from anywhere: a name that a spreadsheet would run as a formula gets an apostrophe before it.
 std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
+  const bool runs = !text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos;
+  return csv_cell(runs ? '\'' + text : text);
 }
 // NaN and ids that are not there are empty cells.
 std::string cell(double x) { return std::isnan(x) ? std::string() : fmt::format("{}", x); }
@@ -95,9 +93,7 @@ void write_contacts(const RunFile& run, const fs::path& folder) {
 
 void write_csv_tables(const fs::path& run_file, const fs::path& folder) {
   const RunFile run(run_file);
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw IoError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+  made_folder(folder);
   write_things(run, folder);
   write_frames(run, folder);
   write_events(run, folder);

@@ -91,9 +91,6 @@ void read_motion(const nlohmann::json& motion, FixedSite& site) {
   }
 }
 
-/// Beyond this coordinates are no scene's [m]; their squares are still finite.
-constexpr double kFarthestReach = 1e20;
-
 /// The pose that undoes `pose`.
 /// p becomes R^T (p - position) = R^T p - R^T position.
 Pose inverse(const Pose& pose) { return {-Frame(pose).direction_to_local(pose.position), -pose.angle}; }
@@ -129,7 +126,7 @@ Outline outline_from_json(const std::string& text) {
   }
   // Checks what makes an outline of sites: loops that join, arcs on their circles, no NaN.
   finish_outline(outline);
-  if (!(outline.bounding_radius <= kFarthestReach))
+  if (!(outline.bounding_radius <= kFarthestPlace))
     throw BadInput("shape: it reaches farther than any scene");
   return outline;
 }

@@ -16,11 +16,11 @@
 ///      "center": [x, y], "arc_radius": R, "sweep": radians}               sweep > 0: counter-clockwise from
 ///      a to b
 ///
-/// Bodies: about the centre of mass at angle 0. Fixed sites: in the world at t = 0, with two more keys:
+/// Bodies: about the centre of mass at angle 0. Fixed sites: in the world at `pose`, with two more keys:
 ///
-///     "pose": [x, y, angle]     where the site's own frame is at t = 0
+///     "pose": [x, y, angle]     where the scene writes the site's own frame
 ///     "motion": null, {"velocity": [vx, vy], "angular_velocity": w}, or {"x": "...", "y": "...", "angle":
-///     "..."}
+///     "..."}                    both from `pose` on: where a formula is not 0 at t = 0, the site starts beside it
 ///
 /// Numbers are written so that reading them back gives the same bits.
 
@@ -30,6 +30,9 @@
 #include "brink/core/world/world.h"
 
 namespace brink {
+
+/// Beyond this coordinates [m] and angles [rad] are no scene's; squares of differences are still finite.
+inline constexpr double kFarthestPlace = 1e20;
 
 /// A body's outline as above.
 std::string outline_to_json(const Outline& outline);

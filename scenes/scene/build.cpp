@@ -24,7 +24,7 @@ class SceneBuilder {
     std::vector<PlannedThing> sites = plan(file_.sites, false), bodies = plan(file_.bodies, true);
     count(bodies);
     // @pre of place_rules and Placer: no faults, so every thing has its outline.
-    if (faults_.empty()) Placer(file_.world.seed, place_rules(bodies), faults_).place(sites, bodies);
+    if (faults_.empty()) Placer(file_.world.seed, place_rules(sites, bodies), faults_).place(sites, bodies);
     const bool placed = faults_.empty();
     if (placed) {
       add_sites(sites);
@@ -61,15 +61,15 @@ class SceneBuilder {
     options_json();
   }
 
-  PlaceRules place_rules(const std::vector<PlannedThing>& bodies) const {
-    // World::length() of the bodies to come: the world has none yet, and the rows of a stack
-    // must know the gap.
-    double largest = 0.0;
-    for (const PlannedThing& thing : bodies)
-      largest = std::max(largest, 2.0 * thing.shape.outline->bounding_radius);
+  PlaceRules place_rules(const std::vector<PlannedThing>& sites,
+                         const std::vector<PlannedThing>& bodies) const {
+    // The scene's world has nobody yet, and the rows of a stack must know the gap.
+    World to_come;
+    for (const PlannedThing& thing : sites) to_come.sites.emplace_back().outline = thing.shape.outline;
+    for (const PlannedThing& thing : bodies) to_come.bodies.emplace_back().outline = thing.shape.outline;
     // Sharp corners and wires without thickness meet at half the touching distance (nominal_level(),
     // tolerances.h) and count as touching up to the whole: three quarters are clear of both.
-    const double thin = 0.75 * kTouchOfTolerance * scene_.solver.contact_tolerance * largest;
+    const double thin = 0.75 * kTouchOfTolerance * scene_.solver.contact_tolerance * to_come.length();
     return {scene_.world.gravity, scene_.world.periods, thin};
   }
 
@@ -110,6 +110,11 @@ class SceneBuilder {
     return 0;
   }
 
+  /// The `index`-th body or site that has no name is called by its place in the file.
+  static std::string name_of(const ThingTable& table, bool body, std::size_t index) {
+    return table.name.given ? table.name.value : (body ? "body" : "site") + std::to_string(index);
+  }
+
   std::vector<PlannedThing> plan(const std::vector<ThingTable>& tables, bool body) {
     std::vector<PlannedThing> out;
     std::set<std::string> taken;
@@ -118,8 +123,7 @@ class SceneBuilder {
       thing.table = &table;
       // Even for sites and odd for bodies: no two entries of a scene draw from the same random stream.
       thing.ordinal = 2 * out.size() + (body ? 1 : 0);
-      thing.name =
-          table.name.given ? table.name.value : (body ? "body" : "site") + std::to_string(out.size());
+      thing.name = name_of(table, body, out.size());
       if (!taken.insert(thing.name).second)
         faults_.add(table.name.given ? table.name.where : table.place,
                     "name: is used twice; given " + in_quotes(thing.name) + ", allowed: a name of its own");
@@ -128,7 +132,7 @@ class SceneBuilder {
       thing.material = material(table.material);
       check_keys(table, faults_);
       if (table.scatter.given && table.position.given)
-        scene_.notes.push_back("position of " + in_quotes(table.name.value) +
+        scene_.notes.push_back("position of " + in_quotes(thing.name) +
                                " is not used: scatter places the copies");
       // A thing whose shape failed stays in the list without an outline: its name, copies and material
       // are still checked.
@@ -294,12 +298,17 @@ class SceneBuilder {
     }
   }
 
-  /// The first entry whose name the message quotes; without the closing quote, since copies
-  /// are called NAME[k].
+  /// The first entry that the message names as `body "NAME"` or `site "NAME"`; else the first of whose copies, which
+  /// are called NAME[k], it names one.
   Where place_named_in(const std::string& message) const {
-    for (const auto* things : {&file_.bodies, &file_.sites})
-      for (const ThingTable& table : *things)
-        if (table.name.given && message.find('"' + table.name.value) != std::string::npos) return table.place;
+    for (const char* after : {"\"", "["})
+      for (const auto* things : {&file_.bodies, &file_.sites})
+        for (std::size_t k = 0; k < things->size(); ++k) {
+          const bool body = things == &file_.bodies;
+          const ThingTable& table = (*things)[k];
+          const std::string named = (body ? "body \"" : "site \"") + name_of(table, body, k) + after;
+          if (message.find(named) != std::string::npos) return table.place;
+        }
     return {1, 1};
   }
 

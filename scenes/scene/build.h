@@ -68,6 +68,9 @@ struct CopyCount {
 };
 CopyCount copies_of(const ThingTable& table);
 
+/// NAME[k] as NAME and k; any other name as it is.
+std::pair<std::string, std::optional<std::size_t>> copy_named(const std::string& name);
+
 /// Which way is down for an entry: its touching_direction, else along gravity; nothing where there is neither.
 std::optional<Vec2> down_of(const ThingTable& table, const Vec2& gravity);
 
@@ -90,6 +93,9 @@ void put_on_others(std::vector<PlannedThing>& sites, std::vector<PlannedThing>& 
 
 /// The state in which every copy of a thing starts, but for its place.
 BodyState start_of(const PlannedThing& thing);
+
+/// A placed copy where it stands at t = 0, which the formulas of a site's motion may move it to.
+Obstacle at_start(const PlannedThing& thing, const BodyState& copy);
 
 /// Places the copies of things: those that stand where they are told, or on others, and scatters without
 /// overlaps.

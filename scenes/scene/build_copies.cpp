@@ -5,6 +5,7 @@
 #include "brink/core/base/random.h"
 #include "brink/scenes/scene/build.h"
 #include "brink/scenes/scene/rows.h"
+#include "brink/scheduler/kernel/site_motion.h"
 
 namespace brink {
 namespace {
@@ -22,7 +23,7 @@ std::vector<Obstacle> obstacles_of(const std::vector<PlannedThing>& sites,
   std::vector<Obstacle> out;
   for (const auto* things : {&sites, &bodies})
     for (const PlannedThing& thing : *things)
-      for (const BodyState& copy : thing.copies) out.push_back({thing.shape.outline.get(), copy.pose});
+      for (const BodyState& copy : thing.copies) out.push_back(at_start(thing, copy));
   return out;
 }
 
@@ -73,6 +74,16 @@ CopyCount copies_of(const ThingTable& table) {
   return {columns * rows - shorter, table.wall.where, true};
 }
 
+std::pair<std::string, std::optional<std::size_t>> copy_named(const std::string& name) {
+  const std::size_t bracket = name.rfind('[');
+  if (bracket == std::string::npos || name.back() != ']') return {name, std::nullopt};
+  const std::string digits = name.substr(bracket + 1, name.size() - bracket - 2);
+  // Seven digits hold kMostCopies, and stoul cannot overflow.
+  if (digits.empty() || digits.size() > 7 || digits.find_first_not_of("0123456789") != std::string::npos)
+    return {name, std::nullopt};
+  return {name.substr(0, bracket), std::stoul(digits)};
+}
+
 std::optional<Vec2> down_of(const ThingTable& table, const Vec2& gravity) {
   const Vec2 down = table.touching_direction.given ? table.touching_direction.value : gravity;
   if (down.isZero(0.0)) return std::nullopt;
@@ -84,6 +95,14 @@ std::optional<Vec2> down_of(const ThingTable& table, const Vec2& gravity) {
 BodyState start_of(const PlannedThing& thing) {
   const ThingTable& table = *thing.table;
   return {thing.pose, {table.velocity.value, table.angular_velocity.value}};
+}
+
+Obstacle at_start(const PlannedThing& thing, const BodyState& copy) {
+  // Bodies have no motion, and are where they are written at the start.
+  FixedSite site;
+  site.pose = copy.pose;
+  site.motion = thing.motion;
+  return {thing.shape.outline.get(), told_pose(site, 0.0)};
 }
 
 // Rows are found once, here; the function that is returned only shifts them.

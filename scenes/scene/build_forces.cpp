@@ -212,14 +212,10 @@ std::vector<int> BodyNames::find(const std::string& name, const Where& where, Fa
     return out;
   }
   // NAME[k]: one copy. The name as written went first, since a body may itself be called "a[0]".
-  const std::size_t bracket = name.rfind('[');
-  if (bracket != std::string::npos && name.back() == ']') {
-    const auto found = entries_.find(name.substr(0, bracket));
-    const std::string digits = name.substr(bracket + 1, name.size() - bracket - 2);
-    if (found != entries_.end() && found->second.copied && !digits.empty() && digits.size() < 8 &&
-        digits.find_first_not_of("0123456789") == std::string::npos &&
-        std::stoi(digits) < found->second.count)
-      return {found->second.first + std::stoi(digits)};
+  if (const auto [called, copy] = copy_named(name); copy) {
+    const auto found = entries_.find(called);
+    if (found != entries_.end() && found->second.copied && static_cast<int>(*copy) < found->second.count)
+      return {found->second.first + static_cast<int>(*copy)};
   }
   faults.add(where, "no body is called " + in_quotes(name) +
                         (words_.empty() ? "; the scene has no bodies"

@@ -4,7 +4,6 @@
 
 #include "brink/scenes/scene/build.h"
 #include "brink/scenes/scene/landing.h"
-#include "brink/scheduler/kernel/site_motion.h"
 
 namespace brink {
 namespace {
@@ -78,7 +77,7 @@ class Touching {
     Ground ground;
     std::string called = name;
     // A thing that is itself called "a[0]" goes before the first copy of "a".
-    if (!called_.contains(name)) std::tie(called, ground.copy) = apart(name);
+    if (!called_.contains(name)) std::tie(called, ground.copy) = copy_named(name);
     const auto found = called_.find(called);
     if (found == called_.end() || (ground.copy && !has_copy(*found->second.front(), *ground.copy))) {
       faults_.add(where, "touching: no body or site is called " + in_quotes(name) + "; the nearest name is " +
@@ -95,17 +94,6 @@ class Touching {
     faults_.add(where, "touching: " + wrong + "; given " + in_quotes(name) +
                            ", allowed: another body, or a site, that stands where it is told");
     return std::nullopt;
-  }
-
-  /// NAME[k] as NAME and k.
-  static std::pair<std::string, std::optional<std::size_t>> apart(const std::string& name) {
-    const std::size_t bracket = name.rfind('[');
-    if (bracket == std::string::npos || name.back() != ']') return {name, std::nullopt};
-    const std::string digits = name.substr(bracket + 1, name.size() - bracket - 2);
-    // Seven digits hold kMostCopies, and stoul cannot overflow.
-    if (digits.empty() || digits.size() > 7 || digits.find_first_not_of("0123456789") != std::string::npos)
-      return {name, std::nullopt};
-    return {name.substr(0, bracket), std::stoul(digits)};
   }
 
   static bool has_copy(const PlannedThing& thing, std::size_t copy) {
@@ -132,15 +120,10 @@ class Touching {
     }
   }
 
-  /// Where it stands at the start, which the formulas of its motion may move it to.
   static void add_obstacles(const Ground& ground, std::vector<Obstacle>& out) {
     for (std::size_t k = 0; k < ground.thing->copies.size(); ++k) {
       if (ground.copy && *ground.copy != k) continue;
-      // Bodies have no motion, and are where they are written at the start.
-      FixedSite site;
-      site.pose = ground.thing->copies[k].pose;
-      site.motion = ground.thing->motion;
-      out.push_back({ground.thing->shape.outline.get(), told_pose(site, 0.0)});
+      out.push_back(at_start(*ground.thing, ground.thing->copies[k]));
     }
   }
 

@@ -1,15 +1,11 @@
 // The classic text data files that a scene names.
-#include <fstream>
-#include <sstream>
-
+#include "brink/core/base/error.h"
 #include "brink/core/shapes/sample_file.h"
+#include "brink/scenes/files/text_file.h"
 #include "brink/scenes/scene/build.h"
 
 namespace brink {
 namespace {
-
-/// As text_file.cpp allows of a scene.
-constexpr std::uintmax_t kLargestFile = 100'000'000;  // bytes
 
 /// What the scene itself says goes before what its data file says.
 template <class V>
@@ -18,7 +14,8 @@ void fill(Given<V>& key, const V& value, const Where& where) {
 }
 
 void fill_state(ThingTable& thing, const SampledBody& body, const Where& where, bool is_body) {
-  fill(thing.position, body.position, where);
+  // A scatter places its copies: the file's position would be one that nobody gave and that is not used.
+  if (!thing.scatter.given) fill(thing.position, body.position, where);
   // angle and angle_deg are one: either keeps the file's away.
   if (!thing.angle.given) fill(thing.angle_deg, body.rotation_degrees, where);
   if (!is_body) return;
@@ -29,15 +26,14 @@ void fill_state(ThingTable& thing, const SampledBody& body, const Where& where, 
 }
 
 std::optional<std::string> text_of(const std::filesystem::path& path) {
+  // A scene may come from anywhere: a pipe or a device that it names would be waited for.
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error) ||
-      std::filesystem::file_size(path, error) > kLargestFile || error)
+  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
+  try {
+    return text_of_file(path);
+  } catch (const IoError&) {
     return std::nullopt;
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in || in.bad()) return std::nullopt;
-  return text.str();
+  }
 }
 
 void take(ThingTable& thing, ShapeSpec& spec, const std::filesystem::path& folder, bool is_body,

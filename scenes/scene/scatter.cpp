@@ -25,20 +25,26 @@ class Room {
     // at most 1e6 along an axis however long and thin the region is.
     const double cells = std::clamp(4.0 * static_cast<double>(ask.count), 16.0, 1e6);
     cell_ = std::max({2.0 * reach_, std::sqrt(extent.x() * extent.y() / cells), extent.maxCoeff() / 1e6});
+    // A place alone, for points without a radius: any cell holds it.
+    if (!(cell_ > 0.0)) cell_ = 1.0;
     columns_ = static_cast<int>(extent.x() / cell_) + 1;
     rows_ = static_cast<int>(extent.y() / cell_) + 1;
     cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
     for (const Obstacle& obstacle : obstacles) take(obstacle);
+    buried_.assign(cells_.size(), Buried::unknown);
+    for (const Obstacle& obstacle : obstacles) full_ = full_ || buries(obstacle, region_, reach_);
   }
 
-  const Box& region() const { return region_; }
+  bool full() const { return full_; }
 
   bool free(const Pose& pose) {
     if (full_ || !region_.contains(pose.position)) return false;
     const auto clear = [&](const Obstacle& taken) { return apart(taken, {outline_, pose}); };
     // take_image() has put every obstacle into each cell from which a copy could touch it:
     // one cell is enough.
-    const auto& near = cells_[index(column(pose.position.x()), row(pose.position.y()))];
+    const int c = column(pose.position.x()), r = row(pose.position.y());
+    if (outline_->is_point() && is_buried(c, r)) return false;
+    const auto& near = cells_[index(c, r)];
     return std::all_of(near.begin(), near.end(), clear) && std::all_of(large_.begin(), large_.end(), clear);
   }
 
@@ -58,7 +64,31 @@ class Room {
   }
 
  private:
+  enum class Buried : char { unknown, no, yes };
   static constexpr double kMostImages = 1e4;
+
+  /// True if every place of the box lies in the obstacle, by `depth` at least: nothing is free there. A gap
+  /// changes by no more than the way between two places.
+  static bool buries(const Obstacle& obstacle, const Box& box, double depth) {
+    const Vec2 center = Frame(obstacle.pose).to_local(box.center());
+    return gap_by_brute_force(*obstacle.outline, center) <= -(0.5 * box.extent().norm() + depth);
+  }
+
+  /// Asked once a cell: a pile that has to rise out of something large asks for hundreds of thousands of
+  /// places within it. Of copies that are discs alone, which are not free wherever their centres are buried.
+  bool is_buried(int c, int r) {
+    Buried& known = buried_[index(c, r)];
+    if (known != Buried::unknown) return known == Buried::yes;
+    Box cell;
+    cell.add(region_.low + cell_ * Vec2(c, r));
+    cell.add(region_.low + cell_ * Vec2(c + 1, r + 1));
+    const auto covers = [&](const Obstacle& taken) { return buries(taken, cell, 0.0); };
+    const auto& near = cells_[index(c, r)];
+    const bool yes =
+        std::any_of(near.begin(), near.end(), covers) || std::any_of(large_.begin(), large_.end(), covers);
+    known = yes ? Buried::yes : Buried::no;
+    return yes;
+  }
 
   // About how many images of a box meet the region.
   double images_in(const Box& box) const {
@@ -113,6 +143,7 @@ class Room {
   double budget_ = 1e8;
   int columns_ = 1, rows_ = 1;
   std::vector<std::vector<Obstacle>> cells_;
+  std::vector<Buried> buried_;  // by cell
   std::vector<Obstacle> large_;
 };
 
@@ -190,9 +221,11 @@ std::optional<std::vector<Pose>> scatter_poses(const ScatterAsk& ask, const std:
     return std::nullopt;
   }
   const Room empty(ask, obstacles);
+  if (empty.full()) return std::nullopt;
   // Bounding discs say little of plates and needles: for these insertion is tried however much the
   // discs would fill.
-  if (wanted < 0.45 * area || !ask.outline->is_point())
+  // Points without a radius fill nothing, be the region a line or a place.
+  if (wanted < 0.45 * area || wanted == 0.0 || !ask.outline->is_point())
     if (auto placed = insert_one_by_one(ask, empty, random)) return placed;
   Room shelf = empty;
   // Each place of the lattice has sqrt(3) / 2 spacing^2 for itself: so many places fit. Obstacles take

@@ -18,6 +18,9 @@ namespace brink {
 namespace fs = std::filesystem;
 namespace {
 
+/// Its path. Its values are many, and tell nothing but which random numbers are drawn.
+constexpr const char* kSeed = "world.seed";
+
 /// One value of an axis, as people see it and as an override says it.
 struct Value {
   std::string text;  ///< for people
@@ -114,14 +117,13 @@ std::function<void(const toml::node&, TomlDocument&, ExperimentTable&)> axis_rea
 }
 
 void read_seeds(const toml::node& node, TomlDocument& doc, ExperimentTable& out) {
-  if (!node.is_integer())
-    return axis_reader(&ExperimentTable::seeds, "seeds", "seed", "world.seed")(node, doc, out);
+  if (!node.is_integer()) return axis_reader(&ExperimentTable::seeds, "seeds", "seed", kSeed)(node, doc, out);
   const std::int64_t count = node.as_integer()->get();
   // Beyond kMostSweepRuns check_count() would refuse all the same, but only after they have been made.
   if (count < 1 || count > static_cast<std::int64_t>(kMostSweepRuns))
     return fault(doc, doc.where(node), "seeds", "out of range", given(node),
                  "a count >= 1, for the seeds 1, 2 ... , or an array of seeds");
-  Axis axis{"seed", "world.seed", {}, doc.where(node)};
+  Axis axis{"seed", kSeed, {}, doc.where(node)};
   for (std::int64_t k = 1; k <= count; ++k)
     axis.values.push_back({std::to_string(k), std::to_string(k), doc.where(node)});
   out.seeds.push_back(std::move(axis));
@@ -267,19 +269,15 @@ void check_count(const std::vector<Axis>& axes, TomlDocument& doc) {
 SweepPlot plot_of(const PlotTable& table, const std::vector<Axis>& axes, TomlDocument& doc) {
   std::vector<std::string> names, useful;
   for (const Axis& axis : axes) names.push_back(axis.name);
-  // A stream takes a leading number of "1e-3 s", too: all of the text must have been read.
   const auto numeric = [](const Axis& axis) {
-    return std::all_of(axis.values.begin(), axis.values.end(), [](const Value& v) {
-      double x = 0.0;
-      std::istringstream in(v.text);
-      return (in >> x) && in.eof();
-    });
+    return std::all_of(axis.values.begin(), axis.values.end(),
+                       [](const Value& v) { return as_number(v.text).has_value(); });
   };
   // Numbers first: the x axis is one if there is one. Axes of one value and the seed tell
   // nothing along a plot.
   for (const bool numbers : {true, false})
     for (const Axis& axis : axes)
-      if (axis.values.size() > 1 && axis.path != "world.seed" && numeric(axis) == numbers)
+      if (axis.values.size() > 1 && axis.path != kSeed && numeric(axis) == numbers)
         useful.push_back(axis.name);
   const auto chosen = [&](const Given<std::string>& asked, const char* key, const std::string& otherwise) {
     if (!asked.given) return otherwise;
@@ -320,14 +318,27 @@ class SceneTrial {
       for (const char c : loaded.options_json) hash.add(static_cast<std::uint64_t>(c));
       return hash.value();
     } catch (const SceneFaults& faults) {
+      const std::size_t before = doc_.faults().size();
       for (const Setting& s : settings_) tell(faults, s.path, s.value.where, "set." + s.path);
-      // Faults of an override have been put where the experiment file asked for it; any others
-      // are the scene's.
-      if (doc_.faults().empty()) throw;  // the scene file's own faults, with their places there
+      tell_own(faults, (folder_ / scene.toml).string());
+      if (doc_.faults().size() == before) throw;
     } catch (const IoError& e) {
       doc_.faults().add(scene.where, std::string("scenes: ") + e.what());
     }
     return std::nullopt;
+  }
+
+  /// Reads a seed alone, without the scene: there may be a million of them.
+  void seed(const Axis& axis, const Value& value) {
+    TomlDocument alone("", {override_text(axis.path, value)});
+    FileTable file;
+    file_schema().read(alone.root(), {1, 1}, alone, file);
+    try {
+      alone.faults().throw_if_any("");
+    } catch (const SceneFaults& faults) {
+      // What a scene needs beside its seed is missing here, and is not meant.
+      tell(faults, axis.path, value.where, axis.name + " = " + value.toml);
+    }
   }
 
   /// Tries one value alone, with every other axis as the scene has it.
@@ -352,6 +363,13 @@ class SceneTrial {
         doc_.faults().add(where, what + ": " + f.message.substr(mark.size()));
   }
 
+  /// The scene's own faults, with their places there: those that no override has.
+  void tell_own(const SceneFaults& faults, const std::string& scene) {
+    for (const SceneFault& f : faults.faults())
+      if (f.line > 0)
+        doc_.faults().add_elsewhere(f.file.empty() ? scene : f.file, f.line, f.column, f.message);
+  }
+
   fs::path folder_;
   const std::vector<Setting>& settings_;
   TomlDocument& doc_;
@@ -363,13 +381,15 @@ std::vector<std::uint64_t> try_scenes(const std::vector<Axis>& axes, const Exper
                                       const fs::path& folder, TomlDocument& doc) {
   SceneTrial trial(folder, table.settings, doc);
   std::vector<std::uint64_t> identities;
+  for (const Axis& axis : axes)
+    if (axis.path == kSeed)
+      for (const Value& value : axis.values) trial.seed(axis, value);
   for (const Value& scene : axes.front().values) {
     const auto identity = trial.base(scene);
     if (!identity) continue;
     identities.push_back(*identity);
     for (std::size_t k = 1; k < axes.size(); ++k)
-      // Seeds are not tried, as there may be a million of them.
-      if (axes[k].path != "world.seed")
+      if (axes[k].path != kSeed)
         for (const Value& value : axes[k].values) trial.value(scene, axes[k], value);
   }
   return identities;
@@ -410,6 +430,13 @@ std::vector<SweepRun> product(const std::vector<Axis>& axes, const ExperimentTab
 }
 
 }  // namespace
+
+std::optional<double> as_number(const std::string& value) {
+  // A stream takes a leading number of "1e-3 s", too: all of the text must have been read.
+  std::istringstream in(value);
+  double x = 0.0;
+  return (in >> x) && in.eof() ? std::optional(x) : std::nullopt;
+}
 
 Experiment load_experiment(const fs::path& file) {
   TomlDocument doc(text_of_file(file), {});

@@ -58,10 +58,13 @@ struct Experiment {
 inline constexpr std::size_t kMostSweepRuns = 1'000'000;
 
 /// Reads an experiment file, and every base scene with each value of each axis, so that a bad value is found
-/// before anything runs.
+/// before anything runs. Seeds are read alone, without the scenes.
 /// @throws SceneFaults with every fault and its place, in the experiment file or a base scene; IoError if the
 /// experiment file cannot be read.
 Experiment load_experiment(const std::filesystem::path& file);
+
+/// A value of an axis that is a number, or nothing.
+std::optional<double> as_number(const std::string& value);
 
 /// Every key of an experiment file.
 std::vector<OptionInfo> experiment_options();

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "brink/scenes/draw/chart.h"
 
@@ -14,12 +13,6 @@ std::size_t axis_named(const Experiment& experiment, const std::string& name) {
   for (std::size_t k = 0; k < experiment.axes.size(); ++k)
     if (experiment.axes[k].name == name) return k;
   return experiment.axes.size();
-}
-
-std::optional<double> as_number(const std::string& text) {
-  std::istringstream in(text);
-  double x = 0.0;
-  return (in >> x) && in.eof() ? std::optional(x) : std::nullopt;
 }
 
 /// Numbers by their value, names side by side.

@@ -13,6 +13,7 @@
 #include <set>
 
 #include "brink/core/base/error.h"
+#include "brink/scenes/files/written_file.h"
 #include "brink/scenes/run_file/database.h"
 
 namespace brink {
@@ -69,13 +70,6 @@ class WorkerLocks {
   }
   int fd_;
 };
-
-fs::path made_folder(const fs::path& dir) {
-  std::error_code error;
-  fs::create_directories(dir, error);
-  if (error) throw IoError(fmt::format("{}: cannot make the folder: {}", dir.string(), error.message()));
-  return dir;
-}
 
 std::string settings_json(const Experiment& experiment, const SweepRun& run) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();

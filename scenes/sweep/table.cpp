@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "brink/core/base/printable.h"
+#include "brink/scenes/files/csv_cell.h"
 #include "brink/scenes/files/written_file.h"
 #include "brink/scheduler/policies/policy.h"
 
@@ -19,11 +20,6 @@ namespace {
 // "failed: why" counts as "failed", whatever the reason.
 std::string bare_ending(const SweepResult& result) {
   return result.termination.substr(0, result.termination.find(':'));
-}
-
-std::string time_text(double seconds) {
-  if (seconds < 1e-3) return fmt::format("{:.3g} \u00b5s", 1e6 * seconds);
-  return seconds < 1.0 ? fmt::format("{:.3g} ms", 1e3 * seconds) : fmt::format("{:.3g} s", seconds);
 }
 
 /// "5 reached_end", "3 reached_end, 2 failed", "4 waiting".
@@ -83,15 +79,12 @@ bool exact(const std::string& policy) {
   return true;
 }
 
-std::string in_csv(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
-  quoted += '"';
-  return quoted;
-}
-
 }  // namespace
+
+std::string duration_text(double seconds) {
+  if (seconds < 1e-3) return fmt::format("{:.3g} \u00b5s", 1e6 * seconds);
+  return seconds < 1.0 ? fmt::format("{:.3g} ms", 1e3 * seconds) : fmt::format("{:.3g} s", seconds);
+}
 
 double median(std::vector<double> values) {
   std::erase_if(values, [](double x) { return std::isnan(x); });
@@ -137,7 +130,7 @@ std::string sweep_table(const Experiment& experiment, const SweepResults& result
     for (const std::size_t k : axes) line.push_back(printable(group.values[k]));
     line.push_back(endings(group, results));
     line.push_back(fmt::format("{}", middle("collisions")));
-    line.push_back(time_text(middle("wall_seconds")));
+    line.push_back(duration_text(middle("wall_seconds")));
     line.push_back(fmt::format("{:.1e}", middle("energy_drift")));
     line.push_back(fmt::format("{:.1e} m", middle("max_overlap")));
     line.push_back(hash_text(group, results));
@@ -149,23 +142,21 @@ std::string policy_agreement(const Experiment& experiment, const SweepResults& r
   std::size_t policy = 0;
   while (policy < experiment.axes.size() && experiment.axes[policy].path != "solver.policy") ++policy;
   if (policy == experiment.axes.size()) return "";
-  std::map<std::vector<std::string>, std::map<std::string, std::string>> hashes;  // of exact policies
-  std::set<std::string> compared;
+  std::map<std::vector<std::string>, std::vector<std::string>> hashes;  // of exact policies
   for (std::size_t k = 0; k < experiment.runs.size(); ++k) {
     // The same settings without the policy: what all exact policies must agree in.
     std::vector<std::string> rest = experiment.runs[k].values;
     const std::string name = std::exchange(rest[policy], "");
-    if (!results[k] || !exact(name)) continue;
-    hashes[rest][name] = results[k]->state_hash;
-    compared.insert(name);
+    // A run that could not start has no bits.
+    if (!results[k] || results[k]->state_hash.empty() || !exact(name)) continue;
+    hashes[rest].push_back(results[k]->state_hash);
   }
-  if (compared.size() < 2) return "";
+  std::erase_if(hashes, [](const auto& setting) { return setting.second.size() < 2; });
+  if (hashes.empty()) return "";
   std::size_t same = 0;
   std::string others;
-  for (const auto& [rest, by_policy] : hashes) {
-    std::set<std::string> distinct;
-    for (const auto& [name, hash] : by_policy) distinct.insert(hash);
-    if (distinct.size() == 1) {
+  for (const auto& [rest, of_policies] : hashes) {
+    if (std::set(of_policies.begin(), of_policies.end()).size() == 1) {
       ++same;
       continue;
     }
@@ -180,13 +171,14 @@ std::string policy_agreement(const Experiment& experiment, const SweepResults& r
 void write_sweep_csv(const std::filesystem::path& file, const Experiment& experiment,
                      const SweepResults& results) {
   std::ofstream out(file);
-  for (const SweepAxis& axis : experiment.axes) out << in_csv(axis.name) << ',';
+  for (const SweepAxis& axis : experiment.axes) out << csv_cell(axis.name) << ',';
   out << "termination,state_hash";
   for (const std::string& name : sweep_columns()) out << ',' << name;
   out << '\n';
   for (std::size_t k = 0; k < experiment.runs.size(); ++k) {
-    for (const std::string& value : experiment.runs[k].values) out << in_csv(value) << ',';
-    out << (results[k] ? in_csv(results[k]->termination) + ',' + in_csv(results[k]->state_hash) : "waiting,");
+    for (const std::string& value : experiment.runs[k].values) out << csv_cell(value) << ',';
+    out << (results[k] ? csv_cell(results[k]->termination) + ',' + csv_cell(results[k]->state_hash)
+                       : "waiting,");
     for (const std::string& name : sweep_columns()) {
       out << ',';
       if (results[k] && !std::isnan(results[k]->numbers.at(name)))

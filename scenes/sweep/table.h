@@ -24,11 +24,14 @@ std::vector<SweepGroup> sweep_groups(const Experiment& experiment, const SweepRe
 /// Median; for an even count the lower of the two in the middle. NaN of nothing.
 double median(std::vector<double> values);
 
+/// A time as people read it: "1.2 µs", "3 ms", "4.5 s".
+std::string duration_text(double seconds);
+
 /// One line a group: its values, how many runs ended how, medians over its seeds, the state hash.
 std::string sweep_table(const Experiment& experiment, const SweepResults& results);
 
-/// Where policies are varied: of the settings that differ in the policy alone, in how many all exact policies
-/// gave one state hash, and which did not. Empty where fewer than two exact policies are compared.
+/// Where policies are varied: of the settings of which two exact policies or more have a state hash, in how many these
+/// are one, and which are the others. Empty where there are none.
 std::string policy_agreement(const Experiment& experiment, const SweepResults& results);
 
 /// One line a run: axes, termination, state hash, and every column in full precision.

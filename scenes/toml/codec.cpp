@@ -194,8 +194,13 @@ Codec<std::vector<Vec2>> points(std::size_t least, std::size_t most, std::string
   return {type,
           [=](const toml::node& node, TomlDocument& doc, const std::string& key, std::vector<Vec2>& out) {
             const toml::array* array = node.as_array();
-            if (array == nullptr || array->size() < least || array->size() > most)
+            if (array == nullptr || array->size() < least || (array->size() > most && least == most))
               return wrong_type(node, doc, key, type), false;
+            if (array->size() > most) {
+              doc.faults().add(doc.where(node), fault_text(key, "too many points", given(node),
+                                                           "at most " + std::to_string(most) + " points"));
+              return false;
+            }
             // Every element is read, whatever those before it are: all faults are told.
             bool good = true;
             for (const toml::node& element : *array) {

@@ -54,11 +54,17 @@ class KeyDepthScan {
       if (text_[at_] == '\\' && quote == '"')
         ++at_;
       else if (multi && text_.substr(at_, 3) == triple)
-        return void(at_ += 2);
+        return skip_closing(quote);
       else if (!multi && (text_[at_] == quote || text_[at_] == '\n'))
         return;
       if (at_ < text_.size() && text_[at_] == '\n') ++line_;
     }
+  }
+
+  // The string may itself end in one or two quotes: of three to five in a row the last three close it.
+  void skip_closing(char quote) {
+    at_ += 2;
+    for (int own = 0; own < 2 && at_ + 1 < text_.size() && text_[at_ + 1] == quote; ++own) ++at_;
   }
 
   std::string_view text_;

@@ -234,7 +234,13 @@ TEST_F(ProgramTest, TablesAreExportedWithUnitsInTheirHeads) {
   const Outcome hdf5 = brink("export a --hdf5 tables");
   EXPECT_TRUE(hdf5.status == 0 || hdf5.error.find("libhdf5-dev") != std::string::npos) << hdf5.error;
   if (hdf5.status == 0) {
-    EXPECT_EQ(text_of(dir_ / "tables/run.h5").substr(1, 3), "HDF");
+    const std::string file = text_of(dir_ / "tables/run.h5");
+    EXPECT_EQ(file.substr(1, 3), "HDF");
+    // The attribute of each array is in the file by its name: 3 of bodies, 7 of frames, 13 of events, 12 of contacts.
+    const std::string name("unit\0", 5);
+    int units = 0;
+    for (std::size_t at = file.find(name); at != std::string::npos; at = file.find(name, at + 1)) ++units;
+    EXPECT_EQ(units, 3 + 7 + 13 + 12);
   }
   const Outcome vtk = brink("export a --vtk shown");
   EXPECT_TRUE(vtk.status == 0 || vtk.error.find("libvtk9-dev") != std::string::npos) << vtk.error;
@@ -552,6 +558,51 @@ TEST_F(ProgramTest, PicturesOfASceneAndOfItsRunAreWritten) {
     EXPECT_EQ(text_of(dir_ / "x.png").substr(1, 3), "PNG") << command;
   }
   EXPECT_EQ(brink("draw a --at 7 -o x.png").status, 2);
+}
+
+TEST_F(ProgramTest, TheLastRunIsGoneOnWithThoughTheFirstHasBeenDeleted) {
+  for (int k = 0; k < 3; ++k) ASSERT_EQ(brink("run ball.toml --quiet").status, 0);
+  fs::remove_all(dir_ / "runs/ball-1");
+  // Others beside: without a run file, without a number, of another scene.
+  for (const char* other : {"ball-7", "ball-x", "balls-9"}) fs::create_directories(dir_ / "runs" / other);
+  const Outcome resumed = brink("run ball.toml --resume");
+  EXPECT_THAT(resumed.out, HasSubstr("runs/ball-3/run.db: has already reached t = 0.75 s"));
+  EXPECT_FALSE(fs::exists(dir_ / "runs/ball-1"));
+}
+
+TEST_F(ProgramTest, APictureOfARunTakesNoOverrides) {
+  ASSERT_EQ(brink("run ball.toml --out a --quiet").status, 0);
+  const Outcome drawn = brink("draw a -o x.png --set world.gravity.1=3");
+  EXPECT_EQ(drawn.status, 2);
+  EXPECT_THAT(drawn.error, HasSubstr("--set: is for scenes; a run has been made"));
+  EXPECT_FALSE(fs::exists(dir_ / "x.png"));
+}
+
+TEST_F(ProgramTest, AreaOfAnOverlapIsThatWhereTheSiteStarts) {
+  const auto overlaps = [&](const std::string& site) {
+    write("over.toml", "[world]\nduration = 1\n[[sites]]\nname = \"s\"\nbox = { width = 1, height = 1 }\n" +
+                           site +
+                           "\n[[bodies]]\nname = \"b\"\nbox = { width = 1, height = 1 }\n"
+                           "position = [4.5, 0.3]\n");
+    const std::string out = brink("check over.toml").out;
+    return out.substr(out.find("Overlaps at the start"));
+  };
+  const std::string moved = overlaps("motion = { x = \"4 + 0*t\" }");
+  EXPECT_THAT(moved, HasSubstr("'b' and 's'"));
+  EXPECT_EQ(moved, overlaps("position = [4, 0]"));
+}
+
+TEST_F(ProgramTest, ExportedNamesAreNoFormulas) {
+  const auto row_of = [&](const std::string& name) {
+    write("odd.toml",
+          "[world]\nduration = 0.1\n[[bodies]]\nname = \"" + name + "\"\ndisc = { radius = 0.5 }\n");
+    EXPECT_EQ(brink("run odd.toml --quiet --out odd").status, 0);
+    EXPECT_EQ(brink("export odd --csv tables").status, 0);
+    return text_of(dir_ / "tables/bodies.csv");
+  };
+  EXPECT_THAT(row_of("=1+2"), HasSubstr("\n0,'=1+2,1,"));
+  EXPECT_THAT(row_of("-a,b"), HasSubstr("\n0,\"'-a,b\",1,"));
+  EXPECT_THAT(row_of("a=1"), HasSubstr("\n0,a=1,1,"));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -12,6 +13,7 @@
 #include <sstream>
 
 #include "brink/core/shapes/outline.h"
+#include "brink/scenes/toml/codec.h"
 
 namespace brink {
 namespace {
@@ -534,6 +536,103 @@ TEST(SceneFile, AMillionBodiesStandBesideASite) {
       "million.toml");
   EXPECT_EQ(scene.world.bodies.size(), 1000000U);
   EXPECT_EQ(scene.world.sites.size(), 1U);
+}
+
+// Of three to five quotes in a row the last three end a string; what follows is scanned for keys again.
+TEST(SceneFile, DeepKeysAreRefusedAfterStringsThatEndInQuotes) {
+  std::string deep = "a";
+  for (int k = 0; k < 100; ++k) deep += ".a";
+  for (const char quote : {'\'', '"'})
+    for (const std::size_t own : {0, 1, 2}) {
+      const std::string string = std::string(3, quote) + "a" + std::string(own + 3, quote);
+      const std::string text = "x = {s = " + string + ", " + deep + " = 1}\n";
+      EXPECT_THAT(faults_of(text), Contains(HasSubstr("a dotted key has too many parts"))) << text;
+    }
+  EXPECT_EQ(parse_scene("title = '''a'''''\n", "t").world.title, "a''");
+}
+
+// Told by World::check(), of which no table knows: who is meant stands in the message.
+TEST(SceneFile, AFaultOfTheWholeIsPlacedAtTheBodyOfThatName) {
+  const std::string two =
+      "[world]\nperiodic = [1, 0]\n[[bodies]]\nname = \"a\"\ndisc = { radius = 0.1 }\n[[bodies]]\n";
+  const std::string wide = "disc = { radius = 0.4 }\nposition = [0, 2]\n";
+  EXPECT_THAT(faults_of(two + "name = \"ab\"\n" + wide), Contains(HasSubstr("6:1 body \"ab\": is 0.8 m")));
+  EXPECT_THAT(faults_of(two + wide), Contains(HasSubstr("6:1 body \"body1\": is 0.8 m")));
+  EXPECT_THAT(faults_of(two + "name = \"c\"\ngrid = { columns = 1, rows = 2, spacing = [0, 2] }\n" + wide),
+              Contains(HasSubstr("6:1 body \"c[0]\": is 0.8 m")));
+}
+
+TEST(Scatter, CopiesKeepClearOfWhereAMovingSiteStarts) {
+  const Scene scene = parse_scene(R"([[sites]]
+name = "box"
+box = { width = 1, height = 1 }
+motion = { x = "2 + 0*t" }
+[[bodies]]
+name = "b"
+disc = { radius = 0.05 }
+scatter = { count = 30, region = [[1.2, -1], [2.8, 1]] }
+)",
+                                  "t");
+  ASSERT_EQ(scene.world.bodies.size(), 30u);
+  for (const Body& body : scene.world.bodies) {
+    const Vec2 p = body.initial.pose.position;
+    EXPECT_GT(std::max(std::abs(p.x() - 2.0), std::abs(p.y())), 0.53) << p.transpose();
+  }
+}
+
+TEST(Scatter, ARegionOfOnePlaceHoldsOnePoint) {
+  const auto scattered = [](int count) {
+    return "[[sites]]\npoint = [0, 0]\nscatter = { count = " + std::to_string(count) +
+           ", region = [[3, 4], [3, 4]] }\n" + with_ball("");
+  };
+  EXPECT_EQ(parse_scene(scattered(1), "t").world.sites.at(0).pose.position, Vec2(3, 4));
+  EXPECT_THAT(faults_of(scattered(2)), Contains(HasSubstr("scatter: the region is too small")));
+}
+
+// A bin as thick as the world is wide: every place above the position lies in it.
+TEST(Scatter, APileWithoutRoomIsRefusedSoon) {
+  const std::string text =
+      "[world]\ngravity = [0, -9.81]\n[[sites]]\npolyline = [[-2.2, 5], [-2.2, 0], [2.2, 0], [2.2, 5]]\n"
+      "radius = 1e15\n[[bodies]]\ndisc = { radius = 0.2 }\npile = { count = 70, width = 3.6 }\n";
+  const std::clock_t begin = std::clock();
+  EXPECT_THAT(faults_of(text), Contains(HasSubstr("pile: there is no room above; given 70 copies")));
+  // It takes a few milliseconds; asking every height for every place took more than a second.
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 0.5);
+}
+
+TEST(Scatter, APileRisesOutOfWhatBuriesItsBase) {
+  const Scene scene = parse_scene(
+      "[world]\ngravity = [0, -9.81]\n[[sites]]\nsegment = [[-9, 0], [9, 0]]\nradius = 40\n[[bodies]]\n"
+      "disc = { radius = 0.2 }\npile = { count = 20, width = 3.6 }\n",
+      "t");
+  ASSERT_EQ(scene.world.bodies.size(), 20u);
+  for (const Body& body : scene.world.bodies) EXPECT_GT(body.initial.pose.position.y(), 40.2);
+}
+
+TEST(SceneNotes, APositionThatScatterDoesNotUseIsToldByName) {
+  const std::string scattered =
+      "disc = { radius = 0.1 }\nscatter = { count = 2, region = [[0, 0], [3, 3]] }\n";
+  EXPECT_THAT(parse_scene("[[bodies]]\nposition = [1, 1]\n" + scattered, "t").notes,
+              Contains(HasSubstr("position of \"body0\" is not used")));
+  EXPECT_TRUE(parse_scene("[[bodies]]\n" + scattered, "t").notes.empty());
+}
+
+TEST(Points, TooManyAreToldWithTheirMost) {
+  const auto told = [](const std::string& value) {
+    TomlDocument document("p = " + value, {});
+    std::vector<Vec2> out;
+    points(2, 3).read(*document.root().get("p"), document, "p", out);
+    try {
+      document.faults().throw_if_any("t");
+    } catch (const SceneFaults& faults) {
+      return std::string(faults.what());
+    }
+    return std::string("no fault");
+  };
+  EXPECT_EQ(told("[[0, 0], [1, 0], [2, 0]]"), "no fault");
+  EXPECT_THAT(told("[[0, 0], [1, 0], [2, 0], [3, 0]]"),
+              HasSubstr("p: too many points; given an array of 4, allowed: at most 3 points"));
+  EXPECT_THAT(told("[[0, 0]]"), HasSubstr("p: wrong type; given an array of 1, allowed: 2 or more points"));
 }
 
 }  // namespace

@@ -289,5 +289,41 @@ TEST(SweepDocs, PageNamesEveryKeyAndTheExamplesLoad) {
   EXPECT_GE(examples, 2);
 }
 
+TEST_F(SweepTest, SeedsThatAreNoneAreFoundBeforeAnythingRuns) {
+  EXPECT_THAT(faults("scenes = \"gas.toml\"\nseeds = [\"x\", 2]\n"),
+              HasSubstr(":2:10: seed = \"x\": seed: wrong type"));
+  EXPECT_THAT(faults("scenes = \"gas.toml\"\nseeds = [3, -2]\n"),
+              HasSubstr(":2:13: seed = -2: seed: out of"));
+  EXPECT_THAT(faults("scenes = \"gas.toml\"\n[axes]\nworld.seed = [1, true]\n"),
+              HasSubstr(":3:18: world.seed = true: seed: wrong type"));
+  EXPECT_EQ(faults("scenes = \"gas.toml\"\nseeds = [5, 7]\n"), "");
+}
+
+TEST_F(SweepTest, FaultsOfEveryBaseSceneAreTold) {
+  write("bad.toml", "[world]\nduration = -1\n");
+  write("worse.toml", "[world]\nduration = -2\n");
+  const std::string all = faults("scenes = [\"absent.toml\", \"bad.toml\", \"worse.toml\"]\n");
+  EXPECT_THAT(all, HasSubstr("e.toml:1:11: scenes: "));
+  EXPECT_THAT(all, HasSubstr((dir_ / "bad.toml").string() + ":2:12: "));
+  EXPECT_THAT(all, HasSubstr((dir_ / "worse.toml").string() + ":2:12: "));
+}
+
+TEST_F(SweepTest, RunsWithoutBitsAreNotCountedAsTheSame) {
+  const Experiment e =
+      experiment("scenes = \"gas.toml\"\npolicies = [\"global_backup\", \"timewarp\"]\nseeds = 2\n");
+  SweepResults results;
+  for (std::size_t k = 0; k < e.runs.size(); ++k) results.push_back(sweep_failure("too bad"));
+  EXPECT_EQ(policy_agreement(e, results), "");
+  const auto ran = [&](std::size_t k) {
+    results[k] = sweep_result(RunSummary{});
+    results[k]->state_hash = "a";
+  };
+  ran(0);  // global_backup, seed 1: alone
+  results[2].reset();
+  EXPECT_EQ(policy_agreement(e, results), "");
+  ran(1), ran(3);  // both of seed 2
+  EXPECT_EQ(policy_agreement(e, results), "same bits from all exact policies: 1 of 1");
+}
+
 }  // namespace
 }  // namespace brink

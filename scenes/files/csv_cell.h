@@ -1,0 +1,11 @@
+#pragma once
+/// Text in tables for other programs.
+
+#include <string>
+
+namespace brink {
+
+/// A cell of a CSV file: text that would be more than one cell or line is put in quotes (RFC 4180).
+std::string csv_cell(const std::string& text);
+
+}  // namespace brink
