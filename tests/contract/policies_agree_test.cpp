@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <filesystem>
 
 #include "brink/core/base/random.h"
@@ -82,6 +84,62 @@ TEST(PoliciesOnGases, BodiesOnSpringsAmongFreeOnesGiveTheSameEvents) {
     world.forces.push_back(spring);
   }
   EXPECT_GT(expect_same_events(world, {}, 5.0), 200U);
+}
+
+/// False: it came to no end within 20 s.
+bool comes_to_an_end(Simulator& simulator, double end, Recorder* recorder = nullptr) {
+  RunOptions options = testing::until(end);
+  const auto begin = std::chrono::steady_clock::now();
+  options.progress = [begin](double, std::uint64_t) {
+    return std::chrono::steady_clock::now() - begin < std::chrono::seconds(20);
+  };
+  return simulator.run(options, recorder).termination == Termination::reached_end;
+}
+
+/// Stops right at some of the events, a double before and a double after, and goes on.
+void expect_stops_make_no_difference(const World& world, double end, const std::string& what) {
+  for (const std::string& policy : exact_policies()) {
+    SolverOptions options;
+    options.policy = policy;
+    Simulator whole(world, options);
+    testing::Events events;
+    ASSERT_TRUE(comes_to_an_end(whole, end, &events)) << what << ", " << policy;
+    const std::vector<Event> met = events.collisions();
+    ASSERT_GT(met.size(), 0U) << what;
+    Simulator in_parts(world, options);
+    for (std::size_t k = 0; k < met.size(); k += 1 + met.size() / 7) {
+      const double at = met[k].contact.time;
+      for (const double stop : {std::nextafter(at, 0.0), at, std::nextafter(at, end)})
+        ASSERT_TRUE(stop < in_parts.time() || comes_to_an_end(in_parts, stop))
+            << what << ", " << policy << ", to " << stop;
+    }
+    ASSERT_TRUE(comes_to_an_end(in_parts, end)) << what << ", " << policy;
+    EXPECT_EQ(in_parts.state_hash(), whole.state_hash()) << what << ", " << policy;
+  }
+}
+
+TEST(PoliciesStopped, RightAtAnEventEndAndGoOnWithTheSameBits) {
+  FixedSite lift = testing::site(make_segment({-9.0, -8.0}, {9.0, -8.0}));
+  lift.motion = ConstantMotion{{{0.0, 0.125}, 0.0}};
+  World drop;
+  drop.gravity = {0.0, -8.0};
+  drop.materials[0].restitution = 0.5;
+  testing::add(drop, testing::body(make_disc(0.5), {0.0, 1.5}, {0.0, 0.0}));
+  testing::add(drop, testing::site(make_segment({-1, 0}, {1, 0})));
+  expect_stops_make_no_difference(drop, 0.9, "a disc");
+  testing::add(drop, lift);
+  expect_stops_make_no_difference(drop, 0.9, "a disc, and a site that moves elsewhere");
+  const std::vector<Shape> shapes{make_disc(0.3), make_box(0.5, 0.3)};
+  World mixed = gas(6, 1.2, 2.0, 9, shapes, 1.0);
+  expect_stops_make_no_difference(mixed, 2.0, "a gas");
+  testing::add(mixed, lift);
+  expect_stops_make_no_difference(mixed, 2.0, "a gas and a site that moves");
+  SpringForce spring;
+  spring.body_b = 1;
+  spring.stiffness = 2.0;
+  spring.rest_length = 1.2;
+  mixed.forces.push_back(spring);
+  expect_stops_make_no_difference(mixed, 2.0, "a gas, a spring and a site that moves");
 }
 
 // A lattice of equal discs that all start towards the middle: hundreds of contacts at the same instants.

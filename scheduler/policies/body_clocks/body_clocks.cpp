@@ -225,16 +225,18 @@ class BodyClocks final : public Policy {
     collide(at_its_time(*kernel_, group[first_by_order(*kernel_, group)], group.front().time));
   }
 
-  /// Every contact of the present instant, in the total order of events.
+  /// Every contact of the present instant that the run comes to, in the total order of events.
   std::vector<Certificate> contacts_until(double instant) {
     std::vector<Certificate> group;
     std::vector<int> asked, looked_again;
-    while (queue_.time() <= std::min(instant, kernel_->reach()) && kernel_->poll()) {
+    // A view may end with the run, in the midst of the instant: it is begun again by the next run only.
+    const double last = std::min(instant, end());
+    while (queue_.time() <= last && kernel_->poll()) {
       const int k = queue_.body();
       const BodyClock& clock = views_->clock(k);
-      const bool settled = clock.exit > instant && clock.horizon > instant;
+      const bool settled = clock.exit > last && clock.horizon > last;
       if (settled && clock.candidates.front().exact && !views_->stale(clock.candidates.front())) {
-        add_contacts(k, std::min(instant, kernel_->reach()), group);
+        add_contacts(k, last, group);
         asked.push_back(k);
         // Out of the way, so that the next one of the instant comes up; put back below.
         queue_.update(k, kForever);
