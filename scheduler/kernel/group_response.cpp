@@ -254,8 +254,11 @@ class GroupResponse::Group {
     touched_.assign(bodies_.size(), false);
     const bool any = pushed();
     double speed = top_speed();
-    // an approach that the law does not see was rounding, all of it
-    if (!any) speed += found_.contact.closing_speed / kEpsilon;
+    // An approach that the law does not see was rounding, all of it; but not of held bodies, of which the
+    // search sees the twist of their step's end (CollisionResponse::change).
+    const auto held = [&](int body) { return body >= 0 && parts_.trajectories_.is_held(body); };
+    if (!any && !held(found_.pair.body) && !held(found_.pair.other_body))
+      speed += found_.contact.closing_speed / kEpsilon;
     for (std::size_t k = 0; k < group_.size(); ++k) {
       // Where nothing pushes, the found pair's contacts are told all the same, without impulse: a search
       // has found a collision, and versions must rise for it not to be found again.

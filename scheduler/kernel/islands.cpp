@@ -23,9 +23,18 @@ constexpr int kMostHasty = 64, kCalmed = 4;
 constexpr std::size_t kCrowd = 8;
 constexpr int kAgitated = 8, kMostAgitation = 32;
 
-/// Where restitution is 0 a step takes every approach as plastic, and no impact cuts it: agitation stays 0.
-bool is_agitated(const IslandPace& pace, const std::set<int>& members) {
-  return members.size() >= kCrowd && pace.agitation >= kAgitated;
+/// Asks for a member that bounces on another, or on a site: where restitution is 0 a step takes every approach as
+/// plastic, and what cuts it comes from elsewhere.
+bool is_agitated(const World& world, const IslandPace& pace, const std::set<int>& members) {
+  if (members.size() < kCrowd || pace.agitation < kAgitated) return false;
+  std::set<int> among, met;  // materials
+  for (const int k : members) among.insert(world.bodies[k].material);
+  met = among;
+  for (const FixedSite& site : world.sites) met.insert(site.material);
+  return std::any_of(among.begin(), among.end(), [&](int a) {
+    return std::any_of(met.begin(), met.end(),
+                       [&](int b) { return combined(world, a, b).restitution > 0.0; });
+  });
 }
 
 int next_agitation(int agitation, bool impacts) {
@@ -180,7 +189,7 @@ IslandMotion Islands::set_out(std::set<int>& members, IslandPace& pace) {
     IslandMotion motion(IslandMembers(*world_, *trajectories_, *search_, run_->time(), members), *search_,
                         *response_, solver_, tally_, warm);
     // who asked for a tolerance has exact impacts
-    if (limits_.tolerance == 0.0 && is_agitated(pace, members)) motion.expect_agitation();
+    if (limits_.tolerance == 0.0 && is_agitated(*world_, pace, members)) motion.expect_agitation();
     const std::vector<int> more = motion.joining(*world_, *trajectories_, run_->time());
     if (more.empty()) return motion;
     for (const int k : more) gather(k, members);
