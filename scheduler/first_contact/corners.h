@@ -48,4 +48,13 @@ inline bool come_to_overlap(const Corner& s, const Corner& t, const Vec2& d) {
   return true;
 }
 
+/// True if n, an outward normal of t, is the only direction out of it that has the one corner before it and the other
+/// behind: two that lie flush on one side.
+inline bool parts_alone(const Vec2& n, const Corner& s, const Corner& t) {
+  if (!s.convex() || !t.convex() || !s.faces(-n)) return false;
+  for (const Vec2& u : {t.before, t.after, Vec2(-s.before), Vec2(-s.after)})
+    if (t.faces(u) && s.faces(-u) && u.dot(n) < 1.0 - 1e-9) return false;
+  return true;
+}
+
 }  // namespace brink::detail

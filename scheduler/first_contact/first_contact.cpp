@@ -485,7 +485,8 @@ class PairSearch {
     const Site& site = half.site(f.site);
     const Sample& sample = half.sample(f.sample);
     const bool sharp = sample.before >= 0 && site.solid && site.radius + sample.radius == 0.0;
-    if (!sharp) return false;
+    // upon a corner on which it lies flush it meets a face, not a tip
+    if (!sharp || scratch_.flush_on == f.site) return false;
     const bool at_a = (path.q - site.a).squaredNorm() < (path.q - site.b).squaredNorm();
     const Vec2 tip = at_a ? site.a : site.b, way = path.q - tip;
     const double slow = path.rate.norm(), off = way.norm() / slow,

@@ -39,6 +39,14 @@ bool is_hollow(const Site& site, bool at_a) {
   return inward.dot(at_a ? site.pseudo_a : site.pseudo_b) > kParallel;
 }
 
+/// The site's own outward normal there.
+Vec2 face_at_end(const Site& site, bool at_a) {
+  return right_of(at_a ? direction_at_start(site) : direction_at_end(site));
+}
+
+/// What is nearer to a wire than this part of its level has started there: what collides keeps a quarter of it.
+constexpr double kStartsOnWire = 0.2;
+
 /// A direction out of the site's end at which q is nearest; where they are one, to `rounding`, that of a
 /// solid's corner.
 Vec2 outward(const Site& site, const Nearest& nearest, double side, const Vec2& q, double rounding) {
@@ -70,15 +78,27 @@ Feature PairView::vertex_feature(const Half& half, int i, int j, const Nearest& 
   const double side = side_of(site, nearest, path.q);
   f.gap = side * nearest.distance - site.radius - sample.radius;
   const bool at_end = nearest.foot != Foot::interior && site.kind != SiteKind::point;
-  if (at_end && site.solid && nearest.distance <= limits_.tolerance &&
-      is_hollow(site, nearest.foot == Foot::start) &&
-      nearest.distance <= 4.0 * gap_rounding(half, i, path.q)) {
+  if (at_end && site.solid && nearest.distance <= limits_.tolerance) {
+    const double rounding = gap_rounding(half, i, path.q);
+    const bool at_a = nearest.foot == Foot::start;
     // In a hollow corner each side is a face: the way from the corner itself is rounding, and between the two
     // normals lies one that says of neither how long it is clear.
-    f.normal = right_of(nearest.foot == Foot::start ? direction_at_start(site) : direction_at_end(site));
-    f.rate = f.normal.dot(path.rate);
-    f.point = nearest.point;
-    return f;
+    const bool in_notch = nearest.distance <= 4.0 * rounding && is_hollow(site, at_a);
+    if (in_notch || is_flush_on(half, i, site, path.q, rounding)) {
+      f.normal = face_at_end(site, at_a);
+      if (!in_notch) f.gap = f.normal.dot(path.q - nearest.point);
+      f.rate = f.normal.dot(path.rate);
+      f.point = path.q - f.normal * (f.gap + sample.radius);
+      return f;
+    }
+  }
+  if (!at_end && !site.solid && site.kind != SiteKind::point && site.radius + sample.radius == 0.0 &&
+      nearest.distance <= limits_.touch &&
+      nearest.distance <= kStartsOnWire * nominal_level(now_, half, i, site, path.q) &&
+      f.normal.dot(way_inside(half, i, path.q)) < 0.0) {
+    // on the wire itself, or by less than a step beyond: it is on the side on which its body is
+    f.normal = -f.normal;
+    f.gap = -nearest.distance;
   }
   const auto comes_to_end = [&] {
     const double rounding = 4.0 * gap_rounding(half, i, path.q);
@@ -99,6 +119,12 @@ Feature PairView::nearest_feature(const Half& half, int i) const {
   const SamplePath now = path(half, i);
   const FieldAnswer nearest = half.t->index->query(now.q, scratch_.nearest);
   if (nearest.site < 0) return {};
+  if (std::abs(nearest.gap) <= limits_.tolerance && half.sample(i).before >= 0) {
+    const double rounding = gap_rounding(half, i, now.q);
+    for (int j = 0; j < static_cast<int>(half.sites_of().sites.size()); ++j)
+      if (is_flush_on(half, i, half.site(j), now.q, rounding))
+        return vertex_feature(half, i, j, nearest_on(half.site(j), now.q), now);
+  }
   return vertex_feature(half, i, nearest.site, nearest_on(half.site(nearest.site), now.q), now);
 }
 
@@ -158,9 +184,36 @@ void PairView::find_neighbours(const Half& half, int i, std::span<const std::uin
     const bool leaving = f.gap - level(half, i, site, path.q) <= limits_.touch && !approaching(f, path);
     scratch_.neighbours.push_back({f.site, f.normal, leaving, nearest.foot != Foot::interior});
   }
+  // the corner's other side says nothing of how far the flush one is
+  const double rounding = gap_rounding(half, i, path.q);
+  scratch_.flush_on = -1;
+  for (const SearchScratch::Neighbour& n : scratch_.neighbours)
+    if (is_flush_on(half, i, half.site(n.site), path.q, rounding)) scratch_.flush_on = n.site;
   // in one order, whoever named the candidates: of sites equally near the first is met
   std::sort(scratch_.neighbours.begin(), scratch_.neighbours.end(),
             [](const auto& x, const auto& y) { return x.site < y.site; });
+}
+
+Vec2 PairView::way_inside(const Half& half, int i, const Vec2& q) const {
+  const Sample& sample = half.sample(i);
+  const Frame &s = placed(half.s).frame, &t = placed(half.t).frame;
+  if (sample.before < 0) return t.to_local(s.origin) - q;
+  const Corner corner = corner_at(half.samples_of(), sample);
+  return -t.direction_to_local(s.direction_to_world(corner.before + corner.after));
+}
+
+bool PairView::is_flush_on(const Half& half, int i, const Site& site, const Vec2& q, double rounding) const {
+  const Sample& sample = half.sample(i);
+  if (sample.before < 0 || sample.hollow || !site.solid || site.radius + sample.radius > 0.0) return false;
+  const bool at_a = (q - site.a).squaredNorm() < (q - site.b).squaredNorm();
+  const Vec2 way = q - (at_a ? site.a : site.b);
+  if (!(way.squaredNorm() <= limits_.tolerance * limits_.tolerance)) return false;
+  const Vec2 normal = face_at_end(site, at_a);
+  if (std::abs(cross(normal, way)) > 4.0 * rounding) return false;
+  const Frame &s = placed(half.s).frame, &t = placed(half.t).frame;
+  Corner corner = corner_at(half.samples_of(), sample);
+  for (Vec2* n : {&corner.before, &corner.after}) *n = t.direction_to_local(s.direction_to_world(*n));
+  return parts_alone(normal, corner, corner_at(site, at_a));
 }
 
 bool PairView::pokes_through(const Half& half, int i, const Site& site, const Nearest& nearest,
@@ -191,6 +244,7 @@ bool PairView::belongs_to_a_neighbour(const Half& half, int i, int j, const Near
   const Outline& outline = half.sites_of();
   const Site& site = outline.sites[j];
   if (site.kind == SiteKind::point) return false;
+  if (scratch_.flush_on >= 0) return scratch_.flush_on != j;
   const double distance = nearest.distance - site.radius;
   const bool at_end = nearest.foot != Foot::interior, behind = side_of(site, nearest, q) < 0.0;
   if (!at_end && !behind) return false;
@@ -391,6 +445,13 @@ PairView::GapAndSite PairView::gap_to_neighbours(const Placing& p, const Half& h
   const bool at_once = std::abs(p.time - now_.time) <= 64.0 * ulp(p.time);
   const double rounding = p.gap_rounding(half, i, q);
   GapAndSite found;
+  if (const int flush = scratch_.flush_on; flush >= 0) {
+    const Site& site = half.site(flush);
+    const bool at_a = (q - site.a).squaredNorm() < (q - site.b).squaredNorm();
+    const Vec2 way = q - (at_a ? site.a : site.b), normal = face_at_end(site, at_a);
+    if (std::abs(cross(normal, way)) <= 8.0 * rounding)  // as it was when neighbours were looked for
+      return {normal.dot(way) - level_of(nominal_level(p, half, i, site, q), sink_), flush};
+  }
   double least = kForever;
   for (const SearchScratch::Neighbour& neighbour : scratch_.neighbours) {
     if (neighbour.leaving) continue;

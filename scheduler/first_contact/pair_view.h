@@ -87,6 +87,12 @@ class PairView {
   /// come out any further. Never so while the two are apart.
   bool pokes_through(const Half& half, int i, const Site& site, const Nearest& nearest,
                      const Feature& f) const;
+  /// The way from sample i into what carries it, in T's frame: of a solid's corner, of anything else to its origin.
+  Vec2 way_inside(const Half& half, int i, const Vec2& q) const;
+  /// True if the sharp corner of a solid at sample i lies with its tip, to rounding, on the line that goes on from
+  /// site j beyond its end, which is as sharp; and that line alone parts the two corners: the site is a face for it
+  /// there, too (a box right upon another of its width).
+  bool is_flush_on(const Half& half, int i, const Site& site, const Vec2& q, double rounding) const;
   /// True if site j is near q, where sample i is, but what q would touch is another of the neighbours. At a
   /// joint: one that is as near with its interior. Behind a solid: j is the far side of a sliver, whose near side q has in front
   /// of it, or is deeper in.

@@ -154,7 +154,14 @@ OnCorner on_corner(const Half& half, std::size_t j, const Vec2& q, double tie) {
   return where;
 }
 
-/// True if sample i, upon the corner at an end of site j, parts from the corner by no other of its sides: behind site
+/// How far q is beyond the ends of a straight site, along it [m].
+double beyond_ends(const Site& site, const Vec2& q) {
+  const Vec2 d = site.b - site.a;
+  const double length = d.norm(), along = d.dot(q - site.a) / length;
+  return std::max({0.0, -along, along - length});
+}
+
+/// True if sample i, upon the line beyond an end of site j, parts from the corner there by no other of its sides: behind site
 /// j the two overlap, be it by a strip of no width (a box right upon another that is as wide).
 bool has_no_way_by(const Half& half, int i, std::size_t j, const Vec2& q) {
   const Site& site = half.other.sites[j];
@@ -207,10 +214,13 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
       if (goes_on_nearer(half.other, j, nearest, q, tie)) continue;
     }
     auto f = feature(half, i, static_cast<int>(j), nearest[j], side, q);
-    if (f && where == OnCorner::this_side) {
-      turn_outward(half, q, side, *f);
-      f->no_way_by = has_no_way_by(half, i, j, q);
-    }
+    if (f && where == OnCorner::this_side) turn_outward(half, q, side, *f);
+    // also of one that is still on its way there
+    const Site& site = half.other.sites[j];
+    const bool flush = bare && site.solid && site.kind == SiteKind::segment &&
+                       (where == OnCorner::this_side || nearest[j].foot != Foot::interior) &&
+                       beyond_ends(site, q) <= corner;
+    if (f && flush) f->no_way_by = has_no_way_by(half, i, j, q);
     if (f && f->gap <= reach) found.push_back(*f);
   }
 }
@@ -234,13 +244,6 @@ bool out_of_reach(const Half& half, const Sample& sample, double reach) {
   if (half.other.container) return false;
   const Vec2 q = half.other_frame.to_local(half.carrier_frame.to_world(sample.p));
   return !half.other.bounds.grown(reach + sample.radius).contains(q);
-}
-
-/// How far q is beyond the ends of a straight site, along it [m].
-double beyond_ends(const Site& site, const Vec2& q) {
-  const Vec2 d = site.b - site.a;
-  const double length = d.norm(), along = d.dot(q - site.a) / length;
-  return std::max({0.0, -along, along - length});
 }
 
 }  // namespace

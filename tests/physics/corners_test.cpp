@@ -1,0 +1,166 @@
+// Corners in corners: bodies that start right in a hollow corner, and boxes of one width that fall right upon each other.
+// Times and places by hand.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "tests/support/worlds.h"
+
+namespace brink {
+namespace {
+
+using testing::add;
+using testing::body;
+using testing::Events;
+using testing::site;
+using testing::until;
+
+constexpr double kGravity = 9.81;
+
+/// A floor that goes over into a ramp of that angle on its left, at `joint`; and a box that cannot turn, its lower
+/// left corner right at the joint.
+struct Notch {
+  double ramp;
+  Vec2 joint, velocity;
+  double restitution;
+
+  Vec2 normal() const { return {std::sin(ramp), std::cos(ramp)}; }  // of the ramp
+  World world() const {
+    World w;
+    w.gravity = {0.0, -kGravity};
+    w.materials[0].restitution = restitution;
+    Body box = body(make_box(0.5, 0.25), joint + Vec2(0.25, 0.125), velocity);
+    box.lock_angle = true;
+    add(w, box);
+    const Vec2 top(-2.0 * std::cos(ramp), 2.0 * std::sin(ramp));
+    add(w, site(make_polygon({{-4, -2}, {3, -2}, {3, 0}, {0, 0}, top, {-4, top.y()}}), joint));
+    return w;
+  }
+  /// The free side is where both are >= 0, as the corner between them is hollow.
+  double above_floor(const Vec2& corner) const { return corner.y() - joint.y(); }
+  double above_ramp(const Vec2& corner) const { return normal().dot(corner - joint); }
+  /// Of a parabola from the corner, when it is back at the first of the two lines; 0: it goes behind one at once.
+  double first_contact() const {
+    const double up = velocity.y(), out = normal().dot(velocity);
+    return std::max(0.0, std::min(2.0 * up / kGravity, 2.0 * out / (kGravity * normal().y())));
+  }
+};
+
+std::vector<Notch> notches() {
+  std::vector<Notch> all;
+  for (const Vec2& joint : {Vec2(0.0, 0.0), Vec2(-1.5, 0.0), Vec2(1024.0, -512.0)})
+    for (const double ramp : {0.2, 0.6, 0.25 * std::numbers::pi, 1.2, 1.5})
+      for (int x = -10; x <= 10; ++x)
+        for (int y = -1; y <= 10; ++y)
+          for (const double restitution : {0.0, 0.5, 1.0})
+            all.push_back({ramp, joint, {0.1 * x, 0.2 * y}, restitution});
+  return all;
+}
+
+TEST(Corners, BodyThatLeavesAHollowCornerIsSeenAsItComesBack) {
+  int late = 0, through = 0, failed = 0;
+  for (const Notch& n : notches()) {
+    SolverOptions options;
+    options.persistent = false;
+    Simulator simulator(n.world(), options);
+    Events events;
+    RunSummary s = simulator.step_to_next_event(until(0.5), &events);
+    const double expected = n.first_contact();
+    // a touch that is a graze along a side may be told, or not
+    const bool grazes = n.velocity.y() == 0.0 || std::abs(n.normal().dot(n.velocity)) < 1e-9;
+    if (expected < 0.5 && !grazes)
+      late += events.events.empty() || std::abs(simulator.time() - expected) > 1e-9;
+    while (s.termination == Termination::stopped && simulator.time() < 0.5 && events.events.size() < 200)
+      s = simulator.step_to_next_event(until(0.5), &events);
+    failed += s.termination == Termination::failed && s.why.find("Zeno") == std::string::npos;
+    const Vec2 corner = simulator.state(0).pose.position - Vec2(0.25, 0.125);
+    through += n.above_floor(corner) < -1e-9 || n.above_ramp(corner) < -1e-9;
+  }
+  EXPECT_EQ(late, 0);
+  EXPECT_EQ(through, 0);
+  EXPECT_EQ(failed, 0) << "of " << notches().size();
+}
+
+/// Boxes of one width, or of two, right above each other, each with room to fall; the lowest stands.
+World falling_stack(int boxes, double width, bool turns, double restitution, double aside) {
+  World w;
+  w.gravity = {0.0, -kGravity};
+  w.materials[0].restitution = restitution;
+  for (int k = 0; k < boxes; ++k) {
+    Body box = body(make_box(width, 1.0), {k * aside, 0.5 + 1.75 * k}, {0.0, 0.0});
+    box.lock_angle = !turns;
+    add(w, box);
+  }
+  add(w, site(make_segment({-9, 0}, {9, 0})));
+  return w;
+}
+
+TEST(Corners, BoxesThatFallFlushUponEachOtherStayOneUponTheOther) {
+  int wrong = 0, runs = 0;
+  for (const std::string_view order : {"index", "closing_speed", "depth", "random", "lcp", "reflections"})
+    for (const int boxes : {2, 3, 5})
+      for (const bool turns : {true, false})
+        for (const double restitution : {0.0, 0.3})
+          for (const double aside : {0.0, 1e-12, 1e-9, 1e-6}) {
+            SolverOptions options;
+            options.order = order;
+            Simulator simulator(falling_stack(boxes, 1.0, turns, restitution, aside), options);
+            RunOptions run = until(4.0);
+            run.frame_interval = 0.01;
+            const RunSummary s = simulator.run(run);
+            ++runs;
+            bool sound = s.termination == Termination::reached_end;
+            for (int k = 1; k < boxes; ++k) {
+              const Pose &low = simulator.state(k - 1).pose, &high = simulator.state(k).pose;
+              // those that turn may have fallen off; those that cannot are a box apart
+              sound &= turns || high.position.y() - low.position.y() >= 1.0 - 1e-9;
+            }
+            wrong += !sound;
+            EXPECT_TRUE(sound) << order << ", " << boxes << (turns ? " that turn" : "") << ", e "
+                               << restitution << ", aside " << aside << ": " << s.why;
+          }
+  EXPECT_EQ(wrong, 0) << "of " << runs;
+}
+
+// Right on a wire without thickness, at rest or not, above it or below: nobody has told on which side, but the body's
+// own place has.
+TEST(Corners, BodyThatStartsOnAWireStaysOnItsSide) {
+  const std::vector<Shape> shapes{make_box(1.0, 0.5), make_polygon({{-0.5, 0}, {0.5, 0}, {0, 1}}),
+                                  make_polygon({{-1, 0}, {1, 0}, {1, 1}, {0.8, 0.2}, {-0.8, 0.2}, {-1, 1}}),
+                                  make_disc(0.5)};
+  int wrong = 0, runs = 0;
+  for (const Shape& shape : shapes)
+    for (const double up : {1.0, -1.0})
+      for (const double x : {-1.0, 0.0, 0.3})
+        for (const double y : {-1.0, 0.0, 1e-6, 1.0})
+          for (const double restitution : {0.0, 0.5, 1.0})
+            for (const bool persistent : {true, false}) {
+              World w;
+              w.gravity = {0.0, -up * kGravity};
+              w.materials[0].restitution = restitution;
+              Body b = body(shape, {0.0, 0.0}, {x, up * y}, 1.0, up > 0.0 ? 0.0 : std::numbers::pi);
+              b.initial.pose.position.y() = -up * b.outline->bounds.low.y();
+              add(w, b);
+              add(w, site(make_segment({-9, 0}, {9, 0})));
+              SolverOptions options;
+              options.persistent = persistent;
+              options.max_collisions = 500;
+              Simulator simulator(w, options);
+              const RunSummary s = simulator.run(until(0.5));
+              const bool ends =
+                  s.termination != Termination::failed || s.why.find("Zeno") != std::string::npos;
+              const double height = up * simulator.state(0).pose.position.y();
+              wrong += !(ends && height > 0.0);
+              ++runs;
+              EXPECT_TRUE(ends) << shape.measure.size << ", up " << up << ", v " << x << " " << y << ", e "
+                                << restitution << (persistent ? ": " : ", no contacts that last: ") << s.why;
+            }
+  EXPECT_EQ(wrong, 0) << "of " << runs;
+}
+
+}  // namespace
+}  // namespace brink
