@@ -24,8 +24,8 @@ TEST(NearPairs, APassSeesAContainerThatTurnsAboutAFarPlace) {
   World world;
   testing::add(world, testing::body(make_disc(0.2), {11.0, 1.0}, {0.0, 0.0}));
   FixedSite room = testing::site(make_disc(1.0));
-  room.outline = std::make_shared<Outline>(
-      as_container(transformed(make_box(2, 2).outline, {{11.0, 1.0}, 0.0})));
+  room.outline =
+      std::make_shared<Outline>(as_container(transformed(make_box(2, 2).outline, {{11.0, 1.0}, 0.0})));
   room.motion = ConstantMotion{{{0.0, 0.0}, 0.2}};
   testing::add(world, room);
   SolverOptions options;
