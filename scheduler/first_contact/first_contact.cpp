@@ -24,6 +24,7 @@ using detail::corner_at;
 using detail::Feature;
 using detail::Half;
 using detail::PairView;
+using detail::parts_alone;
 
 /// Iterations that a search may take if it has found a contact, whatever its cap.
 constexpr int kMostAfterContact = 1000;
@@ -485,8 +486,7 @@ class PairSearch {
     const Site& site = half.site(f.site);
     const Sample& sample = half.sample(f.sample);
     const bool sharp = sample.before >= 0 && site.solid && site.radius + sample.radius == 0.0;
-    // upon a corner on which it lies flush it meets a face, not a tip
-    if (!sharp || scratch_.flush_on == f.site) return false;
+    if (!sharp) return false;
     const bool at_a = (path.q - site.a).squaredNorm() < (path.q - site.b).squaredNorm();
     const Vec2 tip = at_a ? site.a : site.b, way = path.q - tip;
     const double slow = path.rate.norm(), off = way.norm() / slow,
@@ -512,6 +512,7 @@ class PairSearch {
     }
     then = to_tip(nearest);
     if (!corners_cross(half, f, at_a, then.rate, there)) return false;
+    if (lies_flush(half, f, at_a, there)) return false;  // it meets a face, not a tip
     const double rounding = there.gap_rounding(half, f.sample, then.q + tip);
     if (!(nearest <= window_end_ && then.q.norm() <= 4.0 * rounding)) return false;
     // The gap at which a sharp sample meets a wire (nominal_level()).
@@ -522,15 +523,26 @@ class PairSearch {
     return remember(half, f, last_clear_time(clear, low, nearest), 2.0 * rounding / speed);
   }
 
+  /// The sample's corner in T's frame.
+  Corner corner_of(const Half& half, int i, const PairView& there) const {
+    const Frame &s = there.placed(half.s).frame, &t = there.placed(half.t).frame;
+    Corner corner = corner_at(half.samples_of(), half.sample(i));
+    for (Vec2* normal : {&corner.before, &corner.after})
+      *normal = t.direction_to_local(s.direction_to_world(*normal));
+    return corner;
+  }
+
+  /// True if one side of the site's corner, and no other line, parts it from the sample's.
+  bool lies_flush(const Half& half, const Feature& f, bool at_a, const PairView& there) const {
+    const Corner of_sample = corner_of(half, f.sample, there), of_site = corner_at(half.site(f.site), at_a);
+    return parts_alone(of_site.before, of_sample, of_site) || parts_alone(of_site.after, of_sample, of_site);
+  }
+
   /// True if the sample's corner, at the site's end, comes to overlap with that as it moves along d (T's
   /// frame).
   bool corners_cross(const Half& half, const Feature& f, bool at_a, const Vec2& d,
                      const PairView& there) const {
-    const Frame &s = there.placed(half.s).frame, &t = there.placed(half.t).frame;
-    Corner corner = corner_at(half.samples_of(), half.sample(f.sample));
-    for (Vec2* normal : {&corner.before, &corner.after})
-      *normal = t.direction_to_local(s.direction_to_world(*normal));
-    return come_to_overlap(corner, corner_at(half.site(f.site), at_a), d);
+    return come_to_overlap(corner_of(half, f.sample, there), corner_at(half.site(f.site), at_a), d);
   }
 
   /// Keeps the contact if it is the earliest so far (ties: lowest half, sample, site). Always true. The

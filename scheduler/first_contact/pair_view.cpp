@@ -202,7 +202,8 @@ Vec2 PairView::way_inside(const Half& half, int i, const Vec2& q) const {
   return -t.direction_to_local(s.direction_to_world(corner.before + corner.after));
 }
 
-bool PairView::is_flush_on(const Half& half, int i, const Site& site, const Vec2& q, double rounding) const {
+bool PairView::is_flush_on(const Placing& p, const Half& half, int i, const Site& site, const Vec2& q,
+                           double rounding) const {
   const Sample& sample = half.sample(i);
   if (sample.before < 0 || sample.hollow || !site.solid || site.radius + sample.radius > 0.0) return false;
   const bool at_a = (q - site.a).squaredNorm() < (q - site.b).squaredNorm();
@@ -210,7 +211,7 @@ bool PairView::is_flush_on(const Half& half, int i, const Site& site, const Vec2
   if (!(way.squaredNorm() <= limits_.tolerance * limits_.tolerance)) return false;
   const Vec2 normal = face_at_end(site, at_a);
   if (std::abs(cross(normal, way)) > 4.0 * rounding) return false;
-  const Frame &s = placed(half.s).frame, &t = placed(half.t).frame;
+  const Frame &s = (half.s_is_a ? p.a : p.b).frame, &t = (half.s_is_a ? p.b : p.a).frame;
   Corner corner = corner_at(half.samples_of(), sample);
   for (Vec2* n : {&corner.before, &corner.after}) *n = t.direction_to_local(s.direction_to_world(*n));
   return parts_alone(normal, corner, corner_at(site, at_a));
@@ -445,12 +446,13 @@ PairView::GapAndSite PairView::gap_to_neighbours(const Placing& p, const Half& h
   const bool at_once = std::abs(p.time - now_.time) <= 64.0 * ulp(p.time);
   const double rounding = p.gap_rounding(half, i, q);
   GapAndSite found;
-  if (const int flush = scratch_.flush_on; flush >= 0) {
-    const Site& site = half.site(flush);
+  for (const SearchScratch::Neighbour& neighbour : scratch_.neighbours) {
+    // by where the sample is then, wherever it was when its neighbours were looked for
+    const Site& site = half.site(neighbour.site);
+    if (!is_flush_on(p, half, i, site, q, rounding)) continue;
     const bool at_a = (q - site.a).squaredNorm() < (q - site.b).squaredNorm();
-    const Vec2 way = q - (at_a ? site.a : site.b), normal = face_at_end(site, at_a);
-    if (std::abs(cross(normal, way)) <= 8.0 * rounding)  // as it was when neighbours were looked for
-      return {normal.dot(way) - level_of(nominal_level(p, half, i, site, q), sink_), flush};
+    const double gap = face_at_end(site, at_a).dot(q - (at_a ? site.a : site.b));
+    return {gap - level_of(nominal_level(p, half, i, site, q), sink_), neighbour.site};
   }
   double least = kForever;
   for (const SearchScratch::Neighbour& neighbour : scratch_.neighbours) {

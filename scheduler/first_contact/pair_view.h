@@ -92,7 +92,9 @@ class PairView {
   /// True if the sharp corner of a solid at sample i lies with its tip, to rounding, on the line that goes on from
   /// site j beyond its end, which is as sharp; and that line alone parts the two corners: the site is a face for it
   /// there, too (a box right upon another of its width).
-  bool is_flush_on(const Half& half, int i, const Site& site, const Vec2& q, double rounding) const;
+  bool is_flush_on(const Half& half, int i, const Site& site, const Vec2& q, double rounding) const {
+    return is_flush_on(now_, half, i, site, q, rounding);
+  }
   /// True if site j is near q, where sample i is, but what q would touch is another of the neighbours. At a
   /// joint: one that is as near with its interior. Behind a solid: j is the far side of a sliver, whose near side q has in front
   /// of it, or is deeper in.
@@ -177,6 +179,8 @@ class PairView {
   ArcStep arc_now(const Half& half, int i, int j) const;
   void put(Placing& placing, double t) const;
   void put_relative(Placing& placing, double t) const;
+  bool is_flush_on(const Placing& placing, const Half& half, int i, const Site& site, const Vec2& q,
+                   double rounding) const;
   double nominal_level(const Placing& placing, const Half& half, int i, const Site& site,
                        const Vec2& q) const;
   /// Of a wire without thickness: 1 where the sample, now at q, has not crossed it since its neighbours were
