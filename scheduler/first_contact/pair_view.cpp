@@ -92,8 +92,8 @@ Feature PairView::vertex_feature(const Half& half, int i, int j, const Nearest& 
       return f;
     }
   }
-  if (!at_end && !site.solid && site.kind != SiteKind::point && site.radius + sample.radius == 0.0 &&
-      nearest.distance <= limits_.touch &&
+  if (!site.solid && site.kind != SiteKind::point && site.radius + sample.radius == 0.0 &&
+      nearest.distance <= (at_end ? 0.0 : limits_.touch) &&
       nearest.distance <= kStartsOnWire * nominal_level(now_, half, i, site, path.q) &&
       f.normal.dot(way_inside(half, i, path.q)) < 0.0) {
     // on the wire itself, or by less than a step beyond: it is on the side on which its body is

@@ -77,8 +77,10 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
     out = outward(site);
     distance = out.dot(q - nearest.point);
   }
-  if (thin && nearest.foot == Foot::interior && nearest.distance < kSinks * half.carrier.bounding_radius) {
-    // a wire has no inside that would tell: what has sunk by a rounding is on its centre's side
+  const double no_side = nearest.foot == Foot::interior ? kSinks * half.carrier.bounding_radius : least;
+  if (thin && site.kind != SiteKind::point && nearest.distance < no_side) {
+    // a wire has no inside that would tell: what has sunk by a rounding, or is right on its end, is on its
+    // centre's side
     const Vec2 centre = half.other_frame.to_local(half.carrier_frame.origin);
     if (out.dot(centre - nearest.point) < 0.0) out = -out;
     distance = out.dot(q - nearest.point);

@@ -6,6 +6,7 @@
 
 #include "brink/core/shapes/curve_site.h"
 #include "brink/core/shapes/distance.h"
+#include "brink/scheduler/first_contact/corners.h"
 #include "brink/scheduler/first_contact/pair_kinematics.h"
 #include "brink/scheduler/resolve/tolerances.h"
 #include "brink/scheduler/resolve/wedge.h"
@@ -52,7 +53,7 @@ class Joint {
       if (n.at_end && sharp(n.site)) {
         if (!std::exchange(corner_done, true)) add_corner(n);
       } else if (!n.at_end || !is_told(n)) {
-        add(n.site, normal_at(site(n.site), n.nearest, path_.q), n.gap);
+        add(n.site, normal_of(n), n.gap);
       }
     }
     return found_;
@@ -68,6 +69,21 @@ class Joint {
 
   const Site& site(int j) const { return outline_t_.sites[j]; }
   bool sharp(int j) const { return site(j).radius + sample_.radius == 0.0; }
+
+  /// A wire that the sample is right on has no side of its own: the sample is on that on which its body is.
+  Vec2 normal_of(const Near& n) const {
+    constexpr double kOnWire = 1e-4;  // of the tolerance: a tenth of a wire's level
+    const Vec2 normal = normal_at(site(n.site), n.nearest, path_.q);
+    const bool on_wire = !site(n.site).solid && site(n.site).kind != SiteKind::point && sharp(n.site) &&
+                         n.nearest.distance <= kOnWire * tolerance_;
+    return on_wire && normal.dot(way_inside()) < 0.0 ? Vec2(-normal) : normal;
+  }
+  /// From the sample into what carries it, in T's frame.
+  Vec2 way_inside() const {
+    if (sample_.before < 0) return t_.frame.to_local(s_.frame.origin) - path_.q;
+    const detail::Corner corner = detail::corner_at(outline_s_, sample_);
+    return -t_.frame.direction_to_local(s_.frame.direction_to_world(corner.before + corner.after));
+  }
 
   /// True if another site that has this end, too, says all of it: one that is touched beside the end, or of two
   /// that are touched right there the first.
