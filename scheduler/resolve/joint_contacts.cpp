@@ -53,7 +53,7 @@ class Joint {
       if (n.at_end && sharp(n.site)) {
         if (!std::exchange(corner_done, true)) add_corner(n);
       } else if (!n.at_end || !is_told(n)) {
-        add(n.site, normal_of(n), n.gap);
+        add_touched(n);
       }
     }
     return found_;
@@ -70,13 +70,19 @@ class Joint {
   const Site& site(int j) const { return outline_t_.sites[j]; }
   bool sharp(int j) const { return site(j).radius + sample_.radius == 0.0; }
 
-  /// A wire that the sample is right on has no side of its own: the sample is on that on which its body is.
-  Vec2 normal_of(const Near& n) const {
+  /// A wire has no side of its own: the sample is on that on which its body is, where it lies right on the wire,
+  /// or has sunk into it a little in an island's steps.
+  void add_touched(const Near& n) {
     constexpr double kOnWire = 1e-4;  // of the tolerance: a tenth of a wire's level
-    const Vec2 normal = normal_at(site(n.site), n.nearest, path_.q);
-    const bool on_wire = !site(n.site).solid && site(n.site).kind != SiteKind::point && sharp(n.site) &&
-                         n.nearest.distance <= kOnWire * tolerance_;
-    return on_wire && normal.dot(way_inside()) < 0.0 ? Vec2(-normal) : normal;
+    const Site& wire = site(n.site);
+    const double doubtful = sample_.before >= 0 ? tolerance_ : kOnWire * tolerance_;
+    const bool on_wire = !wire.solid && wire.kind != SiteKind::point && sharp(n.site) && !n.at_end &&
+                         n.nearest.distance <= doubtful;
+    const Vec2 normal = normal_at(wire, n.nearest, path_.q);
+    if (on_wire && normal.dot(way_inside()) < 0.0)
+      add(n.site, -normal, -n.nearest.distance);
+    else
+      add(n.site, normal, n.gap);
   }
   /// From the sample into what carries it, in T's frame.
   Vec2 way_inside() const {
