@@ -123,10 +123,8 @@ bool CertificateWatch::resolved(const PairKey& pair, const FeatureContact& found
   const double gap = static_cast<double>(now.gap);
   note_overlap(gap);
   // At a wire the sign of the gap is the side, and a level of it is always left; a solid may sink by
-  // roundings, and so may what an island holds, which knows its side.
-  const bool held =
-      trajectories_->is_held(pair.body) || (!pair.with_site() && trajectories_->is_held(pair.other_body));
-  if (on_wire && !held ? gap > 0.0 : gap >= -allowed()) return true;
+  // roundings.
+  if (on_wire ? gap > 0.0 : gap >= -allowed()) return true;
   return report(pair, on_wire ? std::max(0.0, -gap) : -gap, t,
                 on_wire ? "is on the other side of a wire of" : "overlaps");
 }

@@ -164,6 +164,11 @@ std::pair<RealVec, RealVec> CollisionResponse::push_apart(const PairKey& pair, c
   const RealVec none = RealVec::Zero();
   // of a picture's contact nobody knows how deep it is to roundings
   if (found.seen || !(found.sunk() > 0.0)) return {none, none};
+  // An island's steps are off by more than a wire's level, and make up for it themselves: a push of two solids by
+  // that much would lead past the wire on which one of them stands. Off a wire a push is less than its level.
+  const bool held =
+      trajectories_->is_held(pair.body) || (!pair.with_site() && trajectories_->is_held(pair.other_body));
+  if (held && !(found.nominal() > 0.0)) return {none, none};
   const auto given = [&](int body) {
     const Body& b = world_->bodies[body];
     return RealVec(b.inverse_mass_x() * n.x(), b.inverse_mass_y() * n.y());
