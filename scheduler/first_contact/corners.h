@@ -37,6 +37,22 @@ inline Corner corner_at(const Outline& outline, const Sample& sample) {
           right_of(direction_at_start(outline.sites[static_cast<std::size_t>(sample.after)]))};
 }
 
+/// The same in the frame of another outline.
+inline Corner corner_seen(const Outline& outline, const Sample& sample, const Frame& from, const Frame& to) {
+  const auto seen = [&](const Vec2& n) { return to.direction_to_local(from.direction_to_world(n)); };
+  const Corner own = corner_at(outline, sample);
+  return {seen(own.before), seen(own.after)};
+}
+
+/// The way from a sample, at q in the frame `to`, into what carries it: of a solid's corner, of anything else to
+/// its origin.
+inline Vec2 way_inside(const Outline& outline, const Sample& sample, const Frame& from, const Frame& to,
+                       const Vec2& q) {
+  if (sample.before < 0) return to.to_local(from.origin) - q;
+  const Corner corner = corner_seen(outline, sample, from, to);
+  return -(corner.before + corner.after);
+}
+
 /// True if two convex corners that touch at their tips come to overlap as s moves along d: there is no
 /// direction that separates them and in which s does not go back. Grazing is passing by (a corner that slides
 /// over an edge), but of a needle, which has its thickness just behind its tip.

@@ -21,6 +21,7 @@ namespace {
 using detail::come_to_overlap;
 using detail::Corner;
 using detail::corner_at;
+using detail::corner_seen;
 using detail::Feature;
 using detail::Half;
 using detail::PairView;
@@ -525,11 +526,8 @@ class PairSearch {
 
   /// The sample's corner in T's frame.
   Corner corner_of(const Half& half, int i, const PairView& there) const {
-    const Frame &s = there.placed(half.s).frame, &t = there.placed(half.t).frame;
-    Corner corner = corner_at(half.samples_of(), half.sample(i));
-    for (Vec2* normal : {&corner.before, &corner.after})
-      *normal = t.direction_to_local(s.direction_to_world(*normal));
-    return corner;
+    return corner_seen(half.samples_of(), half.sample(i), there.placed(half.s).frame,
+                       there.placed(half.t).frame);
   }
 
   /// True if one side of the site's corner, and no other line, parts it from the sample's.

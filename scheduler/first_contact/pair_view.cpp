@@ -95,7 +95,8 @@ Feature PairView::vertex_feature(const Half& half, int i, int j, const Nearest& 
   if (!site.solid && site.kind != SiteKind::point && site.radius + sample.radius == 0.0 &&
       nearest.distance <= (at_end ? 0.0 : limits_.touch) &&
       nearest.distance <= kStartsOnWire * nominal_level(now_, half, i, site, path.q) &&
-      f.normal.dot(way_inside(half, i, path.q)) < 0.0) {
+      f.normal.dot(
+          way_inside(half.samples_of(), sample, placed(half.s).frame, placed(half.t).frame, path.q)) < 0.0) {
     // on the wire itself, or by less than a step beyond: it is on the side on which its body is
     f.normal = -f.normal;
     f.gap = -nearest.distance;
@@ -194,14 +195,6 @@ void PairView::find_neighbours(const Half& half, int i, std::span<const std::uin
             [](const auto& x, const auto& y) { return x.site < y.site; });
 }
 
-Vec2 PairView::way_inside(const Half& half, int i, const Vec2& q) const {
-  const Sample& sample = half.sample(i);
-  const Frame &s = placed(half.s).frame, &t = placed(half.t).frame;
-  if (sample.before < 0) return t.to_local(s.origin) - q;
-  const Corner corner = corner_at(half.samples_of(), sample);
-  return -t.direction_to_local(s.direction_to_world(corner.before + corner.after));
-}
-
 bool PairView::is_flush_on(const Placing& p, const Half& half, int i, const Site& site, const Vec2& q,
                            double rounding) const {
   const Sample& sample = half.sample(i);
@@ -212,8 +205,7 @@ bool PairView::is_flush_on(const Placing& p, const Half& half, int i, const Site
   const Vec2 normal = face_at_end(site, at_a);
   if (std::abs(cross(normal, way)) > 4.0 * rounding) return false;
   const Frame &s = (half.s_is_a ? p.a : p.b).frame, &t = (half.s_is_a ? p.b : p.a).frame;
-  Corner corner = corner_at(half.samples_of(), sample);
-  for (Vec2* n : {&corner.before, &corner.after}) *n = t.direction_to_local(s.direction_to_world(*n));
+  const Corner corner = corner_seen(half.samples_of(), sample, s, t);
   return parts_alone(normal, corner, corner_at(site, at_a));
 }
 

@@ -87,8 +87,6 @@ class PairView {
   /// come out any further. Never so while the two are apart.
   bool pokes_through(const Half& half, int i, const Site& site, const Nearest& nearest,
                      const Feature& f) const;
-  /// The way from sample i into what carries it, in T's frame: of a solid's corner, of anything else to its origin.
-  Vec2 way_inside(const Half& half, int i, const Vec2& q) const;
   /// True if the sharp corner of a solid at sample i lies with its tip, to rounding, on the line that goes on from
   /// site j beyond its end, which is as sharp; and that line alone parts the two corners: the site is a face for it
   /// there, too (a box right upon another of its width).

@@ -79,18 +79,12 @@ class Joint {
     const bool on_wire = !wire.solid && wire.kind != SiteKind::point && sharp(n.site) && !n.at_end &&
                          n.nearest.distance <= doubtful;
     const Vec2 normal = normal_at(wire, n.nearest, path_.q);
-    if (on_wire && normal.dot(way_inside()) < 0.0)
+    const Vec2 inside = detail::way_inside(outline_s_, sample_, s_.frame, t_.frame, path_.q);
+    if (on_wire && normal.dot(inside) < 0.0)
       add(n.site, -normal, -n.nearest.distance);
     else
       add(n.site, normal, n.gap);
   }
-  /// From the sample into what carries it, in T's frame.
-  Vec2 way_inside() const {
-    if (sample_.before < 0) return t_.frame.to_local(s_.frame.origin) - path_.q;
-    const detail::Corner corner = detail::corner_at(outline_s_, sample_);
-    return -t_.frame.direction_to_local(s_.frame.direction_to_world(corner.before + corner.after));
-  }
-
   /// True if another site that has this end, too, says all of it: one that is touched beside the end, or of two
   /// that are touched right there the first.
   bool is_told(const Near& n) const {
