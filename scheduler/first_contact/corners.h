@@ -53,15 +53,21 @@ inline Vec2 way_inside(const Outline& outline, const Sample& sample, const Frame
   return -(corner.before + corner.after);
 }
 
-/// True if two convex corners that touch at their tips come to overlap as s moves along d: there is no
-/// direction that separates them and in which s does not go back. Grazing is passing by (a corner that slides
-/// over an edge), but of a needle, which has its thickness just behind its tip.
+/// True if a line that has t behind it and s before it stays between them: two convex corners, the tip of s `way` from
+/// that of t, not behind the line by more than `depth`. `goes_back`: whether s goes over the line of that normal.
+template <class GoesBack>
+bool is_parted(const Corner& s, const Corner& t, const Vec2& way, double depth, GoesBack&& goes_back) {
+  for (const Vec2& u : {t.before, t.after, Vec2(-s.before), Vec2(-s.after)})
+    if (t.faces(u) && s.faces(-u) && u.dot(way) >= -depth && !goes_back(u)) return true;
+  return false;
+}
+
+/// True if two convex corners that touch at their tips come to overlap as s moves along d. Grazing is passing by (a
+/// corner that slides over an edge), but of a needle, which has its thickness just behind its tip.
 inline bool come_to_overlap(const Corner& s, const Corner& t, const Vec2& d) {
   if (!s.convex() || !t.convex()) return false;
   const double grazing = (s.needle() || t.needle() ? 1e-6 : -1e-6) * d.norm();
-  for (const Vec2& u : {t.before, t.after, Vec2(-s.before), Vec2(-s.after)})
-    if (t.faces(u) && s.faces(-u) && u.dot(d) >= grazing) return false;
-  return true;
+  return !is_parted(s, t, Vec2::Zero(), 0.0, [&](const Vec2& u) { return u.dot(d) < grazing; });
 }
 
 /// True if n, an outward normal of t, is the only direction out of it that has the one corner before it and the other

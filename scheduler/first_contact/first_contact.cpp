@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -44,6 +45,7 @@ class PairSearch {
         scratch_(scratch),
         work_(work) {
     const auto count_a = static_cast<std::size_t>(view_.half(true).count);
+    scratch.in_band.clear();
     scratch.safe_until.assign(count_a + static_cast<std::size_t>(view_.half(false).count), from);
     safe_until_[0] = scratch.safe_until.data();
     safe_until_[1] = scratch.safe_until.data() + count_a;
@@ -118,12 +120,12 @@ class PairSearch {
     reached_ = from_;
     for (int iteration = 0;; ++iteration) {
       const double t = least_safe_time();
-      if (t >= to_) return;
+      if (t >= to_) return look_back(to_);
       reached_ = t;
       // with a contact in hand little is left to look at
       if (iteration >= limits_.max_iterations && (best_.sample < 0 || iteration >= kMostAfterContact)) {
         capped_ = true;
-        return;
+        return look_back(t);
       }
       ++work_.search_iterations;
       t_ = t;
@@ -147,8 +149,33 @@ class PairSearch {
     }
   }
 
-  /// Features have come close: from now on levels count.
-  void look_closely() {
+  /// Steps within the band lead a little beyond where samples meet: what was met by t on the way is found now, so that
+  /// it does not depend on where the search ends.
+  void look_back(double t) {
+    if (scratch_.in_band.empty()) return;
+    t_ = t;
+    view_.place(t);
+    const BothWays now(bounds_over(t, t));
+    // a copy: others may come to be within the band
+    const std::vector<std::pair<bool, int>> samples = scratch_.in_band;
+    for (const auto& [on_a, i] : samples) {
+      if (i == best_.sample && on_a == best_.sample_on_a) continue;
+      const Half& half = view_.half(on_a);
+      const SamplePath path = view_.path(half, i);
+      const double band = view_.touching_band(half, i, path);
+      const PathBounds bounds = path_bounds(path, now.of(half), 0.0);
+      if (half.sample(i).arc_site >= 0)
+        arc_sample_step(half, i, path, band, now.of(half), bounds);
+      else
+        vertex_steps(half, i, path, band, bounds, bounds, 0.0, 0.0);
+    }
+  }
+
+  /// Sample i has come close to a site: from now on levels count.
+  void look_closely(const Half& half, int i) {
+    auto& close = scratch_.in_band;
+    const std::pair sample(half.s_is_a, i);
+    if (std::find(close.begin(), close.end(), sample) == close.end()) close.push_back(sample);
     // Before neighbours are looked for: it uses the same memory of the scratch.
     if (!sink_known_) view_.set_sink(view_.sink_at_start());
     sink_known_ = true;
@@ -278,7 +305,7 @@ class PairSearch {
       const double radius = site.radius + sample.radius;
       const double gap = nearest.distance - radius;
       if (gap <= band) {
-        look_closely();
+        look_closely(half, i);
         if (!neighbours_known) view_.find_neighbours(half, i, near.sites, path, 4.0 * band);
         neighbours_known = true;
         const Feature f = view_.vertex_feature(half, i, static_cast<int>(j), nearest, path);
@@ -287,12 +314,12 @@ class PairSearch {
         // behind what does not count it may go a part of its way there: what counts has a step of its own
         const double free_way = hidden && f.gap < 0.0 ? 0.25 * nearest.distance : 0.0;
         const double above = f.gap - view_.level(half, i, site, path.q);
-        const auto step_by = [&](const RelativeBounds& relative, const PathBounds& bounds) {
-          const double step = close_step(half, site, nearest, f, above, path, band, relative, bounds);
+        const auto step_by = [&](const RelativeBounds& relative, const PathBounds& bounds, double over) {
+          const double step = close_step(half, site, nearest, f, above, path, band, relative, bounds, over);
           return free_way > 0.0 ? std::max(step, free_way / bounds.speed) : step;
         };
-        safe = std::min(safe, step_by(long_bounds_.of(half), over_all));
-        again = std::min(again, step_by(short_bounds_.of(half), over_short));
+        safe = std::min(safe, step_by(long_bounds_.of(half), over_all, window));
+        again = std::min(again, step_by(short_bounds_.of(half), over_short, short_window));
         continue;
       }
       const double beyond = gap - 0.5 * band;  // too far to matter at any speed?
@@ -321,18 +348,14 @@ class PairSearch {
   /// surface as in front of it; else by the site's distance.
   double close_step(const Half& half, const Site& site, const Nearest& nearest, const Feature& f,
                     double above, const SamplePath& path, double band, const RelativeBounds& relative,
-                    const PathBounds& bounds) const {
+                    const PathBounds& bounds, double window) const {
     const double allowed = 0.25 * sink_step(limits_.touch, 0.0);
     if (site.kind == SiteKind::segment || site.kind == SiteKind::point) {
       // A convex distance never lies below its support line at the present foot. So of the path's
       // acceleration only the part along the present normal bends the gap towards zero, though the
       // normal may turn.
-      double bend = bounds.acceleration;
-      if (relative.spin_t == 0.0 && relative.alpha_t == 0.0) {  // only what pulls against the normal counts
-        const double along = view_.placed(half.t).frame.direction_to_world(f.normal).dot(relative.pull);
-        bend = std::min(bend, std::max(0.0, relative.pull_radius - along) +
-                                  (relative.alpha_s + relative.spin_s * relative.spin_s) * path.arm);
-      }
+      const Vec2 out = view_.placed(half.t).frame.direction_to_world(f.normal);
+      const double bend = acceleration_against(out, relative, bounds, window);
       return band_step(above, f.rate, bend, band, allowed);
     }
     const Vec2 out = path.q - site.center;
@@ -372,7 +395,7 @@ class PairSearch {
       const ArcStep step = arc_step(arc, sites.sites[j], path, view_.placed(half.s), view_.placed(half.t),
                                     band, relative, bounds);
       if (step.active && step.gap <= band) {
-        look_closely();
+        look_closely(half, i);
         const Feature f{i, static_cast<int>(j), step.gap, step.rate, step.normal, step.point};
         if (polish(half, f, path, bounds)) continue;
         const double level = view_.level(half, i, sites.sites[j], path.q);
@@ -401,7 +424,8 @@ class PairSearch {
     const double speed = -f.rate;
     const double now = f.gap - view_.level(half, f.sample, site, path.q);
     const double begin = view_.start();
-    if (t_ <= begin && now <= 0.0) return remember(half, f, t_);  // touching from the start, and approaching
+    if (t_ <= begin && now <= 0.0)  // touching from the start, and approaching
+      return remember(half, f, t_);
     if (meets_tip(half, f, path, bounds)) return true;
     // Newton's last step, `guess`; by how much the bending of the gap can make it wrong, `bend` (over
     // the time `off` the rate changes by a part a off / speed of itself); and in what time the gap falls
@@ -419,8 +443,9 @@ class PairSearch {
     if (now <= 2.0 * rounding) {
       low = std::max(std::min(guess, t_), floor);
       for (double back = moment; gap(low) <= rounding; back *= 1.25) {
-        if (low <= floor) {                                  // it never was clear
-          if (gap(t_) <= 0.0) return remember(half, f, t_);  // in each other from the start, and going deeper
+        if (low <= floor) {    // it never was clear
+          if (gap(t_) <= 0.0)  // in each other from the start, and going deeper
+            return remember(half, f, t_);
           low = t_;
           break;
         }
@@ -543,29 +568,38 @@ class PairSearch {
     return come_to_overlap(corner_of(half, f.sample, there), corner_at(half.site(f.site), at_a), d);
   }
 
-  /// Keeps the contact if it is the earliest so far (ties: lowest half, sample, site). Always true. The
-  /// search goes on for `noise` longer: another feature may seem to touch later only by the rounding of its
-  /// steps.
+  /// Keeps the contact if it is the earliest so far (ties: lowest half, sample, site). False if there is none: two
+  /// corners pass each other. The search goes on for `noise` longer: another feature may seem to touch later only
+  /// by the rounding of its steps.
   bool remember(const Half& half, const Feature& f, double t, double noise = 0.0) {
     if (t > window_end_) return true;
-    const FeatureContact contact = contact_then(half, f, t);
+    const std::optional<FeatureContact> contact = contact_then(half, f, t);
+    if (!contact) return false;
     const bool earlier = best_.sample < 0 || t < best_.time ||
                          (t == best_.time && std::tie(half.s_is_a, best_.sample, best_.site) >
-                                                 std::tie(best_.sample_on_a, contact.sample, contact.site));
+                                                 std::tie(best_.sample_on_a, contact->sample, contact->site));
     if (!earlier) return true;
-    best_ = contact;
+    best_ = *contact;
     to_ = std::min(to_, std::nextafter(t + noise, kForever));
     return true;
   }
 
-  /// The contact's geometry is that of its own time, and its site the nearest then, unless it leaves that.
-  FeatureContact contact_then(const Half& half, const Feature& f, double t) const {
+  /// The contact's geometry is that of its own time, and its site the nearest then, unless it leaves that; or that of
+  /// the next double, where a corner has come to lie flush on a face. None of corners that pass each other.
+  std::optional<FeatureContact> contact_then(const Half& half, const Feature& f, double t) const {
     PairView there = view_;
     there.place(t);
     Feature met = f;
     met.site = view_.gap_at(half, f, t).site;
-    const FeatureContact contact = there.look_again(half, met, t);
-    return contact.closing_speed > 0.0 || met.site == f.site ? contact : there.look_again(half, f, t);
+    if (there.passes_tip(half, met)) return std::nullopt;
+    FeatureContact contact = there.look_again(half, met, t);
+    if (!(contact.closing_speed > 0.0) && met.site != f.site) contact = there.look_again(half, f, t);
+    const double after = next_after(t);
+    if (contact.closing_speed > 0.0 || after > std::min(a_.motion->end(), b_.motion->end())) return contact;
+    there.place(after);
+    met.site = view_.gap_at(half, f, after).site;
+    const FeatureContact next = there.look_again(half, met, t);
+    return next.closing_speed > 0.0 ? next : contact;
   }
 
   PairView view_;

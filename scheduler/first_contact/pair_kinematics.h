@@ -128,17 +128,29 @@ inline SamplePath sample_path(const Placed& s, const Placed& t, const Vec2& p_lo
 /// and w = rho' - omega_T x rho: q'' = R_T^T (rho'' - alpha_T x rho - 2 omega_T x w - omega_T x (omega_T x
 /// rho)).
 struct PathBounds {
-  double speed;
-  double acceleration;
+  double speed = 0.0;
+  double acceleration = 0.0;
+  double turning = 0.0;  ///< what of `acceleration` comes of the two that turn, not of the pull between them
 };
 
 inline PathBounds path_bounds(const SamplePath& path, const RelativeBounds& b, double window) {
   const double inertial_speed = b.speed + b.spin_s * path.arm;
-  const double inertial_acceleration = b.acceleration + (b.alpha_s + b.spin_s * b.spin_s) * path.arm;
-  if (b.spin_t == 0.0 && b.alpha_t == 0.0) return {inertial_speed, inertial_acceleration};
+  const double own = (b.alpha_s + b.spin_s * b.spin_s) * path.arm,
+               inertial_acceleration = b.acceleration + own;
+  if (b.spin_t == 0.0 && b.alpha_t == 0.0) return {inertial_speed, inertial_acceleration, own};
   const double rho = path.distance + inertial_speed * window;
   const double speed = inertial_speed + b.spin_t * rho;
-  return {speed, inertial_acceleration + (b.alpha_t + b.spin_t * b.spin_t) * rho + 2.0 * b.spin_t * speed};
+  const double centrifugal = (b.alpha_t + b.spin_t * b.spin_t) * rho, coriolis = 2.0 * b.spin_t * speed;
+  return {speed, inertial_acceleration + centrifugal + coriolis, own + centrifugal + coriolis};
+}
+
+/// Bound on how the path accelerates against a unit direction that is fixed in T's frame, `world` now, over the
+/// window of `bounds` [m/s^2], >= 0: of what pulls S against T only the part against the direction counts, as far
+/// as that may turn.
+inline double acceleration_against(const Vec2& world, const RelativeBounds& b, const PathBounds& bounds,
+                                   double window) {
+  const double along = world.dot(b.pull) - b.spin_t * window * b.pull.norm();
+  return std::min(bounds.acceleration, std::max(0.0, b.pull_radius - along) + bounds.turning);
 }
 
 }  // namespace brink

@@ -209,6 +209,39 @@ bool PairView::is_flush_on(const Placing& p, const Half& half, int i, const Site
   return parts_alone(normal, corner, corner_at(site, at_a));
 }
 
+Vec2 PairView::acceleration_now(const Half& half, int i, const SamplePath& path) const {
+  const Placed &s = placed(half.s), &t = placed(half.t);
+  const RelativeBounds at_once = RelativeBounds::over(half.samples_of(), *half.s->motion, half.sites_of(),
+                                                      *half.t->motion, now_.time, now_.time);
+  const auto alpha = [](const Motion& m) { return m.is_ballistic() ? m.acceleration().angular : 0.0; };
+  const Vec2 arm = s.frame.direction_to_world(half.sample(i).p);
+  const Vec2 pull = at_once.pull + alpha(*half.s->motion) * perp(arm) - s.twist.omega * s.twist.omega * arm;
+  return t.frame.direction_to_local(pull) - alpha(*half.t->motion) * perp(path.q) -
+         2.0 * t.twist.omega * perp(path.rate) + t.twist.omega * t.twist.omega * path.q;
+}
+
+bool PairView::passes_tip(const Half& half, const Feature& f) const {
+  const Site& site = half.site(f.site);
+  const Sample& sample = half.sample(f.sample);
+  if (sample.before < 0 || !site.solid || site.radius + sample.radius > 0.0) return false;
+  const SamplePath path = this->path(half, f.sample);
+  const bool at_a = (path.q - site.a).squaredNorm() < (path.q - site.b).squaredNorm();
+  const Vec2 way = path.q - (at_a ? site.a : site.b);
+  if (!(way.squaredNorm() <= limits_.tolerance * limits_.tolerance)) return false;
+  const Frame &s = placed(half.s).frame, &t = placed(half.t).frame;
+  const Corner of_sample = corner_seen(half.samples_of(), sample, s, t), of_site = corner_at(site, at_a);
+  if (!of_sample.convex() || !of_site.convex() || of_sample.needle() || of_site.needle()) return false;
+  const Vec2 pull = acceleration_now(half, f.sample, path);
+  const double noise = rate_noise(path), none = kParallel * pull.norm();
+  // who runs along a line goes over it if it is pulled there
+  const auto goes_back = [&](const Vec2& u) {
+    const double rate = u.dot(path.rate);
+    return rate < -noise || (rate <= noise && u.dot(pull) < -none);
+  };
+  const double touch = std::max(limits_.touch, 8.0 * gap_rounding(half, f.sample, path.q));
+  return is_parted(of_sample, of_site, way, touch, goes_back);
+}
+
 bool PairView::pokes_through(const Half& half, int i, const Site& site, const Nearest& nearest,
                              const Feature& f) const {
   const Sample& sample = half.sample(i);
@@ -396,6 +429,7 @@ double PairView::sink_at_start() const {
     const double own_step = sink_step(limits_.touch, rounding);
     const double above = f.gap - then.nominal_level(then.now_, half, f.sample, site, path.q);
     if (!(above < own_step) || above < -kOverlapAtStart * limits_.tolerance) return;
+    if (then.approaching(f, path) && then.passes_tip(half, f)) return;
     // A pair that collides at once has no need to sink until it does.
     now = now || (above <= 0.0 && then.approaching(f, path) && !then.hidden_behind_others(half, f, path));
     const PathBounds bounds = path_bounds(path, half.s_is_a ? at_once : at_once.swapped(), 0.0);

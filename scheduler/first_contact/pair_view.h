@@ -93,6 +93,9 @@ class PairView {
   bool is_flush_on(const Half& half, int i, const Site& site, const Vec2& q, double rounding) const {
     return is_flush_on(now_, half, i, site, q, rounding);
   }
+  /// True if f's sample, a sharp corner of a solid, is by such a corner in which f's site ends, and a line parts the
+  /// two, to the touching distance, as they go on, whatever becomes of the gap to f's site.
+  bool passes_tip(const Half& half, const Feature& f) const;
   /// True if site j is near q, where sample i is, but what q would touch is another of the neighbours. At a
   /// joint: one that is as near with its interior. Behind a solid: j is the far side of a sliver, whose near side q has in front
   /// of it, or is deeper in.
@@ -173,6 +176,9 @@ class PairView {
   };
 
   bool discs_were_apart() const;
+  /// d2q/dt2 of sample i now, in T's turning frame (path_bounds() of pair_kinematics.h) [m/s^2]. Of motions that an
+  /// integrator has made without what changes their turning.
+  Vec2 acceleration_now(const Half& half, int i, const SamplePath& path) const;
   Feature nearest_feature(const Half& half, int i) const;
   ArcStep arc_now(const Half& half, int i, int j) const;
   void put(Placing& placing, double t) const;

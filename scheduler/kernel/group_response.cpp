@@ -65,8 +65,11 @@ class GroupResponse::Group {
     const auto loses = [](const GroupContact& c) { return c.material.restitution < 1.0; };
     if (law == GroupLaw::collapsed && std::all_of(contacts_.begin(), contacts_.end(), loses))
       for (GroupContact& c : contacts_) c.material.restitution = 0.0;
-    return law == GroupLaw::complementarity ? resolve_together(members_, contacts_, go_on)
-                                            : resolve_reflections(members_, contacts_, go_on);
+    if (law != GroupLaw::complementarity) return resolve_reflections(members_, contacts_, go_on);
+    GroupResult together = resolve_together(members_, contacts_, go_on);
+    // what bounces between two that stand can rebound from either, not from both at once
+    return together.status == GroupResult::Status::jam ? resolve_reflections(members_, contacts_, go_on)
+                                                       : together;
   }
 
   /// From body to body: whoever touches one of the group is of it. False on a halt.

@@ -274,6 +274,8 @@ void Trajectories::restart(std::span<const Restart> touched, std::vector<int>& c
   const int first = touched.front().body, component = bodies_[first].component;
   if (component < 0) {
     changed.push_back(first);
+    // its twist is the restart's from here on, also of one that is hit right where its step begins
+    if (is_held(first)) held_.at(first).step = {};
     return restart_free(first, touched.front().state.rounded(), touched.front().state.low());
   }
   Coupled& c = components_[component];
@@ -315,8 +317,7 @@ ExtendedState Trajectories::state_now(int k) const {
   ExtendedState s = motion.extended_state(now);
   if (!is_held(k)) return s;
   const HeldStep& step = held_.at(k).step;
-  // a collision has started it afresh since, or its step is over
-  if (step.start != motion.begin() || !(now < step.end)) return s;
+  if (!(now < step.end)) return s;
   // The motion has the twist of the step's end from the start on. One that is hit halfway has had half of
   // the step's change of velocity by then: the part of it that is left is taken off.
   const Real left = (step.end - std::max(now, step.start)) / (step.end - step.start);

@@ -20,25 +20,28 @@ class GlobalBackup final : public Policy {
  public:
   bool steps_islands() const override { return true; }
   void run(Kernel& kernel, double until) override {
-    run_horizons(kernel, until, [&](double end) { return run_horizon(kernel, end); });
+    run_horizons(kernel, until, [&](double end) { return run_horizon(kernel, end, until); });
   }
 
  private:
   /// One horizon, contact by contact: the number of pairs that could meet before it; nothing on a halt.
-  std::optional<std::size_t> run_horizon(Kernel& kernel, double end) {
+  std::optional<std::size_t> run_horizon(Kernel& kernel, double end, double until) {
+    const double begin = kernel.time();
     end = kernel.follow_motions(end);
+    double last = last_beginning(kernel, begin, end, until);
     if (!agenda_.pass(kernel, kernel.time(), end)) return std::nullopt;
     const std::size_t near = agenda_.pairs().size();
-    kernel.advance_all(end);
-    while (const auto next = agenda_.take_earliest(kernel, end)) {
+    kernel.advance_all(last);
+    while (const auto next = agenda_.take_earliest(kernel, last)) {
       // Of contacts at the same time, the one that an order puts first may be a rounding later than the next:
       // each is resolved at its own time, which its two bodies' motions still cover.
       if (!kernel.record_frames(next->time)) return std::nullopt;
       kernel.back_up_all(next->time);
       if (!deal_with(kernel, *next, end)) return std::nullopt;
-      kernel.advance_all(end);
+      last = last_beginning(kernel, begin, end, until);
+      kernel.advance_all(last);
     }
-    return kernel.record_frames(end) ? std::optional(near) : std::nullopt;
+    return kernel.record_frames(last) ? std::optional(near) : std::nullopt;
   }
 
   /// False on a halt. A new motion may fail before the horizon's end, which then lies there.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/policies/order.h"
 #include "brink/scheduler/policies/tolerances.h"
 
@@ -65,6 +66,11 @@ void run_horizons(Kernel& kernel, double until,
   }
 }
 
+double last_beginning(const KernelView& kernel, double begin, double end, double until) {
+  const double last = end - 2.0 * same_instant(end);
+  return end < std::min(until, kernel.reach()) && last > begin ? last : end;
+}
+
 bool HorizonAgenda::pass(Kernel& kernel, double from, double end) {
   agenda_.clear();
   pairs_ = kernel.near_pairs(from, end);
@@ -101,8 +107,8 @@ void HorizonAgenda::test(Kernel& kernel, const PairKey& pair, double from, doubl
   for (const Certificate& other : kernel.simultaneous(*certificate)) agenda_.insert(other);
 }
 
-std::optional<Certificate> HorizonAgenda::take_earliest(Kernel& kernel, double end) {
-  return brink::take_earliest(kernel, agenda_, end);
+std::optional<Certificate> HorizonAgenda::take_earliest(Kernel& kernel, double last) {
+  return brink::take_earliest(kernel, agenda_, last);
 }
 
 bool HorizonAgenda::search_on(Kernel& kernel, const Certificate& c, double end) {

@@ -17,6 +17,11 @@ namespace brink {
 void run_horizons(Kernel& kernel, double until,
                   const std::function<std::optional<std::size_t>(double end)>& run_one);
 
+/// Of a horizon from `begin` in a run to `until` that looks as far as `end` [s], the last time at which anything in it may
+/// begin. What belongs to one instant is chosen from together, as by a policy that knows no horizons: so `end` is
+/// more than an instant later, but where the run ends or a motion fails.
+double last_beginning(const KernelView& kernel, double begin, double end, double until);
+
 /// Certificates of one horizon: who meets whom before its end.
 class HorizonAgenda {
  public:
@@ -24,8 +29,8 @@ class HorizonAgenda {
   bool pass(Kernel& kernel, double from, double end);
   /// The same for bodies whose motion a resolve has changed just now. False on a halt.
   bool pass_again(Kernel& kernel, std::span<const int> changed, double end);
-  /// The next contact up to `end`, by time and by the option `order`.
-  std::optional<Certificate> take_earliest(Kernel& kernel, double end);
+  /// The next contact that begins by `last`, by time and by the option `order`.
+  std::optional<Certificate> take_earliest(Kernel& kernel, double last);
   /// Goes on with a search that stopped at its cap; gives up where a hundred such in a row led nowhere. False
   /// on a halt.
   bool search_on(Kernel& kernel, const Certificate& c, double end);

@@ -23,27 +23,30 @@ class IslandBackup final : public Policy {
  public:
   bool steps_islands() const override { return true; }
   void run(Kernel& kernel, double until) override {
-    run_horizons(kernel, until, [&](double end) { return run_horizon(kernel, end); });
+    run_horizons(kernel, until, [&](double end) { return run_horizon(kernel, end, until); });
   }
 
  private:
   /// One horizon, contact by contact: the number of pairs that could meet before it; nothing on a halt.
-  std::optional<std::size_t> run_horizon(Kernel& kernel, double end) {
+  std::optional<std::size_t> run_horizon(Kernel& kernel, double end, double until) {
+    const double begin = kernel.time();
     end = kernel.follow_motions(end);
+    double last = last_beginning(kernel, begin, end, until);
     if (!agenda_.pass(kernel, kernel.time(), end)) return std::nullopt;
     const std::size_t near = agenda_.pairs().size();
     make_islands(kernel);
-    kernel.advance_all(end);
-    while (const auto next = agenda_.take_earliest(kernel, end)) {
+    kernel.advance_all(last);
+    while (const auto next = agenda_.take_earliest(kernel, last)) {
       if (!kernel.record_frames(next->time)) return std::nullopt;
       // A copy: islands grow as the contact is dealt with, but these bodies alone are taken back, and
       // forward again.
       island_.assign(islands_.of(next->pair.body).begin(), islands_.of(next->pair.body).end());
-      kernel.back_up(island_, end, next->time);
+      kernel.back_up(island_, last, next->time);
       if (!deal_with(kernel, *next, end)) return std::nullopt;
-      kernel.advance(island_, next->time, end);
+      last = last_beginning(kernel, begin, end, until);
+      kernel.advance(island_, next->time, last);
     }
-    return kernel.record_frames(end) ? std::optional(near) : std::nullopt;
+    return kernel.record_frames(last) ? std::optional(near) : std::nullopt;
   }
 
   /// False on a halt. A new motion may fail before the horizon's end, which then lies there.

@@ -50,14 +50,15 @@ Certificate at_its_time(const KernelView& kernel, Certificate c, double earliest
   return c;
 }
 
-std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda, double end) {
+std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda, double last) {
   std::vector<Certificate> group;
   const double step = kernel.next_step();
   // A contact at the very end of a step comes before the step; one that comes after it waits. With a
   // contact in hand its instant is completed, whatever ends in it.
-  while (!agenda.empty() && agenda.earliest().time <= (group.empty() ? std::min(step, end) : end)) {
-    if (!group.empty() && agenda.earliest().time > group.front().time + same_instant(group.front().time))
-      break;
+  const auto latest = [&] {
+    return group.empty() ? std::min(step, last) : group.front().time + same_instant(group.front().time);
+  };
+  while (!agenda.empty() && agenda.earliest().time <= latest()) {
     const Certificate c = agenda.pop();
     if (kernel.fresh(c))
       group.push_back(c);
@@ -65,7 +66,7 @@ std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda, double 
       kernel.note_stale();
   }
   kernel.note_queue_operations(agenda.take_operations());
-  if (group.empty() && std::isfinite(step) && step <= end) return end_of_step(kernel, step);
+  if (group.empty() && std::isfinite(step) && step <= last) return end_of_step(kernel, step);
   if (group.empty()) return std::nullopt;
   const std::size_t chosen = first_by_order(kernel, group);
   const Certificate first = at_its_time(kernel, group[chosen], group.front().time);

@@ -9,9 +9,10 @@
 namespace brink {
 
 /// Takes the next certificate from the agenda: drops stale ones, and among those of the same time (within a
-/// few roundings) picks by the option `order`. Nothing if the agenda holds none up to `end`.
+/// few roundings) picks by the option `order`. Nothing if the agenda holds none up to `last`. @pre the agenda
+/// holds all of an instant that begins by then.
 std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda,
-                                         double end = std::numeric_limits<double>::infinity());
+                                         double last = std::numeric_limits<double>::infinity());
 
 /// Of contacts of one instant, in the total order of events, the one that the option `order` puts first; its
 /// place in the group. @pre not empty.

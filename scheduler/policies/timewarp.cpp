@@ -32,11 +32,14 @@ namespace {
 /// Contacts closer than this in time are left to the order [s].
 double too_close(double t) { return 4.0 * same_instant(t); }
 
+constexpr std::uint64_t kManyCollisions = 512;
+
 class Timewarp final : public Policy {
  public:
   bool steps_islands() const override { return true; }
   void run(Kernel& kernel, double until) override {
     kernel_ = &kernel;
+    until_ = until;
     undecided_ = 0;
     searched_on_ = -1.0;  // of another run, or of later than now
     group_bodies();
@@ -50,20 +53,37 @@ class Timewarp final : public Policy {
   /// One horizon, contact by contact. False on a halt.
   bool run_horizon() {
     end_ = kernel_->follow_motions(end_);
+    const double begin = kernel_->time();
+    const std::uint64_t before = kernel_->collisions();
     if (!look_at_all()) return false;
+    double last = begin;
     for (;;) {
       run_ahead();
       if (kernel_->halt()) return false;
-      const auto next = take_earliest(*kernel_, agenda_, end_);
+      last = last_beginning(*kernel_, begin, end_, until_);
+      const auto next = take_earliest(*kernel_, agenda_, last);
       if (!next) break;
+      // between two instants, so that the next horizon finds `next` again
+      if (knows_enough(kernel_->collisions() - before) && next->time > instant_after(kernel_->time())) {
+        last = kernel_->time();
+        break;
+      }
       if (!kernel_->record_frames(next->time)) return false;
       if (!make_certain(*next)) return false;
     }
-    kernel_->roll_back_all();  // what is ahead of an end that a failure has brought nearer
-    if (!kernel_->record_frames(end_)) return false;
-    kernel_->advance_all(end_);
+    kernel_
+        ->roll_back_all();  // what is ahead of an end that a failure has brought nearer, or in the last instant
+    if (!kernel_->record_frames(last)) return false;
+    kernel_->advance_all(last);
     return true;
   }
+
+  /// Certificates are kept for a horizon, and every turn looks through a body's: of one with so many collisions, what is
+  /// known is forgotten before its end.
+  bool knows_enough(std::uint64_t collisions) const {
+    return collisions > kManyCollisions + 16 * static_cast<std::uint64_t>(kernel_->body_count());
+  }
+  static double instant_after(double t) { return t + 2.0 * same_instant(t); }
 
   // -- what is certain --
 
@@ -324,6 +344,7 @@ class Timewarp final : public Policy {
   }
 
   Kernel* kernel_ = nullptr;
+  double until_ = 0.0;                           ///< of the run
   double end_ = 0.0;                             ///< of the present horizon
   Agenda agenda_;                                ///< of what is certain
   std::vector<std::vector<Certificate>> known_;  ///< of every body, certain or not
