@@ -45,7 +45,7 @@ class PairSearch {
         scratch_(scratch),
         work_(work) {
     const auto count_a = static_cast<std::size_t>(view_.half(true).count);
-    scratch.in_band.clear();
+    scratch.sinking.clear();
     scratch.safe_until.assign(count_a + static_cast<std::size_t>(view_.half(false).count), from);
     safe_until_[0] = scratch.safe_until.data();
     safe_until_[1] = scratch.safe_until.data() + count_a;
@@ -149,16 +149,14 @@ class PairSearch {
     }
   }
 
-  /// Steps within the band lead a little beyond where samples meet: what was met by t on the way is found now, so that
-  /// it does not depend on where the search ends.
+  /// Steps of samples on a surface lead a little beyond where they meet: what was met by t on the way is found now, so
+  /// that it does not depend on where the search ends.
   void look_back(double t) {
-    if (scratch_.in_band.empty()) return;
+    if (scratch_.sinking.empty()) return;
     t_ = t;
     view_.place(t);
     const BothWays now(bounds_over(t, t));
-    // a copy: others may come to be within the band
-    const std::vector<std::pair<bool, int>> samples = scratch_.in_band;
-    for (const auto& [on_a, i] : samples) {
+    for (const auto& [on_a, i] : scratch_.sinking) {
       if (i == best_.sample && on_a == best_.sample_on_a) continue;
       const Half& half = view_.half(on_a);
       const SamplePath path = view_.path(half, i);
@@ -171,11 +169,8 @@ class PairSearch {
     }
   }
 
-  /// Sample i has come close to a site: from now on levels count.
-  void look_closely(const Half& half, int i) {
-    auto& close = scratch_.in_band;
-    const std::pair sample(half.s_is_a, i);
-    if (std::find(close.begin(), close.end(), sample) == close.end()) close.push_back(sample);
+  /// Features have come close: from now on levels count.
+  void look_closely() {
     // Before neighbours are looked for: it uses the same memory of the scratch.
     if (!sink_known_) view_.set_sink(view_.sink_at_start());
     sink_known_ = true;
@@ -202,9 +197,14 @@ class PairSearch {
   }
 
   void advance_sample(const Half& half, int i) {
+    sinks_ = false;
     // never less than the next double, or the search would stand still
     safe_until(half, i) = half.sample(i).hollow ? kForever : std::max(t_ + step(half, i), next_);
     least_ = std::min(least_, safe_until(half, i));
+    std::vector<std::pair<bool, int>>& sinking = scratch_.sinking;
+    if (!sinks_ && sinking.empty()) return;
+    std::erase(sinking, std::pair(half.s_is_a, i));
+    if (sinks_) sinking.emplace_back(half.s_is_a, i);
   }
 
   /// How a moves against b, and b against a.
@@ -305,7 +305,7 @@ class PairSearch {
       const double radius = site.radius + sample.radius;
       const double gap = nearest.distance - radius;
       if (gap <= band) {
-        look_closely(half, i);
+        look_closely();
         if (!neighbours_known) view_.find_neighbours(half, i, near.sites, path, 4.0 * band);
         neighbours_known = true;
         const Feature f = view_.vertex_feature(half, i, static_cast<int>(j), nearest, path);
@@ -348,7 +348,7 @@ class PairSearch {
   /// surface as in front of it; else by the site's distance.
   double close_step(const Half& half, const Site& site, const Nearest& nearest, const Feature& f,
                     double above, const SamplePath& path, double band, const RelativeBounds& relative,
-                    const PathBounds& bounds, double window) const {
+                    const PathBounds& bounds, double window) {
     const double allowed = 0.25 * sink_step(limits_.touch, 0.0);
     if (site.kind == SiteKind::segment || site.kind == SiteKind::point) {
       // A convex distance never lies below its support line at the present foot. So of the path's
@@ -356,8 +356,10 @@ class PairSearch {
       // normal may turn.
       const Vec2 out = view_.placed(half.t).frame.direction_to_world(f.normal);
       const double bend = acceleration_against(out, relative, bounds, window);
+      sinks_ = sinks_ || may_sink(above, f.rate, bend, band, allowed);
       return band_step(above, f.rate, bend, band, allowed);
     }
+    sinks_ = sinks_ || above <= 2.0 * allowed;
     const Vec2 out = path.q - site.center;
     const bool hollow = f.normal.dot(out) < 0.0;  // f's normal points to the centre
     // the circle on which the sample meets: less than the arc's by the radii
@@ -395,13 +397,13 @@ class PairSearch {
       const ArcStep step = arc_step(arc, sites.sites[j], path, view_.placed(half.s), view_.placed(half.t),
                                     band, relative, bounds);
       if (step.active && step.gap <= band) {
-        look_closely(half, i);
+        look_closely();
         const Feature f{i, static_cast<int>(j), step.gap, step.rate, step.normal, step.point};
         if (polish(half, f, path, bounds)) continue;
-        const double level = view_.level(half, i, sites.sites[j], path.q);
-        const double own = band_step(step.gap - level, step.rate, step.curvature, band,
-                                     0.25 * sink_step(limits_.touch, 0.0));
-        safe = std::min(safe, own);
+        const double above = step.gap - view_.level(half, i, sites.sites[j], path.q),
+                     allowed = 0.25 * sink_step(limits_.touch, 0.0);
+        sinks_ = sinks_ || may_sink(above, step.rate, step.curvature, band, allowed);
+        safe = std::min(safe, band_step(above, step.rate, step.curvature, band, allowed));
         continue;
       }
       safe = std::min(safe, step.safe);
@@ -616,6 +618,7 @@ class PairSearch {
   double least_ = kForever;  ///< of the samples looked at from t_, how long all are safe
   FeatureContact best_;
   bool sink_known_ = false;
+  bool sinks_ = false;  ///< the step of the sample that is looked at may lead below a level
   bool capped_ = false;
 };
 

@@ -1,6 +1,7 @@
 #include "brink/scheduler/first_contact/pair_view.h"
 
 #include <numeric>
+#include <optional>
 
 #include "brink/core/base/limits.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
@@ -418,8 +419,7 @@ double PairView::sink_at_start() const {
   // each number.
   PairView then = *this;
   then.place(start());
-  const RelativeBounds at_once =
-      RelativeBounds::over(a_.outline(), *a_.motion, b_.outline(), *b_.motion, start(), start());
+  std::optional<RelativeBounds> at_once;  // most pairs have nothing near: theirs are not asked for
   double gap = kForever, rate = kForever, noise = 0.0, bend = 0.0, step = 0.0;
   bool now = false;
   then.each_feature(limits_.tolerance, [&](const Half& half, const Feature& f) {
@@ -432,7 +432,9 @@ double PairView::sink_at_start() const {
     if (then.approaching(f, path) && then.passes_tip(half, f)) return;
     // A pair that collides at once has no need to sink until it does.
     now = now || (above <= 0.0 && then.approaching(f, path) && !then.hidden_behind_others(half, f, path));
-    const PathBounds bounds = path_bounds(path, half.s_is_a ? at_once : at_once.swapped(), 0.0);
+    if (!at_once)
+      at_once = RelativeBounds::over(a_.outline(), *a_.motion, b_.outline(), *b_.motion, start(), start());
+    const PathBounds bounds = path_bounds(path, half.s_is_a ? *at_once : at_once->swapped(), 0.0);
     const bool of_arc = site.kind == SiteKind::arc;
     const double hollow = of_arc ? bounds.speed * bounds.speed / (path.q - site.center).norm() : 0.0;
     gap = std::min(gap, above);
