@@ -20,16 +20,16 @@ class GlobalBackup final : public Policy {
  public:
   bool steps_islands() const override { return true; }
   void run(Kernel& kernel, double until) override {
-    run_horizons(kernel, until, [&](double end) { return run_horizon(kernel, end, until); });
+    run_horizons(kernel, until, [&](double end) { return run_horizon(kernel, end); });
   }
 
  private:
   /// One horizon, contact by contact: the number of pairs that could meet before it; nothing on a halt.
-  std::optional<std::size_t> run_horizon(Kernel& kernel, double end, double until) {
+  std::optional<std::size_t> run_horizon(Kernel& kernel, double end) {
     const double begin = kernel.time();
-    end = kernel.follow_motions(end);
-    double last = last_beginning(kernel, begin, end, until);
-    if (!agenda_.pass(kernel, kernel.time(), end)) return std::nullopt;
+    double seen = kernel.follow_motions(seen_beyond(end));
+    double last = last_beginning(kernel, begin, end, seen);
+    if (!agenda_.pass(kernel, begin, seen)) return std::nullopt;
     const std::size_t near = agenda_.pairs().size();
     kernel.advance_all(last);
     while (const auto next = agenda_.take_earliest(kernel, last)) {
@@ -37,23 +37,23 @@ class GlobalBackup final : public Policy {
       // each is resolved at its own time, which its two bodies' motions still cover.
       if (!kernel.record_frames(next->time)) return std::nullopt;
       kernel.back_up_all(next->time);
-      if (!deal_with(kernel, *next, end)) return std::nullopt;
-      last = last_beginning(kernel, begin, end, until);
+      if (!deal_with(kernel, *next, seen)) return std::nullopt;
+      last = last_beginning(kernel, begin, end, seen);
       kernel.advance_all(last);
     }
     return kernel.record_frames(last) ? std::optional(near) : std::nullopt;
   }
 
-  /// False on a halt. A new motion may fail before the horizon's end, which then lies there.
-  bool deal_with(Kernel& kernel, const Certificate& next, double& end) {
-    if (next.kind == Certificate::Kind::undecided) return agenda_.search_on(kernel, next, end);
+  /// False on a halt. A new motion may fail before, and then no more is seen.
+  bool deal_with(Kernel& kernel, const Certificate& next, double& seen) {
+    if (next.kind == Certificate::Kind::undecided) return agenda_.search_on(kernel, next, seen);
     changed_.clear();
     const bool done = next.kind == Certificate::Kind::island
                           ? kernel.step_island(changed_)
                           : kernel.resolve(next.pair, next.contact, changed_);
     if (!done) return false;
-    end = kernel.follow_motions(end);
-    return agenda_.pass_again(kernel, changed_, end);
+    seen = kernel.follow_motions(seen);
+    return agenda_.pass_again(kernel, changed_, seen);
   }
 
   HorizonAgenda agenda_;

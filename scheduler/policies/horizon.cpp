@@ -66,9 +66,11 @@ void run_horizons(Kernel& kernel, double until,
   }
 }
 
-double last_beginning(const KernelView& kernel, double begin, double end, double until) {
-  const double last = end - 2.0 * same_instant(end);
-  return end < std::min(until, kernel.reach()) && last > begin ? last : end;
+double seen_beyond(double end) { return end + 4.0 * same_instant(end); }
+
+double last_beginning(const KernelView& kernel, double begin, double end, double seen) {
+  const double last = seen - 2.0 * same_instant(seen);
+  return std::min(end, seen < kernel.reach() && last > begin ? last : seen);
 }
 
 bool HorizonAgenda::pass(Kernel& kernel, double from, double end) {

@@ -17,10 +17,13 @@ namespace brink {
 void run_horizons(Kernel& kernel, double until,
                   const std::function<std::optional<std::size_t>(double end)>& run_one);
 
-/// Of a horizon from `begin` in a run to `until` that looks as far as `end` [s], the last time at which anything in it may
-/// begin. What belongs to one instant is chosen from together, as by a policy that knows no horizons: so `end` is
-/// more than an instant later, but where the run ends or a motion fails.
-double last_beginning(const KernelView& kernel, double begin, double end, double until);
+/// How far a horizon to `end` looks [s]: what belongs to one instant is chosen from together, as by a policy that knows no
+/// horizons, and as by a run that goes on; so an instant that begins by the end is seen whole.
+double seen_beyond(double end);
+
+/// Of a horizon from `begin` to `end` that could look as far as `seen` [s], the last time at which anything in it may
+/// begin: the end, if an instant that begins there is seen; but where a motion fails.
+double last_beginning(const KernelView& kernel, double begin, double end, double seen);
 
 /// Certificates of one horizon: who meets whom before its end.
 class HorizonAgenda {

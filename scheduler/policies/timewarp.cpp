@@ -39,20 +39,17 @@ class Timewarp final : public Policy {
   bool steps_islands() const override { return true; }
   void run(Kernel& kernel, double until) override {
     kernel_ = &kernel;
-    until_ = until;
     undecided_ = 0;
     searched_on_ = -1.0;  // of another run, or of later than now
     group_bodies();
-    run_horizons(kernel, until, [&](double end) {
-      end_ = end;
-      return run_horizon() ? std::optional(near_) : std::nullopt;
-    });
+    run_horizons(kernel, until,
+                 [&](double end) { return run_horizon(end) ? std::optional(near_) : std::nullopt; });
   }
 
  private:
   /// One horizon, contact by contact. False on a halt.
-  bool run_horizon() {
-    end_ = kernel_->follow_motions(end_);
+  bool run_horizon(double end) {
+    end_ = kernel_->follow_motions(seen_beyond(end));
     const double begin = kernel_->time();
     const std::uint64_t before = kernel_->collisions();
     if (!look_at_all()) return false;
@@ -60,7 +57,7 @@ class Timewarp final : public Policy {
     for (;;) {
       run_ahead();
       if (kernel_->halt()) return false;
-      last = last_beginning(*kernel_, begin, end_, until_);
+      last = last_beginning(*kernel_, begin, end, end_);
       const auto next = take_earliest(*kernel_, agenda_, last);
       if (!next) break;
       // between two instants, so that the next horizon finds `next` again
@@ -344,8 +341,7 @@ class Timewarp final : public Policy {
   }
 
   Kernel* kernel_ = nullptr;
-  double until_ = 0.0;                           ///< of the run
-  double end_ = 0.0;                             ///< of the present horizon
+  double end_ = 0.0;                             ///< as far as the present horizon looks
   Agenda agenda_;                                ///< of what is certain
   std::vector<std::vector<Certificate>> known_;  ///< of every body, certain or not
   std::deque<int> restless_;                     ///< bodies to whom something is new

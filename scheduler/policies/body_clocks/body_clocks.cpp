@@ -48,7 +48,7 @@ class BodyClocks final : public Policy {
     kernel_ = &kernel;
     until_ = until;
     if (!views_ || revision_ != kernel.revision()) look_around_all();
-    views_->set_end(until);
+    views_->set_end(seen_end());
     while (!kernel.halt() && std::min(queue_.time(), kernel.next_step()) <= end()) {
       if (++served_ % kBetweenPauses == 0 || kernel.much_to_forget()) pause();
       if (served_ % kBetweenPolls == 0 && !kernel.poll()) break;
@@ -68,7 +68,7 @@ class BodyClocks final : public Policy {
  private:
   void look_around_all() {
     views_.emplace(*kernel_);
-    views_->set_end(until_);
+    views_->set_end(seen_end());
     revision_ = kernel_->revision();
     found_.emplace(kernel_->body_count());
     queue_.reset(kernel_->body_count(), kernel_->time());
@@ -85,6 +85,9 @@ class BodyClocks final : public Policy {
 
   /// Of the run, as far as is known: a motion that fails may be started afresh before.
   double end() const { return std::min(until_, kernel_->reach()); }
+
+  /// As far as is looked: an instant that begins by the end is seen whole, as by a run that goes on.
+  double seen_end() const { return until_ + 4.0 * same_instant(until_); }
 
   /// A run may be resumed from between two instants only: within one, bodies may be a rounding past each
   /// other. Where nothing collides for long the clock goes on all the same, halfway to what is due next.
@@ -183,7 +186,8 @@ class BodyClocks final : public Policy {
       kernel_->note_stale();
       return;
     }
-    const double now = c.time, end = views_->end_of(k, c), to = std::min(beyond(end), std::max(now, until_));
+    const double now = c.time, end = views_->end_of(k, c),
+                 to = std::min(beyond(end), std::max(now, seen_end()));
     const auto found =
         kernel_->search(*kernel_->pair_of(k, c.other, c.image), c.clear, to, instalment(clock.undecided));
     const bool undecided = found && found->kind == Certificate::Kind::undecided;
@@ -229,8 +233,8 @@ class BodyClocks final : public Policy {
   std::vector<Certificate> contacts_until(double instant) {
     std::vector<Certificate> group;
     std::vector<int> asked, looked_again;
-    // A view may end with the run, in the midst of the instant: it is begun again by the next run only.
-    const double last = std::min(instant, end());
+    // a motion may fail in the midst of the instant
+    const double last = std::min(instant, kernel_->reach());
     while (queue_.time() <= last && kernel_->poll()) {
       const int k = queue_.body();
       const BodyClock& clock = views_->clock(k);
