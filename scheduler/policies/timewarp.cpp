@@ -60,8 +60,8 @@ class Timewarp final : public Policy {
       last = last_beginning(*kernel_, begin, end, end_);
       const auto next = take_earliest(*kernel_, agenda_, last);
       if (!next) break;
-      // between two instants, so that the next horizon finds `next` again
-      if (knows_enough(kernel_->collisions() - before) && next->time > instant_after(kernel_->time())) {
+      // where nothing touches for a while: the next horizon finds `next` again
+      if (knows_enough(kernel_->collisions() - before) && next->time > long_after(kernel_->time())) {
         last = kernel_->time();
         break;
       }
@@ -80,7 +80,7 @@ class Timewarp final : public Policy {
   bool knows_enough(std::uint64_t collisions) const {
     return collisions > kManyCollisions + 16 * static_cast<std::uint64_t>(kernel_->body_count());
   }
-  static double instant_after(double t) { return t + 2.0 * same_instant(t); }
+  static double long_after(double t) { return t + 4096.0 * same_instant(t); }
 
   // -- what is certain --
 
