@@ -36,7 +36,9 @@ struct Periods {
   /// b itself. @pre finite boxes along axes that repeat.
   template <class Visit>
   void overlaps(const Box& a, const Box& b, Visit&& visit) const {
-    const Span right = span(a, b, 0), up = span(a, b, 1);
+    const Span right = span(a, b, 0);
+    if (right.last < right.first) return;  // most are not near
+    const Span up = span(a, b, 1);
     for (int j = up.first; j <= up.last; ++j)
       for (int i = right.first; i <= right.last; ++i) visit(Image{i, j});
   }
@@ -50,11 +52,14 @@ struct Periods {
   /// Of images along one axis.
   Span span(const Box& a, const Box& b, int axis) const {
     const double least = a.low[axis] - b.high[axis], most = a.high[axis] - b.low[axis];
+    if (size[axis] > 0.0) return images(least / size[axis], most / size[axis]);
+    return {0, least <= 0.0 && most >= 0.0 ? 0 : -1};
+  }
+  static Span images(double first, double last) {
     const auto whole = [](double periods) {
       return static_cast<int>(std::clamp(periods, -kFarthest, kFarthest));
     };
-    if (size[axis] > 0.0) return {whole(std::ceil(least / size[axis])), whole(std::floor(most / size[axis]))};
-    return least <= 0.0 && most >= 0.0 ? Span{0, 0} : Span{0, -1};
+    return {whole(std::ceil(first)), whole(std::floor(last))};
   }
 };
 
