@@ -95,7 +95,8 @@ struct SearchScratch {
   Vec2 looked_from = Vec2::Zero();  ///< where the sample was when they were found, in their frame
   int flush_on = -1;                ///< the neighbour beside whose end a corner lay flush then; -1: none
   std::vector<double> safe_until;
-  std::vector<std::pair<bool, int>> sinking;  ///< samples, and whether they are a's, that may have met since last seen
+  /// Samples, and whether they are a's, that may have met since they were last looked at.
+  std::vector<std::pair<bool, int>> sinking;
 };
 
 /// First contact of a and b in [from, to]. @pre both motions cover [from, to], 0 <= from <= to.
