@@ -426,8 +426,7 @@ class PairSearch {
     const double speed = -f.rate;
     const double now = f.gap - view_.level(half, f.sample, site, path.q);
     const double begin = view_.start();
-    if (t_ <= begin && now <= 0.0)  // touching from the start, and approaching
-      return remember(half, f, t_);
+    if (t_ <= begin && now <= 0.0) return remember(half, f, t_);  // touching from the start, and approaching
     if (meets_tip(half, f, path, bounds)) return true;
     // Newton's last step, `guess`; by how much the bending of the gap can make it wrong, `bend` (over
     // the time `off` the rate changes by a part a off / speed of itself); and in what time the gap falls
@@ -445,9 +444,8 @@ class PairSearch {
     if (now <= 2.0 * rounding) {
       low = std::max(std::min(guess, t_), floor);
       for (double back = moment; gap(low) <= rounding; back *= 1.25) {
-        if (low <= floor) {    // it never was clear
-          if (gap(t_) <= 0.0)  // in each other from the start, and going deeper
-            return remember(half, f, t_);
+        if (low <= floor) {                                  // it never was clear
+          if (gap(t_) <= 0.0) return remember(half, f, t_);  // in each other from the start, and going deeper
           low = t_;
           break;
         }

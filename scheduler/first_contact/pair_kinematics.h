@@ -149,7 +149,9 @@ inline PathBounds path_bounds(const SamplePath& path, const RelativeBounds& b, d
 /// as that may turn.
 inline double acceleration_against(const Vec2& world, const RelativeBounds& b, const PathBounds& bounds,
                                    double window) {
-  const double along = world.dot(b.pull) - b.spin_t * window * b.pull.norm();
+  // asked first: 0 times a window without end is no number
+  const double turned = b.spin_t > 0.0 ? b.spin_t * window * b.pull.norm() : 0.0;
+  const double along = world.dot(b.pull) - turned;
   return std::min(bounds.acceleration, std::max(0.0, b.pull_radius - along) + bounds.turning);
 }
 

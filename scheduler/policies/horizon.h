@@ -17,7 +17,7 @@ namespace brink {
 void run_horizons(Kernel& kernel, double until,
                   const std::function<std::optional<std::size_t>(double end)>& run_one);
 
-/// How far a horizon to `end` looks [s]: what belongs to one instant is chosen from together, as by a policy that knows no
+/// How far a horizon, or a run, to `end` looks [s]: what belongs to one instant is chosen from together, as by a policy that knows no
 /// horizons, and as by a run that goes on; so an instant that begins by the end is seen whole.
 double seen_beyond(double end);
 

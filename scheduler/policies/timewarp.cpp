@@ -68,8 +68,8 @@ class Timewarp final : public Policy {
       if (!kernel_->record_frames(next->time)) return false;
       if (!make_certain(*next)) return false;
     }
-    kernel_
-        ->roll_back_all();  // what is ahead of an end that a failure has brought nearer, or in the last instant
+    // what is ahead of an end that a failure has brought nearer, or in the last instant
+    kernel_->roll_back_all();
     if (!kernel_->record_frames(last)) return false;
     kernel_->advance_all(last);
     return true;

@@ -21,6 +21,7 @@
 #include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/policies/body_clocks/found_contacts.h"
 #include "brink/scheduler/policies/body_clocks/views.h"
+#include "brink/scheduler/policies/horizon.h"
 #include "brink/scheduler/policies/order.h"
 #include "brink/scheduler/policies/policy.h"
 
@@ -86,8 +87,8 @@ class BodyClocks final : public Policy {
   /// Of the run, as far as is known: a motion that fails may be started afresh before.
   double end() const { return std::min(until_, kernel_->reach()); }
 
-  /// As far as is looked: an instant that begins by the end is seen whole, as by a run that goes on.
-  double seen_end() const { return until_ + 4.0 * same_instant(until_); }
+  /// As far as is looked.
+  double seen_end() const { return seen_beyond(until_); }
 
   /// A run may be resumed from between two instants only: within one, bodies may be a rounding past each
   /// other. Where nothing collides for long the clock goes on all the same, halfway to what is due next.
