@@ -40,13 +40,15 @@ class PairSearch {
         b_(b),
         from_(from),
         to_(to),
+        asked_from_(from),
         window_end_(to),
         limits_(limits),
         scratch_(scratch),
         work_(work) {
+    if (has_hardly_moved(from)) from_ = view_.start();
     const auto count_a = static_cast<std::size_t>(view_.half(true).count);
     scratch.sinking.clear();
-    scratch.safe_until.assign(count_a + static_cast<std::size_t>(view_.half(false).count), from);
+    scratch.safe_until.assign(count_a + static_cast<std::size_t>(view_.half(false).count), from_);
     safe_until_[0] = scratch.safe_until.data();
     safe_until_[1] = scratch.safe_until.data() + count_a;
   }
@@ -74,6 +76,21 @@ class PairSearch {
             c.time,
             {},
             doubt == PairView::Doubt::place ? PairAnswer::Why::place : PairAnswer::Why::speed};
+  }
+
+  /// True if no point of the pair has moved against the other by more than the touching distance since the motions
+  /// began. Then all is looked at from there: features that are so near are told apart by how they began.
+  bool has_hardly_moved(double t) const {
+    const double start = view_.start();
+    const Twist &of_a = a_.motion->start().twist, &of_b = b_.motion->start().twist;
+    const double reach_a = a_.outline().bounding_radius, reach_b = b_.outline().bounding_radius;
+    const double at_first = (of_a.velocity - of_b.velocity).norm() + std::abs(of_a.omega) * reach_a +
+                            std::abs(of_b.omega) * reach_b;
+    const auto is_little = [&](double speed) { return (t - start) * speed <= limits_.touch; };
+    if (!(t > start && is_little(at_first))) return false;  // a first look
+    if (!a_.motion->remembers(start) || !b_.motion->remembers(start)) return false;
+    const RelativeBounds since = bounds_over(start, t);
+    return is_little(since.speed + since.spin_s * reach_a + since.spin_t * reach_b);
   }
 
   /// Until when sample i of a half is sure not to touch.
@@ -118,12 +135,13 @@ class PairSearch {
     long_bounds_ = BothWays(bounds_over(from_, to_));
     short_window_ = to_ - from_;
     reached_ = from_;
-    for (int iteration = 0;; ++iteration) {
+    for (int iterations = 0;;) {
       const double t = least_safe_time();
       if (t >= to_) return look_back(to_);
       reached_ = t;
       // with a contact in hand little is left to look at
-      if (iteration >= limits_.max_iterations && (best_.sample < 0 || iteration >= kMostAfterContact)) {
+      if (t >= asked_from_ && ++iterations > limits_.max_iterations &&
+          (best_.sample < 0 || iterations > kMostAfterContact)) {
         capped_ = true;
         return look_back(t);
       }
@@ -544,8 +562,8 @@ class PairSearch {
     // The gap at which a sharp sample meets a wire (nominal_level()).
     const double before = std::max(0.5 * limits_.touch, 8.0 * rounding), speed = then.rate.norm();
     const auto clear = [&](double t) { return to_tip(t).q.norm() - before; };
-    const double low = nearest - 2.0 * before / speed;
-    if (low < std::max(view_.start(), from_)) return remember(half, f, t_);
+    const double low = std::max(nearest - 2.0 * before / speed, view_.start());
+    if (!(low < nearest && clear(low) > 0.0)) return remember(half, f, t_);
     return remember(half, f, last_clear_time(clear, low, nearest), 2.0 * rounding / speed);
   }
 
@@ -605,7 +623,7 @@ class PairSearch {
   PairView view_;
   const Mover &a_, &b_;
   double from_, to_;
-  double window_end_;  ///< to_ as it was given
+  double asked_from_, window_end_;  ///< from_ and to_ as they were given
   const SearchLimits& limits_;
   SearchScratch& scratch_;
   WorkCounters& work_;

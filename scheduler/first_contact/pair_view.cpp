@@ -285,9 +285,10 @@ bool PairView::belongs_to_a_neighbour(const Half& half, int i, int j, const Near
     const double further = n.distance - other_site.radius - distance;
     if (further > limits_.touch) continue;
     if (at_end && n.foot == Foot::interior) return true;
-    if (behind && further <= sliver && other.normal.dot(normal) < 0.0 &&
-        (further < 0.0 || side_of(other_site, n, q) > 0.0))
-      return true;
+    if (!behind || further > sliver) continue;
+    const bool in_front = side_of(other_site, n, q) > 0.0;
+    if (further < -sliver && !in_front) return true;  // it is less deep behind that
+    if (other.normal.dot(normal) < 0.0 && (further < 0.0 || in_front)) return true;
   }
   return false;
 }

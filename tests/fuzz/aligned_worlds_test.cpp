@@ -23,12 +23,14 @@ TEST(AlignedWorlds, ThatOnceFailedAreSound) {
       30,     34,  // right on the end of a wire
       989,         // flush in a corner of a wall and a block
       83,          // an instant that a horizon ends in
-      107,    771,    1371, 100109, 100645,
-      101105,                                // a corner that passes another, along it or pressed over it
-      409,                                   // the same, held by an island and hit where its step begins
-      471,    703,    808,  1189,   100053,  // in a slot of its own width
-      100606, 101446,                        // a search that is broken off within the touching distance
-      101411,                                // many collisions in one horizon of timewarp
+      107,    771,    1371,   100109, 100645,
+      101105,                                  // a corner that passes another, along it or pressed over it
+      409,                                     // the same, held by an island and hit where its step begins
+      471,    703,    808,    1189,   100053,  // in a slot of its own width
+      100606, 101446,                          // a search that is broken off within the touching distance
+      101411,                                  // many collisions in one horizon of timewarp
+      200405, 201903, 300023, 301063,  // stopped right after a contact, where corners come upon each other
+      200657,  // a corner less deep behind one side of another than behind its other side
   };
   aligned::Tally tally;
   for (const std::uint64_t seed : seeds) EXPECT_TRUE(aligned::run(seed, tally)) << "seed " << seed;
