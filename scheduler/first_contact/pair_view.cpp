@@ -93,14 +93,20 @@ Feature PairView::vertex_feature(const Half& half, int i, int j, const Nearest& 
       return f;
     }
   }
-  if (!site.solid && site.kind != SiteKind::point && site.radius + sample.radius == 0.0 &&
-      nearest.distance <= (at_end ? 0.0 : limits_.touch) &&
-      nearest.distance <= kStartsOnWire * nominal_level(now_, half, i, site, path.q) &&
-      f.normal.dot(
-          way_inside(half.samples_of(), sample, placed(half.s).frame, placed(half.t).frame, path.q)) < 0.0) {
+  const bool thin = !site.solid && site.kind != SiteKind::point && site.radius + sample.radius == 0.0;
+  if (thin && nearest.distance <= limits_.touch &&
+      nearest.distance <= kStartsOnWire * nominal_level(now_, half, i, site, path.q)) {
     // on the wire itself, or by less than a step beyond: it is on the side on which its body is
-    f.normal = -f.normal;
-    f.gap = -nearest.distance;
+    const Vec2 inside =
+        way_inside(half.samples_of(), sample, placed(half.s).frame, placed(half.t).frame, path.q);
+    const bool at_a = nearest.foot == Foot::start;
+    const Vec2 face = at_end ? face_at_end(site, at_a) : f.normal, off = path.q - nearest.point;
+    // at an end only where it is abreast of that, to rounding
+    if (!at_end || std::abs(cross(face, off)) <= 4.0 * gap_rounding(half, i, path.q)) {
+      const bool beyond = face.dot(inside) < 0.0;
+      f.normal = beyond ? Vec2(-face) : face;
+      f.gap = at_end ? f.normal.dot(off) : beyond ? -nearest.distance : nearest.distance;
+    }
   }
   const auto comes_to_end = [&] {
     const double rounding = 4.0 * gap_rounding(half, i, path.q);

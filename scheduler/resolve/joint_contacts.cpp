@@ -116,7 +116,11 @@ class Joint {
           turned(wedge_at(outline_s_, sample_.p),
                  [&](const Vec2& d) { return t_.frame.direction_to_local(s_.frame.direction_to_world(d)); }),
           wedge_at(outline_t_, vertex), wanted);
-    add(n.site, normal.value_or(wanted), n.gap);
+    // how far the tip is from the line that parts the two, not from a side that it goes along
+    if (normal)
+      add(n.site, *normal, normal->dot(path_.q - vertex));
+    else
+      add(n.site, wanted, n.gap);
   }
 
   void add(int j, const Vec2& normal, double gap) {
