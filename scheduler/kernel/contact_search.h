@@ -77,7 +77,9 @@ class ContactSearch {
   /// The two sides of a pair, the second where its image is.
   struct Sides;
   Mover mover(int owner, const BodyTrack& track) const {
-    return {indices_of_[owner], &track.motion, track.velocity_rounding};
+    // an island keeps gaps to the tolerance
+    const double place_error = track.component == BodyTrack::kHeld ? limits_.tolerance : 0.0;
+    return {indices_of_[owner], &track.motion, track.velocity_rounding, place_error};
   }
 
   const World* world_;

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "brink/core/base/disjoint_sets.h"
+#include "brink/core/base/limits.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
+#include "brink/scheduler/first_contact/pair_kinematics.h"
 
 namespace brink {
 
@@ -364,11 +366,30 @@ bool Islands::step(std::vector<int>& changed) {
   return begin_step({members.begin(), members.end()}, std::numeric_limits<double>::infinity(), changed, true);
 }
 
-bool Islands::collided(const PairKey& pair, std::vector<int>& changed) {
+/// How long the sample goes on before it comes to an end of the straight site, as the two move now [s].
+double Islands::slides_off_in(const PairKey& pair, const FeatureContact& f) const {
+  const double now = run_->time();
+  ExtendedState a = trajectories_->state_now(pair.body), b = search_->other_state(pair, now);
+  if (!pair.with_site()) b.twist = trajectories_->state_now(pair.other_body).twist;
+  const Outline &of_a = search_->outline_of(pair.body),
+                &of_b = search_->outline_of(search_->other_owner(pair));
+  const Vec2 base = b.position.cast<double>();
+  const Placed at_a(of_a, a.seen_from(base)), at_b(of_b, b.seen_from(base));
+  const Sample& sample = (f.sample_on_a ? of_a : of_b).samples[f.sample];
+  const Site& site = (f.sample_on_a ? of_b : of_a).sites[f.site];
+  if (site.kind != SiteKind::segment) return kForever;
+  const SamplePath path = sample_path(f.sample_on_a ? at_a : at_b, f.sample_on_a ? at_b : at_a, sample.p);
+  const Vec2 d = (site.b - site.a).normalized();
+  const double speed = d.dot(path.rate), left = speed > 0.0 ? d.dot(site.b - path.q) : d.dot(path.q - site.a);
+  return speed != 0.0 && left >= 0.0 ? left / std::abs(speed) + same_instant(now) : kForever;
+}
+
+bool Islands::collided(const PairKey& pair, const FeatureContact& found, bool pushed,
+                       std::vector<int>& changed) {
   std::set<int> members;
   gather(pair.body, members);
   if (!pair.with_site()) gather(pair.other_body, members);
-  return begin_step(members, std::numeric_limits<double>::infinity(), changed);
+  return begin_step(members, pushed || found.seen ? kForever : slides_off_in(pair, found), changed);
 }
 
 bool Islands::disturbed(int body, std::vector<int>& changed) {

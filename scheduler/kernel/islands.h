@@ -58,8 +58,9 @@ class Islands {
   bool begin(const std::vector<std::pair<PairKey, FeatureContact>>& touching, std::vector<int>& changed);
   /// The island whose step ends now, and first, takes its next.
   bool step(std::vector<int>& changed);
-  /// A collision has been resolved, of which one side at least is a member.
-  bool collided(const PairKey& pair, std::vector<int>& changed);
+  /// A collision has been resolved, of which one side at least is a member; pushed: by an impulse. One without is what
+  /// a step makes of two features that slide off each other within it, and lets go: the next one holds them until then.
+  bool collided(const PairKey& pair, const FeatureContact& found, bool pushed, std::vector<int>& changed);
   /// A body has been given another state.
   bool disturbed(int body, std::vector<int>& changed);
 
@@ -75,6 +76,7 @@ class Islands {
 
  private:
   void gather(int body, std::set<int>& members) const;
+  double slides_off_in(const PairKey& pair, const FeatureContact& f) const;
   IslandMotion set_out(std::set<int>& members, IslandPace& pace);
   bool follow_sites(double now, double h);
   bool begin_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time = false);

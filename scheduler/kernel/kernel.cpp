@@ -275,7 +275,7 @@ bool Kernel::go_on_in_islands(const Outcome& o, std::vector<int>& changed) {
   const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_islands);
   // An island steps from the present states of its members, and takes in who comes near.
   roll_back_all();
-  return parts_.islands.collided(o.pair, changed);
+  return parts_.islands.collided(o.pair, o.contact, o.impulse_n > 0.0, changed);
 }
 
 bool Kernel::step_island(std::vector<int>& changed) {
