@@ -30,7 +30,8 @@ struct Mover {
   const Motion* motion = nullptr;
   /// Bound on the rounding error of the velocities of this body's points, left by the last resolve [m/s].
   double velocity_rounding = 0.0;
-  double place_error = 0.0;  ///< bound on what its place is off by where an island's steps hold it [m]
+  /// Of two such the gaps are kept to the tolerance, no better: what an island's steps hold, and sites.
+  bool held = false;
 
   const Outline& outline() const { return index->outline(); }
 };

@@ -246,7 +246,7 @@ bool PairView::passes_tip(const Half& half, const Feature& f) const {
     return rate < -noise || (rate <= noise && u.dot(pull) < -none);
   };
   const double touch = std::max(limits_.touch, 8.0 * gap_rounding(half, f.sample, path.q));
-  return is_parted(of_sample, of_site, way, touch + a_.place_error + b_.place_error, goes_back);
+  return is_parted(of_sample, of_site, way, a_.held && b_.held ? limits_.tolerance : touch, goes_back);
 }
 
 bool PairView::pokes_through(const Half& half, int i, const Site& site, const Nearest& nearest,

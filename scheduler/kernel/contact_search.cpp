@@ -101,7 +101,7 @@ Mover ContactSearch::mover(int owner) const {
   const int n = trajectories_->body_count();
   if (owner < n) return mover(owner, trajectories_->body(owner));
   // no resolve has computed a site's velocity
-  return {indices_of_[owner], &trajectories_->site(owner - n).motion()};
+  return {indices_of_[owner], &trajectories_->site(owner - n).motion(), 0.0, true};
 }
 
 std::optional<Certificate> ContactSearch::search(const PairKey& pair, const BodyTrack& body,

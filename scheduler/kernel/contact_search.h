@@ -77,9 +77,7 @@ class ContactSearch {
   /// The two sides of a pair, the second where its image is.
   struct Sides;
   Mover mover(int owner, const BodyTrack& track) const {
-    // an island keeps gaps to the tolerance
-    const double place_error = track.component == BodyTrack::kHeld ? limits_.tolerance : 0.0;
-    return {indices_of_[owner], &track.motion, track.velocity_rounding, place_error};
+    return {indices_of_[owner], &track.motion, track.velocity_rounding, track.component == BodyTrack::kHeld};
   }
 
   const World* world_;

@@ -58,13 +58,15 @@ class Timewarp final : public Policy {
       run_ahead();
       if (kernel_->halt()) return false;
       last = last_beginning(*kernel_, begin, end, end_);
-      const auto next = take_earliest(*kernel_, agenda_, last);
-      if (!next) break;
-      // where nothing touches for a while: the next horizon finds `next` again
-      if (knows_enough(kernel_->collisions() - before) && next->time > long_after(kernel_->time())) {
+      // Where nothing touches for a while the next horizon finds again what is left. Asked before anything is taken, as
+      // an order may draw what it takes.
+      if (knows_enough(kernel_->collisions() - before) && !agenda_.empty() &&
+          std::min(agenda_.earliest().time, kernel_->next_step()) > long_after(kernel_->time())) {
         last = kernel_->time();
         break;
       }
+      const auto next = take_earliest(*kernel_, agenda_, last);
+      if (!next) break;
       if (!kernel_->record_frames(next->time)) return false;
       if (!make_certain(*next)) return false;
     }
