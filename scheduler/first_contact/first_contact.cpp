@@ -487,10 +487,10 @@ class PairSearch {
       beyond_by = by;
       if (beyond_by > rounding) break;
     }
-    if (beyond_by <=
-        rounding) {  // a dip of less than a rounding: its deepest place says what it is, not who looked where
+    // a dip of less than a rounding is none, whoever looked where
+    if (beyond_by <= rounding) {
       const double deepest = deepest_after(half, f, later, last);
-      if (deepest > low) high = gap(deepest) <= 0.0 ? deepest : low;
+      if (deepest > low) high = gap(deepest) < -rounding ? deepest : low;
     }
     if (high <= low) return false;  // passes by
     const double t = last_clear_time(gap, low, high);

@@ -30,6 +30,8 @@ TEST(AlignedWorlds, ThatOnceFailedAreSound) {
       100606, 101446,                          // a search that is broken off within the touching distance
       101411,                                  // many collisions in one horizon of timewarp
       200405, 201903, 300023, 301063,  // stopped right after a contact, where corners come upon each other
+      400091, 404808, 504959,          // a disc in a slot of its own width
+      402099, 501011, 502103,          // many collisions under timewarp, drawn by chance
       201361, 301146, 301259,          // sliding off an end within an island's step
       201589,                          // beside the end of a wire by a rounding
       301343,                          // a corner in another, flush on one side
