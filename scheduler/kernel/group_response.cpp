@@ -281,14 +281,30 @@ class GroupResponse::Group {
     touched_[k] = true;
   }
 
+  /// What two solids are pushed apart by may be more than the level that is left before a wire: nobody who touches one
+  /// is pushed towards it.
   void push_apart() {
     ways_.assign(bodies_.size(), RealVec::Zero());
-    for (const std::size_t k : events_) {
-      const auto& [pair, contact] = group_[k];
-      const auto [way, way_of_other] = parts_.response_.push_apart(pair, contact, contacts_[k].normal);
-      ways_[index_of(pair.body)] += way;
-      if (!pair.with_site()) ways_[index_of(pair.other_body)] += way_of_other;
+    const auto at_wire = [&](std::size_t k) { return group_[k].contact.nominal() > 0.0; };
+    for (const std::size_t k : events_)
+      if (!at_wire(k)) push_apart(k);
+    for (std::size_t k = 0; k < group_.size(); ++k) {
+      if (!at_wire(k)) continue;
+      const PairKey& pair = group_[k].pair;
+      RealVec none = RealVec::Zero();
+      RealVec &way = ways_[index_of(pair.body)],
+              &of_other = pair.with_site() ? none : ways_[index_of(pair.other_body)];
+      if (contacts_[k].normal.dot(way - of_other) < 0) way = of_other = RealVec::Zero();
     }
+    for (const std::size_t k : events_)
+      if (at_wire(k)) push_apart(k);
+  }
+
+  void push_apart(std::size_t k) {
+    const auto& [pair, contact] = group_[k];
+    const auto [way, way_of_other] = parts_.response_.push_apart(pair, contact, contacts_[k].normal);
+    ways_[index_of(pair.body)] += way;
+    if (!pair.with_site()) ways_[index_of(pair.other_body)] += way_of_other;
   }
 
   bool restart(std::vector<int>& changed) {
