@@ -68,7 +68,11 @@ std::optional<Certificate> take_earliest(Kernel& kernel, Agenda& agenda, double 
   kernel.note_queue_operations(agenda.take_operations());
   if (group.empty() && std::isfinite(step) && step <= last) return end_of_step(kernel, step);
   if (group.empty()) return std::nullopt;
-  const std::size_t chosen = first_by_order(kernel, group);
+  // a search that stopped is gone on with first: the instant may have more contacts, and only of all is one chosen, or drawn
+  const auto open = std::find_if(group.begin(), group.end(),
+                                 [](const Certificate& c) { return c.kind == Certificate::Kind::undecided; });
+  const std::size_t chosen =
+      open != group.end() ? static_cast<std::size_t>(open - group.begin()) : first_by_order(kernel, group);
   const Certificate first = at_its_time(kernel, group[chosen], group.front().time);
   // The others wait: the response may make them stale, or leave them as they are.
   for (std::size_t i = 0; i < group.size(); ++i)
