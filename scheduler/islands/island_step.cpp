@@ -201,6 +201,21 @@ double residual(const IslandStep& step, const StepResult& result, double h) {
   return most > 0.0 ? beyond / most : 0.0;
 }
 
+/// The step on which nobody presses, which is the answer if no gap is missed, for what the solver does not come to: contacts that
+/// part far slower than the step is long.
+StepOutcome without_loads(IslandStep& step, double h, double tolerance, const GapAlong& gap,
+                          StepOutcome outcome) {
+  std::vector<Vec3> velocity = step.velocity;
+  for (std::size_t i = 0; i < step.mass.size(); ++i)
+    velocity[i] += h * step.force[i].cwiseQuotient(step.mass[i]);
+  for (std::size_t k = 0; k < step.contacts.size(); ++k)
+    if (missed(k, h, velocity, gap).most > 0.1 * tolerance) return outcome;
+  step.velocity = std::move(velocity);
+  for (IslandContact& c : step.contacts) c.normal_force = c.tangential_force = 0.0;
+  outcome.solved = true;
+  return outcome;
+}
+
 }  // namespace
 
 StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap) {
@@ -216,7 +231,7 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
   for (int again = 0; again < kCorrections && !outcome.solved;) {
     StepProblem p = problem_of(step, h, parts);
     StepResult result = with_friction(solver, p, step, parts, outcome.factorisations);
-    if (!(result.residual <= kResidual)) return outcome;
+    if (!(result.residual <= kResidual)) return without_loads(step, h, tolerance, gap, outcome);
     // those that are missed take part from now on: each comes once
     const auto met = std::stable_partition(waiting.begin(), waiting.end(), [&](std::size_t k) {
       return !(missed(k, h, result.velocity, gap).most > 0.1 * tolerance);
@@ -237,7 +252,7 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
     double of = 0.0;
     const double won_here = won(step, result, parts, h, tolerance, of);
     // The caller tries a shorter step: by what faces that turn are missed is of second order in h.
-    if (won_here > kWonOf * of) return outcome;
+    if (won_here > kWonOf * of) return without_loads(step, h, tolerance, gap, outcome);
     result.loads = of_all(result.loads, parts, step.contacts.size());
     const bool driven = std::any_of(parts.begin(), parts.end(),
                                     [&](const Part& part) { return step.contacts[part.contact].driven; });

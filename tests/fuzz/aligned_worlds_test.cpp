@@ -32,6 +32,9 @@ TEST(AlignedWorlds, ThatOnceFailedAreSound) {
       200405, 201903, 300023, 301063,  // stopped right after a contact, where corners come upon each other
       400091, 404808, 504959,          // a disc in a slot of its own width
       402099, 501011, 502103,          // many collisions under timewarp, drawn by chance
+      402536,                          // pushed towards a wire
+      604314,                          // a search that stopped, and an order that draws
+      601755, 301235, 602346,          // without forces, parting far slower than an island steps
       201361, 301146, 301259,          // sliding off an end within an island's step
       201589,                          // beside the end of a wire by a rounding
       301343,                          // a corner in another, flush on one side
