@@ -487,10 +487,10 @@ class PairSearch {
       beyond_by = by;
       if (beyond_by > rounding) break;
     }
-    // a dip of less than a rounding is none, whoever looked where
+    // a dip of less than a rounding is none, whoever looked where; what falls on is looked at again from nearer
     if (beyond_by <= rounding) {
       const double deepest = deepest_after(half, f, later, last);
-      if (deepest > low) high = gap(deepest) < -rounding ? deepest : low;
+      high = deepest > low && gap(deepest) < -rounding ? deepest : low;
     }
     if (high <= low) return false;  // passes by
     const double t = last_clear_time(gap, low, high);
