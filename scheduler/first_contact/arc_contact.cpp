@@ -62,8 +62,12 @@ ArcStep against_segment(const Site& arc, const Site& site, const SamplePath& pat
     // The pair is not active for one or more of three reasons, and cannot come to be while any of them
     // lasts: so the longest of their times counts. Directions turn against each other at `spin` at most.
     const double spin = relative.spin_s + relative.spin_t;
-    // The foot has to come onto the segment first.
-    if (beyond > 0.0) step.safe = std::max(step.safe, bounds.speed > 0.0 ? beyond / bounds.speed : kForever);
+    // The foot has to come onto the segment first: how far it is from its end bends as the path alone.
+    if (beyond > 0.0) {
+      const double leaves = (along < 0.0 ? -path.rate.dot(d) : path.rate.dot(d)) / length;
+      step.safe = std::max({step.safe, bounds.speed > 0.0 ? beyond / bounds.speed : kForever,
+                            safe_step(beyond, leaves, bounds.acceleration)});
+    }
     if (outside > 0.0) {
       // a wire may come to be touched from its other side, in the opposite direction
       const double other = site.solid ? outside : angle_outside(arc, to_s(s, t, step.normal));
