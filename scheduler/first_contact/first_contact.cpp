@@ -150,7 +150,9 @@ class PairSearch {
       next_ = next_after(t);
       view_.place(t);
       short_end_ = std::min(to_, t + short_window_);
-      short_bounds_ = BothWays(bounds_over(t, short_end_));
+      // at first both windows are one
+      short_bounds_ =
+          t == from_ && short_end_ == window_end_ ? long_bounds_ : BothWays(bounds_over(t, short_end_));
       // Who is due soon is looked at now: the outlines are placed once for all of these.
       const double due = t + 0.25 * std::min(short_window_, to_ - t);
       least_ = kForever;

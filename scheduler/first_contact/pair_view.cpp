@@ -425,7 +425,7 @@ double PairView::sink_at_start() const {
   // One sink for the pair, whichever of its features is met: start_sink() is given the least favourable of
   // each number.
   PairView then = *this;
-  then.place(start());
+  if (then.now_.time != start()) then.place(start());
   std::optional<RelativeBounds> at_once;  // most pairs have nothing near: theirs are not asked for
   double gap = kForever, rate = kForever, noise = 0.0, bend = 0.0, step = 0.0;
   bool now = false;

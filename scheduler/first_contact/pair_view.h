@@ -154,12 +154,12 @@ class PairView {
   /// world's is too far away for doubles.
   struct Placing {
     Placed a, b;
-    double time = 0.0;                                ///< [s]
-    Vec2 base = Vec2::Zero();                         ///< world [m]
-    double tick = 0.0;                                ///< from `time` to the next double [s]
-    double place_noise = 0.0;                         ///< rounding of one place against the other [m]
-    double angle_noise_a = 0.0, angle_noise_b = 0.0;  ///< [rad]
-    double turn_noise_a = 0.0, turn_noise_b = 0.0;    ///< likewise, with those of sines and of turning
+    double time = std::numeric_limits<double>::quiet_NaN();  ///< [s]; no number: not placed yet
+    Vec2 base = Vec2::Zero();                                ///< world [m]
+    double tick = 0.0;                                       ///< from `time` to the next double [s]
+    double place_noise = 0.0;                                ///< rounding of one place against the other [m]
+    double angle_noise_a = 0.0, angle_noise_b = 0.0;         ///< [rad]
+    double turn_noise_a = 0.0, turn_noise_b = 0.0;           ///< likewise, with those of sines and of turning
     /// Seen in extended precision, what is seen in double may be rounded by [m]: wires are met at a level above that, or
     /// what is met here would have no side there.
     double in_double = 0.0;

@@ -161,6 +161,8 @@ double ContactSearch::gap(const PairKey& pair, double t) {
 }
 
 std::optional<Contact> ContactSearch::crossing(const PairKey& pair, double t) const {
+  // the gap of a disc's one sample is the whole distance
+  if (outline_of(pair.body).is_point() || outline_of(other_owner(pair)).is_point()) return std::nullopt;
   const ExtendedState at = trajectories_->body(pair.body).motion.extended_state(t),
                       other = other_state(pair, t);
   const Vec2 base = other.position.cast<double>();  // far away, nothing of what is between them is lost
