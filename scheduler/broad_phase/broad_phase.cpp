@@ -23,11 +23,15 @@ struct Grid {
 
   std::int64_t column(double x) const { return clamp((x - low.x()) / cell, columns); }
   std::int64_t row(double y) const { return clamp((y - low.y()) / cell, rows); }
+  /// Compared as doubles, before the cast: the quotient of a place far outside the window may be more than
+  /// any integer holds.
   static std::int64_t clamp(double v, std::int64_t n) {
     return v <= 0.0 ? 0 : v >= static_cast<double>(n) ? n - 1 : static_cast<std::int64_t>(v);
   }
 };
 
+/// Of the boxes' longer sides [m]; infinite ones do not count. 1 where there is nothing to go by: then any
+/// cell will do. The median, as a few large boxes must not make the cells large.
 double median_extent(const std::vector<Box>& boxes) {
   std::vector<double> extents;
   for (const Box& b : boxes)
@@ -38,6 +42,7 @@ double median_extent(const std::vector<Box>& boxes) {
   return *middle > 0.0 ? *middle : 1.0;
 }
 
+/// Over the finite boxes; what is infinite is large (Sorted), and needs no cell.
 Grid make_grid(const std::vector<Box>& boxes) {
   Box all;
   for (const Box& b : boxes)
@@ -76,6 +81,7 @@ struct Entry {
 };
 
 /// Boxes by the cells that they lie in, and those that lie in too many.
+/// Every box is in one of the two: in `entries`, once for each of its cells, or in `large`.
 struct Sorted {
   std::vector<Entry> entries;  ///< ascending
   std::vector<int> large;
@@ -97,6 +103,7 @@ struct Sorted {
   }
 
  private:
+  /// At most (kMostCellsAcross + 1)^2 entries; a box over the window's edge is in the outermost cells.
   void add(int i, const Box& box, const Grid& grid) {
     for (auto r = grid.row(box.low.y()); r <= grid.row(box.high.y()); ++r)
       for (auto c = grid.column(box.low.x()); c <= grid.column(box.high.x()); ++c)
@@ -124,12 +131,14 @@ bool each_with_large(const std::vector<Box>& boxes, const Sorted& sorted,
                      const std::function<bool(int, int)>& visit) {
   for (const int i : sorted.large)
     for (int j = 0; j < static_cast<int>(boxes.size()); ++j) {
+      // two large boxes meet from both: named by the lower one
       if (j == i || (sorted.is_large[j] && j < i) || !boxes[i].overlaps(boxes[j])) continue;
       if (!visit(std::min(i, j), std::max(i, j))) return false;
     }
   return true;
 }
 
+/// Every two of them: for a few boxes quicker than cells.
 bool each_of_few(const std::vector<Box>& boxes, const std::function<bool(int, int)>& visit) {
   for (int i = 0; i < static_cast<int>(boxes.size()); ++i)
     for (int j = i + 1; j < static_cast<int>(boxes.size()); ++j)
@@ -141,6 +150,7 @@ bool each_of_few(const std::vector<Box>& boxes, const std::function<bool(int, in
 
 Box swept_box(const Outline& outline, const Motion& motion, double from, double to) {
   if (outline.container) {
+    // a container is solid without end: its box leaves nobody out
     constexpr double everywhere = std::numeric_limits<double>::infinity();
     return {{-everywhere, -everywhere}, {everywhere, everywhere}};
   }
@@ -151,6 +161,7 @@ Box swept_box(const Outline& outline, const Motion& motion, double from, double 
   // A path leaves its chord by e(t) with e = 0 at both ends and |e''| <= a, so |e| <= a t (T - t) / 2,
   // which is a T^2 / 8 at most.
   const double bulge = (b.acceleration.norm() + b.acceleration_radius) * (to - from) * (to - from) / 8.0;
+  // rounding goes with the coordinates, which may be far larger than the box
   const double scale = box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
   return box.grown(outline.bounding_radius + bulge + kBoxMargin * (scale + outline.bounding_radius));
 }

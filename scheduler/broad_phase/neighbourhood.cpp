@@ -11,6 +11,7 @@ constexpr int kFewBodies = 6;      ///< bodies that need no cells
 constexpr double kLevelRatio = 4;  ///< of radii, from level to level
 constexpr double kTopLevel = 24;   ///< holds all that is larger still
 
+/// Of the bodies [m]; 0 where there are none.
 double median_radius(std::span<const Flight> flights) {
   if (flights.empty()) return 0.0;
   std::vector<double> radii;
@@ -44,6 +45,8 @@ Neighbourhood::Neighbourhood(std::span<Flight> flights, std::span<BodyClock> clo
   }
 }
 
+/// Three passes: the level of every body, with each level's largest radius and its number; the cells of each
+/// level; the sites of each cell. Cells are sized by what the level holds, not by its class.
 void Neighbourhood::make_levels(std::span<const Vec2> places, bool by_place) {
   Box all;
   for (const Vec2& p : places) all.add(p);
@@ -66,6 +69,7 @@ void Neighbourhood::make_levels(std::span<const Vec2> places, bool by_place) {
     const double tightest = 2.0 * level.radius * (1.0 + 8.0 * kFlightMargin) / (1.0 - 2.0 * CellGrid::kSlack);
     Vec2 extent = all.extent().cwiseMax(tightest);
     for (int axis = 0; axis < 2; ++axis)
+      // where the plane repeats bodies are spread over the period, wherever their unwrapped places are
       if (periods_.size[axis] > 0.0) extent[axis] = periods_.size[axis];
     const double roomy =
         std::sqrt(extent.x() * extent.y() / static_cast<double>(std::max<std::size_t>(counts[m], 1)));
@@ -111,6 +115,7 @@ void Neighbourhood::take_out(int k) {
     bodies.more = flights_[bodies.more].next;
 }
 
+/// At hand while there is room, else at the head of the list.
 void Neighbourhood::put_in(int k) {
   Level& level = levels_[clocks_[k].level];
   CellBodies& bodies = level.grid.bodies(flights_[k].cell);

@@ -6,6 +6,8 @@
 
 namespace brink {
 
+/// True if a body of the level with its centre in the box may touch the outline. It may say so of a box that
+/// is out of reach by a part of its diagonal, never the reverse.
 bool SiteLists::reaches(const Outline& outline, const Box& box) const {
   // No place of the box is farther than `half` from its centre, and a distance changes by no more than
   // the way. The outermost cells have no end, nor has an only one: everything is in reach of them.
@@ -16,6 +18,7 @@ bool SiteLists::reaches(const Outline& outline, const Box& box) const {
   return std::abs(gap_by_brute_force(outline, box.center())) <= (half + reach_) * (1.0 + kFlightMargin);
 }
 
+/// Adds the site, or each of its images, that is in reach of the box.
 void SiteLists::find(const Placed& placed, const Box& box, std::vector<SiteImage>& found) const {
   if (!periods_.any()) {
     if (reaches(placed.outline, box)) found.push_back({placed.site, {}});
@@ -23,6 +26,7 @@ void SiteLists::find(const Placed& placed, const Box& box, std::vector<SiteImage
   }
   periods_.overlaps(box, placed.outline.bounds.grown(reach_), [&](const Image& image) {
     const Vec2 shift = periods_.shift(image);
+    // the box is moved to the outline, not the outline to its image: one outline serves for all images
     if (reaches(placed.outline, {box.low - shift, box.high - shift})) found.push_back({placed.site, image});
   });
 }
@@ -31,6 +35,7 @@ const std::vector<SiteImage>& SiteLists::of(const Cell& cell) {
   const Cell home = grid_->home(cell);
   const auto key = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(home.column)) << 32) |
                    static_cast<std::uint32_t>(home.row);
+  // the map never moves its lists: clocks of bodies keep pointers to them (BodyClock::sites)
   const auto [it, is_new] = lists_.try_emplace(key);
   if (is_new) {
     const Box box = grid_->box_of(home);

@@ -32,7 +32,9 @@ class ClassicBackup final : public ClassicPolicy {
       if (kernel.halt()) return false;
       kernel.advance_all(end);
       if (!any_approaches(sight().look(clear, end))) break;
+      // With no backup left the touch is answered at the step's end, where overlaps are pushed apart too.
       const double touch = backups > 0 ? first_touch(clear, end) : end;
+      // a frame at the touch itself shows what comes of it
       if (!kernel.record_frames(std::nextafter(touch, 0.0))) return false;
       kernel.back_up_all(touch);
       const DepthSight seen = sight().look(clear, touch);

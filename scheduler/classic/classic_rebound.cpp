@@ -36,6 +36,7 @@ std::vector<DepthContact> approaching_patches(const KernelView& kernel,
   };
   std::map<Patch, Sum> patches;
   for (const DepthContact& c : contacts) {
+    // by the velocities of now: what was seen as approaching may have been turned by the last rebound
     if (!(closing_now(kernel, c) > settled)) continue;
     Sum& sum = patches[patch_of(c)];
     FeatureContact& joined = sum.joined.contact;
@@ -59,6 +60,7 @@ std::vector<DepthContact> approaching_patches(const KernelView& kernel,
   return all;
 }
 
+/// Of patches in the order of their keys; an order that names none takes the first. @pre not empty.
 const DepthContact& first_by_order(Kernel& kernel, const std::vector<DepthContact>& all) {
   const Order order = kernel.order();
   const auto least = [&](auto key) -> const DepthContact& {

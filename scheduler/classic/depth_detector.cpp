@@ -20,6 +20,7 @@ std::vector<double> bounding_radii(const World& world) {
   return radii;
 }
 
+/// A fault of the sampling is told with the body's name.
 std::vector<Particle> particles_of(const Body& body) {
   try {
     return make_particles(*body.outline, body.sampling);
@@ -86,14 +87,17 @@ const DepthSight& DepthDetector::look(std::span<const OwnerMoment> owners, doubl
   std::vector<PlacedOutline> scene;
   for (int k = 0; k < static_cast<int>(owners.size()); ++k)
     scene.push_back({&outline_of(k), owners[k].now.pose, static_cast<std::uint32_t>(k)});
+  // truncated or not, contacts are the same: sites beyond the band touch nobody
   pictures_.begin(std::move(scene), truncated_ ? band : std::numeric_limits<double>::infinity());
   for (int k = 0; k < static_cast<int>(particles_.size()); ++k) {
     std::vector<int> near;
     if (prune_) near = near_owners(k, owners, band);
+    // an empty list would mean everybody to open()
     if (prune_ && near.empty()) continue;
     pictures_.open(k, near);
     look_from(k, owners);
   }
+  // found body by body: a pair may come from its second body first
   std::stable_sort(sight_.overlaps.begin(), sight_.overlaps.end(),
                    [](const DepthOverlap& a, const DepthOverlap& b) { return a.pair < b.pair; });
   return sight_;
@@ -112,6 +116,7 @@ struct DepthDetector::Reader {
     return detector.outline_of(static_cast<int>(value.owner)).sites[value.site];
   }
 
+  /// Of what the pixel names, from a place in the world [m]; infinite where it sees nobody.
   double gap(const PixelValue& value, const Vec2& p) const {
     if (value.owner == FieldImage::kNone) return std::numeric_limits<double>::infinity();
     return signed_gap(value, site_of(value), Frame(owners[value.owner].now.pose).to_local(p));
@@ -132,6 +137,7 @@ struct DepthDetector::Reader {
     return difference.allFinite() ? Vec2(difference / (2.0 * pixel)) : Vec2(Vec2::Zero());
   }
 
+  /// What particle `index` makes of its pixel, `depth` being the gap of its centre [m].
   DepthContact contact(int index, const PixelValue& value, double depth) const {
     const Particle& particle = detector.particles_[body][index];
     const OwnerMoment& other = owners[value.owner];
@@ -163,6 +169,7 @@ struct DepthDetector::Reader {
   }
 };
 
+/// One read of the picture for all particles of the body; slopes are read besides, where an arc touches.
 void DepthDetector::look_from(int body, std::span<const OwnerMoment> owners) {
   const Reader reader{*this, body, owners};
   const std::vector<Particle>& particles = particles_[body];
@@ -181,6 +188,7 @@ void DepthDetector::look_from(int body, std::span<const OwnerMoment> owners) {
   }
 }
 
+/// Deepest particle and area by pair. `on_a`: the particle is of the pair's first body.
 void DepthDetector::note_overlap(const DepthContact& contact, double area, bool on_a) {
   auto& all = sight_.overlaps;
   const auto found =

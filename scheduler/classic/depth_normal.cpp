@@ -26,6 +26,7 @@ DepthNormal normal_of(const Site& site, const ParticlePlace& particle,
     // the picture's own slope may still point through a wire that runs between the pixels it was taken from
     if (slope.norm() > kLeastSlope && slope.dot(answer.normal) > 0.0) answer.normal = slope.normalized();
   }
+  // a solid's inside tells the side; what approaches is met from where it is
   if (site.solid || particle.velocity.dot(answer.normal) <= 0.0) return answer;
   // It recedes: on its own side it has bounced, on the other it is going through.
   if (side_of_line(site, particle.now) * side_of_line(site, particle.before) < 0.0) {

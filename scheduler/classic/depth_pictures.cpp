@@ -24,6 +24,7 @@ double DepthPictures::pixel(int body) const {
   return options_.passes == "each" ? pixels_[body] : common_pixel_;
 }
 
+/// A square about the body's bounding circle, with its rim [m, world].
 Box DepthPictures::window_of(int body) const {
   Box box;
   box.add(scene_[body].pose.position);
@@ -37,6 +38,8 @@ void DepthPictures::begin(std::vector<PlacedOutline> scene, double band) {
   if (options_.passes != "each") draw_layers();
 }
 
+/// One grid over the windows of all bodies, of square pixels: of the finest body's, or as coarse as it takes
+/// to fit kMostPixels a side.
 void DepthPictures::draw_layers() {
   Box all;
   for (std::size_t k = 0; k < radii_.size(); ++k) all.add(window_of(static_cast<int>(k)));
@@ -48,6 +51,7 @@ void DepthPictures::draw_layers() {
   };
   const int width = pixels(all.extent().x()), height = pixels(all.extent().y());
   Box window = all;
+  // a whole number of pixels, so that none is stretched
   window.high = all.low + common_pixel_ * Vec2(width, height);
   layers_ = renderer_.render_two_layers(window, width, height, scene_, band_);
 }
@@ -55,6 +59,7 @@ void DepthPictures::draw_layers() {
 void DepthPictures::open(int body, const std::vector<int>& near) {
   body_ = body;
   if (options_.passes != "each") return;
+  // left out by a flag: the others keep their numbers, and so their bits
   if (!near.empty()) {
     for (PlacedOutline& item : scene_) item.drawn = false;
     for (const int owner : near) scene_[owner].drawn = true;
@@ -65,6 +70,7 @@ void DepthPictures::open(int body, const std::vector<int>& near) {
   renderer_.draw(window, across, across, scene_, static_cast<std::uint32_t>(body), band_);
 }
 
+/// Two layers alone; a point beyond the window reads the pixel at its edge.
 PixelValue DepthPictures::value_at(const Vec2& p) const {
   const FieldImage& first = layers_[0];
   const Vec2 at = (p - first.window.low) / first.pixel;
@@ -77,6 +83,7 @@ PixelValue DepthPictures::value_at(const Vec2& p) const {
 }
 
 Vec2 DepthPictures::pixel_center(const Vec2& p) const {
+  // the corner from which the pixels of this picture are counted
   const Vec2 low = options_.passes == "each" ? window_of(body_).low : layers_[0].window.low;
   const Vec2 at = ((p - low) / pixel(body_)).array().floor() + 0.5;
   return low + pixel(body_) * at;

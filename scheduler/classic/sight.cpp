@@ -16,6 +16,7 @@ const DepthSight& Sight::look(double from, double t) {
     const double before = std::clamp(from, std::min(motion.begin(), t), t);
     owners.push_back({motion.state(t), motion.state(before)});
     const Outline& outline = kernel_.outline_of(k);
+    // the farthest point from the centre, which turning moves fastest; of a container its hole's
     const double reach = outline.container ? outline.bounds.extent().norm() : outline.bounding_radius;
     for (const Twist& twist : {owners.back().now.twist, owners.back().before.twist})
       fastest = std::max(fastest, twist.velocity.norm() + std::abs(twist.omega) * reach);

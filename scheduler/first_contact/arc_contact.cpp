@@ -72,6 +72,7 @@ ArcStep against_segment(const Site& arc, const Site& site, const SamplePath& pat
       // a wire may come to be touched from its other side, in the opposite direction
       const double other = site.solid ? outside : angle_outside(arc, to_s(s, t, step.normal));
       const double stays = bounds.speed > 0.0 ? std::abs(offset) / bounds.speed : kForever;
+      // The other direction does not count before the centre has come over the line, which takes `stays`.
       const auto turned = [&](double angle) {
         return spin > 0.0 ? angle / spin : angle > 0.0 ? kForever : 0.0;
       };
@@ -97,6 +98,7 @@ ArcStep against_arc(const Site& arc, const Site& site, bool hollow, const Sample
   step.gap = hollow ? site.arc_radius - distance - arc.arc_radius - thickness
                     : distance - site.arc_radius - arc.arc_radius - thickness;
   step.rate = hollow ? -radial : radial;
+  // active only where both sectors hold the direction: so the worse of the two angles is what must be turned
   const double outside = std::max(angle_outside(arc, to_s(s, t, Vec2(-step.normal))), angle_outside(site, u));
   const bool through = is_through(step.gap, arc, site, band);
   step.active = outside == 0.0 && distance > 0.0 && !through;
@@ -116,6 +118,7 @@ ArcStep against_arc(const Site& arc, const Site& site, bool hollow, const Sample
     // The direction turns at most at speed / (distance / 2) while the centres are still half their distance
     // apart.
     const double turning = 2.0 * bounds.speed / distance + relative.spin_s + relative.spin_t;
+    // after that the bound on the turning no longer holds
     const double half_way = bounds.speed > 0.0 ? 0.5 * distance / bounds.speed : kForever;
     step.safe = std::max(step.safe, std::min(half_way, turning > 0.0 ? outside / turning : kForever));
   }

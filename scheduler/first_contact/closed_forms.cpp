@@ -21,10 +21,13 @@ namespace {
 /// few.
 constexpr std::size_t kMostSites = 16;
 
+/// True of a motion that never turns: in its frame a parabola stays a parabola.
 bool keeps_angle(const Motion& m) {
   return m.is_ballistic() && m.start().twist.omega == 0.0 && m.acceleration().angular == 0.0;
 }
 
+/// True of few segments and nothing else: the distance to the line of each is linear in the place, so its
+/// gap to a disc on a parabola is a quadratic of time.
 bool only_segments(const Outline& o) {
   return o.sites.size() <= kMostSites && std::all_of(o.sites.begin(), o.sites.end(), [](const Site& s) {
            return s.kind == SiteKind::segment;
@@ -75,6 +78,7 @@ bool doubtful(double rate, double noise) { return std::abs(rate) <= 8.0 * noise;
 /// overlap but the far side of a body [m].
 std::optional<double> contact_after(const Quadratic& g, double s_from, double noise, double deepest) {
   const double root = falling_root(g);
+  // ahead, and the only place at which the gap falls through its level
   if (root >= s_from)
     return root == kForever || !doubtful(g.slope(root), noise) ? std::optional(root) : std::nullopt;
   const double now = g.at(s_from), slope = g.slope(s_from);
@@ -125,6 +129,7 @@ double gap_noise(double place_noise, const Vec2& q, const Vec2& site) {
 /// the gap to have risen above rounding, and not at it.
 template <class Gap>
 std::optional<double> canonical_root(Gap&& gap, double t, double begin, double rounding, double speed) {
+  // where the motions began nothing lies before to bisect from
   if (t <= begin) return t;
   const double moment = rounding / speed + 4.0 * ulp(t);
   for (const double reach : {2.0 * moment, 8.0 * moment, 64.0 * moment})
@@ -153,6 +158,8 @@ FeatureContact disc_contact(const Mover& a, const Parabola& path_a, const Mover&
   return c;
 }
 
+/// Two centred discs under one acceleration: seen from b, a goes straight on. False: for the general search,
+/// where roundings would decide (a start in touch, a graze, a rate within its noise, too far off, too fast).
 bool discs(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
            SearchScratch& scratch, PairAnswer& answer) {
   // Under unequal accelerations the squared distance is of fourth degree in time; two bare points meet at
@@ -181,6 +188,7 @@ bool discs(const Mover& a, const Mover& b, double from, double to, const SearchL
   }
   const Parabola path_a(*a.motion), path_b(*b.motion);
   double t = std::max(rel.reference + s, from);
+  // Here t is when they meet, or infinite.
   // The rounding of places matters where the two are nearest within the window.
   const double nearest = t <= to                    ? t
                          : rel.velocity.isZero(0.0) ? from
@@ -244,12 +252,15 @@ struct SegmentGap {
   Seen seen(const Vec2& q, double disc_radius, double touch) const {
     const Nearest nearest = nearest_on(*site, q);
     const double side = side_of(*site, nearest, q);
+    // as gap_to_neighbours() of the general search ranks them: an interior foot comes before an end that is
+    // as near
     const double rank = nearest.distance - site->radius - (nearest.foot == Foot::interior ? touch : 0.0);
     return {side * nearest.distance - (site->radius + disc_radius), rank};
   }
 };
 
 /// The gap of the disc to a segment.
+/// Of a wire on the side on which the disc is at s_from; ends are left out, and `s` is for meet() to find.
 SegmentGap measured(const DiscPath& disc, const Site& site, int index) {
   const Vec2 d = site.b - site.a;
   Vec2 normal = -perp(d / d.norm());  // right of travel: out of a solid
@@ -287,6 +298,8 @@ bool meet(const DiscPath& disc, const SearchLimits& limits, double level, Segmen
   const Quadratic along{tangent.dot(disc.q - site.a), tangent.dot(disc.velocity),
                         tangent.dot(disc.acceleration)};
   const Quadratic above{m.gap.value - level, m.gap.rate, m.gap.second};
+  // At the reference, which is where one of the two motions began, it touches and comes nearer: a graze or a
+  // contact, by a rounding.
   if (above.value < limits.touch && above.value > -limits.tolerance && above.rate < 0.0) return false;
   const auto contact =
       contact_after(above, disc.s_from, disc.slope_noise, disc.radius + site.radius + limits.tolerance);
@@ -295,6 +308,7 @@ bool meet(const DiscPath& disc, const SearchLimits& limits, double level, Segmen
   const double s_end = std::max(disc.s_from, std::min(m.s, disc.s_to));
   const double now = above.at(disc.s_from);
   const bool in_front = now > 0.0 || (now >= -limits.touch && above.slope(disc.s_from) > 0.0);
+  // On the line or behind it nothing keeps the ends clear: the centre must be abreast all the way.
   if (!in_front) return stays_within(along, length, disc.s_from, s_end);
   // In front, with above > 0, the disc is clear of the whole line, ends included, until m.s. What counts
   // is where its centre is then: abreast, or on its way past both ends.
@@ -306,6 +320,9 @@ bool meet(const DiscPath& disc, const SearchLimits& limits, double level, Segmen
   return passes_by;
 }
 
+/// A disc and an outline of segments that keeps its angle. Seen in that outline's frame the disc's centre is
+/// on a parabola, and each segment's line gives a quadratic; the least root that is abreast of its segment
+/// is the contact. False: for the general search, as soon as one of the segments needs it.
 bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, double from, double to,
                        const SearchLimits& limits, SearchScratch& scratch, PairAnswer& answer) {
   const RelativeParabola rel(disc, other);
@@ -344,6 +361,7 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
   double t = std::max(rel.reference + earliest, from);
   const PlaceNoise noise(disc, other);
   double place_noise = 0.0;
+  // the last of the two stays: rounding at the contact, or at the end
   for (const double time : {from, std::min(t, to)}) {
     place_noise = noise(time, parabola.at(time), parabola_of_other.at(time));
     if (!near_enough(place_noise, limits)) return false;
@@ -352,6 +370,7 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
   const double speed =
       std::max(-normal.dot(path.velocity + (t - rel.reference) * path.acceleration), rel.noise);
   const Vec2 at_disc = parabola.at(t), at_other = parabola_of_other.at(t);
+  // no site has coordinates larger than that
   const Vec2 far_off = Vec2::Constant(other.outline().bounding_radius);
   const double rounding = gap_noise(place_noise, at_disc - at_other, far_off);
   const double moment = rounding / speed + 4.0 * ulp(t);
@@ -373,6 +392,7 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
       canonical_root([&](double time) { return nearest_at(time).first; }, t, rel.reference, rounding, speed);
   if (!root) return false;
   t = *root;
+  // the one that is nearest at the canonical time, which need not be the one with the least root
   const auto [above, met] = nearest_at(t);
   const Vec2 q = frame.direction_to_local(parabola.at(t) - parabola_of_other.at(t));
   if (!can_hold(kRoundoff * (6.0 * q.lpNorm<1>() + 2.0 * other.outline().bounding_radius),

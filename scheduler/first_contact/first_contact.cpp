@@ -31,6 +31,9 @@ using detail::parts_alone;
 /// Iterations that a search may take if it has found a contact, whatever its cap.
 constexpr int kMostAfterContact = 1000;
 
+/// One search. As it goes on: up to the least safe time every contact is found, but for those that
+/// look_back() tells; to_ is the end that was asked for or, once a contact is found, just behind the
+/// earliest so far; best_ is that contact; and while samples are looked at, the pair is placed at t_.
 class PairSearch {
  public:
   PairSearch(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
@@ -53,6 +56,7 @@ class PairSearch {
     safe_until_[1] = scratch.safe_until.data() + count_a;
   }
 
+  /// Clear, the earliest contact, or undecided from where the search stopped.
   PairAnswer run() {
     if (!apart_by_bounding_discs()) advance();
     // what stopped before the contact that it had found may have passed an earlier one
@@ -88,7 +92,9 @@ class PairSearch {
                             std::abs(of_b.omega) * reach_b;
     const auto is_little = [&](double speed) { return (t - start) * speed <= limits_.touch; };
     if (!(t > start && is_little(at_first))) return false;  // a first look
+    // dense output whose first pieces were dropped cannot be looked at from its beginning
     if (!a_.motion->remembers(start) || !b_.motion->remembers(start)) return false;
+    // the first look took the speeds of the beginning; what counts is the fastest on the way
     const RelativeBounds since = bounds_over(start, t);
     return is_little(since.speed + since.spin_s * reach_a + since.spin_t * reach_b);
   }
@@ -114,6 +120,7 @@ class PairSearch {
       const Vec2 d = sa.pose.position - sb.pose.position, v = sa.twist.velocity - sb.twist.velocity;
       const double distance = d.norm(), f = distance - reach;
       if (f <= near) break;
+      // Under equal accelerations either sees the other go straight on: one root says when the discs meet.
       if (straight) {  // no curvature: there at once
         t += time_until_within(d, v, reach + 0.5 * near);
         break;
@@ -130,6 +137,7 @@ class PairSearch {
     return false;
   }
 
+  /// From one least safe time to the next, until that is the end. Sets capped_ where it stops before.
   void advance() {
     // Over all that is left. A contact that is found brings to_ nearer; the bounds hold for that, too.
     long_bounds_ = BothWays(bounds_over(from_, to_));
@@ -139,6 +147,8 @@ class PairSearch {
       const double t = least_safe_time();
       if (t >= to_) return look_back(to_);
       reached_ = t;
+      // Steps before the time that was asked from are not counted. A search that began earlier for the sake
+      // of its bits would with a cap of a few steps never come as far as that time, and so never on.
       // with a contact in hand little is left to look at
       if (t >= asked_from_ && ++iterations > limits_.max_iterations &&
           (best_.sample < 0 || iterations > kMostAfterContact)) {
@@ -154,6 +164,7 @@ class PairSearch {
       short_bounds_ =
           t == from_ && short_end_ == window_end_ ? long_bounds_ : BothWays(bounds_over(t, short_end_));
       // Who is due soon is looked at now: the outlines are placed once for all of these.
+      // What is looked at early loses no more of its step than this quarter of the short window.
       const double due = t + 0.25 * std::min(short_window_, to_ - t);
       least_ = kForever;
       // the nearest ones first: beside their steps most others are seen to be far at a glance
@@ -175,8 +186,10 @@ class PairSearch {
     if (scratch_.sinking.empty()) return;
     t_ = t;
     view_.place(t);
+    // Windows of no length: the steps are not used, only what is met while they are looked for.
     const BothWays now(bounds_over(t, t));
     for (const auto& [on_a, i] : scratch_.sinking) {
+      // the contact's own sample has been followed to its contact already
       if (i == best_.sample && on_a == best_.sample_on_a) continue;
       const Half& half = view_.half(on_a);
       const SamplePath path = view_.path(half, i);
@@ -211,13 +224,17 @@ class PairSearch {
     return nearest;
   }
 
+  /// All samples of a half that are due, but for the one that was taken first.
   void advance_due(const Half& half, double due, int done) {
     for (int i = 0; i < half.count; ++i)
       if (i != done && safe_until(half, i) <= due) advance_sample(half, i);
   }
 
+  /// Looks at one sample at t_ and sets until when it is safe. It is on the list of look_back() as long as
+  /// the last step may lead below its level.
   void advance_sample(const Half& half, int i) {
     sinks_ = false;
+    // The vertex of a notch is never due: what comes from outside meets one of its sides before.
     // never less than the next double, or the search would stand still
     safe_until(half, i) = half.sample(i).hollow ? kForever : std::max(t_ + step(half, i), next_);
     least_ = std::min(least_, safe_until(half, i));
@@ -236,10 +253,12 @@ class PairSearch {
     const RelativeBounds& of(const Half& half) const { return half.s_is_a ? of_a : of_b; }
   };
 
+  /// How fast, and how bent, a can move against b during [from, to].
   RelativeBounds bounds_over(double from, double to) const {
     return RelativeBounds::over(a_.outline(), *a_.motion, b_.outline(), *b_.motion, from, to);
   }
 
+  /// Over the samples of both halves, which lie side by side in the scratch [s].
   double least_safe_time() const {
     double t = kForever;
     for (const double until : scratch_.safe_until) t = std::min(t, until);
@@ -261,6 +280,8 @@ class PairSearch {
     // a coarse bound is enough.
     if (apart >= long_window || apart > 2.0 * (least_ - t_)) return apart * (1.0 - 4.0 * kEpsilon);
     const PathBounds over_short = path_bounds(path, near, short_window);
+    // Three kinds of sample from here on: one that a line parts from a convex outline, which stands for all
+    // of its sites; a vertex, whose candidate sites are looked at; an arc, which is held against every site.
     double safe = apart, again = 0.0;
     if (line.gap > 0.0) {
       if (safe < short_window) again = safe_step(line.gap, line.rate, over_short.acceleration);
@@ -308,6 +329,7 @@ class PairSearch {
     const Sample& sample = half.sample(i);
     const Outline& sites = half.sites_of();
     ++work_.distance_queries;
+    // nothing farther can be met before the end, wherever the sample goes
     const double reach = over_all.speed * window + sample.radius + 2.0 * band;
     Candidates near = half.t->index->candidates(path.q, reach, scratch_.index);
     // what is not named is too near to be left out: two things are met, and one of them alone is named
@@ -330,6 +352,7 @@ class PairSearch {
         neighbours_known = true;
         const Feature f = view_.vertex_feature(half, i, static_cast<int>(j), nearest, path);
         const bool hidden = view_.belongs_to_a_neighbour(half, i, static_cast<int>(j), nearest, path.q);
+        // A contact asks for no step: the search ends there, or at an earlier one.
         if (!hidden && polish(half, f, path, over_all)) continue;
         // behind what does not count it may go a part of its way there: what counts has a step of its own
         const double free_way = hidden && f.gap < 0.0 ? 0.25 * nearest.distance : 0.0;
@@ -356,6 +379,7 @@ class PairSearch {
     return {safe, again};
   }
 
+  /// Every site by name, in the memory of the index: what it named before is gone.
   Candidates all_of(const Outline& outline) {
     std::vector<std::uint32_t>& all = scratch_.index.sites;
     all.resize(outline.sites.size());
@@ -369,6 +393,8 @@ class PairSearch {
   double close_step(const Half& half, const Site& site, const Nearest& nearest, const Feature& f,
                     double above, const SamplePath& path, double band, const RelativeBounds& relative,
                     const PathBounds& bounds, double window) {
+    // A quarter of the least sink step, by which a step may lead below its level: look_back() sees to what
+    // was met on the way.
     const double allowed = 0.25 * sink_step(limits_.touch, 0.0);
     if (site.kind == SiteKind::segment || site.kind == SiteKind::point) {
       // A convex distance never lies below its support line at the present foot. So of the path's
@@ -387,6 +413,8 @@ class PairSearch {
     if (nearest.foot == Foot::interior)
       return band_step(above, f.rate, bounds.acceleration + bend, band, allowed);
     const HullDistance hull = distance_to_arc_hull(site, nearest, path.q);
+    // Beyond the ends of the arc three bounds hold: its hull is convex; nothing comes nearer faster than its
+    // speed; and before the arc itself counts the sample has to come to an end or abreast.
     // nearest.distance - above: where the sample meets the core, by both thicknesses and the level.
     const double outside = hull.distance - (nearest.distance - above);
     // what reaches over the chord to an end is in the hull already, however that moves
@@ -406,6 +434,9 @@ class PairSearch {
     return std::max({by_hull, by_speed, by_ends});
   }
 
+  /// The safe step of an arc's sample by one set of bounds [s]: the least over all sites, each of which is
+  /// looked at, as an index names the sites near a point, not near a circle. Follows to their contact those
+  /// within the band that approach.
   double arc_sample_step(const Half& half, int i, const SamplePath& path, double band,
                          const RelativeBounds& relative, const PathBounds& bounds) {
     const Sample& sample = half.sample(i);
@@ -441,6 +472,8 @@ class PairSearch {
     // of a sample past its contact, so far that sides may have changed, nothing more is to be learnt
     const bool past = best_.sample == f.sample && best_.sample_on_a == half.s_is_a && t_ > best_.time;
     if (past) return true;
+    // signed; a vertex's to all sites nearby together, so that the root is the outline's, not that of one
+    // site
     const auto gap = [&](double t) { return view_.gap_at(half, f, t).gap; };
     const Site& site = half.site(f.site);
     const double speed = -f.rate;
@@ -474,6 +507,7 @@ class PairSearch {
     } else if (const double before = guess - 2.0 * noise; before > t_ && gap(before) > rounding) {
       low = before;  // it falls all the way, as far as it bends: the fewer probes
     }
+    // no probe may lie beyond a motion
     const double last = std::min(a_.motion->end(), b_.motion->end());
     // beyond the surface, by more than rounding if one of these is; where two points meet, when they are
     // nearest; where a bent path meets it later; and where a tip is grazed, for less than a rounding
@@ -489,6 +523,7 @@ class PairSearch {
       beyond_by = by;
       if (beyond_by > rounding) break;
     }
+    // `high` is where the gap is surely gone. If no probe found such a place, the bottom of the dip decides.
     // a dip of less than a rounding is none, whoever looked where; what falls on is looked at again from nearer
     if (beyond_by <= rounding) {
       const double deepest = deepest_after(half, f, later, last);
@@ -505,6 +540,7 @@ class PairSearch {
   /// `about`, and not after `last`; 0 if it does not. On a grid of 1024 ticks of the clock, which is wider
   /// than what roundings of the rate make of it, and much narrower than the dip.
   double deepest_after(const Half& half, const Feature& f, double about, double last) const {
+    // a copy is placed elsewhere: this search goes on at t_
     PairView there = view_;
     const auto rises = [&](double t) {
       there.place(t);
@@ -512,12 +548,15 @@ class PairSearch {
     };
     double falling = t_, rising = about;
     for (int k = 0; !(rising > falling && rises(std::min(rising, last))); ++k) {
+      // three doublings: eight times what was left
       if (k == 3 || rising >= last) return 0.0;
       falling = std::max(falling, rising);
       rising = t_ + 2.0 * (rising - t_);
     }
     rising = std::min(rising, last);
     const double grid = 1024.0 * ulp(rising);
+    // Halved to a quarter of the grid, then rounded to it: searches that begin elsewhere all but always come
+    // to the same double.
     while (rising - falling > 0.25 * grid) {
       const double middle = falling + 0.5 * (rising - falling);
       (rises(middle) ? rising : falling) = middle;
@@ -535,6 +574,7 @@ class PairSearch {
     if (!sharp) return false;
     const bool at_a = (path.q - site.a).squaredNorm() < (path.q - site.b).squaredNorm();
     const Vec2 tip = at_a ? site.a : site.b, way = path.q - tip;
+    // the gap approaches, so the rate is not 0
     const double slow = path.rate.norm(), off = way.norm() / slow,
                  noise = view_.gap_rounding(half, f.sample, path.q);
     // A first look: along the straight way they pass each other at this distance. If that is more than
@@ -564,6 +604,7 @@ class PairSearch {
     // The gap at which a sharp sample meets a wire (nominal_level()).
     const double before = std::max(0.5 * limits_.touch, 8.0 * rounding), speed = then.rate.norm();
     const auto clear = [&](double t) { return to_tip(t).q.norm() - before; };
+    // At twice the distance the gap is clear, unless the pair began nearer than that: then they meet now.
     const double low = std::max(nearest - 2.0 * before / speed, view_.start());
     if (!(low < nearest && clear(low) > 0.0)) return remember(half, f, t_);
     return remember(half, f, last_clear_time(clear, low, nearest), 2.0 * rounding / speed);
@@ -595,6 +636,8 @@ class PairSearch {
     if (t > window_end_) return true;
     const std::optional<FeatureContact> contact = contact_then(half, f, t);
     if (!contact) return false;
+    // Crossed over, as the lesser comes first: a's samples before b's, then the lower sample, then the lower
+    // site.
     const bool earlier = best_.sample < 0 || t < best_.time ||
                          (t == best_.time && std::tie(half.s_is_a, best_.sample, best_.site) >
                                                  std::tie(best_.sample_on_a, contact->sample, contact->site));
@@ -693,6 +736,7 @@ double pair_gap(const Mover& a, const Mover& b, double t, const SearchLimits& li
                 SearchScratch& scratch) {
   PairView view(a, b, limits, scratch);
   view.place(t);
+  // signed: of each vertex the nearest site, of arcs all that are active
   double least = kForever;
   view.each_feature(kForever, [&](const Half&, const Feature& f) { least = std::min(least, f.gap); });
   return least;

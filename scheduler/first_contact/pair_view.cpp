@@ -71,6 +71,10 @@ PairView::PairView(const Mover& a, const Mover& b, const SearchLimits& limits, S
   halves_[1] = {&b, &a, false, point_a ? 0 : static_cast<int>(b.outline().samples.size())};
 }
 
+/// As a rule the signed distance along the site's normal. Three cases differ. At an end of a solid's side,
+/// in a notch or flush beside it, the side counts as a face that goes on beyond the end. Right on a wire
+/// without thickness the side is that of the sample's own body. And of two points that meet the direction
+/// between them is rounding: they have that of their way.
 Feature PairView::vertex_feature(const Half& half, int i, int j, const Nearest& nearest,
                                  const SamplePath& path) const {
   const Sample& sample = half.sample(i);
@@ -123,6 +127,8 @@ Feature PairView::vertex_feature(const Half& half, int i, int j, const Nearest& 
   return f;
 }
 
+/// Vertex sample i and the site nearest to it; a corner that lies flush beside an end has the side on which
+/// it lies, though the corner's other side is as near. No site where the index knows of none.
 Feature PairView::nearest_feature(const Half& half, int i) const {
   const SamplePath now = path(half, i);
   const FieldAnswer nearest = half.t->index->query(now.q, scratch_.nearest);
@@ -153,6 +159,7 @@ FeatureContact PairView::look_again(const Half& half, const Feature& f, double t
   return contact_of(half, vertex_feature(half, f.sample, f.site, nearest, now), time);
 }
 
+/// From T's frame into the world. `time` is noted, not looked at: the pair may be placed at another.
 FeatureContact PairView::contact_of(const Half& half, const Feature& f, double time) const {
   const Placed& site_owner = placed(half.t);
   FeatureContact c;
@@ -185,6 +192,7 @@ void PairView::find_neighbours(const Half& half, int i, std::span<const std::uin
     const Nearest nearest = nearest_on(site, path.q);
     if (nearest.distance - site.radius - radius > reach) continue;
     const Feature f = vertex_feature(half, i, static_cast<int>(k), nearest, path);
+    // a face through which the corner's own edge leads does not count for it
     if (pokes_through(half, i, site, nearest, f)) continue;
     // What is touched and left is the nearest for a while yet: it would hide a neighbour that is
     // approached (a disc that goes from wall to wall of a corner), so gap_to_neighbours() passes over
@@ -192,6 +200,7 @@ void PairView::find_neighbours(const Half& half, int i, std::span<const std::uin
     const bool leaving = f.gap - level(half, i, site, path.q) <= limits_.touch && !approaching(f, path);
     scratch_.neighbours.push_back({f.site, f.normal, leaving, nearest.foot != Foot::interior});
   }
+  // A corner flush on one side lies beyond the end of the other:
   // the corner's other side says nothing of how far the flush one is
   const double rounding = gap_rounding(half, i, path.q);
   scratch_.flush_on = -1;
@@ -208,6 +217,7 @@ bool PairView::is_flush_on(const Placing& p, const Half& half, int i, const Site
   if (sample.before < 0 || sample.hollow || !site.solid || site.radius + sample.radius > 0.0) return false;
   const bool at_a = (q - site.a).squaredNorm() < (q - site.b).squaredNorm();
   const Vec2 way = q - (at_a ? site.a : site.b);
+  // the cheap question first: most samples are at no corner
   if (!(way.squaredNorm() <= limits_.tolerance * limits_.tolerance)) return false;
   const Vec2 normal = face_at_end(site, at_a);
   if (std::abs(cross(normal, way)) > 4.0 * rounding) return false;
@@ -218,6 +228,8 @@ bool PairView::is_flush_on(const Placing& p, const Half& half, int i, const Site
 
 Vec2 PairView::acceleration_now(const Half& half, int i, const SamplePath& path) const {
   const Placed &s = placed(half.s), &t = placed(half.t);
+  // Over no time at all the bounds' middle is the acceleration of S's origin against T's. The arm adds alpha
+  // x arm - omega^2 arm; then T's turning frame takes off its own terms (pair_kinematics.h).
   const RelativeBounds at_once = RelativeBounds::over(half.samples_of(), *half.s->motion, half.sites_of(),
                                                       *half.t->motion, now_.time, now_.time);
   const auto alpha = [](const Motion& m) { return m.is_ballistic() ? m.acceleration().angular : 0.0; };
@@ -238,6 +250,7 @@ bool PairView::passes_tip(const Half& half, const Feature& f) const {
   const Frame &s = placed(half.s).frame, &t = placed(half.t).frame;
   const Corner of_sample = corner_seen(half.samples_of(), sample, s, t), of_site = corner_at(site, at_a);
   if (!of_sample.convex() || !of_site.convex() || of_sample.needle() || of_site.needle()) return false;
+  // A needle has its thickness just behind its tip: that a line parts the tips says nothing of it.
   const Vec2 pull = acceleration_now(half, f.sample, path);
   const double noise = rate_noise(path), none = kParallel * pull.norm();
   // who runs along a line goes over it if it is pulled there
@@ -245,6 +258,8 @@ bool PairView::passes_tip(const Half& half, const Feature& f) const {
     const double rate = u.dot(path.rate);
     return rate < -noise || (rate <= noise && u.dot(pull) < -none);
   };
+  // how far a tip may be behind the line and still pass: the touching distance, or, where islands or sites
+  // hold both, what their gaps are kept to
   const double touch = std::max(limits_.touch, 8.0 * gap_rounding(half, f.sample, path.q));
   return is_parted(of_sample, of_site, way, a_.held && b_.held ? limits_.tolerance : touch, goes_back);
 }
@@ -299,6 +314,9 @@ bool PairView::belongs_to_a_neighbour(const Half& half, int i, int j, const Near
   return false;
 }
 
+/// In doubles where they are fine enough beside the contact tolerance, else from b's place in extended
+/// precision. Which of the two depends on the motions and the time alone, so every search changes over at
+/// the same moment.
 void PairView::put(Placing& p, double t) const {
   p.time = t;
   p.tick = ulp(t);
@@ -333,9 +351,11 @@ double finer(const Motion& m) { return m.is_ballistic() ? kRealRoundoff / kRound
 
 }  // namespace
 
+/// @pre put() has set the time and the roundings of angles in double, which are made finer here.
 void PairView::put_relative(Placing& p, double t) const {
   const ExtendedState sa = a_.motion->extended_state(t), sb = b_.motion->extended_state(t);
   p.base = sb.position.cast<double>();
+  // the most that a pair seen in doubles may be rounded by, as this one may be a moment later
   p.in_double = kFarOfTolerance * limits_.tolerance;
   p.a.move(a_.outline(), sa.seen_from(p.base));
   p.b.move(b_.outline(), sb.seen_from(p.base));
@@ -346,6 +366,7 @@ void PairView::put_relative(Placing& p, double t) const {
   p.note_turning();
 }
 
+/// Of tolerances.h, for this placing: thin are a bare point and a wire, or another point, without thickness.
 double PairView::nominal_level(const Placing& p, const Half& half, int i, const Site& site,
                                const Vec2& q) const {
   const bool thin = !site.solid && site.radius + half.sample(i).radius == 0.0;
@@ -379,6 +400,7 @@ bool PairView::beyond_doubt() const {
          speed * same_instant(now_.time) <= by_far * kSlowOfSize * smallest_radius(a, b);
 }
 
+/// Discs are compared in S's frame, where samples stand still: there one place of T's origin serves for all.
 PairView::Reach::Reach(const PairView& view, const Half& half, double reach)
     : half_(half),
       s_(view.placed(half.s).frame),
@@ -424,6 +446,7 @@ double PairView::sink_at_start() const {
   if (discs_were_apart()) return 0.0;
   // One sink for the pair, whichever of its features is met: start_sink() is given the least favourable of
   // each number.
+  // The copy has the scratch in common: neighbours that were found before are lost.
   PairView then = *this;
   if (then.now_.time != start()) then.place(start());
   std::optional<RelativeBounds> at_once;  // most pairs have nothing near: theirs are not asked for
@@ -435,7 +458,10 @@ double PairView::sink_at_start() const {
     const double rounding = then.gap_rounding(half, f.sample, path.q);
     const double own_step = sink_step(limits_.touch, rounding);
     const double above = f.gap - then.nominal_level(then.now_, half, f.sample, site, path.q);
+    // Farther off than a sink step it has room to fall; deeper than any overlap that a start may have, it is
+    // not the start of this pair.
     if (!(above < own_step) || above < -kOverlapAtStart * limits_.tolerance) return;
+    // two corners that pass each other do not meet, whatever the gap of one of their sides becomes
     if (then.approaching(f, path) && then.passes_tip(half, f)) return;
     // A pair that collides at once has no need to sink until it does.
     now = now || (above <= 0.0 && then.approaching(f, path) && !then.hidden_behind_others(half, f, path));
@@ -443,6 +469,8 @@ double PairView::sink_at_start() const {
       at_once = RelativeBounds::over(a_.outline(), *a_.motion, b_.outline(), *b_.motion, start(), start());
     const PathBounds bounds = path_bounds(path, half.s_is_a ? *at_once : at_once->swapped(), 0.0);
     const bool of_arc = site.kind == SiteKind::arc;
+    // seen from within an arc the gap bends by v^2 / rho besides (site_step.h); outside that is too much,
+    // never too little
     const double hollow = of_arc ? bounds.speed * bounds.speed / (path.q - site.center).norm() : 0.0;
     gap = std::min(gap, above);
     rate = std::min(rate, f.rate);
@@ -474,6 +502,8 @@ bool PairView::way_leads_through(const Site& site, const Vec2& q, double roundin
   return along >= -slack && along <= d.squaredNorm() + slack;
 }
 
+/// To the side on which a corner lies flush, if it does; else to the nearest site that it is not just
+/// leaving. Infinite, with no site, if there is none.
 PairView::GapAndSite PairView::gap_to_neighbours(const Placing& p, const Half& half, int i,
                                                  const Vec2& q) const {
   const double sample_radius = half.sample(i).radius;
@@ -510,6 +540,8 @@ PairView::GapAndSite PairView::gap_to_neighbours(const Placing& p, const Half& h
   return found;
 }
 
+/// Of the whole circle about c, the sample's centre in T's frame: neither sector is asked. Of two arcs the
+/// normal of f says which way they touch: outside against outside, or inside the hollow.
 double PairView::arc_gap(const Half& half, const Feature& f, const Vec2& c) const {
   const Site& arc = half.samples_of().sites[half.sample(f.sample).arc_site];
   const Site& site = half.site(f.site);

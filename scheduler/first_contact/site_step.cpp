@@ -19,6 +19,7 @@ Facing facing_convex(const Outline& outline, const Vec2& q, const Vec2& rate) {
   const double along = d.dot(q - site.a);
   const Facing of_side{gap, outline.facets[side].dot(rate)};
   const bool past_b = along > d.squaredNorm();
+  // inside the polygon, or abreast of the side: its line is as close as any
   if (gap <= 0.0 || (along >= 0.0 && !past_b)) return of_side;
   // Past an end of the side its line tells less than there is, at a sharp corner next to nothing, and
   // steps by it would creep. If q is past this end of both sides that meet there, it lies between their

@@ -9,6 +9,7 @@ namespace brink {
 
 namespace {
 
+/// kBisections: a corner that was cut is found to 1/65536 of the way between two looks.
 constexpr int kLooks = 8;        ///< along a step
 constexpr double kSoon = 0.05;   ///< after the first look
 constexpr int kBisections = 16;  ///< until a corner is found that was cut between two looks
@@ -138,6 +139,7 @@ Miss missed(std::size_t k, double h, const std::vector<Vec3>& velocity, const Ga
 }
 
 /// The loads of those that took part, at their contacts' places.
+/// All others carry none.
 std::vector<ContactLoad> of_all(const std::vector<ContactLoad>& loads, const std::vector<Part>& parts,
                                 std::size_t contacts) {
   std::vector<ContactLoad> all(contacts);
@@ -207,7 +209,9 @@ StepOutcome without_loads(IslandStep& step, double h, double tolerance, const Ga
                           StepOutcome outcome) {
   std::vector<Vec3> velocity = step.velocity;
   for (std::size_t i = 0; i < step.mass.size(); ++i)
+    // what is held has an infinite mass: nothing is added to it
     velocity[i] += h * step.force[i].cwiseQuotient(step.mass[i]);
+  // all contacts are asked, those that wait for their turn, too
   for (std::size_t k = 0; k < step.contacts.size(); ++k)
     if (missed(k, h, velocity, gap).most > 0.1 * tolerance) return outcome;
   step.velocity = std::move(velocity);
@@ -218,6 +222,8 @@ StepOutcome without_loads(IslandStep& step, double h, double tolerance, const Ga
 
 }  // namespace
 
+/// One loop to two ends: a contact at an end joins once it is missed, and a gap that was missed aims higher.
+/// Within each solve friction bounds follow the normal forces (with_friction()).
 StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap) {
   StepOutcome outcome;
   std::vector<Part> parts;
@@ -236,6 +242,7 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
     const auto met = std::stable_partition(waiting.begin(), waiting.end(), [&](std::size_t k) {
       return !(missed(k, h, result.velocity, gap).most > 0.1 * tolerance);
     });
+    // solved again with them before any lift is asked for: without them the motion is another
     if (met != waiting.end()) {
       for (auto k = met; k != waiting.end(); ++k) parts.push_back({*k});
       waiting.erase(met, waiting.end());
@@ -243,6 +250,8 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
     }
     double worst = 0.0;
     for (Part& part : parts) {
+      // Lifted from a tenth of the tolerance on, though only a miss beyond the tolerance asks for one more
+      // solve, which then makes up for all of them.
       const Miss miss = missed(part.contact, h, result.velocity, gap);
       worst = std::max(worst, miss.most);
       if (miss.most > 0.1 * tolerance) part.lift += kAimHigher * miss.lift;
@@ -253,6 +262,7 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
     const double won_here = won(step, result, parts, h, tolerance, of);
     // The caller tries a shorter step: by what faces that turn are missed is of second order in h.
     if (won_here > kWonOf * of) return without_loads(step, h, tolerance, gap, outcome);
+    // from here on loads stand at their contacts' places; won() took them at their parts'
     result.loads = of_all(result.loads, parts, step.contacts.size());
     const bool driven = std::any_of(parts.begin(), parts.end(),
                                     [&](const Part& part) { return step.contacts[part.contact].driven; });
@@ -269,6 +279,7 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
     outcome.friction_residual = residual(step, result, h);
     step.velocity = result.velocity;
     for (std::size_t k = 0; k < step.contacts.size(); ++k) {
+      // impulses over the step: told as mean forces
       step.contacts[k].normal_force = result.loads[k].normal / h;
       step.contacts[k].tangential_force = result.loads[k].tangential / h;
     }
@@ -276,6 +287,7 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
   return outcome;
 }
 
+/// A question of forces alone: gaps and velocities are not looked at.
 bool stays_at_rest(ConeQp& solver, IslandStep& step) {
   RestProblem p;
   p.mass = step.mass;

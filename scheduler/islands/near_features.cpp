@@ -27,6 +27,7 @@ constexpr double kOneCorner = 1e-10;
 constexpr double kParallel = 1e-9;
 
 /// One outline that carries the samples, and the other, each in its own frame.
+/// Features of a half are told with normals from b into a all the same: `on_a` says which way to turn them.
 struct Half {
   const Outline& carrier;
   const Outline& other;
@@ -66,6 +67,7 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
                                    const Vec2& q) {
   const Sample& sample = half.carrier.samples[i];
   const Site& site = half.other.sites[j];
+  // below this length the way from the core to q has no direction
   const double least = kOnePoint * (half.carrier.bounding_radius + half.other.bounding_radius);
   Vec2 out = direction(site, nearest, q, least);
   // the way from the core leads inwards where q lies inside; what stands in for too short a way leads
@@ -77,6 +79,7 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
     out = outward(site);
     distance = out.dot(q - nearest.point);
   }
+  // abreast of the wire by the body's size; at an end only where the way has no direction
   const double no_side = nearest.foot == Foot::interior ? kSinks * half.carrier.bounding_radius : least;
   if (thin && site.kind != SiteKind::point && nearest.distance < no_side) {
     // a wire has no inside that would tell: what has sunk by a rounding, or is right on its end, is on its
@@ -99,6 +102,7 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   f.sample = i;
   f.site = j;
   f.sample_on_a = half.on_a;
+  // an arc's sample has its circle's radius in its own, so this is the gap of the arc, too
   f.gap = distance - site.radius - sample.radius;
   f.point = half.other_frame.to_world(nearest.point + site.radius * out);
   f.normal = half.on_a ? outward : Vec2(-outward);
@@ -188,6 +192,9 @@ void turn_outward(const Half& half, const Vec2& q, double side, NearFeature& f) 
 
 /// Adds the features of sample i: sites that face it; and where it lies inside by roundings, those that are
 /// nearest. What it is merely behind, beyond a tip, is none.
+/// Per site, in this order: upon a corner only the side that faces the owner counts, whatever the distances
+/// say; then what is merely behind is left out; then an end at which a joined site is nearer. The corner
+/// comes first: there the two sides differ in distance by next to nothing.
 void add_features(const Half& half, int i, double reach, std::vector<NearFeature>& found) {
   const Vec2 q = half.other_frame.to_local(half.carrier_frame.to_world(half.carrier.samples[i].p));
   const double size = half.carrier.bounding_radius + half.other.bounding_radius;
@@ -228,6 +235,7 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
 }
 
 /// Both outlines as carrier and as other, in frames that are seen from b's position.
+/// Differences of places are taken in extended precision, before they are rounded to doubles.
 std::array<Half, 2> halves(const Outline& a, const ExtendedState& state_a, const Outline& b,
                            const ExtendedState& state_b) {
   const ExtendedState origin = state_b;
@@ -241,6 +249,7 @@ std::array<Half, 2> halves(const Outline& a, const ExtendedState& state_a, const
 }
 
 /// True if the sample is clear of the other's box, a quick look.
+/// False says little: the box may be near where the outline is not.
 bool out_of_reach(const Half& half, const Sample& sample, double reach) {
   // a container is solid beyond its bounds: nothing is clear of it there
   if (half.other.container) return false;
@@ -264,6 +273,8 @@ std::vector<NearFeature> near_features(const Outline& a, const ExtendedState& st
   return found;
 }
 
+/// Unlike near_features() it looks for no other site or side: the feature is followed wherever it goes.
+/// Abreast of the site the gap is negative once the sample is through; beyond an end it is positive again.
 double gap_of(const NearFeature& f, const Outline& a, const ExtendedState& state_a, const Outline& b,
               const ExtendedState& state_b) {
   const Half half = halves(a, state_a, b, state_b)[f.sample_on_a ? 0 : 1];

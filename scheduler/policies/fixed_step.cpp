@@ -27,6 +27,7 @@ class FixedStep final : public Policy {
       kernel.forget_before(from);
       const double end = kernel.follow_motions_all_the_way(std::min(until, step_end(from, step)));
       if (kernel.halt()) return;
+      // who could meet in the step; a pair that a push alone brings together waits for the next
       const std::vector<PairKey> pairs = kernel.near_pairs(from, end);
       // Frames within the step are of the motions before it is answered; one at its very end shows what
       // has been pushed apart.

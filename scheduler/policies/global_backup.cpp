@@ -30,6 +30,7 @@ class GlobalBackup final : public Policy {
     double seen = kernel.follow_motions(seen_beyond(end));
     double last = last_beginning(kernel, begin, end, seen);
     if (!agenda_.pass(kernel, begin, seen)) return std::nullopt;
+    // of the whole pass: the next pass_again() looks at a few pairs alone
     const std::size_t near = agenda_.pairs().size();
     kernel.advance_all(last);
     while (const auto next = agenda_.take_earliest(kernel, last)) {

@@ -46,6 +46,8 @@ double next_end(Kernel& kernel, double until) {
 void adapt(Kernel& kernel, std::size_t pairs, std::uint64_t collisions) {
   const auto n = static_cast<std::uint64_t>(kernel.body_count());
   if (!kernel.options().broad_phase) pairs = 0;  // every pair is met at any horizon
+  // Halved, grown by half, or, between two bounds that lie well apart, kept: so it does not swing. Each body
+  // counts for a few neighbours; the constants are for worlds of few bodies.
   if (pairs > 6 * n + 16 || collisions > 2 * n + 16)
     kernel.choose_horizon(std::max(0.5 * kernel.horizon(), kShortestHorizon));
   else if (pairs < 3 * n + 8 && collisions < n / 2 + 4)
@@ -56,6 +58,8 @@ void adapt(Kernel& kernel, std::size_t pairs, std::uint64_t collisions) {
 
 void run_horizons(Kernel& kernel, double until,
                   const std::function<std::optional<std::size_t>(double end)>& run_one) {
+  // Between horizons nothing is left before the present time: a run may be resumed from there, and no motion
+  // is asked for what lies before.
   while (kernel.time() < until && !kernel.halt()) {
     if (!kernel.pause_point()) return;
     kernel.forget_before(kernel.time());
@@ -69,10 +73,12 @@ void run_horizons(Kernel& kernel, double until,
 double seen_beyond(double end) { return end + 4.0 * same_instant(end); }
 
 double last_beginning(const KernelView& kernel, double begin, double end, double seen) {
+  // an instant that begins by then is over before `seen`
   const double last = seen - 2.0 * same_instant(seen);
   return std::min(end, seen < kernel.reach() && last > begin ? last : seen);
 }
 
+/// What the agenda held of the last horizon is dropped: what of it lies ahead is found again.
 bool HorizonAgenda::pass(Kernel& kernel, double from, double end) {
   agenda_.clear();
   pairs_ = kernel.near_pairs(from, end);
@@ -83,6 +89,7 @@ bool HorizonAgenda::pass(Kernel& kernel, double from, double end) {
   return kernel.poll();
 }
 
+/// Certificates of former motions stay on the agenda: they are stale, and dropped when they come up.
 bool HorizonAgenda::pass_again(Kernel& kernel, std::span<const int> changed, double end) {
   const double now = kernel.time();
   pairs_.clear();

@@ -59,6 +59,8 @@ class IslandBackup final : public Policy {
     if (!done) return false;
     seen = kernel.follow_motions(seen);
     if (!agenda_.pass_again(kernel, changed_, seen)) return false;
+    // Islands only grow until the horizon ends. Three reasons: components are others now; the collision has
+    // changed these bodies together; and what they may now reach could meet them.
     if (groupings_ != kernel.groupings()) unite_coupled(kernel);
     for (const int k : changed_) islands_.unite(changed_.front(), k);
     unite_near();
@@ -71,6 +73,7 @@ class IslandBackup final : public Policy {
     unite_near();
   }
 
+  /// Bodies that move as one system: by forces that couple them, or by contacts that last.
   void unite_coupled(const Kernel& kernel) {
     groupings_ = kernel.groupings();
     std::vector<int> first;  // body of every component
@@ -84,6 +87,7 @@ class IslandBackup final : public Policy {
       for (const int k : island.members) islands_.unite(lead, k);
   }
 
+  /// Bodies of the pairs that the last pass looked at. Sites join nobody: they are not backed up.
   void unite_near() {
     for (const PairKey& pair : agenda_.pairs())
       if (!pair.with_site()) islands_.unite(pair.body, pair.other_body);

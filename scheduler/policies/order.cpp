@@ -9,6 +9,8 @@ namespace brink {
 
 namespace {
 
+/// By the option `order`; ties go by index, and so does an order that takes contacts together, which only
+/// needs one of them to begin with.
 std::size_t first_by(Kernel& kernel, const std::vector<Certificate>& group) {
   const Order order = kernel.order();
   const auto least = [&](auto key) {
@@ -29,6 +31,7 @@ std::size_t first_by(Kernel& kernel, const std::vector<Certificate>& group) {
   return least(by_index);
 }
 
+/// A step of an island as the next event: of the island whose step ends first.
 Certificate end_of_step(const KernelView& kernel, double time) {
   Certificate c;
   c.kind = Certificate::Kind::island;

@@ -25,6 +25,7 @@ class Registry {
     return registry;
   }
 
+  /// Checked and added under one lock, so that of two threads with one name the second fails.
   void add(Entry entry) {
     const std::lock_guard lock(mutex_);
     if (entry.name.empty()) throw BadInput("register_policy: a policy needs a name");
@@ -33,6 +34,7 @@ class Registry {
     entries_.push_back(std::move(entry));
   }
 
+  /// Empty if there is none of that name.
   PolicyMaker maker(std::string_view name) {
     const std::lock_guard lock(mutex_);
     const Entry* entry = find(name);
@@ -54,6 +56,7 @@ class Registry {
   }
 
  private:
+  /// @pre the lock is held.
   const Entry* find(std::string_view name) const {
     for (const Entry& e : entries_)
       if (e.name == name) return &e;
@@ -86,6 +89,7 @@ std::vector<Choice> policies() { return Registry::get().choices(); }
 std::vector<std::string> exact_policies() {
   std::vector<std::string> names;
   for (const Choice& c : policies())
+    // only a policy itself can say
     if (!make_policy(c.name)->approximate()) names.emplace_back(c.name);
   return names;
 }
@@ -99,6 +103,7 @@ bool is_added_policy(std::string_view name) { return Registry::get().is_added(na
 std::unique_ptr<Policy> make_policy(std::string_view name, std::string_view detector) {
   const PolicyMaker make = Registry::get().maker(name);
   if (!make) throw BadInput(fmt::format("policy \"{}\" is not known; see policies()", name));
+  // the name was looked up all the same: one that is unknown fails with any detector
   if (detector == "depth") return name == "fixed_step" ? make_classic_fixed_step() : make_classic_backup();
   return make();
 }

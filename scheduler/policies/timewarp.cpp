@@ -32,6 +32,7 @@ namespace {
 /// Contacts closer than this in time are left to the order [s].
 double too_close(double t) { return 4.0 * same_instant(t); }
 
+/// In a world of few bodies a horizon may end early after so many collisions (knows_enough()).
 constexpr std::uint64_t kManyCollisions = 512;
 
 class Timewarp final : public Policy {
@@ -53,6 +54,8 @@ class Timewarp final : public Policy {
     const double begin = kernel_->time();
     const std::uint64_t before = kernel_->collisions();
     if (!look_at_all()) return false;
+    // Each round: those who have news go ahead; then the one next contact that is certain is confirmed or
+    // resolved. `last` is as far as this horizon comes by what is known now.
     double last = begin;
     for (;;) {
       run_ahead();
@@ -82,6 +85,7 @@ class Timewarp final : public Policy {
   bool knows_enough(std::uint64_t collisions) const {
     return collisions > kManyCollisions + 16 * static_cast<std::uint64_t>(kernel_->body_count());
   }
+  /// Far beyond what one instant holds: what ends a horizon there cuts no instant in two.
   static double long_after(double t) { return t + 4096.0 * same_instant(t); }
 
   // -- what is certain --
@@ -103,6 +107,7 @@ class Timewarp final : public Policy {
         end_ = kernel_->follow_motions(end_);
         return look_around(next.time);
       }
+      // who changes together with whom is different from now on
       if (groupings_ != kernel_->groupings()) return look_at_groups(next.time);
       count_from_now_on();
       return true;
@@ -151,6 +156,7 @@ class Timewarp final : public Policy {
   // -- what is known --
 
   /// Certificates of every pair that can meet before the horizon. False on a halt.
+  /// Everything that was known is dropped: horizons begin where nobody is ahead.
   bool look_at_all() {
     agenda_.clear();
     known_.assign(kernel_->body_count(), {});
@@ -193,12 +199,14 @@ class Timewarp final : public Policy {
   }
   bool is_changed(int k) const { return std::find(changed_.begin(), changed_.end(), k) != changed_.end(); }
 
+  /// Known to both bodies from now on; on the agenda, too, if both motions are certain.
   void note(const Certificate& c) {
     known_[c.pair.body].push_back(c);
     if (!c.pair.with_site()) known_[c.pair.other_body].push_back(c);
     if (kernel_->fresh(c)) put_on_agenda(c);
   }
 
+  /// With the pair's other features at that time, where the order chooses among all.
   void put_on_agenda(const Certificate& c) {
     agenda_.insert(c);
     if (c.kind != Certificate::Kind::contact || !picks_among_all(kernel_->order())) return;
@@ -220,6 +228,8 @@ class Timewarp final : public Policy {
     }
   }
 
+  /// Body k's first contact, if it can be told: the other is rolled back where it has gone on without it;
+  /// else it is resolved ahead, if it comes first for the other as well.
   void take_turn(int k) {
     const auto c = first_of(k);
     if (!c || c->kind != Certificate::Kind::contact || c->time > end_) return;
@@ -242,6 +252,7 @@ class Timewarp final : public Policy {
     return true;
   }
 
+  /// All whose motions were undone have news.
   void roll_back(int body, std::uint64_t version, double t) {
     undone_.clear();
     kernel_->roll_back(body, version, t, undone_);
@@ -264,6 +275,8 @@ class Timewarp final : public Policy {
     return kernel_->states_kept() + concerned <= kernel_->options().kept_states;
   }
 
+  /// True if nothing that body k knows of comes before c or close upon it; and, if c is body k's, it speaks
+  /// of newest motions.
   bool is_clear_of_others(int k, const Certificate& c) {
     for (const Certificate& other : known_[k])
       if (other.time <= c.time + too_close(c.time) && other.order() != c.order() && may_be(k, other))
@@ -298,6 +311,7 @@ class Timewarp final : public Policy {
     return kernel_->body(k).version == (k == c.pair.body ? c.version_body : c.version_other);
   }
 
+  /// True if neither body has gone on from the motion of which c speaks.
   bool is_newest(const Certificate& c) const {
     return kernel_->body(c.pair.body).version == c.version_body &&
            (c.pair.with_site() || kernel_->body(c.pair.other_body).version == c.version_other);
@@ -312,6 +326,7 @@ class Timewarp final : public Policy {
 
   // -- who has a turn --
 
+  /// At most one turn waits for each body.
   void give_a_turn_to(int k) {
     if (is_restless_[k]) return;
     is_restless_[k] = true;
@@ -326,6 +341,7 @@ class Timewarp final : public Policy {
 
   /// Bodies that change together with body k.
   std::span<const int> group_of(int k) const { return groups_[group_[k]]; }
+  /// By component; a body in none is a group of its own.
   void group_bodies() {
     groupings_ = kernel_->groupings();
     groups_.clear();

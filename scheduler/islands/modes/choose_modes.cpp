@@ -27,6 +27,7 @@ class Complementarity {
       if (known[k] != ContactKnown::open) add(problem, moment.contacts[k], k, known[k]);
   }
 
+  /// False: Lemke's method found no solution, or none that is finite.
   bool solve() {
     const auto n = static_cast<Eigen::Index>(unknowns_.size());
     RealMatrix A(n, n);
@@ -60,6 +61,8 @@ class Complementarity {
     }
   }
 
+  /// What contact k does by the accelerations of the solution. @pre solve() gave true; k may be closed. An
+  /// exact comparison with 0 would be a matter of roundings: kNone of the largest number in q decides.
   MotionMode mode_of(std::size_t k, ContactKnown known, bool frictionless) const {
     const auto found =
         std::find_if(contacts_.begin(), contacts_.end(), [&](const Rows& r) { return r.of == k; });
@@ -75,6 +78,7 @@ class Complementarity {
   }
 
  private:
+  /// One pair of the problem: z is a force (or g), w its complement.
   struct Unknown {
     RealVector row, force;  ///< w = row . a + bend + couplings; force: what one unit pushes with
     Real bend = 0;
@@ -82,6 +86,7 @@ class Complementarity {
     std::size_t of = 0;
     Real friction = 0, by = 1;
   };
+  /// Of one contact that may be closed, scaled as its unknowns are: what mode_of() looks at.
   struct Rows {
     std::size_t of;
     RealVector normal, tangent;
@@ -107,6 +112,7 @@ class Complementarity {
     const RealVector none = RealVector::Zero(n.size());
     unknowns_.push_back({by * t, by * t, tangential_bend, Unknown::Kind::plus, k, mu, by});
     unknowns_.push_back({-by * t, -by * t, -tangential_bend, Unknown::Kind::minus, k, mu, by});
+    // g, the tangential acceleration beyond friction: it pushes nobody, and is coupled to f+, f- alone
     unknowns_.push_back({none, none, 0, Unknown::Kind::slack, k, mu, 1});
   }
 
@@ -155,6 +161,7 @@ std::optional<PlasticImpact> plastic_impact(const ModeProblem& problem, double t
        ++k) {  // velocities for accelerations; supports are in the bends
     ContactRates& r = m.contacts[k];
     const ModeContact& c = problem.contacts[k];
+    // Moreau's law goes by the slip after the impact, which the slip before does not tell
     known.push_back(touching[k] ? ContactKnown::still : ContactKnown::open);
     // what of v_n is not the bodies' own: with it "a_n" is v_n after the impact, and forces are impulses
     r.normal_bend = r.normal_velocity - row_of(problem, c, r.normal_on_sample, r.normal_on_site).dot(m.free);

@@ -19,6 +19,8 @@ constexpr int kLooksOfArrival = 64;
 /// One open contact on its owners' motions.
 class Watch {
  public:
+  /// `slack` [m]: as of first_arrival(); `sector_window` [s]: how long to wait where the sample's own sector
+  /// alone does not hold the touching direction: of that there is no bound.
   Watch(const ModeProblem& problem, const ModeContact& contact, const std::vector<PolynomialPiece>& bodies,
         double slack, double sector_window)
       : problem_(problem), contact_(contact), bodies_(bodies), slack_(slack), sector_window_(sector_window) {}
@@ -63,10 +65,12 @@ class Watch {
   ContactRates at(double t) const {
     return rates_of(contact_.shape, state(contact_.sample_owner, t), state(contact_.site_owner, t));
   }
+  /// A body's on the pieces of this step, a support's on its own motion.
   BodyState state(int owner, double t) const {
     return owner < problem_.bodies() ? bodies_[owner].state(t)
                                      : problem_.supports[owner - problem_.bodies()].state(t);
   }
+  /// Of the same motions over part of the step.
   MotionBounds bounds(int owner, double from, double to) const {
     return owner < problem_.bodies() ? bodies_[owner].bounds(from, to)
                                      : problem_.supports[owner - problem_.bodies()].bounds(from, to);
@@ -114,6 +118,7 @@ class Watch {
     double speed = 0.0;   ///< of the sample, as the site's owner sees it [m/s]
   };
 
+  /// Bounds over [from, to], from where the contact is at `from`.
   Bent bend(const ContactRates& r, double from, double to) const {
     RelativeBounds relative(bounds(contact_.sample_owner, from, to), bounds(contact_.site_owner, from, to));
     const SmoothContact& c = contact_.shape;
@@ -140,6 +145,7 @@ class Watch {
   }
 
   /// How long the sample stays out of the feature's range.
+  /// For every edge that it is beyond: its distance from the edge over the largest speed.
   double until_in_range(const ContactRates& r, double t, const Bent& b) const {
     const Frame frame(Pose{{0.0, 0.0}, state(contact_.site_owner, t).pose.angle});
     // all edges must be met: it is out for as long as the one that takes longest
@@ -173,6 +179,7 @@ Arrival first_arrival(const ModeProblem& problem, const std::vector<MotionMode>&
     if (fate == Watch::Fate::closes)
       first = {true, when, static_cast<int>(k)};
     else
+      // up to there all that were asked are open, and the others are asked up to there
       first = {false, when, -1};
   }
   return first;

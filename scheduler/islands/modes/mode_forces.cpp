@@ -23,6 +23,8 @@ constexpr int kNewtonSteps = 4;
 
 /// Equations (rows) and forces (columns) of the closed contacts, in the mass metric: J M^-1/2 and M^-1/2 G, each
 /// row scaled to length one.
+/// From J a + bend = 0 with a = f + M^-1 G load: (J M^-1 G) load = -(bend + J f), which is (rows . columns)
+/// loads = right.
 struct System {
   MatrixXd rows, columns;
   VectorXd right;           ///< of rows . x = right, x = M^1/2 (a - f)
@@ -43,6 +45,8 @@ double friction_sign(MotionMode mode) {
   return mode == MotionMode::slip_plus ? -1.0 : mode == MotionMode::slip_minus ? 1.0 : 0.0;
 }
 
+/// Over the coordinates of all bodies: normal_row() . velocities is v_n of contact k, and its transpose is
+/// what a normal force of 1 N does to the bodies; likewise the tangent's.
 VectorXd normal_row(const ModeProblem& p, const ContactRates& r, std::size_t k) {
   return row_of(p, p.contacts[k], r.normal_on_sample, r.normal_on_site);
 }
@@ -73,6 +77,7 @@ System system_of(const ModeProblem& problem, const ModeMoment& moment, const std
     if (!is_closed(modes[k])) continue;
     const VectorXd n = normal_row(problem, moment.contacts[k], k),
                    t = tangent_row(problem, moment.contacts[k], k);
+    // friction that slips is no unknown: q = -+ mu p joins the normal force's column
     const double sign = friction_sign(modes[k]) * problem.contacts[k].friction;
     add(k, n, n + sign * t, moment.contacts[k].normal_bend, false);
     if (modes[k] == MotionMode::stick) add(k, t, t, moment.contacts[k].tangential_bend, true);
@@ -117,6 +122,7 @@ void find_margin(const ModeProblem& problem, const std::vector<MotionMode>& mode
     double room = f.normal[k];
     if (modes[k] == MotionMode::stick)
       room = std::min(room, problem.contacts[k].friction * f.normal[k] - std::abs(f.tangential[k]));
+    // a part of the largest: 1 N is much in one island and a rounding in another
     if (largest > 0.0) room /= largest;
     if (room < f.margin) f.margin = room, f.worst = static_cast<int>(k);
   }
@@ -128,6 +134,7 @@ void find_margin(const ModeProblem& problem, const std::vector<MotionMode>& mode
 /// span: two edges (1, +-mu) where it sticks, one where it slips.
 void find_admissible(const ModeProblem& problem, const ModeMoment& moment,
                      const std::vector<MotionMode>& modes, const VectorXd& pushed, ModeForces& f) {
+  // edges in the mass metric, as `pushed` is
   const VectorXd root = root_of(problem);
   std::vector<VectorXd> edges;
   std::vector<std::pair<int, double>> of;  // contact, tangential part
@@ -150,6 +157,7 @@ void find_admissible(const ModeProblem& problem, const ModeMoment& moment,
   MatrixXd cone(pushed.size(), static_cast<Eigen::Index>(edges.size()));
   VectorXd lengths(static_cast<Eigen::Index>(edges.size()));
   for (std::size_t i = 0; i < edges.size(); ++i) {
+    // fit_nonnegative() wants columns of length one; an edge between what is held stays 0
     lengths[i] = edges[i].norm();
     cone.col(i) = lengths[i] > 0.0 ? VectorXd(edges[i] / lengths[i]) : edges[i];
   }
@@ -192,10 +200,12 @@ VectorXd least_change(const ModeProblem& problem, const std::vector<VectorXd>& r
   VectorXd right(system.rows());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const VectorXd row = rows[i].cwiseProduct(root);
+    // length one, so that redundancy is told alike of rows of light and heavy bodies
     const double length = row.norm(), by = length > 0.0 ? 1.0 / length : 0.0;
     system.row(i) = by * row.transpose();
     right[i] = -by * off[i];
   }
+  // rows may be redundant: of all changes that miss least the shortest
   Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver;
   solver.setThreshold(kRedundant);
   solver.compute(system);
@@ -214,6 +224,7 @@ ModeForces forces_in(const ModeProblem& problem, const ModeMoment& moment,
   const System s = system_of(problem, moment, modes);
   if (s.right.size() == 0) return f;
   Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver;
+  // of redundant forces the least, in scaled units
   solver.setThreshold(kRedundant);
   const MatrixXd matrix = s.rows * s.columns;
   solver.compute(matrix);
@@ -221,6 +232,7 @@ ModeForces forces_in(const ModeProblem& problem, const ModeMoment& moment,
   const double missed = (matrix * loads - s.right).norm();
   // a singular system may have no solution: contacts that contradict each other, or slip that jams
   f.consistent = loads.allFinite() && missed <= kConsistent * s.right.norm();
+  // unique, though the loads need not be: M^1/2 times what contacts add to the accelerations
   const VectorXd pushed = s.columns * loads;
   f.acceleration += pushed.cwiseProduct(root_of(problem));
   read_forces(problem, modes, s, loads, f);

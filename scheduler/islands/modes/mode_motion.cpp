@@ -13,6 +13,8 @@ namespace {
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 /// Looks along a step: at its gaps, and at what may fail in it.
 constexpr int kGapLooks = 8, kLooksAStep = 4;
+/// kShortenings: each by a fifth at least, so that they lead to 2e-8 of the first step; what fails even
+/// there is lost.
 constexpr int kShortenings = 80, kClosings = 200, kApproaches = 8;
 /// A slip slower than this part of the speeds that take part is none.
 constexpr double kNoSlip = 1e-12;
@@ -32,6 +34,7 @@ double slip_sign(MotionMode m) { return m == MotionMode::slip_plus ? 1.0 : -1.0;
 
 Acceleration as_acceleration(const Eigen::VectorXd& a, int k) { return {a.segment<2>(3 * k), a[3 * k + 2]}; }
 
+/// Of all bodies, on the dense output of one step.
 std::vector<BodyState> states_of(const std::vector<PolynomialPiece>& pieces, double t) {
   std::vector<BodyState> states;
   for (const PolynomialPiece& p : pieces) states.push_back(p.state(t));
@@ -61,6 +64,7 @@ void ModeMotion::set_scales() {
     speed = std::max(speed, states_[k].twist.velocity.norm() + size_ * std::abs(states_[k].twist.omega));
     pull = std::max(pull, free[k].linear.norm() + size_ * std::abs(free[k].angular));
   }
+  // the last, so that there is something to measure by where nobody moves and nothing pulls
   speed_ = std::max({speed, std::sqrt(pull * size_), 1e-9 * size_});
 }
 
@@ -79,6 +83,7 @@ bool ModeMotion::begin(const std::vector<bool>& closed) {
   return choice.found && begin_in(choice.modes);
 }
 
+/// The states are put onto the modes first: forces are those of the projected states.
 bool ModeMotion::begin_in(const std::vector<MotionMode>& modes) {
   modes_ = modes;
   states_ = projected(problem_, t_, std::move(states_), modes_);
@@ -97,6 +102,8 @@ double ModeMotion::error_of(const ModeTrial& trial) const {
   return trial.finite ? most / limits_.tolerance : std::numeric_limits<double>::infinity();
 }
 
+/// All rooms are numbers without unit, so that the least can be told: ways by the size, slips by the speed,
+/// forces by the largest of them.
 ModeMotion::Look ModeMotion::look_at(double t, const States& states) const {
   const ModeMoment m = moment_at(problem_, t, states, modes_);
   const ModeForces f = forces_in(problem_, m, modes_);
@@ -119,6 +126,7 @@ ModeMotion::Look ModeMotion::look_at(double t, const States& states) const {
 /// The ends are on their gaps by projection; in between the quintic does not know of them.
 bool ModeMotion::gaps_hold(const std::vector<PolynomialPiece>& pieces, double h) const {
   for (int i = 1; i < kGapLooks; ++i) {
+    // of the quintic, as it will be told; the trial's own end is on its gaps already
     const double t = t_ + h * i / kGapLooks;
     const std::vector<ContactRates> rates = rates_at(problem_, t, states_of(pieces, t), modes_);
     for (std::size_t k = 0; k < modes_.size(); ++k)
@@ -136,6 +144,7 @@ bool ModeMotion::fails_within(double h, const std::vector<PolynomialPiece>& piec
   double room = 0.0;  // of the start nothing is asked: it was chosen so
   for (int i = 1; i <= kLooksAStep; ++i) {
     const double ahead = i == kLooksAStep ? h : h * i / kLooksAStep;
+    // what fails and holds again between two looks is not seen
     failed = look_at(t_ + ahead, states_of(pieces, t_ + ahead));
     if (failed.room < 0.0) {
       close_in(pieces, clear, ahead, room, failed);
@@ -198,6 +207,8 @@ double ModeMotion::arrive(double h, int contact) const {
   return reached;
 }
 
+/// Quintics from the present states to those at `end`, with the accelerations of the present modes at both
+/// ends: the motion's second derivative there is what the contact forces give.
 std::vector<PolynomialPiece> ModeMotion::pieces_to(double end, const States& states) const {
   const ModeForces f = forces_in(problem_, moment_at(problem_, end, states, modes_), modes_, false);
   std::vector<PolynomialPiece> pieces;
@@ -216,6 +227,7 @@ void ModeMotion::accept(double end, States states) {
   set_scales();
 }
 
+/// What the choice of new modes may take for granted of each contact.
 std::vector<ContactKnown> ModeMotion::known_now(const Look& failed) const {
   const std::vector<ContactRates> rates = rates_at(problem_, t_, states_, modes_);
   std::vector<ContactKnown> known(modes_.size(), ContactKnown::open);
@@ -244,6 +256,7 @@ bool ModeMotion::change(const Look& failed) {
   ModeChoice choice = choose_modes(problem_, m, known);
   // the same again would fail again at once: without the contact that failed
   if (choice.found && choice.modes == modes_ && failed.contact >= 0) {
+    // it was closed, as only what is closed can fail
     known[failed.contact] = ContactKnown::open;
     choice = choose_modes(problem_, m, known);
   }
@@ -283,6 +296,9 @@ double ModeMotion::find_step(double until, States& end, std::vector<PolynomialPi
   return 0.0;
 }
 
+/// The order matters: the longest accurate step; then what fails first on it, which may shorten it; then
+/// what arrives first on what is left of it. Each time a step of its own is taken to the new end. Last the
+/// modes are changed, at the state in which the step has ended.
 ModeStep ModeMotion::step(double until) {
   ModeStep done;
   States end;

@@ -38,6 +38,7 @@ VectorXd flat(const std::vector<BodyState>& states) {
   return y;
 }
 
+/// The reverse of flat().
 std::vector<BodyState> as_states(const VectorXd& y) {
   const Eigen::Index n = y.size() / 2;
   std::vector<BodyState> states(n / 3);

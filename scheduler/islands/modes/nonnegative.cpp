@@ -71,6 +71,7 @@ NonNegativeFit fit_nonnegative(const MatrixXd& A, const VectorXd& b) {
   for (Index round = 0; round < most; ++round) {
     const Index next = steepest(A, b - A * fit.x, joined, kJoins * b.norm());
     if (next < 0) break;
+    // a column that joins may drive others out; if in the end nothing is won, this is the answer
     const NonNegativeFit before = fit;
     joined[next] = true;
     // each pass that does not end lets a column go

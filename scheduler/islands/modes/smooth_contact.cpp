@@ -68,16 +68,21 @@ void look_at_circle(const SmoothContact& c, const Placing& at, ContactRates& r) 
   const Vec2 t = perp(r.normal);
   r.gap = side * (distance - c.radius) - c.sample_radius;
   const Vec2 u = at.velocity - cross(at.omega_t, centre);
+  // The sample's material point moves against its centre with -radius omega_S along t, the site's against
+  // the circle's centre with lever omega_T: their difference is v_t.
   const double lever = side * distance - c.sample_radius;  // from the centre to the point that touches
   const double along = t.dot(u), turn = distance > 0.0 ? side * along / distance : 0.0;  // of the normal
   r.normal_velocity = r.normal.dot(u);
   r.tangential_velocity = along - c.sample_radius * at.omega_s - lever * at.omega_t;
   const Vec2 bend = -at.omega_s * at.omega_s * at.arm + at.omega_t * at.omega_t * centre;
+  // d(n.u)/dt = n.u' + n'.u with n' = turn t, so that n'.u = turn * along
   r.normal_bend = r.normal.dot(bend) + turn * along;
   // the second part is the rates of t and of the lever: none while the contact stays closed
   r.tangential_bend = t.dot(bend) - r.normal_velocity * (turn + at.omega_t);
 }
 
+/// The least of how far the sample's point is inside the site's range, and the touching direction inside the
+/// sample's own sector [m].
 double range_of(const SmoothContact& c, const Placing& at, const Vec2& normal) {
   const Vec2 q = at.site_frame.direction_to_local(at.rho);
   const Vec2 to_site = at.sample_frame.direction_to_local(-normal);
@@ -88,6 +93,7 @@ double range_of(const SmoothContact& c, const Placing& at, const Vec2& normal) {
   return within;
 }
 
+/// What lies from the place on in that direction (unit).
 HalfPlane beyond(const Vec2& place, const Vec2& direction) { return {direction, direction.dot(place)}; }
 
 /// Between two directions from an arc's centre, in the order in which it is travelled.
@@ -124,6 +130,7 @@ SmoothContact interior_of(SmoothContact c, const Site& site, const Vec2& q, cons
 /// One end of it, or a point.
 SmoothContact end_of(SmoothContact c, const Site& site, bool start, const Vec2& q) {
   c.kind = SmoothContact::Kind::circle;
+  // a circle of no more than the site's thickness about the end
   c.place = start ? site.a : site.b;
   c.radius = site.radius;
   if (site.kind == SiteKind::segment) {
@@ -184,6 +191,7 @@ std::vector<SmoothContact> smooth_contacts(const NearFeature& f, const Outline& 
   const SmoothContact& first = shapes.front();
   const double size = carrier.bounding_radius + other.bounding_radius;
   const bool round = first.kind == SmoothContact::Kind::circle;
+  // right at the centre the normal has no direction, and the gap's bend no bound
   if (round && !((q - first.place).norm() > kNoDirection * size)) shapes.clear();
   return shapes;
 }

@@ -67,6 +67,8 @@ class BodyClocks final : public Policy {
   }
 
  private:
+  /// Everything anew, from the present state alone: where there are no views, or where the state was changed
+  /// from outside the verbs.
   void look_around_all() {
     views_.emplace(*kernel_);
     views_->set_end(seen_end());
@@ -79,6 +81,7 @@ class BodyClocks final : public Policy {
     }
   }
 
+  /// Puts body k where its clock says. To be called whenever its view has changed.
   void wait_for(int k) {
     kernel_->note_queue_operations(1);
     queue_.update(k, views_->clock(k).expiry());
@@ -108,8 +111,10 @@ class BodyClocks final : public Policy {
   /// guess.
   static double beyond(double t) { return t + 64.0 * same_instant(t); }
 
+  /// Does what is due first for body k, which is the first of all.
   void serve(int k) {
     const Due due = due_of(k);
+    // asked before body k's time changes: who else is due next, and when
     const EventQueue::Entry second = queue_.second();
     expect(k, second.body);
     switch (due.kind) {
@@ -121,6 +126,7 @@ class BodyClocks final : public Policy {
         break;
       case Due::Kind::may_meet:
         sharpen(k);
+        // what was just found may be next in any case: that saves a turn in the queue
         if (is_next(k, second.time)) return meet(k, second.time);
         break;
       case Due::Kind::meets:
@@ -144,11 +150,13 @@ class BodyClocks final : public Policy {
     return {now, first.exact && !views_->stale(first) ? Due::Kind::meets : Due::Kind::may_meet};
   }
 
+  /// In a round of its own: everybody near is seen, whoever has looked before.
   void look_alone(int k, double now) {
     views_->begin_round();
     look_around(k, now);
   }
 
+  /// In the present round. The contact that was found in the view before is void.
   void look_around(int k, double now) {
     found_->forget(k);
     views_->look_around(k, now);
@@ -193,6 +201,7 @@ class BodyClocks final : public Policy {
         kernel_->search(*kernel_->pair_of(k, c.other, c.image), c.clear, to, instalment(clock.undecided));
     const bool undecided = found && found->kind == Certificate::Kind::undecided;
     clock.undecided = undecided ? clock.undecided + 1 : 0;
+    // no headway, or a million steps: the run ends and says so
     if (undecided && (found->time <= c.clear || clock.undecided > kMostInstalments))
       return kernel_->give_up(*found);
     if (found) {
@@ -200,6 +209,8 @@ class BodyClocks final : public Policy {
       c.exact = !undecided;
       if (undecided) c.clear = c.time;
     } else if (to < end) {
+      // Clear to as far as this run looks: the candidate stays, for a run that goes on. Else nothing of it
+      // is left in this view.
       c.time = c.clear = std::nextafter(to, kForever);  // not before the end of this run
     } else {
       return;
@@ -236,6 +247,8 @@ class BodyClocks final : public Policy {
     std::vector<int> asked, looked_again;
     // a motion may fail in the midst of the instant
     const double last = std::min(instant, kernel_->reach());
+    // Whose view may hide something of the instant takes its next step here, until every view that is due by
+    // `last` begins with a contact.
     while (queue_.time() <= last && kernel_->poll()) {
       const int k = queue_.body();
       const BodyClock& clock = views_->clock(k);
@@ -274,6 +287,7 @@ class BodyClocks final : public Policy {
     wait_for(k);
   }
 
+  /// At the contact, and not again in this instant.
   void look_again(int k, double contact, std::vector<int>& looked_again) {
     looked_again.push_back(k);
     look_alone(k, contact);
@@ -299,6 +313,7 @@ class BodyClocks final : public Policy {
     }
   }
 
+  /// Frames up to the contact first: they show the motions before it.
   void collide(const Certificate& c) {
     if (!kernel_->record_frames(c.time)) return;
     kernel_->advance_pair(c.pair, c.time);
@@ -322,6 +337,7 @@ class BodyClocks final : public Policy {
       std::set<int> seen;
       std::erase_if(changed_, [&](int k) { return !seen.insert(k).second; });
     }
+    // all flights before the first look: nobody must see another's former motion
     for (const int k : changed_) views_->take_up(k);
     views_->begin_round();
     for (std::size_t i = 0; i < changed_.size() && !kernel_->halt(); ++i) {

@@ -11,10 +11,12 @@ namespace brink {
 
 namespace {
 
+/// Outlines of more sites have one box for all: each box costs a look of its own.
 constexpr std::size_t kMostBoxes = 16;
 
 /// Boxes of an outline's sites; empty where they would not narrow anything down.
 std::vector<Box> boxes_of(const Outline& outline) {
+  // a container is met from within its bounds: only its sites' own boxes narrow anything down
   if (outline.sites.size() > kMostBoxes)
     return outline.container ? std::vector<Box>{} : std::vector<Box>{outline.bounds};
   std::vector<Box> boxes;
@@ -32,6 +34,7 @@ std::vector<Box> boxes_of(const Outline& outline) {
 /// A time in which a motion goes no farther than `room`, from bounds of its speed; end - now where it stays
 /// till the end. What is fast later on must not shorten it much: then less of it is looked at.
 double time_within(double room, const Motion& motion, double now, double end) {
+  // ends: a span that cannot be told from none is the last
   for (double span = end - now;; span *= 0.5) {
     const double fastest = motion.bounds(now, now + span).speed();
     // Halved until the room is at least half of what the bound allows for: room / fastest lies within
@@ -56,6 +59,8 @@ double gap_over_speed(const Motion& a, double radius, const Motion& b, const Vec
     return (x.velocity - y.velocity).norm() + x.velocity_radius + y.velocity_radius;
   };
   // what is fast later on must not shorten it much: then less of it is looked at
+  // Over a span the discs cannot close the gap sooner than by the largest speed of that span; a bound holds
+  // in its own span alone. So of nested spans, each answer cut to its span, the longest counts.
   const double whole = gap / closing_in(end - now);
   if (whole >= 0.5 * (end - now)) return whole;
   double longest = whole;
@@ -91,6 +96,7 @@ Views::Views(Kernel& kernel)
     still.push_back({s, transformed(outline, kernel.site_motion(s).pose(0.0))});
     site_boxes_.back() = boxes_of(still.back().outline);
   }
+  // rendered passes tell themselves who is near: one cell holds all then
   const bool by_place = kernel.options().broad_phase && !kernel.by_passes();
   near_.emplace(flights_, clocks_, places, std::move(still), periods_, by_place);
 }
@@ -101,6 +107,7 @@ void Views::take_up(int k) {
   f.version = f.version + 1U;
   f.free = kernel_->is_free(k) && motion.acceleration().linear == gravity_ && !kernel_->by_passes();
   f.disc = f.free && is_centred_disc(kernel_->outline_of(k));
+  // stride() goes by how long motions last from start to start
   if (!kernel_->is_free(k)) note_start(k, motion.begin());
   // In meeting() every comparison with it is false, and max(now, NaN) is now: who is not free may be met
   // at once, without a branch that asks.
@@ -142,6 +149,8 @@ void Views::see_bodies(int k, const Course& here, double now, const Cell* former
     else
       see_bounded(k, j, image, now);
   };
+  // the quick way, where there is one (Neighbourhood::around()): several neighbours at once, by vector
+  // instructions
   int bodies[CellGrid::kMostAround + 1];
   if (const int count = former ? -1 : near_->around(k, bodies); count >= 0) {
     batch_.gather({bodies, bodies + count}, k, flights_);
@@ -162,6 +171,8 @@ void Views::look_around(int k, double now) {
   BodyClock& clock = clocks_[k];
   kernel_->note_pass(k, now);
   looked_[k] = round_;
+  // No horizon yet. Who is not in free flight gets one below, before anybody is put into view: see()
+  // compares with it.
   clock.forget_all();
   if (flights_[k].free) {
     const Course course(flights_[k], gravity_, now);
@@ -183,6 +194,7 @@ void Views::look_ahead(int k, double now) {
   BodyClock& clock = clocks_[k];
   const Course course(flights_[k], gravity_, now);
   const Cell former = flights_[k].cell;
+  // What was near the former cell is in view already, or has body k in its own.
   const bool moved = near_->put_into_cell(k, course.place);
   clock.exit = now + stay_in(near_->box_of(k), course);
   // Nobody has looked around in this round: all that comes near is to be in k's view.
@@ -200,6 +212,7 @@ void Views::see_site(int k, int s, const Image& image, double now) {
   if (wait > 0.0) {
     Course course(flights_[k], gravity_, now);
     course.displace(-periods_.shift(image));
+    // the centre must be within its disc's radius of a site's box
     const double reach = course.radius + kernel_->contact_tolerance();
     for (const Box& box : site_boxes_[s]) wait = std::min(wait, time_to(box.grown(reach), course));
     wait = std::max(0.0, wait - kFlightRounding * (now + wait));  // never later than it is
@@ -208,6 +221,7 @@ void Views::see_site(int k, int s, const Image& image, double now) {
     clock.see({now + wait, now + wait, body_count() + s, image, 0, 0}, now);
 }
 
+/// Sites that move are in no cell: each is bounded by its speed, wherever body k is.
 void Views::see_moving_site(int k, int s, double now) {
   if (!kernel_->may_meet(k, body_count() + s)) return;
   const auto see = [&](const Image& image) {
@@ -234,6 +248,7 @@ double Views::earliest_search(double now) const {
   return earliest;
 }
 
+/// What the rendered window of body k names until the view's end, each to be searched at once.
 void Views::see_by_pass(int k, double now) {
   const double end = end_view(k, kernel_->follow_motions(std::min(clocks_[k].horizon, until_)));
   if (kernel_->halt()) return;
@@ -259,8 +274,11 @@ MeetingTimes Views::bounded_meeting(int k, int owner, const Image& image, double
   return now + wait <= end ? MeetingTimes{now + wait, end} : MeetingTimes{};
 }
 
+/// Of its centre [m/s].
 double Views::speed(int k, double now) const { return kernel_->body(k).motion.twist(now).velocity.norm(); }
 
+/// `typical` is a mean in which the last time from start to start counts half, the one before a quarter, and
+/// so on.
 void Views::note_start(int k, double start) {
   Pace& pace = paces_[k];
   if (start <= pace.start) return;
