@@ -9,6 +9,8 @@ namespace brink {
 
 namespace {
 
+/// A piece of closed form from break to break of the forces. Where there is no break ahead there is one
+/// piece, to infinity, and motions are that piece itself; else they are chains, which grow as time goes on.
 class ClosedForm final : public Integrator {
  public:
   ClosedForm(std::shared_ptr<const Dynamics> dynamics, WorkCounters* work)
@@ -38,6 +40,8 @@ class ClosedForm final : public Integrator {
   void forget_before(double) override {}
 
   Motion motion(int k) const override {
+    // A lone piece never grows: it may be given away as a value, and closed forms of contacts then apply to
+    // it.
     const auto& chain = chains_.at(k);
     // before the first extend(): the starting time alone
     if (chain->empty()) return Motion::ballistic(time_, states_[k], {}, time_);
@@ -45,6 +49,7 @@ class ClosedForm final : public Integrator {
   }
 
  private:
+  /// The pieces of all bodies up to the next break; fails where none can be made.
   void next_piece() {
     const double end = dynamics_->next_break(time_);
     // it would make a piece without length, and no progress
@@ -71,6 +76,7 @@ class ClosedForm final : public Integrator {
   std::vector<Motion> pieces_until(double end) {
     std::vector<Motion> pieces;
     if (work_) ++work_->right_hand_sides;
+    // What is not constant has linear drag, which Dynamics knows of single bodies only: states_[0] is all.
     if (!dynamics_->constant()) {
       // asked at each break: a thrust that starts or stops changes the drive
       const Dynamics::LinearDrag drag = dynamics_->linear_drag(time_);
@@ -100,6 +106,7 @@ class ClosedForm final : public Integrator {
 }  // namespace
 
 bool has_closed_form(const Dynamics& dynamics) {
+  // What kind of forces there are does not depend on the time: asked at 0, it holds for ever.
   return dynamics.constant() || (dynamics.size() == 1 && dynamics.linear_drag(0.0).valid);
 }
 

@@ -1,3 +1,6 @@
+/// Pieces are polynomials of x, y and angle at once. Those of a solver's step are made about its begin, where
+/// the first two coefficients are pose and twist without rounding; what is to hold at the end is met by cubics
+/// and quintics of s = t - begin, with h for the step's length.
 #include "brink/integrators/dense_output.h"
 
 #include <algorithm>
@@ -8,6 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// x, y, angle as one vector; so for rates and accelerations.
 Vector3d stacked(const Pose& pose) { return {pose.position.x(), pose.position.y(), pose.angle}; }
 Vector3d stacked(const Twist& twist) { return {twist.velocity.x(), twist.velocity.y(), twist.omega}; }
 Vector3d stacked(const Acceleration& a) { return {a.linear.x(), a.linear.y(), a.angular}; }
@@ -41,6 +45,7 @@ void add_cubic(PolynomialPiece& piece, const Vector3d& pose_begin, const Vector3
   for (int k = 0; k <= 3; ++k) piece.c[k] += cubic.c[k];
 }
 
+/// The begin is set, the end corrected by a cubic with no pose and no rate at the begin.
 void match_ends(PolynomialPiece& piece, const BodyState& from, const BodyState& to) {
   for (int k = piece.degree + 1; k <= 1; ++k) piece.c[k].setZero();
   piece.degree = std::max(piece.degree, 1);
@@ -81,11 +86,13 @@ PolynomialPiece quintic_piece(double begin, const BodyState& from, const Acceler
   const Vector3d v = h * (v1 - (v0 + h * a0));
   const Vector3d a = h * h * (a1 - a0);
   for (int i = 0; i < 3; ++i) {
+    // Pose, rate and second derivative of third s^3 + fourth s^4 + fifth s^5 at s = 1, s in units of h.
     // The solution of (1 1 1), (3 4 5), (6 12 20) times (third, fourth, fifth) = x, v, a.
     double third = 10.0 * x[i] - 4.0 * v[i] + 0.5 * a[i];
     double fourth = -15.0 * x[i] + 7.0 * v[i] - a[i];
     double fifth = 6.0 * x[i] - 3.0 * v[i] + 0.5 * a[i];
     if (is_rounding(x[i], x0[i], x1[i])) {  // twist and acceleration alone: the pose follows to rounding
+      // 3 third + 4 fourth = v and 6 third + 12 fourth = a: a quartic.
       fourth = 0.25 * (a[i] - 2.0 * v[i]);
       third = (v[i] - 4.0 * fourth) / 3.0;
       fifth = 0.0;

@@ -16,6 +16,8 @@ BodyState moved(const BodyState& from, const Twist& twist, const Acceleration& a
           {from.twist.velocity + h * a.linear, from.twist.omega + h * a.angular}};
 }
 
+/// What the three methods share: where steps end, and pieces from their end states. A method only says where
+/// a step leads. A segment ends at a break of the forces, and steps are counted afresh from there.
 class FixedStep : public SteppingIntegrator {
  protected:
   FixedStep(std::shared_ptr<const Dynamics> dynamics, double step, WorkCounters* work)
@@ -38,6 +40,7 @@ class FixedStep : public SteppingIntegrator {
     double t = origin_ + static_cast<double>(++taken_) * step_;
     // A rest of less than a millionth of a step would be a step of its own, of nothing but rounding.
     if (t > segment_end() - 1e-6 * step_) t = segment_end();
+    // The step is below the spacing of doubles at this time.
     if (!(t > time())) return fail("step " + time_text(step_) + " s is lost in rounding");
     if (!advance(time(), states(), t - time(), end_)) return fail(why());
     for (int k = 0; k < size(); ++k) {
@@ -81,6 +84,7 @@ class SemiImplicitEuler final : public FixedStep {
     Accelerations& a = scratch();
     if (!accelerations(t, from, a)) return false;
     for (std::size_t k = 0; k < end.size(); ++k) {
+      // The twist at the end, by which the pose is then moved.
       const Twist twist = moved(from[k], {}, a[k], h).twist;
       end[k] = moved(from[k], twist, a[k], h);
     }
@@ -95,6 +99,7 @@ class Rk4 final : public FixedStep {
       : FixedStep(std::move(dynamics), step, work), stage_(size()), sums_(size()) {}
 
  private:
+  /// Weighted mean of the stages' rates.
   struct Sum {
     Twist twist;
     Acceleration acceleration;
@@ -122,10 +127,12 @@ class Rk4 final : public FixedStep {
       }
     }
     for (std::size_t k = 0; k < end.size(); ++k)
+      // Poses go by the mean twist of the stages and twists by their mean acceleration.
       end[k] = moved(from[k], sums_[k].twist, sums_[k].acceleration, h);
     return true;
   }
 
+  /// Scratch, kept so that no step allocates.
   States stage_;
   std::vector<Sum> sums_;
 };

@@ -15,6 +15,7 @@ namespace brink {
 
 namespace {
 
+/// In the order in which they are listed. make_integrator() has a line for each.
 constexpr std::array<IntegratorInfo, 8> kIntegrators{{
     {"auto", "closed form where the forces allow it (constant, or linear drag), erk otherwise"},
     {"ballistic", "closed form only: no force, uniform gravity, thrust, linear drag; exact, no steps"},
@@ -35,6 +36,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     std::size_t diagonal = row[0]++;
     for (std::size_t j = 0; j < b.size(); ++j) {
+      // Letters differ: change one. Else leave one out of either name. `diagonal` is row[j] of the row
+      // before.
       const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
       diagonal = row[j + 1];
       row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
@@ -43,6 +46,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+/// @throws BadInput with the known name that is fewest letters away, and all of them.
 [[noreturn]] void fail_unknown(std::string_view name) {
   const auto nearest =
       std::min_element(kIntegrators.begin(), kIntegrators.end(), [&](const auto& a, const auto& b) {
@@ -54,6 +58,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   throw BadInput(message);
 }
 
+/// `ok`; where it is false, why goes to *error. NaN fails every comparison, so `ok` is false for it.
 bool check_option(const char* name, double value, bool ok, const char* allowed, std::string* error) {
   if (ok || !error) return ok;
   std::ostringstream out;
@@ -80,6 +85,7 @@ std::unique_ptr<Integrator> make_integrator(std::string_view name, std::shared_p
   if (!dynamics || dynamics->size() <= 0)
     throw BadInput("make_integrator: dynamics of no body; allowed: at least one");
   std::string error;
+  // All options, also those that this method does not use: a scene is as valid under any of them.
   if (!options.is_valid(&error)) throw BadInput("integrator option " + error);
   // `auto` goes by the forces alone, never by states: the choice is the same whenever it is made.
   const bool closed = has_closed_form(*dynamics);

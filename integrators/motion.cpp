@@ -1,3 +1,6 @@
+/// Four kinds behind one face. A parabola holds all that it needs, and drag its start and drive; rates of
+/// drag, the track of dense output and the links of a chain stand behind one shared pointer, so that copies
+/// share them. Tracks and chains grow while motions look at them: what is asked is what is there by then.
 #include "brink/integrators/motion.h"
 
 #include <algorithm>
@@ -21,11 +24,13 @@ double mean_decay(double z) { return z < 1e-16 ? 1.0 : -std::expm1(-z) / z; }
 double mean_rise(double z) {
   // z - (1 - e^-z) is about z^2 / 2: at 0.5 the difference still has all but three of its bits.
   if (z > 0.5) return (z + std::expm1(-z)) / (z * z);
+  // Alternating, with terms that fall: what is left out is less than the last term.
   double term = 0.5, sum = 0.5;
   for (int k = 3; std::abs(term) > 1e-18; ++k) sum += term *= -z / k;
   return sum;
 }
 
+/// One coordinate under linear drag. @pre k >= 0 [1/s], s >= 0 [s].
 Relaxed relax(double rate0, double drive, double k, double s) {
   const double z = k * s, decay = mean_decay(z);
   // with v = v0 e^-kt + (drive / k)(1 - e^-kt), integrated once; never divided by k, which may be 0
@@ -45,9 +50,11 @@ void merge(Vec2& center, double& radius, const Vec2& other_center, double other_
   // the disc whose diameter runs from the far side of the one to the far side of the other
   const double merged = 0.5 * (distance + radius + other_radius);
   center += (other_center - center) * ((merged - radius) / distance);
+  // a little wider, for the roundings of the new centre and radius
   radius = merged * (1.0 + 1e-15);
 }
 
+/// `into` grows until it encloses the rates of both.
 void merge(MotionBounds& into, const MotionBounds& b) {
   merge(into.velocity, into.velocity_radius, b.velocity, b.velocity_radius);
   merge(into.acceleration, into.acceleration_radius, b.acceleration, b.acceleration_radius);
@@ -71,6 +78,7 @@ BodyState PolynomialPiece::state(double t) const {
   return {{value.head<2>(), value.z()}, {rate.head<2>(), rate.z()}};
 }
 
+/// p'' by Horner: coefficient k of it is k (k - 1) c[k] at power k - 2.
 Acceleration PolynomialPiece::acceleration(double t) const {
   const double s = t - origin;
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
@@ -87,6 +95,7 @@ MotionBounds PolynomialPiece::bounds(double from, double to) const {
   MotionBounds b;
   Eigen::Vector3d rate_radius = Eigen::Vector3d::Zero(), second_radius = Eigen::Vector3d::Zero();
   // |p'(u) - p'(0)| <= sum of k |m_k| h^(k-1) for |u| <= h, and likewise for p''
+  // Degree 2 gives p'' no radius: it is constant.
   double power = h;  // h^(k-1)
   for (int k = 2; k <= degree; ++k, power *= h) {
     rate_radius += k * power * m[k].cwiseAbs();
@@ -99,6 +108,7 @@ MotionBounds PolynomialPiece::bounds(double from, double to) const {
   b.omega = rate.z();
   b.omega_radius = rate_radius.z();
   b.acceleration = second.head<2>();
+  // At a single time power / h would be 0 / 0; there is no radius.
   b.acceleration_radius = h > 0.0 ? second_radius.head<2>().norm() : 0.0;
   b.alpha = std::abs(second.z()) + (h > 0.0 ? second_radius.z() : 0.0);
   return b;
@@ -116,11 +126,13 @@ const PolynomialPiece& Track::at(double t) const {
 
 void Track::forget_before(double t) {
   constexpr std::ptrdiff_t fewest = 1024;  // worth the moving of the others
+  // A piece that ends at t itself stays: t may still be asked for.
   const auto kept =
       std::partition_point(pieces.begin(), pieces.end(), [&](const PolynomialPiece& p) { return p.end < t; });
   const std::ptrdiff_t gone = kept - pieces.begin();
   // Erasing moves all that is kept. Done when half is gone, its cost a piece does not depend on the length.
   if (gone < fewest || 2 * gone < std::ssize(pieces)) return;
+  // Before the erasing: begin() asks the first piece, or what was kept of an earlier one.
   begun_ = begin();
   pieces.erase(pieces.begin(), kept);
 }
@@ -190,11 +202,13 @@ Motion Motion::dense(std::shared_ptr<const Track> track) {
 BodyState Motion::state(double t) const {
   const double s = t - t0_;
   switch (kind_) {
+    // Position and angle as s (v + s a / 2), which place() in motion.h repeats operation by operation.
     case Kind::ballistic:
       return {{start_.pose.position + s * (start_.twist.velocity + 0.5 * s * drive_.linear),
                start_.pose.angle + s * (start_.twist.omega + 0.5 * s * drive_.angular)},
               {start_.twist.velocity + s * drive_.linear, start_.twist.omega + s * drive_.angular}};
     case Kind::drag: {
+      // The rate is one for x and y: along any direction the velocity obeys the same equation.
       const Relaxed x = relax(start_.twist.velocity.x(), drive_.linear.x(), other_->linear, s);
       const Relaxed y = relax(start_.twist.velocity.y(), drive_.linear.y(), other_->linear, s);
       const Relaxed turn = relax(start_.twist.omega, drive_.angular, other_->angular, s);
@@ -205,11 +219,13 @@ BodyState Motion::state(double t) const {
     case Kind::dense:
       break;
   }
+  // Pieces know nothing of the offset, which is the motion's own.
   BodyState state = kind_ == Kind::chain ? link(t).state(t) : other_->track->at(t).state(t);
   state.pose.position += other_->offset;
   return state;
 }
 
+/// An offset does not show in it, nor in bounds(): both are of rates alone.
 Acceleration Motion::rate(double t) const {
   switch (kind_) {
     case Kind::ballistic:
@@ -235,6 +251,7 @@ Motion Motion::displaced(const Vec2& by) const {
     m.other_ = std::make_shared<const Other>(std::move(other));
     return m;
   }
+  // Closed forms go by their start: it is moved, with what its rounding has left over.
   const ExtendedState moved = ExtendedState(start_, low_).shifted(by);
   m.start_ = moved.rounded();
   m.low_ = moved.low();
@@ -242,6 +259,7 @@ Motion Motion::displaced(const Vec2& by) const {
 }
 
 ExtendedState Motion::extended_state(double t) const {
+  // Known to the rounding of state(t); low_ is what the motion was given beside it.
   if (kind_ != Kind::ballistic) return {state(t), low_};
   // as state(t), operation for operation, with the low-order part of the start and 64 bits throughout
   const Real s = static_cast<Real>(t) - t0_;
@@ -267,6 +285,7 @@ MotionBounds Motion::bounds(double from, double to) const {
       const double linear2 = drive_.linear.squaredNorm();
       if (linear2 > 0.0) b.velocity_radius = half * std::sqrt(linear2);
       b.omega_radius = half * std::abs(drive_.angular);
+      // constant, so that its radius stays 0
       b.acceleration = drive_.linear;
       b.alpha = std::abs(drive_.angular);
       return b;
@@ -300,6 +319,8 @@ MotionBounds Motion::bounds(double from, double to) const {
     case Kind::dense:
       break;
   }
+  // Pieces lie one after another, from the one that answers for `from` to the one that answers for `to`; what
+  // merge() makes of their enclosures holds in each.
   const PolynomialPiece* piece = &other_->track->at(from);
   const PolynomialPiece* last = &other_->track->at(to);
   b = piece->bounds(from, std::min(to, piece->end));

@@ -1,3 +1,11 @@
+/// How cells become pieces:
+///
+///   fit_next   takes the next cell, interpolates it, and asks for the bound; halves it where that is not met
+///   join_next  a fitted cell waits in last_ until the one after it is fitted: the twist at which the two meet
+///              needs both
+///   close      appends the waiting cell, with its end values and the twists at both of its ends
+///
+/// So the track is one cell behind what has been fitted, and nothing in it is changed later.
 #include "brink/integrators/prescribed.h"
 
 #include <algorithm>
@@ -13,6 +21,7 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// A polynomial of degree 10 has eleven nodes, and its error goes by the eleventh derivative.
 constexpr int kDegree = 10;
 constexpr double kCellWidth = 0.0625;     // 2^-4 s
 constexpr double kFitTolerance = 1e-13;   // of the cell's largest value
@@ -38,6 +47,7 @@ struct Nodes {
     at[0] = -1.0, at[kDegree / 2] = 0.0, at[kDegree] = 1.0;
     for (int j = 0; j < kDegree; ++j) between[j] = -std::cos(kPi * (j + 0.5) / kDegree);
     const auto half_at_ends = [](int i) { return i == 0 || i == kDegree ? 0.5 : 1.0; };
+    // The discrete cosine transform of the values: node j is cos(pi (n - j) / n), ends count half.
     for (int k = 0; k <= kDegree; ++k)
       for (int j = 0; j <= kDegree; ++j)
         to_chebyshev(k, j) =
@@ -68,6 +78,7 @@ const Nodes& nodes() {
   return made;
 }
 
+/// x, y, angle as one vector, of rates and of values.
 Vector3d rates(const Twist& twist) { return {twist.velocity.x(), twist.velocity.y(), twist.omega}; }
 Vector3d values(const Pose& pose) { return {pose.position.x(), pose.position.y(), pose.angle}; }
 
@@ -110,6 +121,7 @@ Extent PrescribedMotion::extend(double t, std::uint64_t most_cells) {
 
 /// Fits the next cell, or halves it.
 void PrescribedMotion::fit_next() {
+  // The halves of the present grid cell first; the next cell of the grid when all of them are done.
   if (cells_.empty()) {
     cells_.push_back({next_cell_, kCellWidth, 0});
     next_cell_ += kCellWidth;
@@ -141,6 +153,7 @@ bool PrescribedMotion::interpolate(const Cell& at, Fitted& cell) {
   const Nodes& n = nodes();
   const double half = 0.5 * at.width, middle = at.begin + half;
   Columns y;
+  // Cells share their ends to the bit, and so the values there: pieces meet without a jump.
   for (int j = 0; j <= kDegree; ++j) y.row(j) = pose_(middle + half * n.at[j]).transpose();
   if (!y.allFinite()) return false;
   const Columns monomials = n.monomials(y);
@@ -209,6 +222,7 @@ void PrescribedMotion::take_corner(Fitted cell, const Certainty& known) {
 
 /// Decides the twist at the join of last_ and `next`, and closes last_ with it.
 void PrescribedMotion::join_next(const Fitted& next) {
+  // The first cell: nothing came before, and its own rate is where the motion begins.
   if (!last_) {
     rate_begin_ = next.rate_begin;
     last_ = std::make_unique<Fitted>(next);
@@ -235,6 +249,7 @@ void PrescribedMotion::join_next(const Fitted& next) {
     close(last, last.rate_end);
     rate_begin_ = last.rate_end;
     *last_ = corner;
+    // The corner cell turns from the left piece's rate to the right one's.
     rate = next.rate_begin;
   }
   close(*last_, rate);
@@ -260,6 +275,7 @@ void PrescribedMotion::close(const Fitted& fitted, const Vector3d& rate_end) {
   track_->pieces.push_back(piece);
 }
 
+/// Lasting. The motion ends with what has been fitted before; extend() closes it.
 void PrescribedMotion::fail(double t, const std::string& what) {
   failure_ =
       name_ + " " + what + " near t = " + time_text(t) + " s; allowed: finite, continuous functions of t";

@@ -21,6 +21,7 @@ bool is_in_range(const BodyState& s) {
          ok(s.twist.velocity.y()) && ok(s.twist.omega);
 }
 
+/// A failure beyond what was asked for does not count: what was asked for is covered.
 Extent extent_at(double end, double t, const std::string& failure) {
   if (end >= t) return {Extent::Status::reached, end, {}};
   if (failure.empty()) return {Extent::Status::unfinished, end, {}};
@@ -29,6 +30,7 @@ Extent extent_at(double end, double t, const std::string& failure) {
 
 std::string time_text(double t) {
   std::ostringstream out;
+  // more than the default of six, which would not tell steps from each other after 1000 s
   out.precision(12);
   out << t;
   return out.str();
@@ -55,6 +57,7 @@ void SteppingIntegrator::start(double t, std::span<const BodyState> states) {
   time_ = t;
   states_.assign(states.begin(), states.end());
   tracks_.clear();
+  // New tracks: motions made before keep theirs.
   for (int k = 0; k < size(); ++k) tracks_.push_back(std::make_shared<Track>());
   in_segment_ = false;
   why_.clear();
@@ -82,6 +85,7 @@ Motion SteppingIntegrator::motion(int k) const {
   return Motion::dense(tracks_[k]);
 }
 
+/// The stretch up to the next break, on which the forces do not jump. False: fail() was called.
 bool SteppingIntegrator::next_segment() {
   segment_end_ = dynamics_->next_break(time_);
   if (!(segment_end_ > time_)) return fail("the next break of the forces is not later than this time");
@@ -106,6 +110,7 @@ bool SteppingIntegrator::accelerations(double t, std::span<const BodyState> stat
   return true;
 }
 
+/// The step to t is made: its end states become the present ones.
 bool SteppingIntegrator::accept(double t, std::span<const BodyState> states) {
   states_.assign(states.begin(), states.end());
   time_ = t;
@@ -115,6 +120,7 @@ bool SteppingIntegrator::accept(double t, std::span<const BodyState> states) {
   return true;
 }
 
+/// Lasting until start(). False, for callers to return.
 bool SteppingIntegrator::fail(std::string why) {
   failure_ = "integration stopped at t = " + time_text(time_) + ": " + std::move(why);
   return false;

@@ -12,15 +12,18 @@ namespace brink {
 
 namespace {
 
+/// CVODE tries a smaller step where the right-hand side says that it failed.
 int evaluate(realtype t, N_Vector y, N_Vector rate, void* self) {
   return static_cast<SundialsStepper*>(self)->right_hand_side(
       t, N_VGetArrayPointer(y), N_VGetArrayPointer(rate), SundialsStepper::WhereNotFinite::say_so);
 }
 
+/// Instead of printing it: the message goes into the failure's why.
 void keep_message(int, const char*, const char*, char* message, void* self) {
   static_cast<SundialsStepper*>(self)->note(message);
 }
 
+/// What both methods of CVODE share: everything but the solver of their implicit equations.
 class Cvode : public SundialsStepper {
  protected:
   Cvode(std::shared_ptr<const Dynamics> dynamics, const IntegratorOptions& options, WorkCounters* work,
@@ -35,6 +38,7 @@ class Cvode : public SundialsStepper {
   int restart_solver() final { return memory_ ? CVodeReInit(memory_, time(), y()) : create(); }
   int set_stop_time(double stop_time) final { return CVodeSetStopTime(memory_, stop_time); }
 
+  /// The solver itself, once; later segments only re-initialise it.
   int create() {
     memory_ = CVodeCreate(method_, context());
     if (!memory_) return -1;
@@ -53,6 +57,7 @@ class Cvode : public SundialsStepper {
   /// CV_ONE_STEP: returns after one step of its own length, however far the target is.
   int solver_step(double* t) final { return CVode(memory_, first_target(), y(), t, CV_ONE_STEP); }
 
+  /// Dense output from CVODE's history, which holds the last step only: read before the next one.
   bool append_pieces(double t, std::span<const BodyState> ends) final {
     std::vector<PolynomialPiece> pieces(size());
     int order = 0;
@@ -83,6 +88,7 @@ class Cvode : public SundialsStepper {
   void* memory_ = nullptr;
 };
 
+/// Fixed-point iteration needs no Jacobian: for forces that are not stiff.
 class Adams final : public Cvode {
  public:
   Adams(std::shared_ptr<const Dynamics> dynamics, const IntegratorOptions& options, WorkCounters* work)
@@ -95,6 +101,8 @@ class Adams final : public Cvode {
   SUNNonlinearSolver solver_;
 };
 
+/// For stiff forces. The matrix is dense, of six rows a body: n bodies cost about (6 n)^3 / 3 multiplications
+/// a factorisation.
 /// CVODE's default Newton iteration; the Jacobian by difference quotients.
 class Bdf final : public Cvode {
  public:

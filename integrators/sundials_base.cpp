@@ -16,6 +16,7 @@ namespace {
 /// that fails it as well.
 constexpr double kEnormous = 1e60;
 
+/// The solver's vector: x, y, angle, vx, vy, omega of each body in turn.
 void pack(std::span<const BodyState> states, double* y) {
   for (const BodyState& s : states) {
     const double numbers[] = {s.pose.position.x(),  s.pose.position.y(),  s.pose.angle,
@@ -47,6 +48,7 @@ SundialsStepper::SundialsStepper(std::shared_ptr<const Dynamics> dynamics, const
   if (!y_ || !derivative_) throw std::bad_alloc();
 }
 
+/// Solvers of derived classes are freed by then; the context goes last, as the vectors belong to it.
 SundialsStepper::~SundialsStepper() {
   N_VDestroy(y_);
   N_VDestroy(derivative_);
@@ -58,6 +60,7 @@ int SundialsStepper::right_hand_side(double t, const double* y, double* rate,
   unpack(y, scratch_states_);
   try {
     if (!accelerations(t, scratch_states_, scratch_accelerations_)) {
+      // 1 asks for a smaller step: a trial that went too far does not end the motion.
       if (where_not_finite == WhereNotFinite::say_so) return 1;
       for (Acceleration& a : scratch_accelerations_) a = {Vec2::Constant(kEnormous), kEnormous};
     }
@@ -67,6 +70,7 @@ int SundialsStepper::right_hand_side(double t, const double* y, double* rate,
   }
   for (int k = 0; k < size(); ++k, y += kNumbersPerBody) {
     const Acceleration& a = scratch_accelerations_[k];
+    // Poses change by twists, twists by accelerations.
     const double numbers[] = {y[3], y[4], y[5], a.linear.x(), a.linear.y(), a.angular};
     rate = std::copy(std::begin(numbers), std::end(numbers), rate);
   }
@@ -88,6 +92,7 @@ bool SundialsStepper::begin_segment() {
 bool SundialsStepper::limit_step() {
   // the largest number stands for "never": it also clears a stop time left from before
   const double stop = std::min({steady_until(), segment_end(), std::numeric_limits<double>::max()});
+  // The solver keeps its stop time until it is there.
   if (stop == stop_) return true;
   stop_ = stop;
   return set_stop_time(stop) == 0 ||
@@ -109,6 +114,7 @@ bool SundialsStepper::step() {
   for (int k = 0; k < size(); ++k)
     if (!is_in_range(ends_[k]))
       return fail("the state of body " + std::to_string(k) + " of the component overflows");
+  // Pieces before accept(): they ask for the begin of the step, which is still the present state.
   if (!append_pieces(t, ends_)) return fail("no dense output: " + (why().empty() ? message_ : why()));
   return accept(t, ends_);
 }

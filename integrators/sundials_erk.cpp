@@ -16,10 +16,12 @@ int evaluate(realtype t, N_Vector y, N_Vector rate, void* self) {
       t, N_VGetArrayPointer(y), N_VGetArrayPointer(rate), SundialsStepper::WhereNotFinite::answer_enormous);
 }
 
+/// Instead of printing it: the message goes into the failure's why.
 void keep_message(int, const char*, const char*, char* message, void* self) {
   static_cast<SundialsStepper*>(self)->note(message);
 }
 
+/// One explicit Runge-Kutta solver a component; pieces from pose, twist and acceleration at both ends.
 class Erk final : public SundialsStepper {
  public:
   Erk(std::shared_ptr<const Dynamics> dynamics, const IntegratorOptions& options, WorkCounters* work)
@@ -33,6 +35,7 @@ class Erk final : public SundialsStepper {
   }
   int set_stop_time(double stop_time) override { return ERKStepSetStopTime(memory_, stop_time); }
 
+  /// The solver itself, once; later segments only re-initialise it.
   int create() {
     memory_ = ERKStepCreate(evaluate, time(), y(), context());
     if (!memory_) return -1;
@@ -50,6 +53,7 @@ class Erk final : public SundialsStepper {
   int solver_step(double* t) override { return ERKStepEvolve(memory_, first_target(), y(), t, ARK_ONE_STEP); }
 
   bool append_pieces(double t, std::span<const BodyState> ends) override {
+    // The segment began with these: begin_segment() has asked for them.
     if (fresh_) before_.assign(first_accelerations().begin(), first_accelerations().end());
     // One evaluation a step: what was found at the end of a step is the begin of the
     // next, but across a break.

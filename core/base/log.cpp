@@ -12,6 +12,7 @@ namespace brink {
 
 namespace {
 
+/// "warn" unless `name` is a level that spdlog knows; of any other name a warning is given.
 /// @param name null for none.
 void set_level(spdlog::logger& logger, const char* name) {
   logger.set_level(spdlog::level::warn);
@@ -26,6 +27,7 @@ void set_level(spdlog::logger& logger, const char* name) {
 }  // namespace
 
 spdlog::logger& log() {
+  // The first call makes it, with the level that the environment has then.
   static const std::unique_ptr<spdlog::logger> logger = [] {
     auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>(spdlog::color_mode::automatic);
     // not entered in spdlog's registry: a program that uses spdlog itself keeps its own names and default

@@ -7,6 +7,7 @@
 namespace brink {
 namespace {
 
+/// A code point, and how many bytes it takes.
 struct Character {
   std::uint32_t code = 0;
   std::size_t bytes = 0;  ///< 0: what stands there is no UTF-8
@@ -52,12 +53,14 @@ bool hidden(std::uint32_t code) {
   return false;
 }
 
+/// A number by a printf format, of at most 15 characters.
 std::string escape(const char* format, unsigned code) {
   char buffer[16];
   std::snprintf(buffer, sizeof buffer, format, code);
   return buffer;
 }
 
+/// What stands for a hidden character: short names where C has them, else its number in hexadecimal.
 std::string escaped(std::uint32_t code) {
   if (code == '\n') return "\\n";
   if (code == '\t') return "\\t";

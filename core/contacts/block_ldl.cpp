@@ -1,3 +1,11 @@
+/// Three phases, the first of which is done once for a graph:
+///
+///   analyse   an order of elimination with little fill, the blocks that L will have, and for every product of
+///             the third phase the place where it is taken from
+///   begin     numbers of A are put into the blocks of L; blocks that only fill makes begin at 0
+///   factor    by columns, each pushed into what stands to the right of it (right-looking)
+///
+/// Everything below is numbered by place in the order of elimination.
 #include "brink/core/contacts/block_ldl.h"
 
 #include <Eigen/OrderingMethods>
@@ -47,6 +55,7 @@ void BlockLdl::find_order() {
   std::vector<Eigen::Triplet<double>> entries;
   for (int k = 0; k < n; ++k) entries.emplace_back(k, k, 1.0);
   for (const auto& [i, j] : edges_) {
+    // The ordering reads the pattern alone: values are of no meaning.
     entries.emplace_back(i, j, 1.0);
     entries.emplace_back(j, i, 1.0);
   }
@@ -65,6 +74,7 @@ void BlockLdl::find_blocks() {
   const int n = size();
   std::vector<std::vector<int>> columns(n), children(n);
   for (const auto& [i, j] : edges_) {
+    // Whoever is eliminated first has the block in its column.
     const auto [first, last] = std::minmax(place_[i], place_[j]);
     columns[first].push_back(last);
   }
@@ -74,6 +84,7 @@ void BlockLdl::find_blocks() {
     // what is eliminated leaves its neighbours joined: column k takes over those of its children in the tree
     std::vector<int>& column = columns[k];
     for (const int child : children[k])
+      // without the child's first row, which is k itself
       column.insert(column.end(), columns[child].begin() + 1, columns[child].end());
     std::sort(column.begin(), column.end());
     column.erase(std::unique(column.begin(), column.end()), column.end());
@@ -89,6 +100,7 @@ void BlockLdl::find_targets() {
   targets_.clear();
   for (int k = 0; k < size(); ++k)
     for (int p = begins_[k]; p < begins_[k + 1]; ++p) {
+      // Rows of a column ascend, so that one walk through column rows_[p] finds the targets of all q.
       int target = begins_[rows_[p]];
       for (int q = p + 1; q < begins_[k + 1]; ++q) {
         while (rows_[target] < rows_[q]) ++target;
@@ -103,14 +115,18 @@ int BlockLdl::slot(int row, int column) const {
 }
 
 void BlockLdl::begin(const std::vector<Vec3>& diagonal) {
+  // All that is added from here on is positive semidefinite, so no pivot can come below these but by
+  // rounding.
   least_ = diagonal;
   for (int k = 0; k < size(); ++k) {
     diagonal_[k] = {};
     for (int c = 0; c < 3; ++c) diagonal_[k].at[c][c] = diagonal[k][c];
   }
+  // fill as well: factor() left numbers of the last matrix in it
   std::fill(below_.begin(), below_.end(), Block{});
 }
 
+/// Cost: for a column of n blocks about n^2 / 2 products of blocks.
 void BlockLdl::factor() {
   next_target_ = 0;
   for (int k = 0; k < size(); ++k) {
@@ -160,6 +176,7 @@ void BlockLdl::factor_column(int k) {
 }
 
 void BlockLdl::solve(std::vector<Vec3>& b) const {
+  // L y = b by columns: once y of k is known, it is taken off all rows below.
   for (int k = 0; k < size(); ++k) {
     const double(&d)[3][3] = diagonal_[k].at;
     Vec3& x = b[k];

@@ -17,6 +17,8 @@ void GrowingCholesky::solve_lower(RealVector& b) const {
 }
 
 void GrowingCholesky::solve_upper(RealVector& y) const {
+  // Row i of L is column i of L^T: each unknown, once known, is taken off those above, so that rows are read
+  // as they are stored.
   for (int i = size() - 1; i >= 0; --i) {
     const Real* row = rows_[i].data();
     const Real x = y[i] /= row[i];
@@ -32,6 +34,7 @@ void GrowingCholesky::append(const RealVector& y, Real rest) {
 }
 
 void GrowingCholesky::remove(int k) {
+  // What is left of L, a row short, still has the product that is wanted, but is no triangle from row k on.
   rows_.erase(rows_.begin() + k);
   // every row from k on has an entry too many: turned into the one before it, column by column
   for (int column = k; column < size(); ++column) {

@@ -2,6 +2,8 @@
 
 namespace brink {
 
+/// Rows of the relative velocity at one point, body minus other: hence the opposite signs on the other, each
+/// with its own arm to that point.
 LastingContact contact_at(int body, int other, const Vec2& normal, const Vec2& arm, const Vec2& other_arm) {
   const Vec2 tangent = perp(normal);
   LastingContact c;

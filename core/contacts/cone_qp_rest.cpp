@@ -1,3 +1,10 @@
+/// Rest as a convex problem. Each contact's cone of forces is spanned by its edges; with x >= 0 the weights
+/// of all edges and J their directions, forces balance where f + J^T x = 0. That is the optimum of
+///
+///   minimise w.M w / 2 - f.w   subject to   J w >= 0,      M w = f + J^T x,   0 <= x _|_ J w >= 0
+///
+/// with w = 0: so the solver is asked for w, and what it finds is either balance or the proof that there is
+/// none.
 #include <algorithm>
 #include <cmath>
 
@@ -61,15 +68,18 @@ class Cones {
       for (const double m : signs(c.rolling_resistance)) add_edge({k, q, m});
   }
 
+  /// Both ends of -bound .. bound, which are one where it is 0.
   static std::vector<double> signs(double bound) {
     return bound > 0.0 ? std::vector{bound, -bound} : std::vector{0.0};
   }
 
   void add_edge(const Edge& edge) {
     const LastingContact& c = given_.contacts[edge.contact];
+    // A rolling torque turns the body one way and the other one the opposite way.
     const Vec3 turn(0.0, 0.0, edge.rolling);
     QpRow row;
     row.body = c.body;
+    // What a unit of the edge's force does to the bodies, so that J^T x is the sum of all contact forces.
     row.on_body = units_.scaled_row(c.body, c.normal_on_body + edge.tangential * c.tangent_on_body + turn);
     row.other = c.other;
     if (c.other >= 0)
@@ -101,7 +111,9 @@ class Verdict {
       acceleration_ = std::max(acceleration_, solver.velocity(k).cwiseAbs().maxCoeff());
   }
 
+  /// Largest component of w, in units of the problem.
   double acceleration() const { return acceleration_; }
+  /// Largest force that is left over on a body, beside its own mass and what its contacts push.
   double imbalance() const {
     double most = 0.0;
     for (int k = 0; k < bodies(); ++k) most = std::max(most, left_over(k) / (own(k) + carried_[k]));
@@ -141,6 +153,8 @@ class Verdict {
 RestResult ConeQp::rest_forces(const RestProblem& problem) {
   const Cones cones(problem);
   solver_.begin(cones.problem());
+  // The search ends at the sharper bounds. Where steps get short rounding has the word, and the wider ones
+  // are taken; else the last steps would be spent on nothing.
   const auto sure = [&] {
     const Verdict verdict(cones.problem(), solver_);
     if (verdict.rests(kSure) || verdict.moves(kExact)) return true;
@@ -155,6 +169,7 @@ RestResult ConeQp::rest_forces(const RestProblem& problem) {
   if (verdict.moves(kProof)) result.status = RestResult::Status::moves;
   const bool rests = result.status == RestResult::Status::rests;
   for (int k = 0; k < static_cast<int>(problem.mass.size()); ++k)
+    // What is called rest is 0 exactly, so that nothing creeps.
     result.acceleration.push_back(rests ? Vec3(Vec3::Zero())
                                         : cones.units().speed_of(k, solver_.velocity(k)));
   result.loads = cones.loads(solver_);

@@ -1,3 +1,7 @@
+/// One step as rows of the convex problem, three a contact: the normal with no bound, the tangent and the
+/// turning with the bounds that friction and rolling resistance have been given. Unknown is the change u = w - v
+/// of the velocities in the step. After it y of a normal row is gap / h + v_n, and y of the others the slip, all
+/// relative to a support that moves.
 #include <algorithm>
 #include <cmath>
 
@@ -35,6 +39,7 @@ class StepRows {
   const QpProblem& problem() const { return problem_; }
   const IslandUnits& units() const { return units_; }
 
+  /// Impulses of the step. Rows that were left out have none.
   std::vector<ContactLoad> loads(const InteriorPoint& solver) const {
     std::vector<ContactLoad> loads(given_.contacts.size());
     for (std::size_t r = 0; r < sources_.size(); ++r)
@@ -95,6 +100,7 @@ class StepRows {
     if (row.bound <= kNoFriction) return;
     if (row.on_body.isZero(0.0) && row.on_other.isZero(0.0)) return;  // between what is held
     sources_.push_back(source);
+    // Sources and rows are in step: a row's index names its source.
     problem_.rows.push_back(row);
   }
 
@@ -106,10 +112,12 @@ class StepRows {
   std::vector<Source> sources_;  ///< of each row
 };
 
+/// What the equations of rows and of bodies miss at most.
 double residual(const InteriorPoint& solver) {
   return std::max(solver.row_residual(), solver.body_residual());
 }
 
+/// True where complementarity holds to `part` on the mean and the equations to a hundredth of its root.
 bool solved(const InteriorPoint& solver, double part) {
   // Products go by force times speed and residuals by speed, all of order 1 in the step's
   // units: hence the root.
@@ -127,6 +135,7 @@ StepResult ConeQp::step(const StepProblem& problem) {
   while (!sure() && solver_.steps() < kMostSteps && solver_.step()) continue;
 
   StepResult result;
+  // Whether the search ended by itself or by rounding, what was found is judged by one measure.
   if (solved(solver_, kEnough)) result.status = StepResult::Status::solved;
   for (int k = 0; k < static_cast<int>(problem.mass.size()); ++k)
     result.velocity.push_back(problem.velocity[k] + rows.units().speed_of(k, solver_.velocity(k)));

@@ -39,6 +39,7 @@ class Group {
   /// What rounding alone may make of a velocity at a contact [m/s].
   Real rounding() const { return kRoundingOfSpeed * speed_; }
 
+  /// Of the contact points, body minus other, as the twists stand [m/s].
   RealVec velocity(int k) const {
     const GroupContact& c = contacts_[k];
     const RealVec other = c.other < 0 ? c.other_point_velocity : twists_[c.other].at(c.other_arm);
@@ -85,6 +86,7 @@ class Group {
     return A;
   }
 
+  /// An impulse [N s] on the contact's body, and its opposite on the other.
   void push(int k, const RealVec& impulse) {
     const GroupContact& c = contacts_[k];
     push_body(c.body, c.arm, impulse);
@@ -93,6 +95,8 @@ class Group {
   void push_normal(int k, Real impulse) { push(k, impulse * contacts_[k].normal); }
 
  private:
+  /// Symmetric: each pair is computed once and entered twice. Contacts that share a body may still not feel each
+  /// other, and have no entry then.
   void add_mobility(const std::vector<int>& set, int i, int j,
                     std::vector<Eigen::Triplet<Real>>& entries) const {
     const Real m = mobility(set[i], contacts_[set[i]].normal, set[j], contacts_[set[j]].normal);
@@ -100,6 +104,7 @@ class Group {
     entries.emplace_back(i, j, m);
     if (i != j) entries.emplace_back(j, i, m);
   }
+  /// What a body that both contacts lie on gives to mobility(); 0 of two different bodies.
   Real shared(int a, const RealVec& arm_a, const RealVec& u, int b, const RealVec& arm_b,
               const RealVec& v) const {
     if (a != b) return 0;
@@ -134,6 +139,7 @@ LcpAnswer impulses(const Group& group, const std::vector<int>& set, const RealVe
                    const GoOn& go_on) {
   RealVector q(target.size());
   for (std::size_t k = 0; k < set.size(); ++k) {
+    // w = A z + q is v' + target, as v' = v + A z.
     q[k] = group.normal_velocity(set[k]) + target[k];
     // Within rounding the sign is chance, and a contact that rests would be pushed or not by it.
     if (std::abs(q[k]) <= group.rounding()) q[k] = 0;
@@ -152,6 +158,7 @@ LcpAnswer impulses(const Group& group, const std::vector<int>& set, const RealVe
   return stops ? found : exact;
 }
 
+/// A problem without a solution, or one that is capped, is a jam to the group.
 GroupResult::Status status_of(const LcpAnswer& answer) {
   switch (answer.status) {
     case LcpAnswer::Status::solved:
@@ -182,6 +189,7 @@ bool has_jam(const Group& group, const std::vector<int>& set) {
   return false;
 }
 
+/// One restitution for all: with several, energy could be made.
 Real least_restitution(const std::vector<GroupContact>& contacts) {
   Real least = 1;
   for (const GroupContact& c : contacts) least = std::min<Real>(least, c.material.restitution);
@@ -215,6 +223,7 @@ Real work_of(const Group& before, const Group& after, const std::vector<int>& se
   return work;
 }
 
+/// A copy of the group after these impulses.
 Group pushed(Group group, const std::vector<int>& set, const RealVector& normal) {
   for (std::size_t k = 0; k < set.size(); ++k) group.push_normal(set[k], normal[k]);
   return group;
@@ -233,8 +242,10 @@ GroupResult given(const Group& group, const std::vector<GroupContact>& contacts,
   return result;
 }
 
+/// Faster than rounding: what is slower rests, and would be pushed without end.
 bool approaches(const Group& group, int k) { return group.normal_velocity(k) < -group.rounding(); }
 
+/// Random lattices of 20 discs need fewer than 300; what rattles in a hole of its own size may need any number.
 constexpr int kMostReflections = 10000;
 
 /// Reflects until nothing approaches, or kMostReflections times; adds the impulses to `normal`.
@@ -286,9 +297,11 @@ GroupResult without_end(const Group& group, const std::vector<GroupBody>& bodies
 
 GroupResult resolve_together(const std::vector<GroupBody>& bodies, const std::vector<GroupContact>& contacts,
                              const GoOn& go_on) {
+  // Contacts that nothing moves have no row: their mobility is 0, and if they approach no impulse helps.
   const Group group(bodies, contacts);
   const std::vector<int> set = movable(group, contacts);
   if (has_jam(group, set)) return unresolved(group, GroupResult::Status::jam);
+  // 0 <= p _|_ v' + e v >= 0, with v the velocities before: the target of each contact is e v.
   const auto newton = [&](auto restitution) {
     RealVector target(static_cast<Eigen::Index>(set.size()));
     for (std::size_t k = 0; k < set.size(); ++k)
@@ -299,6 +312,7 @@ GroupResult resolve_together(const std::vector<GroupBody>& bodies, const std::ve
   // work p.(v + v') / 2 = (1 - e) p.v / 2 is not positive. With several e it can be.
   LcpAnswer found = newton([&](int k) { return static_cast<Real>(contacts[k].material.restitution); });
   const auto solved = [&] { return found.status == LcpAnswer::Status::solved; };
+  // Energy made beyond what rounding of the velocities makes of the work.
   if (solved() &&
       work_of(group, pushed(group, set, found.z), set, found.z) > found.z.sum() * group.rounding()) {
     const Real least = least_restitution(contacts);
@@ -315,6 +329,7 @@ GroupResult resolve_reflections(const std::vector<GroupBody>& bodies,
   const auto n = static_cast<Eigen::Index>(set.size());
   const Real e = least_restitution(contacts);
   LcpAnswer inelastic{LcpAnswer::Status::solved, RealVector::Zero(n), 0};
+  // e = 1 takes none of the inelastic outcome and e = 0 none of the elastic one.
   if (e < 1) inelastic = impulses(group, set, RealVector::Zero(n), go_on);
   if (inelastic.status != LcpAnswer::Status::solved) return unresolved(group, status_of(inelastic));
   RealVector elastic = RealVector::Zero(n);

@@ -1,3 +1,5 @@
+/// Both laws work in contact space: two numbers of relative velocity, two of impulse, and the symmetric
+/// matrix k between them. Derivations, and where the laws end, are in docs/impulses.md.
 #include "brink/core/contacts/impulse.h"
 
 #include <algorithm>
@@ -38,6 +40,7 @@ ContactSpace contact_space(const ImpulseSide& body, const ImpulseSide& other, co
   return c;
 }
 
+/// One side's twist after an impulse at its arm; a held coordinate keeps its velocity.
 ExtendedTwist pushed(const ImpulseSide& side, const RealVec& impulse) {
   const RealVec mobility(side.inverse_mass_x, side.inverse_mass_y);
   return {side.twist.velocity + mobility.cwiseProduct(impulse),

@@ -1,3 +1,12 @@
+/// Newton's method on the equations of the optimum, with the products relaxed to a common value that goes to
+/// 0:
+///
+///   M u = f + J^T x       y = J u + offset, split over the row's pairs       s z = product for every pair
+///
+/// Linearised, every pair gives dz = (aim - z ds) / s, a row's pairs add up to dx = push - weight dy, and
+/// what is left is one symmetric positive definite system in du, (M + J^T W J) du = imbalance + J^T push.
+/// Each step factors it once and solves it twice: for a predictor, which tells how far products of 0 are, and
+/// for the step proper.
 #include "brink/core/contacts/interior_point.h"
 
 #include <algorithm>
@@ -30,11 +39,13 @@ constexpr double kRounding = 1e-13;
 
 }  // namespace
 
+/// J u of this row, without the offset.
 double InteriorPoint::Row::see(const std::vector<Vec3>& u) const {
   const double y = on_last.dot(u[last]);
   return first < 0 ? y : y + on_first.dot(u[first]);
 }
 
+/// Adds J^T force.
 void InteriorPoint::Row::apply(double force, std::vector<Vec3>& to) const {
   to[last] += force * on_last;
   if (first >= 0) to[first] += force * on_first;
@@ -49,6 +60,7 @@ void InteriorPoint::Row::set_weight() {
 }
 
 void InteriorPoint::Row::set_push(double product, bool corrected) {
+  // The residual goes in as well, so that a whole step brings it to 0.
   double dy = -residual;
   for (int p = 0; p < pairs; ++p) {
     // (s + ds)(z + dz) = product, with the term ds dz of second order as the predictor has left it
@@ -102,6 +114,7 @@ InteriorPoint::Row InteriorPoint::ordered(const QpRow& given) const {
   row.first = factor_.place(given.other);
   row.on_first = given.on_other;
   if (row.first > row.last) {
+    // The factor keeps blocks below the diagonal: the later place is the row.
     std::swap(row.first, row.last);
     std::swap(row.on_first, row.on_last);
   }
@@ -129,6 +142,7 @@ void InteriorPoint::start_pairs() {
   }
 }
 
+/// Residuals and gap where u, s and z stand.
 void InteriorPoint::measure() {
   imbalance_.resize(u_.size());
   // All afresh from u, s and z: what a step leaves unsolved by rounding is a residual of the next one.
@@ -174,6 +188,7 @@ void InteriorPoint::factor() {
     row.set_weight();
     if (row.weight < kNoWeight) continue;
     factor_.diagonal(row.last).add(row.weight, row.on_last, row.on_last);
+    // Of the row's outer product with itself: two diagonal blocks and the one below them.
     if (row.first < 0) continue;
     factor_.diagonal(row.first).add(row.weight, row.on_first, row.on_first);
     factor_.below(row.slot).add(row.weight, row.on_last, row.on_first);
@@ -195,6 +210,7 @@ void InteriorPoint::find_direction(double centre, bool corrected) {
   for (Row& row : rows_) row.set_direction(row.push - row.weight * row.see(du_));
 }
 
+/// How far the direction goes until a first s or z is 0, in whole steps; at most 2.
 double InteriorPoint::longest_step() const {
   // More than 1, so that part_of_way() of what meets no bound still is a whole Newton step.
   double most = 2.0;
@@ -206,6 +222,7 @@ double InteriorPoint::longest_step() const {
   return most;
 }
 
+/// The sum of products a part of the direction on.
 double InteriorPoint::gap_after(double length) const {
   double sum = 0.0;
   for (const Row& row : rows_)
@@ -236,6 +253,8 @@ double InteriorPoint::row_residual() const {
 }
 
 double InteriorPoint::body_residual() const {
+  // Forces that cancel on a body, as in a deep heap, leave a rounding of their sizes, which no step can take
+  // out: it is not held against the solution.
   std::vector<double> carried(u_.size(), 0.0);
   for (const Row& row : rows_) {
     const double x = std::abs(row.force());

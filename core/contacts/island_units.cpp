@@ -1,3 +1,6 @@
+/// Units of mass m, length l and speed v. A translation is measured in v and a turn in v / l, so that forces
+/// go by m v, torques by m l v, masses by m and inertias by m l^2; kinetic energy is m v^2 in each. Rows,
+/// which give speeds, keep their linear part and have their angular one divided by l.
 #include "brink/core/contacts/island_units.h"
 
 #include <algorithm>
@@ -23,6 +26,7 @@ IslandUnits::IslandUnits(const std::vector<Vec3>& masses) : masses_(masses) {
     for (int c = 0; c < 2; ++c)
       if (!held(k, c)) heaviest = std::max(heaviest, masses[k][c]);
     mass = std::max(mass, heaviest);
+    // sqrt(inertia / mass), the radius of gyration
     if (!held(k, 2) && heaviest > 0.0) length = std::max(length, std::sqrt(masses[k][2] / heaviest));
   }
   mass_ = power_of_two(mass);
@@ -31,6 +35,7 @@ IslandUnits::IslandUnits(const std::vector<Vec3>& masses) : masses_(masses) {
 
 bool IslandUnits::held(int body, int c) const { return std::isinf(masses_[body][c]); }
 
+/// A power of two as well; 1 where nothing is asked for.
 void IslandUnits::set_speed(double speed) { speed_ = power_of_two(speed); }
 
 double IslandUnits::largest(const std::vector<Vec3>& forces) const {

@@ -28,6 +28,7 @@ class Tableau {
   /// on, without which first() does not keep ties from cycling.
   int begin() {
     const Real least = rows_.col(right()).minCoeff();
+    // q has a negative entry: solve_lcp_by_lemke() answers the other problems itself.
     int row = n_ - 1;
     while (rows_(row, right()) > least + kTie) --row;
     return pivot(row, z0());
@@ -104,6 +105,7 @@ constexpr Real kZeroOnRay = 1e5 * kRealEpsilon;
 /// Below this many rows a dense tableau is as quick as anything.
 constexpr Eigen::Index kFewRows = 48;
 
+/// @pre a problem scaled as solve_lcp_by_lemke() does, with a negative entry of q.
 LcpAnswer lemke(const RealMatrix& A, const RealVector& q, const GoOn& go_on) {
   // About n pivots are usual. The cap is for matrices of no class for which the method is known to end.
   const int n = static_cast<int>(q.size()), most = 50 * n + 100;

@@ -1,3 +1,11 @@
+/// As a quadratic program: A is symmetric positive semidefinite, and z.A z / 2 + q.z is least over z >= 0
+/// where 0 <= z _|_ A z + q >= 0. In the terms of Goldfarb and Idnani z are multipliers and w the
+/// constraints:
+///
+///   z = 0, J empty
+///   while a row is violated, w_r < 0, take the worst:
+///     raise z_r, with z of J following so that w of J stays 0, until w_r is 0 or a z of J is
+///     w_r is 0: r joins J.   a z of J is 0: its row leaves J, and r is raised further
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -29,6 +37,7 @@ class ActiveSet {
     const int most = 50 * static_cast<int>(q_.size()) + 100;
     for (int polishes = 0; answer.pivots < most;) {
       const int row = most_violated();
+      // The cap on polishes is for rows at the very border, which rounding may show violated again and again.
       if (row < 0 && (polishes++ >= kMostPolishes || !polish())) {
         answer.z = z_;
         return answer;
@@ -92,6 +101,7 @@ class ActiveSet {
     }
   }
 
+  /// False, for join() to return.
   static bool ended(LcpAnswer& answer, LcpAnswer::Status status) {
     answer.status = status;
     return false;
@@ -134,10 +144,12 @@ class ActiveSet {
       if (place_[it.row()] < 0) w_[it.row()] += it.value() * by;
   }
 
+  /// Row joined_[k] goes back to those that may be violated.
   void leave(int k) {
     const int row = joined_[k];
     z_[row] = 0;
     place_[row] = kOutside;
+    // It was held at 0, and push() has kept no sum of it.
     w_[row] = 0;
     joined_.erase(joined_.begin() + k);
     for (std::size_t i = k; i < joined_.size(); ++i) place_[joined_[i]] = static_cast<int>(i);

@@ -1,3 +1,5 @@
+/// closest_point() settles where the ray starts: on the surface or inside, that is the answer. From outside, the
+/// outline is met where the first of its sites is: the ray is held against each of them alone.
 #include "brink/core/query/cast_ray.h"
 
 #include "brink/core/base/error.h"
@@ -9,6 +11,7 @@ namespace brink {
 
 namespace {
 
+/// @throws BadInput; NaN fails each of the three.
 void check(const Ray& ray) {
   if (!ray.origin.allFinite()) throw BadInput("ray: origin is " + text(ray.origin) + "; it must be finite");
   if (!(std::abs(ray.direction.norm() - 1.0) <= 1e-9))
@@ -29,6 +32,7 @@ std::optional<RayHit> cast_ray(const Outline& outline, const Pose& pose, const R
   const HalfLine local{frame.to_local(ray.origin), frame.direction_to_local(ray.direction).normalized()};
   SiteHit first;
   int at = -1;
+  // Of sites hit at one distance, as where two meet, the first stays.
   for (std::size_t k = 0; k < outline.sites.size(); ++k) {
     const SiteHit hit = first_hit(outline.sites[k], local);
     if (!(hit.distance < first.distance)) continue;
@@ -36,6 +40,7 @@ std::optional<RayHit> cast_ray(const Outline& outline, const Pose& pose, const R
     at = static_cast<int>(k);
   }
   if (at < 0 || first.distance > ray.length) return std::nullopt;
+  // The frame keeps lengths, so that the distance is the world's too.
   return RayHit{first.distance, ray.origin + first.distance * ray.direction,
                 frame.direction_to_world(first.normal), at, false};
 }

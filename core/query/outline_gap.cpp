@@ -1,3 +1,9 @@
+/// The gap of two outlines in three parts, each of which may lower what was found before:
+///
+///   samples    every vertex and arc of each against the sites of the other: exact where the two are apart, and
+///              the depth of vertices that are inside
+///   crossings  of sites, which bars of a plus sign have with no vertex inside
+///   edges      outlines that touch to rounding may share an inside along edges that coincide, which neither shows
 #include "brink/core/query/outline_gap.h"
 
 #include <algorithm>
@@ -30,6 +36,7 @@ void keep_least(const Side& side, int sample, int site, double gap, const Vec2& 
                              : OutlineGap{gap, on_sites, on_sample, -out, sample, false, site};
 }
 
+/// A vertex counts in all directions: against the other's closest point, thickness taken off.
 void look_at_vertex(const Side& side, int i, OutlineGap& least) {
   const Sample& sample = side.samples_of.samples[static_cast<std::size_t>(i)];
   const Vec2 p = Frame(side.samples_at).to_world(sample.p);
@@ -55,6 +62,7 @@ void look_at_arc(const Side& side, int i, OutlineGap& least) {
   }
 }
 
+/// Every sample of the one side; cost: samples times sites.
 void look_at_samples(const Side& side, OutlineGap& least) {
   for (int i = 0; i < static_cast<int>(side.samples_of.samples.size()); ++i)
     if (side.samples_of.samples[static_cast<std::size_t>(i)].arc_site < 0)
@@ -97,6 +105,7 @@ void look_at_crossings(const Outline& a, const Outline& b, const Pose& pose, Out
 /// or a crossing. Those between may share an inside along edges that coincide.
 constexpr double kSeemsToTouch = 1e-6;
 
+/// Asked near a gap of 0 alone, since deepest_crossing() looks at all pairs of segments.
 void look_below_common_edges(const Outline& a, const Outline& b, const Pose& pose, OutlineGap& least) {
   if (std::abs(least.gap) > kSeemsToTouch * std::min(a.bounding_radius, b.bounding_radius)) return;
   // in a's frame, as all answers before to_world()
@@ -136,6 +145,7 @@ OutlineGap outline_gap(const Outline& a, const Pose& pose_a, const Outline& b, c
 }
 
 bool surely_apart(const Outline& a, const Pose& pose_a, const Outline& b, const Pose& pose_b, double margin) {
+  // Clear samples say nothing of segments that cross with no vertex inside.
   return samples_clear(a, pose_a, b, pose_b, margin) && samples_clear(b, pose_b, a, pose_a, margin) &&
          deepest_crossing(a, pose_a, b, pose_b).depth == 0.0;
 }

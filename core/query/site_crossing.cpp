@@ -19,6 +19,7 @@ struct Meeting {
 /// The bulge is the cap of the circle beyond the line: of its two caps the one without the centre.
 Meeting line_and_circle(const Site& line, const Site& arc) {
   const Vec2 u = (line.b - line.a).normalized(), w = arc.center - line.a;
+  // Distance of the line from the centre; the cap is r - height high.
   const double height = std::abs(cross(u, w)), r = arc.arc_radius;
   if (height > r) return {};
   const double half = std::sqrt((r - height) * (r + height));
@@ -61,16 +62,19 @@ SiteCrossing two_segments(const Site& s, const Site& t) {
   // signed distances of t's ends from the line of s, and the reverse: they cross if both pairs have two
   // signs. An end on the other's line does not cross it
   if (ta * tb >= 0.0 || sa * sb >= 0.0) return {};
+  // sa and sb have two signs, so that sa / (sa - sb) is the fraction of s at which it meets the line of t.
   return {std::min({std::abs(ta), std::abs(tb), std::abs(sa), std::abs(sb)}),
           s.a + (s.b - s.a) * (sa / (sa - sb)), -perp(dt)};
 }
 
+/// At least one of the two is an arc.
 SiteCrossing with_arc(const Site& s, const Site& t) {
   const bool s_is_arc = s.kind == SiteKind::arc, t_is_arc = t.kind == SiteKind::arc;
   const Meeting meeting =
       s_is_arc && t_is_arc ? two_circles(s, t) : line_and_circle(s_is_arc ? t : s, s_is_arc ? s : t);
   if (meeting.bulge < 0.0) return {};
   // depth and bulge belong to the pair: of two points on both cores the first tells as much
+  // Lines and circles go on beyond the ends: a crossing is where both sites themselves are.
   for (const Vec2& p : meeting.points)
     if (abreast(s, p) && abreast(t, p))
       return {std::min(meeting.bulge, nearest_end(s, t)), p, right_normal(t, p)};

@@ -14,6 +14,7 @@ void keep_first(SiteHit& hit, double distance, const Vec2& normal) {
   if (distance >= 0.0 && distance < hit.distance) hit = {distance, normal};
 }
 
+/// A disc, thickness or bare point. It is met where the ray enters: the ray starts outside.
 void meet_disc(const Vec2& center, double radius, const HalfLine& ray, SiteHit& hit) {
   const Vec2 from = ray.origin - center;
   const double distance = time_until_within(from, ray.direction, radius);
@@ -74,6 +75,8 @@ class OffsetArc {
  private:
   Vec2 end(const Vec2& core) const {
     if (offset_ == 0.0) return core;
+    // An end of the offset arc, on the same radius as the core's. Without offset the core's bits are kept,
+    // which neighbours share.
     return site_.center + (core - site_.center) * (radius_ / site_.arc_radius);
   }
   /// The product of the two distances, > 0 where the ray starts outside the circle; rounds relative to the
@@ -105,6 +108,7 @@ class OffsetArc {
   bool from_outside_, from_inside_;
 };
 
+/// Part of a solid's boundary that has no thickness: met from its free side alone.
 bool is_sharp_solid(const Site& site) { return site.solid && site.radius == 0.0; }
 
 void meet_segment_site(const Site& site, const HalfLine& ray, SiteHit& hit) {

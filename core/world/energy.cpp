@@ -16,10 +16,12 @@ double kinetic(const Body& body, const Twist& twist) {
 double potential(const World&, const SpringForce& spring, std::span<const BodyState> states) {
   const Vec2 a = Frame(states[spring.body_a].pose).to_world(spring.at_a);
   const Vec2 b = spring.body_b < 0 ? spring.at_b : Frame(states[spring.body_b].pose).to_world(spring.at_b);
+  // dU / d(length) = k (length - rest): the pull of add_springs() in forces.cpp without its damper.
   const double stretch = (b - a).norm() - spring.rest_length;
   return 0.5 * spring.stiffness * stretch * stretch;
 }
 
+/// The force is m strength r^power inward, so that it is the slope of the potential outward.
 /// Integral of strength r^power: r^(power + 1) / (power + 1), a logarithm at power -1.
 double potential(const World& world, const AttractForce& attract, std::span<const BodyState> states) {
   double sum = 0.0;
@@ -37,6 +39,8 @@ double potential(const World&, const Other&, std::span<const BodyState>) {
   return 0.0;
 }
 
+/// True if total_energy() counts all that the force does. Of what is not conservative that holds only where
+/// its coefficients are 0. A thrust is switched on and off, and what formulas do is not known.
 bool stores_energy(const SpringForce& spring) { return spring.damping == 0.0; }
 bool stores_energy(const DragForce& d) { return d.linear == 0.0 && d.quadratic == 0.0 && d.angular == 0.0; }
 bool stores_energy(const AttractForce&) { return true; }
@@ -60,6 +64,7 @@ double total_energy(const World& world, std::span<const BodyState> states) {
 Momentum total_momentum(const World& world, std::span<const BodyState> states) {
   Momentum total;
   for (std::size_t k = 0; k < world.bodies.size(); ++k) {
+    // Of its orbit about the origin, and of its spin about its own centre of mass.
     const Body& body = world.bodies[k];
     const Vec2 p = body.mass * states[k].twist.velocity;
     total.linear += p;

@@ -1,3 +1,10 @@
+/// From the forces of a world to the dynamics of its components:
+///
+///   unite the bodies that a spring joins, and those of each set of `together`
+///   one ForceDynamics a set; a body's *place* in it is its rank among the set's bodies
+///   hand every force to the dynamics of the bodies that it acts on, with places instead of indices
+///
+/// So a step of one component asks for its own forces alone, however many the world has.
 #include "brink/core/world/forces.h"
 
 #include <algorithm>
@@ -38,6 +45,7 @@ class ForceDynamics final : public Dynamics {
   void accelerations(double t, std::span<const BodyState> states, std::span<Acceleration> out) const override;
   double next_break(double t) const override;
   double steady_until(double t) const override;
+  // Gravity never changes, and thrusts do at breaks only; all other forces go by the states or by the time.
   bool constant() const override {
     return springs_.empty() && drags_.empty() && attracts_.empty() && formulas_.empty();
   }
@@ -54,12 +62,15 @@ class ForceDynamics final : public Dynamics {
     double torque = 0.0;
   };
 
+  /// Each adds what its forces give to `out`, in world axes.
   void add_springs(std::span<const BodyState> states, std::span<Acceleration> out) const;
   void add_drags(std::span<const BodyState> states, std::span<Acceleration> out) const;
   void add_attractors(std::span<const BodyState> states, std::span<Acceleration> out) const;
   void add_thrusts(double t, std::span<Acceleration> out) const;
   void add_formulas(double t, std::span<const BodyState> states, std::span<Acceleration> out) const;
+  /// By the full mass and inertia, held or not: hold_locked() comes after.
   void add(int place, const Load& load, std::span<Acceleration> out) const;
+  /// A held coordinate is one of infinite mass: no force accelerates it.
   void hold_locked(std::span<Acceleration> out) const;
 
   Vec2 gravity_;
@@ -108,11 +119,14 @@ void ForceDynamics::add_springs(std::span<const BodyState> states, std::span<Acc
       end_b = b.pose.position + arm_b;
       velocity_b = b.twist.at(arm_b);
     }
+    // An anchor keeps arm and velocity 0, and end_b is its place in the world.
     const Vec2 span = end_b - (a.pose.position + arm_a);
     const double length = span.norm();
     // no direction there; a division would make the accelerations NaN and end the integration
     if (length == 0.0) continue;
     const Vec2 along = span / length;
+    // The second term damps the rate at which the length changes, (v_b - v_a) . along, with v at the two
+    // ends.
     const double pull =
         s.stiffness * (length - s.rest_length) + s.damping * along.dot(velocity_b - a.twist.at(arm_a));
     // on a, towards b where the spring is stretched: `pull` > 0
@@ -125,6 +139,7 @@ void ForceDynamics::add_springs(std::span<const BodyState> states, std::span<Acc
 void ForceDynamics::add_drags(std::span<const BodyState> states, std::span<Acceleration> out) const {
   for (const auto& [place, drag] : drags_) {
     const Twist& twist = states[place].twist;
+    // Of the centre of mass alone: that other points of a turning body are faster is left to `angular`.
     const double factor = drag->linear + drag->quadratic * twist.velocity.norm();
     add(place, {-factor * twist.velocity, -drag->angular * twist.omega}, out);
   }
@@ -132,6 +147,7 @@ void ForceDynamics::add_drags(std::span<const BodyState> states, std::span<Accel
 
 void ForceDynamics::add_attractors(std::span<const BodyState> states, std::span<Acceleration> out) const {
   for (const auto& [place, attract] : attracts_) {
+    // Of length r, so that strength r^power along its unit vector is strength r^(power - 1) times it.
     const Vec2 inward = attract->center - states[place].pose.position;
     const double r = inward.norm();
     // pow(0, power - 1) is infinite for power < 1, and times 0 no number. Below power 0
@@ -152,6 +168,7 @@ void ForceDynamics::add_thrusts(double t, std::span<Acceleration> out) const {
 void ForceDynamics::add_formulas(double t, std::span<const BodyState> states,
                                  std::span<Acceleration> out) const {
   for (const auto& [place, f] : formulas_) {
+    // A formula gives a force and a torque about the centre of mass, in world axes; what is left out is 0.
     const auto& [pose, twist] = states[place];
     // in the order of force_formula_variables()
     const std::array<double, 8> values{t,           pose.position.x(),   pose.position.y(),
@@ -165,6 +182,8 @@ void ForceDynamics::add_formulas(double t, std::span<const BodyState> states,
   }
 }
 
+/// Thrusts alone jump at times that are known. Where a formula jumps with the time no break is told: steps
+/// shrink around it by steady_until().
 double ForceDynamics::next_break(double t) const {
   double next = std::numeric_limits<double>::infinity();
   for (const auto& [place, thrust] : thrusts_) {
@@ -174,6 +193,8 @@ double ForceDynamics::next_break(double t) const {
   return next;
 }
 
+/// Each part keeps the cells of its last answer, which changes what an answer costs and not what it is; so it
+/// is not for two threads at once.
 double ForceDynamics::steady_until(double t) const {
   double until = std::numeric_limits<double>::infinity();
   for (SteadyFormula& f : in_time_) until = std::min(until, f.until(t));
@@ -192,6 +213,7 @@ Dynamics::LinearDrag ForceDynamics::linear_drag(double t) const {
     form.angular += drag->angular / bodies_[place]->inertia;
   }
   // At rest drag is 0 and what is left is the drive: gravity and the thrusts that are on at t.
+  // The pose does not matter: no force that goes by places is left.
   const BodyState at_rest;
   accelerations(t, {&at_rest, 1}, {&form.drive, 1});
   form.valid = true;
@@ -209,6 +231,7 @@ class SetNames {
   }
   void join(int a, int b) {
     const auto [low, high] = std::minmax({find(a), find(b)});
+    // By index, not by rank: the root of a set stays its smallest member.
     parent_[high] = low;
   }
 
@@ -234,12 +257,14 @@ struct Assembly {
   void give(const ThrustForce& thrust) {
     of_body[thrust.body].dynamics->take(of_body[thrust.body].place, thrust);
   }
+  /// Drags, attractors and formulas act on each body of their list alone.
   template <class Force>
   void give(const Force& force) {
     for (int body : force.bodies) of_body[body].dynamics->take(of_body[body].place, force);
   }
 };
 
+/// Sets of bodies that springs join, directly or over others. A spring to an anchor joins nobody.
 SetNames coupled_bodies(const World& world) {
   SetNames sets(world.bodies.size());
   for (const Force& force : world.forces)
@@ -267,10 +292,12 @@ std::vector<Component> make_components(const World& world, std::span<const std::
       components.push_back({{k}, std::move(dynamics)});
       continue;
     }
+    // Bodies join in ascending order, which is the order of their places in the component.
     ForceDynamics* dynamics = assembly.of_body[root].dynamics;
     assembly.of_body.push_back({dynamics, dynamics->join(world.bodies[k])});
     components[component_of[root]].bodies.push_back(k);
   }
+  // Last, as a force asks for the places of all its bodies.
   for (const Force& force : world.forces) std::visit([&](const auto& f) { assembly.give(f); }, force);
   return components;
 }

@@ -1,3 +1,5 @@
+/// One text, read twice: muParser compiles it for values, FormulaTree for bounds over a while. A formula is
+/// accepted where both can read it, so that what has a value has a bound too.
 #include "brink/core/world/formula.h"
 
 #include <muParser.h>
@@ -16,12 +18,15 @@ namespace brink {
 
 namespace {
 
+/// "t, x, y" for messages; "none" where there are none.
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
   return text.empty() ? "none" : text;
 }
 
+/// Throws BadInput about a formula. `position` counts from 0 and is told from 1; -1: none is told. The text
+/// comes from a file: it is shown by printable().
 [[noreturn]] void fail(const std::string& text, int position, const std::string& what,
                        const std::vector<std::string>& variables) {
   std::string message = "formula \"" + printable(text) + "\": ";
@@ -33,6 +38,7 @@ std::string joined(const std::vector<std::string>& names) {
 int find_assignment(const std::string& text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] != '=') continue;
+    // "==" compares; "<=", ">=" and "!=" end in a "=" that does.
     if (i + 1 < text.size() && text[i + 1] == '=') {
       ++i;
       continue;
@@ -43,6 +49,8 @@ int find_assignment(const std::string& text) {
   return -1;
 }
 
+/// muParser's own words, without the full stop: fail() goes on behind them. What it calls an unassignable
+/// token is a name that it does not know.
 std::string explain(const mu::Parser::exception_type& e) {
   if (e.GetCode() == mu::ecUNASSIGNABLE_TOKEN) return "unknown name \"" + e.GetToken() + "\"";
   std::string message = e.GetMsg();
@@ -63,6 +71,7 @@ struct Formula::Compiled {
 
   Compiled(std::string formula, std::vector<std::string> names)
       : text(std::move(formula)), variables(std::move(names)), values(variables.size(), 0.0) {
+    // Faults that are better told here than by muParser. An assignment would be accepted by it.
     if (text.find_first_not_of(" \t\r\n") == std::string::npos) fail(text, -1, "is empty", variables);
     if (const std::size_t nul = text.find('\0'); nul != std::string::npos)
       fail(text, static_cast<int>(nul), "holds a NUL character", variables);
@@ -71,8 +80,10 @@ struct Formula::Compiled {
     compile();
   }
 
+  /// Hands text and variables to muParser, then to the tree.
   void compile() {
     try {
+      // muParser's own constants are _pi and _e, which FormulaTree does not know.
       parser.ClearConst();
       parser.DefineConst("pi", 3.14159265358979323846);
       parser.DefineConst("e", 2.71828182845904523536);
@@ -84,6 +95,8 @@ struct Formula::Compiled {
       parser.DefineFun(
           "atanh", +[](double x) { return std::atanh(x); });
       for (std::size_t i = 0; i < variables.size(); ++i) parser.DefineVar(variables[i], &values[i]);
+      // SetExpr() only keeps the text. The first evaluation compiles it and finds its faults; the value, with
+      // all variables 0, is not looked at.
       parser.SetExpr(text);
       parser.Eval();
     } catch (const mu::Parser::exception_type& error) {
@@ -91,6 +104,8 @@ struct Formula::Compiled {
     }
     if (parser.GetNumResults() != 1) fail(text, -1, "gives more than one value", variables);
     try {
+      // After muParser, whose messages have a position and name what is allowed: what the tree refuses is
+      // only what it cannot bound.
       tree.emplace(text, variables);
     } catch (const std::invalid_argument& error) {
       fail(text, -1, std::string("cannot be bounded: ") + error.what(), variables);
@@ -107,6 +122,7 @@ Formula::Formula(Formula&&) noexcept = default;
 Formula& Formula::operator=(Formula&&) noexcept = default;
 Formula::~Formula() = default;
 
+/// The variables are copied to where the parser reads them: hence the lock.
 double Formula::operator()(std::span<const double> values) const {
   Compiled& c = *compiled_;
   if (values.size() != c.values.size())
@@ -127,6 +143,7 @@ bool Formula::depends_on_time() const { return compiled_->tree->depends_on_time(
 
 TimeBound Formula::time_bound(int part, double from, double to, BoundOf highest) const {
   const Taylor f = compiled_->tree->over(part, from, to, static_cast<int>(highest));
+  // Coefficient k is f^(k) / k!: the second derivative is twice it, and TimeBound has the eleventh over 11!.
   TimeBound bound{f.value().lower(), f.value().upper()};
   if (highest >= BoundOf::second) bound.second = 2.0 * boost::numeric::norm(f.c[2]);
   if (highest >= BoundOf::eleventh) bound.eleventh = boost::numeric::norm(f.c[11]);

@@ -1,3 +1,11 @@
+/// A formula's text becomes a list of nodes, arguments before what they are given to. The nodes of a subtree
+/// stand in one row and end with its root, so that a bound is one pass over the row without recursion:
+///
+///   for each node of the row: number, time or call of a function of Taylor series on nodes before it
+///
+/// The grammar is muParser's, whose value and this tree must mean the same. From loose to tight:
+///
+///   ?:      ||      &&      comparisons      + -      * /      signs      ^
 #include "brink/core/world/formula_tree.h"
 
 #include <fmt/core.h>
@@ -13,6 +21,7 @@ namespace {
 
 using Arguments = std::vector<const Taylor*>;
 
+/// Entries of the function table: of one argument, of two, and of any number taken from left to right.
 template <Taylor (*f)(const Taylor&)>
 Taylor one(const Arguments& a) {
   return f(*a[0]);
@@ -34,15 +43,19 @@ Taylor times(const Taylor& a, const Taylor& b) { return a * b; }
 Taylor quotient(const Taylor& a, const Taylor& b) { return a / b; }
 Taylor opposite(const Taylor& a) { return -a; }
 Taylor same(const Taylor& a) { return a; }
+/// Comparisons by those that Taylor has, with sides exchanged or the answer turned round.
 Taylor greater(const Taylor& a, const Taylor& b) { return less(b, a); }
 Taylor greater_equal(const Taylor& a, const Taylor& b) { return less_equal(b, a); }
 Taylor unequal(const Taylor& a, const Taylor& b) { return negation(equal(a, b)); }
+// a && b: neither is 0. a || b: not both are. small() is 1 of what is 0 and leaves open what lies between 0
+// and 1 in size:
 // muParser's && and || cut their sides to whole numbers first where both are constants, and else do not
 Taylor both(const Taylor& a, const Taylor& b) { return negation(max(small(a), small(b))); }
 Taylor either(const Taylor& a, const Taylor& b) { return negation(min(small(a), small(b))); }
 Taylor chosen(const Arguments& a) { return choose(*a[0], *a[1], *a[2]); }
 
 Taylor constant(double x, int order) { return Taylor::constant(Interval(x), order); }
+/// By natural logarithms: log_b a = log a / log b.
 Taylor log_to(const Taylor& a, double base) { return log(a) / log(constant(base, a.order)); }
 Taylor log2_of(const Taylor& a) { return log_to(a, 2.0); }
 Taylor log10_of(const Taylor& a) { return log_to(a, 10.0); }
@@ -50,15 +63,21 @@ Taylor mean(const Arguments& a) {
   return folded<plus>(a) / constant(static_cast<double>(a.size()), a[0]->order);
 }
 Taylor triangle_cosine(const Taylor& a) {  // acos(cos(a))
+  // acos x = pi / 2 - asin x and cos a = sin(a + pi / 2), so that it is a triangle wave moved and turned
+  // over.
   const Interval half = boost::numeric::interval_lib::pi<Interval>() / 2.0;
   const Taylor quarter = Taylor::constant(half, a.order);
   return quarter - triangle(a + quarter);
 }
 
+/// As many arguments as are given.
 constexpr int kAny = 1000000;
 
 }  // namespace
 
+/// The function or operator of that name, or null. Operators stand here under names that cannot be written
+/// as one, so that a formula does not call them like functions; "asin sin" and "acos cos" are what call() puts
+/// for the two compositions. `log` is the natural one, as in muParser. The last entry is an end mark.
 const FormulaTree::Function* FormulaTree::find(std::string_view name) {
   static const std::array<Function, 45> all{{
       {"sin", 1, 1, one<sin>},
@@ -117,6 +136,7 @@ class FormulaReader {
   FormulaReader(std::string_view text, const std::vector<std::string>& variables, FormulaTree& tree)
       : text_(text), variables_(variables), tree_(tree) {}
 
+  /// The root of the whole text, which must be used up.
   int read() {
     const int root = condition();
     skip_space();
@@ -132,12 +152,15 @@ class FormulaReader {
   /// What is nested deeper would run out of stack.
   struct Level {
     explicit Level(int& counter) : depth(counter) {
+      // A parenthesis takes two levels, one in condition() and one in signed_power(), hence "some hundred".
       if (++depth > 1000) fail("it is nested more than some hundred levels deep");
     }
     ~Level() { --depth; }
     int& depth;
   };
 
+  /// Each function here reads what binds as tight as its name says, or tighter, and returns the node's index.
+  /// condition() is right associative: a ? b : c ? d : e is a ? b : (c ? d : e).
   int condition() {
     const Level level(depth_);
     const int question = either();
@@ -153,6 +176,7 @@ class FormulaReader {
     return left_to_right({"&&"}, [this] { return comparison(); });
   }
   int comparison() {
+    // The long ones first: "<" would take half of "<=".
     return left_to_right({"<=", ">=", "!=", "==", "<", ">"}, [this] { return sum(); });
   }
   int sum() {
@@ -161,13 +185,17 @@ class FormulaReader {
   int product() {
     return left_to_right({"*", "/"}, [this] { return signed_power(); });
   }
+  /// A power binds tighter than the sign before it, -2^2 = -(2^2), but its exponent may have a sign, 2^-1;
+  /// powers go from right to left, 2^3^2 = 2^(3^2).
   int signed_power() {
+    // Chains of signs and of powers recurse without a parenthesis.
     const Level level(depth_);
     for (const char* sign : {"-", "+"})
       if (take(sign)) return call(std::string("unary ") + sign, {signed_power()});
     const int base = primary();
     return take("^") ? call("^", {base, signed_power()}) : base;
   }
+  /// A parenthesis, a number, or what begins with a name.
   int primary() {
     skip_space();
     if (take("(")) {
@@ -179,6 +207,7 @@ class FormulaReader {
     return named();
   }
 
+  /// Operands joined by operators of one level, (a - b) - c.
   template <class Operand>
   int left_to_right(std::initializer_list<const char*> operators, Operand operand) {
     int left = operand();
@@ -190,6 +219,8 @@ class FormulaReader {
     }
   }
 
+  /// Without a sign, which is an operator. from_chars() knows no locale: the decimal point is a point
+  /// everywhere.
   int number() {
     double value = 0.0;
     const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
@@ -198,6 +229,7 @@ class FormulaReader {
     return constant(value);
   }
 
+  /// A call where "(" follows, else a variable or one of the two constants.
   int named() {
     const std::size_t begin = at_;
     while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]))) ++at_;
@@ -210,6 +242,7 @@ class FormulaReader {
     fail(fmt::format("\"{}\" is not known", name));
   }
 
+  /// The arguments behind "(", at least one.
   int function(std::string_view name) {
     std::vector<int> arguments;
     do arguments.push_back(condition());
@@ -237,6 +270,7 @@ class FormulaReader {
       const Node& inner = tree_.nodes_[arguments.front()];
       const std::string_view wave = name == "asin" ? "sin" : "cos";
       if (inner.kind == Node::Kind::call && inner.function->name == wave) {
+        // The node of the inner wave stays in the row, and nothing uses it.
         arguments = inner.arguments;
         return call(name == "asin" ? "asin sin" : "acos cos", std::move(arguments));
       }
@@ -247,6 +281,7 @@ class FormulaReader {
     const int count = static_cast<int>(arguments.size());
     if (!node.function || count < node.function->least || count > node.function->most)
       fail("the function \"" + std::string(name) + "\" is not known");
+    // The row of a call begins where that of its first argument does.
     node.first = static_cast<int>(tree_.nodes_.size());
     for (const int a : arguments) {
       node.first = std::min(node.first, tree_.nodes_[a].first);
@@ -264,10 +299,14 @@ class FormulaReader {
   }
 
   static bool is_digit(char c) { return c >= '0' && c <= '9'; }
+  /// Names are ASCII: the text of a formula is taken byte by byte.
   static bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+  /// Whatever is not above the space, as muParser skips it; bytes beyond ASCII are negative or above, and
+  /// stay.
   void skip_space() {
     while (at_ < text_.size() && text_[at_] > 0 && text_[at_] <= ' ') ++at_;
   }
+  /// Reads `token` if it comes next, spaces before it included.
   bool take(std::string_view token) {
     skip_space();
     if (text_.substr(at_, token.size()) != token) return false;
@@ -287,6 +326,8 @@ FormulaTree::FormulaTree(std::string_view text, const std::vector<std::string>& 
   find_parts(root);
 }
 
+/// Goes down from the root through what uses other variables; what is met that uses none of them but the time
+/// is a part, and is not divided. Parts without the time change nothing with it and are left out.
 void FormulaTree::find_parts(int root) {
   std::vector<int> open{root};
   while (!open.empty()) {
@@ -307,6 +348,7 @@ Taylor FormulaTree::over(int part, double from, double to, int order) const {
   static thread_local Arguments arguments;
   values.clear();
   values.reserve(root - first + 1);  // arguments point into it
+  // A part uses no variable but the time, so that every leaf of its row is a number or the time.
   for (int i = first; i <= root; ++i) {
     const Node& n = nodes_[i];
     arguments.clear();

@@ -10,6 +10,7 @@ namespace brink {
 
 namespace {
 
+/// @throws BadInput unless value is finite and > 0; `what` names it.
 void check(const char* what, double value) {
   if (!(std::isfinite(value) && value > 0.0))
     throw BadInput(fmt::format("make_body: {} = {} must be a finite number > 0", what, value));
@@ -32,6 +33,7 @@ Body make_body(const Shape& shape, Mass mass) {
   return body;
 }
 
+/// A shape without area or length comes to a mass of 0, which is refused as one.
 Body make_body(const Shape& shape, Density density) {
   check("density", density.value);
   return make_body(shape, Mass{density.value * shape.measure.size});

@@ -22,6 +22,8 @@ Vec2 round_place_in(const Box& box) {
   const double size = (box.high - box.low).maxCoeff();
   // A box nearer than two of its sizes gains a bit or two at most.
   if (!(size > 0.0) || middle.lpNorm<Eigen::Infinity>() <= 2.0 * size) return Vec2::Zero();
+  // From one to two sizes: the place is less than a size from the middle, and no coordinate in the new frame
+  // is beyond one and a half. A multiple of a power of two has few bits, so that a shift by it seldom rounds.
   const double unit = std::exp2(std::ceil(std::log2(size)));
   return {unit * std::round(middle.x() / unit), unit * std::round(middle.y() / unit)};
 }
@@ -44,6 +46,7 @@ FixedSite recentred(const FixedSite& site) {
   // All or nothing: were one coordinate rounded, the site would not be the one that was given.
   if (to.isZero(0.0) || !exactly_moved(*site.outline, back) || !exactly_moved(site.pose.position, to))
     return site;
+  // A motion that does not turn goes on as it was: it shifts the new frame as it shifted the old one.
   FixedSite moved = site;
   moved.outline = std::make_shared<const Outline>(transformed(*site.outline, {back, 0.0}));
   moved.pose.position += to;

@@ -1,3 +1,14 @@
+/// Taylor arithmetic on intervals. With f_k for f^(k) / k! every operation follows from the equation between
+/// a result and its arguments, by comparing the coefficients of t^k:
+///
+///   product    r = a b         r_k = sum of a_j b_(k-j)
+///   quotient   b r = a         r_k = (a_k - sum of b_j r_(k-j), j >= 1) / b_0
+///   root       r r = a         r_k = (a_k - sum of r_j r_(k-j), 0 < j < k) / (2 r_0)
+///   function   r' = g(t) a'    r_k = sum of j a_j g_(k-j) / k, where g is the series of the slope at a
+///
+/// The equations hold at each single time, so with intervals of the coefficients over a while they enclose
+/// the coefficients at every time of it. An operation costs about the square of the order. Source: Moore
+/// 1966, "Interval analysis".
 #include "brink/core/world/taylor.h"
 
 #include <algorithm>
@@ -11,6 +22,8 @@ using lib::interval_lib::pi;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Exactly 0: a coefficient that is known to vanish. Sums leave it out: outward rounding would make
+/// [-tiny, tiny] of 0 + 0, and what is constant would not be known to be.
 bool is_zero(const Interval& x) { return x.lower() == 0.0 && x.upper() == 0.0; }
 bool is_point(const Interval& x) { return x.lower() == x.upper(); }
 
@@ -23,6 +36,8 @@ Interval within(const Interval& x, double low, double high) {
 
 /// True if x leaves [low, high], where a function has a value, by more than roundings do.
 bool leaves(const Interval& x, double low, double high) {
+  // Absolute, so meant for arguments of order 1 that come to the border by cancellation, as 1 - cos(t)^2
+  // below a root. What is let through is cut back to [low, high] by within().
   constexpr double rounding = 1e-10;
   return x.lower() < low - rounding || x.upper() > high + rounding;
 }
@@ -34,6 +49,8 @@ Taylor rough(const Interval& value, int order) {
   return r;
 }
 
+/// Of the floor, of comparisons and of signs: derivatives are 0 where the value is one number, and unknown,
+/// as there may be a jump, where it is a range.
 /// A function that is constant piece by piece, where its value may change.
 Taylor stepped(const Interval& value, int order) {
   return is_point(value) ? Taylor::constant(value, order) : rough(value, order);
@@ -65,10 +82,12 @@ Taylor from_slope(const Interval& value, const Taylor& a, const Taylor& slope) {
 Taylor number(double x, int order) { return Taylor::constant(Interval(x), order); }
 Taylor square(const Taylor& a) {
   Taylor r = a * a;
+  // The product takes its factors for independent: of [-1, 2] it makes [-2, 4], the square [0, 4].
   r.c[0] = lib::square(a.c[0]);
   return r;
 }
 
+/// Two series that need each other.
 struct Pair {
   Taylor first, second;
 };
@@ -82,12 +101,14 @@ Pair waves(const Taylor& a, const Interval& s0, const Interval& c0, double sign)
   }
   return w;
 }
+/// Bounds rounded outward may leave [-1, 1], where no value lies.
 Interval sine(const Interval& x) { return within(lib::sin(x), -1.0, 1.0); }
 Interval cosine(const Interval& x) { return within(lib::cos(x), -1.0, 1.0); }
 Pair circular(const Taylor& a) { return waves(a, sine(a.c[0]), cosine(a.c[0]), -1.0); }
 Pair hyperbolic(const Taylor& a) {
   const auto& [low, high] = std::pair(a.c[0].lower(), a.c[0].upper());
   OutwardRounding to;
+  // cosh is even, least at 0 and grows on either side of it; sinh grows everywhere: ends tell the ranges.
   const double least =
       low <= 0.0 && high >= 0.0 ? 1.0 : to.cosh_down(std::min(std::abs(low), std::abs(high)));
   const Interval cosine(std::max(1.0, least), to.cosh_up(std::max(std::abs(low), std::abs(high))));
@@ -102,6 +123,7 @@ Taylor whole_power(const Taylor& a, int n) {
     if (left % 2 == 1) r = r * factor;
     if (left > 1) factor = square(factor);
   }
+  // Repeated products forget that all factors are one: Boost's power of an interval does not.
   r.c[0] = known(lib::pow(a.c[0], n));
   return r;
 }
@@ -110,13 +132,17 @@ Taylor whole_power(const Taylor& a, int n) {
 Taylor real_power(const Taylor& a, double p) {
   if (leaves(a.c[0], 0.0, kInfinity)) return rough(Interval::whole(), a.order);
   const Interval base = within(a.c[0], 0.0, kInfinity);
+  // x^p only rises (p > 0) or only falls (p < 0) where x >= 0: its values lie between those at the ends.
   const auto at = [&](double x) { return x == 0.0 ? (p > 0.0 ? 0.0 : kInfinity) : std::pow(x, p); };
   OutwardRounding to;
   const double x = at(base.lower()), y = at(base.upper());
   const Interval value(std::max(0.0, to.far_below(std::min(x, y))), to.far_above(std::max(x, y)));
+  // At 0 the recurrence would divide by 0; from some order on the derivatives of a power that is not whole
+  // are infinite there.
   if (!(a.c[0].lower() > 0.0)) return a.is_constant() ? stepped(value, a.order) : rough(value, a.order);
   Taylor r = Taylor::constant(value, a.order);
   for (int k = 1; k <= a.order; ++k) {
+    // a r' = p a' r, so k a_0 r_k = sum of (p j - (k - j)) a_j r_(k-j) over j = 1 .. k.
     Interval sum(0.0);
     for (int j = 1; j <= k; ++j)
       if (!is_zero(a.c[j]))
@@ -126,6 +152,7 @@ Taylor real_power(const Taylor& a, double p) {
   return r;
 }
 
+/// 0, 1, or both: of a condition that holds everywhere, nowhere, or may hold.
 Interval truth(bool surely, bool possibly) { return {surely ? 1.0 : 0.0, possibly ? 1.0 : 0.0}; }
 
 }  // namespace
@@ -156,6 +183,7 @@ Taylor operator-(const Taylor& a) {
 Taylor operator+(const Taylor& a, const Taylor& b) {
   Taylor r = a;
   for (int k = 0; k <= a.order; ++k) {
+    // An exact 0 adds nothing, and the other summand keeps its bounds unrounded.
     if (is_zero(b.c[k])) continue;
     r.c[k] = is_zero(a.c[k]) ? b.c[k] : a.c[k] + b.c[k];
   }
@@ -171,6 +199,7 @@ Taylor operator*(const Taylor& a, const Taylor& b) {
 }
 
 Taylor operator/(const Taylor& a, const Taylor& b) {
+  // There may be a pole: neither the value nor any derivative is bounded.
   if (lib::zero_in(b.c[0])) return rough(Interval::whole(), a.order);
   Taylor r = Taylor::constant(a.c[0] / b.c[0], a.order);
   for (int k = 1; k <= a.order; ++k) {
@@ -183,6 +212,7 @@ Taylor operator/(const Taylor& a, const Taylor& b) {
 Taylor sqrt(const Taylor& a) {
   if (leaves(a.c[0], 0.0, kInfinity)) return rough(Interval::whole(), a.order);
   const Interval value = known(lib::sqrt(within(a.c[0], 0.0, kInfinity)));
+  // The root is vertical at its foot.
   if (!(a.c[0].lower() > 0.0)) return a.is_constant() ? stepped(value, a.order) : rough(value, a.order);
   Taylor r = Taylor::constant(value, a.order);
   for (int k = 1; k <= a.order; ++k) {
@@ -193,6 +223,7 @@ Taylor sqrt(const Taylor& a) {
 }
 
 Taylor exp(const Taylor& a) {
+  // r' = r a'. Rounding outward must not make a bound of what is positive negative.
   const Interval value = lib::exp(a.c[0]);
   Taylor r = Taylor::constant(Interval(std::max(0.0, value.lower()), value.upper()), a.order);
   for (int k = 1; k <= a.order; ++k) r.c[k] = chained(a, r, k);
@@ -201,6 +232,7 @@ Taylor exp(const Taylor& a) {
 
 Taylor log(const Taylor& a) {
   if (!(a.c[0].lower() > 0.0)) return rough(Interval::whole(), a.order);
+  // log' = 1 / a.
   return from_slope(lib::log(a.c[0]), a, number(1.0, a.order) / a);
 }
 
@@ -213,6 +245,7 @@ Taylor cos(const Taylor& a) {
 Taylor tan(const Taylor& a) {
   const Pair w = circular(a);
   Taylor r = w.first / w.second;
+  // Sine and cosine are independent to the quotient, whose range is too wide; both enclose the value.
   if (!lib::zero_in(w.second.c[0])) r.c[0] = known(lib::intersect(r.c[0], known(lib::tan(a.c[0]))));
   return r;
 }
@@ -220,6 +253,7 @@ Taylor tan(const Taylor& a) {
 Taylor asin(const Taylor& a) {
   if (leaves(a.c[0], -1.0, 1.0)) return rough(Interval::whole(), a.order);
   const Interval value = lib::asin(within(a.c[0], -1.0, 1.0));
+  // asin' = 1 / sqrt(1 - a^2), which is infinite at the ends: there the value alone is known.
   const Taylor room = number(1.0, a.order) - square(a);
   if (!(room.c[0].lower() > 0.0))
     return a.is_constant() ? stepped(known(value), a.order) : rough(value, a.order);
@@ -227,6 +261,7 @@ Taylor asin(const Taylor& a) {
 }
 
 Taylor acos(const Taylor& a) {
+  // acos = pi / 2 - asin: the derivatives are those of -asin, the value has a bound of its own.
   Taylor r = -asin(a);
   if (leaves(a.c[0], -1.0, 1.0)) return r;
   r.c[0] = known(lib::acos(within(a.c[0], -1.0, 1.0)));
@@ -234,11 +269,14 @@ Taylor acos(const Taylor& a) {
 }
 
 Taylor atan(const Taylor& a) {
+  // atan' = 1 / (1 + a^2), without any pole.
   return from_slope(lib::atan(a.c[0]), a, number(1.0, a.order) / (number(1.0, a.order) + square(a)));
 }
 
 /// Smooth off the negative x axis, where it jumps.
 Taylor atan2(const Taylor& y, const Taylor& x) {
+  // By half planes, in each of which one quotient has no pole: x > 0, y > 0, y < 0. A box that lies in
+  // none of them holds the origin or touches the negative x axis.
   const Interval half = pi<Interval>() / 2.0;
   if (x.c[0].lower() > 0.0) return atan(y / x);
   if (y.c[0].lower() > 0.0) return Taylor::constant(half, x.order) - atan(x / y);
@@ -251,6 +289,7 @@ Taylor sinh(const Taylor& a) { return hyperbolic(a).first; }
 Taylor cosh(const Taylor& a) { return hyperbolic(a).second; }
 
 Taylor tanh(const Taylor& a) {
+  // tanh' = 1 / cosh^2. It only rises, so the ends of the argument tell the range.
   const Pair w = hyperbolic(a);
   OutwardRounding to;
   return from_slope(within({to.tanh_down(a.c[0].lower()), to.tanh_up(a.c[0].upper())}, -1.0, 1.0), a,
@@ -259,6 +298,7 @@ Taylor tanh(const Taylor& a) {
 
 Taylor asinh(const Taylor& a) {
   OutwardRounding to;
+  // asinh' = 1 / sqrt(1 + a^2).
   const Interval value(to.asinh_down(a.c[0].lower()), to.asinh_up(a.c[0].upper()));
   return from_slope(value, a, number(1.0, a.order) / sqrt(number(1.0, a.order) + square(a)));
 }
@@ -268,11 +308,13 @@ Taylor acosh(const Taylor& a) {
   const Interval x = within(a.c[0], 1.0, kInfinity);
   OutwardRounding to;
   const Interval value(std::max(0.0, to.acosh_down(x.lower())), to.acosh_up(x.upper()));
+  // acosh' = 1 / sqrt(a^2 - 1), which is infinite at 1.
   if (!(a.c[0].lower() > 1.0)) return rough(value, a.order);
   return from_slope(value, a, number(1.0, a.order) / sqrt(square(a) - number(1.0, a.order)));
 }
 
 Taylor atanh(const Taylor& a) {
+  // atanh' = 1 / (1 - a^2); at the ends the value itself is infinite.
   if (!(a.c[0].lower() > -1.0 && a.c[0].upper() < 1.0)) return rough(Interval::whole(), a.order);
   OutwardRounding to;
   const Interval value(to.atanh_down(a.c[0].lower()), to.atanh_up(a.c[0].upper()));
@@ -280,6 +322,7 @@ Taylor atanh(const Taylor& a) {
 }
 
 Taylor pow(const Taylor& a, const Taylor& b) {
+  // Whole exponents allow negative bases. Larger ones are taken as real numbers, of bases >= 0.
   constexpr double largest_whole = 1024.0;
   if (!b.is_constant() || !is_point(b.c[0])) {
     // of a negative base only whole exponents have a value, and they may be met
@@ -291,6 +334,8 @@ Taylor pow(const Taylor& a, const Taylor& b) {
   return real_power(a, p);
 }
 
+/// abs, min and max are one of their branches, derivatives and all, where the interval decides which. Where
+/// it does not there may be a corner, and only the range of the value is known.
 Taylor abs(const Taylor& a) {
   if (a.c[0].lower() >= 0.0) return a;
   if (a.c[0].upper() <= 0.0) return -a;
@@ -310,6 +355,7 @@ Taylor triangle(const Taylor& a) {
   // which straight piece: the n-th goes through n pi, up where n is even
   const Interval piece = a.c[0] / pi<Interval>() + Interval(0.5);
   const double n = std::floor(piece.lower());
+  // So far out doubles hardly tell one piece from the next.
   if (!(std::abs(n) < 1e15)) return rough(Interval(-half.upper(), half.upper()), a.order);
   const Taylor rising = a - Taylor::constant(n * pi<Interval>(), a.order);
   const Taylor first = std::fmod(n, 2.0) == 0.0 ? rising : -rising;
@@ -317,12 +363,14 @@ Taylor triangle(const Taylor& a) {
   if (std::floor(piece.upper()) > n + 1.0) return rough(Interval(-half.upper(), half.upper()), a.order);
   // one corner: from the lesser end up to the peak there, or from the peak down
   const double peak = std::fmod(n, 2.0) == 0.0 ? half.upper() : -half.upper();
+  // Behind the corner the wave is its own mirror image at the peak, 2 peak - first.
   const Interval reflected = Interval(2.0) * Interval(peak) - first.c[0];
   const Interval both = lib::hull(first.c[0], reflected);
   return rough(within(both, -half.upper(), half.upper()), a.order);
 }
 
 Taylor rint(const Taylor& a) {
+  // floor never falls, so that the floors of the ends bound it; likewise the sign.
   const Interval x = a.c[0] + Interval(0.5);
   return stepped(Interval(std::floor(x.lower()), std::floor(x.upper())), a.order);
 }
@@ -332,6 +380,8 @@ Taylor sign(const Taylor& a) {
   return stepped(Interval(of(a.c[0].lower()), of(a.c[0].upper())), a.order);
 }
 
+/// Comparisons of intervals: [1, 1] where every value of the one compares so with every value of the other,
+/// [0, 0] where none does, else [0, 1].
 Taylor less(const Taylor& a, const Taylor& b) {
   return stepped(truth(a.c[0].upper() < b.c[0].lower(), a.c[0].lower() < b.c[0].upper()), a.order);
 }
@@ -339,6 +389,7 @@ Taylor less_equal(const Taylor& a, const Taylor& b) {
   return stepped(truth(a.c[0].upper() <= b.c[0].lower(), a.c[0].lower() <= b.c[0].upper()), a.order);
 }
 Taylor equal(const Taylor& a, const Taylor& b) {
+  // Two ranges are equal for sure only where each is one number.
   const bool surely = is_point(a.c[0]) && is_point(b.c[0]) && a.c[0].lower() == b.c[0].lower();
   return stepped(truth(surely, lib::overlap(a.c[0], b.c[0])), a.order);
 }
@@ -352,6 +403,7 @@ Taylor small(const Taylor& a) {
 Taylor choose(const Taylor& condition, const Taylor& yes, const Taylor& no) {
   if (is_zero(condition.c[0])) return no;
   if (!lib::zero_in(condition.c[0])) return yes;
+  // It may change from one to the other at any time in here, with a jump.
   return rough(lib::hull(yes.c[0], no.c[0]), yes.order);
 }
 

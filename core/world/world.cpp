@@ -7,6 +7,8 @@ namespace brink {
 
 namespace {
 
+/// What two coefficients make together. Every rule keeps numbers of 0 to 1 within 0 to 1 and none makes a
+/// negative one, so that a pair is as valid as its materials.
 double combine(Combine rule, double a, double b) {
   switch (rule) {
     case Combine::max:
@@ -31,6 +33,7 @@ const std::vector<std::string>& force_formula_variables() {
 }
 
 double World::length() const {
+  // Bounding radii are about the frame's origin, of a body its centre of mass.
   double largest = 0.0;
   for (const Body& body : bodies)
     if (body.outline) largest = std::max(largest, 2.0 * body.outline->bounding_radius);
@@ -48,6 +51,7 @@ Material combined(const World& world, int material_a, int material_b) {
   pair.name = a.name == b.name ? a.name : a.name + "/" + b.name;
   pair.restitution = combine(world.restitution_rule, a.restitution, b.restitution);
   pair.friction = combine(world.friction_rule, a.friction, b.friction);
+  // The rules are for restitution and friction; what follows has one way each.
   pair.tangential_restitution = std::max(a.tangential_restitution, b.tangential_restitution);
   pair.rolling_resistance = std::max(a.rolling_resistance, b.rolling_resistance);
   pair.slip = a.slip * b.slip;

@@ -16,6 +16,7 @@ struct Checker {
   std::string subject;
 
   [[noreturn]] void fail(const std::string& what) const { throw BadInput(subject + ": " + what); }
+  /// Messages read "SUBJECT: PARAMETER is VALUE; allowed: ALLOWED".
   void require(bool ok, const char* parameter, double value, const char* allowed) const {
     if (!ok) fail(std::string(parameter) + " is " + text(value) + "; allowed: " + allowed);
   }
@@ -36,6 +37,7 @@ struct Checker {
   void between(const char* parameter, double value, double low, double high, const char* allowed) const {
     require(value >= low && value <= high, parameter, value, allowed);
   }
+  /// An index into a list of `count` things.
   void index(const char* parameter, int value, std::size_t count) const {
     if (value < 0 || static_cast<std::size_t>(value) >= count)
       fail(std::string(parameter) + " is " + std::to_string(value) + "; allowed: 0 to " +
@@ -51,6 +53,7 @@ std::string called(const char* kind, std::size_t index, const std::string& name)
   return text.append("\"").append(name).append("\"");
 }
 
+/// Names are how files and messages tell things apart; things without a name go by their index.
 template <class Things>
 void check_names(const char* kind, const Things& things) {
   std::set<std::string> seen;
@@ -60,6 +63,8 @@ void check_names(const char* kind, const Things& things) {
                      "\": name is used twice; allowed: unique names");
 }
 
+/// Restitution above 1 would make energy at every impact. slip and spin are of the classic rebound, which
+/// promises nothing of energy: any finite number.
 void check_material(const Material& material, std::size_t i) {
   const Checker check{called("material", i, material.name)};
   check.between("restitution", material.restitution, 0.0, 1.0, "0 to 1");
@@ -70,16 +75,19 @@ void check_material(const Material& material, std::size_t i) {
   check.finite("spin", material.spin);
 }
 
+/// What an outline is made of finish_outline() has checked.
 void check_outline(const Checker& check, const std::shared_ptr<const Outline>& outline) {
   if (!outline || outline->sites.empty()) check.fail("has no outline; allowed: one with at least one site");
 }
 
+/// Signs only: whether spacing or count suffices is asked where particles are made.
 void check_sampling(const Checker& check, const Sampling& sampling) {
   check.not_negative("sampling spacing", sampling.spacing);
   check.require(sampling.count >= 0, "sampling count", sampling.count, "integers >= 0");
   for (const Vec2& p : sampling.points) check.finite("sampling point", p);
 }
 
+/// A held coordinate must begin at rest.
 void check_locks(const Checker& check, const Body& body) {
   const Twist& twist = body.initial.twist;
   const auto held = [&](bool lock, const char* parameter, double value) {
@@ -96,6 +104,7 @@ void check_body(const World& world, const Body& body, std::size_t i) {
   check_outline(check, body.outline);
   // a container is solid out to infinity, and has no mass
   if (body.outline->container) check.fail("is a container; allowed: containers are fixed sites only");
+  // Finite also where a coordinate is held: that is said by locks, never by an infinite mass.
   check.positive("mass", body.mass);
   check.positive("inertia", body.inertia);
   check.index("material", body.material, world.materials.size());
@@ -103,6 +112,7 @@ void check_body(const World& world, const Body& body, std::size_t i) {
   check.finite("angle", body.initial.pose.angle);
   check.finite("velocity", body.initial.twist.velocity);
   check.finite("angular_velocity", body.initial.twist.omega);
+  // NaN would fail here as a velocity that is not 0; it is refused above by its own message.
   check_locks(check, body);
   check_sampling(check, body.sampling);
 }
@@ -110,6 +120,8 @@ void check_body(const World& world, const Body& body, std::size_t i) {
 /// Images of one thing that may reach into one period: each is looked at where bodies are.
 constexpr double kMostImages = 1e4;
 
+/// So near the origin that the number of its image along each axis that repeats is a whole number that can be
+/// held.
 void check_place_in_periods(const Periods& periods, const Checker& check, const Vec2& position) {
   for (const int axis : {0, 1})
     if (periods.size[axis] > 0.0)
@@ -117,6 +129,7 @@ void check_place_in_periods(const Periods& periods, const Checker& check, const 
                     position[axis], "in a periodic world up to 1e9 periods from the origin");
 }
 
+/// The extent is looked at where the site stands at t = 0.
 void check_site_in_periods(const Periods& periods, const Checker& check, const FixedSite& site) {
   if (site.outline->container)
     check.fail("is a container; allowed in a periodic world: sites of finite size");
@@ -124,14 +137,17 @@ void check_site_in_periods(const Periods& periods, const Checker& check, const F
   check_place_in_periods(periods, check, bounds.center());
   const Vec2 extent = bounds.extent();
   // A floor may be longer than a period; every image of it that reaches into one period is looked at.
+  // Along each axis as many as fit into its length, and one.
   double images = 1.0;
   for (const int axis : {0, 1})
     if (periods.size[axis] > 0.0) images *= 1.0 + std::floor(extent[axis] / periods.size[axis]);
+  // Along both axes together: a plate counts by its area in periods.
   if (images > kMostImages)
     check.fail("is " + text(extent.x()) + " m by " + text(extent.y()) + " m: it covers " + text(images) +
                " periods; allowed: up to " + text(kMostImages));
 }
 
+/// Of a world that repeats: the lengths, then the size of every body, then all places.
 void check_periods(const World& world) {
   for (const double period : world.periods.size)
     if (!(period >= 0.0) || !std::isfinite(period))
@@ -153,6 +169,7 @@ void check_periods(const World& world) {
     check_site_in_periods(world.periods, Checker{called("site", i, world.sites[i].name)}, world.sites[i]);
 }
 
+/// One overload for each way a site may move.
 void check_motion(const Checker& check, const ConstantMotion& motion) {
   check.finite("motion velocity", motion.twist.velocity);
   check.finite("motion angular_velocity", motion.twist.omega);
@@ -182,6 +199,7 @@ void check_site(const World& world, const FixedSite& site, std::size_t i) {
   std::visit([&](const auto& motion) { check_motion(check, motion); }, site.motion);
 }
 
+/// A force is handed to every body that it names: named twice, it would act twice.
 void check_targets(const Checker& check, const std::vector<int>& bodies, std::size_t count) {
   std::set<int> seen;
   for (int body : bodies) {
@@ -191,6 +209,8 @@ void check_targets(const Checker& check, const std::vector<int>& bodies, std::si
   }
 }
 
+/// One overload a kind of force; the checker comes by value, as its subject gets the kind's name.
+/// Coefficients below 0 are refused where they would drive what they are to hold or to brake.
 void check_force(const World& world, const SpringForce& spring, Checker check) {
   check.subject += " (spring)";
   const std::size_t count = world.bodies.size();
@@ -211,6 +231,7 @@ void check_force(const World& world, const DragForce& drag, Checker check) {
   check.not_negative("quadratic", drag.quadratic);
   check.not_negative("angular", drag.angular);
 }
+/// A strength below 0 repels.
 void check_force(const World& world, const AttractForce& attract, Checker check) {
   check.subject += " (attract)";
   check_targets(check, attract.bodies, world.bodies.size());
@@ -223,9 +244,11 @@ void check_force(const World& world, const ThrustForce& thrust, Checker check) {
   check.index("body", thrust.body, world.bodies.size());
   check.finite("force", thrust.force);
   check.finite("torque", thrust.torque);
+  // `to` may be infinite; NaN is not later than anything and fails.
   check.finite("from", thrust.from);
   check.require(thrust.to > thrust.from, "to", thrust.to, "times later than from");
 }
+/// What the formulas give is not asked: it depends on states, and where it is not finite an integration ends.
 void check_force(const World& world, const FormulaForce& force, Checker check) {
   check.subject += " (formula)";
   check_targets(check, force.bodies, world.bodies.size());
@@ -236,6 +259,7 @@ void check_force(const World& world, const FormulaForce& force, Checker check) {
 
 void World::check() const {
   Checker{"world"}.finite("gravity", gravity);
+  // Each kind has names of its own: a body and a site may share one.
   check_names("material", materials);
   check_names("body", bodies);
   check_names("site", sites);

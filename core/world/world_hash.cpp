@@ -8,9 +8,11 @@
 namespace brink {
 namespace {
 
+/// Whatever decides a motion has to be here: two worlds that differ in what is missing would pass as one.
 /// Adds the parts of a world to one state hash, in a fixed order.
 class WorldHasher {
  public:
+  /// From left to right: the order of the arguments is part of the hash.
   template <class... T>
   void add(const T&... parts) {
     (one(parts), ...);
@@ -28,13 +30,16 @@ class WorldHasher {
     hash_.add(static_cast<std::uint64_t>(text.size()));
     for (const char c : text) hash_.add(static_cast<std::uint64_t>(c));
   }
+  /// With its length, as texts have theirs.
   void one(const std::vector<int>& ids) {
     one(static_cast<int>(ids.size()));
     for (const int id : ids) one(id);
   }
   void one(const Pose& p) { add(p.position, p.angle); }
+  /// By its text. None is the empty text, which no formula has.
   void one(const std::optional<Formula>& f) { one(f ? std::string_view(f->text()) : std::string_view()); }
 
+  /// Names decide nothing, and are left out of every hash here.
   void one(const Material& m) {
     add(m.restitution, m.friction, m.tangential_restitution, m.rolling_resistance, m.slip, m.spin);
   }
@@ -59,6 +64,7 @@ class WorldHasher {
     }
     hash_.add(last_hash_);
   }
+  /// The sampling too: it decides what the classic detector sees.
   void one(const Body& b) {
     add(b.outline, b.mass, b.inertia, b.lock_x, b.lock_y, b.lock_angle, b.material, b.initial);
     add(static_cast<int>(b.sampling.kind), b.sampling.spacing, b.sampling.count);
@@ -86,6 +92,7 @@ class WorldHasher {
   void one(const AttractForce& f) { add(f.bodies, f.center, f.strength, f.power); }
   void one(const ThrustForce& f) { add(f.body, f.force, f.torque, f.from, f.to); }
   void one(const FormulaForce& f) { add(f.bodies, f.fx, f.fy, f.torque); }
+  /// The kind first: two kinds with the same numbers must not look alike.
   void one(const Force& f) {
     one(static_cast<int>(f.index()));
     std::visit([this](const auto& force) { one(force); }, f);
@@ -100,6 +107,7 @@ class WorldHasher {
 
 namespace {
 
+/// A plane that does not repeat adds no periods.
 StateHash hash_of(const World& world) {
   WorldHasher h;
   if (world.periods.any()) h.add(world.periods.size);
