@@ -8,14 +8,17 @@ namespace brink::detail {
 
 namespace {
 
+/// Allowed range of a resolution that is chosen by shape [pixel]; FieldOptions::is_valid() has the same.
 constexpr int kLeastResolution = 16, kMostResolution = 1024;
 /// Lists near the outline are made no shorter than this on average: vertices always have two.
 constexpr double kMeanList = 2.2;
 /// Band of the trials that choose the resolution [pixel].
+/// A trial asks for the lists within two pixels of the outline only.
 constexpr double kTrialBand = 4.0;
 /// Fragments that both draws together may cost when the band is chosen by shape.
 constexpr double kFragments = 4e5;
 
+/// Of the core [m]; 0 of a point.
 double length_of(const Site& site) {
   if (site.kind == SiteKind::point) return 0.0;
   return site.kind == SiteKind::arc ? site.arc_radius * std::abs(site.sweep) : (site.b - site.a).norm();
@@ -29,6 +32,7 @@ double typical_length(const Outline& outline, double size) {
     if (length > 0.0) lengths.push_back(length);
   }
   if (lengths.empty()) return size / std::max<double>(1.0, static_cast<double>(outline.sites.size()));
+  // the median: one long side among many short ones must not make the pixels coarse
   const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
   std::nth_element(lengths.begin(), middle, lengths.end());
   return *middle;
@@ -43,7 +47,9 @@ int first_resolution(const Outline& outline, double size) {
 }
 
 /// Fragments of one draw with this band [m] at this pixel [m].
+/// Each site's quad counts whole, also what of it lies beside the window.
 double fragments(const Outline& outline, double pixel, double band) {
+  // 3: what a quad covers beyond its band, 2 h = 1.42 of margin and 1.5 for the rasteriser (site_batch.cpp)
   const double grow = band / pixel + 3.0;
   double sum = 0.0;
   for (const Site& site : outline.sites) {
@@ -56,7 +62,10 @@ double fragments(const Outline& outline, double pixel, double band) {
 }  // namespace
 
 BodyFieldPlan plan_body_field(const Outline& outline, const FieldOptions& options) {
+  // The band is needed for the window, and a pixel's length for the band: it is taken from the window that the
+  // widest band would give.
   const Vec2 extent = outline.bounds.extent();
+  // never 0: it is divided by
   const double size = std::max(extent.maxCoeff(), 1e-300);
   BodyFieldPlan plan;
   const int resolution = options.resolution != 0 ? options.resolution : first_resolution(outline, size);
@@ -71,6 +80,7 @@ BodyFieldPlan plan_body_field(const Outline& outline, const FieldOptions& option
   }
   // One pixel of border, so that rounding at the window's edge stays outside the band.
   plan.grid.pixel = (size + 2.0 * plan.band) / std::max(1, resolution - 2);
+  // 1e-9: whole pixels up to rounding are not one more
   const auto pixels = [&](double length) {
     return static_cast<int>(std::ceil((length + 2.0 * plan.band) / plan.grid.pixel - 1e-9)) + 2;
   };
@@ -89,6 +99,7 @@ BodyField::BodyField(std::shared_ptr<const Outline> outline, CandidateLists list
 
 Candidates BodyField::candidates(const Vec2& q, double reach, Scratch& scratch) const {
   const double x = (q.x() - lists_.grid.low.x()) * per_pixel_, y = (q.y() - lists_.grid.low.y()) * per_pixel_;
+  // written so that NaN goes outside, too, where it is answered
   if (!(x >= 0.0 && x < lists_.grid.width && y >= 0.0 && y < lists_.grid.height))
     return outside(q, reach, scratch);
   // Which pixel q is put into may be wrong by a rounding; snap_ and the slack of the lists allow for that.
@@ -98,6 +109,7 @@ Candidates BodyField::candidates(const Vec2& q, double reach, Scratch& scratch) 
                    static_cast<std::size_t>(i)];
   // |v| <= max + (sqrt 2 - 1) min: no square root.
   const double dx = std::abs(x - i - 0.5), dy = std::abs(y - j - 0.5);
+  // Exact along axes and diagonals, at most 8 % too long between them.
   const double off = std::max(dx, dy) + 0.41421357 * std::min(dx, dy) + snap_;
   // distances are 1-Lipschitz: from the pixel's centre to q each changes by |q - centre| at most
   const double others = cell.others - off * lists_.grid.pixel;
@@ -111,6 +123,7 @@ Candidates BodyField::candidates(const Vec2& q, double reach, Scratch& scratch) 
   return by_tree(q, scratch);
 }
 
+/// Beyond the window: nothing is nearer than the box of the outline, its thickness included.
 Candidates BodyField::outside(const Vec2& q, double reach, Scratch& scratch) const {
   if (!q.allFinite()) return {{}, 0.0};
   const Box& box = outline_->bounds;
@@ -122,6 +135,7 @@ Candidates BodyField::outside(const Vec2& q, double reach, Scratch& scratch) con
   return by_tree(q, scratch);
 }
 
+/// The exact answer: the few nearest sites, nearest first, and a bound on all others.
 Candidates BodyField::by_tree(const Vec2& q, Scratch& scratch) const {
   ++scratch.tree_searches;
   const double others = tree_.nearest(*outline_, q, scratch.sites);
@@ -137,6 +151,7 @@ int choose_resolution(const Outline& outline, const FieldOptions& options, Field
   ListRules rules;
   rules.list_cap = options.list_cap;
   trial.resolution = first_resolution(outline, size);
+  // A resolution that cannot be doubled any more is taken without a trial.
   for (double before = std::numeric_limits<double>::infinity(); 2 * trial.resolution <= kMostResolution;) {
     trial.band = rules.band = kTrialBand * size / trial.resolution;
     const double mean =
@@ -154,6 +169,7 @@ int choose_resolution(const Outline& outline, const FieldOptions& options, Field
 std::unique_ptr<BodyField> render_body_field(std::shared_ptr<const Outline> outline,
                                              const FieldOptions& options, FieldRenderer& renderer) {
   FieldOptions chosen = options;
+  // A resolution that was asked for is taken as it is, without trials.
   if (chosen.resolution == 0) chosen.resolution = choose_resolution(*outline, options, renderer);
   const BodyFieldPlan plan = plan_body_field(*outline, chosen);
   ListRules rules;

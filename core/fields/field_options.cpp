@@ -8,6 +8,7 @@ namespace brink {
 
 namespace {
 
+/// False if `value` is not allowed; *error then names the key, what was given, and all that is allowed.
 bool is_one_of(std::string_view name, std::string_view value, std::initializer_list<std::string_view> allowed,
                std::string* error) {
   std::string list;
@@ -19,6 +20,7 @@ bool is_one_of(std::string_view name, std::string_view value, std::initializer_l
   return false;
 }
 
+/// Puts the message into *error; false, for the caller to return.
 bool fail(std::string* error, const std::string& message) {
   *error = message;
   return false;
@@ -28,12 +30,14 @@ bool fail(std::string* error, const std::string& message) {
 
 bool FieldOptions::is_valid(std::string* error) const {
   std::string ignored;
+  // so that nothing below has to ask
   if (error == nullptr) error = &ignored;
   // 16 and 1024: the range in which a resolution is chosen by shape (body_field.cpp)
   if (resolution != 0 && (resolution < 16 || resolution > 1024)) {
     return fail(error, "field.resolution is " + std::to_string(resolution) +
                            "; allowed: 0 (by shape), or 16 to 1024 pixels");
   }
+  // Comparisons with NaN are false: here and below they are written so that NaN is refused.
   if (!(band >= 0.0) || !std::isfinite(band)) {
     return fail(error, "field.band is " + std::to_string(band) +
                            " m; allowed: 0 (by shape), or a finite positive width");

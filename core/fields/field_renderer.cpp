@@ -1,3 +1,14 @@
+/// Every draw goes the same way:
+///
+///     make the context current
+///     fit()      binds a target of at least the window's size, and clears it
+///     use()      binds the program, which is compiled at its first use, and tells it the window
+///     upload()   the batch into its buffer
+///     draw()     one call for all sites
+///     read back
+///
+/// draw_candidates() and the second layer draw the batch that is in the buffer already. Targets, programs and
+/// buffers are kept as long as the renderer.
 #include "brink/core/fields/field_renderer.h"
 
 #include <algorithm>
@@ -12,12 +23,15 @@ namespace brink::detail {
 
 namespace {
 
+/// Longest side of a square target [pixels].
 /// Larger targets are of pictures: as large as they must be, not powers of two, which are four times as much.
 constexpr unsigned kMostSquare = 1024;
 constexpr int kPictureStep = 64;  ///< their sides are whole multiples of this [pixels]
 /// Texture units. `first` and `nearest` are never in one program, so they share one.
 constexpr int kUnitFirst = 0, kUnitNearest = 0, kUnitOwners = 1;
 
+/// Where the vertex shader finds one of its inputs in a buffer's entry [bytes]. Integers must not come as
+/// floats: an id may have 31 bits, a float holds 24.
 struct Attribute {
   int components;
   std::size_t offset;
@@ -25,6 +39,7 @@ struct Attribute {
 };
 
 /// In the order of the locations in the shaders.
+/// Id and kind lie side by side, and are one attribute.
 constexpr std::array<Attribute, 7> kAttributes = {{{4, offsetof(SiteInstance, frame), false},
                                                    {4, offsetof(SiteInstance, extent), false},
                                                    {4, offsetof(SiteInstance, ends), false},
@@ -33,10 +48,13 @@ constexpr std::array<Attribute, 7> kAttributes = {{{4, offsetof(SiteInstance, fr
                                                    {2, offsetof(SiteInstance, shift), false},
                                                    {2, offsetof(SiteInstance, id), true}}};
 
+/// The same for triangles; value and side are one attribute too.
 constexpr std::array<Attribute, 3> kMeshAttributes = {{{2, offsetof(MeshVertex, place), false},
                                                        {2, offsetof(MeshVertex, value), false},
                                                        {2, offsetof(MeshVertex, id), true}}};
 
+/// By the whole scene, not by what is drawn of it: has_arcs does not change with the owner that is left out,
+/// so that the others are drawn by the same program and get the same bits.
 FieldPrimitives primitives_of(const SiteBatch& batch) {
   return batch.is_mesh    ? FieldPrimitives::mesh
          : batch.has_arcs ? FieldPrimitives::with_arcs
@@ -55,6 +73,7 @@ void FieldRenderer::make_array(const Attributes& attributes, std::size_t stride,
   gl_.BindBuffer(GL_ARRAY_BUFFER, buffer);
   for (GLuint i = 0; i < attributes.size(); ++i) {
     const Attribute& a = attributes[i];
+    // With a buffer bound, the pointer is an offset into it.
     const auto* at = reinterpret_cast<const void*>(a.offset);
     gl_.EnableVertexAttribArray(i);
     gl_.VertexAttribDivisor(i, step);
@@ -81,6 +100,7 @@ FieldRenderer::FieldRenderer(std::unique_ptr<GlContext> context) : context_(std:
 }
 
 FieldRenderer::~FieldRenderer() {
+  // Names belong to this context, and another may be current in this thread.
   context_->make_current();
   for (Program& program : programs_) {
     if (program.name != 0) gl_.DeleteProgram(program.name);
@@ -94,6 +114,8 @@ FieldRenderer::~FieldRenderer() {
   gl_.DeleteVertexArrays(1, &mesh_vertices_);
 }
 
+/// The program of a kind for the primitives of this batch, bound. The window is set each time; what else a
+/// draw needs is set by the caller, at the locations in the answer.
 FieldRenderer::Program& FieldRenderer::use(FieldProgram kind, const PixelGrid& grid, const SiteBatch& batch) {
   const FieldPrimitives primitives = primitives_of(batch);
   Program& program =
@@ -110,6 +132,7 @@ FieldRenderer::Program& FieldRenderer::use(FieldProgram kind, const PixelGrid& g
     program.slack = at("slack");
     program.capacity = at("capacity");
     program.width = at("width");
+    // Which unit a sampler reads is state of the program: set once.
     gl_.Uniform1i(at("first"), kUnitFirst);
     gl_.Uniform1i(at("nearest"), kUnitNearest);
     gl_.Uniform1i(at("owners"), kUnitOwners);
@@ -120,6 +143,7 @@ FieldRenderer::Program& FieldRenderer::use(FieldProgram kind, const PixelGrid& g
   return program;
 }
 
+/// An empty texture of the target's size, one channel, no mipmaps.
 GLuint FieldRenderer::texture(GLenum internal, GLenum format, GLenum type, const Target& target) {
   GLuint name = 0;
   gl_.GenTextures(1, &name);
@@ -132,6 +156,7 @@ GLuint FieldRenderer::texture(GLenum internal, GLenum format, GLenum type, const
   return name;
 }
 
+/// Also of a target that was made in part. It is then as if it had never been made.
 void FieldRenderer::destroy(Target& target) {
   for (GLuint* name : {&target.ids, &target.values, &target.depth}) {
     if (*name != 0) gl_.DeleteTextures(1, name);
@@ -140,9 +165,13 @@ void FieldRenderer::destroy(Target& target) {
   target = Target();
 }
 
+/// Ids are whole numbers of 32 bits, as their top bit means "inside". Values and depths both have the 24
+/// bits of single precision, so that the depth test orders the exact shaders' values without merging any.
+/// @throws IoError if the driver does not take the combination.
 void FieldRenderer::make_target(Target& target, int width, int height, bool with_ids) {
   target.width = width;
   target.height = height;
+  // textures are bound to the active unit: not to that of the owners' table
   gl_.ActiveTexture(GL_TEXTURE0);
   gl_.GenFramebuffers(1, &target.framebuffer);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
@@ -169,6 +198,7 @@ void FieldRenderer::make_target(Target& target, int width, int height, bool with
 
 /// Draws from now on into a target at least as large as the window, cleared.
 void FieldRenderer::fit(Targets& targets, const PixelGrid& grid, bool with_ids) {
+  // The index is the exponent: 5 for the least size, 13 for windows of 8192 pixels, the largest there are.
   const auto size = std::bit_ceil(static_cast<unsigned>(std::max({grid.width, grid.height, 32})));
   Target& target = targets[static_cast<std::size_t>(std::bit_width(size)) - 1];
   // One target for each power of two, the smallest of 32 pixels; larger windows of the same power of two
@@ -186,11 +216,14 @@ void FieldRenderer::fit(Targets& targets, const PixelGrid& grid, bool with_ids) 
   gl_.Viewport(0, 0, grid.width, grid.height);
   const GLuint none[4] = {0xffffffffU, 0, 0, 0};
   const float far = 1.0F, infinite[4] = {std::numeric_limits<float>::infinity(), 0, 0, 0};
+  // What stays where nothing is drawn: FieldImage::kNone, an infinite value, and a depth that every drawn one
+  // is below. The numbers are those of draw buffers: values come second where there are ids.
   if (with_ids) gl_.ClearBufferuiv(GL_COLOR, 0, none);
   gl_.ClearBufferfv(GL_COLOR, with_ids ? 1 : 0, infinite);
   gl_.ClearBufferfv(GL_DEPTH, 0, &far);
 }
 
+/// The batch into the buffer of its kind, where draw() finds it.
 void FieldRenderer::upload(const SiteBatch& batch) {
   const auto send = [&](GLuint buffer, const auto& entries) {
     gl_.BindBuffer(GL_ARRAY_BUFFER, buffer);
@@ -200,6 +233,7 @@ void FieldRenderer::upload(const SiteBatch& batch) {
   batch.is_mesh ? send(mesh_, batch.triangles) : send(instances_, batch.instances);
 }
 
+/// One call for all sites of the batch that was uploaded last. An empty batch draws nothing, and counts.
 void FieldRenderer::draw(const PixelGrid& grid, const SiteBatch& batch) {
   gl_.BindVertexArray(batch.is_mesh ? mesh_vertices_ : vertices_);
   if (!batch.triangles.empty()) {
@@ -207,6 +241,7 @@ void FieldRenderer::draw(const PixelGrid& grid, const SiteBatch& batch) {
   } else if (!batch.instances.empty()) {
     gl_.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.instances.size()));
   }
+  // the window once, not its fragments, which are more where quads overlap
   pixels_drawn_ += static_cast<std::uint64_t>(grid.width) * static_cast<std::uint64_t>(grid.height);
 }
 
@@ -221,6 +256,8 @@ void FieldRenderer::draw_image(const PixelGrid& grid, const SiteBatch& batch, do
   gl_.Uniform1f(program.depth_scale, static_cast<float>(batch.depth_scale));
   gl_.Uniform1f(program.limit, static_cast<float>(limit));
   gl_.Uniform1f(program.offset, static_cast<float>(batch.offset));
+  // The second layer asks of each fragment whose site the first one shows there: it reads that layer's ids, and
+  // a table of owners by id. The batch is in its buffer since the first.
   if (layer == 1) {
     gl_.ActiveTexture(GL_TEXTURE0 + kUnitFirst);
     gl_.BindTexture(GL_TEXTURE_2D, first_ids);
@@ -237,6 +274,8 @@ void FieldRenderer::draw_image(const PixelGrid& grid, const SiteBatch& batch, do
   draw(grid, batch);
 }
 
+/// Of the framebuffer that is bound, in the context that is current: nothing else may have been drawn since.
+/// Waits until the draw is done.
 void FieldRenderer::read_image(int x, int y, int width, int height, std::uint32_t* ids, float* values) {
   gl_.ReadBuffer(GL_COLOR_ATTACHMENT0);
   gl_.ReadPixels(x, y, width, height, GL_RED_INTEGER, GL_UNSIGNED_INT, ids);
@@ -250,6 +289,7 @@ const std::vector<float>& FieldRenderer::draw_bounds(const PixelGrid& grid, cons
   fit(bound_, grid, /*with_ids=*/false);
   Program& program = use(FieldProgram::bound, grid, batch);
   gl_.Uniform1f(program.depth_scale, static_cast<float>(batch.depth_scale));
+  // Values are upper bounds here, as the batch was made with BatchRules::bounds.
   upload(batch);
   gl_.Enable(GL_DEPTH_TEST);
   draw(grid, batch);
@@ -261,6 +301,7 @@ const std::vector<float>& FieldRenderer::draw_bounds(const PixelGrid& grid, cons
 }
 
 /// A storage buffer of at least this size at binding 0.
+/// It never shrinks; where it grows, what it held is lost.
 void FieldRenderer::bind_storage(std::size_t bytes) {
   if (storage_ == 0) gl_.GenBuffers(1, &storage_);
   // binds the general target as well, which BufferData and the calls after this one work on
@@ -282,9 +323,11 @@ const std::vector<PixelEntry>& FieldRenderer::draw_candidates(const PixelGrid& g
   // every site has its fragment, not only the nearest.
   gl_.Disable(GL_DEPTH_TEST);
   gl_.DrawBuffers(0, nullptr);
+  // The two words in front of the entries (kAppend): how many there are, and one unused.
   std::array<std::uint32_t, 2> head{};
   // At most two rounds: how many entries there are does not depend on the room.
   for (bool fits = false; !fits;) {
+    // the counter starts from 0 in each round
     bind_storage(8 + capacity * sizeof(PixelEntry));
     head = {0, 0};
     gl_.BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof(head), head.data());
@@ -293,6 +336,7 @@ const std::vector<PixelEntry>& FieldRenderer::draw_candidates(const PixelGrid& g
     // without it GetBufferSubData may not see what the shaders wrote
     gl_.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     gl_.GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof(head), head.data());
+    // the count goes on past the capacity: it is the room that the next round needs
     fits = head[0] <= capacity;
     if (!fits) ++redraws_;
     capacity = std::max<std::size_t>(capacity, head[0]);
@@ -306,6 +350,7 @@ const std::vector<PixelEntry>& FieldRenderer::draw_candidates(const PixelGrid& g
   return entries_;
 }
 
+/// Nothing of the picture is looked at: the target only makes the rasteriser go over the window.
 std::vector<std::uint32_t> FieldRenderer::draw_marks(const PixelGrid& grid, const SiteBatch& batch,
                                                      double limit, std::size_t count) {
   context_->make_current();
@@ -314,6 +359,7 @@ std::vector<std::uint32_t> FieldRenderer::draw_marks(const PixelGrid& grid, cons
   gl_.Uniform1f(program.limit, static_cast<float>(limit));
   upload(batch);
   std::vector<std::uint32_t> marks(count, 0);
+  // Never empty: a buffer without storage cannot be bound to a block.
   bind_storage(std::max<std::size_t>(count, 1) * sizeof(std::uint32_t));
   gl_.BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(count * sizeof(std::uint32_t)),
                     marks.data());
@@ -325,6 +371,7 @@ std::vector<std::uint32_t> FieldRenderer::draw_marks(const PixelGrid& grid, cons
                        marks.data());
   const GLenum first = GL_COLOR_ATTACHMENT0;
   gl_.DrawBuffers(1, &first);
+  // marks that are read back count as pixels
   pixels_read_ += count;
   return marks;
 }

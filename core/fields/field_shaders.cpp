@@ -1,3 +1,10 @@
+// A fragment shader is put together from parts that call each other by name:
+//   - core_distance(q, side): from the pixel's place to the core of the site. Straight sites, or arcs as well.
+//   - drawn_value(side), write_depth(t): what an image shows; exact, or interpolated over cones and tents.
+//   - wanted(): whether the layer shows this site here.
+//   - main(): of an image, of bounds, or of one that fills a storage buffer.
+// gl_FragCoord is the pixel's centre, (i + 1/2, j + 1/2) from the window's lower left corner: less half the
+// window's size it is the place from its centre, in which all sites are given; uint() of it is i and j.
 #include "brink/core/fields/field_shaders.h"
 
 namespace brink::detail {
@@ -6,6 +13,8 @@ namespace {
 
 // Four corners of a strip from gl_VertexID alone: the oriented rectangle of a site's band, in pixels
 // from the window's centre. z is 0: the fragment shader writes the depth.
+// Inputs are SiteInstance (site_batch.h) in the order of kAttributes (field_renderer.cpp). Bit 0 of the number says
+// low or high along the axis, bit 1 across it.
 constexpr const char* kVertex = R"(
 layout(location = 0) in vec4 frame;
 layout(location = 1) in vec4 extent;
@@ -33,6 +42,8 @@ void main() {
 }
 )";
 
+// Clip space has z in [-1, 1], the depth buffer [0, 1]: 2 z' - 1 is stored as z', the same depth that the exact
+// shader writes for this value.
 constexpr const char* kMeshVertex = R"(
 layout(location = 0) in vec2 place;
 layout(location = 1) in vec2 height_in;
@@ -71,6 +82,8 @@ float cross2(vec2 a, vec2 b) { return a.x * b.y - a.y * b.x; }
 // core/shapes/distance.h; the rounding is bounded in site_batch.h. Beyond an end the distance is computed
 // from that end alone, so that two sites which share it tie there bit for bit. A point is a segment without
 // length (d = 0, t = 0).
+// Of `side` only the sign is used: cross products and pseudo-normals need no unit length. A segment's solid is on
+// its left, where cross2(d, wa) > 0.
 constexpr const char* kStraight = R"(
 float straight_distance(vec2 q, out float side) {
   vec2 wa = q - ends.xy, d = ends.zw - ends.xy;
@@ -80,11 +93,15 @@ float straight_distance(vec2 q, out float side) {
 }
 )";
 
+// Without the branch for arcs, which costs even where it is not taken (field_shaders.h).
 constexpr const char* kOnlyStraight = R"(
 float core_distance(vec2 q, out float side) { return straight_distance(q, side); }
 )";
 
 // The test on dot(w, from + to) keeps rounding from taking the far side of a thin sector for the near one.
+// The sector's edges are tested with wa and wb in place of w: as w = from + wa = to + wb, the cross products are
+// the same, and near an end their terms are small, and so are their roundings. Of an arc that turns to the left
+// the solid is inside the circle, of one that turns to the right outside. Elsewhere the nearer end tells.
 constexpr const char* kWithArcs = R"(
 float core_distance(vec2 q, out float side) {
   if ((tag.y & 3u) != 2u) return straight_distance(q, side);
@@ -102,6 +119,7 @@ float core_distance(vec2 q, out float side) {
 
 // "inside" is the id's top bit: the solid side of the nearest site, or within its thickness (values
 // below the offset are distances below the radius). tag.y & 4 is "solid".
+// wanted() is only declared: it comes from the part that follows.
 constexpr const char* kImage = R"(
 layout(location = 0) out uint site;
 layout(location = 1) out float value;
@@ -143,6 +161,7 @@ bool wanted() {
 )";
 
 // shift.x makes an upper bound of the distance here: the depth test keeps the least of them.
+// The least upper bound of all sites is an upper bound of the nearest distance, whichever site that is of.
 constexpr const char* kBound = R"(
 layout(location = 0) out float value;
 uniform float depth_scale;
@@ -181,6 +200,7 @@ void main() {
 )";
 
 // Fragments may write the same flag at once; they all write 1.
+// The limit is compared with a lower bound (shift.y), so that no site within it goes unmarked.
 constexpr const char* kMark = R"(
 layout(std430, binding = 0) buffer Marks { uint marks[]; };
 uniform float limit;
@@ -191,6 +211,7 @@ void main() {
 }
 )";
 
+/// The line that a shader begins with.
 std::string version(FieldProgram program) {
   // buffer blocks need 4.3; all else runs where only 3.3 is there
   const bool storage = program == FieldProgram::append || program == FieldProgram::mark;
@@ -205,6 +226,7 @@ std::string vertex_shader(FieldProgram program, FieldPrimitives primitives) {
 
 std::string fragment_shader(FieldProgram program, FieldPrimitives primitives) {
   const bool mesh = primitives == FieldPrimitives::mesh, arcs = primitives == FieldPrimitives::with_arcs;
+  // tents and cones have no core_distance(): their value is interpolated
   const std::string distance =
       mesh ? kMesh : std::string(kInputs) + kStraight + (arcs ? kWithArcs : kOnlyStraight);
   const std::string image = version(program) + distance + (mesh ? "" : kExactValue) + kImage;

@@ -24,6 +24,7 @@ void release_current() {
 
 namespace {
 
+/// A way to a context: what `field.context` calls it, and how it is opened (gl_backends.h).
 struct Backend {
   std::string_view name;
   std::unique_ptr<GlContext> (*open)(GlLevel level, std::string* why);
@@ -50,7 +51,10 @@ std::vector<std::string_view> gl_backends() {
   return names;
 }
 
+/// Each backend is asked in turn; the first context that opens is taken. What the others answered is told
+/// only if none does.
 std::unique_ptr<GlContext> open_gl_context(std::string_view backend, GlLevel level) {
+  // By all names, not by those of this build: a known one that is missing is no mistake of the caller.
   if (backend != "auto" && backend != "osmesa" && backend != "egl") {
     throw BadInput("field.context is \"" + std::string(backend) +
                    "\"; allowed are \"auto\", \"osmesa\", \"egl\"");

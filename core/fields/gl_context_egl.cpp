@@ -1,5 +1,6 @@
 // The EGL backend: a surfaceless context (EGL_MESA_platform_surfaceless), which needs neither display nor
 // device.
+// EGL_NO_X11 keeps EGL's headers from including those of X11.
 #define EGL_NO_X11
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -13,9 +14,11 @@ namespace brink::detail {
 
 namespace {
 
+/// Values of glGetString() and glGetIntegerv(): EGL's headers have none of GL's names.
 constexpr unsigned kGlVersion = 0x1F02, kGlRenderer = 0x1F01, kGlMajorVersion = 0x821B,
                    kGlMinorVersion = 0x821C;
 
+/// A context without a surface. `version`: the GL version it was asked for, as 10 major + minor.
 class EglContext final : public Releasable {
  public:
   EglContext(EGLDisplay display, EGLContext context, int version)
@@ -28,6 +31,7 @@ class EglContext final : public Releasable {
   EglContext(const EglContext&) = delete;
   EglContext& operator=(const EglContext&) = delete;
 
+  /// Makes this the thread's context; false if EGL refuses, and then the thread has none.
   bool bind() {
     if (current_context() == this) return true;
     release_current();
@@ -44,6 +48,7 @@ class EglContext final : public Releasable {
   bool has_storage_buffers() const override { return storage_; }
 
   /// Reads version and renderer. @pre current.
+  /// False if GL does not answer, or is older than 3.3.
   bool inspect() {
     const auto get_string = reinterpret_cast<const unsigned char* (*)(unsigned)>(function("glGetString"));
     const auto get_integer = reinterpret_cast<void (*)(unsigned, int*)>(function("glGetIntegerv"));
@@ -71,6 +76,7 @@ class EglContext final : public Releasable {
 };
 
 /// The surfaceless display, initialised once a process (EGL answers with the same display every time).
+/// EGL_NO_DISPLAY where the platform is missing. It is never terminated: contexts of other threads may live on it.
 EGLDisplay open_display() {
   const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   if (extensions == nullptr || std::strstr(extensions, "EGL_MESA_platform_surfaceless") == nullptr) {
@@ -82,6 +88,7 @@ EGLDisplay open_display() {
   return display;
 }
 
+/// A core-profile context of that version (10 major + minor), or EGL_NO_CONTEXT.
 EGLContext create(EGLDisplay display, int version) {
   const std::array<EGLint, 7> attributes = {EGL_CONTEXT_MAJOR_VERSION,
                                             version / 10,
@@ -103,11 +110,13 @@ std::unique_ptr<GlContext> open_egl(GlLevel level, std::string* why) {
     return nullptr;
   }
   eglBindAPI(EGL_OPENGL_API);
+  // Newest first: 4.5, the least with storage buffers, the least that will do.
   for (const int version : {45, 43, 33}) {
     if (level == GlLevel::only_33 && version != 33) continue;
     EGLContext raw = create(display, version);
     if (raw == EGL_NO_CONTEXT) continue;
     auto context = std::make_unique<EglContext>(display, raw, version);
+    // else it is destroyed here, which releases it, before the next is made
     if (context->bind() && context->inspect()) return context;
   }
   *why = "eglCreateContext gave no core profile of 3.3 or later";

@@ -15,12 +15,14 @@ class OsmesaContext final : public Releasable {
  public:
   OsmesaContext(OSMesaContext context, int version) : context_(context), asked_(version) {}
   ~OsmesaContext() override {
+    // as with EGL: current_context() must not be left dangling
     if (current_context() == this) release_current();
     OSMesaDestroyContext(context_);
   }
   OsmesaContext(const OsmesaContext&) = delete;
   OsmesaContext& operator=(const OsmesaContext&) = delete;
 
+  /// Makes this the thread's context; false if OSMesa refuses, and then the thread has none.
   bool bind() {
     if (current_context() == this) return true;
     release_current();
@@ -38,6 +40,7 @@ class OsmesaContext final : public Releasable {
   bool has_storage_buffers() const override { return storage_; }
 
   /// Reads version and renderer. @pre current.
+  /// False if GL does not answer, or is older than 3.3.
   bool inspect() {
     const auto get_string = reinterpret_cast<const GLubyte* (*)(GLenum)>(function("glGetString"));
     const auto get_integer = reinterpret_cast<void (*)(GLenum, GLint*)>(function("glGetIntegerv"));
@@ -57,9 +60,11 @@ class OsmesaContext final : public Releasable {
   int asked_;
   bool storage_ = false;
   std::string description_;
+  // the one pixel, four bytes of it
   alignas(16) std::array<GLubyte, 16> buffer_{};
 };
 
+/// A core-profile context of that version (10 major + minor), or null.
 OSMesaContext create(int version) {
   // 0 bits of depth: depth belongs to the framebuffer objects. Zeros at the end close the list.
   const std::array<int, 13> attributes = {OSMESA_FORMAT,
@@ -81,6 +86,7 @@ OSMesaContext create(int version) {
 }  // namespace
 
 std::unique_ptr<GlContext> open_osmesa(GlLevel level, std::string* why) {
+  // Newest first: 4.5, the least with storage buffers, the least that will do.
   for (const int version : {45, 43, 33}) {
     if (level == GlLevel::only_33 && version != 33) continue;
     OSMesaContext raw = create(version);

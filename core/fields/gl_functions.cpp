@@ -9,12 +9,14 @@ namespace brink::detail {
 
 namespace {
 
+/// The address of `name` as a function of that type. @throws IoError if the context has none.
 template <class Type>
 void load(const GlContext& context, const char* name, Type& function) {
   function = reinterpret_cast<Type>(context.function(name));
   if (function == nullptr) throw IoError(std::string(name) + " is missing from " + context.description());
 }
 
+/// A shader of that kind, compiled. @throws IoError with the driver's message, cut to the buffer's length.
 GLuint compile(const GlFunctions& gl, GLenum kind, const std::string& source) {
   const GLuint shader = gl.CreateShader(kind);
   const char* text = source.c_str();

@@ -18,12 +18,15 @@ namespace {
 using detail::PixelGrid;
 using detail::SiteBatch;
 
+/// A power of two: the largest for which FieldRenderer has a target.
 constexpr int kMostPixels = 8192;
+/// Of a drawn id: kImage (field_shaders.cpp) sets it.
 constexpr std::uint32_t kInside = 0x80000000U;
 /// Pixels along the longer side of the window in which near owners are looked for: one margin finer costs
 /// more than the few owners that it would spare.
 constexpr int kNearResolution = 16;
 
+/// @throws BadInput naming what cannot be drawn. The window may be one point here: make_grid() asks for a size.
 void check_window(const Box& window, std::span<const PlacedOutline> scene) {
   if (window.empty() || !window.low.allFinite() || !window.high.allFinite()) {
     throw BadInput("the pass window is empty or not finite");
@@ -37,6 +40,7 @@ void check_window(const Box& window, std::span<const PlacedOutline> scene) {
   }
 }
 
+/// An infinite distance is allowed, NaN is not.
 void check_distance(const char* name, double value) {
   if (!(value >= 0.0)) {
     throw BadInput(std::string("the pass window's ") + name + " is " + std::to_string(value) +
@@ -44,6 +48,7 @@ void check_distance(const char* name, double value) {
   }
 }
 
+/// Square pixels that cover the window, about its centre: of the two sides that would do, the larger.
 PixelGrid make_grid(const Box& window, int width, int height) {
   if (width < 1 || height < 1 || width > kMostPixels || height > kMostPixels) {
     throw BadInput("a pass window of " + std::to_string(width) + " x " + std::to_string(height) +
@@ -69,6 +74,7 @@ struct SiteNames {
         site.push_back(i);
       }
     }
+    // all ids must leave the top bit free, and none may be kNone
     if (owner.size() >= kInside) throw BadInput("a pass window can hold 2^31 - 1 sites at most");
   }
 };
@@ -79,6 +85,7 @@ struct Decoder {
   const PixelGrid& grid;
   const SiteBatch& batch;
 
+  // from a value in pixels, shifted by the offset, to metres from the surface
   PixelValue decode(std::uint32_t id, float value) const {
     if (id == FieldImage::kNone) return {};
     const std::uint32_t plain = id & ~kInside;
@@ -90,6 +97,7 @@ struct Decoder {
 
 }  // namespace
 
+/// A public call is: check, grid, names, draw, read back, count.
 struct PassRenderer::Impl {
   FieldOptions options;
   WorkCounters* work;
@@ -107,6 +115,7 @@ struct PassRenderer::Impl {
 
   Impl(const FieldOptions& o, WorkCounters* w) : options(o), work(w), renderer(open_gl_context(o.context)) {}
 
+  /// Adds what was drawn and read since the renderer's counters stood at the two numbers given.
   void count(std::uint64_t passes, std::uint64_t drawn_before, std::uint64_t read_before) const {
     if (work == nullptr) return;
     work->passes += passes;
@@ -126,6 +135,7 @@ struct PassRenderer::Impl {
     return width;
   }
 
+  /// The layer that was drawn last, read and decoded. Cost: all pixels.
   FieldImage image(const PixelGrid& grid, const SiteBatch& batch, const SiteNames& names) {
     const int row = read(grid);
     FieldImage out;
@@ -140,6 +150,7 @@ struct PassRenderer::Impl {
     out.inside.resize(size);
     const Decoder decoder{names, grid, batch};
     std::size_t at = 0;
+    // only of pixels that show something: the others are infinite
     float farthest = 0.0F;
     for (int j = 0; j < grid.height; ++j) {
       const std::size_t from = static_cast<std::size_t>(j) * static_cast<std::size_t>(row);
@@ -152,6 +163,7 @@ struct PassRenderer::Impl {
         if (value.owner != FieldImage::kNone) farthest = std::max(farthest, value.distance);
       }
     }
+    // 1.001: bounds stay bounds when they are rounded to single precision
     out.tessellation = static_cast<float>(1.001 * batch.tessellation * grid.pixel);
     // 2^-23 of the farthest: decode() rounds to single precision once more
     out.rounding = static_cast<float>(1.001 * batch.largest_error * grid.pixel + 0x1.0p-23 * farthest);
@@ -169,10 +181,13 @@ struct PassRenderer::Impl {
     const bool large = !mesh && std::min(grid.width, grid.height) > detail::kTile &&
                        batch.instances.size() > 1 && band / grid.pixel > detail::kTile;
     if (large) detail::cut_into_tiles(batch, grid, names.owner, band / grid.pixel, layers);
+    // the limit is a drawn value: pixels, with the offset
     renderer.draw_image(grid, batch, band / grid.pixel + batch.offset, 0, names.owner);
     return batch;
   }
 
+  /// Reads what draw() has drawn, at the pixels that hold the points. The context is current still, as nothing
+  /// else has been drawn since.
   std::vector<PixelValue> pick(std::span<const Vec2> points) {
     const PixelGrid& grid = drawn.grid;
     const Decoder decoder{drawn.names, grid, drawn.batch};
@@ -191,6 +206,7 @@ struct PassRenderer::Impl {
       // a point outside: its nearest pixel
       const int i = static_cast<int>(std::clamp(at.x(), 0.0, grid.width - 1.0));
       const int j = static_cast<int>(std::clamp(at.y(), 0.0, grid.height - 1.0));
+      // from the target pixel by pixel, or from what was read whole
       std::uint32_t id = 0;
       float value = 0.0F;
       if (one_by_one) {
@@ -260,6 +276,7 @@ std::array<FieldImage, 2> PassRenderer::render_two_layers(const Box& window, int
   const PixelGrid grid = make_grid(window, width, height);
   const std::uint64_t drawn = impl_->renderer.pixels_drawn(), read = impl_->renderer.pixels_read();
   const SiteNames names(scene);
+  // Nobody is left out: who reads as body k takes the layer in which k does not show.
   const SiteBatch batch = impl_->draw_first(grid, scene, FieldImage::kNone, band, names, 2);
   std::array<FieldImage, 2> layers;
   layers[0] = impl_->image(grid, batch, names);
@@ -280,6 +297,7 @@ PixelGrid near_grid(const Box& window, double margin) {
   const double scale = std::max({extent.maxCoeff(), 1e-3 * margin, 1e-9 * window.center().norm(), 1e-12});
   PixelGrid grid;
   grid.pixel = scale / kNearResolution;
+  // one more than needed, so that rounding leaves no strip of the window out
   grid.width = static_cast<int>(std::ceil(extent.x() / grid.pixel)) + 1;
   grid.height = static_cast<int>(std::ceil(extent.y() / grid.pixel)) + 1;
   grid.low = window.center() - 0.5 * grid.pixel * Vec2(grid.width, grid.height);
@@ -288,6 +306,8 @@ PixelGrid near_grid(const Box& window, double margin) {
 
 /// The draw for GL older than 4.3, in double precision: 1 for every site that comes within `limit` [m] of a
 /// pixel centre.
+/// Sites that the batch has left out lie beside the window by more than its margin, and stay 0. Cost: pixels
+/// times sites, less where a site is near an early pixel.
 std::vector<std::uint32_t> mark_on_cpu(const PixelGrid& grid, const SiteBatch& batch,
                                        std::span<const PlacedOutline> scene, double limit,
                                        std::size_t count) {
@@ -297,6 +317,7 @@ std::vector<std::uint32_t> mark_on_cpu(const PixelGrid& grid, const SiteBatch& b
   for (const PlacedOutline& item : scene) {
     const Frame frame(item.pose);
     const auto end = first + static_cast<std::uint32_t>(item.outline->sites.size());
+    // instances ascend by id, as the scene's items do: one walk serves both
     for (; next != batch.instances.end() && next->id < end; ++next) {
       const Site& site = item.outline->sites[next->id - first];
       for (int k = 0; k < grid.width * grid.height && marks[next->id] == 0; ++k) {
@@ -327,8 +348,10 @@ NearOwners PassRenderer::near_owners(const Box& window, double margin, std::span
   detail::FieldRenderer& renderer = impl_->renderer;
   const std::uint64_t drawn = renderer.pixels_drawn(), read = renderer.pixels_read();
   const PixelGrid grid = near_grid(window, margin);
+  // Its quads reach half a pixel's diagonal beyond the margin, as the limit does.
   const SiteBatch batch =
       detail::make_batch(grid, scene, excluded, {margin, detail::kHalfDiagonal + 0.01, true});
+  // ids count on over what is left out, so marks are needed for all
   std::size_t count = 0;
   for (const PlacedOutline& item : scene) count += item.outline->sites.size();
   // A point of the window within the margin of a site puts its pixel's centre within margin + half a
@@ -356,6 +379,7 @@ NearOwners PassRenderer::near_owners(const Box& window, double margin, std::span
     }
   }
   std::sort(near.owners.begin(), near.owners.end());
+  // an owner may have several outlines in the scene
   near.owners.erase(std::unique(near.owners.begin(), near.owners.end()), near.owners.end());
   impl_->count(1, drawn, read);
   return near;

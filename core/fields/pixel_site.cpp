@@ -7,6 +7,8 @@ namespace brink::detail {
 
 namespace {
 
+/// Cuts sites to one window, in double precision, so that the ends of a long one are not large numbers when
+/// they are rounded to single precision.
 class Cutter {
  public:
   explicit Cutter(const PixelGrid& grid) : grid_(grid), center_(grid.center()) {}
@@ -19,6 +21,7 @@ class Cutter {
   }
 
  private:
+  /// The site uncut. Pseudo-normals are only turned: of them the direction counts.
   PixelSite whole(const Site& site, const Frame& frame) const {
     const auto point = [&](const Vec2& p) { return Vec2((frame.to_world(p) - center_) / grid_.pixel); };
     PixelSite s;
@@ -65,6 +68,7 @@ class Cutter {
     if ((s.b - s.a).squaredNorm() < 1e-12) make_point(s, s.a, s.pseudo_a);
   }
 
+  /// Shrinks the site to one place; `pseudo` tells its side there.
   static void make_point(PixelSite& s, const Vec2& p, const Vec2& pseudo) {
     s.kind = SiteKind::point;
     s.a = s.b = s.center = p;
@@ -99,6 +103,7 @@ class Cutter {
       const Vec2 unit = view.normalized();
       return Vec2(s.center + s.arc_radius * (std::cos(angle) * unit + std::sin(angle) * turn * perp(unit)));
     };
+    // as of a segment: what was no end has the arc's own outward normal there
     if (first > start) {
       s.a = at(first);
       s.pseudo_a = turn * (s.a - s.center).normalized();
@@ -118,6 +123,7 @@ class Cutter {
 
 std::array<Vec2, 4> corners_of(const PixelGrid& grid) {
   const Vec2 half = 0.5 * Vec2(grid.width, grid.height);
+  // no order is promised: whoever asks takes a least or a most over all four
   return {Vec2(-half), Vec2(half.x(), -half.y()), Vec2(-half.x(), half.y()), half};
 }
 

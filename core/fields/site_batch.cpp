@@ -9,6 +9,8 @@ namespace brink::detail {
 
 namespace {
 
+/// Makes the instances of one window. For each site in turn: it is cut to the window in double precision; its
+/// rounding is bounded; its quad is placed, wider by that bound; all is written in single precision.
 class BatchMaker {
  public:
   BatchMaker(const PixelGrid& grid, const BatchRules& rules)
@@ -29,6 +31,7 @@ class BatchMaker {
  private:
   /// The rounding allowance, and the chord in place of a very flat arc.
   void bound_error(PixelSite& s, double offset, const Vec2& origin) const {
+    // S of site_batch.h, and the offset, which the shader adds too
     const double ends = grid_.half_diagonal() + s.a.norm() + s.b.norm() + s.radius + offset;
     // Places are rounded in metres before anything is measured in pixels from the window's centre: far
     // from the origin that may be more than all the rest.
@@ -62,6 +65,7 @@ class BatchMaker {
       // The chord is the quad's axis. An arc that turns to the left bulges to the right of its chord.
       (s.sweep > 0 ? below : above) += s.arc_radius * (1.0 - std::cos(0.5 * s.sweep));
     }
+    // an arc of at most a half turn does not reach beyond its chord's ends along the chord
     const double along = 0.5 * length + grow;
     const double reach = std::hypot(along, std::max(below, above));
     // Much larger than the window, or infinite: cut to the window, as single precision would place it badly.
@@ -77,12 +81,14 @@ class BatchMaker {
     Box window;
     window.add(Vec2(-half_));
     window.add(half_);
+    // by its box: an oriented quad beside a corner may be kept, and draws nothing
     if (!quad.overlaps(window)) return false;
     instance.frame = {f(middle.x()), f(middle.y()), f(axis.x()), f(axis.y())};
     instance.extent = {-f(along), f(along), -f(below), f(above)};
     return true;
   }
 
+  /// What the shader needs of the site. @pre its error and kind are final.
   void fill(const PixelSite& s, std::uint32_t id, double offset, SiteInstance& instance) const {
     instance.ends = {f(s.a.x()), f(s.a.y()), f(s.b.x()), f(s.b.y())};
     if (s.kind == SiteKind::arc) {
@@ -99,6 +105,7 @@ class BatchMaker {
     instance.kind = static_cast<std::uint32_t>(s.kind) + (s.solid ? 4U : 0U);
   }
 
+  // the one place where an instance's numbers are rounded to single precision
   static float f(double x) { return static_cast<float>(x); }
 
   PixelGrid grid_;
@@ -107,6 +114,7 @@ class BatchMaker {
 };
 
 /// A distance [pixel] that nothing drawn in the window exceeds.
+/// By the triangle inequality: from a pixel to the window's centre, to the outline's origin, to its farthest site.
 double farthest(const PixelGrid& grid, std::span<const PlacedOutline> scene) {
   double most = 0.0;
   for (const PlacedOutline& item : scene) {
@@ -135,6 +143,7 @@ SiteBatch empty_batch(const PixelGrid& grid, std::span<const PlacedOutline> scen
 
 SiteBatch make_batch(const PixelGrid& grid, std::span<const PlacedOutline> scene, std::uint32_t excluded,
                      const BatchRules& rules) {
+  // before the first site: its instance is shifted by the offset
   SiteBatch batch = empty_batch(grid, scene);
   std::size_t count = 0;
   for (const PlacedOutline& item : scene) count += item.outline->sites.size();

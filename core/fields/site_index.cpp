@@ -10,6 +10,7 @@ namespace brink {
 
 namespace {
 
+/// All sites are candidates at every place, so that nothing has to be said of others.
 class BruteForceIndex final : public SiteIndex {
  public:
   explicit BruteForceIndex(std::shared_ptr<const Outline> outline) : SiteIndex(std::move(outline)) {
@@ -31,6 +32,7 @@ bool can_be_drawn(const Outline& outline) {
   const double farthest =
       std::max(outline.bounds.low.cwiseAbs().maxCoeff(), outline.bounds.high.cwiseAbs().maxCoeff());
   // 1e-9: pixels, up to some thousand a side, are then wider than the rounding of a coordinate by far.
+  // Between 1e-100 and 1e100 squares of lengths neither vanish nor overflow.
   return size > 1e-100 && size > 1e-9 * farthest && farthest < 1e100;
 }
 
@@ -46,6 +48,7 @@ SiteIndex::SiteIndex(std::shared_ptr<const Outline> outline) : outline_(std::mov
   }
 }
 
+/// The reach is infinite, so that candidates() never answers "farther than that".
 FieldAnswer SiteIndex::query(const Vec2& q, Scratch& scratch) const {
   if (!q.allFinite()) return FieldAnswer();
   const Candidates found = candidates(q, std::numeric_limits<double>::infinity(), scratch);
@@ -68,6 +71,7 @@ FieldAnswer SiteIndex::query(const Vec2& q, Scratch& scratch) const {
   }
   if (answer.site < 0) return answer;
   const Site& site = outline_->sites[static_cast<std::size_t>(answer.site)];
+  // unsigned distances chose the site; the sign is that site's alone
   answer.gap = side_of(site, nearest, q) * nearest.distance - site.radius;
   answer.closest = nearest.point;
   answer.normal = nearest.foot == Foot::interior && site.solid && site.kind == SiteKind::segment
@@ -87,6 +91,7 @@ std::unique_ptr<SiteIndex> make_site_index(std::shared_ptr<const Outline> outlin
   std::string error;
   if (!options.is_valid(&error)) throw BadInput(error);
   const bool few = outline->sites.size() < static_cast<std::size_t>(options.brute_force_below);
+  // before a renderer is asked for: no context is opened where none is needed
   if (few || !can_be_drawn(*outline)) return make_brute_force_index(std::move(outline));
   detail::FieldRenderer& renderer = detail::thread_renderer(options.context);
   // the renderer counts since it was made; this field's share is the difference

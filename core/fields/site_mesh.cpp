@@ -24,10 +24,13 @@ constexpr double kOverlap = 1.0 / 32;
 constexpr double kMeshRounding = 256.0 / (1 << 24);
 
 /// Half the angle for which radius (1 - cos) is the error.
+/// Where the radius is below the error any angle would do, and the widest is taken.
 double half_angle(double radius, double error) {
   return std::min(kWidest, std::acos(std::max(0.0, 1.0 - error / radius)));
 }
 
+/// Appends the triangles of one site after the other. Values are interpolated: of a tent exactly, of a cone's
+/// facet within the error.
 class MeshMaker {
  public:
   MeshMaker(const PixelGrid& grid, double band, double error, SiteBatch& batch)
@@ -53,6 +56,7 @@ class MeshMaker {
   }
 
  private:
+  /// `distance` [pixel] is that from the core, before the shift by thickness and offset.
   void corner(const Vec2& place, double distance, double side) {
     batch_.triangles.push_back({{static_cast<float>(place.x()), static_cast<float>(place.y())},
                                 static_cast<float>(shift_ + distance),
@@ -61,6 +65,7 @@ class MeshMaker {
                                 kind_});
   }
 
+  /// Nothing in the window is farther [pixel]: a distance is convex, and greatest at a corner.
   double farthest_corner(const Vec2& from) const {
     double most = 0.0;
     for (const Vec2& c : corners_) most = std::max(most, (c - from).norm());
@@ -76,21 +81,27 @@ class MeshMaker {
     double half = 0.0;
     for (const Vec2& c : corners_)
       half = std::max(half, std::acos(std::clamp((c - p).normalized().dot(-p.normalized()), -1.0, 1.0)));
+    // a little wider, for the rounding of the angles
     return {middle - half - 1e-3, middle + half + 1e-3};
   }
 
+  /// Facets towards the window only; `pseudo` tells the side of each place in them.
   void cone(const Vec2& p, const Vec2& pseudo, double error) {
     const auto [from, to] = view_from(p);
     sector(p, pseudo, from, to, error);
   }
 
+  /// How far from p anything has to be drawn [pixel]: to the band's end, or to the window's farthest corner.
   double rim_about(const Vec2& p) const { return std::min(reach_, farthest_corner(p) + kRim); }
 
+  /// Facets from angle `from` to `to` [rad] about p. `error` [pixel]: by how much they may fall short of the
+  /// distance.
   void sector(const Vec2& p, const Vec2& pseudo, double from, double to, double error) {
     const double rim = rim_about(p);
     // too far for the band: nothing of the cone lies in the window
     if (p.norm() - rim > grid_.half_diagonal()) return;
     const int facets = std::max(1, static_cast<int>(std::ceil((to - from) / (2.0 * half_angle(rim, error)))));
+    // the rim's corners lie beyond `rim`, the middle of a facet's edge at it, and there the depth is right
     const double length = rim / std::cos(0.5 * (to - from) / facets);
     const auto arm = [&](int k) {
       const double angle = from + (to - from) * k / facets;
@@ -107,6 +118,7 @@ class MeshMaker {
   void add_tent(const Vec2& a, const Vec2& b) {
     const Vec2 left = perp((b - a).normalized());
     const double rim = std::min(reach_, std::max(farthest_corner(a), farthest_corner(b)) + kRim);
+    // two triangles a side; on the left, where the solid is, `side` is negative
     for (const double side : {-1.0, 1.0}) {
       const Vec2 out = -side * rim * left;
       const double s = side * rim;
@@ -115,6 +127,8 @@ class MeshMaker {
     }
   }
 
+  /// Chords, each a tent, and between two of them a sector on the convex side, where their tents leave a wedge.
+  /// On the other side tents overlap, and the depth test takes the nearer. Chords and sectors have half the error each.
   void add_arc(const PixelSite& s) {
     const double half = half_angle(s.arc_radius, 0.5 * error_);
     const int chords = std::max(1, static_cast<int>(std::ceil(std::abs(s.sweep) / (2.0 * half))));
@@ -123,6 +137,7 @@ class MeshMaker {
     const double start = std::atan2(from.y(), from.x());
     const auto at = [&](int k) {
       const double angle = start + k * step;
+      // the ends as given: there the next site's tent begins, and its cone
       return k == 0        ? s.a
              : k == chords ? s.b
                            : Vec2(s.center + s.arc_radius * Vec2(std::cos(angle), std::sin(angle)));
@@ -131,6 +146,7 @@ class MeshMaker {
       add_tent(at(k), at(k + 1));
       // At the chords' joints only: the arc's own ends have cones of their own from add().
       if (k == 0) continue;
+      // each tent ends at its chord's normal, half a step off that of the joint
       const double middle = start + k * step, wide = 0.5 * std::abs(step) + kOverlap / rim_about(at(k));
       sector(at(k), turn * (at(k) - s.center).normalized(), middle - wide, middle + wide, 0.5 * error_);
     }

@@ -10,8 +10,10 @@ namespace brink::detail {
 namespace {
 
 /// The drawn site in pixels, in double precision: within the batch's rounding of what the shader sees.
+/// It is made from the instance: an arc that is drawn as its chord counts as that chord here.
 Site drawn_site(const SiteInstance& instance) {
   Site site;
+  // the bit above says "solid"
   const std::uint32_t kind = instance.kind & 3U;
   site.kind = kind == 0 ? SiteKind::point : kind == 1 ? SiteKind::segment : SiteKind::arc;
   site.a = Vec2(instance.ends[0], instance.ends[1]);
@@ -45,6 +47,8 @@ struct TwoNearest {
 
 void cut_into_tiles(SiteBatch& batch, const PixelGrid& grid, const std::vector<std::uint32_t>& owners,
                     double band, int layers) {
+  // For each tile: all distances at its centre, the limit that they give, a copy of each instance within it. The
+  // copies differ from the instance in their quad alone, which becomes the tile.
   std::vector<Site> sites;
   for (const SiteInstance& instance : batch.instances) sites.push_back(drawn_site(instance));
   std::vector<double> values(sites.size());
@@ -56,6 +60,7 @@ void cut_into_tiles(SiteBatch& batch, const PixelGrid& grid, const std::vector<s
       const Vec2 center = Vec2(x, y) + 0.5 * size - half;
       TwoNearest nearest;
       for (std::size_t i = 0; i < sites.size(); ++i) {
+        // shift less offset is minus the radius: a batch for images has plain values
         values[i] = nearest_on(sites[i], center).distance + batch.instances[i].shift[0] - batch.offset;
         nearest.offer(values[i], owners[batch.instances[i].id]);
       }

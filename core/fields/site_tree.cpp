@@ -1,3 +1,6 @@
+/// A search is branch and bound: nodes whose box is farther than the fourth best site are left out. What is
+/// nearest is the distance to the core less the radius, so a node's bound is the distance to its box less the
+/// largest radius below.
 #include "brink/core/fields/site_tree.h"
 
 #include <algorithm>
@@ -12,6 +15,7 @@ namespace {
 constexpr std::uint32_t kLeaf = 4;
 }
 
+/// Of an arc it may be larger than core_bounds(), which is exact: here it only has to hold the core.
 Box core_box(const Site& site) {
   Box box;
   box.add(site.a);
@@ -44,6 +48,8 @@ SiteTree::SiteTree(const Outline& outline) {
   if (!order_.empty()) build(outline, 0, 0, static_cast<std::uint32_t>(order_.size()), boxes);
 }
 
+/// Makes the node over `count` places of order_ from `first` on, and the tree below it. Children lie side by
+/// side, after their parent.
 void SiteTree::build(const Outline& outline, std::uint32_t node, std::uint32_t first, std::uint32_t count,
                      const std::vector<Box>& boxes) {
   Node made;
@@ -59,6 +65,7 @@ void SiteTree::build(const Outline& outline, std::uint32_t node, std::uint32_t f
     nodes_[node] = made;
     return;
   }
+  // of the centres, by which the halves are told apart
   const int axis = centers.extent().x() >= centers.extent().y() ? 0 : 1;
   const std::uint32_t half = count / 2;
   const auto begin = order_.begin() + first;
@@ -78,6 +85,7 @@ void SiteTree::build(const Outline& outline, std::uint32_t node, std::uint32_t f
 
 /// Less than the computed distance less radius of every site below: the rounding of both sides is taken off.
 double SiteTree::lower_bound(const Node& node, const Vec2& q) const {
+  // 0 along an axis in whose range of the box q lies
   const Vec2 away = (node.box.low - q).cwiseMax(q - node.box.high).cwiseMax(Vec2::Zero());
   const double distance = away.norm();
   return distance * (1.0 - 0x1.0p-46) - node.radius - rounding_;
@@ -104,6 +112,8 @@ struct SiteTree::Search {
   }
 };
 
+/// Depth first, nearer child first. The order of visits changes the cost alone: found sites are kept by distance
+/// and index.
 double SiteTree::nearest(const Outline& outline, const Vec2& q, std::vector<std::uint32_t>& sites) const {
   Search search;
   struct Open {
@@ -137,6 +147,7 @@ double SiteTree::nearest(const Outline& outline, const Vec2& q, std::vector<std:
   for (int i = 0; i < kListed && search.best[static_cast<std::size_t>(i)].site != 0xffffffffU; ++i) {
     sites.push_back(search.best[static_cast<std::size_t>(i)].site);
   }
+  // infinite while fewer than kListed + 1 sites exist
   // Rounding of a listed distance is about the last place; the caller's bound must hold for exact distances.
   return search.limit() * (1.0 - 0x1.0p-46) - rounding_;
 }

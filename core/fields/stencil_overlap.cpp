@@ -7,6 +7,7 @@ namespace brink {
 
 namespace {
 
+/// Box of the outline where it stands [m]: exact, by moving every site.
 Box world_bounds(const PlacedOutline& item) { return transformed(*item.outline, item.pose).bounds; }
 
 /// Where both can be solid; of a container, which is solid all round, that is the other's box.
@@ -27,6 +28,7 @@ StencilOverlap stencil_overlap(PassRenderer& renderer, const PlacedOutline& a, c
   StencilOverlap found;
   const Box window = common_window(a, b);
   if (window.empty() || !(window.extent().minCoeff() > 0.0)) return found;
+  // [m]: the side that render() gives its pixels, up to rounding
   const double wanted = window.extent().maxCoeff() / resolution;
   // the longer side is `resolution` pixels, and by rounding would be one more
   const auto across = [&](double length) {
@@ -47,6 +49,7 @@ StencilOverlap stencil_overlap(PassRenderer& renderer, const PlacedOutline& a, c
       near_edge += std::abs(image.distance[k]) <= std::sqrt(0.5) * image.pixel + image.rounding;
     }
   }
+  // A pixel through which both boundaries pass is in near_edge twice: the bound is the larger for it.
   found.pixels = static_cast<std::size_t>(std::count(stencil.begin(), stencil.end(), 2));
   found.area = static_cast<double>(found.pixels) * pixel * pixel;
   found.error = static_cast<double>(near_edge) * pixel * pixel;

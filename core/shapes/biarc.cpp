@@ -31,6 +31,8 @@ struct Step {
   double rise = 0.0;
 };
 
+/// Fits one curve. Sites are appended only when a piece is accepted, so that what was tried in vain leaves no
+/// trace; deviation() is the greatest bound of the pieces so far [m].
 class Fitter {
  public:
   Fitter(const SmoothCurve& curve, double tolerance, double radius, std::vector<Site>& sites)
@@ -67,6 +69,7 @@ Vec2 Fitter::direction(double t, double towards) const {
   return curve_.derivative(t + 1e-4 * (towards - t)).normalized();
 }
 
+/// The nearest of the fitted sites to the curve's point at t. Cost: all of them, which are two at most.
 Nearness Fitter::at(double t, const std::vector<Site>& fitted) const {
   const Vec2 p = curve_.point(t);
   Nearness nearest;
@@ -77,6 +80,8 @@ Nearness Fitter::at(double t, const std::vector<Site>& fitted) const {
 
 /// The distance where the curve passes from one site to the next: it may be greater than before and after.
 double Fitter::most_between(double from, double to, const std::vector<Site>& fitted) const {
+  // Bisection for the parameter at which another site becomes the nearest: on each side of it the distance is
+  // that to one site, and the rise of a step bounds it.
   const std::size_t before = at(from, fitted).site;
   double most = 0.0;
   // to 1e-6 of the step
@@ -91,6 +96,8 @@ double Fitter::most_between(double from, double to, const std::vector<Site>& fit
 
 /// So many places that the rise is a 32nd of the tolerance, where that is not too many.
 Step Fitter::step_for(double span, const std::vector<Site>& fitted) const {
+  // Where `most` are too few the rise is the larger for it: the piece may be halved needlessly, never accepted
+  // wrongly.
   constexpr int least = 16, most = 20000;
   const double speed = curve_.speed_bound(), allowed = tolerance_ / 32;
   // d = |p - c| - R has d'' = p'' . u + (|p'|^2 - (p' . u)^2) / |p - c|, u the unit vector from c to p
@@ -99,15 +106,19 @@ Step Fitter::step_for(double span, const std::vector<Site>& fitted) const {
   for (const Site& s : fitted) {
     if (s.kind != SiteKind::arc) continue;
     is_tight |= s.arc_radius < 2 * tolerance_;
+    // where it counts the curve is within the tolerance of the arc, so that |p - c| >= R - tolerance
     bend = std::max(bend, curve_.bend_bound() + speed * speed / (s.arc_radius - tolerance_));
   }
   // within the tolerance of a tight arc the curve may come to its centre, where the bend has no bound; but no
   // place is farther than h / 2 of the way from one that is looked at
+  // without a tight arc: between two places h apart a function with |d''| <= bend exceeds the greater of its
+  // two values there by at most h^2 bend / 8
   const double wanted = is_tight ? span * speed / (2 * allowed) : span * std::sqrt(bend / (8 * allowed));
   const int n = static_cast<int>(std::clamp(std::ceil(wanted), double(least), double(most)));
   return {n, is_tight ? span / n * speed / 2 : span / n * span / n * bend / 8};
 }
 
+/// Appends the sites if the whole piece is sure to be within the tolerance of them.
 bool Fitter::accept_if_near(const Piece& piece, const std::vector<Site>& fitted) {
   constexpr int coarse = 8;
   // a piece that is far off is turned down by few places
@@ -115,6 +126,7 @@ bool Fitter::accept_if_near(const Piece& piece, const std::vector<Site>& fitted)
     if (at(std::lerp(piece.t0, piece.t1, double(k) / coarse), fitted).distance > tolerance_) return false;
   const Step step = step_for(std::abs(piece.t1 - piece.t0), fitted);
   const auto parameter = [&](int k) { return std::lerp(piece.t0, piece.t1, double(k) / step.places); };
+  // Then densely: the worst of all places, of all changes of site between two of them, and the rise.
   Nearness before = at(piece.t0, fitted);
   double worst = before.distance;
   for (int k = 1; k <= step.places; ++k) {
@@ -137,6 +149,7 @@ bool Fitter::add_tangent_arc(const Vec2& a, const Vec2& direction, const Vec2& b
                              std::vector<Site>& fitted) const {
   const Vec2 chord = b - a;
   const double size = chord.norm();
+  // the joint lies on this end: the other arc is the whole biarc
   if (!(size > 0.0)) return true;
   // the angle of tangent and chord is half of the arc's turn
   const double half = std::atan2(cross(direction, chord), direction.dot(chord));
@@ -154,6 +167,7 @@ bool Fitter::add_tangent_arc(const Vec2& a, const Vec2& direction, const Vec2& b
   return true;
 }
 
+/// False if the piece turns too much for a biarc, or is farther off than the tolerance: it is to be halved.
 bool Fitter::try_biarc(const Piece& piece) {
   const Vec2 d0 = direction(piece.t0, piece.t1), d1 = direction(piece.t1, piece.t0);
   const Vec2 chord = piece.p1 - piece.p0;
@@ -175,6 +189,7 @@ bool Fitter::try_biarc(const Piece& piece) {
   return !fitted.empty() && accept_if_near(piece, fitted);
 }
 
+/// A biarc, or a chord where the piece is tiny, or else both halves. Pieces come in order along the curve.
 void Fitter::fit(const Piece& piece) {
   if (is_tiny(piece)) {  // shorter than the tolerance: its chord is at most half of that away
     if (piece.p0 != piece.p1) sites_.push_back(segment_site(piece.p0, piece.p1, radius_));
@@ -202,6 +217,7 @@ double fit_arcs(const SmoothCurve& curve, const Vec2& start, const Vec2& end, do
   Vec2 p = start;
   for (std::size_t k = 0; k + 1 < ts.size(); ++k) {
     const Vec2 q = k + 2 == ts.size() ? end : curve.point(ts[k + 1]);
+    // between two breaks a curve turns to one side only: inflections and cusps are joints
     fitter.fit({ts[k], ts[k + 1], p, q});
     p = q;
   }

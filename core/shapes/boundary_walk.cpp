@@ -21,6 +21,7 @@ class Distinct {
   explicit Distinct(double size) : size_(size) {}
 
   bool take(const Vec2& p) {
+    // whole numbers, but as doubles: an integer would overflow where the outline is far from the origin
     const Vec2 at = (p / size_).array().round();
     for (int dx = -1; dx <= 1; ++dx)
       for (int dy = -1; dy <= 1; ++dy)
@@ -48,6 +49,7 @@ double total_length(const std::vector<Site>& pieces) {
   return sum;
 }
 
+/// Each piece is divided evenly into as few parts as keep to the spacing. In the order of the pieces.
 std::vector<Vec2> walk(const std::vector<Site>& pieces, double spacing) {
   std::vector<Vec2> points;
   Distinct distinct(kSame * spacing);
@@ -62,9 +64,11 @@ std::vector<Vec2> walk(const std::vector<Site>& pieces, double spacing) {
   return points;
 }
 
+/// @pre there is a piece, and 0 <= way <= total_length() up to rounding.
 Vec2 point_at(const std::vector<Site>& pieces, double way) {
   for (const Site& piece : pieces) {
     const double own = length(piece);
+    // a bare point has no length to divide by
     if (way <= own && own > 0.0) return point_along(piece, way / own);
     way -= own;
   }

@@ -15,6 +15,7 @@ namespace {
 using Points = std::vector<Vec2>;
 
 /// Parallel lines add nothing: where two segments overlap, an end of one lies on the other.
+/// Of lines that are nearly parallel the point may be anywhere, or not finite: add_meeting_points() drops it then.
 void add_line_line(const Site& s, const Site& t, Points& points) {
   const Vec2 d = s.b - s.a, e = t.b - t.a;
   const double turn = cross(d, e);
@@ -25,11 +26,13 @@ void add_line_line(const Site& s, const Site& t, Points& points) {
 /// `offset` away. A near miss within the tolerance is tangent.
 void add_chord(const Vec2& foot, const Vec2& u, double offset, double r, double tolerance, Points& points) {
   if (std::abs(offset) > r + tolerance) return;
+  // as a product: near tangency r^2 - offset^2 would lose all digits; below 0 within the tolerance is 0
   const double half = std::sqrt(std::max(0.0, (r - offset) * (r + offset)));
   points.push_back(foot - half * u);
   if (half > 0.0) points.push_back(foot + half * u);
 }
 
+/// Where the line meets the circle: about the foot of the centre on the line.
 void add_line_circle(const Site& line, const Site& arc, double tolerance, Points& points) {
   const Vec2 u = (line.b - line.a).normalized();
   const Vec2 foot = line.a + u * u.dot(arc.center - line.a);
@@ -42,6 +45,7 @@ void add_circle_circle(const Site& s, const Site& t, double tolerance, Points& p
   const double d = w.norm(), r = s.arc_radius, q = t.arc_radius;
   if (d == 0.0 || d > r + q + tolerance || d < std::abs(r - q) - tolerance) return;
   // from r^2 - along^2 = q^2 - (d - along)^2; beyond r the two are tangent within the tolerance
+  // the common chord stands across the line of centres, `along` from the first one
   const double along = (d + (r - q) * (r + q) / d) / 2;
   const Vec2 u = w / d;
   const double clamped = std::clamp(along, -r, r);
@@ -59,10 +63,12 @@ bool is_hand_over_of(const Site& in, const Site& out, const Vec2& p) {
   return (p - in.b).norm() <= 1e-3 * std::min(length(in), length(out));
 }
 
+/// In either order: two sites that make a loop hand over twice.
 bool is_hand_over(const Site& s, const Site& t, const Vec2& p) {
   return is_hand_over_of(s, t, p) || is_hand_over_of(t, s, p);
 }
 
+/// @throws BadInput, naming the lower site first.
 [[noreturn]] void report(const std::string& what, int i, int j, const Vec2& p) {
   throw BadInput(what + ": sides " + std::to_string(std::min(i, j)) + " and " +
                  std::to_string(std::max(i, j)) + " (from 0) cross or touch at " + text(p) +
@@ -86,6 +92,7 @@ void add_meeting_points(const Site& s, const Site& t, double tolerance, Points& 
 }
 
 void require_simple(const Outline& outline, const std::string& what) {
+  // [m]; union_of_polygons() welds vertices at the same share of the extent
   const double tolerance = 1e-12 * outline.bounds.extent().norm();
   std::vector<Box> boxes;
   for (const Site& s : outline.sites) boxes.push_back(core_bounds(s).grown(tolerance));

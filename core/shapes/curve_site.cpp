@@ -8,6 +8,7 @@ namespace brink {
 namespace {
 
 /// v turned by an angle [rad], exactly at whole quarter turns.
+/// As the product of complex numbers.
 Vec2 turned(const Vec2& v, double angle) {
   const Vec2 u = unit_at(angle);
   return {u.x() * v.x() - u.y() * v.y(), u.y() * v.x() + u.x() * v.y()};
@@ -92,6 +93,7 @@ double length(const Site& site) {
 }
 
 Vec2 point_along(const Site& site, double fraction) {
+  // the end is met up to rounding only: where pieces are to join, b is to be taken itself
   if (site.kind == SiteKind::arc) return site.center + turned(site.a - site.center, site.sweep * fraction);
   return site.a + fraction * (site.b - site.a);
 }
@@ -104,6 +106,7 @@ bool in_sector(const Site& arc, const Vec2& direction) {
          direction.dot(from + to) > 0.0;
 }
 
+/// Pseudo-normals are not exchanged: they mean nothing until the outline is finished.
 Site reversed(const Site& site) {
   Site s = site;
   std::swap(s.a, s.b);

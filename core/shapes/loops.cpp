@@ -9,6 +9,7 @@
 
 namespace brink {
 
+/// The outline is not finished by it: samples, bounds and the rest come from finish_outline().
 void add_loop(Outline& outline, const std::vector<Site>& sites, bool closed) {
   outline.loops.push_back({static_cast<int>(outline.sites.size()), static_cast<int>(sites.size()), closed});
   outline.sites.insert(outline.sites.end(), sites.begin(), sites.end());
@@ -40,6 +41,7 @@ double enclosed_area(const std::vector<Site>& sites) {
 
 std::vector<Site> reversed(const std::vector<Site>& sites) {
   std::vector<Site> back;
+  // each is turned, and so is their order: the next starts where the last ended
   for (auto s = sites.rbegin(); s != sites.rend(); ++s) back.push_back(reversed(*s));
   return back;
 }
@@ -52,6 +54,7 @@ void require_usable(const Outline& outline, const Measure& m) {
   if (!std::isfinite(m.size) || !m.centroid.allFinite() || !std::isfinite(m.second_moment))
     throw BadInput("shape: reaches to " + text(outline.bounding_radius) +
                    " m, too far for its second moment to be a number; use smaller coordinates");
+  // it has no measure, and is allowed: its inertia has to be given (make_body.h)
   const bool bare_point = outline.is_point() && outline.sites[0].radius == 0.0;
   if (!bare_point && !(m.size > 0.0 && m.second_moment > 0.0))
     throw BadInput("shape: has size " + text(m.size) + " and second moment " + text(m.second_moment) +

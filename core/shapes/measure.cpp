@@ -24,6 +24,7 @@ double less_sine(double x) {
 }
 
 /// Adds sums taken about `center` to sums taken about `about`.
+/// With x = y + shift, |x|^2 = |y|^2 + 2 y . shift + |shift|^2; `center` need not be the part's centroid.
 void add_moved(Moments& sums, const Moments& part, const Vec2& center, const Vec2& about) {
   const Vec2 shift = center - about;
   sums.size += part.size;
@@ -47,6 +48,7 @@ Moments between_arc_and_chord(const Site& arc) {
   return m;
 }
 
+/// The polar second moment of a disc about its centre is pi r^4 / 2.
 Measure measure_of_disc(const Site& s) {
   const double area = std::numbers::pi * s.radius * s.radius;
   return {area, s.a, area * s.radius * s.radius / 2};
@@ -55,8 +57,10 @@ Measure measure_of_disc(const Site& s) {
 }  // namespace
 
 void add_region(Moments& sums, const Site& site, const Vec2& about) {
+  // An arc counts as its chord, and what lies between the two is added at the end.
   const Vec2 a = site.a - about, b = site.b - about;
   // the triangle from `about` over a and b: round a closed boundary what is covered outside of it cancels
+  // Its area is a x b / 2; its centroid, (a + b) / 3 from `about`; its second moment, area (a^2 + a.b + b^2) / 6.
   const double twice = cross(a, b);
   sums.size += twice / 2;
   sums.first += twice / 6 * (a + b);
@@ -69,11 +73,13 @@ void add_wire(Moments& sums, const Site& site, const Vec2& about) {
   Moments m;
   m.size = length(site);
   if (site.kind == SiteKind::segment) {
+    // about its middle, where the first moment is 0
     m.second = m.size * m.size * m.size / 12;
     add_moved(sums, m, 0.5 * (site.a + site.b), about);
     return;
   }
   const double r = site.arc_radius;
+  // the integral of r^2 times the unit vector over the angle, in which what is across the bisector cancels
   m.first = 2 * r * r * std::sin(std::abs(site.sweep) / 2) * bisector(site);
   m.second = m.size * r * r;
   add_moved(sums, m, site.center, about);
@@ -86,6 +92,7 @@ Measure finish_measure(const Moments& sums, const Vec2& about) {
   return {sums.size, about + offset, sums.second - sums.size * offset.squaredNorm()};
 }
 
+/// Cost: all sites; with a thickness that of thick_boundary().
 Measure measure_of(const Outline& outline) {
   if (outline.is_point()) return measure_of_disc(outline.sites[0]);
   // near the centroid, where finish_measure() takes off little: about an origin

@@ -13,8 +13,10 @@ namespace brink {
 
 namespace {
 
+/// How faults name a site: by its place in the outline, from 0.
 std::string name_of(int k) { return "outline: site " + std::to_string(k); }
 
+/// @throws BadInput on an arc whose numbers contradict each other, or that turns by more than a site may.
 void check_arc(const Site& s, int k) {
   if (!(s.center.allFinite() && std::isfinite(s.arc_radius) && s.arc_radius > 0.0))
     throw BadInput(name_of(k) + " is an arc of radius " + text(s.arc_radius) + "; it must be > 0 and finite");
@@ -30,6 +32,7 @@ void check_arc(const Site& s, int k) {
     throw BadInput(name_of(k) + " is an arc whose ends lie " + text(off) + " m off its circle");
 }
 
+/// @throws BadInput on a site to which no distance can be told.
 void check_site(const Site& s, int k) {
   if (!(s.a.allFinite() && s.b.allFinite()))
     throw BadInput(name_of(k) + " runs from " + text(s.a) + " to " + text(s.b) +
@@ -42,6 +45,8 @@ void check_site(const Site& s, int k) {
   if (s.kind == SiteKind::arc) check_arc(s, k);
 }
 
+/// @throws BadInput if the loop does not begin at `expected_first`, where the one before has ended, or does not
+/// join up.
 void check_loop(const Outline& outline, const Loop& loop, int expected_first) {
   const auto& sites = outline.sites;
   if (loop.first != expected_first || loop.count < 1 ||
@@ -60,6 +65,7 @@ void check_loop(const Outline& outline, const Loop& loop, int expected_first) {
     throw BadInput("outline: a solid outline has an open chain from " + text(start) + " to " + text(end));
 }
 
+/// Sites one by one, then how they make loops, then what a solid asks besides.
 void check(const Outline& outline) {
   for (std::size_t k = 0; k < outline.sites.size(); ++k) check_site(outline.sites[k], static_cast<int>(k));
   int next = 0;
@@ -93,6 +99,7 @@ Vec2 pseudo_normal(const Site& in, const Site& out) {
   return slot ? leave : arrive;
 }
 
+/// @pre every loop is closed: the last site hands over to the first.
 void set_pseudo_normals(Outline& outline) {
   for (const Loop& loop : outline.loops)
     for (int k = 0; k < loop.count; ++k) {
@@ -103,6 +110,7 @@ void set_pseudo_normals(Outline& outline) {
 }
 
 /// The boundary turns right there by more than roundings make of a straight joint, and the solid is to its left.
+/// kStraight is in [rad]: the cross product of unit vectors is the sine of the turn.
 bool is_notch(const Site& before, const Site& after) {
   constexpr double kStraight = 1e-9;
   return cross(direction_at_end(before), direction_at_start(after)) < -kStraight;
@@ -120,6 +128,7 @@ void add_corner_samples(Outline& outline, const Loop& loop) {
 
 /// One sample a vertex of a wire, however often it comes back to it, in order of first meeting.
 void add_vertex_samples(Outline& outline, const Loop& loop) {
+  // by place: sites that meet there share it bit for bit, and the thickest of them counts
   std::map<std::pair<double, double>, std::size_t> known;
   const auto add = [&](const Vec2& p, double radius) {
     const auto [place, is_new] = known.try_emplace({p.x(), p.y()}, outline.samples.size());
@@ -134,6 +143,7 @@ void add_vertex_samples(Outline& outline, const Loop& loop) {
   }
 }
 
+/// One sample an arc that can be touched from its convex side. Of a solid that is an arc that turns to the left.
 void add_arc_samples(Outline& outline, const Loop& loop) {
   for (int k = loop.first; k < loop.first + loop.count; ++k) {
     const Site& s = outline.sites[k];
@@ -143,6 +153,7 @@ void add_arc_samples(Outline& outline, const Loop& loop) {
   }
 }
 
+/// The loop keeps its place among the sites. Pseudo-normals are unset afterwards: finish_outline() is to follow.
 void reverse_loop(std::vector<Site>& sites, const Loop& loop) {
   std::reverse(sites.begin() + loop.first, sites.begin() + loop.first + loop.count);
   for (int k = loop.first; k < loop.first + loop.count; ++k) sites[k] = reversed(sites[k]);
@@ -157,6 +168,7 @@ std::vector<Vec2> facets_of(const Outline& outline) {
     const Site &site = outline.sites[k], &next = outline.sites[(k + 1) % outline.sites.size()];
     if (site.kind != SiteKind::segment || next.kind != SiteKind::segment) return {};
     const Vec2 along = site.b - site.a, then = next.b - next.a;
+    // a straight joint is allowed: it leaves the polygon convex
     if (!(cross(along, then) >= 0.0)) return {};
     turned += std::atan2(cross(along, then), along.dot(then));
     facets.push_back(-perp(along).normalized());
@@ -169,6 +181,7 @@ std::vector<Vec2> facets_of(const Outline& outline) {
 }  // namespace
 
 void finish_outline(Outline& outline) {
+  // All that is derived is made anew, so that it can be called again after sites have moved.
   // first: what follows relies on loops that join up and on sites with a length
   check(outline);
   outline.samples.clear();
@@ -209,6 +222,7 @@ double gap_by_brute_force(const Outline& outline, const Vec2& q, int* site) {
   const Site& s = outline.sites[nearest_site];
   const bool is_far = s.solid && is_beyond(outline, nearest.distance);
   const double side = is_far ? (outline.container ? -1.0 : 1.0) : side_of(s, nearest, q);
+  // inside a thick solid the surface is the radius beyond the core: there both count negative
   return side * nearest.distance - s.radius;
 }
 
@@ -230,6 +244,7 @@ Outline transformed(const Outline& outline, const Pose& pose) {
   for (Site& s : moved.sites) {
     s.a = frame.to_world(s.a);
     s.b = frame.to_world(s.b);
+    // radius and sweep are the same after a rigid motion
     if (s.kind == SiteKind::arc) s.center = frame.to_world(s.center);
   }
   finish_outline(moved);

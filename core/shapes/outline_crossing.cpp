@@ -26,6 +26,7 @@ double reach_through(const Segment& s, const Segment& t, Vec2& point) {
   return std::min({std::abs(ta), std::abs(tb), std::abs(sa), std::abs(sb)});
 }
 
+/// The outline's straight sides where it stands, in the world [m].
 std::vector<Segment> segments(const Outline& outline, const Pose& pose) {
   const Frame frame(pose);
   std::vector<Segment> all;
@@ -48,6 +49,7 @@ struct PlacedSolid {
   double depth_of(const Vec2& p) const { return -gap_by_brute_force(outline, Frame(pose).to_local(p)); }
 };
 
+/// A solid without thickness.
 bool is_sharp_solid(const Outline& o) {
   return o.solid &&
          std::all_of(o.sites.begin(), o.sites.end(), [](const Site& s) { return s.radius == 0.0; });

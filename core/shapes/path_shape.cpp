@@ -1,4 +1,10 @@
 /// make_path: subpaths to loops of segments and arcs, in the frame with y upward.
+///
+///     read the data; for each subpath
+///       close what is open by a rounding only
+///       make its sites: lines, exact circular arcs, other curves by fit_arcs()
+///     if all subpaths are closed, orient them by the even-odd rule and refuse those that cross or touch
+///     put the loops together and measure
 
 #include <algorithm>
 #include <numbers>
@@ -28,8 +34,10 @@ struct CenterArc {
   double start = 0.0, sweep = 0.0;          ///< [rad], in the parameter of c + u cos t + v sin t
 };
 
+/// @pre both half axes are > 0 and the ends differ: the parser makes lines of other arcs, or nothing.
 CenterArc center_of(const PathPiece& piece, const Upward& up) {
   const Vec2 a = up(piece.from), b = up(piece.to);
+  // [rad]; whole turns are taken off while it is in degrees, where they are exact
   const double rotation = std::fmod(piece.rotation, 360.0) * std::numbers::pi / 180;
   // an ellipse is its own mirror image in its axes, so y_axis may point either way
   const Vec2 x_axis = unit_at(-rotation), y_axis = perp(x_axis);
@@ -45,6 +53,7 @@ CenterArc center_of(const PathPiece& piece, const Upward& up) {
     h /= reach;
   }
   // from the chord's middle to the centre, in units of half the chord: Pythagoras in the unit circle
+  // half the chord is `reach` long there, and the centre is sqrt(1 - reach^2) from its middle
   const double offset = reach >= 1.0 ? 0.0 : std::sqrt((1 - reach) * (1 + reach)) / reach;
   // travelling clockwise on screen is clockwise here too; the short way round keeps the centre on its right
   const bool counter_clockwise = !piece.sweep;
@@ -58,12 +67,14 @@ CenterArc center_of(const PathPiece& piece, const Upward& up) {
   // from the centre to the start and to the end, still in units of the half axes
   arc.start = std::atan2(from.y(), from.x());
   double sweep = std::atan2(cross(from, to), from.dot(to));
+  // atan2() tells the way round of at most half a turn: it may be the other one that is meant
   if (counter_clockwise && sweep < 0.0) sweep += 2 * std::numbers::pi;
   if (!counter_clockwise && sweep > 0.0) sweep -= 2 * std::numbers::pi;
   arc.sweep = sweep;
   return arc;
 }
 
+/// Makes sites, in our frame, of pieces as they were read, and keeps how far fitted curves are off.
 class PathBuilder {
  public:
   PathBuilder(double scale, double tolerance) : up_{scale}, tolerance_(tolerance) {}
@@ -89,6 +100,7 @@ class PathBuilder {
     }
     const CenterArc arc = center_of(piece, up_);
     // circles stay exact, also those that center_of() has scaled up
+    // The parser's ends are taken, not those computed from the centre: pieces join bit for bit.
     if (piece.rx == piece.ry)
       add_arc(sites, a, b, arc.center, arc.u.norm(), arc.sweep, 0.0);
     else
@@ -96,6 +108,7 @@ class PathBuilder {
   }
 
   void fit(const SmoothCurve& curve, const Vec2& a, const Vec2& b, std::vector<Site>& sites) {
+    // the worst of all curves is what the outline states
     deviation_ = std::max(deviation_, fit_arcs(curve, a, b, tolerance_, 0.0, sites));
   }
 
@@ -128,6 +141,7 @@ void close_rounding_gap(Subpath& subpath) {
   while (kept > 0 && is_gap(pieces[kept - 1])) --kept;
   // two lines enclose nothing
   if (kept == 0 || (kept < 3 && std::all_of(pieces.begin(), pieces.begin() + kept, is_line))) return;
+  // what is left is closed only if its own last end is at the start
   PathPiece& last = pieces[kept - 1];
   if (!is_there(last.to)) return;
   // the chord of an arc places its circle: of one that is all but whole it must stay
@@ -138,6 +152,7 @@ void close_rounding_gap(Subpath& subpath) {
 }
 
 /// @pre the loop runs counter-clockwise.
+/// Cost: all sites of the loop.
 bool loop_contains(const std::vector<Site>& loop, const Vec2& p) {
   Outline outline;
   add_loop(outline, loop, true);
@@ -147,6 +162,7 @@ bool loop_contains(const std::vector<Site>& loop, const Vec2& p) {
 }
 
 /// Even-odd: a loop inside an odd number of others is a hole.
+/// Loops are first all turned counter-clockwise, for the test. Cost: pairs of loops times sites.
 void orient_even_odd(std::vector<std::vector<Site>>& loops) {
   for (std::vector<Site>& loop : loops)
     if (enclosed_area(loop) < 0.0) loop = reversed(loop);
@@ -181,7 +197,9 @@ Shape make_path(std::string_view d, double scale, double curve_tolerance) {
                      " m, and comes back to its start; allowed: subpaths that are longer");
     outline.solid = outline.solid && subpath.closed;
   }
+  // wires keep the direction in which they were drawn
   if (outline.solid) orient_even_odd(loops);
+  // a loop a subpath, in the order of the data: faults and site numbers go by it
   for (std::size_t k = 0; k < loops.size(); ++k) add_loop(outline, loops[k], subpaths[k].closed);
   outline.curve_deviation = builder.deviation();
   finish_outline(outline);

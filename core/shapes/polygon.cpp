@@ -17,6 +17,7 @@ double signed_area(const std::vector<Vec2>& vertices) {
   return twice / 2;
 }
 
+/// How often a ray from p to the right crosses the boundary: an odd number of times from inside.
 bool polygon_contains(const std::vector<Vec2>& vertices, const Vec2& p) {
   bool inside = false;
   for (std::size_t k = 0, j = vertices.size() - 1; k < vertices.size(); j = k++) {

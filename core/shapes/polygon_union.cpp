@@ -1,3 +1,11 @@
+/// How it goes:
+///
+///     number the vertices, welding those that are near; take every polygon's edges
+///     until nothing is cut: cut each edge at the vertices that lie on it and at its crossings with others
+///     of each set of equal pieces keep one if exactly one of its sides is covered
+///     at each vertex decide which piece follows which, and walk the loops
+///
+/// After the first step everything is told by vertex numbers: two pieces are the same if their ends are.
 #include "brink/core/shapes/polygon_union.h"
 
 #include <algorithm>
@@ -25,6 +33,7 @@ class Union {
  public:
   explicit Union(const std::vector<Polygon>& polygons) : polygons_(polygons) {}
 
+  /// The loops of the boundary. @throws BadInput if cutting does not come to an end, or pieces do not close.
   std::vector<Polygon> loops() {
     take_edges();
     // cut at a computed vertex an edge bends by up to the weld, and may come
@@ -50,6 +59,7 @@ class Union {
 
   int vertex_at(const Vec2& p);
   Box box_of(const Edge& e) const;
+  /// Direction from one vertex to another, from the x axis on [rad].
   double angle_of(int from, int to) const {
     const Vec2 d = points_[to] - points_[from];
     return std::atan2(d.y(), d.x());
@@ -65,6 +75,7 @@ class Union {
 };
 
 /// The vertex within the weld of p, or a new one. The first found keeps its bits.
+/// Cost: all vertices so far.
 int Union::vertex_at(const Vec2& p) {
   for (std::size_t k = 0; k < points_.size(); ++k)
     if ((points_[k] - p).squaredNorm() <= weld_ * weld_) return static_cast<int>(k);
@@ -72,6 +83,7 @@ int Union::vertex_at(const Vec2& p) {
   return static_cast<int>(points_.size()) - 1;
 }
 
+/// Grown by the weld, so that an edge is paired with all that may lie on it.
 Box Union::box_of(const Edge& e) const {
   Box box;
   box.add(points_[e.from]);
@@ -79,6 +91,7 @@ Box Union::box_of(const Edge& e) const {
   return box.grown(weld_);
 }
 
+/// Fills boxes_, weld_, points_ and edges_ from the polygons.
 void Union::take_edges() {
   Box all;
   for (const Polygon& polygon : polygons_) {
@@ -104,11 +117,13 @@ bool Union::cut_at_vertex(int e, int v, std::vector<std::vector<int>>& cuts) con
   if (v == edge.from || v == edge.to) return true;
   const Vec2 d = points_[edge.to] - points_[edge.from], w = points_[v] - points_[edge.from];
   const double along = w.dot(d);
+  // a cross product over the length is the distance from the edge's line [m]
   if (along <= 0.0 || along >= d.squaredNorm() || std::abs(cross(d, w)) > weld_ * d.norm()) return false;
   cuts[e].push_back(v);
   return true;
 }
 
+/// Notes where two edges cut each other: at ends that lie on the other, or where they cross.
 void Union::cut_pair(int e, int f, std::vector<std::vector<int>>& cuts) {
   // two edges share one place at most, unless they lie on each other, and then
   // ends lie on edges: a crossing is computed only where no end touches
@@ -120,11 +135,13 @@ void Union::cut_pair(int e, int f, std::vector<std::vector<int>>& cuts) {
   const Vec2 &a = points_[edges_[e].from], &c = points_[edges_[f].from];
   const Vec2 d = points_[edges_[e].to] - a, g = points_[edges_[f].to] - c;
   const double turn = cross(d, g);
+  // parallel, and no end of one on the other
   if (turn == 0.0) return;
   const double s = cross(c - a, g) / turn, t = cross(c - a, d) / turn;
   if (!(s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0)) return;
   // may move points_, to which a and c refer: they are not used again
   const int v = vertex_at(a + s * d);
+  // a crossing within the weld of an end is that end, and cuts the other edge alone
   if (v != edges_[e].from && v != edges_[e].to) cuts[e].push_back(v);
   if (v != edges_[f].from && v != edges_[f].to) cuts[f].push_back(v);
 }
@@ -145,6 +162,7 @@ bool Union::cut_edges() {
     const Edge edge = edges_[k];
     const Vec2 a = points_[edge.from], d = points_[edge.to] - a;
     std::sort(cuts[k].begin(), cuts[k].end(), [&](int u, int v) {
+      // along the edge; where two are equally far, by number, so that the order is total
       const double su = (points_[u] - a).dot(d), sv = (points_[v] - a).dot(d);
       return su != sv ? su < sv : u < v;
     });
@@ -167,6 +185,7 @@ bool Union::covered_beside(int u, int v, const std::map<int, int>& winding, bool
   // cut at all others, the piece crosses no boundary: its middle speaks for it
   const Vec2 middle = 0.5 * (points_[u] + points_[v]);
   for (std::size_t k = 0; k < polygons_.size(); ++k) {
+    // of a polygon that has the piece on its boundary the side is known; its middle would be a matter of rounding
     const auto own = winding.find(static_cast<int>(k));
     if (own != winding.end()) {
       if (left ? own->second > 0 : own->second < 0) return true;
@@ -181,6 +200,7 @@ bool Union::covered_beside(int u, int v, const std::map<int, int>& winding, bool
 void Union::keep_boundary() {
   // in order of vertices, which are numbered as they are given: the loops come in an order of the input
   std::map<std::pair<int, int>, std::map<int, int>> pieces;
+  // by its lower vertex first: pieces of all polygons that run along the same way come together
   for (const Edge& e : edges_) pieces[std::minmax(e.from, e.to)][e.polygon] += e.from < e.to ? 1 : -1;
   edges_.clear();
   for (const auto& [ends, winding] : pieces) {
@@ -194,6 +214,8 @@ void Union::keep_boundary() {
 
 /// Decides which piece follows which where several pass through a vertex. Around it, counter-clockwise, a
 /// leaving piece opens a wedge of solid and an arriving one closes it.
+/// For a vertex that one loop passes through there is one answer. @throws BadInput if leaving and arriving
+/// pieces do not take turns.
 void Union::pair_at(int vertex, const std::vector<int>& out, const std::vector<int>& in,
                     std::vector<int>& next) const {
   struct Ray {
@@ -213,6 +235,7 @@ void Union::pair_at(int vertex, const std::vector<int>& out, const std::vector<i
     if (ray.leaves == following.leaves)
       throw BadInput("polygons: the union does not close at " + text(points_[vertex]) +
                      "; parts there overlap by about 1e-12 of the extent");
+    // up to the next ray, over the turn of the angle where it is the first one again [rad]
     const double opening = following.angle - ray.angle + (k + 1 == n ? 2 * std::numbers::pi : 0.0);
     reflex |= ray.leaves && opening > std::numbers::pi;
   }
@@ -222,6 +245,7 @@ void Union::pair_at(int vertex, const std::vector<int>& out, const std::vector<i
     if (!rays[k].leaves) next[rays[k].edge] = rays[(k + (reflex ? 1 : n - 1)) % n].edge;
 }
 
+/// Each piece is in one loop: `next` is a permutation of the pieces, so that a walk comes back to where it began.
 std::vector<Polygon> Union::trace() {
   std::vector<std::vector<int>> out(points_.size()), in(points_.size());
   for (std::size_t e = 0; e < edges_.size(); ++e) {
@@ -230,6 +254,7 @@ std::vector<Polygon> Union::trace() {
   }
   std::vector<int> next(edges_.size(), -1), degree(points_.size());
   for (std::size_t v = 0; v < points_.size(); ++v) {
+    // how often loops pass through it
     degree[v] = static_cast<int>(out[v].size());
     if (!out[v].empty() || !in[v].empty()) pair_at(static_cast<int>(v), out[v], in[v], next);
   }
@@ -247,6 +272,7 @@ std::vector<Polygon> Union::trace() {
 }
 
 /// Drops vertices that lie on the line between their neighbours up to rounding and that no other loop uses.
+/// Three vertices are kept in any case.
 Polygon Union::without_collinear(const std::vector<int>& loop, const std::vector<int>& degree) const {
   std::vector<int> kept = loop;
   for (std::size_t k = 0; k < kept.size() && kept.size() > 3;) {

@@ -16,16 +16,19 @@ namespace {
 /// Numbers larger than this have no meaning as lengths, speeds or masses.
 constexpr double kLargest = 1e15;
 
+/// Some characters without a blank between them, and where they begin, counting from 1.
 struct Word {
   std::string_view text;
   int line = 0, column = 0;
 };
 
+/// A line that has words; its number counts from 1, with blank lines and comments.
 struct Line {
   std::vector<Word> words;
   int number = 0;
 };
 
+/// Commas count as blanks. A carriage return does too, so that files with either line end are read.
 std::vector<Word> words_of(std::string_view line, int number) {
   std::vector<Word> words;
   const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == ',' || c == '\f'; };
@@ -46,6 +49,7 @@ std::vector<Line> lines_of(std::string_view text) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
+    // of a line without a comment all is kept
     line = line.substr(0, line.find("//"));
     std::vector<Word> words = words_of(line, ++number);
     if (!words.empty()) lines.push_back({std::move(words), number});
@@ -53,6 +57,7 @@ std::vector<Line> lines_of(std::string_view text) {
   return lines;
 }
 
+/// Reads line by line. A fault is noted, and reading goes on where the rest can still be told apart.
 class Reader {
  public:
   Reader(std::string_view text, std::vector<SampleFileFault>& faults)
@@ -60,9 +65,11 @@ class Reader {
         last_(1 + static_cast<int>(std::count(text.begin(), text.end(), '\n'))),
         faults_(faults) {}
 
+  /// The first line is the count, the second the body, all others are samples.
   SampledBody read() {
     SampledBody body;
     const std::vector<double> count = numbers(1, "the number of samples");
+    // without a count the samples cannot be checked; its fault has been noted
     if (stopped_ || std::isnan(count[0])) return body;
     const double most = kMostParticles;
     if (!(count[0] >= 1.0 && count[0] <= most && count[0] == std::floor(count[0])))
@@ -78,12 +85,14 @@ class Reader {
   }
 
  private:
+  /// Notes a fault at a word, of which at most 60 characters are shown.
   void fault(const Word& word, const std::string& wrong, const std::string& allowed) {
     faults_.push_back(
         {word.line, word.column,
          wrong + "; given \"" + std::string(word.text.substr(0, 60)) + "\", allowed: " + allowed});
   }
 
+  /// The word as a number; NaN, and a fault, if it is none.
   double number(const Word& word) {
     double value = 0.0;
     std::string_view digits = word.text;
@@ -103,12 +112,14 @@ class Reader {
     std::vector<double> values(wanted, 0.0);
     const std::string allowed = std::to_string(wanted) + (wanted == 1 ? " number: " : " numbers: ") + what;
     if (next_ == lines_.size()) {
+      // no word is there to point at: the place is the end of the text
       faults_.push_back({last_, 1, "the file ends too soon; given nothing, allowed: " + allowed});
       stopped_ = true;
       return values;
     }
     const Line& line = lines_[next_++];
     if (line.words.size() != wanted) {
+      // the first word too many, or the last one where there are too few
       fault(line.words[std::min(wanted, line.words.size() - 1)],
             "the line has " + std::to_string(line.words.size()) + " words", allowed);
       stopped_ = next_ <= 2;  // nothing after a wrong head can be trusted
@@ -118,6 +129,7 @@ class Reader {
     return values;
   }
 
+  /// As many points as the first line promises. Exact repeats are faults: no two samples share a place.
   void samples(std::size_t count, std::vector<Vec2>& out) {
     std::map<std::pair<double, double>, int> taken;
     for (std::size_t k = 0; k < count && !stopped_; ++k) {
@@ -156,6 +168,7 @@ std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
   std::sort(points.begin(), points.end(),
             [](const Vec2& a, const Vec2& b) { return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y()); });
   std::vector<Vec2> hull;
+  // the first `keep` + 1 points stay; above them what does not turn left is taken away, collinear points too
   const auto add = [&](const Vec2& p, std::size_t keep) {
     while (hull.size() >= keep + 2 && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0.0)
       hull.pop_back();
@@ -165,6 +178,7 @@ std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
   // the upper chain starts at the last point, and takes nothing of the lower one away
   const std::size_t lower = hull.size() - 1;
   for (auto p = points.rbegin() + 1; p != points.rend(); ++p) add(*p, lower);
+  // the upper chain came back to the first point
   hull.pop_back();
   return hull;
 }
@@ -178,6 +192,7 @@ const Vec2& farthest(const std::vector<Vec2>& points, const Vec2& p) {
 
 /// The ends of the line that all the points are on, up to the roundings of their coordinates; nothing if they
 /// are on none. @pre the points are a convex hull's.
+/// From the point farthest from any to the one farthest from that: on a line these are its two ends.
 std::vector<Vec2> line_through(const std::vector<Vec2>& hull) {
   if (hull.size() == 2) return hull;
   const Vec2 from = farthest(hull, hull[0]), to = farthest(hull, from);

@@ -26,18 +26,21 @@ double spacing_of(const char* kind, const Sampling& sampling, double of_count) {
                  ", allowed: one of them > 0 and finite");
 }
 
+/// @throws BadInput if so many are too many for one outline. Asked before they are made, as far as is known then.
 void check_number(const char* kind, double number) {
   if (number <= kMostParticles) return;
   throw BadInput(std::string("sampling: ") + kind + " would make about " + text(number) +
                  " particles of one shape, allowed: at most " + std::to_string(kMostParticles));
 }
 
+/// Particles on the surface: without thickness, and without an area of their own.
 std::vector<Particle> on(const std::vector<Vec2>& points) {
   std::vector<Particle> particles;
   for (const Vec2& p : points) particles.push_back({p, 0.0, 0.0});
   return particles;
 }
 
+/// The vertices among the exact samples: arcs are left out.
 std::vector<Particle> vertices(const Outline& outline) {
   std::vector<Particle> particles;
   for (const Sample& sample : outline.samples)
@@ -45,6 +48,7 @@ std::vector<Particle> vertices(const Outline& outline) {
   return particles;
 }
 
+/// At most `spacing` [m] apart along the pieces.
 std::vector<Particle> boundary(const std::vector<Site>& pieces, double spacing) {
   // parts are rounded up, by at most one a piece; ends that meet are kept once
   check_number("boundary", total_length(pieces) / spacing + static_cast<double>(pieces.size()));
@@ -60,6 +64,7 @@ std::vector<Particle> boundary(const Outline& outline, const Sampling& sampling)
 std::vector<Particle> volume(const Outline& outline, const Sampling& sampling) {
   const Vec2 extent = outline.bounds.extent();
   const double spacing = spacing_of("volume", sampling, extent.maxCoeff());
+  // the box's cells now, so that no lattice is begun that is too large; the boundary comes on top
   check_number("volume", extent.x() * extent.y() / (spacing * spacing));
   std::vector<Particle> particles = boundary(boundary_pieces(outline), spacing);
   // its solid goes on for ever
@@ -76,6 +81,7 @@ std::vector<Particle> volume(const Outline& outline, const Sampling& sampling) {
   return particles;
 }
 
+/// With a spacing, as many as it would take to walk round; at least one.
 std::vector<Particle> random(const Outline& outline, const Sampling& sampling) {
   const std::vector<Site> pieces = boundary_pieces(outline);
   const double whole = total_length(pieces);
@@ -96,6 +102,7 @@ std::vector<Particle> raster(const Outline& outline, const Sampling& sampling) {
   const std::vector<Site> pieces = boundary_pieces(outline);
   // before the walk, about as many as there will be: as many as lie along the axes
   check_number("raster", total_length(pieces) / pixel);
+  // sorted, so that the order of pixels does not depend on where the walk begins
   std::set<std::pair<double, double>> drawn;  // row, column
   for (const Vec2& p : walk(pieces, pixel / 8.0)) {
     const Vec2 at = ((p - outline.bounds.low) / pixel).array().floor();
@@ -149,6 +156,7 @@ double widest_gap(const Outline& outline, const std::vector<Particle>& particles
     double nearest = std::numeric_limits<double>::infinity();
     for (const Particle& particle : particles)
       nearest = std::min(nearest, std::max(0.0, (q - particle.p).norm() - particle.radius));
+    // the disc about q that holds no particle reaches just to the nearest one; its diameter counts
     widest = std::max(widest, 2.0 * nearest);
   }
   return widest;

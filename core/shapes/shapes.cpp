@@ -17,6 +17,7 @@ namespace {
 
 constexpr double whole_turn = 2 * std::numbers::pi;
 
+/// A solid of straight sides, measured. Several loops are several parts, or holes.
 /// @pre the loops have the solid on their left.
 Shape solid_of(const std::vector<std::vector<Vec2>>& loops, double radius) {
   Outline outline;
@@ -25,6 +26,7 @@ Shape solid_of(const std::vector<std::vector<Vec2>>& loops, double radius) {
   return finish_shape(std::move(outline));
 }
 
+/// What has no inside: one chain or ring of sites, measured. `deviation` [m]: of a curve that was fitted.
 /// Also of a single point site.
 Shape wire_of(const std::vector<Site>& sites, bool closed, double deviation = 0.0) {
   Outline outline;
@@ -34,12 +36,14 @@ Shape wire_of(const std::vector<Site>& sites, bool closed, double deviation = 0.
 }
 
 /// A union is at least as large as its largest part and at most as large as all of them.
+/// @throws BadInput otherwise: pieces of the boundary were kept or dropped wrongly.
 void require_plausible_area(double area, const std::vector<std::vector<Vec2>>& parts) {
   double largest = 0.0, sum = 0.0;
   for (const auto& part : parts) {
     largest = std::max(largest, signed_area(part));
     sum += signed_area(part);
   }
+  // 1e-9: room for the weld, 1e-12 of the extent, and for roundings
   if (area < largest - 1e-9 * sum || area > sum * (1 + 1e-9))
     throw BadInput("polygons: the union came out with area " + text(area) + " m^2 where the parts have " +
                    text(sum) + "; move parts that nearly coincide apart or together");
@@ -77,6 +81,7 @@ Shape make_box(double width, double height, double radius) {
   require_positive("width", width);
   require_positive("height", height);
   require_radius(radius);
+  // counter-clockwise from the lower left corner
   const double x = width / 2, y = height / 2;
   return solid_of({{Vec2(-x, -y), Vec2(x, -y), Vec2(x, y), Vec2(-x, y)}}, radius);
 }
@@ -94,6 +99,7 @@ Shape make_polygons(const std::vector<std::vector<Vec2>>& polygons) {
     parts.push_back(checked_polygon(polygons[k], "polygons[" + std::to_string(k) + "]"));
   // alone it is simple already, and keeps vertices that are collinear
   if (parts.size() == 1) return solid_of(parts, 0.0);
+  // the one check from outside: the union's area is told by its own sites, the bounds by the parts
   Shape shape = solid_of(union_of_polygons(parts), 0.0);
   require_plausible_area(shape.measure.size, parts);
   return shape;
@@ -121,8 +127,10 @@ Shape make_arc(const Vec2& center, double arc_radius, double from, double to, do
   double sweep = to - from;
   // whole turns until it is past `from`; 0 then means that the two are whole turns apart
   if (sweep < 0.0) sweep += whole_turn * std::ceil(-sweep / whole_turn);
+  // 1e-15: an angle that was given in degrees may be short of the whole turn by a rounding
   const bool whole = sweep == 0.0 || sweep >= whole_turn * (1 - 1e-15);
   if (whole) sweep = whole_turn;
+  // on the axis itself where `from` is whole quarter turns
   const Vec2 a = center + arc_radius * unit_at(from);
   // a closed loop ends where it starts bit for bit
   const Vec2 b = whole ? a : Vec2(center + arc_radius * unit_at(from + sweep));
@@ -152,6 +160,7 @@ Shape make_disc_container(double radius) {
   outline.solid = true;
   std::vector<Site> sites;
   const Vec2 start(radius, 0);
+  // counter-clockwise as a disc first; as_container() turns it round
   add_arc(sites, start, start, Vec2::Zero(), radius, whole_turn, 0.0);
   add_loop(outline, sites, true);
   return finish_shape(as_container(std::move(outline)));
@@ -161,6 +170,8 @@ Shape centered(Shape shape) {
   Pose shift;
   shift.position = -shape.measure.centroid;
   shape.outline = transformed(shape.outline, shift);
+  // By definition: a sum over the moved sites would only come near it. The second moment is about the centroid,
+  // and stays.
   shape.measure.centroid = Vec2::Zero();
   return shape;
 }

@@ -8,6 +8,7 @@ namespace brink {
 namespace {
 
 /// Real roots of a + b t + c t^2, without cancellation.
+/// q is a sum of two terms of one sign; the second root comes from the product of both, a / c.
 void add_roots(double a, double b, double c, std::vector<double>& roots) {
   if (c == 0.0) {
     if (b != 0.0) roots.push_back(-a / b);
@@ -17,6 +18,7 @@ void add_roots(double a, double b, double c, std::vector<double>& roots) {
   if (discriminant < 0.0) return;
   const double q = -(b + std::copysign(std::sqrt(discriminant), b)) / 2;
   roots.push_back(q / c);
+  // q = 0: both roots are 0
   if (q != 0.0) roots.push_back(a / q);
 }
 
@@ -54,6 +56,7 @@ std::vector<double> CubicBezier::breaks() const {
   add_roots(cross(p, q), 2 * cross(p, r), cross(q, r), roots);
   std::sort(roots.begin(), roots.end());
   for (double t : roots)
+    // a cut at an end, or twice at one place, would leave a piece of no length
     if (t > ts.back() + 1e-9 && t < 1 - 1e-9) ts.push_back(t);
   ts.push_back(1.0);
   return ts;

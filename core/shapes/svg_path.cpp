@@ -1,3 +1,10 @@
+/// A parser by hand for the grammar of SVG 2, section 9.3. Scanner reads characters, Parser commands:
+///
+///     until the end: a command's letter, then its arguments once or more
+///     Z takes none; M's further pairs are lines
+///
+/// Every piece is stored with absolute points, and starts where the pen is. A subpath ends at Z, at the next M,
+/// or with the data. Faults name the character, counted from 1.
 #include "brink/core/shapes/svg_path.h"
 
 #include <cctype>
@@ -18,7 +25,9 @@ class Scanner {
     while (at_ < d_.size() && is_space(d_[at_])) ++at_;
   }
   bool done() const { return at_ == d_.size(); }
+  /// The end reads as a zero character, which no test below accepts.
   char peek() const { return done() ? '\0' : d_[at_]; }
+  /// Any letter, also one that is no command. An exponent's e is never looked at: number() takes it.
   bool at_command() const { return !done() && std::isalpha(static_cast<unsigned char>(peek())); }
   char take() { return d_[at_++]; }
 
@@ -31,6 +40,7 @@ class Scanner {
     return true;
   }
 
+  /// The number that starts here, as long as the grammar lets it be: "1.5.5" is two of them.
   double number() {
     const std::size_t start = at_;
     std::size_t digits = at_;
@@ -39,6 +49,7 @@ class Scanner {
     const bool has_digit =
         digits < d_.size() && (is_digit(digits) || (d_[digits] == '.' && is_digit(digits + 1)));
     if (!has_digit) fail("expected a number");
+    // from_chars() takes no plus sign
     const char* first = d_.data() + (peek() == '+' ? at_ + 1 : at_);
     double value = 0.0;
     const auto [end, error] = std::from_chars(first, d_.data() + d_.size(), value);
@@ -56,12 +67,14 @@ class Scanner {
   }
 
   [[noreturn]] void fail(const std::string& what) const { fail_at(at_, what); }
+  /// What was expected there, and what stands there.
   [[noreturn]] void fail_at(std::size_t at, const std::string& what) const {
     const std::string got = at < d_.size() ? std::string{'\'', d_[at], '\''} : "the end of the data";
     throw BadInput("path: character " + std::to_string(at + 1) + ": " + what + ", got " + got);
   }
 
  private:
+  /// White space of the grammar: without the vertical tab, which std::isspace() has too.
   static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f'; }
   bool is_digit(std::size_t k) const { return k < d_.size() && d_[k] >= '0' && d_[k] <= '9'; }
 
@@ -69,6 +82,7 @@ class Scanner {
   std::size_t at_ = 0;
 };
 
+/// The pen, the subpath that is open, and what there is of the path so far.
 class Parser {
  public:
   explicit Parser(std::string_view d) : scan_(d) {}
@@ -87,7 +101,9 @@ class Parser {
   }
 
  private:
+  /// A letter with all its argument sets.
   void run_command();
+  /// One argument set; `command` is a capital.
   void run_once(char command);
   void move_to(const Vec2& p);
   void close();
@@ -98,6 +114,7 @@ class Parser {
   void quadratic_to(const Vec2& c, const Vec2& p);
   void arc_to();
 
+  /// Arguments: a separator, then what is wanted. Points, and single coordinates, are absolute afterwards.
   double next_number() {
     separate();
     return scan_.number();
@@ -127,6 +144,7 @@ class Parser {
   Subpath open_;
   // where the pen is, and where the subpath began: what follows Z without M starts there again
   Vec2 current_ = Vec2::Zero(), start_ = Vec2::Zero();
+  // Every other command puts them where the pen is, so that nothing is mirrored after it.
   Vec2 last_cubic_ = Vec2::Zero(), last_quadratic_ = Vec2::Zero();  ///< control points that S and T mirror
   bool relative_ = false;
   /// What comes next is the first argument of a command: no comma may stand before it.
@@ -137,15 +155,18 @@ void Parser::run_command() {
   const std::size_t none = std::string_view::npos;
   const char letter = scan_.peek();
   char command = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  // before it is taken, so that the fault names its place
   if (std::string_view("MLHVCSQTAZ").find(command) == none)
     scan_.fail("unknown command (allowed: MLHVCSQTAZ in either case)");
   scan_.take();
   relative_ = letter != command;
+  // no arguments: what follows must be a command
   if (command == 'Z') return close();
   first_argument_ = true;
   for (;;) {
     run_once(command);
     if (command == 'M') command = 'L';  // further pairs after a move are lines
+    // what is neither the end nor a letter is another set of arguments
     const bool comma = scan_.skip_separator();
     if (scan_.done() || scan_.at_command()) {
       if (comma) scan_.fail("expected a number after the comma");
@@ -167,6 +188,7 @@ void Parser::run_once(char command) {
     case 'V':
       return line_to({current_.x(), next_y()});
     case 'C': {
+      // one declaration a point, in the order of the text: arguments of a call would be read in any order
       const Vec2 c1 = next_point(), c2 = next_point(), p = next_point();
       return cubic_to(c1, c2, p);
     }
@@ -180,17 +202,20 @@ void Parser::run_once(char command) {
       return quadratic_to(c, p);
     }
     case 'T':
+      // in either order: reading a point does not move the pen
       return quadratic_to(2 * current_ - last_quadratic_, next_point());
     default:
       return arc_to();
   }
 }
 
+/// What was open ends here; the pen and both mirrored control points are put to p.
 void Parser::move_to(const Vec2& p) {
   end_subpath();
   current_ = start_ = last_cubic_ = last_quadratic_ = p;
 }
 
+/// Keeps the subpath if it draws something.
 void Parser::end_subpath() {
   if (!open_.pieces.empty()) {
     // a subpath that comes back to its start is closed without Z as well
@@ -200,6 +225,7 @@ void Parser::end_subpath() {
   open_ = Subpath();
 }
 
+/// Z: a line to the start, unless the pen is there.
 void Parser::close() {
   line_to(start_);
   open_.closed = true;
@@ -217,6 +243,7 @@ void Parser::line_to(const Vec2& p) {
   current_ = last_cubic_ = last_quadratic_ = p;
 }
 
+/// Left out where all four points are one. Only the cubic's control point is kept: a T after it mirrors nothing.
 void Parser::cubic_to(const Vec2& c1, const Vec2& c2, const Vec2& p) {
   PathPiece piece;
   piece.kind = PathPieceKind::cubic;
@@ -230,13 +257,15 @@ void Parser::cubic_to(const Vec2& c1, const Vec2& c2, const Vec2& p) {
 }
 
 void Parser::quadratic_to(const Vec2& c, const Vec2& p) {
-  // degree elevation
+  // degree elevation: the cubic of the same points has its control points two thirds of the way to the quadratic's
   const Vec2 c1 = current_ + 2.0 / 3.0 * (c - current_), c2 = p + 2.0 / 3.0 * (c - p);
   cubic_to(c1, c2, p);
+  // cubic_to() has set it to c2, but S after Q mirrors nothing
   last_cubic_ = p;
   last_quadratic_ = c;
 }
 
+/// Flags and radii are kept as written, radii without their sign; path_shape.cpp finds the centre.
 void Parser::arc_to() {
   PathPiece piece;
   piece.kind = PathPieceKind::arc;

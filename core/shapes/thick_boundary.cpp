@@ -21,16 +21,19 @@ void add_right_offset(const Site& s, std::vector<Site>& pieces) {
   }
   const double r = s.sweep > 0 ? s.arc_radius + s.radius : s.arc_radius - s.radius;
   if (!(r > 0.0)) return;
+  // the ends move along the arc's own radii, so that the offset arc turns by the same angle
   const double ratio = r / s.arc_radius;
   add_arc(pieces, s.center + ratio * (s.a - s.center), s.center + ratio * (s.b - s.center), s.center, r,
           s.sweep, 0.0);
 }
 
+/// As quarter arcs, counter-clockwise: what is within is on their left.
 void add_circle(const Vec2& center, double r, std::vector<Site>& pieces) {
   const Vec2 start = center + Vec2(r, 0);
   add_arc(pieces, start, start, center, r, 2 * std::numbers::pi, 0.0);
 }
 
+/// Every piece that can be part of the boundary: each place of it is at the radius from a side, or from a vertex.
 std::vector<Site> candidates(const Outline& outline) {
   std::vector<Site> pieces;
   for (const Site& s : outline.sites) {
@@ -55,6 +58,7 @@ double fraction_of(const Site& piece, const Vec2& p) {
   return std::clamp(std::atan2(cross(from, w), from.dot(w)) / piece.sweep, 0.0, 1.0);
 }
 
+/// The piece between two fractions of its length.
 Site part_of(const Site& piece, double from, double to) {
   Site part = piece;
   part.a = point_along(piece, from);
@@ -81,6 +85,7 @@ bool is_repeat(const std::vector<Site>& pieces, const std::vector<Box>& boxes, s
   return false;
 }
 
+/// Fractions of piece k at which it meets others, and its ends, ascending; a crossing may be found more than once.
 std::vector<double> cuts_of(const std::vector<Site>& pieces, const std::vector<Box>& boxes, std::size_t k,
                             double tolerance) {
   // also where another only touches or starts to run along: its ends are among the meeting points
@@ -100,12 +105,14 @@ class Cover {
     for (const Site& s : outline.sites) boxes_.push_back(core_bounds(s).grown(s.radius));
   }
 
+  /// False if p is in a site's thickness, or inside the solid, by more than the tolerance.
   bool exposed(const Vec2& p) const {
     for (std::size_t k = 0; k < boxes_.size(); ++k) {
       const Site& s = outline_.sites[k];
       // short of the radius by more than the tolerance: every candidate lies on a surface, its own
       if (boxes_[k].contains(p) && nearest_on(s, p).distance < s.radius - tolerance_) return false;
     }
+    // inside a solid, beyond the thickness of its sides: cost all sites, so it is asked last
     return !outline_.solid || gap_by_brute_force(outline_, p) >= -tolerance_;
   }
 
@@ -124,6 +131,7 @@ std::vector<Site> thick_boundary(const Outline& outline) {
   std::vector<Box> boxes;
   for (const Site& piece : pieces) boxes.push_back(core_bounds(piece).grown(tolerance));
   std::vector<Site> boundary;
+  // Earlier pieces are kept where several run along one way: is_repeat() looks at those before k only.
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     // between two cuts a piece is exposed all along or nowhere: it goes under cover only through the
     // surface of another site, which is a candidate too
