@@ -9,6 +9,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kLargestFile = 100'000'000;  // bytes; beyond, it is some other kind of file
+// A block is as much as a pipe of Linux holds by default.
 constexpr std::size_t kBlock = 1 << 16;
 
 }  // namespace

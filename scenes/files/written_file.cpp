@@ -14,6 +14,7 @@ namespace {
 
 /// By identity where both exist, which sees through links; by resolved name where one is
 /// still to be written.
+/// True if writing one of two paths would write the other.
 bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code missing;
   if (fs::equivalent(a, b, missing)) return true;
@@ -31,6 +32,8 @@ bool is_database(const fs::path& file) {
 
 }  // namespace
 
+// Asked before anything is opened. Another program could still put a link there in between: this is a
+// guard against mistakes, not against attackers.
 void refuse_overwriting(const fs::path& file, const std::string& option, const std::vector<fs::path>& kept) {
   if (file.empty()) return;
   const auto refuse = [&](const std::string& what) {
@@ -42,6 +45,7 @@ void refuse_overwriting(const fs::path& file, const std::string& option, const s
   if (is_database(file)) refuse("a database");
 }
 
+// That it is there already is no error; a file of that name is.
 fs::path made_folder(const fs::path& dir) {
   std::error_code error;
   fs::create_directories(dir, error);

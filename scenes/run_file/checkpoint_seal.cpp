@@ -10,6 +10,7 @@ namespace brink {
 namespace {
 
 // Copied byte by byte, so its layout is that of the file: no padding, as the assertion says.
+// Initial values are those of a sound header, with which unsealed() compares.
 struct Header {
   char magic[8] = {'B', 'R', 'I', 'N', 'K', 'C', 'P', '\n'};
   std::uint32_t version = 1, unused = 0;
@@ -19,6 +20,7 @@ static_assert(sizeof(Header) == 32);
 
 // The last word is filled with zeros. Lengths are hashed before, so that zeros at the end of one text
 // are not taken for padding.
+// Eight bytes at a time, in the machine's order: StateHash takes words.
 void add_bytes(StateHash& hash, std::span<const std::byte> bytes) {
   for (; bytes.size() >= 8; bytes = bytes.subspan(8)) {
     std::uint64_t word = 0;
@@ -30,6 +32,8 @@ void add_bytes(StateHash& hash, std::span<const std::byte> bytes) {
   hash.add(rest);
 }
 
+/// Over everything that a resume goes by, in a fixed order: another order would be another layout, and
+/// needs another version in the header. Cost: proportional to the snapshot.
 std::uint64_t checksum(const ResumePoint& row, std::span<const std::byte> snapshot, std::uint64_t identity) {
   StateHash hash;
   hash.add(identity);
@@ -45,6 +49,7 @@ std::uint64_t checksum(const ResumePoint& row, std::span<const std::byte> snapsh
 
 }  // namespace
 
+/// Each text after its length, so that no other three texts run together to the same bytes.
 std::uint64_t run_identity(const std::string& version, const std::string& options, const std::string& world) {
   StateHash hash;
   for (const std::string* text : {&version, &options, &world}) {
@@ -54,6 +59,8 @@ std::uint64_t run_identity(const std::string& version, const std::string& option
   return hash.value();
 }
 
+/// The same row, snapshot and identity give the same bytes: no time of day and no random number is in
+/// them.
 std::vector<std::byte> sealed(const ResumePoint& row, std::span<const std::byte> snapshot,
                               std::uint64_t identity) {
   Header header;
@@ -65,6 +72,8 @@ std::vector<std::byte> sealed(const ResumePoint& row, std::span<const std::byte>
   return bytes;
 }
 
+// Whatever the bytes are, none is read beyond their end, and no snapshot is given out whose checksum
+// does not hold.
 std::vector<std::byte> unsealed(const ResumePoint& point, std::uint64_t identity) {
   // The cheap checks first: the checksum reads everything, and its length must be right.
   const Header known;

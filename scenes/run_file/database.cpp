@@ -5,6 +5,7 @@
 namespace brink {
 namespace fs = std::filesystem;
 
+/// The settings belong to the connection and not to the file: each that is opened gets them anew.
 SQLite::Database open_database(const fs::path& file, int flags, int busy_milliseconds) {
   // Debian's SQLite reads names that begin with "file:" as URIs; an absolute path begins with a slash.
   SQLite::Database db(fs::absolute(file).string(), flags, busy_milliseconds);
@@ -14,10 +15,12 @@ SQLite::Database open_database(const fs::path& file, int flags, int busy_millise
   sqlite3_db_config(db.getHandle(), SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   sqlite3_db_config(db.getHandle(), SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
   sqlite3_db_config(db.getHandle(), SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
+  // Cells of a damaged page are told as damage before they are followed out of the page.
   db.exec("PRAGMA cell_size_check = ON");
   return db;
 }
 
+/// For people: SQLite's own words, but for the cause that they hide most often.
 std::string why_failed(const SQLite::Exception& e, const fs::path& file) {
   constexpr std::uintmax_t kLittle = 1 << 16;  // less than a page and its log need
   std::error_code unknown;

@@ -50,6 +50,8 @@ int locked(const fs::path& dir) {
 }
 
 /// True if there is a database without anything in it.
+/// A run that is killed before its first commit leaves such a one. @throws IoError of what is no
+/// database.
 bool holds_nothing(const fs::path& file) {
   return guarded(file, [&] {
     SQLite::Database db = open_database(file, SQLite::OPEN_READONLY, 10'000);
@@ -61,9 +63,12 @@ bool holds_nothing(const fs::path& file) {
 
 // The folder is locked, not a file in it, so that the lock leaves nothing behind.
 RunFolder::RunFolder(const fs::path& dir) : file_(made_folder(dir) / "run.db"), lock_(locked(dir)) {}
+// The lock goes with it: who is moved from must not close it.
 RunFolder::RunFolder(RunFolder&& other) noexcept
     : file_(std::move(other.file_)), lock_(std::exchange(other.lock_, -1)) {}
 RunFolder::~RunFolder() {
+  // Closing lets the lock go: programs that were started meanwhile have not got the descriptor
+  // (O_CLOEXEC).
   if (lock_ >= 0) ::close(lock_);
 }
 

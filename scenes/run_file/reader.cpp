@@ -1,3 +1,10 @@
+/// Reading run files: class RunFile. A file may come from anywhere, so nothing that it says is used
+/// before it is checked: values by Row (type and range), tables by reading(), which turns whatever is
+/// thrown inside it into an IoError that names the file and the table.
+///
+/// Frames are found by their row numbers: a frame is as many rows as there are bodies, so frame k is
+/// the rows k * bodies + 1 .. (k + 1) * bodies. The frame of a time is a binary search over the times
+/// of frames, one row read a step.
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 
@@ -20,6 +27,7 @@ namespace brink {
 namespace fs = std::filesystem;
 namespace {
 
+/// As guarded() calls the file: "cannot be read or written as a run file".
 constexpr const char* kWhat = "a run file";
 
 /// Options that a run may be gone on with at another value: they decide what is refused, not what happens.
@@ -49,6 +57,8 @@ std::string differences(const std::string& was, const std::string& is) {
   return text;
 }
 
+/// The kind that has this word in column `kind`. By the words of to_string(), with which the recorder
+/// writes, so that the two cannot differ. @throws BadInput where no kind has it.
 EventKind kind_from(const std::string& word) {
   // `lift` is the last of the enum.
   for (int k = 0; k <= static_cast<int>(EventKind::lift); ++k) {
@@ -57,6 +67,7 @@ EventKind kind_from(const std::string& word) {
   throw BadInput(fmt::format("event of unknown kind '{}'", word));
 }
 
+/// The mode that has this word in column `mode` of table `contact`. @throws BadInput where none has it.
 ContactMode mode_from(const std::string& word) {
   // `none` (0) is never recorded.
   for (int k = 1; k <= static_cast<int>(ContactMode::roll); ++k)
@@ -66,10 +77,14 @@ ContactMode mode_from(const std::string& word) {
 
 /// Value and slope at time t of the cubic through (0, a, va) and (h, b, vb), s = t / h.
 /// Exact for motions of constant acceleration, which are quadratic; a cubic holds them.
+///
+/// p = a + va t + c2 t^2 + c3 t^3 with p(h) = b gives c2 + c3 h = (d - va) / h, and with p'(h) = vb it
+/// gives 2 c2 + 3 c3 h = (vb - va) / h. Twice the first taken from the second leaves c3.
 std::pair<double, double> hermite(double a, double va, double b, double vb, double h, double s) {
   const double d = (b - a) / h;
   // With d the mean slope: c2 and c3 are fixed by value and slope at t = h.
   const double c2 = (3 * d - 2 * va - vb) / h, c3 = (va + vb - 2 * d) / (h * h), t = s * h;
+  // Horner's scheme, for the value and for its derivative.
   return {a + t * (va + t * (c2 + t * c3)), va + t * (2 * c2 + 3 * t * c3)};
 }
 
@@ -79,9 +94,13 @@ struct Knot {
   BodyState state;
 };
 
+/// The state at t of the cubics through two known states of one body: x, y and angle, each on its own.
+/// Angles are not wrapped, so whole turns between the two are not lost.
 BodyState between(const Knot& left, const Knot& right, double t) {
   const BodyState &a = left.state, &b = right.state;
   const double h = right.t - left.t;
+  // Never so of what states_at() gives, left.t <= t < right.t; of others the quotients would be
+  // infinite.
   if (!(h > 0.0)) return a;
   BodyState m;
   const double s = (t - left.t) / h;
@@ -98,14 +117,20 @@ BodyState between(const Knot& left, const Knot& right, double t) {
 
 namespace {
 
+/// Columns of a lasted contact, in the order in which Impl::contacts() takes them by number. What rows
+/// are asked for, and in which order, comes behind.
 constexpr const char* kContactColumns =
     "SELECT t_begin, t_end, mode, body, other, site, sample, outline_site, sample_on_body, px, py, nx, "
     "ny, force_n, force_t FROM contact ";
 
+/// Columns of both sides of an event, nine a side: place, twist before, twist after. They stand behind
+/// other columns, hence the comma.
 constexpr const char* kStateColumns =
     ", x, y, angle, vx_before, vy_before, omega_before, vx, vy, omega, other_x, other_y, other_angle, "
     "other_vx_before, other_vy_before, other_omega_before, other_vx, other_vy, other_omega";
 
+/// The side of an event whose nine columns begin at column number `first`.
+/// @throws BadInput where x is a number and one of the others is none.
 EventSide side_in(const Row& row, int first) {
   EventSide side;
   side.known = !std::isnan(row.real_or_nan(first));
@@ -119,6 +144,9 @@ EventSide side_in(const Row& row, int first) {
 
 }  // namespace
 
+/// The open file, and what every question needs of it: how many bodies and sites there are, which
+/// bounds the ids in all other tables. What SQLite or Row throws in a member that does not itself call
+/// reading() is the caller's to wrap.
 struct RunFile::Impl {
   fs::path file;
   mutable SQLite::Database db;
@@ -148,6 +176,8 @@ struct RunFile::Impl {
     });
   }
 
+  /// True if the table has that column. Columns may be added without a new schema number, so those of
+  /// files from before are asked for one by one.
   bool has_column(const std::string& table, const std::string& column) const {
     SQLite::Statement get(db, "SELECT count(*) FROM pragma_table_info(?) WHERE name = ?");
     get.bind(1, table);
@@ -161,11 +191,13 @@ struct RunFile::Impl {
     const std::int64_t rows = db.execAndGet("SELECT ifnull(max(rowid), 0) FROM frame").getInt64();
     return bodies > 0 && rows > 0 ? rows / bodies : 0;
   }
+  /// The same, for who needs one. @throws BadInput where there is none.
   std::int64_t some_frames() const {
     const std::int64_t count = frames();
     if (count == 0) throw BadInput("it holds no whole frame yet");
     return count;
   }
+  /// Time of frame `index` [s], from its first row. @throws BadInput where that row is missing.
   double frame_time(std::int64_t index) const {
     SQLite::Statement get(db, "SELECT t FROM frame WHERE rowid = ?");
     get.bind(1, index * bodies + 1);
@@ -175,6 +207,8 @@ struct RunFile::Impl {
   /// The last frame at or before t, or 0.
   std::int64_t frame_index(double t) const {
     std::int64_t low = 0, high = some_frames();
+    // Frame `low` is at or before t, or it is the first; frame `high` is after t, or it is beyond the
+    // last.
     while (high - low > 1) {
       const std::int64_t middle = low + (high - low) / 2;
       (frame_time(middle) <= t ? low : high) = middle;
@@ -182,6 +216,8 @@ struct RunFile::Impl {
     return low;
   }
   /// How bodies come out of the events of [from, to], in the order of the file.
+  /// Calls f(time, body, side) for each owner that is a body of which the event tells something; fixed
+  /// sites are left out, and so are events without states.
   template <class F>
   void each_side_between(double from, double to, F&& f) const {
     if (!has_states) return;  // of before
@@ -195,6 +231,7 @@ struct RunFile::Impl {
       for (int side = 0; side < 2; ++side) {
         const int body = row.id_or_none(1 + side, bodies);
         if (body < 0) continue;
+        // Behind t, body and other: columns 3 .. 11 are of `body`, 12 .. 20 of `other`.
         if (const EventSide how = side_in(row, 3 + 9 * side); how.known) f(row.real(0), body, how);
       }
     }
@@ -203,6 +240,7 @@ struct RunFile::Impl {
   /// Takes the rows of frame `index` from a statement that has come there.
   void next_frame(SQLite::Statement& get, std::int64_t index, Frame& frame) const {
     frame.states.clear();
+    // The first row gives the frame's time, and every other one must have the same.
     while (static_cast<std::int64_t>(frame.states.size()) < bodies && get.executeStep()) {
       const Row row(get);
       const double t = row.real(0);
@@ -218,6 +256,7 @@ struct RunFile::Impl {
     if (static_cast<std::int64_t>(frame.states.size()) != bodies)
       throw BadInput(fmt::format("frame {} is not whole", index));
   }
+  /// Frame `index`, 0 <= index < frames(). Cost: its own rows alone, as rowid is the table's key.
   Frame read_frame(std::int64_t index) const {
     Frame frame;
     SQLite::Statement get(db,
@@ -230,6 +269,7 @@ struct RunFile::Impl {
   }
 
   /// Those that the clause chooses, once `bind` has given it its values.
+  /// The clause is a literal of this file; values from outside come by `bind`, never as text of SQL.
   template <class Bind>
   std::vector<LastedContact> contacts(const char* which, Bind&& bind) const {
     return reading(file, "contact", [&] {
@@ -252,6 +292,7 @@ struct RunFile::Impl {
                        {row.real(11), row.real(12)},
                        row.real(13),
                        row.real(14)});
+        // Who reads on asks for one of the two by the other's being -1.
         if ((all.back().other_body < 0) == (all.back().other_site < 0))
           throw BadInput("a contact has one other owner, a body or a site");
       }
@@ -260,6 +301,8 @@ struct RunFile::Impl {
   }
 };
 
+// Tables first, then the schema: a database of another program is told as no run file at all, a run
+// file of another Brink by its number.
 RunFile::RunFile(const fs::path& file) : impl_(guarded(file, [&] { return std::make_unique<Impl>(file); })) {
   const std::string schema = meta("schema_version").value_or("");
   if (schema != std::to_string(kRunFileSchema)) {
@@ -279,16 +322,20 @@ std::map<std::string, std::string> RunFile::meta() const {
   });
 }
 
+// By way of the whole table, which has fifteen rows.
 std::optional<std::string> RunFile::meta(const std::string& key) const {
   const auto all = meta();
   const auto found = all.find(key);
   return found == all.end() ? std::nullopt : std::optional(found->second);
 }
 
+// Of a run that goes on or was killed it is the time of the last checkpoint, and 0 before the first.
 double RunFile::end_time() const {
   return reading(impl_->file, "meta", [&] { return number_in(meta("end_time").value_or("")); });
 }
 
+// Parsed and written anew, so that what is printed is one line of sound JSON whatever the file holds.
+// Of a run that has not ended the key is missing, and the empty text is an error like any other.
 std::string RunFile::summary() const {
   return reading(impl_->file, "meta", [&] {
     const auto json = nlohmann::ordered_json::parse(meta("summary").value_or(""));
@@ -297,6 +344,7 @@ std::string RunFile::summary() const {
   });
 }
 
+// An outline for each row. Copies that shared one when the run was made have equal ones here.
 std::vector<RunFile::BodyRow> RunFile::bodies() const {
   return reading(impl_->file, "body", [&] {
     std::vector<BodyRow> rows;
@@ -316,6 +364,7 @@ std::vector<FixedSite> RunFile::sites() const {
     SQLite::Statement get(impl_->db, "SELECT name, kind, shape FROM site ORDER BY id");
     while (get.executeStep()) {
       const Row row(get);
+      // Ids are 0, 1, 2 ... (rows_numbered_from_zero()): a site's place in the vector is its id.
       FixedSite& site = sites.emplace_back(fixed_site_from_json(row.text(2)));
       site.name = row.text(0);
       site.kind = row.text(1);
@@ -327,6 +376,8 @@ std::vector<FixedSite> RunFile::sites() const {
 namespace {
 
 /// world.periodic of the options.
+/// In metres, 0 along an axis that does not repeat. @throws what nlohmann's accessors throw of options
+/// that are not as a run writes them; BadInput below zero.
 Vec2 periods_in(const std::string& options) {
   const nlohmann::json::json_pointer periodic("/world/periodic");
   const auto json = nlohmann::json::parse(options);
@@ -374,6 +425,8 @@ std::vector<Event> RunFile::events() const {
       Event e;
       e.seq = static_cast<std::uint64_t>(row.count(0));
       e.kind = kind_from(row.text(2));
+      // In the order of Contact's members, which is not that of the columns. Only the time has to be a
+      // finite number: SQLite keeps NaN as NULL, and of all others that comes back as NaN.
       e.contact = {row.real(1),
                    row.real_or_nan(17),
                    row.id_or_none(3, impl_->bodies),
@@ -389,6 +442,7 @@ std::vector<Event> RunFile::events() const {
       e.impulse_n = row.real_or_nan(11);
       e.impulse_t = row.real_or_nan(12);
       if (impl_->has_states) {
+        // Behind the eighteen columns of above.
         e.body = side_in(row, 18);
         e.other = side_in(row, 27);
       }
@@ -401,6 +455,8 @@ std::vector<Event> RunFile::events() const {
 std::vector<RunFile::Spring> RunFile::springs() const {
   return reading(impl_->file, "meta", [&] {
     const auto json = nlohmann::json::parse(meta("springs").value_or("[]"));
+    // null is the anchor of a spring that joins one body alone. All other ids must be of bodies that
+    // there are.
     const auto body = [&](const nlohmann::json& j) {
       if (j.is_null()) return -1;
       const int id = j.get<int>();
@@ -440,12 +496,14 @@ std::optional<ResumePoint> RunFile::checkpoint() const {
                           "SELECT t, state, frames, events, wall_seconds, contacts FROM checkpoint");
     if (!get.executeStep()) return std::nullopt;
     const Row row(get);
+    // The bytes belong to the statement until its next step, so they are copied into the point.
     const SQLite::Column blob = get.getColumn(1);
     const auto* bytes = static_cast<const std::byte*>(blob.getBlob());
     ResumePoint point{row.real(0), {bytes, bytes + blob.getBytes()}, row.real(4), row.count(2), row.count(3),
                       row.count(5)};
     // A seal that does not hold throws: what is damaged is never given out.
     point.state = unsealed(point, run_identity(text("brink_version"), text("options"), text("world_hash")));
+    // A recorder keeps a single row. Of two nobody could say which of them counts the rows of the file.
     if (get.executeStep()) throw BadInput("more than one row");
     return point;
   });
@@ -453,6 +511,7 @@ std::optional<ResumePoint> RunFile::checkpoint() const {
 
 void RunFile::require_same(const Scene& scene) const {
   const std::string name = impl_->file.string();
+  // Version, options, world: from what differs for everything to what differs in one scene.
   if (const std::string was = meta("brink_version").value_or(""); was != version()) {
     throw BadInput(
         fmt::format("{}: written by brink {}, this is {}: the bits could differ", name, was, version()));
@@ -461,6 +520,7 @@ void RunFile::require_same(const Scene& scene) const {
       impl_->file, "meta", [&] { return differences(meta("options").value_or(""), scene.options_json); });
   if (!differ.empty())
     throw BadInput(fmt::format("{}: --resume needs the options it was started with: {}", name, differ));
+  // Of the world the file has no more than a hash, so what differs in it cannot be told.
   const std::string was = meta("world_hash").value_or(""), is = world_hash_text(scene.world);
   if (was != is) {
     throw BadInput(
@@ -473,6 +533,8 @@ void RunFile::require_same(const Scene& scene) const {
 namespace {
 
 /// Every table is made as Brink makes it: what is inserted finds its columns.
+/// By its text, so another spelling of the same columns is refused, too. @throws IoError naming the
+/// first table that differs.
 void require_tables(const fs::path& file, SQLite::Database& db) {
   // SQLite keeps the text of each CREATE statement: equal texts, equal tables.
   SQLite::Database made(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
@@ -496,7 +558,10 @@ void RunFile::require_sound() const {
   if (const std::string found = guarded(impl_->file, pages, kWhat); found != "ok")
     throw IoError(fmt::format("{}: the database is damaged: {}", impl_->file.string(), found));
   guarded(impl_->file, [&] { require_tables(impl_->file, impl_->db); });
+  // Opens the seal as well: a damaged snapshot is told before a resume has written anything.
   const auto point = checkpoint();
+  // All rows first .. first + counted - 1 are there. Those behind them are not looked at: going on
+  // drops them.
   const auto require = [&](const char* table, std::int64_t first, std::int64_t counted) {
     reading(impl_->file, table, [&] {
       // Counting between two row numbers finds holes that max(rowid) would not.
@@ -518,6 +583,8 @@ void RunFile::require_sound() const {
 
 std::pair<double, double> RunFile::time_range() const {
   return reading(impl_->file, "frame", [&] {
+    // Two rows are read for it. Whether the frames between are in order is told by who reads them,
+    // each_frame().
     const std::pair range(impl_->frame_time(0), impl_->frame_time(impl_->some_frames() - 1));
     if (range.first > range.second) throw BadInput("frames are not in the order of time");
     return range;
@@ -531,6 +598,7 @@ std::int64_t RunFile::frame_count() const {
 void RunFile::each_frame(std::int64_t stride, const std::function<void(const Frame&)>& f) const {
   reading(impl_->file, "frame", [&] {
     const std::int64_t frames = impl_->some_frames(), bodies = impl_->bodies;
+    // One statement for all frames: it steps on from row to row, where one a frame would search each time.
     SQLite::Statement get(
         impl_->db, "SELECT t, x, y, angle, vx, vy, omega, body FROM frame WHERE rowid <= ? ORDER BY rowid");
     get.bind(1, frames * bodies);
@@ -540,6 +608,7 @@ void RunFile::each_frame(std::int64_t stride, const std::function<void(const Fra
       impl_->next_frame(get, k, frame);
       if (!(frame.t >= before)) throw BadInput("frames are not in the order of time");
       before = frame.t;
+      // Also those that the stride leaves out have been read and checked.
       if (k % stride == 0 || k + 1 == frames) f(frame);
     }
     return 0;
@@ -554,6 +623,8 @@ RunFile::Frame RunFile::states_at(double t) const {
   return reading(impl_->file, "frame", [&] {
     const std::int64_t index = impl_->frame_index(t);
     Frame a = impl_->read_frame(index);
+    // Before the first frame, at a frame's own time, and after the last one there is nothing to go
+    // between.
     if (t <= a.t || index + 1 >= impl_->frames()) return a;
     const Frame b = impl_->read_frame(index + 1);
     if (!(b.t > a.t)) throw BadInput("frames are not in the order of time");

@@ -1,3 +1,14 @@
+/// Writing run files: class RunFileRecorder.
+///
+/// All rows go through prepared statements into one transaction that is open while rows wait:
+///
+///     a row:         begin a transaction if there is none, insert, commit if due (rows or time)
+///     a checkpoint:  put it into the same transaction, commit
+///     the end:       meta, work, indices, commit, leave the write-ahead log
+///
+/// So at any moment the file on the disk is whole up to some row, and a checkpoint never counts rows
+/// that are not there. Whatever writes does so inside writing(): after one failure nothing is written
+/// any more.
 #include "brink/scenes/run_file/run_file.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -27,13 +38,18 @@ using Clock = std::chrono::steady_clock;
 /// Rows are committed after so many, or after so long: what a kill can take.
 constexpr std::int64_t kRowsPerCommit = 20'000;
 constexpr auto kTimePerCommit = std::chrono::milliseconds(250);
+/// The index of frames by body costs a sort and about as many entries as rows: of longer runs it is
+/// left out, and who asks for one body's path reads the whole table.
 constexpr std::int64_t kMostIndexed = 2'000'000;  ///< frame rows
 
 /// The state hash as the summary prints it.
 std::string hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
+/// The shortest text that reads back as the same double.
 std::string number(double x) { return fmt::format("{}", x); }
 
 /// What pictures need of the springs.
+/// A JSON array of the springs alone, in the order of World::forces, with places in the bodies' frames
+/// [m]. Damping is left out, other kinds of force, too.
 std::string springs_json(const World& world) {
   auto all = nlohmann::ordered_json::array();
   const auto pair = [](const Vec2& v) { return nlohmann::ordered_json::array({v.x(), v.y()}); };
@@ -55,6 +71,7 @@ void keep_earlier(const fs::path& file) {
   if (!fs::exists(file)) return;
   int n = 1;
   const auto kept = [&] { return file.parent_path() / fmt::format("run-{}.db", n); };
+  // The folder is locked, so nobody else takes the name that is found free.
   while (fs::exists(kept())) ++n;
   std::error_code error;
   const fs::path wal = file.string() + "-wal";
@@ -67,11 +84,14 @@ void keep_earlier(const fs::path& file) {
 
 /// Frame times are whole multiples of the interval, by one product (Records::frame_due()): so equality is exact.
 bool on_the_clock(double t, double interval) {
+  // At t = 0 there is a frame whatever the interval. Else the nearest multiple is the only one that t
+  // can be.
   return t == 0.0 || (interval > 0.0 && std::round(t / interval) * interval == t);
 }
 
 }  // namespace
 
+/// The open file, its prepared statements and what waits to be committed.
 struct RunFileRecorder::Impl {
   // In this order: the folder is locked before the database opens and until it is closed; statements and
   // the transaction go before the database that they belong to.
@@ -91,6 +111,7 @@ struct RunFileRecorder::Impl {
   std::string failed;  // why nothing more is written
 
   Impl(RunFolder locked, Open how) : folder(std::move(locked)), db(opened_file(how)) {
+    // Others read the last commit while this one writes, and neither waits for the other.
     db.exec("PRAGMA journal_mode = WAL");
     // a log that a crash of the machine cuts short is still consistent
     db.exec("PRAGMA synchronous = NORMAL");
@@ -122,21 +143,26 @@ struct RunFileRecorder::Impl {
     transaction.emplace(db);
     waiting_since = Clock::now();
   }
+  // Readers of the file see all rows up to here from now on.
   void commit() {
     if (!transaction) return;
     transaction->commit();
     transaction.reset();
     rows_waiting = 0;
   }
+  // Asked after every row and by poll(): where rows are rare, nothing else would end the wait.
   void commit_if_due() {
     if (!transaction) return;
     if (rows_waiting >= kRowsPerCommit || Clock::now() - waiting_since >= kTimePerCommit) commit();
   }
   void put_checkpoint(const ResumePoint& row, std::span<const std::byte> snapshot);
+  /// Wall-clock seconds of the simulation up to now: those of before a resume, and those since the file
+  /// was opened without the pauses (leave_out()).
   double wall() const {
     return wall_before + std::chrono::duration<double>(Clock::now() - opened).count() - waited;
   }
 
+  /// A key of `meta` gets a new value. @pre inside a transaction, or it is committed by itself.
   void set_meta(const std::string& key, const std::string& value) {
     SQLite::Statement put(db, "INSERT OR REPLACE INTO meta VALUES (?, ?)");
     put.bind(1, key);
@@ -144,6 +170,7 @@ struct RunFileRecorder::Impl {
     put.exec();
   }
 
+  // Parts of beginning and of going on, which happen once, and of single rows.
   void write_meta(const Scene& scene);
   void write_bodies(const World& world);
   void write_sites(const World& world);
@@ -158,6 +185,9 @@ struct RunFileRecorder::Impl {
   void put_side(SQLite::Statement& put, int first, const EventSide& side);
 };
 
+/// All keys of a run that begins; `summary` comes when it ends. Version, options and world hash are
+/// what resuming compares, and what the seal of a checkpoint is made with: they are written once and
+/// never changed but for limits in the options.
 void RunFileRecorder::Impl::write_meta(const Scene& scene) {
   set_meta("schema_version", std::to_string(kRunFileSchema));
   set_meta("brink_version", std::string(version()));
@@ -176,6 +206,7 @@ void RunFileRecorder::Impl::write_meta(const Scene& scene) {
   set_meta("wall_seconds", "0");
 }
 
+/// A row a body, in the order of their ids, with the JSON of its outline about the centre of mass.
 void RunFileRecorder::Impl::write_bodies(const World& world) {
   SQLite::Statement put(db, "INSERT INTO body VALUES (?, ?, ?, ?, ?)");
   const Outline* last = nullptr;  // copies share an outline: write its JSON once
@@ -196,6 +227,7 @@ void RunFileRecorder::Impl::write_bodies(const World& world) {
   }
 }
 
+/// A row a fixed site, in the order of their ids. `owner` stays NULL: all of them are the scene's.
 void RunFileRecorder::Impl::write_sites(const World& world) {
   SQLite::Statement put(db, "INSERT INTO site VALUES (?, ?, NULL, ?, ?)");
   for (std::size_t id = 0; id < world.sites.size(); ++id) {
@@ -209,8 +241,11 @@ void RunFileRecorder::Impl::write_sites(const World& world) {
   }
 }
 
+/// Tables, views and all that does not change, committed before the first frame: whoever opens the file
+/// from now on finds a run file.
 void RunFileRecorder::Impl::start_fresh(const Scene& scene) {
   begin();
+  // In the transaction, too: SQLite takes back tables like rows.
   db.exec(kRunFileTables);
   db.exec(kRunFileViews);
   write_meta(scene);
@@ -221,6 +256,7 @@ void RunFileRecorder::Impl::start_fresh(const Scene& scene) {
 
 /// A run that was stopped recorded where it stopped. Gone on with, it has no frame there unless the frame
 /// clock says so.
+/// Else going on would leave a frame that a run which nobody stopped does not have.
 void RunFileRecorder::Impl::drop_early_end_frame(double interval) {
   const double t = resume_point ? resume_point->t : 0.0;
   if (on_the_clock(t, interval)) return;
@@ -228,6 +264,7 @@ void RunFileRecorder::Impl::drop_early_end_frame(double interval) {
   SQLite::Statement drop(db, "DELETE FROM frame WHERE t = ? AND rowid > ?");
   drop.bind(1, t);
   drop.bind(2, frames - bodies);
+  // exec() says how many rows went: those of one frame, or none where the frame was not told.
   frames -= drop.exec();
 }
 
@@ -245,6 +282,10 @@ void RunFileRecorder::Impl::drop_site_frames(double interval) {
   drop.exec();
 }
 
+/// Takes the tables back to what the checkpoint counts, or to nothing where there is none. Leaves
+/// `frames`, `events` and `contacts` as the numbers of rows that are there, so that the next rows go on
+/// from them.
+/// Work counters and indices are start_again()'s.
 void RunFileRecorder::Impl::drop_rows_after_checkpoint(const Scene& scene) {
   if (resume_point) {
     frames = resume_point->frames;
@@ -257,6 +298,7 @@ void RunFileRecorder::Impl::drop_rows_after_checkpoint(const Scene& scene) {
   db.exec(fmt::format("DELETE FROM contact WHERE rowid > {}", contacts));
   drop_early_end_frame(scene.output.frame_interval);
   drop_site_frames(scene.output.frame_interval);
+  // Without a resume point there must be none: it would count rows that have just gone.
   db.exec("DELETE FROM checkpoint");
   if (!resume_point) return;
   // The seal covers the counts: with another number of frames the checkpoint is sealed anew.
@@ -279,11 +321,14 @@ void RunFileRecorder::Impl::start_again(const Scene& scene) {
   commit();
 }
 
+/// Puts a checkpoint in the place of the last one, sealed together with the other columns of its row.
+/// The caller commits.
 void RunFileRecorder::Impl::put_checkpoint(const ResumePoint& row, std::span<const std::byte> snapshot) {
   const std::vector<std::byte> state = sealed(row, snapshot, identity);
   db.exec("DELETE FROM checkpoint");
   SQLite::Statement put(db, "INSERT INTO checkpoint VALUES (?, ?, ?, ?, ?, ?)");
   put.bind(1, row.t);
+  // The bytes outlive the statement, which ends with this function; a snapshot may be large.
   put.bindNoCopy(2, state.data(), static_cast<int>(state.size()));
   put.bind(3, row.frames);
   put.bind(4, row.events);
@@ -292,6 +337,7 @@ void RunFileRecorder::Impl::put_checkpoint(const ResumePoint& row, std::span<con
   put.exec();
 }
 
+/// After the tables are there: SQLite prepares a statement for tables that exist alone.
 void RunFileRecorder::Impl::prepare_inserts() {
   insert_frame.emplace(db, "INSERT INTO frame VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
   insert_site_frame.emplace(db, "INSERT INTO site_frame VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
@@ -303,10 +349,14 @@ void RunFileRecorder::Impl::prepare_inserts() {
   insert_contact.emplace(db, "INSERT INTO contact VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
 }
 
+/// What both constructors do once the folder is locked and the resume point known.
+/// @throws IoError; the file is then as it was at its last commit.
 void RunFileRecorder::open(RunFolder folder, const Scene& scene, Open how, std::optional<ResumePoint> point) {
   const fs::path file = folder.file();
   guarded(file, [&] {
     impl_ = std::make_unique<Impl>(std::move(folder), how);
+    // Of this run, not of the file: on a resume the seal is made anew where options differ in their
+    // limits.
     impl_->identity = run_identity(std::string(version()), scene.options_json, world_hash_text(scene.world));
     impl_->bodies = static_cast<std::int64_t>(scene.world.bodies.size());
     impl_->resume_point = std::move(point);
@@ -326,11 +376,13 @@ RunFileRecorder::RunFileRecorder(RunFolder folder, const Scene& scene, Open how,
 
 RunFileRecorder::RunFileRecorder(const fs::path& dir, const Scene& scene, Open how) {
   RunFolder folder(dir);
+  // Every check of a resume comes before the file is opened for writing.
   std::optional<ResumePoint> point;
   if (how == Open::resume) point = folder.resume_point(scene);
   open(std::move(folder), scene, how, std::move(point));
 }
 
+// Rows that still wait are committed, so a run that an exception ends keeps all that it has told.
 RunFileRecorder::~RunFileRecorder() {
   // What could not be written once is not tried again: the transaction has been given up.
   if (!impl_ || !impl_->failed.empty()) return;
@@ -345,6 +397,7 @@ const fs::path& RunFileRecorder::file() const { return impl_->folder.file(); }
 const std::optional<ResumePoint>& RunFileRecorder::resume_point() const { return impl_->resume_point; }
 
 /// From column 3 on.
+/// The six columns that `frame` and `site_frame` share, and the row with them.
 void RunFileRecorder::Impl::put_state(SQLite::Statement& put, const BodyState& s) {
   put.bind(3, s.pose.position.x());
   put.bind(4, s.pose.position.y());
@@ -357,9 +410,12 @@ void RunFileRecorder::Impl::put_state(SQLite::Statement& put, const BodyState& s
   put.reset();
 }
 
+/// Where the moving sites are at t [s]. Times only grow, so each motion forgets what lies before:
+/// memory does not grow with the run.
 void RunFileRecorder::Impl::put_site_frames(double t) {
   SQLite::Statement& put = *insert_site_frame;
   for (auto& [id, site] : moving_sites) {
+    // A formula that cannot be followed to t ends the run by itself; here the row is left out.
     if (site.extend(t).status != Extent::Status::reached) continue;
     put.bind(1, t);
     put.bind(2, id);
@@ -368,6 +424,7 @@ void RunFileRecorder::Impl::put_site_frames(double t) {
   }
 }
 
+/// Nine columns from number `first` on, or nine NULLs.
 void RunFileRecorder::Impl::put_side(SQLite::Statement& put, int first, const EventSide& side) {
   // In the order of the columns: place, twist before, twist after.
   const BodyState& s = side.after;
@@ -378,6 +435,7 @@ void RunFileRecorder::Impl::put_side(SQLite::Statement& put, int first, const Ev
   for (int i = 0; i < 9; ++i) side.known ? put.bind(first + i, reals[i]) : put.bind(first + i);
 }
 
+// A frame is never cut by a commit: that comes after its last row.
 void RunFileRecorder::frame(double t, std::span<const BodyState> states) {
   impl_->writing([&] {
     impl_->begin();
@@ -409,6 +467,7 @@ void RunFileRecorder::event(const Event& event) {
     id_or_null(6, c.other_site);
     const double reals[] = {c.point.x(),     c.point.y(),     c.normal.x(),    c.normal.y(),
                             c.closing_speed, event.impulse_n, event.impulse_t, c.gap};
+    // NaN becomes NULL in SQLite, and is read back as NaN.
     for (int i = 0; i < 8; ++i) put.bind(7 + i, reals[i]);
     id_or_null(15, c.site);
     id_or_null(16, c.sample);
@@ -425,12 +484,14 @@ void RunFileRecorder::event(const Event& event) {
   });
 }
 
+// Told at the ends of stretches, so rows are in the order of t_end and not of t_begin.
 void RunFileRecorder::contact_lasted(const LastedContact& c) {
   impl_->writing([&] {
     impl_->begin();
     SQLite::Statement& put = *impl_->insert_contact;
     put.bind(1, c.from);
     put.bind(2, c.to);
+    // -1 is NULL: of other body and other site one always is.
     const int ids[] = {c.body, c.other_body, c.other_site, c.site, c.sample};
     for (int i = 0; i < 5; ++i) ids[i] < 0 ? put.bind(3 + i) : put.bind(3 + i, ids[i]);
     put.bindNoCopy(8, to_string(c.mode));
@@ -450,6 +511,8 @@ void RunFileRecorder::contact_lasted(const LastedContact& c) {
 void RunFileRecorder::checkpoint(double t, const std::vector<std::byte>& state) {
   impl_->writing([&] {
     impl_->begin();
+    // All rows of before are in this transaction or in earlier ones, so these counts hold whatever
+    // comes.
     impl_->put_checkpoint({t, {}, impl_->wall(), impl_->frames, impl_->events, impl_->contacts}, state);
     // For a run that is killed: how far it had come.
     impl_->set_meta("end_time", number(t));
@@ -458,12 +521,16 @@ void RunFileRecorder::checkpoint(double t, const std::vector<std::byte>& state) 
   });
 }
 
+// Inside writing(), so a full disk is told here, too, and not first at the next event.
 void RunFileRecorder::poll() {
   impl_->writing([&] { impl_->commit_if_due(); });
 }
 
 void RunFileRecorder::leave_out(double seconds) { impl_->waited += seconds; }
 
+// The last rows, then all that says how the run ended, in one transaction: a file that has a
+// termination has every row. Only then the journal changes, which SQLite does outside of any
+// transaction.
 void RunFileRecorder::finish(const RunSummary& summary, const std::string& summary_json) {
   impl_->writing([&] {
     impl_->begin();

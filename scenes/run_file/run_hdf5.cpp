@@ -1,3 +1,7 @@
+/// The table of groups and arrays is in the header. Columns are gathered whole, but for frames, which
+/// are written a row at a time as they are read. The library is C: identifiers are held by Handle,
+/// statuses of writing go through require(), and what fails says the same word, which write_hdf5()
+/// turns into a message with the file's name.
 #include "brink/scenes/run_file/run_hdf5.h"
 
 #include <fmt/format.h>
@@ -29,9 +33,11 @@ namespace {
 /// An open thing of the library's, closed at the end.
 class Handle {
  public:
+  // `close` must be the one for this kind of identifier: a group's does not close a data set.
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {
     if (id_ < 0) throw IoError("HDF5 refuses");
   }
+  // Its status is not looked at, as a destructor has nobody to tell: write_hdf5() flushes before.
   ~Handle() { close_(id_); }
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
@@ -47,16 +53,19 @@ void require(herr_t status) {
   if (status < 0) throw IoError("HDF5 refuses");
 }
 
+/// A folder of the file, and arrays of one column in it, each with its attribute `unit`.
 class Group {
  public:
   Group(hid_t file, const char* name)
       : id_(H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose) {}
 
+  /// Doubles in the machine's own order of bytes; an empty column is an array of length 0.
   void put(const char* name, const char* unit, const std::vector<double>& values) const {
     const hsize_t size = values.size();
     require(H5LTmake_dataset_double(id_, name, 1, &size, values.data()));
     require(H5LTset_attribute_string(id_, name, "unit", unit));
   }
+  /// Ids, -1 where there is none: they have no unit, which is written as "1".
   void put(const char* name, const std::vector<int>& values) const {
     const hsize_t size = values.size();
     require(H5LTmake_dataset_int(id_, name, 1, &size, values.data()));
@@ -70,6 +79,7 @@ class Group {
     require(H5Tset_size(type, H5T_VARIABLE));
     require(H5Tset_cset(type, H5T_CSET_UTF8));
     const hsize_t size = words.size();
+    // By hand, as the library's short way writes one text and not an array of texts.
     const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
     const Handle set(H5Dcreate2(id_, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
     if (!words.empty()) require(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()));
@@ -85,6 +95,8 @@ class Group {
 /// A run's frames may be more than memory holds: one row of each table is in memory at a time.
 class Rows {
  public:
+  /// Makes the whole array, frames x bodies, at once; put() fills it. In the file doubles are
+  /// little-endian, whatever the machine.
   Rows(const Group& group, const char* name, const char* unit, hsize_t frames, hsize_t bodies)
       : size_{frames, bodies},
         space_(H5Screate_simple(2, size_.data(), nullptr), H5Sclose),
@@ -93,6 +105,7 @@ class Rows {
              H5Dclose) {
     require(H5LTset_attribute_string(group, name, "unit", unit));
   }
+  /// One row; `values` has one number a body. @pre frame < frames.
   void put(hsize_t frame, const std::vector<double>& values) const {
     // Selects the row in the file's space; in memory it is the whole of row_.
     const std::array<hsize_t, 2> from{frame, 0}, count{1, size_[1]};
@@ -105,6 +118,7 @@ class Rows {
   Handle space_, row_, set_;
 };
 
+/// Group `bodies`, by id.
 void put_bodies(hid_t file, const RunFile& run) {
   const Group group(file, "bodies");
   std::vector<std::string> names;
@@ -119,6 +133,7 @@ void put_bodies(hid_t file, const RunFile& run) {
   group.put("inertia", "kg m^2", inertia);
 }
 
+/// Group `frames`: six arrays frames x bodies, and the times. Cost: reads every frame once.
 void put_frames(hid_t file, const RunFile& run) {
   const Group group(file, "frames");
   const auto frames = static_cast<hsize_t>(run.frame_count()),
@@ -128,6 +143,7 @@ void put_frames(hid_t file, const RunFile& run) {
       Rows(group, "angle", "rad", frames, bodies), Rows(group, "vx", "m/s", frames, bodies),
       Rows(group, "vy", "m/s", frames, bodies),    Rows(group, "omega", "rad/s", frames, bodies)};
   std::vector<double> times;
+  // One frame of each array: cleared and filled again, so that nothing grows but the times.
   std::array<std::vector<double>, 6> columns;
   run.each_frame(1, [&](const RunFile::Frame& f) {
     for (auto& c : columns) c.clear();
@@ -142,6 +158,7 @@ void put_frames(hid_t file, const RunFile& run) {
   group.put("t", "s", times);
 }
 
+/// Group `events`, in the order of the file. All kinds are in one table; column `kind` has their words.
 void put_events(hid_t file, const RunFile& run) {
   const Group group(file, "events");
   std::vector<double> t, x, y, nx, ny, closing, along, across, gap;
@@ -166,6 +183,7 @@ void put_events(hid_t file, const RunFile& run) {
   group.put("impulse_normal", "N s", along), group.put("impulse_tangential", "N s", across);
 }
 
+/// Group `contacts`, in the order of their ends.
 void put_contacts(hid_t file, const RunFile& run) {
   const Group group(file, "contacts");
   std::vector<double> from, to, x, y, nx, ny, along, across;
@@ -202,6 +220,7 @@ void write_hdf5(const std::filesystem::path& run_file, const std::filesystem::pa
     // Errors of writing come now, while they can be told; closing tells nobody.
     require(H5Fflush(out, H5F_SCOPE_GLOBAL));
   } catch (const IoError& e) {
+    // Errors of reading the run already name their file and table.
     if (std::string(e.what()) != "HDF5 refuses") throw;
     throw IoError(fmt::format("{}: cannot be written as HDF5 (is the folder there, and room on the disk?)",
                               file.string()));

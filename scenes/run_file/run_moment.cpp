@@ -14,18 +14,24 @@ namespace brink {
 namespace {
 
 /// Frames looked at for what is worth seeing; times at which a trail is asked.
+/// A look costs reading a frame; a time of a trail costs two frames and the events between them.
 constexpr int kLooks = 32, kTrailLooks = 400;
 
+/// Numbers of a file are finite, but squares of places from 1e154 m on are not, and a turn of 1e20 rad
+/// has no digits left below 2 pi. False of NaN.
 bool somewhere(const Pose& pose) {
   return pose.position.norm() <= kFarthestPlace && std::abs(pose.angle) <= kFarthestPlace;
 }
 
+/// The same message for bodies and sites; `table` is where their place comes from.
 [[noreturn]] void nowhere(const std::filesystem::path& file, const char* table, const std::string& name,
                           double t) {
   throw IoError(fmt::format("{}: table {}: '{}' is at no place that can be drawn at t = {} s", file.string(),
                             table, name, t));
 }
 
+/// @throws IoError naming the first site or body whose pose cannot be drawn. Sites of formulas may be
+/// at NaN, which no check of the file could find, as the file holds the formula.
 void require_drawable(const std::filesystem::path& file, const RunMoment& moment) {
   for (std::size_t k = 0; k < moment.sites.size(); ++k)
     if (!somewhere(moment.sites[k])) nowhere(file, "site", moment.world.sites[k].name, moment.t);
@@ -43,6 +49,8 @@ struct Carrier {
   const Pose& pose;
 };
 
+/// all[index], where the index comes from a file. @throws BadInput naming what it is and how many there
+/// are.
 template <class T>
 const T& feature_at(const std::vector<T>& all, int index, const char* what) {
   if (index < 0 || index >= static_cast<int>(all.size()))
@@ -56,9 +64,11 @@ const T& feature_at(const std::vector<T>& all, int index, const char* what) {
 Vec2 place_of(const LastedContact& c, const Carrier& samples, const Carrier& sites) {
   const Sample& sample = feature_at(samples.outline.samples, c.sample, "sample");
   const Site& site = feature_at(sites.outline.sites, c.site, "site");
+  // By way of the world into the frame of the site's outline, where the site's coordinates are.
   const Frame from(samples.pose), to(sites.pose);
   const Vec2 p = to.to_local(from.to_world(sample.p));
   const Vec2 on = nearest_on(site, p).point, out = p - on;
+  // A sample on the core itself has no direction out; the core is then near enough for a picture.
   return to.to_world(out.norm() > 0.0 ? Vec2(on + site.radius * out.normalized()) : on);
 }
 
@@ -66,14 +76,17 @@ Vec2 place_of(const LastedContact& c, const Carrier& samples, const Carrier& sit
 
 std::vector<DrawnForce> forces_of(const RunMoment& moment) {
   std::vector<DrawnForce> out;
+  // at() wherever an index comes from the file.
   for (const LastedContact& c : moment.contacts) {
     const Pose& body = moment.bodies.at(c.body).pose;
     const bool with_site = c.other_body < 0;
+    // A copy: of a body in a plane that repeats it is moved by whole periods.
     Pose other = with_site ? moment.sites.at(c.other_site) : moment.bodies.at(c.other_body).pose;
     // its image that the body meets: the contact's place was near the body
     for (int axis = 0; axis < 2; ++axis)
       if (const double size = moment.world.periods.size[axis]; size > 0.0 && !with_site)
         other.position[axis] -= size * std::round((other.position[axis] - body.position[axis]) / size);
+    // The sample is on one of the two outlines, the site on the other.
     const Carrier a{*moment.world.bodies.at(c.body).outline, body};
     const Carrier b{with_site ? *moment.world.sites.at(c.other_site).outline
                               : *moment.world.bodies.at(c.other_body).outline,
@@ -83,6 +96,7 @@ std::vector<DrawnForce> forces_of(const RunMoment& moment) {
       for (int axis = 0; axis < 2; ++axis)
         if (const double size = moment.world.periods.size[axis]; size > 0.0)
           arm[axis] -= size * std::round(arm[axis] / size);
+    // A force on each of the two bodies, of the same size; a fixed site is not drawn as being pushed.
     out.push_back({c.body, arm, c.normal_force});
     // The same place, from the other's centre.
     if (!with_site) out.push_back({c.other_body, body.position + arm - other.position, c.normal_force});
@@ -90,6 +104,8 @@ std::vector<DrawnForce> forces_of(const RunMoment& moment) {
   return out;
 }
 
+// At equal distances in time: a run of a million frames takes as long as one of a hundred. Where a body
+// is between two looks may be left out.
 Box extent_of(const RunFile& run, const World& world) {
   Box all;
   const auto [first, last] = run.time_range();
@@ -124,6 +140,7 @@ std::vector<std::vector<Vec2>> trails_of(const RunFile& run, double t) {
 std::vector<DrawnContact> contacts_before(const RunFile& run, double t) {
   // On a frame's own time: collisions since the one before it.
   double since = run.frame_at(t).t;
+  // nextafter() gives the double before t: frame_at() takes the last frame at or before it.
   if (since == t) since = run.frame_at(std::nextafter(t, -1.0)).t;
   std::vector<DrawnContact> contacts;
   for (const Event& e : run.events())

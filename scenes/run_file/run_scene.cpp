@@ -1,3 +1,11 @@
+/// A run from its scene to its file. The order of the steps keeps an earlier run file as it is where
+/// the request is refused:
+///
+///     limits of the request; is the run finished already?    no file is touched
+///     plan the world; would it start?                        no file is touched
+///     resume point, snapshot into the simulator              no file is touched
+///     the trace, then the run file, are opened               an earlier run file is moved aside
+///     simulate, close the run file whatever happens
 #include "brink/scenes/run_file/run_scene.h"
 
 #include <fmt/format.h>
@@ -20,6 +28,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// Wall-clock seconds.
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -39,12 +48,15 @@ double end_of(const Scene& scene, const RunRequest& request) {
 }
 
 /// The report of a run file that has already got to `until`, or nothing.
+/// So a resume of a run that is done does nothing, however often it is asked for, and prints what was
+/// printed.
 std::optional<RunReport> finished_report(const RunFolder& folder, const RunFile& run, double until) {
   // A run that was stopped or failed is not finished, whatever its time.
   if (run.meta("termination") != "reached_end") return std::nullopt;
   RunReport report;
   report.summary.end_time = run.end_time();
   if (report.summary.end_time < until) return std::nullopt;
+  // Of the summary only what the exit status depends on; all else is in its JSON as it was stored.
   report.summary.termination = Termination::reached_end;
   report.json = run.summary();
   // sound() asks for it: a run that was finished before has the exit status that it had.
@@ -77,6 +89,7 @@ class Pause {
     if (!request_->waits || !request_->waits()) return;
     const auto begin = Clock::now();
     do {
+      // Fifty times a second: soon enough for a person who lets the run go on.
       recorder_->poll();
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     } while (request_->waits());
@@ -92,6 +105,8 @@ class Pause {
   double seconds_ = 0.0;
 };
 
+/// What the simulator is told of the scene and the request. The closures keep references: recorder,
+/// request and pause outlive the run.
 RunOptions run_options(const Scene& scene, const RunRequest& request, double until, RunFileRecorder& recorder,
                        Pause& pause) {
   RunOptions options;
@@ -102,14 +117,18 @@ RunOptions run_options(const Scene& scene, const RunRequest& request, double unt
   options.first_frame = !recorder.resume_point();
   options.record_events = scene.output.events;
   options.progress = [&recorder, &request, &pause](double t, std::uint64_t collisions) {
+    // Also where no rows come: what has waited long enough is committed now.
     recorder.poll();
     pause.wait();
+    // Told after the pause: a stop that was asked for during it takes effect at once.
     return !request.progress || request.progress(t, collisions);
   };
   return options;
 }
 
 /// Takes the simulator to where the run file has got to.
+/// @throws BadInput where `until` [s] lies before the checkpoint; IoError where the snapshot is not one
+/// of this world.
 void restore(Simulator& simulator, const RunFolder& folder, const ResumePoint& point, double until) {
   // What is recorded up to the checkpoint stays.
   if (until < point.t)
@@ -127,6 +146,7 @@ void restore(Simulator& simulator, const RunFolder& folder, const ResumePoint& p
 /// Records, and tells what has been recorded.
 class TellingRecorder final : public Recorder {
  public:
+  /// The file first, then the request's own function: what it is told of is on its way to the disk.
   TellingRecorder(RunFileRecorder& file, const RunRequest& request, Pause& pause)
       : file_(&file), request_(&request), pause_(&pause) {}
   void frame(double t, std::span<const BodyState> states) override { file_->frame(t, states); }
@@ -167,11 +187,13 @@ Scene scene_of_run(const std::filesystem::path& run_file, const std::vector<std:
   if (!text)
     throw BadInput(fmt::format("{}: does not hold its scene's text: it was written by an earlier Brink",
                                run_file.string()));
+  // A run file of before has no overrides, and then none were given.
   const auto json = nlohmann::json::parse(run.meta("overrides").value_or("[]"), nullptr, false);
   const auto is_text = [](const nlohmann::json& j) { return j.is_string(); };
   if (!json.is_array() || !std::all_of(json.begin(), json.end(), is_text))
     throw IoError(fmt::format("{}: table meta: overrides: not a JSON array of strings", run_file.string()));
   auto overrides = json.get<std::vector<std::string>>();
+  // In this order, as the last of two overrides of one key holds.
   overrides.insert(overrides.end(), more.begin(), more.end());
   // With the scene's own path: data files that it names are found beside it.
   return parse_scene(*text, run.meta("scene").value_or(run_file.string()), overrides);
@@ -188,12 +210,14 @@ RunReport run_scene(const Scene& scene, const RunRequest& request) {
     folder.emplace(request.dir);
     if (auto report = finished_before(scene, *folder, until)) return *report;
   }
+  // Checks the world and makes its fields: the long part of planning, counted in load_seconds.
   Simulator simulator(scene.world, scene.solver);
   // No run file has been touched yet: a scene that cannot start leaves the earlier one in its place.
   if (const std::string why = simulator.start_fault(); !why.empty())
     throw SceneFaults(scene.path, {{1, 1, printable(why), {}}});
   std::optional<ResumePoint> point;
   if (request.resume) point = folder->resume_point(scene);
+  // Before the run file is opened for writing: a snapshot that does not fit changes nothing.
   if (point) restore(simulator, *folder, *point, until);
   std::optional<TraceFile> trace;
   // Before the recorder, which moves an earlier run file aside: a trace that cannot be opened
@@ -206,15 +230,19 @@ RunReport run_scene(const Scene& scene, const RunRequest& request) {
   RunReport report;
   report.file = recorder.file();
   if (recorder.resume_point()) report.resumed_from = recorder.resume_point()->t;
+  // All up to the first step, checks of a resume included.
   const double load_seconds = request.load_seconds + seconds_since(start);
   Pause pause(recorder, request);
   RunOptions options = run_options(scene, request, until, recorder, pause);
   options.trace = trace ? &*trace : nullptr;
+  // The run file is open, and nothing has moved yet.
   if (request.begins) request.begins();
   try {
     TellingRecorder telling(recorder, request, pause);
+    // Without `happened` there is nobody to tell: events go straight to the file.
     report.summary = simulator.run(options, request.happened ? static_cast<Recorder*>(&telling) : &recorder);
   } catch (const std::exception& e) {
+    // The file says how it ended; who called is told all the same.
     close_as_failed(recorder, simulator, e.what());
     throw;
   }
@@ -223,10 +251,13 @@ RunReport run_scene(const Scene& scene, const RunRequest& request) {
   if (recorder.resume_point()) report.summary.wall_seconds += recorder.resume_point()->wall_seconds;
   report.json = summary_to_json(report.summary, load_seconds);
   recorder.finish(report.summary, report.json);
+  // After the run file: a trace that could not be written costs nothing of the run.
   if (trace) trace->finish();
   return report;
 }
 
+// Other programs read these keys: `brink run --json` prints them, meta's `summary` keeps them. NaN and
+// infinity have no word in JSON and become null.
 std::string summary_to_json(const RunSummary& summary, double load_seconds) {
   nlohmann::ordered_json work;
   WorkCounters::for_each(summary.work,
@@ -252,8 +283,11 @@ std::string summary_to_json(const RunSummary& summary, double load_seconds) {
                                     {"friction_residual", summary.friction_residual},
                                     {"island_energy", summary.island_energy},
                                     {"rest_energy", summary.rest_energy},
+                                    // As text: JSON's numbers are doubles for many readers, which would
+                                    // round 64 bits.
                                     {"state_hash", fmt::format("{:016x}", summary.state_hash)},
                                     {"work", std::move(work)}};
+  // A reason may quote bytes of a file that are no UTF-8: they are replaced, as dump() would throw.
   return j.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 

@@ -25,8 +25,11 @@ std::string cell(const std::string& text) {
 std::string cell(double x) { return std::isnan(x) ? std::string() : fmt::format("{}", x); }
 std::string cell(int id) { return id < 0 ? std::string() : std::to_string(id); }
 
+/// One CSV file as it is written, row by row: only the row is in memory. Each cell() knows how its type
+/// is written.
 class Table {
  public:
+  /// A file that is there is written over. That it could not be opened is told by finish().
   Table(fs::path file, const std::string& head) : file_(std::move(file)), out_(file_, std::ios::binary) {
     out_ << head << '\n';
   }
@@ -45,6 +48,7 @@ class Table {
   std::ofstream out_;
 };
 
+/// bodies.csv and sites.csv: who the ids of the other tables are.
 void write_things(const RunFile& run, const fs::path& folder) {
   Table bodies(folder / "bodies.csv", "body,name,mass_kg,inertia_kg_m2");
   for (const auto& b : run.bodies()) bodies.row(b.id, b.name, b.mass, b.inertia);
@@ -55,6 +59,7 @@ void write_things(const RunFile& run, const fs::path& folder) {
   sites.finish();
 }
 
+/// A row for each body at each frame. Cost: reads every frame once.
 void write_frames(const RunFile& run, const fs::path& folder) {
   Table table(folder / "frames.csv", "t_s,body,x_m,y_m,angle_rad,vx_m_per_s,vy_m_per_s,omega_rad_per_s");
   run.each_frame(1, [&](const RunFile::Frame& f) {
@@ -66,6 +71,7 @@ void write_frames(const RunFile& run, const fs::path& folder) {
   table.finish();
 }
 
+/// A row an event. Where the other is a body, `site` is empty, and the other way round.
 void write_events(const RunFile& run, const fs::path& folder) {
   Table table(
       folder / "events.csv",
@@ -73,6 +79,7 @@ void write_events(const RunFile& run, const fs::path& folder) {
       "impulse_tangential_Ns,gap_m");
   for (const Event& e : run.events()) {
     const Contact& c = e.contact;
+    // The shortest digits that read back as the same doubles: the table loses nothing.
     table.row(static_cast<int>(e.seq), c.time, std::string(to_string(e.kind)), c.body, c.other_body,
               c.other_site, c.point.x(), c.point.y(), c.normal.x(), c.normal.y(), c.closing_speed,
               e.impulse_n, e.impulse_t, c.gap);
@@ -80,6 +87,7 @@ void write_events(const RunFile& run, const fs::path& folder) {
   table.finish();
 }
 
+/// A row for each stretch of a contact that lasted, in the order of their ends.
 void write_contacts(const RunFile& run, const fs::path& folder) {
   Table table(folder / "contacts.csv",
               "from_s,to_s,body,other,site,mode,x_m,y_m,normal_x,normal_y,force_normal_N,force_tangential_N");

@@ -44,6 +44,7 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 /// A chord over the angle a is off by r (1 - cos(a / 2)): 1e-3 r for this one.
 const double kMostTurn = 2.0 * std::acos(1.0 - 1e-3);
 
+/// As XML (.vtp). @throws IoError where VTK could not write the file.
 void write(vtkPolyData* data, const fs::path& file) {
   const vtkNew<vtkXMLPolyDataWriter> writer;
   writer->SetFileName(file.c_str());
@@ -59,6 +60,7 @@ class Column {
   Column(vtkDataSetAttributes* of, const char* name, int components = 1) {
     array_->SetName(name);
     array_->SetNumberOfComponents(components);
+    // VTK counts references: the data keeps the array alive, whoever goes first.
     of->AddArray(array_.GetPointer());
   }
   template <class... Values>
@@ -71,21 +73,27 @@ class Column {
 };
 
 /// The outlines of one frame.
+/// Every site of an outline is a cell of its own, a polyline in the world; columns have one entry a
+/// cell.
 class Picture {
  public:
   Picture() {
+    // Else VTK keeps coordinates in single precision, and what all but touches would seem to overlap.
     points_->SetDataTypeToDouble();
     data_->SetPoints(points_.GetPointer());
     data_->SetLines(lines_.GetPointer());
   }
 
+  /// All sites of the outline at the pose of `state`. One of `body` and `site` is an id, the other -1.
   void add(const Outline& outline, const BodyState& state, int body, int site) {
     const Frame frame(state.pose);
     for (const Site& s : outline.sites) {
+      // points_of() leaves the ids of this cell in ids_.
       lines_->InsertNextCell(points_of(s, frame));
       for (const vtkIdType id : ids_) lines_->InsertCellPoint(id);
       body_.add(body);
       site_.add(site);
+      // A disc is drawn as its own circle, so nothing is left to add around it.
       thickness_.add(s.kind == SiteKind::point ? 0.0 : s.radius);
       vx_.add(state.twist.velocity.x());
       vy_.add(state.twist.velocity.y());
@@ -106,6 +114,8 @@ class Picture {
       // A disc turns by a whole circle from its right end; an arc from `a` by its sweep.
       const Vec2 center = disc ? s.a : s.center, from = disc ? Vec2(s.radius, 0.0) : Vec2(s.a - s.center);
       const double sweep = disc ? kTurn : s.sweep;
+      // So many chords, each over kMostTurn at most; both ends are points, and a circle closes on its
+      // first.
       const int count = 1 + static_cast<int>(std::ceil(std::abs(sweep) / kMostTurn));
       for (int k = 0; k <= count; ++k) {
         const double angle = sweep * k / count, c = std::cos(angle), n = std::sin(angle);
@@ -116,6 +126,7 @@ class Picture {
   }
   void add_point(const Vec2& p) { ids_.push_back(points_->InsertNextPoint(p.x(), p.y(), 0.0)); }
 
+  // The columns stand behind data_, as they are added to it when they are made.
   std::vector<vtkIdType> ids_;
   vtkNew<vtkPolyData> data_;
   vtkNew<vtkPoints> points_;
@@ -125,6 +136,7 @@ class Picture {
       vy_{data_->GetCellData(), "vy"}, omega_{data_->GetCellData(), "omega"};
 };
 
+/// frame_000000.vtp ... and their list run.pvd. Cost: one frame in memory at a time; a file a frame.
 void write_frames(const RunFile& run, const fs::path& folder) {
   const std::vector<RunFile::BodyRow> bodies = run.bodies();
   const std::vector<FixedSite> sites = run.sites();
@@ -138,6 +150,7 @@ void write_frames(const RunFile& run, const fs::path& folder) {
     for (const RunFile::BodyRow& b : bodies)
       picture.add(b.outline, f.states[static_cast<std::size_t>(b.id)], b.id, -1);
     for (std::size_t s = 0; s < sites.size(); ++s)
+      // Of a site that moves the pose alone: its twist is shown as 0.
       picture.add(*sites[s].outline, BodyState{told_pose(sites[s], f.t), {}}, -1, static_cast<int>(s));
     const std::string name = fmt::format("frame_{:06}.vtp", frame++);
     picture.write_to(folder / name);
@@ -148,6 +161,7 @@ void write_frames(const RunFile& run, const fs::path& folder) {
   if (!out) throw_not_written(index);
 }
 
+/// events.vtp: a vertex an event, at the contact's place in the world.
 void write_events(const RunFile& run, const fs::path& folder) {
   const vtkNew<vtkPolyData> data;
   const vtkNew<vtkPoints> points;

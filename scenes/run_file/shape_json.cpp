@@ -9,10 +9,13 @@ namespace {
 
 using nlohmann::ordered_json;
 
+// [x, y], and back. Keys are written in the order of the page in the header, hence ordered_json.
 ordered_json pair(const Vec2& v) { return ordered_json::array({v.x(), v.y()}); }
 
 Vec2 vector(const nlohmann::json& j) { return {j.at(0).get<double>(), j.at(1).get<double>()}; }
 
+/// A site by its kind: what a kind does not use is not written. Normals, samples and bounds are left
+/// out, too: finish_outline() makes them of the sites.
 ordered_json site_object(const Site& site) {
   switch (site.kind) {
     case SiteKind::segment:
@@ -27,12 +30,14 @@ ordered_json site_object(const Site& site) {
   return {{"kind", "point"}, {"radius", site.radius}, {"a", pair(site.a)}};
 }
 
+/// `solid` is said once a loop. @throws BadInput on a kind that there is not; nlohmann's exceptions.
 Site site_from(const nlohmann::json& j, bool solid) {
   const std::string kind = j.at("kind");
   Site site;
   site.solid = solid;
   site.radius = j.at("radius");
   site.a = vector(j.at("a"));
+  // A point begins and ends at one place (core/shapes/site.h).
   site.b = kind == "point" ? site.a : vector(j.at("b"));
   if (kind == "segment") {
     site.kind = SiteKind::segment;
@@ -47,6 +52,7 @@ Site site_from(const nlohmann::json& j, bool solid) {
   return site;
 }
 
+/// The sites of a loop stand side by side in the outline, in the loop's order.
 ordered_json loop_object(const Outline& outline, const Loop& loop) {
   auto sites = ordered_json::array();
   for (int i = loop.first; i < loop.first + loop.count; ++i) sites.push_back(site_object(outline.sites[i]));
@@ -69,6 +75,8 @@ ordered_json formula(const std::optional<Formula>& f) {
   return f ? ordered_json(f->text()) : ordered_json("0");
 }
 
+/// null of a site that stands still. Formulas are kept as their texts, and are read by the same parser
+/// again.
 ordered_json motion_object(const FixedSite& site) {
   if (const auto* constant = std::get_if<ConstantMotion>(&site.motion)) {
     return {{"velocity", pair(constant->twist.velocity)}, {"angular_velocity", constant->twist.omega}};
@@ -79,8 +87,10 @@ ordered_json motion_object(const FixedSite& site) {
   return nullptr;
 }
 
+/// Formulas of a site have one variable, the time. @throws BadInput where the text is none.
 std::optional<Formula> formula_from(const nlohmann::json& j) { return Formula(j.get<std::string>(), {"t"}); }
 
+/// The kind of motion is told by its keys: `velocity` is of constant twists alone.
 void read_motion(const nlohmann::json& motion, FixedSite& site) {
   if (motion.contains("velocity")) {
     site.motion =
@@ -99,7 +109,9 @@ Pose inverse(const Pose& pose) { return {-Frame(pose).direction_to_local(pose.po
 
 std::string outline_to_json(const Outline& outline) { return outline_object(outline).dump(); }
 
+/// The outline at the site's pose at t = 0, and what reading needs to move it from there.
 std::string fixed_site_to_json(const FixedSite& site) {
+  // In the world: who reads the file needs no pose to draw a site that stands still.
   ordered_json j = outline_object(transformed(*site.outline, site.pose));
   j["pose"] = ordered_json::array({site.pose.position.x(), site.pose.position.y(), site.pose.angle});
   j["motion"] = motion_object(site);
@@ -125,6 +137,7 @@ Outline outline_from_json(const std::string& text) {
     throw BadInput(std::string("shape: not an outline in JSON: ") + e.what());
   }
   // Checks what makes an outline of sites: loops that join, arcs on their circles, no NaN.
+  // It also fills what was not written: samples, normals, bounds.
   finish_outline(outline);
   if (!(outline.bounding_radius <= kFarthestPlace))
     throw BadInput("shape: it reaches farther than any scene");
@@ -142,6 +155,7 @@ FixedSite fixed_site_from_json(const std::string& text) {
       const auto& pose = j.at("pose");
       site.pose = {vector(pose), pose.at(2).get<double>()};
       read_motion(j.at("motion"), site);
+      // Back into the site's own frame, which moves: off by a rounding of the places.
       in_world = transformed(in_world, inverse(site.pose));
     }
   } catch (const nlohmann::json::exception& e) {

@@ -1,3 +1,11 @@
+/// The scene reader's last stage, from tables to a Scene:
+///
+///     settings, materials          what holds everywhere
+///     plan sites, plan bodies      shape, mass, motion and pose of each entry, before copying
+///     count bodies                 their names and ids
+///     place                        copies, those that touch, those at random (Placer)
+///     sites, bodies, forces        into the world
+///     check                        what no single table can tell
 #include "brink/scenes/scene/build.h"
 
 #include <algorithm>
@@ -18,6 +26,7 @@ class SceneBuilder {
   SceneBuilder(const FileTable& file, FaultList& faults)
       : file_(file), faults_(faults), shapes_(file.field.curve_tolerance, faults) {}
 
+  /// Called once: it gives its scene away.
   Scene build() {
     settings();
     materials();
@@ -43,6 +52,7 @@ class SceneBuilder {
   }
 
  private:
+  /// What needs no other part: title, gravity, periods, rules, options.
   void settings() {
     World& world = scene_.world;
     world.title = file_.title;
@@ -53,6 +63,7 @@ class SceneBuilder {
     scene_.duration = file_.world.duration;
     scene_.output = file_.output;
     scene_.solver = file_.solver;
+    // One seed for places and for the solver: the file has a single key.
     scene_.solver.seed = file_.world.seed;
     scene_.solver.field = file_.field.options;
     std::string error;
@@ -64,6 +75,7 @@ class SceneBuilder {
   PlaceRules place_rules(const std::vector<PlannedThing>& sites,
                          const std::vector<PlannedThing>& bodies) const {
     // The scene's world has nobody yet, and the rows of a stack must know the gap.
+    // World::length() looks at outlines alone.
     World to_come;
     for (const PlannedThing& thing : sites) to_come.sites.emplace_back().outline = thing.shape.outline;
     for (const PlannedThing& thing : bodies) to_come.bodies.emplace_back().outline = thing.shape.outline;
@@ -79,6 +91,8 @@ class SceneBuilder {
       faults_.add(file_.output_place, "output: " + why);
   }
 
+  /// Every option as it is used, for the run file: resuming compares these texts. Overrides are in it
+  /// by their values, defaults as well.
   void options_json() {
     Json json;
     json["world"] = world_schema().json(file_.world);
@@ -98,6 +112,8 @@ class SceneBuilder {
     }
   }
 
+  /// Index into World::materials; a fault and 0 where nobody is called so. @pre materials() has been
+  /// called.
   int material(const Given<std::string>& name) {
     if (!name.given) return 0;
     std::vector<std::string> words;
@@ -115,6 +131,8 @@ class SceneBuilder {
     return table.name.given ? table.name.value : (body ? "body" : "site") + std::to_string(index);
   }
 
+  /// One entry of the file after the other, with all faults that can be told of an entry by itself.
+  /// Copies are still to come.
   std::vector<PlannedThing> plan(const std::vector<ThingTable>& tables, bool body) {
     std::vector<PlannedThing> out;
     std::set<std::string> taken;
@@ -124,6 +142,8 @@ class SceneBuilder {
       // Even for sites and odd for bodies: no two entries of a scene draw from the same random stream.
       thing.ordinal = 2 * out.size() + (body ? 1 : 0);
       thing.name = name_of(table, body, out.size());
+      // Within bodies, or within sites: a body and a site may share a name, which `touching` then
+      // refuses.
       if (!taken.insert(thing.name).second)
         faults_.add(table.name.given ? table.name.where : table.place,
                     "name: is used twice; given " + in_quotes(thing.name) + ", allowed: a name of its own");
@@ -147,6 +167,9 @@ class SceneBuilder {
     return out;
   }
 
+  /// Where the outline's frame stands: position and angle as written, in the world. Of a site or body
+  /// that keeps its origin the outline, which is about the centre of mass, is shifted by the turned
+  /// offset.
   static Pose pose(const ThingTable& table, const BuiltShape& shape) {
     Pose pose;
     pose.position = table.position.value;
@@ -172,6 +195,7 @@ class SceneBuilder {
     }
   }
 
+  /// NAME[k] of copies, also where only one is asked for; NAME of an entry without copies.
   static std::string copy_name(const PlannedThing& thing, std::size_t k) {
     return copies_of(*thing.table).copied ? thing.name + '[' + std::to_string(k) + ']' : thing.name;
   }
@@ -199,12 +223,16 @@ class SceneBuilder {
         body.initial = thing.copies[k];
         hold(body);
         scene_.world.bodies.push_back(std::move(body));
+        // build_forces() adds this to places given in the file's frame: there the outline's origin is
+        // at `shift`.
         const bool keep_origin = thing.table->centered.given && !thing.table->centered.value;
         origins_.push_back(keep_origin ? Vec2(-thing.shape.shift) : Vec2(Vec2::Zero()));
       }
     }
   }
 
+  /// Mass and inertia by what is given: density times area (of a wire without thickness, length), else
+  /// the mass, else 1 kg; the inertia that is given, else that of a shape of even density.
   Body body_of(const PlannedThing& thing) {
     const ThingTable& table = *thing.table;
     const Measure& measure = thing.shape.measure;
@@ -238,6 +266,7 @@ class SceneBuilder {
                                  " kg m^2, allowed: 1e-100 to 1e100; give mass and inertia");
   }
 
+  /// A held coordinate has an infinite mass: a velocity along it would have an infinite energy.
   void check_locks(const Body& body, const ThingTable& table) {
     const bool moves =
         (body.lock_x && table.velocity.value.x() != 0.0) || (body.lock_y && table.velocity.value.y() != 0.0);
@@ -260,6 +289,7 @@ class SceneBuilder {
     if (body.lock_angle) twist.omega = 0.0;
   }
 
+  /// Samples of the classic detector: as asked for; those of a text data file; else vertices.
   Sampling sampling(const PlannedThing& thing) const {
     // In the order of Sampling::Kind; `file` is not asked for by name.
     static const std::vector<std::string> kinds{"vertices", "boundary", "volume", "random", "raster"};
@@ -282,6 +312,7 @@ class SceneBuilder {
   void check_sampling(const Body& body, const ThingTable& table) {
     if (!table.sampling.given) return;
     try {
+      // Once an entry, as its copies share what is asked.
       make_particles(*body.outline, body.sampling);
     } catch (const BadInput& error) {
       faults_.add(table.sampling.where, error.what());
@@ -322,6 +353,8 @@ class SceneBuilder {
 
 }  // namespace
 
+/// From here to load_scene(): text, tree, tables, data files, scene. Each stage adds its faults to one
+/// list, which is thrown at the end.
 Scene build_scene(const FileTable& file, FaultList& faults) { return SceneBuilder(file, faults).build(); }
 
 Scene parse_scene(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
@@ -333,6 +366,7 @@ Scene parse_scene(std::string_view text, const std::string& name, const std::vec
   take_sample_files(file, std::filesystem::path(name).parent_path(), document.faults());
   Scene scene = build_scene(file, document.faults());
   document.faults().throw_if_any(name);
+  // For the run file, which keeps text and overrides (scene_of_run()).
   scene.path = name;
   scene.text = text;
   scene.overrides = overrides;

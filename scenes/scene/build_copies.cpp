@@ -1,3 +1,5 @@
+/// How many copies an entry has, what they are called, and where they stand. The order of placing is
+/// what everything here is about: nobody is placed before what its place depends on.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -11,6 +13,9 @@ namespace brink {
 namespace {
 
 // One random stream for each entry of the file, so that one scatter does not disturb another.
+// Purposes 0 and 1 of entry n are the numbers 2 n + 1 and 2 n + 2, so no two streams have the same. The
+// multiplier is 2^64 over the golden ratio, made odd: it spreads small numbers over all bits. Random's
+// own seeding mixes them once more.
 std::uint64_t stream(std::uint64_t seed, std::size_t ordinal, std::uint64_t purpose) {
   return Random(seed ^ (0x9e3779b97f4a7c15ULL * (2 * ordinal + purpose + 1))).next();
 }
@@ -18,6 +23,7 @@ std::uint64_t stream(std::uint64_t seed, std::size_t ordinal, std::uint64_t purp
 /// Has no place before everything else has one.
 bool is_random(const ThingTable& table) { return table.scatter.given || table.pile.given; }
 
+/// Everything that has been placed so far, sites first; what has no copies yet is not in the way.
 std::vector<Obstacle> obstacles_of(const std::vector<PlannedThing>& sites,
                                    const std::vector<PlannedThing>& bodies) {
   std::vector<Obstacle> out;
@@ -42,6 +48,7 @@ std::vector<std::int64_t> lengths_of_rows(const ThingTable& table) {
 }
 
 // Without the key `grid` the table says one column and one row: a single copy at the position.
+// Row by row, as copies are numbered: copy k is in column k mod columns.
 std::vector<Pose> grid_poses(const PlannedThing& thing, const Vec2& position) {
   const GridTable& grid = thing.table->grid.value;
   std::vector<Pose> out;
@@ -60,6 +67,7 @@ bool in_one_place(const GridTable& grid) {
 
 }  // namespace
 
+/// By the keys alone, before any copy is made: a million of them is refused without being built.
 CopyCount copies_of(const ThingTable& table) {
   if (table.scatter.given) return {table.scatter.value.count, table.scatter.where, true};
   if (table.pile.given) return {table.pile.value.count, table.pile.where, true};
@@ -70,10 +78,12 @@ CopyCount copies_of(const ThingTable& table) {
   if (!table.wall.given) return {1, table.place, false};
   const auto [columns, rows] = table.wall.value;
   // Odd counts from the top down: rows 1, 3, 5 ... are short, (rows + 1) / 2 of them.
+  // Must agree with lengths_of_rows(): names are counted by this, places by that.
   const std::int64_t shorter = rows > 1 && columns > 1 ? (rows + 1) / 2 : 0;
   return {columns * rows - shorter, table.wall.where, true};
 }
 
+// The last bracket: a name may itself hold some, as "a[0][3]", copy 3 of "a[0]".
 std::pair<std::string, std::optional<std::size_t>> copy_named(const std::string& name) {
   const std::size_t bracket = name.rfind('[');
   if (bracket == std::string::npos || name.back() != ']') return {name, std::nullopt};
@@ -92,6 +102,8 @@ std::optional<Vec2> down_of(const ThingTable& table, const Vec2& gravity) {
   return Vec2((down / down.lpNorm<Eigen::Infinity>()).normalized());
 }
 
+/// The pose is the entry's own, the twist that of all copies. A site's table has no velocities, so its
+/// twist is zero.
 BodyState start_of(const PlannedThing& thing) {
   const ThingTable& table = *thing.table;
   return {thing.pose, {table.velocity.value, table.angular_velocity.value}};
@@ -111,6 +123,7 @@ std::function<std::vector<Pose>(const Vec2&)> standing_poses(const PlannedThing&
   const ThingTable& table = *thing.table;
   if (!table.stack.given && !table.pyramid.given && !table.wall.given)
     return [&thing](const Vec2& position) { return grid_poses(thing, position); };
+  // Rows need an up; where nothing says which it is, +y.
   const Vec2 down = down_of(table, rules.gravity).value_or(-Vec2::UnitY());
   const TouchingRows rows(
       {thing.shape.outline.get(), thing.pose.angle, -down, lengths_of_rows(table), rules.thin});
@@ -134,6 +147,7 @@ void Placer::place(std::vector<PlannedThing>& sites, std::vector<PlannedThing>& 
     }
 }
 
+/// Adds the copies of an entry to those so far; false and a fault beyond kMostCopies.
 bool Placer::counted(const PlannedThing& thing) {
   const CopyCount copies = copies_of(*thing.table);
   if ((total_ += copies.count) <= kMostCopies) return true;
@@ -142,6 +156,8 @@ bool Placer::counted(const PlannedThing& thing) {
   return false;
 }
 
+/// Copies at the entry's own position, whatever is there: an overlap is told by who asks for overlaps,
+/// not here.
 void Placer::stand(PlannedThing& thing) {
   const GridTable& grid = thing.table->grid.value;
   if (in_one_place(grid))
@@ -155,6 +171,7 @@ void Placer::stand(PlannedThing& thing) {
   }
 }
 
+/// Copies in the box that the table gives; its two corners may be any two that are opposite.
 void Placer::scatter(PlannedThing& thing, const std::vector<Obstacle>& obstacles) {
   const ScatterTable& asked = thing.table->scatter.value;
   ScatterAsk ask{
@@ -176,6 +193,7 @@ void Placer::scatter(PlannedThing& thing, const std::vector<Obstacle>& obstacles
     const double heading = how.uniform(0.0, 2.0 * std::numbers::pi);
     const double way = how.below(2) == 0 ? 1.0 : -1.0;
     state.pose = pose;
+    // In the world's axes, on top of the velocity that all copies have.
     state.twist.velocity += asked.speed * Vec2{std::cos(heading), std::sin(heading)};
     state.twist.omega += asked.angular_speed * way;
     thing.copies.push_back(state);
@@ -199,10 +217,12 @@ void Placer::pile(PlannedThing& thing, const std::vector<Obstacle>& obstacles) {
                                                     "], allowed there: [0, -1]");
   // Upright, the frame is the world's: no turning to and fro, and no roundings by it.
   const bool upright = turn == 0.0;
+  // Obstacles in the pile's frame, where they are turned back by as much as copies are.
   std::vector<Obstacle> seen = obstacles;
   if (!upright)
     for (Obstacle& o : seen) o.pose = {frame.to_local(o.pose.position), o.pose.angle - turn};
   const Vec2 base = upright ? thing.pose.position : Vec2(Vec2::Zero());
+  // In the turned frame, as everything that scatter_poses() is given.
   ScatterAsk ask{thing.shape.outline.get(),
                  {},
                  asked.count,
@@ -222,6 +242,7 @@ void Placer::pile(PlannedThing& thing, const std::vector<Obstacle>& obstacles) {
     Random random(stream(seed_, thing.ordinal, 0));
     std::int64_t room = 0;
     const auto poses = scatter_poses(ask, seen, random, &room);
+    // Too low, or something stands in the way: 1.25 times as high, and a radius more.
     if (!poses) continue;
     for (const Pose& pose : *poses) {
       thing.copies.push_back(start_of(thing));

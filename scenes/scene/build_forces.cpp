@@ -1,3 +1,5 @@
+/// Forces and motions: names become ids, texts become formulas, and what can be said before a run of
+/// whether they make sense is said with its place in the file.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +12,7 @@ namespace brink {
 namespace {
 
 // A formula, if it was given and reads; else a fault.
+// `variables` are the names that it may use; the parser's message says which.
 std::optional<Formula> formula(const Given<std::string>& text, const std::vector<std::string>& variables,
                                FaultList& faults) {
   if (!text.given) return std::nullopt;
@@ -21,6 +24,7 @@ std::optional<Formula> formula(const Given<std::string>& text, const std::vector
   return std::nullopt;
 }
 
+/// `when`: for which body, or at what time, the formula was asked.
 void must_be_finite(double value, const Formula& f, const Where& where, const std::string& when,
                     FaultList& faults) {
   if (!std::isfinite(value))
@@ -28,12 +32,14 @@ void must_be_finite(double value, const Formula& f, const Where& where, const st
                           when + ", allowed: finite numbers throughout the run");
 }
 
+/// One force after the other: a force with a fault is left out of the world, and the others go on.
 class ForceBuilder {
  public:
   ForceBuilder(const BodyNames& names, const std::vector<Vec2>& origins, bool placed, World& world,
                FaultList& faults)
       : names_(names), origins_(origins), placed_(placed), world_(world), faults_(faults) {}
 
+  /// By the kind, one of force_kinds(): read_force() lets no other through.
   void build(const ForceTable& table) {
     if (table.kind == "spring")
       spring(table);
@@ -63,6 +69,7 @@ class ForceBuilder {
     world_.forces.emplace_back(force);
   }
 
+  /// Fills both ends; false after a fault. An attachment that is not given is at the centre of mass.
   bool two_bodies(const ForceTable& table, SpringForce& force) {
     const std::vector<std::string>& pair = table.bodies.value;
     if (pair.size() != 2 || pair[0] == pair[1]) {
@@ -84,6 +91,7 @@ class ForceBuilder {
     return true;
   }
 
+  /// The same of a body and a place of the world [m], which is taken as it is.
   bool body_and_anchor(const ForceTable& table, SpringForce& force) {
     force.body_a = names_.find_one(table.body.value, table.body.where, faults_);
     if (force.body_a < 0) return false;
@@ -104,6 +112,7 @@ class ForceBuilder {
   }
 
   // The bodies that a force acts on: those named, or all.
+  // In ascending order. A name that has copies stands for all of them.
   std::vector<int> targets(const ForceTable& table) {
     std::vector<int> out;
     if (!table.bodies.given) {
@@ -147,6 +156,7 @@ class ForceBuilder {
     ThrustForce force = table.thrust;
     if (!table.body.given)
       return faults_.add(table.place, "thrust: body is missing; given nothing, allowed: the name of a body");
+    // Looked up before the times are compared, so that both faults are told.
     force.body = names_.find_one(table.body.value, table.body.where, faults_);
     if (!(force.to > force.from))
       return faults_.add(table.place, "thrust: ends before it starts; given from " + number_text(force.from) +
@@ -161,6 +171,7 @@ class ForceBuilder {
     if (!table.fx.given && !table.fy.given && !table.torque.given)
       return faults_.add(table.place,
                          "formula: says nothing; given no formula, allowed: any of fx, fy, torque");
+    // All three are read though one is faulty.
     force.fx = formula(table.fx, variables, faults_);
     force.fy = formula(table.fy, variables, faults_);
     force.torque = formula(table.torque, variables, faults_);
@@ -187,6 +198,7 @@ class ForceBuilder {
                               body.mass};
       const double value = (*f)(values);
       must_be_finite(value, *f, where, "at t = 0 for " + in_quotes(body.name), faults_);
+      // One body is enough: a thousand copies would say the same thousand times.
       if (!std::isfinite(value)) return;
     }
   }
@@ -200,11 +212,14 @@ class ForceBuilder {
 
 }  // namespace
 
+/// Ids are given in the order of the calls. A name that is used twice keeps its first bodies; the fault
+/// is told by who plans them.
 void BodyNames::add(const std::string& name, int count, bool copied) {
   if (entries_.emplace(name, Entry{count_, count, copied}).second) words_.push_back(name);
   count_ += count;
 }
 
+/// All copies of a name, in the order of their ids. Cost: a search in a map, and their number.
 std::vector<int> BodyNames::find(const std::string& name, const Where& where, FaultList& faults) const {
   std::vector<int> out;
   if (const auto found = entries_.find(name); found != entries_.end()) {
@@ -223,6 +238,7 @@ std::vector<int> BodyNames::find(const std::string& name, const Where& where, Fa
   return out;
 }
 
+/// A name with a single copy is that copy: NAME and NAME[0] are one.
 int BodyNames::find_one(const std::string& name, const Where& where, FaultList& faults) const {
   const std::vector<int> found = find(name, where, faults);
   if (found.size() == 1) return found[0];
@@ -233,6 +249,7 @@ int BodyNames::find_one(const std::string& name, const Where& where, FaultList& 
   return -1;
 }
 
+/// Forces come into the world in the order of the file.
 void build_forces(const std::vector<ForceTable>& tables, const BodyNames& names,
                   const std::vector<Vec2>& origins, bool placed, World& world, FaultList& faults) {
   ForceBuilder builder(names, origins, placed, world, faults);
@@ -250,6 +267,7 @@ void must_begin(std::optional<Formula> FormulaMotion::*part, const FormulaMotion
   FixedSite moved;
   moved.name = site;
   moved.motion = alone;
+  // After another fault it is not asked: what is not finite at the start would be told twice.
   if (!(motion.*part) || !faults.empty()) return;
   try {
     SiteMotion{moved};
@@ -260,6 +278,8 @@ void must_begin(std::optional<Formula> FormulaMotion::*part, const FormulaMotion
 
 }  // namespace
 
+/// std::monostate: it stands still, or there was a fault. Formulas are asked at the beginning, half way
+/// and at the end of the run, which finds what is wrong everywhere, such as sqrt(-t).
 PrescribedPath build_motion(const Given<MotionTable>& given_motion, const std::string& site, double duration,
                             FaultList& faults) {
   if (!given_motion.given) return std::monostate{};
@@ -272,6 +292,7 @@ PrescribedPath build_motion(const Given<MotionTable>& given_motion, const std::s
                                        ", allowed: velocity and angular_velocity, or formulas x, y, angle");
     return std::monostate{};
   }
+  // What of the two is not given is 0.
   if (constant) return ConstantMotion{{table.velocity.value, table.angular_velocity.value}};
   FormulaMotion motion{formula(table.x, {"t"}, faults), formula(table.y, {"t"}, faults),
                        formula(table.angle, {"t"}, faults)};

@@ -4,6 +4,7 @@
 namespace brink {
 namespace {
 
+/// The shapes that an entry may have, for a message.
 std::vector<std::string> shape_words(bool body) {
   static const std::vector<std::string> solid{"disc",    "box",   "polygon", "polygons",
                                               "capsule", "chain", "path",    "samples"};
@@ -15,7 +16,11 @@ std::vector<std::string> shape_words(bool body) {
 
 }  // namespace
 
+/// One outline for all entries that ask for the same shape: the solver then has one field for all of
+/// them.
 std::optional<BuiltShape> ShapeBuilder::build(const ThingTable& thing, const std::string& name, bool body) {
+  // Shapes are keys of the entry itself, so a table may have several, or none. The fault of several
+  // stands at the second one.
   if (thing.shapes.size() != 1) {
     std::vector<std::string> asked;
     for (const ShapeSpec& spec : thing.shapes) asked.push_back(spec.kind);
@@ -28,8 +33,10 @@ std::optional<BuiltShape> ShapeBuilder::build(const ThingTable& thing, const std
   const ShapeSpec& spec = thing.shapes[0];
   // A shape without `build` was faulty already (add_shape).
   if (!spec.build || !fits(thing, spec, body)) return std::nullopt;
+  // The entry's own tolerance goes before that of [field].
   ShapeContext context{thing.curve_tolerance.given ? thing.curve_tolerance.value : curve_tolerance_,
                        thing.radius.value, thing.inside_of.value};
+  // A body's outline always is: what `centered = false` moves is where it stands, not its frame.
   const bool about_centre = body || thing.centered.value;
   // Everything that make() depends on; equal keys share one outline, and with it one field.
   const Json key = {spec.kind,      spec.parameters,
@@ -48,6 +55,7 @@ std::optional<BuiltShape> ShapeBuilder::build(const ThingTable& thing, const std
   return built_.emplace(text, *made).first->second;
 }
 
+/// True if all keys beside the shape mean something to it; all that do not are told.
 bool ShapeBuilder::fits(const ThingTable& thing, const ShapeSpec& spec, bool body) {
   const std::size_t before = faults_.size();
   if (thing.radius.given && !spec.takes_radius)
@@ -61,6 +69,8 @@ bool ShapeBuilder::fits(const ThingTable& thing, const ShapeSpec& spec, bool bod
   if (!body && thing.centered.given && thing.centered.value && !spec.for_bodies)
     faults_.add(thing.centered.where, "centered: has no meaning beside " + spec.kind +
                                           "; given true, allowed: false, or true beside a body's shape");
+  // By the word: whether a path is closed is known when it is built, and as_container() refuses it
+  // then.
   const bool closed = spec.kind == "disc" || spec.kind == "box" || spec.kind == "polygon" ||
                       spec.kind == "polygons" || spec.kind == "path" || spec.kind == "capsule";
   if (thing.inside_of.value && !closed)
@@ -70,6 +80,7 @@ bool ShapeBuilder::fits(const ThingTable& thing, const ShapeSpec& spec, bool bod
   return faults_.size() == before;
 }
 
+/// Builds the shape, in this order: about its centre if asked for, then inside out if asked for.
 std::optional<BuiltShape> ShapeBuilder::make(const ThingTable& thing, const ShapeSpec& spec,
                                              const ShapeContext& context, bool about_centre) {
   try {
@@ -80,6 +91,7 @@ std::optional<BuiltShape> ShapeBuilder::make(const ThingTable& thing, const Shap
       built.shift = shape.measure.centroid;
       shape = centered(std::move(shape));
     }
+    // A disc is made as a container at once (make_disc_container), of four arcs in place of a point.
     if (thing.inside_of.value && !shape.outline.container)
       shape.outline = as_container(std::move(shape.outline));
     built.measure = shape.measure;

@@ -9,11 +9,14 @@ namespace brink {
 namespace {
 
 /// What one name stands for: a thing, or one copy of it.
+/// Kept by pointer to the planned thing, whose copies are still to come where it waits itself.
 struct Ground {
   PlannedThing* thing = nullptr;
   std::optional<std::size_t> copy;
 };
 
+/// All bodies with the key `touching`. Names are looked up as it is made; place() then takes one after
+/// the other.
 class Touching {
  public:
   Touching(std::vector<PlannedThing>& sites, std::vector<PlannedThing>& bodies, const PlaceRules& rules,
@@ -36,6 +39,7 @@ class Touching {
     if (!faults_.empty()) return;
     std::map<const PlannedThing*, std::vector<PlannedThing*>> above;
     std::map<const PlannedThing*, std::size_t> missing;
+    // Bodies whose grounds are all placed, in the order in which they became so.
     std::vector<PlannedThing*> ready;
     for (PlannedThing& thing : bodies_) {
       if (!waiting_.contains(&thing)) continue;
@@ -58,6 +62,7 @@ class Touching {
   }
 
  private:
+  /// What the names of a body stand for; those that stand for nobody are faults and left out.
   std::vector<Ground> grounds_of(PlannedThing& thing) {
     const auto& touching = thing.table->touching;
     std::vector<Ground> out;
@@ -72,6 +77,8 @@ class Touching {
     return out;
   }
 
+  /// Empty after a fault. Refused is what cannot be stood on: the body itself, what has no place until
+  /// everything else has one, and a name that means two.
   std::optional<Ground> find(const std::string& name, const PlannedThing& thing) {
     const Where& where = thing.table->touching.where;
     Ground ground;
@@ -96,11 +103,13 @@ class Touching {
     return std::nullopt;
   }
 
+  /// By number, as the copies themselves may not be there yet.
   static bool has_copy(const PlannedThing& thing, std::size_t copy) {
     const CopyCount copies = copies_of(*thing.table);
     return copies.copied && static_cast<std::int64_t>(copy) < copies.count;
   }
 
+  /// Lets one body down onto its grounds, which are placed, and fills its copies.
   void put(PlannedThing& thing) {
     if (!faults_.empty()) return;
     LandingAsk ask;
@@ -120,6 +129,7 @@ class Touching {
     }
   }
 
+  /// The copies of a ground that are meant, all or one, each where it is at t = 0.
   static void add_obstacles(const Ground& ground, std::vector<Obstacle>& out) {
     for (std::size_t k = 0; k < ground.thing->copies.size(); ++k) {
       if (ground.copy && *ground.copy != k) continue;
@@ -127,6 +137,7 @@ class Touching {
     }
   }
 
+  /// The fault of a landing that is none, with the place it began at and the way it took.
   void tell(const PlannedThing& thing, Landing::Status status) {
     const auto& touching = thing.table->touching;
     const Vec2& p = thing.pose.position;
@@ -149,6 +160,7 @@ class Touching {
       const auto found = missing.find(thing);
       return found != missing.end() && found->second > 0;
     };
+    // The first of them in the file, so that the message is the same at every reading.
     const PlannedThing* at = nullptr;
     for (const PlannedThing& thing : bodies_)
       if (at == nullptr && waits(&thing)) at = &thing;
@@ -158,8 +170,11 @@ class Touching {
     while (std::find(way.begin(), way.end(), at) == way.end()) {
       way.push_back(at);
       for (const Ground& ground : waiting_.at(at))
+        // Of several the last one: whichever it is, it waits, so the walk never ends at somebody who is
+        // placed.
         if (waits(ground.thing)) at = ground.thing;
     }
+    // "A on B on A": the circle from its first body to the same one again.
     std::string text;
     for (auto it = std::find(way.begin(), way.end(), at); it != way.end(); ++it) text += (*it)->name + " on ";
     faults_.add(at->table->touching.where, "touching: goes round in a circle; given " +

@@ -1,9 +1,12 @@
 // Keys of one entry that contradict each other.
+// A schema sees one key at a time, so what two keys say together is checked here, for bodies and sites
+// alike. Which keys go with a shape is ShapeBuilder::fits().
 #include "brink/scenes/scene/build.h"
 
 namespace brink {
 namespace {
 
+/// One way of making copies at most: two of them would not say how many there are.
 void check_copies(const ThingTable& table, FaultList& faults) {
   // The fault stands at the last of them in this list.
   std::vector<std::string> asked;

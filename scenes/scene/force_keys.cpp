@@ -1,4 +1,7 @@
 // The kinds of force of a scene file: each one's keys.
+// A schema for each kind, so that a key of another kind is unknown; all fill one struct, ForceTable, of
+// which a kind uses its part. `kind` is read before (read_force(), tables.cpp) and once more with the
+// rest.
 #include "brink/scenes/scene/tables.h"
 
 namespace brink {
@@ -31,12 +34,14 @@ class Part {
   F ForceTable::*member_;
 };
 
+// What takes energy away or holds together must not be negative; what pulls may also push.
 Codec<double> strength(std::string unit) { return number({0.0, kStrongest, false, std::move(unit)}); }
 Codec<double> signed_strength(std::string unit) {
   return number({-kStrongest, kStrongest, false, std::move(unit)});
 }
 
 // at = [x, y], or [[x, y], [x, y]] for two bodies
+// How many there must be is told where the bodies are known (build_forces.cpp).
 Codec<std::vector<Vec2>> attachment() {
   Codec<std::vector<Vec2>> both = points(1, 2);
   both.type = "[x, y], or one for each body [[x, y], [x, y]], in m";
@@ -50,6 +55,7 @@ Codec<std::vector<Vec2>> attachment() {
   return both;
 }
 
+/// For kinds that act on each body by itself; without the key, on all.
 Schema<ForceTable>& with_bodies(Schema<ForceTable>& schema) {
   return schema.optional("bodies", &ForceTable::bodies, names(), "every body",
                          "names of the bodies it acts on");
@@ -115,6 +121,7 @@ Schema<ForceTable> formula_schema() {
 
 std::vector<std::string> force_kinds() { return {"spring", "drag", "attract", "thrust", "formula"}; }
 
+/// Built once, at the first call; the pointer stays good.
 const Schema<ForceTable>* force_schema(const std::string& kind) {
   static const Schema<ForceTable> schemas[] = {spring_schema(), drag_schema(), attract_schema(),
                                                thrust_schema(), formula_schema()};

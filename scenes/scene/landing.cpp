@@ -1,3 +1,6 @@
+/// A fall is computed and not stepped: cast_outline() says how far each copy can go to each ground, and
+/// the least of these ways is the fall. What is left is rounding: the fall is done twice, and after
+/// each the copies are backed up until no gap is too small.
 #include "brink/scenes/scene/landing.h"
 
 #include <algorithm>
@@ -29,6 +32,7 @@ struct Meeting {
   Obstacle ground;
 };
 
+/// One landing: the copies stay as they are to each other, and only their common position changes.
 class Descent {
  public:
   explicit Descent(const LandingAsk& ask) : ask_(ask) {}
@@ -46,6 +50,8 @@ class Descent {
   }
 
  private:
+  /// Moves `position` by the least way of any copy to any ground, and keeps in `touched_` who touches
+  /// there.
   Landing::Status fall(Vec2& position) {
     const std::vector<Pose> copies = ask_.copies(position);
     double least = std::numeric_limits<double>::infinity();
@@ -56,6 +62,7 @@ class Descent {
         const OutlineHit hit =
             cast_outline(*ask_.outline, copies[k], ask_.direction, *ground.outline, ground.pose);
         overlaps = overlaps || hit.status == OutlineHit::Status::overlaps;
+        // What passes has no distance.
         if (hit.status != OutlineHit::Status::touches) return;
         least = std::min(least, hit.distance);
         found.push_back({hit.distance, {k, ground}});
@@ -67,6 +74,7 @@ class Descent {
     // Those that all but touch as well: after the roundings of the move one of them may have the least gap.
     for (const auto& [distance, meeting] : found)
       if (distance <= least + kNear * ask_.outline->bounding_radius) touched_.push_back(meeting);
+    // The sum rounds: the gap comes out a rounding too large or too small, which back_up() sees to.
     position += least * ask_.direction;
     return Landing::Status::lands;
   }
@@ -76,6 +84,7 @@ class Descent {
   void for_grounds(const Vec2& from, Visit&& visit) const {
     const double own = ask_.outline->bounding_radius;
     for (const Obstacle& ground : ask_.grounds) {
+      // Discs first: most copies fall past most grounds, and cast_outline() is dear.
       const double reach = own + ground.outline->bounding_radius;
       const auto look = [&](const Obstacle& there) {
         const Vec2 to = there.pose.position - from;
@@ -102,6 +111,7 @@ class Descent {
   }
 
   /// A box about the way, as far as images are looked at.
+  /// It holds the way of the copy's whole disc.
   Box way_of(const Vec2& from, double radius) const {
     // No coordinate of a scene is larger (kLargest, toml/codec.h). In a plane that repeats the way is
     // cut at kMostPeriods, since every image along it is looked at.
@@ -116,6 +126,7 @@ class Descent {
   }
 
   /// Beyond what it should be.
+  /// The least gap of those that touch, less gap_of_touching() [m]; below 0 somebody is too near.
   double least_gap(const Vec2& position) const {
     const std::vector<Pose> copies = ask_.copies(position);
     double least = std::numeric_limits<double>::infinity();
@@ -128,6 +139,7 @@ class Descent {
 
   /// Backs up along the way, by a rounding first and then by ever more, until no gap is too small.
   void back_up(Vec2& position) const {
+    // Doubled from the first place and not from the last, so that the way back is one step and no sum.
     double step = rounding_at(position, *ask_.outline);
     const Vec2 from = position;
     for (int time = 0; time < kTries && least_gap(position) < 0.0; ++time, step *= 2.0)
@@ -135,6 +147,7 @@ class Descent {
   }
 
   const LandingAsk& ask_;
+  // Of the last fall; least_gap() asks these alone, not all grounds.
   std::vector<Meeting> touched_;
 };
 
@@ -143,8 +156,10 @@ constexpr double kTurnedRounding = 2.0 * std::numeric_limits<double>::epsilon();
 
 bool is_upright(const Pose& pose) { return pose.angle == 0.0; }
 
+/// A wire on which nobody could tell one side from the other.
 bool is_thin(const Outline& outline) { return !outline.solid && outline.sites[0].radius == 0.0; }
 
+/// It has a corner without rounding, or an end of a wire without thickness.
 bool is_sharp(const Outline& outline) {
   return std::any_of(outline.samples.begin(), outline.samples.end(),
                      [](const Sample& sample) { return sample.radius == 0.0; });
@@ -153,6 +168,7 @@ bool is_sharp(const Outline& outline) {
 }  // namespace
 
 double gap_of_touching(const Obstacle& a, const Obstacle& b, double thin) {
+  // Either way round: corners of one on the wire of the other.
   const bool on_wire =
       (is_thin(*a.outline) && is_sharp(*b.outline)) || (is_thin(*b.outline) && is_sharp(*a.outline));
   if (on_wire) return thin;
@@ -163,6 +179,8 @@ double gap_of_touching(const Obstacle& a, const Obstacle& b, double thin) {
 }
 
 void push_apart(const Outline& outline, Pose& pose, const std::vector<Touched>& touched, double thin) {
+  // First along what the caller takes for the way out, which keeps rows straight; where that does not
+  // help, along the normals of the gaps.
   const Pose written = pose;
   for (const bool along_normals :
        {false, true}) {  // shapes that hook into each other have to give way otherwise
@@ -170,6 +188,8 @@ void push_apart(const Outline& outline, Pose& pose, const std::vector<Touched>& 
     double step = rounding_at(pose.position, outline);
     for (int time = 0; time < kTries; ++time) {
       // Always out of the deepest; that may lead into another by a rounding, so the least step grows.
+      // @post of the loop: no gap is below what it should be, or kTries steps have not been enough;
+      // then the place is left where they led.
       double worst = 0.0;
       Vec2 away = Vec2::Zero();
       for (const Touched& t : touched) {

@@ -1,3 +1,7 @@
+/// Distances are found once, between two copies: all have one shape and one angle, so they are the same
+/// for every pair with the same offset. A wall of 100 000 copies casts as many outlines as there are
+/// offsets at which two may touch; at() adds up, and pushes apart what roundings have left too near.
+/// Places along a row are counted in half distances, as whole numbers.
 #include "brink/scenes/scene/rows.h"
 
 #include <algorithm>
@@ -14,12 +18,15 @@ namespace {
 constexpr double kNear = 1e-6;  // of a copy's radius: nearer ones may touch
 
 // From where a copy is clear of another, a power of two, so that what is exact stays so.
+// From two to four times the distance of the centres at which the two discs touch.
 double far_away(const Outline& outline) {
   return std::exp2(std::ceil(std::log2(2.0 * outline.bounding_radius * (1.0 + kNear))) + 1.0);
 }
 
 }  // namespace
 
+/// Rows from the lowest up, as each stands on those below. Members are made in the order of the class:
+/// the extents and the distance need `along_`.
 TouchingRows::TouchingRows(RowsAsk ask)
     : ask_(std::move(ask)),
       along_(-perp(ask_.up)),
@@ -35,6 +42,7 @@ TouchingRows::TouchingRows(RowsAsk ask)
 /// At least a copy's size along a direction; an arc counts as its whole circle. It decides who is looked
 /// at, so more is safe.
 double TouchingRows::extent_along(const Vec2& direction) const {
+  // The direction in the outline's frame: turned once, in place of all sites.
   const Vec2 local = Frame({Vec2::Zero(), ask_.angle}).direction_to_local(direction);
   double least = std::numeric_limits<double>::infinity(), most = -least;
   const auto add = [&](const Vec2& p, double radius) {
@@ -59,6 +67,8 @@ double TouchingRows::distance_in_row() const {
 
 /// How high above another a copy comes to lie that is let down onto it, so many half distances beside; minus
 /// infinity if it falls past it.
+/// Kept by offset, as rows of a wall ask for the same few again and again; by its sign, too, since a
+/// shape need not lie on the left of another as it does on the right.
 double TouchingRows::drop(std::int64_t halves) {
   if (const auto known = drops_.find(halves); known != drops_.end()) return known->second;
   const double far = far_away(*ask_.outline);
@@ -83,6 +93,8 @@ void TouchingRows::for_offsets(std::size_t row, std::size_t below, Visit&& visit
   for (std::int64_t halves = low; halves <= high; halves += 2) visit(halves);
 }
 
+/// How high the row's middle is above that of the lowest [m]. It is let down as one, so the highest
+/// that any pair of copies asks for holds for all.
 double TouchingRows::height_of(std::size_t row) {
   if (row == 0) return 0.0;
   double height = -std::numeric_limits<double>::infinity();
@@ -98,6 +110,7 @@ double TouchingRows::height_of(std::size_t row) {
 std::vector<TouchingRows::Neighbour> TouchingRows::neighbours_of(std::size_t row) const {
   std::vector<Neighbour> out;
   const Pose here{Vec2::Zero(), ask_.angle};
+  // With the neighbour at the origin: a gap depends on where the two are to each other alone.
   const auto look = [&](std::size_t below, std::int64_t halves) {
     const Pose there{offset(halves, heights_[row] - heights_[below]), ask_.angle};
     if (outline_gap(*ask_.outline, there, *ask_.outline, here).gap < kNear * ask_.outline->bounding_radius)
@@ -114,6 +127,7 @@ std::vector<TouchingRows::Neighbour> TouchingRows::neighbours_of(std::size_t row
 
 std::vector<Pose> TouchingRows::at(const Vec2& middle) const {
   std::vector<Pose> out;
+  // Copies of all rows stand in one list, as they are numbered; this is where each row begins.
   std::vector<std::size_t> begin;  // of each row, in out
   for (std::size_t row = 0; row < ask_.lengths.size(); ++row) {
     begin.push_back(out.size());

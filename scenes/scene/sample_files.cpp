@@ -1,4 +1,6 @@
 // The classic text data files that a scene names.
+// They are read after all tables, as only then it is known what the scene itself says of each body, and
+// before any shape is built. The format is in docs/scene-format.md.
 #include "brink/core/base/error.h"
 #include "brink/core/shapes/sample_file.h"
 #include "brink/scenes/files/text_file.h"
@@ -13,6 +15,7 @@ void fill(Given<V>& key, const V& value, const Where& where) {
   if (!key.given) key = {value, where, true};
 }
 
+/// Where the body stands and how it moves, by the file, key by key where the scene leaves it open.
 void fill_state(ThingTable& thing, const SampledBody& body, const Where& where, bool is_body) {
   // A scatter places its copies: the file's position would be one that nobody gave and that is not used.
   if (!thing.scatter.given) fill(thing.position, body.position, where);
@@ -36,6 +39,8 @@ std::optional<std::string> text_of(const std::filesystem::path& path) {
   }
 }
 
+/// One data file. After a fault in it the shape stays without `build`, which ShapeBuilder takes for
+/// told.
 void take(ThingTable& thing, ShapeSpec& spec, const std::filesystem::path& folder, bool is_body,
           FaultList& faults) {
   const std::filesystem::path path = folder / *spec.data_file;

@@ -1,3 +1,11 @@
+/// Two ways to place copies, in this order:
+///
+///     insertion:  draw a place until one is free; give up after kTries in a row
+///     lattice:    free places of a triangular lattice, as wide as the count allows; too few: 3 % narrower;
+///                 draw among them, shake each within the room that the spacing leaves
+///
+/// Whether a place is free is asked of Room. It may say no of a place that is free (discs about shapes,
+/// a budget), never yes of one that is not.
 #include "brink/scenes/scene/scatter.h"
 
 #include <algorithm>
@@ -10,6 +18,7 @@ namespace brink {
 namespace {
 
 // What is taken already, in cells of a uniform grid over the region.
+// A copy asks its own cell alone, so placing n copies costs n times what is near one.
 class Room {
  public:
   Room(const ScatterAsk& ask, const std::vector<Obstacle>& obstacles)
@@ -32,17 +41,22 @@ class Room {
     cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
     for (const Obstacle& obstacle : obstacles) take(obstacle);
     buried_.assign(cells_.size(), Buried::unknown);
+    // The whole region lies in an obstacle, deeper than a copy's disc reaches: nowhere in it is a
+    // place, whatever the shape.
     for (const Obstacle& obstacle : obstacles) full_ = full_ || buries(obstacle, region_, reach_);
   }
 
   bool full() const { return full_; }
 
+  /// True if a copy at this pose is clear of all that is taken. False outside the region. Takes from
+  /// the budget.
   bool free(const Pose& pose) {
     if (full_ || !region_.contains(pose.position)) return false;
     const auto clear = [&](const Obstacle& taken) { return apart(taken, {outline_, pose}); };
     // take_image() has put every obstacle into each cell from which a copy could touch it:
     // one cell is enough.
     const int c = column(pose.position.x()), r = row(pose.position.y());
+    // Of other shapes a centre that is buried is no proof, as their origin may lie outside of them.
     if (outline_->is_point() && is_buried(c, r)) return false;
     const auto& near = cells_[index(c, r)];
     return std::all_of(near.begin(), near.end(), clear) && std::all_of(large_.begin(), large_.end(), clear);
@@ -50,6 +64,7 @@ class Room {
 
   // Every image of it that a copy in the region could touch.
   void take(const Obstacle& obstacle) {
+    // It is solid everywhere but in its room, so it is near to every cell.
     if (obstacle.outline->container) return large_.push_back(obstacle);
     const double reach = obstacle.outline->bounding_radius + reach_ + 2.0 * margin_;
     Box around;
@@ -65,6 +80,7 @@ class Room {
 
  private:
   enum class Buried : char { unknown, no, yes };
+  // Images of one obstacle that are looked at, each of which may go into hundreds of cells.
   static constexpr double kMostImages = 1e4;
 
   /// True if every place of the box lies in the obstacle, by `depth` at least: nothing is free there. A gap
@@ -77,6 +93,8 @@ class Room {
   /// Asked once a cell: a pile that has to rise out of something large asks for hundreds of thousands of
   /// places within it. Of copies that are discs alone, which are not free wherever their centres are buried.
   bool is_buried(int c, int r) {
+    // What is found stays true as more copies are taken: a cell that is buried never becomes free. One
+    // that is not may become so, and then its places are only tried for longer.
     Buried& known = buried_[index(c, r)];
     if (known != Buried::unknown) return known == Buried::yes;
     Box cell;
@@ -103,11 +121,14 @@ class Room {
   void take_image(const Obstacle& obstacle, double reach) {
     const Vec2 low = obstacle.pose.position.array() - reach, high = obstacle.pose.position.array() + reach;
     const int c0 = column(low.x()), c1 = column(high.x()), r0 = row(low.y()), r1 = row(high.y());
+    // What covers hundreds of cells, as a wall along the region does, is asked once a copy in place of
+    // filling all their lists.
     if (static_cast<double>(c1 - c0 + 1) * (r1 - r0 + 1) > 256.0) return large_.push_back(obstacle);
     for (int r = r0; r <= r1; ++r)
       for (int c = c0; c <= c1; ++c) cells_[index(c, r)].push_back(obstacle);
   }
 
+  /// Cell of a coordinate; what lies outside of the grid belongs to the cell at its rim.
   static int place(double along, double cell, int count) {
     return static_cast<int>(std::clamp(std::floor(along / cell), 0.0, static_cast<double>(count - 1)));
   }
@@ -130,7 +151,9 @@ class Room {
     const double gap = gap_by_brute_force(a, Frame(taken.pose).to_local(copy.pose.position));
     budget_ -= static_cast<double>(a.sites.size());
     if (gap > reach_ + margin_) return true;
+    // Without a budget the copy's disc alone decides, which errs on the side of keeping apart.
     if (b.is_point() || budget_ < 0.0) return false;
+    // What surely_apart() costs at most: samples of each times sites of the other.
     budget_ -= static_cast<double>(a.samples.size() * b.sites.size() + b.samples.size() * a.sites.size());
     return surely_apart(a, taken.pose, b, copy.pose, margin_);
   }
@@ -140,13 +163,18 @@ class Room {
   Periods periods_;
   bool full_ = false;  // nothing more fits
   double reach_, margin_, cell_ = 1.0;
+  // Comparisons of a sample and a site that are left, for all copies together.
   double budget_ = 1e8;
   int columns_ = 1, rows_ = 1;
+  // By cell, row by row: all from which a copy whose position lies in that cell may be touched.
   std::vector<std::vector<Obstacle>> cells_;
   std::vector<Buried> buried_;  // by cell
+  // Asked for every place: containers, and what covers many cells.
   std::vector<Obstacle> large_;
 };
 
+/// A place of the region, each equally likely. Draws two numbers, three where angles are random: a
+/// scene's places depend on how many.
 Pose anywhere(const ScatterAsk& ask, Random& random) {
   Pose pose;
   pose.position.x() = random.uniform(ask.region.low.x(), ask.region.high.x());
@@ -156,6 +184,7 @@ Pose anywhere(const ScatterAsk& ask, Random& random) {
 }
 
 // The room is a copy: where this fails the lattice begins with the obstacles alone.
+// Empty if kTries places in a row are taken. A greater count draws the same places first.
 std::optional<std::vector<Pose>> insert_one_by_one(const ScatterAsk& ask, Room room, Random& random) {
   // Random insertion of discs jams at a coverage of 0.547; below 45 % a free place is found in
   // far fewer tries.
@@ -173,6 +202,8 @@ std::optional<std::vector<Pose>> insert_one_by_one(const ScatterAsk& ask, Room r
 }
 
 // The free places of a triangular lattice, `spacing` apart.
+// Row by row from the lower left corner; every second row is shifted by half a spacing, rows are
+// sqrt(3) / 2 of it apart, so each place has six neighbours at the same distance.
 std::vector<Pose> lattice(const ScatterAsk& ask, Room& room, double spacing, Random& random) {
   std::vector<Pose> out;
   const Box& box = ask.region;
@@ -195,10 +226,13 @@ std::vector<Pose> choose_and_shake(Room& room, std::vector<Pose> places, std::si
                                    Random& random) {
   for (std::size_t k = 0; k < count; ++k) {
     std::swap(places[k], places[k + random.below(places.size() - k)]);
+    // The root makes all parts of the disc equally likely: a share u of its area lies within play
+    // sqrt(u).
     const double heading = random.uniform(0.0, 2.0 * std::numbers::pi),
                  r = play * std::sqrt(random.uniform());
     Pose shaken = places[k];
     shaken.position += Vec2{r * std::cos(heading), r * std::sin(heading)};
+    // Else it stays where it was on the lattice, which is free.
     if (room.free(shaken)) places[k] = shaken;
   }
   places.resize(count);
@@ -209,17 +243,20 @@ std::vector<Pose> choose_and_shake(Room& room, std::vector<Pose> places, std::si
 
 std::optional<std::vector<Pose>> scatter_poses(const ScatterAsk& ask, const std::vector<Obstacle>& obstacles,
                                                Random& random, std::int64_t* room) {
+  // Two discs of copies touch at 2 radius; the rest is more than Room's margin of 1e-9 radius a pair.
   const double radius = ask.outline->bounding_radius, tightest = 2.0 * radius * (1.0 + 1e-8);
   *room = 0;
   // Discs may reach over the region's rim by a radius, as it holds positions.
   const Vec2 extent = ask.region.grown(radius).extent();
   const double area = extent.x() * extent.y(), disc = std::numbers::pi * radius * radius;
   const double wanted = static_cast<double>(ask.count) * disc;
+  // More discs than the area itself: no way of placing them is tried.
   if (ask.outline->is_point() && wanted > area) {
     // pi / (2 sqrt 3): the hexagonal packing.
     *room = static_cast<std::int64_t>(0.9069 * area / disc);  // the densest packing of discs
     return std::nullopt;
   }
+  // Made once: both ways begin with the obstacles alone, each on a copy.
   const Room empty(ask, obstacles);
   if (empty.full()) return std::nullopt;
   // Bounding discs say little of plates and needles: for these insertion is tried however much the
@@ -234,6 +271,7 @@ std::optional<std::vector<Pose>> scatter_poses(const ScatterAsk& ask, const std:
       std::max(tightest, std::sqrt(2.0 / std::numbers::sqrt3 * area / static_cast<double>(ask.count)));
   // a region that is nearly all taken is not searched to its last corner
   const double most = 4.0 * static_cast<double>(ask.count) + 2e5;
+  // `*room` is what the last lattice had: a number for the message, and no promise.
   while ((extent.x() / spacing + 1.0) * (extent.y() / spacing + 1.0) < most) {
     std::vector<Pose> places = lattice(ask, shelf, spacing, random);
     if (places.size() >= static_cast<std::size_t>(ask.count))

@@ -7,8 +7,11 @@
 namespace brink {
 namespace {
 
+// As kShortest in tables.cpp [m].
 constexpr double kShortestLength = 1e-12;
 
+// A struct a shape, all lengths in metres in the shape's own frame. What is Given may also be said
+// beside the shape.
 struct DiscTable {
   double radius = 0.0;
 };
@@ -60,6 +63,7 @@ const Schema<VerticesTable>& polygon_schema() {
           .optional("radius", &VerticesTable::radius, thickness(), "0", "rounds outward");
   return schema;
 }
+// A part of `polygons`, which takes no radius: the union has sharp corners.
 const Schema<VerticesTable>& part_schema() {
   static const Schema<VerticesTable> schema =
       Schema<VerticesTable>("polygons")
@@ -93,6 +97,7 @@ const Schema<SamplesTable>& samples_schema() {
       "file", &SamplesTable::file, text("file name"), "the classic text data file, beside the scene file");
   return schema;
 }
+// Each angle in degrees or in radians, not in both: see build_arc().
 const Schema<ArcTable>& arc_schema() {
   static const Schema<ArcTable> schema =
       Schema<ArcTable>("arc")
@@ -108,11 +113,14 @@ const Schema<ArcTable>& arc_schema() {
 }
 
 /// A thickness in the shape's own table goes before the one beside it.
+/// That both are given is no fault.
 double own_or(const Given<double>& own, const ShapeContext& context) {
   return own.given ? own.value : context.radius;
 }
 
 // One shape key: reads `V` with `codec` and adds a ShapeSpec made of `spec` and `build(value, context)`.
+// The value is read now and built later, as the thickness beside it may stand in a later line of the
+// file.
 template <class V, class Build>
 void add_shape(Schema<ThingTable>& schema, ShapeSpec spec, const Codec<V>& codec, const std::string& meaning,
                Build build) {
@@ -130,6 +138,7 @@ void add_shape(Schema<ThingTable>& schema, ShapeSpec spec, const Codec<V>& codec
 }
 
 // Which keys beside the shape have a meaning: a thickness, a curve tolerance, or that it is for sites alone.
+// ShapeBuilder::fits() tells those that have none.
 ShapeSpec shape_kind(std::string kind) {
   ShapeSpec spec;
   spec.kind = std::move(kind);
@@ -173,6 +182,7 @@ Codec<std::vector<VerticesTable>> parts_codec() {
       }};
 }
 
+/// @throws BadInput where a part is no simple polygon.
 Shape build_polygons(const std::vector<VerticesTable>& parts) {
   std::vector<std::vector<Vec2>> polygons;
   for (const VerticesTable& part : parts) polygons.push_back(part.vertices);
@@ -184,15 +194,19 @@ Shape build_arc(const ArcTable& arc, const ShapeContext& context) {
   // Left to the building, as it concerns two keys: the fault stands at the shape.
   if ((arc.from.given && arc.from_deg.given) || (arc.to.given && arc.to_deg.given))
     throw BadInput("arc: angles are given twice; given radians and degrees, allowed: one of them");
+  // What is not given is 0, and for the end the whole turn.
   const double from = arc.from.given ? arc.from.value : arc.from_deg.value * degree;
   const double to = arc.to.given ? arc.to.value : (arc.to_deg.given ? arc.to_deg.value : 360.0) * degree;
   return make_arc(arc.center, arc.radius, from, to, context.radius);
 }
 
+/// An open wire through the points; a site alone may have it under this name.
 Shape build_polyline(const std::vector<Vec2>& vertices, const ShapeContext& context) {
   return make_chain(vertices, false, context.radius);
 }
 
+/// Shapes that bodies and sites have. Each says with which builder of core/shapes/shapes.h it is made;
+/// what the builder refuses is a fault at the key.
 void add_body_shapes(Schema<ThingTable>& schema) {
   add_shape(schema, shape_kind("disc"), disc_schema().codec(), "a disc",
             [](const DiscTable& t, const ShapeContext& c) {
@@ -229,6 +243,8 @@ void add_body_shapes(Schema<ThingTable>& schema) {
                 });
 }
 
+/// Shapes that sites alone have: places in the site's frame, felt from both sides, thick by the
+/// `radius` beside them.
 void add_site_shapes(Schema<ThingTable>& schema) {
   add_shape(schema, site_only("point"), point(), "a point, or with a radius a disc",
             [](const Vec2& p, const ShapeContext& c) { return make_point(p, c.radius); });
@@ -246,6 +262,8 @@ void add_site_shapes(Schema<ThingTable>& schema) {
 
 }  // namespace
 
+/// All shapes are keys of the entry itself, so that two of them can be told as two
+/// (ShapeBuilder::build).
 void add_shape_keys(Schema<ThingTable>& schema, bool site) {
   add_body_shapes(schema);
   if (site) add_site_shapes(schema);

@@ -1,3 +1,7 @@
+/// The keys of every table but those of shapes (shape_keys.cpp) and forces (force_keys.cpp), each
+/// table's in the order in which `brink list options` and docs/scene-format.md have them. A new key is
+/// a member of the struct, a line in its schema here, and a row on the page; reading, faults and lists
+/// follow from the schema.
 #include "brink/scenes/scene/tables.h"
 
 #include <algorithm>
@@ -11,6 +15,8 @@ constexpr double kHeaviest = 1e40;  // masses, stiffnesses: products with square
 constexpr double kLightest = 1e-40;
 constexpr double kShortest = 1e-12;  // [m], [s]
 
+/// The names in a list of choices that the scheduler or the integrators keep: so the file's words are
+/// theirs.
 template <class Info>
 std::vector<std::string> names_of(std::span<const Info> infos) {
   std::vector<std::string> out;
@@ -20,11 +26,14 @@ std::vector<std::string> names_of(std::span<const Info> infos) {
 
 const std::vector<std::string> kCombineRules{"max", "min", "mean", "geometric_mean", "product"};
 
+/// An integer, 0 or more unless told otherwise.
 Codec<std::int64_t> whole(std::int64_t low = 0,
                           std::int64_t high = std::numeric_limits<std::int64_t>::max()) {
   return integer(low, high);
 }
 
+/// Masses, densities and inertias. Bounded from below as well, since motions are made with their
+/// inverses.
 Range heavy(std::string unit) { return {kLightest, kHeaviest, false, std::move(unit)}; }
 
 /// An entry that is no table is left out; one with faulty keys stays, so that what names it is
@@ -44,6 +53,7 @@ void read_materials(const toml::node& node, TomlDocument& doc, FileTable& out) {
 }
 
 // Calls read(table) for every table of an array of tables.
+// What is no table is a fault and is passed over: the others are still read.
 template <class Read>
 void for_each_table(const std::string& key, const toml::node& node, TomlDocument& doc, Read&& read) {
   const std::string allowed = "an array of tables, [[" + key + "]]";
@@ -58,6 +68,8 @@ void for_each_table(const std::string& key, const toml::node& node, TomlDocument
   }
 }
 
+/// Reader of `[[bodies]]` or `[[sites]]`. An entry with faults stays in the list, so that those behind
+/// it keep the names that they have by their place.
 auto things_reader(const std::string& key, const Schema<ThingTable>& schema,
                    std::vector<ThingTable> FileTable::*member) {
   return [&schema, key, member](const toml::node& node, TomlDocument& doc, FileTable& out) {
@@ -84,6 +96,8 @@ void read_force(const toml::table& table, TomlDocument& doc, std::vector<ForceTa
 }
 
 /// `place`: kept for faults that concern the table as a whole.
+/// Reader of a table that there is once. The schema is one of those with a static life: the reader
+/// keeps a reference.
 template <class T>
 auto table_reader(const Schema<T>& schema, T FileTable::*member, Where FileTable::*place = nullptr) {
   return [&schema, member, place](const toml::node& node, TomlDocument& doc, FileTable& out) {
@@ -186,6 +200,7 @@ Schema<ThingTable> thing_schema(const std::string& table, bool site) {
 
 }  // namespace
 
+// @pre a word of kCombineRules, which is all that the schema lets through.
 Combine combine_rule(const std::string& name) {
   const auto found = std::find(kCombineRules.begin(), kCombineRules.end(), name);
   return static_cast<Combine>(found - kCombineRules.begin());  // kCombineRules is in the order of Combine
@@ -196,6 +211,7 @@ Range duration_range() { return {kShortest, kLongestRun, false, "s"}; }
 /// Frames at 0, at every interval, and at the end. A world without bodies has frames, too.
 std::string too_many_frames(const OutputOptions& output, double duration, std::size_t bodies) {
   if (output.frame_interval <= 0.0) return {};
+  // In doubles: a duration of 1e12 s at intervals of 1e-300 s is too many, and not an overflow.
   const double frames = std::floor(duration / output.frame_interval) + 2.0;  // and the first and the last
   const double rows = frames * static_cast<double>(std::max<std::size_t>(bodies, 1));
   if (rows <= static_cast<double>(output.max_frame_rows)) return {};
@@ -205,6 +221,8 @@ std::string too_many_frames(const OutputOptions& output, double duration, std::s
          "; a longer output.frame_interval makes fewer (0: none), output.max_frame_rows allows more";
 }
 
+// Defaults are those of the library's own structs (tables.h), so a program that makes a World by hand
+// and a file that says nothing mean the same.
 const Schema<WorldTable>& world_schema() {
   static const Schema<WorldTable> schema =
       Schema<WorldTable>("world")
@@ -224,6 +242,7 @@ const Schema<SolverOptions>& solver_schema() {
   using S = SolverOptions;
   static const Schema<S> schema =
       Schema<S>("solver")
+          // An open choice: a program may register policies of its own before it reads a file.
           .key("policy", &S::policy, open_choice([] { return names_of<Choice>(policies()); }),
                "who is tested next, advanced and backed up")
           .key("order", &S::order, choice(names_of(orders())),
@@ -266,6 +285,8 @@ const Schema<SolverOptions>& solver_schema() {
   return schema;
 }
 
+// Two structs make one table: what the solver takes, and the tolerance of curves, which the shapes
+// take.
 const Schema<FieldTable>& field_schema() {
   using F = FieldOptions;
   static const Schema<F> options =
@@ -323,6 +344,7 @@ const Schema<Material>& material_schema() {
   return schema;
 }
 
+// No mass and no velocities: a key of them beside a site is unknown, and told so.
 const Schema<ThingTable>& site_schema() {
   static const Schema<ThingTable> schema =
       thing_schema("sites", true)
@@ -344,6 +366,7 @@ const Schema<ThingTable>& body_schema() {
           .optional("velocity", &ThingTable::velocity, point("m/s"), "[0, 0]", "of the centre of mass")
           .optional("angular_velocity", &ThingTable::angular_velocity, number(any("rad/s")), "0",
                     "counter-clockwise")
+          // Of bodies alone: a site stands where it is told, and others may be put on it.
           .optional("touching", &ThingTable::touching, names(), "none",
                     "bodies or sites that it is put on, moved along gravity to first contact")
           .optional("touching_direction", &ThingTable::touching_direction, point(""), "along gravity",
@@ -354,6 +377,8 @@ const Schema<ThingTable>& body_schema() {
   return schema;
 }
 
+// No table has to be there; what a table is read by stands in table_reader(), things_reader() and
+// read_force().
 const Schema<FileTable>& file_schema() {
   static const Schema<FileTable> schema =
       Schema<FileTable>("the file")
@@ -379,6 +404,7 @@ const Schema<FileTable>& file_schema() {
   return schema;
 }
 
+// The tables of the file, then those within bodies and sites, then the kinds of force.
 std::vector<OptionInfo> scene_options() {
   std::vector<OptionInfo> out;
   file_schema().list(out);

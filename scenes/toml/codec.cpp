@@ -1,3 +1,6 @@
+/// All readers keep to one form: on a fault they tell the document key, value and what is allowed, and
+/// return false; they go on as far as they can, so that one run of the program tells every fault of a
+/// file. What they have read into `out` until then means nothing.
 #include "brink/scenes/toml/codec.h"
 
 #include <algorithm>
@@ -6,12 +9,14 @@
 namespace brink {
 namespace {
 
+/// Tells that the value of `key` is of a type that is not allowed, at its place.
 void wrong_type(const toml::node& node, TomlDocument& doc, const std::string& key,
                 const std::string& allowed) {
   doc.faults().add(doc.where(node), fault_text(key, "wrong type", given(node), allowed));
 }
 
 // A finite number within kLargest, from a TOML float or integer.
+// In the range of `key`: most ranges end at kLargest, those of masses and strengths farther away.
 bool read_number(const toml::node& node, TomlDocument& doc, const std::string& key, const Range& range,
                  double& out) {
   if (!node.is_number()) return wrong_type(node, doc, key, range.text()), false;
@@ -24,6 +29,7 @@ bool read_number(const toml::node& node, TomlDocument& doc, const std::string& k
   return false;
 }
 
+/// [x, y], each within `range`; the fault of a part stands at that part.
 bool read_point(const toml::node& node, TomlDocument& doc, const std::string& key, const Range& range,
                 Vec2& out) {
   const toml::array* array = node.as_array();
@@ -31,6 +37,7 @@ bool read_point(const toml::node& node, TomlDocument& doc, const std::string& ke
     return wrong_type(node, doc, key, "two numbers [x, y]" + (range.unit.empty() ? "" : " in " + range.unit)),
            false;
   // Both are read though the first is wrong: both faults are told.
+  // @post both are finite where true is returned.
   const bool x = read_number((*array)[0], doc, key, range, out.x());
   const bool y = read_number((*array)[1], doc, key, range, out.y());
   return x && y;
@@ -50,10 +57,13 @@ bool read_string(const toml::node& node, TomlDocument& doc, const std::string& k
   return false;
 }
 
+// Lists of words are short: looked through one by one.
 bool holds(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
+/// A word of `allowed`, any text where that is empty. A word of `later` is told as one that is to come,
+/// not as a mistake.
 bool read_name(const toml::node& node, TomlDocument& doc, const std::string& key,
                const std::vector<std::string>& allowed, const std::vector<std::string>& later,
                std::string& out) {
@@ -74,6 +84,8 @@ std::string fault_text(const std::string& key, const std::string& wrong, const s
   return key + ": " + wrong + "; given " + what_was_given + ", allowed: " + allowed;
 }
 
+// An end at kLargest or beyond is no limit that anybody meets: it is named only where there is no
+// other.
 std::string Range::text() const {
   std::string text = "a number";
   if (low > -kLargest) text += (open_low ? " > " : " >= ") + number_text(low);
@@ -83,6 +95,7 @@ std::string Range::text() const {
 }
 
 Range any(std::string unit) { return {-kLargest, kLargest, false, std::move(unit)}; }
+// Open at 0 alone: a least value that is given is itself allowed.
 Range positive(std::string unit, double low) { return {low, kLargest, low == 0.0, std::move(unit)}; }
 Range not_negative(std::string unit) { return {0.0, kLargest, false, std::move(unit)}; }
 Range between(double low, double high, std::string unit) { return {low, high, false, std::move(unit)}; }
@@ -96,6 +109,8 @@ Codec<double> number(Range range) {
           [](const double& x) { return Json(x); }};
 }
 
+// Whole numbers of TOML only: 3.0 is refused, as whoever writes it means a measure and not a number of
+// things.
 Codec<std::int64_t> integer(std::int64_t low, std::int64_t high) {
   const std::string type = high == std::numeric_limits<std::int64_t>::max()
                                ? "an integer >= " + std::to_string(low)
@@ -119,6 +134,7 @@ Codec<std::array<std::int64_t, 2>> two_integers(std::int64_t low, std::int64_t h
               std::array<std::int64_t, 2>& out) {
             const toml::array* array = node.as_array();
             if (array == nullptr || array->size() != 2) return wrong_type(node, doc, key, type), false;
+            // The range of both is the same; the fault of one names that one's value.
             const Codec<std::int64_t> one = integer(low, high);
             const bool first = one.read((*array)[0], doc, key, out[0]);
             return one.read((*array)[1], doc, key, out[1]) && first;
@@ -145,6 +161,7 @@ Codec<std::string> text(std::string type) {
           [](const std::string& x) { return Json(x); }};
 }
 
+// What is allowed already is not told as yet to come.
 Codec<std::string> choice(std::vector<std::string> allowed, std::vector<std::string> later) {
   std::erase_if(later, [&](const std::string& word) { return holds(allowed, word); });
   const std::string type = listed(allowed);
@@ -156,6 +173,7 @@ Codec<std::string> choice(std::vector<std::string> allowed, std::vector<std::str
 }
 
 // The list for people is that of now; a policy that a program registers later is allowed all the same.
+// So `allowed` is asked at each reading and not once.
 Codec<std::string> open_choice(std::function<std::vector<std::string>()> allowed) {
   return {listed(allowed()),
           [=](const toml::node& node, TomlDocument& doc, const std::string& key, std::string& out) {
@@ -164,6 +182,8 @@ Codec<std::string> open_choice(std::function<std::vector<std::string>()> allowed
           [](const std::string& x) { return Json(x); }};
 }
 
+// Only that it is a text or a number: whether it is a formula is told where it is built, with the
+// variables that it may have (build_forces.cpp).
 Codec<std::string> formula_text() {
   return {"a formula in a string, or a number",
           [](const toml::node& node, TomlDocument& doc, const std::string& key, std::string& out) {
@@ -172,6 +192,8 @@ Codec<std::string> formula_text() {
             if (!node.is_number())
               return wrong_type(node, doc, key, "a formula in a string, or a number"), false;
             if (!read_number(node, doc, key, any(), value)) return false;
+            // The shortest text of the number, which the formula's parser reads back as the same
+            // double.
             out = number_text(value);
             return true;
           },
@@ -187,6 +209,8 @@ Codec<Vec2> point(std::string unit) {
           point_json};
 }
 
+// least == most asks for so many and no others: then a wrong number is a wrong type. Else too many are
+// told apart, as the list is what it should be, but long.
 Codec<std::vector<Vec2>> points(std::size_t least, std::size_t most, std::string unit) {
   const Range range = any(std::move(unit));
   std::string type = least == most ? std::to_string(least) : std::to_string(least) + " or more";
@@ -221,6 +245,7 @@ Codec<std::vector<std::string>> names(std::vector<std::string> allowed) {
   return {type,
           [allowed = std::move(allowed), type](const toml::node& node, TomlDocument& doc,
                                                const std::string& key, std::vector<std::string>& out) {
+            // `touching = "floor"` in place of `["floor"]`.
             if (node.is_string()) return read_name(node, doc, key, allowed, {}, out.emplace_back());
             const toml::array* array = node.as_array();
             if (array == nullptr) return wrong_type(node, doc, key, "an array of " + type), false;

@@ -1,3 +1,9 @@
+/// A text becomes a tree of nodes; overrides then change nodes of it, in their order, as if the file
+/// had them. Whoever reads the tree does not see the difference, but for the place in a fault: where()
+/// gives the override that a node came from.
+///
+/// toml++ is kept from two kinds of text that it cannot stand: keys nested without end (KeyDepthScan),
+/// and such as it takes for granted to be TOML (not_toml.h).
 #include "brink/scenes/toml/document.h"
 
 #include <sstream>
@@ -10,6 +16,7 @@ namespace {
 /// Parts of one path, also of an override's. bodies.gas.scatter.region.0.1 has six.
 constexpr int kMaxKeyDepth = 64;
 
+/// What stands before the first '=' of each override: how faults call it.
 std::vector<std::string> paths_of(const std::vector<std::string>& overrides) {
   std::vector<std::string> paths;
   for (const std::string& text : overrides) paths.push_back(text.substr(0, text.find('=')));
@@ -25,6 +32,7 @@ class KeyDepthScan {
   /// Line of the first key that is too deep, or 0.
   /// Dots are counted since the last character that ends a key or a value: those of a number, too, which
   /// reaches the next comma or line long before the limit.
+  /// Never says so of a text that is sound TOML with keys of up to kMaxKeyDepth parts.
   int first_too_deep() {
     for (; at_ < text_.size(); ++at_) {
       const char c = text_[at_];
@@ -36,12 +44,14 @@ class KeyDepthScan {
         return line_;
       else if (std::string_view(",=[]{}\n").find(c) != std::string_view::npos)
         dots_ = 0;
+      // Also the newline on which skip_string() has stopped.
       if (at_ < text_.size() && text_[at_] == '\n') ++line_;
     }
     return 0;
   }
 
  private:
+  // Stops before the newline, so that the line is counted and the key ends there.
   void skip_comment() {
     while (at_ + 1 < text_.size() && text_[at_ + 1] != '\n') ++at_;
   }
@@ -51,6 +61,7 @@ class KeyDepthScan {
     // Ends on the last quote, or on the newline that an open string ends at, which the caller counts.
     at_ += multi ? 3 : 1;
     for (; at_ < text_.size(); ++at_) {
+      // Only basic strings know escapes: in a literal one ('...') a backslash is itself.
       if (text_[at_] == '\\' && quote == '"')
         ++at_;
       else if (multi && text_.substr(at_, 3) == triple)
@@ -74,11 +85,13 @@ class KeyDepthScan {
 };
 
 // "a.b.0" as {"a", "b", "0"}; a part in quotes may hold dots; "a[0]" is the same as "a.0".
+// Never fails: a part that nobody has, or an empty one, is told by the walk along the path.
 std::vector<std::string> path_parts(std::string_view path) {
   std::vector<std::string> parts{""};
   char quote = 0;
   for (const char c : path) {
     if (quote != 0) {
+      // A quote of the other kind is a character of the part.
       if (c == quote)
         quote = 0;
       else
@@ -102,6 +115,7 @@ toml::table as_value(std::string_view text) {
     try {
       if (KeyDepthScan(line).first_too_deep() == 0) return toml::parse(line);
     } catch (const toml::parse_error&) {
+      // Not TOML: then it is a text, so that `--set 'title=two words'` needs no second pair of quotes.
     } catch (const NotToml&) {
     }
   }
@@ -113,6 +127,7 @@ int line_of(std::string_view text) {
   std::vector<std::size_t> ends;
   for (std::size_t at = text.find('\n'); at != std::string_view::npos; at = text.find('\n', at + 1))
     ends.push_back(at + 1);
+  // The last line need not end in a newline.
   ends.push_back(text.size());
   // The parser reads from front to back, so a beginning that fails its assertion makes every longer one
   // fail, and bisection over the number of lines finds the first. The whole text is known to fail.
@@ -131,6 +146,7 @@ int line_of(std::string_view text) {
   return static_cast<int>(fault);
 }
 
+/// Reads `part` as a whole number; true if it is one below `size`. Else `*index` is not told.
 bool is_index(const std::string& part, std::size_t size, std::size_t* index) {
   // Nine digits at most: stoul cannot overflow.
   if (part.empty() || part.size() > 9 || part.find_first_not_of("0123456789") != std::string::npos)
@@ -140,6 +156,7 @@ bool is_index(const std::string& part, std::size_t size, std::size_t* index) {
 }
 
 // Index of the table in `array` whose name is `name`, or the array's size.
+// So `bodies.ball.mass=2` finds the body called "ball" wherever it stands in the file.
 std::size_t index_of_name(const toml::array& array, const std::string& name) {
   for (std::size_t i = 0; i < array.size(); ++i)
     if (const toml::table* table = array[i].as_table())
@@ -158,6 +175,7 @@ TomlDocument::TomlDocument(std::string_view text, const std::vector<std::string>
   for (std::size_t i = 0; readable_ && i < overrides.size(); ++i) apply(overrides[i], static_cast<int>(i));
 }
 
+/// Fills the tree, or tells the one fault that there is: after it nothing is known of the rest.
 void TomlDocument::parse(std::string_view text) {
   if (const int line = KeyDepthScan(text).first_too_deep(); line > 0) {
     faults_.add({line, 1},
@@ -168,6 +186,7 @@ void TomlDocument::parse(std::string_view text) {
     root_ = toml::parse(text);
   } catch (const toml::parse_error& error) {
     const auto& at = error.source().begin;
+    // What the parser has not placed has line 0; places count from 1.
     faults_.add({std::max(1, static_cast<int>(at.line)), std::max(1, static_cast<int>(at.column))},
                 "not valid TOML: " + std::string(error.description()));
   } catch (const NotToml& error) {
@@ -175,6 +194,7 @@ void TomlDocument::parse(std::string_view text) {
   }
 }
 
+/// One override. Its faults have no line: they are told by its path.
 void TomlDocument::apply(const std::string& override_text, int index) {
   const Where here{0, 0, index};
   const std::size_t equals = override_text.find('=');
@@ -183,6 +203,7 @@ void TomlDocument::apply(const std::string& override_text, int index) {
   const std::vector<std::string> parts = path_parts(std::string_view(override_text).substr(0, equals));
   if (parts.size() > static_cast<std::size_t>(kMaxKeyDepth))
     return faults_.add(here, "the path has too many parts: " + std::to_string(kMaxKeyDepth) + " are allowed");
+  // All parts but the last lead to a table or an array, the last one is what is set in it.
   toml::node* node = &root_;
   for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
     toml::node* next = step(*node, parts[i]);
@@ -203,6 +224,7 @@ void TomlDocument::apply(const std::string& override_text, int index) {
   assign(*node, parts.back(), *parsed.get("value"), index);
 }
 
+// An index goes before a name; a number that is no index of the array may still be one.
 toml::node* TomlDocument::step(toml::node& node, const std::string& part) {
   if (toml::table* table = node.as_table()) return table->get(part);
   toml::array* array = node.as_array();
@@ -212,8 +234,11 @@ toml::node* TomlDocument::step(toml::node& node, const std::string& part) {
   return index < array->size() ? &(*array)[index] : nullptr;
 }
 
+/// Sets the entry or element `part` of `parent`, whatever was there. In an array only what is there
+/// already can be set, and by its index alone.
 void TomlDocument::assign(toml::node& parent, const std::string& part, const toml::node& value, int index) {
   if (toml::table* table = parent.as_table()) {
+    // A node of toml++ is copied by its concrete type.
     value.visit([&](const auto& concrete) { table->insert_or_assign(part, concrete); });
     return mark(*table->get(part), index);
   }
@@ -231,6 +256,7 @@ void TomlDocument::assign(toml::node& parent, const std::string& part, const tom
   mark((*array)[at], index);
 }
 
+/// The node, and all within it, were said by that override.
 void TomlDocument::mark(const toml::node& node, int index) {
   // By address: toml++ keeps nodes apart from the tables that hold them, so they stay where they are as
   // other keys come in.
@@ -248,12 +274,15 @@ Where TomlDocument::where(const toml::node& node) const {
   return {std::max(1, static_cast<int>(at.line)), std::max(1, static_cast<int>(at.column))};
 }
 
+// The key's own place is best for a key that is unknown; what an override brings in has no place in the
+// file, neither of key nor of value.
 Where TomlDocument::where(const toml::key& key, const toml::node& value) const {
   const auto& at = key.source().begin;
   if (override_of_.contains(&value) || at.line == 0) return where(value);
   return {static_cast<int>(at.line), std::max(1, static_cast<int>(at.column))};
 }
 
+// Tables and arrays are told by their kind: they may be as long as the file.
 std::string given(const toml::node& node) {
   if (const auto* text = node.as_string()) return "the string " + in_quotes(text->get());
   if (const auto* number = node.as_floating_point()) return number_text(number->get());

@@ -11,6 +11,8 @@
 namespace brink {
 namespace {
 
+/// One "FILE:LINE:COLUMN: message" a line, as compilers write it, so that editors find the place. All
+/// of it printable: names of files, too, come from outside.
 std::string joined(const std::filesystem::path& file, const std::vector<SceneFault>& faults) {
   std::string text;
   for (const SceneFault& fault : faults) {
@@ -23,6 +25,8 @@ std::string joined(const std::filesystem::path& file, const std::vector<SceneFau
 
 // Levenshtein distance, row by row in one array: `diagonal` is the entry of the row above that row[j]
 // overwrites, kept for the next column.
+// Levenshtein 1966: the least number of insertions, deletions and changes of one byte that lead from a
+// to b. Cost: |a| |b|.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -45,6 +49,7 @@ SceneFaults::SceneFaults(const std::filesystem::path& file, std::vector<SceneFau
 
 void FaultList::add(const Where& where, std::string message) {
   if (where.override_index >= 0)
+    // In front, as line and column of such a fault are 0.
     message = "--set " + paths_[static_cast<std::size_t>(where.override_index)] + ": " + message;
   // Made printable here as well as in joined(): a program may show faults() by itself. Printable text is
   // not changed by being made so again.
@@ -70,6 +75,7 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
   std::string best;
   std::size_t least = 0;
   for (const std::string& candidate : known) {
+    // `<` and not `<=`: of words that are equally near the first one stays.
     const std::size_t distance = edit_distance(word, std::string_view(candidate).substr(0, 100));
     if (best.empty() || distance < least) {
       best = candidate;
@@ -86,6 +92,7 @@ std::string listed(const std::vector<std::string>& words) {
 }
 
 std::string in_quotes(std::string_view text) {
+  // Not in the middle of a character: bytes 10xxxxxx go on with one of UTF-8.
   std::size_t shown = std::min<std::size_t>(text.size(), 60);
   while (shown > 0 && shown < text.size() && (text[shown] & 0xc0) == 0x80) --shown;  // whole characters
   return '"' + printable(text.substr(0, shown)) + (shown < text.size() ? "...\"" : "\"");
