@@ -26,21 +26,28 @@ bool thin(const Outline& samples, const Outline& sites, const FeatureContact& f)
 
 }  // namespace
 
+/// Three looks. After each collision: its two features, as the collision left them (resolved). At each frame: every
+/// pair of which one has moved since the last, its gap and whether boundaries cross (frame). Between two looks at a
+/// body: the flight of its centre, by walls (flight). From begin() on what any of them sees ends the run (report).
 CertificateWatch::CertificateWatch(const World& world, const Trajectories& trajectories,
                                    ContactSearch& search, const NearPairs& near, RunControl& run)
     : world_(&world), trajectories_(&trajectories), search_(&search), near_(&near), run_(&run) {}
 
 void CertificateWatch::begin() {
   on_ = true;
+  // in a plane that repeats no flight is watched: a wall would have images without end
   if (!world_->periods.any() && !walls_made_) make_walls();
 }
 
+/// Straight wires without thickness, as they stand in the world, and which bodies' centres are in their material.
+/// Cost: that of the outlines, once.
 void CertificateWatch::make_walls() {
   walls_made_ = true;
   const int n = trajectories_->body_count();
   for (int s = 0; s < trajectories_->site_count(); ++s) {
     const SiteMotion& motion = trajectories_->site(s);
     if (motion.moves()) continue;
+    // still: where it is at the beginning it is always
     const Outline placed = transformed(search_->outline_of(n + s), motion.motion().pose(0.0));
     for (const Site& site : placed.sites)
       if (!site.solid && site.radius == 0.0 && site.kind == SiteKind::segment) walls_.add(site.a, site.b, s);
@@ -67,6 +74,7 @@ std::vector<Contact> CertificateWatch::overlaps(std::size_t most) {
       found.push_back(*crossing);
     return found.size() < most;
   });
+  // of equal depth by owners: messages do not depend on the order in which boxes met
   const auto order = [](const Contact& c) { return std::tuple(c.gap, c.body, c.other_body, c.other_site); };
   std::sort(found.begin(), found.end(),
             [&](const Contact& x, const Contact& y) { return order(x) < order(y); });
@@ -96,9 +104,11 @@ bool CertificateWatch::flight(int k, double to) {
   // flights up to the last frame were looked at there
   const double from = std::max(motion.begin(), flown_until_);
   if (!(from < to)) return true;
+  // of the centre of mass: a body whose centre has passed a wire is on its other side
   const Vec2 p = motion.place(from), q = motion.place(to);
   // the straight line between the two, by which walls are looked up, lies in the box then: it meets none
   if (clear_[k].contains(p) && clear_[k].contains(q)) return true;
+  // about where it ends: the next flight begins there, and may need no look at walls
   clear_[k] = walls_.clear_around(q);
   const auto site = walls_.crossed([&](double t) { return motion.place(t); }, from, to);
   // only the first wall is told; one that the body may pass is no fault
@@ -120,6 +130,7 @@ bool CertificateWatch::resolved(const PairKey& pair, const FeatureContact& found
       contact_in(a, b, trajectories_->body(pair.body).motion.extended_state(t).moved(delay),
                  search_->other_state(pair, t).moved(delay), found);
   const bool on_wire = found.sample_on_a ? thin(a, b, found) : thin(b, a, found);
+  // what was pushed apart counts as it is now: the world goes on from there
   const double gap = static_cast<double>(now.gap);
   note_overlap(gap);
   // At a wire the sign of the gap is the side, and a level of it is always left; a solid may sink by
@@ -133,6 +144,8 @@ bool CertificateWatch::discs_resolved(const PairKey& pair, double gap) {
   return !on_ || -gap <= allowed() || report(pair, -gap, run_->time(), "overlaps");
 }
 
+/// Pairs of which one has moved since the last frame; then every centre's flight up to t. Whatever is seen halts
+/// the run, which poll() tells.
 void CertificateWatch::frame(double t) {
   note_who_moved();
   const auto same_as_before = [&](const PairKey& pair) {
@@ -149,6 +162,8 @@ void CertificateWatch::frame(double t) {
   flown_until_ = t;
 }
 
+/// A body that stands still on the motion that the last frame saw is where it was. One on another motion may have
+/// been moved, even if it stands.
 void CertificateWatch::note_who_moved() {
   const int bodies = trajectories_->body_count();
   const bool first = seen_.empty();
@@ -164,6 +179,8 @@ void CertificateWatch::note_who_moved() {
   if (!on_) seen_.clear();
 }
 
+/// By samples first, then by boundaries that cross, where that is not too many intersections. False: the run was
+/// ended.
 bool CertificateWatch::pair_at_frame(const PairKey& pair, double t) {
   const double gap = search_->gap(pair, t);
   note_overlap(gap);
@@ -179,6 +196,7 @@ bool CertificateWatch::pair_at_frame(const PairKey& pair, double t) {
   return report(pair, -crossing->gap, t, "crosses");
 }
 
+/// Ends the run. Always false, so that callers can return it.
 bool CertificateWatch::report(const PairKey& pair, double depth, double t, const char* what) {
   const std::string& other =
       pair.with_site() ? world_->sites[pair.other_site].name : world_->bodies[pair.other_body].name;

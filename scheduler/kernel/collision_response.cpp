@@ -14,6 +14,7 @@ namespace brink {
 
 namespace {
 
+/// It gives way by its mass and inertia, but for its locks. `point`: of the contact, in the world [m].
 ImpulseSide body_side(const Body& body, const ExtendedState& state, const RealVec& point) {
   return {state.twist, point - state.position, body.inverse_mass_x(), body.inverse_mass_y(),
           body.inverse_inertia()};
@@ -43,6 +44,7 @@ ExtendedState later(const ExtendedState& s, Real delay, const Motion& motion) {
 /// from `before` to `after`.
 ExtendedState deflected(ExtendedState s, const ExtendedTwist& before, const ExtendedTwist& after,
                         Real delay) {
+  // s + delay before = s' + delay after: at the moment of contact both motions are at one place
   const RealVec velocity = after.velocity - before.velocity;
   const Real omega = after.omega - before.omega;
   s.position -= delay * velocity;
@@ -78,12 +80,15 @@ CollisionResponse::CollisionResponse(const World& world, const SolverOptions& op
       run_(&run),
       reflects_(options.response == "reflection") {}
 
+/// Combined when the pair's two materials first meet, and kept.
 const Material& CollisionResponse::material_of(const PairKey& pair) {
   const int other =
       pair.with_site() ? world_->sites[pair.other_site].material : world_->bodies[pair.other_body].material;
   return materials_.of(*world_, world_->bodies[pair.body].material, other);
 }
 
+/// By the pair's material alone, not by this collision: a series of bounces has an end if its collisions take
+/// something of the approach.
 BounceLoss CollisionResponse::loss_of(const PairKey& pair) {
   const Material& m = material_of(pair);
   // slip or spin of another value take energy, or give it: a series of bounces may come to an end
@@ -118,6 +123,8 @@ Real CollisionResponse::delay_to_contact(const FeatureContact& found, const Exte
   return std::clamp((c.gap - found.level) / c.closing, -late, late);
 }
 
+/// The features are looked at twice: where the pair is now, which tells how long it is to the moment of contact,
+/// and there, where the law is asked. The states that are returned are those of now, for motions that begin now.
 CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const FeatureContact& found,
                                                     const Material& material) {
   Change r;
@@ -135,6 +142,7 @@ CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const F
   r.delay = delay_to_contact(found, look_at(r.body, r.other));
   const ExtendedState body = later(r.body, r.delay, trajectories_->motion_of(pair.body)),
                       other = later(r.other, r.delay, trajectories_->motion_of(search_->other_owner(pair)));
+  // the law changes these, the twists at the moment of contact (deflected)
   r.body_before = body.twist;
   r.other_before = other.twist;
   const ExtendedContact c = look_at(body, other);
@@ -153,6 +161,7 @@ CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const F
   // differ in earnest.
   if (r.impulse.kind == ImpulseKind::separating && !held)
     r.magnitude += std::max(0.0, found.closing_speed) / kEpsilon;
+  // what has sunk is pushed out as the new motions begin, along the normal at the moment of contact
   const auto [way, way_of_other] = push_apart(pair, found, c.normal);
   r.body.position += way;
   r.other.position += way_of_other;
@@ -182,6 +191,7 @@ std::pair<RealVec, RealVec> CollisionResponse::push_apart(const PairKey& pair, c
   return {of_body * (by / sum), -of_other * (by / sum)};
 }
 
+/// Begins the motions that lead through the moment of contact with the twists that the law gave.
 void CollisionResponse::deflect(const PairKey& pair, const Change& r, std::vector<int>& changed) {
   const Restart both[] = {
       {pair.body, deflected(r.body, r.body_before, r.impulse.body, r.delay)},
@@ -201,6 +211,7 @@ DiscSide CollisionResponse::free_disc(int k) const {
   const Body& body = world_->bodies[k];
   const bool bare =
       trajectories_->is_free(k) && is_centred_disc(search_->outline_of(k)) && !body.lock_x && !body.lock_y;
+  // the bounding radius of a centred disc is its radius
   return {bare ? &trajectories_->body(k).motion : nullptr, body.outline->bounding_radius, 1.0 / body.mass};
 }
 
@@ -218,6 +229,7 @@ std::optional<DiscRebound> CollisionResponse::disc_rebound(const PairKey& pair, 
   return rebound(a, b, search_->shift_of(pair), now, 4.0 * ulp(now), found.level, material.restitution);
 }
 
+/// The same of a free disc beside a straight wall that stands. What has a case of its own is left to change().
 std::optional<DiscRebound> CollisionResponse::wall_rebound(const PairKey& pair, const FeatureContact& found,
                                                            const Material& material) {
   const int other = search_->other_owner(pair);
@@ -260,6 +272,7 @@ void CollisionResponse::note_sides(Outcome& outcome) const {
   if (!pair.with_site()) outcome.other = trajectories_->last_restart(pair.other_body);
 }
 
+/// Collides as collide() does, with a rebound that is known: the same notes, watches and new motions.
 std::optional<Outcome> CollisionResponse::part(const PairKey& pair, const FeatureContact& found,
                                                const Material& material, const DiscRebound& discs,
                                                std::vector<int>& changed) {
@@ -274,6 +287,7 @@ std::optional<Outcome> CollisionResponse::part(const PairKey& pair, const Featur
   if (!watch_->discs_resolved(pair, discs.gap)) return std::nullopt;
   std::optional<Outcome> outcome{{pair, found, discs.impulse, 0.0, discs.delay, rest,
                                   foresee(pair, found, material.restitution, discs.delay)}};
+  // after both have begun anew: it asks how they came out
   note_sides(*outcome);
   return outcome;
 }
@@ -285,6 +299,7 @@ std::optional<Outcome> CollisionResponse::collide(const PairKey& pair, const Fea
   if (!watch_->flight(pair.body, now) || (!pair.with_site() && !watch_->flight(pair.other_body, now)))
     return std::nullopt;
   const Material& material = material_of(pair);
+  // a disc that does not approach has no rebound: change() and the watch judge that, below
   if (const auto discs = disc_rebound(pair, found, material))
     return part(pair, found, material, *discs, changed);
   const Change r = change(pair, found, material);
@@ -294,6 +309,7 @@ std::optional<Outcome> CollisionResponse::collide(const PairKey& pair, const Fea
                fmt::format("{} at t = {:.17g}: neither side can move", search_->name_of(pair), now));
     return std::nullopt;
   }
+  // their flight has lasted no less than the shorter of the times since either was resolved
   double rest = note_resolve(pair.body, search_->other_owner(pair), r.magnitude);
   if (!pair.with_site()) rest = std::min(rest, note_resolve(pair.other_body, pair.body, r.magnitude));
   deflect(pair, r, changed);

@@ -16,6 +16,7 @@ namespace {
 /// True if a sharp vertex of one owner may meet a wire without thickness of another.
 /// Two sites never meet, so one of the two must be a body.
 bool points_may_meet_wires(const std::vector<const Outline*>& outlines, std::size_t bodies) {
+  // a vertex without thickness, and a wire without an inside or a thickness
   const auto sharp = [](const Outline* o) {
     return std::any_of(o->samples.begin(), o->samples.end(),
                        [](const Sample& s) { return s.arc_site < 0 && s.radius == 0.0; });
@@ -25,6 +26,7 @@ bool points_may_meet_wires(const std::vector<const Outline*>& outlines, std::siz
                        [](const Site& s) { return !s.solid && s.radius == 0.0; });
   };
   const auto end_of_bodies = outlines.begin() + static_cast<std::ptrdiff_t>(bodies);
+  // a body's vertex at any wire, or any vertex at a body's wire
   return (std::any_of(outlines.begin(), end_of_bodies, sharp) &&
           std::any_of(outlines.begin(), outlines.end(), wire)) ||
          (std::any_of(outlines.begin(), outlines.end(), sharp) &&
@@ -53,6 +55,7 @@ struct ContactSearch::Sides {
   Sides& operator=(const Sides&) = delete;
 };
 
+/// Cost: an index of each distinct outline, and with it a rendered field where it has many sites.
 ContactSearch::ContactSearch(const World& world, const SolverOptions& options,
                              const Trajectories& trajectories, RunControl& run)
     : world_(&world), trajectories_(&trajectories), run_(&run) {
@@ -78,6 +81,7 @@ ContactSearch::ContactSearch(const World& world, const SolverOptions& options,
   points_meet_wires_ = points_may_meet_wires(outlines_, world.bodies.size());
 }
 
+/// Bodies come first among owners, so of two owners that may meet the lower one is a body.
 std::optional<PairKey> ContactSearch::pair_of(int a, int b, const Image& image) const {
   const int n = trajectories_->body_count();
   // the image of b that a meets is seen from b the image of a as far the other way
@@ -86,6 +90,7 @@ std::optional<PairKey> ContactSearch::pair_of(int a, int b, const Image& image) 
   return b < n ? PairKey{a, b, -1, image} : PairKey{a, -1, b - n, image};
 }
 
+/// Of the motion as it is: a held body's twist may be that of its step's end (Trajectories::state_now).
 ExtendedState ContactSearch::other_state(const PairKey& pair, double t) const {
   const ExtendedState state = trajectories_->motion_of(other_owner(pair)).extended_state(t);
   return pair.image == Image{} ? state : state.shifted(shift_of(pair));
@@ -97,6 +102,7 @@ std::string ContactSearch::name_of(const PairKey& pair) const {
       pair.with_site() ? world_->sites[pair.other_site].name : world_->bodies[pair.other_body].name);
 }
 
+/// A site counts as held: between it and what an island holds gaps are kept to the tolerance, no better (Mover).
 Mover ContactSearch::mover(int owner) const {
   const int n = trajectories_->body_count();
   if (owner < n) return mover(owner, trajectories_->body(owner));
@@ -104,6 +110,7 @@ Mover ContactSearch::mover(int owner) const {
   return {indices_of_[owner], &trajectories_->site(owner - n).motion(), 0.0, true};
 }
 
+/// The certificate names the versions of the two motions: it is stale as soon as one of them ends.
 std::optional<Certificate> ContactSearch::search(const PairKey& pair, const BodyTrack& body,
                                                  const BodyTrack* other, double from, double to,
                                                  int most_steps) {
@@ -124,6 +131,7 @@ std::optional<Certificate> ContactSearch::search(const PairKey& pair, const Body
   c.time = answer.until;
   c.pair = pair;
   c.version_body = body.version;
+  // a site is never resolved, and has no versions
   c.version_other = other ? other->version : 0;
   c.contact = answer.contact;
   ++work.certificates_issued;
@@ -141,7 +149,9 @@ std::vector<Certificate> ContactSearch::simultaneous(const Certificate& c, const
   const Sides sides(*this, c.pair, body, other);
   for (const FeatureContact& f :
        touching_features(sides.a, sides.b, c.time, limits_.touch, limits_, scratch_)) {
+    // the found one's sample at any site: a vertex in a corner is one contact here
     if (f.sample == c.contact.sample && f.sample_on_a == c.contact.sample_on_a) continue;
+    // what approaches as slowly as that is rounding of those speeds
     if (f.closing_speed <= kApproaches * c.contact.closing_speed) continue;
     // time and versions of the one that was found: all are one instant
     others.push_back(c);
@@ -160,6 +170,8 @@ double ContactSearch::gap(const PairKey& pair, double t) {
   return pair_gap(sides.a, sides.b, t, limits_, scratch_);
 }
 
+/// Samples do not see bars that cross, with no vertex of either in the other: boundaries do. Cost: all pairs of
+/// sites.
 std::optional<Contact> ContactSearch::crossing(const PairKey& pair, double t) const {
   // the gap of a disc's one sample is the whole distance
   if (outline_of(pair.body).is_point() || outline_of(other_owner(pair)).is_point()) return std::nullopt;
@@ -170,6 +182,7 @@ std::optional<Contact> ContactSearch::crossing(const PairKey& pair, double t) co
       deepest_crossing(outline_of(pair.body), at.seen_from(base).pose, outline_of(other_owner(pair)),
                        other.seen_from(base).pose);
   if (crossing.depth <= 0.0) return std::nullopt;
+  // boundaries that cross name no features: sample and site stay -1
   FeatureContact f;
   f.time = t;
   f.point = base + crossing.point;

@@ -21,10 +21,13 @@ std::uint64_t Endings::endless() const {
   return kPlainInstant + std::min(10 * bodies * bodies, kLongestInstant);
 }
 
+/// From the collision on with which the instant has passed its bound, until the clock leaves it.
 bool Endings::collapsed(double now) const {
   return in_instant_ > endless() && now - instant_ <= 2.0 * same_instant(now);
 }
 
+/// An instant is counted from its first collision. Twice the length of one instant: times on either side of it may
+/// differ by as much.
 void Endings::count_in_instant(const PairKey& pair, double now) {
   if (now - instant_ > 2.0 * same_instant(now)) {
     instant_ = now;
@@ -35,6 +38,7 @@ void Endings::count_in_instant(const PairKey& pair, double now) {
   bodies_.add(pair);
 }
 
+/// The series of bounces first: what comes to its limit is taken over by an island, or ends the run.
 std::optional<Ending> Endings::collided(const Outcome& o, double now, BounceLoss loss) {
   // a bounce that ends its series is not counted: what comes of it is no collision of this instant
   if (!o.contact.seen)

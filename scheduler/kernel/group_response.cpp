@@ -17,6 +17,7 @@ namespace brink {
 
 namespace {
 
+/// A contact of the group. They are sorted by order(), so that laws see the same list whichever was found first.
 struct Touch {
   PairKey pair;
   FeatureContact contact;
@@ -31,6 +32,7 @@ class GroupResponse::Group {
   Group(GroupResponse& parts, const PairKey& pair, const FeatureContact& found)
       : parts_(parts), found_{pair, found} {}
 
+  /// Up to the law's answer nothing of the world is changed: a halt before leaves it as it was.
   std::optional<GroupOutcome> resolve(GroupLaw law, std::vector<int>& changed) {
     if (!collect()) return std::nullopt;
     place();
@@ -85,8 +87,10 @@ class GroupResponse::Group {
         reached.push_back(k);
       }
     };
+    // a pair is met from both of its bodies, and looked at from the first
     std::set<PairKey> seen;
     reach(found_.pair);
+    // `reached` grows while it is gone through. Cost: a look at every owner's box for each body of the group.
     for (std::size_t i = 0; i < reached.size(); ++i) {
       if (!parts_.run_.poll()) return false;
       for (int owner = 0; owner < parts_.trajectories_.owner_count(); ++owner)
@@ -113,6 +117,8 @@ class GroupResponse::Group {
     return true;
   }
 
+  /// Calls visit for every image of owner b that may touch a now: by their boxes, which lie no more than the
+  /// contact tolerance apart.
   template <class Visit>
   void each_image_near(int a, int b, Visit&& visit) const {
     // its solid part is everywhere outside: no box tells that it is not near
@@ -123,10 +129,12 @@ class GroupResponse::Group {
   /// Adds the pair's contacts; true if it has any.
   bool add_touching(const PairKey& pair) {
     const SearchLimits& limits = parts_.search_.limits();
+    // a search has found that this pair touches, whatever is seen of it now
     bool any = pair == found_.pair;
     const std::size_t first = group_.size();
     for (const FeatureContact& f : parts_.search_.touching(pair, limits.tolerance, now())) {
       // Of this instant: it touches to rounding, or closes within what counts as one instant.
+      // Features of a wire meet at their level, some roundings before the gap is 0.
       const double above = f.gap - f.level;
       if (above > limits.touch && above > f.closing_speed * same_instant(now())) continue;
       any = true;
@@ -135,6 +143,7 @@ class GroupResponse::Group {
     return any;
   }
 
+  /// All that the sample of this contact touches, not the nearest site alone (joint_contacts.h).
   std::vector<FeatureContact> joint(const PairKey& pair, const FeatureContact& f) const {
     return joint_contacts(parts_.search_.outline_of(pair.body),
                           parts_.trajectories_.motion_of(pair.body).extended_state(now()),
@@ -173,6 +182,7 @@ class GroupResponse::Group {
     if (std::none_of(from, group_.end(), same)) group_.push_back({pair, f});
   }
 
+  /// Twists, normals and arms at the moment of contact: what the laws are asked with.
   void place() {
     std::set<int> bodies;
     for (const Touch& t : group_)
@@ -188,10 +198,12 @@ class GroupResponse::Group {
     for (const Touch& t : group_) contacts_.push_back(contact(t));
   }
 
+  /// At the moment of contact; of a held body with what its step has brought by now.
   ExtendedState state(int body) const { return parts_.trajectories_.state_now(body).moved(delay_); }
   ExtendedState other_state(const Touch& t) const {
     return parts_.search_.other_state(t.pair, now()).moved(delay_);
   }
+  /// Point, normal and gap of the same features at that moment.
   ExtendedContact geometry(const Touch& t) const {
     return contact_in(parts_.search_.outline_of(t.pair.body),
                       parts_.search_.outline_of(parts_.search_.other_owner(t.pair)), state(t.pair.body),
@@ -202,6 +214,7 @@ class GroupResponse::Group {
     return static_cast<int>(std::lower_bound(bodies_.begin(), bodies_.end(), body) - bodies_.begin());
   }
 
+  /// As the laws have it. A site is no body of the group: what moves is its point, as it is told.
   GroupContact contact(const Touch& t) const {
     const ExtendedContact c = geometry(t);
     const ExtendedState other = other_state(t);
@@ -232,6 +245,7 @@ class GroupResponse::Group {
     return speed;
   }
 
+  /// False: by the law's normals nothing approaches.
   bool pushed() const {
     return std::any_of(result_.normal.begin(), result_.normal.end(), [](Real p) { return p > 0; });
   }
@@ -255,6 +269,7 @@ class GroupResponse::Group {
   void note_touched() {
     rest_.assign(bodies_.size(), std::numeric_limits<double>::infinity());
     touched_.assign(bodies_.size(), false);
+    // where the law pushes nobody the found pair stands in for the group
     const bool any = pushed();
     double speed = top_speed();
     // An approach that the law does not see was rounding, all of it; but not of held bodies, of which the
@@ -274,6 +289,7 @@ class GroupResponse::Group {
     }
   }
 
+  /// The body begins anew; `partner`, `speed`: see CollisionResponse::note_resolve().
   void touch(int body, int partner, double speed) {
     const int k = index_of(body);
     // once for each body: a second note_resolve() of this instant would find a rest of 0
@@ -294,12 +310,14 @@ class GroupResponse::Group {
       RealVec none = RealVec::Zero();
       RealVec &way = ways_[index_of(pair.body)],
               &of_other = pair.with_site() ? none : ways_[index_of(pair.other_body)];
+      // the normal points into the body: the two would come nearer to each other
       if (contacts_[k].normal.dot(way - of_other) < 0) way = of_other = RealVec::Zero();
     }
     for (const std::size_t k : events_)
       if (at_wire(k)) push_apart(k);
   }
 
+  /// A body of several contacts goes by the sum of their ways.
   void push_apart(std::size_t k) {
     const auto& [pair, contact] = group_[k];
     const auto [way, way_of_other] = parts_.response_.push_apart(pair, contact, contacts_[k].normal);
@@ -307,10 +325,13 @@ class GroupResponse::Group {
     if (!pair.with_site()) ways_[index_of(pair.other_body)] += way_of_other;
   }
 
+  /// The law's twists, the ways of those that have sunk, and a motion for each. False: the watch has seen what must
+  /// not be.
   bool restart(std::vector<int>& changed) {
     std::map<int, std::vector<Restart>> by_component;  // a free body is one of its own
     // Bodies of one component are restarted together, as each restart starts its integrator.
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      // whom nothing pushed goes on as before: its certificates hold
       if (!touched_[i]) continue;
       if (!parts_.watch_.flight(bodies_[i], now())) return false;
       const int body = bodies_[i], component = parts_.trajectories_.body(body).component;
@@ -318,6 +339,7 @@ class GroupResponse::Group {
       after.twist = result_.twists[i];
       after.position += ways_[i];
       // a motion from now that passes through the moment of contact
+      // free and held bodies get keys of their own, below those of components
       by_component[component < 0 ? -1 - body : component].push_back({body, after.moved(-delay_)});
     }
     for (const auto& [component, touched] : by_component) parts_.trajectories_.restart(touched, changed);
@@ -333,6 +355,7 @@ class GroupResponse::Group {
     return side;
   }
 
+  /// A collision for each contact that is told of, in the group's order.
   GroupOutcome outcome() const {
     GroupOutcome told;
     told.endless = result_.status == GroupResult::Status::endless;
@@ -340,6 +363,7 @@ class GroupResponse::Group {
     told.lost = told.endless ? static_cast<double>(result_.lost) : 0.0;
     for (const std::size_t k : events_) {
       const PairKey& pair = group_[k].pair;
+      // The flight of the two has lasted since their last collision: no shorter than the shorter rest.
       double rest = rest_[index_of(pair.body)];
       if (!pair.with_site()) rest = std::min(rest, rest_[index_of(pair.other_body)]);
       told.collisions.push_back({pair,

@@ -28,6 +28,7 @@ class Outsider {
 
   const Box& box() const { return box_; }
 
+  /// True if it comes to touch any member, `boxes` being where those may come in the step.
   bool joins(const std::vector<Box>& boxes, const MostAbsorbed& most_absorbed) const {
     for (int member = 0; member < static_cast<int>(boxes.size()); ++member) {
       bool touches = false;
@@ -42,6 +43,7 @@ class Outsider {
  private:
   /// Where a member goes with the step's last twist from its start on, this one comes to it by and by.
   bool comes_to(int member, const Image& image, const MostAbsorbed& most_absorbed) const {
+    // which puts the lower body first: the outsider may be on either side
     const auto pair = search_.pair_of(members_.bodies()[member], body_, image);
     if (!pair) return false;
     const bool member_first = pair->body != body_;
@@ -59,6 +61,7 @@ class Outsider {
           static_cast<double>(f.normal.cast<Real>().dot(b.twist.at(f.point.cast<Real>()) - a.twist.at(arm)));
       // What closes faster is an impact and meets the island by itself. What parts now may still be caught
       // up with.
+      // The gap that is left is that of the step's end, closing by as much as the two may.
       if (closing <= most && f.gap - h_ * (closing + behind) <= search_.limits().tolerance) return true;
     }
     return false;
@@ -75,6 +78,8 @@ class Outsider {
 
 }  // namespace
 
+/// Each outsider is asked by itself: one that touches another outsider alone comes with the next call, when that
+/// one is a member.
 std::vector<int> joining(const World& world, Trajectories& trajectories, const ContactSearch& search,
                          const IslandMembers& members, double now, double h,
                          const MostAbsorbed& most_absorbed) {
@@ -91,6 +96,7 @@ std::vector<int> joining(const World& world, Trajectories& trajectories, const C
     if (!trajectories.cover_body(k, now)) return {};
     const Outsider outsider(world, trajectories, search, members, k, h);
     bool near = false;
+    // first against the whole island: nearly all of the world is far from it
     world.periods.overlaps(all, outsider.box(), [&](const Image&) { near = true; });
     if (near && outsider.joins(boxes, most_absorbed)) found.push_back(k);
   }

@@ -8,6 +8,7 @@ namespace brink {
 
 namespace {
 
+/// The most that any point within `radius` [m] of the centre of mass has [m/s].
 double speed_of(const Twist& v, double radius) { return v.velocity.norm() + std::abs(v.omega) * radius; }
 
 }  // namespace
@@ -27,6 +28,7 @@ IslandMembers::IslandMembers(const World& world, const Trajectories& trajectorie
     const double radius = search.outline_of(k).bounding_radius;
     // a mere point has no size: the scene's
     size_ = std::min(size_, radius > 0.0 ? 2.0 * radius : world.length());
+    // as speeds are bounded: |a| + |alpha| r
     pulls_.push_back(accelerations_.back().linear.norm() + std::abs(accelerations_.back().angular) * radius);
     pull_ = std::max(pull_, pulls_.back());
     heaviest_ = std::max(heaviest_, world.bodies[k].mass);
@@ -34,6 +36,7 @@ IslandMembers::IslandMembers(const World& world, const Trajectories& trajectorie
   find_speeds();
 }
 
+/// Also after impacts of this instant, which change twists.
 void IslandMembers::find_speeds() {
   speeds_.clear();
   speed_ = 0.0;
@@ -51,11 +54,13 @@ double IslandMembers::reach_of(int member) const {
 
 // ---- who is near
 
+/// A list in the making. `reach`: up to which gap [m]; < 0: as far as a step may lead.
 struct IslandMembers::Listing {
   double reach = 0.0;
   std::vector<HeldContact> contacts;
 };
 
+/// Members are swept along x by the left edges of their boxes; sites are held against every member.
 std::vector<HeldContact> IslandMembers::contacts(double reach) const {
   Listing to{reach, {}};
   std::vector<Box> boxes;
@@ -73,6 +78,7 @@ std::vector<HeldContact> IslandMembers::contacts(double reach) const {
       if (!repeats && boxes[by_left[y]].low.x() > boxes[by_left[x]].high.x()) break;
       add_images(to, bodies_[a], boxes[a], bodies_[b], boxes[b]);
     }
+  // a site that moves may come towards members, so its box is grown by its own way
   for (int s = 0; s < trajectories_->site_count(); ++s) {
     const int owner = trajectories_->body_count() + s;
     const Box box = box_of(owner, site_way(s));
@@ -84,6 +90,7 @@ std::vector<HeldContact> IslandMembers::contacts(double reach) const {
   return std::move(to.contacts);
 }
 
+/// Where an owner may be within `reach` [m] of where it is now.
 Box IslandMembers::box_of(int owner, double reach) const {
   const Outline& outline = search_->outline_of(owner);
   const Pose pose = trajectories_->motion_of(owner).pose(now_);
@@ -111,12 +118,14 @@ double IslandMembers::site_way(int s) const {
          (over.speed() + over.spin() * search_->outline_of(trajectories_->body_count() + s).bounding_radius);
 }
 
+/// Of b every image whose box meets that of a.
 void IslandMembers::add_images(Listing& to, int a, const Box& box_a, int b, const Box& box_b) const {
   // solid everywhere beyond its loops: a box does not tell
   if (search_->outline_of(b).container) return add_pair(to, a, b, Image{});
   world_->periods.overlaps(box_a, box_b, [&](const Image& image) { add_pair(to, a, b, image); });
 }
 
+/// Features of that image alone; nothing where the two never meet (ContactSearch::pair_of).
 void IslandMembers::add_pair(Listing& to, int a, int b, const Image& image) const {
   const auto pair = search_->pair_of(a, b, image);
   if (!pair) return;
@@ -140,6 +149,7 @@ std::vector<int> IslandMembers::coupled_to(int member) const {
 
 // ---- where things are
 
+/// A step's motion: constant twists. The member's own forces are in `velocity` already.
 ExtendedState IslandMembers::moved(int member, double later, const std::vector<Vec3>& velocity) const {
   ExtendedState s = states_[member];
   s.twist = ExtendedTwist(as_twist(velocity[member]));
@@ -157,6 +167,7 @@ ExtendedState IslandMembers::other_state(const PairKey& pair, double later,
   return moved(place_of(pair.other_body), later, velocity).shifted(search_->shift_of(pair));
 }
 
+/// Of the same two features, wherever they are by then: another one may have come nearer.
 double IslandMembers::gap(const HeldContact& c, double later, const std::vector<Vec3>& velocity) const {
   const Outline &a = search_->outline_of(c.pair.body), &b = search_->outline_of(search_->other_owner(c.pair));
   return gap_of(c.feature, a, moved(place_of(c.pair.body), later, velocity), b,
@@ -175,6 +186,7 @@ double IslandMembers::closing_speed(const HeldContact& c) const {
 
 double IslandMembers::closing_speed(const HeldContact& c, const ExtendedTwist& of_body,
                                     const ExtendedTwist& of_other) const {
+  // the normal points into the body: > 0 where the other comes along it
   const RealVec relative = of_other.at(c.feature.point.cast<Real>()) - of_body.at(arm(c));
   return static_cast<double>(c.feature.normal.cast<Real>().dot(relative));
 }

@@ -20,6 +20,7 @@ constexpr double kRounding = 0.1;
 /// An approach slower than this part of the speeds that take part is rounding.
 constexpr double kNoApproach = 1e-11;
 /// A parting, after an impact.
+/// Of the same speeds; a contact that parts no faster stays closed.
 constexpr double kNoParting = 1e-9;
 
 /// Two features that touch within this part of the smaller size of each other are at one place.
@@ -31,6 +32,7 @@ constexpr double kTurns = 1e-6;
 bool is_corner(const Outline& outline, const Sample& sample) {
   // an arc's sample is no joint
   if (sample.arc_site >= 0) return true;
+  // a solid lies on the left of its outline: only a turn to the left sticks out of it
   if (sample.before >= 0 && sample.after >= 0)
     return cross(direction_at_end(outline.sites[sample.before]),
                  direction_at_start(outline.sites[sample.after])) > kTurns;
@@ -41,6 +43,7 @@ bool is_corner(const Outline& outline, const Sample& sample) {
     if (s.b == sample.p) in = &s;
     if (s.a == sample.p) out = &s;
   }
+  // an end, a bend to either side, or a tip at which the wire turns back
   return !in || !out || std::abs(cross(direction_at_end(*in), direction_at_start(*out))) > kTurns ||
          direction_at_end(*in).dot(direction_at_start(*out)) < 0.0;
 }
@@ -82,6 +85,7 @@ bool IslandModes::is_shadow(const ContactSearch& search, const HeldContact& c,
   const double tolerance = search.limits().tolerance;
   if (c.feature.at_end && sharp && c.feature.gap <= tolerance) return true;  // it has no direction
   const bool corner = is_corner(carrier, sample);
+  // a corner over the inside of a site: nothing says it better
   if (corner && !c.feature.at_end) return false;
   const double place = kOnePlace * std::min(a.bounding_radius, b.bounding_radius);
   return std::any_of(all.begin(), all.end(), [&](const HeldContact& o) {
@@ -101,6 +105,7 @@ double IslandModes::speed() const {
 
 bool IslandModes::suits() const {
   if (limits_.contacts == 0 || members_->count() > kModeBodies) return false;
+  // places are doubles in modes: far from the origin a touch is lost in their rounding
   for (int i = 0; i < static_cast<int>(members_->count()); ++i)
     if (kEpsilon * members_->state(i).position.cast<double>().norm() > kRounding * search_->limits().touch)
       return false;
@@ -136,6 +141,9 @@ bool IslandModes::touches(const HeldContact& c) const {
   return c.feature.gap <= (was_closed ? 2.0 : 1.0) * tolerance;
 }
 
+/// Features may have several shapes: first the one where the sample is now, then others that it may come to
+/// (smooth_contacts). Each is a contact of the problem. `place_` leads from a contact to its present shape, `of_`
+/// back from each shape; only the present one can be touching.
 void IslandModes::add_contact(const HeldContact& c) {
   const int a = members_->place_of(c.pair.body);
   const Outline &of_a = search_->outline_of(c.pair.body),
@@ -157,6 +165,7 @@ void IslandModes::add_contact(const HeldContact& c) {
     place_.back() = std::numeric_limits<std::size_t>::max();
     return;
   }
+  // each shape has the friction of the contact, and keeps its gap while it is closed
   for (SmoothContact& shape :
        smooth_contacts(c.feature, of_a, members_->state(a), of_b, members_->other_state(c.pair))) {
     // of the sample's owner against the site's: the image is the other owner's, whichever of the two that
@@ -174,6 +183,7 @@ void IslandModes::add_contact(const HeldContact& c) {
     made.passes = c.feature.at_end || !present;
     problem_.contacts.push_back(made);
     of_.push_back(place_.size() - 1);
+    // a shape that the sample may come to is apart, however near it is
     touching_.push_back(present && touching);
     // the first shape is where the sample is; the others are what it may come to
     present = false;
@@ -181,6 +191,7 @@ void IslandModes::add_contact(const HeldContact& c) {
   if (present) place_.back() = std::numeric_limits<std::size_t>::max();  // it has no one shape
 }
 
+/// It holds no states: these change at one time, as what meets meets, and are given with each question.
 void IslandModes::make_problem(std::vector<HeldContact> contacts) {
   contacts_ = std::move(contacts);
   problem_ = {};
@@ -192,6 +203,7 @@ void IslandModes::make_problem(std::vector<HeldContact> contacts) {
     const Body& b = members_->body(i);
     problem_.inverse_mass.emplace_back(b.inverse_mass_x(), b.inverse_mass_y(), b.inverse_inertia());
   }
+  // of the smallest member: what errors are parts of
   problem_.size = members_->size();
   double jump = std::numeric_limits<double>::infinity();
   for (int i = 0; i < static_cast<int>(members_->count()); ++i)
@@ -205,12 +217,15 @@ void IslandModes::make_problem(std::vector<HeldContact> contacts) {
 
 // ---- its beginning
 
+/// By the fastest approach of what touches. Velocities are of the sample's owner against the site's: < 0
+/// approaches.
 IslandModes::Meeting IslandModes::meeting(const States& states) const {
   const std::vector<ContactRates> rates = rates_at(problem_, now_, states);
   double fastest = 0.0;
   for (std::size_t k = 0; k < rates.size(); ++k)
     if (touching_[k]) fastest = std::max(fastest, -rates[k].normal_velocity);
   if (fastest <= kNoApproach * speed()) return Meeting::none;
+  // a slow one is told from a bounce by what it would rise: to four times the tolerance at twice the speed
   return fastest <= 2.0 * slowest_bounce(*members_, *search_) ? Meeting::slow : Meeting::fast;
 }
 
@@ -232,6 +247,7 @@ bool IslandModes::meet(States& states) {
 }
 
 /// Those that the step before ended in, if they speak of all that touches.
+/// They are void where a contact that touches is new, or where one that was closed does not touch any more.
 std::optional<std::vector<MotionMode>> IslandModes::former_modes() const {
   std::vector<MotionMode> modes(problem_.contacts.size(), MotionMode::open);
   std::ptrdiff_t closed = 0;
@@ -272,6 +288,7 @@ std::vector<bool> IslandModes::closed_now(const States& states, Meeting met) con
 
 // ---- the step
 
+/// States are rounded to double here: suits() has seen that gaps can be kept so.
 IslandModes::Outcome IslandModes::take(double now, double h, std::vector<HeldContact> contacts,
                                        bool on_time) {
   now_ = end_ = now;
@@ -283,11 +300,13 @@ IslandModes::Outcome IslandModes::take(double now, double h, std::vector<HeldCon
     until = std::min({until, members_->next_break(i), trajectories_->steady_until(members_->bodies()[i])});
   }
   make_problem(std::move(contacts));
+  // such a step is lost in the rounding of the clock
   if (!(until > now)) return Outcome::none;
   const Meeting met = meeting(states);
   if (met != Meeting::none && !meet(states)) return Outcome::none;
   const SearchLimits& of = search_->limits();
   ModeMotion motion(problem_, {limits_.tolerance, kOff * of.tolerance, of.touch, until - now}, now, states);
+  // after an impact velocities are others, and with them modes
   const auto former = on_time && met == Meeting::none ? former_modes() : std::nullopt;
   if (!(former ? motion.begin_in(*former) : motion.begin(closed_now(states, met)))) return Outcome::none;
   if (!move_on(motion, until)) return Outcome::none;
@@ -306,6 +325,8 @@ void IslandModes::note(const ModeMotion& motion) {
   }
 }
 
+/// To `until`, or to the first event. False: it leads nowhere. Each track is pieces of the integration, then one
+/// that goes on for ever with the last twist.
 bool IslandModes::move_on(ModeMotion& motion, double until) {
   tracks_.clear();
   for (std::size_t i = 0; i < members_->count(); ++i) tracks_.push_back(std::make_shared<Track>());
@@ -317,6 +338,7 @@ bool IslandModes::move_on(ModeMotion& motion, double until) {
     for (std::size_t i = 0; i < step.pieces.size(); ++i) tracks_[i]->pieces.push_back(step.pieces[i]);
     // a change ends the island's step: it is an event, from which the next step begins
     if (step.end != ModeEnd::step && motion.time() > now_) break;
+    // before time goes on modes may be chosen again; any other end leads nowhere
     if (step.end != ModeEnd::step && step.end != ModeEnd::change) return false;
   }
   end_ = motion.time();
@@ -344,6 +366,7 @@ bool IslandModes::within_reach() const {
   for (int i = 0; i < static_cast<int>(members_->count()); ++i) {
     double way = 0.0;
     for (const PolynomialPiece& p : tracks_[i]->pieces) {
+      // the last one has no end (onward)
       if (!(p.end <= end_)) break;
       // bounds, not the ends: a quintic may swing out between them
       const MotionBounds b = p.bounds(p.begin, p.end);
@@ -354,6 +377,7 @@ bool IslandModes::within_reach() const {
   return true;
 }
 
+/// Of contacts that a step by modes had closed before. One that was open, or is new, has met: that is an impact.
 std::vector<IslandModes::Change> IslandModes::changes() const {
   std::vector<Change> changes;
   for (std::size_t k = 0; k < contacts_.size(); ++k) {

@@ -19,6 +19,7 @@ constexpr double kOfFall = 0.05;
 constexpr double kOfSize = 0.1;
 /// Features are listed as far as bodies come in so many steps; where impulses take one farther, in more.
 constexpr double kReach = 2.0, kWider = 4.0;
+/// So a list reaches from 2 to 512 steps. Where that does not do, a step is halved, down to 2^-16 of its length.
 constexpr int kWidenings = 4;
 constexpr int kHalvings = 16;
 /// Contact tolerances that a contact is open before its bodies are let go from modes.
@@ -30,6 +31,7 @@ constexpr std::size_t kFirstImpacts = 100, kImpactsEach = 20;
 /// No tolerance makes a step shorter than this part of what it would be.
 constexpr double kShortest = 1e-4;
 /// Halving a step makes its change of velocity fall to this part at most, if forces make it.
+/// What forces change goes with the step, so half is left at most; what an impact changes stays: 3/4 lies between.
 constexpr double kFalls = 0.75;
 /// A force below this part of the weight of the heaviest member is none.
 constexpr double kNoForce = 1e-9;
@@ -42,6 +44,9 @@ constexpr double kNoSpeed = 1e-7;
 
 }  // namespace
 
+/// It is used once, for one instant, in this order: who joins, impacts, then rest or a step, and who stays
+/// together. `h_` is the length that is looked ahead by, and in the end that of the step; `contacts_` are the
+/// features of the last look, with forces once there are some.
 IslandMotion::IslandMotion(IslandMembers members, const ContactSearch& search, CollisionResponse& response,
                            ConeQp& solver, IslandTally& tally, WarmContacts warm)
     : members_(std::move(members)),
@@ -51,6 +56,7 @@ IslandMotion::IslandMotion(IslandMembers members, const ContactSearch& search, C
       tally_(&tally),
       warm_(std::move(warm)) {}
 
+/// Of the members as they are now: impacts change speeds, and with them the answer.
 double IslandMotion::longest() const {
   const double pull = members_.pull(), speed = members_.speed();
   // the time of the fall is sqrt(2 size / pull): but for the root of 2
@@ -61,17 +67,22 @@ double IslandMotion::longest() const {
 
 std::vector<int> IslandMotion::joining(const World& world, Trajectories& trajectories, double now) {
   h_ = longest();
+  // no step will be taken, so nobody is met in one
   if (!(h_ < kForever)) return {};
   members_.look_ahead(h_, kReach);
+  // an agitated island takes impacts where its step begins, so it takes in who comes fast, too
   return brink::joining(world, trajectories, *search_, members_, now, h_,
                         [this](const PairKey& pair) { return agitated_ ? kForever : most_absorbed(pair); });
 }
 
+/// Lists features anew, up to a gap of `reach` [m]; < 0: as far as the step may lead (IslandMembers::contacts).
+/// What a step absorbs is found anew with them.
 void IslandMotion::list(double reach) {
   contacts_ = members_.contacts(reach);
   absorbed_ = 0.0;
 }
 
+/// Of each member now, as the step's problem has them: x, y [m/s], angle [rad/s].
 std::vector<Vec3> IslandMotion::velocities() const {
   std::vector<Vec3> all;
   for (std::size_t i = 0; i < members_.count(); ++i)
@@ -81,7 +92,11 @@ std::vector<Vec3> IslandMotion::velocities() const {
 
 // ---- impacts of this instant
 
+/// While something closes too fast to be taken as plastic, the fastest collides by its own law, and the contacts of
+/// its two bodies are looked at again. Cost of an impact: a look at one number of each contact for the fastest, and
+/// a closing speed for each contact of the two.
 void IslandMotion::pass_on_impacts(const Impact& told) {
+  // what a step would absorb, and what would arrive in it, depends on its length
   h_ = longest();
   // of an agitated island what would meet within a step, of any other what touches
   members_.look_ahead(agitated_ ? h_ : 0.0, kReach);
@@ -112,9 +127,11 @@ void IslandMotion::pass_on_impacts(const Impact& told) {
       for (const std::size_t k : contacts_of[member]) impact[k] = impact_of(contacts_[k], velocity);
     });
   }
+  // set_twist() leaves them to be found, and the length of the step comes from them
   members_.find_speeds();
 }
 
+/// Within a contact tolerance of what its features keep: at a wire without thickness a touch, else 0.
 bool IslandMotion::touches(const HeldContact& c) const {
   return c.feature.gap - kept(c.feature) <= search_->limits().tolerance;
 }
@@ -127,23 +144,30 @@ double IslandMotion::impact_of(const HeldContact& c, const std::vector<Vec3>& ve
   if (!touches(c)) return arrival(c, velocity).time < h_ ? closing : 0.0;
   // at a joint of two floors the tangent at an end bars the way to what slides over it
   if (passes_by(c, 0.0, closing)) return 0.0;
+  // by modes another contact says better what a shadow says: one impact for one place
   return by_modes_ && IslandModes::is_shadow(*search_, c, contacts_) ? 0.0 : closing;
 }
 
+/// A member as the impulse law sees it; locks are in its inverse masses. `arm`: contact point minus centre of mass
+/// [m].
 ImpulseSide IslandMotion::side_of(int member, const RealVec& arm) const {
   const Body& b = members_.body(member);
   return {members_.state(member).twist, arm, b.inverse_mass_x(), b.inverse_mass_y(), b.inverse_inertia()};
 }
 
+/// One impact in extended precision. Twists change, places do not. A site yields to nothing: its inverse masses are
+/// 0.
 void IslandMotion::collide(const HeldContact& c, double closing, const Impact& told) {
   const int a = members_.place_of(c.pair.body);
   const int b = c.pair.with_site() ? -1 : members_.place_of(c.pair.other_body);
   const RealVec other_arm = c.feature.point.cast<Real>();
   const ExtendedState other = members_.other_state(c.pair);
+  // the feature's point is seen from the other's position: it is that side's arm
   const ImpulseResult r =
       resolve_impulse(side_of(a, members_.arm(c)),
                       b < 0 ? ImpulseSide{other.twist, other_arm, 0.0, 0.0, 0.0} : side_of(b, other_arm),
                       c.feature.normal.cast<Real>(), response_->material_of(c.pair));
+  // find_speeds() is due: the caller does so once, after the last impact
   members_.set_twist(a, r.body);
   if (b >= 0) members_.set_twist(b, r.other);
   told(c, other.position, closing, r);
@@ -161,6 +185,7 @@ bool IslandMotion::rests(double rest_speed) {
   for (int i = 0; i < count; ++i)
     // forces that change with time or place would have to be balanced ever anew
     if (!members_.is_constant(i)) return false;
+  // the forces that are found are noted as means over so long (take_forces)
   h_ = longest();
   members_.look_ahead(0.0, kReach);
   list(tolerance);
@@ -173,10 +198,12 @@ bool IslandMotion::rests(double rest_speed) {
   // what fades is less than the tolerance times a weight; what the option rest_speed stops may be more,
   // and is told
   if (!fades) tally_->energy_of_rest += kinetic_energy();
+  // to the bit: what is still has no search and no step (Motion::is_still)
   for (int i = 0; i < count; ++i) members_.set_twist(i, ExtendedTwist());
   return true;
 }
 
+/// Of all members [J].
 double IslandMotion::kinetic_energy() const {
   double twice = 0.0;
   for (int i = 0; i < static_cast<int>(members_.count()); ++i) {
@@ -188,6 +215,7 @@ double IslandMotion::kinetic_energy() const {
 
 // ---- steps
 
+/// Modes decide how long the step is. It is tried again only where a member left the features that were listed.
 bool IslandMotion::take(IslandModes& modes, double now, double h, bool on_time) {
   if (!by_modes_ || !(h < kForever)) return false;
   double reach = kReach;
@@ -199,6 +227,7 @@ bool IslandMotion::take(IslandModes& modes, double now, double h, bool on_time) 
     // farther than features were listed: with a longer list, from the same states
     if (outcome == IslandModes::Outcome::wider) continue;
     if (outcome == IslandModes::Outcome::none) return false;
+    // with the modes and forces that they have from here on
     contacts_ = modes.contacts();
     h_ = modes.end() - now;
     return true;
@@ -210,6 +239,7 @@ bool IslandMotion::take(IslandModes& modes, double now, double h, bool on_time) 
 /// a longer list of features where somebody goes beyond it, one of half the length where there is no
 /// solution.
 bool IslandMotion::take(double h, double tolerance) {
+  // from here on the length of the step says which approach is plastic (most_absorbed)
   by_modes_ = false;
   contacts_.clear();
   if (!(h < kForever)) return true;  // nothing moves or pulls: nobody needs anybody
@@ -217,12 +247,15 @@ bool IslandMotion::take(double h, double tolerance) {
   const double shortest = kShortest * h, pull = members_.pull();
   // h^2 a / 2 = tolerance for a body that falls: what places may be off in a step that begins at rest
   if (tolerance > 0.0 && pull > 0.0) h = std::clamp(std::sqrt(2.0 * tolerance / pull), shortest, h);
+  // the length that is tried and the list of features go together
   const auto look = [&](double step) {
     h_ = step;
     members_.look_ahead(h_, reach);
     list(-1.0);
   };
   const double worthwhile = kWorthwhile * h;
+  // Each turn returns, or shortens the step, or lengthens the list, and each of these ends: `shortest` bounds what
+  // the tolerance asks for, kHalvings and kWidenings the others.
   for (int halving = 0, widening = 0; halving <= kHalvings;) {
     look(h);
     if (const double first = next_arrival(); first < h) {  // an impact ends the step
@@ -235,9 +268,12 @@ bool IslandMotion::take(double h, double tolerance) {
       return members_.gap(contacts_[k], later, velocity) - kept(contacts_[k].feature);
     };
     const StepOutcome outcome = take_step(*solver_, problem_, h, search_->limits().tolerance, gap);
+    // work is counted of every try, all else of the step that is taken
     tally_->factorisations += outcome.factorisations;
+    // looked at after the solver: contacts may hand on more speed than anybody had
     const bool within = outcome.solved && stays_within_reach();
     // what forces change falls with the step; what does not is an impact
+    // Half of what the change of velocity moves it is what a place may be off.
     const double change = within ? change_of_speed() : 0.0, off = 0.5 * h_ * change;
     if (tolerance > 0.0 && off > tolerance && h_ > shortest && change <= kFalls * change_before) {
       change_before = change;
@@ -272,8 +308,10 @@ double IslandMotion::next_arrival() {
     const Arrival come = touches(c) ? Arrival{0.0, members_.closing_speed(c)} : arrival(c, velocity);
     if (!(come.time <= h_)) continue;
     if (!touches(c) && come.closing > most_absorbed(c.pair))
+      // too fast to be taken as plastic: an impact within the step
       first = std::min(first, come.time);
     else
+      // plastic in this step, and told (IslandTally::absorbed)
       absorbed_ = std::max(absorbed_, come.closing);
   }
   return first;
@@ -286,6 +324,7 @@ IslandMotion::Arrival IslandMotion::arrival(const HeldContact& c, const std::vec
   for (int k = 0; k < kTangents; ++k) {
     // where the line through the gap reaches 0
     const double way = gap / closing;
+    // it opens, or the step ends before it comes
     if (!(closing > 0.0 && t + way <= h_)) return {};
     const double next = members_.gap(c, t + way, velocity) - kept(c.feature);
     // the secant's slope: no derivative of the gap is at hand there
@@ -312,6 +351,7 @@ double IslandMotion::most_absorbed(const PairKey& pair) const {
   return by_modes_ ? IslandModes::slowest_bounce(members_, *search_) : members_.pull() * h_ / e;
 }
 
+/// The members with their masses, velocities and forces [N], [N m], and a row for each contact that is listed.
 void IslandMotion::make_problem() {
   problem_ = {};
   problem_.velocity = velocities();
@@ -323,9 +363,11 @@ void IslandMotion::make_problem() {
                                b.lock_angle ? kForever : b.inertia);
     problem_.force.emplace_back(b.mass * a.linear.x(), b.mass * a.linear.y(), b.inertia * a.angular);
   }
+  // in the order of contacts_: take_forces() leads back by place
   for (const HeldContact& c : contacts_) problem_.contacts.push_back(island_contact(c));
 }
 
+/// Geometry at the start of the step; forces of the step before, from which friction bounds come.
 IslandContact IslandMotion::island_contact(const HeldContact& c) const {
   IslandContact made;
   const int a = members_.place_of(c.pair.body);
@@ -341,6 +383,7 @@ IslandContact IslandMotion::island_contact(const HeldContact& c) const {
   }
   made.at_end = c.feature.at_end;
   made.driven = members_.on_moving_site(c);
+  // a body that is a member moves by the unknown twists; a site by what it is told
   if (made.driven) {  // the mean velocity of its point
     const ExtendedState from = members_.other_state(c.pair), to = members_.other_state(c.pair, h_, {});
     // the site's own motion over the step, as one turn and shift of the point that touches
@@ -357,6 +400,7 @@ IslandContact IslandMotion::island_contact(const HeldContact& c) const {
 bool IslandMotion::stays_within_reach() const {
   for (int i = 0; i < static_cast<int>(members_.count()); ++i) {
     const Twist v = as_twist(problem_.velocity[i]);
+    // no point of it is faster than |v| + |omega| r
     if (h_ * (v.velocity.norm() + std::abs(v.omega) * members_.bounding_radius(i)) > members_.reach_of(i))
       return false;
   }
@@ -373,6 +417,7 @@ double IslandMotion::change_of_speed() const {
   return most;
 }
 
+/// From the problem back to the contacts: means over the step, with which the next one starts.
 void IslandMotion::take_forces() {
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     contacts_[k].normal_force = problem_.contacts[k].normal_force;
@@ -429,6 +474,7 @@ std::vector<std::pair<int, int>> IslandMotion::neighbours() const {
     for (std::size_t y = x + 1; y < by_left.size(); ++y) {
       const int a = by_left[x], b = by_left[y];
       const double reach = members_.bounding_radius(a) + members_.bounding_radius(b) + near;
+      // those that follow begin farther right still
       if (left(b) > left(a) + 2.0 * members_.bounding_radius(a) + near) break;
       const RealVec apart = members_.state(a).position - members_.state(b).position;
       if (static_cast<double>(apart.norm()) <= reach) found.emplace_back(a, b);
@@ -448,6 +494,7 @@ IslandMotion::Parts IslandMotion::parts(bool rests) const {
     const int a = members_.place_of(c.pair.body);
     const int b = c.pair.with_site() ? a : members_.place_of(c.pair.other_body);
     pushed[a] = pushed[b] = true;
+    // a site keeps its body in an island, but joins nobody to it: there b is a
     joined.unite(a, b);
   }
   if (agitated_ && !rests)
@@ -459,6 +506,7 @@ IslandMotion::Parts IslandMotion::parts(bool rests) const {
     // springs hold a component together, and an island holds it whole or not at all
     for (const int j : members_.coupled_to(i)) joined.unite(i, j);
   Parts parts;
+  // Sets come in the order of their least member. One without a push anywhere is let go, body by body.
   for (int i = 0; i < count; ++i) {
     if (seen[i]) continue;
     std::vector<int> set(joined.of(i).begin(), joined.of(i).end());
@@ -472,6 +520,8 @@ IslandMotion::Parts IslandMotion::parts(bool rests) const {
   return parts;
 }
 
+/// By the relative velocity of the two points that touch, along the tangent; where that is none, by the relative
+/// spin. Without a push it has no mode.
 ContactMode IslandMotion::mode_of(const HeldContact& c, bool rests) const {
   if (!pushes(c)) return ContactMode::none;
   if (rests) return ContactMode::rest;
@@ -495,12 +545,14 @@ Island IslandMotion::island_of(const std::vector<int>& together, bool rests, dou
     return std::binary_search(together.begin(), together.end(), members_.place_of(body));
   };
   for (const int i : together) island.members.push_back(members_.bodies()[i]);
+  // Contacts among these alone: what leads to a member that leaves is searched again.
   for (const HeldContact& c : contacts_)
     if (has(c.pair.body) && (c.pair.with_site() || has(c.pair.other_body))) {
       HeldContact& held = island.contacts.emplace_back(c);
       held.mode = mode_of(c, rests);
       held.place = members_.other_state(c.pair).position.cast<double>() + c.feature.point;
     }
+  // A step has its end; what rests has none, but where forces on a member jump.
   island.rests = rests;
   if (!rests) island.due = end;
   if (rests)  // until forces jump

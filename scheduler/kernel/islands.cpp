@@ -39,6 +39,7 @@ bool is_agitated(const World& world, const IslandPace& pace, const std::set<int>
   });
 }
 
+/// From its highest an island calms down in 25 steps without impacts.
 int next_agitation(int agitation, bool impacts) {
   return std::clamp(agitation + (impacts ? 1 : -1), 0, kMostAgitation);
 }
@@ -65,15 +66,19 @@ Islands::Islands(const World& world, Trajectories& trajectories, ContactSearch& 
 /// The body, the island that it is in, and what springs couple to any of those, over and over: an island
 /// holds components whole (Trajectories::hold).
 void Islands::gather(int body, std::set<int>& members) const {
+  // here already, and so are all who come with it
   if (members.count(body)) return;
   const auto lead = lead_of_.find(body);
   const std::vector<int> with =
       lead != lead_of_.end() ? islands_.at(lead->second).members : std::vector{body};
   members.insert(with.begin(), with.end());
+  // springs couple each of these to others, and those bring their islands along
   for (const int k : with)
     for (const int j : trajectories_->coupled_to(k)) gather(j, members);
 }
 
+/// Takes the islands of these members out of the list; their pairs are searched again. Returns what is known of
+/// their contacts, to start the next step from, and joins their pace to `pace`.
 WarmContacts Islands::take_out(const std::set<int>& members, IslandPace& pace) {
   WarmContacts warm;
   for (const int k : members) {
@@ -99,15 +104,19 @@ WarmContacts Islands::take_out(const std::set<int>& members, IslandPace& pace) {
   return warm;
 }
 
+/// Enters an island: its pairs are left out of searches. A contact that presses in the mode that it had when it was
+/// taken out is one stretch with before; in another mode a new one begins.
 void Islands::put_in(Island island) {
   for (HeldContact& c : island.contacts) {
     search_->leave_out(c.pair);
     if (c.mode == ContactMode::none) continue;
     const auto before = taken_out_.find({c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site});
     const bool goes_on = before != taken_out_.end() && before->second.mode == c.mode;
+    // a stretch that goes on keeps its beginning
     c.since = goes_on ? before->second.since : run_->time();
     if (goes_on) taken_out_.erase(before);
   }
+  // the least member names its island, in lists and events
   const int lead = island.members.front();
   for (const int k : island.members) lead_of_[k] = lead;
   islands_[lead] = std::move(island);
@@ -125,6 +134,7 @@ void Islands::tell_lasting() const {
       if (c.mode != ContactMode::none) records_->lasted(c);
 }
 
+/// Due whenever the list or a due time in it has changed. Cost: a look at every island.
 void Islands::find_next() {
   next_step_ = std::numeric_limits<double>::infinity();
   for (const auto& [lead, island] : islands_) next_step_ = std::min(next_step_, island.due);
@@ -149,6 +159,8 @@ void Islands::note_impact(const HeldContact& c, const RealVec& from, double clos
   records_->event(EventKind::collision, c.pair, f, normal, tangential, 0);
 }
 
+/// At the present time, for events. `from`: position of the pair's other owner, from which the feature's point is
+/// seen [m].
 FeatureContact Islands::as_told(const HeldContact& c, const RealVec& from) const {
   FeatureContact f;
   f.time = run_->time();
@@ -186,6 +198,7 @@ IslandMotion Islands::set_out(std::set<int>& members, IslandPace& pace) {
     for (const int k : members)
       if (!trajectories_->is_held(k))
         as_they_are.push_back({k, trajectories_->body(k).motion.extended_state(run_->time())});
+    // told to nobody: part() and give_up() change the motion of every member once more
     std::vector<int> held;
     trajectories_->hold(as_they_are, held);
     IslandMotion motion(IslandMembers(*world_, *trajectories_, *search_, run_->time(), members), *search_,
@@ -205,18 +218,23 @@ bool Islands::follow_sites(double now, double h) {
   return true;
 }
 
+/// `longest`: the step is no longer [s]. `on_time`: the one before has come to its end, so its modes may hold
+/// still.
 bool Islands::begin_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time) {
   return carry_out_step(std::move(members), longest, changed, on_time) && run_->poll();
 }
 
 /// Members gather and are held; what closes fast meets; then they are at rest, or move on by modes, or at
 /// the level of velocities; and who pushes whom makes the islands from here on.
+/// Members are in no island from set_out() to part(): a failure between the two lets all of them go. `longest`
+/// bounds the step [s]; false where the run is not to go on.
 bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time) {
   // Islands are out of their list while this goes on: a stop in between would leave their bodies held by
   // nobody.
   const RunControl::Indivisible whole(*run_);
   IslandPace pace;
   IslandMotion motion = set_out(members, pace);
+  // Members are in no island by now: all are let go to what moved them before.
   const auto give_up = [&] {
     trajectories_->release(std::vector<int>(members.begin(), members.end()), changed);
     tell_ended();
@@ -225,6 +243,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   };
   const double now = run_->time();
   IslandModes modes(motion.members(), *trajectories_, *search_, *response_, by_modes_, motion.warm());
+  // what buzzes is spared modes for some steps (next_hasty)
   if (pace.hasty < kMostHasty && modes.suits()) motion.expect_modes();
   const std::uint64_t collisions = run_->work().collisions;
   // before impacts: those of an agitated island are looked for along the step
@@ -240,6 +259,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   // anew: impacts have changed speeds
   const double h = std::min(longest, motion.longest());
   if (!rests && std::isfinite(h) && !follow_sites(now, h)) return give_up();
+  // rest first: it is exact and free; modes next, as they keep to a tolerance; steps of first order last
   const bool by_modes = !rests && motion.take(modes, now, h, on_time);
   if (!rests && !by_modes && !motion.take(h, limits_.tolerance)) {
     run_->stop(
@@ -254,6 +274,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   pace.hasty = next_hasty(pace.hasty, by_modes, by_modes && modes.end() - now < kHasty * h);
   pace.agitation = next_agitation(pace.agitation, motion.impacts_in_step());
   if (rests) note_change(EventKind::sleep, *members.begin()), ++tally_.slept;
+  // only for a step that has been found: it puts members into islands again
   part(motion, rests, by_modes ? &modes : nullptr, pace, changed);
   tell_ended();
   // a body that was held, let go and held again is in it more than once
@@ -266,13 +287,16 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
 /// Members that push each other are islands; those that nothing pushes are let go, as they were.
 void Islands::part(const IslandMotion& motion, bool rests, const IslandModes* modes, const IslandPace& pace,
                    std::vector<int>& changed) {
+  // who pushes whom is known from the step that has been found
   const IslandMotion::Parts parts = motion.parts(rests);
   const IslandMembers& members = motion.members();
   const double now = run_->time(), end = modes ? modes->end() : now + motion.duration();
   std::vector<Restart> held, as_they_are;
   std::vector<int> free;
+  // each set is an island of its own: what has come apart steps by itself from here on
   for (const std::vector<int>& together : parts.together) {
     for (const int i : together)
+      // a step of constant twists begins where the member is, with the twist that it comes to
       held.push_back({members.bodies()[i], rests || modes ? members.state(i) : motion.after(i)});
     Island island = motion.island_of(together, rests, end);
     island.pace = pace;
@@ -299,6 +323,8 @@ void Islands::part(const IslandMotion& motion, bool rests, const IslandModes* mo
     }
 }
 
+/// Where the limit is now, the event is told at once. Where it lies ahead, it is told when the first step ends
+/// there (step()), and not at all where something else ends that step before.
 bool Islands::capture(const PairKey& pair, const FeatureContact& contact, double limit,
                       std::vector<int>& changed) {
   std::set<int> members;
@@ -327,6 +353,8 @@ bool Islands::capture(const PairKey& pair, const FeatureContact& contact, double
   return true;
 }
 
+/// Bodies that touch, and those that touch them in turn, begin a step together. Pairs are told before any island
+/// has come to rest.
 bool Islands::begin(const std::vector<std::pair<PairKey, FeatureContact>>& touching,
                     std::vector<int>& changed) {
   DisjointSets joined;
@@ -334,25 +362,31 @@ bool Islands::begin(const std::vector<std::pair<PairKey, FeatureContact>>& touch
   for (const auto& [pair, contact] : touching) {
     records_->ending(EventKind::persist, pair, contact, records_->last_event());
     ++tally_.captured;
+    // sites join nobody: two bodies on one floor are two islands
     if (!pair.with_site()) joined.unite(pair.body, pair.other_body);
   }
   for (const auto& [pair, contact] : touching) {
     if (is_member(pair.body)) continue;  // with another of its contacts
     std::set<int> members;
+    // with whom springs couple to them, as islands hold components whole
     for (const int k : joined.of(pair.body)) gather(k, members);
     if (!begin_step(members, std::numeric_limits<double>::infinity(), changed)) return false;
   }
   return true;
 }
 
+/// To the bit: next_step_ is the `due` of one of them. The list is by least members, so the first that fits is the
+/// least.
 int Islands::next_island() const {
   return std::find_if(islands_.begin(), islands_.end(),
                       [&](const auto& i) { return i.second.due == next_step_; })
       ->first;
 }
 
+/// The end of a step is no news to its members: with `on_time` the next may go on in the modes that they have.
 bool Islands::step(std::vector<int>& changed) {
   Island& island = islands_.at(next_island());
+  // bounces that led to its capture have the limit here that was foreseen then
   if (island.series.body >= 0)
     records_->ending(EventKind::zeno, island.series, island.series_contact,
                      std::max(island.due, records_->last_event()));
@@ -373,14 +407,17 @@ double Islands::slides_off_in(const PairKey& pair, const FeatureContact& f) cons
   if (!pair.with_site()) b.twist = trajectories_->state_now(pair.other_body).twist;
   const Outline &of_a = search_->outline_of(pair.body),
                 &of_b = search_->outline_of(search_->other_owner(pair));
+  // both are seen from the other's place: far from the origin nothing of what is between them is lost
   const Vec2 base = b.position.cast<double>();
   const Placed at_a(of_a, a.seen_from(base)), at_b(of_b, b.seen_from(base));
   const Sample& sample = (f.sample_on_a ? of_a : of_b).samples[f.sample];
+  // of an arc or a point no such time is told: the step has a length of its own
   const Site& site = (f.sample_on_a ? of_b : of_a).sites[f.site];
   if (site.kind != SiteKind::segment) return kForever;
   const SamplePath path = sample_path(f.sample_on_a ? at_a : at_b, f.sample_on_a ? at_b : at_a, sample.p);
   const Vec2 d = (site.b - site.a).normalized();
   const double speed = d.dot(path.rate), left = speed > 0.0 ? d.dot(site.b - path.q) : d.dot(path.q - site.a);
+  // an instant more than that: by then it is beyond the end, not a rounding before it
   return speed != 0.0 && left >= 0.0 ? left / std::abs(speed) + same_instant(now) : kForever;
 }
 
@@ -389,6 +426,7 @@ bool Islands::collided(const PairKey& pair, const FeatureContact& found, bool pu
   std::set<int> members;
   gather(pair.body, members);
   if (!pair.with_site()) gather(pair.other_body, members);
+  // what a picture shows names no features that could slide
   return begin_step(members, pushed || found.seen ? kForever : slides_off_in(pair, found), changed);
 }
 
@@ -415,6 +453,7 @@ void Islands::restore(const Saved& saved) {
     for (const HeldContact& c : island.contacts)  // they go on
       if (c.mode != ContactMode::none)
         taken_out_.emplace(Feature{c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site}, c);
+    // which finds the contacts there, so that their stretches go on
     put_in(island);
   }
   tally_ = saved.tally;

@@ -14,6 +14,8 @@ bool KernelView::is_searched(int a, int b, const Image& image) const {
   return pair && !parts_.search.is_left_out(*pair);
 }
 
+/// Only the first collision ahead of time can be confirmed: the others hang on it. Times are compared to the bit,
+/// since two searches on the same motions find the same contact.
 bool KernelView::is_resolved_ahead(const Certificate& c) const {
   const auto collisions = parts_.speculation.of(c.pair.body);
   if (collisions.empty()) return false;
@@ -52,6 +54,7 @@ void Kernel::advance_all(double t) {
   parts_.run.set_time(t);
 }
 
+/// In the trace each of the two goes from where its motion began; t may lie a rounding before that.
 void Kernel::advance_pair(const PairKey& pair, double t) {
   parts_.run.work().advances += pair.with_site() ? 1 : 2;
   parts_.run.set_time(t);
@@ -69,6 +72,7 @@ void Kernel::advance(std::span<const int> bodies, double from, double t) {
 void Kernel::back_up_all(double t) {
   if (t < time()) {
     parts_.run.work().backups += body_count();
+    // time that clocks were taken through in vain: motions stay as they are
     parts_.run.work().body_seconds_thrown_away += (time() - t) * body_count();
     trace_all(TraceKind::back_up, time(), t);
   }
@@ -84,6 +88,7 @@ void Kernel::back_up(std::span<const int> bodies, double from, double t) {
 
 // -- passes and searches --
 
+/// All bodies are tested at once: as many passes as bodies, and a horizon in the counters.
 std::vector<PairKey> Kernel::near_pairs(double from, double to) {
   const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_look);
   ++parts_.run.work().horizons;
@@ -96,12 +101,14 @@ std::vector<PairKey> Kernel::near_pairs_of(int body, double from, double to) {
   const StageTimer::Sampled timed = looking();
   ++parts_.run.work().passes;
   const TraceScope scope(parts_.run.trace(), {TraceKind::pass, body, -1, from, to});
+  // ahead of what is certain a body has several motions: the bounds of all of them count
   return parts_.near.of(body, from, to, !parts_.speculation.empty());
 }
 
 std::optional<Certificate> Kernel::search(const PairKey& pair, double from, double to, int most_steps) {
   const BodyTrack* other = pair.with_site() ? nullptr : &body(pair.other_body);
   auto found = parts_.search.search(pair, body(pair.body), other, from, to, most_steps);
+  // a policy that is held to known contacts is told of this one here
   if (found) parts_.policy_watch.found(*found);
   return found;
 }
@@ -131,6 +138,8 @@ std::vector<Certificate> Kernel::simultaneous(const Certificate& c) {
 
 // -- resolving --
 
+/// The response, then the event, then what the collision is the end of, then who is integrated together from here
+/// on: each may ask for what the one before has done.
 bool Kernel::resolve(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed) {
   parts_.policy_watch.going_to(time());
   // A group is made of everything that touches now, so nobody may be on a motion that is only guessed. A
@@ -145,12 +154,14 @@ bool Kernel::resolve(const PairKey& pair, const FeatureContact& found, std::vect
   return regroup_after(pair, changed) && goes_on;
 }
 
+/// The law and the new motions, timed. Nobody is told yet: a collision ahead of time is told when it is confirmed.
 std::optional<Outcome> Kernel::respond(const PairKey& pair, const FeatureContact& found,
                                        std::vector<int>& changed) {
   const StageTimer::Sampled timed(parts_.run.timer(), parts_.run.work().seconds_response, responses_timed_);
   return parts_.response.collide(pair, found, changed);
 }
 
+/// In an instant that has had too many collisions the law is `collapsed`, whatever the order.
 bool Kernel::resolve_group(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed) {
   const GroupLaw law = parts_.endings.collapsed(time()) ? GroupLaw::collapsed
                        : order() == Order::lcp          ? GroupLaw::complementarity
@@ -197,6 +208,7 @@ bool Kernel::regroup(std::vector<std::vector<int>> together, std::vector<int>& c
   return parts_.trajectories.regroup(std::move(together), changed);
 }
 
+/// A collision that is certain is counted, recorded, and judged. False where the run is not to go on.
 bool Kernel::tell(const Outcome& o, std::vector<int>& changed) {
   parts_.watch.note_overlap(o.contact.gap);
   count(o.pair);
@@ -208,6 +220,7 @@ bool Kernel::tell(const Outcome& o, std::vector<int>& changed) {
   return judge(o, changed);
 }
 
+/// The trace has it on the lane of each body that took part.
 void Kernel::count(const PairKey& pair) {
   WorkCounters& work = parts_.run.work();
   ++work.collisions;
@@ -238,6 +251,7 @@ bool Kernel::judge_ending(const Outcome& o, std::vector<int>& changed) {
     case Ending::Kind::zeno:
       if (parts_.islands.allowed()) return begin_to_last(o, ending->time, changed);
       parts_.records.ending(EventKind::zeno, o.pair, o.contact, ending->time);
+      // ending->count: bounces low enough to be remembered (ZenoWatch); the streak: all in a row
       stop(Termination::failed,
            fmt::format(
                "Zeno at t = {:.15g} after {} bounces of {}: a contact that lasts begins, and {} ends there",
@@ -248,6 +262,7 @@ bool Kernel::judge_ending(const Outcome& o, std::vector<int>& changed) {
                                     : "solver.persistent = false"));
       return false;
     case Ending::Kind::group:
+      // told once; from the next collision of this instant on resolve() takes contacts together
       parts_.records.ending(EventKind::group, o.pair, o.contact, parts_.records.last_event());
       return go_on_in_islands(o, changed) && poll();
     case Ending::Kind::endless_group:
@@ -262,6 +277,7 @@ bool Kernel::judge_ending(const Outcome& o, std::vector<int>& changed) {
 /// The pair's bounces have their limit: a contact that lasts begins.
 bool Kernel::begin_to_last(const Outcome& o, double limit, std::vector<int>& changed) {
   const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_islands);
+  // an island takes in whoever is near, so nobody may be ahead of what is certain
   roll_back_all();
   // the collision itself has been told already: not before it
   parts_.records.ending(EventKind::persist, o.pair, o.contact, parts_.records.last_event());
@@ -275,6 +291,7 @@ bool Kernel::go_on_in_islands(const Outcome& o, std::vector<int>& changed) {
   const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_islands);
   // An island steps from the present states of its members, and takes in who comes near.
   roll_back_all();
+  // without an impulse two features have slid off each other within the step
   return parts_.islands.collided(o.pair, o.contact, o.impulse_n > 0.0, changed);
 }
 
@@ -286,6 +303,7 @@ bool Kernel::step_island(std::vector<int>& changed) {
   return parts_.islands.step(changed);
 }
 
+/// Begins a motion at another place with the same twist; nothing is told.
 void Kernel::displace(int k, const Vec2& shift) {
   const Restart moved{k, body(k).motion.extended_state(time()).shifted(shift)};
   std::vector<int> changed;
@@ -294,6 +312,8 @@ void Kernel::displace(int k, const Vec2& shift) {
 
 namespace {
 
+/// Why a search could not tell, for people. `length`: the scene's [m]. The numbers in the text are those of
+/// same_instant() and kSlowOfSize.
 std::string reason(PairAnswer::Why why, const std::string& pair, double length) {
   switch (why) {
     case PairAnswer::Why::place:
@@ -314,11 +334,13 @@ std::string reason(PairAnswer::Why why, const std::string& pair, double length) 
 
 }  // namespace
 
+/// Frames up to the certificate are shown: the pair is clear until then, and everybody else by the policy's word.
 void Kernel::give_up(const Certificate& c) {
   // all up to there is told
   roll_back_all();
   if (extend_motions(c.time)) {
     record_frames(c.time);
+    // within an instant the certificate may lie a rounding before the clock
     advance_all(std::max(time(), c.time));
   }
   parts_.records.ending(EventKind::undecided, c.pair, c.contact, c.time);
@@ -328,14 +350,18 @@ void Kernel::give_up(const Certificate& c) {
 
 // -- resolving ahead of time --
 
+/// The clock is at the contact while it is resolved, since responses work at the present time, and then back where
+/// it was. Whoever is changed goes on to `end`, or nothing is done.
 bool Kernel::resolve_ahead(const Certificate& c, double end, std::vector<int>& changed) {
   // an island's step is taken when it is certain, so its members are never ahead
   if (is_held(c.pair.body) || (!c.pair.with_site() && is_held(c.pair.other_body))) return false;
   const double present = time();
   advance_pair(c.pair, c.time);
+  // before anything is resolved: it keeps what this collision is about to change
   const Speculation::Entry entry = parts_.speculation.before(c.pair);
   const auto outcome = respond(c.pair, c.contact, changed);
   bool done = outcome.has_value();
+  // a motion that fails on the way makes nothing certain: then nothing is done ahead
   for (const int k : changed) done = done && extend_motion(k, end);
   // responses work at the clock's time; for everybody else it has not moved
   parts_.run.set_time(present);
@@ -353,11 +379,15 @@ bool Kernel::resolve_ahead(const Certificate& c, double end, std::vector<int>& c
   return false;
 }
 
+/// What was resolved ahead of time is told as if it had been resolved now: the same event, and the same judgement
+/// of what it ends.
 bool Kernel::confirm(const Certificate& c, std::vector<int>& changed) {
   const Speculation::Entry entry = parts_.speculation.of(c.pair.body).front();
+  // what it left is certain now; collisions that hang on it stay ahead
   parts_.speculation.remove(entry);
   parts_.run.set_time(entry->time);
   parts_.policy_watch.going_to(time());
+  // Their motions are as they were: what has changed is that they are certain.
   for (const AheadCollision::Former& f : entry->former) changed.push_back(f.body);
   const bool goes_on = tell(entry->outcome, changed);
   return regroup_after(c.pair, changed) && goes_on;
@@ -368,6 +398,7 @@ bool Kernel::confirm(const Certificate& c, std::vector<int>& changed) {
 bool Kernel::record_frames(double t) {
   // a policy that shows frames up to t says that nothing is left before
   parts_.policy_watch.going_to(t);
+  // one frame after another: a fault that the watch sees at one ends the run there
   while (!halt()) {
     const auto due = parts_.records.frame_due(t);
     if (!due) break;
@@ -390,6 +421,7 @@ void Kernel::show_frame() {
 
 bool Kernel::pause_point() {
   if (halt() || !parts_.run.ask()) return false;
+  // not where the run has just been stopped: its last checkpoint is written at its end
   if (parts_.records.checkpoint_due()) {
     const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_record);
     parts_.records.checkpoint(snapshot());
@@ -397,6 +429,7 @@ bool Kernel::pause_point() {
   return true;
 }
 
+/// RunKernel::restore() puts back what is here, part by part.
 std::vector<std::byte> Kernel::snapshot() const {
   SavedRun saved;
   saved.time = time();
@@ -408,6 +441,7 @@ std::vector<std::byte> Kernel::snapshot() const {
   saved.taken = parts_.taken;
   saved.random = parts_.random.state();
   saved.work = parts_.run.work();
+  // starts of motions, not their pieces: they are made again (snapshot.h)
   saved.trajectories = parts_.trajectories.saved();
   return encode(saved, world(), options());
 }

@@ -29,6 +29,7 @@ void check_pairs(const World& world, const SolverOptions& options) {
 /// The box of a still site where it stands; empty if it moves, or is everywhere.
 Box still_box(const FixedSite& site, bool moves) {
   if (moves || site.outline->container) return {};
+  // grown by what turning and shifting it may round
   const Box box = transformed(*site.outline, site.pose).bounds;
   return box.grown(kBoxMargin * (box.low.norm() + box.high.norm()));
 }
@@ -55,6 +56,7 @@ Box NearPairs::box_at(int owner, double t) const {
              : still_boxes_[owner - n];
 }
 
+/// Moving bounds of every owner over [from, to], and the versions of the motions that they are of.
 void NearPairs::box_all(double from, double to) {
   const int n = trajectories_->body_count();
   boxes_from_ = from;
@@ -62,6 +64,7 @@ void NearPairs::box_all(double from, double to) {
   versions_.assign(n, 0);
   for (int k = n; k < trajectories_->owner_count(); ++k) {
     const SiteMotion& site = trajectories_->site(k - n);
+    // where a site stands still its box is that of every time
     boxes_[k] = site.moves() ? swept_box(search_->outline_of(k), site.motion(), from, to) : box_at(k, from);
   }
   for (int k = 0; k < n; ++k) {
@@ -70,6 +73,7 @@ void NearPairs::box_all(double from, double to) {
   }
 }
 
+/// Bounds again up to the same end, for bodies alone that are on other motions than theirs were made of.
 void NearPairs::box_changed(double to, bool several_motions) {
   for (int k = 0; k < trajectories_->body_count(); ++k) {
     const BodyTrack& b = trajectories_->body(k);
@@ -95,9 +99,11 @@ void NearPairs::add_images(int a, int b, std::vector<PairKey>& pairs) const {
   if (!by_bounds_ && !world_->periods.any())
     add({});
   else
+    // without a period that is one image, or none
     world_->periods.overlaps(boxes_[a], boxes_[b], add);
 }
 
+/// Moving bounds are made anew in any case: of() goes on from them.
 std::vector<PairKey> NearPairs::all(double from, double to) {
   box_all(from, to);
   std::vector<PairKey> pairs;
@@ -110,6 +116,7 @@ std::vector<PairKey> NearPairs::all(double from, double to) {
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   } else if (by_bounds_) {
+    // ascending by owners and images, whatever the order in which boxes were met
     for (const ImagePair& p : overlapping_pairs(boxes_, world_->periods))
       if (const auto pair = search_->pair_of(p.a, p.b, p.image)) pairs.push_back(*pair);
   } else {
@@ -123,10 +130,13 @@ std::vector<PairKey> NearPairs::of(int body, double from, double to, bool severa
   if (passes_) return by_pass(body, from, to);
   box_changed(to, several_motions);
   std::vector<PairKey> pairs;
+  // a look at every owner's box; pair_of() leaves out the body itself
   for (int other = 0; other < trajectories_->owner_count(); ++other) add_images(body, other, pairs);
   return pairs;
 }
 
+/// A window that holds the body's way over [from, to] is drawn at one moment, `from`. Whoever is as near to it as
+/// anybody may come by `to` is one of a pair, so the answer holds for the whole time. Cost: a picture.
 std::vector<PairKey> NearPairs::by_pass(int body, double from, double to) {
   std::vector<PlacedOutline> scene;
   double travel = 0.0;  // of any point of anything else before `to`
@@ -140,8 +150,10 @@ std::vector<PairKey> NearPairs::by_pass(int body, double from, double to) {
     const Box& box = outline.bounds;
     const double reach =
         outline.container ? box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).norm() : outline.bounding_radius;
+    // no point of it goes farther: (|v| + |omega| r) times the time
     travel = std::max(travel, (b.speed() + b.spin() * reach) * (to - from));
   }
+  // where the body may be at any time of [from, to]
   const Box window = swept_box(search_->outline_of(body), trajectories_->body(body).motion, from, to);
   // others are drawn where they are at `from`; the window holds the body's own way to `to`
   const double near = travel + search_->limits().tolerance;
@@ -152,6 +164,7 @@ std::vector<PairKey> NearPairs::by_pass(int body, double from, double to) {
   return pairs;
 }
 
+/// Boxes of the moment t, made for this call: nothing of a horizon is needed.
 void NearPairs::each_at(double t, const std::function<bool(const PairKey&)>& visit) const {
   std::vector<Box> now;
   now.reserve(trajectories_->owner_count());

@@ -18,6 +18,8 @@ bool PolicyWatch::alive(const Certificate& c) const {
          (c.pair.with_site() || speculation_->track(c.pair.other_body, c.version_other));
 }
 
+/// Contacts that are due before t are asked one by one: stale ones are forgotten, those of guessed motions put
+/// back.
 void PolicyWatch::look_before(double t) {
   std::vector<Certificate> ahead;
   // contacts of one instant may be taken in any order: that is the option `order`
@@ -34,6 +36,7 @@ void PolicyWatch::look_before(double t) {
   for (const Certificate& c : ahead) known_->insert(c);
 }
 
+/// A policy that returns early, without a halt, would have the run look finished.
 void PolicyWatch::returned(double now, double until) {
   if (!known_) return;
   going_to(until);

@@ -7,12 +7,14 @@ namespace brink {
 
 namespace {
 
+/// Of a clock that never goes back [s]. Its zero means nothing: only differences do.
 double wall_clock() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 }  // namespace
 
+/// The recorder may be null: the frame clock and the numbers of events go on all the same.
 void Records::begin(Recorder* recorder) {
   recorder_ = recorder;
   next_checkpoint_ = wall_clock() + run_->options().checkpoint_seconds;
@@ -23,10 +25,12 @@ void Records::begin(Recorder* recorder) {
 /// last run's, or none in that run, must bring back nothing that is past.
 void Records::wind_frame_clock(double t) {
   const double interval = run_->options().frame_interval;
+  // from 2^53 on not every count of frames is a double
   if (!(interval > 0.0) || t / interval >= 0x1p53) return;
   auto k = static_cast<std::uint64_t>(t / interval);
   if (static_cast<double>(k) * interval > t) --k;  // the quotient was rounded up
   if (static_cast<double>(k + 1) * interval <= t) ++k;
+  // a frame at t itself that nobody has recorded is still to come
   const bool due_now = k > 0 && static_cast<double>(k) * interval == t && last_frame_ != t;
   frame_ = due_now ? k - 1 : k;
 }
@@ -44,6 +48,7 @@ void Records::frame_of_clock(double due) {
   frame(due);
 }
 
+/// A frame beside the clock does not move it on.
 void Records::frame(double t) {
   last_frame_ = t;
   if (recorder_) recorder_->frame(t, trajectories_->states(t));
@@ -61,6 +66,7 @@ void Records::event(EventKind kind, const PairKey& pair, const FeatureContact& c
   event.kind = kind;
   event.contact = world_contact(pair, contact);
   event.contact.time = last_event_;
+  // the moment of contact is time + time_low, to more digits than a double has
   event.contact.time_low = static_cast<double>(run_->time() - last_event_ + delay);
   event.impulse_n = impulse_n;
   event.impulse_t = impulse_t;
@@ -80,6 +86,7 @@ void Records::ending(EventKind kind, const PairKey& pair, const FeatureContact& 
   recorder_->event(event);
 }
 
+/// A stretch of no length is none: its step was cut where it began.
 void Records::lasted(const HeldContact& c) {
   if (!records_events() || !(run_->time() > c.since)) return;
   recorder_->contact_lasted({c.since, run_->time(), c.mode, c.pair.body, c.pair.other_body, c.pair.other_site,
@@ -87,6 +94,7 @@ void Records::lasted(const HeldContact& c) {
                              c.feature.normal, c.normal_force, c.tangential_force});
 }
 
+/// By the wall clock: when checkpoints are written changes nothing of the run. Below 0: never.
 bool Records::checkpoint_due() const {
   return recorder_ && run_->options().checkpoint_seconds >= 0.0 && wall_clock() >= next_checkpoint_;
 }

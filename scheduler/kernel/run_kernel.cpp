@@ -16,6 +16,7 @@ namespace {
 /// Slower than this nothing closes or parts [m/s]: a rounding of velocities.
 constexpr double kStillAtStart = 1e-12;
 
+/// The same world if it and the options are valid, each by itself and together. @throws BadInput
 World checked(World world, const SolverOptions& options) {
   world.check();
   std::string error;
@@ -40,6 +41,8 @@ std::vector<Vec2> recentre_sites(World& world) {
 
 }  // namespace
 
+/// Parts are made as they are declared, each of those before it. The world is the first: its sites are moved in
+/// place, by `frames_moved`, before anybody looks at them.
 KernelParts::KernelParts(World given, SolverOptions chosen)
     : world(checked(std::move(given), chosen)),
       frames_moved(recentre_sites(world)),
@@ -64,10 +67,13 @@ RunKernel::RunKernel(World world, SolverOptions options) : Kernel(std::move(worl
 void RunKernel::begin(const RunOptions& options, Recorder* recorder) {
   parts_.run.begin(options);
   parts_.records.begin(recorder);
+  // events tell twists before and after: kept only where events are told
   parts_.trajectories.keep_twists_before(recorder && options.record_events);
+  // the watch looks at all pairs there, before the first collision
   if (options.first_frame) show_frame();
 }
 
+/// Only at t = 0, and only where forces may press: what touches later has met before.
 void RunKernel::let_touching_last() {
   // a run that goes on has its islands from before
   if (!parts_.islands.allowed() || time() != 0.0) return;
@@ -86,11 +92,13 @@ void RunKernel::let_touching_last() {
   std::sort(touching.begin(), touching.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<int> changed;
   parts_.islands.begin(touching, changed);
+  // motions have changed by no verb of the policy's: what it knows is void
   parts_.policy_watch.forget_all();
   ++parts_.revision;
 }
 
 void RunKernel::end() {
+  // what was done ahead of the end is not to be seen
   roll_back_all();
   if (parts_.records.last_frame() != time()) show_frame();
 }
@@ -100,6 +108,7 @@ void RunKernel::check_returned(double until) {
 }
 
 void RunKernel::stop_after_collisions(std::uint64_t count) {
+  // the nearer of the two limits holds
   const std::uint64_t most = options().max_collisions, here = collisions() + count;
   parts_.endings.set_limit(count > 0 && (most == 0 || here < most) ? here : most);
 }
@@ -112,9 +121,11 @@ void RunKernel::set_pair_filter(PairFilter filter) {
   ++parts_.revision;
 }
 
+/// The island of a member begins a step at once: its contacts are not those of before.
 void RunKernel::go_on_from(int k, const ExtendedState& state) {
   const Restart restart{k, state};
   std::vector<int> changed;
+  // first, since an island steps from the present states of its members
   parts_.trajectories.restart({&restart, 1}, changed);
   if (parts_.islands.is_member(k)) parts_.islands.disturbed(k, changed);
   // given, not computed: what collisions left behind is no longer in these velocities
@@ -123,6 +134,7 @@ void RunKernel::go_on_from(int k, const ExtendedState& state) {
   ++parts_.revision;
 }
 
+/// The twist along a lock must be 0: nothing would ever take it away (Trajectories).
 void RunKernel::set_state(int k, const BodyState& state) {
   if (!state.pose.position.allFinite() || !std::isfinite(state.pose.angle) ||
       !state.twist.velocity.allFinite() || !std::isfinite(state.twist.omega))
@@ -140,12 +152,15 @@ void RunKernel::apply_impulse(int k, const Vec2& impulse, const Vec2& point) {
   if (!impulse.allFinite() || !point.allFinite())
     throw BadInput(fmt::format("apply_impulse to '{}': every number must be finite", b.name));
   ExtendedState s = parts_.trajectories.state_now(k);
+  // dv = M^-1 p and d(omega) = (arm x p) / I, in which a lock has 0
   const RealVec p = impulse.cast<Real>(), arm = point.cast<Real>() - s.position;
   s.twist.velocity += RealVec(b.inverse_mass_x() * p.x(), b.inverse_mass_y() * p.y());
   s.twist.omega += b.inverse_inertia() * extended::cross(arm, p);
   go_on_from(k, s);
 }
 
+/// In this order: the bytes are read and held against the world, motions are made again beside the present ones,
+/// and only then anything is put back.
 void RunKernel::restore(std::span<const std::byte> bytes) {
   SavedRun saved = decode(bytes, world(), options());
   const WorkCounters before = work();
@@ -159,16 +174,19 @@ void RunKernel::restore(std::span<const std::byte> bytes) {
     work() = before;
     throw;
   }
+  // Nothing is refused from here on: the snapshot is put back whole.
   parts_.run.set_time(saved.time);
   parts_.run.forget_halt();
   parts_.horizon = saved.horizon;
   parts_.watch.restore(saved.watch);
   parts_.records.restore(saved.records);
   parts_.endings.restore(std::move(saved.endings));
+  // after the trajectories, which say who is held
   parts_.islands.restore(saved.islands);
   parts_.taken = saved.taken;
   parts_.random.set_state(saved.random);
   parts_.policy_watch.forget_all();
+  // last: making motions again was counted
   work() = saved.work;
   ++parts_.revision;
 }

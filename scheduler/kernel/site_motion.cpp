@@ -28,8 +28,10 @@ std::string description(const FixedSite& site, const FormulaMotion& m) {
 
 }  // namespace
 
+/// Only a motion by formulas is made piece by piece. @throws BadInput where formulas have none at t = 0.
 SiteMotion::SiteMotion(const FixedSite& site) {
   if (const auto* constant = std::get_if<ConstantMotion>(&site.motion)) {
+    // a straight line under no acceleration: it reaches for ever
     motion_ = Motion::ballistic(0.0, {site.pose, constant->twist}, {});
     moves_ = !constant->twist.velocity.isZero(0.0) || constant->twist.omega != 0.0;
     return;
@@ -37,6 +39,7 @@ SiteMotion::SiteMotion(const FixedSite& site) {
   motion_ = Motion::still(site.pose);
   if (const auto* formula = std::get_if<FormulaMotion>(&site.motion)) {
     moves_ = true;
+    // where the site was put; formulas say how far it is from there
     const Eigen::Vector3d base(site.pose.position.x(), site.pose.position.y(), site.pose.angle);
     prescribed_ = std::make_unique<PrescribedMotion>(
         base,
@@ -45,6 +48,7 @@ SiteMotion::SiteMotion(const FixedSite& site) {
         },
         [f = *formula](int i, double from, double to, BoundOf highest) {
           const std::optional<Formula>& part = i == 0 ? f.x : (i == 1 ? f.y : f.angle);
+          // of the formula's one variable, the time
           return part ? part->time_bound(0, from, to, highest) : TimeBound();
         },
         description(site, *formula));
@@ -69,9 +73,11 @@ Pose told_pose(const FixedSite& site, double t) {
   return pose;
 }
 
+/// What does not go by formulas covers every time from the beginning.
 Extent SiteMotion::extend(double t, std::uint64_t most_cells) {
   if (!prescribed_) return {Extent::Status::reached, t, {}};
   const Extent extent = prescribed_->extend(t, most_cells);
+  // a motion needs a piece to be of; from then on it grows with the track
   if (prescribed_->begun()) motion_ = prescribed_->motion();
   return extent;
 }

@@ -29,6 +29,7 @@ class Writer {
   std::vector<std::byte> bytes_;
 };
 
+/// Every read is held against what is left: a damaged snapshot is BadInput, never a look beyond its end.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -66,6 +67,7 @@ std::uint64_t fingerprint(const World& world, const SolverOptions& options) {
   hash.add(world_hash(world));
   for (const std::string* word :
        {&options.policy, &options.integrator, &options.order, &options.response, &options.detector}) {
+    // with its length: two words that are one text together do not look alike to it
     hash.add(static_cast<std::uint64_t>(word->size()));
     for (const char c : *word) hash.add(static_cast<std::uint64_t>(c));
   }
@@ -100,6 +102,7 @@ void scalars(Each&& each, Run& run) {
   WorkCounters::for_each(run.work, [&](auto, auto& value, auto) { each(value); });
 }
 
+/// What a body keeps whatever moves it. Its motion follows by kind.
 template <class Each, class Track>
 void track(Each&& each, Track& b) {
   each(b.version);
@@ -109,6 +112,7 @@ void track(Each&& each, Track& b) {
   each(b.streak);
 }
 
+/// Islands whole: forces, modes, stretches and the limits that they wait for go on as they were.
 void write_islands(Writer& out, const Islands::Saved& islands) {
   out(islands.tally);
   out(static_cast<std::uint64_t>(islands.islands.size()));
@@ -152,6 +156,7 @@ void check(const PairKey& pair, bool sample_on_a, int sample, int site, const Wo
 void read_islands(Reader& in, const Trajectories::Saved& bodies, const World& world,
                   Islands::Saved& islands) {
   in(islands.tally);
+  // an island takes more bytes than that: it bounds the count, no more
   for (std::uint64_t n = in.count(sizeof(double)); n > 0; --n) {
     Island i;
     in(i.rests);
@@ -188,11 +193,13 @@ enum class Kind : std::uint8_t {
   asleep,  ///< held, and driven otherwise
 };
 
+/// Of body k, whose track is b.
 Kind kind_of(const Trajectories::Saved& saved, const BodyTrack& b, int k) {
   if (b.component == BodyTrack::kHeld) return saved.is_asleep(k) ? Kind::asleep : Kind::held;
   return b.component < 0 ? Kind::free : Kind::driven;
 }
 
+/// Sets of bodies that were grouped while running (Trajectories::regroup).
 void write_sets(Writer& out, const Trajectories::Sets& sets) {
   out(static_cast<std::uint64_t>(sets.size()));
   for (const std::vector<int>& set : sets) {
@@ -201,6 +208,7 @@ void write_sets(Writer& out, const Trajectories::Sets& sets) {
   }
 }
 
+/// @throws BadInput on a body that this world has not.
 Trajectories::Sets read_sets(Reader& in, std::size_t bodies) {
   Trajectories::Sets sets(in.count(sizeof(std::uint64_t)));
   for (std::vector<int>& set : sets) {
@@ -229,6 +237,7 @@ void write_held(Writer& out, const HeldStep& step, const Motion& motion) {
   }
 }
 
+/// Without pieces `motion` stays what it is: constant twists from the state that was read with the body.
 void read_held(Reader& in, HeldStep& step, Motion& motion) {
   in(step);
   const auto track = std::make_shared<Track>();
@@ -246,10 +255,12 @@ void read_held(Reader& in, HeldStep& step, Motion& motion) {
   if (!track->pieces.empty()) motion = Motion::dense(track);
 }
 
+/// First the bodies, each with a motion of its own if no integrator makes it; then where integrators began.
 void write(Writer& out, const Trajectories::Saved& saved) {
   write_sets(out, saved.together);
   for (const BodyTrack& b : saved.bodies) {
     track(out, b);
+    // the kind says what follows: nothing, a start, or a start and an island's step
     out(kind_of(saved, b, static_cast<int>(&b - saved.bodies.data())));
     // made again from the start of its component, below
     if (b.component >= 0) continue;
@@ -268,6 +279,7 @@ void write(Writer& out, const Trajectories::Saved& saved) {
   }
 }
 
+/// The body, and its motion but for pieces. `asleep`: an integrator would drive it if no island held it.
 BodyTrack read_body(Reader& in, bool& asleep) {
   BodyTrack b;
   track(in, b);
@@ -287,6 +299,7 @@ BodyTrack read_body(Reader& in, bool& asleep) {
   return b;
 }
 
+/// @throws BadInput on what the world cannot have: a body flies freely though forces on it are no constants.
 Trajectories::Saved read_trajectories(Reader& in, const World& world) {
   Trajectories::Saved saved;
   saved.together = read_sets(in, world.bodies.size());
@@ -297,12 +310,15 @@ Trajectories::Saved read_trajectories(Reader& in, const World& world) {
     if (b.component == BodyTrack::kHeld) read_held(in, saved.steps[static_cast<int>(k)], b.motion);
     if (asleep) saved.asleep.push_back(static_cast<int>(k));
   }
+  // Components come in the order in which they were written, and each is of as many bodies: starts have no numbers.
+  // One whose body flies freely has none.
   for (const Component& c : make_components(world, saved.together)) {
     if (saved.bodies[c.bodies.front()].component < 0 && !saved.is_asleep(c.bodies.front())) {
       if (c.bodies.size() > 1 || !c.dynamics->constant())
         throw BadInput("snapshot: a body flies freely that cannot");
       continue;
     }
+    // a state for each of its bodies; what rounding left over of their places only if a byte says so
     ComponentStart s{static_cast<int>(saved.starts.size()), 0.0, std::vector<BodyState>(c.bodies.size()), {}};
     in(s.time);
     for (BodyState& state : s.states) in(state);
@@ -317,6 +333,16 @@ Trajectories::Saved read_trajectories(Reader& in, const World& world) {
 
 }  // namespace
 
+/// In this order, each as it lies in memory:
+///   magic, fingerprint
+///   numbers of fixed size      time, records, counters ...
+///   sets of bodies             that were grouped
+///   bodies                     track, kind; motion, where no integrator makes it again
+///   starts                     of components, in their order
+///   islands
+///   the present instant        whose bodies have collided in it
+///   bounces                    of every series that is watched
+/// Where a number of things can vary it stands before them, but for bodies and starts, which the world tells.
 std::vector<std::byte> encode(const SavedRun& saved, const World& world, const SolverOptions& options) {
   Writer out;
   out(kMagic);
@@ -335,11 +361,13 @@ std::vector<std::byte> encode(const SavedRun& saved, const World& world, const S
   return out.take();
 }
 
+/// The world is only looked at: whoever asks puts the answer back when all of it has been read.
 SavedRun decode(std::span<const std::byte> bytes, const World& world, const SolverOptions& options) {
   Reader in(bytes);
   std::uint64_t magic = 0, print = 0;
   in(magic);
   in(print);
+  // first: of bytes that are no snapshot nothing else means anything
   if (magic != kMagic) throw BadInput("snapshot: these bytes are not a snapshot of this version");
   if (print != fingerprint(world, options))
     throw BadInput("snapshot: it was taken of another world or with other options");

@@ -11,6 +11,8 @@ const BodyTrack& Speculation::certain(int k) const {
   return collisions.empty() ? trajectories_->body(k) : collisions.front()->former_of(k);
 }
 
+/// The motions of body k are a chain: what it was before of(k)[0], of(k)[1], ..., and last the one in Trajectories.
+/// The first of them is certain; each other begins in the collision ahead of time before it.
 const BodyTrack* Speculation::track(int k, std::uint64_t version) const {
   if (trajectories_->body(k).version == version) return &trajectories_->body(k);
   for (const Entry& c : of(k))
@@ -25,6 +27,7 @@ std::vector<std::uint64_t> Speculation::versions(int k) const {
   return all;
 }
 
+/// A motion ends where the collision begins that keeps it as a former one.
 std::optional<double> Speculation::end_of_version(int k, std::uint64_t version) const {
   if (trajectories_->body(k).version == version) return std::numeric_limits<double>::infinity();
   for (const Entry& c : of(k))
@@ -32,6 +35,7 @@ std::optional<double> Speculation::end_of_version(int k, std::uint64_t version) 
   return std::nullopt;
 }
 
+/// Copies of tracks share the pieces of their motions: it costs no trajectory.
 Speculation::Entry Speculation::before(const PairKey& pair) const {
   auto entry = std::make_shared<AheadCollision>();
   entry->time = run_->time();
@@ -51,6 +55,7 @@ Speculation::Entry Speculation::before(const PairKey& pair) const {
   return entry;
 }
 
+/// The entry is shared by all its bodies: it is taken out for all of them at once (remove).
 void Speculation::add(const Entry& entry) {
   for (const AheadCollision::Former& f : entry->former) {
     if (static_cast<std::size_t>(f.body) >= of_.size()) of_.resize(f.body + 1);
@@ -64,6 +69,7 @@ void Speculation::remove(const Entry& entry) {
   kept_ -= entry->former.size();
 }
 
+/// Versions that are undone are never given again: a certificate of one must stay stale for ever (raise_version).
 void Speculation::undo(const Entry& entry) {
   for (const AheadCollision::Former& f : entry->former) {
     BodyTrack& b = trajectories_->body(f.body);
@@ -93,15 +99,18 @@ void Speculation::undo_last(int body, std::vector<Undone>& taken_back) {
       // later ones are undone first: the way that is taken back grows towards earlier times
       known->to = entry->time;
   }
+  // now nothing hangs on it
   undo(entry);
 }
 
+/// Work that is thrown away is counted by body: from where it had come to where it goes on.
 void Speculation::roll_back(int body, std::uint64_t version, double t, std::vector<int>& undone) {
   std::vector<Undone> taken_back;
   while (trajectories_->body(body).version != version) undo_last(body, taken_back);
   for (Undone& u : taken_back) {
     // the body goes on within the motion that it is left with, up to t
     if (u.body == body) u.to = t;
+    // one that had not come so far as it now goes on to has lost nothing
     const double from = std::max(u.from, u.to);
     ++run_->work().rollbacks;
     run_->work().body_seconds_thrown_away += from - u.to;
@@ -113,9 +122,11 @@ void Speculation::roll_back(int body, std::uint64_t version, double t, std::vect
 void Speculation::roll_back_all() {
   std::vector<int> undone;
   for (int k = 0; k < trajectories_->body_count() && !empty(); ++k)
+    // takes others along, so the log may be empty before all have been asked
     roll_back(k, certain(k).version, run_->time(), undone);
 }
 
+/// Called in twos, with nothing resolved in between: the second call puts everything back.
 void Speculation::swap_with_certain() {
   for (int k = 0; k < trajectories_->body_count() && !empty(); ++k) {
     const auto collisions = of(k);

@@ -21,6 +21,7 @@ namespace {
 using Point = boost::geometry::model::d2::point_xy<double>;
 using BoxOfPoints = boost::geometry::model::box<Point>;
 
+/// A wire's segment in the world, the fixed site that it is of, and the box about it.
 struct Wall {
   Vec2 a, b;
   int site;
@@ -48,6 +49,7 @@ BoxOfPoints box_of(const Vec2& p, const Vec2& q) {
 int side(const Wall& wall, const Vec2& p) {
   const Vec2 d = wall.b - wall.a, w = p - wall.a;
   const double reach = p.lpNorm<1>() + wall.a.lpNorm<1>() + wall.b.lpNorm<1>();
+  // twice the area between the wall and p: > 0 on its left
   const double offset = cross(d, w), noise = kSideRounding * reach * d.lpNorm<1>();
   return offset > noise ? 1 : offset < -noise ? -1 : 0;
 }
@@ -76,6 +78,8 @@ void ThinWalls::add(const Vec2& a, const Vec2& b, int site) {
 
 Box ThinWalls::clear_around(const Vec2& p) const {
   double room = std::numeric_limits<double>::infinity();
+  // By boxes, not by walls: a box holds its wall, so room about boxes is room about walls. The largest norm gives
+  // the largest square; the tree knows the distance alone.
   if (tree_->walls.size() <= kFewWalls) {
     for (const Wall& wall : tree_->walls) room = std::min(room, distance_to(wall.box, p));
   } else {
@@ -90,6 +94,8 @@ Box ThinWalls::clear_around(const Vec2& p) const {
   return Box{p, p}.grown(room * (1.0 - 1e-9));
 }
 
+/// Whoever ends on the other side of a wall has gone through it or round an end of it: places along the way tell
+/// which.
 std::optional<int> ThinWalls::crossed(const std::function<Vec2(double)>& place, double from, double to,
                                       double turns) const {
   const Vec2 p = place(from), q = place(to);
@@ -105,6 +111,7 @@ std::optional<int> ThinWalls::crossed(const std::function<Vec2(double)>& place, 
     const int steps = 64 * (1 + static_cast<int>(std::min(std::abs(turns), 1000.0)));
     bool through = false;
     Vec2 last = p;
+    // of the last place whose side could be told
     int last_side = side(wall, p);
     for (int i = 1; i <= steps; ++i) {
       const Vec2 next = i == steps ? q : place(from + (to - from) * i / steps);

@@ -30,6 +30,8 @@ BodyState held(const Body& body, BodyState s) {
 /// motion.
 void raise_version(BodyTrack& b) { b.version = std::max(b.version, b.last_undone) + 1; }
 
+/// A start at t [s]. `with_lows`: what the rounding of poses to double leaves over is kept beside the states; else
+/// it is dropped.
 ComponentStart start_from(double t, std::span<const ExtendedState> states, bool with_lows) {
   ComponentStart start;
   start.time = t;
@@ -43,12 +45,20 @@ ComponentStart start_from(double t, std::span<const ExtendedState> states, bool 
 /// True for a parabola that no break ends: it needs no integrator. One whose thrust starts or stops is
 /// made of several.
 bool moves_in_closed_form(const SolverOptions& options, const Dynamics& dynamics, double t) {
+  // another integrator that is named drives even what has a closed form
   const bool asked = options.integrator == "auto" || options.integrator == "ballistic";
   return asked && dynamics.size() == 1 && dynamics.constant() && std::isinf(dynamics.next_break(t));
 }
 
 }  // namespace
 
+/// What moves a body is told by BodyTrack::component:
+///   - kFree: a parabola, made here, that reaches for ever;
+///   - an index: the integrator of that component, which appends to its motions as it is asked (follow());
+///   - kHeld: an island, which gives the body a new motion with every step. What drove it before is kept in
+///     `held_`, and an integrator among that sleeps until release().
+/// Bodies pass from one to another at the present time alone, but where a state is put back, and each time the
+/// version is raised.
 Trajectories::Trajectories(const World& world, const SolverOptions& options, RunControl& run)
     : world_(&world), options_(&options), run_(&run) {
   bodies_.resize(world.bodies.size());
@@ -57,6 +67,7 @@ Trajectories::Trajectories(const World& world, const SolverOptions& options, Run
   for (Component& c : make_components(world)) {
     std::vector<ExtendedState> states;
     for (const int k : c.bodies) states.emplace_back(initial[k]);
+    // given as doubles: no rounding has left anything over
     add_component(std::move(c), start_from(0.0, states, false));
   }
   run.work().component_resets = 0;  // first starts are no resets
@@ -64,6 +75,7 @@ Trajectories::Trajectories(const World& world, const SolverOptions& options, Run
   site_failures_.resize(sites_.size());
 }
 
+/// A parabola where nothing else is needed, an integrator otherwise.
 void Trajectories::add_component(Component component, ComponentStart start) {
   if (!moves_in_closed_form(*options_, *component.dynamics, start.time))
     return add_coupled(std::move(component), std::move(start));
@@ -75,12 +87,14 @@ void Trajectories::add_component(Component component, ComponentStart start) {
 void Trajectories::add_free(const Component& component, double t, const BodyState& start,
                             const BodyState& low) {
   Acceleration acceleration;
+  // constant, so those of the start are those of every time (moves_in_closed_form)
   component.dynamics->accelerations(t, {&start, 1}, {&acceleration, 1});
   BodyTrack& b = bodies_[component.bodies.front()];
   b.motion = Motion::ballistic(t, start, acceleration, kForever, low);
   b.component = -1;
 }
 
+/// Components are numbered as they are added. Snapshots list their starts in that order, without numbers.
 void Trajectories::add_coupled(Component component, ComponentStart from) {
   for (std::size_t i = 0; i < component.bodies.size(); ++i) {
     BodyTrack& b = bodies_[component.bodies[i]];
@@ -131,12 +145,15 @@ double Trajectories::follow(Coupled& c, double t) {
   // an island moves its bodies: the integrator is not asked until it is started afresh
   if (c.dormant) return t;
   const int first = c.component.bodies.front();
+  // one integrator makes the pieces of all its bodies: they end together
   const double covered = bodies_[first].motion.end();
   // also beyond t: steps are the integrator's own
   if (covered >= t) return t;
+  // a failure is lasting: the integrator would only say so again
   if (covered >= c.failure.time) return covered;
   const std::uint64_t before = run_->work().solver_steps;
   const Extent extent = c.integrator->extend(t, instalment());
+  // a step makes one piece for each body
   run_->count_pieces((run_->work().solver_steps - before) * c.component.bodies.size());
   fetch(c);
   if (extent.status == Extent::Status::failed)
@@ -144,6 +161,7 @@ double Trajectories::follow(Coupled& c, double t) {
   return std::min(extent.end, t);
 }
 
+/// One instalment of a site that moves by formulas; all others are known for ever.
 double Trajectories::follow_site(int s, double t) {
   if (!sites_[s].is_prescribed() || sites_[s].motion().end() >= t) return t;
   const Extent extent = sites_[s].extend(t, instalment());
@@ -154,6 +172,7 @@ double Trajectories::follow_site(int s, double t) {
   return std::min(extent.end, t);
 }
 
+/// Of a body that an integrator drives, its whole component; free and held ones are there already.
 double Trajectories::follow_body(int k, double t) {
   const BodyTrack& b = bodies_[k];
   if (b.component < 0 || b.motion.end() >= t) return t;
@@ -163,6 +182,7 @@ double Trajectories::follow_body(int k, double t) {
   return covered;
 }
 
+/// A halt leaves sites that were not reached as they are: what is returned is no promise for them.
 double Trajectories::follow_sites(double t) {
   double covered = t;
   for (int s = 0; s < site_count() && run_->poll(); ++s) covered = std::min(covered, follow_site(s, t));
@@ -180,6 +200,7 @@ double Trajectories::follow(double t) {
   return std::min(covered, follow_sites(t));
 }
 
+/// Instalment after instalment, so that `progress` is asked in between. Halts where the motion fails before t.
 bool Trajectories::cover(Coupled& c, double t) {
   while (follow(c, t) < t)
     if (stop_at(c.failure) || !run_->poll()) return false;
@@ -207,6 +228,7 @@ bool Trajectories::cover(double t) {
   return cover_sites(t);
 }
 
+/// `end`: where the motion ends [s]; `name`: what the message calls it.
 void Trajectories::note_failure(Failure& of, double end, const std::string& name, const std::string& why) {
   of = {end, fmt::format("motion of {} stopped at t = {:.17g}: {}", name, end, why)};
   find_reach();
@@ -219,11 +241,13 @@ void Trajectories::find_reach() {
   for (const Failure& f : site_failures_) reach_ = std::min(reach_, f.time);
 }
 
+/// Ends the run for that failure, if it is one; true then.
 bool Trajectories::stop_at(const Failure& failure) {
   if (std::isfinite(failure.time)) run_->stop(Termination::failed, failure.why);
   return std::isfinite(failure.time);
 }
 
+/// By the failure that made reach_: several at one time are one halt.
 bool Trajectories::stop_at_reach() {
   for (const Coupled& c : components_)
     if (c.failure.time == reach_) return stop_at(c.failure);
@@ -234,6 +258,7 @@ bool Trajectories::stop_at_reach() {
 
 bool Trajectories::much_to_forget() const { return run_->pieces() - forgotten_ > kMostPieces; }
 
+/// Mostly does nothing: pieces are given back in lots, when a round's worth of new ones has been made.
 void Trajectories::forget_before(double t) {
   if (!much_to_forget()) return;
   forgotten_ = run_->pieces();
@@ -244,6 +269,7 @@ void Trajectories::forget_before(double t) {
 
 // -- starting afresh --
 
+/// The component begins there, at the present time or, where it is put back, before. All its motions are new.
 void Trajectories::start(Coupled& c, ComponentStart from) {
   c.begun = std::move(from);
   c.integrator->start(c.begun.time, c.begun.states);
@@ -282,6 +308,7 @@ void Trajectories::restart(std::span<const Restart> touched, std::vector<int>& c
   changed.insert(changed.end(), c.component.bodies.begin(), c.component.bodies.end());
   std::vector<ExtendedState> states;
   for (const int j : c.component.bodies) {
+    // those that are not touched go on from where they are
     states.push_back(bodies_[j].motion.extended_state(run_->time()));
     raise_version(bodies_[j]);
   }
@@ -289,6 +316,7 @@ void Trajectories::restart(std::span<const Restart> touched, std::vector<int>& c
     note_twist_before(r.body);
     states[bodies_[r.body].place_in_component] = r.state;
   }
+  // lows stay where the component had them (ComponentStart); one without them starts from rounded states
   start(c, start_from(run_->time(), states, !c.begun.lows.empty()));
 }
 
@@ -303,8 +331,10 @@ void Trajectories::hold(std::span<const Restart> bodies, std::vector<int>& chang
       if (b.component >= 0) put_to_sleep(components_[b.component]);
       b.component = BodyTrack::kHeld;
     }
+    // without acceleration: what forces do in a step is in the twist that its island gives
     b.motion = Motion::ballistic(run_->time(), r.state.rounded(), {}, std::numeric_limits<double>::infinity(),
                                  r.state.low());
+    // until note_step() says otherwise its twist is the one that it has come to
     held_[r.body].step = {};
     raise_version(b);
     changed.push_back(r.body);
@@ -327,12 +357,15 @@ ExtendedState Trajectories::state_now(int k) const {
   return s;
 }
 
+/// Its integrator is not asked any more. A failure goes with the motion that would have come to it.
 void Trajectories::put_to_sleep(Coupled& c) {
   c.dormant = true;
   c.failure = {};
   find_reach();
 }
 
+/// Free bodies fly on at once. A component is started in a second round, when all its bodies are free of islands:
+/// until then each keeps the motion that it was held on, from which its state is read.
 void Trajectories::release(std::span<const int> bodies, std::vector<int>& changed) {
   for (const int k : bodies) {
     BodyTrack& b = bodies_[k];
@@ -369,6 +402,7 @@ Acceleration Trajectories::acceleration(int k) const {
   return all[bodies_[k].place_in_component];
 }
 
+/// No motion is looked at: `states` stand for them. The dynamics of a component are asked once, for all its bodies.
 void Trajectories::accelerations(std::span<const int> bodies, double t, std::span<const BodyState> states,
                                  std::span<Acceleration> out) const {
   const auto place = [&](int k) {
@@ -390,6 +424,7 @@ void Trajectories::accelerations(std::span<const int> bodies, double t, std::spa
   }
 }
 
+/// Forces on a body that flies freely by itself are constant: nothing ever changes them.
 double Trajectories::steady_until(int k) const {
   const Former& former = held_.at(k);
   if (former.component < 0) return std::numeric_limits<double>::infinity();
@@ -407,6 +442,7 @@ bool Trajectories::is_constant(int k) const {
   return former.component < 0 || components_[former.component].component.dynamics->constant();
 }
 
+/// Also of a held body: its own component is the one that it was taken from.
 std::vector<int> Trajectories::coupled_to(int k) const {
   const int component = own_component(k);
   return component < 0 ? std::vector<int>{k} : components_[component].component.bodies;
@@ -432,6 +468,7 @@ bool Trajectories::catch_up(const Component& component, double t) {
   return true;
 }
 
+/// Its bodies go on from where they are at t [s], with what rounding leaves over of their places.
 void Trajectories::begin_anew(Component component, double t, std::vector<int>& changed) {
   std::vector<ExtendedState> states;
   for (const int k : component.bodies) {
@@ -445,6 +482,7 @@ void Trajectories::begin_anew(Component component, double t, std::vector<int>& c
 bool Trajectories::regroup(Sets together, std::vector<int>& changed) {
   const double now = run_->time();
   std::vector<Component> after = make_components(*world_, together);
+  // In two rounds: what may fail comes first, while nothing has changed yet.
   std::vector<bool> stay;
   for (const Component& c : after) {
     stay.push_back(stays(c));
@@ -455,6 +493,7 @@ bool Trajectories::regroup(Sets together, std::vector<int>& changed) {
   // Components are numbered in the order of make_components, as after a restore from a snapshot.
   std::vector<Coupled> before = std::exchange(components_, {});
   for (std::size_t i = 0; i < after.size(); ++i) {
+    // of bodies whose turn has not come the number still counts in `before`
     const int former = bodies_[after[i].bodies.front()].component;
     if (!stay[i]) {
       begin_anew(std::move(after[i]), now, changed);
@@ -463,6 +502,7 @@ bool Trajectories::regroup(Sets together, std::vector<int>& changed) {
       components_.push_back(std::move(before[former]));
     }
   }
+  // failures of components that are no more have gone with them
   find_reach();
   return true;
 }
@@ -480,9 +520,12 @@ void Trajectories::go_back_to(const ComponentStart& s) {
   // as far as the motions that have been put back had come
   const double end = bodies_[c.component.bodies.front()].motion.end();
   start(c, s);
+  // steps depend on the start alone, so these are the same pieces, bit for bit
   cover(c, end);
 }
 
+/// Motions are copied as handles. What an island holds is in two lists: its steps, and which of its bodies have an
+/// integrator that sleeps.
 Trajectories::Saved Trajectories::saved() const {
   Saved all{together_, {bodies_.begin(), bodies_.end()}, {}, {}, {}};
   for (const auto& [k, former] : held_) {
@@ -493,8 +536,11 @@ Trajectories::Saved Trajectories::saved() const {
   return all;
 }
 
+/// Components are made in the order of make_components(), in which their starts were saved; each goes on to t [s]
+/// by the steps that it took before. @pre nothing is held here yet.
 void Trajectories::restore(const Saved& saved, double t) {
   together_ = saved.together;
+  // What bodies keep beside their motions; those follow component by component.
   for (int k = 0; k < body_count(); ++k) {
     const BodyTrack& as = saved.bodies[k];
     BodyTrack& b = bodies_[k];
@@ -514,6 +560,7 @@ void Trajectories::restore(const Saved& saved, double t) {
     if (saved.bodies[members.front()].component < 0 && !saved.is_asleep(members.front())) {
       add_free(c, m.origin(), m.start(), m.start_low());
     } else {
+      // its own number is the count of those before it
       add_coupled(std::move(c), saved.starts[components_.size()]);
       // asleep: it is started afresh when it is let go, so nothing of its motion will be asked for
       if (!held) follow_again(components_.back(), t);
@@ -540,6 +587,7 @@ void Trajectories::hold_again(std::span<const int> members, const Saved& saved) 
   }
 }
 
+/// To t [s] at least, keeping only the pieces from there on. @throws BadInput where the motion ends before.
 void Trajectories::follow_again(Coupled& c, double t) {
   while (follow(c, t) < t) {
     if (std::isfinite(c.failure.time)) throw BadInput("snapshot: " + c.failure.why);

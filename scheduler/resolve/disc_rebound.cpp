@@ -10,6 +10,7 @@ namespace brink {
 namespace {
 
 /// A disc at one time, all but its spin.
+/// Place and velocity in extended precision, from the start and what rounding left over of it.
 struct Moving {
   Real x, y, vx, vy;
   double ax, ay;
@@ -24,6 +25,7 @@ struct Moving {
     vy = static_cast<Real>(s.twist.velocity.y()) + low.twist.velocity.y();
     x = static_cast<Real>(s.pose.position.x()) + low.pose.position.x();
     y = static_cast<Real>(s.pose.position.y()) + low.pose.position.y();
+    // without forces the velocity stays, and half of the products are saved
     if (a.isZero(0.0)) {
       x += since * vx;
       y += since * vy;
@@ -73,6 +75,13 @@ double speed_of(const DiscRebound::Start& s, const Moving& before, double radius
 
 }  // namespace
 
+/// With d = x_a - x_b and w = v_a - v_b at `time`:
+///   delay   (|d| - r_a - r_b - level) / closing,  closing = -d.w / |d|
+///   n       d / |d| after that delay
+///   p       -(1 + e) n.w / (1 / m_a + 1 / m_b)
+///   after   v_a + p n / m_a  and  v_b - p n / m_b
+/// Accelerations are the same before and after, so the velocities of `time` change by as much as those of the
+/// moment of contact.
 std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const Vec2& shift, double time,
                                    double latest, double level, double restitution) {
   const Moving disc_a(*a.motion, time), disc_b(*b.motion, time);
@@ -85,6 +94,7 @@ std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const V
   // To first order, as in the general response: the delay is a few ticks of the clock, and what an
   // acceleration adds to the way goes with their square.
   r.delay = std::clamp((length - b.radius - a.radius - level) / closing, Real(-latest), Real(latest));
+  // relative motion to first order: accelerations come in with the rate, below
   dx += r.delay * wx;
   dy += r.delay * wy;
   length = std::sqrt(dx * dx + dy * dy);
@@ -92,6 +102,7 @@ std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const V
   const Real nx = dx / length, ny = dy / length;
   const Real rate =
       nx * (wx + r.delay * (disc_a.ax - disc_b.ax)) + ny * (wy + r.delay * (disc_a.ay - disc_b.ay));
+  // turned round within the delay: no impulse is due
   if (!(rate < 0)) return std::nullopt;
   // The rate is that of the moment of contact, and -restitution times it the one after.
   const Real impulse = -(Real(1) + restitution) * rate / (static_cast<Real>(a.inverse_mass) + b.inverse_mass);
@@ -103,12 +114,15 @@ std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const V
   return r;
 }
 
+/// As above with 1 / m_b = 0 and v_b = 0; the gap is the distance from the wall's middle line, less half its
+/// thickness and the disc's radius.
 std::optional<DiscRebound> rebound(const DiscSide& disc, const WallSide& wall, double time, double latest,
                                    double level, double restitution) {
   const Moving at(*disc.motion, time);
   const Real tx = wall.end.x() - wall.begin.x(), ty = wall.end.y() - wall.begin.y();
   const Real dx = at.x - wall.begin.x(), dy = at.y - wall.begin.y();
   const Real length2 = tx * tx + ty * ty, along = dx * tx + dy * ty;
+  // 0 and length^2 are the ends: beyond them an end is nearest
   if (!(along > 0) || !(along < length2)) return std::nullopt;
   // The wall's normal is (ty, -tx) / length or its opposite: the one that points to the disc.
   const Real length = std::sqrt(length2), side = ty * wall.normal.x() - tx * wall.normal.y() < 0 ? -1 : 1;
@@ -119,6 +133,7 @@ std::optional<DiscRebound> rebound(const DiscSide& disc, const WallSide& wall, d
   if (!(closing > 0)) return std::nullopt;
   DiscRebound r;
   const Real gap = nx * dx + ny * dy - wall.radius - disc.radius;
+  // its normal is the same wherever the disc is abreast of it: nothing is looked at again after the delay
   r.delay = std::clamp((gap - level) / closing, Real(-latest), Real(latest));
   r.gap = static_cast<double>(gap - r.delay * closing);
   const Real rate = -closing + r.delay * (nx * at.ax + ny * at.ay);

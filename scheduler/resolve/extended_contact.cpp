@@ -14,6 +14,7 @@ ExtendedRotation rotation_of(const Outline& o, Real angle) {
   return is_centred_disc(o) ? ExtendedRotation() : ExtendedRotation(angle);
 }
 
+/// The normal or its opposite, whichever is on the side of `with`.
 RealVec aligned(const RealVec& n, const RealVec& with) { return n.dot(with) < 0 ? RealVec(-n) : n; }
 
 /// Distance from a site's core along the normal, and that normal, which keeps the side of `out`.
@@ -22,6 +23,9 @@ struct Away {
   Real distance;
 };
 
+/// From a site of the outline that stands at `origin`, turned by `turned`, to the point p; all in the world [m].
+/// `out`: the normal that was known, from the site to p. `least`: points no farther apart than this have no
+/// direction.
 Away away_from(const Site& site, const ExtendedRotation& turned, const RealVec& origin, const RealVec& p,
                const RealVec& out, Real least) {
   const auto place = [&](const Vec2& local) -> RealVec { return origin + turned * local.cast<Real>(); };
@@ -33,6 +37,8 @@ Away away_from(const Site& site, const ExtendedRotation& turned, const RealVec& 
     const RealVec n = aligned(d / length, out);
     return {n, d.dot(n)};
   };
+  // The foot decides: beside the ends an end is the nearest point, between them the line. Whether it is one or the
+  // other can be a rounding, so the known normal has the last word.
   if (site.kind == SiteKind::segment) {
     const RealVec a = place(site.a), d = place(site.b) - a, w = p - a;
     const Real along = w.dot(d), length2 = d.squaredNorm();
@@ -47,6 +53,7 @@ Away away_from(const Site& site, const ExtendedRotation& turned, const RealVec& 
     const RealVec c = place(site.center), w = p - c;
     const RealVec from = place(site.a) - c, to = place(site.b) - c;
     const Real sense = site.sweep > 0 ? 1 : -1, length = w.norm();
+    // within the sector: both signs tell, as an arc turns by a quarter at most
     if (sense * extended::cross(from, w) > 0 && sense * extended::cross(w, to) > 0 && length > least) {
       // `n` has the side of `out`, so seen from inside the circle the distance changes its sign with it.
       // Where the two directions differ, an end of the arc is met, to rounding.
@@ -54,18 +61,22 @@ Away away_from(const Site& site, const ExtendedRotation& turned, const RealVec& 
       if (n.dot(out) >= kSameDirection)
         return {n, n.dot(radial) * (length - static_cast<Real>(site.arc_radius))};
     }
+    // beyond the sector, or where an end is met, the nearer end is the site's point
     return (p - place(site.a)).squaredNorm() <= (p - place(site.b)).squaredNorm() ? from_point(site.a)
                                                                                   : from_point(site.b);
   }
   return from_point(site.a);
 }
 
+/// Along n, which points into a: > 0 approaching [m/s].
 Real closing_speed(const ExtendedState& a, const ExtendedState& b, const RealVec& point, const RealVec& n) {
   return n.dot(b.twist.at(point - b.position) - a.twist.at(point - a.position));
 }
 
 }  // namespace
 
+/// The features are given: nothing is looked for. Places and normals are taken from the states; what comes out far
+/// from `like` is another part of the outline, and `like` is returned.
 ExtendedContact contact_in(const Outline& a, const Outline& b, const ExtendedState& state_a,
                            const ExtendedState& state_b, const FeatureContact& like) {
   const Outline &carrier = like.sample_on_a ? a : b, &other = like.sample_on_a ? b : a;
@@ -77,11 +88,13 @@ ExtendedContact contact_in(const Outline& a, const Outline& b, const ExtendedSta
   const RealVec p = s.position + rotation_of(carrier, s.angle) * sample.p.cast<Real>();
   const RealVec out =
       like.sample_on_a ? known.normal : RealVec(-known.normal);  // from the site to the sample
+  // how large the numbers are that p is made of: kNoDirection is a part of it
   const Real size = carrier.bounding_radius + std::max(sample.radius, site.radius);
   const Away away = away_from(site, rotation_of(other, t.angle), t.position, p, out, kNoDirection * size);
   ExtendedContact c;
   c.gap = away.distance - site.radius - sample.radius;
   if (std::abs(c.gap - known.gap) > kNoDirection * size) return known;  // another feature's neighbourhood
+  // on the site's surface, from the sample's core
   c.point = p - away.normal * (c.gap + sample.radius);
   c.normal = like.sample_on_a ? away.normal : RealVec(-away.normal);
   c.closing = closing_speed(state_a, state_b, c.point, c.normal);

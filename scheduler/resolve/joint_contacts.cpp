@@ -26,11 +26,13 @@ std::optional<Vec2> parting_normal(const Wedge& front, const Wedge& behind, cons
     if (parts(n, front, behind) && (!best || n.dot(wanted) > best->dot(wanted))) best = n;
   };
   for (const Vec2& n : behind.normals) consider(n);
+  // a normal of `front` points out of it, so towards `behind`
   for (const Vec2& n : front.normals) consider(-n);
   return best;
 }
 
 /// A vertex of S and the sites of T around it.
+/// All is looked at in T's frame, seen from b's position: far from the origin no digits are lost.
 class Joint {
  public:
   Joint(const Outline& a, const ExtendedState& state_a, const Outline& b, const ExtendedState& state_b,
@@ -50,6 +52,8 @@ class Joint {
     // The sites of a corner meet at one place: it is looked at once.
     bool corner_done = false;
     for (const Near& n : near_) {
+      // A sharp end has no normal of its own, so its contact asks for one that parts. A round end has, and is told
+      // unless a neighbour tells the same. What is touched between its ends always counts.
       if (n.at_end && sharp(n.site)) {
         if (!std::exchange(corner_done, true)) add_corner(n);
       } else if (!n.at_end || !is_told(n)) {
@@ -60,6 +64,7 @@ class Joint {
   }
 
  private:
+  /// A site of T that is near. at_end: the nearest point is an end of it, or a rounding beside one.
   struct Near {
     int site;
     Nearest nearest;
@@ -75,10 +80,13 @@ class Joint {
   void add_touched(const Near& n) {
     constexpr double kOnWire = 1e-4;  // of the tolerance: a tenth of a wire's level
     const Site& wire = site(n.site);
+    // a solid's corner knows its inside, so it may have sunk as far as the tolerance; of anything else the side is
+    // told by where its origin is, and only right on the wire
     const double doubtful = sample_.before >= 0 ? tolerance_ : kOnWire * tolerance_;
     const bool on_wire = !wire.solid && wire.kind != SiteKind::point && sharp(n.site) && !n.at_end &&
                          n.nearest.distance <= doubtful;
     const Vec2 normal = normal_at(wire, n.nearest, path_.q);
+    // towards the material of S: the side of the wire on which that is, is the sample's
     const Vec2 inside = detail::way_inside(outline_s_, sample_, s_.frame, t_.frame, path_.q);
     if (on_wire && normal.dot(inside) < 0.0)
       add(n.site, -normal, -n.nearest.distance);
@@ -95,6 +103,7 @@ class Joint {
     });
   }
 
+  /// Notes site j if it is within the tolerance, and the site that was found whatever is seen of it now.
   void look_at(int j) {
     const Nearest n = nearest_on(site(j), path_.q);
     const double gap = side_of(site(j), n, path_.q) * n.distance - site(j).radius - sample_.radius;
@@ -105,9 +114,12 @@ class Joint {
     near_.push_back({j, n, gap, corner || n.foot != Foot::interior || site(j).kind == SiteKind::point});
   }
 
+  /// One contact for all sites that meet there: with the normal that parts the wedges, or, where none does or
+  /// nothing is known of an inside, with the one that was found.
   void add_corner(const Near& n) {
     const Site& edge = site(n.site);
     const Vec2 vertex = (path_.q - edge.a).norm() <= (path_.q - edge.b).norm() ? edge.a : edge.b;
+    // from T to S, as all normals here
     const Vec2 out = f_.sample_on_a ? f_.normal : Vec2(-f_.normal);
     const Vec2 wanted = t_.frame.direction_to_local(out);
     std::optional<Vec2> normal;
@@ -123,6 +135,7 @@ class Joint {
       add(n.site, wanted, n.gap);
   }
 
+  /// A contact with site j; the normal is in T's frame, out of T, and the gap along it [m].
   void add(int j, const Vec2& normal, double gap) {
     // Time, level and sink are those of the contact that was found.
     FeatureContact c = f_;
@@ -148,6 +161,7 @@ class Joint {
 
 }  // namespace
 
+/// An arc's sample is a centre with a sector, no vertex: it has one way to the other outline.
 std::vector<FeatureContact> joint_contacts(const Outline& a, const ExtendedState& state_a, const Outline& b,
                                            const ExtendedState& state_b, const FeatureContact& f,
                                            double tolerance) {

@@ -13,6 +13,7 @@ Wedge wedge_at(const Outline& outline, const Vec2& vertex) {
   Wedge w;
   const auto add = [&](const Vec2& travel, double sense) {
     w.edges.push_back(sense * travel);
+    // the solid lies to the left of the travel: out of it is to the right
     w.normals.push_back(-perp(travel));
   };
   for (const Site& site : outline.sites) {
@@ -23,6 +24,8 @@ Wedge wedge_at(const Outline& outline, const Vec2& vertex) {
   return w;
 }
 
+/// n points from `behind` to `front`: no edge of `front` may lead back over the line across it, and none of
+/// `behind` forward. Edges along the line do neither.
 bool parts(const Vec2& n, const Wedge& front, const Wedge& behind) {
   return std::all_of(front.edges.begin(), front.edges.end(),
                      [&](const Vec2& e) { return n.dot(e) >= -kParallel; }) &&

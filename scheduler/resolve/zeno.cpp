@@ -24,8 +24,11 @@ std::optional<ZenoEnding> ZenoWatch::collided(const Feature& feature, double tim
                                               const ForeseenLimit& foreseen) {
   // A flight of duration T on a parabola that ends with v = g T / 2 rose by v^2 / (2 g) = v T / 4.
   if (loss == BounceLoss::none || 0.25 * closing_speed * rest > kHighFlight * tolerance_) return std::nullopt;
+  // remembered from here on: high flights have not come so far (kHighFlight)
   Bounce& b = bounces_[feature];
   const double left = foreseen.time - time;
+  // While they agree the earliest one stays: the higher the flight, the finer its limit. No limit (0) agrees with
+  // none.
   if (!(std::abs(foreseen.time - b.foreseen) <= kAlikeLimit * left + foreseen.rounding))
     b.foreseen = foreseen.time;
   const bool first = b.count++ == 0;
@@ -33,6 +36,7 @@ std::optional<ZenoEnding> ZenoWatch::collided(const Feature& feature, double tim
   b.last_time = time;
   if (first || interval <= 0.0)
     return std::nullopt;  // further impacts of one instant say nothing about flights
+  // of the first interval nothing is known: as if it were of one length
   const double ratio = b.last_interval > 0.0 ? interval / b.last_interval : 1.0;
   b.last_interval = interval;
   if (0.25 * closing_speed * interval >= tolerance_) {
@@ -43,6 +47,7 @@ std::optional<ZenoEnding> ZenoWatch::collided(const Feature& feature, double tim
   if (b.limit_time == 0.0 && loss != BounceLoss::all && ratio < 1.0 - kAlike)
     b.limit_time = time + interval * ratio / (1.0 - ratio);
   const bool pressed = sunk || loss == BounceLoss::all || (rest >= interval && ratio <= 1.0 + kAlike);
+  // others are low, but say nothing: they neither count nor end the run
   if (interval < b.shortest || pressed) ++b.low_flights;
   b.shortest = std::min(b.shortest, interval);
   // a series that shrinks ends where its flights come down to roundings: what bounces on after is pressed

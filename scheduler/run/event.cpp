@@ -3,6 +3,7 @@
 
 namespace brink {
 
+/// Words of run files: they are read back by these names.
 const char* to_string(EventKind kind) {
   switch (kind) {
     case EventKind::collision:
@@ -30,6 +31,7 @@ const char* to_string(EventKind kind) {
   return "unknown";
 }
 
+/// Likewise.
 const char* to_string(ContactMode mode) {
   switch (mode) {
     case ContactMode::none:
@@ -46,6 +48,7 @@ const char* to_string(ContactMode mode) {
   return "unknown";
 }
 
+/// What a timeline calls it (brink run --trace).
 const char* to_string(TraceKind kind) {
   switch (kind) {
     case TraceKind::advance:

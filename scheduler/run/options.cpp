@@ -11,6 +11,7 @@ namespace brink {
 
 namespace {
 
+/// As `Order` numbers them: order_of() finds them by place.
 constexpr std::array kOrders{
     Choice{"index", "lowest body, other, site and sample first"},
     Choice{"closing_speed", "fastest approach first"},
@@ -31,12 +32,14 @@ constexpr std::array kDetectors{
     Choice{"depth", "the classic method: particles read rendered depth; approximate, with steps of `step`"},
 };
 
+/// For messages: what is allowed, with commas.
 std::string names_of(std::span<const Choice> choices) {
   std::string text;
   for (const Choice& c : choices) text += (text.empty() ? "" : ", ") + std::string(c.name);
   return text;
 }
 
+/// True if it is one of the choices; else *error says of which option, what was given, and what is allowed.
 bool known(std::span<const Choice> choices, const std::string& given, const char* option,
            std::string* error) {
   for (const Choice& c : choices)
@@ -45,6 +48,7 @@ bool known(std::span<const Choice> choices, const std::string& given, const char
   return false;
 }
 
+/// Likewise of a number; neither NaN nor infinity will do.
 bool positive(double value, const char* option, std::string* error) {
   if (std::isfinite(value) && value > 0.0) return true;
   *error = fmt::format("{} = {} must be a finite number > 0", option, value);
@@ -69,9 +73,12 @@ Order order_of(std::string_view name) {
   throw BadInput(fmt::format("order = \"{}\" is not known; allowed: {}", name, names_of(kOrders)));
 }
 
+/// The first fault that is met is told, no more.
 bool SolverOptions::is_valid(std::string* error) const {
   // First: order_of() throws on a name that is not known.
   if (!known(orders(), order, "order", error)) return false;
+  // A group is resolved by impulses at features: the mirror has no impulses of several contacts, and a picture
+  // names no features.
   if (takes_together(order_of(order)) && (response == "reflection" || detector == "depth")) {
     *error = fmt::format(
         "order = \"{}\" needs response = \"impulse\" and an exact detector (field, pass); given response = "

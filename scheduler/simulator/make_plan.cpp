@@ -20,6 +20,8 @@ std::string unless(const std::string& setting, std::string text) {
 
 }  // namespace
 
+/// Asks what the parts would do, by the same questions that they ask themselves, and counts. Nothing of it is
+/// looked up later: the plan is for people. Cost: a look at every owner, none at pairs.
 Plan make_plan(const KernelView& kernel, const std::vector<std::string>& of_policy) {
   const World& world = kernel.world();
   const SolverOptions& options = kernel.options();
@@ -36,6 +38,7 @@ Plan make_plan(const KernelView& kernel, const std::vector<std::string>& of_poli
 
   std::vector<int> discs;  // one of the two is a disc wherever a pair has a closed form
   for (int k = 0; k < kernel.owner_count(); ++k)
+    // asked against itself: whether its own motion allows a closed form
     if (is_centred_disc(kernel.outline_of(k)) && (k >= n || kernel.is_ballistic(k)) &&
         has_closed_form(kernel.mover(k), kernel.mover(k)))
       discs.push_back(k);
@@ -52,14 +55,19 @@ Plan make_plan(const KernelView& kernel, const std::vector<std::string>& of_poli
     else
       ++(is_site ? site_partners : partners);
   }
+  // numbers without a sign: n - (n > 0) is no -1 where there are none
   const std::uint64_t bodies = world.bodies.size(),
                       pairs = bodies * (bodies - (bodies > 0)) / 2 + bodies * world.sites.size();
+  // two bodies that are discs; such a body with any other body or site that has a form; one of those other bodies
+  // with a disc that is a site
   const std::uint64_t closed = disc_bodies * (disc_bodies - (disc_bodies > 0)) / 2 +
                                disc_bodies * (partners + disc_sites + site_partners) + partners * disc_sites;
   lines.push_back(unless(options.closed_forms ? "" : "solver.closed_forms = false",
                          fmt::format("pairs: {} of {} have a first contact in closed form", closed, pairs)));
 
+  // by address, as the kernel shares them
   std::set<const Outline*> shapes, with_field;
+  // the rule by which a site index takes a field or brute force
   const auto look = [&](const Outline* o) {
     shapes.insert(o);
     if (options.fields_for_small_shapes ||
@@ -75,6 +83,7 @@ Plan make_plan(const KernelView& kernel, const std::vector<std::string>& of_poli
           shapes.size(), with_field.size(), shapes.size() - with_field.size(),
           options.field.brute_force_below)));
   lines.insert(lines.end(), of_policy.begin(), of_policy.end());
+  // detectors `pass` and `depth` draw whatever the shapes are
   const bool context = !with_field.empty() || options.detector != "field";
   lines.push_back(context ? fmt::format("GL context: needed ({})", options.field.context)
                           : "GL context: not needed");

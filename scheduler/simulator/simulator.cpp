@@ -13,6 +13,8 @@
 
 namespace brink {
 
+/// A policy is made for the kernel that it drives, and prepared before contacts may last: it says whether it takes
+/// the steps of islands.
 struct Simulator::Impl {
   Impl(World world, SolverOptions options)
       : kernel(std::move(world), options), policy(make_policy(options.policy, options.detector)) {
@@ -37,6 +39,9 @@ Simulator::~Simulator() = default;
 Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 
+/// What is asked for is checked, the start is looked at, the policy drives the kernel to the end or to a halt, and
+/// the summary is made from what the parts have counted. A call goes on from the present time: counters, islands
+/// and motions stay from call to call.
 RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
   if (!std::isfinite(options.until) || options.until < time())
     throw BadInput(
@@ -49,6 +54,7 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
     if (const std::string why = start_fault(); !why.empty()) throw BadInput(why);
   const auto begin = std::chrono::steady_clock::now();
   kernel.begin(options, recorder);
+  // after the first frame, before the policy has looked at anything
   kernel.let_touching_last();
   impl_->policy->run(kernel, options.until);
   kernel.check_returned(options.until);
@@ -65,6 +71,7 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
   if (recorder) recorder->checkpoint(time(), kernel.snapshot());
   kernel.tell_lasting_contacts();  // beyond the checkpoint: a run that goes on tells them again
   const std::vector<BodyState> last = states();
+  // from the same states as the energy, all at the present time
   const Momentum momentum = total_momentum(world(), last);
   summary.end_time = time();
   summary.collisions = kernel.collisions();
@@ -80,6 +87,7 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
   }
   const IslandTally& islands = kernel.island_tally();
   summary.contacts_lasting = islands.captured;
+  // those that came to rest moved nobody
   summary.island_steps = islands.steps - islands.slept;
   for (const auto& [lead, island] : kernel.islands()) {
     if (!island.rests) continue;
@@ -102,6 +110,7 @@ BodyState Simulator::state(int k) const { return impl_->kernel.state(k, time());
 std::vector<BodyState> Simulator::states() const { return impl_->kernel.states(time()); }
 Pose Simulator::site_pose(int k) const { return impl_->kernel.site_pose(k, time()); }
 
+/// Over bits: two runs with one hash have come to the same states, to the last digit.
 std::uint64_t Simulator::state_hash() const {
   StateHash hash;
   hash.add(time());
@@ -119,6 +128,7 @@ void Simulator::apply_impulse(int k, const Vec2& impulse, const Vec2& point) {
   impl_->kernel.apply_impulse(k, impulse, point);
 }
 
+/// The limit is this call's alone, also where it throws.
 RunSummary Simulator::step_to_next_event(RunOptions options, Recorder* recorder) {
   impl_->kernel.stop_after_collisions(1);
   try {
