@@ -43,11 +43,11 @@ class FixedStep : public SteppingIntegrator {
     // The step is below the spacing of doubles at this time.
     if (!(t > time())) return fail("step " + time_text(step_) + " s is lost in rounding");
     if (!advance(time(), states(), t - time(), end_)) return fail(why());
-    for (int k = 0; k < size(); ++k) {
+    // all are asked before any goes on: after a failure the tracks of a component end together
+    for (int k = 0; k < size(); ++k)
       if (!is_in_range(end_[k]))
         return fail("the state of body " + std::to_string(k) + " of the component overflows");
-      append(k, cubic_piece(time(), states()[k], t, end_[k]));
-    }
+    for (int k = 0; k < size(); ++k) append(k, cubic_piece(time(), states()[k], t, end_[k]));
     return accept(t, end_);
   }
 

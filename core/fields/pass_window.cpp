@@ -249,9 +249,13 @@ void PassRenderer::draw(const Box& window, int width, int height, std::span<cons
   check_window(window, scene);
   Impl::Drawn& drawn = impl_->drawn;
   const std::uint64_t drawn_before = impl_->renderer.pixels_drawn(), read = impl_->renderer.pixels_read();
-  drawn.grid = make_grid(window, width, height);
-  drawn.names = SiteNames(scene);
-  drawn.batch = impl_->draw_first(drawn.grid, scene, excluded, band, drawn.names, 1);
+  const PixelGrid grid = make_grid(window, width, height);
+  SiteNames names(scene);
+  SiteBatch batch = impl_->draw_first(grid, scene, excluded, band, names, 1);
+  // only now, as what was drawn before may still be read where this throws
+  drawn.grid = grid;
+  drawn.names = std::move(names);
+  drawn.batch = std::move(batch);
   drawn.was_read = false;
   impl_->count(1, drawn_before, read);
 }

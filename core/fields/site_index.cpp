@@ -72,7 +72,7 @@ FieldAnswer SiteIndex::query(const Vec2& q, Scratch& scratch) const {
   if (answer.site < 0) return answer;
   const Site& site = outline_->sites[static_cast<std::size_t>(answer.site)];
   // unsigned distances chose the site; the sign is that site's alone
-  answer.gap = side_of(site, nearest, q) * nearest.distance - site.radius;
+  answer.gap = side_of_outline(*outline_, site, nearest, q) * nearest.distance - site.radius;
   answer.closest = nearest.point;
   answer.normal = nearest.foot == Foot::interior && site.solid && site.kind == SiteKind::segment
                       ? right_[static_cast<std::size_t>(answer.site)]

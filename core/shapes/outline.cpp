@@ -204,6 +204,11 @@ void finish_outline(Outline& outline) {
   outline.facets = facets_of(outline);
 }
 
+double side_of_outline(const Outline& outline, const Site& site, const Nearest& nearest, const Vec2& q) {
+  if (site.solid && is_beyond(outline, nearest.distance)) return outline.container ? -1.0 : 1.0;
+  return side_of(site, nearest, q);
+}
+
 double gap_by_brute_force(const Outline& outline, const Vec2& q, int* site) {
   double least = std::numeric_limits<double>::infinity();
   int nearest_site = 0;
@@ -220,10 +225,8 @@ double gap_by_brute_force(const Outline& outline, const Vec2& q, int* site) {
   }
   if (site) *site = nearest_site;
   const Site& s = outline.sites[nearest_site];
-  const bool is_far = s.solid && is_beyond(outline, nearest.distance);
-  const double side = is_far ? (outline.container ? -1.0 : 1.0) : side_of(s, nearest, q);
   // inside a thick solid the surface is the radius beyond the core: there both count negative
-  return side * nearest.distance - s.radius;
+  return side_of_outline(outline, s, nearest, q) * nearest.distance - s.radius;
 }
 
 Outline as_container(Outline outline) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "brink/core/shapes/distance.h"
 #include "brink/core/shapes/site.h"
 
 namespace brink {
@@ -66,6 +67,10 @@ void finish_outline(Outline& outline);
 inline bool is_beyond(const Outline& outline, double distance) {
   return distance > 2.0 * outline.bounding_radius;
 }
+
+/// side_of() that nearest site of the outline; of a place that is_beyond() a solid, outside it, or in a container's
+/// solid part.
+double side_of_outline(const Outline& outline, const Site& site, const Nearest& nearest, const Vec2& q);
 
 /// Signed gap [m] from q to the whole outline by brute force over its sites (the reference the fields are
 /// tested against), with the nearest site in `*site` if given. The sign is the nearest site's side; of sites

@@ -49,9 +49,8 @@ Taylor rough(const Interval& value, int order) {
   return r;
 }
 
-/// Of the floor, of comparisons and of signs: derivatives are 0 where the value is one number, and unknown,
-/// as there may be a jump, where it is a range.
-/// A function that is constant piece by piece, where its value may change.
+/// A function that is constant piece by piece (floor, comparisons, signs): derivatives are 0 where the value is one
+/// number, and unknown, as there may be a jump, where it is a range.
 Taylor stepped(const Interval& value, int order) {
   return is_point(value) ? Taylor::constant(value, order) : rough(value, order);
 }
@@ -139,7 +138,8 @@ Taylor real_power(const Taylor& a, double p) {
   const Interval value(std::max(0.0, to.far_below(std::min(x, y))), to.far_above(std::max(x, y)));
   // At 0 the recurrence would divide by 0; from some order on the derivatives of a power that is not whole
   // are infinite there.
-  if (!(a.c[0].lower() > 0.0)) return a.is_constant() ? stepped(value, a.order) : rough(value, a.order);
+  if (!(a.c[0].lower() > 0.0))
+    return a.is_constant() ? Taylor::constant(value, a.order) : rough(value, a.order);
   Taylor r = Taylor::constant(value, a.order);
   for (int k = 1; k <= a.order; ++k) {
     // a r' = p a' r, so k a_0 r_k = sum of (p j - (k - j)) a_j r_(k-j) over j = 1 .. k.
@@ -213,7 +213,8 @@ Taylor sqrt(const Taylor& a) {
   if (leaves(a.c[0], 0.0, kInfinity)) return rough(Interval::whole(), a.order);
   const Interval value = known(lib::sqrt(within(a.c[0], 0.0, kInfinity)));
   // The root is vertical at its foot.
-  if (!(a.c[0].lower() > 0.0)) return a.is_constant() ? stepped(value, a.order) : rough(value, a.order);
+  if (!(a.c[0].lower() > 0.0))
+    return a.is_constant() ? Taylor::constant(value, a.order) : rough(value, a.order);
   Taylor r = Taylor::constant(value, a.order);
   for (int k = 1; k <= a.order; ++k) {
     const Interval rest = convolved(r, r, k, 1, k - 1);
@@ -256,7 +257,7 @@ Taylor asin(const Taylor& a) {
   // asin' = 1 / sqrt(1 - a^2), which is infinite at the ends: there the value alone is known.
   const Taylor room = number(1.0, a.order) - square(a);
   if (!(room.c[0].lower() > 0.0))
-    return a.is_constant() ? stepped(known(value), a.order) : rough(value, a.order);
+    return a.is_constant() ? Taylor::constant(known(value), a.order) : rough(value, a.order);
   return from_slope(value, a, number(1.0, a.order) / sqrt(room));
 }
 
@@ -309,7 +310,8 @@ Taylor acosh(const Taylor& a) {
   OutwardRounding to;
   const Interval value(std::max(0.0, to.acosh_down(x.lower())), to.acosh_up(x.upper()));
   // acosh' = 1 / sqrt(a^2 - 1), which is infinite at 1.
-  if (!(a.c[0].lower() > 1.0)) return rough(value, a.order);
+  if (!(a.c[0].lower() > 1.0))
+    return a.is_constant() ? Taylor::constant(value, a.order) : rough(value, a.order);
   return from_slope(value, a, number(1.0, a.order) / sqrt(square(a) - number(1.0, a.order)));
 }
 

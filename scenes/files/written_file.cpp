@@ -12,9 +12,8 @@ namespace brink {
 namespace fs = std::filesystem;
 namespace {
 
-/// By identity where both exist, which sees through links; by resolved name where one is
-/// still to be written.
-/// True if writing one of two paths would write the other.
+/// True if writing one of two paths would write the other: by identity where both exist, which sees through
+/// links; by resolved name where one is still to be written.
 bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code missing;
   if (fs::equivalent(a, b, missing)) return true;

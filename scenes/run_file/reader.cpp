@@ -458,7 +458,6 @@ std::vector<RunFile::Spring> RunFile::springs() const {
     // null is the anchor of a spring that joins one body alone. All other ids must be of bodies that
     // there are.
     const auto body = [&](const nlohmann::json& j) {
-      if (j.is_null()) return -1;
       const int id = j.get<int>();
       if (id < 0 || id >= impl_->bodies) throw BadInput("springs: no such body");
       return id;
@@ -468,16 +467,18 @@ std::vector<RunFile::Spring> RunFile::springs() const {
     };
     std::vector<Spring> all;
     for (const auto& j : json)
-      all.push_back({body(j.at("body")), body(j.at("other")), vector(j.at("at")), vector(j.at("other_at")),
-                     j.at("stiffness").get<double>(), j.at("rest_length").get<double>()});
+      all.push_back({body(j.at("body")), j.at("other").is_null() ? -1 : body(j.at("other")),
+                     vector(j.at("at")), vector(j.at("other_at")), j.at("stiffness").get<double>(),
+                     j.at("rest_length").get<double>()});
     return all;
   });
 }
 
 std::vector<LastedContact> RunFile::contacts_at(double t) const {
   const double end = end_time();
-  // [t_begin, t_end), but that those that outlast the run count at its end, too.
-  return impl_->contacts("WHERE t_begin <= ?1 AND (?1 < t_end OR t_end >= ?2) ORDER BY rowid",
+  // [t_begin, t_end), but that those that outlast the run count at its end, too. Of a run that was killed the end is
+  // its last checkpoint, and contacts are told of beyond it.
+  return impl_->contacts("WHERE t_begin <= ?1 AND (?1 < t_end OR (t_end = ?1 AND ?1 >= ?2)) ORDER BY rowid",
                          [&](SQLite::Statement& get) {
                            get.bind(1, t);
                            get.bind(2, end);

@@ -16,6 +16,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
@@ -325,6 +326,10 @@ void RunFileRecorder::Impl::start_again(const Scene& scene) {
 /// The caller commits.
 void RunFileRecorder::Impl::put_checkpoint(const ResumePoint& row, std::span<const std::byte> snapshot) {
   const std::vector<std::byte> state = sealed(row, snapshot, identity);
+  constexpr std::size_t kMost = std::numeric_limits<int>::max();  // SQLite's own bound
+  if (state.size() > kMost)
+    throw IoError(
+        fmt::format("checkpoint: a state of {} bytes; at most {} can be kept", state.size(), kMost));
   db.exec("DELETE FROM checkpoint");
   SQLite::Statement put(db, "INSERT INTO checkpoint VALUES (?, ?, ?, ?, ?, ?)");
   put.bind(1, row.t);

@@ -86,7 +86,7 @@ double TouchingRows::drop(std::int64_t halves) {
 template <class Visit>
 void TouchingRows::for_offsets(std::size_t row, std::size_t below, Visit&& visit) const {
   // Beyond this many halves the two are more than a copy's width apart.
-  const auto reach = static_cast<std::int64_t>(2.0 * wide_ / width_) + 1;
+  const auto reach = (width_ > 0.0 ? static_cast<std::int64_t>(2.0 * wide_ / width_) : 0) + 1;
   std::int64_t low = first(row) - last(below);
   const std::int64_t high = std::min(last(row) - first(below), reach);
   if (low < -reach) low += (-reach - low + 1) / 2 * 2;  // keeps what is odd odd

@@ -208,14 +208,23 @@ std::vector<Pose> lattice(const ScatterAsk& ask, Room& room, double spacing, Ran
   std::vector<Pose> out;
   const Box& box = ask.region;
   const double height = spacing * std::numbers::sqrt3 / 2.0;
+  // Where the plane repeats, the last place of a row, and the last row, keep the spacing from the image of the first.
+  const auto last = [&](double first, double high, double period) {
+    return period > 0.0 ? std::min(high, first + period - spacing) : high;
+  };
+  const Vec2& period = ask.periods.size;
+  const double top = last(box.low.y(), box.high.y(), period.y());
   bool odd = false;
-  for (double y = box.low.y(); y <= box.high.y(); y += height, odd = !odd)
-    for (double x = box.low.x() + (odd ? spacing / 2.0 : 0.0); x <= box.high.x(); x += spacing) {
+  for (double y = box.low.y(); y <= top; y += height, odd = !odd) {
+    const double first = box.low.x() + (odd ? spacing / 2.0 : 0.0),
+                 right = last(first, box.high.x(), period.x());
+    for (double x = first; x <= right; x += spacing) {
       // Only its angle is used.
       Pose pose = anywhere(ask, random);
       pose.position = {x, y};
       if (room.free(pose)) out.push_back(pose);
     }
+  }
   return out;
 }
 

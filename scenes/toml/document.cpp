@@ -40,7 +40,7 @@ class KeyDepthScan {
         skip_string(c);
       else if (c == '#')
         skip_comment();
-      else if (c == '.' && ++dots_ > kMaxKeyDepth)
+      else if (c == '.' && ++dots_ >= kMaxKeyDepth)
         return line_;
       else if (std::string_view(",=[]{}\n").find(c) != std::string_view::npos)
         dots_ = 0;

@@ -203,8 +203,8 @@ double residual(const IslandStep& step, const StepResult& result, double h) {
   return most > 0.0 ? beyond / most : 0.0;
 }
 
-/// The step on which nobody presses, which is the answer if no gap is missed, for what the solver does not come to: contacts that
-/// part far slower than the step is long.
+/// The step on which nobody presses, which is the answer if no gap is missed. For what the solver does not come to:
+/// contacts that part far slower than the step is long.
 StepOutcome without_loads(IslandStep& step, double h, double tolerance, const GapAlong& gap,
                           StepOutcome outcome) {
   std::vector<Vec3> velocity = step.velocity;
@@ -249,15 +249,19 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
       continue;
     }
     double worst = 0.0;
-    for (Part& part : parts) {
-      // Lifted from a tenth of the tolerance on, though only a miss beyond the tolerance asks for one more
-      // solve, which then makes up for all of them.
+    std::vector<double> more;  // lifts that one more solve would need
+    for (const Part& part : parts) {
       const Miss miss = missed(part.contact, h, result.velocity, gap);
       worst = std::max(worst, miss.most);
-      if (miss.most > 0.1 * tolerance) part.lift += kAimHigher * miss.lift;
+      // From a tenth of the tolerance on, though only a miss beyond the tolerance asks for that solve, which then
+      // makes up for all of them.
+      more.push_back(miss.most > 0.1 * tolerance ? kAimHigher * miss.lift : 0.0);
     }
     ++again;
-    if (worst > tolerance) continue;
+    if (worst > tolerance) {
+      for (std::size_t k = 0; k < parts.size(); ++k) parts[k].lift += more[k];
+      continue;
+    }
     double of = 0.0;
     const double won_here = won(step, result, parts, h, tolerance, of);
     // The caller tries a shorter step: by what faces that turn are missed is of second order in h.

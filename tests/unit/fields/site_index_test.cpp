@@ -56,6 +56,18 @@ TEST_P(SiteIndexOnShapes, RandomQueriesGiveTheBruteForceAnswer) {
   EXPECT_EQ(wrong_site, 0);
 }
 
+// Where all sites are equally near by rounding, the side of one of them says nothing.
+TEST_P(SiteIndexOnShapes, PlacesFarAwayHaveTheBruteForceSign) {
+  const auto index = make_site_index(shape_.outline, always_a_field());
+  Random random(7);
+  SiteIndex::Scratch scratch;
+  for (int i = 0; i < 2000; ++i) {
+    const double far = std::pow(10.0, random.uniform(1.0, 140.0)), angle = random.uniform(0.0, 6.3);
+    const Vec2 q = far * Vec2(std::cos(angle), std::sin(angle));
+    ASSERT_EQ(index->query(q, scratch).gap, gap_by_brute_force(*shape_.outline, q, nullptr)) << far;
+  }
+}
+
 // What Candidates promises, checked against every site: whoever is not listed is at least others_at_least
 // away, and an empty list means that the outline is beyond the reach.
 TEST_P(SiteIndexOnShapes, UnlistedSitesAreAtLeastAsFarAsPromised) {

@@ -109,6 +109,12 @@ TEST(FormulaBound, OfASineAreItsDerivatives) {
   EXPECT_NEAR(b.eleventh, 0.1 * std::pow(6.0, 11) / 39916800.0 * std::cos(1.5), 1e-6);
 }
 
+// Where a function has no derivative, a constant may stand all the same.
+TEST(FormulaBound, ConstantsAtTheEndOfADomainHaveNoDerivatives) {
+  for (const char* text : {"acosh(1) + t", "asin(1) + t", "sqrt(0) + t"})
+    EXPECT_EQ(Formula(text, {"t"}).time_bound(0, 0.0, 1.0).second, 0.0) << text;
+}
+
 TEST(FormulaBound, OwnsUpToASpikeThatNoSampleMeets) {
   const Formula f("max(0, 0.3 - abs(t - 0.7031)*300)", {"t"});
   const TimeBound b = f.time_bound(0, 0.0, 64.0);

@@ -447,6 +447,10 @@ TEST_F(RunFileTest, DamagedTablesAreAnIoErrorThatNamesThem) {
       {"UPDATE contact SET force_n = 'much'", "contact"},
       {"UPDATE meta SET value = '{\"world\":{\"periodic\":[\"a\"]}}' WHERE key = 'options'", "meta"},
       {"UPDATE meta SET value = 'late' WHERE key = 'end_time'", "meta"},
+      {"INSERT OR REPLACE INTO meta VALUES ('springs', "
+       "'[{\"body\":null,\"other\":null,\"at\":[0,0],\"other_at\":[0,0],"
+       "\"stiffness\":1,\"rest_length\":1}]')",
+       "meta"},
       {"DROP TABLE site", "site"}};
   for (const auto& [damage, table] : damages) {
     {

@@ -20,6 +20,7 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 // Faults as "LINE:COLUMN message".
 std::vector<std::string> faults_of(std::string_view text, const std::vector<std::string>& overrides = {}) {
@@ -264,6 +265,28 @@ scatter = { count = 40, region = [[0, 0], [4, 4]] }
   }
 }
 
+// So full that a lattice is needed, over the whole period: its last column is beside the image of its first.
+TEST(SceneFile, ScatterOnALatticeKeepsClearOfImages) {
+  for (const char* region : {"[[0, 0], [4, 4]]", "[[-1, -3], [5, 3]]"}) {
+    const World world = parse_scene(std::string(R"toml(
+[world]
+periodic = [4, 4]
+[[bodies]]
+name = "ball"
+disc = { radius = 0.2 }
+scatter = { count = 80, region = )toml") +
+                                        region + " }\n",
+                                    "t")
+                            .world;
+    ASSERT_EQ(world.bodies.size(), 80U);
+    for (std::size_t i = 0; i < world.bodies.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const Vec2 d = world.bodies[i].initial.pose.position - world.bodies[j].initial.pose.position;
+        ASSERT_GT(std::hypot(std::remainder(d.x(), 4.0), std::remainder(d.y(), 4.0)), 0.4) << region;
+      }
+  }
+}
+
 // A site as large as a million periods leaves no room; it is not copied a million times to find out.
 TEST(SceneFile, ScatterAmongCountlessImagesIsAFault) {
   EXPECT_THAT(
@@ -483,6 +506,11 @@ TEST(SceneFile, KeyWithoutEndIsAFaultAndNoCrash) {
   for (int k = 0; k < 200000; ++k) deep += ".a";
   EXPECT_THAT(faults_of(deep + " = 1\n"), Contains(HasSubstr("too many parts")));
   EXPECT_FALSE(faults_of("x = " + std::string(100000, '[')).empty());
+  // 64 parts are allowed, 65 are not
+  std::string parts = "a";
+  for (int k = 1; k < 64; ++k) parts += ".a";
+  EXPECT_THAT(faults_of(parts + " = 1\n"), Not(Contains(HasSubstr("too many parts"))));
+  EXPECT_THAT(faults_of(parts + ".a = 1\n"), Contains(HasSubstr("too many parts")));
 }
 
 TEST(SceneFile, MissingFileIsAnIoError) {
