@@ -71,14 +71,23 @@ struct CollisionResponse::Change {
 };
 
 CollisionResponse::CollisionResponse(const World& world, const SolverOptions& options,
-                                     Trajectories& trajectories, const ContactSearch& search,
+                                     Trajectories& trajectories, ContactSearch& search,
                                      CertificateWatch& watch, RunControl& run)
     : world_(&world),
       trajectories_(&trajectories),
       search_(&search),
       watch_(&watch),
       run_(&run),
-      reflects_(options.response == "reflection") {}
+      reflects_(options.response == "reflection") {
+  if (!search.points_meet_wires()) return;
+  const auto thin = [](const Site& site) {
+    return !site.solid && site.radius == 0.0 && site.kind != SiteKind::point;
+  };
+  for (int s = 0; s < static_cast<int>(world.sites.size()); ++s) {
+    const std::vector<Site>& sites = world.sites[s].outline->sites;
+    if (std::any_of(sites.begin(), sites.end(), thin)) wires_.push_back(s);
+  }
+}
 
 /// Combined when the pair's two materials first meet, and kept.
 const Material& CollisionResponse::material_of(const PairKey& pair) {
@@ -163,8 +172,10 @@ CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const F
     r.magnitude += std::max(0.0, found.closing_speed) / kEpsilon;
   // what has sunk is pushed out as the new motions begin, along the normal at the moment of contact
   const auto [way, way_of_other] = push_apart(pair, found, c.normal);
-  r.body.position += way;
-  r.other.position += way_of_other;
+  const bool solids = !(found.nominal() > 0.0);
+  if (!solids || !leads_to_wire(pair.body, way)) r.body.position += way;
+  if (!solids || pair.with_site() || !leads_to_wire(pair.other_body, way_of_other))
+    r.other.position += way_of_other;
   return r;
 }
 
@@ -192,6 +203,26 @@ std::pair<RealVec, RealVec> CollisionResponse::push_apart(const PairKey& pair, c
 }
 
 /// Begins the motions that lead through the moment of contact with the twists that the law gave.
+/// True if a fixed wire without thickness is in that way, and touched already: what two solids are pushed apart by may
+/// be more than the level that is left before it.
+bool CollisionResponse::leads_to_wire(int body, const RealVec& way) {
+  if (wires_.empty() || way.isZero(0)) return false;
+  const double now = run_->time();
+  const Vec2 place = trajectories_->motion_of(body).place(now), along = way.cast<double>();
+  return std::any_of(wires_.begin(), wires_.end(), [&](int s) {
+    const PairKey pair{body, -1, s, {}};
+    const int wire = search_->other_owner(pair);
+    const double reach =
+        search_->outline_of(body).bounding_radius + search_->outline_of(wire).bounding_radius;
+    if ((trajectories_->motion_of(wire).place(now) - place).norm() > reach * (1.0 + 1e-9)) return false;
+    if (!search_->may_meet(body, wire)) return false;
+    const std::vector<FeatureContact> touched = search_->touching(pair, search_->limits().touch, now);
+    return std::any_of(touched.begin(), touched.end(), [&](const FeatureContact& f) {
+      return f.nominal() > 0.0 && f.normal.dot(along) < 0.0;
+    });
+  });
+}
+
 void CollisionResponse::deflect(const PairKey& pair, const Change& r, std::vector<int>& changed) {
   const Restart both[] = {
       {pair.body, deflected(r.body, r.body_before, r.impulse.body, r.delay)},

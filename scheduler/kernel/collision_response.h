@@ -20,7 +20,7 @@ class CollisionResponse {
  public:
   /// What is given must outlive it.
   CollisionResponse(const World& world, const SolverOptions& options, Trajectories& trajectories,
-                    const ContactSearch& search, CertificateWatch& watch, RunControl& run);
+                    ContactSearch& search, CertificateWatch& watch, RunControl& run);
 
   /// One collision at the present time: the law's impulse, and motions that begin anew with it. Bodies whose
   /// motion changed are appended to `changed`. Nothing on a halt: neither side can move, or the watch has
@@ -55,15 +55,17 @@ class CollisionResponse {
                               const DiscRebound& discs, std::vector<int>& changed);
   void note_sides(Outcome& outcome) const;
   void deflect(const PairKey& pair, const Change& change, std::vector<int>& changed);
+  bool leads_to_wire(int body, const RealVec& way);
   ForeseenLimit foresee(const PairKey& pair, const FeatureContact& found, double e, Real delay);
 
   const World* world_;
   Trajectories* trajectories_;
-  const ContactSearch* search_;
+  ContactSearch* search_;
   CertificateWatch* watch_;
   RunControl* run_;
   bool reflects_;  ///< response "reflection"
   PairMaterials materials_;
+  std::vector<int> wires_;  ///< fixed sites that have a wire without thickness
 };
 
 }  // namespace brink
