@@ -11,9 +11,11 @@ namespace {
 
 /// kBisections: a corner that was cut is found to 1/65536 of the way between two looks.
 constexpr int kLooks = 8;        ///< along a step
-constexpr double kSoon = 0.05;   ///< after the first look
-constexpr int kBisections = 16;  ///< until a corner is found that was cut between two looks
+constexpr int kBetween = 4;      ///< parts of what lies between two looks, where a corner may be
+constexpr int kSections = 24;    ///< golden sections until a corner is found there: to 1e-5 of a part
 constexpr int kCorrections = 6;  ///< of gaps that were missed
+/// A gap that is missed by less than this part of the tolerance is not made up for.
+constexpr double kMissCounts = 0.1;
 /// A correction lifts by so much of what was missed.
 constexpr double kAimHigher = 1.001;
 /// What the solver may miss, of the step's speed: gaps and energy are looked at themselves.
@@ -97,23 +99,39 @@ double lowest(double before, double here, double after) {
   return bend > 0.0 && std::abs(at) < 1.0 ? at : 0.0;
 }
 
-/// A gap that falls so from a look on would be gone before the next, where it is not: the sample has come to the end
-/// of the site between the two, and may have cut its corner. Looks as near before that as counts.
+/// The least of a gap between two looks, one apart, that it is not seen to be small at: where a sample comes to the end of
+/// a site between the two, the gap falls to there and rises behind it, with a corner between. Golden sections about the
+/// lowest of some looks between; each look notes the miss.
 template <class Look>
-void look_for_end(double from, double seen, double slope, Look&& look) {
-  double falling = from, past = from + 1.0;
-  for (int n = 0; n < kBisections; ++n) {
-    const double middle = 0.5 * (falling + past), there = look(middle);
-    // the look has noted the miss
-    if (there < 0.0) return;
-    const double expected = seen + (middle - from) * slope;
-    // still on the line on which it fell, but for a quarter of its fall: the end comes later
-    (there - expected <= 0.25 * (seen - expected) ? falling : past) = middle;
+void look_for_corner(double from, Look&& look) {
+  int lowest = 1;
+  double least = look(from + 1.0 / kBetween);
+  for (int n = 2; n < kBetween; ++n)
+    if (const double there = look(from + static_cast<double>(n) / kBetween); there < least) {
+      least = there;
+      lowest = n;
+    }
+  constexpr double ratio = 0.6180339887498949;
+  double low = from + (lowest - 1.0) / kBetween, high = from + (lowest + 1.0) / kBetween;
+  double x = high - ratio * (high - low), y = low + ratio * (high - low), at_x = look(x), at_y = look(y);
+  for (int n = 0; n < kSections; ++n) {
+    if (at_x < at_y) {
+      high = y;
+      y = x;
+      at_y = at_x;
+      at_x = look(x = high - ratio * (high - low));
+    } else {
+      low = x;
+      x = y;
+      at_x = at_y;
+      at_y = look(y = low + ratio * (high - low));
+    }
   }
 }
 
 /// By looks along the step, and where parabolas through them dip in between.
-Miss missed(std::size_t k, double h, const std::vector<Vec3>& velocity, const GapAlong& gap) {
+Miss missed(std::size_t k, double h, const std::vector<Vec3>& velocity, double tolerance,
+            const GapAlong& gap) {
   Miss miss;
   std::array<double, kLooks + 1> seen;
   const auto look = [&](double at) {
@@ -129,12 +147,14 @@ Miss missed(std::size_t k, double h, const std::vector<Vec3>& velocity, const Ga
   for (int i = 0; i <= kLooks; ++i) seen[i] = i == 0 ? gap(k, 0.0, velocity) : look(i);
   for (int i = 1; i < kLooks; ++i)
     if (const double at = lowest(seen[i - 1], seen[i], seen[i + 1]); at != 0.0) look(i + at);
-  for (int i = 0; i < kLooks; ++i) {
-    if (!(seen[i] > 0.0 && seen[i + 1] > 0.0)) continue;
-    // before the first look there is none to take a slope from: a look a short way on gives it
-    const double slope = i > 0 ? seen[i] - seen[i - 1] : (look(kSoon) - seen[0]) / kSoon;
-    if (seen[i] + slope < 0.0) look_for_end(i, seen[i], slope, look);
-  }
+  // What bends by more between looks than it is high, and by more than counts, may have a corner there that goes below.
+  const auto bend = [&](int i) {
+    return i > 0 && i < kLooks ? std::abs(seen[i - 1] - 2.0 * seen[i] + seen[i + 1]) : 0.0;
+  };
+  for (int i = 0; i < kLooks; ++i)
+    if (const double most = std::max(bend(i), bend(i + 1));
+        most > kMissCounts * tolerance && std::min(seen[i], seen[i + 1]) < most)
+      look_for_corner(i, look);
   return miss;
 }
 
@@ -213,7 +233,7 @@ StepOutcome without_loads(IslandStep& step, double h, double tolerance, const Ga
     velocity[i] += h * step.force[i].cwiseQuotient(step.mass[i]);
   // all contacts are asked, those that wait for their turn, too
   for (std::size_t k = 0; k < step.contacts.size(); ++k)
-    if (missed(k, h, velocity, gap).most > 0.1 * tolerance) return outcome;
+    if (missed(k, h, velocity, tolerance, gap).most > kMissCounts * tolerance) return outcome;
   step.velocity = std::move(velocity);
   for (IslandContact& c : step.contacts) c.normal_force = c.tangential_force = 0.0;
   outcome.solved = true;
@@ -240,7 +260,7 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
     if (!(result.residual <= kResidual)) return without_loads(step, h, tolerance, gap, outcome);
     // those that are missed take part from now on: each comes once
     const auto met = std::stable_partition(waiting.begin(), waiting.end(), [&](std::size_t k) {
-      return !(missed(k, h, result.velocity, gap).most > 0.1 * tolerance);
+      return !(missed(k, h, result.velocity, tolerance, gap).most > kMissCounts * tolerance);
     });
     // solved again with them before any lift is asked for: without them the motion is another
     if (met != waiting.end()) {
@@ -251,11 +271,11 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
     double worst = 0.0;
     std::vector<double> more;  // lifts that one more solve would need
     for (const Part& part : parts) {
-      const Miss miss = missed(part.contact, h, result.velocity, gap);
+      const Miss miss = missed(part.contact, h, result.velocity, tolerance, gap);
       worst = std::max(worst, miss.most);
       // From a tenth of the tolerance on, though only a miss beyond the tolerance asks for that solve, which then
       // makes up for all of them.
-      more.push_back(miss.most > 0.1 * tolerance ? kAimHigher * miss.lift : 0.0);
+      more.push_back(miss.most > kMissCounts * tolerance ? kAimHigher * miss.lift : 0.0);
     }
     ++again;
     if (worst > tolerance) {

@@ -36,6 +36,7 @@ TEST(AlignedWorlds, ThatOnceFailedAreSound) {
       604314,                          // a search that stopped, and an order that draws
       601755, 301235, 602346,          // without forces, parting far slower than an island steps
       201361, 301146, 301259,          // sliding off an end within an island's step
+      502740, 300025, 700509, 501101,  // a gap that dips between two looks along a step
       500868, 803485,                  // pushed towards a wire
       201589,                          // beside the end of a wire by a rounding
       301343,                          // a corner in another, flush on one side
