@@ -524,10 +524,16 @@ class PairSearch {
       if (beyond_by > rounding) break;
     }
     // `high` is where the gap is surely gone. If no probe found such a place, the bottom of the dip decides.
-    // a dip of less than a rounding is none, whoever looked where; what falls on is looked at again from nearer
+    // A dip of less than a rounding is none, whoever looked where; what falls on is looked at again from nearer. But
+    // behind a sharp tip there may be no more room than that: what comes upon it meets it.
     if (beyond_by <= rounding) {
+      const bool tip = site.radius + half.sample(f.sample).radius == 0.0 &&
+                       nearest_on(site, path.q).foot != Foot::interior;
       const double deepest = deepest_after(half, f, later, last);
-      high = deepest > low && gap(deepest) < -rounding ? deepest : low;
+      if (!tip)
+        high = deepest > low && gap(deepest) < -rounding ? deepest : low;
+      else if (deepest > low)
+        high = gap(deepest) <= 0.0 ? deepest : low;
     }
     if (high <= low) return false;  // passes by
     const double t = last_clear_time(gap, low, high);
@@ -600,14 +606,21 @@ class PairSearch {
     if (!corners_cross(half, f, at_a, then.rate, there)) return false;
     if (lies_flush(half, f, at_a, there)) return false;  // it meets a face, not a tip
     const double rounding = there.gap_rounding(half, f.sample, then.q + tip);
-    if (!(nearest <= window_end_ && then.q.norm() <= 4.0 * rounding)) return false;
+    // beside each other: along the way they may be as far apart as one goes within a tick of the clock
+    const double speed = then.rate.norm(), beside = std::abs(cross(then.rate, then.q)) / speed;
+    if (!(nearest <= window_end_ && beside <= 4.0 * rounding)) return false;
     // The gap at which a sharp sample meets a wire (nominal_level()).
-    const double before = std::max(0.5 * limits_.touch, 8.0 * rounding), speed = then.rate.norm();
-    const auto clear = [&](double t) { return to_tip(t).q.norm() - before; };
-    // At twice the distance the gap is clear, unless the pair began nearer than that: then they meet now.
-    const double low = std::max(nearest - 2.0 * before / speed, view_.start());
-    if (!(low < nearest && clear(low) > 0.0)) return remember(half, f, t_);
-    return remember(half, f, last_clear_time(clear, low, nearest), 2.0 * rounding / speed);
+    const double before = std::max(0.5 * limits_.touch, 8.0 * rounding);
+    const auto clear = [&](double t) {
+      const SamplePath there_then = to_tip(t);
+      return -there_then.q.dot(there_then.rate) / there_then.rate.norm() - before;
+    };
+    const double ticks = 4.0 * ulp(nearest), last = std::min(a_.motion->end(), b_.motion->end());
+    const double low = std::max(nearest - std::max(2.0 * before / speed, ticks), view_.start()),
+                 high = std::min(nearest + ticks, last);
+    if (!(low < high && clear(low) > 0.0)) return remember(half, f, t_);
+    if (clear(high) > 0.0) return false;  // the motion ends before
+    return remember(half, f, last_clear_time(clear, low, high), 2.0 * rounding / speed);
   }
 
   /// The sample's corner in T's frame.
