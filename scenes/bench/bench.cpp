@@ -28,6 +28,7 @@ constexpr const char* kRest = "rest";
 
 /// Those asked for, in the list's order; all if none is. @throws BadInput on unknown names, one line each.
 std::vector<Problem> chosen(std::vector<Problem> all, const std::vector<std::string>& names) {
+  // The two sweeps are not among them: they run only by name.
   if (names.empty()) return all;
   std::string known, faults;
   for (const Problem& p : all) known += (known.empty() ? "" : ", ") + p.name;
@@ -39,11 +40,13 @@ std::vector<Problem> chosen(std::vector<Problem> all, const std::vector<std::str
       faults +=
           fmt::format("{}bench: '{}' is not a problem; allowed: {}", faults.empty() ? "" : "\n", name, known);
   if (!faults.empty()) throw BadInput(faults);
+  // In the list's order, each once, however they were named.
   std::erase_if(
       all, [&](const Problem& p) { return std::find(names.begin(), names.end(), p.name) == names.end(); });
   return all;
 }
 
+/// The folder given, or runs/bench-<n>, made. @throws IoError.
 fs::path make_folder(const std::string& given) {
   const fs::path folder = given.empty() ? default_run_folder("bench", false) : fs::path(given);
   std::error_code error;
@@ -65,6 +68,7 @@ int bench_command(const BenchArguments& arguments) {
                kClassic);
     return kDone;
   }
+  // Made when names are known to be right: a misspelt one leaves no empty folder.
   const fs::path folder = make_folder(arguments.out);
   const std::vector<std::string>& names = arguments.names;
   const auto asked = [&](const char* name) {
@@ -81,6 +85,7 @@ int bench_command(const BenchArguments& arguments) {
     for (const bench::Setting& setting : bench::settings(problem)) {
       rows.push_back(bench::measure(problem, setting, arguments.repeats));
       bench::print(rows.back());
+      // A bad row is marked where it stands; those after it are measured all the same.
       good = good && bench::is_good(rows.back());
     }
     fmt::print("\n");

@@ -1,3 +1,5 @@
+// A sweep over what the classic detector's answer depends on (spacing, resolution, step, primitives) and
+// over what it must not depend on (read-back). docs/classic.md tells what came out.
 #include "brink/scenes/bench/classic.h"
 
 #include <fmt/format.h>
@@ -26,6 +28,8 @@ struct ClassicRow {
   Row row;
 };
 
+// Wide steps, so that few settings show how each of them matters: spacings by a factor of 4, resolutions by
+// 3, steps by 5.
 constexpr double kSpacings[] = {0.25, 0.0625, 0.015625};
 constexpr int kResolutions[] = {16, 48, 144};
 constexpr double kSteps[] = {0.01, 0.002};
@@ -49,6 +53,7 @@ std::vector<Problem> classic_problems() {
   return all;
 }
 
+/// The same problem with particles along every body's boundary, `spacing` times its own diameter apart.
 Problem sampled(Problem problem, double spacing) {
   for (Body& body : problem.world.bodies) {
     body.sampling.kind = Sampling::Kind::boundary;
@@ -60,8 +65,10 @@ Problem sampled(Problem problem, double spacing) {
 /// Collisions after which a run has gone astray: a body caught in a wall rattles there for ever.
 std::uint64_t most_collisions(const Problem& problem) { return 20 + 5 * problem.hits.size(); }
 
+/// True if the run did not reach its end, as where it was stopped at most_collisions().
 bool astray(const Row& row) { return row.summary.termination != Termination::reached_end; }
 
+/// One run of the classic detector, not repeated: its settings are many.
 ClassicRow measure_at(const Problem& problem, const Classic& at, const std::string& series) {
   Setting setting{
       series, fmt::format("1/{:g} {} px {:g} s", 1.0 / at.spacing, at.resolution, at.step), true, {}};
@@ -78,6 +85,7 @@ ClassicRow measure_at(const Problem& problem, const Classic& at, const std::stri
   return row;
 }
 
+/// The exact detectors under the same policy, for the foot of every panel.
 std::vector<ClassicRow> exact_rows(const Problem& problem) {
   std::vector<ClassicRow> rows;
   for (const char* detector : {"field", "pass"}) {
@@ -111,6 +119,7 @@ bool shown(const ClassicRow& r) {
          (r.at.primitives == "exact" && r.at.readback == "window");
 }
 
+/// One line on the terminal, seen as it comes.
 void print(const ClassicRow& r) {
   const std::string words = r.at.spacing == 0.0
                                 ? r.row.setting.series
@@ -121,6 +130,7 @@ void print(const ClassicRow& r) {
   std::fflush(stdout);
 }
 
+/// All rows, also those that are not shown.
 void write_csv(const std::filesystem::path& file, const std::vector<ClassicRow>& rows) {
   Csv csv(file,
           "problem,detector,policy,spacing,resolution,step,primitives,readback,error,wall_seconds,expected,"
@@ -140,6 +150,8 @@ void write_csv(const std::filesystem::path& file, const std::vector<ClassicRow>&
 std::vector<Row> plotted(const std::vector<ClassicRow>& rows) {
   std::vector<Row> out;
   for (const ClassicRow& r : rows) {
+    // The other ways of reading back have the same errors: their points would lie over each other but for
+    // time.
     if (r.at.spacing > 0.0 && r.at.readback != "window") continue;
     out.push_back(r.row);
     if (r.at.primitives == "mesh") out.back().setting.series += ", mesh";
@@ -172,6 +184,7 @@ std::string missed_text(const Problem& problem, const std::vector<ClassicRow>& r
 
 }  // namespace
 
+// Some minutes of one core, nearly all of it in drawing pictures (docs/classic.md).
 bool run_classic(const std::filesystem::path& folder) {
   std::vector<ClassicRow> rows;
   std::vector<Problem> all = classic_problems();
@@ -182,6 +195,7 @@ bool run_classic(const std::filesystem::path& folder) {
       if (shown(r)) print(r);
       rows.push_back(std::move(r));
     });
+    // Only now are all runs known; the note stands over the panel.
     problem.error_of += missed_text(problem, rows);
   }
   write_csv(folder / "classic.csv", rows);

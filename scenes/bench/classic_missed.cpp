@@ -14,10 +14,14 @@
 namespace brink::bench {
 namespace {
 
+// Shares come in steps of a sixtieth, 1.7 %.
 constexpr int kBoxes = 60;
+// So deep may a box come before it counts as missed: particles off the tip meet its flanks late, but they
+// do.
 constexpr double kReach = 0.2;  // [m] beyond first contact, in boxes of side 1
 constexpr std::uint64_t kSeedOfMissed = 1;
 
+/// Of half of an angle given in degrees.
 double half_tangent(double degrees) { return std::tan(0.5 * degrees * std::numbers::pi / 180.0); }
 
 /// The share of boxes of side 1 that move down onto the tip of an upright wedge, each off its middle by an
@@ -44,6 +48,7 @@ double missed_share(double spacing, double degrees, const char* detector) {
   return static_cast<double>(missed) / kBoxes;
 }
 
+/// [m], of boxes of side 1.
 constexpr double kFineSpacings[] = {0.5, 0.25, 0.125, 0.0625, 0.03125};
 
 /// Shares missed at one wedge, per cent.
@@ -53,12 +58,15 @@ struct Shares {
 };
 
 /// Measures, prints and writes.
+/// One wedge over all spacings and detectors: a line of the table, rows of the CSV file.
 Shares measure_wedge(double degrees, Csv& csv) {
   Shares shares;
   fmt::print("  wedge {:>3} deg:", degrees);
   for (const double spacing : kFineSpacings) {
     const double missed = missed_share(spacing, degrees, "depth");
     // a particle at distance u from the tip meets the flank u / tan(half angle) beyond the first contact
+    // On average over the offset, which is uniform: missed is who lies farther than kReach * tan(half
+    // angle) from the nearest particle, and particles are `spacing` apart.
     const double expected = std::max(0.0, 1.0 - 2.0 * kReach * half_tangent(degrees) / spacing);
     fmt::print("  1/{:<2g} m {:>3.0f} %", 1.0 / spacing, 100.0 * missed);
     csv.row("depth,{:g},{:g},{:.4f},{:.4f}", spacing, degrees, missed, expected);
@@ -85,6 +93,7 @@ class MissedChart {
     for (const double spacing : kFineSpacings)
       chart_.panels[0].x.names.push_back(fmt::format("1/{:g} m", std::round(1.0 / spacing)));
   }
+  /// Shares [per cent], one a spacing.
   void add(const std::string& series, const std::vector<double>& shares) {
     ChartLine line{chart_.series.size(), {}, true};
     for (std::size_t k = 0; k < shares.size(); ++k)

@@ -15,13 +15,16 @@
 namespace brink::bench {
 namespace {
 
+// The median of three: one slow round does not count.
 constexpr int kRounds = 3;
+// 25 bodies: enough that pruning by bounding circles has something to leave out.
 constexpr int kSide = 5;                        // bodies along each side of the frame
 constexpr double kApart = 1.0;                  // their cells [m]
 constexpr double kUntil = 0.03, kStep = 0.002;  // [s]
 constexpr double kSpacing = 0.05;               // [m]
 constexpr double kHalf = 0.5 * kSide * kApart;  // of the frame [m]
 
+/// Corners on two circles in turn, counter-clockwise [m].
 std::vector<Vec2> star(int points, double outer, double inner) {
   std::vector<Vec2> corners;
   for (int k = 0; k < 2 * points; ++k) {
@@ -41,6 +44,7 @@ World crowd() {
   for (int k = 0; k < kSide * kSide; ++k) {
     const Vec2 cell(k % kSide + 0.5, k / kSide + 0.5);
     const Vec2 shift(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1));
+    // Somewhere near the middle of its cell, turned anyhow; no two bodies meet the same pixels.
     const Pose pose{kApart * cell - Vec2(kHalf, kHalf) + shift, random.uniform(0.0, 6.0)};
     const Twist twist{{random.uniform(-4, 4), random.uniform(-4, 4)}, random.uniform(-4.0, 4.0)};
     // The star's radius and the shift make 0.5 m at most, half a cell: nothing overlaps at the start.
@@ -55,6 +59,7 @@ World crowd() {
   return world;
 }
 
+/// One line of the table: what is switched on against plain(), and what came of it in each round.
 struct Saving {
   const char* name;
   std::function<void(SolverOptions&)> set;
@@ -68,6 +73,7 @@ struct Saving {
   }
 };
 
+/// The three options that change no bit of the answer (docs/classic.md), as they are by default.
 void all_together(SolverOptions& o) {
   o.field.readback = "window";
   o.broad_phase = o.field.truncated = true;
@@ -110,6 +116,7 @@ SolverOptions plain() {
   return none;
 }
 
+/// One run from the beginning. The clock is the simulator's own, without planning.
 void time_once(const World& world, Saving& saving) {
   SolverOptions options = plain();
   saving.set(options);
@@ -135,6 +142,7 @@ void measure_options(const std::filesystem::path& folder) {
   Csv csv(folder / "classic_options.csv",
           "option,wall_seconds,of_none,collisions,passes,pixels_drawn,pixels_read,state_hash");
   for (const Saving& saving : all) {
+    // Equal hashes show what changes no bit; those with two layers or meshes may differ.
     const double seconds = saving.median(), share = seconds / all.front().median();
     const RunSummary& s = saving.summary;
     fmt::print("  {:<52} {:>8.1f} ms  {:>6.3f} of none  {:>3} collisions  {:016x}\n", saving.name,

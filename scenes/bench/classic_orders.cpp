@@ -14,12 +14,14 @@
 namespace brink::bench {
 namespace {
 
+// Falls differ in where the pixels and the step's grid happen to lie: a single one would show that alone.
 constexpr int kFalls = 16;
 constexpr double kBeyondFirst = 0.62;  // [s]: beyond the latest first contact
 constexpr double kFine = 1.0 / 256;    // side of pixels where something else is varied [m]
 constexpr std::uint64_t kSeedOfOrders = 3;
 
 /// Least-squares slope of log error against log of the varied quantity.
+/// @pre more than one x, all errors > 0.
 double fitted_order(const std::vector<double>& x, const std::vector<double>& error) {
   double sx = 0, sy = 0, sxx = 0, sxy = 0;
   const auto n = static_cast<double>(x.size());
@@ -33,6 +35,7 @@ double fitted_order(const std::vector<double>& x, const std::vector<double>& err
 /// Root mean square error [s] of the first contact's time of discs of radius 1/2 that fall onto a block from
 /// heights drawn at random; one that never came is late by what was left of the run.
 double fall_error(SolverOptions options, const Sampling& sampling) {
+  // The first contact ends the run: what comes after it is not judged.
   options.max_collisions = 1;
   // The same falls for every setting: the errors differ by the setting alone.
   Random random(kSeedOfOrders);
@@ -52,6 +55,7 @@ double fall_error(SolverOptions options, const Sampling& sampling) {
   return std::sqrt(sum / kFalls);
 }
 
+/// fall_error() of the classic detector with a pixel [m], a step [s] and an integrator.
 double error_with(const char* policy, double step, double pixel, const char* integrator = "auto",
                   const Sampling& sampling = {}) {
   SolverOptions options = backing_up("depth", step);
@@ -62,6 +66,7 @@ double error_with(const char* policy, double step, double pixel, const char* int
   return fall_error(options, sampling);
 }
 
+/// The same over the spacing of particles [m], at the finest pixel, backing up.
 double error_at_spacing(double spacing) {
   Sampling boundary;
   boundary.kind = Sampling::Kind::boundary;
@@ -69,6 +74,7 @@ double error_at_spacing(double spacing) {
   return error_with("global_backup", 0.01, kFine, "auto", boundary);
 }
 
+/// Measures, prints and writes one row: an error for each x, and the order fitted to them.
 void add_order(Csv& csv, const char* what, const char* unit, const std::vector<double>& x,
                const std::function<double(double)>& error_at) {
   std::vector<double> errors;
@@ -96,6 +102,8 @@ void measure_orders(const std::filesystem::path& folder) {
   const std::vector<double> steps{0.04, 0.02, 0.01, 0.005};
   add_order(csv, "step 40 .. 5 ms, fixed_step", "s", steps,
             [](double step) { return error_with("fixed_step", step, kFine); });
+  // Backing up finds the time of the contact within a step to step / 2^16: what is left of the step's error
+  // is the integrator's.
   for (const char* integrator : {"euler", "semi_implicit_euler", "rk4", "erk"})
     add_order(csv, fmt::format("step 40 .. 5 ms, backing up, {}", integrator).c_str(), "s", steps,
               [&](double step) { return error_with("global_backup", step, kFine, integrator); });

@@ -1,3 +1,5 @@
+// Each problem is in one mode of contact from its beginning on, or ends in one: rolling, or sliding and
+// then rest. With restitution 0 and a start on the ground nothing bounces.
 #include "brink/scenes/bench/lasting_problems.h"
 
 #include <fmt/format.h>
@@ -15,6 +17,7 @@ namespace brink::bench {
 namespace {
 
 /// One body on one site, without rebound.
+/// `pose` is the ground's; the body has mass 1 kg and begins at `start`.
 World world_of(double friction, const Shape& ground, const Pose& pose, const Shape& shape,
                const BodyState& start) {
   World world;
@@ -34,6 +37,8 @@ World world_of(double friction, const Shape& ground, const Pose& pose, const Sha
 }
 
 /// A disc that rolls in a bowl is a pendulum: (1 + 1/2)(R - r) phi'' = -g sin phi.
+// Rolling r |omega| = (R - r) |phi'|, so the kinetic energy is (1 + 1/2) m (R - r)^2 phi'^2 / 2 with the
+// disc's inertia m r^2 / 2. Friction 1 keeps it from slipping: it asks for tan(60 deg) / 3 = 0.58 at most.
 Problem rolling_in_a_bowl() {
   const double R = 2.0, r = 0.25, from = std::numbers::pi / 3, until = 5.0;
   const double k = std::sin(from / 2), rate = std::sqrt(2.0 / 3 * kGravity / (R - r));
@@ -44,17 +49,20 @@ Problem rolling_in_a_bowl() {
   p.name = "rolling_bowl";
   p.title = "disc rolls in a round bowl from 60 degrees, 5 s";
   p.error_of = "angle at the end [rad]";
+  // Put on the wall at rest: the centre runs on a circle of radius R - r, phi from straight below.
   p.world = world_of(1.0, make_disc_container(R), {}, make_disc(r),
                      {{(R - r) * Vec2(std::sin(from), -std::cos(from)), 0.0}, {Vec2::Zero(), 0.0}});
   p.until = until;
   p.error = [known](const Problem&, const Outcome& o) {
     const Vec2& at = o.states[0].pose.position;
+    // From straight below, positive to the right.
     return std::abs(std::atan2(at.x(), -at.y()) - known);
   };
   return p;
 }
 
 /// v^2 / (2 mu g), and stays there.
+/// Friction mu m g takes the speed in v / (mu g) = 0.68 s, well before the end.
 Problem sliding_to_rest() {
   const double mu = 0.3, v = 2.0;
   Problem p;
@@ -73,12 +81,15 @@ Problem sliding_to_rest() {
 
 /// A disc put onto a slope spins up, slipping, where tan of the slope is more than 3 mu; else it rolls at once.
 Problem rolling_down() {
+  // A disc needs a friction of tan(slope) / 3 = 0.18 to roll.
   const double slope = 0.5, r = 0.25, until = 1.5;  // of tangent 0.546 < 3 * 0.3
   const Vec2 up(-std::sin(slope), std::cos(slope));
   Problem p;
   p.name = "rolling_down";
   p.title = "disc rolls down a slope of 0.5 rad without slip, 1.5 s";
   p.error_of = "place at the end [m]";
+  // The ground's upper side passes through the origin; the disc's centre is a radius above it, along the
+  // normal.
   p.world = world_of(0.3, make_box(60.0, 1.0), {-0.5 * up, slope}, make_disc(r),
                      {{r * up, 0.0}, {Vec2::Zero(), 0.0}});
   p.until = until;
@@ -105,6 +116,7 @@ std::vector<Setting> lasting_settings() {
     s.options.absolute_tolerance = 0.01 * s.options.tolerance;
     all.push_back(s);
   }
+  // The default: islands move in steps of first order, whatever the tolerance.
   all.push_back({"steps", "first order", false, {}});
   return all;
 }

@@ -1,3 +1,5 @@
+// A panel a problem, a line a series. Rows are taken in their order, so points of a series are joined by
+// tolerance or step and not by time.
 #include "brink/scenes/bench/plot.h"
 
 #include <fmt/format.h>
@@ -8,6 +10,7 @@
 namespace brink::bench {
 namespace {
 
+/// A whole decade of seconds in the unit that shows it with at most three digits: "10 ms".
 std::string seconds_text(double seconds) {
   static const char* const units[] = {"ns", "\u00b5s", "ms", "s"};
   const int exponent = static_cast<int>(std::lround(std::log10(seconds)));
@@ -17,19 +20,23 @@ std::string seconds_text(double seconds) {
 }
 
 // A tick's value is a power taken of its exponent, and may be a rounding above the least error.
+/// A decade of errors; the least one stands for "none".
 std::string error_text(double error) {
   return error <= 1.0001 * kLeastError ? "none"
                                        : power_text(static_cast<int>(std::lround(std::log10(error))));
 }
 
+/// Time and error kept above 0, for both axes are logarithmic.
 ChartPoint point_of(const Row& row) {
   using Mark = ChartPoint::Mark;
   ChartPoint point{std::max(row.wall_seconds, 1e-9), std::max(row.error, kLeastError)};
   if (row.missed > 0) point.mark = Mark::ring;
+  // Astray says more than missed.
   if (std::isinf(row.error)) point.mark = Mark::cross;
   return point;
 }
 
+/// The chart in the making: panels, series and lines come as rows ask for them.
 class PlotMaker {
  public:
   PlotMaker(const std::string& title, const std::vector<Problem>& problems, const std::vector<Look>& looks)
@@ -54,6 +61,7 @@ class PlotMaker {
   const Chart& chart() const { return chart_; }
 
  private:
+  /// Its index, made if need be: one colour and mark for a series in all panels.
   std::size_t series_named(const std::string& name) {
     const auto found = std::find_if(chart_.series.begin(), chart_.series.end(),
                                     [&](const ChartSeries& s) { return s.name == name; });
@@ -62,12 +70,15 @@ class PlotMaker {
     return k;
   }
 
+  /// The line of a series in the panel that is being filled, made if need be.
   ChartLine& line_of(const std::string& name) {
     std::vector<ChartLine>& lines = chart_.panels.back().lines;
     const std::size_t series = series_named(name);
     const auto found =
         std::find_if(lines.begin(), lines.end(), [&](const ChartLine& l) { return l.series == series; });
     if (found != lines.end()) return *found;
+    // Series with looks are the first ones (constructor); those of before the first without one know how
+    // they are joined.
     lines.push_back({series, {}, series >= looks_.size() || looks_[series].joined});
     return lines.back();
   }

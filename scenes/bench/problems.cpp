@@ -1,3 +1,12 @@
+/// Every answer is computed apart from what is measured: closed forms and references (reference.h, boxes.h)
+/// in long double, with the same doubles for gravity, restitution and places that the world has. So what is
+/// left as error is Brink's, down to roundings of double.
+///
+///     bouncing_ball, dropped_disc     falls onto a floor: the series of impacts in closed form
+///     rectangle                       a disc between walls: reflections unfolded into straight flights
+///     cradle                          equal discs in a row: each collision hands the velocity on
+///     shaken_spring, ball_in_air      no motion in closed form for Brink, one for the reference
+///     two_boxes                       collision with rotation: the meeting by bisection in long double
 #include "brink/scenes/bench/problems.h"
 
 #include <algorithm>
@@ -12,6 +21,7 @@
 namespace brink::bench {
 namespace {
 
+/// A body of mass 1 kg with its centre of mass at `position` [m].
 void add_body(World& world, const Shape& shape, const Vec2& position, const Vec2& velocity,
               double angle = 0.0, double omega = 0.0) {
   Body body = make_body(shape, Mass{1.0});
@@ -20,6 +30,7 @@ void add_body(World& world, const Shape& shape, const Vec2& position, const Vec2
   world.bodies.push_back(std::move(body));
 }
 
+/// A wire from one place to another [m], felt from both sides.
 void add_wall(World& world, const Vec2& from, const Vec2& to) {
   FixedSite site;
   site.name = "wall" + std::to_string(world.sites.size());
@@ -28,6 +39,8 @@ void add_wall(World& world, const Vec2& from, const Vec2& to) {
   world.sites.push_back(std::move(site));
 }
 
+/// A disc of that radius with its lowest point `height` above the floor, at rest [m]. The floor is 20 m
+/// wide.
 World ball_over_floor(double height, double radius, double restitution) {
   World world;
   world.gravity = {0.0, -kGravity};
@@ -38,6 +51,7 @@ World ball_over_floor(double height, double radius, double restitution) {
 }
 
 /// Impacts taken in order. One that never came is late by what was left of the run, at least.
+// Impacts beyond those that are known do not count here.
 double worst_impact_time(const Problem& problem, const Outcome& outcome) {
   double worst = 0.0;
   for (std::size_t k = 0; k < problem.hits.size(); ++k) {
@@ -52,6 +66,7 @@ std::vector<double> bouncing_impacts(double height, double restitution, double u
   const long double t1 = std::sqrt(2.0L * height / static_cast<long double>(kGravity));
   std::vector<double> times;
   long double power = restitution;
+  // From impact n to the next a flight of 2 e^n t1: it leaves with e^n of the first impact's speed g t1.
   for (long double t = t1; t < until; t += 2.0L * t1 * power, power *= restitution)
     times.push_back(static_cast<double>(t));
   return times;
@@ -64,11 +79,15 @@ Problem impacts(std::string name, std::string title, World world, double until, 
           std::move(hits), driven,           worst_impact_time};
 }
 
+// 44 impacts: with e = 0.9 they would pile up at t1 (1 + e) / (1 - e) = 8.58 s, and 8.5 s is just before
+// that.
 Problem bouncing_ball() {
   return impacts("bouncing_ball", "ball dropped from 1 m, restitution 0.9: 44 impacts in 8.5 s",
                  ball_over_floor(1.0, 0.5, 0.9), 8.5, bouncing_impacts(1.0, 0.9, 8.5), false);
 }
 
+/// Judged by its height at 5 s, after two impacts, in which an error of the impact's time shows as one of
+/// place.
 Problem dropped_disc() {
   const auto height_error = [](const Problem& p, const Outcome& o) {
     // Elastic: after an impact it leaves with the speed sqrt(2 g h) of a fall through h = 9.5 m.
@@ -86,6 +105,7 @@ Problem dropped_disc() {
           height_error};
 }
 
+/// In long double, as the place known is [m].
 double distance(const Vec2& at, long double x, long double y) {
   return static_cast<double>(std::hypot(at.x() - x, at.y() - y));
 }
@@ -94,11 +114,13 @@ double distance(const Vec2& at, long double x, long double y) {
 struct Unfolded {
   // Reflections unfolded: a straight flight, folded back every width, from left to right and back.
   long double start, speed, half;
+  // @pre start + half + speed t >= 0, as it is of a speed > 0: fmod() takes the sign of its first argument.
   long double at(long double t) const {
     const long double width = 2.0L * half, u = std::fmod(start + half + speed * t, 2.0L * width);
     return (u < width ? u : 2.0L * width - u) - half;
   }
   void add_hits(double until, std::vector<double>& times) const {
+    // The first wall is the right one, as the speed is > 0; each way across takes 2 half / speed.
     for (long double t = (half - start) / speed; t < until; t += 2.0L * half / speed)
       times.push_back(static_cast<double>(t));
   }
@@ -106,6 +128,7 @@ struct Unfolded {
 
 Problem rectangle() {
   const double radius = 0.25, until = 50.0;
+  // The frame reaches 2 m and 1.5 m to either side of the origin.
   const Vec2 half(2.0, 1.5), p(0.3, 0.2), v(1.0, 0.83);
   // Without friction x and y do not depend on each other: two unfolded flights.
   Problem problem;
@@ -148,6 +171,7 @@ Problem cradle() {
     double worst = 0.0;
     for (int k = 0; k < discs; ++k) {
       const bool last = k == discs - 1;
+      // Each disc goes on to where it touches the next one: a gap further, the first 1/4 m more.
       const double stop = place(k) + (k == 0 ? 0.25 + gap : gap);
       const double end = last ? place(k) + speed * (p.until - p.hits.back()) : stop;
       worst = std::max(worst, (o.states[k].pose.position - Vec2(end, 0.0)).norm());
@@ -162,6 +186,8 @@ World world_of(const auto& ball, double radius) {
   return ball_over_floor(static_cast<double>(ball.height), radius, static_cast<double>(ball.restitution));
 }
 
+/// Damper, spring and a force in time at once: no motion that Brink has in closed form, so its integrators
+/// work.
 Problem shaken_spring() {
   const SpringBall b;
   const double radius = 0.25;
@@ -170,6 +196,7 @@ Problem shaken_spring() {
   spring.at_b = {0.0, 3.0};
   spring.stiffness = static_cast<double>(b.stiffness);
   spring.damping = static_cast<double>(b.damping);
+  // Rest in the reference is a gap of the lowest point; the spring holds the centre, a radius higher.
   spring.rest_length = 3.0 - radius - static_cast<double>(b.rest);
   FormulaForce shaking;
   shaking.bodies = {0};
@@ -180,6 +207,7 @@ Problem shaken_spring() {
                  impact_times(b, 5.0), true);
 }
 
+/// Quadratic drag, in which up and down are different motions.
 Problem ball_in_air() {
   const BallInAir b;
   World world = world_of(b, 0.25);
@@ -191,6 +219,7 @@ Problem ball_in_air() {
                  impact_times(b, 6.0), true);
 }
 
+/// Different boxes off each other's middle, both turning, so that every term of the impulse takes part.
 Problem two_boxes() {
   World world;
   add_body(world, make_box(1.0, 0.5), {-2.0, 0.125}, {1.5, 0.0}, 0.3, 1.5);

@@ -16,6 +16,8 @@ namespace brink::bench {
 
 namespace {
 
+/// Error against run time of lasting_problems() under lasting_settings(). False if a run ended early or
+/// repeats differ.
 bool problems_with_answers(const std::filesystem::path& folder) {
   const std::vector<Problem> problems = lasting_problems();
   std::vector<Row> rows;
@@ -23,6 +25,7 @@ bool problems_with_answers(const std::filesystem::path& folder) {
   for (const Problem& problem : problems) {
     print_heading(problem);
     for (const Setting& setting : lasting_settings()) {
+      // Five repeats at most: the times of the shortest runs scatter.
       rows.push_back(measure(problem, setting, 5));
       print(rows.back());
       good = good && is_good(rows.back());
@@ -46,6 +49,7 @@ constexpr Settle kEngines[] = {
 #endif
 };
 
+/// The table of heaps and engines. False if Brink ended early; of the peers nothing is asked.
 bool heaps_that_settle(const std::filesystem::path& folder) {
   fmt::print("{}  heaps poured into a bin, friction 0.5, restitution 0, 8 s\n",
              paint(stdout, Paint::heading, "settling"));
@@ -60,6 +64,7 @@ bool heaps_that_settle(const std::filesystem::path& folder) {
                  std::isfinite(s.at_rest) ? fmt::format("{:.2f}", s.at_rest) : "not by 8", s.cpu_seconds,
                  s.overlap);
       std::fflush(stdout);
+      // A heap that did not come to rest has "inf" there.
       csv.row("{},{},{:.17g},{:.6g},{:.6g}", heap.name, s.engine, s.at_rest, s.cpu_seconds, s.overlap);
       if (!s.why.empty()) fmt::print("  {}\n", s.why);
       good = good && s.why.empty();

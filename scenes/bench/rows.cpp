@@ -13,6 +13,7 @@ namespace brink::bench {
 
 namespace {
 
+/// True if the run came to its end.
 bool reached(const Row& row) { return row.summary.termination == Termination::reached_end; }
 
 }  // namespace

@@ -1,3 +1,11 @@
+/// What is compared with what:
+///
+///     exact policies              motions as they are, at the default tolerance
+///     erk, adams, bdf             the default policy; tolerances from 1e-4 (driven) or 1e-6 to 1e-12
+///     rk4                         where forces drive the body: steps
+///     approximate policies        steps; these may miss contacts
+///
+/// Errors are of single runs, which repeat bit for bit; times are medians of repeats.
 #include "brink/scenes/bench/run.h"
 
 #include <fmt/format.h>
@@ -12,8 +20,10 @@ namespace {
 
 /// Steps beyond which a setting is left out, as it would take too long.
 constexpr double kMostSteps = 1e6, kMostIntegratorSteps = 1e5;
+/// Of repeats, together [s].
 constexpr double kMostSeconds = 1.0;
 
+/// Times of collisions: what errors and missed contacts are told by.
 class Hits : public Recorder {
  public:
   void frame(double, std::span<const BodyState>) override {}
@@ -24,6 +34,8 @@ class Hits : public Recorder {
   std::vector<double> times;
 };
 
+/// One run from the beginning in a simulator of its own. Checkpoints would take time that is not the
+/// simulation's.
 Outcome run_once(const Problem& problem, const SolverOptions& options) {
   Simulator simulator(problem.world, options);
   Hits hits;
@@ -37,6 +49,8 @@ Outcome run_once(const Problem& problem, const SolverOptions& options) {
   return outcome;
 }
 
+/// An integrator over tolerances: five where it has work to do, two where motions are known in closed form
+/// anyway.
 void add_tolerances(const char* integrator, bool driven, std::vector<Setting>& all) {
   for (const int digits : driven ? std::vector{4, 6, 8, 10, 12} : std::vector{6, 12}) {
     Setting s{integrator, fmt::format("tolerance 1e-{}", digits), false, {}};
@@ -48,6 +62,7 @@ void add_tolerances(const char* integrator, bool driven, std::vector<Setting>& a
   }
 }
 
+/// Steps of 10 ms to 10 us, but those that would make too many. `choose` sets what the step is of.
 void add_steps(const Problem& problem, const char* series, bool approximate,
                const std::function<void(SolverOptions&)>& choose, std::vector<Setting>& all) {
   for (const int digits : {2, 3, 4, 5}) {
@@ -93,6 +108,7 @@ Row measure(const Problem& problem, const Setting& setting, int repeats) {
     // The simulation must not depend on what was run before in this process.
     if (k > 0 && outcome.summary.state_hash != row.summary.state_hash) row.same_hash = false;
     row.summary = outcome.summary;
+    // The same for all repeats while their bits are.
     row.error = problem.error(problem, outcome);
     row.collisions = outcome.hits.size();
     seconds.push_back(outcome.summary.wall_seconds);
@@ -101,6 +117,7 @@ Row measure(const Problem& problem, const Setting& setting, int repeats) {
   // Contacts that are more than expected are none that were missed.
   row.missed = row.expected - std::min(row.expected, row.collisions);
   row.repeats = static_cast<int>(seconds.size());
+  // The upper median: one slow run in three does not count.
   std::nth_element(seconds.begin(), seconds.begin() + row.repeats / 2, seconds.end());
   row.wall_seconds = seconds[row.repeats / 2];
   return row;

@@ -1,3 +1,5 @@
+// All engines are given the same world and are looked at in the same frames with the same measure of
+// overlap, deepest_overlap(). What is timed is processor time of their steps alone.
 #include "brink/scenes/bench/settling.h"
 
 #include <fmt/format.h>
@@ -12,6 +14,7 @@ namespace brink::bench {
 
 namespace {
 
+/// [s], the end. Who is not at rest by then has infinity as its time.
 constexpr double kSettled = 8.0;
 
 /// A bin of three walls, and bodies in a pile above it to fall; as a scene file, so that
@@ -21,11 +24,14 @@ Heap heap(std::string name, const std::string& shape, int count, double width) {
       "[world]\nduration = {}\ngravity = [0, -9.81]\nseed = 7\n[materials.default]\nrestitution = "
       "0\nfriction = 0.5\n",
       kSettled);
+  // High enough for the pile; walls are boxes, a shape that all engines have.
   const double height = 20.0, thick = 0.5;
+  // Its middle [m], width and height.
   const auto wall = [&](double x, double y, double w, double h) {
     text += fmt::format("[[sites]]\nbox = {{ width = {}, height = {} }}\nposition = [{}, {}]\n", w, h, x, y);
   };
   wall(0.0, -thick / 2, width + 2 * thick, thick);
+  // Their inner sides are `width` apart.
   for (const double side : {-1.0, 1.0}) wall(side * (width + thick) / 2, height / 2, thick, height);
   text +=
       fmt::format("[[bodies]]\n{}\ndensity = 1\nposition = [0, 0.2]\npile = {{ count = {}, width = {} }}\n",
@@ -44,6 +50,8 @@ std::vector<Heap> heaps() {
 double deepest_overlap(const World& world, const std::vector<Pose>& bodies) {
   double deepest = 0.0;
   const auto look = [&](std::size_t i, const Outline& other, const Pose& at, bool site) {
+    // outline_gap() costs samples times sites: with n bodies it is asked for the few that are near, not for
+    // n^2 / 2.
     const Outline& outline = *world.bodies[i].outline;
     const double reach = outline.bounding_radius + other.bounding_radius;
     // Far bodies by their discs alone. Sites are few, and a wall's disc would reach all of the bin.
@@ -59,10 +67,12 @@ double deepest_overlap(const World& world, const std::vector<Pose>& bodies) {
 
 Settled settle_with_brink(const Heap& heap) {
   const World& world = heap.scene.world;
+  // Planned once, before any clock: drawing of fields is no step.
   Simulator simulator(world, heap.scene.solver);
   Settled settled{"Brink"};
   // Steps of a frame each, as the peers have; Brink's own events lie between.
   for (int frame = 1; frame * kFrame < heap.scene.duration; ++frame) {
+    // Each run goes on from where the last one ended.
     RunOptions how;
     how.until = frame * kFrame;
     how.checkpoint_seconds = -1.0;

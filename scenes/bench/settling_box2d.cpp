@@ -1,3 +1,4 @@
+// The heap in Box2D. It computes in float, with lengths in metres, as its tolerances are made for.
 #include <box2d/box2d.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@ namespace brink::bench {
 
 namespace {
 
+/// Rounded to float.
 b2Vec2 vector(const Vec2& v) { return {static_cast<float>(v.x()), static_cast<float>(v.y())}; }
 
 /// Gives `body` the outline of a disc or of a convex polygon. @pre it is one of these
@@ -33,6 +35,7 @@ void add_fixture(b2Body* body, const Outline& outline, double density) {
   body->CreateFixture(&fixture);
 }
 
+/// A body or site of the heap with its outline about its centre of mass.
 b2Body* add(b2World& world, b2BodyType type, const Outline& outline, const Pose& pose) {
   b2BodyDef def;
   def.type = type;
@@ -55,11 +58,13 @@ Settled settle_with_box2d(const Heap& heap) {
   Settled settled{"Box2D 2.4.1"};
   for (int frame = 1; frame * kFrame < heap.scene.duration; ++frame) {
     const std::clock_t begin = std::clock();
+    // Iterations for velocities and for positions, as its manual recommends.
     world.Step(static_cast<float>(kFrame), 8, 3);
     settled.cpu_seconds += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     std::vector<Pose> poses;
     for (const b2Body* b : bodies) poses.push_back({{b->GetPosition().x, b->GetPosition().y}, b->GetAngle()});
     settled.overlap = std::max(settled.overlap, deepest_overlap(given, poses));
+    // The first frame in which nobody is awake counts.
     if (std::none_of(bodies.begin(), bodies.end(), [](const b2Body* b) { return b->IsAwake(); }))
       settled.at_rest = std::min(settled.at_rest, frame * kFrame);
   }

@@ -1,3 +1,4 @@
+// The heap in Chipmunk, which computes in double.
 #include <chipmunk/chipmunk.h>
 
 #include <algorithm>
@@ -22,11 +23,13 @@ struct Space {
   Space(const Space&) = delete;
   Space& operator=(const Space&) = delete;
   ~Space() {
+    // Shapes hang on bodies and both on the space: taken out and freed in this order.
     for (cpShape* s : shapes) cpSpaceRemoveShape(space, s), cpShapeFree(s);
     for (cpBody* b : bodies) cpSpaceRemoveBody(space, b), cpBodyFree(b);
     cpSpaceFree(space);
   }
 
+  /// Takes the body over, and gives it the shape of a disc or of a convex polygon. @pre it is one of these
   void add(cpBody* body, const Outline& outline, const Pose& pose) {
     cpBodySetPosition(body, vector(pose.position));
     cpBodySetAngle(body, pose.angle);

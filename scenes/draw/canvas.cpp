@@ -1,3 +1,9 @@
+/// Paths are built in pixels: places go through View::to_picture() one by one, and Cairo's own
+/// transformation stays the identity. So widths of lines, dashes and text are in pixels at any scale, and
+/// lengths in metres (radii, thickness) are multiplied by View::scale where they are used.
+///
+/// An error of Cairo sticks to the object that has it, whose later calls do nothing. So nothing is asked
+/// for in between; finish_file() looks once, at the end.
 #include "brink/scenes/draw/canvas.h"
 
 #include <cairo-pdf.h>
@@ -19,6 +25,8 @@ void set_color(cairo_t* cairo, const Color& c, double opacity = 1.0) {
   cairo_set_source_rgba(cairo, c.red, c.green, c.blue, opacity);
 }
 
+/// True of a loop that is one point: a disc, where it has a thickness. Its path has no length, and is made
+/// of a circle instead.
 bool only_point(const Outline& outline, const Loop& loop) {
   return loop.count == 1 && outline.sites[loop.first].kind == SiteKind::point;
 }
@@ -28,6 +36,8 @@ double thickness(const Outline& outline, const Loop& loop) { return outline.site
 
 }  // namespace
 
+/// Cairo's two objects and the paths of outlines. A path is appended to; who begins one says so
+/// (cairo_new_path()), since a point that was left over would be joined to it by a line.
 struct Canvas::Impl {
   View view;
   Paper paper;
@@ -55,6 +65,7 @@ struct Canvas::Impl {
     arc(cairo, center.x(), center.y(), site.arc_radius * view.scale, start, start - site.sweep);
   }
 
+  /// Appends a loop: of a point the circle of its thickness, else the core line without it.
   void trace(const Outline& outline, const Loop& loop, const Frame& frame) const {
     if (only_point(outline, loop)) {
       const Vec2 at = view.to_picture(frame.to_world(outline.sites[loop.first].a));
@@ -65,6 +76,7 @@ struct Canvas::Impl {
     }
     move_to(frame.to_world(outline.sites[loop.first].a));
     for (int k = 0; k < loop.count; ++k) trace(outline.sites[loop.first + k], frame);
+    // Closed by Cairo, or the start would have two caps and no joint.
     if (loop.closed) cairo_close_path(cairo);
   }
 
@@ -83,6 +95,8 @@ struct Canvas::Impl {
     cairo_fill(cairo);
   }
 
+  /// Every loop's core as a line as wide as its thickness on both sides [pixels], and `extra` more (or
+  /// less, < 0). Cairo takes a width below 0 for 0, and draws nothing.
   void stroke(const Outline& outline, const Frame& frame, const Color& color, double extra) const {
     set_color(cairo, color);
     for (const Loop& loop : outline.loops) {
@@ -96,6 +110,7 @@ struct Canvas::Impl {
     }
   }
 
+  /// All that belongs to the outline: its inside, if it has one, and the band of its thickness.
   void shape(const Outline& outline, const Frame& frame, const Color& color, double opacity,
              double extra) const {
     if (outline.solid || outline.is_point()) fill(outline, frame, color, opacity);
@@ -105,6 +120,8 @@ struct Canvas::Impl {
 
 namespace {
 
+/// Of pixels RGB24: 32 bits each without transparency, of which Picture has the lower 24. Sizes of SVG and
+/// PDF are in points, one for each pixel.
 cairo_surface_t* surface_on(const Paper& paper, int width, int height) {
   const std::string file = paper.file.string();
   if (paper.kind == Paper::Kind::svg) return cairo_svg_surface_create(file.c_str(), width, height);
@@ -132,9 +149,12 @@ Canvas::~Canvas() {
   cairo_surface_destroy(impl_->surface);
 }
 
+// Nothing is clipped: the image is as large as the view, which is never larger than the picture.
 void Canvas::paste(const Picture& image) {
   // Pixels are copied, so that cells have the bits that they were made with.
   if (impl_->paper.kind != Paper::Kind::pixels) return paste_as_image(image);
+  // Flushed before and marked dirty after: Cairo may hold drawing back, or keep what it has read of the
+  // pixels. Rows are copied one by one, since a surface's stride is its own choice.
   cairo_surface_flush(impl_->surface);
   unsigned char* data = cairo_image_surface_get_data(impl_->surface);
   const int stride = cairo_image_surface_get_stride(impl_->surface);
@@ -144,6 +164,7 @@ void Canvas::paste(const Picture& image) {
   cairo_surface_mark_dirty(impl_->surface);
 }
 
+// Files of curves have no pixels to be copied into: there the image is painted as a whole.
 void Canvas::paste_as_image(const Picture& image) {
   cairo_surface_t* pixels = cairo_image_surface_create(CAIRO_FORMAT_RGB24, image.width, image.height);
   unsigned char* data = cairo_image_surface_get_data(pixels);
@@ -158,6 +179,8 @@ void Canvas::paste_as_image(const Picture& image) {
 }
 
 void Canvas::finish_file() {
+  // Its one page. Only when the surface is finished has all been written, and the status says whether it
+  // was.
   cairo_show_page(impl_->cairo);
   cairo_surface_finish(impl_->surface);
   for (const cairo_status_t status : {cairo_status(impl_->cairo), cairo_surface_status(impl_->surface)})
@@ -169,6 +192,8 @@ void Canvas::finish_file() {
 void Canvas::outline(const Outline& outline, const Pose& pose, const Ink& ink) {
   const Frame frame(pose);
   cairo_t* cairo = impl_->cairo;
+  // Clip, dashes and operator hold for this outline alone. What reaches below the view would come to lie on
+  // the caption's strip.
   cairo_save(cairo);
   cairo_rectangle(cairo, 0, 0, impl_->view.width, impl_->view.height);
   cairo_clip(cairo);
@@ -192,6 +217,7 @@ void Canvas::outline(const Outline& outline, const Pose& pose, const Ink& ink) {
     if (ink.opacity > 0.0) {
       impl_->shape(outline, frame, ink.fill, 1.0, -ink.line_width);
     } else {
+      // Cleared without dashes: between two strokes of the edge the inside must go, too.
       cairo_set_operator(cairo, CAIRO_OPERATOR_CLEAR);
       cairo_set_dash(cairo, nullptr, 0, 0.0);
       impl_->shape(outline, frame, ink.fill, 1.0, -ink.line_width);
@@ -251,6 +277,8 @@ void Canvas::arrow(const Vec2& from, const Vec2& to, const Color& color, double 
   // Shorter arrows would be nothing but a head.
   if (way.norm() < 2.0 * width) return;
   line(from, to, color, width);
+  // From the tip back along the shaft, never over more than half of it; the barbs stand off by atan(0.45),
+  // 24 degrees, on either side.
   const Vec2 back = -way.normalized() * std::min(4.5 * width, 0.5 * way.norm());
   for (const double side : {0.45, -0.45}) {
     const Vec2 barb = tip + back + side * perp(back);
@@ -266,6 +294,7 @@ void Canvas::spring(const Vec2& from, const Vec2& to, const Color& color, double
   if (length < 4.0) return line(from, to, color, width);
   // A turn each 6 pixels, 5 to 60 of them; the ends stay straight over 15 % each.
   const int turns = std::clamp(static_cast<int>(length / 6.0), 5, 60);
+  // Teeth of 3.5 pixels, less on short springs, which would be wider than long.
   const Vec2 side = perp(b - a) / length * std::min(0.12 * length, 3.5);
   cairo_new_path(impl_->cairo);
   cairo_move_to(impl_->cairo, a.x(), a.y());
@@ -296,6 +325,7 @@ double Canvas::text(double x, double y, const std::string& words, double size, c
   const std::string shown = printable(words);
   cairo_text_extents(cairo, shown.c_str(), &extents);
   set_color(cairo, color);
+  // By the advance, which counts spaces at the end: texts can be set side by side.
   const double share = align == Align::left ? 0.0 : align == Align::middle ? 0.5 : 1.0;
   cairo_move_to(cairo, x - share * extents.x_advance, y);
   cairo_show_text(cairo, shown.c_str());

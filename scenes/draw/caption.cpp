@@ -1,3 +1,5 @@
+// The strip below a picture: title, time and the largest force from the left, ruler or legend from the
+// right.
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -10,6 +12,7 @@ namespace {
 /// Words longer than this share of the width leave no room for the ruler or legend.
 constexpr double kRoomForWords = 0.6;
 
+/// Three digits in the unit that keeps them between 1 and 1000, but for less than a millimetre.
 std::string length_text(double metres) {
   if (metres >= 1000.0) return fmt::format("{:.3g} km", metres / 1000.0);
   if (metres >= 1.0) return fmt::format("{:.3g} m", metres);
@@ -20,11 +23,13 @@ std::string length_text(double metres) {
 /// Left of x: a bar `length` metres long with its size. Returns where it begins.
 /// Parts at the right are set from right to left: each returns where the next one ends.
 double draw_ruler(Canvas& canvas, const Sheet& sheet, double x, double y, double size) {
+  // At most 22 % of the width, at least 9 %: round_length() takes off no more than three fifths.
   const double length = draw::round_length(0.22 * sheet.options.size.width / sheet.view.scale);
   const double pixels = length * sheet.view.scale;
   const Color ink = Tones::ink.rgb();
   x -= canvas.text(x, y, length_text(length), size, ink, Canvas::Align::right) + 0.6 * size;
   canvas.rectangle(x - pixels, y - 0.38 * size, pixels, 2.0, ink);
+  // Upright ends: the length is measured between them.
   for (const double end : {x - pixels, x - 1.5})
     canvas.rectangle(end, y - 0.65 * size, 1.5, 0.65 * size, ink);
   return x - pixels;
@@ -47,12 +52,14 @@ double draw_legend(Canvas& canvas, const Sheet& sheet, double x, double y, doubl
 int strip_height(const DrawOptions& options) {
   // Pictures smaller than this have no room for words.
   if (!options.caption || options.size.height < 120 || options.size.width < 160) return 0;
+  // A twentieth of the height, as high as text needs at least, and no banner on a large picture.
   return std::clamp(options.size.height / 20, 26, 60);
 }
 
 void draw_caption(Canvas& canvas, const Sheet& sheet) {
   if (sheet.strip == 0) return;
   const DrawOptions& o = sheet.options;
+  // Letters, margins and baseline are parts of the strip's height, so captions look alike at every size.
   const double size = 0.42 * sheet.strip, top = o.size.height - sheet.strip;
   const double y = top + 0.5 * sheet.strip + 0.36 * size, edge = 0.5 * sheet.strip;
   const Color ink = Tones::ink.rgb();
@@ -64,6 +71,7 @@ void draw_caption(Canvas& canvas, const Sheet& sheet) {
     title += (title.empty() ? "" : ", ") + fmt::format("pass of {}", o.layer.body);
   double x = edge + canvas.text(edge, y, title, size, ink, Canvas::Align::left, true);
   if (o.time)
+    // Without a title the time begins at the edge itself.
     x += size + canvas.text(x + (title.empty() ? 0.0 : size), y, fmt::format("t = {:.6g} s", *o.time), size,
                             Oklch{0.45, 0.02, 260.0}.rgb(), Canvas::Align::left);
   if (o.layer.kind == DrawLayer::Kind::forces) {

@@ -1,3 +1,10 @@
+/// A page from the top: title and note in one line, the legend in as many lines as it takes, panels in rows
+/// of two. All panels are of one size; the page grows. Within a panel a Scale takes values to places 0..1,
+/// and a PanelFrame takes places to pixels.
+///
+/// Everything is placed in pixels from the top left corner, y downward. The canvas's own plane has y
+/// upward, with one metre a pixel (ChartSheet::view()), so that its lines and marks can be used: at() turns
+/// one into the other.
 #include "brink/scenes/draw/chart.h"
 
 #include <fmt/format.h>
@@ -26,6 +33,7 @@ constexpr int kMostTicks = 8;
 const Color kInk = Tones::ink.rgb(), kPale = Oklch{0.52, 0.015, 260.0}.rgb();
 const Color kGrid = Oklch{0.90, 0.006, 260.0}.rgb(), kPage = Tones::paper.rgb(), kPanel{1.0, 1.0, 1.0};
 
+// Five styles beside the six forms of draw_spot(): both together repeat after thirty series.
 const std::vector<double> kDashes[] = {{}, {9, 4}, {2, 3}, {9, 3, 2, 3}, {14, 4}};  ///< one a series [pixels]
 
 struct Tick {
@@ -34,11 +42,14 @@ struct Tick {
 };
 
 /// Values of one axis to places 0..1.
+/// Linear, logarithmic or of names, as ChartAxis says. In logarithms low_ and high_ are exponents of ten.
 class Scale {
  public:
   Scale(const ChartAxis& axis, std::vector<double> values) : axis_(axis) {
+    // What is infinite stands on the rim, and must not stretch the axis.
     std::erase_if(values, [](double v) { return !std::isfinite(v); });
     if (!axis.names.empty()) {
+      // Half a place free at both ends, so that the first and the last name stand inside.
       low_ = -0.5, high_ = static_cast<double>(axis.names.size()) - 0.5;
     } else if (!values.empty()) {
       const auto [least, most] = std::minmax_element(values.begin(), values.end());
@@ -47,12 +58,14 @@ class Scale {
     }
   }
 
+  /// Where a value stands, 0..1 from the lower end. @pre not NaN; on a logarithmic axis > 0.
   double place(double value) const {
     // What is infinite stands on the upper rim.
     if (std::isinf(value)) return 1.0;
     return ((log_ ? std::log10(value) : value) - low_) / (high_ - low_);
   }
 
+  /// Names, one each; else round values, in ascending order.
   std::vector<Tick> ticks() const {
     std::vector<Tick> ticks;
     for (std::size_t k = 0; k < axis_.names.size(); ++k)
@@ -69,11 +82,13 @@ class Scale {
   }
 
  private:
+  /// Whole decades around the values, so that the grid's lines are the ends of the axis.
   void span_decades(double least, double most) {
     low_ = std::floor(std::log10(least));
     // At least one decade, though all values are equal.
     high_ = std::max(low_ + 1.0, std::ceil(std::log10(most)));
   }
+  /// The values with a twentieth of their range on either side.
   void span_numbers(double least, double most) {
     // Values that reach below half of the largest are shown from 0.
     if (least > 0.0 && least < 0.5 * most) least = 0.0;
@@ -83,6 +98,7 @@ class Scale {
     // An axis that begins at 0 has no room below it.
     low_ = least == 0.0 ? 0.0 : least - room;
   }
+  /// `at`: the value, or on a logarithmic axis its exponent; the axis's own function is asked by value.
   std::string label(double at) const {
     if (axis_.label) return axis_.label(log_ ? std::pow(10.0, at) : at);
     return log_ ? power_text(static_cast<int>(std::lround(at))) : fmt::format("{:g}", at);
@@ -100,6 +116,7 @@ std::vector<double> all_x(const ChartPanel& panel) {
   return values;
 }
 
+/// With both ends of ranges: these are drawn, too, and must lie within the panel.
 std::vector<double> all_y(const ChartPanel& panel) {
   std::vector<double> values;
   for (const ChartLine& line : panel.lines)
@@ -117,10 +134,12 @@ struct PanelFrame {
   double y(double place) const { return bottom - place * (bottom - top); }
 };
 
+/// The page laid out: its size is known once it is made, and it may be drawn on any paper.
 class ChartSheet {
  public:
   explicit ChartSheet(const Chart& chart)
       : chart_(chart),
+        // Members in the order of their declaration, each from those before: place_legend() reads width_.
         columns_(std::clamp(static_cast<int>(chart.panels.size()), 1, kColumns)),
         width_(columns_ * (kPanelWidth + kMargin) + kMargin),
         // The legend's lines decide where panels begin: it is laid out once without being drawn.
@@ -142,6 +161,7 @@ class ChartSheet {
   }
 
  private:
+  /// Both papers get the same: a PNG and the SVG beside it show one page.
   void draw(Canvas& canvas) const {
     canvas.text(kMargin, 38, chart_.title, 21, kInk, Align::left, true);
     canvas.text(width_ - kMargin, 38, chart_.note, 13, kPale, Align::right);
@@ -161,8 +181,11 @@ class ChartSheet {
     view.height = height_;
     return view;
   }
+  /// A place in pixels from the top left corner in the canvas's plane; its text and rectangles take pixels
+  /// as they are.
   Vec2 at(double x, double y) const { return {x, height_ - y}; }
 
+  /// Its own, or the next of the row.
   Color color(std::size_t series) const {
     const auto& given = chart_.series[series].color;
     return (given ? *given : series_color(series)).rgb();
@@ -174,8 +197,10 @@ class ChartSheet {
     int line = 0;
     for (std::size_t k = 0; k < chart_.series.size(); ++k) {
       const std::string& name = chart_.series[k].name;
+      // A chart of one series without a name has no legend.
       if (name.empty()) continue;
       // An estimate: without a canvas the widths of letters are not known.
+      // By bytes: a name with other letters than ASCII has more room than it needs.
       const double wide = 40.0 + 8.6 * static_cast<double>(name.size());
       if (x > kMargin && x + wide > width_ - kMargin) x = kMargin, ++line;
       if (canvas) {
@@ -188,6 +213,8 @@ class ChartSheet {
     return x > kMargin ? line + 1 : 0;
   }
 
+  /// A panel with its upper left corner at (x0, y0). Its scales are of its own values: panels share nothing
+  /// but the series.
   void draw_panel(Canvas& canvas, double x0, double y0, const ChartPanel& panel) const {
     canvas.rectangle(x0, y0, kPanelWidth, kPanelHeight, kPanel);
     canvas.text(x0 + 18, y0 + 26, panel.title, 14.5, kInk, Align::left, true);
@@ -198,6 +225,7 @@ class ChartSheet {
     for (const ChartLine& line : panel.lines) draw_line(canvas, frame, x, y, line, !panel.x.names.empty());
   }
 
+  /// Ticks with their lines and labels, and the titles of both axes, set to the right.
   void draw_grid(Canvas& canvas, const PanelFrame& f, const ChartPanel& panel, const Scale& x,
                  const Scale& y) const {
     for (const Tick& tick : x.ticks()) {
@@ -214,6 +242,7 @@ class ChartSheet {
     canvas.text(f.right, f.top - 18, panel.y.title, 12.5, kPale, Align::right);
   }
 
+  /// One series in a panel: the way first, marks over it, so that a mark hides the joint of its line.
   void draw_line(Canvas& canvas, const PanelFrame& frame, const Scale& x, const Scale& y,
                  const ChartLine& line, bool categories) const {
     const Color ink = color(line.series);
@@ -227,6 +256,7 @@ class ChartSheet {
       way.clear();
     };
     for (const ChartPoint& p : line.points)
+      // An infinite value stays on the way: it is drawn on the rim, where its mark is.
       if (line.joined && !categories && !std::isnan(p.y))
         way.push_back(spot(p, p.y));
       else
@@ -239,6 +269,8 @@ class ChartSheet {
     }
   }
 
+  /// The form tells the series, the mark how the point came about: a ring is its form with a hole in the
+  /// panel's white, a cross is the same for all.
   static void draw_mark(Canvas& canvas, const Vec2& p, ChartPoint::Mark mark, std::size_t series,
                         const Color& ink) {
     switch (mark) {
@@ -265,6 +297,8 @@ class ChartSheet {
     std::vector<Vec2> points;
     for (int k = 0; k < corners[form]; ++k) {
       const double angle = 2.0 * std::numbers::pi * (turned[form] + static_cast<double>(k) / corners[form]);
+      // Corners on a circle a quarter larger: a square then has the area of the disc of that size, as 2 *
+      // 1.25^2 = 3.1 is nearly pi.
       points.push_back(p + 1.25 * size * Vec2(std::cos(angle), std::sin(angle)));
     }
     canvas.area(points, ink);
@@ -276,6 +310,7 @@ class ChartSheet {
 
 }  // namespace
 
+// Unicode's raised digits: a text of the canvas is one line of one size.
 std::string power_text(int exponent) {
   static const char* const digits[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
                                        "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
@@ -284,6 +319,7 @@ std::string power_text(int exponent) {
   return text;
 }
 
+// Hues go on by the golden angle: however many there are, neighbours are far apart.
 Oklch series_color(std::size_t series) {
   // lightness differs where hues look alike to some
   static constexpr double lightness[] = {0.50, 0.68, 0.38, 0.78, 0.58, 0.46};

@@ -25,17 +25,20 @@ std::array<double, 3> linear_rgb(double lightness, double a, double b) {
           -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
 }
 
+/// The same by lightness and hue of `c` and another chroma. OKLCH is OKLab in polar coordinates.
 std::array<double, 3> linear_rgb(const Oklch& c, double chroma) {
   const double hue = c.hue * std::numbers::pi / 180.0;
   return linear_rgb(c.lightness, chroma * std::cos(hue), chroma * std::sin(hue));
 }
 
 // Roundings of the matrices take white and black a little beyond.
+/// True if sRGB has the colour.
 bool displayable(const std::array<double, 3>& rgb) {
   return std::all_of(rgb.begin(), rgb.end(), [](double x) { return x >= -1e-6 && x <= 1.0 + 1e-6; });
 }
 
 /// "disc[3]" and "disc_3" belong to the group "disc".
+// First the brackets, then the digits: "disc_3[2]" is one of "disc", too. A name of digits alone stays.
 std::string group_of(std::string name) {
   const auto copy = name.rfind('[');  // any name may end so
   if (copy != std::string::npos && name.back() == ']') name.erase(copy);
@@ -44,6 +47,9 @@ std::string group_of(std::string name) {
   return name;
 }
 
+/// Of groups of bodies, in the order in which they are given out. Any two that follow each other, the first
+/// after the last too, differ in hue by 30 degrees at least, and in lightness, for those who do not tell
+/// some hues apart.
 constexpr std::array<Oklch, 8> kHues{{{0.60, 0.125, 252.0},
                                       {0.69, 0.155, 38.0},
                                       {0.81, 0.145, 82.0},
@@ -62,6 +68,7 @@ constexpr std::array<Oklch, 6> kMap{{{0.215, 0.075, 305.0},
                                      {0.94, 0.155, 108.0}}};
 
 /// Evenly spread in -1..1 for k = 0, 1, 2 ... (multiples of the golden ratio).
+// Half a turn is added so that the first member of a group has the group's own colour: spread(0) is 0.
 double spread(std::size_t k) {
   const double turns = 0.6180339887498949 * static_cast<double>(k) + 0.5;
   // Fractional parts of multiples of the golden ratio fill the circle without clusters,
@@ -72,18 +79,21 @@ double spread(std::size_t k) {
 }  // namespace
 
 std::uint32_t Color::argb() const {
+  // Rounded to the nearest level, not cut: pure white stays 255.
   const auto byte = [](double x) {
     return static_cast<std::uint32_t>(std::lround(255.0 * std::clamp(x, 0.0, 1.0)));
   };
   return 0xff000000U | byte(red) << 16 | byte(green) << 8 | byte(blue);
 }
 
+// Lightness and hue are kept and chroma gives way: cutting the channels would change all three.
 Color Oklch::rgb() const {
   std::array<double, 3> rgb = linear_rgb(*this, chroma);
   // Bisection of the chroma: at 0 every lightness is a grey, which sRGB has.
   for (double low = 0.0, high = chroma; !displayable(rgb) && high - low > 1e-4;) {
     const double middle = 0.5 * (low + high);
     (displayable(linear_rgb(*this, middle)) ? low : high) = middle;
+    // The last chroma known to be displayable.
     if (high - low <= 1e-4) rgb = linear_rgb(*this, low);
   }
   for (double& x : rgb) x = encoded(std::clamp(x, 0.0, 1.0));
@@ -101,6 +111,8 @@ Color distance_color(double fraction) {
       .rgb();
 }
 
+// Groups are numbered as they come, so a palette depends on names and their order alone: the same world has
+// the same colours in every picture of a run.
 Palette::Palette(const World& world) {
   std::map<std::string, std::size_t> groups;
   std::vector<std::size_t> group, place;
@@ -117,6 +129,7 @@ Palette::Palette(const World& world) {
     // Where all bodies have one name a hue for the group would make them all alike.
     const std::size_t hue = members.size() > 1 ? group[k] : k;
     Oklch color = kHues[hue % kHues.size()];
+    // -1..1 within a group, or within one hue; 9 degrees and 0.045 keep the group together.
     const double shift = members.size() > 1 ? spread(place[k]) : spread(k / kHues.size());
     color.lightness += 0.045 * shift;
     color.hue += 9.0 * shift;

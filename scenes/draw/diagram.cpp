@@ -1,3 +1,10 @@
+/// A picture of cells is made in two renderings:
+///
+///     coarse, 64 to 127 pixels along     how far from a site a place of the view is at most: the band
+///     fine, in strips of field rows      each field pixel gets a colour, fineness^2 of them make one pixel
+///
+/// Without a band every site would be drawn over the whole window. With too narrow a band pixels would stay
+/// without owner. The band of the coarse look is wide enough by the Lipschitz bound in look().
 #include "brink/scenes/draw/diagram.h"
 
 #include <algorithm>
@@ -15,6 +22,7 @@ constexpr int kStripRows = 256;             // of the field, at a time
 constexpr double kEdgeStrength = 0.85;      // white of the lines where owners meet
 constexpr double kContourStrength = 0.055;  // darkness of the lines of equal distance
 
+/// Of a at t = 0, of b at t = 1, in sRGB values.
 Color mixed(const Color& a, const Color& b, double t) {
   return {a.red + t * (b.red - a.red), a.green + t * (b.green - a.green), a.blue + t * (b.blue - a.blue)};
 }
@@ -24,6 +32,7 @@ bool solid_at(const FieldImage& field, std::size_t i) {
   return field.inside[i] != 0 || field.distance[i] < 0.0F;
 }
 
+/// Pixels are 0 until they are painted, which is not opaque: all must be.
 Picture blank(int width, int height) {
   return {width, height, std::vector<std::uint32_t>(static_cast<std::size_t>(width) * height)};
 }
@@ -74,6 +83,7 @@ struct CoarseLook {
   double largest;  ///< distance outside solids [m]
 };
 
+/// Renders the view once with large pixels. @throws as PassRenderer::render().
 CoarseLook look(PassRenderer& renderer, std::span<const PlacedOutline> placed, const View& view,
                 std::uint32_t excluded, const FieldOptions& options) {
   // At least 64 pixels along the longer side; a smaller picture as it is.
@@ -84,6 +94,8 @@ CoarseLook look(PassRenderer& renderer, std::span<const PlacedOutline> placed, c
   const Box window{view.window.low, view.window.low + pixel * Vec2(width, height)};
   const double given = options.band > 0.0 ? options.band : std::numeric_limits<double>::infinity();
   const FieldImage seen = renderer.render(window, width, height, placed, excluded, given);
+  // Distances within a thickness are below 0. Where nothing is in reach they are infinite, and the band
+  // stays as given.
   float farthest = 0.0F;
   for (const float d : seen.distance) farthest = std::max(farthest, std::abs(d));
   // Distances are 1-Lipschitz, and no place of the view is farther from a coarse pixel's centre than its
@@ -98,6 +110,7 @@ class CellPainter {
   CellPainter(std::vector<Color> cells, int fineness, double step)
       : cells_(std::move(cells)), fineness_(fineness), step_(step) {}
 
+  /// Sets the strip's rows of the picture, each pixel from the mean of its field pixels.
   void paint(const FieldImage& field, int first, int last, Picture& picture) const {
     // Row `last - 1` of the picture is the lowest of the strip, where its field begins.
     for (int row = first; row < last; ++row)
@@ -118,6 +131,8 @@ class CellPainter {
     const double n = fineness_ * fineness_;
     return {sum.red / n, sum.green / n, sum.blue / n};
   }
+  /// The colour of one field pixel: its owner's cell, darker on a line of equal distance, white at a
+  /// border.
   Color color_at(const FieldImage& field, int x, int y) const {
     const std::size_t i = static_cast<std::size_t>(y) * field.width + x;
     if (field.owner[i] == FieldImage::kNone) return nothing_;
@@ -145,6 +160,7 @@ std::vector<PlacedOutline> placed_outlines(const World& world, std::span<const B
   return placed;
 }
 
+// One renderer for both looks: a second one would open a second GL context.
 FieldImage render_field(std::span<const PlacedOutline> placed, const View& view, std::uint32_t excluded,
                         const FieldOptions& options) {
   PassRenderer renderer(options);
@@ -163,6 +179,7 @@ Picture cells_picture(std::span<const PlacedOutline> placed, const View& view, i
                       std::uint32_t excluded, const FieldOptions& options, const Palette& palette,
                       std::size_t body_count, const std::function<double(double)>& contour_step) {
   PassRenderer renderer(options);
+  // The distance between lines is one for the picture, so it is chosen before the first strip.
   const CoarseLook seen = look(renderer, placed, view, excluded, options);
   const CellPainter painter(cell_colors(placed, palette, body_count), fineness, contour_step(seen.largest));
   Picture picture = blank(view.width, view.height);
@@ -191,17 +208,21 @@ Picture ids_picture(const FieldImage& field, const Palette& palette, std::size_t
     // number are far apart.
     const double turns = 0.6180339887498949 * field.site[i];
     color.lightness += 0.16 * (turns - std::floor(turns)) - 0.08;
+    // On both sides of a solid's edge the same site is nearest: darkness alone tells them apart.
     if (solid_at(field, i)) color.lightness *= 0.62;
     return color.rgb();
   });
 }
 
+// A table of 1024 colours for 256 levels a channel: distance_color() looks for its chroma by bisection,
+// which is too much for every pixel.
 Picture distance_picture(const FieldImage& field, double full_scale) {
   const Color solid = kSolid.rgb();
   std::vector<Color> map;
   for (int k = 0; k < 1024; ++k) map.push_back(distance_color(k / 1023.0));
   return painted(field, [&](std::size_t i) {
     if (solid_at(field, i)) return solid;
+    // Where nothing is in reach distance is infinite: the light end.
     const double fraction = full_scale > 0.0 ? field.distance[i] / full_scale : 0.0;
     return map[static_cast<std::size_t>(std::lround(1023.0 * std::clamp(fraction, 0.0, 1.0)))];
   });

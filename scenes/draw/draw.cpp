@@ -1,3 +1,13 @@
+/// A picture is painted from below upward, and what comes later covers what was there:
+///
+///     the diagram, as pixels              layers color and depth are little else
+///     sites, trails, springs, bodies      the layer's own things (draw_layer())
+///     the box of the period               of a plane that repeats itself
+///     velocities, contacts, names, axes   marks.cpp
+///     the caption's strip                 caption.cpp; the view ends above it
+///
+/// Whatever a part must know of the picture is on the Sheet. Bodies stand on it moved home, into the period
+/// that begins at the origin; their images are found from there.
 #include "brink/scenes/draw/draw.h"
 
 #include <spdlog/fmt/fmt.h>
@@ -24,10 +34,13 @@ using draw::Tones;
 using draw::View;
 using Kind = DrawLayer::Kind;
 
+// Two by two field pixels make one of the picture: borders are smooth, and four times as many are drawn.
 constexpr int kFineness = 2;         // field pixels a picture pixel, each way, under bodies
 constexpr double kPassWindow = 2.4;  // half side of the pass layer's view, in bounding radii
 constexpr double kMarkFrom = 7.0;    // bodies of a smaller radius [pixels] carry no mark
 
+/// The index of the first body of that name. @throws BadInput with at most eight names, so that the message
+/// stays short in a world of thousands.
 int body_named(const World& world, const std::string& name) {
   for (std::size_t k = 0; k < world.bodies.size(); ++k)
     if (world.bodies[k].name == name) return static_cast<int>(k);
@@ -38,6 +51,8 @@ int body_named(const World& world, const std::string& name) {
   throw BadInput(fmt::format("layer \"pass:{}\": no body of that name; there are: {}", name, allowed));
 }
 
+/// What the drawing takes for granted, looked at before any of it. Twists are not: they make arrows alone.
+/// @throws BadInput as draw_scene() says, but for an unknown body, which body_named() tells.
 void check(const World& world, std::span<const BodyState> bodies, std::span<const Pose> sites,
            const DrawOptions& options) {
   std::string error;
@@ -58,6 +73,8 @@ void check(const World& world, std::span<const BodyState> bodies, std::span<cons
       throw BadInput(fmt::format("forces: on body {}; there are {} bodies", f.body, bodies.size()));
 }
 
+/// The window above the strip: what is asked for, else the surroundings of a pass's body, else what
+/// automatic_view() finds. It is never narrower than that; square pixels may make it wider or higher.
 View view_of(const Sheet& sheet) {
   const DrawOptions& o = sheet.options;
   Box box = o.view ? *o.view : automatic_view(sheet.world, sheet.bodies, sheet.sites);
@@ -81,15 +98,19 @@ double contour_step(double largest, const View& view) {
   return draw::round_length(2.0 * wanted);
 }
 
+/// As PassRenderer counts owners: a body is the owner of its own index (placed_outlines()).
 std::uint32_t excluded_owner(const Sheet& sheet) {
   return sheet.excluded < 0 ? FieldImage::kNone : static_cast<std::uint32_t>(sheet.excluded);
 }
 
+/// The cells of layers scene and pass, or the pixels of a raw layer, as large as the view. Of layer depth
+/// it leaves the full scale on the sheet, for the legend. @throws IoError without a GL context.
 Picture background(Sheet& sheet) {
   const std::size_t count = sheet.world.bodies.size();
   const bool raw = sheet.options.layer.kind == Kind::color || sheet.options.layer.kind == Kind::depth;
   std::vector<PlacedOutline> placed = draw::placed_outlines(sheet.world, sheet.bodies, sheet.sites);
   for (std::size_t k = 0, own = placed.size(); k < own; ++k) {  // their images belong to the same owners
+    // The first of them is the outline where it stands, which is among `placed` already.
     const std::vector<Vec2> seen = draw::seen_at(sheet, *placed[k].outline, placed[k].pose);
     for (std::size_t i = 1; i < seen.size(); ++i) {
       placed.push_back(placed[k]);
@@ -109,8 +130,10 @@ Picture background(Sheet& sheet) {
 
 /// The diagram if there is one to be drawn and a context to draw it.
 std::optional<Picture> diagram(Sheet& sheet) {
+  // Force chains are read by the widths of lines: cells beneath would be in their way.
   const Kind kind = sheet.options.layer.kind;
   if (kind == Kind::forces) return std::nullopt;
+  // Without any site there is nobody to be nearest, and no cell.
   if (kind == Kind::scene &&
       (!sheet.options.diagram || sheet.world.bodies.size() + sheet.world.sites.size() == 0))
     return std::nullopt;
@@ -125,6 +148,7 @@ std::optional<Picture> diagram(Sheet& sheet) {
   }
 }
 
+/// Opaque, with a darker edge of the same hue.
 Ink body_ink(const Oklch& color) {
   const Color line = Palette::line(color).rgb();
   return {color.rgb(), line, 1.4, 1.0, false};
@@ -132,6 +156,7 @@ Ink body_ink(const Oklch& color) {
 
 /// Beneath lines that are to be seen.
 Ink pale_ink(Oklch color) {
+  // Halfway to white with a third of the chroma: bodies can still be told apart.
   color.lightness = 0.5 * (color.lightness + 1.0);
   color.chroma *= 0.3;
   Oklch line = color;
@@ -141,15 +166,18 @@ Ink pale_ink(Oklch color) {
 
 /// A line from the centre of mass along the body's own x axis to just inside its edge: how it has turned.
 void draw_mark(Canvas& canvas, const Outline& outline, const Pose& pose, const Color& color, double scale) {
+  // A wire has no inside that a mark could be drawn in.
   if (outline.bounding_radius * scale < kMarkFrom || !(outline.solid || outline.is_point())) return;
   const Vec2 center = pose.position;
   // The centre must lie two pixels inside: that of a horseshoe is outside of it.
   if (gap_by_brute_force(outline, Vec2::Zero()) > -2.0 / scale) return;
   // In steps along the axis, as outlines may be hollow: the mark ends before the first edge.
+  // Each step asks every site of the outline: 64 of them place the end to a sixty-fourth of the radius.
   const double steps = 64.0;
   double reach = 0.0;
   for (int k = 1; k <= steps; ++k) {
     const double x = outline.bounding_radius * k / steps;
+    // Half a pixel more than is asked of the centre, so that its end stays clear of the edge's own line.
     if (gap_by_brute_force(outline, Vec2(x, 0.0)) > -2.5 / scale) break;
     reach = x;
   }
@@ -157,6 +185,7 @@ void draw_mark(Canvas& canvas, const Outline& outline, const Pose& pose, const C
   canvas.dot(center, 1.7, color);
 }
 
+/// The pose of an image.
 Pose shifted(Pose pose, const Vec2& by) {
   pose.position += by;
   return pose;
@@ -168,9 +197,11 @@ void draw_images(Canvas& canvas, const Sheet& sheet, const Outline& outline, con
   for (const Vec2& by : draw::seen_at(sheet, outline, pose)) canvas.outline(outline, shifted(pose, by), ink);
 }
 
+/// Fixed sites where they stand at the picture's time, solid ones filled, wires by their thickness.
 void draw_sites(Canvas& canvas, const Sheet& sheet) {
   const Color line = Tones::ink.rgb();
   Ink solid{Tones::site_fill.rgb(), line, 1.6, 1.0, false};
+  // What is outside a container has the paper's tone: nobody can be there.
   Ink outside{Tones::paper.rgb(), line, 2.4, 1.0, false};
   Ink wire{Tones::site_fill.rgb(), line, 2.2, 1.0, false};
   // Containers first: they fill everything outside of them, and would cover the other sites.
@@ -182,14 +213,17 @@ void draw_sites(Canvas& canvas, const Sheet& sheet) {
     }
 }
 
+/// Springs as zigzags; forces of other kinds have no place to be drawn at.
 void draw_springs(Canvas& canvas, const Sheet& sheet) {
   const Color color = Oklch{0.45, 0.02, 260.0}.rgb();
   for (const Force& force : sheet.world.forces) {
     const auto* spring = std::get_if<SpringForce>(&force);
     if (spring == nullptr) continue;
     const Vec2 a = Frame(sheet.bodies[spring->body_a].pose).to_world(spring->at_a);
+    // The anchor in the world, or a place in the frame of body_b.
     Vec2 b = spring->at_b;
     if (spring->body_b >= 0)
+      // Taken back to where the state given had it, before the body was moved home.
       b = Frame(sheet.bodies[spring->body_b].pose).to_world(b) - sheet.moves[spring->body_b];
     // It pulls between the places that are given, however many periods these are apart: its other end is moved as
     // its first one is.
@@ -201,6 +235,7 @@ void draw_springs(Canvas& canvas, const Sheet& sheet) {
   }
 }
 
+/// All bodies and their images that are seen; a pass's own is left to draw_excluded().
 void draw_bodies(Canvas& canvas, const Sheet& sheet) {
   for (std::size_t k = 0; k < sheet.world.bodies.size(); ++k) {
     if (static_cast<int>(k) == sheet.excluded) continue;
@@ -222,6 +257,7 @@ void draw_excluded(Canvas& canvas, const Sheet& sheet) {
   Oklch color = sheet.palette.body(sheet.excluded);
   color.lightness *= 0.8;
   canvas.outline(outline, pose, {color.rgb(), color.rgb(), 1.8, 0.0, true});
+  // What exact contacts are searched from; the sample of an arc is its centre.
   for (const Sample& sample : outline.samples) canvas.dot(Frame(pose).to_world(sample.p), 2.6, color.rgb());
 }
 
@@ -249,6 +285,7 @@ void draw_particles(Canvas& canvas, const Sheet& sheet) {
   const Color dark = Tones::ink.rgb(), pale = Oklch{0.99, 0.0, 0.0}.rgb();
   for (std::size_t k = 0; k < sheet.world.bodies.size(); ++k) {
     const Body& body = sheet.world.bodies[k];
+    // Every body has a sampling. The default kind is not one that was asked for.
     if (body.sampling.kind == Sampling::Kind::vertices || static_cast<int>(k) == sheet.excluded) continue;
     const Frame frame(sheet.bodies[k].pose);
     const std::vector<Vec2> images = draw::seen_at(sheet, *body.outline, sheet.bodies[k].pose);
@@ -262,6 +299,7 @@ void draw_particles(Canvas& canvas, const Sheet& sheet) {
   }
 }
 
+/// What is between the diagram and the marks. Raw layers get lines alone: a fill would hide their pixels.
 void draw_layer(Canvas& canvas, const Sheet& sheet) {
   switch (sheet.options.layer.kind) {
     case Kind::color:
@@ -286,10 +324,14 @@ void draw_layer(Canvas& canvas, const Sheet& sheet) {
 }
 
 /// Draws the picture on what `make` makes of its view.
+/// Everything of draw_scene() and draw_file() but what becomes of the canvas. `make` is called once, when
+/// what is asked for has been checked: a canvas of a file opens that file.
 template <class Make>
 void draw_with(const World& world, std::span<const BodyState> bodies, std::span<const Pose> sites,
                const DrawOptions& options, Make&& make) {
   check(world, bodies, sites, options);
+  // Where a body has gone around the period ten times it is drawn in the one that is looked at. The sheet
+  // has spans over both vectors, which outlive it.
   std::vector<BodyState> home(bodies.begin(), bodies.end());
   std::vector<Vec2> moves;
   for (BodyState& state : home) {
@@ -297,6 +339,7 @@ void draw_with(const World& world, std::span<const BodyState> bodies, std::span<
     state.pose.position += moves.back();
   }
   Sheet sheet{world, home, moves, sites, options, Palette(world), -1, 0, View{}, 0.0};
+  // In this order: the view is of the excluded body, and of the height that the strip leaves.
   if (options.layer.kind == Kind::pass) sheet.excluded = body_named(world, options.layer.body);
   sheet.strip = draw::strip_height(options);
   sheet.view = view_of(sheet);
@@ -309,6 +352,7 @@ void draw_with(const World& world, std::span<const BodyState> bodies, std::span<
   draw::draw_caption(canvas, sheet);
 }
 
+/// By the extension as it is written: ".PNG" is another one. @throws BadInput naming those that there are.
 draw::Paper paper_of(const std::filesystem::path& file) {
   const std::string kind = file.extension().string();
   if (kind == ".png") return {draw::Paper::Kind::pixels, file};
@@ -321,6 +365,7 @@ draw::Paper paper_of(const std::filesystem::path& file) {
 
 Picture draw_scene(const World& world, std::span<const BodyState> bodies, std::span<const Pose> sites,
                    const DrawOptions& options) {
+  // Made by the call that knows the view; what it holds when that is over is the picture.
   std::optional<Canvas> canvas;
   draw_with(world, bodies, sites, options, [&](const View& view) -> Canvas& {
     return canvas.emplace(view, options.size.width, options.size.height, Tones::paper.rgb());

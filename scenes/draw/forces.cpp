@@ -14,6 +14,8 @@ constexpr double kThinnest = 0.12;              // [pixels]: thinner lines are n
 constexpr double kOnePlace = 1e-6;              // of a body's size: two corners that meet there press as one
 
 /// Those of one body at one place as one.
+// A box on a corner has a contact of each feature that meets there; two lines over each other would show
+// the wider alone, and not their sum. Contacts of one body are few, so all of them are compared.
 std::vector<DrawnForce> merged(const Sheet& sheet) {
   std::vector<DrawnForce> out;
   std::vector<std::vector<std::size_t>> of_body(sheet.bodies.size());
@@ -38,10 +40,12 @@ double widest(const Sheet& sheet) {
   std::vector<double> radii;
   for (const Body& body : sheet.world.bodies) radii.push_back(body.outline->bounding_radius);
   if (radii.empty()) return kLeast;
+  // The upper median of an even number; linear in the number of bodies.
   std::nth_element(radii.begin(), radii.begin() + radii.size() / 2, radii.end());
   return std::clamp(kWidestOfBody * radii[radii.size() / 2] * sheet.view.scale, kLeast, kWidest);
 }
 
+/// 0 where there are none [N].
 double largest(const std::vector<DrawnForce>& forces) {
   double most = 0.0;
   for (const DrawnForce& f : forces) most = std::max(most, f.newtons);

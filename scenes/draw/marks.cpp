@@ -14,6 +14,7 @@ constexpr double kNormal = 14.0,
                  kImpulse = 36.0;  // [pixels], of a contact's arrow, and more for the largest impulse
 constexpr double kTextSize = 11.0, kTick = 5.0;  // [pixels]
 
+/// The box that a mark from one place to another fills: it decides which of its images are seen.
 Box box_of(const Vec2& from, const Vec2& to) {
   Box box;
   box.add(from);
@@ -31,6 +32,7 @@ double seconds_of_arrows(const Sheet& sheet) {
   return most > 0.0 ? kFastest / sheet.view.scale / most : 0.0;
 }
 
+/// An arrow a body, from its centre of mass. Bodies too slow for an arrow have none (Canvas::arrow()).
 void draw_velocities(Canvas& canvas, const Sheet& sheet) {
   const double seconds = seconds_of_arrows(sheet);
   if (!(seconds > 0.0)) return;
@@ -41,12 +43,15 @@ void draw_velocities(Canvas& canvas, const Sheet& sheet) {
   }
 }
 
+/// A dot where two touched, and an arrow along the normal: kNormal pixels long, so that its direction can
+/// be seen of the smallest impulse, and longer by what share of the largest impulse it has.
 void draw_contacts(Canvas& canvas, const Sheet& sheet) {
   double most = 0.0;
   for (const DrawnContact& c : sheet.options.contacts) most = std::max(most, c.impulse);
   const Color color = Oklch{0.52, 0.2, 25.0}.rgb();
   for (const DrawnContact& c : sheet.options.contacts) {
     const double pixels = kNormal + (most > 0.0 ? kImpulse * c.impulse / most : 0.0);
+    // Events are told where they happened, which may be any number of periods away.
     const Vec2 from = c.point + way_home(sheet.world.periods, c.point);
     const Vec2 to = from + pixels / sheet.view.scale * c.normal;
     for (const Vec2& by : images_of(sheet, box_of(from, to))) {
@@ -64,6 +69,7 @@ void draw_name(Canvas& canvas, const std::string& name, const Vec2& at) {
   canvas.text(at.x(), at.y() + 0.35 * kTextSize, name, kTextSize, Tones::ink.rgb(), Canvas::Align::middle);
 }
 
+/// At the centre of mass of every image, in pixels: text does not grow with the scale.
 void draw_names(Canvas& canvas, const Sheet& sheet) {
   if (!sheet.options.names) return;
   for (std::size_t k = 0; k < sheet.bodies.size(); ++k) {
@@ -78,6 +84,8 @@ std::vector<std::vector<Vec2>> pieces_of(const Periods& periods, const std::vect
   std::vector<std::vector<Vec2>> pieces;
   Vec2 home = Vec2::Zero();
   for (std::size_t k = 0; k < trail.size(); ++k) {
+    // `way` is where this point's period lies, `home` where the last one's did. Between two points in
+    // different periods the line is drawn twice: once out of the one and once into the other.
     const Vec2 way = way_home(periods, trail[k]);
     if (k > 0) pieces.back().push_back(trail[k] + home);
     if (k == 0 || way != home) {
@@ -101,6 +109,7 @@ void draw_piece(Canvas& canvas, const Sheet& sheet, const std::vector<Vec2>& pie
   }
 }
 
+/// Ticks and numbers along the lower and the left rim, at whole multiples of the step.
 void draw_axes(Canvas& canvas, const Sheet& sheet) {
   if (!sheet.options.axes) return;
   const View& view = sheet.view;

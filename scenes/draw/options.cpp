@@ -8,6 +8,7 @@
 namespace brink {
 namespace {
 
+// Above kLargest pass windows are refused; below kSmallest nothing can be told.
 constexpr int kSmallest = 16, kLargest = 8192;  // sides of a picture [pixels]
 
 }  // namespace
@@ -17,6 +18,8 @@ DrawLayer parse_layer(std::string_view text) {
   if (text == "color") return {DrawLayer::Kind::color, {}};
   if (text == "depth") return {DrawLayer::Kind::depth, {}};
   if (text == "forces") return {DrawLayer::Kind::forces, {}};
+  // The rest is the body's name as it stands, colons included; whether there is such a body is seen on
+  // drawing.
   if (text.starts_with("pass:") && text.size() > 5)
     return {DrawLayer::Kind::pass, std::string(text.substr(5))};
   throw BadInput(
@@ -51,9 +54,11 @@ bool DrawOptions::is_valid(std::string* error) const {
     if (side < kSmallest || side > kLargest)
       return fault(fmt::format("size: {}x{} pixels; allowed: each {} .. {}", size.width, size.height,
                                kSmallest, kLargest));
+  // Written so that NaN is refused: no comparison with it holds.
   if (!(margin >= 0.0 && margin <= 1.0)) return fault(fmt::format("margin: {}; allowed: 0 .. 1", margin));
   if (!(arrow_seconds >= 0.0) || std::isinf(arrow_seconds))
     return fault(fmt::format("arrow_seconds: {}; allowed: finite, >= 0", arrow_seconds));
+  // A view without width is allowed: fitted() makes something visible of it.
   if (view && (view->empty() || !view->low.allFinite() || !view->high.allFinite()))
     return fault("view: must be finite and hold something");
   if (layer.kind == DrawLayer::Kind::pass && layer.body.empty())

@@ -30,6 +30,7 @@ void write_png(const std::filesystem::path& file, const Picture& picture) {
                                                                  picture.height, 4 * picture.width);
   const cairo_status_t status = cairo_surface_write_to_png_stream(surface, put, &out);
   cairo_surface_destroy(surface);
+  // Closed before it is asked: what is buffered still may fail on a full disk.
   out.close();
   // A failed write leaves the stream bad: its cause is the system's. The other errors are Cairo's.
   if (!out) throw_not_written(file);

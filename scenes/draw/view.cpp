@@ -11,10 +11,13 @@ namespace brink {
 namespace {
 
 /// Larger sites than this many times the bodies' surroundings are shown in part only.
+// A bin four times as large as its heap is seen whole; a floor without end is not.
 constexpr double kWhole = 4.0;
 /// Sites farther than this many times the size of the bodies' box are not shown.
 constexpr double kFar = 20.0;
 
+/// The box of the outline's surface at a pose [m]: cores with their thickness, arcs with their bulge.
+/// Tight, where Outline::bounds turned with the body would not be. Cost: all sites.
 Box bounds_at(const Outline& outline, const Pose& pose) {
   const Frame frame(pose);
   Box box;
@@ -38,6 +41,7 @@ Box bounds_at(const Outline& outline, const Pose& pose) {
   return box;
 }
 
+/// The point of the outline's cores that is nearest to `to`, all in the world [m]. Cost: all sites.
 Vec2 nearest_point(const Outline& outline, const Pose& pose, const Vec2& to) {
   const Frame frame(pose);
   const Vec2 q = frame.to_local(to);
@@ -50,6 +54,7 @@ Vec2 nearest_point(const Outline& outline, const Pose& pose, const Vec2& to) {
   return frame.to_world(best.point);
 }
 
+/// What sizes are compared by: a row of bodies is as large as it is long.
 double longer_side(const Box& box) { return box.extent().maxCoeff(); }
 
 }  // namespace
@@ -78,6 +83,7 @@ Box automatic_view(const World& world, std::span<const BodyState> bodies, std::s
   }
   Box view = near;
   // Of what is larger than kWhole times the near box only the part beside it is seen.
+  // What is nearest to the bodies with a quarter of its size around: so much of a long floor is shown.
   const Box surroundings = near.grown(0.25 * longer_side(near));
   for (const std::size_t k : shown) {
     Box box = whole[k];
@@ -94,6 +100,7 @@ Box automatic_view(const World& world, std::span<const BodyState> bodies, std::s
 namespace draw {
 
 View fitted(const Box& box, double margin, int width, int height) {
+  // Nothing to be seen: a metre about the origin, so that the scale is a number.
   const Vec2 center = box.empty() ? Vec2(0.0, 0.0) : box.center();
   const Vec2 extent = box.empty() ? Vec2(1.0, 1.0) : box.extent();
   const double side = extent.maxCoeff() > 0.0 ? extent.maxCoeff() : 1.0;
@@ -103,6 +110,7 @@ View fitted(const Box& box, double margin, int width, int height) {
   View view;
   view.width = width;
   view.height = height;
+  // The tighter of the two sides decides; the other one sees more than was asked for.
   view.scale = std::min(width / std::max(wanted.x(), floor), height / std::max(wanted.y(), floor));
   const Vec2 half = Vec2(width, height) / (2.0 * view.scale);
   view.window.low = center - half;
@@ -111,6 +119,7 @@ View fitted(const Box& box, double margin, int width, int height) {
 }
 
 double round_length(double x) {
+  // power <= x < 10 power: of 5, 2 and 1 times the power the first that fits is the largest.
   const double power = std::pow(10.0, std::floor(std::log10(x)));
   for (const double digit : {5.0, 2.0})
     if (digit * power <= x) return digit * power;

@@ -14,6 +14,7 @@
 namespace brink {
 namespace {
 
+/// A pile that was placed wrongly has thousands, and the first few say what is wrong.
 constexpr std::size_t kOverlapsShown = 20;
 
 void heading(std::string_view text) { fmt::print("{}\n", paint(stdout, Paint::heading, text)); }
@@ -22,6 +23,7 @@ std::string counted(std::size_t n, std::string_view one, std::string_view many) 
   return fmt::format("{} {}", n, n == 1 ? one : many);
 }
 
+/// What the scene holds, in numbers, and the notes that reading it left.
 void print_contents(const Scene& scene) {
   const World& w = scene.world;
   heading(w.title.empty() ? scene.path.filename().string() : w.title);
@@ -31,6 +33,7 @@ void print_contents(const Scene& scene) {
   for (const std::string& note : scene.notes) fmt::print("  {}\n", printable(note));
 }
 
+/// Of the contact's other side, a body or a fixed site.
 std::string other_name(const World& world, const Contact& c) {
   return c.other_body >= 0 ? world.bodies[c.other_body].name : world.sites[c.other_site].name;
 }
@@ -44,9 +47,11 @@ PlacedOutline placed(const World& world, int body, int site) {
 /// ", 0.02 m^2" by a stencil count; nothing where no GL context opens or there is no area.
 std::string area_text(const Scene& scene, const Contact& c) {
   try {
+    // A context for each overlap that is shown: this is a report, at most kOverlapsShown of them.
     PassRenderer renderer(scene.solver.field);
     const StencilOverlap overlap = stencil_overlap(renderer, placed(scene.world, c.body, -1),
                                                    placed(scene.world, c.other_body, c.other_site));
+    // Overlaps shallower than a pixel, and wires, count none: the depth has been told.
     if (overlap.pixels == 0) return {};
     return fmt::format(", {:.3g} +- {:.1g} m^2 ({} pixels counted)", overlap.area, overlap.error,
                        overlap.pixels);
@@ -76,6 +81,7 @@ int check_command(const CheckArguments& arguments) {
   const Simulator simulator(scene.world, scene.solver);
   print_contents(scene);
   heading("Plan");
+  // What the kernel would do with these options: what it skips, and why.
   for (const std::string& line : simulator.plan().lines) fmt::print("  {}\n", printable(line));
   print_overlaps(scene, simulator.overlaps());
   return kDone;

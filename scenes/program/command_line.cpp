@@ -1,3 +1,9 @@
+/// Each command is added by a function of its own: a struct of arguments (commands.h), an option for each
+/// of its members, and a callback that calls the command. What help and messages say stands here and
+/// nowhere else.
+///
+/// Only what the library can tell of a word alone is checked here (counts, topics). Whatever needs a scene,
+/// a run or another option is the command's own business, which says what is allowed in its own words.
 #include "brink/scenes/program/command_line.h"
 
 #include <fmt/format.h>
@@ -55,6 +61,8 @@ void add_run(CLI::App& program, int& status) {
   command->callback([arguments, &status] { status = run_command(*arguments); });
 }
 
+/// Everything but running: what a run would refuse at its start is told, and overlaps that it would not
+/// refuse, too.
 void add_check(CLI::App& program, int& status) {
   auto arguments = std::make_shared<CheckArguments>();
   CLI::App* command = program.add_subcommand("check", "Validate a scene and print the plan; runs nothing");
@@ -70,6 +78,7 @@ void add_check(CLI::App& program, int& status) {
   command->callback([arguments, &status] { status = check_command(*arguments); });
 }
 
+/// --layer, --size and --view are taken as words: draw.h reads them, and names what is allowed.
 void add_draw(CLI::App& program, int& status) {
   auto arguments = std::make_shared<DrawArguments>();
   CLI::App* command = program.add_subcommand("draw", "A picture of a scene or a run (PNG, SVG, PDF)");
@@ -109,6 +118,7 @@ void add_draw(CLI::App& program, int& status) {
   command->callback([arguments, &status] { status = draw_command(*arguments); });
 }
 
+/// Two commands in one, by the subject: a run becomes a file, a scene without -o a page that is served.
 void add_view(CLI::App& program, int& status) {
   auto arguments = std::make_shared<ViewArguments>();
   CLI::App* command = program.add_subcommand("view", "A replay page: one HTML file that plays a run");
@@ -135,6 +145,7 @@ void add_view(CLI::App& program, int& status) {
   command->callback([arguments, &status] { status = view_command(*arguments); });
 }
 
+/// The defaults make a film that plays anywhere at the pace of the run.
 void add_film(CLI::App& program, int& status) {
   auto arguments = std::make_shared<FilmArguments>();
   CLI::App* command = program.add_subcommand("film", "A film of a run, through ffmpeg");
@@ -166,6 +177,8 @@ void add_film(CLI::App& program, int& status) {
   command->callback([arguments, &status] { status = film_command(*arguments); });
 }
 
+/// Three kinds of output, each with a folder of its own, in any combination; the command asks for one at
+/// least.
 void add_export(CLI::App& program, int& status) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = program.add_subcommand("export", "A run's tables for other programs");
@@ -200,6 +213,7 @@ void add_list(CLI::App& program, int& status) {
   command->callback([arguments, &status] { status = list_command(*arguments); });
 }
 
+/// Problems are named by bare words; the command checks them against its own list.
 void add_bench(CLI::App& program, int& status) {
   auto arguments = std::make_shared<BenchArguments>();
   CLI::App* command =
@@ -224,6 +238,8 @@ void add_bench(CLI::App& program, int& status) {
   command->callback([arguments, &status] { status = bench_command(*arguments); });
 }
 
+/// One experiment, one folder: the folder is what makes a sweep resumable, so it is the same without --out
+/// each time.
 void add_sweep(CLI::App& program, int& status) {
   auto arguments = std::make_shared<SweepArguments>();
   CLI::App* command = program.add_subcommand("sweep", "Many runs over options, on all cores; resumable");
@@ -255,6 +271,7 @@ std::string misspelt(const CLI::App& program, const std::vector<std::string>& wo
   // A bare word first is a command; --help and --version are left to the library.
   if (words.empty() || words[0].starts_with('-')) return {};
   std::vector<std::string> commands;
+  // An empty filter gives all commands that there are, not those that were parsed.
   for (const CLI::App* c : program.get_subcommands({})) commands.push_back(c->get_name());
   if (std::find(commands.begin(), commands.end(), words[0]) == commands.end())
     return fmt::format("{}: no such command; the nearest is \"{}\". `brink --help` lists all",
@@ -263,7 +280,10 @@ std::string misspelt(const CLI::App& program, const std::vector<std::string>& wo
   // Long names alone: short options are few, and nothing is near them.
   for (const CLI::Option* o : program.get_subcommand(words[0])->get_options())
     for (const std::string& name : o->get_lnames()) known.push_back("--" + name);
+  // The command itself is passed over, as all that does not begin with two dashes; values that do are taken
+  // for options that are unknown.
   for (const std::string& word : words) {
+    // "--set=A=1" is the option --set; what follows the first '=' is its value.
     const std::string option = word.substr(0, word.find('='));
     // After "--" everything is a value.
     if (option == "--") break;
@@ -279,6 +299,7 @@ std::string misspelt(const CLI::App& program, const std::vector<std::string>& wo
 int run_command_line(int argc, char** argv) {
   CLI::App program("Brink: many rigid bodies in the plane, exact to the contact time.", "brink");
   program.set_version_flag("--version", version_details());
+  // Exactly one command: with none the library says that one is needed.
   program.require_subcommand(1);
   program.footer(
       "Examples:\n"
@@ -291,6 +312,7 @@ int run_command_line(int argc, char** argv) {
       "  brink sweep scenes/experiments/policies_and_orders.toml\n"
       "Exit status: 0 done, 1 ended early, 2 bad usage or input, 3 could not read or write.\n"
       "`brink COMMAND --help` says more.");
+  // Written by the one callback that runs. What the command throws goes through the library to main().
   int status = kDone;
   add_run(program, status);
   add_check(program, status);

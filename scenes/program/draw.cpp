@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 class LastContacts final : public Recorder {
  public:
   explicit LastContacts(double end) : end_(end) {}
+  // Stretches that ended before are of contacts that changed their mode or are gone.
   void contact_lasted(const LastedContact& contact) override {
     if (contact.to >= end_) contacts.push_back(contact);
   }
@@ -47,6 +48,7 @@ RunMoment moment_of_scene(const DrawArguments& arguments, const Scene& scene) {
   // At 0 the simulator stands at the start: nothing to run, and overlaps may be looked at.
   if (t > 0.0) {
     const RunSummary summary = simulator.run(options, &last);
+    // A picture of another time than the one asked for would not be noticed: refused.
     if (summary.termination != Termination::reached_end) {
       throw BadInput(fmt::format("--at: {} given, but the scene ended at t = {} s: {}", t, summary.end_time,
                                  summary.why));
@@ -59,6 +61,8 @@ RunMoment moment_of_scene(const DrawArguments& arguments, const Scene& scene) {
   return moment;
 }
 
+/// The subject at the time asked for. Of a scene `field` is set to its own options; a run file's picture is
+/// drawn with the defaults.
 RunMoment moment_of(const DrawArguments& arguments, const fs::path& run, FieldOptions& field) {
   if (!run.empty()) return moment_of_run(run, arguments.at);
   const Scene scene = load_scene(arguments.subject, arguments.overrides);
@@ -66,12 +70,14 @@ RunMoment moment_of(const DrawArguments& arguments, const fs::path& run, FieldOp
   return moment_of_scene(arguments, scene);
 }
 
+/// "X0,Y0,X1,Y1" [m]. @throws BadInput.
 Box parse_view(const std::string& text) {
   double n[4] = {};
   const char *at = text.data(), *end = at + text.size();
   bool good = true;
   for (int i = 0; i < 4 && good; ++i) {
     const auto [stop, error] = std::from_chars(at, end, n[i]);
+    // A comma after each number but the last, which must end the text: no spaces, nothing left over.
     good = error == std::errc() && std::isfinite(n[i]) && (i < 3 ? stop != end && *stop == ',' : stop == end);
     at = stop + 1;
   }
@@ -104,9 +110,11 @@ int draw_command(const DrawArguments& arguments) {
   options.layer = parse_layer(arguments.layer);
   options.size = parse_size(arguments.size);
   if (!arguments.view.empty()) {
+    // What is asked for is seen to the number, without a margin; square pixels may show more on two sides.
     options.view = parse_view(arguments.view);
     options.margin = 0.0;
   }
+  // --plain takes both: a paper has its own caption.
   options.diagram = options.caption = !arguments.plain;
   options.axes = arguments.axes;
   options.names = arguments.names;
@@ -115,9 +123,11 @@ int draw_command(const DrawArguments& arguments) {
   // What a run was made of cannot be changed any more.
   if (!run.empty() && !arguments.overrides.empty())
     throw BadInput("--set: is for scenes; a run has been made");
+  // A scene is run to one moment here, and nothing of what was before is kept.
   if (run.empty() && (arguments.trails || arguments.contacts))
     throw BadInput("--trails, --contacts: are of runs; a scene has none yet");
   refuse_overwriting(arguments.out, "-o", {run.empty() ? fs::path(arguments.subject) : run});
+  // Everything that can be refused without it has been: a scene is now run up to the time.
   const RunMoment moment = moment_of(arguments, run, options.field);
   options.time = moment.t;
   if (options.layer.kind == DrawLayer::Kind::forces) options.forces = forces_of(moment);

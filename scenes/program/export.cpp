@@ -20,6 +20,7 @@ int export_command(const ExportArguments& arguments) {
   const fs::path file = run_file_of(arguments.run);
   if (file.empty())
     throw BadInput(fmt::format("{}: not a run; allowed: a run folder or a run file", arguments.run));
+  // A command that does nothing would look as if it had worked.
   if (arguments.csv.empty() && arguments.hdf5.empty() && arguments.vtk.empty())
     throw BadInput("nothing to write; allowed: --csv DIR, --hdf5 DIR, --vtk DIR");
   // Each kind is written for itself: what was written before one fails stays.

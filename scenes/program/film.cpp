@@ -25,6 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// A million pictures are four and a half hours at 60 a second. More is a slip in --speed, and would fill
+/// the disk.
 constexpr double kMostPictures = 1e6;
 
 /// By the shell, as ffmpeg may be anywhere on its path.
@@ -34,10 +36,13 @@ bool has_ffmpeg() { return std::system("ffmpeg -version >/dev/null 2>&1") == 0; 
 class Film {
  public:
   virtual ~Film() = default;
+  /// @throws IoError. All pictures are of one size, the film's.
   virtual void add(const Picture& picture) = 0;
+  // To be called after the last picture; a film that is not finished is whatever came of it.
   virtual void finish() {}
 };
 
+/// FILE-00001.png, FILE-00002.png ...: beside each other in the order of their names.
 class PictureSequence final : public Film {
  public:
   explicit PictureSequence(const fs::path& out) : stem_(fs::path(out).replace_extension()) {}
@@ -50,6 +55,7 @@ class PictureSequence final : public Film {
   int count_ = 0;
 };
 
+/// Raw pixels into ffmpeg's standard input. What it complains of goes to standard error by itself.
 class FfmpegFilm final : public Film {
  public:
   FfmpegFilm(const fs::path& out, PictureSize size, double fps) : out_(out) {
@@ -68,6 +74,7 @@ class FfmpegFilm final : public Film {
     pipe_ = ::popen(command.c_str(), "w");
     if (!pipe_) throw IoError("ffmpeg could not be started");
   }
+  // After an exception: ffmpeg sees the end of its input and closes a shorter film.
   ~FfmpegFilm() override {
     if (pipe_) ::pclose(pipe_);
   }
@@ -88,6 +95,7 @@ class FfmpegFilm final : public Film {
   std::FILE* pipe_ = nullptr;
 };
 
+/// By the extension of `out`; pictures, too, where there is no ffmpeg. @throws BadInput for another one.
 std::unique_ptr<Film> film_into(const fs::path& out, PictureSize size, double fps) {
   const std::string kind = out.extension().string();
   if (kind == ".png") return std::make_unique<PictureSequence>(out);
@@ -100,12 +108,14 @@ std::unique_ptr<Film> film_into(const fs::path& out, PictureSize size, double fp
   return std::make_unique<PictureSequence>(out);
 }
 
+/// Where fixed sites are told to be at time t, by id. A film needs no motion of them, so none is made.
 std::vector<Pose> site_poses(const World& world, double t) {
   std::vector<Pose> poses;
   for (const FixedSite& site : world.sites) poses.push_back(told_pose(site, t));
   return poses;
 }
 
+/// @throws BadInput naming the option, the number and what is allowed.
 void require(bool good, const char* option, double given, const char* allowed) {
   if (!good) throw BadInput(fmt::format("{}: {} given; allowed: {}", option, given, allowed));
 }
@@ -118,7 +128,10 @@ int film_command(const FilmArguments& arguments) {
     throw BadInput(fmt::format("{}: not a run; allowed: a run folder or a run file", arguments.run));
   require(arguments.fps >= 1.0 && arguments.fps <= 1000.0, "--fps", arguments.fps, "1 .. 1000");
   require(arguments.speed >= 1e-9 && arguments.speed <= 1e9, "--speed", arguments.speed, "1e-9 .. 1e9");
+  // Before the run is opened: nothing that is read may be written over.
   refuse_overwriting(arguments.out, "-o", {file});
+  // Times are checked against what the file has: of a run that was killed the frames end before its
+  // duration.
   const RunFile run(file);
   const auto [first, last] = run.time_range();
   const double from = arguments.from.value_or(first), to = arguments.to.value_or(last);
@@ -133,26 +146,33 @@ int film_command(const FilmArguments& arguments) {
         kMostPictures));
 
   DrawOptions options;
+  // "plain" is a word of films alone: layer scene without its diagram, which is faster.
+  // time.
   options.diagram = arguments.layer != "plain";
   options.layer = parse_layer(options.diagram ? arguments.layer : "scene");
   options.size = parse_size(arguments.size);
   const World world = run.world();
   // One camera for all pictures: the run's extent, not each picture's.
   options.view = extent_of(run, world);
+  // Last of all checks: from here on there is a file, or a process that writes one.
   const auto film = film_into(arguments.out, options.size, arguments.fps);
   ProgressBar bar(from, to, on_terminal(stderr));
   // By a product: the last picture is not off by the sum of all steps.
   for (double k = 0; k < pictures; ++k) {
     const double t = std::min(to, from + k * arguments.speed / arguments.fps);
+    // Between frames bodies are followed by the cubic of their recorded states; fixed sites by their own
+    // formulas.
     RunMoment moment{t, world, run.states_at(t).states, site_poses(world, t), {}};
     options.time = t;
     if (options.layer.kind == DrawLayer::Kind::forces) {
+      // Read for layer forces alone: nothing else of a picture asks for them.
       moment.contacts = run.contacts_at(t);
       options.forces = forces_of(moment);
     }
     film->add(draw_scene(world, moment.bodies, moment.sites, options));
     bar.show(t, 0);
   }
+  // Only now has ffmpeg written its last picture; whether it could is told by its exit status.
   film->finish();
   return kDone;
 }

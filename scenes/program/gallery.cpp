@@ -8,12 +8,15 @@ namespace brink {
 namespace fs = std::filesystem;
 namespace {
 
+/// Where the gallery is, in the order that gallery_scenes() names; it need not exist.
 fs::path gallery_folder() {
   if (const char* chosen = std::getenv("BRINK_GALLERY")) return chosen;
   std::error_code error;
   // An installed program stands in PREFIX/bin.
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   const fs::path installed = program.parent_path().parent_path() / "share/brink/gallery";
+  // Not installed: the program stands in a build folder, and the source tree is where it was when it was
+  // built.
   return fs::is_directory(installed) ? installed : fs::path(BRINK_SOURCE_GALLERY);
 }
 
@@ -35,6 +38,7 @@ std::string title_of(const fs::path& scene) {
 std::vector<GalleryScene> gallery_scenes() {
   std::vector<GalleryScene> scenes;
   std::error_code error;
+  // With `error` a folder that is not there has no entries, and does not throw.
   for (const auto& entry : fs::directory_iterator(gallery_folder(), error)) {
     if (entry.path().extension() != ".toml") continue;
     // Paths below the present folder are short ones, to be typed.

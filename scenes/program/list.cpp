@@ -17,6 +17,7 @@
 namespace brink {
 namespace {
 
+/// One line of a list: what is typed, and what it means.
 struct Line {
   std::string name, text;
 };
@@ -27,12 +28,15 @@ template <class Registry>
 Lines from_registry(const Registry& registry, std::string_view chosen) {
   Lines lines;
   for (const auto& entry : registry) {
+    // Marked where it stands, so that a list keeps the registry's order.
     const char* mark = entry.name == chosen ? " (default)" : "";
     lines.push_back({std::string(entry.name), fmt::format("{}{}", entry.summary, mark)});
   }
   return lines;
 }
 
+/// Every key of the scene file by its dotted path, with meaning, type and default, from the schemas that
+/// read it.
 Lines option_lines() {
   Lines lines;
   for (const OptionInfo& o : scene_options()) {
@@ -59,6 +63,7 @@ Lines force_lines() {
   return lines;
 }
 
+/// The gallery, each scene by the path that `brink run` takes from here.
 Lines scene_lines() {
   Lines lines;
   for (const GalleryScene& scene : gallery_scenes())
@@ -85,6 +90,7 @@ const Topic kTopics[] = {
     {"options", option_lines},
 };
 
+/// Names in a column as wide as the longest of the topic.
 void print(const Topic& topic) {
   const Lines lines = topic.lines();
   std::size_t width = 0;
@@ -103,6 +109,7 @@ std::vector<std::string> list_topics() {
 int list_command(const ListArguments& arguments) {
   for (const Topic& topic : kTopics) {
     if (!arguments.topic.empty() && arguments.topic != topic.name) continue;
+    // Headings only where there are several topics: one alone can be read by programs line by line.
     if (arguments.topic.empty()) fmt::print("{}\n", paint(stdout, Paint::heading, topic.name));
     print(topic);
     if (arguments.topic.empty()) fmt::print("\n");

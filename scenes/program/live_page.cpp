@@ -12,8 +12,10 @@ RunReport run_shown(const Scene& scene, RunRequest& request, bool bar) {
   // The bar counts from 0 also where a run is resumed: how much of the whole is done.
   ProgressBar progress(0.0, request.until.value_or(scene.duration), bar);
   request.progress = [&progress](double t, std::uint64_t collisions) {
+    // The bar says so at once; the run ends at this call's return.
     if (stop_asked()) progress.stopping();
     progress.show(t, collisions);
+    // False ends the run at its next chance, with a checkpoint to go on from.
     return !stop_asked();
   };
   return run_scene(scene, request);
@@ -27,6 +29,7 @@ LivePage::LivePage(RunRequest& request) : server_(request.dir / "run.db") {
 }
 
 void LivePage::stay() {
+  // From now on the data say that they are whole, and the page stops asking.
   server_.run_ended();
   // A run that has ended by itself leaves its page up.
   while (!stop_asked()) std::this_thread::sleep_for(std::chrono::milliseconds(50));

@@ -15,6 +15,7 @@
 
 namespace {
 
+/// Says what went wrong in one line on standard error, and returns the status.
 int fail(brink::ExitStatus status, const char* what) {
   fmt::print(stderr, "{} {}\n", brink::paint(stderr, brink::Paint::bad, "brink:"), brink::printable(what));
   return status;
@@ -27,6 +28,8 @@ int flushed(int status) {
   return fail(brink::kIoFailed, "standard output could not be written");
 }
 
+/// The command line with every exception turned into an exit status (README). The order is
+/// from the special to the general: SceneFaults is a BadInput.
 int run(int argc, char** argv) {
   try {
     return flushed(brink::run_command_line(argc, argv));

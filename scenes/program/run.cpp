@@ -20,6 +20,7 @@
 namespace brink {
 namespace {
 
+/// How the run ended, in one line with its time and reason. Colours are those of standard output.
 std::string ending(const RunSummary& s) {
   switch (s.termination) {
     case Termination::reached_end:
@@ -83,6 +84,7 @@ void print_profile(const RunSummary& s) {
   line("policy, the rest", std::max(0.0, rest));
 }
 
+/// The summary for people. What did not happen (groups taken, contacts that last, a resume) has no line.
 void print_summary(const Scene& scene, const RunReport& report) {
   const RunSummary& s = report.summary;
   const std::string title = scene.world.title.empty() ? scene.path.stem().string() : scene.world.title;
@@ -92,6 +94,8 @@ void print_summary(const Scene& scene, const RunReport& report) {
              change(s.energy_initial, s.energy_final));
   fmt::print("  momentum         ({:.6g}, {:.6g}) kg m/s, angular {:.6g} kg m^2/s\n", s.momentum.x(),
              s.momentum.y(), s.angular_momentum);
+  // What the watch beside the search has seen, [m]; roundings of the last step before a contact are of some
+  // 1e-16.
   fmt::print("  deepest overlap  {:.3g} m\n", s.max_overlap);
   if (s.groups_taken > 0) fmt::print("  groups taken     {}\n", paint(stdout, Paint::bad, taken(s)));
   if (s.contacts_lasting > 0) fmt::print("  lasting contacts {}\n", lasting(s));
@@ -102,6 +106,8 @@ void print_summary(const Scene& scene, const RunReport& report) {
   fmt::print("  run file         {}\n", printable(report.file.string()));
 }
 
+/// The summary, the JSON or nothing, as the options say. A resume of a finished run has no summary to
+/// print: of that only end and exit status are known.
 void print_report(const RunArguments& arguments, const Scene& scene, const RunReport& report) {
   if (report.finished_before && !arguments.quiet && !arguments.json) {
     fmt::print("{}: has already reached t = {} s; nothing to do\n", printable(report.file.string()),
@@ -116,6 +122,7 @@ void print_report(const RunArguments& arguments, const Scene& scene, const RunRe
 
 /// The scene, of a run from its run file.
 Scene loaded(const RunArguments& arguments, bool shown) {
+  // Wiped when the scene is there. A large one takes a while to be read.
   StatusLine line(shown);
   line.say("loading " + printable(arguments.scene));
   const std::filesystem::path run = run_file_of(arguments.scene);
@@ -127,6 +134,7 @@ Scene loaded(const RunArguments& arguments, bool shown) {
 }  // namespace
 
 int run_command(const RunArguments& arguments) {
+  // Reading the scene counts as loading, which the summary tells apart from the run's own wall time.
   const auto start = std::chrono::steady_clock::now();
   // A bar is drawn on standard error, which may be a terminal though standard output is a pipe.
   const bool shown = on_terminal(stderr) && !arguments.quiet;
@@ -134,6 +142,7 @@ int run_command(const RunArguments& arguments) {
   RunRequest request;
   request.dir = arguments.out.empty() ? default_run_folder(scene.path, arguments.resume)
                                       : std::filesystem::path(arguments.out);
+  // All limits of the request are run_scene()'s to check, which refuses before it touches a file.
   request.until = arguments.until;
   request.trace = arguments.trace;
   request.resume = arguments.resume;
@@ -145,11 +154,13 @@ int run_command(const RunArguments& arguments) {
     page.emplace(request);
     fmt::print(stderr, "{}\n", page->address());
   }
+  // However the simulation ends there is a report; what throws here could not start, or could not write.
   const RunReport report = run_shown(scene, request, shown);
   print_report(arguments, scene, report);
   // Before waiting for Ctrl-C: the summary is read by then.
   std::fflush(stdout);
   if (page) page->stay();
+  // sound(): the end was reached and no group of collisions was taken with a loss that it should not have.
   if (report.summary.sound()) return kDone;
   // Without a summary a bad ending would be told by the exit status alone.
   if (arguments.quiet || arguments.json) fmt::print(stderr, "brink: {}\n", ending(report.summary));

@@ -20,11 +20,13 @@ int number_of(const std::string& name, const std::string& stem) {
 }  // namespace
 
 fs::path default_run_folder(const fs::path& scene, bool resume) {
+  // Below the present folder, not the scene's: an installed gallery may not be written to.
   const fs::path runs = "runs";
   const std::string stem = scene.stem().string();
   const auto folder = [&](int n) { return runs / fmt::format("{}-{}", stem, n); };
   int n = 1;
   if (!resume) {
+    // A gap in the numbers is used again; of two processes that find the same one RunFolder locks one out.
     while (fs::exists(folder(n))) ++n;
     return folder(n);
   }

@@ -18,6 +18,7 @@ void ask(int) {
 }  // namespace
 
 void stop_on_signals() {
+  // No SA_RESTART: a call that waits in the system is interrupted.
   struct sigaction action {};
   action.sa_handler = ask;
   sigaction(SIGINT, &action, nullptr);

@@ -20,6 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// How many runs are not done.
 std::size_t waiting(const SweepResults& results) {
   return static_cast<std::size_t>(
       std::count_if(results.begin(), results.end(), [](const auto& r) { return !r; }));
@@ -34,6 +35,7 @@ class Tally {
   }
   Tally(const Tally&) = delete;
   Tally& operator=(const Tally&) = delete;
+  /// Called by one thread at a time (SweepRequest::done).
   void one_more() {
     ++done_;
     show();
@@ -47,6 +49,8 @@ class Tally {
   bool shown_;
 };
 
+/// A `brink run` command for each run, which gives the row's state hash: scene, overrides in their order,
+/// end.
 void list_runs(const Experiment& experiment) {
   for (const SweepRun& run : experiment.runs) {
     // A path that begins with a dash would be taken for an option.
@@ -68,9 +72,12 @@ std::vector<fs::path> files_read(const Experiment& experiment) {
 
 /// Tables, CSV and plot of what is done. Returns how many runs are not.
 std::size_t report(const Experiment& experiment, SweepStore& store, const fs::path& folder, bool quiet) {
+  // Read again from the database: what other processes have made is in it.
   const SweepResults results = store.results(experiment);
   write_sweep_csv(folder / "sweep.csv", experiment, results);
+  // Drawn of what there is: a sweep that was stopped has its table and plot as well.
   write_chart(folder / "sweep.png", sweep_chart(experiment, results));
+  // Files are written all the same.
   if (quiet) return waiting(results);
   fmt::print("{}\n{}", paint(stdout, Paint::heading, experiment.title), sweep_table(experiment, results));
   if (const std::string agreement = policy_agreement(experiment, results); !agreement.empty())
@@ -84,13 +91,17 @@ std::size_t report(const Experiment& experiment, SweepStore& store, const fs::pa
 
 int sweep_command(const SweepArguments& arguments) {
   const Experiment experiment = load_experiment(arguments.experiment);
+  // The experiment has been checked by then: a list is of runs that can be read.
   if (arguments.dry) return list_runs(experiment), kDone;
+  // Named after the experiment, without a number: the same command finds its results again.
   const fs::path folder =
       arguments.out.empty() ? fs::path("runs") / experiment.path.stem() : fs::path(arguments.out);
   // Before the folder is made: nothing of the experiment may be lost.
   for (const char* name : {"sweep.csv", "sweep.png", "sweep.svg"})
     refuse_overwriting(folder / name, "--out", files_read(experiment));
+  // Before the store is opened: a signal from here on lets go of runs and leaves the database whole.
   stop_on_signals();
+  // Opened after the experiment is known to be sound: what it adds to the database can be run.
   SweepStore store(folder, experiment);
   // The tally is wiped before the report is printed.
   {

@@ -12,14 +12,17 @@
 namespace brink {
 namespace {
 
+// With its numbers the line is some 80 columns wide.
 constexpr int kBarWidth = 28;
 constexpr auto kRedraw = std::chrono::milliseconds(100);
 
+/// Also false of pipes and files, whatever TERM says. NO_COLOR counts if it is set, even to nothing.
 bool has_colours(std::FILE* stream) {
   const char* term = std::getenv("TERM");
   return on_terminal(stream) && !std::getenv("NO_COLOR") && term && std::string_view(term) != "dumb";
 }
 
+/// Escape sequences (SGR): 1 bold, 2 faint, 31 red, 32 green; 0 ends them.
 const char* code(Paint how) {
   switch (how) {
     case Paint::heading:
@@ -34,6 +37,7 @@ const char* code(Paint how) {
   return "";
 }
 
+/// Time left [s] in the unit that people would use, without digits that the estimate does not have.
 std::string remaining(double seconds) {
   if (seconds < 100) return fmt::format("{:.0f} s left", seconds);
   if (seconds < 6000) return fmt::format("{:.0f} min left", seconds / 60);
@@ -57,6 +61,8 @@ StatusLine::~StatusLine() {
 void StatusLine::say(const std::string& text) {
   if (!shown_) return;
   drawn_ = true;
+  // To the beginning of the line, cleared to its end, then written: a shorter text leaves nothing of a
+  // longer one.
   fmt::print(stderr, "\r\033[K{}", text);
   std::fflush(stderr);
 }
@@ -67,8 +73,10 @@ ProgressBar::ProgressBar(double from, double until, bool shown) : line_(shown), 
 
 void ProgressBar::show(double t, std::uint64_t collisions) {
   const auto now = Clock::now();
+  // Nearly all calls end here.
   if (stopping_ || now < next_) return;
   next_ = now + kRedraw;
+  // A resumed run that is at its end, or beyond it, shows a full bar.
   const double part = until_ > from_ ? std::clamp((t - from_) / (until_ - from_), 0.0, 1.0) : 1.0;
   const int full = static_cast<int>(part * kBarWidth);
   const double spent = std::chrono::duration<double>(now - start_).count();

@@ -40,6 +40,7 @@ RunReport run_here(const ViewArguments& arguments, bool stays) {
   if (stays) {
     page.emplace(request);
     fmt::print("{}\n", page->address());
+    // Before the run: a program that reads the address through a pipe gets it now.
     std::fflush(stdout);
     if (arguments.open) open_in_browser(page->address());
   }
@@ -51,12 +52,14 @@ RunReport run_here(const ViewArguments& arguments, bool stays) {
 }  // namespace
 
 int view_command(const ViewArguments& arguments) {
+  // Empty: the subject is a scene, to be run here first.
   fs::path run = run_file_of(arguments.subject);
   // What a run was made of cannot be changed any more.
   if (!run.empty() && !arguments.overrides.empty())
     throw BadInput("--set: is for scenes; a run has been made");
   if (run.empty() && !arguments.trace.empty())
     throw BadInput("--trace: is for runs; of a scene: brink run SCENE --trace FILE first");
+  // Asked before a scene is run, which may take long.
   if (!arguments.out.empty())
     refuse_overwriting(arguments.out, "-o", {run.empty() ? fs::path(arguments.subject) : run});
   // Of a scene without -o the page is served as the run goes; with -o it is written when the run has ended.
@@ -69,6 +72,7 @@ int view_command(const ViewArguments& arguments) {
   }
   if (!live) {
     const fs::path page = arguments.out.empty() ? run.parent_path() / "replay.html" : fs::path(arguments.out);
+    // The defaults bound the size of the page; only the trace is the caller's.
     ReplayLimits limits;
     limits.trace = arguments.trace;
     write_replay_page(run, page, limits);
@@ -77,6 +81,7 @@ int view_command(const ViewArguments& arguments) {
   }
   // No run was made here, or it came to a sound end.
   if (summary.termination == Termination::not_run || summary.sound()) return kDone;
+  // Of `failed` termination_text() has the reason already.
   const bool stopped = summary.termination == Termination::stopped && !summary.why.empty();
   fmt::print(stderr, "brink: {}{} (t = {} s)\n", summary.termination_text(),
              stopped ? ": " + printable(summary.why) : "", summary.end_time);

@@ -1,3 +1,13 @@
+/// An experiment file is read in stages, each of which takes for granted that those before found no fault:
+///
+///     TOML           syntax; then keys and types, by the schema (ExperimentTable)
+///     axes           no option twice, not too many runs, the plot's axes and columns exist
+///     scenes         each base scene with the settings, then with every value of every axis in turn
+///     runs           the product of the axes, a key for each
+///
+/// All faults of a stage are told at once, each with its place in the experiment file, or in the scene.
+/// Values stay TOML text from here to `brink run --set`: what a run of the sweep reads is what the command
+/// that `--list` prints would read.
 #include "brink/scenes/sweep/experiment.h"
 
 #include <algorithm>
@@ -27,19 +37,24 @@ struct Value {
   std::string toml;  ///< for an override
   Where where;
 };
+/// An axis with its values in the file's order; `path` is empty for the scenes alone.
 struct Axis {
   std::string name, path;
   std::vector<Value> values;
   Where where;
 };
+/// One key of [set].
 struct Setting {
   std::string path;
   Value value;
 };
+/// What [plot] says; plot_of() chooses what it leaves out.
 struct PlotTable {
   Given<std::string> x, series;
   Given<std::vector<std::string>> y;
 };
+/// The file as it is read. The short names of axes (policies, orders, seeds) have places of their own, so
+/// that all_axes() can put them in one order, whatever the file's is.
 struct ExperimentTable {
   std::string title;
   Axis scenes{"scene", "", {}, {}};
@@ -77,12 +92,14 @@ std::string toml_text(const toml::node& node) {
   return out.str();
 }
 
+/// A string is shown without its quotes; as an override it keeps them, or "1" would become a number.
 Value value_of(const toml::node& node, const TomlDocument& doc) {
   const auto* string = node.as_string();
   const std::string toml = string ? Json(string->get()).dump() : toml_text(node);
   return {string ? string->get() : toml, toml, doc.where(node)};
 }
 
+/// A fault in the words that all readers of TOML use: key, what is wrong, what was given, what is allowed.
 void fault(TomlDocument& doc, const Where& where, const std::string& key, const std::string& wrong,
            const std::string& what_was_given, const std::string& allowed) {
   doc.faults().add(where, fault_text(key, wrong, what_was_given, allowed));
@@ -107,6 +124,8 @@ std::vector<Value> values_of(const toml::node& node, TomlDocument& doc, const st
   return values;
 }
 
+/// Reads an array into a new axis of `member`. Without values there is no axis; why has been told as a
+/// fault, and then nothing runs.
 std::function<void(const toml::node&, TomlDocument&, ExperimentTable&)> axis_reader(
     std::vector<Axis> ExperimentTable::*member, const std::string& key, const std::string& name,
     const std::string& path) {
@@ -116,6 +135,7 @@ std::function<void(const toml::node&, TomlDocument&, ExperimentTable&)> axis_rea
   };
 }
 
+/// A count n stands for the seeds 1 to n; an array is an axis as any other.
 void read_seeds(const toml::node& node, TomlDocument& doc, ExperimentTable& out) {
   if (!node.is_integer()) return axis_reader(&ExperimentTable::seeds, "seeds", "seed", kSeed)(node, doc, out);
   const std::int64_t count = node.as_integer()->get();
@@ -136,11 +156,13 @@ void read_scenes(const toml::node& node, TomlDocument& doc, ExperimentTable& out
     out.scenes.values = {value_of(*one, doc)};
   else
     out.scenes.values = values_of(node, doc, "scenes");
+  // A set: two files of one name in different folders have one stem, and would be one value in every table.
   std::set<std::string> stems;
   for (Value& scene : out.scenes.values) {
     if (!scene.toml.starts_with('"'))
       fault(doc, scene.where, "scenes", "wrong type", scene.toml,
             "the path of a scene file, from the experiment's folder");
+    // A path is no override: it needs no quotes.
     scene.toml = scene.text;
     stems.insert(fs::path(scene.toml).stem().string());
   }
@@ -162,6 +184,7 @@ void walk(const toml::table& table, const std::string& path, const Leaf& is_leaf
   }
 }
 
+/// Before in the file.
 bool earlier(const Where& a, const Where& b) {
   return std::tie(a.line, a.column) < std::tie(b.line, b.column);
 }
@@ -183,6 +206,7 @@ void read_axes(const toml::node& node, TomlDocument& doc, ExperimentTable& out) 
             [](const Axis& a, const Axis& b) { return earlier(a.where, b.where); });
 }
 
+/// As read_axes(), but every leaf is one value.
 void read_settings(const toml::node& node, TomlDocument& doc, ExperimentTable& out) {
   const toml::table* table = node.as_table();
   if (table == nullptr)
@@ -198,6 +222,7 @@ void read_settings(const toml::node& node, TomlDocument& doc, ExperimentTable& o
             [](const Setting& a, const Setting& b) { return earlier(a.value.where, b.value.where); });
 }
 
+/// Made once: `brink list` and every experiment share it.
 const Schema<PlotTable>& plot_schema() {
   static const Schema<PlotTable> schema =
       Schema<PlotTable>("plot")
@@ -208,6 +233,8 @@ const Schema<PlotTable>& plot_schema() {
   return schema;
 }
 
+/// The keys of an experiment file. Axes and settings are read by functions of their own, since their keys
+/// are those of another file.
 const Schema<ExperimentTable>& experiment_schema() {
   using T = ExperimentTable;
   static const Schema<T> schema =
@@ -249,6 +276,8 @@ void check_paths(const std::vector<Axis>& axes, const ExperimentTable& table, To
     for (std::size_t j = 1; j < k; ++j)
       if (axes[j].path == axes[k].path)
         fault(doc, axes[k].where, "axes", "twice the same option", axes[k].path, "each option on one axis");
+  // A setting beside an axis of the same option would be overruled by it without a word: the later of two
+  // overrides of a key holds.
   for (const Setting& s : table.settings)
     for (const Axis& axis : axes)
       if (axis.path == s.path)
@@ -256,6 +285,7 @@ void check_paths(const std::vector<Axis>& axes, const ExperimentTable& table, To
               "options that are not on an axis");
 }
 
+/// Refuses a product that memory and people would not stand.
 void check_count(const std::vector<Axis>& axes, TomlDocument& doc) {
   // As a number that cannot overflow.
   double runs = 1.0;
@@ -267,8 +297,10 @@ void check_count(const std::vector<Axis>& axes, TomlDocument& doc) {
 
 /// The same plot with what was left out chosen, or faults.
 SweepPlot plot_of(const PlotTable& table, const std::vector<Axis>& axes, TomlDocument& doc) {
+  // `useful`: axes that a plot is worth having along, numbers before words, in the file's order.
   std::vector<std::string> names, useful;
   for (const Axis& axis : axes) names.push_back(axis.name);
+  // All values, or none: an axis of numbers and words is one of words.
   const auto numeric = [](const Axis& axis) {
     return std::all_of(axis.values.begin(), axis.values.end(),
                        [](const Value& v) { return as_number(v.text).has_value(); });
@@ -287,6 +319,7 @@ SweepPlot plot_of(const PlotTable& table, const std::vector<Axis>& axes, TomlDoc
   };
   SweepPlot plot;
   plot.x = chosen(table.x, "plot.x", useful.empty() ? names.front() : useful.front());
+  // The series is the next one of use: with x as series every line would be a point.
   std::erase(useful, plot.x);
   plot.series = chosen(table.series, "plot.series", useful.empty() ? "" : useful.front());
   plot.y = table.y.given ? table.y.value : std::vector<std::string>{"wall_seconds", "energy_drift"};
@@ -297,6 +330,7 @@ SweepPlot plot_of(const PlotTable& table, const std::vector<Axis>& axes, TomlDoc
   return plot;
 }
 
+/// As `brink run --set` takes it.
 std::string override_text(const std::string& path, const Value& value) { return path + "=" + value.toml; }
 
 /// Loads base scenes with one value of each axis after another; says of a fault in an override where the
@@ -321,6 +355,7 @@ class SceneTrial {
       const std::size_t before = doc_.faults().size();
       for (const Setting& s : settings_) tell(faults, s.path, s.value.where, "set." + s.path);
       tell_own(faults, (folder_ / scene.toml).string());
+      // Faults of neither kind would be lost, and the experiment would look sound.
       if (doc_.faults().size() == before) throw;
     } catch (const IoError& e) {
       doc_.faults().add(scene.where, std::string("scenes: ") + e.what());
@@ -330,6 +365,7 @@ class SceneTrial {
 
   /// Reads a seed alone, without the scene: there may be a million of them.
   void seed(const Axis& axis, const Value& value) {
+    // An empty scene file with this one override: its key is read as in a whole scene.
     TomlDocument alone("", {override_text(axis.path, value)});
     FileTable file;
     file_schema().read(alone.root(), {1, 1}, alone, file);
@@ -355,6 +391,8 @@ class SceneTrial {
   }
 
  private:
+  /// Hands on those faults that the override of `path` has, with the place where the experiment asked for
+  /// it.
   void tell(const SceneFaults& faults, const std::string& path, const Where& where, const std::string& what) {
     // As FaultList::add() begins the message of a fault in an override, made printable.
     const std::string mark = printable("--set " + path + ": ");
@@ -385,6 +423,7 @@ std::vector<std::uint64_t> try_scenes(const std::vector<Axis>& axes, const Exper
     if (axis.path == kSeed)
       for (const Value& value : axis.values) trial.seed(axis, value);
   for (const Value& scene : axes.front().values) {
+    // Of a base scene with faults nothing more is tried: each value would repeat them.
     const auto identity = trial.base(scene);
     if (!identity) continue;
     identities.push_back(*identity);
@@ -395,6 +434,8 @@ std::vector<std::uint64_t> try_scenes(const std::vector<Axis>& axes, const Exper
   return identities;
 }
 
+/// What a run is known by in the database: content, options, ends and version. Titles and the names of axes
+/// have no part in it: a run that two experiments ask for by the same settings and axes is made once.
 std::string key_of(std::uint64_t identity, const SweepRun& run, const ExperimentTable& table) {
   StateHash hash;
   hash.add(identity);
@@ -407,6 +448,7 @@ std::string key_of(std::uint64_t identity, const SweepRun& run, const Experiment
   return hash.text();
 }
 
+/// Every combination, the last axis varying fastest. @pre every axis has a value, and one identity a scene.
 std::vector<SweepRun> product(const std::vector<Axis>& axes, const ExperimentTable& table,
                               const fs::path& folder, const std::vector<std::uint64_t>& identities) {
   std::vector<SweepRun> runs;
@@ -414,6 +456,7 @@ std::vector<SweepRun> product(const std::vector<Axis>& axes, const ExperimentTab
   for (;;) {
     SweepRun run;
     run.scene = folder / axes.front().values[at.front()].toml;
+    // Settings first, then axes in their order: so `--list` prints them, and the key depends on this order.
     for (const Setting& s : table.settings) run.overrides.push_back(override_text(s.path, s.value));
     for (std::size_t k = 0; k < axes.size(); ++k) {
       const Value& value = axes[k].values[at[k]];
@@ -445,6 +488,7 @@ Experiment load_experiment(const fs::path& file) {
   stop_on_faults();
   ExperimentTable table;
   experiment_schema().read(doc.root(), {1, 1}, doc, table);
+  // Asked of the root and not of the axis, which is empty after a fault in it, too.
   if (!doc.root().contains("scenes"))
     fault(doc, {1, 1}, "scenes", "missing", "nothing", "a scene file or an array of them");
   stop_on_faults();
@@ -454,6 +498,7 @@ Experiment load_experiment(const fs::path& file) {
   Experiment experiment;
   experiment.plot = plot_of(table.plot, axes, doc);
   stop_on_faults();
+  // Reads every base scene anew for each value of each axis, but for seeds.
   const auto identities = try_scenes(axes, table, file.parent_path(), doc);
   stop_on_faults();
   experiment.path = file;

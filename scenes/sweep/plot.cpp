@@ -1,3 +1,5 @@
+// A plot has two axes of the experiment, x and series. All others are gathered: what differs in them alone
+// becomes one point with its range.
 #include "brink/scenes/sweep/plot.h"
 
 #include <algorithm>
@@ -23,6 +25,8 @@ ChartAxis x_axis_of(const SweepAxis& axis) {
   return {axis.name, numbers ? std::vector<std::string>() : axis.values, false, {}};
 }
 
+/// One column over x, a line for each value of the series axis. Of energy_drift the magnitude is shown,
+/// since its sign would keep the axis from being logarithmic.
 ChartPanel panel_of(const Experiment& experiment, const SweepResults& results, const std::string& column) {
   const SweepAxis& axis = experiment.axes[axis_named(experiment, experiment.plot.x)];
   ChartPanel panel{column == "energy_drift" ? "|energy_drift|" : column, "", x_axis_of(axis), {}, {}};
@@ -50,6 +54,7 @@ std::vector<std::vector<SweepPoint>> sweep_lines(const Experiment& experiment, c
   // By series and place along x; several seeds meet in one place.
   std::vector<std::vector<std::vector<double>>> found(names.size(),
                                                       std::vector<std::vector<double>>(values.size()));
+  // @pre v is one of them, as the values of runs are those of axes.
   const auto index = [](const std::vector<std::string>& all, const std::string& v) {
     return static_cast<std::size_t>(std::find(all.begin(), all.end(), v) - all.begin());
   };
@@ -66,6 +71,7 @@ std::vector<std::vector<SweepPoint>> sweep_lines(const Experiment& experiment, c
   for (std::size_t s = 0; s < names.size(); ++s)
     for (std::size_t k = 0; k < values.size(); ++k)
       if (const auto& v = found[s][k]; !v.empty())
+        // Where no run is done there is no point, and the line goes on to the next.
         lines[s].push_back(
             {k, *std::min_element(v.begin(), v.end()), median(v), *std::max_element(v.begin(), v.end())});
   return lines;
@@ -74,6 +80,7 @@ std::vector<std::vector<SweepPoint>> sweep_lines(const Experiment& experiment, c
 Chart sweep_chart(const Experiment& experiment, const SweepResults& results) {
   Chart chart{experiment.title, "median and range", {}, {}};
   const std::size_t series = axis_named(experiment, experiment.plot.series);
+  // One series without a name, which the legend leaves out.
   if (series == experiment.axes.size()) {
     chart.series.emplace_back();
   } else {

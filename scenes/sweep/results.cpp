@@ -1,3 +1,5 @@
+// Columns are named in one place, for_each_number(): the database, the CSV file, the plot and the table ask
+// by these names.
 #include "brink/scenes/sweep/results.h"
 
 #include <fmt/format.h>
@@ -66,6 +68,7 @@ SweepResult sweep_failure(const std::string& why) {
   result.termination = "failed: " + why;
   // A line break would part a row of the table.
   std::replace(result.termination.begin(), result.termination.end(), '\n', ' ');
+  // Every column has an entry, as of a run that was made: readers ask by at().
   for (const std::string& name : sweep_columns()) result.numbers[name] = std::nan("");
   return result;
 }

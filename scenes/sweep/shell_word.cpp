@@ -16,6 +16,7 @@ bool is_bare(std::string_view text) {
 }
 
 /// Octal escapes: always three digits, so that what follows is not taken for a part of them.
+/// Octal and not hexadecimal: how many digits belong to \x is not settled among shells.
 std::string dollar_quoted(std::string_view text) {
   std::string word = "$'";
   for (const char c : text) {
@@ -34,6 +35,7 @@ std::string dollar_quoted(std::string_view text) {
 
 std::string shell_word(std::string_view text) {
   if (is_bare(text)) return std::string(text);
+  // Something in it would act on a terminal or break the line.
   if (printable(text) != text) return dollar_quoted(text);
   // In single quotes nothing has a meaning but the quote itself: out, an escaped one, in again.
   std::string word = "'";

@@ -1,3 +1,12 @@
+/// How processes share a sweep without a server:
+///
+///     open      make the tables, register as a worker and lock its byte, add what runs are missing
+///     take      waiting -> running, with the worker's number; of two processes one succeeds
+///     finish    running -> done, with the numbers
+///     reclaim   running -> waiting, of workers whose byte is not locked any more
+///
+/// A process that is killed writes nothing. What tells of its end is its lock, which the system drops. So a
+/// run is lost to nobody, and the worst that can happen is that it is made again.
 #include "brink/scenes/sweep/store.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -24,6 +33,7 @@ namespace {
 constexpr int kLongestWait = 60'000;
 constexpr const char* kWhat = "results of a sweep";
 
+// No column for the numbers: make_tables() adds those, as it does to files of another version.
 constexpr const char* kTables = R"(
 CREATE TABLE IF NOT EXISTS worker (id INTEGER PRIMARY KEY AUTOINCREMENT, started TEXT);
 CREATE TABLE IF NOT EXISTS run (id INTEGER PRIMARY KEY, key TEXT UNIQUE, scene TEXT, settings TEXT, overrides TEXT,
@@ -45,21 +55,27 @@ class WorkerLocks {
   WorkerLocks& operator=(const WorkerLocks&) = delete;
 
   /// Waits until the byte is free.
+  /// A worker's own byte is always free, as numbers are given once; the opening's may be held by another
+  /// process.
   void hold(std::int64_t worker) const { set(worker, F_WRLCK); }
   void let_go(std::int64_t worker) const { set(worker, F_UNLCK); }
   /// @pre not this process's own worker.
   /// Its lock does not stand in its own way: it would be told as gone.
+  /// Asks for the lock without taking it: F_UNLCK in the answer says that it could be had. A failed call
+  /// counts as free.
   bool held_by_another(std::int64_t worker) const {
     struct flock lock = byte(worker, F_WRLCK);
     return ::fcntl(fd_, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
   }
 
  private:
+  /// Waits if it must. @throws IoError, as where the file system has no such locks.
   void set(std::int64_t worker, short type) const {
     struct flock lock = byte(worker, type);
     if (::fcntl(fd_, F_OFD_SETLKW, &lock) != 0)
       throw IoError(fmt::format("sweep.lock: byte {} cannot be locked: {}", worker, std::strerror(errno)));
   }
+  /// The one byte of a worker; it need not exist in the file, which stays empty.
   static struct flock byte(std::int64_t worker, short type) {
     struct flock lock {};
     lock.l_type = type;
@@ -71,6 +87,7 @@ class WorkerLocks {
   int fd_;
 };
 
+/// Axis and value of each, in the experiment's order, for questions in SQL (docs/sweep.md).
 std::string settings_json(const Experiment& experiment, const SweepRun& run) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   for (std::size_t k = 0; k < experiment.axes.size(); ++k) json[experiment.axes[k].name] = run.values[k];
@@ -80,6 +97,8 @@ std::string settings_json(const Experiment& experiment, const SweepRun& run) {
 }  // namespace
 
 // In this order: the lock file is opened before the database and closed after it.
+/// The open database. Calls of several threads come one after another (locked()); SQLite itself puts those
+/// of processes in order.
 struct SweepStore::Impl {
   fs::path file;
   WorkerLocks locks;
@@ -94,6 +113,8 @@ struct SweepStore::Impl {
     require_ours();
     locks.hold(kOpening);  // turning the write-ahead log on does not wait for others
     db.exec("PRAGMA journal_mode = WAL");
+    // With a write-ahead log NORMAL keeps the file whole through a crash of the machine. Its last rows may
+    // be missing then, and those runs are made again.
     db.exec("PRAGMA synchronous = NORMAL");
     locks.let_go(kOpening);
   }
@@ -110,6 +131,8 @@ struct SweepStore::Impl {
   // Another version may have more counters: their columns are added, and are NULL in rows of before.
   void make_tables() {
     db.exec(kTables);
+    // ALTER TABLE has no "IF NOT EXISTS": what is there is asked first. One transaction with the rest, so
+    // no other process adds the same column meanwhile.
     std::set<std::string> present;
     for (SQLite::Statement info(db, "SELECT name FROM pragma_table_info('run')"); info.executeStep();)
       present.insert(info.getColumn(0).getString());
@@ -124,6 +147,7 @@ struct SweepStore::Impl {
     locks.hold(worker);
   }
 
+  /// One row each, waiting. Up to kMostSweepRuns of them in one transaction: one statement, bound anew.
   void add_runs(const Experiment& experiment) {
     // What is there already, done or not, stays: keys are unique.
     SQLite::Statement insert(db,
@@ -139,6 +163,7 @@ struct SweepStore::Impl {
     }
   }
 
+  /// Runs f alone among this process's threads; what SQLite throws becomes an IoError that names the file.
   template <class F>
   auto locked(F&& f) {
     const std::lock_guard lock(mutex);
@@ -148,6 +173,7 @@ struct SweepStore::Impl {
   int reclaim() {
     // IMMEDIATE: two processes that reclaim at once would both read before either writes.
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    // Collected first: rows that a statement is still reading are not changed under it.
     std::vector<std::int64_t> gone;
     SQLite::Statement workers(db, "SELECT DISTINCT worker FROM run WHERE state = 'running'");
     while (workers.executeStep()) {
@@ -165,6 +191,8 @@ struct SweepStore::Impl {
     return freed;
   }
 
+  /// The row that `select` stands on: termination, state_hash, then sweep_columns() in their order.
+  /// @throws BadInput on a column of another type; reading() makes an IoError of it.
   static SweepResult row_of(SQLite::Statement& select) {
     // What stands in a column is checked, as the file may come from anywhere.
     SweepResult row;
@@ -184,6 +212,7 @@ struct SweepStore::Impl {
     return row;
   }
 
+  /// Of one run; nothing if it is not done. Leaves the statement ready for the next one.
   std::optional<SweepResult> result(SQLite::Statement& select, const SweepRun& run) {
     select.bind(1, run.key);
     std::optional<SweepResult> found;
@@ -198,12 +227,14 @@ SweepStore::SweepStore(const fs::path& dir, const Experiment& experiment) {
     impl_ = std::make_unique<Impl>(dir);
     // All in one transaction: a second process sees either nothing or a worker with its lock and runs.
     SQLite::Transaction transaction(impl_->db, SQLite::TransactionBehavior::IMMEDIATE);
+    // The worker's lock is taken before the commit: who sees its number in a row finds the byte locked.
     impl_->make_tables();
     impl_->add_worker();
     impl_->add_runs(experiment);
     transaction.commit();
   };
   guarded(dir / "sweep.db", open, kWhat);
+  // What processes that have died left behind is waiting again before anything is taken.
   reclaim();
 }
 
@@ -227,6 +258,7 @@ void SweepStore::finish(const SweepRun& run, const SweepResult& result) {
     SQLite::Statement update(impl_->db, "UPDATE run SET state = 'done', termination = ?, state_hash = ?" +
                                             columns + " WHERE key = ?");
     int at = 0;
+    // NaN is stored as NULL by SQLite, and read back as NaN by row_of().
     update.bind(++at, result.termination);
     update.bind(++at, result.state_hash);
     for (const std::string& name : sweep_columns()) update.bind(++at, result.numbers.at(name));

@@ -1,3 +1,6 @@
+/// Threads go through the list of runs by one shared counter; what each run is made by is settled in the
+/// store, where other processes take from the same list. So there is no queue, and no order to be kept: a
+/// result depends on its run alone.
 #include "brink/scenes/sweep/sweep.h"
 
 #include <fmt/format.h>
@@ -29,6 +32,7 @@ class Crew {
     made_ = 0;
     const auto cores = static_cast<std::size_t>(std::max(1U, std::thread::hardware_concurrency()));
     const std::size_t jobs = request_.jobs > 0 ? static_cast<std::size_t>(request_.jobs) : cores;
+    // No more threads than runs: each would find nothing to do.
     std::vector<std::thread> threads;
     for (std::size_t k = 0; k < std::min(jobs, experiment_.runs.size()); ++k)
       threads.emplace_back([this] { serve(); });
@@ -40,6 +44,8 @@ class Crew {
   bool stopped() const { return failed_ || (request_.stop && request_.stop()); }
 
  private:
+  /// One thread: takes what is next on the list, as long as there is something and nobody has asked to
+  /// stop.
   void serve() {
     try {
       for (std::size_t k = next_++; k < experiment_.runs.size() && !stopped(); k = next_++)
@@ -52,6 +58,7 @@ class Crew {
     }
   }
 
+  /// Makes a run that has been taken. Whatever happens it is finished or given back when this returns.
   void make(const SweepRun& run) {
     try {
       const SweepResult result = make_sweep_run(experiment_, run, [this] { return stopped(); });
@@ -79,6 +86,7 @@ class Crew {
   const Experiment& experiment_;
   SweepStore& store_;
   const SweepRequest& request_;
+  // next_ may run past the end by one for each thread.
   std::atomic<std::size_t> next_ = 0, made_ = 0;
   std::atomic<bool> failed_ = false;
   std::mutex mutex_;
@@ -101,6 +109,8 @@ SweepResult make_sweep_run(const Experiment& experiment, const SweepRun& run,
     // Nothing but the summary is kept of a run.
     options.checkpoint_seconds = -1.0;
     options.record_events = false;
+    // Asked by the kernel now and then, not at every event: a run may be late by a little before it is
+    // stopped.
     options.progress = [&](double, std::uint64_t) {
       const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
       late = experiment.seconds_limit > 0.0 && seconds > experiment.seconds_limit;

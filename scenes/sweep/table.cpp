@@ -1,3 +1,5 @@
+/// Three ways to read results: a table with a line a setting, in which seeds are summed up by medians; a
+/// check that exact policies agree bit for bit; and CSV with everything, for programs.
 #include "brink/scenes/sweep/table.h"
 
 #include <fmt/format.h>
@@ -32,6 +34,8 @@ std::string endings(const SweepGroup& group, const SweepResults& results) {
   return text;
 }
 
+/// The one state hash of the group's runs, how many there are if they differ, or "-" where none has one.
+/// Seeds make them differ, so of several seeds a count is what is to be expected.
 std::string hash_text(const SweepGroup& group, const SweepResults& results) {
   std::set<std::string> hashes;
   for (const std::size_t k : group.runs) hashes.insert(results[k]->state_hash);
@@ -55,6 +59,7 @@ std::string aligned(const std::vector<std::vector<std::string>>& lines) {
     std::string row;
     for (std::size_t k = 0; k < line.size(); ++k)
       row += "  " + line[k] + std::string(widths[k] - width(line[k]), ' ');
+    // Nothing is padded behind the last word: lines can be compared and copied.
     row.erase(row.find_last_not_of(' ') + 1);
     text += row + '\n';
   }
@@ -74,6 +79,7 @@ std::vector<std::size_t> telling_axes(const Experiment& experiment) {
 /// Those that are to give the same events: not known to be approximate.
 /// A policy that this program does not have is taken to be exact: then a difference is told.
 bool exact(const std::string& policy) {
+  // Asked of a policy itself: one that the program has added knows what it is, too.
   for (const Choice& choice : policies())
     if (choice.name == policy) return !make_policy(policy)->approximate();
   return true;
@@ -87,6 +93,7 @@ std::string duration_text(double seconds) {
 }
 
 double median(std::vector<double> values) {
+  // A run that could not start has no numbers: it counts among the endings and not here.
   std::erase_if(values, [](double x) { return std::isnan(x); });
   if (values.empty()) return std::nan("");
   // The lower middle: a value that some run has, where a mean of two would be nobody's.
@@ -96,6 +103,7 @@ double median(std::vector<double> values) {
 }
 
 std::vector<SweepGroup> sweep_groups(const Experiment& experiment, const SweepResults& results) {
+  // Groups keep the order in which their first run comes; the map only finds them again.
   std::map<std::vector<std::string>, std::size_t> index;
   std::vector<SweepGroup> groups;
   for (std::size_t k = 0; k < experiment.runs.size(); ++k) {
@@ -139,6 +147,7 @@ std::string sweep_table(const Experiment& experiment, const SweepResults& result
 }
 
 std::string policy_agreement(const Experiment& experiment, const SweepResults& results) {
+  // The axis of policies, if there is one: agreement is among its values.
   std::size_t policy = 0;
   while (policy < experiment.axes.size() && experiment.axes[policy].path != "solver.policy") ++policy;
   if (policy == experiment.axes.size()) return "";
@@ -163,6 +172,7 @@ std::string policy_agreement(const Experiment& experiment, const SweepResults& r
     std::string where;
     for (const std::string& value : rest)
       if (!value.empty()) where += (where.empty() ? "" : ", ") + printable(value);
+    // By the values of all other axes, the seed's too: with them the runs can be made again one by one.
     others += "\n  not the same: " + where;
   }
   return fmt::format("same bits from all exact policies: {} of {}{}", same, hashes.size(), others);
@@ -177,11 +187,13 @@ void write_sweep_csv(const std::filesystem::path& file, const Experiment& experi
   out << '\n';
   for (std::size_t k = 0; k < experiment.runs.size(); ++k) {
     for (const std::string& value : experiment.runs[k].values) out << csv_cell(value) << ',';
+    // Two cells: of a run that waits the hash is empty, so that every line has the same number.
     out << (results[k] ? csv_cell(results[k]->termination) + ',' + csv_cell(results[k]->state_hash)
                        : "waiting,");
     for (const std::string& name : sweep_columns()) {
       out << ',';
       if (results[k] && !std::isnan(results[k]->numbers.at(name)))
+        // The shortest text that reads back as the same double. Where there is no number the cell is empty.
         out << fmt::format("{}", results[k]->numbers.at(name));
     }
     out << '\n';

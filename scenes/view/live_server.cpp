@@ -1,3 +1,11 @@
+/// Two threads meet here: the one that runs asks paused() and tells of events, the server's own answers the
+/// page. They share two atomics, and the run file, which SQLite lets one write while another reads.
+///
+/// What the run is to do is one of three states:
+///
+///     on              /go; the run goes
+///     to_next_event   /step; the run goes, and the next event makes it paused
+///     paused          /pause; the run waits
 #include "brink/scenes/view/live_server.h"
 
 #include <fmt/format.h>
@@ -25,9 +33,11 @@ struct LiveServer::Impl {
   std::mutex reading;  // one reader of the run file at a time
 
   explicit Impl(std::filesystem::path file) : run_file(std::move(file)) {
+    // Before any route is looked at: nothing is answered to others, not even that a path does not exist.
     server.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
       return answers(request, response);
     });
+    // The page comes with the data of the moment: it shows something before it asks for more.
     server.Get("/", [this](const httplib::Request&, httplib::Response& response) {
       reply(response, "text/html; charset=utf-8", [&] { return replay_page_text(run_file, {}, true); });
     });
@@ -35,6 +45,7 @@ struct LiveServer::Impl {
     server.Get("/data", [this](const httplib::Request&, httplib::Response& response) {
       reply(response, "application/json", [&] { return replay_page_data(run_file, {}, !ended); });
     });
+    // Orders are POST: a link or an image of another page can make a GET, but never these.
     const auto ask = [this](const char* path, Going how) {
       server.Post(path, [this, how](const httplib::Request&, httplib::Response& response) {
         going = how;
@@ -71,6 +82,8 @@ struct LiveServer::Impl {
     return httplib::Server::HandlerResponse::Handled;
   }
 
+  /// Answers with what `text` makes. It reads the run file, so one request at a time; what goes wrong is
+  /// told with status 503, and the page asks again.
   template <class Text>
   void reply(httplib::Response& response, const char* kind, Text&& text) {
     const std::lock_guard lock(reading);

@@ -10,6 +10,8 @@
 
 namespace brink {
 
+// Scripts read arrays in the order of the machine that shows the page, and hardly any that has a browser is
+// not little-endian.
 static_assert(std::endian::native == std::endian::little, "pages hold little-endian numbers");
 
 template <class T>
@@ -26,6 +28,8 @@ template void PageNumbers::take(const std::string&, const char*, std::span<const
 template void PageNumbers::take(const std::string&, const char*, std::span<const std::int32_t>);
 
 std::string PageNumbers::text() const {
+  // In memory as a whole: ReplayLimits keep the numbers of a page within bounds. Level 6 is zlib's own
+  // choice between time and size.
   uLongf size = compressBound(bytes_.size());
   std::vector<unsigned char> packed(size);
   if (compress2(packed.data(), &size, bytes_.data(), bytes_.size(), 6) != Z_OK)

@@ -1,3 +1,11 @@
+/// A page is made of texts of Brink's own (page_assets.h) and of two of the run:
+///
+///     about      JSON: what there is (bodies, sites, shapes, springs), names of columns and kinds, facts
+///     numbers    columns (PageNumbers): times, states, events, contacts, the trace, curves
+///
+/// A column holds one number of every row, as of every frame and body; about["arrays"] says in which order
+/// they follow each other, and motion.js takes them apart. What is thinned or cut off is said in a notice
+/// at the page's top. A live page asks for both again as the run goes on, and gets them whole.
 #include "brink/scenes/view/replay_page.h"
 
 #include <fmt/format.h>
@@ -32,15 +40,19 @@ using Json = nlohmann::ordered_json;
 using Column = std::vector<double>;
 
 /// The page knows kinds by their place in this list.
+/// The page gets their names in this order, too (about["kinds"]), and knows no others.
 constexpr EventKind kKinds[] = {
     EventKind::collision, EventKind::zeno, EventKind::group, EventKind::undecided, EventKind::persist,
     EventKind::sleep,     EventKind::wake, EventKind::stick, EventKind::slip,      EventKind::lift};
 
+/// "#rrggbb", as CSS and canvases take it.
 std::string hex(const draw::Color& c) { return fmt::format("#{:06x}", c.argb() & 0xffffff); }
+/// Red, green and blue 0..1, as WebGL takes them.
 Json shares(const draw::Color& c) { return Json::array({c.red, c.green, c.blue}); }
 Json pair(const Vec2& v) { return Json::array({v.x(), v.y()}); }
 
 /// Columns of states, one after another: x, y, angle, vx, vy, omega.
+/// Rows are frames times things, things within a frame by id: the page finds a state by frame * count + id.
 class StateColumns {
  public:
   void add(const BodyState& s) {
@@ -48,6 +60,7 @@ class StateColumns {
                              s.twist.velocity.x(), s.twist.velocity.y(), s.twist.omega};
     for (int c = 0; c < 6; ++c) columns_[c].push_back(values[c]);
   }
+  /// Names are those of COLUMNS in motion.js, behind a prefix.
   void put(PageNumbers& to, const std::string& prefix) const {
     const char* const names[] = {"x", "y", "angle", "vx", "vy", "omega"};
     for (int c = 0; c < 6; ++c) to.add(prefix + names[c], columns_[c]);
@@ -87,12 +100,16 @@ class ReplayPage {
       : run_(file), limits_(limits), world_(run_.world()), palette_(world_), curves_(world_, run_) {}
 
   /// @pre gathered.
+  /// The whole page as HTML.
   std::string page() const { return filled(); }
+  /// What a live page asks for. Names that are no UTF-8 are mended, not refused: a run must be seen.
   std::string data() const {
     return Json{{"about", about_}, {"numbers", numbers_.text()}}.dump(-1, ' ', false,
                                                                       Json::error_handler_t::replace);
   }
 
+  /// Reads the run file and fills `about` and the numbers. Frames come before events: a curve counts
+  /// collisions between frames that it has (RunCurves).
   void gather(bool live) {
     about_["live"] = live;
     frames();
@@ -108,6 +125,7 @@ class ReplayPage {
  private:
   // -- numbers --
 
+  /// Times and states of frames, of sites that move as well, and what the curves take from each frame.
   void frames() {
     const auto bodies = static_cast<std::int64_t>(world_.bodies.size());
     const std::int64_t count = run_.frame_count();
@@ -125,6 +143,7 @@ class ReplayPage {
       times.push_back(f.t);
       for (const BodyState& s : f.states) states.add(s);
       for (SiteMotion& m : moving) site_states.add(site_at(m, f.t));
+      // Frames that are thinned out are not in the curves either.
       curves_.add(f);
     });
     numbers_.add("frame_t", times);
@@ -132,6 +151,8 @@ class ReplayPage {
     site_states.put(numbers_, "site_");
   }
 
+  /// Where a moving site is at t [s], by its motion as in the run. A motion that fails before t has no
+  /// state: the site is shown at rest at the origin.
   static BodyState site_at(SiteMotion& site, double t) {
     if (site.extend(t).status != Extent::Status::reached) return {};
     const BodyState s = site.motion().state(t);
@@ -140,12 +161,16 @@ class ReplayPage {
     return s;
   }
 
+  /// Every event with both of its sides, in the file's order. Sides are what the page follows bodies by;
+  /// place, normal and impulses are drawn.
   void events() {
     std::vector<Event> all = run_.events();
     const auto limit = static_cast<std::size_t>(limits_.events);
     if (all.size() > limit) {
       notices_.push_back(
           fmt::format("the first {} events of {}: after them motions are interpolated", limit, all.size()));
+      // The first ones are kept: up to there the page is exact, where every second one would make it so
+      // nowhere.
       all.resize(limit);
     }
     Column t, px, py, nx, ny, closing, along, across, gap;
@@ -160,8 +185,10 @@ class ReplayPage {
       body.add(c.body, e.body);
       other.add(c.other_body, e.other);
       site.push_back(c.other_site);
+      // Files of before have events without states: then the cubic spans whole frames, across collisions.
       any_known = any_known || e.body.known;
       any_collision = any_collision || e.kind == EventKind::collision;
+      // In the world, not moved home: the page moves what it draws.
       px.push_back(c.point.x()), py.push_back(c.point.y());
       nx.push_back(c.normal.x()), ny.push_back(c.normal.y());
       closing.push_back(c.closing_speed), gap.push_back(c.gap);
@@ -186,6 +213,7 @@ class ReplayPage {
       numbers_.add(std::string("event_") + name, *column);
   }
 
+  /// Contacts that lasted, a row for each stretch with its force [N].
   void contacts() {
     Column from, to, x, y, force;
     std::vector<std::int32_t> body, other;
@@ -207,6 +235,7 @@ class ReplayPage {
   /// What the scheduler did; collisions are events.
   void trace() {
     std::vector<TraceMark> marks = read_trace(limits_.trace, static_cast<int>(world_.bodies.size()));
+    // Before the limit is looked at: collisions shall not use it up.
     std::erase_if(marks, [](const TraceMark& m) { return m.kind == TraceKind::collision; });
     const auto limit = static_cast<std::size_t>(limits_.marks);
     if (marks.size() > limit) {
@@ -232,6 +261,7 @@ class ReplayPage {
   // -- what they are of --
 
   // Equal outlines are one shape of the page: copies tell theirs by a number.
+  // Compared as JSON, which is what the page gets.
   int shape(const Outline& outline) {
     const std::string json = outline_to_json(outline);
     const auto [found, made] = shapes_.emplace(json, static_cast<int>(shapes_.size()));
@@ -239,6 +269,8 @@ class ReplayPage {
     return found->second;
   }
 
+  /// Bodies, sites and springs with their looks: the colours of `brink draw`, made here by the same
+  /// palette.
   void things() {
     about_["shapes"] = about_["bodies"] = about_["sites"] = about_["springs"] = Json::array();
     for (std::size_t k = 0; k < world_.bodies.size(); ++k) {
@@ -264,8 +296,11 @@ class ReplayPage {
                                    {"other_at", pair(s.other_at)}});
   }
 
+  /// What the page says of the run in words: title, ending, extent, the run file's meta, summary, options,
+  /// work.
   void facts() {
     const auto meta = run_.meta();
+    // Files of before lack some keys: these facts are left out.
     const auto of = [&](const char* key) { return meta.contains(key) ? meta.at(key) : std::string(); };
     // An extent of 0 has no scale.
     const Box extent = extent_of(run_, world_);
@@ -288,6 +323,7 @@ class ReplayPage {
     for (const char* key :
          {"scene", "brink_version", "termination", "end_time", "wall_seconds", "state_hash"})
       fact(key, of(key));
+    // Without exceptions: a run that goes on has no summary yet, and an empty text is no JSON.
     const Json summary = Json::parse(of("summary"), nullptr, false),
                options = Json::parse(of("options"), nullptr, false);
     // Numbers of the summary that meta tells, too, are shown once.
@@ -304,6 +340,7 @@ class ReplayPage {
 
   // -- the page --
 
+  /// The page's marks filled in. Each stands once in page.html.
   std::string filled() const {
     // "</script>" in a name would end the page's data; JSON reads \u003c as the same character.
     std::string about = about_.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -365,6 +402,7 @@ std::string replay_page_data(const std::filesystem::path& run_file, const Replay
 
 void write_replay_page(const std::filesystem::path& run_file, const std::filesystem::path& page,
                        const ReplayLimits& limits) {
+  // Made whole before the file is opened: a run that cannot be read leaves a page of before as it is.
   const std::string text = replay_page_text(run_file, limits, false);
   std::ofstream out(page, std::ios::binary);
   out << text << std::flush;

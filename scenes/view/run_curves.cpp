@@ -1,3 +1,6 @@
+/// Curves are made from what a run file has: states at frames, masses, springs and gravity. So they are
+/// sums over the recorded frames and not the run's own energies, and forces that the file has no table of
+/// (attraction, drag, thrust, formulas) are not in them.
 #include "brink/scenes/view/run_curves.h"
 
 #include <fmt/format.h>
@@ -21,6 +24,8 @@ Vec2 gravity_in(const std::string& options) {
 RunCurves::RunCurves(const World& world, const RunFile& run)
     : world_(&world), gravity_(gravity_in(run.meta("options").value_or("{}"))), springs_(run.springs()) {}
 
+/// Energy in all springs at a frame [J]. Their ends are where the bodies are, without periods: as
+/// core/world/energy.cpp takes them.
 double RunCurves::of_springs(const RunFile::Frame& f) const {
   double energy = 0.0;
   for (const RunFile::Spring& s : springs_) {
@@ -33,6 +38,7 @@ double RunCurves::of_springs(const RunFile::Frame& f) const {
   return energy;
 }
 
+/// A row of each curve: energies [J], momentum [N s], angular momentum about the origin [N m s].
 void RunCurves::add(const RunFile::Frame& f) {
   double kinetic = 0.0, lifted = 0.0, turning = 0.0;
   Vec2 momentum = Vec2::Zero();
@@ -40,8 +46,10 @@ void RunCurves::add(const RunFile::Frame& f) {
     const Body& b = world_->bodies[k];
     const auto& [pose, twist] = f.states[k];
     kinetic += 0.5 * (b.mass * twist.velocity.squaredNorm() + b.inertia * twist.omega * twist.omega);
+    // -m g.x: zero at the origin, whatever the direction of gravity.
     lifted -= b.mass * gravity_.dot(pose.position);
     momentum += b.mass * twist.velocity;
+    // Of the centre of mass about the origin, and the body's own.
     turning += b.mass * cross(pose.position, twist.velocity) + b.inertia * twist.omega;
   }
   const double sprung = of_springs(f);
@@ -52,12 +60,14 @@ void RunCurves::add(const RunFile::Frame& f) {
   total_.push_back(kinetic + lifted + sprung);
   px_.push_back(momentum.x()), py_.push_back(momentum.y());
   turning_.push_back(turning);
+  // Filled by the events of the interval that begins here; that of the last frame stays 0.
   collisions_.push_back(0.0);
 }
 
 void RunCurves::add(const Event& e) {
   // Collisions of an interval of frames are told as a rate, at its left end.
   if (e.kind != EventKind::collision || t_.size() < 2) return;
+  // The first frame later than the event ends its interval.
   const auto after = std::upper_bound(t_.begin(), t_.end(), e.contact.time);
   // An event at the last frame's time belongs to the last interval.
   const auto k =
@@ -83,6 +93,7 @@ void RunCurves::put(PageNumbers& to, nlohmann::ordered_json& about) const {
   };
   // One frame makes no curve.
   if (t_.size() < 2) return;
+  // What the world does not have has no curve: a line at 0 would only take room.
   std::vector<std::pair<const char*, const std::vector<double>*>> energies{{"kinetic", &kinetic_}};
   if (!gravity_.isZero(0.0)) energies.emplace_back("of gravity", &of_gravity_);
   if (!springs_.empty()) energies.emplace_back("of springs", &of_springs_);
