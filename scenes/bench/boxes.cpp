@@ -1,6 +1,6 @@
 /// The meeting is looked for in steps of kLook, then by bisection on whether the boxes are apart. It shares
 /// no code with Brink: gaps are of corners against boxes in their frames, the impulse is written out. What
-/// is missed is a contact shorter than a step, which two boxes that come together at some m/s do not have.
+/// is missed is a contact that is over within a step.
 #include "brink/scenes/bench/boxes.h"
 
 #include <cmath>

@@ -23,6 +23,7 @@ struct Classic {
   std::string primitives = "exact", readback = "window", policy = "global_backup";
 };
 
+/// A row of the table with its place in the sweep, which Row does not know.
 struct ClassicRow {
   Classic at;
   Row row;
@@ -35,6 +36,8 @@ constexpr int kResolutions[] = {16, 48, 144};
 constexpr double kSteps[] = {0.01, 0.002};
 
 /// The same problem up to an earlier end.
+/// Errors that are measured at `until` and not at the problem's own end are of another size: the heading
+/// says so.
 Problem shortened(Problem problem, double until) {
   if (until < problem.until) problem.error_of += fmt::format(", in the first {:g} s", until);
   problem.until = until;
@@ -63,6 +66,7 @@ Problem sampled(Problem problem, double spacing) {
 }
 
 /// Collisions after which a run has gone astray: a body caught in a wall rattles there for ever.
+/// Five times what is expected leaves room for a contact that is met twice; 20 for problems with few.
 std::uint64_t most_collisions(const Problem& problem) { return 20 + 5 * problem.hits.size(); }
 
 /// True if the run did not reach its end, as where it was stopped at most_collisions().
@@ -70,6 +74,7 @@ bool astray(const Row& row) { return row.summary.termination != Termination::rea
 
 /// One run of the classic detector, not repeated: its settings are many.
 ClassicRow measure_at(const Problem& problem, const Classic& at, const std::string& series) {
+  // Approximate: it may miss contacts, and of its ending nothing is asked.
   Setting setting{
       series, fmt::format("1/{:g} {} px {:g} s", 1.0 / at.spacing, at.resolution, at.step), true, {}};
   setting.options.detector = "depth";
@@ -184,7 +189,7 @@ std::string missed_text(const Problem& problem, const std::vector<ClassicRow>& r
 
 }  // namespace
 
-// Some minutes of one core, nearly all of it in drawing pictures (docs/classic.md).
+// Some minutes of one core (docs/classic.md).
 bool run_classic(const std::filesystem::path& folder) {
   std::vector<ClassicRow> rows;
   std::vector<Problem> all = classic_problems();

@@ -20,6 +20,7 @@ namespace {
 /// `pose` is the ground's; the body has mass 1 kg and begins at `start`.
 World world_of(double friction, const Shape& ground, const Pose& pose, const Shape& shape,
                const BodyState& start) {
+  // Restitution 0: what bounces would add its own error to that of the mode.
   World world;
   world.gravity = {0.0, -kGravity};
   world.materials[0].restitution = 0.0;
@@ -37,8 +38,8 @@ World world_of(double friction, const Shape& ground, const Pose& pose, const Sha
 }
 
 /// A disc that rolls in a bowl is a pendulum: (1 + 1/2)(R - r) phi'' = -g sin phi.
-// Rolling r |omega| = (R - r) |phi'|, so the kinetic energy is (1 + 1/2) m (R - r)^2 phi'^2 / 2 with the
-// disc's inertia m r^2 / 2. Friction 1 keeps it from slipping: it asks for tan(60 deg) / 3 = 0.58 at most.
+/// Rolling r |omega| = (R - r) |phi'|, so the kinetic energy is (1 + 1/2) m (R - r)^2 phi'^2 / 2 with the
+/// disc's inertia m r^2 / 2. Friction 1 keeps it from slipping: it asks for tan(60 deg) / 3 = 0.58 at most.
 Problem rolling_in_a_bowl() {
   const double R = 2.0, r = 0.25, from = std::numbers::pi / 3, until = 5.0;
   const double k = std::sin(from / 2), rate = std::sqrt(2.0 / 3 * kGravity / (R - r));

@@ -19,7 +19,7 @@ std::string seconds_text(double seconds) {
   return fmt::format("{:g} {}", std::pow(10.0, exponent + 9 - 3 * unit), units[unit]);
 }
 
-// A tick's value is a power taken of its exponent, and may be a rounding above the least error.
+/// A tick's value is a power taken of its exponent, and may be a rounding above the least error.
 /// A decade of errors; the least one stands for "none".
 std::string error_text(double error) {
   return error <= 1.0001 * kLeastError ? "none"
@@ -77,8 +77,7 @@ class PlotMaker {
     const auto found =
         std::find_if(lines.begin(), lines.end(), [&](const ChartLine& l) { return l.series == series; });
     if (found != lines.end()) return *found;
-    // Series with looks are the first ones (constructor); those of before the first without one know how
-    // they are joined.
+    // Series with looks come first (constructor), so their indices are those of looks_; others are joined.
     lines.push_back({series, {}, series >= looks_.size() || looks_[series].joined});
     return lines.back();
   }

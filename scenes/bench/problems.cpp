@@ -51,7 +51,7 @@ World ball_over_floor(double height, double radius, double restitution) {
 }
 
 /// Impacts taken in order. One that never came is late by what was left of the run, at least.
-// Impacts beyond those that are known do not count here.
+/// Impacts beyond those that are known do not count here.
 double worst_impact_time(const Problem& problem, const Outcome& outcome) {
   double worst = 0.0;
   for (std::size_t k = 0; k < problem.hits.size(); ++k) {
@@ -137,6 +137,7 @@ Problem rectangle() {
   problem.error_of = "place at the end [m]";
   problem.until = until;
   add_body(problem.world, make_disc(radius), p, v);
+  // Around once counter-clockwise, each wall to the next corner.
   const Vec2 corners[] = {-half, {half.x(), -half.y()}, half, {-half.x(), half.y()}};
   for (int k = 0; k < 4; ++k) add_wall(problem.world, corners[k], corners[(k + 1) % 4]);
   // The centre runs between walls moved inward by the radius.
@@ -225,6 +226,7 @@ Problem two_boxes() {
   add_body(world, make_box(1.0, 0.5), {-2.0, 0.125}, {1.5, 0.0}, 0.3, 1.5);
   add_body(world, make_box(0.75, 0.75), {2.0, -0.125}, {-1.0, 0.0625}, 1.1, -0.75);
   // No closed form: the meeting is found in extended precision (boxes.h).
+  // The boxes' own masses and moments, as the world has them.
   const BoxMeeting meeting =
       meet(SpinningBox(world.bodies[0], 1.0, 0.5), SpinningBox(world.bodies[1], 0.75, 0.75), 4.0);
   const auto place_error = [meeting](const Problem&, const Outcome& o) {

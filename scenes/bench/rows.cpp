@@ -31,6 +31,7 @@ void print(const Row& row) {
   std::string line = fmt::format("  {:<14} {:<18} {:>10.1e} {:>10} {:>10} {:>7}  {:016x}", row.setting.series,
                                  row.setting.label, row.error, duration_text(row.wall_seconds),
                                  row.collisions, row.missed, row.summary.state_hash);
+  // What is wrong stands behind the numbers, so that columns stay where they are.
   if (!reached(row)) line += "  " + row.summary.termination_text();
   if (!row.same_hash) line += "  repeats differ in their bits";
   fmt::print("{}\n", !is_good(row) ? paint(stdout, Paint::bad, line) : line);

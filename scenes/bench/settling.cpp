@@ -20,6 +20,7 @@ constexpr double kSettled = 8.0;
 /// A bin of three walls, and bodies in a pile above it to fall; as a scene file, so that
 /// anybody can make it.
 Heap heap(std::string name, const std::string& shape, int count, double width) {
+  // Restitution 0: an engine that bounces would come to rest later for that alone.
   std::string text = fmt::format(
       "[world]\nduration = {}\ngravity = [0, -9.81]\nseed = 7\n[materials.default]\nrestitution = "
       "0\nfriction = 0.5\n",

@@ -61,6 +61,7 @@ Settled settle_with_box2d(const Heap& heap) {
     // Iterations for velocities and for positions, as its manual recommends.
     world.Step(static_cast<float>(kFrame), 8, 3);
     settled.cpu_seconds += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    // Overlaps are measured in double, by Brink's own outlines; places are floats.
     std::vector<Pose> poses;
     for (const b2Body* b : bodies) poses.push_back({{b->GetPosition().x, b->GetPosition().y}, b->GetAngle()});
     settled.overlap = std::max(settled.overlap, deepest_overlap(given, poses));

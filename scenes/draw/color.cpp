@@ -1,3 +1,6 @@
+// From OKLCH to sRGB: polar to Cartesian (OKLab), a linear map, cubes (cone responses), a linear map
+// (linear sRGB), the transfer function. Where the result is outside 0..1 chroma is taken back until it
+// fits.
 #include "brink/scenes/draw/color.h"
 
 #include <algorithm>
@@ -31,14 +34,14 @@ std::array<double, 3> linear_rgb(const Oklch& c, double chroma) {
   return linear_rgb(c.lightness, chroma * std::cos(hue), chroma * std::sin(hue));
 }
 
-// Roundings of the matrices take white and black a little beyond.
+/// Roundings of the matrices take white and black a little beyond.
 /// True if sRGB has the colour.
 bool displayable(const std::array<double, 3>& rgb) {
   return std::all_of(rgb.begin(), rgb.end(), [](double x) { return x >= -1e-6 && x <= 1.0 + 1e-6; });
 }
 
 /// "disc[3]" and "disc_3" belong to the group "disc".
-// First the brackets, then the digits: "disc_3[2]" is one of "disc", too. A name of digits alone stays.
+/// First the brackets, then the digits: "disc_3[2]" is one of "disc", too. A name of digits alone stays.
 std::string group_of(std::string name) {
   const auto copy = name.rfind('[');  // any name may end so
   if (copy != std::string::npos && name.back() == ']') name.erase(copy);
@@ -68,7 +71,7 @@ constexpr std::array<Oklch, 6> kMap{{{0.215, 0.075, 305.0},
                                      {0.94, 0.155, 108.0}}};
 
 /// Evenly spread in -1..1 for k = 0, 1, 2 ... (multiples of the golden ratio).
-// Half a turn is added so that the first member of a group has the group's own colour: spread(0) is 0.
+/// Half a turn is added so that the first member of a group has the group's own colour: spread(0) is 0.
 double spread(std::size_t k) {
   const double turns = 0.6180339887498949 * static_cast<double>(k) + 0.5;
   // Fractional parts of multiples of the golden ratio fill the circle without clusters,

@@ -14,8 +14,8 @@ constexpr double kThinnest = 0.12;              // [pixels]: thinner lines are n
 constexpr double kOnePlace = 1e-6;              // of a body's size: two corners that meet there press as one
 
 /// Those of one body at one place as one.
-// A box on a corner has a contact of each feature that meets there; two lines over each other would show
-// the wider alone, and not their sum. Contacts of one body are few, so all of them are compared.
+/// A box on a corner has a contact of each feature that meets there; two lines over each other would show
+/// the wider alone, and not their sum. Contacts of one body are few, so all of them are compared.
 std::vector<DrawnForce> merged(const Sheet& sheet) {
   std::vector<DrawnForce> out;
   std::vector<std::vector<std::size_t>> of_body(sheet.bodies.size());

@@ -11,7 +11,7 @@ namespace brink {
 namespace {
 
 /// Larger sites than this many times the bodies' surroundings are shown in part only.
-// A bin four times as large as its heap is seen whole; a floor without end is not.
+/// A bin four times as large as its heap is seen whole; a floor without end is not.
 constexpr double kWhole = 4.0;
 /// Sites farther than this many times the size of the bodies' box are not shown.
 constexpr double kFar = 20.0;
@@ -59,6 +59,9 @@ double longer_side(const Box& box) { return box.extent().maxCoeff(); }
 
 }  // namespace
 
+// The view grows in three steps: the bodies; the nearest point of every site that is not too far from them;
+// then of each such site all of it, or, where it is much larger than what there is so far, the part beside
+// it.
 Box automatic_view(const World& world, std::span<const BodyState> bodies, std::span<const Pose> sites) {
   std::vector<Box> whole;
   for (std::size_t k = 0; k < world.sites.size(); ++k)

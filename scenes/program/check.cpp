@@ -39,6 +39,7 @@ std::string other_name(const World& world, const Contact& c) {
 }
 
 /// Owner 0 is the contact's body, 1 the other.
+/// Sites that move are taken where they are at the start.
 PlacedOutline placed(const World& world, int body, int site) {
   if (body >= 0) return {world.bodies[body].outline.get(), world.bodies[body].initial.pose, 0};
   return {world.sites[site].outline.get(), told_pose(world.sites[site], 0.0), 1};

@@ -61,8 +61,7 @@ void add_run(CLI::App& program, int& status) {
   command->callback([arguments, &status] { status = run_command(*arguments); });
 }
 
-/// Everything but running: what a run would refuse at its start is told, and overlaps that it would not
-/// refuse, too.
+/// Everything but running: faults of the scene, the plan, and overlaps at the start, however deep.
 void add_check(CLI::App& program, int& status) {
   auto arguments = std::make_shared<CheckArguments>();
   CLI::App* command = program.add_subcommand("check", "Validate a scene and print the plan; runs nothing");
@@ -145,7 +144,7 @@ void add_view(CLI::App& program, int& status) {
   command->callback([arguments, &status] { status = view_command(*arguments); });
 }
 
-/// The defaults make a film that plays anywhere at the pace of the run.
+/// By default a second of the film is a second of the run, drawn without cells.
 void add_film(CLI::App& program, int& status) {
   auto arguments = std::make_shared<FilmArguments>();
   CLI::App* command = program.add_subcommand("film", "A film of a run, through ffmpeg");
@@ -177,8 +176,7 @@ void add_film(CLI::App& program, int& status) {
   command->callback([arguments, &status] { status = film_command(*arguments); });
 }
 
-/// Three kinds of output, each with a folder of its own, in any combination; the command asks for one at
-/// least.
+/// Three kinds of output in any combination; the command asks for one at least.
 void add_export(CLI::App& program, int& status) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = program.add_subcommand("export", "A run's tables for other programs");
@@ -280,8 +278,8 @@ std::string misspelt(const CLI::App& program, const std::vector<std::string>& wo
   // Long names alone: short options are few, and nothing is near them.
   for (const CLI::Option* o : program.get_subcommand(words[0])->get_options())
     for (const std::string& name : o->get_lnames()) known.push_back("--" + name);
-  // The command itself is passed over, as all that does not begin with two dashes; values that do are taken
-  // for options that are unknown.
+  // The command itself is passed over, as all that does not begin with two dashes; a value that does is
+  // taken for an option.
   for (const std::string& word : words) {
     // "--set=A=1" is the option --set; what follows the first '=' is its value.
     const std::string option = word.substr(0, word.find('='));

@@ -1,5 +1,12 @@
 /// brink draw: a picture of a scene or of a run.
 
+// A picture is of one moment of a subject:
+//
+//     a scene     is simulated up to the time, in memory; nothing is written but the picture
+//     a run       is read at the time; between two of its frames bodies are interpolated
+//
+// Either gives a RunMoment; from there on both are drawn alike. Only a run has a past, for trails and
+// collisions.
 #include "brink/scenes/draw/draw.h"
 
 #include <fmt/format.h>

@@ -16,6 +16,8 @@
 namespace brink {
 
 int export_command(const ExportArguments& arguments) {
+  // What is missing is told before anything is read: a folder of results is made only for a run that there
+  // is.
   namespace fs = std::filesystem;
   const fs::path file = run_file_of(arguments.run);
   if (file.empty())

@@ -1,5 +1,7 @@
 /// brink film: a run as a film, picture by picture through ffmpeg.
 
+// The run's times [s] go from --from to --to in steps of speed / fps. Each picture is drawn from the states
+// at its time and handed on: no more than one is in memory.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -139,6 +141,7 @@ int film_command(const FilmArguments& arguments) {
   require(from >= first && from <= last, "--from", from, range.c_str());
   require(to >= from && to <= last, "--to", to, range.c_str());
   // As many as begin within the time, the first included.
+  // In double: what is refused below may be beyond any integer.
   const double pictures = std::floor((to - from) / arguments.speed * arguments.fps) + 1.0;
   if (!(pictures <= kMostPictures))
     throw BadInput(fmt::format(
@@ -147,7 +150,6 @@ int film_command(const FilmArguments& arguments) {
 
   DrawOptions options;
   // "plain" is a word of films alone: layer scene without its diagram, which is faster.
-  // time.
   options.diagram = arguments.layer != "plain";
   options.layer = parse_layer(options.diagram ? arguments.layer : "scene");
   options.size = parse_size(arguments.size);
@@ -160,8 +162,7 @@ int film_command(const FilmArguments& arguments) {
   // By a product: the last picture is not off by the sum of all steps.
   for (double k = 0; k < pictures; ++k) {
     const double t = std::min(to, from + k * arguments.speed / arguments.fps);
-    // Between frames bodies are followed by the cubic of their recorded states; fixed sites by their own
-    // formulas.
+    // Between frames bodies are on the cubic of their recorded states; fixed sites are where they are told to be.
     RunMoment moment{t, world, run.states_at(t).states, site_poses(world, t), {}};
     options.time = t;
     if (options.layer.kind == DrawLayer::Kind::forces) {

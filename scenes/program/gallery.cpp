@@ -43,6 +43,7 @@ std::vector<GalleryScene> gallery_scenes() {
     if (entry.path().extension() != ".toml") continue;
     // Paths below the present folder are short ones, to be typed.
     const fs::path near = entry.path().lexically_proximate(fs::current_path());
+    // Others are told in full: "../../.." is no shorter, and depends on where one is.
     const bool below = !near.empty() && *near.begin() != "..";
     scenes.push_back({below ? near : entry.path(), title_of(entry.path())});
   }

@@ -21,6 +21,7 @@ RunReport run_shown(const Scene& scene, RunRequest& request, bool bar) {
   return run_scene(scene, request);
 }
 
+// The request holds functions that refer to this page: it must be there as long as the run is.
 LivePage::LivePage(RunRequest& request) : server_(request.dir / "run.db") {
   // Called from the thread that runs; the page's orders come by the server's.
   request.happened = [this](const Event&) { server_.event_happened(); };

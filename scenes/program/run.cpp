@@ -1,5 +1,7 @@
 /// brink run: simulate.
 
+// The scene, or that of a run; a folder for the run file; with --watch a page; the run; then the summary,
+// while the page stays until Ctrl-C. What is printed is for people, or one line of JSON for programs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -94,8 +96,7 @@ void print_summary(const Scene& scene, const RunReport& report) {
              change(s.energy_initial, s.energy_final));
   fmt::print("  momentum         ({:.6g}, {:.6g}) kg m/s, angular {:.6g} kg m^2/s\n", s.momentum.x(),
              s.momentum.y(), s.angular_momentum);
-  // What the watch beside the search has seen, [m]; roundings of the last step before a contact are of some
-  // 1e-16.
+  // The deepest gap below zero at any event or frame: some roundings of places where all is well.
   fmt::print("  deepest overlap  {:.3g} m\n", s.max_overlap);
   if (s.groups_taken > 0) fmt::print("  groups taken     {}\n", paint(stdout, Paint::bad, taken(s)));
   if (s.contacts_lasting > 0) fmt::print("  lasting contacts {}\n", lasting(s));
@@ -154,7 +155,6 @@ int run_command(const RunArguments& arguments) {
     page.emplace(request);
     fmt::print(stderr, "{}\n", page->address());
   }
-  // However the simulation ends there is a report; what throws here could not start, or could not write.
   const RunReport report = run_shown(scene, request, shown);
   print_report(arguments, scene, report);
   // Before waiting for Ctrl-C: the summary is read by then.

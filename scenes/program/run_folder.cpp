@@ -33,6 +33,7 @@ fs::path default_run_folder(const fs::path& scene, bool resume) {
   // Folders before the last one may have been deleted, so all that there are are looked at.
   std::error_code none;
   for (const fs::directory_entry& entry : fs::directory_iterator(runs, none))
+    // The largest number, not the newest folder: times of files may be those of a copy.
     if (const int found = number_of(entry.path().filename().string(), stem);
         found > n && fs::exists(entry.path() / "run.db"))
       n = found;

@@ -1,3 +1,5 @@
+// A signal handler may do next to nothing, so it sets a flag. Whoever runs asks for it (stop_asked()) where
+// it can stop: between events, with a checkpoint, or between two runs of a sweep.
 #include "brink/scenes/program/stopping.h"
 
 #include <csignal>

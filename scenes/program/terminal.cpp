@@ -1,3 +1,5 @@
+// Status lines and bars are on standard error alone: standard output is the result, and may be read by a
+// program.
 #include "brink/scenes/program/terminal.h"
 
 #include <fmt/format.h>
@@ -76,7 +78,7 @@ void ProgressBar::show(double t, std::uint64_t collisions) {
   // Nearly all calls end here.
   if (stopping_ || now < next_) return;
   next_ = now + kRedraw;
-  // A resumed run that is at its end, or beyond it, shows a full bar.
+  // What has no length, as a film of one moment, is done.
   const double part = until_ > from_ ? std::clamp((t - from_) / (until_ - from_), 0.0, 1.0) : 1.0;
   const int full = static_cast<int>(part * kBarWidth);
   const double spent = std::chrono::duration<double>(now - start_).count();

@@ -1,5 +1,12 @@
 /// brink view: a replay page of a run, or a page that follows a run as it goes.
 
+// What becomes of the subject:
+//
+//     a run               its page is written, beside it or to -o
+//     a scene with -o     it is run to its end, then its page is written
+//     a scene             its page is served from before the run begins until Ctrl-C
+//
+// In each case the exit status is that of the run that was made here, if one was.
 #include "brink/scenes/view/replay_page.h"
 
 #include <fmt/format.h>

@@ -171,8 +171,9 @@ void read_scenes(const toml::node& node, TomlDocument& doc, ExperimentTable& out
     for (Value& scene : out.scenes.values) scene.text = fs::path(scene.toml).stem().string();
 }
 
-/// Calls visit(path, node) for everything below `table` that `is_leaf`, in the file's order; tables on the
-/// way are parts of a dotted path.
+/// Calls visit(path, node) for everything below `table` that `is_leaf`, in the order of names; tables on
+/// the way are parts of a dotted path.
+/// TOML itself reads `a.b = 1` and `[a]` with `b = 1` as the same tables.
 template <class Leaf, class Visit>
 void walk(const toml::table& table, const std::string& path, const Leaf& is_leaf, const Visit& visit) {
   for (const auto& [key, node] : table) {

@@ -96,7 +96,7 @@ std::string settings_json(const Experiment& experiment, const SweepRun& run) {
 
 }  // namespace
 
-// In this order: the lock file is opened before the database and closed after it.
+/// In this order: the lock file is opened before the database and closed after it.
 /// The open database. Calls of several threads come one after another (locked()); SQLite itself puts those
 /// of processes in order.
 struct SweepStore::Impl {

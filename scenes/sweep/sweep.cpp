@@ -128,6 +128,8 @@ SweepResult make_sweep_run(const Experiment& experiment, const SweepRun& run,
   }
 }
 
+// A process that shares the folder may be killed while this one works: its runs are found waiting in the
+// next round.
 void run_sweep(const Experiment& experiment, SweepStore& store, const SweepRequest& request) {
   Crew crew(experiment, store, request);
   // Once more as long as something was made: meanwhile another process may have ended and left runs behind.

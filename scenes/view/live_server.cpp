@@ -45,7 +45,8 @@ struct LiveServer::Impl {
     server.Get("/data", [this](const httplib::Request&, httplib::Response& response) {
       reply(response, "application/json", [&] { return replay_page_data(run_file, {}, !ended); });
     });
-    // Orders are POST: a link or an image of another page can make a GET, but never these.
+    // Orders are POST: a link or an image of another page makes a GET, and its forms lack the page's header
+    // (answers()).
     const auto ask = [this](const char* path, Going how) {
       server.Post(path, [this, how](const httplib::Request&, httplib::Response& response) {
         going = how;

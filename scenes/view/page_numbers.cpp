@@ -1,3 +1,6 @@
+/// The text is base64 of one zlib stream over all arrays, in the order of arrays(). An array of n values
+/// has n lowest bytes first, then n of the next significance, and so on: inflated() in motion.js puts
+/// values together again.
 #include "brink/scenes/view/page_numbers.h"
 
 #include <zlib.h>

@@ -317,6 +317,7 @@ class ReplayPage {
     for (const EventKind kind : kKinds) about_["kinds"].push_back(to_string(kind));
     about_["notice"] = fmt::format("{}", fmt::join(notices_, "; "));
     about_["facts"] = Json::array();
+    // In the order in which they are shown.
     const auto fact = [&](const std::string& name, const std::string& value) {
       if (!value.empty()) about_["facts"].push_back({name, value});
     };
