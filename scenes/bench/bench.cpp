@@ -49,7 +49,6 @@ std::vector<Problem> chosen(std::vector<Problem> all, const std::vector<std::str
 /// The folder given, or runs/bench-<n>, made. @throws IoError.
 fs::path make_folder(const std::string& given) {
   const fs::path folder = given.empty() ? default_run_folder("bench", false) : fs::path(given);
-  std::error_code error;
   made_folder(folder);
   return folder;
 }

@@ -56,8 +56,8 @@ std::string power_text(int exponent);
 /// The colour of a series that is not given one: hue, and lightness, which differs where hues look alike to some.
 draw::Oklch series_color(std::size_t series);
 
-/// The chart with its legend: a colour, a form of mark and a style of line a series. Points that are not finite are left out,
-/// and categories are not joined.
+/// The chart with its legend: a colour, a form of mark and a style of line a series. Infinite points are on the upper rim,
+/// those that are no number are left out, and categories are not joined.
 Picture chart_picture(const Chart& chart);
 
 /// Writes it as PNG, and as SVG beside it. @throws IoError naming the file.

@@ -175,9 +175,11 @@ double largest_distance(const FieldImage& field) {
   return largest;
 }
 
-Picture cells_picture(std::span<const PlacedOutline> placed, const View& view, int fineness,
+Picture cells_picture(std::span<const PlacedOutline> placed, const View& view, int wanted,
                       std::uint32_t excluded, const FieldOptions& options, const Palette& palette,
                       std::size_t body_count, const std::function<double(double)>& contour_step) {
+  constexpr int kMostColumns = 8192;  // of one rendered strip (PassRenderer)
+  const int fineness = std::clamp(kMostColumns / view.width, 1, wanted);
   PassRenderer renderer(options);
   // The distance between lines is one for the picture, so it is chosen before the first strip.
   const CoarseLook seen = look(renderer, placed, view, excluded, options);

@@ -103,14 +103,17 @@ double lowest(double before, double here, double after) {
 /// a site between the two, the gap falls to there and rises behind it, with a corner between. Golden sections about the
 /// lowest of some looks between; each look notes the miss.
 template <class Look>
-void look_for_corner(double from, Look&& look) {
+void look_for_corner(double from, double first, double last, Look&& look) {
+  std::array<double, kBetween + 1> seen;
   int lowest = 1;
-  double least = look(from + 1.0 / kBetween);
-  for (int n = 2; n < kBetween; ++n)
-    if (const double there = look(from + static_cast<double>(n) / kBetween); there < least) {
-      least = there;
-      lowest = n;
-    }
+  for (int n = 0; n <= kBetween; ++n) {
+    const bool known = n == 0 || n == kBetween;
+    seen[n] = known ? (n == 0 ? first : last) : look(from + static_cast<double>(n) / kBetween);
+    if (!known && seen[n] < seen[lowest]) lowest = n;
+  }
+  // Both sides of a corner fall no more steeply than between the looks beside it: not to below from so high.
+  const double falls = std::max(seen[lowest - 1], seen[lowest + 1]) - seen[lowest];
+  if (seen[lowest] > falls) return;
   constexpr double ratio = 0.6180339887498949;
   double low = from + (lowest - 1.0) / kBetween, high = from + (lowest + 1.0) / kBetween;
   double x = high - ratio * (high - low), y = low + ratio * (high - low), at_x = look(x), at_y = look(y);
@@ -154,7 +157,7 @@ Miss missed(std::size_t k, double h, const std::vector<Vec3>& velocity, double t
   for (int i = 0; i < kLooks; ++i)
     if (const double most = std::max(bend(i), bend(i + 1));
         most > kMissCounts * tolerance && std::min(seen[i], seen[i + 1]) < most)
-      look_for_corner(i, look);
+      look_for_corner(i, seen[i], seen[i + 1], look);
   return miss;
 }
 

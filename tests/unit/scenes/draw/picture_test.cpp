@@ -94,6 +94,18 @@ TEST(SceneLayer, BodiesAreInTheirOwnColorsAndTheGroundIsLighter) {
     EXPECT_GT(brightness(picture.at(column, row)), 0.8) << column << "," << row;
 }
 
+// Cells are rendered twice as finely as the picture, but no wider than a pass may be.
+TEST(SceneLayer, WidestPictureHasItsCells) {
+  TwoBodies two;
+  two.options.size = {8192, 64};
+  for (const char* layer : {"scene", "pass:disc"}) {
+    const Picture picture = two.draw(layer);
+    EXPECT_EQ(picture.width, 8192) << layer;
+    const std::set<std::uint32_t> colors(picture.pixels.begin(), picture.pixels.end());
+    EXPECT_GT(colors.size(), 10U) << layer;
+  }
+}
+
 TEST(SceneLayer, EdgesAreCrispAndWhereTheyBelong) {
   // along the row of the centres the disc's edge is at x = 1 (column 100) and the square's at 3.5 (column
   // 225)
