@@ -78,6 +78,7 @@ bool IntegratorOptions::is_valid(std::string* error) const {
          check_option("step", step, std::isfinite(step) && step > 0.0, "finite numbers > 0 (seconds)", error);
 }
 
+// `brink list` shows these.
 std::span<const IntegratorInfo> integrators() { return kIntegrators; }
 
 std::unique_ptr<Integrator> make_integrator(std::string_view name, std::shared_ptr<const Dynamics> dynamics,

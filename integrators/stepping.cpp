@@ -13,6 +13,7 @@ bool is_finite(const BodyState& s) {
 }
 bool is_finite(const Acceleration& a) { return a.linear.allFinite() && std::isfinite(a.angular); }
 
+// False for NaN, too: no comparison with it holds.
 bool is_in_range(const BodyState& s) {
   // Energies are sums of squares of such numbers: 1e300 each, while the largest double is 1.8e308.
   constexpr double most = 1e150;
@@ -64,6 +65,7 @@ void SteppingIntegrator::start(double t, std::span<const BodyState> states) {
   failure_.clear();
 }
 
+/// At most so many steps, then "unfinished": the caller may look at its clock, or at a signal, and ask again.
 Extent SteppingIntegrator::extend(double t, std::uint64_t most_steps) {
   check_finite_time(t);
   for (std::uint64_t n = 0; time_ < t && failure_.empty() && n < most_steps; ++n) {
@@ -75,6 +77,7 @@ Extent SteppingIntegrator::extend(double t, std::uint64_t most_steps) {
   return extent_at(time_, t, failure_);
 }
 
+// A motion that somebody holds shares its track: it forgets with it (Motion::remembers()).
 void SteppingIntegrator::forget_before(double t) {
   for (const auto& track : tracks_) track->forget_before(t);
 }
@@ -93,6 +96,7 @@ bool SteppingIntegrator::next_segment() {
   return in_segment_;
 }
 
+/// What every method asks for its right-hand sides; counts them. False where one is not finite: why() says whose.
 bool SteppingIntegrator::accelerations(double t, std::span<const BodyState> states,
                                        std::span<Acceleration> out) {
   if (work_) ++work_->right_hand_sides;

@@ -88,7 +88,8 @@ class Cvode : public SundialsStepper {
   void* memory_ = nullptr;
 };
 
-/// Fixed-point iteration needs no Jacobian: for forces that are not stiff.
+/// Adams-Moulton, orders 1 to 12 as the solver finds best. Fixed-point iteration needs no Jacobian, and converges
+/// while a step is short beside 1 / (largest rate of the forces): for forces that are not stiff.
 class Adams final : public Cvode {
  public:
   Adams(std::shared_ptr<const Dynamics> dynamics, const IntegratorOptions& options, WorkCounters* work)
@@ -101,9 +102,9 @@ class Adams final : public Cvode {
   SUNNonlinearSolver solver_;
 };
 
-/// For stiff forces. The matrix is dense, of six rows a body: n bodies cost about (6 n)^3 / 3 multiplications
-/// a factorisation.
-/// CVODE's default Newton iteration; the Jacobian by difference quotients.
+/// Backward differentiation, orders 1 to 5, for stiff forces: steps go by accuracy where stability would make explicit
+/// ones short. CVODE's default Newton iteration; the Jacobian by difference quotients. The matrix is dense, of six
+/// rows a body: n bodies cost about (6 n)^3 / 3 multiplications a factorisation.
 class Bdf final : public Cvode {
  public:
   Bdf(std::shared_ptr<const Dynamics> dynamics, const IntegratorOptions& options, WorkCounters* work)

@@ -1,3 +1,6 @@
+/// What the SUNDIALS methods share (Hindmarsh et al. 2005): one internal step of the solver at a time, as far as it
+/// likes, and a piece of dense output for it. The solver's error test is on the weighted root mean square of all its
+/// numbers, with weights 1 / (tolerance |y_i| + absolute_tolerance): bodies of one component share their steps.
 #include "brink/integrators/sundials_base.h"
 
 #include <nvector/nvector_serial.h>
@@ -77,6 +80,7 @@ int SundialsStepper::right_hand_side(double t, const double* y, double* rate,
   return 0;
 }
 
+/// The solver's history says nothing of forces after a jump: it starts afresh, with the first derivative given.
 bool SundialsStepper::begin_segment() {
   pack(states(), N_VGetArrayPointer(y_));
   message_.clear();
@@ -99,6 +103,8 @@ bool SundialsStepper::limit_step() {
          fail("the solver cannot stop at t = " + time_text(stop) + ": " + message_);
 }
 
+/// One internal step, whose length is the solver's own choice within limit_step(). A step that was made is kept even
+/// if it leads beyond what was asked for: the next question finds it there.
 bool SundialsStepper::step() {
   if (!limit_step()) return false;
   double t = time();
