@@ -9,7 +9,6 @@ namespace brink {
 
 namespace {
 
-/// kBisections: a corner that was cut is found to 1/65536 of the way between two looks.
 constexpr int kLooks = 8;        ///< along a step
 constexpr int kBetween = 4;      ///< parts of what lies between two looks, where a corner may be
 constexpr int kSections = 24;    ///< golden sections until a corner is found there: to 1e-5 of a part
@@ -99,9 +98,9 @@ double lowest(double before, double here, double after) {
   return bend > 0.0 && std::abs(at) < 1.0 ? at : 0.0;
 }
 
-/// The least of a gap between two looks, one apart, that it is not seen to be small at: where a sample comes to the end of
-/// a site between the two, the gap falls to there and rises behind it, with a corner between. Golden sections about the
-/// lowest of some looks between; each look notes the miss.
+/// The least of a gap between two looks, one apart, at which it is `first` and `last` [m]: where a sample comes to the
+/// end of a site between the two, the gap falls to there and rises behind it, with a corner in it. Golden sections
+/// (Kiefer 1953) about the lowest of some looks between; each look notes the miss.
 template <class Look>
 void look_for_corner(double from, double first, double last, Look&& look) {
   std::array<double, kBetween + 1> seen;
@@ -150,7 +149,8 @@ Miss missed(std::size_t k, double h, const std::vector<Vec3>& velocity, double t
   for (int i = 0; i <= kLooks; ++i) seen[i] = i == 0 ? gap(k, 0.0, velocity) : look(i);
   for (int i = 1; i < kLooks; ++i)
     if (const double at = lowest(seen[i - 1], seen[i], seen[i + 1]); at != 0.0) look(i + at);
-  // What bends by more between looks than it is high, and by more than counts, may have a corner there that goes below.
+  // What bends by more between looks than it is high, and by more than counts, may have a corner there that goes
+  // below.
   const auto bend = [&](int i) {
     return i > 0 && i < kLooks ? std::abs(seen[i - 1] - 2.0 * seen[i] + seen[i + 1]) : 0.0;
   };
