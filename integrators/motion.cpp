@@ -69,13 +69,17 @@ void merge(MotionBounds& into, const MotionBounds& b) {
 
 BodyState PolynomialPiece::state(double t) const {
   const double s = t - origin;
-  Eigen::Vector3d value = c[degree], rate = Eigen::Vector3d::Zero();
+  // Place and angle apart, as in bounds().
+  Vec2 place = c[degree].head<2>(), velocity = Vec2::Zero();
+  double angle = c[degree].z(), omega = 0.0;
   // Horner for value and derivative at once: the twist is the exact derivative of this polynomial.
   for (int k = degree - 1; k >= 0; --k) {
-    rate = rate * s + value;
-    value = value * s + c[k];
+    velocity = velocity * s + place;
+    omega = omega * s + angle;
+    place = place * s + c[k].head<2>();
+    angle = angle * s + c[k].z();
   }
-  return {{value.head<2>(), value.z()}, {rate.head<2>(), rate.z()}};
+  return {{place, angle}, {velocity, omega}};
 }
 
 /// p'' by Horner: coefficient k of it is k (k - 1) c[k] at power k - 2.
@@ -87,30 +91,45 @@ Acceleration PolynomialPiece::acceleration(double t) const {
 }
 
 MotionBounds PolynomialPiece::bounds(double from, double to) const {
-  // Taylor coefficients about the middle by repeated synthetic division, then sums of absolute values.
+  // Taylor coefficients about the middle by repeated synthetic division, then sums of absolute values. Place and
+  // angle apart: two coordinates fill a register. The pose itself, coefficient 0, is not asked for.
   const double h = 0.5 * (to - from), s = 0.5 * (from + to) - origin;
-  std::array<Eigen::Vector3d, kMaxDegree + 1> m = c;
-  for (int i = 0; i < degree; ++i)
-    for (int k = degree - 1; k >= i; --k) m[k] += s * m[k + 1];
+  std::array<Vec2, kMaxDegree + 1> place;
+  std::array<double, kMaxDegree + 1> angle;
+  for (int k = 1; k <= degree; ++k) {
+    place[k] = c[k].head<2>();
+    angle[k] = c[k].z();
+  }
+  for (int i = 0; i < degree; ++i) {
+    Vec2 above = place[degree];
+    double angle_above = angle[degree];
+    for (int k = degree - 1; k >= std::max(i, 1); --k) {
+      above = place[k] += s * above;
+      angle_above = angle[k] += s * angle_above;
+    }
+  }
   MotionBounds b;
-  Eigen::Vector3d rate_radius = Eigen::Vector3d::Zero(), second_radius = Eigen::Vector3d::Zero();
+  if (degree < 1) return b;
+  b.velocity = place[1];
+  b.omega = angle[1];
+  if (degree < 2) return b;
   // |p'(u) - p'(0)| <= sum of k |m_k| h^(k-1) for |u| <= h, and likewise for p''
   // Degree 2 gives p'' no radius: it is constant.
-  double power = h;  // h^(k-1)
-  for (int k = 2; k <= degree; ++k, power *= h) {
-    rate_radius += k * power * m[k].cwiseAbs();
-    if (k >= 3) second_radius += k * (k - 1) * (power / h) * m[k].cwiseAbs();
+  Vec2 rate_radius = 2.0 * h * place[2].cwiseAbs(), second_radius = Vec2::Zero();
+  double alpha_radius = 0.0;
+  b.omega_radius = 2.0 * h * std::abs(angle[2]);
+  double power = h;  // h^(k-2)
+  for (int k = 3; k <= degree; ++k, power *= h) {
+    const double of_rate = k * (power * h), of_second = k * (k - 1) * power;
+    rate_radius += of_rate * place[k].cwiseAbs();
+    second_radius += of_second * place[k].cwiseAbs();
+    b.omega_radius += of_rate * std::abs(angle[k]);
+    alpha_radius += of_second * std::abs(angle[k]);
   }
-  const Eigen::Vector3d rate = degree >= 1 ? m[1] : Eigen::Vector3d::Zero();
-  const Eigen::Vector3d second = degree >= 2 ? Eigen::Vector3d(2.0 * m[2]) : Eigen::Vector3d::Zero();
-  b.velocity = rate.head<2>();
-  b.velocity_radius = rate_radius.head<2>().norm();
-  b.omega = rate.z();
-  b.omega_radius = rate_radius.z();
-  b.acceleration = second.head<2>();
-  // At a single time power / h would be 0 / 0; there is no radius.
-  b.acceleration_radius = h > 0.0 ? second_radius.head<2>().norm() : 0.0;
-  b.alpha = std::abs(second.z()) + (h > 0.0 ? second_radius.z() : 0.0);
+  b.velocity_radius = rate_radius.norm();
+  b.acceleration = 2.0 * place[2];
+  b.acceleration_radius = second_radius.norm();
+  b.alpha = 2.0 * std::abs(angle[2]) + alpha_radius;
   return b;
 }
 

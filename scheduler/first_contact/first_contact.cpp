@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "brink/core/base/limits.h"
+#include "brink/scheduler/first_contact/apart.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/first_contact/closed_forms.h"
 #include "brink/scheduler/first_contact/corners.h"
@@ -31,24 +32,41 @@ using detail::parts_alone;
 /// Iterations that a search may take if it has found a contact, whatever its cap.
 constexpr int kMostAfterContact = 1000;
 
+/// True if no point of the pair has moved against the other by more than the touching distance since the motions
+/// began. Then all is looked at from there: features that are so near are told apart by how they began.
+bool has_hardly_moved(const Mover& a, const Mover& b, double start, double t, const SearchLimits& limits) {
+  const Twist &of_a = a.motion->start().twist, &of_b = b.motion->start().twist;
+  const double reach_a = a.outline().bounding_radius, reach_b = b.outline().bounding_radius;
+  const double at_first = (of_a.velocity - of_b.velocity).norm() + std::abs(of_a.omega) * reach_a +
+                          std::abs(of_b.omega) * reach_b;
+  const auto is_little = [&](double speed) { return (t - start) * speed <= limits.touch; };
+  if (!(t > start && is_little(at_first))) return false;  // a first look
+  // dense output whose first pieces were dropped cannot be looked at from its beginning
+  if (!a.motion->remembers(start) || !b.motion->remembers(start)) return false;
+  // the first look took the speeds of the beginning; what counts is the fastest on the way
+  const RelativeBounds since =
+      RelativeBounds::over(a.outline(), *a.motion, b.outline(), *b.motion, start, t);
+  return is_little(since.speed + since.spin_s * reach_a + since.spin_t * reach_b);
+}
+
 /// One search. As it goes on: up to the least safe time every contact is found, but for those that
 /// look_back() tells; to_ is the end that was asked for or, once a contact is found, just behind the
 /// earliest so far; best_ is that contact; and while samples are looked at, the pair is placed at t_.
 class PairSearch {
  public:
-  PairSearch(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
-             SearchScratch& scratch, WorkCounters& work)
+  /// From `from` on; what lies before `asked_from` is looked at for the sake of the answer's bits alone.
+  PairSearch(const Mover& a, const Mover& b, double from, double asked_from, double to,
+             const SearchLimits& limits, SearchScratch& scratch, WorkCounters& work)
       : view_(a, b, limits, scratch),
         a_(a),
         b_(b),
         from_(from),
         to_(to),
-        asked_from_(from),
+        asked_from_(asked_from),
         window_end_(to),
         limits_(limits),
         scratch_(scratch),
         work_(work) {
-    if (has_hardly_moved(from)) from_ = view_.start();
     const auto count_a = static_cast<std::size_t>(view_.half(true).count);
     scratch.sinking.clear();
     scratch.safe_until.assign(count_a + static_cast<std::size_t>(view_.half(false).count), from_);
@@ -58,7 +76,7 @@ class PairSearch {
 
   /// Clear, the earliest contact, or undecided from where the search stopped.
   PairAnswer run() {
-    if (!apart_by_bounding_discs()) advance();
+    advance();
     // what stopped before the contact that it had found may have passed an earlier one
     if (capped_ && !(best_.sample >= 0 && reached_ >= best_.time))
       return {PairAnswer::Status::undecided, reached_, {}};
@@ -82,60 +100,8 @@ class PairSearch {
             doubt == PairView::Doubt::place ? PairAnswer::Why::place : PairAnswer::Why::speed};
   }
 
-  /// True if no point of the pair has moved against the other by more than the touching distance since the motions
-  /// began. Then all is looked at from there: features that are so near are told apart by how they began.
-  bool has_hardly_moved(double t) const {
-    const double start = view_.start();
-    const Twist &of_a = a_.motion->start().twist, &of_b = b_.motion->start().twist;
-    const double reach_a = a_.outline().bounding_radius, reach_b = b_.outline().bounding_radius;
-    const double at_first = (of_a.velocity - of_b.velocity).norm() + std::abs(of_a.omega) * reach_a +
-                            std::abs(of_b.omega) * reach_b;
-    const auto is_little = [&](double speed) { return (t - start) * speed <= limits_.touch; };
-    if (!(t > start && is_little(at_first))) return false;  // a first look
-    // dense output whose first pieces were dropped cannot be looked at from its beginning
-    if (!a_.motion->remembers(start) || !b_.motion->remembers(start)) return false;
-    // the first look took the speeds of the beginning; what counts is the fastest on the way
-    const RelativeBounds since = bounds_over(start, t);
-    return is_little(since.speed + since.spin_s * reach_a + since.spin_t * reach_b);
-  }
-
   /// Until when sample i of a half is sure not to touch.
   double& safe_until(const Half& half, int i) { return safe_until_[half.s_is_a ? 0 : 1][i]; }
-
-  /// Steps the discs that hold the two outlines; true if they stay apart to the end. Else moves from_ on, but
-  /// not onto the discs' contact: it may be the pair's, and wants polishing from before.
-  bool apart_by_bounding_discs() {
-    const Outline &oa = a_.outline(), &ob = b_.outline();
-    // What is in a container is in its disc from the start.
-    if (oa.container || ob.container) return false;
-    const double reach = oa.bounding_radius + ob.bounding_radius;
-    const double near = 1e-3 * reach + limits_.tolerance;  // as near as makes no difference
-    const bool straight = a_.motion->is_ballistic() && b_.motion->is_ballistic() &&
-                          a_.motion->acceleration().linear == b_.motion->acceleration().linear;
-    double t = from_;
-    // Each step is certified, so wherever the loop ends the pair is clear up to there, and the samples
-    // go on.
-    for (int i = 0; i < 64 && t < to_; ++i) {
-      const BodyState sa = a_.motion->state(t), sb = b_.motion->state(t);
-      const Vec2 d = sa.pose.position - sb.pose.position, v = sa.twist.velocity - sb.twist.velocity;
-      const double distance = d.norm(), f = distance - reach;
-      if (f <= near) break;
-      // Under equal accelerations either sees the other go straight on: one root says when the discs meet.
-      if (straight) {  // no curvature: there at once
-        t += time_until_within(d, v, reach + 0.5 * near);
-        break;
-      }
-      const RelativeBounds bounds = bounds_over(t, to_);
-      const double df = d.dot(v) / distance;
-      // Rounded down by more than the step's own roundings, here and in step(): it may be shorter than
-      // what is safe, never longer.
-      t += safe_step(f - 0.5 * near, df, bounds.acceleration) * (1.0 - 4.0 * kEpsilon);
-    }
-    if (t >= to_) return true;
-    from_ = t;
-    std::fill(scratch_.safe_until.begin(), scratch_.safe_until.end(), t);
-    return false;
-  }
 
   /// From one least safe time to the next, until that is the end. Sets capped_ where it stops before.
   void advance() {
@@ -714,7 +680,11 @@ PairAnswer first_contact(const Mover& a, const Mover& b, double from, double to,
       return answer;
     }
   }
-  return PairSearch(a, b, from, to, limits, scratch, work).run();
+  const double start = std::max(a.motion->begin(), b.motion->begin());
+  const double first = has_hardly_moved(a, b, start, from, limits) ? start : from;
+  const double apart_until = detail::apart_until(a, b, first, to, limits);
+  if (apart_until >= to) return {PairAnswer::Status::clear, to, {}};
+  return PairSearch(a, b, apart_until, from, to, limits, scratch, work).run();
 }
 
 std::vector<FeatureContact> touching_features(const Mover& a, const Mover& b, double t, double tolerance,

@@ -124,6 +124,13 @@ inline SamplePath sample_path(const Placed& s, const Placed& t, const Vec2& p_lo
   return path;
 }
 
+/// Of S's own origin, wherever S has turned to.
+inline SamplePath origin_path(const BodyState& s, const Placed& t) {
+  const Vec2 rho = s.pose.position - t.frame.origin, w = s.twist.velocity - t.twist.at(rho);
+  return {t.frame.direction_to_local(rho), t.frame.direction_to_local(w), 0.0, rho.norm(),
+          s.twist.velocity.lpNorm<1>() + t.twist.velocity.lpNorm<1>() + std::abs(t.twist.omega) * rho.norm()};
+}
+
 /// Bounds on |dq/dt| and |d2q/dt2| in T's turning frame over the next `window` seconds. With rho = p - x_T
 /// and w = rho' - omega_T x rho: q'' = R_T^T (rho'' - alpha_T x rho - 2 omega_T x w - omega_T x (omega_T x
 /// rho)).

@@ -128,11 +128,12 @@ Feature PairView::vertex_feature(const Half& half, int i, int j, const Nearest& 
 }
 
 /// Vertex sample i and the site nearest to it; a corner that lies flush beside an end has the side on which
-/// it lies, though the corner's other side is as near. No site where the index knows of none.
-Feature PairView::nearest_feature(const Half& half, int i) const {
+/// it lies, though the corner's other side is as near. No site where the index knows of none, or its gap is
+/// more than `tolerance`, by far.
+Feature PairView::nearest_feature(const Half& half, int i, double tolerance) const {
   const SamplePath now = path(half, i);
   const FieldAnswer nearest = half.t->index->query(now.q, scratch_.nearest);
-  if (nearest.site < 0) return {};
+  if (nearest.site < 0 || nearest.gap - half.sample(i).radius > tolerance + limits_.tolerance) return {};
   if (std::abs(nearest.gap) <= limits_.tolerance && half.sample(i).before >= 0) {
     const double rounding = gap_rounding(half, i, now.q);
     for (int j = 0; j < static_cast<int>(half.sites_of().sites.size()); ++j)

@@ -62,7 +62,7 @@ class PairView {
           continue;
         else if (half.sample(i).arc_site >= 0)
           each_arc_feature(half, i, tolerance, visit);
-        else if (const Feature f = nearest_feature(half, i); f.site >= 0 && f.gap <= tolerance)
+        else if (const Feature f = nearest_feature(half, i, tolerance); f.site >= 0 && f.gap <= tolerance)
           visit(half, f);
     }
   }
@@ -179,7 +179,7 @@ class PairView {
   /// d2q/dt2 of sample i now, in T's turning frame (path_bounds() of pair_kinematics.h) [m/s^2]. Of motions that an
   /// integrator has made without what changes their turning.
   Vec2 acceleration_now(const Half& half, int i, const SamplePath& path) const;
-  Feature nearest_feature(const Half& half, int i) const;
+  Feature nearest_feature(const Half& half, int i, double tolerance) const;
   ArcStep arc_now(const Half& half, int i, int j) const;
   void put(Placing& placing, double t) const;
   void put_relative(Placing& placing, double t) const;

@@ -34,6 +34,20 @@ Facing facing_convex(const Outline& outline, const Vec2& q, const Vec2& rate) {
   return {distance, from_corner.dot(rate) / distance};
 }
 
+Facing facing(const Outline& outline, const Vec2& q, const Vec2& rate) {
+  const Site& site = outline.sites[0];
+  Facing line;
+  if (!outline.facets.empty()) {
+    line = facing_convex(outline, q, rate);
+  } else {
+    // the distance to a segment is convex: it never lies below its support line at the present foot
+    const Nearest nearest = nearest_on(site, q);
+    line = {nearest.distance, distance_rate(site, nearest, q, rate)};
+  }
+  line.gap -= site.radius;
+  return line;
+}
+
 HullDistance distance_to_arc_hull(const Site& arc, const Nearest& nearest, const Vec2& q) {
   const double turn = arc.sweep > 0.0 ? 1.0 : -1.0;
   const Vec2 chord = arc.b - arc.a;

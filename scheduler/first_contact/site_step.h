@@ -35,6 +35,15 @@ struct Facing {
 /// @pre outline.facets is not empty.
 Facing facing_convex(const Outline& outline, const Vec2& q, const Vec2& rate);
 
+/// True of an outline that facing() tells of: a convex polygon, rounded or not, or one segment.
+inline bool has_facing(const Outline& o) {
+  return !o.facets.empty() || (o.sites.size() == 1 && o.sites[0].kind == SiteKind::segment);
+}
+
+/// A line between q and all of such an outline, its thickness included: as far off as the outline where that is seen
+/// at a glance. A step that is safe for the line is safe for the outline. @pre has_facing(outline).
+Facing facing(const Outline& outline, const Vec2& q, const Vec2& rate);
+
 /// d(distance)/dt of q from the site's core. Close to the core the foot's rounding would turn the direction,
 /// so there it is the site's own normal.
 inline double distance_rate(const Site& site, const Nearest& nearest, const Vec2& q, const Vec2& rate) {

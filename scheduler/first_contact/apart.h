@@ -1,0 +1,13 @@
+#pragma once
+/// Pairs that are told to be apart at a glance: by shapes that hold their outlines, before any feature is looked at.
+
+#include "brink/scheduler/first_contact/first_contact.h"
+
+namespace brink::detail {
+
+/// Until when the pair is sure to be clear by the discs that hold the two outlines, or by the smaller one's disc
+/// beside a wall: `to` or more, or a time short of their contact, which may be the pair's and wants polishing from
+/// before [s]. `from` where nothing is told: of containers, and of what is near. Cost: a few certified steps.
+double apart_until(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits);
+
+}  // namespace brink::detail
