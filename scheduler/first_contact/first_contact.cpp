@@ -44,8 +44,7 @@ bool has_hardly_moved(const Mover& a, const Mover& b, double start, double t, co
   // dense output whose first pieces were dropped cannot be looked at from its beginning
   if (!a.motion->remembers(start) || !b.motion->remembers(start)) return false;
   // the first look took the speeds of the beginning; what counts is the fastest on the way
-  const RelativeBounds since =
-      RelativeBounds::over(a.outline(), *a.motion, b.outline(), *b.motion, start, t);
+  const RelativeBounds since = RelativeBounds::over(a.outline(), *a.motion, b.outline(), *b.motion, start, t);
   return is_little(since.speed + since.spin_s * reach_a + since.spin_t * reach_b);
 }
 
