@@ -78,10 +78,13 @@ bool doubtful(double rate, double noise) { return std::abs(rate) <= 8.0 * noise;
 /// overlap but the far side of a body [m].
 std::optional<double> contact_after(const Quadratic& g, double s_from, double noise, double deepest) {
   const double root = falling_root(g);
-  // ahead, and the only place at which the gap falls through its level
-  if (root >= s_from)
-    return root == kForever || !doubtful(g.slope(root), noise) ? std::optional(root) : std::nullopt;
   const double now = g.at(s_from), slope = g.slope(s_from);
+  if (root == kForever) {
+    // never: it stays above, or rises since; or it stays below, bent down, and the search knows from where
+    return g.second < 0.0 && now >= -deepest ? std::nullopt : std::optional(kForever);
+  }
+  // ahead, and the only place at which the gap falls through its level
+  if (root >= s_from) return doubtful(g.slope(root), noise) ? std::nullopt : std::optional(root);
   if (now < -deepest) return kForever;  // beyond
   if (doubtful(slope, noise)) return std::nullopt;
   if (slope > 0.0) return kForever;  // risen again
@@ -91,9 +94,11 @@ std::optional<double> contact_after(const Quadratic& g, double s_from, double no
 
 /// True if a gap that starts at `gap` with the given rate is sure to need no sink_at_start().
 bool starts_clear(double gap, double rate, double acceleration, double noise, double tolerance) {
-  // Rising against `acceleration` all the way, it comes to rate^2 / (2 acceleration) >= 2 tolerances: by
-  // far more than the half of a sink step that start_sink() asks for.
-  return gap >= tolerance || (rate > noise && rate * rate >= 4.0 * acceleration * tolerance);
+  // deeper it is no start, but the far side of a body
+  if (gap >= tolerance || gap < -kOverlapAtStart * tolerance) return true;
+  // Rising against `acceleration` all the way, it comes to rate^2 / (2 acceleration), twice what it overlaps or two
+  // tolerances: by far more than the half of a sink step that start_sink() asks for.
+  return rate > noise && rate * rate >= 4.0 * acceleration * std::max(tolerance, -gap);
 }
 
 /// True if the clock can hardly tell such speeds: the search says so.
@@ -130,12 +135,12 @@ double gap_noise(double place_noise, const Vec2& q, const Vec2& site) {
 template <class Gap>
 std::optional<double> canonical_root(Gap&& gap, double t, double begin, double rounding, double speed) {
   // where the motions began nothing lies before to bisect from
-  if (t <= begin) return t;
+  if (t <= begin) return gap(begin) <= 0.0 ? std::optional(begin) : std::nullopt;
   const double moment = rounding / speed + 4.0 * ulp(t);
   for (const double reach : {2.0 * moment, 8.0 * moment, 64.0 * moment})
-    if (t - reach > begin && gap(t - reach) > rounding && gap(t + reach) <= 0.0)
+    if (t - reach > begin && gap(t - reach) > rounding && gap(t + reach) < -rounding)
       return last_clear_time(gap, t - reach, t + reach);
-  if (gap(begin) > rounding && gap(t + 8.0 * moment) <= 0.0)
+  if (gap(begin) > rounding && gap(t + 8.0 * moment) < -rounding)
     return last_clear_time(gap, begin, t + 8.0 * moment);
   return std::nullopt;
 }
@@ -170,13 +175,20 @@ bool discs(const Mover& a, const Mover& b, double from, double to, const SearchL
   answer = {PairAnswer::Status::clear, to, {}};
   const double speed2 = rel.velocity.squaredNorm(), way = rel.offset.dot(rel.velocity);
   const double distance0 = rel.offset.norm(), s_from = from - rel.reference;
+  // of the rate at the beginning: of the velocities, and of the way they are seen along
+  const double places = rel.a.pose.position.lpNorm<1>() + rel.b.pose.position.lpNorm<1>();
+  const double rate_noise = rel.noise + 4.0 * kRoundoff * places * rel.velocity.lpNorm<1>() / distance0;
   // Seen from each other they go straight on: who parts has parted for good.
-  if (way > rel.noise * distance0 && distance0 >= 0.5 * reach) return true;  // they part
-  const bool in_touch = distance0 - reach < limits.touch && way < 0.0;       // a graze, or not: by a rounding
-  if (in_touch || (distance0 - reach < limits.tolerance && doubtful(way / distance0, rel.noise)))
-    return false;
+  if (way > 8.0 * rate_noise * distance0 && distance0 >= 0.5 * reach) return true;  // they part
+  // Touching, and nearer: told here if the straight way leads clearly into the other, in a search from where they
+  // began. One that begins moments later would have to look from there.
+  const double dip = 0.5 * way * way / (speed2 * distance0);
+  const bool in_touch = distance0 - reach < 4.0 * limits.touch && way < 0.0;
+  if (in_touch && (s_from > 0.0 || !(dip > 8.0 * limits.touch))) return false;
+  // a graze, or not: by a rounding
+  if (distance0 - reach < limits.tolerance && doubtful(way / distance0, rate_noise)) return false;
   double level = 0.0;
-  if (!starts_clear(distance0 - reach, way / distance0, 0.0, rel.noise, limits.tolerance))
+  if (!starts_clear(distance0 - reach, way / distance0, 0.0, rate_noise, limits.tolerance))
     level = sink_at_start(a, b, limits, scratch);
   const double met = reach + level;
   double s = time_until_within(rel.offset, rel.velocity, met);
@@ -307,7 +319,9 @@ bool meet(const DiscPath& disc, const SearchLimits& limits, double level, Segmen
   m.s = *contact;
   const double s_end = std::max(disc.s_from, std::min(m.s, disc.s_to));
   const double now = above.at(disc.s_from);
-  const bool in_front = now > 0.0 || (now >= -limits.touch && above.slope(disc.s_from) > 0.0);
+  const bool leaves = now >= -limits.touch && above.slope(disc.s_from) > 0.0;
+  const bool in_front =
+      now > limits.touch || (leaves && stays_within(along, length, disc.s_from, disc.s_from));
   // On the line or behind it nothing keeps the ends clear: the centre must be abreast all the way.
   if (!in_front) return stays_within(along, length, disc.s_from, s_end);
   // In front, with above > 0, the disc is clear of the whole line, ends included, until m.s. What counts
@@ -338,12 +352,13 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
   boost::container::static_vector<SegmentGap, kMostSites> gaps;
   double earliest = kForever;
   Vec2 normal = Vec2::Zero();
+  // whichever way the normal points: as sink_at_start() has it
+  const double bend = rel.acceleration.norm();
   bool clear = true;
   for (const Site& site : other.outline().sites) {
     if (radius + site.radius == 0.0) return false;  // a point on a wire: the search knows its level
     const SegmentGap& m = gaps.emplace_back(measured(path, site, static_cast<int>(gaps.size())));
-    clear = clear && starts_clear(std::abs(m.gap.value), m.gap.rate, std::abs(m.gap.second), rel.noise,
-                                  limits.tolerance);
+    clear = clear && starts_clear(m.gap.value, m.gap.rate, bend, rel.noise, limits.tolerance);
   }
   // Asked in the order of the pair, as the general search does: the level must have the same bits.
   const double level = clear       ? 0.0

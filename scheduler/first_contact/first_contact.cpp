@@ -452,7 +452,14 @@ class PairSearch {
     const double guess = t_ + now / speed;
     const double off = std::abs(now) / speed;
     const double bend = std::min(1.0, bounds.acceleration * off / speed) * off;
-    const double rounding = view_.gap_rounding(half, f.sample, path.q);
+    // no probe may lie beyond a motion
+    const double last = std::min(a_.motion->end(), b_.motion->end());
+    // How soon they can meet, if the gap bends down all the way.
+    const double soonest =
+        2.0 * std::abs(now) / (speed + std::sqrt(speed * speed + 2.0 * bounds.acceleration * std::abs(now)));
+    // A motion's beginning is exact, what is computed a moment later is not.
+    const double rounding = std::max(view_.gap_rounding(half, f.sample, path.q),
+                                     view_.gap_rounding_at(half, f.sample, std::min(t_ + soonest, last)));
     const double moment = rounding / speed + 4.0 * ulp(t_), noise = moment + bend;
     // A canonical time needs an interval that holds this crossing alone, with a gap beyond rounding at both
     // ends. Its lower end:
@@ -472,26 +479,32 @@ class PairSearch {
     } else if (const double before = guess - 2.0 * noise; before > t_ && gap(before) > rounding) {
       low = before;  // it falls all the way, as far as it bends: the fewer probes
     }
-    // no probe may lie beyond a motion
-    const double last = std::min(a_.motion->end(), b_.motion->end());
-    // beyond the surface, by more than rounding if one of these is; where two points meet, when they are
-    // nearest; where a bent path meets it later; and where a tip is grazed, for less than a rounding
-    const double nearest = t_ + now / speed, later = t_ + 4.0 * std::max(0.0, now) / speed + 64.0 * noise;
+    // beyond the surface, by more than rounding if one of these is
     double high = low, beyond_by = 0.0;
-    for (const double beyond :
-         {guess + 2.0 * noise, guess + 8.0 * noise, nearest, later, nearest + 0.125 * noise,
-          nearest + 0.25 * noise, nearest + 0.5 * noise, nearest + noise}) {
-      const double then = std::min(beyond, last);
+    const auto is_beyond = [&](double t) {
+      const double then = std::min(t, last);
       const double by = then > low ? -gap(then) : -1.0;
-      if (!(by >= 0.0) || (high > low && by <= rounding)) continue;
+      if (!(by >= 0.0) || (high > low && by <= rounding)) return false;
       high = then;
       beyond_by = by;
-      if (beyond_by > rounding) break;
-    }
+      return beyond_by > rounding;
+    };
+    // Bent so much that Newton's step says nothing: from the earliest time on, or the window would hold what is
+    // met later, too.
+    bool found = false;
+    if (bend >= off)
+      for (double ahead = std::max(soonest, moment); !found && ahead < off + 2.0 * noise; ahead *= 2.0)
+        found = is_beyond(t_ + ahead);
+    // where two points meet, when they are nearest; where a bent path meets it later; and where a tip is grazed,
+    // for less than a rounding
+    const double nearest = t_ + now / speed, later = t_ + 4.0 * std::max(0.0, now) / speed + 64.0 * noise;
+    for (const double t : {guess + 2.0 * noise, guess + 8.0 * noise, nearest, later, nearest + 0.125 * noise,
+                           nearest + 0.25 * noise, nearest + 0.5 * noise, nearest + noise})
+      found = found || is_beyond(t);
     // `high` is where the gap is surely gone. If no probe found such a place, the bottom of the dip decides.
     // A dip of less than a rounding is none, whoever looked where; what falls on is looked at again from nearer. But
     // behind a sharp tip there may be no more room than that: what comes upon it meets it.
-    if (beyond_by <= rounding) {
+    if (!found) {
       const bool tip = site.radius + half.sample(f.sample).radius == 0.0 &&
                        nearest_on(site, path.q).foot != Foot::interior;
       const double deepest = deepest_after(half, f, later, last);

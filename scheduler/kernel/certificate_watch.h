@@ -56,8 +56,8 @@ class CertificateWatch {
 
  private:
   void make_walls();
-  /// The deepest overlap that is none [m]: the contact tolerance, or what the world started with.
-  double allowed() const { return std::max(search_->limits().tolerance, start_overlap_); }
+  /// The deepest overlap that is none [m]: the contact tolerance, on top of what the world started with.
+  double allowed() const { return search_->limits().tolerance + start_overlap_; }
   /// Who may be elsewhere than at the last frame: of two who are not, nothing new is to be seen.
   void note_who_moved();
   bool pair_at_frame(const PairKey& pair, double t);

@@ -168,6 +168,7 @@ inline std::vector<Way> ways(bool with_pass) {
 class Examiner {
  public:
   bool detectors = true;
+  double start_overlap = 0;  ///< that the world starts with [m]
 
   Verdict examine(const std::string& text, const std::string& name) {
     verdict_ = {};
@@ -196,6 +197,7 @@ class Examiner {
     outside::WatchOptions options;
     options.until = scene.duration;
     options.contact_tolerance = scene.solver.contact_tolerance;
+    options.start_overlap = start_overlap;
     options.laws = !takes_together(order_of(scene.solver.order)) && scene.solver.response == "impulse";
     outside::Watch watch(scene.world, options);
     const Told told = run(scene, &watch);

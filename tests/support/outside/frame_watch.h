@@ -10,8 +10,8 @@ namespace brink::outside {
 /// work on the velocity before it does it on the place: by that of a step at most, energy is not known better.
 class FrameWatch : public Watch {
  public:
-  FrameWatch(const World& world, double until, double overlap)
-      : Watch(world, WatchOptions{until, 0.5 * overlap}) {
+  FrameWatch(const World& world, double until, double overlap, double start_overlap = 0)
+      : Watch(world, WatchOptions{until, 0.5 * overlap, start_overlap}) {
     free_ = false;
     for (const Flyer& b : bodies_) largest_ = std::max(largest_, b.shape.reach);
   }

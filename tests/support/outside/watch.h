@@ -26,6 +26,7 @@ namespace brink::outside {
 struct WatchOptions {
   double until = 1;                  ///< to be reached at most [s]: for the speeds of sites
   double contact_tolerance = 1e-10;  ///< of the world's length
+  double start_overlap = 0;          ///< that the world starts with, and may keep [m]
   bool laws = true;                  ///< one contact at a time, by impulses: each obeys the laws
   Real stride = 0.125L;              ///< part of the lesser width that a pair in contact moves unseen
 };
@@ -273,7 +274,7 @@ class Watch : public Recorder {
     return of_place(k, t) + (is_body(k) ? astray(k) * std::max<Real>(0, t - bodies_[k].frame) : 0);
   }
   Real tolerance(int a, int b, Real t) const {
-    return 2 * options_.contact_tolerance * length_ + rounding(a, t) + rounding(b, t);
+    return options_.start_overlap + 2 * options_.contact_tolerance * length_ + rounding(a, t) + rounding(b, t);
   }
 
   /// Calls visit(offset of a from an image of b) for every image that may be near, at least the nearest.
