@@ -98,6 +98,9 @@ void print_summary(const Scene& scene, const RunReport& report) {
              s.momentum.y(), s.angular_momentum);
   // The deepest gap below zero at any event or frame: some roundings of places where all is well.
   fmt::print("  deepest overlap  {:.3g} m\n", s.max_overlap);
+  if (s.moved_at_start > 0)
+    fmt::print("  moved at start   {} {} a wire, to just before it, by at most {:.3g} m\n", s.moved_at_start,
+               s.moved_at_start == 1 ? "body that stood across" : "bodies that stood across", s.moved_by);
   if (s.groups_taken > 0) fmt::print("  groups taken     {}\n", paint(stdout, Paint::bad, taken(s)));
   if (s.contacts_lasting > 0) fmt::print("  lasting contacts {}\n", lasting(s));
   fmt::print("  wall time        {:.3g} s\n", s.wall_seconds);

@@ -275,6 +275,8 @@ std::string summary_to_json(const RunSummary& summary, double load_seconds) {
                                     {"max_overlap", summary.max_overlap},
                                     {"groups_taken", summary.groups_taken},
                                     {"energy_taken", summary.energy_taken},
+                                    {"moved_at_start", summary.moved_at_start},
+                                    {"moved_by", summary.moved_by},
                                     {"contacts_lasting", summary.contacts_lasting},
                                     {"island_steps", summary.island_steps},
                                     {"islands_at_rest", summary.islands_at_rest},

@@ -311,6 +311,7 @@ class PairSearch {
       const Nearest nearest = nearest_on(site, path.q);
       const double radius = site.radius + sample.radius;
       const double gap = nearest.distance - radius;
+      if (gap > band && is_in_solid(site, nearest, path.q, gap)) band = 2.0 * gap;
       if (gap <= band) {
         look_closely();
         if (!neighbours_known) view_.find_neighbours(half, i, near.sites, path, 4.0 * band);
@@ -342,6 +343,12 @@ class PairSearch {
           std::min(again, site_step(site, nearest, path.q, path.rate, rate, radius, slack, over_short).safe);
     }
     return {safe, again};
+  }
+
+  /// True of a vertex in a solid, deeper than any contact leads, but no deeper than a start may have it: it is looked
+  /// at as what touches.
+  bool is_in_solid(const Site& site, const Nearest& nearest, const Vec2& q, double gap) const {
+    return site.solid && gap <= kOverlapAtStart * limits_.tolerance && side_of(site, nearest, q) < 0.0;
   }
 
   /// Every site by name, in the memory of the index: what it named before is gone.
@@ -457,9 +464,7 @@ class PairSearch {
     // How soon they can meet, if the gap bends down all the way.
     const double soonest =
         2.0 * std::abs(now) / (speed + std::sqrt(speed * speed + 2.0 * bounds.acceleration * std::abs(now)));
-    // A motion's beginning is exact, what is computed a moment later is not.
-    const double rounding = std::max(view_.gap_rounding(half, f.sample, path.q),
-                                     view_.gap_rounding_at(half, f.sample, std::min(t_ + soonest, last)));
+    const double rounding = view_.gap_rounding(half, f.sample, path.q);
     const double moment = rounding / speed + 4.0 * ulp(t_), noise = moment + bend;
     // A canonical time needs an interval that holds this crossing alone, with a gap beyond rounding at both
     // ends. Its lower end:

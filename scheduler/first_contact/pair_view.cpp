@@ -559,26 +559,16 @@ double PairView::arc_gap(const Half& half, const Feature& f, const Vec2& c) cons
 }
 
 PairView::GapAndSite PairView::gap_at(const Half& half, const Feature& f, double t) const {
-  const auto [then, q] = placed_then(half, f.sample, t);
-  if (half.sample(f.sample).arc_site < 0) return gap_to_neighbours(then, half, f.sample, q);
-  const double nominal = nominal_level(then, half, f.sample, half.site(f.site), q);
-  return {arc_gap(half, f, q) - level_of(nominal, sink_), f.site};
-}
-
-double PairView::gap_rounding_at(const Half& half, int i, double t) const {
-  const auto [then, q] = placed_then(half, i, t);
-  return then.gap_rounding(half, i, q);
-}
-
-std::pair<PairView::Placing, Vec2> PairView::placed_then(const Half& half, int i, double t) const {
   // A copy of the present one: the sine and cosine of an angle that has not changed are kept
   // (Placed::move()).
   Placing then = now_;
   put(then, t);
   const Placed &s = half.s_is_a ? then.a : then.b, &u = half.s_is_a ? then.b : then.a;
-  const Vec2 q = u.frame.direction_to_local(s.frame.direction_to_world(half.sample(i).p) +
+  const Vec2 q = u.frame.direction_to_local(s.frame.direction_to_world(half.sample(f.sample).p) +
                                             (s.frame.origin - u.frame.origin));
-  return {then, q};
+  if (half.sample(f.sample).arc_site < 0) return gap_to_neighbours(then, half, f.sample, q);
+  const double nominal = nominal_level(then, half, f.sample, half.site(f.site), q);
+  return {arc_gap(half, f, q) - level_of(nominal, sink_), f.site};
 }
 
 }  // namespace brink::detail

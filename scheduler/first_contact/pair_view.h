@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "brink/core/shapes/distance.h"
@@ -134,8 +133,6 @@ class PairView {
   /// Bound on the rounding of the gap of sample i, at q, to any site now [m]: one for all sites, or the
   /// nearest by level might not be the nearest.
   double gap_rounding(const Half& half, int i, const Vec2& q) const { return now_.gap_rounding(half, i, q); }
-  /// Likewise at time t, wherever the pair is placed now.
-  double gap_rounding_at(const Half& half, int i, double t) const;
   /// Gaps up to this are close [m]: the tolerance, or what the point moves in a few roundings of the time, or
   /// more than any level.
   double touching_band(const Half& half, int i, const SamplePath& path) const {
@@ -184,8 +181,6 @@ class PairView {
   Vec2 acceleration_now(const Half& half, int i, const SamplePath& path) const;
   Feature nearest_feature(const Half& half, int i, double tolerance) const;
   ArcStep arc_now(const Half& half, int i, int j) const;
-  /// The outlines at time t, and where sample i is then in T's frame.
-  std::pair<Placing, Vec2> placed_then(const Half& half, int i, double t) const;
   void put(Placing& placing, double t) const;
   void put_relative(Placing& placing, double t) const;
   bool is_flush_on(const Placing& placing, const Half& half, int i, const Site& site, const Vec2& q,

@@ -37,13 +37,14 @@ inline constexpr double kOverlapAtStart = 1e4;
 
 /// Bound on the rounding of start + s (rate + s / 2 bent), `now` in the end, in arithmetic of unit roundoff
 /// u: four roundings of the way, one of the sum. All numbers are sums of sizes. None of what stands still and
-/// is a double (`low`: what its start's rounding left over).
+/// is a double (`low`: what its start's rounding left over). What moves is taken to be rounded right where it begins,
+/// though it is exact there: levels and margins would jump a moment later.
 struct WayRounding {
   double low, rate, bent;
 
   double operator()(double s, double now, double u) const {
     const double way = std::abs(s) * (rate + 0.5 * std::abs(s) * bent);
-    return way + low > 0.0 ? u * (4.0 * way + now) : 0.0;
+    return rate + bent + low > 0.0 ? u * (4.0 * way + now) : 0.0;
   }
 };
 
@@ -126,14 +127,15 @@ inline double level_of(double nominal, double sink) {
 
 /// The level at which a pair that starts touching meets [m], below its nominal one (0): `gap` and `rate` are
 /// the least at the start, less nominal levels; `noise` bounds the rounding of the rate, `acceleration` the
-/// bending of the gap. A pair that leaves (that rises by half a step at least) is met where it starts, or at
-/// the nominal level if it rises above that; one that does not is met one step below its start.
+/// bending of the gap. A pair that leaves (that rises by half a step at least) is met where it starts, to the next
+/// multiple of a step, or bounces would sink by a rounding each; or at the nominal level if it rises above that. One
+/// that does not is met one step below its start.
 inline double start_sink(double gap, double rate, double noise, double acceleration, double step) {
   const double rise = rate <= noise        ? 0.0
                       : acceleration > 0.0 ? 0.5 * rate * rate / acceleration
                                            : std::numeric_limits<double>::infinity();
   if (gap + rise >= 0.5 * step) return 0.0;
-  return rise >= 0.5 * step ? gap : gap - step;
+  return rise >= 0.5 * step ? std::round(gap / step) * step : gap - step;
 }
 
 }  // namespace brink

@@ -136,8 +136,11 @@ Miss missed(std::size_t k, double h, const std::vector<Vec3>& velocity, double t
             const GapAlong& gap) {
   Miss miss;
   std::array<double, kLooks + 1> seen;
+  const double start = gap(k, 0.0, velocity);
+  // what the scene lets overlap may stay as deep as it is
+  const double kept = start < -tolerance ? start : 0.0;
   const auto look = [&](double at) {
-    const double part = at / kLooks, there = gap(k, h * part, velocity);
+    const double part = at / kLooks, there = gap(k, h * part, velocity) - kept;
     miss.most = std::max(miss.most, -there);
     // A contact aims for a gap at the end of the step; with constant twists a part of the way has that
     // part of the lift. The least part keeps a miss close to the start from asking for a lift without
@@ -146,7 +149,7 @@ Miss missed(std::size_t k, double h, const std::vector<Vec3>& velocity, double t
     return there;
   };
   // the gap at the start is what it is: no velocity changes it, and it counts as no miss
-  for (int i = 0; i <= kLooks; ++i) seen[i] = i == 0 ? gap(k, 0.0, velocity) : look(i);
+  for (int i = 0; i <= kLooks; ++i) seen[i] = i == 0 ? start - kept : look(i);
   for (int i = 1; i < kLooks; ++i)
     if (const double at = lowest(seen[i - 1], seen[i], seen[i + 1]); at != 0.0) look(i + at);
   // What bends by more between looks than it is high, and by more than counts, may have a corner there that goes

@@ -177,7 +177,9 @@ void IslandModes::add_contact(const HeldContact& c) {
     made.site_owner = c.feature.sample_on_a ? b : a;
     made.friction = response_->material_of(c.pair).friction;
     // a closed contact keeps the gap that it has; at a wire, which has no inside, never less than a touch
-    made.kept = std::max(c.feature.gap, c.feature.thin ? search_->limits().touch : 0.0);
+    const bool deep = c.feature.gap < -search_->limits().tolerance;  // as the scene has it
+    made.kept =
+        deep ? c.feature.gap : std::max(c.feature.gap, c.feature.thin ? search_->limits().touch : 0.0);
     if (c.feature.thin) made.off = kOff * made.kept;
     // what a sample is not abreast of now it may go by
     made.passes = c.feature.at_end || !present;

@@ -8,6 +8,7 @@
 #include "brink/core/base/error.h"
 #include "brink/core/world/recentred.h"
 #include "brink/scheduler/kernel/snapshot.h"
+#include "brink/scheduler/kernel/start_places.h"
 
 namespace brink {
 
@@ -132,6 +133,30 @@ void RunKernel::go_on_from(int k, const ExtendedState& state) {
   for (const int j : changed) parts_.trajectories.body(j).velocity_rounding = 0.0;
   parts_.policy_watch.forget_all();
   ++parts_.revision;
+}
+
+/// One corner after the other: what is moved out of one wire may stand in another then. Who stands between two is
+/// given up after some rounds: the watch tells.
+void RunKernel::move_out_of_wires() {
+  constexpr int kRounds = 16;
+  std::vector<Vec2> moved(world().bodies.size(), Vec2::Zero());
+  for (int round = 0; round < kRounds; ++round) {
+    const std::vector<Vec2> shifts =
+        shifts_out_of_wires(world(), parts_.trajectories, parts_.near, parts_.search, time());
+    if (shifts.empty()) break;
+    for (int k = 0; k < static_cast<int>(shifts.size()); ++k) {
+      if (shifts[k].isZero(0.0)) continue;
+      ExtendedState s = parts_.trajectories.state_now(k);
+      s.position += shifts[k].cast<Real>();
+      go_on_from(k, s);
+      moved[k] += shifts[k];
+    }
+  }
+  for (const Vec2& by : moved) {
+    if (by.isZero(0.0)) continue;
+    ++moved_at_start_.bodies;
+    moved_at_start_.most = std::max(moved_at_start_.most, by.norm());
+  }
 }
 
 /// The twist along a lock must be 0: nothing would ever take it away (Trajectories).

@@ -10,6 +10,12 @@
 
 namespace brink {
 
+/// Bodies that were moved out of wires.
+struct MovedAtStart {
+  int bodies = 0;
+  double most = 0.0;  ///< [m]
+};
+
 class RunKernel final : public Kernel {
  public:
   /// @throws BadInput, IoError as Simulator.
@@ -47,6 +53,10 @@ class RunKernel final : public Kernel {
   std::vector<Contact> overlaps(std::size_t most) { return parts_.watch.overlaps(most); }
   /// Empty, or the deepest of the first overlaps, if pairs overlap by more than rounding of a file.
   std::string start_fault() { return parts_.watch.start_fault(); }
+  /// At the start: bodies that stand a hair across a wire are moved to just before it (shifts_out_of_wires()).
+  void move_out_of_wires();
+  /// How many were, and by how much at most [m].
+  const MovedAtStart& moved_at_start() const { return moved_at_start_; }
   /// From now on what searches certify is checked as the run goes on (CertificateWatch).
   void hold_to_certificates() { parts_.watch.begin(); }
   /// From now on contacts may last (Islands). The policy asks for next_step().
@@ -67,6 +77,8 @@ class RunKernel final : public Kernel {
 
  private:
   void go_on_from(int k, const ExtendedState& state);
+
+  MovedAtStart moved_at_start_;
 };
 
 }  // namespace brink

@@ -33,6 +33,9 @@ struct RunSummary {
   std::uint64_t groups_taken = 0;
   double energy_taken = 0.0;
   std::string first_taken;  ///< the first of them: its bodies and time
+  /// Bodies that the scene places a hair across a wire, and that were moved to just before it; by how much at most [m].
+  int moved_at_start = 0;
+  double moved_by = 0.0;
   /// Contacts that lasted (Islands): captured at the end of their bounces; steps of order 1 that islands took;
   /// islands that are at rest at the end, and their bodies; the fastest approach that a step took without a rebound [m/s]; how
   /// far friction was from its cone at most, as a part of the largest force there.

@@ -23,6 +23,7 @@ struct Simulator::Impl {
     // What may miss contacts is not held to certificates; Brink's own exact policies are held to the
     // order of known contacts in their tests, not in every run.
     if (policy->approximate()) return;
+    kernel.move_out_of_wires();
     kernel.hold_to_certificates();
     if (is_added_policy(options.policy)) kernel.hold_to_known_contacts();
   }
@@ -85,6 +86,8 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
     summary.energy_taken = taken.energy;
     summary.first_taken = fmt::format("{} at t = {:.15g} s", kernel.name_of(taken.first), taken.time);
   }
+  summary.moved_at_start = kernel.moved_at_start().bodies;
+  summary.moved_by = kernel.moved_at_start().most;
   const IslandTally& islands = kernel.island_tally();
   summary.contacts_lasting = islands.captured;
   // those that came to rest moved nobody

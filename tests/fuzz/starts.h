@@ -25,8 +25,8 @@ class Maker {
     // mostly towards the wall, now and then along it, or none
     const double way = random_.below(3) == 0 ? random_.uniform(0.0, 6.3) : turn_ - 0.5 * std::numbers::pi;
     const double pull = random_.below(5) == 0 ? 0.0 : 9.81;
-    out_ << std::setprecision(17) << "# start " << seed_ << "\n[world]\nduration = 0.5\ngravity = "
-         << pair(pull * std::cos(way), pull * std::sin(way))
+    out_ << std::setprecision(17) << "# start " << seed_
+         << "\n[world]\nduration = 0.5\ngravity = " << pair(pull * std::cos(way), pull * std::sin(way))
          << "\n[solver]\nmax_collisions = 20000\n[materials.default]\nrestitution = " << e << "\n";
     if (random_.below(3) == 0) out_ << "friction = " << random_.uniform(0.0, 1.0) << "\n";
     out_ << "[[sites]]\nname = \"wall\"\nposition = " << pair(x_, y_) << "\nangle = " << turn_ << "\n"
@@ -90,11 +90,12 @@ class Maker {
         t << "capsule = { length = " << s << ", radius = " << s * log_uniform(1e-3, 0.3) << " }";
         break;
       case 5:
-        t << "polygon = { vertices = [[" << -0.5 * s << ", " << -0.3 * s << "], [" << 0.5 * s << ", " << -0.4 * s
-          << "], [0.0, " << 0.5 * s << "]], radius = " << 0.02 * s << " }";
+        t << "polygon = { vertices = [[" << -0.5 * s << ", " << -0.3 * s << "], [" << 0.5 * s << ", "
+          << -0.4 * s << "], [0.0, " << 0.5 * s << "]], radius = " << 0.02 * s << " }";
         break;
       default:
-        t << "chain = { vertices = [[" << -0.5 * s << ", 0], [0, " << 0.3 * s << "], [" << 0.5 * s << ", 0]] }";
+        t << "chain = { vertices = [[" << -0.5 * s << ", 0], [0, " << 0.3 * s << "], [" << 0.5 * s
+          << ", 0]] }";
     }
     return t.str();
   }
@@ -178,10 +179,20 @@ inline worlds::Verdict examine(const std::string& text, const std::string& name)
     verdict.faults.push_back("contacts that last, from outside: " + watch.report());
   for (const char* set : {"solver.policy=global_backup", "solver.closed_forms=false"}) {
     const std::string differs = difference(lasting, worlds::run(parse_scene(text, name, {set})));
-    if (!differs.empty()) verdict.faults.push_back(std::string("contacts that last, ") + set + ": " + differs);
+    if (!differs.empty())
+      verdict.faults.push_back(std::string("contacts that last, ") + set + ": " + differs);
   }
   verdict.runs += 3;
   return verdict;
+}
+
+/// So many seeds; what is wrong is told, and counted.
+inline void examine_all(std::uint64_t first, std::uint64_t number, worlds::Tally& tally) {
+  for (std::uint64_t seed = first; seed < first + number; ++seed) {
+    const std::string text = Maker(seed).make();
+    worlds::count(seed, text, tally, [&](const std::string& name) { return examine(text, name); });
+  }
+  std::cout << "seeds " << first << " .. " << first + number - 1 << ": " << tally;
 }
 
 }  // namespace brink::starts

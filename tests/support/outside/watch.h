@@ -155,7 +155,8 @@ class Watch : public Recorder {
     }
     const Real off =
         norm(own.place.at - told.place.at) + std::abs(own.place.angle - told.place.angle) * body.shape.reach;
-    if (off > 1e-8L * length_ + rounding(static_cast<int>(k), t) * 64)
+    // what overlapped at the start is pushed apart as it collides
+    if (off > 1e-8L * length_ + 2 * options_.start_overlap + rounding(static_cast<int>(k), t) * 64)
       fault(t, "is " + text(off) + " m from where free flight and the recorded impulses take it",
             static_cast<int>(k), -1);
     body.astray =
@@ -274,7 +275,8 @@ class Watch : public Recorder {
     return of_place(k, t) + (is_body(k) ? astray(k) * std::max<Real>(0, t - bodies_[k].frame) : 0);
   }
   Real tolerance(int a, int b, Real t) const {
-    return options_.start_overlap + 2 * options_.contact_tolerance * length_ + rounding(a, t) + rounding(b, t);
+    return options_.start_overlap + 2 * options_.contact_tolerance * length_ + rounding(a, t) +
+           rounding(b, t);
   }
 
   /// Calls visit(offset of a from an image of b) for every image that may be near, at least the nearest.

@@ -1,0 +1,97 @@
+// How long a pair is told to be apart at a glance: never longer than until its first contact, by gaps that are looked at
+// densely.
+#include "brink/scheduler/first_contact/apart.h"
+
+#include <gtest/gtest.h>
+
+#include "brink/core/shapes/shapes.h"
+#include "tests/support/seeded_random.h"
+
+namespace brink {
+namespace {
+
+struct Flier {
+  std::unique_ptr<SiteIndex> index;
+  Motion motion;
+
+  Mover mover() const { return {index.get(), &motion, 0.0}; }
+};
+
+Flier flier(const Shape& shape, const Motion& motion) {
+  return {make_brute_force_index(std::make_shared<const Outline>(shape.outline)), motion};
+}
+
+Shape any_body(Random& r) {
+  switch (r.below(4)) {
+    case 0:
+      return make_disc(r.uniform(0.01, 0.3));
+    case 1:
+      return make_box(r.uniform(0.01, 0.5), r.uniform(0.01, 0.5));
+    case 2:
+      return make_segment({-0.2, 0.0}, {0.2, 0.0}, r.uniform(0.0, 0.1));
+    default:
+      return make_chain({{-0.2, 0.0}, {0.0, 0.1}, {0.2, 0.0}}, false);
+  }
+}
+
+Shape any_wall(Random& r) {
+  const double length = r.uniform(0.1, 30.0);
+  switch (r.below(4)) {
+    case 0:
+      return make_segment({-length, 0.0}, {length, 0.0});
+    case 1:
+      return make_segment({-length, 0.0}, {length, 0.0}, r.uniform(0.0, 0.5));
+    case 2:
+      return make_polygon({{-length, -1.0}, {length, -1.0}, {length, 0.0}, {-length, 0.0}});
+    default:
+      return make_chain({{-length, 0.5}, {0.0, 0.0}, {length, 0.5}}, false);
+  }
+}
+
+/// Half of them stand, the others go somewhere and turn.
+Motion of_a_wall(Random& r, const Vec2& base) {
+  const Pose pose{base, r.uniform(-3.2, 3.2)};
+  if (r.below(2)) return Motion::still(pose);
+  const Twist twist{{r.uniform(-2.0, 2.0), r.uniform(-2.0, 2.0)}, r.uniform(-3.0, 3.0)};
+  return Motion::ballistic(0.0, {pose, twist}, {{0.0, r.uniform(-9.81, 0.0)}, 0.0});
+}
+
+TEST(Apart, IsNeverToldForLongerThanUntilTheFirstContact) {
+  SeededRandom r(20261124);
+  SearchScratch scratch;
+  int told = 0, beside = 0;
+  for (int k = 0; k < 4000; ++k) {
+    const double far = r.below(3) ? 0.0 : std::pow(10.0, r.uniform(0.0, 6.0));
+    const Vec2 base(far * r.uniform(-1.0, 1.0), far * r.uniform(-1.0, 1.0));
+    const Shape of_body = any_body(r), of_wall = any_wall(r);
+    const Vec2 offset(r.uniform(-4.0, 4.0), r.uniform(-4.0, 4.0));
+    const Vec2 way = -r.uniform(0.0, 5.0) * offset + Vec2(r.uniform(-3.0, 3.0), r.uniform(-3.0, 3.0));
+    const Flier body = flier(
+        of_body, Motion::ballistic(0.0, {{base + offset, r.uniform(-3.2, 3.2)}, {way, r.uniform(-9.0, 9.0)}},
+                                   {{0.0, -9.81}, 0.0}));
+    const Flier wall = flier(of_wall, of_a_wall(r, base));
+    const bool first = r.below(2) != 0;
+    const Mover a = (first ? body : wall).mover(), b = (first ? wall : body).mover();
+    const SearchLimits limits;
+    if (pair_gap(a, b, 0.0, limits, scratch) < 1e-3) continue;
+    const double until = detail::apart_until(a, b, 0.0, 1.0, limits);
+    ASSERT_GE(until, 0.0);
+    told += until > 0.0;
+    beside += of_wall.outline.bounding_radius > 2.0 * of_body.outline.bounding_radius && until > 0.05;
+    for (int i = 0; i <= 200; ++i) {
+      const double t = std::min(until, 1.0) * i / 200.0;
+      ASSERT_GT(pair_gap(a, b, t, limits, scratch), 0.0) << "case " << k << " at " << t << " of " << until;
+    }
+  }
+  EXPECT_GT(told, 2000);
+  EXPECT_GT(beside, 500);
+}
+
+TEST(Apart, OfAContainerNothingIsTold) {
+  const Flier room = flier(make_disc_container(4.0), Motion::still({}));
+  const Flier disc = flier(make_disc(0.1), Motion::ballistic(0.0, {{}, {{1.0, 0.0}, 0.0}}, {}));
+  EXPECT_EQ(detail::apart_until(disc.mover(), room.mover(), 0.25, 1.0, SearchLimits()), 0.25);
+}
+
+}  // namespace
+}  // namespace brink
