@@ -127,7 +127,7 @@ inline double level_of(double nominal, double sink) {
 
 /// The level at which a pair that starts touching meets [m], below its nominal one (0): `gap` and `rate` are
 /// the least at the start, less nominal levels; `noise` bounds the rounding of the rate, `acceleration` the
-/// bending of the gap. A pair that leaves (that rises by half a step at least) is met where it starts, to the next
+/// bending of the gap. A pair that leaves (that rises by half a step at least) is met where it starts, to a
 /// multiple of a step, or bounces would sink by a rounding each; or at the nominal level if it rises above that. One
 /// that does not is met one step below its start.
 inline double start_sink(double gap, double rate, double noise, double acceleration, double step) {
@@ -135,7 +135,8 @@ inline double start_sink(double gap, double rate, double noise, double accelerat
                       : acceleration > 0.0 ? 0.5 * rate * rate / acceleration
                                            : std::numeric_limits<double>::infinity();
   if (gap + rise >= 0.5 * step) return 0.0;
-  return rise >= 0.5 * step ? std::round(gap / step) * step : gap - step;
+  if (rise < 0.5 * step) return gap - step;
+  return step * std::floor((gap + std::min(0.5 * step, rise - 0.5 * step)) / step);
 }
 
 }  // namespace brink

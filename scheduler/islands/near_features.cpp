@@ -257,6 +257,23 @@ bool out_of_reach(const Half& half, const Sample& sample, double reach) {
   return !half.other.bounds.grown(reach + sample.radius).contains(q);
 }
 
+/// True of q that is nearest to an end which two pieces of a wire share, beyond both, and that a sample on the side to
+/// which `out` points can come to only through the two: it was in their hollow corner.
+bool is_through_joint(const Outline& outline, const Site& site, const Nearest& nearest, const Vec2& q,
+                      const Vec2& out) {
+  const Vec2& end = nearest.foot == Foot::start ? site.a : site.b;
+  const auto leads = [&](const Site& s) {
+    return s.a == end ? direction_at_start(s) : Vec2(-direction_at_end(s));
+  };
+  const auto ends_there = [&](const Site& s) {
+    const Foot foot = nearest_on(s, q).foot;
+    return (foot == Foot::start && s.a == end) || (foot == Foot::end && s.b == end);
+  };
+  return std::any_of(outline.sites.begin(), outline.sites.end(), [&](const Site& s) {
+    return &s != &site && s.kind != SiteKind::point && ends_there(s) && out.dot(leads(site) + leads(s)) > 0.0;
+  });
+}
+
 }  // namespace
 
 std::vector<NearFeature> near_features(const Outline& a, const ExtendedState& state_a, const Outline& b,
@@ -284,12 +301,13 @@ double gap_of(const NearFeature& f, const Outline& a, const ExtendedState& state
   const Nearest nearest = nearest_on(site, q);
   const Vec2 out = half.other_frame.direction_to_local(half.on_a ? f.normal : Vec2(-f.normal));
   // a wire's side, and a solid's too, is the one on which the sample was
-  // Beyond an end nothing is crossed. Where there is no way by, roundings do not make one.
+  // Beyond a free end nothing is crossed. Where there is no way by, roundings do not make one.
   const double size = half.carrier.bounding_radius + half.other.bounding_radius;
   const bool abreast =
       nearest.foot == Foot::interior || (f.no_way_by && beyond_ends(site, q) <= kOneCorner * size);
-  const bool crossed = abreast && (site.kind == SiteKind::segment ? out.dot(q - nearest.point) < 0.0
-                                                                  : side_of(site, nearest, q) < 0.0);
+  const bool crossed = abreast ? (site.kind == SiteKind::segment ? out.dot(q - nearest.point) < 0.0
+                                                                 : side_of(site, nearest, q) < 0.0)
+                               : f.thin && is_through_joint(half.other, site, nearest, q, out);
   return (crossed ? -nearest.distance : nearest.distance) - site.radius - sample.radius;
 }
 

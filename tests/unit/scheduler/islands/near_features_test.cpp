@@ -28,6 +28,28 @@ TEST(NearFeatures, BoxOnAFloorTouchesWithItsTwoLowerCorners) {
   }
 }
 
+// The tip of a needle in the hollow of a roof of wire, beside its ridge, and on top of it: what goes out through the
+// ridge from below has crossed it, though it is abreast of neither side; what goes over it from above has not.
+TEST(NearFeatures, ATipThatLeavesAHollowThroughAJointOfWiresHasCrossed) {
+  const Outline roof = make_chain({{-2, -1}, {0, 0}, {2, -1}}, false).outline, needle = wire({0, -1}, {0, 0});
+  const Vec2 down_right = Vec2(2, -1).normalized(), up = perp(down_right);
+  const auto at = [&](const Vec2& tip, double turned) { return BodyState{{tip, turned}, {}}; };
+  const auto least_after = [&](const Vec2& before, const Vec2& after, double turned) {
+    double least = 1.0;
+    for (const NearFeature& f : near_features(needle, at(before, turned), roof, BodyState{}, 0.2))
+      if (f.thin && f.sample_on_a && needle.samples[f.sample].p.isZero(0.0))
+        least = std::min(least, gap_of(f, needle, at(after, turned), roof, BodyState{}));
+    return least;
+  };
+  const Vec2 below = 0.05 * down_right - 1e-12 * up, above = 0.05 * down_right + 1e-12 * up;
+  for (const double beyond : {1e-6, 1e-3}) {
+    EXPECT_NEAR(least_after(below, Vec2(0.0, beyond), 0.0), -beyond, 1e-12);
+    EXPECT_NEAR(least_after(below, Vec2(-0.1 * beyond, beyond), 0.0), -beyond, 0.01 * beyond);
+    EXPECT_GT(least_after(above, Vec2(0.0, beyond), 3.141592653589793), 0.0);
+    EXPECT_GT(least_after(above, Vec2(-0.1 * beyond, beyond), 3.141592653589793), 0.0);
+  }
+}
+
 TEST(NearFeatures, DiscInAGrooveTouchesBothSides) {
   const Outline groove = make_polygon({{-2, -2}, {2, -2}, {2, 1}, {0, -1}, {-2, 1}}).outline;
   const double r = 0.5, slack = 0.01;
