@@ -7,6 +7,8 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "brink/core/base/elementary.h"
+
 namespace brink {
 
 namespace {
@@ -17,24 +19,24 @@ struct Relaxed {
   double rate;
 };
 
-/// (1 - e^-z) / z.
-double mean_decay(double z) { return z < 1e-16 ? 1.0 : -std::expm1(-z) / z; }
-
 /// (z - (1 - e^-z)) / z^2; its Taylor series 1/2 - z/6 + z^2/24 - ... where the difference would cancel.
 double mean_rise(double z) {
   // z - (1 - e^-z) is about z^2 / 2: at 0.5 the difference still has all but three of its bits.
-  if (z > 0.5) return (z + std::expm1(-z)) / (z * z);
+  if (z > 0.5) return (z - (1.0 - exponential(-z))) / (z * z);
   // Alternating, with terms that fall: what is left out is less than the last term.
   double term = 0.5, sum = 0.5;
   for (int k = 3; std::abs(term) > 1e-18; ++k) sum += term *= -z / k;
   return sum;
 }
 
+/// (1 - e^-z) / z.
+double mean_decay(double z) { return z > 0.5 ? (1.0 - exponential(-z)) / z : 1.0 - z * mean_rise(z); }
+
 /// One coordinate under linear drag. @pre k >= 0 [1/s], s >= 0 [s].
 Relaxed relax(double rate0, double drive, double k, double s) {
   const double z = k * s, decay = mean_decay(z);
   // with v = v0 e^-kt + (drive / k)(1 - e^-kt), integrated once; never divided by k, which may be 0
-  return {s * (rate0 * decay + s * (drive * mean_rise(z))), rate0 * std::exp(-z) + s * (drive * decay)};
+  return {s * (rate0 * decay + s * (drive * mean_rise(z))), rate0 * exponential(-z) + s * (drive * decay)};
 }
 
 /// Smallest disc-like enclosure that holds both.

@@ -12,6 +12,8 @@
 #include <array>
 #include <cmath>
 
+#include "brink/core/base/elementary.h"
+#include "brink/core/base/sine_cosine.h"
 #include "brink/integrators/dense_output.h"
 #include "brink/integrators/stepping.h"
 
@@ -42,16 +44,16 @@ struct Nodes {
   Matrix to_chebyshev, to_monomial = Matrix::Zero();
 
   Nodes() {
-    for (int j = 0; j <= kDegree; ++j) at[j] = -std::cos(kPi * j / kDegree);
+    for (int j = 0; j <= kDegree; ++j) at[j] = -sine_cosine(kPi * j / kDegree).cosine;
     // cos() of these is off by a rounding; neighbouring cells must share their ends to the bit
     at[0] = -1.0, at[kDegree / 2] = 0.0, at[kDegree] = 1.0;
-    for (int j = 0; j < kDegree; ++j) between[j] = -std::cos(kPi * (j + 0.5) / kDegree);
+    for (int j = 0; j < kDegree; ++j) between[j] = -sine_cosine(kPi * (j + 0.5) / kDegree).cosine;
     const auto half_at_ends = [](int i) { return i == 0 || i == kDegree ? 0.5 : 1.0; };
     // The discrete cosine transform of the values: node j is cos(pi (n - j) / n), ends count half.
     for (int k = 0; k <= kDegree; ++k)
       for (int j = 0; j <= kDegree; ++j)
-        to_chebyshev(k, j) =
-            half_at_ends(j) * half_at_ends(k) * 2.0 / kDegree * std::cos(kPi * (k * (kDegree - j)) / kDegree);
+        to_chebyshev(k, j) = half_at_ends(j) * half_at_ends(k) * 2.0 / kDegree *
+                             sine_cosine(kPi * (k * (kDegree - j)) / kDegree).cosine;
     // T_k = 2 u T_(k-1) - T_(k-2)
     to_monomial(0, 0) = to_monomial(1, 1) = 1.0;
     for (int k = 2; k <= kDegree; ++k) {
@@ -191,7 +193,7 @@ Vector3d PrescribedMotion::noise(const Cell& at) const {
 /// to the nodes, which for Chebyshev-Lobatto points is at most (w / 2)^(n+1) / 2^(n-1).
 PrescribedMotion::Certainty PrescribedMotion::bound(const Cell& at) const {
   static_assert(kDegree == 10, "the eleventh derivative belongs to eleven nodes");
-  const double product = std::ldexp(std::pow(0.5 * at.width, kDegree + 1), 1 - kDegree);
+  const double product = std::ldexp(power(0.5 * at.width, kDegree + 1), 1 - kDegree);
   Certainty known;
   for (int i = 0; i < 3; ++i) {
     const TimeBound b = bound_(i, at.begin, at.begin + at.width, BoundOf::eleventh);

@@ -1,21 +1,22 @@
 #pragma once
-/// States beyond double precision: 64 bits of mantissa (x87), carried as a double and its low-order part.
+/// States beyond double precision: each number is a double and its low-order part (double_double.h).
 ///
 /// A collision rounds a body's state once. In long runs between curved walls those roundings add up like a
-/// random walk that the chords amplify (n^1.5 roundings after n hits); so motions start from states kept to
-/// 64 bits, and collisions are resolved in them. Where long double is double, nothing is lost but this.
+/// random walk that the chords amplify (n^1.5 roundings after n hits); so motions start from states kept in two
+/// doubles, and collisions are resolved in them.
 
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "brink/core/base/geometry.h"
+#include "brink/core/base/sine_cosine.h"
 
 namespace brink {
 
-using Real = long double;
-/// The distance from 1 to the next Real.
-inline constexpr Real kRealEpsilon = std::numeric_limits<Real>::epsilon();
+using Real = DoubleDouble;
+/// Bounds the relative error of an operation.
+inline constexpr double kRealEpsilon = 0x1p-100;
 using RealVec = Eigen::Matrix<Real, 2, 1>;
 
 /// The plane's products once more, in a namespace of their own: expressions of doubles must not come here.
@@ -43,10 +44,13 @@ struct ExtendedRotation {
   Real cosine = 1, sine = 0;
 
   ExtendedRotation() = default;
-  /// By an angle [rad], told to a rounding or two, of 1, however many turns it is. Cost: a library's sine and
-  /// cosine of what is left of it within an eighth of a turn; of 2^30 quarters of a turn or more, the library's
-  /// own, which is ten times as slow.
-  explicit ExtendedRotation(Real angle);
+  /// By an angle [rad]. Cost: sine_cosine().
+  explicit ExtendedRotation(const Real& angle) {
+    if (angle == 0) return;
+    const SineCosine<Real> of = sine_cosine(angle);
+    cosine = of.cosine;
+    sine = of.sine;
+  }
 
   RealVec operator*(const RealVec& d) const {
     return {cosine * d.x() - sine * d.y(), sine * d.x() + cosine * d.y()};
@@ -64,29 +68,28 @@ struct ExtendedState {
       : position(s.pose.position.cast<Real>()), angle(s.pose.angle), twist(s.twist) {}
 
   /// With what its rounding left over.
-  ExtendedState(const BodyState& s, const BodyState& low) : ExtendedState(s) {
-    position += low.pose.position.cast<Real>();
-    angle += low.pose.angle;
-    twist.velocity += low.twist.velocity.cast<Real>();
-    twist.omega += low.twist.omega;
-  }
+  ExtendedState(const BodyState& s, const BodyState& low)
+      : position(Real::sum(s.pose.position.x(), low.pose.position.x()),
+                 Real::sum(s.pose.position.y(), low.pose.position.y())),
+        angle(Real::sum(s.pose.angle, low.pose.angle)),
+        twist({Real::sum(s.twist.velocity.x(), low.twist.velocity.x()),
+               Real::sum(s.twist.velocity.y(), low.twist.velocity.y())},
+              Real::sum(s.twist.omega, low.twist.omega)) {}
 
   BodyState rounded() const {
     return {{position.cast<double>(), static_cast<double>(angle)}, twist.rounded()};
   }
   /// What rounding leaves over: *this == rounded() + low().
   BodyState low() const {
-    const ExtendedState r(rounded());
-    return {{(position - r.position).cast<double>(), static_cast<double>(angle - r.angle)},
-            {(twist.velocity - r.twist.velocity).cast<double>(),
-             static_cast<double>(twist.omega - r.twist.omega)}};
+    const RealVec& v = twist.velocity;
+    return {{{position.x().low(), position.y().low()}, angle.low()},
+            {{v.x().low(), v.y().low()}, twist.omega.low()}};
   }
   /// Rounded as seen from `base`, the angle brought within half a turn before: nothing is lost far away, or
   /// after many turns, by what is near the base.
   BodyState seen_from(const Vec2& base) const {
-    // by its sine and cosine, which are exact for any number of turns
-    const bool within = std::abs(angle) < std::numbers::pi_v<Real>;
-    const Real reduced = within ? angle : std::atan2(std::sin(angle), std::cos(angle));
+    const bool within = abs(angle) < std::numbers::pi;
+    const Real reduced = within ? angle : within_half_a_turn(angle);
     return {{(position - base.cast<Real>()).cast<double>(), static_cast<double>(reduced)}, twist.rounded()};
   }
   ExtendedState shifted(const Vec2& by) const {

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "brink/core/base/sine_cosine.h"
+
 namespace brink {
 
 using Vec2 = Eigen::Vector2d;
@@ -63,8 +65,9 @@ struct Frame {
   double sine = 0.0;
 
   Frame() = default;
-  explicit Frame(const Pose& pose)
-      : origin(pose.position), cosine(std::cos(pose.angle)), sine(std::sin(pose.angle)) {}
+  explicit Frame(const Pose& pose) : Frame(pose.position, sine_cosine(pose.angle)) {}
+  Frame(const Vec2& position, const SineCosine<double>& of_angle)
+      : origin(position), cosine(of_angle.cosine), sine(of_angle.sine) {}
 
   Vec2 direction_to_world(const Vec2& d) const {
     return {cosine * d.x() - sine * d.y(), sine * d.x() + cosine * d.y()};

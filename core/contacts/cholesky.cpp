@@ -30,7 +30,7 @@ void GrowingCholesky::solve_upper(RealVector& y) const {
 void GrowingCholesky::append(const RealVector& y, Real rest) {
   // The new row r of L has L r = a and r.r + d^2 = A's diagonal entry, so that d^2 is `rest`.
   rows_.emplace_back(y.data(), y.data() + y.size());
-  rows_.back().push_back(std::sqrt(rest));
+  rows_.back().push_back(sqrt(rest));
 }
 
 void GrowingCholesky::remove(int k) {
@@ -40,7 +40,7 @@ void GrowingCholesky::remove(int k) {
   for (int column = k; column < size(); ++column) {
     const Real a = rows_[column][column], b = rows_[column][column + 1];
     // A Givens rotation of two columns of L leaves L L^T as it is, brings b to 0 and keeps the diagonal > 0.
-    const Real length = std::hypot(a, b), c = a / length, s = b / length;
+    const Real length = sqrt(a * a + b * b), c = a / length, s = b / length;
     for (int i = column; i < size(); ++i) {
       std::vector<Real>& row = rows_[i];
       const Real left = row[column], right = row[column + 1];

@@ -26,7 +26,7 @@ class Group {
     // |v| + |omega| |r|, not the point's speed: where the two parts cancel, the roundings of both remain.
     for (const GroupContact& c : contacts) {
       const auto speed = [](const ExtendedTwist& t, const RealVec& arm) {
-        return t.velocity.norm() + std::abs(t.omega) * arm.norm();
+        return t.velocity.norm() + abs(t.omega) * arm.norm();
       };
       speed_ = std::max(speed_, speed(bodies[c.body].twist, c.arm));
       speed_ = std::max(
@@ -142,7 +142,7 @@ LcpAnswer impulses(const Group& group, const std::vector<int>& set, const RealVe
     // w = A z + q is v' + target, as v' = v + A z.
     q[k] = group.normal_velocity(set[k]) + target[k];
     // Within rounding the sign is chance, and a contact that rests would be pushed or not by it.
-    if (std::abs(q[k]) <= group.rounding()) q[k] = 0;
+    if (abs(q[k]) <= group.rounding()) q[k] = 0;
   }
   SparseRealMatrix mobilities = group.normal_mobilities(set);
   const LcpAnswer exact = solve_lcp(mobilities, q, go_on);

@@ -78,7 +78,7 @@ ImpulseResult resolve_impulse(const ImpulseSide& body, const ImpulseSide& other,
   if (determinant > 1e-14 * c.knn * c.ktt) {
     const Real pn = (c.ktt * dn - c.knt * dt) / determinant;
     const Real pt = (c.knn * dt - c.knt * dn) / determinant;
-    if (pn >= 0.0 && std::abs(pt) <= material.friction * pn)
+    if (pn >= 0.0 && abs(pt) <= material.friction * pn)
       return apply(ImpulseKind::stick, c, body, other, pn, pt);
   } else {  // no tangential freedom apart from the normal's: nothing to stick with
     return apply(ImpulseKind::slip, c, body, other, frictionless, 0);

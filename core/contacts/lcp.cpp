@@ -84,7 +84,7 @@ class Tableau {
     const Real pa = rows_(a, entering), pb = rows_(b, entering);
     const auto compare = [&](int column) {
       const Real x = rows_(a, column) / pa, y = rows_(b, column) / pb;
-      return std::abs(x - y) <= kTie * std::max({Real(1), std::abs(x), std::abs(y)}) ? 0 : (x < y ? -1 : 1);
+      return abs(x - y) <= kTie * std::max({Real(1), abs(x), abs(y)}) ? 0 : (x < y ? -1 : 1);
     };
     if (const int order = compare(right()); order != 0) return order < 0;
     if (basic_[a] == z0() || basic_[b] == z0()) return basic_[a] == z0();
@@ -146,7 +146,7 @@ LcpAnswer solve_lcp_by_lemke(const RealMatrix& A, const RealVector& q, const GoO
   // Scaled to a diagonal of ones and |q| <= 1; a row whose diagonal is not positive is taken as it is. With
   // D = diag(scale) and s = q_size: A' = D A D, q' = D q / s and z = s D z' give w' = D w / s, so that
   // signs and complementarity are kept, and tolerances can be absolute.
-  const RealVector scale = A.diagonal().unaryExpr([](Real d) { return d > 0 ? 1 / std::sqrt(d) : Real(1); });
+  const RealVector scale = A.diagonal().unaryExpr([](Real d) { return d > 0 ? 1 / sqrt(d) : Real(1); });
   const RealVector scaled_q = scale.cwiseProduct(q);
   const Real q_size = scaled_q.cwiseAbs().maxCoeff();
   LcpAnswer answer = lemke(scale.asDiagonal() * A * scale.asDiagonal(), scaled_q / q_size, go_on);

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <numbers>
 
+#include "brink/core/base/elementary.h"
 #include "brink/core/base/error.h"
+#include "brink/core/base/sine_cosine.h"
 #include "brink/core/shapes/curve_site.h"
 #include "brink/core/shapes/distance.h"
 #include "brink/core/shapes/text.h"
@@ -152,16 +154,18 @@ bool Fitter::add_tangent_arc(const Vec2& a, const Vec2& direction, const Vec2& b
   // the joint lies on this end: the other arc is the whole biarc
   if (!(size > 0.0)) return true;
   // the angle of tangent and chord is half of the arc's turn
-  const double half = std::atan2(cross(direction, chord), direction.dot(chord));
+  const double half = angle_of(cross(direction, chord), direction.dot(chord));
   if (std::abs(half) > kQuarterTurn / 2) return false;
-  const double sagitta = size / 2 * std::tan(std::abs(half) / 2);
+  // tan(h / 2) = sin h / (1 + cos h)
+  const auto [sine, cosine] = sine_cosine(std::abs(half));
+  const double sagitta = size / 2 * sine / (1.0 + cosine);
   // off by a fiftieth of the tolerance, which accept_if_near() measures with the rest; or so flat that
   // the radius, chord^2 / (8 sagitta), is more than 1e7 chords and its centre's digits are lost
   if (sagitta <= std::max(0.02 * tolerance_, 1e-8 * size)) {
     fitted.push_back(segment_site(a, b, radius_));
     return true;
   }
-  const double signed_radius = size / (2 * std::sin(half));
+  const double signed_radius = size / (2 * std::copysign(sine, half));
   const Vec2 center = a + signed_radius * perp(direction);
   add_arc(fitted, a, b, center, std::abs(signed_radius), 2 * half, radius_);
   return true;

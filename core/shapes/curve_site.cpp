@@ -3,6 +3,8 @@
 #include <array>
 #include <numbers>
 
+#include "brink/core/base/sine_cosine.h"
+
 namespace brink {
 
 namespace {
@@ -27,7 +29,7 @@ Vec2 unit_at(double angle) {
   // up to the roundings of the multiple and of a change from degrees it is the multiple: cos(pi / 2) is
   // 6e-17 in doubles, and the ends of a circle's quarters would lie beside its axes
   if (std::abs(angle - quarters * kQuarterTurn) > 4e-16 * std::max(1.0, std::abs(angle)))
-    return {std::cos(angle), std::sin(angle)};
+    return {sine_cosine(angle).cosine, sine_cosine(angle).sine};
   static const std::array<Vec2, 4> axes{Vec2(1, 0), Vec2(0, 1), Vec2(-1, 0), Vec2(0, -1)};
   // fmod() keeps the sign: quarters below 0 are lifted
   return axes[static_cast<int>(std::fmod(quarters, 4.0) + 4.0) % 4];

@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "brink/core/base/sine_cosine.h"
 #include "brink/core/shapes/curve_site.h"
 #include "brink/core/shapes/thick_boundary.h"
 
@@ -12,7 +13,7 @@ namespace {
 /// x - sin x, without cancellation for small x.
 double less_sine(double x) {
   // x / (x - sin x) is 12.5 at 0.7 and less above: the difference loses at most four bits
-  if (std::abs(x) > 0.7) return x - std::sin(x);
+  if (std::abs(x) > 0.7) return x - sine_cosine(x).sine;
   // the series x^3 / 3! - x^5 / 5! + ...
   double term = x * x * x / 6, sum = 0.0;
   for (int n = 4; std::abs(term) > 1e-18 * std::abs(sum); n += 2) {
@@ -38,7 +39,7 @@ Vec2 bisector(const Site& arc) { return (point_along(arc, 0.5) - arc.center).nor
 /// The region between an arc and its chord, about the circle's centre: sector less triangle.
 Moments between_arc_and_chord(const Site& arc) {
   const double r = arc.arc_radius, angle = arc.sweep;
-  const double half_sine = std::sin(angle / 2);
+  const double half_sine = sine_cosine(angle / 2).sine;
   Moments m;
   // signed as the sweep is; the second moment is r^4 angle / 4 of the sector less r^4
   // (2 sin + sin cos) / 12 of the triangle, as two differences x - sin x
@@ -80,7 +81,7 @@ void add_wire(Moments& sums, const Site& site, const Vec2& about) {
   }
   const double r = site.arc_radius;
   // the integral of r^2 times the unit vector over the angle, in which what is across the bisector cancels
-  m.first = 2 * r * r * std::sin(std::abs(site.sweep) / 2) * bisector(site);
+  m.first = 2 * r * r * sine_cosine(std::abs(site.sweep) / 2).sine * bisector(site);
   m.second = m.size * r * r;
   add_moved(sums, m, site.center, about);
 }

@@ -4,6 +4,7 @@
 #include <map>
 #include <numbers>
 
+#include "brink/core/base/elementary.h"
 #include "brink/core/base/error.h"
 #include "brink/core/shapes/curve_site.h"
 #include "brink/core/shapes/distance.h"
@@ -170,7 +171,7 @@ std::vector<Vec2> facets_of(const Outline& outline) {
     const Vec2 along = site.b - site.a, then = next.b - next.a;
     // a straight joint is allowed: it leaves the polygon convex
     if (!(cross(along, then) >= 0.0)) return {};
-    turned += std::atan2(cross(along, then), along.dot(then));
+    turned += angle_of(cross(along, then), along.dot(then));
     facets.push_back(-perp(along).normalized());
   }
   // a pentagram turns left at every vertex too, but its normals go twice round

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "brink/core/base/elementary.h"
 #include "brink/core/base/error.h"
 #include "brink/core/shapes/biarc.h"
 #include "brink/core/shapes/crossing.h"
@@ -65,8 +66,8 @@ CenterArc center_of(const PathPiece& piece, const Upward& up) {
   arc.center = 0.5 * (a + b) + c.x() * arc.u + c.y() * arc.v;
   const Vec2 from = h - c, to = -h - c;
   // from the centre to the start and to the end, still in units of the half axes
-  arc.start = std::atan2(from.y(), from.x());
-  double sweep = std::atan2(cross(from, to), from.dot(to));
+  arc.start = angle_of(from.y(), from.x());
+  double sweep = angle_of(cross(from, to), from.dot(to));
   // atan2() tells the way round of at most half a turn: it may be the other one that is meant
   if (counter_clockwise && sweep < 0.0) sweep += 2 * std::numbers::pi;
   if (!counter_clockwise && sweep > 0.0) sweep -= 2 * std::numbers::pi;

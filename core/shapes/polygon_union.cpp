@@ -12,6 +12,7 @@
 #include <map>
 #include <numbers>
 
+#include "brink/core/base/elementary.h"
 #include "brink/core/base/error.h"
 #include "brink/core/shapes/box_sweep.h"
 #include "brink/core/shapes/polygon.h"
@@ -62,7 +63,7 @@ class Union {
   /// Direction from one vertex to another, from the x axis on [rad].
   double angle_of(int from, int to) const {
     const Vec2 d = points_[to] - points_[from];
-    return std::atan2(d.y(), d.x());
+    return brink::angle_of(d.y(), d.x());
   }
 
   const std::vector<Polygon>& polygons_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numbers>
 
+#include "brink/core/base/sine_cosine.h"
+
 namespace brink {
 
 namespace {
@@ -66,10 +68,14 @@ std::vector<double> CubicBezier::breaks() const {
 EllipticalArc::EllipticalArc(const Vec2& center, const Vec2& u, const Vec2& v, double from, double to)
     : center_(center), u_(u), v_(v), from_(from), to_(to), longest_(std::max(u.norm(), v.norm())) {}
 
-Vec2 EllipticalArc::point(double t) const { return center_ + std::cos(t) * u_ + std::sin(t) * v_; }
+Vec2 EllipticalArc::point(double t) const {
+  const auto [sine, cosine] = sine_cosine(t);
+  return center_ + cosine * u_ + sine * v_;
+}
 
 Vec2 EllipticalArc::derivative(double t) const {
-  const Vec2 d = std::cos(t) * v_ - std::sin(t) * u_;
+  const auto [sine, cosine] = sine_cosine(t);
+  const Vec2 d = cosine * v_ - sine * u_;
   // in the direction of travel, also where the parameter falls
   return to_ > from_ ? d : Vec2(-d);
 }

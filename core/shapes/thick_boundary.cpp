@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "brink/core/base/elementary.h"
 #include "brink/core/shapes/crossing.h"
 #include "brink/core/shapes/curve_site.h"
 #include "brink/core/shapes/distance.h"
@@ -55,7 +56,7 @@ double fraction_of(const Site& piece, const Vec2& p) {
   }
   // the angle from the start, signed as the sweep is where p is on the arc
   const Vec2 from = piece.a - piece.center, w = p - piece.center;
-  return std::clamp(std::atan2(cross(from, w), from.dot(w)) / piece.sweep, 0.0, 1.0);
+  return std::clamp(angle_of(cross(from, w), from.dot(w)) / piece.sweep, 0.0, 1.0);
 }
 
 /// The piece between two fractions of its length.

@@ -1,6 +1,8 @@
 /// What the forces store: energy, momentum, and whether the energy is conserved.
 #include <cmath>
 
+#include "brink/core/base/elementary.h"
+
 #include "brink/core/world/forces.h"
 
 namespace brink {
@@ -28,7 +30,7 @@ double potential(const World& world, const AttractForce& attract, std::span<cons
   for (int k : attract.bodies) {
     const double r = (states[k].pose.position - attract.center).norm();
     const double n = attract.power + 1.0;
-    sum += world.bodies[k].mass * attract.strength * (n == 0.0 ? std::log(r) : std::pow(r, n) / n);
+    sum += world.bodies[k].mass * attract.strength * (n == 0.0 ? logarithm(r) : power(r, n) / n);
   }
   return sum;
 }

@@ -13,6 +13,7 @@
 #include <numeric>
 #include <optional>
 
+#include "brink/core/base/elementary.h"
 #include "brink/core/world/steady.h"
 
 namespace brink {
@@ -154,7 +155,7 @@ void ForceDynamics::add_attractors(std::span<const BodyState> states, std::span<
     // that is left to end the integration.
     if (r == 0.0 && attract->power >= 0.0) continue;
     // an acceleration: the force is proportional to the mass, as gravity is
-    out[place].linear += attract->strength * std::pow(r, attract->power - 1.0) * inward;
+    out[place].linear += attract->strength * power(r, attract->power - 1.0) * inward;
   }
 }
 

@@ -10,8 +10,10 @@
 #include <optional>
 #include <stdexcept>
 
+#include "brink/core/base/elementary.h"
 #include "brink/core/base/error.h"
 #include "brink/core/base/printable.h"
+#include "brink/core/base/sine_cosine.h"
 #include "brink/core/world/formula_tree.h"
 
 namespace brink {
@@ -58,6 +60,24 @@ std::string explain(const mu::Parser::exception_type& e) {
   return message.empty() ? "cannot be understood" : message;
 }
 
+/// Of the motions and forces that people write, with the same bits on every machine; what is left to the C library
+/// (tan, asin, atan, the hyperbolic functions, powers by `^` above the fourth) is as good as that.
+void define_functions(mu::Parser& parser) {
+  const auto define = [&](const char* name, double (*of)(double)) { parser.DefineFun(name, of); };
+  define("sin", [](double x) { return sine_cosine(x).sine; });
+  define("cos", [](double x) { return sine_cosine(x).cosine; });
+  define("exp", [](double x) { return exponential(x); });
+  define("ln", [](double x) { return logarithm(x); });
+  define("log", [](double x) { return logarithm(x); });
+  define("acos", [](double x) { return arc_cosine(x); });
+  parser.DefineFun(
+      "atan2", +[](double y, double x) { return angle_of(y, x); });
+  // muParser's own lose all digits of asinh(-1e8)
+  define("asinh", [](double x) { return std::asinh(x); });
+  define("acosh", [](double x) { return std::acosh(x); });
+  define("atanh", [](double x) { return std::atanh(x); });
+}
+
 }  // namespace
 
 /// The parser points into `values`, so a Compiled never moves and is never shared.
@@ -87,13 +107,7 @@ struct Formula::Compiled {
       parser.ClearConst();
       parser.DefineConst("pi", 3.14159265358979323846);
       parser.DefineConst("e", 2.71828182845904523536);
-      // its own lose all digits of asinh(-1e8)
-      parser.DefineFun(
-          "asinh", +[](double x) { return std::asinh(x); });
-      parser.DefineFun(
-          "acosh", +[](double x) { return std::acosh(x); });
-      parser.DefineFun(
-          "atanh", +[](double x) { return std::atanh(x); });
+      define_functions(parser);
       for (std::size_t i = 0; i < variables.size(); ++i) parser.DefineVar(variables[i], &values[i]);
       // SetExpr() only keeps the text. The first evaluation compiles it and finds its faults; the value, with
       // all variables 0, is not looked at.

@@ -24,7 +24,9 @@ Vec2 round_place_in(const Box& box) {
   if (!(size > 0.0) || middle.lpNorm<Eigen::Infinity>() <= 2.0 * size) return Vec2::Zero();
   // From one to two sizes: the place is less than a size from the middle, and no coordinate in the new frame
   // is beyond one and a half. A multiple of a power of two has few bits, so that a shift by it seldom rounds.
-  const double unit = std::exp2(std::ceil(std::log2(size)));
+  int doublings = 0;
+  const bool is_power = std::frexp(size, &doublings) == 0.5;
+  const double unit = std::ldexp(1.0, is_power ? doublings - 1 : doublings);
   return {unit * std::round(middle.x() / unit), unit * std::round(middle.y() / unit)};
 }
 

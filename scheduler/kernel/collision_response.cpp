@@ -27,7 +27,7 @@ ImpulseSide site_side(const ExtendedState& state, const RealVec& point) {
 
 /// Sum of the speeds that a side's velocity at the contact is made of [m/s].
 double speed_of(const ImpulseSide& side) {
-  return static_cast<double>(side.twist.velocity.lpNorm<1>() + std::abs(side.twist.omega) * side.arm.norm());
+  return static_cast<double>(side.twist.velocity.lpNorm<1>() + abs(side.twist.omega) * side.arm.norm());
 }
 
 /// The state `delay` later of what moves so. What forces do to it in so short a while counts on a parabola alone:
@@ -132,8 +132,8 @@ Real CollisionResponse::delay_to_contact(const FeatureContact& found, const Exte
   return std::clamp((c.gap - found.level) / c.closing, -late, late);
 }
 
-/// The features are looked at twice: where the pair is now, which tells how long it is to the moment of contact,
-/// and there, where the law is asked. The states that are returned are those of now, for motions that begin now.
+/// The features are looked at where the pair is now, which tells how long it is to the moment of contact, and moved on
+/// to that, where the law is asked. The states that are returned are those of now, for motions that begin now.
 CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const FeatureContact& found,
                                                     const Material& material) {
   Change r;
@@ -142,19 +142,17 @@ CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const F
   r.other = search_->other_state(pair, now);
   // of one that an island holds what its step has brought by now
   if (!pair.with_site()) r.other.twist = trajectories_->state_now(pair.other_body).twist;
-  // First where the pair is now, for the delay; then again at the moment of contact, for the impulse.
-  const auto look_at = [&](const ExtendedState& body, const ExtendedState& other) {
-    return found.seen ? as_seen(found)
-                      : contact_in(search_->outline_of(pair.body),
-                                   search_->outline_of(search_->other_owner(pair)), body, other, found);
-  };
-  r.delay = delay_to_contact(found, look_at(r.body, r.other));
+  const ExtendedContact at_present =
+      found.seen ? as_seen(found)
+                 : contact_in(search_->outline_of(pair.body), search_->outline_of(search_->other_owner(pair)),
+                              r.body, r.other, found);
+  r.delay = delay_to_contact(found, at_present);
   const ExtendedState body = later(r.body, r.delay, trajectories_->motion_of(pair.body)),
                       other = later(r.other, r.delay, trajectories_->motion_of(search_->other_owner(pair)));
   // the law changes these, the twists at the moment of contact (deflected)
   r.body_before = body.twist;
   r.other_before = other.twist;
-  const ExtendedContact c = look_at(body, other);
+  const ExtendedContact c = at_present.moved(r.delay.high());
   const ImpulseSide side = body_side(world_->bodies[pair.body], body, c.point);
   const ImpulseSide other_side = pair.with_site()
                                      ? site_side(other, c.point)

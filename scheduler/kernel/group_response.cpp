@@ -239,7 +239,7 @@ class GroupResponse::Group {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
       const ExtendedTwist& t = members_[k].twist;
       speed = std::max(speed, static_cast<double>(t.velocity.lpNorm<1>() +
-                                                  std::abs(t.omega) *
+                                                  abs(t.omega) *
                                                       parts_.search_.outline_of(bodies_[k]).bounding_radius));
     }
     return speed;

@@ -1,3 +1,5 @@
+/// Written once for any kind of product (double_double.h), and compiled for processors with fused products, too: the
+/// same bits in two thirds of the time.
 #include "brink/scheduler/resolve/disc_rebound.h"
 
 #include <algorithm>
@@ -9,140 +11,217 @@ namespace brink {
 
 namespace {
 
-/// A disc at one time, all but its spin.
-/// Place and velocity in extended precision, from the start and what rounding left over of it.
-struct Moving {
-  Real x, y, vx, vy;
-  double ax, ay;
+// All of it in the caller, so that it is compiled for the caller's processor.
+#define BRINK_INLINE [[gnu::always_inline]] inline
 
-  Moving(const Motion& m, double t) {
-    const BodyState &s = m.start(), &low = m.start_low();
-    const Vec2& a = m.acceleration().linear;
-    ax = a.x();
-    ay = a.y();
-    const Real since = static_cast<Real>(t) - m.origin();
-    vx = static_cast<Real>(s.twist.velocity.x()) + low.twist.velocity.x();
-    vy = static_cast<Real>(s.twist.velocity.y()) + low.twist.velocity.y();
-    x = static_cast<Real>(s.pose.position.x()) + low.pose.position.x();
-    y = static_cast<Real>(s.pose.position.y()) + low.pose.position.y();
+/// A plane's vector of two doubles a coordinate.
+template <class Number>
+struct Pair {
+  Number x, y;
+
+  BRINK_INLINE Pair(const Number& of_x, const Number& of_y) : x(of_x), y(of_y) {}
+  BRINK_INLINE friend Pair operator-(const Pair& a, const Pair& b) { return {a.x - b.x, a.y - b.y}; }
+  BRINK_INLINE friend Pair operator+(const Pair& a, const Pair& b) { return {a.x + b.x, a.y + b.y}; }
+  template <class Factor>
+  BRINK_INLINE friend Pair operator*(const Pair& a, const Factor& by) {
+    return {a.x * by, a.y * by};
+  }
+  BRINK_INLINE Number dot(const Pair& b) const { return x * b.x + y * b.y; }
+  /// Sizes of both coordinates.
+  BRINK_INLINE double size() const { return std::abs(x.high()) + std::abs(y.high()); }
+};
+
+/// Where a disc is at one time, from its start and what rounding left over of it.
+template <class Number>
+struct Moving {
+  Pair<Number> place, velocity;
+
+  BRINK_INLINE Moving(const Motion& m, double t)
+      : place(from(m.start().pose.position, m.start_low().pose.position)),
+        velocity(from(m.start().twist.velocity, m.start_low().twist.velocity)) {
+    const Number since = Number::sum(t, -m.origin());
+    const double ax = m.acceleration().linear.x(), ay = m.acceleration().linear.y();
     // without forces the velocity stays, and half of the products are saved
-    if (a.isZero(0.0)) {
-      x += since * vx;
-      y += since * vy;
+    if (ax == 0.0 && ay == 0.0) {
+      place = place + velocity * since;
       return;
     }
-    x += since * (vx + Real(0.5) * since * a.x());
-    y += since * (vy + Real(0.5) * since * a.y());
-    vx += since * a.x();
-    vy += since * a.y();
+    const Pair<Number> gained(since * ax, since * ay);
+    place = place + (velocity + gained * 0.5) * since;
+    velocity = velocity + gained;
+  }
+
+ private:
+  BRINK_INLINE static Pair<Number> from(const Vec2& high, const Vec2& low) {
+    return {Number(high.x(), low.x()), Number(high.y(), low.y())};
   }
 };
 
 /// A value as a double and what that leaves over.
-void split(Real value, double& high, double& low) {
-  high = static_cast<double>(value);
-  low = static_cast<double>(value - high);
+template <class Number>
+BRINK_INLINE void split(const Number& value, double& high, double& low) {
+  high = value.high();
+  low = value.low();
 }
 
-/// The start at `time` of the parabola on which `disc`, now with the velocity (vx, vy), passes through the
-/// place where it was `delay` from then.
-DiscRebound::Start start_after(const Motion& motion, double time, const Moving& disc, Real vx, Real vy,
-                               Real delay) {
+/// The start at `time` of the parabola on which `disc` passes, with its velocity changed by `change`, through the place
+/// where it was `delay` from then.
+template <class Number>
+BRINK_INLINE DiscRebound::Start start_after(const Motion& motion, double time, const Moving<Number>& disc,
+                                            const Pair<Number>& change, double delay) {
   DiscRebound::Start start;
   // Both parabolas have the same acceleration. So they are at one place `delay` from now if their places
   // now differ by what their velocities make of it.
   BodyState &s = start.state, &low = start.low;
-  split(disc.x + delay * (disc.vx - vx), s.pose.position.x(), low.pose.position.x());
-  split(disc.y + delay * (disc.vy - vy), s.pose.position.y(), low.pose.position.y());
-  split(vx, s.twist.velocity.x(), low.twist.velocity.x());
-  split(vy, s.twist.velocity.y(), low.twist.velocity.y());
+  split(disc.place.x - change.x.high() * delay, s.pose.position.x(), low.pose.position.x());
+  split(disc.place.y - change.y.high() * delay, s.pose.position.y(), low.pose.position.y());
+  split(disc.velocity.x + change.x, s.twist.velocity.x(), low.twist.velocity.x());
+  split(disc.velocity.y + change.y, s.twist.velocity.y(), low.twist.velocity.y());
   // Without friction nothing turns at the rim: angle and spin go on as they were.
   const BodyState &before = motion.start(), &before_low = motion.start_low();
   const double alpha = motion.acceleration().angular;
-  const Real omega = static_cast<Real>(before.twist.omega) + before_low.twist.omega;
-  const Real angle = static_cast<Real>(before.pose.angle) + before_low.pose.angle;
-  const Real since = static_cast<Real>(time) - motion.origin();
-  split(angle + since * (omega + Real(0.5) * since * alpha), s.pose.angle, low.pose.angle);
-  split(omega + since * alpha, s.twist.omega, low.twist.omega);
+  const Number angle(before.pose.angle, before_low.pose.angle),
+      omega(before.twist.omega, before_low.twist.omega);
+  if (omega == 0.0 && alpha == 0.0) {
+    split(angle, s.pose.angle, low.pose.angle);
+    return start;
+  }
+  const Number since = Number::sum(time, -motion.origin()), gained = since * alpha;
+  split(angle + since * (omega + gained * 0.5), s.pose.angle, low.pose.angle);
+  split(omega + gained, s.twist.omega, low.twist.omega);
   return start;
 }
 
 /// Sum of the speeds at a disc's edge.
-double speed_of(const DiscRebound::Start& s, const Moving& before, double radius) {
-  return static_cast<double>(std::abs(before.vx) + std::abs(before.vy)) +
-         std::abs(s.state.twist.omega) * radius;
+BRINK_INLINE double speed_of(const DiscRebound::Start& s, double speed, double radius) {
+  return speed + std::abs(s.state.twist.omega) * radius;
 }
-
-}  // namespace
 
 /// With d = x_a - x_b and w = v_a - v_b at `time`:
 ///   delay   (|d| - r_a - r_b - level) / closing,  closing = -d.w / |d|
-///   n       d / |d| after that delay
-///   p       -(1 + e) n.w / (1 / m_a + 1 / m_b)
-///   after   v_a + p n / m_a  and  v_b - p n / m_b
+///   c       d + delay w, the centres' way apart at the moment of contact
+///   f       -(1 + e) c.w / (c.c (1 / m_a + 1 / m_b)), the impulse over |c|
+///   after   v_a + f c / m_a  and  v_b - f c / m_b
 /// Accelerations are the same before and after, so the velocities of `time` change by as much as those of the
-/// moment of contact.
-std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const Vec2& shift, double time,
-                                   double latest, double level, double restitution) {
-  const Moving disc_a(*a.motion, time), disc_b(*b.motion, time);
-  Real dx = disc_a.x - (disc_b.x + shift.x()), dy = disc_a.y - (disc_b.y + shift.y());
-  const Real wx = disc_a.vx - disc_b.vx, wy = disc_a.vy - disc_b.vy;
-  Real length = std::sqrt(dx * dx + dy * dy);
-  const Real closing = -(dx * wx + dy * wy) / length;
+/// moment of contact. The delay is a few ticks of the clock: a double tells it, and what it adds to d, to more than
+/// all digits of d; what an acceleration adds to the way goes with its square.
+template <class Number>
+BRINK_INLINE std::optional<DiscRebound> rebound_of_discs(const DiscSide& a, const DiscSide& b,
+                                                         const Vec2& shift, double time, double latest,
+                                                         double level, double restitution) {
+  const Moving<Number> disc_a(*a.motion, time), disc_b(*b.motion, time);
+  Pair<Number> d = disc_a.place - disc_b.place;
+  const Pair<Number> w = disc_a.velocity - disc_b.velocity;
+  if (shift.x() != 0.0 || shift.y() != 0.0) d = {d.x - shift.x(), d.y - shift.y()};
+  const Number distance2 = d.dot(d), way = d.dot(w);
+  const double distance = std::sqrt(distance2.high()), closing = -way.high() / distance;
   if (!(closing > 0) || !(a.inverse_mass + b.inverse_mass > 0.0)) return std::nullopt;
+  const Number reach = Number::sum(a.radius, b.radius) + level;
+  // a difference of squares, so that nothing cancels in double
+  const double above = (distance2 - reach * reach).high() / (distance + reach.high());
   DiscRebound r;
-  // To first order, as in the general response: the delay is a few ticks of the clock, and what an
-  // acceleration adds to the way goes with their square.
-  r.delay = std::clamp((length - b.radius - a.radius - level) / closing, Real(-latest), Real(latest));
-  // relative motion to first order: accelerations come in with the rate, below
-  dx += r.delay * wx;
-  dy += r.delay * wy;
-  length = std::sqrt(dx * dx + dy * dy);
-  r.gap = static_cast<double>(length - b.radius - a.radius);
-  const Real nx = dx / length, ny = dy / length;
-  const Real rate =
-      nx * (wx + r.delay * (disc_a.ax - disc_b.ax)) + ny * (wy + r.delay * (disc_a.ay - disc_b.ay));
+  const double delay = std::clamp(above / closing, -latest, latest);
+  r.delay = delay;
+  r.gap = level + (above - delay * closing);
+  const Pair<Number> c(d.x + w.x.high() * delay, d.y + w.y.high() * delay);
+  const Vec2 pull = a.motion->acceleration().linear - b.motion->acceleration().linear;
+  const double speed2 = w.x.high() * w.x.high() + w.y.high() * w.y.high();
+  // c.w with the relative velocity of the moment of contact, and c.c
+  const Number rate = way + delay * (speed2 + (d.x.high() * pull.x() + d.y.high() * pull.y()));
   // turned round within the delay: no impulse is due
-  if (!(rate < 0)) return std::nullopt;
+  if (!(rate.high() < 0)) return std::nullopt;
+  const Number square = distance2 + delay * (2.0 * way.high() + delay * speed2);
   // The rate is that of the moment of contact, and -restitution times it the one after.
-  const Real impulse = -(Real(1) + restitution) * rate / (static_cast<Real>(a.inverse_mass) + b.inverse_mass);
-  r.impulse = static_cast<double>(impulse);
-  const Real push_a = a.inverse_mass * impulse, push_b = b.inverse_mass * impulse;
-  r.a = start_after(*a.motion, time, disc_a, disc_a.vx + push_a * nx, disc_a.vy + push_a * ny, r.delay);
-  r.b = start_after(*b.motion, time, disc_b, disc_b.vx - push_b * nx, disc_b.vy - push_b * ny, r.delay);
-  r.magnitude = std::max(speed_of(r.a, disc_a, a.radius), speed_of(r.b, disc_b, b.radius));
+  const Number force =
+      -(Number::sum(1.0, restitution) * rate) / (square * Number::sum(a.inverse_mass, b.inverse_mass));
+  r.impulse = force.high() * std::sqrt(square.high());
+  const Pair<Number> push = c * force;
+  r.a = start_after(*a.motion, time, disc_a, push * a.inverse_mass, delay);
+  r.b = start_after(*b.motion, time, disc_b, push * -b.inverse_mass, delay);
+  r.magnitude = std::max(speed_of(r.a, disc_a.velocity.size(), a.radius),
+                         speed_of(r.b, disc_b.velocity.size(), b.radius));
   return r;
 }
 
 /// As above with 1 / m_b = 0 and v_b = 0; the gap is the distance from the wall's middle line, less half its
-/// thickness and the disc's radius.
+/// thickness and the disc's radius. m: across the wall, to the disc, as long as the wall; after: v - (1 + e) m.v / m.m m.
+template <class Number>
+BRINK_INLINE std::optional<DiscRebound> rebound_of_wall(const DiscSide& disc, const WallSide& wall,
+                                                        double time, double latest, double level,
+                                                        double restitution) {
+  const auto number = [](const Real& of) __attribute__((always_inline)) {
+    return Number(of.high(), of.low());
+  };
+  const Moving<Number> at(*disc.motion, time);
+  const Pair<Number> begin(number(wall.begin.x()), number(wall.begin.y())),
+      way = Pair<Number>(number(wall.end.x()), number(wall.end.y())) - begin, d = at.place - begin;
+  const Number length2 = way.dot(way), along = d.dot(way);
+  // 0 and length^2 are the ends: beyond them an end is nearest
+  if (!(along > 0.0) || !(along < length2)) return std::nullopt;
+  // The wall's normal is (y, -x) of its way, or the opposite: the one that points to the disc.
+  Pair<Number> m(way.y, -way.x);
+  const double side = m.x.high() * wall.normal.x() + m.y.high() * wall.normal.y();
+  if (side < 0.0) m = {-m.x, -m.y};
+  const Number length = sqrt(length2);
+  // Abreast, but met with a normal that is not the wall's: the contact is with an end, to rounding.
+  if (std::abs(side) < kSameDirection * length.high()) return std::nullopt;
+  const Number rate_now = m.dot(at.velocity);
+  if (!(rate_now.high() < 0)) return std::nullopt;
+  DiscRebound r;
+  // its normal is the same wherever the disc is abreast of it: nothing is looked at again after the delay
+  const double gap = ((m.dot(d) - length * wall.radius - length * disc.radius) / length).high();
+  const double closing = -rate_now.high() / length.high();
+  const double delay = std::clamp((gap - level) / closing, -latest, latest);
+  r.delay = delay;
+  r.gap = gap - delay * closing;
+  const Vec2& pull = disc.motion->acceleration().linear;
+  const Number rate = rate_now + delay * (m.x.high() * pull.x() + m.y.high() * pull.y());
+  if (!(rate.high() < 0)) return std::nullopt;
+  const Number change = -(Number::sum(1.0, restitution) * rate) / length2;
+  r.impulse = change.high() * length.high() / disc.inverse_mass;
+  r.a = start_after(*disc.motion, time, at, m * change, delay);
+  r.magnitude = speed_of(r.a, at.velocity.size(), disc.radius);
+  return r;
+}
+
+#undef BRINK_INLINE
+
+#if defined(__x86_64__) && !defined(__FP_FAST_FMA)
+
+using FusedNumber = BasicDoubleDouble<error_free::Fused>;
+
+[[gnu::target("fma")]] std::optional<DiscRebound> fused_rebound(const DiscSide& a, const DiscSide& b,
+                                                                const Vec2& shift, double time, double latest,
+                                                                double level, double restitution) {
+  return rebound_of_discs<FusedNumber>(a, b, shift, time, latest, level, restitution);
+}
+
+[[gnu::target("fma")]] std::optional<DiscRebound> fused_rebound(const DiscSide& disc, const WallSide& wall,
+                                                                double time, double latest, double level,
+                                                                double restitution) {
+  return rebound_of_wall<FusedNumber>(disc, wall, time, latest, level, restitution);
+}
+
+const bool has_fused_products = __builtin_cpu_supports("fma");
+
+#endif
+
+}  // namespace
+
+std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const Vec2& shift, double time,
+                                   double latest, double level, double restitution) {
+#if defined(__x86_64__) && !defined(__FP_FAST_FMA)
+  if (has_fused_products) return fused_rebound(a, b, shift, time, latest, level, restitution);
+#endif
+  return rebound_of_discs<Real>(a, b, shift, time, latest, level, restitution);
+}
+
 std::optional<DiscRebound> rebound(const DiscSide& disc, const WallSide& wall, double time, double latest,
                                    double level, double restitution) {
-  const Moving at(*disc.motion, time);
-  const Real tx = wall.end.x() - wall.begin.x(), ty = wall.end.y() - wall.begin.y();
-  const Real dx = at.x - wall.begin.x(), dy = at.y - wall.begin.y();
-  const Real length2 = tx * tx + ty * ty, along = dx * tx + dy * ty;
-  // 0 and length^2 are the ends: beyond them an end is nearest
-  if (!(along > 0) || !(along < length2)) return std::nullopt;
-  // The wall's normal is (ty, -tx) / length or its opposite: the one that points to the disc.
-  const Real length = std::sqrt(length2), side = ty * wall.normal.x() - tx * wall.normal.y() < 0 ? -1 : 1;
-  const Real nx = side * ty / length, ny = -side * tx / length;
-  // Abreast, but met with a normal that is not the wall's: the contact is with an end, to rounding.
-  if (nx * wall.normal.x() + ny * wall.normal.y() < kSameDirection) return std::nullopt;
-  const Real closing = -(nx * at.vx + ny * at.vy);
-  if (!(closing > 0)) return std::nullopt;
-  DiscRebound r;
-  const Real gap = nx * dx + ny * dy - wall.radius - disc.radius;
-  // its normal is the same wherever the disc is abreast of it: nothing is looked at again after the delay
-  r.delay = std::clamp((gap - level) / closing, Real(-latest), Real(latest));
-  r.gap = static_cast<double>(gap - r.delay * closing);
-  const Real rate = -closing + r.delay * (nx * at.ax + ny * at.ay);
-  if (!(rate < 0)) return std::nullopt;
-  const Real change = -(Real(1) + restitution) * rate;
-  r.impulse = static_cast<double>(change / disc.inverse_mass);
-  r.a = start_after(*disc.motion, time, at, at.vx + change * nx, at.vy + change * ny, r.delay);
-  r.magnitude = speed_of(r.a, at, disc.radius);
-  return r;
+#if defined(__x86_64__) && !defined(__FP_FAST_FMA)
+  if (has_fused_products) return fused_rebound(disc, wall, time, latest, level, restitution);
+#endif
+  return rebound_of_wall<Real>(disc, wall, time, latest, level, restitution);
 }
 
 }  // namespace brink

@@ -21,6 +21,10 @@ RealVec aligned(const RealVec& n, const RealVec& with) { return n.dot(with) < 0 
 struct Away {
   RealVec normal;
   Real distance;
+  /// What the normal turns about: a point that the site carries, so far back along it [m]; 0: the normal is as it was
+  /// known and stays so. Of a straight side it turns as that does.
+  double back = 0.0;
+  bool straight = false;
 };
 
 /// From a site of the outline that stands at `origin`, turned by `turned`, to the point p; all in the world [m].
@@ -35,19 +39,21 @@ Away away_from(const Site& site, const ExtendedRotation& turned, const RealVec& 
     // Two points in one place have no direction: the contact's stays.
     if (length <= least) return {out, d.dot(out)};
     const RealVec n = aligned(d / length, out);
-    return {n, d.dot(n)};
+    const Real along = d.dot(n);
+    return {n, along, along.high()};
   };
   // The foot decides: beside the ends an end is the nearest point, between them the line. Whether it is one or the
   // other can be a rounding, so the known normal has the last word.
   if (site.kind == SiteKind::segment) {
-    const RealVec a = place(site.a), d = place(site.b) - a, w = p - a;
+    const RealVec a = place(site.a), w = p - a;
+    const RealVec d = turned * RealVec(site.b.cast<Real>() - site.a.cast<Real>());
     const Real along = w.dot(d), length2 = d.squaredNorm();
     if (along <= 0) return from_point(site.a);
     if (along >= length2) return from_point(site.b);
-    const RealVec n = aligned(extended::perp(d) / std::sqrt(length2), out);
+    const RealVec n = aligned(extended::perp(d) / sqrt(length2), out);
     // a contact with an end, seen a rounding inside: its normal is not the segment's
     if (n.dot(out) < kSameDirection) return from_point(2 * along <= length2 ? site.a : site.b);
-    return {n, n.dot(w)};
+    return {n, n.dot(w), 0.0, true};
   }
   if (site.kind == SiteKind::arc) {
     const RealVec c = place(site.center), w = p - c;
@@ -58,14 +64,19 @@ Away away_from(const Site& site, const ExtendedRotation& turned, const RealVec& 
       // `n` has the side of `out`, so seen from inside the circle the distance changes its sign with it.
       // Where the two directions differ, an end of the arc is met, to rounding.
       const RealVec radial = w / length, n = aligned(radial, out);
-      if (n.dot(out) >= kSameDirection)
-        return {n, n.dot(radial) * (length - static_cast<Real>(site.arc_radius))};
+      const Real side = n.dot(radial);
+      if (n.dot(out) >= kSameDirection) return {n, side * (length - site.arc_radius), (side * length).high()};
     }
     // beyond the sector, or where an end is met, the nearer end is the site's point
     return (p - place(site.a)).squaredNorm() <= (p - place(site.b)).squaredNorm() ? from_point(site.a)
                                                                                   : from_point(site.b);
   }
   return from_point(site.a);
+}
+
+/// Velocity of the body's point that is there [m/s].
+Vec2 velocity_at(const ExtendedState& s, const RealVec& p) {
+  return s.twist.rounded().at(RealVec(p - s.position).cast<double>());
 }
 
 /// Along n, which points into a: > 0 approaching [m/s].
@@ -93,11 +104,21 @@ ExtendedContact contact_in(const Outline& a, const Outline& b, const ExtendedSta
   const Away away = away_from(site, rotation_of(other, t.angle), t.position, p, out, kNoDirection * size);
   ExtendedContact c;
   c.gap = away.distance - site.radius - sample.radius;
-  if (std::abs(c.gap - known.gap) > kNoDirection * size) return known;  // another feature's neighbourhood
+  if (abs(c.gap - known.gap) > kNoDirection * size) return known;  // another feature's neighbourhood
   // on the site's surface, from the sample's core
   c.point = p - away.normal * (c.gap + sample.radius);
   c.normal = like.sample_on_a ? away.normal : RealVec(-away.normal);
   c.closing = closing_speed(state_a, state_b, c.point, c.normal);
+  // what follows goes into a moment's change alone: doubles will do
+  const Vec2 n = away.normal.cast<double>(), of_sample = velocity_at(s, p);
+  if (away.straight) {
+    c.turn_rate = t.twist.omega.high();
+  } else if (away.back != 0.0) {
+    const Vec2 of_pivot = velocity_at(t, p - away.normal * away.back);
+    c.turn_rate = perp(n).dot(of_sample - of_pivot) / away.back;
+  }
+  const double arm = (c.gap + sample.radius).high();
+  c.point_rate = of_sample - c.turn_rate * arm * perp(n) + c.closing.high() * n;
   return c;
 }
 

@@ -145,7 +145,7 @@ class Maker {
 /// How far the body stands out of its room [m]; < 0: it is inside.
 inline outside::Real out_of(const Case& c, const outside::Shape& body, const outside::State& s) {
   using namespace outside;
-  Real most = -kNever;
+  outside::Real most = -kNever;
   const Turn turn(s.place.angle);
   for (const Piece& piece : body.pieces) {
     const Vec p = turn(piece.a) + s.place.at - c.place;

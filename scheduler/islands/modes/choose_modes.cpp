@@ -37,7 +37,7 @@ class Complementarity {
       for (Eigen::Index j = 0; j < n; ++j)
         // w = A z + q: what each unit of force adds to the acceleration along a row
         A(i, j) = unknowns_[i].row.dot(inverse_mass_.cwiseProduct(unknowns_[j].force)) + coupling(i, j);
-      size_ = std::max(size_, std::abs(q[i]));
+      size_ = std::max(size_, abs(q[i]));
     }
     const LcpAnswer answer = solve_lcp_by_lemke(A, q);
     if (answer.status != LcpAnswer::Status::solved || !answer.z.allFinite()) return false;
@@ -73,7 +73,7 @@ class Complementarity {
     if (known == ContactKnown::slides_minus) return MotionMode::slip_minus;
     // what starts to slip slips the way in which its tangential acceleration leads
     const Real along = found->tangent.dot(acceleration_) + found->tangential_bend;
-    if (std::abs(along) <= kNone * size_) return MotionMode::stick;
+    if (abs(along) <= kNone * size_) return MotionMode::stick;
     return along > 0 ? MotionMode::slip_plus : MotionMode::slip_minus;
   }
 
@@ -100,7 +100,7 @@ class Complementarity {
     // Normal rows have length one in the mass metric, so that light and heavy bodies are pivoted alike.
     // The tangent has the same factor: mu p >= f+ + f- is the same inequality in scaled forces then.
     const Real square = n.dot(inverse_mass_.cwiseProduct(n));
-    const Real by = square > 0 ? 1 / std::sqrt(square) : Real(1);
+    const Real by = square > 0 ? 1 / sqrt(square) : Real(1);
     const Real mu = c.friction;
     const bool still = known == ContactKnown::still && mu > 0;
     // of what slides already the friction is at its bound: the normal force's column carries it

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "brink/core/base/elementary.h"
 #include "brink/integrators/dense_output.h"
 
 namespace brink {
@@ -278,7 +279,7 @@ double ModeMotion::find_step(double until, States& end, std::vector<PolynomialPi
     const double error = error_of(trial);
     if (!(error <= 1.0)) {
       // the error of a step is of order h^5
-      h_ = h * (std::isfinite(error) ? std::clamp(0.9 * std::pow(error, -0.2), 0.1, 0.8) : 0.1);
+      h_ = h * (std::isfinite(error) ? std::clamp(0.9 * power(error, -0.2), 0.1, 0.8) : 0.1);
       continue;
     }
     end = projected(problem_, t_ + h, trial.states, modes_);
@@ -289,7 +290,7 @@ double ModeMotion::find_step(double until, States& end, std::vector<PolynomialPi
     }
     // a step that was cut to end at `until` says that a longer one would do, not that it should be as
     // short
-    const double next = h * std::clamp(0.9 * std::pow(std::max(error, 1e-10), -0.2), 0.2, 4.0);
+    const double next = h * std::clamp(0.9 * power(std::max(error, 1e-10), -0.2), 0.2, 4.0);
     h_ = std::min(last ? std::max(h_, next) : next, limits_.longest);
     return h;
   }

@@ -51,9 +51,10 @@ std::vector<Real> speeds_along_x(const GroupResult& result) {
   return v;
 }
 
-void expect_near(const std::vector<Real>& got, const std::vector<Real>& wanted, Real precision) {
+void expect_near(const std::vector<Real>& got, const std::vector<Real>& wanted, double precision) {
   ASSERT_EQ(got.size(), wanted.size());
-  for (std::size_t k = 0; k < got.size(); ++k) EXPECT_NEAR(got[k], wanted[k], precision) << "body " << k;
+  for (std::size_t k = 0; k < got.size(); ++k)
+    EXPECT_NEAR(static_cast<double>(got[k]), static_cast<double>(wanted[k]), precision) << "body " << k;
 }
 
 // Newton's law at all contacts at once: the first disc rebounds at its neighbour's speed less its own, -1;
@@ -94,23 +95,24 @@ TEST(ResolveReflections, SymmetricRowStaysSymmetric) {
   bodies[4].twist.velocity.x() = -1;
   expect_near(speeds_along_x(resolve_reflections(bodies, contacts)), {-1, 0, 0, 0, 1}, 1e-17);
   const auto v = speeds_along_x(resolve_together(bodies, contacts));
-  for (int k = 0; k < 5; ++k) EXPECT_NEAR(v[k], -v[4 - k], 1e-17);
+  for (int k = 0; k < 5; ++k) EXPECT_NEAR(static_cast<double>(v[k]), static_cast<double>(-v[4 - k]), 1e-17);
 }
 
 // Disc v = (1, 0) on two at +-30 degrees, all at once: v0 = (-1/5, 0), the others leave at 2 sqrt3 / 5 along
 // the normals (momentum 1 = v0 + 2 u cos 30, energy 1 = v0^2 + 2 u^2).
 TEST(GroupLaws, DiscOnTwoIsSymmetric) {
-  const Real c = std::sqrt(Real(3)) / 2;
+  const Real c = sqrt(Real(3)) / 2;
   const RealVec at0(0, 0), at1(c, 0.5), at2(c, -0.5);
   const Bodies bodies{disc({1, 0}), disc({0, 0}), disc({0, 0})};
   const Contacts contacts{touch(0, at0, 1, at1), touch(0, at0, 2, at2)};
   for (const Law law : {resolve_together, resolve_reflections}) {
     const GroupResult result = law(bodies, contacts, {});
-    EXPECT_NEAR(result.twists[0].velocity.x(), -0.2L, 1e-17);
-    EXPECT_NEAR(result.twists[0].velocity.y(), 0, 1e-17);
+    EXPECT_NEAR(static_cast<double>(result.twists[0].velocity.x()), -0.2, 1e-17);
+    EXPECT_NEAR(static_cast<double>(result.twists[0].velocity.y()), 0, 1e-17);
     for (const int k : {1, 2})
-      EXPECT_NEAR(result.twists[k].velocity.norm(), 2 * std::sqrt(Real(3)) / 5, 1e-17);
-    EXPECT_NEAR(result.twists[1].velocity.y(), -result.twists[2].velocity.y(), 1e-18);
+      EXPECT_NEAR(static_cast<double>(result.twists[k].velocity.norm()), 2 * std::sqrt(3.0) / 5, 1e-17);
+    EXPECT_NEAR(static_cast<double>(result.twists[1].velocity.y()),
+                static_cast<double>(-result.twists[2].velocity.y()), 1e-18);
   }
 }
 
@@ -124,13 +126,13 @@ TEST(GroupLaws, OneContactIsTheImpulseLaw) {
   floor.material.friction = 0.1;
   for (const Law law : {resolve_together, resolve_reflections}) {
     const GroupResult slip = law({disc({3, -2})}, {floor}, {});
-    EXPECT_NEAR(slip.normal[0], 3, 1e-17);  // (1 + e) v_n
-    EXPECT_NEAR(slip.tangential[0], 0.3L,
+    EXPECT_NEAR(static_cast<double>(slip.normal[0]), 3, 1e-17);  // (1 + e) v_n
+    EXPECT_NEAR(static_cast<double>(slip.tangential[0]), 0.3,
                 1e-16);  // at the bound; along perp(normal) = -x, against the sliding
-    EXPECT_NEAR(slip.twists[0].velocity.y(), 1, 1e-17);
+    EXPECT_NEAR(static_cast<double>(slip.twists[0].velocity.y()), 1, 1e-17);
     const GroupResult stick = law({disc({0.6, -2})}, {floor}, {});
-    EXPECT_NEAR(stick.tangential[0], 0.2L, 1e-16);
-    EXPECT_NEAR(stick.twists[0].at(floor.arm).x(), 0, 1e-17);
+    EXPECT_NEAR(static_cast<double>(stick.tangential[0]), 0.2, 1e-16);
+    EXPECT_NEAR(static_cast<double>(stick.twists[0].at(floor.arm).x()), 0, 1e-17);
   }
 }
 
@@ -159,7 +161,7 @@ struct RandomGroup {
     std::vector<RealVec> at;
     for (int j = 0; j < lines; ++j)
       for (int i = 0; i < columns; ++i) {
-        at.emplace_back(i + Real(j % 2) / 2, j * std::sqrt(Real(3)) / 2);
+        at.emplace_back(i + Real(j % 2) / 2, j * sqrt(Real(3)) / 2);
         bodies.push_back(disc({r.uniform(-1, 1), r.uniform(-1, 1)}, r.uniform(0.3, 3.0)));
         bodies.back().twist.omega = r.uniform(-2, 2);
       }
@@ -211,8 +213,8 @@ TEST(GroupLaws, RandomElasticGroupsKeepEverything) {
       const GroupResult result = law(g.bodies, g.contacts, {});
       ASSERT_EQ(result.status, GroupResult::Status::resolved) << "case " << i << " of seed 5";
       const Sums after(g.bodies, result.twists);
-      ASSERT_LE((after.momentum - before.momentum).norm(), 1e-16L) << i;
-      ASSERT_LE(std::abs(after.energy - before.energy), 1e-16L * (1 + before.energy)) << i;
+      ASSERT_LE((after.momentum - before.momentum).norm(), 1e-16) << i;
+      ASSERT_LE(abs(after.energy - before.energy), 1e-16 * (1 + before.energy)) << i;
       for (std::size_t k = 0; k < g.contacts.size(); ++k) {
         ASSERT_GE(result.normal[k], 0) << i;
         const Real v = normal_velocity(g.contacts[k], result.twists);
@@ -242,11 +244,10 @@ TEST(GroupLaws, RandomLossyGroupsNeverGainEnergy) {
       const GroupResult result = law(g.bodies, g.contacts, {});
       ASSERT_EQ(result.status, GroupResult::Status::resolved) << "case " << i << " of seed 6";
       const Sums after(g.bodies, result.twists);
-      ASSERT_LE((after.momentum - before.momentum).norm(), 1e-16L) << i;
-      ASSERT_LE(after.energy, before.energy + 1e-16L) << i;
+      ASSERT_LE((after.momentum - before.momentum).norm(), 1e-16) << i;
+      ASSERT_LE(after.energy, before.energy + 1e-16) << i;
       for (std::size_t k = 0; k < g.contacts.size(); ++k)
-        ASSERT_LE(std::abs(result.tangential[k]), g.contacts[k].material.friction * result.normal[k] + 1e-18L)
-            << i;
+        ASSERT_LE(abs(result.tangential[k]), g.contacts[k].material.friction * result.normal[k] + 1e-18) << i;
     }
   }
 }
@@ -288,7 +289,7 @@ TEST(Lcp, RandomSemidefiniteProblemsMeetTheDefinition) {
     const RealVector w = A * answer.z + q;
     ASSERT_GE(answer.z.minCoeff(), 0) << i;
     ASSERT_GE(w.minCoeff(), -1e-12) << i;
-    ASSERT_LE(std::abs(w.dot(answer.z)), 1e-10) << i;
+    ASSERT_LE(abs(w.dot(answer.z)), 1e-10) << i;
   }
 }
 
@@ -323,7 +324,7 @@ TEST(Lcp, ActiveSetAndLemkeAgree) {
     const RealVector w = A * quick.z + q;
     ASSERT_GE(quick.z.minCoeff(), 0) << i;
     ASSERT_GE(w.minCoeff(), -1e-14) << i;
-    ASSERT_LE(std::abs(w.dot(quick.z)), 1e-12) << i;
+    ASSERT_LE(abs(w.dot(quick.z)), 1e-12) << i;
     ASSERT_LE((A * (quick.z - slow.z)).cwiseAbs().maxCoeff(), 1e-12) << i;
   }
 }
@@ -337,7 +338,7 @@ TEST(Lcp, TiesAtTheBeginDoNotCycle) {
   EXPECT_LE(answer.pivots, 5);
   const RealVector w = A * answer.z + RealVector::Constant(4, -1);
   EXPECT_GE(std::min(answer.z.minCoeff(), w.minCoeff()), -1e-15);
-  EXPECT_LE(std::abs(w.dot(answer.z)), 1e-15);
+  EXPECT_LE(abs(w.dot(answer.z)), 1e-15);
 }
 
 // Small integers make ties everywhere, whatever class the matrix is of.
@@ -379,7 +380,7 @@ std::pair<Bodies, Contacts> raft(int side) {
   std::vector<RealVec> at{{-1, 0}};
   for (int j = 0; j < side; ++j)
     for (int i = 0; i < side; ++i) {
-      at.emplace_back(i + Real(j % 2) / 2, j * std::sqrt(Real(3)) / 2);
+      at.emplace_back(i + Real(j % 2) / 2, j * sqrt(Real(3)) / 2);
       bodies.push_back(disc({0, 0}));
     }
   Contacts contacts;
@@ -427,13 +428,13 @@ TEST(GroupLaws, LargeRaftIsSolvedExactly) {
     const GroupResult result = law(bodies, contacts, {});
     ASSERT_EQ(result.status, GroupResult::Status::resolved);
     const Sums after(bodies, result.twists);
-    EXPECT_LE((after.momentum - before.momentum).norm(), 1e-15L);
-    EXPECT_LE(std::abs(after.energy - before.energy), 1e-14L * before.energy);
+    EXPECT_LE((after.momentum - before.momentum).norm(), 1e-15);
+    EXPECT_LE(abs(after.energy - before.energy), 1e-14 * before.energy);
     for (std::size_t k = 0; k < contacts.size(); ++k) {
       ASSERT_GE(result.normal[k], 0);
       const Real v = normal_velocity(contacts[k], result.twists),
                  u = normal_velocity(contacts[k], twists_of(bodies));
-      ASSERT_GE(law == resolve_reflections ? v : v + u, -1e-14L) << k;
+      ASSERT_GE(law == resolve_reflections ? v : v + u, -1e-14) << k;
     }
   }
 }
@@ -447,9 +448,9 @@ TEST(GroupLaws, DiscInATightHoleIsTakenAndSaysWhatItCost) {
   right.arm = {0.5, 0};
   const GroupResult result = resolve_reflections({disc({1, 0.5})}, {left, right});
   EXPECT_EQ(result.status, GroupResult::Status::endless);
-  EXPECT_NEAR(result.lost, 0.5, 1e-17);
-  EXPECT_NEAR(result.twists[0].velocity.x(), 0, 1e-17);
-  EXPECT_NEAR(result.twists[0].velocity.y(), 0.5, 1e-17);
+  EXPECT_NEAR(static_cast<double>(result.lost), 0.5, 1e-17);
+  EXPECT_NEAR(static_cast<double>(result.twists[0].velocity.x()), 0, 1e-17);
+  EXPECT_NEAR(static_cast<double>(result.twists[0].velocity.y()), 0.5, 1e-17);
 }
 
 }  // namespace

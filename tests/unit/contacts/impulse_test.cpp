@@ -47,13 +47,15 @@ TEST(Impulse, RandomCollisionsMeetRestitutionMomentumAndCoulombsLaw) {
       continue;
     }
     const RealVec after = relative_velocity(a, result.body, b, result.other);
-    const Real scale = 10.0 + std::abs(result.normal);
-    ASSERT_NEAR(after.dot(n), -m.restitution * before.dot(n), 1e-14 * scale) << "case " << i << " of seed 11";
+    const double scale = 10.0 + std::abs(result.normal);
+    ASSERT_NEAR(static_cast<double>(after.dot(n)), static_cast<double>(-m.restitution * before.dot(n)),
+                1e-14 * scale)
+        << "case " << i << " of seed 11";
     const RealVec momentum = (result.body.velocity - a.twist.velocity) / a.inverse_mass_x +
                              (result.other.velocity - b.twist.velocity) / b.inverse_mass_x;
     ASSERT_LE(momentum.norm(), 1e-14 * scale);
     ASSERT_LE(std::abs(result.tangential), m.friction * result.normal * (1.0 + 1e-14));
-    const Real sliding = after.dot(t);
+    const double sliding = static_cast<double>(after.dot(t));
     if (result.kind == ImpulseKind::stick)
       ASSERT_NEAR(sliding, 0.0, 1e-13 * scale);
     else
@@ -74,7 +76,8 @@ TEST(Impulse, ElasticAndFrictionlessKeepsEnergy) {
     const double angle = r.uniform(0.0, 2.0 * M_PI);
     const ImpulseResult result = resolve_impulse(a, b, {std::cos(angle), std::sin(angle)}, Material{});
     const Real before = energy(a, a.twist) + energy(b, b.twist);
-    ASSERT_NEAR(energy(a, result.body) + energy(b, result.other), before, 2e-14 * before) << "case " << i;
+    const Real after = energy(a, result.body) + energy(b, result.other);
+    ASSERT_LE(abs(after - before), 2e-14 * before) << "case " << i;
   }
 }
 
@@ -85,7 +88,7 @@ TEST(Impulse, RestitutionHasNoThreshold) {
     const ImpulseSide floor{{}, RealVec::Zero(), 0.0, 0.0, 0.0};
     Material m;
     m.restitution = 0.7;
-    EXPECT_DOUBLE_EQ(resolve_impulse(ball, floor, {0.0, 1.0}, m).body.velocity.y(), 0.7 * v);
+    EXPECT_DOUBLE_EQ(resolve_impulse(ball, floor, {0.0, 1.0}, m).body.velocity.y().high(), 0.7 * v);
   }
 }
 
@@ -109,9 +112,9 @@ TEST(Impulse, PainleveRodGivesAFiniteSeparatingAnswer) {
       m.restitution = 0.0;
       m.friction = mu;
       const ImpulseResult result = resolve_impulse(rod, {}, {0.0, 1.0}, m);
-      EXPECT_TRUE(std::isfinite(result.body.omega) && result.body.velocity.allFinite());
+      EXPECT_TRUE(isfinite(result.body.omega) && result.body.velocity.allFinite());
       EXPECT_GE(result.normal, 0.0);
-      EXPECT_NEAR(result.body.at(rod.arm).y(), 0.0, 1e-13);
+      EXPECT_NEAR(result.body.at(rod.arm).y().high(), 0.0, 1e-13);
     }
 }
 
@@ -123,8 +126,8 @@ TEST(Reflection, MirrorsTheNormalAndScalesTheTangent) {
   Material m;
   m.slip = 0.5;
   const ImpulseResult result = resolve_reflection(ball, floor, {0.0, 1.0}, m);
-  EXPECT_DOUBLE_EQ(result.body.velocity.y(), 2.0);
-  EXPECT_DOUBLE_EQ(result.body.velocity.x(), 1.5);
+  EXPECT_DOUBLE_EQ(result.body.velocity.y().high(), 2.0);
+  EXPECT_DOUBLE_EQ(result.body.velocity.x().high(), 1.5);
 }
 
 // The angular change is the impulse's moment divided by the inertia, times the pair's spin scalar: a rod's

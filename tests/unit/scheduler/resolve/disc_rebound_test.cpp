@@ -76,8 +76,8 @@ void expect_same(const ExtendedState& general, const DiscRebound::Start& quick, 
   const double few = 1e-17;  // of values up to 10; a double's own rounding is 1e-15
   EXPECT_LE(static_cast<double>((general.position - shift.cast<Real>() - mine.position).norm()), few);
   EXPECT_LE(static_cast<double>((general.twist.velocity - mine.twist.velocity).norm()), few);
-  EXPECT_LE(static_cast<double>(std::abs(general.angle - mine.angle)), few);
-  EXPECT_LE(static_cast<double>(std::abs(general.twist.omega - mine.twist.omega)), few);
+  EXPECT_LE(static_cast<double>(abs(general.angle - mine.angle)), few);
+  EXPECT_LE(static_cast<double>(abs(general.twist.omega - mine.twist.omega)), few);
 }
 
 TEST(DiscRebound, IsTheGeneralResponseToRoundingsOfExtendedPrecision) {
@@ -107,7 +107,7 @@ TEST(DiscRebound, IsTheGeneralResponseToRoundingsOfExtendedPrecision) {
                                                   side_of(m.b, b.moved(delay), c.point), c.normal, material);
 
     EXPECT_NEAR(quick->impulse, general.normal, 4e-16 * general.normal);
-    EXPECT_LE(static_cast<double>(std::abs(quick->delay - delay)), 1e-17);
+    EXPECT_LE(static_cast<double>(abs(quick->delay - delay)), 1e-17);
     a.position += delay * (a.twist.velocity - general.body.velocity);
     b.position += delay * (b.twist.velocity - general.other.velocity);
     a.twist = general.body;
@@ -172,7 +172,7 @@ TEST(DiscRebound, OfAWallIsTheGeneralResponseToRoundingsOfExtendedPrecision) {
     FeatureContact like;
     like.sample = like.site = 0;
     like.normal = m.normal;
-    like.gap = contact_in(m.disc, m.wall, s, m.stands, like).gap;
+    like.gap = static_cast<double>(contact_in(m.disc, m.wall, s, m.stands, like).gap);
     ExtendedContact c = contact_in(m.disc, m.wall, s, m.stands, like);
     const Real delay = std::clamp(c.gap / c.closing, Real(-latest), Real(latest));
     ExtendedState then = s.moved(delay);
@@ -186,7 +186,7 @@ TEST(DiscRebound, OfAWallIsTheGeneralResponseToRoundingsOfExtendedPrecision) {
                         {m.stands.twist, c.point - m.stands.position, 0.0, 0.0, 0.0}, c.normal, material);
 
     EXPECT_NEAR(quick->impulse, general.normal, 4e-16 * general.normal);
-    EXPECT_LE(static_cast<double>(std::abs(quick->delay - delay)), 1e-17);
+    EXPECT_LE(static_cast<double>(abs(quick->delay - delay)), 1e-17);
     const RealVec change = general.body.velocity - then.twist.velocity;
     s.position -= delay * change;
     s.twist.velocity += change;

@@ -1,0 +1,125 @@
+// Beside binary numbers of 400 bits (Boost.Multiprecision), in which sums and products of these are exact.
+#include "brink/core/base/double_double.h"
+
+#include <gtest/gtest.h>
+
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <random>
+
+namespace brink {
+namespace {
+
+namespace mp = boost::multiprecision;
+using Exact = mp::number<mp::cpp_bin_float<400, mp::backends::digit_base_2>>;
+constexpr double kEpsilonOfTwo = 0x1p-100;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Exact exact(const DoubleDouble& x) { return Exact(x.high()) + Exact(x.low()); }
+
+/// Numbers of any sign whose sizes span 80 powers of two, with every kind of low part.
+class Numbers {
+ public:
+  DoubleDouble next() {
+    const double high = std::ldexp(1.0 + part_(random_), size_(random_)) * (part_(random_) < 0.5 ? -1 : 1);
+    return part_(random_) < 0.2 ? DoubleDouble(high)
+                                : DoubleDouble::sum(high, high * (part_(random_) - 0.5) * 0x1p-52);
+  }
+
+ private:
+  std::mt19937_64 random_{20261124};
+  std::uniform_real_distribution<double> part_{0.0, 1.0};
+  std::uniform_int_distribution<int> size_{-40, 40};
+};
+
+double relative_error(const DoubleDouble& found, const Exact& wanted) {
+  if (wanted == 0) return found == 0.0 ? 0.0 : kInfinity;
+  return static_cast<double>(mp::abs((exact(found) - wanted) / wanted));
+}
+
+void expect_normalized(const DoubleDouble& x) { EXPECT_EQ(x.high() + x.low(), x.high()); }
+
+TEST(DoubleDouble, OperationsAreRightToTheEpsilon) {
+  Numbers numbers;
+  for (int i = 0; i < 100000; ++i) {
+    const DoubleDouble a = numbers.next(), b = numbers.next();
+    const double c = b.high();
+    const Exact x = exact(a), y = exact(b), z = c;
+    const std::pair<DoubleDouble, Exact> found[] = {{a + b, x + y},
+                                                    {a - b, x - y},
+                                                    {a * b, x * y},
+                                                    {a / b, x / y},
+                                                    {a + c, x + z},
+                                                    {a - c, x - z},
+                                                    {c - a, z - x},
+                                                    {a * c, x * z},
+                                                    {a / c, x / z},
+                                                    {c / a, z / x},
+                                                    {sqrt(abs(a)), mp::sqrt(mp::abs(x))}};
+    for (const auto& [ours, wanted] : found) {
+      ASSERT_LE(relative_error(ours, wanted), kEpsilonOfTwo);
+      expect_normalized(ours);
+    }
+  }
+}
+
+// What cancels is told to the epsilon of what is left, not of what was there.
+TEST(DoubleDouble, WhatCancelsKeepsItsDigits) {
+  Numbers numbers;
+  for (int i = 0; i < 100000; ++i) {
+    const DoubleDouble a = numbers.next();
+    const DoubleDouble b = DoubleDouble::sum(a.high(), a.low() * 1.25);
+    ASSERT_LE(relative_error(a - b, exact(a) - exact(b)), kEpsilonOfTwo);
+    ASSERT_LE(relative_error(a - a.high(), Exact(a.low())), kEpsilonOfTwo);
+  }
+}
+
+TEST(DoubleDouble, SumAndProductOfTwoDoublesAreExact) {
+  Numbers numbers;
+  for (int i = 0; i < 100000; ++i) {
+    const double a = numbers.next().high(), b = numbers.next().high();
+    ASSERT_EQ(exact(DoubleDouble::sum(a, b)), Exact(a) + Exact(b));
+    ASSERT_EQ(exact(DoubleDouble::product(a, b)), Exact(a) * Exact(b));
+  }
+}
+
+TEST(DoubleDouble, OrderIsThatOfTheNumbers) {
+  Numbers numbers;
+  for (int i = 0; i < 100000; ++i) {
+    const DoubleDouble a = numbers.next(), b = i % 2 ? numbers.next() : a + a * 0x1p-104;
+    ASSERT_EQ(a < b, exact(a) < exact(b));
+    ASSERT_EQ(a <= b, exact(a) <= exact(b));
+    ASSERT_EQ(a > b, exact(a) > exact(b));
+    ASSERT_EQ(a == b, exact(a) == exact(b));
+  }
+}
+
+// Beyond the range of a product's error the answer is that of doubles, never NaN where they have none.
+TEST(DoubleDouble, FarNumbersAreAsGoodAsDoubles) {
+  const double sizes[] = {0.0, 4.9e-324, 1e-308, 1e-200, 1.0, 1e200, 1e300, 1.7e308, kInfinity};
+  const auto expect_near = [](const DoubleDouble& found, double wanted) {
+    if (std::isnan(wanted)) {
+      EXPECT_TRUE(isnan(found));
+    } else if (std::isinf(wanted)) {
+      EXPECT_EQ(found, DoubleDouble(wanted));
+    } else {
+      EXPECT_NEAR(found.high(), wanted, std::max(1e-15 * std::abs(wanted), 1e-307));
+      EXPECT_FALSE(std::isnan(found.low()));
+    }
+  };
+  for (const double a : sizes)
+    for (const double b : sizes)
+      for (const double sign : {1.0, -1.0}) {
+        const DoubleDouble x = a, y = sign * b;
+        expect_near(x + y, a + sign * b);
+        expect_near(x * y, a * (sign * b));
+        expect_near(x / y, a / (sign * b));
+        expect_near(x * (sign * b), a * (sign * b));
+        expect_near(x / (sign * b), a / (sign * b));
+        expect_near(sqrt(x), std::sqrt(a));
+      }
+  EXPECT_TRUE(isnan(sqrt(DoubleDouble(-1.0))));
+  EXPECT_FALSE(isfinite(DoubleDouble(kInfinity)));
+}
+
+}  // namespace
+}  // namespace brink
