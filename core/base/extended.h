@@ -53,6 +53,7 @@ struct ExtendedRotation {
   }
 
   RealVec operator*(const RealVec& d) const {
+    if (sine == 0 && cosine == 1) return d;
     return {cosine * d.x() - sine * d.y(), sine * d.x() + cosine * d.y()};
   }
 };

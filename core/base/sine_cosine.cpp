@@ -127,6 +127,7 @@ SineCosine<DoubleDouble> in_two(const DoubleDouble& angle) {
 }  // namespace
 
 SineCosine<double> sine_cosine(double angle) {
+  if (angle == 0.0) return {angle, 1.0};  // most of what stands
   const double size = std::abs(angle);
   if (size < kFewQuarters) {
     const Reduced r = reduced(angle);

@@ -17,40 +17,51 @@ struct ContactSpace {
   Real knn = 0, knt = 0, ktt = 0;  ///< velocity change per unit impulse [1/kg]
 };
 
+/// Whether impulses along the tangent are asked for: without friction k_nt and k_tt are not.
+enum class Along { normal, both };
+
 /// Inverse masses in x and y differ where a body is held in one of them: M^-1 is diagonal in the world's
 /// axes, not in the contact's, so that k_nt need not vanish even where the arm does.
-void add_side(ContactSpace& c, const ImpulseSide& side) {
-  const RealVec mobility(side.inverse_mass_x, side.inverse_mass_y);
-  const Real rn = extended::cross(side.arm, c.n), rt = extended::cross(side.arm, c.t),
-             turn = side.inverse_inertia;
-  c.knn += mobility.dot(c.n.cwiseProduct(c.n)) + turn * rn * rn;
-  c.knt += mobility.dot(c.n.cwiseProduct(c.t)) + turn * rn * rt;
-  c.ktt += mobility.dot(c.t.cwiseProduct(c.t)) + turn * rt * rt;
+void add_side(ContactSpace& c, const ImpulseSide& side, Along along) {
+  if (side.inverse_mass_x == 0.0 && side.inverse_mass_y == 0.0 && side.inverse_inertia == 0.0) return;
+  const auto moved = [&](const RealVec& u, const RealVec& v) {
+    return side.inverse_mass_x * (u.x() * v.x()) + side.inverse_mass_y * (u.y() * v.y());
+  };
+  const double turn = side.inverse_inertia;
+  const Real rn = extended::cross(side.arm, c.n);
+  c.knn += moved(c.n, c.n) + turn * (rn * rn);
+  if (along == Along::normal) return;
+  const Real rt = extended::cross(side.arm, c.t);
+  c.knt += moved(c.n, c.t) + turn * (rn * rt);
+  c.ktt += moved(c.t, c.t) + turn * (rt * rt);
 }
 
-ContactSpace contact_space(const ImpulseSide& body, const ImpulseSide& other, const RealVec& normal) {
+ContactSpace contact_space(const ImpulseSide& body, const ImpulseSide& other, const RealVec& normal,
+                           Along along) {
   ContactSpace c;
   c.n = normal;
   c.t = extended::perp(normal);
   const RealVec v = body.twist.at(body.arm) - other.twist.at(other.arm);
   c.vn = v.dot(c.n);
-  c.vt = v.dot(c.t);
-  add_side(c, body);
-  add_side(c, other);
+  if (along == Along::both) c.vt = v.dot(c.t);
+  add_side(c, body, along);
+  add_side(c, other, along);
   return c;
 }
 
 /// One side's twist after an impulse at its arm; a held coordinate keeps its velocity.
 ExtendedTwist pushed(const ImpulseSide& side, const RealVec& impulse) {
-  const RealVec mobility(side.inverse_mass_x, side.inverse_mass_y);
-  return {side.twist.velocity + mobility.cwiseProduct(impulse),
-          side.twist.omega + side.inverse_inertia * extended::cross(side.arm, impulse)};
+  ExtendedTwist after = side.twist;
+  if (side.inverse_mass_x != 0.0) after.velocity.x() += side.inverse_mass_x * impulse.x();
+  if (side.inverse_mass_y != 0.0) after.velocity.y() += side.inverse_mass_y * impulse.y();
+  if (side.inverse_inertia != 0.0) after.omega += side.inverse_inertia * extended::cross(side.arm, impulse);
+  return after;
 }
 
 ImpulseResult apply(ImpulseKind kind, const ContactSpace& c, const ImpulseSide& body,
                     const ImpulseSide& other, Real pn, Real pt) {
   // Only what is told of the impulse is rounded to double; the twists, from which motions start, are not.
-  const RealVec impulse = pn * c.n + pt * c.t;
+  const RealVec impulse = pt == 0 ? RealVec(pn * c.n) : RealVec(pn * c.n + pt * c.t);
   return {kind, static_cast<double>(pn), static_cast<double>(pt), pushed(body, impulse),
           pushed(other, -impulse)};
 }
@@ -59,7 +70,8 @@ ImpulseResult apply(ImpulseKind kind, const ContactSpace& c, const ImpulseSide& 
 
 ImpulseResult resolve_impulse(const ImpulseSide& body, const ImpulseSide& other, const RealVec& normal,
                               const Material& material) {
-  const ContactSpace c = contact_space(body, other, normal);
+  const Along along = material.friction == 0.0 ? Along::normal : Along::both;
+  const ContactSpace c = contact_space(body, other, normal, along);
   if (c.vn >= 0.0) return {ImpulseKind::separating, 0.0, 0.0, body.twist, other.twist};
   // k_nn sums inverse masses times squares: it is 0 only where neither side can move along the normal.
   if (!(c.knn > 0.0)) return {ImpulseKind::jam, 0.0, 0.0, body.twist, other.twist};
@@ -108,7 +120,7 @@ ImpulseResult resolve_impulse(const ImpulseSide& body, const ImpulseSide& other,
 
 ImpulseResult resolve_reflection(const ImpulseSide& body, const ImpulseSide& other, const RealVec& normal,
                                  const Material& material) {
-  const ContactSpace c = contact_space(body, other, normal);
+  const ContactSpace c = contact_space(body, other, normal, Along::both);
   if (c.vn >= 0.0) return {ImpulseKind::separating, 0.0, 0.0, body.twist, other.twist};
   if (!(c.knn > 0.0)) return {ImpulseKind::jam, 0.0, 0.0, body.twist, other.twist};
   // Mirror: the relative velocity's normal part turns round. The impulse that does so is shared between
