@@ -282,7 +282,7 @@ Motion Motion::displaced(const Vec2& by) const {
 ExtendedState Motion::extended_state(double t) const {
   // Known to the rounding of state(t); low_ is what the motion was given beside it.
   if (kind_ != Kind::ballistic) return {state(t), low_};
-  // as state(t), operation for operation, with the low-order part of the start and 64 bits throughout
+  // as state(t), operation for operation, with the low-order part of the start, in two doubles
   const Real s = static_cast<Real>(t) - t0_;
   ExtendedState e(start_, low_);
   const RealVec a = drive_.linear.cast<Real>();
