@@ -340,5 +340,84 @@ TEST(Replay, CellsOfThePageBelongToWhomTheyAreNearest) {
   EXPECT_LT(off, 1.0);
 }
 
+// Frames of 16 ms that are late, then in time: coarser, and finer again; a finer picture that was too much is not tried as soon.
+TEST_F(Replayed, CellsAreCoarserWhereFramesAreLateAndFineWhereNothingMoves) {
+  if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
+  const fs::path page = folder_ / "pace.html";
+  write_replay_page(run_file(), page);
+  const json answer = in_browser(page, R"(
+    const pace = new Pace(16), levels = [];
+    let now = 1000;
+    const frames = (count, length) => { for (let k = 0; k < count; ++k) pace.moved(now += length); levels.push(pace.level); };
+    frames(5, 60);    // too few to tell
+    frames(200, 60);
+    frames(80, 16);
+    frames(40, 16);    // finer after 90
+    frames(20, 60);    // which was too much
+    frames(110, 16);
+    frames(110, 16);    // finer after 180
+    const still = [pace.still(now + 100), pace.still(now + 200)], coarse = pace.detail.paint;
+    pace.forget();
+    const p = window.brink.player;
+    p.pace.level = DETAILS.length - 1;
+    p.playing = true;
+    p.pace.moved(1); p.show(1);
+    const playing = p.picture.cells.canvas.width / p.picture.canvas.width;
+    p.playing = false;
+    p.stale = false;
+    p.tick(1000);
+    return {levels, still, coarse, playing, paused: p.picture.cells.canvas.width / p.picture.canvas.width,
+            works: p.picture.cells.works};)");
+  ASSERT_FALSE(answer.contains("error")) << answer.dump();
+  EXPECT_EQ(answer["levels"], json({0, 3, 3, 2, 3, 3, 2})) << answer.dump();
+  EXPECT_EQ(answer["still"], json({false, true}));
+  ASSERT_TRUE(answer["works"]);
+  EXPECT_LT(answer["playing"], 0.4);
+  EXPECT_EQ(answer["paused"], 1.0);
+}
+
+// The same picture from a ninth of the pixels. Cells get pure hues: lines of white on them leave the hue as it is.
+TEST_F(Replayed, ACoarserPictureHasItsBordersWhereTheyAre) {
+  if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
+  const fs::path page = folder_ / "coarse.html";
+  write_replay_page(run_file(), page);
+  const json answer = in_browser(page, R"(
+    const p = window.brink.player.picture, {cells} = p, {gl} = cells, views = [];
+    p.resize({getBoundingClientRect: () => ({width: 900, height: 600})});
+    p.layers.cells = true;
+    p.fit();
+    p.draw(1.3);
+    cells.setColors([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [0, 1, 1], [1, 0, 1], [1, .5, 0], [0, 1, .5], [.5, 0, 1]]);
+    for (const mesh of [1, 3]) {
+      p.detail = {paint: 1, mesh};
+      p.draw(1.3);
+      const pixels = new Uint8Array(4 * 900 * 600);
+      gl.readPixels(0, 0, 900, 600, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+      views.push(pixels);
+    }
+    const hue = (view, k) => {
+      const c = [view[k], view[k + 1], view[k + 2]], least = Math.min(...c), pure = c.map(x => x - least), l = Math.hypot(...pure);
+      return l > 30 ? pure.map(x => x / l) : null;
+    };
+    let differ = 0, of = 0;
+    const hues = new Set();
+    for (let k = 0; k < views[0].length; k += 4) {
+      const a = hue(views[0], k), b = hue(views[1], k);
+      if (!a || !b) continue;
+      ++of;
+      hues.add(a.map(x => Math.round(4 * x)).join());
+      differ += a[0] * b[0] + a[1] * b[1] + a[2] * b[2] < 0.97;
+    }
+    return {differ, of, hues: hues.size, size: [cells.size, cells.canvas.width], owners: p.about.sites.length + p.about.bodies.length};)");
+  ASSERT_FALSE(answer.contains("error")) << answer.dump();
+  EXPECT_EQ(answer["size"], json({{300, 200}, 900}));
+  EXPECT_EQ(answer["owners"], 9);
+  EXPECT_GE(answer["hues"], 8) << "cells can be told apart";
+  std::printf("pixels in the cell of another: %s of %s\n", answer["differ"].dump().c_str(),
+              answer["of"].dump().c_str());
+  EXPECT_GT(answer["of"], 300000);
+  EXPECT_LT(answer["differ"].get<double>(), 1.2e-3 * answer["of"].get<double>());
+}
+
 }  // namespace
 }  // namespace brink

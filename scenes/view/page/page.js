@@ -2,6 +2,9 @@
 // The page: time that runs, controls, the timeline under the scene, and window.brink for programs.
 
 const byId = id => document.getElementById(id);
+const darkness = matchMedia('(prefers-color-scheme: dark)');
+const inkOf = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const LANE = 11;  // height of a body's lane [px]
 let about = JSON.parse(byId('about').textContent);
 
 class Player {
@@ -11,6 +14,7 @@ class Player {
     this.picture = new Picture(byId('stage'), this.motions, about, numbers);
     this.t = this.motions.begin;
     this.playing = false;
+    this.pace = new Pace();
     this.shown = [];  // rows of the table of events
     this.makeControls();
     this.makeTables();
@@ -112,12 +116,19 @@ class Player {
       this.seek(t);
     }
     this.last = now;
-    if (this.stale) this.show(now);
+    if (this.stale) {
+      this.pace.moved(now);
+      this.show(now);
+    } else if (this.pace.still(now) && this.pace.last !== undefined) {
+      this.pace.forget();
+      if (this.picture.detail !== DETAILS[0]) this.show(now);
+    }
     requestAnimationFrame(later => this.tick(later));
   }
 
   show(now) {
     this.stale = false;
+    this.picture.detail = this.pace.last === undefined ? DETAILS[0] : this.pace.detail;
     // what happened in the last fifth of a second on the screen
     this.picture.flash = this.playing ? 0.2 * this.speed : 1e-12 * Math.max(1, this.t);
     if (byId('follow').checked && this.picture.selected >= 0) {
@@ -167,6 +178,7 @@ class Player {
     byId('who').onchange = e => this.select(e.target.value === '' ? -1 : Number(e.target.value));
     byId('follow').onchange = byId('kind').onchange = byId('of-selected').onchange = () => { this.stale = true; };
     byId('panel-button').onclick = () => this.togglePanel();
+    byId('panel').hidden = matchMedia('(max-width: 700px)').matches;  // there the scene needs the room
   }
 
   togglePanel() {
@@ -254,9 +266,10 @@ class Player {
     const dashes = [null, [7, 3], [2, 3], [9, 3, 2, 3]];
     this.chart = new Dygraph(byId('chart'), rows, {
       labels: ['t [s]', ...curve.names], legend: 'always', dateWindow: [this.begin, this.end],
-      colors: ['#0072b2', '#d55e00', '#009e73', '#cc79a7'], digitsAfterDecimal: 6, sigFigs: 6, stepPlot: curve.steps,
+      colors: darkness.matches ? ['#56b4e9', '#e69f00', '#00c08b', '#e0a0c4'] : ['#0072b2', '#d55e00', '#009e73', '#cc79a7'],
+      digitsAfterDecimal: 6, sigFigs: 6, stepPlot: curve.steps, labelsDiv: byId('legend'),
       series: Object.fromEntries(curve.names.map((name, i) => [name, {strokePattern: dashes[i % 4], strokeWidth: 1.5}])),
-      axes: {y: {axisLabelWidth: 64, axisLabelFormatter: short}, x: {axisLabelFormatter: short}},
+      axes: {y: {axisLabelWidth: 64, axisLabelFormatter: short, pixelsPerLabel: 22}, x: {axisLabelFormatter: short}},
       valueRange: roomy(rows), rightGap: 0, interactionModel: {},
     });
   }
@@ -268,7 +281,7 @@ class Player {
       for (const b of [n.event_body[k], n.event_other[k]]) if (b >= 0) counts.set(b, (counts.get(b) || 0) + 1);
     for (const b of n.trace_body || []) counts.set(b, (counts.get(b) || 0) + 1e-6);
     this.lanes = [...counts].sort((a, b) => b[1] - a[1]).slice(0, 12).map(([b]) => b).sort((a, b) => a - b);
-    const height = 9, rows = this.lanes.length;
+    const height = LANE, rows = this.lanes.length;
     canvas.style.height = `${rows * height}px`;
     canvas.hidden = rows === 0;
     if (!rows) return;
@@ -276,10 +289,11 @@ class Player {
     canvas.height = rows * height * ratio;
     const ctx = canvas.getContext('2d'), at = this.acrossOf(canvas);
     const place = new Map(this.lanes.map((b, i) => [b, i]));
-    ctx.font = `${8 * ratio}px sans-serif`;
+    ctx.font = `${9 * ratio}px sans-serif`;
     this.lanes.forEach((b, i) => {
-      ctx.fillStyle = '#8a8e96';
-      ctx.fillText(about.bodies[b].name, 2, (i + 0.85) * height * ratio, 60 * ratio);
+      ctx.fillStyle = inkOf('--faint');
+      ctx.fillText(about.bodies[b].name, 2, (i + 0.82) * height * ratio, 62 * ratio);
+      ctx.fillStyle = inkOf('--line');
       ctx.fillRect(at.left * ratio, (i + 1) * height * ratio - 1, canvas.width, 1);
     });
     this.drawTrace(ctx, at, place, height, ratio);
@@ -370,10 +384,14 @@ class Player {
     byId('chart').addEventListener('click', e => { this.pause(); this.seek(this.timeAt(byId('chart'), e.clientX)); });
     window.addEventListener('keydown', e => this.key(e));
     new ResizeObserver(() => this.resized()).observe(byId('stage'));
+    darkness.addEventListener('change', () => this.recoloured());
+    // paper is light, and knows nothing of the next frame
+    window.addEventListener('beforeprint', () => { this.recoloured(); this.show(performance.now()); });
+    window.addEventListener('afterprint', () => this.recoloured());
   }
 
   clickLane(e) {
-    const b = this.lanes[Math.floor(e.offsetY / 9)], t = this.timeAt(byId('lanes'), e.clientX), {n} = this;
+    const b = this.lanes[Math.floor(e.offsetY / LANE)], t = this.timeAt(byId('lanes'), e.clientX), {n} = this;
     let best = -1;
     for (let k = 0; k < n.event_t.length; ++k)
       if ((n.event_body[k] === b || n.event_other[k] === b) && (best < 0 || Math.abs(n.event_t[k] - t) < Math.abs(n.event_t[best] - t))) best = k;
@@ -406,6 +424,12 @@ class Player {
     if (!act || e.ctrlKey || e.metaKey || e.altKey) return;
     e.preventDefault();
     act();
+  }
+
+  /** Inks of the page have changed. */
+  recoloured() {
+    if (this.chart) this.makeChart(Number(byId('quantity').value));
+    this.resized();
   }
 
   resized() {
