@@ -130,6 +130,94 @@ TEST_F(Replayed, EventsTellTwistsBeforeAndAfterOfBothOwners) {
   EXPECT_GT(seen, 50);
 }
 
+// What the tables of a run that goes on say is of one moment: another frame, written meanwhile, is not seen.
+TEST_F(Replayed, WhatIsReadOfARunThatGoesOnIsOfOneMoment) {
+  const fs::path folder = folder_ / "going";
+  RunFileRecorder recorder(folder, scene_, RunFileRecorder::Open::fresh);
+  const auto states = states_.front();
+  const auto frame = [&](double t) {
+    recorder.frame(t, states);
+    recorder.checkpoint(t, {});  // commits
+  };
+  frame(0.0);
+  RunFile held(folder / "run.db"), other(folder / "run.db");
+  held.hold();
+  frame(0.5);
+  EXPECT_EQ(held.frame_count(), 1);
+  EXPECT_EQ(other.frame_count(), 2);
+  int seen = 0;
+  held.each_frame(1, [&](const RunFile::Frame&) { ++seen; });
+  EXPECT_EQ(seen, 1);
+}
+
+TEST_F(Replayed, PicturesOfARunAreDrawnByItsOwnFieldOptions) {
+  const fs::path folder = folder_ / "field";
+  const Scene scene = parse_scene(kScene, "field.toml", {"field.primitives=mesh", "field.mesh_error=0.4"});
+  RunRequest request;
+  request.dir = folder;
+  request.until = 0.1;
+  run_scene(scene, request);
+  const FieldOptions field = RunFile(folder / "run.db").field_options();
+  EXPECT_EQ(field.primitives, "mesh");
+  EXPECT_EQ(field.mesh_error, 0.4);
+  EXPECT_EQ(RunFile(run_file()).field_options().primitives, "exact");
+}
+
+/// A fact of the page's table.
+std::string fact_of(const json& data, const std::string& name) {
+  for (const json& fact : data["about"]["facts"])
+    if (fact[0] == name) return fact[1];
+  return {};
+}
+
+// A body driven by an integrator between rare frames, with attraction: what the page says it is off by, and its energy.
+TEST(Replay, SaysHowFarItIsOffBetweenFramesAndCountsAttraction) {
+  const fs::path folder = fs::temp_directory_path() / fmt::format("brink-off-{}", ::getpid());
+  const Scene scene = parse_scene(R"(
+[world]
+duration = 4.0
+[output]
+frame_interval = 0.1
+[[bodies]]
+name = "moon"
+disc = { radius = 0.1 }
+mass = 2.0
+position = [1.0, 0.0]
+velocity = [0.0, 1.1]
+[[forces]]
+kind = "attract"
+center = [0.0, 0.0]
+strength = 1.0
+power = -2.0
+)",
+                                  "moon.toml");
+  RunRequest request;
+  request.dir = folder;
+  const RunSummary summary = run_scene(scene, request).summary;
+  const RunFile run(folder / "run.db");
+  Simulator simulator(scene.world, scene.solver);
+  RunOptions options;
+  options.checkpoint_seconds = -1.0;
+  double worst = 0.0;
+  for (int k = 1; k < 400; ++k) {
+    options.until = 0.01 * k;
+    simulator.run(options);
+    const BodyState seen = run.states_at(options.until).states[0], is = simulator.states()[0];
+    worst = std::max(worst, (seen.pose.position - is.pose.position).norm());
+  }
+  const json data = json::parse(replay_page_data(folder / "run.db", {}, false));
+  fs::remove_all(folder);
+  const std::string words = fact_of(data, "between frames");
+  double told = 0.0;
+  ASSERT_EQ(std::sscanf(words.c_str(), "places to about %lg m", &told), 1) << words;
+  std::printf("off by %.2e m, told: %s\n", worst, words.c_str());
+  EXPECT_GT(told, 0.5 * worst);
+  EXPECT_LT(told, 3.0 * worst);
+  const json& energies = data["about"]["curves"][0]["names"];
+  EXPECT_EQ(energies, json({"kinetic", "of attraction", "sum"}));
+  EXPECT_LT(summary.energy_final, 0.0);  // bound: kinetic energy alone would be above zero
+}
+
 // ---- the page
 
 std::string text_of(const fs::path& file) {
