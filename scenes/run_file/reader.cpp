@@ -420,7 +420,13 @@ World RunFile::world() const {
   return world;
 }
 
-std::vector<Event> RunFile::events() const {
+std::int64_t RunFile::event_count() const {
+  return reading(impl_->file, "event", [&] {
+    return impl_->db.execAndGet("SELECT ifnull(max(seq) + 1, 0) FROM event").getInt64();
+  });
+}
+
+std::vector<Event> RunFile::events(std::int64_t first, std::int64_t most) const {
   return reading(impl_->file, "event", [&] {
     std::vector<Event> all;
     // A run file of before has no columns of states.
@@ -428,7 +434,10 @@ std::vector<Event> RunFile::events() const {
         impl_->db,
         "SELECT seq, t, kind, body, other, site, px, py, nx, ny, closing_speed, impulse_n, impulse_t, "
         "gap, outline_site, sample, sample_on_body, t_low" +
-            std::string(impl_->has_states ? kStateColumns : "") + " FROM event ORDER BY seq");
+            std::string(impl_->has_states ? kStateColumns : "") +
+            " FROM event WHERE seq >= ? ORDER BY seq LIMIT ?");
+    get.bind(1, first);
+    get.bind(2, most);
     while (get.executeStep()) {
       const Row row(get);
       Event e;

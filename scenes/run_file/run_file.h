@@ -40,12 +40,14 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "brink/core/fields/field_options.h"
 #include "brink/scenes/scene/scene.h"
 #include "brink/scheduler/run/recorder.h"
 
@@ -160,7 +162,10 @@ class RunFile {
   /// What pictures need of the world: title, bodies with their states in the first frame, fixed sites,
   /// springs, attractions. Materials and other forces are not kept in tables of a run file, but meta's scene_text is.
   World world() const;
-  std::vector<Event> events() const;
+  std::int64_t event_count() const;
+  /// At most so many, from number `first` on, in the order of their numbers.
+  std::vector<Event> events(std::int64_t first = 0,
+                            std::int64_t most = std::numeric_limits<std::int64_t>::max()) const;
   struct Spring {
     int body = 0, other = -1;  ///< -1: anchored
     Vec2 at, other_at;         ///< in the bodies' frames; the anchor in the world [m]

@@ -108,13 +108,14 @@ class ReplayPage {
   std::string page() const { return filled(); }
   /// What a live page asks for. Names that are no UTF-8 are mended, not refused: a run must be seen.
   std::string data() const {
-    return Json{{"about", about_}, {"numbers", numbers_.text()}}.dump(-1, ' ', false,
-                                                                      Json::error_handler_t::replace);
+    return Json{{"about", about_}, {"numbers", numbers_.text(live_)}}.dump(-1, ' ', false,
+                                                                           Json::error_handler_t::replace);
   }
 
   /// Reads the run file and fills `about` and the numbers. Frames come before events: a curve counts
   /// collisions between frames that it has (RunCurves).
   void gather(bool live) {
+    live_ = live;
     about_["live"] = live;
     frames();
     events();
@@ -169,15 +170,17 @@ class ReplayPage {
   /// Every event with both of its sides, in the file's order. Sides are what the page follows bodies by;
   /// place, normal and impulses are drawn.
   void events() {
-    std::vector<Event> all = run_.events();
-    const auto limit = static_cast<std::size_t>(limits_.events);
-    if (all.size() > limit) {
+    const std::int64_t count = run_.event_count(), limit = limits_.events;
+    const std::int64_t first = live_ ? std::max<std::int64_t>(0, count - limit) : 0;
+    const std::vector<Event> all = run_.events(first, limit);
+    // Some are kept whole: there the page is exact, where with every second one it would be so nowhere. Of a run
+    // that goes on they are those of now.
+    if (count > limit && live_)
       notices_.push_back(
-          fmt::format("the first {} events of {}: after them motions are interpolated", limit, all.size()));
-      // The first ones are kept: up to there the page is exact, where every second one would make it so
-      // nowhere.
-      all.resize(limit);
-    }
+          fmt::format("the last {} events of {}: before them motions are interpolated", limit, count));
+    else if (count > limit)
+      notices_.push_back(
+          fmt::format("the first {} events of {}: after them motions are interpolated", limit, count));
     Column t, px, py, nx, ny, closing, along, across, gap;
     std::vector<std::int32_t> kind, site;
     SideColumns body, other;
@@ -368,7 +371,7 @@ class ReplayPage {
         page::chart_script().empty() ? "" : fmt::format("<script>{}</script>", page::chart_script()));
     put("<!--SCRIPT-->", page::script());
     put("<!--ABOUT-->", about);
-    put("<!--NUMBERS-->", numbers_.text());
+    put("<!--NUMBERS-->", numbers_.text(live_));
     return page;
   }
 
@@ -379,6 +382,7 @@ class ReplayPage {
   RunCurves curves_;
   Column frame_times_;
   StateColumns frame_states_;
+  bool live_ = false;
   double off_ = 0.0;  ///< what motions between frames are off by, about [m]
   PageNumbers numbers_;
   Json about_;

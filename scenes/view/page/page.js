@@ -35,7 +35,8 @@ class Player {
     this.motions = new Motions(about, numbers);
     Object.assign(picture, {motions: this.motions, about, n: numbers});
     Object.assign(byId('scrub'), {min: this.begin, max: this.end});
-    byId('ending').textContent = about.termination;
+    if (!this.moved) picture.fit();
+    this.showFacts();
     if (!byId('quantity').hidden) this.makeChart(Number(byId('quantity').value));
     this.drawLanes();
     this.seek(withRun ? this.end : this.t);
@@ -149,8 +150,6 @@ class Player {
   makeControls() {
     byId('title').textContent = about.title;
     document.title = about.title;
-    byId('ending').textContent = about.termination;
-    if (about.notice) { byId('notice').textContent = about.notice; byId('notice').hidden = false; }
     const layers = byId('layers');
     for (const [key, words] of LAYERS) {
       const label = document.createElement('label'), box = document.createElement('input');
@@ -194,32 +193,25 @@ class Player {
 
   // -- tables --
   makeTables() {
-    const rows = (table, pairs) => {
-      for (const [name, value] of pairs) {
-        const row = table.insertRow(), head = document.createElement('th');
-        head.textContent = name;
-        row.append(head);
-        row.insertCell().textContent = value;
-      }
-    };
-    rows(byId('run'), about.facts);
-    rows(byId('keys'), [['space', 'play, pause'], [', .', 'event before, next event'], ['← →', 'a hundredth of the run'],
+    this.showFacts();
+    fillTable(byId('keys'), [['space', 'play, pause'], [', .', 'event before, next event'], ['← →', 'a hundredth of the run'],
       ['+ −', 'faster, slower'], ['0', 'see all'], ['f', 'follow the selected body'], ['c', 'cells'], ['i', 'panel'],
       ['drag, wheel', 'move, zoom'], ['click', 'select a body']]);
   }
 
+  /** What is said of the run as a whole. */
+  showFacts() {
+    byId('ending').textContent = about.termination;
+    Object.assign(byId('notice'), {textContent: about.notice, hidden: !about.notice});
+    fillTable(byId('run'), about.facts);
+  }
+
   showState() {
     const table = byId('state'), k = this.picture.selected;
-    table.replaceChildren();
-    if (k < 0) return;
+    if (k < 0) { table.replaceChildren(); return; }
     const [x, y, angle, vx, vy, omega] = this.motions.body(k, this.t), body = about.bodies[k];
-    for (const [name, value, unit] of [['mass', body.mass, 'kg'], ['x', x, 'm'], ['y', y, 'm'], ['angle', angle, 'rad'],
-      ['vx', vx, 'm/s'], ['vy', vy, 'm/s'], ['omega', omega, 'rad/s']]) {
-      const row = table.insertRow(), head = document.createElement('th');
-      head.textContent = name;
-      row.append(head);
-      row.insertCell().textContent = `${value} ${unit}`;
-    }
+    fillTable(table, [['mass', `${body.mass} kg`], ['x', `${x} m`], ['y', `${y} m`], ['angle', `${angle} rad`], ['vx', `${vx} m/s`],
+      ['vy', `${vy} m/s`], ['omega', `${omega} rad/s`]]);
   }
 
   /** Events around the present time. */
@@ -454,6 +446,17 @@ function roomy(rows) {
   return [low - room, high + room];
 }
 
+/** A row for each name and value. */
+function fillTable(table, pairs) {
+  table.replaceChildren();
+  for (const [name, value] of pairs) {
+    const row = table.insertRow(), head = document.createElement('th');
+    head.textContent = name;
+    row.append(head);
+    row.insertCell().textContent = value;
+  }
+}
+
 function option(select, value, words) {
   const made = document.createElement('option');
   made.value = value;
@@ -467,16 +470,23 @@ function siteName(k) { return k >= 0 ? about.sites[k].name : ''; }
 window.brink = {
   events: [],
   ready: inflated(byId('numbers').textContent, about.arrays).then(numbers => {
-    const player = new Player(numbers), n = numbers;
+    const player = new Player(numbers);
+    let told, toldOf;  // events, and the numbers that they are of
+    const events = () => {
+      const {n} = player;
+      if (toldOf === n) return told;
+      toldOf = n;
+      return told = Array.from(n.event_t, (t, k) => ({t, kind: about.kinds[n.event_kind[k]], body: nameOf(n.event_body[k]),
+        other: n.event_other[k] >= 0 ? nameOf(n.event_other[k]) : siteName(n.event_site[k])}));
+    };
     const named = (k, t) => {
       const [x, y, angle, vx, vy, omega] = player.motions.body(k, t);
       return {name: about.bodies[k].name, x, y, angle, vx, vy, omega};
     };
     player.follow();
     Object.defineProperty(window.brink, 'duration', {get: () => player.end});
+    Object.defineProperty(window.brink, 'events', {get: events});
     Object.assign(window.brink, {
-      events: Array.from(n.event_t, (t, k) => ({t, kind: about.kinds[n.event_kind[k]], body: nameOf(n.event_body[k]),
-        other: n.event_other[k] >= 0 ? nameOf(n.event_other[k]) : siteName(n.event_site[k])})),
       state: t => about.bodies.map((b, k) => named(k, t)),
       seek: t => player.seek(t), play: () => player.play(), pause: () => player.pause(),
       step: way => player.step(way), select: name => player.select(about.bodies.findIndex(b => b.name === name)),
