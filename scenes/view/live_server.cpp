@@ -12,6 +12,7 @@
 #include <httplib.h>
 
 #include <atomic>
+#include <memory>
 #include <mutex>
 #include <string_view>
 #include <thread>
@@ -58,6 +59,9 @@ struct LiveServer::Impl {
     // A connection is for one request, and none waits for long: who ends the server waits for all of them.
     server.set_keep_alive_max_count(1);
     server.set_keep_alive_timeout(1);
+    server.set_read_timeout(1);
+    // On two cores the library would have a single thread, held by a connection that a browser keeps at hand.
+    server.new_task_queue = [] { return new httplib::ThreadPool(8); };
     // The page comes with the data of the moment: it shows something before it asks for more.
     server.Get("/", [this](const httplib::Request&, httplib::Response& response) {
       reply(response, "text/html; charset=utf-8",
@@ -117,7 +121,13 @@ struct LiveServer::Impl {
   void reply(httplib::Response& response, const char* kind, Text&& text) {
     const std::lock_guard lock(reading);
     try {
-      response.set_content(text(), kind);
+      // Of known length, piece by piece: a text given as a whole the library would pack by Brotli at its highest, which
+      // takes seconds for what stays on this machine.
+      const auto whole = std::make_shared<const std::string>(text());
+      response.set_content_provider(whole->size(), kind,
+                                    [whole](std::size_t from, std::size_t length, httplib::DataSink& sink) {
+                                      return sink.write(whole->data() + from, length);
+                                    });
     } catch (const std::exception& e) {  // nothing is there yet
       response.status = 503;
       response.set_content(e.what(), "text/plain; charset=utf-8");

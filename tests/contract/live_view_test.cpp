@@ -175,6 +175,16 @@ TEST_P(Live, ASignalEndsItAlsoWhilePaused) {
   EXPECT_TRUE(fs::exists(folder_ / "runs/long-1/run.db"));
 }
 
+// Packing what stays on this machine once took longer than making it.
+TEST_P(Live, WhatIsServedIsNotPacked) {
+  ASSERT_GT(port_, 0);
+  ASSERT_FALSE(soon().is_null());
+  const std::string answer = ask("GET /data", own(), "Accept-Encoding: gzip, deflate, br\r\n");
+  EXPECT_TRUE(begins(answer, "HTTP/1.1 200"));
+  EXPECT_THAT(answer.substr(0, answer.find("\r\n\r\n")), testing::Not(HasSubstr("Content-Encoding")));
+  EXPECT_THAT(answer, HasSubstr("{\"about\":"));
+}
+
 // As browsers do: one that has been answered and stays, one that is kept at hand.
 TEST_P(Live, ConnectionsThatStayOpenDoNotHoldIt) {
   ASSERT_GT(port_, 0);
