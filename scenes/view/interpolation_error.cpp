@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brink/core/base/limits.h"
+
 namespace brink {
 namespace {
 
@@ -19,7 +21,9 @@ double interpolation_error(const World& world, std::span<const double> times,
                            const std::array<std::vector<double>, 6>& states,
                            std::span<const std::vector<double>> events) {
   const std::size_t count = world.bodies.size();
-  double worst = 0.0;
+  double worst = 0.0, farthest = 0.0;
+  for (const int c : {0, 1})
+    for (const double x : states[c]) farthest = std::max(farthest, std::abs(x));
   for (std::size_t body = 0; body < count; ++body) {
     auto next = events[body].begin();
     for (std::size_t k = 1; k + 1 < times.size(); ++k) {
@@ -37,7 +41,7 @@ double interpolation_error(const World& world, std::span<const double> times,
       worst = std::max(worst, std::hypot(off(0), off(1)) + reach * std::abs(off(2)));
     }
   }
-  return worst / 16.0;
+  return std::max(worst / 16.0, 16.0 * kEpsilon * farthest);
 }
 
 }  // namespace brink

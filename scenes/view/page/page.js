@@ -36,6 +36,7 @@ class Player {
     Object.assign(picture, {motions: this.motions, about, n: numbers});
     Object.assign(byId('scrub'), {min: this.begin, max: this.end});
     if (!this.moved) picture.fit();
+    if (!this.speedChosen) this.setSpeed(this.naturalSpeed());
     this.showFacts();
     if (!byId('quantity').hidden) this.makeChart(Number(byId('quantity').value));
     this.drawLanes();
@@ -89,6 +90,10 @@ class Player {
     this.speed = speed;
     byId('speed').value = Math.log10(speed);
     byId('speed-told').textContent = `× ${Number(speed.toPrecision(3))}`;
+  }
+  faster(by) {
+    this.speedChosen = true;
+    this.setSpeed(Math.min(Math.max(this.speed * by, 1e-6), 1e3));
   }
   /** To the next event (1) or the one before (-1). */
   step(way) {
@@ -167,7 +172,7 @@ class Player {
     byId('play').onclick = () => this.playing ? this.pause() : this.play();
     byId('previous').onclick = () => this.step(-1);
     byId('next').onclick = () => this.step(1);
-    byId('speed').oninput = e => this.setSpeed(10 ** Number(e.target.value));
+    byId('speed').oninput = e => { this.speedChosen = true; this.setSpeed(10 ** Number(e.target.value)); };
     byId('time').onchange = e => {
       const t = Number(e.target.value);
       if (Number.isFinite(t)) this.seek(t);
@@ -232,6 +237,7 @@ class Player {
       row.insertCell().textContent = about.kinds[n.event_kind[k]];
       row.insertCell().textContent = [nameOf(n.event_body[k]), n.event_other[k] >= 0 ? nameOf(n.event_other[k]) : siteName(n.event_site[k])]
         .filter(s => s).join(' on ');
+      row.cells[2].title = row.cells[2].textContent;
       row.onclick = () => this.toEvent(k);
     }
   }
@@ -408,7 +414,7 @@ class Player {
     const act = {
       ' ': () => this.playing ? this.pause() : this.play(), ',': () => this.step(-1), '.': () => this.step(1),
       ArrowLeft: () => this.seek(this.t - hundredth), ArrowRight: () => this.seek(this.t + hundredth),
-      '+': () => this.setSpeed(Math.min(1e3, this.speed * 1.5)), '-': () => this.setSpeed(Math.max(1e-6, this.speed / 1.5)),
+      '+': () => this.faster(1.5), '-': () => this.faster(1 / 1.5),
       '0': () => { this.moved = false; this.picture.fit(); this.stale = true; }, i: () => this.togglePanel(),
       f: () => { byId('follow').checked = !byId('follow').checked; this.stale = true; },
       c: () => { const box = byId('layers').querySelector('input'); box.checked = !box.checked; box.onchange(); },

@@ -329,19 +329,25 @@ class Picture {
     ctx.globalAlpha = 1;
   }
 
+  /** Those that fit beside each other: the selected body's, then those of the largest. */
   drawNames() {
-    const {ctx} = this;
+    const {ctx, about: {bodies, shapes}} = this, taken = [], high = 13 * this.ratio;
+    const size = k => k === this.selected ? Infinity : shapes[bodies[k].shape].bounding_radius;
     this.leave();
     ctx.font = `${11 * this.ratio}px sans-serif`;
     ctx.textAlign = 'center';
     ctx.fillStyle = '#000';
     ctx.strokeStyle = 'rgba(255,255,255,.8)';
     ctx.lineWidth = 3 * this.ratio;
-    this.about.bodies.forEach((b, k) => {
+    for (const k of bodies.map((b, i) => i).sort((a, b) => size(b) - size(a) || a - b)) {
       const [x, y] = this.toPixels(this.poses[k][0], this.poses[k][1]);
-      ctx.strokeText(b.name, x, y);
-      ctx.fillText(b.name, x, y);
-    });
+      if (x < 0 || y < 0 || x > this.canvas.width || y > this.canvas.height) continue;
+      const half = ctx.measureText(bodies[k].name).width / 2;
+      if (taken.some(t => Math.abs(t.y - y) < high && Math.abs(t.x - x) < t.half + half)) continue;
+      taken.push({x, y, half});
+      ctx.strokeText(bodies[k].name, x, y);
+      ctx.fillText(bodies[k].name, x, y);
+    }
   }
 
   drawBox() {
