@@ -19,7 +19,7 @@ double cubic_at(double t0, double a, double va, double t1, double b, double vb, 
 
 double interpolation_error(const World& world, std::span<const double> times,
                            const std::array<std::vector<double>, 6>& states,
-                           std::span<const std::vector<double>> events) {
+                           std::span<const std::vector<double>> events, bool bends) {
   const std::size_t count = world.bodies.size();
   double worst = 0.0, farthest = 0.0;
   for (const int c : {0, 1})
@@ -41,7 +41,7 @@ double interpolation_error(const World& world, std::span<const double> times,
       worst = std::max(worst, std::hypot(off(0), off(1)) + reach * std::abs(off(2)));
     }
   }
-  return std::max(worst / 16.0, 16.0 * kEpsilon * farthest);
+  return std::max(worst / (bends ? 2.0 : 16.0), 16.0 * kEpsilon * farthest);
 }
 
 }  // namespace brink

@@ -11,7 +11,8 @@ namespace brink {
 
 /// How far the cubics through recorded states are off the motions between them [m], at the worst place that the states
 /// themselves tell of: every second state is left out, and the cubic over it is held against it. A cubic is off by the
-/// fourth power of the time between two states, so it is a sixteenth of that with all of them. Turning counts as the way of
+/// fourth power of the time between two states, so it is a sixteenth of that with all of them; where motions have bends that
+/// no event tells of, as while contacts last, half of it. Turning counts as the way of
 /// what is farthest from the centre. Where accelerations are constant nothing is left but rounding: no less is told than
 /// sixteen roundings of the farthest place.
 ///
@@ -19,6 +20,6 @@ namespace brink {
 /// order; `events`: of every body, in order [s]: across them nothing is held against anything.
 double interpolation_error(const World& world, std::span<const double> times,
                            const std::array<std::vector<double>, 6>& states,
-                           std::span<const std::vector<double>> events);
+                           std::span<const std::vector<double>> events, bool bends);
 
 }  // namespace brink

@@ -118,8 +118,8 @@ class ReplayPage {
     live_ = live;
     about_["live"] = live;
     frames();
-    events();
     contacts();
+    events();
     if (!limits_.trace.empty()) trace();
     curves_.put(numbers_, about_);
     things();
@@ -206,7 +206,7 @@ class ReplayPage {
       along.push_back(e.impulse_n), across.push_back(e.impulse_t);
       curves_.add(e);
     }
-    off_ = interpolation_error(world_, frame_times_, frame_states_.columns(), of_bodies);
+    off_ = interpolation_error(world_, frame_times_, frame_states_.columns(), of_bodies, lasting_);
     // A run file of before the states at collisions.
     if (any_collision && !any_known) notices_.push_back("between frames motions are interpolated");
     numbers_.add("event_t", t);
@@ -230,6 +230,7 @@ class ReplayPage {
     Column from, to, x, y, force;
     std::vector<std::int32_t> body, other;
     for (const LastedContact& c : run_.contacts()) {
+      lasting_ = true;
       from.push_back(c.from), to.push_back(c.to);
       x.push_back(c.point.x()), y.push_back(c.point.y());
       force.push_back(c.normal_force);
@@ -382,8 +383,8 @@ class ReplayPage {
   RunCurves curves_;
   Column frame_times_;
   StateColumns frame_states_;
-  bool live_ = false;
-  double off_ = 0.0;  ///< what motions between frames are off by, about [m]
+  bool live_ = false, lasting_ = false;  ///< lasting_: there are contacts that last
+  double off_ = 0.0;                     ///< what motions between frames are off by, about [m]
   PageNumbers numbers_;
   Json about_;
   std::map<std::string, int> shapes_;
