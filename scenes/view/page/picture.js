@@ -370,7 +370,7 @@ class Picture {
     this.leave();
     ctx.font = `${11 * this.ratio}px sans-serif`;
     ctx.textAlign = 'left';
-    for (const [color, width] of [[this.paperInk, 4], [this.ink, 1.5]]) {
+    for (const [color, width] of [[this.paperInk, 3], [this.ink, 1.5]]) {
       ctx.strokeStyle = color;
       ctx.lineWidth = width * this.ratio;
       ctx.strokeRect(x, y, w, 0);
