@@ -18,8 +18,6 @@ namespace {
 using detail::PixelGrid;
 using detail::SiteBatch;
 
-/// A power of two: the largest for which FieldRenderer has a target.
-constexpr int kMostPixels = 8192;
 /// Of a drawn id: kImage (field_shaders.cpp) sets it.
 constexpr std::uint32_t kInside = 0x80000000U;
 /// Pixels along the longer side of the window in which near owners are looked for: one margin finer costs
@@ -50,9 +48,9 @@ void check_distance(const char* name, double value) {
 
 /// Square pixels that cover the window, about its centre: of the two sides that would do, the larger.
 PixelGrid make_grid(const Box& window, int width, int height) {
-  if (width < 1 || height < 1 || width > kMostPixels || height > kMostPixels) {
+  if (width < 1 || height < 1 || width > kMostPassPixels || height > kMostPassPixels) {
     throw BadInput("a pass window of " + std::to_string(width) + " x " + std::to_string(height) +
-                   " pixels; allowed are 1 to " + std::to_string(kMostPixels) + " a side");
+                   " pixels; allowed are 1 to " + std::to_string(kMostPassPixels) + " a side");
   }
   PixelGrid grid;
   grid.width = width;

@@ -53,6 +53,9 @@ struct PixelValue {
   bool inside = false;
 };
 
+/// Pixels along a side of a pass window, at most: a power of two, the largest for which FieldRenderer has a target.
+inline constexpr int kMostPassPixels = 8192;
+
 /// Renders pass windows. Owns a GL context; belongs to the thread that made it.
 ///
 /// Pixels are square: the window is grown about its centre to width x height pixels of side
@@ -60,7 +63,7 @@ struct PixelValue {
 /// Ties are won by the outline named first, then by the lower site. Sites are drawn with the same bits
 /// whoever is excluded.
 ///
-/// All calls throw BadInput on an empty or infinite window, a size outside 1 .. 8192 pixels, a band or margin
+/// All calls throw BadInput on an empty or infinite window, a size outside 1 .. kMostPassPixels, a band or margin
 /// that is negative or NaN, a scene entry without an outline, or a point to be read that is NaN.
 class PassRenderer {
  public:

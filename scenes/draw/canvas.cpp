@@ -314,24 +314,29 @@ void Canvas::rectangle(double x, double y, double width, double height, const Co
   cairo_fill(impl_->cairo);
 }
 
-double Canvas::text(double x, double y, const std::string& words, double size, const Color& color,
-                    Align align, bool bold) {
+double Canvas::text_width(const std::string& words, double size, bool bold) const {
   cairo_t* cairo = impl_->cairo;
   cairo_select_font_face(cairo, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
                          bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
   cairo_set_font_size(cairo, size);
   cairo_text_extents_t extents;
   // Names come from files: nothing of them may be taken for a line break or a direction.
-  const std::string shown = printable(words);
-  cairo_text_extents(cairo, shown.c_str(), &extents);
-  set_color(cairo, color);
+  cairo_text_extents(cairo, printable(words).c_str(), &extents);
   // By the advance, which counts spaces at the end: texts can be set side by side.
+  return extents.x_advance;
+}
+
+double Canvas::text(double x, double y, const std::string& words, double size, const Color& color,
+                    Align align, bool bold) {
+  cairo_t* cairo = impl_->cairo;
+  const double width = text_width(words, size, bold);  // which sets the font, too
+  set_color(cairo, color);
   const double share = align == Align::left ? 0.0 : align == Align::middle ? 0.5 : 1.0;
-  cairo_move_to(cairo, x - share * extents.x_advance, y);
-  cairo_show_text(cairo, shown.c_str());
+  cairo_move_to(cairo, x - share * width, y);
+  cairo_show_text(cairo, printable(words).c_str());
   // Showing text leaves a point on the path.
   cairo_new_path(cairo);
-  return extents.x_advance;
+  return width;
 }
 
 Picture Canvas::finish() {

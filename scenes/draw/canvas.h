@@ -56,6 +56,7 @@ class Canvas {
   /// One line of text with its baseline at y. Returns its width.
   double text(double x, double y, const std::string& words, double size, const Color& color, Align align,
               bool bold = false);
+  double text_width(const std::string& words, double size, bool bold = false) const;
 
   /// @pre of pixels.
   Picture finish();

@@ -178,8 +178,7 @@ double largest_distance(const FieldImage& field) {
 Picture cells_picture(std::span<const PlacedOutline> placed, const View& view, int wanted,
                       std::uint32_t excluded, const FieldOptions& options, const Palette& palette,
                       std::size_t body_count, const std::function<double(double)>& contour_step) {
-  constexpr int kMostColumns = 8192;  // of one rendered strip (PassRenderer)
-  const int fineness = std::clamp(kMostColumns / view.width, 1, wanted);
+  const int fineness = std::clamp(kMostPassPixels / view.width, 1, wanted);  // a strip is one window
   PassRenderer renderer(options);
   // The distance between lines is one for the picture, so it is chosen before the first strip.
   const CoarseLook seen = look(renderer, placed, view, excluded, options);

@@ -26,7 +26,7 @@ double largest_distance(const FieldImage& field);
 
 /// Cells in quiet colours, white where owners meet, and faint lines of equal distance, contour_step(the largest
 /// distance seen) [m] apart. The field, `fineness` x `fineness` pixels a picture pixel, is rendered strip by
-/// strip: all of it would take 60 bytes a pixel. Pictures wider than 8192 / fineness are rendered less finely. @throws IoError.
+/// strip: all of it would take 60 bytes a pixel. Pictures wider than kMostPassPixels / fineness are rendered less finely. @throws IoError.
 Picture cells_picture(std::span<const PlacedOutline> placed, const View& view, int fineness,
                       std::uint32_t excluded, const FieldOptions& options, const Palette& palette,
                       std::size_t body_count, const std::function<double(double)>& contour_step);

@@ -125,12 +125,17 @@ void draw_axes(Canvas& canvas, const Sheet& sheet) {
   each(view.window.low.x(), view.window.high.x(), [&](double x) {
     const double at = view.to_picture({x, 0.0}).x();
     canvas.rectangle(at, view.height - kTick, 1.0, kTick, ink);
-    canvas.text(at, view.height - kTick - 3.0, label(x), kTextSize, ink, Canvas::Align::middle);
+    // A number that is cut says another: it must fit.
+    if (const double half = 0.5 * canvas.text_width(label(x), kTextSize);
+        at >= half && at + half <= view.width)
+      canvas.text(at, view.height - kTick - 3.0, label(x), kTextSize, ink, Canvas::Align::middle);
   });
   each(view.window.low.y(), view.window.high.y(), [&](double y) {
     const double at = view.to_picture({0.0, y}).y();
     canvas.rectangle(0.0, at, kTick, 1.0, ink);
-    canvas.text(kTick + 3.0, at + 0.35 * kTextSize, label(y), kTextSize, ink, Canvas::Align::left);
+    // Below the axis' name, above the numbers of the other one.
+    if (at > 2.0 * kTextSize + 4.0 && at < view.height - kTick - 1.5 * kTextSize)
+      canvas.text(kTick + 3.0, at + 0.35 * kTextSize, label(y), kTextSize, ink, Canvas::Align::left);
   });
   canvas.text(view.width - 4.0, view.height - kTick - kTextSize - 6.0, "x [m]", kTextSize, ink,
               Canvas::Align::right);

@@ -3,13 +3,14 @@
 #include <charconv>
 #include <cmath>
 
+#include "brink/core/fields/pass_window.h"
 #include "brink/scenes/draw/draw.h"
 
 namespace brink {
 namespace {
 
 // Above kLargest pass windows are refused; below kSmallest nothing can be told.
-constexpr int kSmallest = 16, kLargest = 8192;  // sides of a picture [pixels]
+constexpr int kSmallest = 16, kLargest = kMostPassPixels;  // sides of a picture [pixels]
 
 }  // namespace
 

@@ -68,10 +68,12 @@ RunMoment moment_of_scene(const DrawArguments& arguments, const Scene& scene) {
   return moment;
 }
 
-/// The subject at the time asked for. Of a scene `field` is set to its own options; a run file's picture is
-/// drawn with the defaults.
+/// The subject at the time asked for; `field` is set to the scene's own options.
 RunMoment moment_of(const DrawArguments& arguments, const fs::path& run, FieldOptions& field) {
-  if (!run.empty()) return moment_of_run(run, arguments.at);
+  if (!run.empty()) {
+    field = RunFile(run).field_options();
+    return moment_of_run(run, arguments.at);
+  }
   const Scene scene = load_scene(arguments.subject, arguments.overrides);
   field = scene.solver.field;
   return moment_of_scene(arguments, scene);

@@ -153,6 +153,7 @@ int film_command(const FilmArguments& arguments) {
   options.diagram = arguments.layer != "plain";
   options.layer = parse_layer(options.diagram ? arguments.layer : "scene");
   options.size = parse_size(arguments.size);
+  options.field = run.field_options();
   const World world = run.world();
   // One camera for all pictures: the run's extent, not each picture's.
   options.view = extent_of(run, world);
@@ -171,7 +172,7 @@ int film_command(const FilmArguments& arguments) {
       options.forces = forces_of(moment);
     }
     film->add(draw_scene(world, moment.bodies, moment.sites, options));
-    bar.show(t, 0);
+    bar.show(t);
   }
   // Only now has ffmpeg written its last picture; whether it could is told by its exit status.
   film->finish();

@@ -3,6 +3,7 @@
 #include "brink/scenes/program/terminal.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,8 +15,8 @@
 namespace brink {
 namespace {
 
-// With its numbers the line is some 80 columns wide.
-constexpr int kBarWidth = 28;
+// A longer bar tells no more; a shorter one than kLeast nothing, and is left out.
+constexpr int kBarWidth = 28, kLeast = 5;
 constexpr auto kRedraw = std::chrono::milliseconds(100);
 
 /// Also false of pipes and files, whatever TERM says. NO_COLOR counts if it is set, even to nothing.
@@ -37,6 +38,12 @@ const char* code(Paint how) {
       return "\033[2m";
   }
   return "";
+}
+
+/// Columns of the terminal that standard error goes to; 80 where it does not tell.
+int columns() {
+  winsize size{};
+  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
 /// Time left [s] in the unit that people would use, without digits that the estimate does not have.
@@ -65,27 +72,41 @@ void StatusLine::say(const std::string& text) {
   drawn_ = true;
   // To the beginning of the line, cleared to its end, then written: a shorter text leaves nothing of a
   // longer one.
-  fmt::print(stderr, "\r\033[K{}", text);
+  // And no longer than the terminal is wide, as what wraps would not be wiped; a letter of several bytes is not cut.
+  std::size_t end = std::min(text.size(), static_cast<std::size_t>(std::max(0, columns() - 1)));
+  while (end > 0 && end < text.size() && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;
+  fmt::print(stderr, "\r\033[K{}", std::string_view(text).substr(0, end));
   std::fflush(stderr);
 }
 
 ProgressBar::ProgressBar(double from, double until, bool shown) : line_(shown), from_(from), until_(until) {
-  show(from, 0);
+  show(from);
 }
 
-void ProgressBar::show(double t, std::uint64_t collisions) {
+std::string bar_line(int columns, double part, double t, std::optional<std::uint64_t> collisions,
+                     const std::string& left) {
+  std::string words = fmt::format("{:3.0f}%  t = {:.4g} s", 100 * part, t);
+  if (collisions) words += fmt::format("  {} collisions", *collisions);
+  if (!left.empty()) words += "  " + left;
+  // The last column stays free: a cursor that stands there wraps on some terminals.
+  const int width = std::min(kBarWidth, columns - 1 - static_cast<int>(words.size()) - 3);
+  if (width < kLeast) return words.substr(0, static_cast<std::size_t>(std::max(0, columns - 1)));
+  const int full = static_cast<int>(part * width);
+  return fmt::format("[{}{}] {}", std::string(full, '='), std::string(width - full, ' '), words);
+}
+
+void ProgressBar::show(double t, std::optional<std::uint64_t> collisions) {
   const auto now = Clock::now();
   // Nearly all calls end here.
   if (stopping_ || now < next_) return;
   next_ = now + kRedraw;
   // What has no length, as a film of one moment, is done.
   const double part = until_ > from_ ? std::clamp((t - from_) / (until_ - from_), 0.0, 1.0) : 1.0;
-  const int full = static_cast<int>(part * kBarWidth);
   const double spent = std::chrono::duration<double>(now - start_).count();
   // An estimate from less than a hundredth would jump.
   const std::string left = part > 0.01 ? remaining(spent / part * (1 - part)) : std::string();
-  line_.say(fmt::format("[{}{}] {:3.0f}%  t = {:.4g} s  {} collisions  {}", std::string(full, '='),
-                        std::string(kBarWidth - full, ' '), 100 * part, t, collisions, left));
+  // Asked anew each time: terminals are resized.
+  line_.say(bar_line(columns(), part, t, collisions, left));
 }
 
 void ProgressBar::stopping() {

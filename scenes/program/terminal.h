@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -31,12 +32,17 @@ class StatusLine {
   bool shown_, drawn_ = false;
 };
 
+/// What a bar says, no longer than `columns`: a bar as long as there is room for, how much of the whole is done (0 .. 1), the
+/// time [s], collisions where they are counted, and how long it will take still.
+std::string bar_line(int columns, double part, double t, std::optional<std::uint64_t> collisions,
+                     const std::string& left);
+
 /// How far a run has come, from the beginning on, redrawn at most ten times a second.
 class ProgressBar {
  public:
   ProgressBar(double from, double until, bool shown);
 
-  void show(double t, std::uint64_t collisions);
+  void show(double t, std::optional<std::uint64_t> collisions = {});
   /// It has been asked to stop; what it is, it will not show any more.
   void stopping();
 

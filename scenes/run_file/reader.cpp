@@ -313,6 +313,14 @@ RunFile::RunFile(const fs::path& file) : impl_(guarded(file, [&] { return std::m
 RunFile::~RunFile() = default;
 RunFile::RunFile(RunFile&&) noexcept = default;
 
+void RunFile::hold() {
+  // What a transaction sees is what there was when it first read something.
+  reading(impl_->file, "frame", [&] {
+    impl_->db.exec("BEGIN");
+    return impl_->frames();
+  });
+}
+
 std::map<std::string, std::string> RunFile::meta() const {
   return reading(impl_->file, "meta", [&] {
     std::map<std::string, std::string> all;
@@ -406,12 +414,19 @@ World RunFile::world() const {
   // Damping is not stored, as no picture shows it.
   for (const Spring& s : springs())
     world.forces.push_back(SpringForce{s.body, s.other, s.at, s.other_at, s.stiffness, 0.0, s.rest_length});
+  for (AttractForce& a : attractions()) world.forces.emplace_back(std::move(a));
   world.periods.size =
       reading(impl_->file, "meta", [&] { return periods_in(meta("options").value_or("{}")); });
   return world;
 }
 
-std::vector<Event> RunFile::events() const {
+std::int64_t RunFile::event_count() const {
+  return reading(impl_->file, "event", [&] {
+    return impl_->db.execAndGet("SELECT ifnull(max(seq) + 1, 0) FROM event").getInt64();
+  });
+}
+
+std::vector<Event> RunFile::events(std::int64_t first, std::int64_t most) const {
   return reading(impl_->file, "event", [&] {
     std::vector<Event> all;
     // A run file of before has no columns of states.
@@ -419,7 +434,10 @@ std::vector<Event> RunFile::events() const {
         impl_->db,
         "SELECT seq, t, kind, body, other, site, px, py, nx, ny, closing_speed, impulse_n, impulse_t, "
         "gap, outline_site, sample, sample_on_body, t_low" +
-            std::string(impl_->has_states ? kStateColumns : "") + " FROM event ORDER BY seq");
+            std::string(impl_->has_states ? kStateColumns : "") +
+            " FROM event WHERE seq >= ? ORDER BY seq LIMIT ?");
+    get.bind(1, first);
+    get.bind(2, most);
     while (get.executeStep()) {
       const Row row(get);
       Event e;
@@ -471,6 +489,44 @@ std::vector<RunFile::Spring> RunFile::springs() const {
                      vector(j.at("at")), vector(j.at("other_at")), j.at("stiffness").get<double>(),
                      j.at("rest_length").get<double>()});
     return all;
+  });
+}
+
+std::vector<AttractForce> RunFile::attractions() const {
+  return reading(impl_->file, "meta", [&] {
+    std::vector<AttractForce> all;
+    for (const auto& j : nlohmann::json::parse(meta("attractions").value_or("[]"))) {
+      AttractForce& a = all.emplace_back();
+      a.bodies = j.at("bodies").get<std::vector<int>>();
+      for (const int id : a.bodies)
+        if (id < 0 || id >= impl_->bodies) throw BadInput("attractions: no such body");
+      a.center = {j.at("center").at(0).get<double>(), j.at("center").at(1).get<double>()};
+      a.strength = j.at("strength").get<double>();
+      a.power = j.at("power").get<double>();
+    }
+    return all;
+  });
+}
+
+FieldOptions RunFile::field_options() const {
+  return reading(impl_->file, "meta", [&] {
+    FieldOptions field;
+    const auto options = nlohmann::json::parse(meta("options").value_or("{}"));
+    const auto table = options.value("field", nlohmann::json::object());
+    // What a file of before does not have keeps its default.
+    const auto take = [&table](const char* key, auto& value) { value = table.value(key, value); };
+    take("resolution", field.resolution);
+    take("band", field.band);
+    take("primitives", field.primitives);
+    take("mesh_error", field.mesh_error);
+    take("readback", field.readback);
+    take("passes", field.passes);
+    take("truncated", field.truncated);
+    take("context", field.context);
+    take("brute_force_below", field.brute_force_below);
+    take("list_cap", field.list_cap);
+    if (std::string why; !field.is_valid(&why)) throw BadInput("options: field: " + why);
+    return field;
   });
 }
 

@@ -65,6 +65,18 @@ std::string springs_json(const World& world) {
   return all.dump();
 }
 
+/// What curves of energy need of the attractions, likewise.
+std::string attractions_json(const World& world) {
+  auto all = nlohmann::ordered_json::array();
+  for (const Force& force : world.forces)
+    if (const auto* a = std::get_if<AttractForce>(&force))
+      all.push_back({{"bodies", a->bodies},
+                     {"center", {a->center.x(), a->center.y()}},
+                     {"strength", a->strength},
+                     {"power", a->power}});
+  return all.dump();
+}
+
 /// Moves DIR/run.db, with its write-ahead log, to the first free DIR/run-<n>.db.
 /// The log goes first: killed in between, the next try finds run-<n>.db still free and brings
 /// the two together.
@@ -198,6 +210,7 @@ void RunFileRecorder::Impl::write_meta(const Scene& scene) {
   set_meta("scene_text", scene.text);
   set_meta("overrides", nlohmann::json(scene.overrides).dump());
   set_meta("springs", springs_json(scene.world));
+  set_meta("attractions", attractions_json(scene.world));
   set_meta("world_hash", world_hash_text(scene.world));
   set_meta("duration", number(scene.duration));
   // Until finish(). Of a run that is killed these stay, but for time and seconds, which checkpoints tell.

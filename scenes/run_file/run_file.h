@@ -27,7 +27,7 @@
 /// ends makes indices by body (of frames up to 2 million rows).
 ///
 /// meta: schema_version, brink_version, scene, title, options (JSON), scene_text, overrides (JSON), springs
-/// (JSON: body, other or null, at, other_at), world_hash, termination ("running"
+/// (JSON: body, other or null, at, other_at), attractions (JSON: bodies, center, strength, power), world_hash, termination ("running"
 /// until the end), duration, end_time, state_hash, wall_seconds, summary (the JSON of `brink run --json`).
 ///
 /// Rows are committed every 20 000 rows or 0.25 s. After a kill at any moment the file opens and holds all
@@ -40,12 +40,14 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "brink/core/fields/field_options.h"
 #include "brink/scenes/scene/scene.h"
 #include "brink/scheduler/run/recorder.h"
 
@@ -150,20 +152,30 @@ class RunFile {
   ~RunFile();
   RunFile(RunFile&&) noexcept;
 
+  /// From now on all that is read is of one moment, also while a run goes on: tables fit together.
+  void hold();
+
   std::map<std::string, std::string> meta() const;
   std::optional<std::string> meta(const std::string& key) const;
   std::vector<BodyRow> bodies() const;
   std::vector<FixedSite> sites() const;
   /// What pictures need of the world: title, bodies with their states in the first frame, fixed sites,
-  /// springs. Materials and other forces are not kept in tables of a run file, but meta's scene_text is.
+  /// springs, attractions. Materials and other forces are not kept in tables of a run file, but meta's scene_text is.
   World world() const;
-  std::vector<Event> events() const;
+  std::int64_t event_count() const;
+  /// At most so many, from number `first` on, in the order of their numbers.
+  std::vector<Event> events(std::int64_t first = 0,
+                            std::int64_t most = std::numeric_limits<std::int64_t>::max()) const;
   struct Spring {
     int body = 0, other = -1;  ///< -1: anchored
     Vec2 at, other_at;         ///< in the bodies' frames; the anchor in the world [m]
     double stiffness = 0.0, rest_length = 0.0;
   };
   std::vector<Spring> springs() const;
+  /// None in files of before.
+  std::vector<AttractForce> attractions() const;
+  /// The scene's `[field]`: pictures of a run are drawn by it, too. @throws IoError if it is not valid.
+  FieldOptions field_options() const;
   /// Those that lasted at time t [s]: from <= t < to, and at the end of the run those that last still.
   std::vector<LastedContact> contacts_at(double t) const;
   /// All of them.

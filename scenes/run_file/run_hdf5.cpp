@@ -208,7 +208,8 @@ void put_contacts(hid_t file, const RunFile& run) {
 }  // namespace
 
 void write_hdf5(const std::filesystem::path& run_file, const std::filesystem::path& file) {
-  const RunFile run(run_file);
+  RunFile run(run_file);
+  run.hold();  // a run that goes on writes more rows meanwhile
   // Else the library prints its own stack of errors.
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what goes wrong is told below
   try {

@@ -100,7 +100,8 @@ void write_contacts(const RunFile& run, const fs::path& folder) {
 }  // namespace
 
 void write_csv_tables(const fs::path& run_file, const fs::path& folder) {
-  const RunFile run(run_file);
+  RunFile run(run_file);
+  run.hold();  // a run that goes on writes more rows meanwhile
   made_folder(folder);
   write_things(run, folder);
   write_frames(run, folder);

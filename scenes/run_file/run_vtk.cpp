@@ -193,7 +193,8 @@ void write_events(const RunFile& run, const fs::path& folder) {
 }  // namespace
 
 void write_vtk(const fs::path& run_file, const fs::path& folder) {
-  const RunFile run(run_file);
+  RunFile run(run_file);
+  run.hold();  // a run that goes on writes more rows meanwhile
   write_frames(run, folder);
   write_events(run, folder);
 }

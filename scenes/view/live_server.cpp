@@ -12,7 +12,9 @@
 #include <httplib.h>
 
 #include <atomic>
+#include <memory>
 #include <mutex>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -20,6 +22,23 @@
 #include "brink/scenes/view/replay_page.h"
 
 namespace brink {
+
+namespace {
+
+/// Of a run that goes on a page asks twice a second: little enough to be made in that time.
+ReplayLimits limits_of(bool ended) {
+  ReplayLimits limits;
+  if (!ended) {
+    limits.frame_rows = 100'000;
+    limits.events = 20'000;
+  }
+  return limits;
+}
+
+constexpr std::string_view kBeginning =
+    "<!DOCTYPE html><title>Brink</title><meta http-equiv=\"refresh\" content=\"0.3\">The run begins ...";
+
+}  // namespace
 
 struct LiveServer::Impl {
   enum class Going { on, to_next_event, paused };
@@ -37,13 +56,26 @@ struct LiveServer::Impl {
     server.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
       return answers(request, response);
     });
+    // A connection is for one request, and none waits for long: who ends the server waits for all of them.
+    server.set_keep_alive_max_count(1);
+    server.set_keep_alive_timeout(1);
+    server.set_read_timeout(1);
+    // On two cores the library would have a single thread, held by a connection that a browser keeps at hand.
+    server.new_task_queue = [] { return new httplib::ThreadPool(8); };
     // The page comes with the data of the moment: it shows something before it asks for more.
     server.Get("/", [this](const httplib::Request&, httplib::Response& response) {
-      reply(response, "text/html; charset=utf-8", [&] { return replay_page_text(run_file, {}, true); });
+      reply(response, "text/html; charset=utf-8",
+            [&] { return replay_page_text(run_file, limits_of(ended), true); });
+      // A browser that is sooner than the run's first frame comes again by itself.
+      if (response.status == 503) response.set_content(std::string(kBeginning), "text/html; charset=utf-8");
     });
+    // Browsers ask for one.
+    server.Get("/favicon.ico",
+               [](const httplib::Request&, httplib::Response& response) { response.status = 204; });
     // Of a run that has ended the data say so, and the page stops asking.
     server.Get("/data", [this](const httplib::Request&, httplib::Response& response) {
-      reply(response, "application/json", [&] { return replay_page_data(run_file, {}, !ended); });
+      reply(response, "application/json",
+            [&] { return replay_page_data(run_file, limits_of(ended), !ended); });
     });
     // Orders are POST: a link or an image of another page makes a GET, and its forms lack the page's header
     // (answers()).
@@ -89,7 +121,13 @@ struct LiveServer::Impl {
   void reply(httplib::Response& response, const char* kind, Text&& text) {
     const std::lock_guard lock(reading);
     try {
-      response.set_content(text(), kind);
+      // Of known length, piece by piece: a text given as a whole the library would pack by Brotli at its highest, which
+      // takes seconds for what stays on this machine.
+      const auto whole = std::make_shared<const std::string>(text());
+      response.set_content_provider(whole->size(), kind,
+                                    [whole](std::size_t from, std::size_t length, httplib::DataSink& sink) {
+                                      return sink.write(whole->data() + from, length);
+                                    });
     } catch (const std::exception& e) {  // nothing is there yet
       response.status = 503;
       response.set_content(e.what(), "text/plain; charset=utf-8");

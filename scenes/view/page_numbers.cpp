@@ -30,12 +30,12 @@ void PageNumbers::take(const std::string& name, const char* kind, std::span<cons
 template void PageNumbers::take(const std::string&, const char*, std::span<const double>);
 template void PageNumbers::take(const std::string&, const char*, std::span<const std::int32_t>);
 
-std::string PageNumbers::text() const {
+std::string PageNumbers::text(bool quick) const {
   // In memory as a whole: ReplayLimits keep the numbers of a page within bounds. Level 6 is zlib's own
   // choice between time and size.
   uLongf size = compressBound(bytes_.size());
   std::vector<unsigned char> packed(size);
-  if (compress2(packed.data(), &size, bytes_.data(), bytes_.size(), 6) != Z_OK)
+  if (compress2(packed.data(), &size, bytes_.data(), bytes_.size(), quick ? 1 : 6) != Z_OK)
     throw IoError("the numbers of a page cannot be compressed");
   packed.resize(size);
   // Base64 takes three bytes at a time: zeros fill the last group, and their digits become the padding.

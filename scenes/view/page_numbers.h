@@ -17,8 +17,8 @@ class PageNumbers {
 
   /// [name, kind, count] of each, in order.
   const nlohmann::ordered_json& arrays() const { return arrays_; }
-  /// @throws IoError where memory does not suffice.
-  std::string text() const;
+  /// `quick`: less small, for what is soon asked for again. @throws IoError where memory does not suffice.
+  std::string text(bool quick = false) const;
 
  private:
   template <class T>

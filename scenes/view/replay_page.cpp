@@ -28,6 +28,7 @@
 #include "brink/scenes/run_file/shape_json.h"
 #include "brink/scenes/run_file/trace_file.h"
 #include "brink/scenes/version.h"
+#include "brink/scenes/view/interpolation_error.h"
 #include "brink/scenes/view/page_assets.h"
 #include "brink/scenes/view/page_numbers.h"
 #include "brink/scenes/view/run_curves.h"
@@ -60,6 +61,7 @@ class StateColumns {
                              s.twist.velocity.x(), s.twist.velocity.y(), s.twist.omega};
     for (int c = 0; c < 6; ++c) columns_[c].push_back(values[c]);
   }
+  const std::array<Column, 6>& columns() const { return columns_; }
   /// Names are those of COLUMNS in motion.js, behind a prefix.
   void put(PageNumbers& to, const std::string& prefix) const {
     const char* const names[] = {"x", "y", "angle", "vx", "vy", "omega"};
@@ -97,24 +99,27 @@ class SideColumns {
 class ReplayPage {
  public:
   ReplayPage(const std::filesystem::path& file, const ReplayLimits& limits)
-      : run_(file), limits_(limits), world_(run_.world()), palette_(world_), curves_(world_, run_) {}
+      : run_(file), limits_(limits), world_(run_.world()), palette_(world_), curves_(world_, run_) {
+    run_.hold();  // frames and events fit together, though the run goes on
+  }
 
   /// @pre gathered.
   /// The whole page as HTML.
   std::string page() const { return filled(); }
   /// What a live page asks for. Names that are no UTF-8 are mended, not refused: a run must be seen.
   std::string data() const {
-    return Json{{"about", about_}, {"numbers", numbers_.text()}}.dump(-1, ' ', false,
-                                                                      Json::error_handler_t::replace);
+    return Json{{"about", about_}, {"numbers", numbers_.text(live_)}}.dump(-1, ' ', false,
+                                                                           Json::error_handler_t::replace);
   }
 
   /// Reads the run file and fills `about` and the numbers. Frames come before events: a curve counts
   /// collisions between frames that it has (RunCurves).
   void gather(bool live) {
+    live_ = live;
     about_["live"] = live;
     frames();
-    events();
     contacts();
+    events();
     if (!limits_.trace.empty()) trace();
     curves_.put(numbers_, about_);
     things();
@@ -137,8 +142,9 @@ class ReplayPage {
     // In the order of the sites, as the page takes them (motion.js).
     for (const FixedSite& site : world_.sites)
       if (SiteMotion motion(site); motion.moves()) moving.push_back(std::move(motion));
-    Column times;
-    StateColumns states, site_states;
+    Column& times = frame_times_;
+    StateColumns& states = frame_states_;
+    StateColumns site_states;
     run_.each_frame(stride, [&](const RunFile::Frame& f) {
       times.push_back(f.t);
       for (const BodyState& s : f.states) states.add(s);
@@ -164,19 +170,22 @@ class ReplayPage {
   /// Every event with both of its sides, in the file's order. Sides are what the page follows bodies by;
   /// place, normal and impulses are drawn.
   void events() {
-    std::vector<Event> all = run_.events();
-    const auto limit = static_cast<std::size_t>(limits_.events);
-    if (all.size() > limit) {
+    const std::int64_t count = run_.event_count(), limit = limits_.events;
+    const std::int64_t first = live_ ? std::max<std::int64_t>(0, count - limit) : 0;
+    const std::vector<Event> all = run_.events(first, limit);
+    // Some are kept whole: there the page is exact, where with every second one it would be so nowhere. Of a run
+    // that goes on they are those of now.
+    if (count > limit && live_)
       notices_.push_back(
-          fmt::format("the first {} events of {}: after them motions are interpolated", limit, all.size()));
-      // The first ones are kept: up to there the page is exact, where every second one would make it so
-      // nowhere.
-      all.resize(limit);
-    }
+          fmt::format("the last {} events of {}: before them motions are interpolated", limit, count));
+    else if (count > limit)
+      notices_.push_back(
+          fmt::format("the first {} events of {}: after them motions are interpolated", limit, count));
     Column t, px, py, nx, ny, closing, along, across, gap;
     std::vector<std::int32_t> kind, site;
     SideColumns body, other;
     bool any_known = false, any_collision = false;
+    std::vector<Column> of_bodies(world_.bodies.size());
     for (const Event& e : all) {
       const Contact& c = e.contact;
       t.push_back(c.time);
@@ -187,6 +196,8 @@ class ReplayPage {
       site.push_back(c.other_site);
       // Files of before have events without states: then the cubic spans whole frames, across collisions.
       any_known = any_known || e.body.known;
+      for (const int id : {c.body, c.other_body})
+        if (id >= 0) of_bodies[id].push_back(c.time);
       any_collision = any_collision || e.kind == EventKind::collision;
       // In the world, not moved home: the page moves what it draws.
       px.push_back(c.point.x()), py.push_back(c.point.y());
@@ -195,6 +206,7 @@ class ReplayPage {
       along.push_back(e.impulse_n), across.push_back(e.impulse_t);
       curves_.add(e);
     }
+    off_ = interpolation_error(world_, frame_times_, frame_states_.columns(), of_bodies, lasting_);
     // A run file of before the states at collisions.
     if (any_collision && !any_known) notices_.push_back("between frames motions are interpolated");
     numbers_.add("event_t", t);
@@ -218,6 +230,7 @@ class ReplayPage {
     Column from, to, x, y, force;
     std::vector<std::int32_t> body, other;
     for (const LastedContact& c : run_.contacts()) {
+      lasting_ = true;
       from.push_back(c.from), to.push_back(c.to);
       x.push_back(c.point.x()), y.push_back(c.point.y());
       force.push_back(c.normal_force);
@@ -324,6 +337,7 @@ class ReplayPage {
     for (const char* key :
          {"scene", "brink_version", "termination", "end_time", "wall_seconds", "state_hash"})
       fact(key, of(key));
+    if (frame_times_.size() > 2) fact("between frames", fmt::format("places to about {:.1g} m", off_));
     // Without exceptions: a run that goes on has no summary yet, and an empty text is no JSON.
     const Json summary = Json::parse(of("summary"), nullptr, false),
                options = Json::parse(of("options"), nullptr, false);
@@ -358,7 +372,7 @@ class ReplayPage {
         page::chart_script().empty() ? "" : fmt::format("<script>{}</script>", page::chart_script()));
     put("<!--SCRIPT-->", page::script());
     put("<!--ABOUT-->", about);
-    put("<!--NUMBERS-->", numbers_.text());
+    put("<!--NUMBERS-->", numbers_.text(live_));
     return page;
   }
 
@@ -367,6 +381,10 @@ class ReplayPage {
   World world_;
   draw::Palette palette_;
   RunCurves curves_;
+  Column frame_times_;
+  StateColumns frame_states_;
+  bool live_ = false, lasting_ = false;  ///< lasting_: there are contacts that last
+  double off_ = 0.0;                     ///< what motions between frames are off by, about [m]
   PageNumbers numbers_;
   Json about_;
   std::map<std::string, int> shapes_;

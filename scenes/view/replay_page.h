@@ -10,7 +10,8 @@ namespace brink {
 struct ReplayLimits {
   /// Frames times bodies; a run with more is thinned, and the page says so.
   std::int64_t frame_rows = 1'200'000;
-  std::int64_t events = 300'000;  ///< likewise: of more the page has the first ones
+  /// Likewise: of more the page has the first ones, of a run that goes on the last ones.
+  std::int64_t events = 300'000;
   std::filesystem::path
       trace;  ///< what `brink run --trace` wrote: lanes of what the scheduler did; empty: none
   std::int64_t marks = 300'000;  ///< of the trace, likewise

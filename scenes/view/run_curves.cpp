@@ -1,11 +1,12 @@
-/// Curves are made from what a run file has: states at frames, masses, springs and gravity. So they are
-/// sums over the recorded frames and not the run's own energies, and forces that the file has no table of
-/// (attraction, drag, thrust, formulas) are not in them.
+/// Curves are made from what a run file has: states at frames, masses, gravity, springs and attractions. So
+/// they are sums over the recorded frames and not the run's own energies. Drag, thrust and formulas have no energy that
+/// is kept.
 #include "brink/scenes/view/run_curves.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace brink {
 
@@ -22,7 +23,10 @@ Vec2 gravity_in(const std::string& options) {
 }  // namespace
 
 RunCurves::RunCurves(const World& world, const RunFile& run)
-    : world_(&world), gravity_(gravity_in(run.meta("options").value_or("{}"))), springs_(run.springs()) {}
+    : world_(&world),
+      gravity_(gravity_in(run.meta("options").value_or("{}"))),
+      springs_(run.springs()),
+      attractions_(run.attractions()) {}
 
 /// Energy in all springs at a frame [J]. Their ends are where the bodies are, without periods: as
 /// core/world/energy.cpp takes them.
@@ -35,6 +39,17 @@ double RunCurves::of_springs(const RunFile::Frame& f) const {
     const double longer = (a - b).norm() - s.rest_length;
     energy += 0.5 * s.stiffness * longer * longer;
   }
+  return energy;
+}
+
+/// Energy of all attractions at a frame [J], as core/world/energy.cpp takes it.
+double RunCurves::of_attraction(const RunFile::Frame& f) const {
+  double energy = 0.0;
+  for (const AttractForce& a : attractions_)
+    for (const int k : a.bodies) {
+      const double r = (f.states[k].pose.position - a.center).norm(), n = a.power + 1.0;
+      energy += world_->bodies[k].mass * a.strength * (n == 0.0 ? std::log(r) : std::pow(r, n) / n);
+    }
   return energy;
 }
 
@@ -52,12 +67,13 @@ void RunCurves::add(const RunFile::Frame& f) {
     // Of the centre of mass about the origin, and the body's own.
     turning += b.mass * cross(pose.position, twist.velocity) + b.inertia * twist.omega;
   }
-  const double sprung = of_springs(f);
+  const double sprung = of_springs(f), attracted = of_attraction(f);
   t_.push_back(f.t);
   kinetic_.push_back(kinetic);
   of_gravity_.push_back(lifted);
   of_springs_.push_back(sprung);
-  total_.push_back(kinetic + lifted + sprung);
+  of_attraction_.push_back(attracted);
+  total_.push_back(kinetic + lifted + sprung + attracted);
   px_.push_back(momentum.x()), py_.push_back(momentum.y());
   turning_.push_back(turning);
   // Filled by the events of the interval that begins here; that of the last frame stays 0.
@@ -97,6 +113,7 @@ void RunCurves::put(PageNumbers& to, nlohmann::ordered_json& about) const {
   std::vector<std::pair<const char*, const std::vector<double>*>> energies{{"kinetic", &kinetic_}};
   if (!gravity_.isZero(0.0)) energies.emplace_back("of gravity", &of_gravity_);
   if (!springs_.empty()) energies.emplace_back("of springs", &of_springs_);
+  if (!attractions_.empty()) energies.emplace_back("of attraction", &of_attraction_);
   // A sum of one is that one.
   if (energies.size() > 1) energies.emplace_back("sum", &total_);
   curve("Energy", "J", false, energies);

@@ -25,11 +25,14 @@ class RunCurves {
 
  private:
   double of_springs(const RunFile::Frame& frame) const;
+  double of_attraction(const RunFile::Frame& frame) const;
 
   const World* world_;
   Vec2 gravity_ = Vec2::Zero();
   std::vector<RunFile::Spring> springs_;
-  std::vector<double> t_, kinetic_, of_gravity_, of_springs_, total_, px_, py_, turning_, collisions_;
+  std::vector<AttractForce> attractions_;
+  std::vector<double> t_, kinetic_, of_gravity_, of_springs_, of_attraction_, total_, px_, py_, turning_,
+      collisions_;
 };
 
 }  // namespace brink

@@ -13,6 +13,8 @@
 #include <string>
 #include <thread>
 
+#include "brink/scenes/view/live_server.h"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -42,6 +44,32 @@ grid = { columns = 4, rows = 2, spacing = [0.6, 0.7] }
 void wait_ms(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
 
 bool begins(const std::string& text, const char* with) { return text.rfind(with, 0) == 0; }
+
+int connected(int port) {
+  const int s = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(static_cast<std::uint16_t>(port));
+  ::inet_pton(AF_INET, "127.0.0.1", &to.sin_addr);
+  return ::connect(s, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0 ? s : -1;
+}
+
+/// The whole answer to a request; `host` and further header lines as given.
+std::string answer_of(int port, const std::string& what, const std::string& host,
+                      const std::string& headers) {
+  const int s = connected(port);
+  std::string answer;
+  if (s >= 0) {
+    const std::string text = what + " HTTP/1.1\r\nHost: " + host + "\r\n" + headers +
+                             "Connection: close\r\nContent-Length: 0\r\n\r\n";
+    (void)!::write(s, text.data(), text.size());
+    char buffer[65536];
+    for (ssize_t n; (n = ::read(s, buffer, sizeof buffer)) > 0;)
+      answer.append(buffer, static_cast<std::size_t>(n));
+  }
+  ::close(s);
+  return answer;
+}
 
 /// "view", or "watch".
 class Live : public testing::TestWithParam<const char*> {
@@ -74,24 +102,8 @@ class Live : public testing::TestWithParam<const char*> {
     fs::remove_all(folder_);
   }
 
-  /// The whole answer to a request; `host` and further header lines as given.
   std::string ask(const std::string& what, const std::string& host, const std::string& headers = "") const {
-    const int s = ::socket(AF_INET, SOCK_STREAM, 0);
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    to.sin_port = htons(static_cast<std::uint16_t>(port_));
-    ::inet_pton(AF_INET, "127.0.0.1", &to.sin_addr);
-    std::string answer;
-    if (::connect(s, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0) {
-      const std::string text = what + " HTTP/1.1\r\nHost: " + host + "\r\n" + headers +
-                               "Connection: close\r\nContent-Length: 0\r\n\r\n";
-      (void)!::write(s, text.data(), text.size());
-      char buffer[65536];
-      for (ssize_t n; (n = ::read(s, buffer, sizeof buffer)) > 0;)
-        answer.append(buffer, static_cast<std::size_t>(n));
-    }
-    ::close(s);
-    return answer;
+    return answer_of(port_, what, host, headers);
   }
   std::string own() const { return "127.0.0.1:" + std::to_string(port_); }
   std::string order(const std::string& what) const {
@@ -161,6 +173,41 @@ TEST_P(Live, ASignalEndsItAlsoWhilePaused) {
   for (int k = 0; k < 300 && ::waitpid(program_, nullptr, WNOHANG) == 0; ++k) wait_ms(10);
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(1500));
   EXPECT_TRUE(fs::exists(folder_ / "runs/long-1/run.db"));
+}
+
+// Packing what stays on this machine once took longer than making it.
+TEST_P(Live, WhatIsServedIsNotPacked) {
+  ASSERT_GT(port_, 0);
+  ASSERT_FALSE(soon().is_null());
+  const std::string answer = ask("GET /data", own(), "Accept-Encoding: gzip, deflate, br\r\n");
+  EXPECT_TRUE(begins(answer, "HTTP/1.1 200"));
+  EXPECT_THAT(answer.substr(0, answer.find("\r\n\r\n")), testing::Not(HasSubstr("Content-Encoding")));
+  EXPECT_THAT(answer, HasSubstr("{\"about\":"));
+}
+
+// As browsers do: one that has been answered and stays, one that is kept at hand.
+TEST_P(Live, ConnectionsThatStayOpenDoNotHoldIt) {
+  ASSERT_GT(port_, 0);
+  ASSERT_FALSE(soon().is_null());
+  const int used = connected(port_), kept = connected(port_);
+  const std::string text = "GET /data HTTP/1.1\r\nHost: " + own() + "\r\n\r\n";
+  ASSERT_EQ(::write(used, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  wait_ms(300);
+  const auto begin = std::chrono::steady_clock::now();
+  ::kill(program_, SIGINT);
+  for (int k = 0; k < 1000 && ::waitpid(program_, nullptr, WNOHANG) == 0; ++k) wait_ms(10);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(2500));
+  ::close(used);
+  ::close(kept);
+}
+
+TEST(LiveServer, ABrowserThatIsSoonerThanTheRunComesAgain) {
+  const brink::LiveServer server(fs::temp_directory_path() / "brink-no-run-yet" / "run.db");
+  const std::string address = server.address();
+  const int port = std::stoi(address.substr(address.rfind(':') + 1));
+  const std::string answer = answer_of(port, "GET /", "127.0.0.1:" + std::to_string(port), "");
+  EXPECT_TRUE(begins(answer, "HTTP/1.1 503")) << answer;
+  EXPECT_THAT(answer, HasSubstr("http-equiv=\"refresh\""));
 }
 
 INSTANTIATE_TEST_SUITE_P(Program, Live, ::testing::Values("view", "watch"),

@@ -130,6 +130,94 @@ TEST_F(Replayed, EventsTellTwistsBeforeAndAfterOfBothOwners) {
   EXPECT_GT(seen, 50);
 }
 
+// What the tables of a run that goes on say is of one moment: another frame, written meanwhile, is not seen.
+TEST_F(Replayed, WhatIsReadOfARunThatGoesOnIsOfOneMoment) {
+  const fs::path folder = folder_ / "going";
+  RunFileRecorder recorder(folder, scene_, RunFileRecorder::Open::fresh);
+  const auto states = states_.front();
+  const auto frame = [&](double t) {
+    recorder.frame(t, states);
+    recorder.checkpoint(t, {});  // commits
+  };
+  frame(0.0);
+  RunFile held(folder / "run.db"), other(folder / "run.db");
+  held.hold();
+  frame(0.5);
+  EXPECT_EQ(held.frame_count(), 1);
+  EXPECT_EQ(other.frame_count(), 2);
+  int seen = 0;
+  held.each_frame(1, [&](const RunFile::Frame&) { ++seen; });
+  EXPECT_EQ(seen, 1);
+}
+
+TEST_F(Replayed, PicturesOfARunAreDrawnByItsOwnFieldOptions) {
+  const fs::path folder = folder_ / "field";
+  const Scene scene = parse_scene(kScene, "field.toml", {"field.primitives=mesh", "field.mesh_error=0.4"});
+  RunRequest request;
+  request.dir = folder;
+  request.until = 0.1;
+  run_scene(scene, request);
+  const FieldOptions field = RunFile(folder / "run.db").field_options();
+  EXPECT_EQ(field.primitives, "mesh");
+  EXPECT_EQ(field.mesh_error, 0.4);
+  EXPECT_EQ(RunFile(run_file()).field_options().primitives, "exact");
+}
+
+/// A fact of the page's table.
+std::string fact_of(const json& data, const std::string& name) {
+  for (const json& fact : data["about"]["facts"])
+    if (fact[0] == name) return fact[1];
+  return {};
+}
+
+// A body driven by an integrator between rare frames, with attraction: what the page says it is off by, and its energy.
+TEST(Replay, SaysHowFarItIsOffBetweenFramesAndCountsAttraction) {
+  const fs::path folder = fs::temp_directory_path() / fmt::format("brink-off-{}", ::getpid());
+  const Scene scene = parse_scene(R"(
+[world]
+duration = 4.0
+[output]
+frame_interval = 0.1
+[[bodies]]
+name = "moon"
+disc = { radius = 0.1 }
+mass = 2.0
+position = [1.0, 0.0]
+velocity = [0.0, 1.1]
+[[forces]]
+kind = "attract"
+center = [0.0, 0.0]
+strength = 1.0
+power = -2.0
+)",
+                                  "moon.toml");
+  RunRequest request;
+  request.dir = folder;
+  const RunSummary summary = run_scene(scene, request).summary;
+  const RunFile run(folder / "run.db");
+  Simulator simulator(scene.world, scene.solver);
+  RunOptions options;
+  options.checkpoint_seconds = -1.0;
+  double worst = 0.0;
+  for (int k = 1; k < 400; ++k) {
+    options.until = 0.01 * k;
+    simulator.run(options);
+    const BodyState seen = run.states_at(options.until).states[0], is = simulator.states()[0];
+    worst = std::max(worst, (seen.pose.position - is.pose.position).norm());
+  }
+  const json data = json::parse(replay_page_data(folder / "run.db", {}, false));
+  fs::remove_all(folder);
+  const std::string words = fact_of(data, "between frames");
+  double told = 0.0;
+  ASSERT_EQ(std::sscanf(words.c_str(), "places to about %lg m", &told), 1) << words;
+  std::printf("off by %.2e m, told: %s\n", worst, words.c_str());
+  EXPECT_GT(told, 0.5 * worst);
+  EXPECT_LT(told, 3.0 * worst);
+  const json& energies = data["about"]["curves"][0]["names"];
+  EXPECT_EQ(energies, json({"kinetic", "of attraction", "sum"}));
+  EXPECT_LT(summary.energy_final, 0.0);  // bound: kinetic energy alone would be above zero
+}
+
 // ---- the page
 
 std::string text_of(const fs::path& file) {
@@ -338,6 +426,85 @@ TEST(Replay, CellsOfThePageBelongToWhomTheyAreNearest) {
       of_others, off);
   EXPECT_EQ(of_others, 0);
   EXPECT_LT(off, 1.0);
+}
+
+// Frames of 16 ms that are late, then in time: coarser, and finer again; a finer picture that was too much is not tried as soon.
+TEST_F(Replayed, CellsAreCoarserWhereFramesAreLateAndFineWhereNothingMoves) {
+  if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
+  const fs::path page = folder_ / "pace.html";
+  write_replay_page(run_file(), page);
+  const json answer = in_browser(page, R"(
+    const pace = new Pace(16), levels = [];
+    let now = 1000;
+    const frames = (count, length) => { for (let k = 0; k < count; ++k) pace.moved(now += length); levels.push(pace.level); };
+    frames(5, 60);    // too few to tell
+    frames(200, 60);
+    frames(80, 16);
+    frames(40, 16);    // finer after 90
+    frames(20, 60);    // which was too much
+    frames(110, 16);
+    frames(110, 16);    // finer after 180
+    const still = [pace.still(now + 100), pace.still(now + 200)], coarse = pace.detail.paint;
+    pace.forget();
+    const p = window.brink.player;
+    p.pace.level = DETAILS.length - 1;
+    p.playing = true;
+    p.pace.moved(1); p.show(1);
+    const playing = p.picture.cells.canvas.width / p.picture.canvas.width;
+    p.playing = false;
+    p.stale = false;
+    p.tick(1000);
+    return {levels, still, coarse, playing, paused: p.picture.cells.canvas.width / p.picture.canvas.width,
+            works: p.picture.cells.works};)");
+  ASSERT_FALSE(answer.contains("error")) << answer.dump();
+  EXPECT_EQ(answer["levels"], json({0, 3, 3, 2, 3, 3, 2})) << answer.dump();
+  EXPECT_EQ(answer["still"], json({false, true}));
+  ASSERT_TRUE(answer["works"]);
+  EXPECT_LT(answer["playing"], 0.4);
+  EXPECT_EQ(answer["paused"], 1.0);
+}
+
+// The same picture from a ninth of the pixels. Cells get pure hues: lines of white on them leave the hue as it is.
+TEST_F(Replayed, ACoarserPictureHasItsBordersWhereTheyAre) {
+  if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
+  const fs::path page = folder_ / "coarse.html";
+  write_replay_page(run_file(), page);
+  const json answer = in_browser(page, R"(
+    const p = window.brink.player.picture, {cells} = p, {gl} = cells, views = [];
+    p.resize({getBoundingClientRect: () => ({width: 900, height: 600})});
+    p.layers.cells = true;
+    p.fit();
+    p.draw(1.3);
+    cells.setColors([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [0, 1, 1], [1, 0, 1], [1, .5, 0], [0, 1, .5], [.5, 0, 1]]);
+    for (const mesh of [1, 3]) {
+      p.detail = {paint: 1, mesh};
+      p.draw(1.3);
+      const pixels = new Uint8Array(4 * 900 * 600);
+      gl.readPixels(0, 0, 900, 600, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+      views.push(pixels);
+    }
+    const hue = (view, k) => {
+      const c = [view[k], view[k + 1], view[k + 2]], least = Math.min(...c), pure = c.map(x => x - least), l = Math.hypot(...pure);
+      return l > 30 ? pure.map(x => x / l) : null;
+    };
+    let differ = 0, of = 0;
+    const hues = new Set();
+    for (let k = 0; k < views[0].length; k += 4) {
+      const a = hue(views[0], k), b = hue(views[1], k);
+      if (!a || !b) continue;
+      ++of;
+      hues.add(a.map(x => Math.round(4 * x)).join());
+      differ += a[0] * b[0] + a[1] * b[1] + a[2] * b[2] < 0.97;
+    }
+    return {differ, of, hues: hues.size, size: [cells.size, cells.canvas.width], owners: p.about.sites.length + p.about.bodies.length};)");
+  ASSERT_FALSE(answer.contains("error")) << answer.dump();
+  EXPECT_EQ(answer["size"], json({{300, 200}, 900}));
+  EXPECT_EQ(answer["owners"], 9);
+  EXPECT_GE(answer["hues"], 8) << "cells can be told apart";
+  std::printf("pixels in the cell of another: %s of %s\n", answer["differ"].dump().c_str(),
+              answer["of"].dump().c_str());
+  EXPECT_GT(answer["of"], 300000);
+  EXPECT_LT(answer["differ"].get<double>(), 1.2e-3 * answer["of"].get<double>());
 }
 
 }  // namespace

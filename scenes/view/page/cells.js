@@ -1,134 +1,154 @@
 'use strict';
-// The Voronoi diagram as the method draws it: every site of every outline is a mesh whose height is the distance to it
-// (a cone about a point, tents over a segment, a funnel over an arc); seen from below, the nearest wins. A first pass keeps of
-// every pixel whose cell it is and how far it is, a second one makes colours of it, once a pixel.
+// The Voronoi diagram as the method draws it: of all meshes (cell_mesh.js), seen from below, the nearest wins. A first pass keeps of
+// every pixel whose cell it is, how far, and in which direction that grows; a second one makes colours of it.
+//
+// Where a computer is too slow for that (pace.js) the first pass has fewer pixels. The second one goes on from each of them
+// along its slope, so that borders stay where they are, and lines.
 
-const FINE = 96, COARSE = 24;  // triangles of a whole turn: of what is small on the screen fewer will do
-const SMALL = 30;  // pixels: a cone of COARSE triangles is a quarter of one off at most
+// Triangles of a whole turn, and up to which radius [pixels] of a cone they will do: it is off by a quarter of a pixel then.
+const CONES = [[12, 7.4], [24, 30], [96, Infinity]];
 const COLORS = 1024;  // in a row of their texture
-const OVERLAP = 0.03;  // [rad], of what meets at a vertex: no pixel falls between
+const WAYS = 4096;  // directions of a whole turn; 2^20 owners are left
 
-const directionOf = ([x, y]) => Math.atan2(y, x);
-const turnTo = (from, to) => Math.atan2(Math.sin(to - from), Math.cos(to - from));
-
-/** Direction of travel along a site [rad], at its beginning or end. */
-function directionAt(site, point) {
-  if (site.kind === 'segment') return directionOf([site.b[0] - site.a[0], site.b[1] - site.a[1]]);
-  return directionOf([point[0] - site.center[0], point[1] - site.center[1]]) + Math.sign(site.sweep) * Math.PI / 2;
-}
-
-/**
- * Triangles of a loop of sites: base point, direction of growth, and height. Each site covers what is abreast of it, each vertex
- * the sector between its sites' normals: what is nearest to anything is nearest to what covers it.
- */
-function loopMesh(loop, cone, out) {
-  const vertex = (x, y, dx, dy, z) => out.push(x, y, dx, dy, z);
-  const fan = ([x, y], from, sweep, r) => {
-    const steps = Math.max(1, Math.ceil(cone * Math.abs(sweep) / (2 * Math.PI))), m = 1 / Math.cos(sweep / steps / 2);
-    for (let i = 0; i < steps; ++i) {
-      const a = from + sweep * i / steps, b = from + sweep * (i + 1) / steps;
-      vertex(x, y, 0, 0, -r);
-      vertex(x, y, m * Math.cos(a), m * Math.sin(a), -r);
-      vertex(x, y, m * Math.cos(b), m * Math.sin(b), -r);
-    }
-  };
-  const quad = (a, b, nx, ny, r) => {
-    vertex(...a, 0, 0, -r); vertex(...b, 0, 0, -r); vertex(...b, nx, ny, -r);
-    vertex(...a, 0, 0, -r); vertex(...b, nx, ny, -r); vertex(...a, nx, ny, -r);
-  };
-  const abreast = site => {
-    if (site.kind === 'segment') {
-      const dx = site.b[0] - site.a[0], dy = site.b[1] - site.a[1], l = Math.hypot(dx, dy) || 1;
-      quad(site.a, site.b, -dy / l, dx / l, site.radius);
-      quad(site.a, site.b, dy / l, -dx / l, site.radius);
-      return;
-    }
-    const [cx, cy] = site.center, R = site.arc_radius, from = directionOf([site.a[0] - cx, site.a[1] - cy]);
-    const steps = Math.max(2, Math.ceil(cone * Math.abs(site.sweep) / (2 * Math.PI)));
-    for (let i = 0; i < steps; ++i) {
-      const a = from + site.sweep * i / steps, b = from + site.sweep * (i + 1) / steps;
-      const A = [Math.cos(a), Math.sin(a)], B = [Math.cos(b), Math.sin(b)];
-      const on = (u, away, z) => vertex(cx + R * u[0], cy + R * u[1], away * u[0], away * u[1], z);
-      on(A, 0, -site.radius); on(B, 0, -site.radius); on(B, 1, -site.radius);
-      on(A, 0, -site.radius); on(B, 1, -site.radius); on(A, 1, -site.radius);
-      // inwards to the centre, where it is R away
-      on(A, 0, -site.radius); on(B, 0, -site.radius); vertex(cx, cy, 0, 0, R - site.radius);
-    }
-  };
-  const joint = (before, after) => {
-    const from = directionAt(before, before.b), turn = turnTo(from, directionAt(after, after.a));
-    if (before.radius !== after.radius) return fan(after.a, 0, 2 * Math.PI, after.radius);
-    const side = (sign, sweep) =>
-      fan(after.a, from + sign * Math.PI / 2 - Math.sign(turn || 1) * OVERLAP, sweep + Math.sign(turn || 1) * 2 * OVERLAP, after.radius);
-    side(turn > 0 ? -1 : 1, turn);
-    if (Math.abs(turn) < OVERLAP) side(turn > 0 ? 1 : -1, turn);
-  };
-  const {sites} = loop, last = sites[sites.length - 1];
-  if (sites[0].kind === 'point') return sites.forEach(site => fan(site.a, 0, 2 * Math.PI, site.radius));
-  sites.forEach(abreast);
-  for (let i = 1; i < sites.length; ++i) joint(sites[i - 1], sites[i]);
-  if (loop.closed) return joint(last, sites[0]);
-  const half = Math.PI + 2 * OVERLAP;
-  fan(sites[0].a, directionAt(sites[0], sites[0].a) + Math.PI / 2 - OVERLAP, half, sites[0].radius);
-  fan(last.b, directionAt(last, last.b) - Math.PI / 2 - OVERLAP, half, last.radius);
-}
+const ROW = 512;  // things in a row of their texture, two texels each
+// A mesh is kept many times in one: software draws each instance by itself, which costs more than its few triangles.
+const BUNDLE = 2048, MOST_COPIES = 128;  // vertices, copies
 
 const MESH_VERTEX = `#version 300 es
-in vec2 base; in vec2 grow; in float low;
-in vec4 pose;    // x, y, cosine, sine
-in vec2 cell;    // whose it is, and how far it reaches [m]
+in vec2 base; in vec2 grow; in float low; in float way; in float copy;
+uniform highp sampler2D things;    // x, y, cosine, sine; whose it is, and how far it reaches [m]
+uniform ivec3 which;    // the first, the one behind the last, copies in a mesh
 uniform vec2 view;    // scale to clip space
 uniform float deepest;    // [m]
-out float height; flat out uint owner;
-vec2 turned(vec2 v) { return vec2(pose.z * v.x - pose.w * v.y, pose.w * v.x + pose.z * v.y); }
+out float height; flat out uint owner;    // with the direction in which the distance grows behind it
 void main() {
-  vec2 p = pose.xy + turned(base + cell.y * grow);
+  int k = which.x + gl_InstanceID * which.z + int(copy);
+  height = 0.0;
+  owner = 0u;
+  gl_Position = vec4(2.0, 2.0, 2.0, 1.0);    // nowhere
+  if (k >= which.y) return;
+  ivec2 at = ivec2(2 * (k % ${ROW}), k / ${ROW});
+  vec4 pose = texelFetch(things, at, 0);
+  vec2 cell = texelFetch(things, at + ivec2(1, 0), 0).xy, v = base + cell.y * grow;
+  vec2 p = pose.xy + vec2(pose.z * v.x - pose.w * v.y, pose.w * v.x + pose.z * v.y);
   height = low + (dot(grow, grow) > 0.0 ? cell.y : 0.0);
-  owner = uint(cell.x);
+  vec2 away = vec2(pose.z * cos(way) - pose.w * sin(way), pose.w * cos(way) + pose.z * sin(way));
+  float across = away.x / (abs(away.x) + abs(away.y)), quarters = away.y < 0.0 ? 3.0 + across : 1.0 - across;
+  owner = (uint(cell.x) + 1u) * ${WAYS}u + uint(quarters * ${WAYS / 4}.0) % ${WAYS}u;
   gl_Position = vec4(p * view, clamp(height / deepest, -1.0, 1.0) * 0.999, 1.0);
 }`;
 const MESH_FRAGMENT = `#version 300 es
 precision highp float;
 in float height; flat in uint owner;
 out uvec2 seen;    // 0: nobody's
-void main() { seen = uvec2(owner + 1u, floatBitsToUint(height)); }`;
+void main() { seen = uvec2(owner, floatBitsToUint(height)); }`;
 const PAINT_VERTEX = `#version 300 es
 void main() { gl_Position = vec4(vec2[3](vec2(-1, -1), vec2(3, -1), vec2(-1, 3))[gl_VertexID], 0.0, 1.0); }`;
-const PAINT_FRAGMENT = `#version 300 es
+// `coarse`: the first pass has fewer pixels, 0 or 1.
+const paintFragment = coarse => `#version 300 es
+#define COARSE ${coarse}
 precision highp float;
 uniform highp usampler2D seen; uniform sampler2D colors;
-uniform float ring; uniform float pixel;
+uniform vec2 coarse;    // pixels of the first pass a pixel of this one
+uniform float ring; uniform float pixel; uniform float large; uniform vec3 paper;    // ring, pixel [m]; large: pixels of the screen
 out vec4 shade;
-uint ownerAt(ivec2 at) { return texelFetch(seen, clamp(at, ivec2(0), textureSize(seen, 0) - 1), 0).x; }
+uvec2 look(ivec2 at) { return texelFetch(seen, at, 0).xy; }
+bool differ(uvec2 a, uvec2 b) { return (a.x ^ b.x) >= ${WAYS}u; }
+vec2 slope(uvec2 s) {    // of the distance: a unit vector, kept as its place on the square |x| + |y| = 1
+  float quarters = (float(s.x % ${WAYS}u) + 0.5) * ${4 / WAYS}, x = abs(quarters - 2.0) - 1.0, y = 1.0 - abs(x);
+  return normalize(vec2(x, quarters < 2.0 ? y : -y));
+}
+// a pixel of the first pass as seen from here: the slope there, and the distance taken on from there [m]
+vec3 taken(uvec2 s, vec2 on) {
+  if (s.x == 0u) return vec3(0.0, 0.0, 1e30);
+  vec2 along = slope(s);
+  return vec3(along, uintBitsToFloat(s.y) + dot(along, on));
+}
+// the way from one cell to the other [pixels]
+float way(uvec2 s, vec3 a, uvec2 t, vec3 b) {
+  return differ(s, t) ? max(0.0, b.z - a.z) / (max(length(b.xy - a.xy), 1e-6) * pixel) : 1e30;
+}
 void main() {
-  ivec2 at = ivec2(gl_FragCoord.xy);
-  uvec2 here = texelFetch(seen, at, 0).xy;
-  if (here.x == 0u) { shade = vec4(0.0); return; }
-  int k = int(here.x - 1u);
-  vec3 color = texelFetch(colors, ivec2(k % ${COLORS}, k / ${COLORS}), 0).rgb;
-  float height = uintBitsToFloat(here.y), away = abs(fract(height / ring + 0.5) - 0.5) * ring;
+  vec2 place = gl_FragCoord.xy * coarse - 0.5;
+  ivec2 at = ivec2(round(place));
+  uvec2 here = look(at);
+  if (here.x == 0u) { shade = vec4(paper, 1.0); return; }
+  uvec2 right = look(at + ivec2(1, 0)), left = look(at - ivec2(1, 0)), up = look(at + ivec2(0, 1)), down = look(at - ivec2(0, 1));
+  float height = uintBitsToFloat(here.y), border = 1e30;    // border: the way to the nearest other cell [pixels]
+  bool r = differ(right, here), l = differ(left, here), u = differ(up, here), d = differ(down, here);
+#if COARSE
+  vec2 texel = pixel / coarse, on = (place - vec2(at)) * texel;
+  if (r || l || u || d) {
+    uvec2 middle = here;
+    vec3 m = taken(here, on), e = taken(right, on - vec2(texel.x, 0.0)), w = taken(left, on + vec2(texel.x, 0.0));
+    vec3 n = taken(up, on - vec2(0.0, texel.y)), s = taken(down, on + vec2(0.0, texel.y)), best = m;
+    if (e.z < best.z) { best = e; here = right; }
+    if (w.z < best.z) { best = w; here = left; }
+    if (n.z < best.z) { best = n; here = up; }
+    if (s.z < best.z) { best = s; here = down; }
+    height = best.z;
+    border = min(min(way(here, best, right, e), way(here, best, left, w)), min(way(here, best, up, n), way(here, best, down, s)));
+    border = min(border, way(here, best, middle, m));
+  } else height += dot(slope(here), on);
+#else    // by how many of its neighbours are of another
+  border = 1.3 - 0.5 * (float(r) + float(l) + float(u) + float(d));
+  if (border == 1.3) border = 1e30;
+#endif
+  int owner = int(here.x / ${WAYS}u - 1u);
+  vec3 color = texelFetch(colors, ivec2(owner % ${COLORS}, owner / ${COLORS}), 0).rgb;
+  float away = abs(fract(height / ring + 0.5) - 0.5) * ring;
   color *= mix(0.93, 1.0, height > 0.0 ? smoothstep(0.5, 1.5, away / pixel) : 1.0);
-  int borders = int(ownerAt(at + ivec2(1, 0)) != here.x) + int(ownerAt(at - ivec2(1, 0)) != here.x) +
-                int(ownerAt(at + ivec2(0, 1)) != here.x) + int(ownerAt(at - ivec2(0, 1)) != here.x);
-  shade = vec4(mix(color, vec3(1.0), 0.85 * min(1.0, 0.4 * float(borders))), 1.0);
+  float line = min(1.0, 1.6 / large) * clamp(1.0 + 0.3 / large - border, 0.0, 1.0);
+  shade = vec4(mix(color, vec3(1.0), 0.75 * line), 1.0);
 }`;
+
+/** Outlines where they are, of whom and how far their cells reach: columns that grow as need be. */
+class Things {
+  constructor() { this.make(64); this.count = 0; }
+  make(room) {
+    const of = {shape: Int32Array, owner: Int32Array, x: Float64Array, y: Float64Array, angle: Float64Array, reach: Float64Array};
+    for (const [name, kind] of Object.entries(of)) {
+      const column = new kind(room);
+      if (this[name]) column.set(this[name]);
+      this[name] = column;
+    }
+  }
+  add(shape, owner, x, y, angle) {
+    const k = this.count++;
+    if (k === this.shape.length) this.make(2 * k);
+    this.shape[k] = shape; this.owner[k] = owner; this.x[k] = x; this.y[k] = y; this.angle[k] = angle;
+  }
+}
 
 class Cells {
   constructor(canvas, shapes) {
-    const gl = canvas.getContext('webgl2', {antialias: false, depth: false});
+    const gl = canvas.getContext('webgl2', {antialias: false, depth: false, alpha: false});
     if (!gl) return;
     this.gl = gl;
     this.canvas = canvas;
-    this.meshProgram = this.program(MESH_VERTEX, MESH_FRAGMENT, ['view', 'deepest']);
-    this.paintProgram = this.program(PAINT_VERTEX, PAINT_FRAGMENT, ['seen', 'colors', 'ring', 'pixel']);
-    if (!this.meshProgram || !this.paintProgram) { this.gl = null; return; }
-    this.meshes = [FINE, COARSE].flatMap(cone => shapes.map(shape => this.mesh(shape, cone)));
-    this.radii = shapes.map(shape => shape.bounding_radius);
+    this.shapes = shapes;
+    this.meshProgram = this.program(MESH_VERTEX, MESH_FRAGMENT, ['things', 'which', 'view', 'deepest']);
+    this.paintPrograms = [0, 1].map(coarse =>
+      this.program(PAINT_VERTEX, paintFragment(coarse), ['seen', 'colors', 'coarse', 'ring', 'pixel', 'large', 'paper']));
+    if (![this.meshProgram, ...this.paintPrograms].every(made => made)) { this.gl = null; return; }
+    this.meshes = CONES.map(() => []);
     this.nothing = gl.createVertexArray();
     this.seen = this.texture();
     this.colors = this.texture();
+    this.where = this.texture();
     this.depth = gl.createRenderbuffer();
     this.target = gl.createFramebuffer();
+    this.size = [0, 0];
+    this.places = new Float32Array(0);
+  }
+
+  get works() { return !!this.gl; }
+
+  /** True where the browser has no graphics card for it. */
+  get bySoftware() {
+    const {gl} = this, told = gl && gl.getExtension('WEBGL_debug_renderer_info');
+    const name = gl ? String(gl.getParameter(told ? told.UNMASKED_RENDERER_WEBGL : gl.RENDERER)) : '';
+    return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
   }
 
   program(vertex, fragment, uniforms) {
@@ -151,11 +171,11 @@ class Cells {
     return name;
   }
 
-  /** What the first pass draws into, as large as the canvas. */
-  fit() {
-    const gl = this.gl, {width, height} = this.canvas;
-    if (this.width === width && this.height === height) return;
-    [this.width, this.height] = [width, height];
+  /** What the first pass draws into. */
+  fit(width, height) {
+    const gl = this.gl;
+    if (this.size[0] === width && this.size[1] === height) return;
+    this.size = [width, height];
     gl.bindTexture(gl.TEXTURE_2D, this.seen);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RG32UI, width, height, 0, gl.RG_INTEGER, gl.UNSIGNED_INT, null);
     gl.bindRenderbuffer(gl.RENDERBUFFER, this.depth);
@@ -165,94 +185,126 @@ class Cells {
     gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, this.depth);
   }
 
-  get works() { return !!this.gl; }
-
-  mesh(shape, cone) {
-    const gl = this.gl, numbers = [];
-    for (const loop of shape.loops) loopMesh(loop, cone, numbers);
-    const array = gl.createVertexArray(), places = gl.createBuffer();
-    gl.bindVertexArray(array);
-    const attributes = (buffer, stride, step, list) => {
-      gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-      for (const [name, size, offset] of list) {
-        const where = gl.getAttribLocation(this.meshProgram.name, name);
-        gl.enableVertexAttribArray(where);
-        gl.vertexAttribPointer(where, size, gl.FLOAT, false, stride, offset);
-        gl.vertexAttribDivisor(where, step);
+  /** The mesh of a shape, made when it is first seen. */
+  mesh(shape, level) {
+    const of = this.meshes[level];
+    if (of[shape]) return of[shape];
+    const gl = this.gl, {vertices, triangles} = new CellMesh(this.shapes[shape], CONES[level][0]), n = vertices.length / 6;
+    const copies = Math.min(MOST_COPIES, Math.max(1, Math.floor(BUNDLE / n)));
+    const corners = new Float32Array(7 * n * copies), faces = new Uint32Array(triangles.length * copies);
+    for (let c = 0; c < copies; ++c) {
+      for (let i = 0; i < n; ++i) {
+        for (let j = 0; j < 6; ++j) corners[7 * (c * n + i) + j] = vertices[6 * i + j];
+        corners[7 * (c * n + i) + 6] = c;
       }
-    };
-    attributes(gl.createBuffer(), 20, 0, [['base', 2, 0], ['grow', 2, 8], ['low', 1, 16]]);
-    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(numbers), gl.STATIC_DRAW);
-    attributes(places, 24, 1, [['pose', 4, 0], ['cell', 2, 16]]);
-    return {array, places, count: numbers.length / 5};
+      for (let i = 0; i < triangles.length; ++i) faces[c * triangles.length + i] = c * n + triangles[i];
+    }
+    const array = gl.createVertexArray();
+    gl.bindVertexArray(array);
+    gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+    gl.bufferData(gl.ARRAY_BUFFER, corners, gl.STATIC_DRAW);
+    for (const [name, size, offset] of [['base', 2, 0], ['grow', 2, 8], ['low', 1, 16], ['way', 1, 20], ['copy', 1, 24]]) {
+      const where = gl.getAttribLocation(this.meshProgram.name, name);
+      gl.enableVertexAttribArray(where);
+      gl.vertexAttribPointer(where, size, gl.FLOAT, false, 28, offset);
+    }
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, faces, gl.STATIC_DRAW);
+    return of[shape] = {array, count: triangles.length, copies};
+  }
+
+  /** Of every owner, [r, g, b]. */
+  setColors(colors) {
+    const gl = this.gl, rows = Math.ceil(colors.length / COLORS), bytes = new Uint8Array(4 * COLORS * rows);
+    colors.forEach((c, k) => bytes.set([255 * c[0], 255 * c[1], 255 * c[2], 255].map(Math.round), 4 * k));
+    gl.bindTexture(gl.TEXTURE_2D, this.colors);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, COLORS, rows, 0, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
   }
 
   /**
-   * `things`: {shape, pose: [x, y, angle], owner, reach: no place of its cell that is seen is farther from it [m]}; `colors`: of
-   * every owner, [r, g, b]; `view`: {x, y, scale} in pixels of the canvas.
+   * `view`: {x, y, scale} in pixels of a picture of `width` x `height`; `looks`: {ring [m], paper: [r, g, b]}; `detail`: {paint, mesh}, by
+   * how much coarser than that picture the two passes are.
    */
-  draw(things, colors, view, ring) {
-    const gl = this.gl;
-    this.fit();
-    gl.viewport(0, 0, this.width, this.height);
-    this.drawMeshes(things, view);
+  draw(things, {x, y, scale}, [width, height], looks, detail) {
+    const gl = this.gl, {canvas} = this, of = by => [Math.max(1, Math.round(width / by)), Math.max(1, Math.round(height / by))];
+    const [w, h] = of(detail.paint);
+    if (canvas.width !== w || canvas.height !== h) Object.assign(canvas, {width: w, height: h});
+    this.fit(...(detail.mesh === detail.paint ? [w, h] : of(detail.mesh)));
+    const [columns, rows] = this.size;
+    gl.viewport(0, 0, columns, rows);
+    this.drawMeshes(things, {x, y, across: 2 * scale / width, up: 2 * scale / height, scale: scale * columns / width},
+      1.5 * Math.hypot(width, height) / scale);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.viewport(0, 0, w, h);
     gl.disable(gl.DEPTH_TEST);
-    gl.useProgram(this.paintProgram.name);
+    const {name, at} = this.paintPrograms[columns < w ? 1 : 0];
+    gl.useProgram(name);
     gl.bindVertexArray(this.nothing);
     gl.activeTexture(gl.TEXTURE1);
     gl.bindTexture(gl.TEXTURE_2D, this.colors);
-    const rows = Math.ceil(colors.length / COLORS), bytes = new Uint8Array(4 * COLORS * rows);
-    colors.forEach((c, k) => bytes.set([255 * c[0], 255 * c[1], 255 * c[2], 255].map(Math.round), 4 * k));
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, COLORS, rows, 0, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, this.seen);
-    const {at} = this.paintProgram;
     gl.uniform1i(at.seen, 0);
     gl.uniform1i(at.colors, 1);
-    gl.uniform1f(at.ring, ring);
-    gl.uniform1f(at.pixel, 1 / view.scale);
+    gl.uniform2f(at.coarse, columns / w, rows / h);
+    gl.uniform1f(at.ring, looks.ring);
+    gl.uniform1f(at.pixel, width / (w * scale));
+    gl.uniform1f(at.large, width / w);
+    gl.uniform3f(at.paper, ...looks.paper);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 
-  drawMeshes(things, view) {
-    const gl = this.gl, {at, name} = this.meshProgram, of = this.meshes.map(() => []);
+  /** `all`: farther than that nothing is seen [m]. */
+  drawMeshes(things, view, all) {
+    const gl = this.gl, {at, name} = this.meshProgram, n = things.count, {shapes} = this;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
     gl.clearBufferuiv(gl.COLOR, 0, [0, 0, 0, 0]);
     gl.clearBufferfv(gl.DEPTH, 0, [1]);
     gl.enable(gl.DEPTH_TEST);
     gl.useProgram(name);
-    const all = 1.5 * Math.hypot(this.width, this.height) / view.scale;
+    // things of one mesh follow each other
+    const levels = CONES.length, starts = new Int32Array(shapes.length * levels + 1), which = new Int32Array(n);
     let deepest = 0;
-    for (const {shape, pose, owner, reach} of things) {
-      const far = Math.min(reach, all);
+    for (let i = 0; i < n; ++i) {
+      const far = Math.min(things.reach[i], all), size = Math.max(far, shapes[things.shape[i]].bounding_radius) * view.scale;
       deepest = Math.max(deepest, far);
-      const small = Math.max(far, this.radii[shape]) * view.scale < SMALL;
-      // places relative to the view: nothing is lost far from the origin
-      of[small ? shape + this.radii.length : shape].push(pose[0] - view.x, pose[1] - view.y, Math.cos(pose[2]), Math.sin(pose[2]), owner, far);
+      which[i] = things.shape[i] * levels + CONES.findIndex(([, largest]) => size < largest);
+      ++starts[which[i] + 1];
     }
+    for (let m = 0; m + 1 < starts.length; ++m) starts[m + 1] += starts[m];
+    const rows = Math.max(1, Math.ceil(n / ROW)), next = starts.slice();
+    if (this.places.length < 8 * ROW * rows) this.places = new Float32Array(8 * ROW * rows);
+    const {places} = this;
+    for (let i = 0; i < n; ++i) {
+      let to = 8 * next[which[i]]++;
+      // places relative to the view: nothing is lost far from the origin
+      places[to++] = things.x[i] - view.x; places[to++] = things.y[i] - view.y;
+      places[to++] = Math.cos(things.angle[i]); places[to++] = Math.sin(things.angle[i]);
+      places[to++] = things.owner[i]; places[to++] = Math.min(things.reach[i], all);
+    }
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D, this.where);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, 2 * ROW, rows, 0, gl.RGBA, gl.FLOAT, places);
+    gl.uniform1i(at.things, 0);
     gl.uniform1f(at.deepest, deepest);
-    gl.uniform2f(at.view, 2 * view.scale / this.width, 2 * view.scale / this.height);
-    this.meshes.forEach((mesh, k) => {
-      if (!of[k].length) return;
+    gl.uniform2f(at.view, view.across, view.up);
+    for (let m = 0; m + 1 < starts.length; ++m) {
+      const count = starts[m + 1] - starts[m];
+      if (!count) continue;
+      const mesh = this.mesh(Math.floor(m / levels), m % levels), bundles = Math.ceil(count / mesh.copies);
       gl.bindVertexArray(mesh.array);
-      gl.bindBuffer(gl.ARRAY_BUFFER, mesh.places);
-      gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(of[k]), gl.STREAM_DRAW);
-      gl.drawArraysInstanced(gl.TRIANGLES, 0, mesh.count, of[k].length / 6);
-    });
+      gl.uniform3i(at.which, starts[m], starts[m + 1], mesh.copies);
+      // of a bundle that is not full the copies in use alone
+      gl.drawElementsInstanced(gl.TRIANGLES, mesh.count * Math.min(count, mesh.copies), gl.UNSIGNED_INT, 0, bundles);
+    }
   }
 
-  /** Whose cell was drawn last at a pixel from the bottom left, and the distance to it [m]; null: nobody's. */
+  /** Whose cell was drawn last at a pixel of the first pass, from the bottom left, and the distance to it [m]; null: nobody's. */
   at(column, row) {
     const gl = this.gl, words = new Uint32Array(4);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
     gl.readPixels(column, row, 1, 1, gl.RGBA_INTEGER, gl.UNSIGNED_INT, words);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    return words[0] ? {owner: words[0] - 1, distance: new Float32Array(words.buffer)[1]} : null;
-  }
-
-  clear() {
-    this.gl.clearColor(0, 0, 0, 0);
-    this.gl.clear(this.gl.COLOR_BUFFER_BIT | this.gl.DEPTH_BUFFER_BIT);
+    return words[0] ? {owner: Math.floor(words[0] / WAYS) - 1, distance: new Float32Array(words.buffer)[1]} : null;
   }
 }

@@ -2,6 +2,9 @@
 // The page: time that runs, controls, the timeline under the scene, and window.brink for programs.
 
 const byId = id => document.getElementById(id);
+const darkness = matchMedia('(prefers-color-scheme: dark)');
+const inkOf = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const LANE = 11;  // height of a body's lane [px]
 let about = JSON.parse(byId('about').textContent);
 
 class Player {
@@ -11,6 +14,7 @@ class Player {
     this.picture = new Picture(byId('stage'), this.motions, about, numbers);
     this.t = this.motions.begin;
     this.playing = false;
+    this.pace = new Pace();
     this.shown = [];  // rows of the table of events
     this.makeControls();
     this.makeTables();
@@ -31,7 +35,9 @@ class Player {
     this.motions = new Motions(about, numbers);
     Object.assign(picture, {motions: this.motions, about, n: numbers});
     Object.assign(byId('scrub'), {min: this.begin, max: this.end});
-    byId('ending').textContent = about.termination;
+    if (!this.moved) picture.fit();
+    if (!this.speedChosen) this.setSpeed(this.naturalSpeed());
+    this.showFacts();
     if (!byId('quantity').hidden) this.makeChart(Number(byId('quantity').value));
     this.drawLanes();
     this.seek(withRun ? this.end : this.t);
@@ -85,6 +91,10 @@ class Player {
     byId('speed').value = Math.log10(speed);
     byId('speed-told').textContent = `× ${Number(speed.toPrecision(3))}`;
   }
+  faster(by) {
+    this.speedChosen = true;
+    this.setSpeed(Math.min(Math.max(this.speed * by, 1e-6), 1e3));
+  }
   /** To the next event (1) or the one before (-1). */
   step(way) {
     this.pause();
@@ -112,12 +122,19 @@ class Player {
       this.seek(t);
     }
     this.last = now;
-    if (this.stale) this.show(now);
+    if (this.stale) {
+      this.pace.moved(now);
+      this.show(now);
+    } else if (this.pace.still(now) && this.pace.last !== undefined) {
+      this.pace.forget();
+      if (this.picture.detail !== DETAILS[0]) this.show(now);
+    }
     requestAnimationFrame(later => this.tick(later));
   }
 
   show(now) {
     this.stale = false;
+    this.picture.detail = this.pace.last === undefined ? DETAILS[0] : this.pace.detail;
     // what happened in the last fifth of a second on the screen
     this.picture.flash = this.playing ? 0.2 * this.speed : 1e-12 * Math.max(1, this.t);
     if (byId('follow').checked && this.picture.selected >= 0) {
@@ -138,8 +155,6 @@ class Player {
   makeControls() {
     byId('title').textContent = about.title;
     document.title = about.title;
-    byId('ending').textContent = about.termination;
-    if (about.notice) { byId('notice').textContent = about.notice; byId('notice').hidden = false; }
     const layers = byId('layers');
     for (const [key, words] of LAYERS) {
       const label = document.createElement('label'), box = document.createElement('input');
@@ -157,7 +172,7 @@ class Player {
     byId('play').onclick = () => this.playing ? this.pause() : this.play();
     byId('previous').onclick = () => this.step(-1);
     byId('next').onclick = () => this.step(1);
-    byId('speed').oninput = e => this.setSpeed(10 ** Number(e.target.value));
+    byId('speed').oninput = e => { this.speedChosen = true; this.setSpeed(10 ** Number(e.target.value)); };
     byId('time').onchange = e => {
       const t = Number(e.target.value);
       if (Number.isFinite(t)) this.seek(t);
@@ -167,6 +182,7 @@ class Player {
     byId('who').onchange = e => this.select(e.target.value === '' ? -1 : Number(e.target.value));
     byId('follow').onchange = byId('kind').onchange = byId('of-selected').onchange = () => { this.stale = true; };
     byId('panel-button').onclick = () => this.togglePanel();
+    byId('panel').hidden = matchMedia('(max-width: 700px)').matches;  // there the scene needs the room
   }
 
   togglePanel() {
@@ -182,32 +198,25 @@ class Player {
 
   // -- tables --
   makeTables() {
-    const rows = (table, pairs) => {
-      for (const [name, value] of pairs) {
-        const row = table.insertRow(), head = document.createElement('th');
-        head.textContent = name;
-        row.append(head);
-        row.insertCell().textContent = value;
-      }
-    };
-    rows(byId('run'), about.facts);
-    rows(byId('keys'), [['space', 'play, pause'], [', .', 'event before, next event'], ['← →', 'a hundredth of the run'],
+    this.showFacts();
+    fillTable(byId('keys'), [['space', 'play, pause'], [', .', 'event before, next event'], ['← →', 'a hundredth of the run'],
       ['+ −', 'faster, slower'], ['0', 'see all'], ['f', 'follow the selected body'], ['c', 'cells'], ['i', 'panel'],
       ['drag, wheel', 'move, zoom'], ['click', 'select a body']]);
   }
 
+  /** What is said of the run as a whole. */
+  showFacts() {
+    byId('ending').textContent = about.termination;
+    Object.assign(byId('notice'), {textContent: about.notice, hidden: !about.notice});
+    fillTable(byId('run'), about.facts);
+  }
+
   showState() {
     const table = byId('state'), k = this.picture.selected;
-    table.replaceChildren();
-    if (k < 0) return;
+    if (k < 0) { table.replaceChildren(); return; }
     const [x, y, angle, vx, vy, omega] = this.motions.body(k, this.t), body = about.bodies[k];
-    for (const [name, value, unit] of [['mass', body.mass, 'kg'], ['x', x, 'm'], ['y', y, 'm'], ['angle', angle, 'rad'],
-      ['vx', vx, 'm/s'], ['vy', vy, 'm/s'], ['omega', omega, 'rad/s']]) {
-      const row = table.insertRow(), head = document.createElement('th');
-      head.textContent = name;
-      row.append(head);
-      row.insertCell().textContent = `${value} ${unit}`;
-    }
+    fillTable(table, [['mass', `${body.mass} kg`], ['x', `${x} m`], ['y', `${y} m`], ['angle', `${angle} rad`], ['vx', `${vx} m/s`],
+      ['vy', `${vy} m/s`], ['omega', `${omega} rad/s`]]);
   }
 
   /** Events around the present time. */
@@ -228,6 +237,7 @@ class Player {
       row.insertCell().textContent = about.kinds[n.event_kind[k]];
       row.insertCell().textContent = [nameOf(n.event_body[k]), n.event_other[k] >= 0 ? nameOf(n.event_other[k]) : siteName(n.event_site[k])]
         .filter(s => s).join(' on ');
+      row.cells[2].title = row.cells[2].textContent;
       row.onclick = () => this.toEvent(k);
     }
   }
@@ -254,9 +264,10 @@ class Player {
     const dashes = [null, [7, 3], [2, 3], [9, 3, 2, 3]];
     this.chart = new Dygraph(byId('chart'), rows, {
       labels: ['t [s]', ...curve.names], legend: 'always', dateWindow: [this.begin, this.end],
-      colors: ['#0072b2', '#d55e00', '#009e73', '#cc79a7'], digitsAfterDecimal: 6, sigFigs: 6, stepPlot: curve.steps,
+      colors: darkness.matches ? ['#56b4e9', '#e69f00', '#00c08b', '#e0a0c4'] : ['#0072b2', '#d55e00', '#009e73', '#cc79a7'],
+      digitsAfterDecimal: 6, sigFigs: 6, stepPlot: curve.steps, labelsDiv: byId('legend'),
       series: Object.fromEntries(curve.names.map((name, i) => [name, {strokePattern: dashes[i % 4], strokeWidth: 1.5}])),
-      axes: {y: {axisLabelWidth: 64, axisLabelFormatter: short}, x: {axisLabelFormatter: short}},
+      axes: {y: {axisLabelWidth: 64, axisLabelFormatter: short, pixelsPerLabel: 22}, x: {axisLabelFormatter: short}},
       valueRange: roomy(rows), rightGap: 0, interactionModel: {},
     });
   }
@@ -268,7 +279,7 @@ class Player {
       for (const b of [n.event_body[k], n.event_other[k]]) if (b >= 0) counts.set(b, (counts.get(b) || 0) + 1);
     for (const b of n.trace_body || []) counts.set(b, (counts.get(b) || 0) + 1e-6);
     this.lanes = [...counts].sort((a, b) => b[1] - a[1]).slice(0, 12).map(([b]) => b).sort((a, b) => a - b);
-    const height = 9, rows = this.lanes.length;
+    const height = LANE, rows = this.lanes.length;
     canvas.style.height = `${rows * height}px`;
     canvas.hidden = rows === 0;
     if (!rows) return;
@@ -276,10 +287,11 @@ class Player {
     canvas.height = rows * height * ratio;
     const ctx = canvas.getContext('2d'), at = this.acrossOf(canvas);
     const place = new Map(this.lanes.map((b, i) => [b, i]));
-    ctx.font = `${8 * ratio}px sans-serif`;
+    ctx.font = `${9 * ratio}px sans-serif`;
     this.lanes.forEach((b, i) => {
-      ctx.fillStyle = '#8a8e96';
-      ctx.fillText(about.bodies[b].name, 2, (i + 0.85) * height * ratio, 60 * ratio);
+      ctx.fillStyle = inkOf('--faint');
+      ctx.fillText(about.bodies[b].name, 2, (i + 0.82) * height * ratio, 62 * ratio);
+      ctx.fillStyle = inkOf('--line');
       ctx.fillRect(at.left * ratio, (i + 1) * height * ratio - 1, canvas.width, 1);
     });
     this.drawTrace(ctx, at, place, height, ratio);
@@ -370,10 +382,14 @@ class Player {
     byId('chart').addEventListener('click', e => { this.pause(); this.seek(this.timeAt(byId('chart'), e.clientX)); });
     window.addEventListener('keydown', e => this.key(e));
     new ResizeObserver(() => this.resized()).observe(byId('stage'));
+    darkness.addEventListener('change', () => this.recoloured());
+    // paper is light, and knows nothing of the next frame
+    window.addEventListener('beforeprint', () => { this.recoloured(); this.show(performance.now()); });
+    window.addEventListener('afterprint', () => this.recoloured());
   }
 
   clickLane(e) {
-    const b = this.lanes[Math.floor(e.offsetY / 9)], t = this.timeAt(byId('lanes'), e.clientX), {n} = this;
+    const b = this.lanes[Math.floor(e.offsetY / LANE)], t = this.timeAt(byId('lanes'), e.clientX), {n} = this;
     let best = -1;
     for (let k = 0; k < n.event_t.length; ++k)
       if ((n.event_body[k] === b || n.event_other[k] === b) && (best < 0 || Math.abs(n.event_t[k] - t) < Math.abs(n.event_t[best] - t))) best = k;
@@ -398,7 +414,7 @@ class Player {
     const act = {
       ' ': () => this.playing ? this.pause() : this.play(), ',': () => this.step(-1), '.': () => this.step(1),
       ArrowLeft: () => this.seek(this.t - hundredth), ArrowRight: () => this.seek(this.t + hundredth),
-      '+': () => this.setSpeed(Math.min(1e3, this.speed * 1.5)), '-': () => this.setSpeed(Math.max(1e-6, this.speed / 1.5)),
+      '+': () => this.faster(1.5), '-': () => this.faster(1 / 1.5),
       '0': () => { this.moved = false; this.picture.fit(); this.stale = true; }, i: () => this.togglePanel(),
       f: () => { byId('follow').checked = !byId('follow').checked; this.stale = true; },
       c: () => { const box = byId('layers').querySelector('input'); box.checked = !box.checked; box.onchange(); },
@@ -406,6 +422,12 @@ class Player {
     if (!act || e.ctrlKey || e.metaKey || e.altKey) return;
     e.preventDefault();
     act();
+  }
+
+  /** Inks of the page have changed. */
+  recoloured() {
+    if (this.chart) this.makeChart(Number(byId('quantity').value));
+    this.resized();
   }
 
   resized() {
@@ -430,6 +452,17 @@ function roomy(rows) {
   return [low - room, high + room];
 }
 
+/** A row for each name and value. */
+function fillTable(table, pairs) {
+  table.replaceChildren();
+  for (const [name, value] of pairs) {
+    const row = table.insertRow(), head = document.createElement('th');
+    head.textContent = name;
+    row.append(head);
+    row.insertCell().textContent = value;
+  }
+}
+
 function option(select, value, words) {
   const made = document.createElement('option');
   made.value = value;
@@ -443,16 +476,23 @@ function siteName(k) { return k >= 0 ? about.sites[k].name : ''; }
 window.brink = {
   events: [],
   ready: inflated(byId('numbers').textContent, about.arrays).then(numbers => {
-    const player = new Player(numbers), n = numbers;
+    const player = new Player(numbers);
+    let told, toldOf;  // events, and the numbers that they are of
+    const events = () => {
+      const {n} = player;
+      if (toldOf === n) return told;
+      toldOf = n;
+      return told = Array.from(n.event_t, (t, k) => ({t, kind: about.kinds[n.event_kind[k]], body: nameOf(n.event_body[k]),
+        other: n.event_other[k] >= 0 ? nameOf(n.event_other[k]) : siteName(n.event_site[k])}));
+    };
     const named = (k, t) => {
       const [x, y, angle, vx, vy, omega] = player.motions.body(k, t);
       return {name: about.bodies[k].name, x, y, angle, vx, vy, omega};
     };
     player.follow();
     Object.defineProperty(window.brink, 'duration', {get: () => player.end});
+    Object.defineProperty(window.brink, 'events', {get: events});
     Object.assign(window.brink, {
-      events: Array.from(n.event_t, (t, k) => ({t, kind: about.kinds[n.event_kind[k]], body: nameOf(n.event_body[k]),
-        other: n.event_other[k] >= 0 ? nameOf(n.event_other[k]) : siteName(n.event_site[k])})),
       state: t => about.bodies.map((b, k) => named(k, t)),
       seek: t => player.seek(t), play: () => player.play(), pause: () => player.pause(),
       step: way => player.step(way), select: name => player.select(about.bodies.findIndex(b => b.name === name)),

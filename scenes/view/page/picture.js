@@ -8,6 +8,8 @@ const LAYERS = [
   ['names', 'names', false],
 ];
 
+const MARK_FROM = 7;  // [px], a smaller body carries no mark of how it has turned
+
 /** An outline as paths: what is filled, and what is stroked (thickness, crisp edge). */
 function pathsOf(shape) {
   const fill = new Path2D(), edge = new Path2D();
@@ -31,16 +33,22 @@ function pathsOf(shape) {
     if (loop.solid || loop.sites.every(s => s.kind === 'point')) fill.addPath(path);
   }
   const point = shape.loops.every(l => l.sites.every(s => s.kind === 'point'));
-  return {fill, edge, thickness: point ? 0 : radius, point};
+  const {sites} = shape.loops[0], centred = sites.length === 1 && Math.hypot(...sites[0].a) <= 1e-9 * shape.bounding_radius;
+  const disc = point && shape.loops.length === 1 && centred ? radius : 0;
+  return {fill, edge, thickness: point ? 0 : radius, point, disc};
 }
 
 class Picture {
   constructor(stage, motions, about, numbers) {
     Object.assign(this, {motions, about, n: numbers});
     this.canvas = stage.querySelector('#scene');
-    this.ctx = this.canvas.getContext('2d');
-    this.paths = about.shapes.map(pathsOf);
     this.cells = new Cells(stage.querySelector('#cells'), about.shapes);
+    // without a graphics card a canvas in memory is ten times as fast
+    this.ctx = this.canvas.getContext('2d', {willReadFrequently: this.cells.bySoftware});
+    this.paths = about.shapes.map(pathsOf);
+    this.reach = new Reach();
+    this.things = new Things();
+    this.detail = DETAILS[0];
     this.layers = Object.fromEntries(LAYERS.map(([key, , on]) => [key, on]));
     this.view = {x: 0, y: 0, scale: 1};  // centre [m], pixels a metre
     this.selected = -1;
@@ -51,10 +59,10 @@ class Picture {
   resize(stage) {
     const ratio = window.devicePixelRatio || 1, box = stage.getBoundingClientRect();
     this.ratio = ratio;
-    for (const canvas of [this.canvas, this.cells.canvas || this.canvas]) {
-      canvas.width = Math.max(1, Math.round(box.width * ratio));
-      canvas.height = Math.max(1, Math.round(box.height * ratio));
-    }
+    this.canvas.width = Math.max(1, Math.round(box.width * ratio));
+    this.canvas.height = Math.max(1, Math.round(box.height * ratio));
+    ({backgroundColor: this.paperInk, color: this.ink} = getComputedStyle(this.canvas.parentElement));
+    this.paper = (this.paperInk.match(/[\d.]+/g) || [255, 255, 255]).slice(0, 3).map(word => Number(word) / 255);
   }
 
   /** All that is worth seeing, with a margin. */
@@ -80,15 +88,35 @@ class Picture {
   }
   leave() { this.ctx.setTransform(1, 0, 0, 1, 0, 0); }
 
+  /** A disc, which looks the same however it has turned: its rim is what a larger one leaves to be seen. */
+  disc(radius, [x, y, angle], ink) {
+    const {ctx} = this, [px, py] = this.toPixels(x, y), r = radius * this.view.scale, half = ink.width * this.ratio / 2;
+    this.leave();
+    for (const [size, color] of [[r + half, ink.line], [Math.max(0, r - half), ink.fill]]) {
+      ctx.fillStyle = color;
+      ctx.beginPath();
+      ctx.arc(px, py, size, 0, 2 * Math.PI);
+      ctx.fill();
+    }
+    if (!ink.spoke || r < MARK_FROM * this.ratio) return;
+    ctx.strokeStyle = ink.line;
+    ctx.lineWidth = 2 * half;
+    ctx.beginPath();
+    ctx.moveTo(px, py);
+    ctx.lineTo(px + r * Math.cos(angle), py - r * Math.sin(angle));
+    ctx.stroke();
+  }
+
   outline(shape, pose, ink) {
     const {ctx} = this, paths = this.paths[shape], pixel = 1 / this.view.scale;
+    if (paths.disc > 0 && ink.fill !== 'transparent') { this.disc(paths.disc, pose, ink); return; }
     this.enter(pose);
     ctx.lineJoin = ctx.lineCap = 'round';
     if (this.about.shapes[shape].container) {
       const out = new Path2D();
       out.rect(-1e6 * pixel, -1e6 * pixel, 2e6 * pixel, 2e6 * pixel);
       out.addPath(paths.edge);
-      ctx.fillStyle = ink.fill;
+      ctx.fillStyle = this.paperInk;  // nobody can be there
       ctx.fill(out, 'evenodd');
     } else {
       if (paths.thickness > 0) {
@@ -102,8 +130,8 @@ class Picture {
     ctx.strokeStyle = ink.line;
     ctx.lineWidth = Math.max(ink.width * this.ratio * pixel, paths.thickness > 0 ? 2 * paths.thickness : 0);
     if (!(paths.thickness > 0)) ctx.stroke(paths.edge);
-    if (paths.point && ink.spoke) {
-      const r = this.about.shapes[shape].bounding_radius;
+    const r = this.about.shapes[shape].bounding_radius;
+    if (paths.point && ink.spoke && r >= MARK_FROM * this.ratio * pixel) {
       ctx.beginPath();
       ctx.moveTo(0, 0);
       ctx.lineTo(r, 0);
@@ -146,11 +174,16 @@ class Picture {
     this.t = t;
     this.poses = about.bodies.map((b, k) => this.motions.body(k, t));
     this.sitePoses = about.sites.map((s, k) => this.motions.site(k, t));
-    if (this.cells.works) layers.cells || layers.pass ? this.drawCells() : this.cells.clear();
-    about.sites.forEach((s, k) => {
-      for (const [x, y] of s.shape.container ? [[0, 0]] : this.siteOffsets())
-        this.outline(s.shape, moved(this.sitePoses[k], x, y), {fill: s.fill, line: s.line, width: 1.4});
-    });
+    const cells = this.cells.works && (layers.cells || layers.pass);
+    if (this.cells.works) this.cells.canvas.hidden = !cells;
+    if (cells) this.drawCells();
+    // containers first: they cover all that is outside of them
+    for (const container of [true, false])
+      about.sites.forEach((s, k) => {
+        if (about.shapes[s.shape].container !== container) return;
+        for (const [x, y] of container ? [[0, 0]] : this.siteOffsets())
+          this.outline(s.shape, moved(this.sitePoses[k], x, y), {fill: s.fill, line: s.line, width: 1.4});
+      });
     if (layers.springs) this.drawSprings();
     if (layers.trails) this.drawTrails();
     if (layers.bodies) this.drawBodies();
@@ -171,71 +204,29 @@ class Picture {
 
   /** Of a pass, the selected body is left out. */
   drawCells() {
-    const {sites, bodies} = this.about, things = [], out = this.layers.pass ? this.selected : -1;
+    const {sites, bodies, shapes, extent} = this.about, {things, canvas: {width, height}} = this;
+    const out = this.layers.pass ? this.selected : -1;
+    things.count = 0;
     sites.forEach((s, k) => {
-      for (const [x, y] of this.siteOffsets()) things.push({shape: s.shape, pose: moved(this.sitePoses[k], x, y), owner: k});
+      const [x, y, angle] = this.sitePoses[k];
+      for (const [u, v] of this.siteOffsets()) things.add(s.shape, k, x + u, y + v, angle);
     });
+    const first = things.count;
     bodies.forEach((b, k) => {
       if (k === out) return;
-      for (const [x, y] of this.offsets(this.poses[k]))
-        things.push({shape: b.shape, pose: moved(this.poses[k], x, y), owner: sites.length + k, body: true});
+      const [x, y, angle] = this.poses[k];
+      for (const [u, v] of this.offsets(this.poses[k])) things.add(b.shape, sites.length + k, x + u, y + v, angle);
     });
-    this.cellColors ||= [...sites.map(s => s.cell), ...bodies.map((b, k) => shade(b.cell, k))];
-    const ring = 40 * this.ratio / this.view.scale, decade = 10 ** Math.floor(Math.log10(ring));
-    const step = [1, 2, 5, 10].map(m => m * decade).find(s => s >= ring) || ring;
-    this.findReach(things);
-    this.cells.draw(things, this.cellColors, this.view, step);
-  }
-
-  /**
-   * How far the cell of each thing reaches in the view [m]: its cones need not be larger. By bounding discs on a grid: where a
-   * body is so far off that another is nearer whatever their outlines, its cell is not.
-   */
-  findReach(things) {
-    const columns = 96, rows = 60, {width, height} = this.canvas, {shapes, sites, extent} = this.about;
-    const dx = width / columns / this.view.scale, dy = height / rows / this.view.scale, half = 0.5 * Math.hypot(dx, dy);
-    const [left, low] = this.toWorld(0, height), bodies = things.filter(t => t.body), n = bodies.length;
-    // outside of a container nothing is seen of cells
-    const closed = sites.some(s => shapes[s.shape].container), [x0, y0, x1, y1] = extent;
-    const seen = new Uint8Array(columns * rows).fill(1);
-    if (closed)
-      for (let j = 0; j < rows; ++j)
-        for (let k = 0; k < columns; ++k) {
-          const x = left + (k + 0.5) * dx, y = low + (j + 0.5) * dy;
-          if (x < x0 - dx || x > x1 + dx || y < y0 - dy || y > y1 + dy) seen[j * columns + k] = 0;
-        }
-    // from anywhere in a cell of the grid to the nearest outline: of bodies no farther than `way`, which grows till all is known
-    const nearest = new Float64Array(columns * rows).fill(Infinity), reach = new Float64Array(n);
-    const visit = (way, note) => {
-      for (let i = 0; i < n; ++i) {
-        const [px, py] = bodies[i].pose, r = shapes[bodies[i].shape].bounding_radius, most = way + r + half;
-        const first = Math.max(0, Math.floor((px - most - left) / dx)), last = Math.min(columns, Math.ceil((px + most - left) / dx));
-        const bottom = Math.max(0, Math.floor((py - most - low) / dy)), top = Math.min(rows, Math.ceil((py + most - low) / dy));
-        note(i, px - left - 0.5 * dx, py - low - 0.5 * dy, r, first, last, bottom, top);
-      }
-    };
-    let way = Math.sqrt(width * height / Math.max(1, n)) / this.view.scale, farthest = Infinity;
-    for (const all = Math.hypot(width, height) / this.view.scale; n && farthest > way && way < 4 * all; way *= 2) {
-      visit(way, (i, x, y, r, first, last, bottom, top) => {
-        for (let j = bottom; j < top; ++j)
-          for (let k = first, c = j * columns + first; k < last; ++k, ++c) {
-            const u = k * dx - x, v = j * dy - y, d = Math.sqrt(u * u + v * v) + r + half;
-            if (d < nearest[c]) nearest[c] = d;
-          }
-      });
-      farthest = 0;
-      for (let c = 0; c < nearest.length; ++c) if (seen[c] && nearest[c] > farthest) farthest = nearest[c];
+    if (this.coloured !== this.about) {
+      this.coloured = this.about;
+      this.cells.setColors([...sites.map(s => s.cell), ...bodies.map((b, k) => shade(b.cell, k))]);
+      this.radii = shapes.map(s => s.bounding_radius);
+      this.closed = sites.some(s => shapes[s.shape].container);
     }
-    visit(Math.min(way, farthest) + half, (i, x, y, r, first, last, bottom, top) => {
-      for (let j = bottom; j < top; ++j)
-        for (let k = first, c = j * columns + first; k < last; ++k, ++c) {
-          if (!seen[c] || nearest[c] <= reach[i]) continue;
-          const u = k * dx - x, v = j * dy - y;
-          if (Math.sqrt(u * u + v * v) - r - half <= nearest[c]) reach[i] = nearest[c];
-        }
-    });
-    for (const t of things) t.reach = farthest;
-    bodies.forEach((t, i) => { t.reach = reach[i]; });
+    const wanted = 40 * this.ratio / this.view.scale, decade = 10 ** Math.floor(Math.log10(wanted));
+    const ring = [1, 2, 5, 10].map(m => m * decade).find(s => s >= wanted) || wanted;
+    this.reach.find(things, first, {radii: this.radii, view: this.view, width, height, closed: this.closed, extent});
+    this.cells.draw(things, this.view, [width, height], {ring, paper: this.paper}, this.detail);
   }
 
   drawBodies() {
@@ -338,19 +329,25 @@ class Picture {
     ctx.globalAlpha = 1;
   }
 
+  /** Those that fit beside each other: the selected body's, then those of the largest. */
   drawNames() {
-    const {ctx} = this;
+    const {ctx, about: {bodies, shapes}} = this, taken = [], high = 13 * this.ratio;
+    const size = k => k === this.selected ? Infinity : shapes[bodies[k].shape].bounding_radius;
     this.leave();
     ctx.font = `${11 * this.ratio}px sans-serif`;
     ctx.textAlign = 'center';
     ctx.fillStyle = '#000';
     ctx.strokeStyle = 'rgba(255,255,255,.8)';
     ctx.lineWidth = 3 * this.ratio;
-    this.about.bodies.forEach((b, k) => {
+    for (const k of bodies.map((b, i) => i).sort((a, b) => size(b) - size(a) || a - b)) {
       const [x, y] = this.toPixels(this.poses[k][0], this.poses[k][1]);
-      ctx.strokeText(b.name, x, y);
-      ctx.fillText(b.name, x, y);
-    });
+      if (x < 0 || y < 0 || x > this.canvas.width || y > this.canvas.height) continue;
+      const half = ctx.measureText(bodies[k].name).width / 2;
+      if (taken.some(t => Math.abs(t.y - y) < high && Math.abs(t.x - x) < t.half + half)) continue;
+      taken.push({x, y, half});
+      ctx.strokeText(bodies[k].name, x, y);
+      ctx.fillText(bodies[k].name, x, y);
+    }
   }
 
   drawBox() {
@@ -373,13 +370,13 @@ class Picture {
     this.leave();
     ctx.font = `${11 * this.ratio}px sans-serif`;
     ctx.textAlign = 'left';
-    for (const [color, width] of [['rgba(255,255,255,.8)', 4], ['#333', 1.5]]) {
+    for (const [color, width] of [[this.paperInk, 3], [this.ink, 1.5]]) {
       ctx.strokeStyle = color;
       ctx.lineWidth = width * this.ratio;
       ctx.strokeRect(x, y, w, 0);
       if (width > 2) ctx.strokeText(`${Number(length.toPrecision(3))} m`, x, y - 6 * this.ratio);
     }
-    ctx.fillStyle = '#333';
+    ctx.fillStyle = this.ink;
     ctx.fillText(`${Number(length.toPrecision(3))} m`, x, y - 6 * this.ratio);
   }
 

@@ -223,5 +223,25 @@ TEST(Pictures, SameWishGivesTheSamePixels) {
   EXPECT_EQ(two.draw("scene").pixels, two.draw("scene").pixels);
 }
 
+// A tick at the very rim has no number: "-1" cut in half would say 1.
+TEST(Picture, AxesHaveWholeNumbers) {
+  TwoBodies two;
+  two.world.bodies.clear();
+  two.states.clear();
+  two.options.diagram = false;
+  const Picture bare = two.draw("scene");
+  two.options.axes = true;
+  const Picture axes = two.draw("scene");
+  const auto inked = [&](int from, int to) {
+    int count = 0;
+    for (int row = axes.height - 20; row < axes.height - 7; ++row)
+      for (int column = from; column < to; ++column) count += axes.at(column, row) != bare.at(column, row);
+    return count;
+  };
+  EXPECT_EQ(inked(0, 30), 0);
+  EXPECT_EQ(inked(270, 300), 0);
+  EXPECT_GT(inked(30, 270), 20) << "the numbers between are there";
+}
+
 }  // namespace
 }  // namespace brink
