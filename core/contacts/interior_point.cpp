@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brink/core/base/elementary.h"
+
 namespace brink {
 
 namespace {
@@ -167,7 +169,7 @@ bool InteriorPoint::step() {
   // from that how much of the centre the step proper needs.
   find_direction(0.0, false);
   const double reach = std::min(1.0, longest_step());
-  double centre = rows_.empty() ? 0.0 : std::min(1.0, std::pow(gap_after(reach) / gap_, 3));
+  double centre = rows_.empty() ? 0.0 : std::min(1.0, power(gap_after(reach) / gap_, 3.0));
   // A predictor that gets nowhere says little of the way: then the step keeps to the centre, without the
   // term of second order. After a step that was next to none, one step only makes the products alike.
   if (reach < 0.1 || steps_ > kQuick) centre = std::max(centre, 0.3);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "brink/core/base/elementary.h"
 #include "brink/core/base/random.h"
 #include "brink/scenes/scene/build.h"
 #include "brink/scenes/scene/rows.h"
@@ -194,7 +195,8 @@ void Placer::scatter(PlannedThing& thing, const std::vector<Obstacle>& obstacles
     const double way = how.below(2) == 0 ? 1.0 : -1.0;
     state.pose = pose;
     // In the world's axes, on top of the velocity that all copies have.
-    state.twist.velocity += asked.speed * Vec2{std::cos(heading), std::sin(heading)};
+    const SineCosine<double> of = sine_cosine(heading);
+    state.twist.velocity += asked.speed * Vec2{of.cosine, of.sine};
     state.twist.omega += asked.angular_speed * way;
     thing.copies.push_back(state);
   }
@@ -209,8 +211,8 @@ void Placer::pile(PlannedThing& thing, const std::vector<Obstacle>& obstacles) {
   const PileTable& asked = thing.table->pile.value;
   const Vec2 up = -down_of(*thing.table, rules_.gravity).value_or(-Vec2::UnitY());
   // Turned so that the frame's y axis points up: (-sin, cos) of its angle is `up`.
-  const Frame frame({thing.pose.position, std::atan2(-up.x(), up.y())});
-  const double turn = std::atan2(frame.sine, frame.cosine), radius = thing.shape.outline->bounding_radius;
+  const Frame frame({thing.pose.position, angle_of(-up.x(), up.y())});
+  const double turn = angle_of(frame.sine, frame.cosine), radius = thing.shape.outline->bounding_radius;
   if (turn != 0.0 && rules_.periods.any())
     return faults_.add(thing.table->pile.where, "pile: the plane repeats; given a way down of [" +
                                                     number_text(-up.x()) + ", " + number_text(-up.y()) +

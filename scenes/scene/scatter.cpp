@@ -12,6 +12,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "brink/core/base/sine_cosine.h"
 #include "brink/core/query/outline_gap.h"
 
 namespace brink {
@@ -240,7 +241,8 @@ std::vector<Pose> choose_and_shake(Room& room, std::vector<Pose> places, std::si
     const double heading = random.uniform(0.0, 2.0 * std::numbers::pi),
                  r = play * std::sqrt(random.uniform());
     Pose shaken = places[k];
-    shaken.position += Vec2{r * std::cos(heading), r * std::sin(heading)};
+    const SineCosine<double> of = sine_cosine(heading);
+    shaken.position += r * Vec2{of.cosine, of.sine};
     // Else it stays where it was on the lattice, which is free.
     if (room.free(shaken)) places[k] = shaken;
   }
