@@ -12,25 +12,27 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 
+#include "brink/core/base/wide.h"
+
 namespace brink {
 
 namespace {
 
 /// C -= A B^T
-void subtract_product(Block& C, const Block& A, const Block& B) {
+inline void subtract_product(Block& C, const Block& A, const Block& B) {
   for (int c = 0; c < 3; ++c)
-    for (int r = 0; r < 3; ++r)
+    for (int r = 0; r < 4; ++r)
       C.at[c][r] -= A.at[0][r] * B.at[0][c] + A.at[1][r] * B.at[1][c] + A.at[2][r] * B.at[2][c];
 }
 
 /// x -= A y
-void subtract_product(Vec3& x, const Block& A, const Vec3& y) {
-  for (int r = 0; r < 3; ++r) x[r] -= A.at[0][r] * y[0] + A.at[1][r] * y[1] + A.at[2][r] * y[2];
+inline void subtract_product(Triple& x, const Block& A, const Triple& y) {
+  for (int r = 0; r < 4; ++r) x.at[r] -= A.at[0][r] * y.at[0] + A.at[1][r] * y.at[1] + A.at[2][r] * y.at[2];
 }
 
 /// x -= A^T y
-void subtract_transposed(Vec3& x, const Block& A, const Vec3& y) {
-  for (int c = 0; c < 3; ++c) x[c] -= A.at[c][0] * y[0] + A.at[c][1] * y[1] + A.at[c][2] * y[2];
+inline void subtract_transposed(Triple& x, const Block& A, const Triple& y) {
+  for (int c = 0; c < 3; ++c) x.at[c] -= A.at[c][0] * y.at[0] + A.at[c][1] * y.at[1] + A.at[c][2] * y.at[2];
 }
 
 }  // namespace
@@ -48,6 +50,9 @@ void BlockLdl::analyse(int n, std::vector<Edge> edges) {
   find_targets();
   diagonal_.resize(n);
   below_.resize(rows_.size());
+  int longest = 0;
+  for (int k = 0; k < n; ++k) longest = std::max(longest, begins_[k + 1] - begins_[k]);
+  undivided_.resize(longest);
 }
 
 void BlockLdl::find_order() {
@@ -94,7 +99,7 @@ void BlockLdl::find_blocks() {
   }
 }
 
-/// Walks through pairs in the very order in which factor_column() will use up the list. Eliminating column
+/// Walks through pairs in the very order in which factor() will use up the list. Eliminating column
 /// k joins any two of its rows, so that block (q, p) of such a pair is sure to be found in column p.
 void BlockLdl::find_targets() {
   targets_.clear();
@@ -114,82 +119,75 @@ int BlockLdl::slot(int row, int column) const {
   return static_cast<int>(std::lower_bound(begin, end, row) - rows_.begin());
 }
 
-void BlockLdl::begin(const std::vector<Vec3>& diagonal) {
+void BlockLdl::begin(const std::vector<Triple>& diagonal) {
   // All that is added from here on is positive semidefinite, so no pivot can come below these but by
   // rounding.
   least_ = diagonal;
   for (int k = 0; k < size(); ++k) {
     diagonal_[k] = {};
-    for (int c = 0; c < 3; ++c) diagonal_[k].at[c][c] = diagonal[k][c];
+    for (int c = 0; c < 3; ++c) diagonal_[k].at[c][c] = diagonal[k].at[c];
   }
   // fill as well: factor() left numbers of the last matrix in it
   std::fill(below_.begin(), below_.end(), Block{});
 }
 
 /// Cost: for a column of n blocks about n^2 / 2 products of blocks.
-void BlockLdl::factor() {
-  next_target_ = 0;
+BRINK_WIDE void BlockLdl::factor() {
+  const int* target = targets_.data();
   for (int k = 0; k < size(); ++k) {
-    factor_diagonal(k);
-    factor_column(k);
-  }
-}
-
-/// The block becomes its own factor: D on the diagonal, L below it.
-void BlockLdl::factor_diagonal(int k) {
-  double(&a)[3][3] = diagonal_[k].at;
-  const Vec3& least = least_[k];
-  a[0][0] = std::max(a[0][0], least[0]);
-  // a10, a20, a21: entries of L D, before the division. Only what lies on or below the
-  // diagonal is ever read.
-  const double a10 = a[0][1], a20 = a[0][2];
-  a[0][1] /= a[0][0];
-  a[0][2] /= a[0][0];
-  a[1][1] = std::max(a[1][1] - a[0][1] * a10, least[1]);
-  const double a21 = a[1][2] - a[0][2] * a10;
-  a[1][2] = a21 / a[1][1];
-  a[2][2] = std::max(a[2][2] - a[0][2] * a20 - a[1][2] * a21, least[2]);
-}
-
-/// Column k of L, and what it takes from the columns after it.
-void BlockLdl::factor_column(int k) {
-  const int begin = begins_[k], end = begins_[k + 1];
-  const double(&d)[3][3] = diagonal_[k].at;
-  // With A = L D L^T: each row of undivided_ becomes a row of L D by forward substitution with the unit
-  // triangle of the diagonal block, and of L by division.
-  undivided_.assign(below_.begin() + begin, below_.begin() + end);
-  for (int p = begin; p < end; ++p) {
-    Block &undivided = undivided_[p - begin], &L = below_[p];
-    for (int r = 0; r < 3; ++r) {
-      double* const u[3] = {&undivided.at[0][r], &undivided.at[1][r], &undivided.at[2][r]};
-      *u[1] -= d[0][1] * *u[0];
-      *u[2] -= d[0][2] * *u[0] + d[1][2] * *u[1];
-      for (int c = 0; c < 3; ++c) L.at[c][r] = *u[c] / d[c][c];
+    // The diagonal block becomes its own factor: D on the diagonal, L below it.
+    double(&a)[3][4] = diagonal_[k].at;
+    const Triple& least = least_[k];
+    a[0][0] = std::max(a[0][0], least.at[0]);
+    // a10, a20, a21: entries of L D, before the division. Only what lies on or below the
+    // diagonal is ever read.
+    const double a10 = a[0][1], a20 = a[0][2];
+    a[0][1] /= a[0][0];
+    a[0][2] /= a[0][0];
+    a[1][1] = std::max(a[1][1] - a[0][1] * a10, least.at[1]);
+    const double a21 = a[1][2] - a[0][2] * a10;
+    a[1][2] = a21 / a[1][1];
+    a[2][2] = std::max(a[2][2] - a[0][2] * a20 - a[1][2] * a21, least.at[2]);
+    const int begin = begins_[k], end = begins_[k + 1];
+    const double l10 = a[0][1], l20 = a[0][2], l21 = a[1][2], d0 = a[0][0], d1 = a[1][1], d2 = a[2][2];
+    // With A = L D L^T: each row of undivided_ becomes a row of L D by forward substitution with the unit
+    // triangle of the diagonal block, and of L by division.
+    for (int p = begin; p < end; ++p) {
+      Block &u = undivided_[p - begin], &L = below_[p];
+      for (int r = 0; r < 4; ++r) {
+        const double u0 = L.at[0][r], u1 = L.at[1][r] - l10 * u0, u2 = L.at[2][r] - (l20 * u0 + l21 * u1);
+        u.at[0][r] = u0;
+        u.at[1][r] = u1;
+        u.at[2][r] = u2;
+        L.at[0][r] = u0 / d0;
+        L.at[1][r] = u1 / d1;
+        L.at[2][r] = u2 / d2;
+      }
+    }
+    // What column k takes from the rest: L_p D L_p^T from diagonals, L_q D L_p^T below them.
+    for (int p = begin; p < end; ++p) {
+      const Block& column = undivided_[p - begin];
+      subtract_product(diagonal_[rows_[p]], below_[p], column);
+      for (int q = p + 1; q < end; ++q) subtract_product(below_[*target++], below_[q], column);
     }
   }
-  // What column k takes from the rest: L_p D L_p^T from diagonals, L_q D L_p^T below them.
-  for (int p = begin; p < end; ++p) {
-    const Block& column = undivided_[p - begin];
-    subtract_product(diagonal_[rows_[p]], below_[p], column);
-    for (int q = p + 1; q < end; ++q) subtract_product(below_[targets_[next_target_++]], below_[q], column);
-  }
 }
 
-void BlockLdl::solve(std::vector<Vec3>& b) const {
+BRINK_WIDE void BlockLdl::solve(std::vector<Triple>& b) const {
   // L y = b by columns: once y of k is known, it is taken off all rows below.
   for (int k = 0; k < size(); ++k) {
-    const double(&d)[3][3] = diagonal_[k].at;
-    Vec3& x = b[k];
+    const double(&d)[3][4] = diagonal_[k].at;
+    double(&x)[4] = b[k].at;
     x[1] -= d[0][1] * x[0];
     x[2] -= d[0][2] * x[0] + d[1][2] * x[1];
-    for (int p = begins_[k]; p < begins_[k + 1]; ++p) subtract_product(b[rows_[p]], below_[p], x);
+    for (int p = begins_[k]; p < begins_[k + 1]; ++p) subtract_product(b[rows_[p]], below_[p], b[k]);
   }
   // L^T from the last place back; D is divided out on the way
   for (int k = size() - 1; k >= 0; --k) {
-    const double(&d)[3][3] = diagonal_[k].at;
-    Vec3& x = b[k];
+    const double(&d)[3][4] = diagonal_[k].at;
+    double(&x)[4] = b[k].at;
     for (int c = 0; c < 3; ++c) x[c] /= d[c][c];
-    for (int p = begins_[k]; p < begins_[k + 1]; ++p) subtract_transposed(x, below_[p], b[rows_[p]]);
+    for (int p = begins_[k]; p < begins_[k + 1]; ++p) subtract_transposed(b[k], below_[p], b[rows_[p]]);
     x[1] -= d[1][2] * x[2];
     x[0] -= d[0][1] * x[1] + d[0][2] * x[2];
   }

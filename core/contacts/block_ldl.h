@@ -9,14 +9,28 @@ namespace brink {
 
 using Vec3 = Eigen::Vector3d;
 
-/// A 3x3 block by columns: entry (row, column) is at[column][row].
-struct Block {
-  double at[3][3];
+/// Three numbers of one body, with a fourth that is 0: registers hold four.
+struct alignas(32) Triple {
+  double at[4];
+
+  static Triple of(const Vec3& v) { return {{v[0], v[1], v[2], 0.0}}; }
+  Vec3 vector() const { return {at[0], at[1], at[2]}; }
+  double dot(const Triple& b) const { return at[0] * b.at[0] + at[1] * b.at[1] + at[2] * b.at[2]; }
+  void add(double weight, const Triple& a) {
+    for (int r = 0; r < 4; ++r) at[r] += weight * a.at[r];
+  }
+};
+
+/// A 3x3 block by columns: entry (row, column) is at[column][row]. The fourth row is 0.
+struct alignas(32) Block {
+  double at[3][4];
 
   /// *this += weight * a b^T
-  void add(double weight, const Vec3& a, const Vec3& b) {
-    for (int c = 0; c < 3; ++c)
-      for (int r = 0; r < 3; ++r) at[c][r] += weight * b[c] * a[r];
+  void add(double weight, const Triple& a, const Triple& b) {
+    for (int c = 0; c < 3; ++c) {
+      const double w = weight * b.at[c];
+      for (int r = 0; r < 4; ++r) at[c][r] += w * a.at[r];
+    }
   }
 };
 
@@ -46,29 +60,26 @@ class BlockLdl {
   int slot(int row, int column) const;
 
   /// A becomes the diagonal. @pre every entry > 0
-  void begin(const std::vector<Vec3>& diagonal);
+  void begin(const std::vector<Triple>& diagonal);
   Block& diagonal(int place) { return diagonal_[place]; }
   Block& below(int slot) { return below_[slot]; }
   /// A is replaced by its factor.
   void factor();
   /// A x = b, in place. @pre factor() was called
-  void solve(std::vector<Vec3>& b) const;
+  void solve(std::vector<Triple>& b) const;
 
  private:
   void find_order();
   void find_blocks();
   void find_targets();
-  void factor_diagonal(int k);
-  void factor_column(int k);
 
   std::vector<Edge> edges_;
   std::vector<int> order_, place_;  ///< order_[place_[k]] == k
   std::vector<int> begins_, rows_;  ///< of column k the rows below the diagonal: rows_[begins_[k] ...]
   std::vector<int> targets_;        ///< slots that a column's pairs of blocks change, as factor() meets them
-  std::vector<Vec3> least_;         ///< pivots
+  std::vector<Triple> least_;       ///< pivots
   std::vector<Block> diagonal_, below_;
   std::vector<Block> undivided_;  ///< a column of L D
-  std::size_t next_target_ = 0;
 };
 
 }  // namespace brink

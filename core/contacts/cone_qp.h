@@ -38,6 +38,8 @@ struct RestProblem {
   std::vector<Vec3> mass;   ///< of each body: mass, mass [kg], inertia [kg m^2], > 0; infinity: held
   std::vector<Vec3> force;  ///< on each body, of all but contacts [N], [N m]
   std::vector<LastingContact> contacts;
+  std::vector<ContactLoad>
+      expected;  ///< of each contact, as far as known: makes the search shorter. May be empty
 };
 
 struct RestResult {
@@ -58,10 +60,14 @@ struct RestResult {
 };
 
 struct StepContact {
-  LastingContact contact;                ///< friction and rolling_resistance are not looked at, but these:
-  double gap = 0.0;                      ///< at the step's start [m]
-  double friction_bound = 0.0;           ///< largest tangential impulse [N s], >= 0
-  double rolling_bound = 0.0;            ///< largest rolling impulse [N m s], >= 0
+  LastingContact
+      contact;       ///< unless `coulomb`, friction and rolling_resistance are not looked at, but these:
+  double gap = 0.0;  ///< at the step's start [m]
+  double friction_bound = 0.0;  ///< largest tangential impulse [N s], >= 0
+  double rolling_bound = 0.0;   ///< largest rolling impulse [N m s], >= 0
+  /// The bounds are instead the contact's own friction and rolling resistance times its normal impulse, see step().
+  bool coulomb = false;
+  ContactLoad expected;                  ///< impulses, as far as they are known: makes the search shorter
   Vec3 support_velocity = Vec3::Zero();  ///< of a support that moves: along normal, tangent [m/s], in turning
 };
 

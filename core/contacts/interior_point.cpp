@@ -7,12 +7,16 @@
 /// what is left is one symmetric positive definite system in du, (M + J^T W J) du = imbalance + J^T push.
 /// Each step factors it once and solves it twice: for a predictor, which tells how far products of 0 are, and
 /// for the step proper.
+///
+/// What goes over all pairs is written so that a compiler can do several at once, in an order that does not depend on how
+/// many.
 #include "brink/core/contacts/interior_point.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "brink/core/base/elementary.h"
+#include "brink/core/base/wide.h"
 
 namespace brink {
 
@@ -34,50 +38,29 @@ constexpr double kNothing = 1e-60, kNoStep = 1e-10;
 
 /// Steps with a corrector, which is quick but may go in circles (once in some ten thousand random problems);
 /// after so many steps plain ones follow that keep to the centre.
-constexpr int kQuick = 25;
+constexpr int kQuick = 40;
 
 /// Of forces that add up on a body, as a part of them.
 constexpr double kRounding = 1e-13;
 
+/// Where forces are expected, neither they nor speeds begin below this: nearer to 0 what is expected wrongly takes longer
+/// to be made up for than what is expected rightly saves.
+constexpr double kNear = 0.1;
+
+/// Bounds stop to follow once products are down to the first on the mean and a step leaves more than the second of them; and
+/// where so many steps have not left less than half of them.
+constexpr double kFollowed = 1e-3, kFalls = 0.4;
+constexpr int kMostStalled = 4;
+/// A leader is known to be open once its speed, in the units of the problem, is so many times its force; and a bound below
+/// this is none.
+constexpr double kOpen = 100.0, kNoBound = 1e-6;
+/// A force keeps to this part of a bound that comes to lie below it, and a pair's product to this part of the mean.
+constexpr double kInside = 0.7, kCentred = 0.5;
+
+/// Numbers that are gone through side by side.
+constexpr std::size_t kLanes = 8;
+
 }  // namespace
-
-/// J u of this row, without the offset.
-double InteriorPoint::Row::see(const std::vector<Vec3>& u) const {
-  const double y = on_last.dot(u[last]);
-  return first < 0 ? y : y + on_first.dot(u[first]);
-}
-
-/// Adds J^T force.
-void InteriorPoint::Row::apply(double force, std::vector<Vec3>& to) const {
-  to[last] += force * on_last;
-  if (first >= 0) to[first] += force * on_first;
-}
-
-void InteriorPoint::Row::set_weight() {
-  // dx = push - weight dy follows from z ds + s dz = aim with ds = sign dx: dz = (aim - z ds) / s, and
-  // sum of sign dz = dy + residual.
-  double yields = kYield;
-  for (int p = 0; p < pairs; ++p) yields += z[p] / s[p];
-  weight = 1.0 / yields;
-}
-
-void InteriorPoint::Row::set_push(double product, bool corrected) {
-  // The residual goes in as well, so that a whole step brings it to 0.
-  double dy = -residual;
-  for (int p = 0; p < pairs; ++p) {
-    // (s + ds)(z + dz) = product, with the term ds dz of second order as the predictor has left it
-    aim[p] = product - s[p] * z[p] - (corrected ? ds[p] * dz[p] : 0.0);
-    dy += sign[p] * aim[p] / s[p];
-  }
-  push = weight * dy;
-}
-
-void InteriorPoint::Row::set_direction(double dx) {
-  for (int p = 0; p < pairs; ++p) {
-    ds[p] = sign[p] * dx;
-    dz[p] = (aim[p] - z[p] * ds[p]) / s[p];
-  }
-}
 
 void InteriorPoint::begin(const QpProblem& problem) {
   const int n = static_cast<int>(problem.mass.size());
@@ -89,32 +72,43 @@ void InteriorPoint::begin(const QpProblem& problem) {
   mass_.resize(n);
   f_.resize(n);
   for (int k = 0; k < n; ++k) {
-    mass_[factor_.place(k)] = problem.mass[k];
-    f_[factor_.place(k)] = problem.force[k];
+    mass_[factor_.place(k)] = Triple::of(problem.mass[k]);
+    f_[factor_.place(k)] = Triple::of(problem.force[k]);
   }
-  u_.assign(n, Vec3::Zero());
+  u_.assign(n, Triple{});
   rows_.clear();
-  for (const QpRow& row : problem.rows) rows_.push_back(ordered(row));
+  int pairs = 0;
+  for (const QpRow& row : problem.rows) {
+    rows_.push_back(ordered(row));
+    rows_.back().pair = pairs;
+    pairs += rows_.back().pairs;
+  }
+  pairs_ = pairs;
+  for (OfPairs* of : {&s_, &z_, &ds_, &dz_, &aim_, &per_s_, &per_z_}) of->assign(pairs, 0.0);
   steps_ = 0;
   last_length_ = 1.0;
-  start_pairs();
+  const bool expects = std::any_of(problem.rows.begin(), problem.rows.end(),
+                                   [](const QpRow& row) { return row.expected != 0.0; });
+  expects ? start_near(problem) : start_pairs(problem);
+  following_ = std::any_of(rows_.begin(), rows_.end(), [](const Row& row) { return row.leader >= 0; });
   measure();
+  followed_at_ = least_mean_ = gap_ / std::max(1, pairs_);
+  stalled_ = 0;
 }
 
 InteriorPoint::Row InteriorPoint::ordered(const QpRow& given) const {
   Row row{};
   row.first = -1;
   row.last = factor_.place(given.body);
-  row.on_last = given.on_body;
+  row.on_last = Triple::of(given.on_body);
   row.offset = given.offset;
   row.pairs = std::isinf(given.bound) ? 1 : 2;
-  row.sign[0] = row.pairs == 1 ? 1.0 : -1.0;
-  row.sign[1] = 1.0;
-  // x = 0, in the middle of -bound .. bound
-  if (row.pairs == 2) row.s[0] = row.s[1] = given.bound;
+  row.leader = given.leader;
+  row.ratio = given.ratio;
+  row.expected = given.expected;
   if (given.other < 0) return row;
   row.first = factor_.place(given.other);
-  row.on_first = given.on_other;
+  row.on_first = Triple::of(given.on_other);
   if (row.first > row.last) {
     // The factor keeps blocks below the diagonal: the later place is the row.
     std::swap(row.first, row.last);
@@ -124,46 +118,115 @@ InteriorPoint::Row InteriorPoint::ordered(const QpRow& given) const {
   return row;
 }
 
-/// All products alike, and large enough for what the rows begin with.
-void InteriorPoint::start_pairs() {
+/// Nothing is known: all products alike, and large enough for what the rows begin with.
+void InteriorPoint::start_pairs(const QpProblem& problem) {
   double speed = 1.0;
   for (const Row& row : rows_)
     speed = std::max(speed, row.pairs == 1 ? -row.offset : std::abs(row.offset) / 4);
   const double product = speed * speed;
-  pairs_ = 0;
-  for (Row& row : rows_) {
-    pairs_ += row.pairs;
-    // s is x where there is no bound, and z is y; else s stands at its bound already.
-    // Either way s z = product.
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    const Row& row = rows_[r];
+    double *s = &s_[row.pair], *z = &z_[row.pair];
+    // s is x where there is no bound, and z is y. Either way s z = product.
     if (row.pairs == 1) {
-      row.z[0] = std::max(row.offset, speed);
-      row.s[0] = product / row.z[0];
+      z[0] = std::max(row.offset, speed);
+      s[0] = product / z[0];
     } else {
-      row.z[0] = row.z[1] = product / row.s[0];
+      // x = 0, in the middle of -bound .. bound
+      s[0] = s[1] = problem.rows[r].bound;
+      z[0] = z[1] = product / s[0];
     }
   }
 }
 
-/// Residuals and gap where u, s and z stand.
-void InteriorPoint::measure() {
-  imbalance_.resize(u_.size());
-  // All afresh from u, s and z: what a step leaves unsolved by rounding is a residual of the next one.
-  for (std::size_t k = 0; k < u_.size(); ++k) imbalance_[k] = f_[k] - mass_[k].cwiseProduct(u_[k]);
-  gap_ = 0.0;
-  for (Row& row : rows_) {
-    row.apply(row.force(), imbalance_);
-    row.residual = row.see(u_) + row.offset;
-    for (int p = 0; p < row.pairs; ++p) {
-      row.residual -= row.sign[p] * row.z[p];
-      gap_ += row.s[p] * row.z[p];
+/// Forces and speeds as they are expected, and none of them near 0.
+void InteriorPoint::start_near(const QpProblem& problem) {
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    const Row& row = rows_[r];
+    double *s = &s_[row.pair], *z = &z_[row.pair];
+    if (row.pairs == 1) {
+      s[0] = std::max(row.expected, kNear);
+      z[0] = std::max(row.offset, kNear);
+    } else {
+      // the leader's row comes before, and has its force by now
+      const double bound = row.leader >= 0 ? row.ratio * s_[rows_[row.leader].pair] : problem.rows[r].bound;
+      // what slips has its force close to the bound against it, the closer the faster: at products of kNear^2
+      const double slips = std::abs(row.offset), product = kNear * kNear;
+      const double most = std::max(kInside * bound, bound - product / std::max(slips, kNear));
+      const double x = slips > kNear ? std::copysign(most, -row.offset)
+                                     : std::clamp(row.expected, -kInside * bound, kInside * bound);
+      s[0] = bound - x;
+      s[1] = bound + x;
+      for (int p = 0; p < 2; ++p) z[p] = product / s[p];
     }
   }
+}
+
+/// Bounds to what their leaders' forces are now. The last time, what is open by then has no friction; and what may be open
+/// or press lightly has the friction of the force that was expected, or of that at which it is.
+void InteriorPoint::follow() {
+  const double mean = gap_ / pairs_;
+  stalled_ = mean < 0.5 * least_mean_ ? 0 : stalled_ + 1;
+  const bool last = (mean <= kFollowed && mean > kFalls * followed_at_) || stalled_ >= kMostStalled;
+  least_mean_ = stalled_ == 0 ? mean : least_mean_;
+  followed_at_ = mean;
+  for (Row& row : rows_) {
+    if (row.leader < 0) continue;
+    const Row& leader = rows_[row.leader];
+    double presses = s_[leader.pair];
+    if (last && presses < z_[leader.pair])
+      presses = presses * kOpen < z_[leader.pair] ? 0.0 : std::clamp(leader.expected, 0.0, presses);
+    const double bound = row.ratio * presses;
+    set_bound(row, last && bound < kNoBound ? 0.0 : bound, mean);
+  }
+  following_ = !last;
+  measure();
+}
+
+/// @pre two pairs. From a bound of 0 the row has no part in anything any more.
+void InteriorPoint::set_bound(Row& row, double bound, double product) {
+  double *s = &s_[row.pair], *z = &z_[row.pair];
+  const double x = std::clamp(force_of(row), -kInside * bound, kInside * bound);
+  s[0] = bound - x;
+  s[1] = bound + x;
+  for (int p = 0; p < 2; ++p) z[p] = std::max(z[p], kCentred * product / s[p]);
+  if (bound > 0.0) return;
+  // its pairs stand still, at a product of 0
+  for (int p = 0; p < 2; ++p) {
+    s[p] = 1.0;
+    z[p] = ds_[row.pair + p] = dz_[row.pair + p] = 0.0;
+  }
+  row.pairs = 0;
+  pairs_ -= 2;
+}
+
+/// Residuals and gap where u, s and z stand.
+BRINK_WIDE void InteriorPoint::measure() {
+  imbalance_.resize(u_.size());
+  // All afresh from u, s and z: what a step leaves unsolved by rounding is a residual of the next one.
+  for (std::size_t k = 0; k < u_.size(); ++k)
+    for (int c = 0; c < 4; ++c) imbalance_[k].at[c] = f_[k].at[c] - mass_[k].at[c] * u_[k].at[c];
+  for (Row& row : rows_) {
+    row.residual = 0.0;
+    if (row.pairs == 0) continue;
+    const double force = force_of(row);
+    imbalance_[row.last].add(force, row.on_last);
+    double y = row.on_last.dot(u_[row.last]);
+    if (row.first >= 0) {
+      imbalance_[row.first].add(force, row.on_first);
+      y += row.on_first.dot(u_[row.first]);
+    }
+    const double own = row.pairs == 1 ? z_[row.pair] : z_[row.pair + 1] - z_[row.pair];
+    row.residual = y + row.offset - own;
+  }
+  gap_ = gap_after(0.0);
 }
 
 bool InteriorPoint::step() {
   // The first step is made always: without rows it is the whole solution, M u = f, at a gap of 0.
   if (steps_ > 0 && gap_ < kNothing) return false;
   ++steps_;
+  if (following_) follow();
   factor();
   // Predictor: how far does the direction to products of 0 lead? Mehrotra's (gap after / gap)^3 says
   // from that how much of the centre the step proper needs.
@@ -184,10 +247,19 @@ bool InteriorPoint::step() {
   return last_length_ > kNoStep;
 }
 
-void InteriorPoint::factor() {
+BRINK_WIDE void InteriorPoint::factor() {
   factor_.begin(mass_);
+  const std::size_t count = s_.size();
+  for (std::size_t p = 0; p < count; ++p) per_s_[p] = 1.0 / s_[p];
+  for (std::size_t p = 0; p < count; ++p) per_z_[p] = 1.0 / z_[p];
   for (Row& row : rows_) {
-    row.set_weight();
+    row.weight = 0.0;
+    if (row.pairs == 0) continue;
+    // dx = push - weight dy follows from z ds + s dz = aim with ds = sign dx: dz = (aim - z ds) / s, and
+    // sum of sign dz = dy + residual.
+    double yields = kYield;
+    for (int p = row.pair; p < row.pair + row.pairs; ++p) yields += z_[p] * per_s_[p];
+    row.weight = 1.0 / yields;
     if (row.weight < kNoWeight) continue;
     factor_.diagonal(row.last).add(row.weight, row.on_last, row.on_last);
     // Of the row's outer product with itself: two diagonal blocks and the one below them.
@@ -200,51 +272,88 @@ void InteriorPoint::factor() {
 
 /// Newton's direction towards products that all are `centre` times their mean; `corrected` by the products of
 /// the direction before.
-void InteriorPoint::find_direction(double centre, bool corrected) {
+BRINK_WIDE void InteriorPoint::find_direction(double centre, bool corrected) {
   // (M + J^T W J) du = imbalance + J^T push, from M du = imbalance + J^T dx and dx = push - W J du
-  const double product = rows_.empty() ? 0.0 : centre * gap_ / pairs_;
+  const double product = pairs_ == 0 ? 0.0 : centre * gap_ / pairs_;
+  const std::size_t count = s_.size();
+  // (s + ds)(z + dz) = product, with the term ds dz of second order as the predictor has left it
+  if (corrected)
+    for (std::size_t p = 0; p < count; ++p) aim_[p] = product - s_[p] * z_[p] - ds_[p] * dz_[p];
+  else
+    for (std::size_t p = 0; p < count; ++p) aim_[p] = product - s_[p] * z_[p];
   du_ = imbalance_;
   for (Row& row : rows_) {
-    row.set_push(product, corrected);
-    row.apply(row.push, du_);
+    row.push = 0.0;
+    if (row.pairs == 0) continue;
+    // The residual goes in as well, so that a whole step brings it to 0.
+    const int p = row.pair;
+    const double dy = row.pairs == 1 ? aim_[p] * per_s_[p] - row.residual
+                                     : aim_[p + 1] * per_s_[p + 1] - aim_[p] * per_s_[p] - row.residual;
+    row.push = row.weight * dy;
+    du_[row.last].add(row.push, row.on_last);
+    if (row.first >= 0) du_[row.first].add(row.push, row.on_first);
   }
   factor_.solve(du_);
-  for (Row& row : rows_) row.set_direction(row.push - row.weight * row.see(du_));
+  for (const Row& row : rows_) {
+    if (row.pairs == 0) continue;
+    double dy = row.on_last.dot(du_[row.last]);
+    if (row.first >= 0) dy += row.on_first.dot(du_[row.first]);
+    const double dx = row.push - row.weight * dy;
+    ds_[row.pair] = row.pairs == 1 ? dx : -dx;
+    if (row.pairs == 2) ds_[row.pair + 1] = dx;
+  }
+  for (std::size_t p = 0; p < count; ++p) dz_[p] = (aim_[p] - z_[p] * ds_[p]) * per_s_[p];
+  // rows without pairs stand still
+  for (const Row& row : rows_)
+    if (row.pairs == 0)
+      for (int p = row.pair; p < row.pair + 2; ++p) dz_[p] = 0.0;
 }
 
 /// How far the direction goes until a first s or z is 0, in whole steps; at most 2.
-double InteriorPoint::longest_step() const {
-  // More than 1, so that part_of_way() of what meets no bound still is a whole Newton step.
-  double most = 2.0;
-  for (const Row& row : rows_)
-    for (int p = 0; p < row.pairs; ++p) {
-      if (row.ds[p] < 0.0) most = std::min(most, -row.s[p] / row.ds[p]);
-      if (row.dz[p] < 0.0) most = std::min(most, -row.z[p] / row.dz[p]);
-    }
-  return most;
+BRINK_WIDE double InteriorPoint::longest_step() const {
+  // The largest part of any s or z that a whole step takes. At least 1/2, so that part_of_way() of what meets no bound
+  // still is a whole Newton step.
+  double most[kLanes];
+  std::fill(most, most + kLanes, 0.5);
+  const auto see = [&](std::size_t lane, std::size_t p) {
+    const double a = -ds_[p] * per_s_[p], b = -dz_[p] * per_z_[p];
+    const double more = a > b ? a : b;
+    most[lane] = more > most[lane] ? more : most[lane];
+  };
+  std::size_t p = 0;
+  for (; p + kLanes <= s_.size(); p += kLanes)
+    for (std::size_t lane = 0; lane < kLanes; ++lane) see(lane, p + lane);
+  for (; p < s_.size(); ++p) see(0, p);
+  return 1.0 / *std::max_element(most, most + kLanes);
 }
 
 /// The sum of products a part of the direction on.
-double InteriorPoint::gap_after(double length) const {
+BRINK_WIDE double InteriorPoint::gap_after(double length) const {
+  double sums[kLanes] = {};
+  const auto add = [&](std::size_t lane, std::size_t p) {
+    sums[lane] += (s_[p] + length * ds_[p]) * (z_[p] + length * dz_[p]);
+  };
+  std::size_t p = 0;
+  for (; p + kLanes <= s_.size(); p += kLanes)
+    for (std::size_t lane = 0; lane < kLanes; ++lane) add(lane, p + lane);
+  for (; p < s_.size(); ++p) add(0, p);
   double sum = 0.0;
-  for (const Row& row : rows_)
-    for (int p = 0; p < row.pairs; ++p)
-      sum += (row.s[p] + length * row.ds[p]) * (row.z[p] + length * row.dz[p]);
+  for (const double part : sums) sum += part;
   return sum;
 }
 
-void InteriorPoint::take(double length) {
-  for (std::size_t k = 0; k < u_.size(); ++k) u_[k] += length * du_[k];
-  for (Row& row : rows_)
-    for (int p = 0; p < row.pairs; ++p) {
-      row.s[p] += length * row.ds[p];
-      row.z[p] += length * row.dz[p];
-    }
+BRINK_WIDE void InteriorPoint::take(double length) {
+  for (std::size_t k = 0; k < u_.size(); ++k) u_[k].add(length, du_[k]);
+  for (std::size_t p = 0; p < s_.size(); ++p) s_[p] += length * ds_[p];
+  for (std::size_t p = 0; p < s_.size(); ++p) z_[p] += length * dz_[p];
 }
 
 double InteriorPoint::energy() const {
   double sum = 0.0;
-  for (std::size_t k = 0; k < u_.size(); ++k) sum += u_[k].dot(mass_[k].cwiseProduct(u_[k]));
+  for (std::size_t k = 0; k < u_.size(); ++k) {
+    const Vec3 u = u_[k].vector();
+    sum += u.dot(mass_[k].vector().cwiseProduct(u));
+  }
   return sum;
 }
 
@@ -259,14 +368,14 @@ double InteriorPoint::body_residual() const {
   // out: it is not held against the solution.
   std::vector<double> carried(u_.size(), 0.0);
   for (const Row& row : rows_) {
-    const double x = std::abs(row.force());
-    carried[row.last] += x * row.on_last.cwiseAbs().maxCoeff();
-    if (row.first >= 0) carried[row.first] += x * row.on_first.cwiseAbs().maxCoeff();
+    const double x = std::abs(force_of(row));
+    carried[row.last] += x * row.on_last.vector().cwiseAbs().maxCoeff();
+    if (row.first >= 0) carried[row.first] += x * row.on_first.vector().cwiseAbs().maxCoeff();
   }
   double most = 0.0;
   for (std::size_t k = 0; k < u_.size(); ++k)
-    most =
-        std::max(most, (imbalance_[k].cwiseAbs().maxCoeff() - kRounding * carried[k]) / mass_[k].minCoeff());
+    most = std::max(most, (imbalance_[k].vector().cwiseAbs().maxCoeff() - kRounding * carried[k]) /
+                              mass_[k].vector().minCoeff());
   return most;
 }
 

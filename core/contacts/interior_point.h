@@ -17,6 +17,11 @@ struct QpRow {
   double offset = 0.0;
   /// infinity: 0 <= x _|_ y >= 0. Else > 0: |x| <= bound, and x is -bound * sign(y) where y is not 0.
   double bound = std::numeric_limits<double>::infinity();
+  /// An earlier row without a bound, `ratio` times the force of which this one's bound is; -1: the bound given. Such a
+  /// bound follows while the search is far from its end, see InteriorPoint.
+  int leader = -1;
+  double ratio = 0.0;
+  double expected = 0.0;  ///< force that the search begins near; 0 in all rows: nothing is known
 };
 
 /// minimise u.M u / 2 - f.u + (sum of bound |y| over the rows that have one), subject to y >= 0 at the others.
@@ -31,6 +36,11 @@ struct QpProblem {
 /// (W > 0 diagonal), in blocks of a body. Rows that depend on others, or are given twice, do no harm.
 /// Sources: Mehrotra 1992, "On the implementation of a primal-dual interior point method"; Wright 1997,
 /// "Primal-dual interior-point methods", ch. 10; Nocedal & Wright, "Numerical optimization", 16.6.
+///
+/// Bounds that follow are set anew before each step, to what their leaders have by then, until products are small or
+/// that keeps them from falling; from then on they stay, the problem is convex, and the search ends as any other.
+/// That is the fixed point of Haslinger 1983 (bounds from the solution with the bounds before) with one step of the
+/// search instead of a whole one for each pass: Coulomb's law to some per cent of the largest force.
 class InteriorPoint {
  public:
   /// Before the first step. What is known of the graph is kept from the problem before.
@@ -42,10 +52,10 @@ class InteriorPoint {
 
   int steps() const { return steps_; }
   int blocks() const { return factor_.blocks(); }
-  const Vec3& velocity(int body) const { return u_[factor_.place(body)]; }
+  Vec3 velocity(int body) const { return u_[factor_.place(body)].vector(); }
   /// f + J^T x - M u
-  const Vec3& imbalance(int body) const { return imbalance_[factor_.place(body)]; }
-  double force(int row) const { return rows_[row].force(); }
+  Vec3 imbalance(int body) const { return imbalance_[factor_.place(body)].vector(); }
+  double force(int row) const { return force_of(rows_[row]); }
   /// u.M u
   double energy() const;
   /// Sum of the products of what must not both be positive: bounds 2 (cost - least cost), where the two below
@@ -58,29 +68,29 @@ class InteriorPoint {
   double body_residual() const;
 
  private:
-  /// A row in the order of elimination, and its pairs: s >= 0, z >= 0, s z -> 0. Without a bound the one pair
-  /// is (x, y); with one they are (bound - x, z0) and (bound + x, z1), where y = z1 - z0.
+  /// A row in the order of elimination. Its pairs stand from `pair` on: s >= 0, z >= 0, s z -> 0. Without a bound the one
+  /// pair is (x, y); with one they are (bound - x, z0) and (bound + x, z1), where y = z1 - z0.
   struct Row {
+    Triple on_first, on_last;
     int first, last, slot;  ///< places of bodies, first < last; first -1: one body only
-    Vec3 on_first, on_last;
+    int pair, pairs;        ///< 0 pairs: its bound is 0, and so is its force
     double offset;
-    int pairs;
-    double sign[2];  ///< ds = sign dx, y = sum of sign z
-    double s[2], z[2], ds[2], dz[2];
-    double aim[2];        ///< what s dz + z ds is to be
     double residual;      ///< y of the velocities less y of the pairs
     double weight, push;  ///< dx = push - weight dy
-
-    double force() const { return pairs == 1 ? s[0] : (s[1] - s[0]) / 2; }
-    double see(const std::vector<Vec3>& u) const;
-    void apply(double force, std::vector<Vec3>& to) const;
-    void set_weight();
-    void set_push(double product, bool corrected);
-    void set_direction(double dx);
+    int leader;
+    double ratio, expected;
   };
+  /// One number of each pair, in the order of rows.
+  using OfPairs = std::vector<double>;
 
+  double force_of(const Row& row) const {
+    return row.pairs == 0 ? 0.0 : row.pairs == 1 ? s_[row.pair] : (s_[row.pair + 1] - s_[row.pair]) / 2;
+  }
   Row ordered(const QpRow& row) const;
-  void start_pairs();
+  void start_pairs(const QpProblem& problem);
+  void start_near(const QpProblem& problem);
+  void follow();
+  void set_bound(Row& row, double bound, double product);
   void measure();
   void factor();
   void find_direction(double centre, bool corrected);
@@ -89,10 +99,15 @@ class InteriorPoint {
   void take(double length);
 
   BlockLdl factor_;
-  std::vector<Vec3> mass_, f_, u_, du_, imbalance_;  ///< in the order of elimination
+  std::vector<Triple> mass_, f_, u_, du_, imbalance_;  ///< in the order of elimination
   std::vector<Row> rows_;
+  OfPairs s_, z_, ds_, dz_;
+  OfPairs aim_;            ///< what s dz + z ds is to be
+  OfPairs per_s_, per_z_;  ///< 1 / s, 1 / z where the factor was made
   int pairs_ = 0, steps_ = 0;
-  double gap_ = 0.0, last_length_ = 1.0;
+  bool following_ = false;
+  int stalled_ = 0;  ///< steps since products were last half of `least_mean_`
+  double gap_ = 0.0, last_length_ = 1.0, followed_at_ = 0.0, least_mean_ = 0.0;
 };
 
 }  // namespace brink

@@ -1,14 +1,8 @@
 #include "brink/scheduler/broad_phase/flight_batch.h"
 
-namespace brink {
+#include "brink/core/base/wide.h"
 
-// The same operations in the same order with any of these instructions, so the same bits. Not with clang, whose
-// version 14 gives the clones a name that other sources do not find.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#define BRINK_WIDE __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define BRINK_WIDE
-#endif
+namespace brink {
 
 BRINK_WIDE void FlightBatch::meet(const Course& a, double now) {
   const Course course = a;  // nothing that is written below is read by it

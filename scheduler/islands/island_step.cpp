@@ -23,8 +23,15 @@ constexpr double kResidual = 1e-6;
 /// rounding, and what faces that turn push into what lies on them, which the true motion takes from their
 /// turning.
 constexpr double kWonOf = 1e-3;
-/// Friction bounds are taken from normal forces that were found with the bounds before, so often.
+
+/// An island in which nobody has more than this part of the speed that its force gives it in the step lies still but for
+/// what the step corrects.
+constexpr double kStill = 1e-3;
+/// Where friction bounds do not follow, so many solves more take them from the forces of the one before, until they are
+/// wrong by no more than this part of the largest force: in an island of few members, and in any other.
 constexpr int kFrictionPasses = 2;
+constexpr double kFrictionExact = 1e-9, kFrictionSettled = 1e-3;
+constexpr std::size_t kFew = 8;
 
 /// A contact that takes part in the step.
 struct Part {
@@ -32,8 +39,7 @@ struct Part {
   double lift = 0.0;  ///< how much higher than its gap it aims [m]
 };
 
-/// The convex problem of one solve: the contacts that take part, with friction bounds from the step
-/// before.
+/// The problem of one solve: the contacts that take part, and what is expected of them.
 StepProblem problem_of(const IslandStep& step, double h, const std::vector<Part>& parts) {
   StepProblem p;
   p.duration = h;
@@ -44,43 +50,61 @@ StepProblem problem_of(const IslandStep& step, double h, const std::vector<Part>
     const IslandContact& c = step.contacts[part.contact];
     StepContact s;
     s.contact = c.rows;
+    s.contact.friction = c.friction;
+    s.contact.rolling_resistance = c.rolling_resistance;
     // A gap below zero by a rounding must not be opened within the step: that takes a speed of gap / h,
     // and the energy of it. Only what a look along the step has missed is made up for.
     s.gap = std::max(c.gap, 0.0) - part.lift;
     // The impulse, if the force goes on as it was. A step before that was shorter than this one counts
     // with its own impulse alone: where it took an impact, its mean force is as large as it was short.
-    const double expected = c.normal_force * std::min(h, c.force_lasted);
-    s.friction_bound = c.friction * expected;
-    s.rolling_bound = c.rolling_resistance * expected;
+    const double lasts = std::min(h, c.force_lasted);
+    s.expected = {c.normal_force * lasts, c.tangential_force * lasts, 0.0};
     s.support_velocity = Vec3(c.normal_support, c.tangential_support, 0.0);
     p.contacts.push_back(s);
   }
   return p;
 }
 
-/// Coulomb by given bounds, each pass with the normal forces of the one before.
-StepResult with_friction(ConeQp& solver, StepProblem& p, const IslandStep& step,
-                         const std::vector<Part>& parts, int& factorisations) {
+/// True of an island that lies still; turns count by the radius of gyration.
+bool lies_still(const IslandStep& step, double h) {
+  for (std::size_t i = 0; i < step.mass.size(); ++i) {
+    const Vec3 &m = step.mass[i], &v = step.velocity[i];
+    const double gains = h * step.force[i].cwiseQuotient(m).head<2>().norm();
+    const double turns = std::isinf(m[2]) ? 0.0 : std::abs(v[2]) * std::sqrt(m[2] / std::min(m[0], m[1]));
+    if (v.head<2>().norm() + turns > kStill * gains) return false;
+  }
+  return true;
+}
+
+/// Of a large island that moves one solve, in which friction bounds follow the normal forces. Any other begins with the
+/// bounds of the step before and ends with those of its own forces, so that from step to step forces come to where they
+/// obey Coulomb's law to rounding: whether it is at rest may hang on less than what following leaves.
+StepResult solve(ConeQp& solver, StepProblem p, double h, const IslandStep& step, int& factorisations) {
+  const bool few = p.mass.size() <= kFew, follow = !few && !lies_still(step, h);
+  for (StepContact& s : p.contacts) {
+    s.coulomb = follow;
+    s.friction_bound = s.contact.friction * s.expected.normal;
+    s.rolling_bound = s.contact.rolling_resistance * s.expected.normal;
+  }
   StepResult result;
   for (int pass = 0; pass <= kFrictionPasses; ++pass) {
     result = solver.step(p);
     factorisations += result.factorisations;
-    if (!(result.residual <= kResidual)) break;
-    // Where no bound changes any more the forces obey Coulomb's law with themselves: one more solve would
-    // give them again. After the last solve the bounds are left as they are, since its result was found
-    // with those.
-    bool same = true;
+    if (follow || !(result.residual <= kResidual)) break;
+    double most = 0.0, wrong = 0.0;
     for (std::size_t k = 0; k < p.contacts.size(); ++k) {
-      const IslandContact& c = step.contacts[parts[k].contact];
-      const double bound = c.friction * result.loads[k].normal;
-      const double rolling = c.rolling_resistance * result.loads[k].normal;
-      same = same && std::abs(bound - p.contacts[k].friction_bound) <= 1e-9 * bound &&
-             std::abs(rolling - p.contacts[k].rolling_bound) <= 1e-9 * rolling;
-      if (pass == kFrictionPasses) continue;
-      p.contacts[k].friction_bound = bound;
-      p.contacts[k].rolling_bound = rolling;
+      StepContact& s = p.contacts[k];
+      s.expected = result.loads[k];
+      const double bound = s.contact.friction * s.expected.normal,
+                   rolling = s.contact.rolling_resistance * s.expected.normal;
+      most = std::max(most, s.expected.normal);
+      if (bound > 0.0) wrong = std::max(wrong, std::abs(s.friction_bound - bound) / s.contact.friction);
+      if (rolling > 0.0)
+        wrong = std::max(wrong, std::abs(s.rolling_bound - rolling) / s.contact.rolling_resistance);
+      s.friction_bound = bound;
+      s.rolling_bound = rolling;
     }
-    if (same) break;
+    if (wrong <= (few ? kFrictionExact : kFrictionSettled) * most) break;
   }
   return result;
 }
@@ -131,10 +155,39 @@ void look_for_corner(double from, double first, double last, Look&& look) {
   }
 }
 
-/// By looks along the step, and where parabolas through them dip in between.
-Miss missed(std::size_t k, double h, const std::vector<Vec3>& velocity, double tolerance,
-            const GapAlong& gap) {
+/// How far a convex gap comes to lie below its tangent within the step, at most [m].
+///
+/// In the frame of the site's owner, which turns by w_s, the sample is at p = R_s^T q, with q = x - x_s + R r, and
+/// |p''| <= w^2 |r| + 2 |w_s| |q'| + w_s^2 |q|. A distance changes by no more than the place, so a convex one has a second
+/// derivative of at least -|p''|.
+double falls_below_tangent(const IslandContact& c, double h, const std::vector<Vec3>& velocity) {
+  const Vec3 of_body = velocity[c.rows.body],
+             of_other = c.rows.other < 0 ? Vec3(Vec3::Zero()) : velocity[c.rows.other];
+  const Vec3 &of_sample = c.sample_on_body ? of_body : of_other,
+             &of_site = c.sample_on_body ? of_other : of_body;
+  const double turns = std::abs(of_sample[2]), site_turns = std::abs(of_site[2]);
+  const double speed = (of_sample - of_site).head<2>().norm() + turns * c.arm;
+  const double bends =
+      turns * turns * c.arm + 2.0 * site_turns * speed + site_turns * site_turns * (c.apart + h * speed);
+  return 0.5 * h * h * bends;
+}
+
+/// True of a gap that cannot be missed: along the tangent it stays open by more than it can fall below it.
+bool stays_open(const IslandContact& c, double h, const std::vector<Vec3>& velocity, double tolerance) {
+  if (!c.convex) return false;
+  double opens = c.rows.normal_on_body.dot(velocity[c.rows.body]);
+  if (c.rows.other >= 0) opens += c.rows.normal_on_other.dot(velocity[c.rows.other]);
+  // beside an end the tangent itself leads behind the site: nothing below it counts as open there
+  const double low = c.at_end ? tolerance : -kMissCounts * tolerance;
+  return c.gap >= low && c.gap + h * opens - falls_below_tangent(c, h, velocity) >= low;
+}
+
+/// By looks along the step, and where parabolas through them dip in between. A miss that does not count may be told as
+/// none.
+Miss missed(const IslandStep& step, std::size_t k, double h, const std::vector<Vec3>& velocity,
+            double tolerance, const GapAlong& gap) {
   Miss miss;
+  if (stays_open(step.contacts[k], h, velocity, tolerance)) return miss;
   std::array<double, kLooks + 1> seen;
   const double start = gap(k, 0.0, velocity);
   // what the scene lets overlap may stay as deep as it is
@@ -239,7 +292,7 @@ StepOutcome without_loads(IslandStep& step, double h, double tolerance, const Ga
     velocity[i] += h * step.force[i].cwiseQuotient(step.mass[i]);
   // all contacts are asked, those that wait for their turn, too
   for (std::size_t k = 0; k < step.contacts.size(); ++k)
-    if (missed(k, h, velocity, tolerance, gap).most > kMissCounts * tolerance) return outcome;
+    if (missed(step, k, h, velocity, tolerance, gap).most > kMissCounts * tolerance) return outcome;
   step.velocity = std::move(velocity);
   for (IslandContact& c : step.contacts) c.normal_force = c.tangential_force = 0.0;
   outcome.solved = true;
@@ -249,7 +302,6 @@ StepOutcome without_loads(IslandStep& step, double h, double tolerance, const Ga
 }  // namespace
 
 /// One loop to two ends: a contact at an end joins once it is missed, and a gap that was missed aims higher.
-/// Within each solve friction bounds follow the normal forces (with_friction()).
 StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap) {
   StepOutcome outcome;
   std::vector<Part> parts;
@@ -261,12 +313,11 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
       parts.push_back({k});
   // Contacts that wait join once each and are not counted as corrections, so that the loop ends.
   for (int again = 0; again < kCorrections && !outcome.solved;) {
-    StepProblem p = problem_of(step, h, parts);
-    StepResult result = with_friction(solver, p, step, parts, outcome.factorisations);
+    StepResult result = solve(solver, problem_of(step, h, parts), h, step, outcome.factorisations);
     if (!(result.residual <= kResidual)) return without_loads(step, h, tolerance, gap, outcome);
     // those that are missed take part from now on: each comes once
     const auto met = std::stable_partition(waiting.begin(), waiting.end(), [&](std::size_t k) {
-      return !(missed(k, h, result.velocity, tolerance, gap).most > kMissCounts * tolerance);
+      return !(missed(step, k, h, result.velocity, tolerance, gap).most > kMissCounts * tolerance);
     });
     // solved again with them before any lift is asked for: without them the motion is another
     if (met != waiting.end()) {
@@ -277,7 +328,7 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
     double worst = 0.0;
     std::vector<double> more;  // lifts that one more solve would need
     for (const Part& part : parts) {
-      const Miss miss = missed(part.contact, h, result.velocity, tolerance, gap);
+      const Miss miss = missed(step, part.contact, h, result.velocity, tolerance, gap);
       worst = std::max(worst, miss.most);
       // From a tenth of the tolerance on, though only a miss beyond the tolerance asks for that solve, which then
       // makes up for all of them.
@@ -326,6 +377,7 @@ bool stays_at_rest(ConeQp& solver, IslandStep& step) {
     p.contacts.push_back(c.rows);
     p.contacts.back().friction = c.friction;
     p.contacts.back().rolling_resistance = c.rolling_resistance;
+    p.expected.push_back({c.normal_force, c.tangential_force, 0.0});
   }
   const RestResult result = solver.rest_forces(p);
   if (result.status != RestResult::Status::rests) return false;

@@ -12,7 +12,7 @@
 ///
 /// Gaps that are convex in the relative place (discs, straight sides that do not turn) lie above their
 /// tangents: none is missed. Order 1 in h; gaps exact. Sources: Moreau 1988; Anitescu & Potra 1997; friction by
-/// a fixed point of given bounds: Haslinger 1983.
+/// a fixed point of given bounds: Haslinger 1983 (interior_point.h).
 
 #include <functional>
 #include <vector>
@@ -31,9 +31,15 @@ struct IslandContact {
   bool driven = false;              ///< its site moves as it is told, and gives what energy that takes
   bool at_end = false;  ///< of a site: its tangent bars the way to what passes by, so that is asked for last
   double normal_force = 0.0;      ///< in: of the step before; 0: new. Out: mean over this one [N]
+  double tangential_force = 0.0;  ///< likewise
   double force_lasted = 0.0;      ///< how long the step before was [s]
-  double tangential_force = 0.0;  ///< out [N]
   double normal_support = 0.0, tangential_support = 0.0;  ///< mean velocity of a site's point [m/s]
+  /// The gap is a convex function of where the sample is in the frame of the site's owner: its tangent at the start is
+  /// left only by what turns, see falls_below_tangent().
+  bool convex = false;
+  bool sample_on_body = true;  ///< the sample is the body's, the site the other's; or the reverse
+  double arm = 0.0;            ///< of the sample from its owner's centre of mass [m]
+  double apart = 0.0;          ///< of the sample from the centre of mass of the site's owner [m]
 };
 
 struct IslandStep {

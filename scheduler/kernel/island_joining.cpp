@@ -6,20 +6,24 @@ namespace brink {
 
 namespace {
 
+/// The most that any point within `radius` [m] of the centre of mass has [m/s].
+double speed_of(const Twist& v, double radius) { return v.velocity.norm() + std::abs(v.omega) * radius; }
+
 /// One body beside an island.
 class Outsider {
  public:
   Outsider(const World& world, const Trajectories& trajectories, const ContactSearch& search,
-           const IslandMembers& members, int body, double h)
+           const IslandMembers& members, int body, double now, double h)
       : world_(world),
         search_(search),
         members_(members),
         body_(body),
         h_(h),
-        state_(trajectories.state_now(body)) {
+        state_(trajectories.state_now(body)),
+        going_(trajectories.body(body).motion.twist(now)) {
     const BodyState rounded = state_.rounded();
     const double radius = search.outline_of(body).bounding_radius;
-    const double speed = rounded.twist.velocity.norm() + std::abs(rounded.twist.omega) * radius;
+    const double speed = std::max(speed_of(rounded.twist, radius), speed_of(going_.rounded(), radius));
     // the members' largest pull stands for its own
     reach_ = h * (speed + members.pull() * h);
     box_.add(rounded.pose.position);
@@ -57,12 +61,23 @@ class Outsider {
     for (const NearFeature& f :
          near_features(search_.outline_of(pair->body), a, search_.outline_of(pair->other_body), b, far)) {
       const RealVec arm = f.point.cast<Real>() + (b.position - a.position);
-      const double closing =
-          static_cast<double>(f.normal.cast<Real>().dot(b.twist.at(f.point.cast<Real>()) - a.twist.at(arm)));
+      const RealVec normal = f.normal.cast<Real>(), other_arm = f.point.cast<Real>();
+      const double closing = static_cast<double>(normal.dot(b.twist.at(other_arm) - a.twist.at(arm)));
+      // the contacts of its own island may stop the member within the step, and an outsider that another island
+      // holds has the last twist of a step already
+      const RealVec& arm_of_outsider = member_first ? other_arm : arm;
+      const double sign = member_first ? 1.0 : -1.0;
+      const auto towards = [&](const ExtendedTwist& v, const RealVec& at) {
+        return sign * static_cast<double>(normal.dot(v.at(at)));
+      };
+      const double of_outsider =
+          std::max(towards(state_.twist, arm_of_outsider), towards(going_, arm_of_outsider));
+      const double of_the_member = std::min(0.0, towards(of_member.twist, member_first ? arm : other_arm));
+      const double may_close = of_outsider - of_the_member;
       // What closes faster is an impact and meets the island by itself. What parts now may still be caught
       // up with.
       // The gap that is left is that of the step's end, closing by as much as the two may.
-      if (closing <= most && f.gap - h_ * (closing + behind) <= search_.limits().tolerance) return true;
+      if (closing <= most && f.gap - h_ * (may_close + behind) <= search_.limits().tolerance) return true;
     }
     return false;
   }
@@ -73,6 +88,7 @@ class Outsider {
   int body_;
   double h_, reach_ = 0.0;
   ExtendedState state_;
+  ExtendedTwist going_;  ///< of its motion: of one that another island holds that of the end of its step
   Box box_;
 };
 
@@ -94,7 +110,7 @@ std::vector<int> joining(const World& world, Trajectories& trajectories, const C
     if (members.has(k)) continue;
     // bodies with clocks of their own may not have been followed so far
     if (!trajectories.cover_body(k, now)) return {};
-    const Outsider outsider(world, trajectories, search, members, k, h);
+    const Outsider outsider(world, trajectories, search, members, k, now, h);
     bool near = false;
     // first against the whole island: nearly all of the world is far from it
     world.periods.overlaps(all, outsider.box(), [&](const Image&) { near = true; });

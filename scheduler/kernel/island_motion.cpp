@@ -379,11 +379,13 @@ IslandContact IslandMotion::island_contact(const HeldContact& c) const {
   made.rolling_resistance = material.rolling_resistance;
   if (const HeldContact* warm = find_warm(warm_, c)) {
     made.normal_force = warm->normal_force;
+    made.tangential_force = warm->tangential_force;
     made.force_lasted = warm->lasted;
   }
   made.at_end = c.feature.at_end;
   made.driven = members_.on_moving_site(c);
   // a body that is a member moves by the unknown twists; a site by what it is told
+  note_shape(c, made);
   if (made.driven) {  // the mean velocity of its point
     const ExtendedState from = members_.other_state(c.pair), to = members_.other_state(c.pair, h_, {});
     // the site's own motion over the step, as one turn and shift of the point that touches
@@ -394,6 +396,23 @@ IslandContact IslandMotion::island_contact(const HeldContact& c) const {
     made.tangential_support = v.dot(perp(c.feature.normal));
   }
   return made;
+}
+
+/// How the gap behaves along a step. Of a segment it is convex in front of it, so of a wire it is not, nor where there is no
+/// way by an end: there what is beside the segment counts as behind it, too. Of an arc it depends on the side.
+void IslandMotion::note_shape(const HeldContact& c, IslandContact& made) const {
+  const NearFeature& f = c.feature;
+  const Outline *of_sample = &search_->outline_of(c.pair.body),
+                *of_site = &search_->outline_of(search_->other_owner(c.pair));
+  if (!f.sample_on_a) std::swap(of_sample, of_site);
+  const Sample& sample = of_sample->samples[f.sample];
+  const SiteKind kind = of_site->sites[f.site].kind;
+  made.convex = !made.driven && !f.thin && !f.no_way_by && !of_site->container && kind != SiteKind::arc;
+  made.sample_on_body = f.sample_on_a;
+  made.arm = sample.p.norm();
+  // from the centre of mass to the point on the site's surface, and on along the normal to the sample
+  const Vec2 to_point = f.sample_on_a ? f.point : Vec2(members_.arm(c).cast<double>());
+  made.apart = to_point.norm() + std::abs(f.gap) + sample.radius;
 }
 
 /// True if nobody moves farther than features were listed for.
@@ -434,9 +453,11 @@ ExtendedState IslandMotion::after(int member) const {
 
 // ---- who stays together
 
-/// A force that is more than a rounding of the heaviest member's weight.
+/// A force that is more than a rounding of the heaviest member's weight; also one of friction alone, of which bounds that
+/// lag may leave some where nothing presses any more: who is let go must have been moved by nobody.
 bool IslandMotion::pushes(const HeldContact& c) const {
-  return c.normal_force > kNoForce * members_.heaviest() * members_.pull();
+  return std::max(c.normal_force, std::abs(c.tangential_force)) >
+         kNoForce * members_.heaviest() * members_.pull();
 }
 
 /// Nothing pushes, but one of the two alone, left to its parabola, could run into the other's step: that has the

@@ -77,6 +77,7 @@ class IslandMotion {
   double kept(const NearFeature& f) const { return f.thin ? search_->limits().touch : 0.0; }
   void make_problem();
   IslandContact island_contact(const HeldContact& c) const;
+  void note_shape(const HeldContact& c, IslandContact& made) const;
   bool stays_within_reach() const;
   double change_of_speed() const;
   void take_forces();

@@ -187,8 +187,19 @@ void Islands::tell(const IslandModes& modes, const IslandMembers& members) {
     note_mode(c.contact, members.other_state(c.contact.pair).position, c.kind);
 }
 
-/// Members are held from now on, also those that join; what they push each other with is taken out.
-IslandMotion Islands::set_out(std::set<int>& members, IslandPace& pace) {
+/// When the step ends that the island of this body is in the middle of, if that one is larger than so many [s]; else
+/// infinity.
+double Islands::larger_step_end(int body, std::size_t than) const {
+  const auto lead = lead_of_.find(body);
+  if (lead == lead_of_.end()) return kForever;
+  const Island& other = islands_.at(lead->second);
+  return !other.rests && other.due > run_->time() && other.members.size() > than ? other.due : kForever;
+}
+
+/// Members are held from now on, also those that join; what they push each other with is taken out. Those of a larger
+/// island in the middle of its step do not: the two meet where that step ends, and `longest` is no later. Else what
+/// falls onto a heap would begin the heap's step anew, and the heap's own look about takes it in in time.
+IslandMotion Islands::set_out(std::set<int>& members, IslandPace& pace, double& longest) {
   WarmContacts warm;
   pace = {};
   // who joins brings an island of its own along, and may be near to others in turn
@@ -205,7 +216,12 @@ IslandMotion Islands::set_out(std::set<int>& members, IslandPace& pace) {
                         *response_, solver_, tally_, warm);
     // who asked for a tolerance has exact impacts
     if (limits_.tolerance == 0.0 && is_agitated(*world_, pace, members)) motion.expect_agitation();
-    const std::vector<int> more = motion.joining(*world_, *trajectories_, run_->time());
+    std::vector<int> more = motion.joining(*world_, *trajectories_, run_->time());
+    std::erase_if(more, [&](int k) {
+      const double other_ends = larger_step_end(k, members.size());
+      longest = std::min(longest, other_ends - run_->time());
+      return other_ends < kForever;
+    });
     if (more.empty()) return motion;
     for (const int k : more) gather(k, members);
   }
@@ -233,7 +249,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   // nobody.
   const RunControl::Indivisible whole(*run_);
   IslandPace pace;
-  IslandMotion motion = set_out(members, pace);
+  IslandMotion motion = set_out(members, pace, longest);
   // Members are in no island by now: all are let go to what moved them before.
   const auto give_up = [&] {
     trajectories_->release(std::vector<int>(members.begin(), members.end()), changed);

@@ -77,7 +77,8 @@ class Islands {
  private:
   void gather(int body, std::set<int>& members) const;
   double slides_off_in(const PairKey& pair, const FeatureContact& f) const;
-  IslandMotion set_out(std::set<int>& members, IslandPace& pace);
+  double larger_step_end(int body, std::size_t than) const;
+  IslandMotion set_out(std::set<int>& members, IslandPace& pace, double& longest);
   bool follow_sites(double now, double h);
   bool begin_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time = false);
   bool carry_out_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time);

@@ -43,25 +43,27 @@ struct Matrix {
 
   void fill(BlockLdl& ldl) const {
     ldl.analyse(n, edges);
-    std::vector<Vec3> placed(n);
-    for (int k = 0; k < n; ++k) placed[ldl.place(k)] = diagonal[k];
+    std::vector<Triple> placed(n);
+    for (int k = 0; k < n; ++k) placed[ldl.place(k)] = Triple::of(diagonal[k]);
     ldl.begin(placed);
     for (std::size_t e = 0; e < edges.size(); ++e) {
       const int i = ldl.place(edges[e].first), j = ldl.place(edges[e].second);
-      ldl.diagonal(i).add(weights[e], on_first[e], on_first[e]);
-      ldl.diagonal(j).add(weights[e], on_second[e], on_second[e]);
-      if (i > j) ldl.below(ldl.slot(i, j)).add(weights[e], on_first[e], on_second[e]);
-      if (j > i) ldl.below(ldl.slot(j, i)).add(weights[e], on_second[e], on_first[e]);
+      const Triple first = Triple::of(on_first[e]), second = Triple::of(on_second[e]);
+      ldl.diagonal(i).add(weights[e], first, first);
+      ldl.diagonal(j).add(weights[e], second, second);
+      if (i > j) ldl.below(ldl.slot(i, j)).add(weights[e], first, second);
+      if (j > i) ldl.below(ldl.slot(j, i)).add(weights[e], second, first);
     }
     ldl.factor();
   }
 };
 
 std::vector<Vec3> solve(const BlockLdl& ldl, const std::vector<Vec3>& b) {
-  std::vector<Vec3> placed(b.size()), x(b.size());
-  for (std::size_t k = 0; k < b.size(); ++k) placed[ldl.place(static_cast<int>(k))] = b[k];
+  std::vector<Triple> placed(b.size());
+  std::vector<Vec3> x(b.size());
+  for (std::size_t k = 0; k < b.size(); ++k) placed[ldl.place(static_cast<int>(k))] = Triple::of(b[k]);
   ldl.solve(placed);
-  for (std::size_t k = 0; k < b.size(); ++k) x[k] = placed[ldl.place(static_cast<int>(k))];
+  for (std::size_t k = 0; k < b.size(); ++k) x[k] = placed[ldl.place(static_cast<int>(k))].vector();
   return x;
 }
 
@@ -134,15 +136,16 @@ TEST(BlockLdl, EdgesTwiceAndTurnedAreTheSameGraph) {
 TEST(BlockLdl, StiffTieLeavesPivotsPositive) {
   BlockLdl ldl;
   ldl.analyse(2, {{0, 1}});
-  ldl.begin({Vec3::Ones(), Vec3::Ones()});
-  const Vec3 a(1.0, 0.0, 0.0);
+  const Triple one = Triple::of(Vec3::Ones()), a = Triple::of(Vec3::UnitX()),
+               minus_a = Triple::of(-Vec3::UnitX());
+  ldl.begin({one, one});
   ldl.diagonal(0).add(1e30, a, a);
   ldl.diagonal(1).add(1e30, a, a);
-  ldl.below(ldl.slot(1, 0)).add(1e30, a, -a);
+  ldl.below(ldl.slot(1, 0)).add(1e30, a, minus_a);
   ldl.factor();
-  std::vector<Vec3> x = {Vec3::Ones(), Vec3::Ones()};
+  std::vector<Triple> x = {one, one};
   ldl.solve(x);
-  for (const Vec3& v : x) EXPECT_TRUE(v.allFinite() && v.x() > 0.0) << v.transpose();
+  for (const Triple& v : x) EXPECT_TRUE(v.vector().allFinite() && v.at[0] > 0.0) << v.vector().transpose();
 }
 
 }  // namespace

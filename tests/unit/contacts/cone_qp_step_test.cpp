@@ -292,6 +292,48 @@ TEST(Step, RandomProblemsAreProved) {
   }
 }
 
+// The search may begin near what is expected, rightly or wrongly: it ends with the same answer.
+TEST(Step, WhatIsExpectedChangesNoAnswer) {
+  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    Random random(seed);
+    StepProblem problem = random_problem(random, true);
+    for (Vec3& m : problem.mass)
+      for (int c = 0; c < 2; ++c)
+        if (std::isinf(m[c])) m[c] = 1.0;
+    const StepResult before = ConeQp().step(problem);
+    for (std::size_t k = 0; k < problem.contacts.size(); ++k) {
+      const ContactLoad& load = before.loads[k];
+      const double part = random.uniform(0.0, 2.0);
+      problem.contacts[k].expected = {part * load.normal, part * load.tangential, part * load.rolling};
+    }
+    const StepResult after = ConeQp().step(problem);
+    expect_proved(problem, after);
+    for (std::size_t k = 0; k < problem.mass.size(); ++k)
+      EXPECT_LE((after.velocity[k] - before.velocity[k]).cwiseAbs().maxCoeff(), 1e-6) << "body " << k;
+    if (HasFailure()) return;
+  }
+}
+
+// A disc that slides at 1 m/s and one that is pressed upon it from above: friction is mu times what presses, without a bound
+// that is given.
+TEST(Step, BoundsFollowWhatPresses) {
+  StepProblem problem = discs(2);
+  problem.velocity[0].x() = problem.velocity[1].x() = 1.0;
+  problem.contacts = {on_floor(0, 0.0), {}};
+  problem.contacts[1].contact = contact_at(1, 0, {0.0, 1.0}, {0.0, -0.5}, {0.0, 0.5});
+  for (StepContact& s : problem.contacts) {
+    s.contact.friction = 0.1;
+    s.coulomb = true;
+  }
+  const StepResult result = ConeQp().step(problem);
+  ASSERT_EQ(result.status, Status::solved);
+  const double weight = 0.01 * kGravity;
+  EXPECT_NEAR(result.loads[0].normal, 2.0 * weight, 1e-9);
+  EXPECT_NEAR(result.loads[0].tangential, 0.1 * 2.0 * weight, 0.01 * weight);
+  EXPECT_LE(std::abs(result.loads[1].tangential), 0.1 * weight * 1.01);
+}
+
 /// Without friction: normal impulses as a linear complementarity problem in the contacts.
 std::vector<Vec3> by_lcp(const StepProblem& problem) {
   const auto n = static_cast<Eigen::Index>(problem.contacts.size());
