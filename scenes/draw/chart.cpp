@@ -1,4 +1,4 @@
-/// A page from the top: title and note in one line, the legend in as many lines as it takes, panels in rows
+/// A page from the top: title and note in one line if they fit, the legend in as many lines as it takes, panels in rows
 /// of two. All panels are of one size; the page grows. Within a panel a Scale takes values to places 0..1,
 /// and a PanelFrame takes places to pixels.
 ///
@@ -142,9 +142,14 @@ class ChartSheet {
         // Members in the order of their declaration, each from those before: place_legend() reads width_.
         columns_(std::clamp(static_cast<int>(chart.panels.size()), 1, kColumns)),
         width_(columns_ * (kPanelWidth + kMargin) + kMargin),
+        // Estimates, as the legend's.
+        note_below_(12.6 * static_cast<double>(chart.title.size()) +
+                        6.8 * static_cast<double>(chart.note.size()) >
+                    width_ - 3 * kMargin),
+        head_(kHead + (note_below_ && !chart.note.empty() ? 22 : 0)),
         // The legend's lines decide where panels begin: it is laid out once without being drawn.
         legend_lines_(place_legend(nullptr)),
-        top_(kHead + legend_lines_ * kLegendLine + 10) {
+        top_(head_ + legend_lines_ * kLegendLine + 10) {
     const int rows = (static_cast<int>(chart.panels.size()) + columns_ - 1) / columns_;
     height_ = top_ + rows * (kPanelHeight + kMargin);
   }
@@ -164,7 +169,10 @@ class ChartSheet {
   /// Both papers get the same: a PNG and the SVG beside it show one page.
   void draw(Canvas& canvas) const {
     canvas.text(kMargin, 38, chart_.title, 21, kInk, Align::left, true);
-    canvas.text(width_ - kMargin, 38, chart_.note, 13, kPale, Align::right);
+    if (note_below_)
+      canvas.text(kMargin, 60, chart_.note, 13, kPale, Align::left);
+    else
+      canvas.text(width_ - kMargin, 38, chart_.note, 13, kPale, Align::right);
     place_legend(&canvas);
     for (int k = 0; k < static_cast<int>(chart_.panels.size()); ++k)
       draw_panel(canvas, kMargin + (k % columns_) * (kPanelWidth + kMargin),
@@ -204,7 +212,7 @@ class ChartSheet {
       const double wide = 40.0 + 8.6 * static_cast<double>(name.size());
       if (x > kMargin && x + wide > width_ - kMargin) x = kMargin, ++line;
       if (canvas) {
-        const double y = kHead + (line + 0.5) * kLegendLine;
+        const double y = head_ + (line + 0.5) * kLegendLine;
         draw_spot(*canvas, at(x + 6, y - 5), 5.0, k, color(k));
         canvas->text(x + 18, y, name, 14, kInk, Align::left);
       }
@@ -305,7 +313,9 @@ class ChartSheet {
   }
 
   const Chart& chart_;
-  int columns_, width_, legend_lines_, top_, height_ = 0;
+  int columns_, width_;
+  bool note_below_;
+  int head_, legend_lines_, top_, height_ = 0;
 };
 
 }  // namespace

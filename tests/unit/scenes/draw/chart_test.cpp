@@ -121,5 +121,23 @@ TEST(Chart, CategoriesAreNotJoinedAndWhatIsNoNumberIsLeftOut) {
   EXPECT_LT(gap, names);
 }
 
+// A long note beside a long title would be written over it.
+TEST(Chart, ANoteThatDoesNotFitBesideTheTitleStandsBelow) {
+  Chart chart = chart_of({{1.0, 1.0}});
+  const Picture bare = chart_picture(chart);
+  chart.note = "short";
+  EXPECT_EQ(chart_picture(chart).height, bare.height);
+  chart.title = "Error against run time";
+  const int titled = chart_picture(chart).height;
+  chart.note = std::string(70, 'm');
+  const Picture both = chart_picture(chart);
+  EXPECT_GT(both.height, titled);
+  chart.note = std::string(70, ' ');
+  const Picture without = chart_picture(chart);
+  for (int row = 0; row < 45; ++row)
+    for (int column = 0; column < both.width; ++column)
+      ASSERT_EQ(both.at(column, row), without.at(column, row)) << "ink over the title";
+}
+
 }  // namespace
 }  // namespace brink
