@@ -35,6 +35,15 @@ constexpr double kPi = 3.14159265358979323846;
 using Matrix = Eigen::Matrix<double, kDegree + 1, kDegree + 1>;
 using Columns = Eigen::Matrix<double, kDegree + 1, 3>;  // x, y, angle
 
+/// Eigen's own would have other last bits on processors with fused products.
+Columns product(const Matrix& a, const Columns& b) {
+  Columns sums = Columns::Zero();
+  for (int column = 0; column < sums.cols(); ++column)
+    for (int k = 0; k <= kDegree; ++k)
+      for (int row = 0; row <= kDegree; ++row) sums(row, column) += a(row, k) * b(k, column);
+  return sums;
+}
+
 /// Chebyshev-Lobatto points on [-1, 1] and one between each two of them; the maps from values at the
 /// former to Chebyshev coefficients, and from those to monomials. Two maps, because their product would
 /// cancel.
@@ -65,13 +74,13 @@ struct Nodes {
   /// Monomial coefficients of the interpolant. Trailing Chebyshev coefficients that are rounding of the
   /// values are dropped: they would only be amplified in the rates.
   Columns monomials(const Columns& values) const {
-    Columns chebyshev = to_chebyshev * values;
+    Columns chebyshev = product(to_chebyshev, values);
     for (int i = 0; i < 3; ++i) {
       const double rounding =
           2.0 * std::numeric_limits<double>::epsilon() * values.col(i).cwiseAbs().maxCoeff();
       for (int k = kDegree; k > 0 && std::abs(chebyshev(k, i)) <= rounding; --k) chebyshev(k, i) = 0.0;
     }
-    return to_monomial * chebyshev;
+    return product(to_monomial, chebyshev);
   }
 };
 

@@ -10,9 +10,6 @@ namespace brink {
 
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 /// Rows that depend on each other to this part are redundant.
 constexpr double kRedundant = 1e-10;
 /// What accelerations may miss of closed contacts, of the largest that takes part.
@@ -26,17 +23,18 @@ constexpr int kNewtonSteps = 4;
 /// From J a + bend = 0 with a = f + M^-1 G load: (J M^-1 G) load = -(bend + J f), which is (rows . columns)
 /// loads = right.
 struct System {
-  MatrixXd rows, columns;
-  VectorXd right;           ///< of rows . x = right, x = M^1/2 (a - f)
+  PlainMatrix rows, columns;
+  PlainVector right;        ///< of rows . x = right, x = M^1/2 (a - f)
   std::vector<int> of;      ///< contact of each row
   std::vector<bool> along;  ///< true: its tangential row
-  VectorXd scale;           ///< rows were multiplied by; columns too
+  PlainVector scale;        ///< rows were multiplied by; columns too
 };
 
 /// M^-1/2. 0 where a coordinate is held: a row has nothing there, and nothing is moved along it.
-VectorXd root_of(const ModeProblem& problem) {
-  VectorXd root(3 * problem.bodies());
-  for (int k = 0; k < problem.bodies(); ++k) root.segment<3>(3 * k) = problem.inverse_mass[k].cwiseSqrt();
+PlainVector root_of(const ModeProblem& problem) {
+  PlainVector root(3 * problem.bodies());
+  for (int k = 0; k < problem.bodies(); ++k)
+    root.segment<3>(3 * k) = problem.inverse_mass[k].cwiseSqrt().cast<PlainDouble>();
   return root;
 }
 
@@ -47,36 +45,37 @@ double friction_sign(MotionMode mode) {
 
 /// Over the coordinates of all bodies: normal_row() . velocities is v_n of contact k, and its transpose is
 /// what a normal force of 1 N does to the bodies; likewise the tangent's.
-VectorXd normal_row(const ModeProblem& p, const ContactRates& r, std::size_t k) {
-  return row_of(p, p.contacts[k], r.normal_on_sample, r.normal_on_site);
+PlainVector normal_row(const ModeProblem& p, const ContactRates& r, std::size_t k) {
+  return row_of(p, p.contacts[k], r.normal_on_sample, r.normal_on_site).cast<PlainDouble>();
 }
-VectorXd tangent_row(const ModeProblem& p, const ContactRates& r, std::size_t k) {
-  return row_of(p, p.contacts[k], r.tangent_on_sample, r.tangent_on_site);
+PlainVector tangent_row(const ModeProblem& p, const ContactRates& r, std::size_t k) {
+  return row_of(p, p.contacts[k], r.tangent_on_sample, r.tangent_on_site).cast<PlainDouble>();
 }
 
 /// One row and one column a normal force, one more where it sticks. With slip the column n -+ mu t is not
 /// the row n: the matrix is not symmetric then, and need not be definite (Painleve 1895).
 System system_of(const ModeProblem& problem, const ModeMoment& moment, const std::vector<MotionMode>& modes) {
-  const VectorXd root = root_of(problem);
+  const PlainVector root = root_of(problem);
   System s;
-  std::vector<VectorXd> rows, columns;
-  std::vector<double> right, scale;
-  const auto add = [&](std::size_t k, const VectorXd& row, const VectorXd& column, double bend, bool along) {
-    const VectorXd r = row.cwiseProduct(root);
+  std::vector<PlainVector> rows, columns;
+  std::vector<PlainDouble> right, scale;
+  const auto add = [&](std::size_t k, const PlainVector& row, const PlainVector& column, double bend,
+                       bool along) {
+    const PlainVector r = row.cwiseProduct(root);
     // The column is scaled as its row is, so that loads are forces divided by the scale (read_forces); a
     // row between what is held on both sides is 0.
-    const double length = r.norm(), by = length > 0.0 ? 1.0 / length : 0.0;
+    const PlainDouble length = r.norm(), by = length > 0.0 ? 1.0 / length : 0.0;
     rows.push_back(by * r);
     columns.push_back(by * column.cwiseProduct(root));
-    right.push_back(-by * (bend + row.dot(moment.free)));
+    right.push_back(-by * (bend + row.dot(moment.free.cast<PlainDouble>())));
     scale.push_back(by);
     s.of.push_back(static_cast<int>(k));
     s.along.push_back(along);
   };
   for (std::size_t k = 0; k < modes.size(); ++k) {
     if (!is_closed(modes[k])) continue;
-    const VectorXd n = normal_row(problem, moment.contacts[k], k),
-                   t = tangent_row(problem, moment.contacts[k], k);
+    const PlainVector n = normal_row(problem, moment.contacts[k], k),
+                      t = tangent_row(problem, moment.contacts[k], k);
     // friction that slips is no unknown: q = -+ mu p joins the normal force's column
     const double sign = friction_sign(modes[k]) * problem.contacts[k].friction;
     add(k, n, n + sign * t, moment.contacts[k].normal_bend, false);
@@ -89,17 +88,17 @@ System system_of(const ModeProblem& problem, const ModeMoment& moment, const std
     s.rows.row(i) = rows[i].transpose();
     s.columns.col(i) = columns[i];
   }
-  s.right = Eigen::Map<const VectorXd>(right.data(), count);
-  s.scale = Eigen::Map<const VectorXd>(scale.data(), count);
+  s.right = Eigen::Map<const PlainVector>(right.data(), count);
+  s.scale = Eigen::Map<const PlainVector>(scale.data(), count);
   return s;
 }
 
 /// Forces that the system's columns give.
 void read_forces(const ModeProblem& problem, const std::vector<MotionMode>& modes, const System& s,
-                 const VectorXd& loads, ModeForces& f) {
+                 const PlainVector& loads, ModeForces& f) {
   for (Eigen::Index i = 0; i < loads.size(); ++i) {
     const int k = s.of[i];
-    const double load = s.scale[i] * loads[i];
+    const double load(s.scale[i] * loads[i]);
     if (s.along[i]) {
       f.tangential[k] = load;
     } else {
@@ -133,15 +132,15 @@ void find_margin(const ModeProblem& problem, const std::vector<MotionMode>& mode
 /// together push with is unique, so it is asked whether it lies in the cone that the contacts' own cones
 /// span: two edges (1, +-mu) where it sticks, one where it slips.
 void find_admissible(const ModeProblem& problem, const ModeMoment& moment,
-                     const std::vector<MotionMode>& modes, const VectorXd& pushed, ModeForces& f) {
+                     const std::vector<MotionMode>& modes, const PlainVector& pushed, ModeForces& f) {
   // edges in the mass metric, as `pushed` is
-  const VectorXd root = root_of(problem);
-  std::vector<VectorXd> edges;
+  const PlainVector root = root_of(problem);
+  std::vector<PlainVector> edges;
   std::vector<std::pair<int, double>> of;  // contact, tangential part
   for (std::size_t k = 0; k < modes.size(); ++k) {
     if (!is_closed(modes[k])) continue;
-    const VectorXd n = normal_row(problem, moment.contacts[k], k),
-                   t = tangent_row(problem, moment.contacts[k], k);
+    const PlainVector n = normal_row(problem, moment.contacts[k], k),
+                      t = tangent_row(problem, moment.contacts[k], k);
     const double mu = problem.contacts[k].friction;
     const auto add = [&](double part) {
       edges.push_back((n + part * t).cwiseProduct(root));
@@ -154,21 +153,21 @@ void find_admissible(const ModeProblem& problem, const ModeMoment& moment,
       add(-mu);
     }
   }
-  MatrixXd cone(pushed.size(), static_cast<Eigen::Index>(edges.size()));
-  VectorXd lengths(static_cast<Eigen::Index>(edges.size()));
+  PlainMatrix cone(pushed.size(), static_cast<Eigen::Index>(edges.size()));
+  PlainVector lengths(static_cast<Eigen::Index>(edges.size()));
   for (std::size_t i = 0; i < edges.size(); ++i) {
     // fit_nonnegative() wants columns of length one; an edge between what is held stays 0
     lengths[i] = edges[i].norm();
-    cone.col(i) = lengths[i] > 0.0 ? VectorXd(edges[i] / lengths[i]) : edges[i];
+    cone.col(i) = lengths[i] > 0.0 ? PlainVector(edges[i] / lengths[i]) : edges[i];
   }
   const NonNegativeFit fit = fit_nonnegative(cone, pushed);
-  const double left = fit.residual / std::max(pushed.norm(), std::numeric_limits<double>::min());
+  const double left = fit.residual / std::max(double(pushed.norm()), std::numeric_limits<double>::min());
   // it says no more than yes or no: forces that are inside have no room that could be followed to 0
   f.margin = left <= kBalances ? kBalances : -left;
   std::fill(f.normal.begin(), f.normal.end(), 0.0);
   std::fill(f.tangential.begin(), f.tangential.end(), 0.0);
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    const double load = lengths[i] > 0.0 ? fit.x[i] / lengths[i] : 0.0;
+    const double load(lengths[i] > 0.0 ? fit.x[i] / lengths[i] : 0.0);
     f.normal[of[i].first] += load;
     f.tangential[of[i].first] += of[i].second * load;
   }
@@ -176,10 +175,10 @@ void find_admissible(const ModeProblem& problem, const ModeMoment& moment,
 
 /// Rows of the closed contacts, and what they are off: gaps, or velocities that must be 0 (a contact that
 /// sticks has its tangential one, too).
-std::vector<VectorXd> closed_rows(const ModeProblem& problem, const std::vector<ContactRates>& rates,
-                                  const std::vector<MotionMode>& modes, bool velocities,
-                                  std::vector<double>& off) {
-  std::vector<VectorXd> rows;
+std::vector<PlainVector> closed_rows(const ModeProblem& problem, const std::vector<ContactRates>& rates,
+                                     const std::vector<MotionMode>& modes, bool velocities,
+                                     std::vector<double>& off) {
+  std::vector<PlainVector> rows;
   off.clear();
   for (std::size_t k = 0; k < modes.size(); ++k) {
     if (!is_closed(modes[k])) continue;
@@ -193,20 +192,20 @@ std::vector<VectorXd> closed_rows(const ModeProblem& problem, const std::vector<
 }
 
 /// M^-1/2 times the shortest y with (J M^-1/2) y = -off: of all corrections the one with the least x.M x.
-VectorXd least_change(const ModeProblem& problem, const std::vector<VectorXd>& rows,
-                      const std::vector<double>& off) {
-  const VectorXd root = root_of(problem);
-  MatrixXd system(static_cast<Eigen::Index>(rows.size()), root.size());
-  VectorXd right(system.rows());
+PlainVector least_change(const ModeProblem& problem, const std::vector<PlainVector>& rows,
+                         const std::vector<double>& off) {
+  const PlainVector root = root_of(problem);
+  PlainMatrix system(static_cast<Eigen::Index>(rows.size()), root.size());
+  PlainVector right(system.rows());
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const VectorXd row = rows[i].cwiseProduct(root);
+    const PlainVector row = rows[i].cwiseProduct(root);
     // length one, so that redundancy is told alike of rows of light and heavy bodies
-    const double length = row.norm(), by = length > 0.0 ? 1.0 / length : 0.0;
+    const PlainDouble length = row.norm(), by = length > 0.0 ? 1.0 / length : 0.0;
     system.row(i) = by * row.transpose();
     right[i] = -by * off[i];
   }
   // rows may be redundant: of all changes that miss least the shortest
-  Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver;
+  Eigen::CompleteOrthogonalDecomposition<PlainMatrix> solver;
   solver.setThreshold(kRedundant);
   solver.compute(system);
   return solver.solve(right).cwiseProduct(root);
@@ -223,18 +222,18 @@ ModeForces forces_in(const ModeProblem& problem, const ModeMoment& moment,
   f.margin = 1.0;
   const System s = system_of(problem, moment, modes);
   if (s.right.size() == 0) return f;
-  Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver;
+  Eigen::CompleteOrthogonalDecomposition<PlainMatrix> solver;
   // of redundant forces the least, in scaled units
   solver.setThreshold(kRedundant);
-  const MatrixXd matrix = s.rows * s.columns;
+  const PlainMatrix matrix = s.rows * s.columns;
   solver.compute(matrix);
-  const VectorXd loads = solver.solve(s.right);
-  const double missed = (matrix * loads - s.right).norm();
+  const PlainVector loads = solver.solve(s.right);
+  const PlainDouble missed = (matrix * loads - s.right).norm();
   // a singular system may have no solution: contacts that contradict each other, or slip that jams
   f.consistent = loads.allFinite() && missed <= kConsistent * s.right.norm();
   // unique, though the loads need not be: M^1/2 times what contacts add to the accelerations
-  const VectorXd pushed = s.columns * loads;
-  f.acceleration += pushed.cwiseProduct(root_of(problem));
+  const PlainVector pushed = s.columns * loads;
+  f.acceleration += pushed.cwiseProduct(root_of(problem)).cast<double>();
   read_forces(problem, modes, s, loads, f);
   if (!with_margin) return f;
   find_margin(problem, modes, f);
@@ -247,15 +246,15 @@ std::vector<BodyState> projected(const ModeProblem& problem, double t, std::vect
                                  const std::vector<MotionMode>& modes) {
   std::vector<double> off;
   const auto move = [&](bool velocities) {
-    const std::vector<VectorXd> rows =
+    const std::vector<PlainVector> rows =
         closed_rows(problem, rates_at(problem, t, states, modes), modes, velocities, off);
     if (rows.empty()) return;
-    const VectorXd change = least_change(problem, rows, off);
+    const PlainVector change = least_change(problem, rows, off);
     for (int k = 0; k < problem.bodies(); ++k) {
       Vec2& linear = velocities ? states[k].twist.velocity : states[k].pose.position;
       double& angular = velocities ? states[k].twist.omega : states[k].pose.angle;
-      linear += change.segment<2>(3 * k);
-      angular += change[3 * k + 2];
+      linear += change.segment<2>(3 * k).cast<double>();
+      angular += double(change[3 * k + 2]);
     }
   };
   // gaps are not linear in places: Newton, to the rounding of places; velocities are linear, once is

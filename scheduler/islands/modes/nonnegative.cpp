@@ -10,22 +10,20 @@ namespace brink {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 /// A column joins if it reduces the residual by more than this part of |b|.
 constexpr double kJoins = 1e-14;
 
 /// Least squares over the columns that have joined; 0 elsewhere.
-VectorXd solve_joined(const MatrixXd& A, const VectorXd& b, const std::vector<bool>& joined) {
+PlainVector solve_joined(const PlainMatrix& A, const PlainVector& b, const std::vector<bool>& joined) {
   std::vector<Index> columns;
   for (Index j = 0; j < A.cols(); ++j)
     if (joined[j]) columns.push_back(j);
-  MatrixXd part(A.rows(), static_cast<Index>(columns.size()));
+  PlainMatrix part(A.rows(), static_cast<Index>(columns.size()));
   for (std::size_t i = 0; i < columns.size(); ++i) part.col(i) = A.col(columns[i]);
   // redundant contacts make columns depend on each other: of all that fit this is the shortest
-  const VectorXd some = part.completeOrthogonalDecomposition().solve(b);
-  VectorXd x = VectorXd::Zero(A.cols());
+  const PlainVector some = part.completeOrthogonalDecomposition().solve(b);
+  PlainVector x = PlainVector::Zero(A.cols());
   for (std::size_t i = 0; i < columns.size(); ++i) x[columns[i]] = some[i];
   return x;
 }
@@ -34,22 +32,23 @@ VectorXd solve_joined(const MatrixXd& A, const VectorXd& b, const std::vector<bo
 /// A column's product with what is left of b is the rate at which half the residual's square falls as its
 /// x grows. Where none of those that have not joined has one > 0, the fit is least (Karush, Kuhn and
 /// Tucker).
-Index steepest(const MatrixXd& A, const VectorXd& left, const std::vector<bool>& joined, double least) {
+Index steepest(const PlainMatrix& A, const PlainVector& left, const std::vector<bool>& joined,
+               PlainDouble least) {
   Index best = -1;
   for (Index j = 0; j < A.cols(); ++j) {
     if (joined[j]) continue;
-    if (const double w = A.col(j).dot(left); w > least) best = j, least = w;
+    if (const PlainDouble w = A.col(j).dot(left); w > least) best = j, least = w;
   }
   return best;
 }
 
 /// From x towards z as far as nothing becomes negative; what comes to 0 leaves.
-void go_towards(VectorXd& x, const VectorXd& z, std::vector<bool>& joined) {
-  double part = 1.0;
+void go_towards(PlainVector& x, const PlainVector& z, std::vector<bool>& joined) {
+  PlainDouble part = 1.0;
   Index first = -1;
   for (Index j = 0; j < x.size(); ++j)
     if (joined[j] && z[j] <= 0.0)
-      if (const double p = x[j] / (x[j] - z[j]); first < 0 || p < part) part = p, first = j;
+      if (const PlainDouble p = x[j] / (x[j] - z[j]); first < 0 || p < part) part = p, first = j;
   x += part * (z - x);
   for (Index j = 0; j < x.size(); ++j)
     // the first leaves by name: roundings may leave its x a little above 0
@@ -61,13 +60,13 @@ void go_towards(VectorXd& x, const VectorXd& z, std::vector<bool>& joined) {
 
 }  // namespace
 
-NonNegativeFit fit_nonnegative(const MatrixXd& A, const VectorXd& b) {
+NonNegativeFit fit_nonnegative(const PlainMatrix& A, const PlainVector& b) {
   NonNegativeFit fit;
-  fit.x = VectorXd::Zero(A.cols());
+  fit.x = PlainVector::Zero(A.cols());
   std::vector<bool> joined(A.cols(), false);
   // Each round has a lesser residual, so no set of columns comes twice: the bound is there for roundings.
   const Index most = 3 * A.cols() + 10;
-  double least_residual = b.norm();
+  PlainDouble least_residual = b.norm();
   for (Index round = 0; round < most; ++round) {
     const Index next = steepest(A, b - A * fit.x, joined, kJoins * b.norm());
     if (next < 0) break;
@@ -76,7 +75,7 @@ NonNegativeFit fit_nonnegative(const MatrixXd& A, const VectorXd& b) {
     joined[next] = true;
     // each pass that does not end lets a column go
     for (Index inner = 0; inner <= A.cols(); ++inner) {
-      const VectorXd z = solve_joined(A, b, joined);
+      const PlainVector z = solve_joined(A, b, joined);
       bool inside = true;
       for (Index j = 0; j < z.size(); ++j) inside = inside && (!joined[j] || z[j] > 0.0);
       if (inside) {
@@ -85,14 +84,14 @@ NonNegativeFit fit_nonnegative(const MatrixXd& A, const VectorXd& b) {
       }
       go_towards(fit.x, z, joined);
     }
-    const double residual = (A * fit.x - b).norm();
+    const PlainDouble residual = (A * fit.x - b).norm();
     if (!(residual < least_residual)) {  // rounding: it does not get any better
       fit = before;
       break;
     }
     least_residual = residual;
   }
-  fit.residual = (A * fit.x - b).norm();
+  fit.residual = double((A * fit.x - b).norm());
   return fit;
 }
 
