@@ -22,7 +22,6 @@ IslandMembers::IslandMembers(const World& world, const Trajectories& trajectorie
       bodies_(members.begin(), members.end()) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const int k = bodies_[i];
-    place_[k] = static_cast<int>(i);
     states_.push_back(trajectories.state_now(k));
     accelerations_.push_back(trajectories.acceleration(k));
     const double radius = search.outline_of(k).bounding_radius;

@@ -1,8 +1,8 @@
 #pragma once
 /// Bodies of one island at one instant, and everything that is near them.
 
+#include <algorithm>
 #include <limits>
-#include <map>
 #include <set>
 #include <vector>
 
@@ -28,8 +28,11 @@ class IslandMembers {
   std::size_t count() const { return bodies_.size(); }
   const std::vector<int>& bodies() const { return bodies_; }  ///< ascending
   const Body& body(int member) const { return world_->bodies[bodies_[member]]; }
-  int place_of(int body) const { return place_.at(body); }
-  bool has(int body) const { return place_.count(body) > 0; }
+  /// @pre it is one of them
+  int place_of(int body) const {
+    return static_cast<int>(std::lower_bound(bodies_.begin(), bodies_.end(), body) - bodies_.begin());
+  }
+  bool has(int body) const { return std::binary_search(bodies_.begin(), bodies_.end(), body); }
   const ExtendedState& state(int member) const { return states_[member]; }
   const Acceleration& acceleration(int member) const { return accelerations_[member]; }
   /// Gives a member another twist; find_speeds() is due then.
@@ -87,7 +90,6 @@ class IslandMembers {
   double now_;
   double h_ = 0.0, reach_ = 0.0;
   std::vector<int> bodies_;
-  std::map<int, int> place_;  ///< of each body
   std::vector<ExtendedState> states_;
   std::vector<Acceleration> accelerations_;
   std::vector<double> speeds_, pulls_;  ///< [m/s], [m/s^2], of any point of each

@@ -193,7 +193,8 @@ double Islands::larger_step_end(int body, std::size_t than) const {
   const auto lead = lead_of_.find(body);
   if (lead == lead_of_.end()) return kForever;
   const Island& other = islands_.at(lead->second);
-  return !other.rests && other.due > run_->time() && other.members.size() > than ? other.due : kForever;
+  const bool goes_on = !other.rests && other.due - run_->time() > same_instant(run_->time());
+  return goes_on && other.members.size() > than ? other.due : kForever;
 }
 
 /// Members are held from now on, also those that join; what they push each other with is taken out. Those of a larger
