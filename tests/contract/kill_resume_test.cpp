@@ -243,6 +243,24 @@ TEST_P(KillResume, TwentyKillsAndOneEndGiveTheUndisturbedRun) {
   EXPECT_EQ(difference(contacts(a), contacts(b)), "");
 }
 
+// Killed after its last checkpoint, before it could say that it has ended: by then nothing is left to be done but that,
+// and the frame at an end that is on no frame clock is there, once.
+TEST_P(KillResume, KilledAfterItsLastCheckpointKeepsItsLastFrame) {
+  for (const double until : {1.234, 1.25}) {
+    const std::string name = "whole" + std::to_string(until), killed = "killed" + std::to_string(until);
+    run_for_seconds(scene(), out(name.c_str()), until);
+    fs::copy(out(name.c_str()), out(killed.c_str()), fs::copy_options::recursive);
+    const fs::path a = out(name.c_str()) / "run.db", b = out(killed.c_str()) / "run.db";
+    SQLite::Database(b.string(), SQLite::OPEN_READWRITE)
+        .exec("UPDATE meta SET value = 'running' WHERE key = 'termination'");
+    ASSERT_EQ(ending(start(scene(), out(killed.c_str()), until, true)), 0);
+    EXPECT_EQ(RunFile(b).meta("termination"), "reached_end");
+    EXPECT_EQ(RunFile(a).meta("state_hash"), RunFile(b).meta("state_hash"));
+    EXPECT_EQ(difference(frames(a), frames(b)), "") << until;
+    EXPECT_EQ(difference(events(a), events(b)), "") << until;
+  }
+}
+
 // Ctrl-C: exit status 1, termination "stopped", a whole file; gone on with, it is the undisturbed run, frames
 // and all.
 TEST_P(KillResume, InterruptedRunStopsInOrderAndGoesOn) {
