@@ -238,9 +238,9 @@ class GroupResponse::Group {
     double speed = 0.0;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
       const ExtendedTwist& t = members_[k].twist;
-      speed = std::max(speed, static_cast<double>(t.velocity.lpNorm<1>() +
-                                                  abs(t.omega) *
-                                                      parts_.search_.outline_of(bodies_[k]).bounding_radius));
+      speed = std::max(
+          speed, static_cast<double>(t.velocity.lpNorm<1>() +
+                                     abs(t.omega) * parts_.search_.outline_of(bodies_[k]).bounding_radius));
     }
     return speed;
   }
