@@ -38,8 +38,6 @@ struct RestProblem {
   std::vector<Vec3> mass;   ///< of each body: mass, mass [kg], inertia [kg m^2], > 0; infinity: held
   std::vector<Vec3> force;  ///< on each body, of all but contacts [N], [N m]
   std::vector<LastingContact> contacts;
-  /// Of each contact, as far as known: makes the search shorter. May be empty.
-  std::vector<ContactLoad> expected;
 };
 
 struct RestResult {

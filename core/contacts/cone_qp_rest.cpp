@@ -86,19 +86,8 @@ class Cones {
       row.on_other =
           units_.scaled_row(c.other, c.normal_on_other + edge.tangential * c.tangent_on_other - turn);
     if (row.on_body.isZero(0.0) && row.on_other.isZero(0.0)) return;  // between what is held
-    if (!given_.expected.empty())
-      row.expected = weight(c, given_.expected[edge.contact], edge) / units_.force();
     edges_.push_back(edge);
     problem_.rows.push_back(row);
-  }
-
-  /// What of a load falls to one of its cone's edges: each has its share of the normal force, more or less as the load
-  /// leans towards it.
-  static double weight(const LastingContact& c, const ContactLoad& load, const Edge& edge) {
-    double share = load.normal;
-    if (c.friction > 0.0) share = 0.5 * (share + load.tangential / edge.tangential);
-    if (c.rolling_resistance > 0.0) share = 0.5 * (share + load.rolling / edge.rolling);
-    return std::max(share, 0.0);
   }
 
   const RestProblem& given_;

@@ -121,7 +121,8 @@ struct RunFileRecorder::Impl {
   std::uint64_t identity = 0;
   Clock::time_point opened = Clock::now();
   std::optional<ResumePoint> resume_point;
-  std::string failed;  // why nothing more is written
+  bool resumes_off_the_clock = false;  ///< no frame of the time of the resume point is kept
+  std::string failed;                  // why nothing more is written
 
   Impl(RunFolder locked, Open how) : folder(std::move(locked)), db(opened_file(how)) {
     // Others read the last commit while this one writes, and neither waits for the other.
@@ -190,7 +191,7 @@ struct RunFileRecorder::Impl {
   void start_fresh(const Scene& scene);
   void start_again(const Scene& scene);
   void drop_rows_after_checkpoint(const Scene& scene);
-  void drop_early_end_frame(const Scene& scene);
+  void drop_early_end_frame(double interval);
   void drop_site_frames(double interval);
   void prepare_inserts();
   void put_state(SQLite::Statement& put, const BodyState& s);
@@ -270,11 +271,11 @@ void RunFileRecorder::Impl::start_fresh(const Scene& scene) {
 
 /// A run that was stopped recorded where it stopped. Gone on with, it has no frame there unless the frame
 /// clock says so.
-/// Else going on would leave a frame that a run which nobody stopped does not have. One that was killed after its last
-/// checkpoint has come to its end: its last frame is there already, and is not shown again.
-void RunFileRecorder::Impl::drop_early_end_frame(const Scene& scene) {
+/// Else going on would leave a frame that a run which nobody stopped does not have.
+void RunFileRecorder::Impl::drop_early_end_frame(double interval) {
   const double t = resume_point ? resume_point->t : 0.0;
-  if (on_the_clock(t, scene.output.frame_interval) || t == scene.duration) return;
+  if (on_the_clock(t, interval)) return;
+  resumes_off_the_clock = true;
   // Of the rows that the checkpoint counts only the last frame can be it.
   SQLite::Statement drop(db, "DELETE FROM frame WHERE t = ? AND rowid > ?");
   drop.bind(1, t);
@@ -311,7 +312,7 @@ void RunFileRecorder::Impl::drop_rows_after_checkpoint(const Scene& scene) {
   db.exec(fmt::format("DELETE FROM frame WHERE rowid > {}", frames));
   db.exec(fmt::format("DELETE FROM event WHERE rowid >= {}", events));  // seq counts from 0
   db.exec(fmt::format("DELETE FROM contact WHERE rowid > {}", contacts));
-  drop_early_end_frame(scene);
+  drop_early_end_frame(scene.output.frame_interval);
   drop_site_frames(scene.output.frame_interval);
   // Without a resume point there must be none: it would count rows that have just gone.
   db.exec("DELETE FROM checkpoint");
@@ -414,6 +415,10 @@ RunFileRecorder::~RunFileRecorder() {
 
 const fs::path& RunFileRecorder::file() const { return impl_->folder.file(); }
 const std::optional<ResumePoint>& RunFileRecorder::resume_point() const { return impl_->resume_point; }
+
+bool RunFileRecorder::has_frame_of(double t) const {
+  return impl_->resume_point && impl_->resume_point->t == t && !impl_->resumes_off_the_clock;
+}
 
 /// From column 3 on.
 /// The six columns that `frame` and `site_frame` share, and the row with them.

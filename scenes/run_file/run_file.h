@@ -110,6 +110,8 @@ class RunFileRecorder final : public Recorder {
   const std::filesystem::path& file() const;
   /// Set after opening to resume, if the file has a checkpoint.
   const std::optional<ResumePoint>& resume_point() const;
+  /// True if a run goes on from there, and the frame clock has a frame there, which is kept.
+  bool has_frame_of(double t) const;
 
   void frame(double t, std::span<const BodyState> states) override;
   void event(const Event& event) override;

@@ -113,8 +113,10 @@ RunOptions run_options(const Scene& scene, const RunRequest& request, double unt
   options.until = until;
   options.frame_interval = scene.output.frame_interval;
   options.checkpoint_seconds = request.checkpoint_seconds;
-  // The frame of the checkpoint's time, if the clock has one there, is in the file.
-  options.first_frame = !recorder.resume_point();
+  // A run that goes on has the frame of the checkpoint's time if the clock has one there; else that is none of its frames,
+  // but where it ends there (killed after its last checkpoint).
+  const std::optional<ResumePoint>& point = recorder.resume_point();
+  options.first_frame = !point || (point->t == until && !recorder.has_frame_of(until));
   options.record_events = scene.output.events;
   options.progress = [&recorder, &request, &pause](double t, std::uint64_t collisions) {
     // Also where no rows come: what has waited long enough is committed now.

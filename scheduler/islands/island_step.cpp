@@ -377,7 +377,6 @@ bool stays_at_rest(ConeQp& solver, IslandStep& step) {
     p.contacts.push_back(c.rows);
     p.contacts.back().friction = c.friction;
     p.contacts.back().rolling_resistance = c.rolling_resistance;
-    p.expected.push_back({c.normal_force, c.tangential_force, 0.0});
   }
   const RestResult result = solver.rest_forces(p);
   if (result.status != RestResult::Status::rests) return false;
