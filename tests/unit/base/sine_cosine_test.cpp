@@ -18,6 +18,7 @@ Exact exact(const DoubleDouble& x) { return Exact(x.high()) + Exact(x.low()); }
 /// Units in the last place of the answer.
 double units_off(double found, const Exact& wanted) {
   const double near = static_cast<double>(wanted);
+  if (near == 0.0) return found == 0.0 ? 0.0 : std::numeric_limits<double>::infinity();
   const double unit = std::ldexp(1.0, std::ilogb(near) - 52);
   return static_cast<double>(mp::abs(Exact(found) - wanted)) / unit;
 }
