@@ -92,7 +92,7 @@ class BasicDoubleDouble {
     const error_free::Result r = error_free::sum(a, b);
     return told(r.high, r.low);
   }
-  /// Of any two doubles, exactly (Product::product()).
+  /// Of any two doubles, exactly where error_free::Plain is.
   BRINK_INLINE static BasicDoubleDouble product(double a, double b) {
     const error_free::Result r = Product::product(a, b);
     return exact(r) ? BasicDoubleDouble(r.high, r.low) : BasicDoubleDouble(r.high);

@@ -37,13 +37,13 @@ struct DiscRebound {
 /// What the general response (extended_contact.h, impulse.h) comes to for such a pair, to roundings of
 /// extended precision: nothing turns, the normal is the line of centres. The collision is resolved at its
 /// moment, at most `latest` [s] from `time`, when the gap is `level` [m]; b is met `shift` [m] from where it
-/// is, and stays there. Nothing if they do not approach. Cost: two square roots and five divisions, no sine
-/// or cosine.
+/// is, and stays there. Nothing if they do not approach. Cost: some twenty products and one division of two doubles,
+/// no sine or cosine.
 std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const Vec2& shift, double time,
                                    double latest, double level, double restitution);
 
 /// The same of disc and wall. Nothing where the disc's centre is not abreast of the wall either, or the wall's
-/// normal is not the one that is given: an end is met. Cost: one square root and two divisions.
+/// normal is not the one that is given: an end is met. Cost: one square root and two divisions of two doubles.
 std::optional<DiscRebound> rebound(const DiscSide& disc, const WallSide& wall, double time, double latest,
                                    double level, double restitution);
 
