@@ -285,6 +285,13 @@ ExtendedState Motion::extended_state(double t) const {
   // as state(t), operation for operation, with the low-order part of the start, in two doubles
   const Real s = static_cast<Real>(t) - t0_;
   ExtendedState e(start_, low_);
+  // what adds nothing is left out: the sums are the same bits
+  if (s == 0) return e;
+  if (!has_drive()) {
+    e.position += s * e.twist.velocity;
+    if (e.twist.omega != 0) e.angle += s * e.twist.omega;
+    return e;
+  }
   const RealVec a = drive_.linear.cast<Real>();
   const Real alpha = drive_.angular;
   e.position += s * (e.twist.velocity + Real(0.5) * s * a);
@@ -292,6 +299,16 @@ ExtendedState Motion::extended_state(double t) const {
   e.twist.velocity += s * a;
   e.twist.omega += s * alpha;
   return e;
+}
+
+ExtendedTwist Motion::extended_twist(double t) const {
+  if (kind_ != Kind::ballistic) return extended_state(t).twist;
+  ExtendedTwist w = ExtendedState(start_, low_).twist;
+  if (!has_drive()) return w;
+  const Real s = static_cast<Real>(t) - t0_;
+  w.velocity += s * drive_.linear.cast<Real>();
+  w.omega += s * Real(drive_.angular);
+  return w;
 }
 
 MotionBounds Motion::bounds(double from, double to) const {

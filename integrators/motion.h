@@ -118,6 +118,8 @@ class Motion {
   /// The state in extended precision: of a parabola from the low-order part of its start on, of anything else
   /// state(t) beside it.
   ExtendedState extended_state(double t) const;
+  /// Its twist alone: cheaper.
+  ExtendedTwist extended_twist(double t) const;
 
   /// Enclosures over [from, to]. @pre begin() <= from <= to <= end().
   MotionBounds bounds(double from, double to) const;
@@ -127,8 +129,7 @@ class Motion {
   bool is_ballistic() const { return kind_ == Kind::ballistic; }
   /// True for what stands where it is, for ever.
   bool is_still() const {
-    return is_ballistic() && start_.twist.velocity.isZero(0.0) && start_.twist.omega == 0.0 &&
-           drive_.linear.isZero(0.0) && drive_.angular == 0.0;
+    return is_ballistic() && start_.twist.velocity.isZero(0.0) && start_.twist.omega == 0.0 && !has_drive();
   }
   /// The pieces of dense output; null: a closed form.
   const Track* track() const { return kind_ == Kind::dense ? other_->track.get() : nullptr; }
@@ -140,6 +141,7 @@ class Motion {
  private:
   enum class Kind : unsigned char { ballistic, drag, dense, chain };
   double begin_of_pieces() const;
+  bool has_drive() const { return !drive_.linear.isZero(0.0) || drive_.angular != 0.0; }
   const Motion& link(double t) const;  ///< of a chain: the last that begins at or before t
 
   Kind kind_ = Kind::ballistic;

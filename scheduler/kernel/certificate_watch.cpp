@@ -24,6 +24,16 @@ bool thin(const Outline& samples, const Outline& sites, const FeatureContact& f)
   return !sites.sites[f.site].solid && sites.sites[f.site].radius + samples.samples[f.sample].radius == 0.0;
 }
 
+/// True if no point of that radius is anywhere else in one state than in the other, but for a rounding of two doubles.
+bool same_place(const ExtendedState& s, const ExtendedState& t, double radius) {
+  const RealVec d = s.position - t.position;
+  const double apart =
+      std::abs(d.x().high()) + std::abs(d.y().high()) + radius * std::abs((s.angle - t.angle).high());
+  const double size = std::abs(s.position.x().high()) + std::abs(s.position.y().high()) +
+                      radius * (1.0 + std::abs(s.angle.high()));
+  return apart <= kSameInTwoDoubles * size;
+}
+
 }  // namespace
 
 /// Three looks. After each collision: its two features, as the collision left them (resolved). At each frame: every
@@ -121,17 +131,19 @@ bool CertificateWatch::approaches(const PairKey& pair, double closing_speed, dou
   return report(pair, 0.0, run_->time(), "is said to meet, but parts from");
 }
 
-bool CertificateWatch::resolved(const PairKey& pair, const FeatureContact& found, Real delay) {
+bool CertificateWatch::resolved(const PairKey& pair, const FeatureContact& found, Real delay,
+                                const Moment* moment) {
   if (!on_) return true;
   const Outline &a = search_->outline_of(pair.body), &b = search_->outline_of(search_->other_owner(pair));
   const double t = run_->time();
   // in the states that the collision left, at the moment at which it was resolved
-  const ExtendedContact now =
-      contact_in(a, b, trajectories_->body(pair.body).motion.extended_state(t).moved(delay),
-                 search_->other_state(pair, t).moved(delay), found);
-  const bool on_wire = found.sample_on_a ? thin(a, b, found) : thin(b, a, found);
+  const ExtendedState body = trajectories_->body(pair.body).motion.extended_state(t).moved(delay),
+                      other = search_->other_state(pair, t).moved(delay);
+  const bool as_before = moment && same_place(body, moment->body, a.bounding_radius) &&
+                         same_place(other, moment->other, b.bounding_radius);
   // what was pushed apart counts as it is now: the world goes on from there
-  const double gap = static_cast<double>(now.gap);
+  const double gap = static_cast<double>(as_before ? moment->gap : contact_in(a, b, body, other, found).gap);
+  const bool on_wire = found.sample_on_a ? thin(a, b, found) : thin(b, a, found);
   note_overlap(gap);
   // At a wire the sign of the gap is the side, and a level of it is always left; a solid may sink by
   // roundings.

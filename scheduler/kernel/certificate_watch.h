@@ -35,8 +35,14 @@ class CertificateWatch {
   bool flight(int k, double to);
   /// A contact that closes at that speed [m/s], `rounding` being what speeds are wrong by: does it approach?
   bool approaches(const PairKey& pair, double closing_speed, double rounding);
-  /// After a collision at `delay` [s] from the present time.
-  bool resolved(const PairKey& pair, const FeatureContact& found, Real delay);
+  /// The moment of contact as the response saw it: where both were, the other where its image is, and their gap [m].
+  struct Moment {
+    ExtendedState body, other;
+    Real gap = 0;
+  };
+  /// After a collision at `delay` [s] from the present time. Where the new motions lead through the very places of
+  /// `moment` its gap is theirs, and no features are looked at again.
+  bool resolved(const PairKey& pair, const FeatureContact& found, Real delay, const Moment* moment = nullptr);
   /// The same of two discs, whose gap is known.
   bool discs_resolved(const PairKey& pair, double gap);
   /// Every pair at a frame; not those of two that have stood still since the last.

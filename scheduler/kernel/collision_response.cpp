@@ -64,10 +64,10 @@ ExtendedContact as_seen(const FeatureContact& f) {
 /// How a collision is resolved.
 struct CollisionResponse::Change {
   ImpulseResult impulse;
-  Real delay = 0;                           ///< from now to the moment of contact [s]
-  ExtendedState body, other;                ///< states now; of the other where its image is
-  ExtendedTwist body_before, other_before;  ///< at the moment of contact
-  double magnitude = 0.0;                   ///< the largest speed that took part [m/s]
+  Real delay = 0;                   ///< from now to the moment of contact [s]
+  ExtendedState body, other;        ///< states now; of the other where its image is
+  CertificateWatch::Moment moment;  ///< of contact, with the twists before
+  double magnitude = 0.0;           ///< the largest speed that took part [m/s]
 };
 
 CollisionResponse::CollisionResponse(const World& world, const SolverOptions& options,
@@ -147,12 +147,10 @@ CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const F
                  : contact_in(search_->outline_of(pair.body), search_->outline_of(search_->other_owner(pair)),
                               r.body, r.other, found);
   r.delay = delay_to_contact(found, at_present);
-  const ExtendedState body = later(r.body, r.delay, trajectories_->motion_of(pair.body)),
-                      other = later(r.other, r.delay, trajectories_->motion_of(search_->other_owner(pair)));
-  // the law changes these, the twists at the moment of contact (deflected)
-  r.body_before = body.twist;
-  r.other_before = other.twist;
   const ExtendedContact c = at_present.moved(r.delay.high());
+  r.moment = {later(r.body, r.delay, trajectories_->motion_of(pair.body)),
+              later(r.other, r.delay, trajectories_->motion_of(search_->other_owner(pair))), c.gap};
+  const auto& [body, other, gap] = r.moment;
   const ImpulseSide side = body_side(world_->bodies[pair.body], body, c.point);
   const ImpulseSide other_side = pair.with_site()
                                      ? site_side(other, c.point)
@@ -223,9 +221,9 @@ bool CollisionResponse::leads_to_wire(int body, const RealVec& way) {
 
 void CollisionResponse::deflect(const PairKey& pair, const Change& r, std::vector<int>& changed) {
   const Restart both[] = {
-      {pair.body, deflected(r.body, r.body_before, r.impulse.body, r.delay)},
+      {pair.body, deflected(r.body, r.moment.body.twist, r.impulse.body, r.delay)},
       {pair.other_body,
-       deflected(r.other, r.other_before, r.impulse.other, r.delay).shifted(-search_->shift_of(pair))}};
+       deflected(r.other, r.moment.other.twist, r.impulse.other, r.delay).shifted(-search_->shift_of(pair))}};
   if (pair.with_site()) return trajectories_->restart({both, 1}, changed);
   const int component = trajectories_->body(pair.body).component;
   // in one component: two restarts would be two motions, the first of them with one side's new twist alone
@@ -342,7 +340,7 @@ std::optional<Outcome> CollisionResponse::collide(const PairKey& pair, const Fea
   double rest = note_resolve(pair.body, search_->other_owner(pair), r.magnitude);
   if (!pair.with_site()) rest = std::min(rest, note_resolve(pair.other_body, pair.body, r.magnitude));
   deflect(pair, r, changed);
-  if (!watch_->resolved(pair, found, r.delay)) return std::nullopt;
+  if (!watch_->resolved(pair, found, r.delay, found.seen ? nullptr : &r.moment)) return std::nullopt;
   std::optional<Outcome> outcome{{pair, found, r.impulse.normal, r.impulse.tangential, r.delay, rest,
                                   foresee(pair, found, material.restitution, r.delay)}};
   note_sides(*outcome);

@@ -443,7 +443,7 @@ std::vector<std::byte> Kernel::snapshot() const {
   saved.work = parts_.run.work();
   // starts of motions, not their pieces: they are made again (snapshot.h)
   saved.trajectories = parts_.trajectories.saved();
-  return encode(saved, world(), options());
+  return encode(saved, parts_.fingerprint);
 }
 
 }  // namespace brink

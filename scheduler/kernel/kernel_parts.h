@@ -35,6 +35,7 @@ struct KernelParts {
   World world;                     ///< its sites recentred()
   std::vector<Vec2> frames_moved;  ///< by which the frame of each site was moved for that [m]
   SolverOptions options;
+  std::uint64_t fingerprint;  ///< of the two above (snapshot_fingerprint)
   Order order;
   RunControl run;
   Trajectories trajectories;

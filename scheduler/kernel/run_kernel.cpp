@@ -48,6 +48,7 @@ KernelParts::KernelParts(World given, SolverOptions chosen)
     : world(checked(std::move(given), chosen)),
       frames_moved(recentre_sites(world)),
       options(std::move(chosen)),
+      fingerprint(snapshot_fingerprint(world, options)),
       order(order_of(options.order)),
       trajectories(world, options, run),
       search(world, options, trajectories, run),
@@ -187,7 +188,7 @@ void RunKernel::apply_impulse(int k, const Vec2& impulse, const Vec2& point) {
 /// In this order: the bytes are read and held against the world, motions are made again beside the present ones,
 /// and only then anything is put back.
 void RunKernel::restore(std::span<const std::byte> bytes) {
-  SavedRun saved = decode(bytes, world(), options());
+  SavedRun saved = decode(bytes, world(), parts_.fingerprint);
   const WorkCounters before = work();
   try {
     // Made beside the present ones, so that nothing has changed if a motion cannot be made again; the

@@ -19,10 +19,10 @@ class Writer {
  public:
   template <class T>
   void operator()(const T& value) {
-    const std::size_t place = bytes_.size();
-    bytes_.resize(place + sizeof(T));
-    std::memcpy(bytes_.data() + place, &value, sizeof(T));
+    const auto* first = reinterpret_cast<const std::byte*>(&value);
+    bytes_.insert(bytes_.end(), first, first + sizeof(T));
   }
+  void expect(std::size_t bytes) { bytes_.reserve(bytes); }
   std::vector<std::byte> take() { return std::move(bytes_); }
 
  private:
@@ -58,30 +58,6 @@ class Reader {
  private:
   std::span<const std::byte> bytes_;
 };
-
-/// What a snapshot must agree on with the world it is restored into: everything that decides the motion.
-/// What only decides how much work is done (broad phase, closed forms, shared fields) is left out: events
-/// are the same with it on or off.
-std::uint64_t fingerprint(const World& world, const SolverOptions& options) {
-  StateHash hash;
-  hash.add(world_hash(world));
-  for (const std::string* word :
-       {&options.policy, &options.integrator, &options.order, &options.response, &options.detector}) {
-    // with its length: two words that are one text together do not look alike to it
-    hash.add(static_cast<std::uint64_t>(word->size()));
-    for (const char c : *word) hash.add(static_cast<std::uint64_t>(c));
-  }
-  hash.add(options.tolerance);
-  hash.add(options.absolute_tolerance);
-  hash.add(options.step);
-  hash.add(options.contact_tolerance);
-  hash.add(options.modes_contacts);
-  hash.add(options.rest_speed);
-  hash.add(options.island_tolerance);
-  hash.add(static_cast<std::uint64_t>(options.persistent));
-  hash.add(options.seed);
-  return hash.value();
-}
 
 /// Reads or writes numbers of fixed size, in one order.
 template <class Each, class Run>
@@ -333,6 +309,29 @@ Trajectories::Saved read_trajectories(Reader& in, const World& world) {
 
 }  // namespace
 
+/// What only decides how much work is done (broad phase, closed forms, shared fields) is left out: events are the same
+/// with it on or off.
+std::uint64_t snapshot_fingerprint(const World& world, const SolverOptions& options) {
+  StateHash hash;
+  hash.add(world_hash(world));
+  for (const std::string* word :
+       {&options.policy, &options.integrator, &options.order, &options.response, &options.detector}) {
+    // with its length: two words that are one text together do not look alike to it
+    hash.add(static_cast<std::uint64_t>(word->size()));
+    for (const char c : *word) hash.add(static_cast<std::uint64_t>(c));
+  }
+  hash.add(options.tolerance);
+  hash.add(options.absolute_tolerance);
+  hash.add(options.step);
+  hash.add(options.contact_tolerance);
+  hash.add(options.modes_contacts);
+  hash.add(options.rest_speed);
+  hash.add(options.island_tolerance);
+  hash.add(static_cast<std::uint64_t>(options.persistent));
+  hash.add(options.seed);
+  return hash.value();
+}
+
 /// In this order, each as it lies in memory:
 ///   magic, fingerprint
 ///   numbers of fixed size      time, records, counters ...
@@ -343,10 +342,12 @@ Trajectories::Saved read_trajectories(Reader& in, const World& world) {
 ///   the present instant        whose bodies have collided in it
 ///   bounces                    of every series that is watched
 /// Where a number of things can vary it stands before them, but for bodies and starts, which the world tells.
-std::vector<std::byte> encode(const SavedRun& saved, const World& world, const SolverOptions& options) {
+std::vector<std::byte> encode(const SavedRun& saved, std::uint64_t fingerprint) {
   Writer out;
+  // more than a free body takes, and what else there is in a small world: larger ones grow now and then
+  out.expect(2048 + 256 * saved.trajectories.bodies.size());
   out(kMagic);
-  out(fingerprint(world, options));
+  out(fingerprint);
   scalars(out, saved);
   write(out, saved.trajectories);
   write_islands(out, saved.islands);
@@ -362,15 +363,14 @@ std::vector<std::byte> encode(const SavedRun& saved, const World& world, const S
 }
 
 /// The world is only looked at: whoever asks puts the answer back when all of it has been read.
-SavedRun decode(std::span<const std::byte> bytes, const World& world, const SolverOptions& options) {
+SavedRun decode(std::span<const std::byte> bytes, const World& world, std::uint64_t fingerprint) {
   Reader in(bytes);
   std::uint64_t magic = 0, print = 0;
   in(magic);
   in(print);
   // first: of bytes that are no snapshot nothing else means anything
   if (magic != kMagic) throw BadInput("snapshot: these bytes are not a snapshot of this version");
-  if (print != fingerprint(world, options))
-    throw BadInput("snapshot: it was taken of another world or with other options");
+  if (print != fingerprint) throw BadInput("snapshot: it was taken of another world or with other options");
   SavedRun saved;
   scalars(in, saved);
   saved.trajectories = read_trajectories(in, world);

@@ -27,9 +27,13 @@ struct SavedRun {
   Trajectories::Saved trajectories;
 };
 
-std::vector<std::byte> encode(const SavedRun& saved, const World& world, const SolverOptions& options);
+/// What a snapshot must agree on with the world it is restored into: everything that decides the motion. Cost: a look
+/// at all of the world, so it is kept.
+std::uint64_t snapshot_fingerprint(const World& world, const SolverOptions& options);
 
-/// @throws BadInput if the bytes are no snapshot of this world and these options.
-SavedRun decode(std::span<const std::byte> bytes, const World& world, const SolverOptions& options);
+std::vector<std::byte> encode(const SavedRun& saved, std::uint64_t fingerprint);
+
+/// @throws BadInput if the bytes are no snapshot of this world and of what else the fingerprint is of.
+SavedRun decode(std::span<const std::byte> bytes, const World& world, std::uint64_t fingerprint);
 
 }  // namespace brink

@@ -342,19 +342,27 @@ void Trajectories::hold(std::span<const Restart> bodies, std::vector<int>& chang
 }
 
 ExtendedState Trajectories::state_now(int k) const {
-  const Motion& motion = bodies_[k].motion;
-  const double now = run_->time();
-  ExtendedState s = motion.extended_state(now);
-  if (!is_held(k)) return s;
+  ExtendedState s = bodies_[k].motion.extended_state(run_->time());
+  if (is_held(k)) s.twist = come_to_by_now(k, s.twist);
+  return s;
+}
+
+ExtendedTwist Trajectories::twist_now(int k) const {
+  const ExtendedTwist twist = bodies_[k].motion.extended_twist(run_->time());
+  return is_held(k) ? come_to_by_now(k, twist) : twist;
+}
+
+/// The motion has the twist of the step's end from the start on. One that is hit halfway has had half of the step's
+/// change of velocity by then: the part of it that is left is taken off.
+ExtendedTwist Trajectories::come_to_by_now(int k, ExtendedTwist at_end) const {
   const HeldStep& step = held_.at(k).step;
-  if (!(now < step.end)) return s;
-  // The motion has the twist of the step's end from the start on. One that is hit halfway has had half of
-  // the step's change of velocity by then: the part of it that is left is taken off.
+  const double now = run_->time();
+  if (!(now < step.end)) return at_end;
   const Real left = (step.end - std::max(now, step.start)) / (step.end - step.start);
   const ExtendedTwist before(step.before);
-  s.twist.velocity += left * (before.velocity - s.twist.velocity);
-  s.twist.omega += left * (before.omega - s.twist.omega);
-  return s;
+  at_end.velocity += left * (before.velocity - at_end.velocity);
+  at_end.omega += left * (before.omega - at_end.omega);
+  return at_end;
 }
 
 /// Its integrator is not asked any more. A failure goes with the motion that would have come to it.

@@ -116,6 +116,7 @@ class Trajectories {
   /// The body's state now, in extended precision. Of one that is held its motion has the twist of the step's
   /// end; this has what it has come to by now, in proportion.
   ExtendedState state_now(int k) const;
+  ExtendedTwist twist_now(int k) const;
   /// Forces act on the bodies again, from the present time on. @pre held; all bodies of a component, or none.
   void release(std::span<const int> bodies, std::vector<int>& changed);
   /// What forces would do to a held body now.
@@ -183,8 +184,9 @@ class Trajectories {
   void begin_anew(Component component, double t, std::vector<int>& changed);
   void start(Coupled& c, ComponentStart from);
   void put_to_sleep(Coupled& c);
+  ExtendedTwist come_to_by_now(int k, ExtendedTwist at_end) const;
   void note_twist_before(int k) {
-    if (!before_.empty()) before_[k] = state_now(k).twist.rounded();
+    if (!before_.empty()) before_[k] = twist_now(k).rounded();
   }
   void hold_again(std::span<const int> members, const Saved& saved);
   void fetch(const Coupled& c);

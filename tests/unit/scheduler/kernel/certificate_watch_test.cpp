@@ -65,6 +65,43 @@ TEST(CertificateWatch, AWayThroughAWireEndsTheRun) {
   EXPECT_THAT(parts.run.halt()->why, HasSubstr("'body1' went through a wire of 'site0'"));
 }
 
+/// What the response saw, all of it fine: the discs touch.
+CertificateWatch::Moment touching(const KernelParts& parts) {
+  return {parts.trajectories.state_now(0), parts.trajectories.state_now(1), 0.0};
+}
+
+TEST(CertificateWatch, AMomentIsBelievedWhereTheMotionsLeadThroughItsPlaces) {
+  KernelParts parts(two_discs(), {});
+  const Certificate met = meeting(parts);
+  parts.watch.begin();
+  parts.run.set_time(met.time);
+  CertificateWatch::Moment moment = touching(parts);
+  EXPECT_TRUE(parts.watch.resolved(kDiscs, met.contact, 0.0, &moment));
+  // by its gap, as no features are looked at again
+  moment.gap = -0.25;
+  EXPECT_FALSE(parts.watch.resolved(kDiscs, met.contact, 0.0, &moment));
+  EXPECT_THAT(parts.run.halt()->why, HasSubstr("depth 0.25 m"));
+}
+
+TEST(CertificateWatch, WhoIsElsewhereThanTheMomentSaysIsLookedAt) {
+  KernelParts parts(two_discs(), {});
+  const Certificate met = meeting(parts);
+  parts.watch.begin();
+  parts.run.set_time(met.time);
+  const CertificateWatch::Moment moment = touching(parts);
+  // a restart that puts it deeper, by next to nothing and by more than is allowed
+  for (const double deeper : {1e-15, 1e-6}) {
+    std::vector<int> changed;
+    ExtendedState inside = moment.body;
+    inside.position.x() += deeper;
+    const Restart one[] = {{0, inside}};
+    parts.trajectories.restart(one, changed);
+    EXPECT_EQ(parts.watch.resolved(kDiscs, met.contact, 0.0, &moment), deeper < 1e-12) << deeper;
+    EXPECT_NEAR(parts.watch.max_overlap() / deeper, 1.0, 0.5);
+  }
+  EXPECT_THAT(parts.run.halt()->why, HasSubstr("overlaps"));
+}
+
 TEST(CertificateWatch, AContactThatPartsIsNone) {
   KernelParts parts(two_discs(), {});
   parts.watch.begin();
