@@ -24,14 +24,16 @@ bool thin(const Outline& samples, const Outline& sites, const FeatureContact& f)
   return !sites.sites[f.site].solid && sites.sites[f.site].radius + samples.samples[f.sample].radius == 0.0;
 }
 
-/// True if no point of that radius is anywhere else in one state than in the other, but for a rounding of two doubles.
-bool same_place(const ExtendedState& s, const ExtendedState& t, double radius) {
+/// How far a point of a body of that radius is at most in one state from where it is in the other [m].
+double apart(const ExtendedState& s, const ExtendedState& t, double radius) {
   const RealVec d = s.position - t.position;
-  const double apart =
-      std::abs(d.x().high()) + std::abs(d.y().high()) + radius * std::abs((s.angle - t.angle).high());
-  const double size = std::abs(s.position.x().high()) + std::abs(s.position.y().high()) +
-                      radius * (1.0 + std::abs(s.angle.high()));
-  return apart <= kSameInTwoDoubles * size;
+  return std::abs(d.x().high()) + std::abs(d.y().high()) + radius * std::abs((s.angle - t.angle).high());
+}
+
+/// Of apart(), and of the gap of two that are there [m].
+double rounding(const ExtendedState& s, double radius) {
+  return kSameInTwoDoubles * (std::abs(s.position.x().high()) + std::abs(s.position.y().high()) +
+                              radius * (1.0 + std::abs(s.angle.high())));
 }
 
 }  // namespace
@@ -139,11 +141,16 @@ bool CertificateWatch::resolved(const PairKey& pair, const FeatureContact& found
   // in the states that the collision left, at the moment at which it was resolved
   const ExtendedState body = trajectories_->body(pair.body).motion.extended_state(t).moved(delay),
                       other = search_->other_state(pair, t).moved(delay);
-  const bool as_before = moment && same_place(body, moment->body, a.bounding_radius) &&
-                         same_place(other, moment->other, b.bounding_radius);
-  // what was pushed apart counts as it is now: the world goes on from there
-  const double gap = static_cast<double>(as_before ? moment->gap : contact_in(a, b, body, other, found).gap);
   const bool on_wire = found.sample_on_a ? thin(a, b, found) : thin(b, a, found);
+  if (moment) {
+    const double ra = a.bounding_radius, rb = b.bounding_radius;
+    const double least = moment->gap.high() - apart(body, moment->body, ra) - apart(other, moment->other, rb);
+    const double none = rounding(body, ra) + rounding(other, rb);
+    // no deeper than what was seen before, whatever a closer look would give
+    if (on_wire ? least > none : -least <= std::min(allowed(), std::max(max_overlap_, none))) return true;
+  }
+  // what was pushed apart counts as it is now: the world goes on from there
+  const double gap = static_cast<double>(contact_in(a, b, body, other, found).gap);
   note_overlap(gap);
   // At a wire the sign of the gap is the side, and a level of it is always left; a solid may sink by
   // roundings.

@@ -40,8 +40,8 @@ class CertificateWatch {
     ExtendedState body, other;
     Real gap = 0;
   };
-  /// After a collision at `delay` [s] from the present time. Where the new motions lead through the very places of
-  /// `moment` its gap is theirs, and no features are looked at again.
+  /// After a collision at `delay` [s] from the present time. Where the new motions lead through the places of `moment`,
+  /// to so little that its gap tells that nothing is deeper than what was seen before, no features are looked at again.
   bool resolved(const PairKey& pair, const FeatureContact& found, Real delay, const Moment* moment = nullptr);
   /// The same of two discs, whose gap is known.
   bool discs_resolved(const PairKey& pair, double gap);

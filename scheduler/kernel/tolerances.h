@@ -24,8 +24,8 @@ inline constexpr double kSamePlace = 10.0;
 /// kSamePlace may lean on a curved outline that is larger than some ten thousand tolerances.
 inline constexpr double kSameNormal = 1e-6;
 
-/// Two places are one if they differ by less than this part of what they are made of: a thousand roundings of two
-/// doubles (2^-100 each), of which no double sees anything.
+/// Places in two doubles are rounded by less than this part of what they are made of: a thousand roundings (2^-100 each),
+/// of which no double sees anything.
 inline constexpr double kSameInTwoDoubles = 0x1p-90;
 
 /// Overlaps at the start up to this part of the scene's length are let go: coordinates written with six digits.
