@@ -26,7 +26,7 @@ struct Candidate {
 /// Candidates, earliest first; of equal times the exact one. The first few lie in place.
 class CandidateList {
  public:
-  static constexpr std::size_t kInPlace = 2;
+  static constexpr std::size_t kInPlace = 4;
 
   bool empty() const { return count_ == 0; }
   std::size_t size() const { return count_; }
@@ -67,7 +67,7 @@ class CandidateList {
 };
 
 /// A body's own clock. Every pair of bodies that may meet is in view of one of the two: clear until that
-/// one's expiry(). So the body whose view expires first is the only one that must be looked at. Two cache lines; what
+/// one's expiry(). So the body whose view expires first is the only one that must be looked at. Three cache lines; what
 /// comes first is in one of them.
 struct alignas(64) BodyClock {
   double exit = std::numeric_limits<double>::infinity();     ///< leaves its cell
