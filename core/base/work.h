@@ -36,7 +36,8 @@ struct WorkCounters {
   std::uint64_t collisions = 0;
   std::uint64_t collisions_body_body = 0;
   std::uint64_t collisions_body_site = 0;
-  std::uint64_t let_go = 0;  ///< overlapping but receding contacts let go (Bannerman et al. 2012)
+  std::uint64_t collisions_quick = 0;  ///< of two plain discs alone in their instant, resolved in one go
+  std::uint64_t let_go = 0;            ///< overlapping but receding contacts let go (Bannerman et al. 2012)
   // wall-clock seconds of the stages, each without those within it; what is left is the policy's own
   double seconds_look = 0.0;      ///< who is near whom: broad phase, views, passes
   double seconds_search = 0.0;    ///< first contacts of pairs
@@ -72,6 +73,7 @@ struct WorkCounters {
     visit("collisions", w.collisions, "1");
     visit("collisions_body_body", w.collisions_body_body, "1");
     visit("collisions_body_site", w.collisions_body_site, "1");
+    visit("collisions_quick", w.collisions_quick, "1");
     visit("let_go", w.let_go, "1");
     visit("seconds_look", w.seconds_look, "s");
     visit("seconds_search", w.seconds_search, "s");

@@ -19,7 +19,7 @@ struct Candidate {
   double clear = 0.0;  ///< a search must begin here: from closer to the contact roundings would show
   int other = -1;
   Image image{};              ///< of the other
-  unsigned version : 30 = 0;  ///< of the other body, when this was found
+  unsigned version : 29 = 0;  ///< of the other body, when this was found
   unsigned exact : 1 = 0;     ///< `time` is the contact itself
 };
 
@@ -34,6 +34,11 @@ class CandidateList {
   const Candidate& operator[](std::size_t k) const { return k < kInPlace ? first_[k] : more_[k - kInPlace]; }
   const Candidate& front() const { return first_[0]; }
   const Candidate& back() const { return (*this)[count_ - 1]; }
+  bool has_exact() const {
+    bool exact = false;
+    for (std::size_t k = 0; k < count_; ++k) exact |= (*this)[k].exact != 0;
+    return exact;
+  }
   void clear() {
     count_ = 0;
     more_.clear();
@@ -56,19 +61,20 @@ class CandidateList {
   static bool before(const Candidate& a, const Candidate& b) {
     return a.time < b.time || (a.time == b.time && a.exact && !b.exact);
   }
-  std::array<Candidate, kInPlace> first_;
   std::uint32_t count_ = 0;
+  std::array<Candidate, kInPlace> first_;
   std::vector<Candidate> more_;
 };
 
 /// A body's own clock. Every pair of bodies that may meet is in view of one of the two: clear until that
-/// one's expiry(). So the body whose view expires first is the only one that must be looked at.
-struct BodyClock {
+/// one's expiry(). So the body whose view expires first is the only one that must be looked at. Three cache lines; what
+/// comes first is in one of them.
+struct alignas(64) BodyClock {
   double exit = std::numeric_limits<double>::infinity();     ///< leaves its cell
   double horizon = std::numeric_limits<double>::infinity();  ///< the view ends: look at everything again
   CandidateList candidates;
-  int level = 0;                                  ///< of cells
   const std::vector<SiteImage>* sites = nullptr;  ///< of its cell, in the first period
+  int level = 0;                                  ///< of cells
   unsigned undecided = 0;                         ///< searches in a row that met their cap
 
   double expiry() const {

@@ -20,9 +20,10 @@ struct alignas(64) Flight {
   double radius = 0.0;        ///< [m]
   Cell cell;
   int next = -1;              ///< in the list of its cell
-  unsigned version : 30 = 0;  ///< raised when the motion changes
+  unsigned version : 29 = 0;  ///< raised when the motion changes
   unsigned free : 1 = 0;      ///< a parabola under the common gravity for ever
   unsigned disc : 1 = 0;      ///< the bounding disc is the body
+  unsigned plain : 1 = 0;     ///< a disc of which nothing is locked: collisions go the quick way
 
   /// Size of the numbers from which the place after s is computed [m].
   double magnitude(double s) const {

@@ -1,6 +1,7 @@
 #pragma once
 /// Flights side by side, so that a processor compares several of them with one at a time.
 
+#include <array>
 #include <span>
 
 #include "brink/scheduler/broad_phase/flight.h"
@@ -37,6 +38,15 @@ class FlightBatch {
   }
   /// Compares all of them with `a` from `now` on: meeting()'s own bits, whatever the processor can do at once.
   void meet(const Course& a, double now);
+  /// Those that `a` may meet before that time, by the last meet(): their numbers, written to `met`; how many.
+  int met_before(double time, std::array<int, kMost>& met) const {
+    int count = 0;
+    for (int i = 0; i < size_; ++i) {
+      met[count] = i;
+      count += begin_[i] < time;  // without a branch: which they are cannot be foreseen
+    }
+    return count;
+  }
 
  private:
   template <class T>

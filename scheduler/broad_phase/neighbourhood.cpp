@@ -126,7 +126,14 @@ void Neighbourhood::put_in(int k) {
     flights_[k].next = bodies.more;
     bodies.more = k;
   }
-  clocks_[k].sites = &level.sites->of(flights_[k].cell);
+  clocks_[k].sites = sites_of(level, flights_[k].cell);
+}
+
+/// Always the same list where there is none.
+const std::vector<SiteImage>* Neighbourhood::sites_of(Level& level, const Cell& cell) const {
+  if (level.sites->is_known_empty(cell)) return &no_sites_;
+  const std::vector<SiteImage>& sites = level.sites->of(cell);
+  return sites.empty() ? &no_sites_ : &sites;
 }
 
 }  // namespace brink

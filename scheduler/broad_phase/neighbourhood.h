@@ -54,6 +54,10 @@ class Neighbourhood {
     return around_ ? levels_[0].grid.around(flights_[k].cell, bodies) : -1;
   }
 
+  /// Starts to fetch the cells about body k, in which expect() finds whom to fetch. Slow if k's flight is not at hand.
+  void expect_cells(int k) const {
+    if (around_) levels_[0].grid.expect_around(flights_[k].cell);
+  }
   /// Starts to fetch what near(k) will visit: at many bodies, waiting for their memory is what looking costs.
   void expect(int k) const {
     for (std::size_t m = 0; m < levels_.size(); ++m)
@@ -65,7 +69,7 @@ class Neighbourhood {
   /// Calls visit(site, image) for every still site, and that image of it, that k can meet in its cell.
   template <class Visit>
   void sites_near(int k, Visit&& visit) const {
-    if (clocks_[k].sites->empty()) return;
+    if (clocks_[k].sites == &no_sites_) return;  // most: of no list's memory anything is asked
     const Cell& cell = flights_[k].cell;
     const Image away = repeats_ ? grid(k).periods_between(grid(k).home(cell), cell) : Image{};
     for (const SiteImage& s : *clocks_[k].sites) visit(s.site, s.image + away);
@@ -94,10 +98,12 @@ class Neighbourhood {
   void make_levels(std::span<const Vec2> places, bool by_place);
   void take_out(int k);
   void put_in(int k);
+  const std::vector<SiteImage>* sites_of(Level& level, const Cell& cell) const;
 
   std::span<Flight> flights_;
   std::span<BodyClock> clocks_;
   std::vector<SiteLists::Placed> still_sites_;
+  const std::vector<SiteImage> no_sites_;  ///< of every cell that has none
   Periods periods_;
   bool repeats_;
   bool around_ = false;  ///< around() has an answer

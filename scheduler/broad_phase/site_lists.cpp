@@ -40,6 +40,10 @@ const std::vector<SiteImage>& SiteLists::of(const Cell& cell) {
   if (is_new) {
     const Box box = grid_->box_of(home);
     for (const Placed& p : *sites_) find(p, box, it->second);
+    if (const std::size_t place = place_of(home); it->second.empty() && place != ~std::size_t{0}) {
+      if (place >= empty_.size()) empty_.resize(place + 1);
+      empty_[place] = true;
+    }
   }
   return it->second;
 }

@@ -1,6 +1,8 @@
 #pragma once
 /// Which still fixed sites a body in a cell can reach.
 
+#include <cstddef>
+#include <cstdint>
 #include <unordered_map>
 #include <vector>
 
@@ -30,16 +32,31 @@ class SiteLists {
   /// Sites of the cell's image in the first period, ascending. Cost: all sites when first asked, then a
   /// look-up.
   const std::vector<SiteImage>& of(const Cell& cell);
+  /// True if of() has found nothing for that cell before; it may have, too, where this is false. Cost: a bit.
+  bool is_known_empty(const Cell& cell) const {
+    const std::size_t place = place_of(cell);
+    return place < empty_.size() && empty_[place];
+  }
 
  private:
   void find(const Placed& placed, const Box& box, std::vector<SiteImage>& found) const;
   bool reaches(const Outline& outline, const Box& box) const;
+  /// In empty_: of cells about the origin, where most bodies are; beyond them: none.
+  std::size_t place_of(const Cell& cell) const {
+    const auto column = static_cast<std::uint32_t>(cell.column + kAcross / 2),
+               row = static_cast<std::uint32_t>(cell.row + kAcross / 2);
+    return column < kAcross && row < kAcross ? static_cast<std::size_t>(row) * kAcross + column
+                                             : ~std::size_t{0};
+  }
+  static constexpr std::uint32_t kAcross = 2048;
 
   const std::vector<Placed>* sites_;
   const CellGrid* grid_;
   Periods periods_;
   double reach_;
   std::unordered_map<std::uint64_t, std::vector<SiteImage>> lists_;
+  std::vector<bool>
+      empty_;  ///< cells for which nothing was found, a row after the other, as far as there are any
 };
 
 }  // namespace brink

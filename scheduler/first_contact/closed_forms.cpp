@@ -58,7 +58,9 @@ struct RelativeParabola {
   Vec2 offset, velocity, acceleration;  ///< a minus b
   double noise;                         ///< rounding of relative velocities [m/s]
 
-  RelativeParabola(const Mover& ma, const Mover& mb) {
+  /// Anything with a motion and a velocity_rounding.
+  template <class Side>
+  RelativeParabola(const Side& ma, const Side& mb) {
     reference = std::max(ma.motion->origin(), mb.motion->origin());
     a = ma.motion->state(reference);
     b = mb.motion->state(reference);
@@ -109,7 +111,7 @@ bool too_fast(const Vec2& velocity, double t, double radius) {
 /// Rounding of one place against the other [m], of two parabolas at one time.
 class PlaceNoise {
  public:
-  PlaceNoise(const Mover& a, const Mover& b) : a_(*a.motion, false), b_(*b.motion, false) {}
+  PlaceNoise(const Motion& a, const Motion& b) : a_(a, false), b_(b, false) {}
   double operator()(double t, const Vec2& place_a, const Vec2& place_b) const {
     return a_.place(t, place_a) + b_.place(t, place_b);
   }
@@ -146,9 +148,8 @@ std::optional<double> canonical_root(Gap&& gap, double t, double begin, double r
 }
 
 /// Two centred discs as the general search sees them at time t: the same operations in the same order.
-FeatureContact disc_contact(const Mover& a, const Parabola& path_a, const Mover& b, const Parabola& path_b,
-                            double t) {
-  const double radius_a = a.outline().sites[0].radius, radius_b = b.outline().sites[0].radius;
+FeatureContact disc_contact(const DiscMover& a, const Parabola& path_a, const DiscMover& b,
+                            const Parabola& path_b, double t) {
   const Vec2 at_b = path_b.at(t), offset = path_a.at(t) - at_b;
   const double spin_b =
       b.motion->start().twist.omega + (t - path_b.origin) * b.motion->acceleration().angular;
@@ -156,20 +157,22 @@ FeatureContact disc_contact(const Mover& a, const Parabola& path_a, const Mover&
   FeatureContact c;
   c.time = t;
   c.sample = c.site = 0;
-  c.gap = distance - radius_b - radius_a;
+  c.gap = distance - b.radius - a.radius;
   c.normal = offset * (1.0 / distance);
-  c.point = at_b + (offset - c.normal * (c.gap + radius_a));
+  c.point = at_b + (offset - c.normal * (c.gap + a.radius));
   c.closing_speed = -c.normal.dot(path_a.velocity_at(t) - Twist{path_b.velocity_at(t), spin_b}.at(offset));
   return c;
 }
 
 /// Two centred discs under one acceleration: seen from b, a goes straight on. False: for the general search,
 /// where roundings would decide (a start in touch, a graze, a rate within its noise, too far off, too fast).
-bool discs(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
-           SearchScratch& scratch, PairAnswer& answer) {
+/// `level_at_start`: tells sink_at_start(), or nothing: then this tells nothing either.
+template <class LevelAtStart>
+bool discs(const DiscMover& a, const DiscMover& b, double from, double to, const SearchLimits& limits,
+           LevelAtStart&& level_at_start, PairAnswer& answer) {
   // Under unequal accelerations the squared distance is of fourth degree in time; two bare points meet at
   // a level of their own (nominal_level()).
-  const double reach = b.outline().sites[0].radius + a.outline().sites[0].radius;
+  const double reach = b.radius + a.radius;
   if (!(reach > 0.0) || a.motion->acceleration().linear != b.motion->acceleration().linear) return false;
   const RelativeParabola rel(a, b);
   answer = {PairAnswer::Status::clear, to, {}};
@@ -188,8 +191,11 @@ bool discs(const Mover& a, const Mover& b, double from, double to, const SearchL
   // a graze, or not: by a rounding
   if (distance0 - reach < limits.tolerance && doubtful(way / distance0, rate_noise)) return false;
   double level = 0.0;
-  if (!starts_clear(distance0 - reach, way / distance0, 0.0, rate_noise, limits.tolerance))
-    level = sink_at_start(a, b, limits, scratch);
+  if (!starts_clear(distance0 - reach, way / distance0, 0.0, rate_noise, limits.tolerance)) {
+    const std::optional<double> told = level_at_start();
+    if (!told) return false;
+    level = *told;
+  }
   const double met = reach + level;
   double s = time_until_within(rel.offset, rel.velocity, met);
   if (!(s >= s_from)) {  // touching at the start, and approaching; or past
@@ -205,10 +211,11 @@ bool discs(const Mover& a, const Mover& b, double from, double to, const SearchL
   const double nearest = t <= to                    ? t
                          : rel.velocity.isZero(0.0) ? from
                                                     : std::clamp(rel.reference - way / speed2, from, to);
-  const double place_noise = PlaceNoise(a, b)(nearest, path_a.at(nearest), path_b.at(nearest));
+  const double place_noise =
+      PlaceNoise(*a.motion, *b.motion)(nearest, path_a.at(nearest), path_b.at(nearest));
   if (!near_enough(place_noise, limits)) return false;
   if (!(t <= to)) return true;
-  if (too_fast(rel.velocity, t, smallest_radius(a.outline(), b.outline()))) return false;
+  if (too_fast(rel.velocity, t, smallest_radius(a.radius, b.radius))) return false;
   const Vec2 then = rel.offset + s * rel.velocity;
   const double closing = -then.dot(rel.velocity) / then.norm();
   if (doubtful(closing, rel.noise)) return false;
@@ -224,6 +231,8 @@ bool discs(const Mover& a, const Mover& b, double from, double to, const SearchL
   answer.contact.level = answer.contact.sink = level;
   return true;
 }
+
+DiscMover disc_mover(const Mover& m) { return {m.motion, m.outline().sites[0].radius, m.velocity_rounding}; }
 
 /// True if the quadratic stays within [0, length] on [s0, s1].
 bool stays_within(const Quadratic& along, double length, double s0, double s1) {
@@ -374,7 +383,7 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
   answer = {PairAnswer::Status::clear, to, {}};
   const Parabola parabola(*disc.motion), parabola_of_other(*other.motion);
   double t = std::max(rel.reference + earliest, from);
-  const PlaceNoise noise(disc, other);
+  const PlaceNoise noise(*disc.motion, *other.motion);
   double place_noise = 0.0;
   // the last of the two stays: rounding at the contact, or at the end
   for (const double time : {from, std::min(t, to)}) {
@@ -454,11 +463,24 @@ bool has_closed_form(const Mover& a, const Mover& b) {
   return disc_b && keeps_angle(*a.motion) && only_segments(a.outline());
 }
 
+bool discs_meet(const DiscMover& a, const DiscMover& b, double from, double to, const SearchLimits& limits,
+                FeatureContact& contact) {
+  PairAnswer answer;
+  const auto ask = []() -> std::optional<double> { return std::nullopt; };
+  if (!discs(a, b, from, to, limits, ask, answer) || answer.status != PairAnswer::Status::contact)
+    return false;
+  contact = answer.contact;
+  return true;
+}
+
 bool first_contact_in_closed_form(const Mover& a, const Mover& b, double from, double to,
                                   const SearchLimits& limits, SearchScratch& scratch, PairAnswer& answer) {
   if (!has_closed_form(a, b)) return false;
   const bool disc_a = is_centred_disc(a.outline()), disc_b = is_centred_disc(b.outline());
-  if (disc_a && disc_b) return discs(a, b, from, to, limits, scratch, answer);
+  if (disc_a && disc_b) {
+    const auto level = [&] { return std::optional(sink_at_start(a, b, limits, scratch)); };
+    return discs(disc_mover(a), disc_mover(b), from, to, limits, level, answer);
+  }
   return disc_a ? disc_and_segments(a, b, true, from, to, limits, scratch, answer)
                 : disc_and_segments(b, a, false, from, to, limits, scratch, answer);
 }

@@ -18,6 +18,19 @@ struct Quadratic {
 /// below zero.
 double falling_root(const Quadratic& g);
 
+/// A centred disc on a parabola: all of a Mover that its quadratics ask for.
+struct DiscMover {
+  const Motion* motion = nullptr;
+  double radius = 0.0;  ///< of its one site, and of its bounds [m]
+  double velocity_rounding = 0.0;
+};
+
+/// Two discs' contact in [from, to] in closed form, as first_contact() tells it. False: there is none that is told
+/// here, be it that they are clear, that they begin where they touch or that the general search must tell; ask
+/// first_contact() then. @pre both motions are parabolas that cover [from, to].
+bool discs_meet(const DiscMover& a, const DiscMover& b, double from, double to, const SearchLimits& limits,
+                FeatureContact& contact);
+
 /// True if the pair has a closed form and `answer` was filled; false: ask the general search.
 /// Cases: discs under equal acceleration; a disc against an outline of segments that does not turn, while the
 /// disc's centre stays abreast of each segment that it could reach.

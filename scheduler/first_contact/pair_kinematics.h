@@ -15,9 +15,11 @@ namespace brink {
 inline bool is_centred_disc(const Outline& o) { return o.is_point() && o.sites[0].a.isZero(0.0); }
 
 /// Of two outlines' bounding discs the smaller; of a mere point and another, the other's [m].
-inline double smallest_radius(const Outline& a, const Outline& b) {
-  const double ra = a.bounding_radius, rb = b.bounding_radius;
+inline double smallest_radius(double ra, double rb) {
   return ra > 0.0 && rb > 0.0 ? std::min(ra, rb) : std::max(ra, rb);
+}
+inline double smallest_radius(const Outline& a, const Outline& b) {
+  return smallest_radius(a.bounding_radius, b.bounding_radius);
 }
 
 /// An outline at one moment, and the frame in which it is looked at.

@@ -33,6 +33,10 @@ class CertificateWatch {
 
   /// Before body k is resolved, or shown, at time `to`: did its centre fly through a wire?
   bool flight(int k, double to);
+  /// Starts to fetch what that reads of the body.
+  void expect(int k) const {
+    if (!clear_.empty()) prefetch(&clear_[k]);
+  }
   /// A contact that closes at that speed [m/s], `rounding` being what speeds are wrong by: does it approach?
   bool approaches(const PairKey& pair, double closing_speed, double rounding);
   /// The moment of contact as the response saw it: where both were, the other where its image is, and their gap [m].

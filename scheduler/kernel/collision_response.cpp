@@ -79,6 +79,7 @@ CollisionResponse::CollisionResponse(const World& world, const SolverOptions& op
       watch_(&watch),
       run_(&run),
       reflects_(options.response == "reflection") {
+  for (int k = 0; k < static_cast<int>(world.bodies.size()); ++k) plain_.push_back(plain_disc(k));
   if (!search.points_meet_wires()) return;
   const auto thin = [](const Site& site) {
     return !site.solid && site.radius == 0.0 && site.kind != SiteKind::point;
@@ -87,6 +88,16 @@ CollisionResponse::CollisionResponse(const World& world, const SolverOptions& op
     const std::vector<Site>& sites = world.sites[s].outline->sites;
     if (std::any_of(sites.begin(), sites.end(), thin)) wires_.push_back(s);
   }
+}
+
+/// What disc_rebound() asks before it knows the pair.
+CollisionResponse::PlainDisc CollisionResponse::plain_disc(int k) const {
+  const Body& body = world_->bodies[k];
+  const Outline& outline = search_->outline_of(k);
+  const bool plain = is_centred_disc(outline) && outline.sites[0].radius == outline.bounding_radius &&
+                     outline.bounding_radius > 0.0 && !body.lock_x && !body.lock_y && body.mass > 0.0 &&
+                     !reflects_ && !search_->points_meet_wires();
+  return plain ? PlainDisc{1.0 / body.mass, outline.bounding_radius, body.material} : PlainDisc{};
 }
 
 /// Combined when the pair's two materials first meet, and kept.
@@ -317,6 +328,33 @@ std::optional<Outcome> CollisionResponse::part(const PairKey& pair, const Featur
   // after both have begun anew: it asks how they came out
   note_sides(*outcome);
   return outcome;
+}
+
+/// Whatever may yet say no comes before the first change.
+bool CollisionResponse::collide_discs(const PairKey& pair, const FeatureContact& found) {
+  const PlainDisc &a = plain_[pair.body], &b = plain_[pair.other_body];
+  const Material& material = materials_.of(*world_, a.material, b.material);
+  if (material.friction != 0.0) return false;
+  const double now = run_->time();
+  const BodyTrack &track_a = trajectories_->body(pair.body), &track_b = trajectories_->body(pair.other_body);
+  const double last = std::max(track_a.resolved_at, track_b.resolved_at);
+  const double rest = last < 0.0 ? std::numeric_limits<double>::infinity() : now - last;
+  // low flights are remembered: they may be a series that has an end
+  if (material.restitution < 1.0 &&
+      !ZenoWatch::is_high(found.closing_speed, rest, search_->limits().tolerance))
+    return false;
+  const auto after =
+      rebound({&track_a.motion, a.radius, a.inverse_mass}, {&track_b.motion, b.radius, b.inverse_mass},
+              Vec2::Zero(), now, 4.0 * ulp(now), found.level, material.restitution);
+  if (!after) return false;
+  // the flights that end here
+  if (!watch_->flight(pair.body, now) || !watch_->flight(pair.other_body, now)) return true;
+  note_resolve(pair.body, pair.other_body, after->magnitude);
+  trajectories_->restart_free(pair.body, after->a.state, after->a.low);
+  note_resolve(pair.other_body, pair.body, after->magnitude);
+  trajectories_->restart_free(pair.other_body, after->b.state, after->b.low);
+  watch_->discs_resolved(pair, after->gap);
+  return true;
 }
 
 std::optional<Outcome> CollisionResponse::collide(const PairKey& pair, const FeatureContact& found,

@@ -27,6 +27,16 @@ class CollisionResponse {
   /// seen what must not be.
   std::optional<Outcome> collide(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed);
 
+  // -- two plain discs --
+  /// A centred disc of which nothing is locked, where no law but that of impulses is asked for.
+  bool is_plain_disc(int body) const { return plain_[body].inverse_mass > 0.0; }
+  double radius_of_plain_disc(int body) const { return plain_[body].radius; }
+  /// collide() of two plain discs in free flight that started clear of each other, to the bit, where nobody is to be
+  /// told what comes of it. False, and nothing has changed, where that is not sure: ask collide(). May halt.
+  bool collide_discs(const PairKey& pair, const FeatureContact& found);
+  /// Starts to fetch what that reads of a body beside its motion.
+  void expect(int body) const { prefetch(&plain_[body]); }
+
   // -- what collisions of single pairs and of groups share --
   const Material& material_of(const PairKey& pair);
   /// What a collision of the pair takes of the approach.
@@ -45,7 +55,13 @@ class CollisionResponse {
 
  private:
   struct Change;
+  struct PlainDisc {            ///< what is asked of the world's body, in little memory
+    double inverse_mass = 0.0;  ///< [1/kg]; 0: it is none
+    double radius = 0.0;        ///< [m]
+    int material = -1;
+  };
   Change change(const PairKey& pair, const FeatureContact& found, const Material& material);
+  PlainDisc plain_disc(int body) const;
   DiscSide free_disc(int body) const;
   std::optional<DiscRebound> disc_rebound(const PairKey& pair, const FeatureContact& found,
                                           const Material& material);
@@ -65,7 +81,8 @@ class CollisionResponse {
   RunControl* run_;
   bool reflects_;  ///< response "reflection"
   PairMaterials materials_;
-  std::vector<int> wires_;  ///< fixed sites that have a wire without thickness
+  LargeVector<PlainDisc> plain_;  ///< of every body
+  std::vector<int> wires_;        ///< fixed sites that have a wire without thickness
 };
 
 }  // namespace brink

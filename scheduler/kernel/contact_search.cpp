@@ -6,6 +6,7 @@
 #include <map>
 
 #include "brink/core/shapes/outline_crossing.h"
+#include "brink/scheduler/first_contact/closed_forms.h"
 #include "brink/scheduler/first_contact/tolerances.h"
 #include "brink/scheduler/kernel/tolerances.h"
 
@@ -141,6 +142,24 @@ std::optional<Certificate> ContactSearch::search(const PairKey& pair, const Body
     ++work.certificates_undecided;
   }
   return c;
+}
+
+/// Counted if it is told: else search() is asked, and counts.
+bool ContactSearch::search_discs(const PairKey& pair, double radius, double other_radius, double from,
+                                 double to, FeatureContact& contact) {
+  WorkCounters& work = run_->work();
+  const StageTimer::Sampled timed(run_->timer(), work.seconds_search, timed_);
+  const BodyTrack &a = trajectories_->body(pair.body), &b = trajectories_->body(pair.other_body);
+  // of simultaneous resolves one may be a rounding ahead
+  from = std::max({from, a.motion.origin(), b.motion.origin()});
+  if (from > to) return false;
+  if (!discs_meet({&a.motion, radius, a.velocity_rounding}, {&b.motion, other_radius, b.velocity_rounding},
+                  from, to, limits_, contact))
+    return false;
+  ++work.pair_searches;
+  ++work.closed_forms;
+  ++work.certificates_issued;
+  return true;
 }
 
 std::vector<Certificate> ContactSearch::simultaneous(const Certificate& c, const BodyTrack& body,

@@ -64,6 +64,12 @@ class ContactSearch {
   /// `body` and `other` (null: a site). `most_steps` > 0: the search stops after so many of its steps.
   std::optional<Certificate> search(const PairKey& pair, const BodyTrack& body, const BodyTrack* other,
                                     double from, double to, int most_steps = 0);
+  /// The contact of two plain discs on their newest motions, as search() tells it; false: none that is told here,
+  /// ask search(). @pre in free flight, and not left_out().
+  bool search_discs(const PairKey& pair, double radius, double other_radius, double from, double to,
+                    FeatureContact& contact);
+  /// True if everybody may meet everybody.
+  bool is_unfiltered() const { return !filter_; }
   /// Other features of that pair that touch and approach at the certificate's time, each as one of its own.
   std::vector<Certificate> simultaneous(const Certificate& c, const BodyTrack& body, const BodyTrack* other);
   /// Contacts of the newest motions at time t with gap <= `tolerance`, deepest first.

@@ -26,6 +26,11 @@ bool Endings::collapsed(double now) const {
   return in_instant_ > endless() && now - instant_ <= 2.0 * same_instant(now);
 }
 
+/// As collided() has it, before that counts.
+bool Endings::is_plain(double now) const {
+  return in_instant_ < kPlainInstant || now - instant_ > 2.0 * same_instant(now);
+}
+
 /// An instant is counted from its first collision. Twice the length of one instant: times on either side of it may
 /// differ by as much.
 void Endings::count_in_instant(const PairKey& pair, double now) {

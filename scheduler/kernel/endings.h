@@ -31,6 +31,10 @@ class Endings {
   /// To be told of every collision at the present time, in order. One that a picture shows is in no
   /// series of bounces: flights lower than a pixel say nothing about a limit.
   std::optional<Ending> collided(const Outcome& outcome, double now, BounceLoss loss);
+  /// True of an instant in which another collision is nothing unusual.
+  bool is_plain(double now) const;
+  /// collided() of one that is in no series of bounces (ZenoWatch), in such an instant: nothing ends.
+  void collided_plainly(const PairKey& pair, double now) { count_in_instant(pair, now); }
   /// True at so many collisions in all, or more, as set_limit() said.
   bool at_limit(std::uint64_t collisions) const {
     return max_collisions_ > 0 && collisions >= max_collisions_;

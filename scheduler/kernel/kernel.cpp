@@ -161,6 +161,30 @@ std::optional<Outcome> Kernel::respond(const PairKey& pair, const FeatureContact
   return parts_.response.collide(pair, found, changed);
 }
 
+bool Kernel::has_quick_way() const {
+  return options().detector == "field" && options().closed_forms && !takes_together(order()) &&
+         !parts_.run.trace() && !parts_.records.records_events() && parts_.search.is_unfiltered() &&
+         !parts_.grouping && !parts_.policy_watch.is_on() && parts_.speculation.empty();
+}
+
+/// respond() and tell(), of all that a collision may be the end of only what this one may be.
+bool Kernel::resolve_discs(const PairKey& pair, const FeatureContact& found) {
+  if (!parts_.endings.is_plain(time())) return false;
+  {
+    const StageTimer::Sampled timed(parts_.run.timer(), parts_.run.work().seconds_response, responses_timed_);
+    if (!parts_.response.collide_discs(pair, found)) return false;
+  }
+  if (halt()) return true;
+  parts_.watch.note_overlap(found.gap);
+  count(pair);
+  ++parts_.run.work().collisions_quick;
+  parts_.records.event_untold();
+  parts_.endings.collided_plainly(pair, time());
+  poll();
+  stop_at_limit(collisions());
+  return true;
+}
+
 /// In an instant that has had too many collisions the law is `collapsed`, whatever the order.
 bool Kernel::resolve_group(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed) {
   const GroupLaw law = parts_.endings.collapsed(time()) ? GroupLaw::collapsed
@@ -235,12 +259,17 @@ bool Kernel::judge(const Outcome& o, std::vector<int>& changed) {
   // before the judgement: impacts in an island that steps because of it are counted, too
   const std::uint64_t count = collisions();
   const bool goes_on = judge_ending(o, changed);
-  if (!parts_.endings.at_limit(count)) return goes_on;
+  return !stop_at_limit(count) && goes_on;
+}
+
+/// Of max_collisions, or of stop_after_collisions(); true if it is met.
+bool Kernel::stop_at_limit(std::uint64_t count) {
+  if (!parts_.endings.at_limit(count)) return false;
   // a limit below the option's is that of stop_after_collisions()
   stop(Termination::stopped, options().max_collisions > 0 && count >= options().max_collisions
                                  ? fmt::format("max_collisions = {} reached at t = {:.15g}", count, time())
                                  : fmt::format("a collision at t = {:.15g}", time()));
-  return false;
+  return true;
 }
 
 /// What it may be the end of.

@@ -88,6 +88,20 @@ class Kernel : public KernelView {
   /// Records that a pair's search cannot tell, and ends the run.
   void give_up(const Certificate& c);
 
+  // -- two plain discs, by the quick way: the same bits, events and counts as by search() and resolve() --
+  /// True while nobody looks on: no trace, no events, no filter, no grouping, no policy that is held to contacts.
+  bool has_quick_way() const;
+  /// True of a body that may be one of the two, while it is in free flight.
+  bool is_plain_disc(int k) const { return parts_.response.is_plain_disc(k); }
+  /// The contact; false: ask search().
+  bool search_discs(const PairKey& pair, double from, double to, FeatureContact& contact) {
+    return parts_.search.search_discs(pair, parts_.response.radius_of_plain_disc(pair.body),
+                                      parts_.response.radius_of_plain_disc(pair.other_body), from, to,
+                                      contact);
+  }
+  /// Resolves it, alone in its instant, at the present time. False, and nothing has changed: ask resolve().
+  bool resolve_discs(const PairKey& pair, const FeatureContact& contact);
+
   // -- resolving ahead of time: what is done may be undone --
   /// Resolves a contact of two newest motions, whatever the present time, and takes the bodies that it
   /// changes on to `end`; nobody is told yet. False, and nothing has changed, where that cannot be done.
@@ -132,6 +146,7 @@ class Kernel : public KernelView {
   bool tell(const Outcome& outcome, std::vector<int>& changed);
   void count(const PairKey& pair);
   bool judge(const Outcome& outcome, std::vector<int>& changed);
+  bool stop_at_limit(std::uint64_t collisions);
   bool judge_ending(const Outcome& outcome, std::vector<int>& changed);
   bool begin_to_last(const Outcome& outcome, double limit, std::vector<int>& changed);
   bool go_on_in_islands(const Outcome& outcome, std::vector<int>& changed);

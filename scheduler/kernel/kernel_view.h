@@ -57,6 +57,13 @@ class KernelView {
     parts_.search.expect(k);
   }
 
+  /// The same of a plain disc that goes the quick way.
+  void expect_disc(int k) const {
+    prefetch(&parts_.trajectories.body(k));
+    parts_.response.expect(k);
+    parts_.watch.expect(k);
+  }
+
   // -- islands --
   /// When the next step of an island ends [s]; infinity: never. To be asked for with step_island().
   double next_step() const { return parts_.islands.next_step(); }

@@ -21,6 +21,7 @@ class PolicyWatch {
   void begin() {
     if (!known_) known_ = std::make_unique<Agenda>();
   }
+  bool is_on() const { return known_ != nullptr; }
   void found(const Certificate& c) {
     if (known_ && c.kind == Certificate::Kind::contact) known_->insert(c);
   }

@@ -1,6 +1,7 @@
 #pragma once
 /// A run's records: frames on the frame clock, events, checkpoints.
 
+#include <algorithm>
 #include <optional>
 
 #include "brink/scheduler/kernel/contact_search.h"
@@ -31,6 +32,12 @@ class Records {
   /// to, where they have begun their motions anew.
   void event(EventKind kind, const PairKey& pair, const FeatureContact& contact, double impulse_n,
              double impulse_t, Real delay, const EventSide& body = {}, const EventSide& other = {});
+  /// The same where nobody records events.
+  void event_untold() {
+    ++seq_;
+    last_event_ = std::max(last_event_, run_->time());
+  }
+  bool records_events() const { return recorder_ && run_->options().record_events; }
   /// What comes to an end at a time of its own.
   void ending(EventKind kind, const PairKey& pair, const FeatureContact& contact, double time);
   /// The time of the last event, to which the next one is told not to be before [s].
@@ -57,7 +64,6 @@ class Records {
 
  private:
   void wind_frame_clock(double t);
-  bool records_events() const { return recorder_ && run_->options().record_events; }
 
   const Trajectories* trajectories_;
   RunControl* run_;

@@ -19,11 +19,15 @@ void end_run(ZenoWatch::Bounce& b) {
 
 }  // namespace
 
+/// A flight of duration T on a parabola that ends with v = g T / 2 rose by v^2 / (2 g) = v T / 4.
+bool ZenoWatch::is_high(double closing_speed, double rest, double contact_tolerance) {
+  return 0.25 * closing_speed * rest > kHighFlight * contact_tolerance;
+}
+
 std::optional<ZenoEnding> ZenoWatch::collided(const Feature& feature, double time, double closing_speed,
                                               BounceLoss loss, double rest, bool sunk,
                                               const ForeseenLimit& foreseen) {
-  // A flight of duration T on a parabola that ends with v = g T / 2 rose by v^2 / (2 g) = v T / 4.
-  if (loss == BounceLoss::none || 0.25 * closing_speed * rest > kHighFlight * tolerance_) return std::nullopt;
+  if (loss == BounceLoss::none || is_high(closing_speed, rest, tolerance_)) return std::nullopt;
   // remembered from here on: high flights have not come so far (kHighFlight)
   Bounce& b = bounces_[feature];
   const double left = foreseen.time - time;

@@ -73,6 +73,9 @@ class ZenoWatch {
                                      BounceLoss loss, double rest = 0.0, bool sunk = false,
                                      const ForeseenLimit& foreseen = {});
 
+  /// True of a flight that rises so high that collided() does not remember it.
+  static bool is_high(double closing_speed, double rest, double contact_tolerance);
+
   const Bounces& bounces() const { return bounces_; }
   void restore(Bounces bounces) { bounces_ = std::move(bounces); }
 

@@ -50,6 +50,7 @@ class BodyClocks final : public Policy {
     until_ = until;
     if (!views_ || revision_ != kernel.revision()) look_around_all();
     views_->set_end(seen_end());
+    quick_ = kernel.has_quick_way() && !picks_among_all(kernel.order());
     while (!kernel.halt() && std::min(queue_.time(), kernel.next_step()) <= end()) {
       if (++served_ % kBetweenPauses == 0 || kernel.much_to_forget()) pause();
       if (served_ % kBetweenPolls == 0 && !kernel.poll()) break;
@@ -125,6 +126,7 @@ class BodyClocks final : public Policy {
         look_alone(k, due.time);
         break;
       case Due::Kind::may_meet:
+        if (quick_ && meet_quickly(k, second)) return;
         sharpen(k);
         // what was just found may be next in any case: that saves a turn in the queue
         if (is_next(k, second.time)) return meet(k, second.time);
@@ -166,7 +168,7 @@ class BodyClocks final : public Policy {
   void expect(int k, int next) const {
     if (next < kernel_->body_count()) views_->expect(next);
     const BodyClock& clock = views_->clock(k);
-    if (clock.candidates.empty()) return;
+    if (quick_ || clock.candidates.empty()) return;  // quickly: expect_quickly() has been asked before
     kernel_->expect(k);
     const int other = clock.candidates.front().other;
     if (other >= kernel_->body_count()) return;
@@ -222,6 +224,65 @@ class BodyClocks final : public Policy {
       found_->set(k, *found);
     }
     clock.see(c, now);
+  }
+
+  /// Search, collision and two looks around in one go, where body k's first candidate may be met now, both are plain
+  /// discs and nothing else is due in the instant of their contact: what sharpen(), is_next() and meet() come to.
+  /// False, and nothing that matters has changed, if it is for those.
+  bool meet_quickly(int k, EventQueue::Entry second) {
+    const BodyClock& clock = views_->clock(k);
+    const Candidate& c = clock.candidates.front();
+    if (!views_->plain_pair(k, c) || views_->stale(c)) return false;
+    const PairKey pair{std::min(k, c.other), std::max(k, c.other), -1, {}};
+    FeatureContact contact;
+    views_->expect_cells(c.other);
+    views_->expect_look(k);
+    if (!kernel_->search_discs(pair, c.clear, std::max(c.time, seen_end()), contact)) return false;
+    expect_quickly(second.body);
+    views_->expect_look(c.other);
+    const double now = contact.time, instant = now + same_instant(now);
+    if (clock.exit <= instant || clock.horizon <= instant || now > std::min(end(), kernel_->next_step()) ||
+        (clock.candidates.size() > 1 && clock.candidates[1].time <= instant))
+      return false;
+    if (second.time <= instant && second.body == c.other && drops_copy(c.other, k)) second = queue_.second();
+    if (second.time <= instant) return false;
+    if (!kernel_->record_frames(now)) return true;
+    kernel_->advance_pair(pair, now);
+    if (!kernel_->resolve_discs(pair, contact)) {
+      changed_.clear();
+      if (kernel_->resolve(pair, contact, changed_)) look_around_changed();
+      return true;
+    }
+    if (kernel_->halt()) return true;
+    for (const int j : {pair.body, pair.other_body})
+      if (views_->clock(j).candidates.has_exact()) found_->forget(j);
+    views_->look_around_after(pair.body, pair.other_body, now);
+    wait_for(pair.body);
+    wait_for(pair.other_body);
+    return true;
+  }
+
+  /// Starts to fetch what meet_quickly() will read for that body, whose own clock and flight are at hand.
+  void expect_quickly(int next) const {
+    if (next >= kernel_->body_count()) return;
+    const BodyClock& clock = views_->clock(next);
+    kernel_->expect_disc(next);
+    views_->expect_cells(next);
+    const int other = clock.candidates.empty() ? next : clock.candidates.front().other;
+    if (other >= kernel_->body_count()) return;
+    kernel_->expect_disc(other);
+    views_->expect(other);
+  }
+
+  /// A pair may be in both views. If body j's first candidate is body k, whose own view has the pair, it is dropped.
+  bool drops_copy(int j, int k) {
+    BodyClock& clock = views_->clock(j);
+    if (clock.candidates.empty() || clock.candidates.front().other != k ||
+        views_->stale(clock.candidates.front()))
+      return false;
+    clock.candidates.pop_front();
+    wait_for(j);
+    return true;
   }
 
   /// Body k's first candidate is a contact, and nothing is due before it.
@@ -350,6 +411,7 @@ class BodyClocks final : public Policy {
   double until_ = 0.0;
   std::uint64_t revision_ = 0;
   std::uint64_t served_ = 0;
+  bool quick_ = false;  ///< two plain discs go the quick way
   std::optional<Views> views_;
   EventQueue queue_;
   std::optional<FoundContacts> found_;  ///< of each body's exact candidate

@@ -1,6 +1,7 @@
 #include "brink/scheduler/policies/body_clocks/views.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "brink/core/base/limits.h"
@@ -107,12 +108,18 @@ void Views::take_up(int k) {
   f.version = f.version + 1U;
   f.free = kernel_->is_free(k) && motion.acceleration().linear == gravity_ && !kernel_->by_passes();
   f.disc = f.free && is_centred_disc(kernel_->outline_of(k));
+  f.plain = f.free && kernel_->is_plain_disc(k);
   // stride() goes by how long motions last from start to start
   if (!kernel_->is_free(k)) note_start(k, motion.begin());
   // In meeting() every comparison with it is false, and max(now, NaN) is now: who is not free may be met
   // at once, without a branch that asks.
   f.x = std::numeric_limits<double>::quiet_NaN();
-  if (!f.free) return;
+  if (f.free) start_anew(k, motion);
+}
+
+/// Its flight is that parabola from now on.
+void Views::start_anew(int k, const Motion& motion) {
+  Flight& f = flights_[k];
   const BodyState& s = motion.start();
   f.x = s.pose.position.x();
   f.y = s.pose.position.y();
@@ -123,7 +130,7 @@ void Views::take_up(int k) {
 
 /// True if body k is to have that owner in view: nobody else looks after the pair.
 bool Views::sees(int k, int other, const Image& image) const {
-  if (other < body_count() && looked_[other] == round_) return false;
+  if (other < body_count() && has_looked(other)) return false;
   return kernel_->may_meet(k, other) && (!kernel_->is_held(k) || kernel_->is_searched(k, other, image));
 }
 
@@ -155,8 +162,12 @@ void Views::see_bodies(int k, const Course& here, double now, const Cell* former
   if (const int count = former ? -1 : near_->around(k, bodies); count >= 0) {
     batch_.gather({bodies, bodies + count}, k, flights_);
     batch_.meet(here, now);
-    for (int i = 0; i < batch_.size(); ++i)
-      if (batch_.begin(i) < clocks_[k].horizon) see(batch_.body(i), {}, batch_.begin(i));
+    std::array<int, FlightBatch::kMost> met;
+    const int hits = batch_.met_before(clocks_[k].horizon, met);
+    // the horizon may come nearer with each
+    for (int i = 0; i < hits; ++i)
+      if (const double begin = batch_.begin(met[i]); begin < clocks_[k].horizon)
+        see(batch_.body(met[i]), {}, begin);
     return;
   }
   const auto compare = [&](int j, const Image& image) {
@@ -168,9 +179,30 @@ void Views::see_bodies(int k, const Course& here, double now, const Cell* former
 
 void Views::look_around(int k, double now) {
   const auto timed = kernel_->looking();
+  look(k, now);
+}
+
+/// The first two of a round, which are all of most, are told by their numbers; of more it is noted body by body.
+void Views::note_look(int k) {
+  if (lookers_ < 2) {
+    first_lookers_[lookers_++] = k;
+    return;
+  }
+  for (const int first : first_lookers_) looked_[first] = round_;
+  looked_[k] = round_;
+  lookers_ = 3;
+}
+
+bool Views::has_looked(int k) const {
+  if (lookers_ <= 2)
+    return (lookers_ > 0 && k == first_lookers_[0]) || (lookers_ > 1 && k == first_lookers_[1]);
+  return looked_[k] == round_;
+}
+
+void Views::look(int k, double now) {
   BodyClock& clock = clocks_[k];
   kernel_->note_pass(k, now);
-  looked_[k] = round_;
+  note_look(k);
   // No horizon yet. Who is not in free flight gets one below, before anybody is put into view: see()
   // compares with it.
   clock.forget_all();
@@ -187,6 +219,18 @@ void Views::look_around(int k, double now) {
   }
   near_->sites_near(k, [&](int s, const Image& image) { see_site(k, s, image, now); });
   for (const int s : moving_) see_moving_site(k, s, now);
+}
+
+/// Each is as free as it was. The first sees the second, if it may meet it, and not the reverse.
+void Views::look_around_after(int a, int b, double now) {
+  const auto timed = kernel_->looking();
+  for (const int k : {a, b}) {
+    flights_[k].version = flights_[k].version + 1U;
+    start_anew(k, kernel_->body(k).motion);
+  }
+  begin_round();
+  look(a, now);
+  look(b, now);
 }
 
 void Views::look_ahead(int k, double now) {

@@ -1,6 +1,7 @@
 #pragma once
 /// What every body has in view, from which policies with local clocks know whom to look at next.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -21,11 +22,18 @@ class Views {
   BodyClock& clock(int k) { return clocks_[k]; }
   const BodyClock& clock(int k) const { return clocks_[k]; }
   bool stale(const Candidate& c) const { return c.version != version_of(c.other); }
+  /// True if body k and what that candidate of its is are two plain discs in free flight, in a plane that is not
+  /// crossed from one period to another.
+  bool plain_pair(int k, const Candidate& c) const {
+    return c.other < body_count() && flights_[k].plain && flights_[c.other].plain && c.image == Image{};
+  }
   /// Starts to fetch body k's clock and flight.
   void expect(int k) const {
     prefetch(&clocks_[k]);
     prefetch(&flights_[k]);
   }
+  /// Starts to fetch where expect_look(k) looks. Slow if k's own flight is not at hand.
+  void expect_cells(int k) const { near_->expect_cells(k); }
   /// Starts to fetch what looking around body k reads. Slow if its own flight is not at hand.
   void expect_look(int k) const { near_->expect(k); }
   /// Until when a search of body k's candidate must go: they cannot meet later, or k's view of it ends. Still
@@ -46,8 +54,13 @@ class Views {
 
   /// Reads body k's motion anew; candidates that others have of it are stale.
   void take_up(int k);
+  /// The same of two plain discs that have met, and both look around in a round of their own.
+  void look_around_after(int a, int b, double now);
   /// Bodies that look around from now on see none of those that have done so before them since.
-  void begin_round() { ++round_; }
+  void begin_round() {
+    ++round_;
+    lookers_ = 0;
+  }
   /// Fills body k's view with everything that it may meet from now on, but for bodies that have looked around
   /// in this round: they see it. May halt the kernel (an integrator that fails).
   void look_around(int k, double now);
@@ -60,6 +73,10 @@ class Views {
  private:
   int body_count() const { return static_cast<int>(clocks_.size()); }
   unsigned version_of(int owner) const { return owner < body_count() ? flights_[owner].version : 0; }
+  void start_anew(int k, const Motion& motion);
+  void look(int k, double now);
+  void note_look(int k);
+  bool has_looked(int k) const;
   void see_bodies(int k, double now);
   void see_bodies(int k, const Course& here, double now, const Cell* former = nullptr);
   bool sees(int k, int other, const Image& image) const;
@@ -89,8 +106,10 @@ class Views {
   std::vector<Pace> paces_;                   ///< of every body
   std::vector<std::vector<Box>> site_boxes_;  ///< what must be reached to touch a still site; empty: anywhere
   std::vector<int> moving_;
-  std::vector<std::uint64_t> looked_;  ///< the round in which each body looked around
+  std::vector<std::uint64_t> looked_;  ///< the round in which each body looked around, if more than two did
   std::uint64_t round_ = 0;
+  int lookers_ = 0;  ///< in this round: 0, 1, 2, or more
+  std::array<int, 2> first_lookers_{};
   std::optional<Neighbourhood> near_;
   FlightBatch batch_;  ///< empty but while a body looks around
 };
