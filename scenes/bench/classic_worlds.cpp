@@ -1,21 +1,9 @@
 #include "brink/scenes/bench/classic_worlds.h"
+
 #include "brink/core/world/make_body.h"
+#include "brink/scenes/bench/hits.h"
 
 namespace brink::bench {
-namespace {
-
-/// Times of collisions, and nothing else.
-class Hits : public Recorder {
- public:
-  void frame(double, std::span<const BodyState>) override {}
-  void event(const Event& e) override {
-    if (e.kind == EventKind::collision) times.push_back(e.contact.time);
-  }
-  void checkpoint(double, const std::vector<std::byte>&) override {}
-  std::vector<double> times;
-};
-
-}  // namespace
 
 Body sampled_body(const Shape& shape, const Pose& pose, const Twist& twist, double spacing) {
   Body body = make_body(shape, Mass{1.0});

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brink/scenes/bench/hits.h"
 #include "brink/scheduler/policies/policy.h"
 
 namespace brink::bench {
@@ -22,17 +23,6 @@ namespace {
 constexpr double kMostSteps = 1e6, kMostIntegratorSteps = 1e5;
 /// Of repeats, together [s].
 constexpr double kMostSeconds = 1.0;
-
-/// Times of collisions: what errors and missed contacts are told by.
-class Hits : public Recorder {
- public:
-  void frame(double, std::span<const BodyState>) override {}
-  void event(const Event& e) override {
-    if (e.kind == EventKind::collision) times.push_back(e.contact.time);
-  }
-  void checkpoint(double, const std::vector<std::byte>&) override {}
-  std::vector<double> times;
-};
 
 /// One run from the beginning in a simulator of its own. Checkpoints would take time that is not the
 /// simulation's.

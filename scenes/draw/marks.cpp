@@ -69,13 +69,22 @@ void draw_name(Canvas& canvas, const std::string& name, const Vec2& at) {
   canvas.text(at.x(), at.y() + 0.35 * kTextSize, name, kTextSize, Tones::ink.rgb(), Canvas::Align::middle);
 }
 
-/// At the centre of mass of every image, in pixels: text does not grow with the scale.
+/// At the centre of mass of every image, in pixels: text does not grow with the scale. One that would cover another is
+/// left out, as on the replay page.
 void draw_names(Canvas& canvas, const Sheet& sheet) {
   if (!sheet.options.names) return;
+  std::vector<Box> taken;
   for (std::size_t k = 0; k < sheet.bodies.size(); ++k) {
     const Vec2& at = sheet.bodies[k].pose.position;
-    for (const Vec2& by : images_of(sheet, box_of(at, at)))
-      draw_name(canvas, sheet.world.bodies[k].name, sheet.view.to_picture(at + by));
+    const std::string& name = sheet.world.bodies[k].name;
+    const Vec2 half(0.5 * canvas.text_width(name, kTextSize) + 2.0, 0.6 * kTextSize);
+    for (const Vec2& by : images_of(sheet, box_of(at, at))) {
+      const Vec2 place = sheet.view.to_picture(at + by);
+      const Box box = box_of(place - half, place + half);
+      if (std::ranges::any_of(taken, [&](const Box& other) { return other.overlaps(box); })) continue;
+      taken.push_back(box);
+      draw_name(canvas, name, place);
+    }
   }
 }
 

@@ -134,7 +134,8 @@ int film_command(const FilmArguments& arguments) {
   refuse_overwriting(arguments.out, "-o", {file});
   // Times are checked against what the file has: of a run that was killed the frames end before its
   // duration.
-  const RunFile run(file);
+  RunFile run(file);
+  run.hold();  // a run that goes on: all pictures are of one moment of its file
   const auto [first, last] = run.time_range();
   const double from = arguments.from.value_or(first), to = arguments.to.value_or(last);
   const std::string range = fmt::format("{} .. {} s, --from before --to", first, last);

@@ -13,7 +13,7 @@ namespace {
 // Initial values are those of a sound header, with which unsealed() compares.
 struct Header {
   char magic[8] = {'B', 'R', 'I', 'N', 'K', 'C', 'P', '\n'};
-  std::uint32_t version = 1, unused = 0;
+  std::uint32_t version = 2, unused = 0;
   std::uint64_t length = 0, checksum = 0;
 };
 static_assert(sizeof(Header) == 32);
@@ -42,6 +42,7 @@ std::uint64_t checksum(const ResumePoint& row, std::span<const std::byte> snapsh
   hash.add(static_cast<std::uint64_t>(row.frames));
   hash.add(static_cast<std::uint64_t>(row.events));
   hash.add(static_cast<std::uint64_t>(row.contacts));
+  hash.add(static_cast<std::uint64_t>(row.knots));
   hash.add(static_cast<std::uint64_t>(snapshot.size()));
   add_bytes(hash, snapshot);
   return hash.value();

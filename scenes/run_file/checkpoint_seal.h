@@ -5,7 +5,7 @@
 /// A sealed state is a header and then the simulator's snapshot (little-endian, as the machine has it):
 ///
 ///     8 bytes   magic "BRINKCP\n"
-///     u32       version of this layout: 1
+///     u32       version of this layout: 2
 ///     u32       0
 ///     u64       length of the snapshot
 ///     u64       checksum: FNV-1a, 64 bits, over the run's identity, the snapshot, and the row's other

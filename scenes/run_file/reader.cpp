@@ -8,6 +8,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -89,14 +90,14 @@ std::pair<double, double> hermite(double a, double va, double b, double vb, doub
 }
 
 /// A state that is known.
-struct Knot {
+struct KnownState {
   double t = 0.0;
   BodyState state;
 };
 
 /// The state at t of the cubics through two known states of one body: x, y and angle, each on its own.
 /// Angles are not wrapped, so whole turns between the two are not lost.
-BodyState between(const Knot& left, const Knot& right, double t) {
+BodyState between(const KnownState& left, const KnownState& right, double t) {
   const BodyState &a = left.state, &b = right.state;
   const double h = right.t - left.t;
   // Never so of what states_at() gives, left.t <= t < right.t; of others the quotients would be
@@ -129,6 +130,9 @@ constexpr const char* kStateColumns =
     ", x, y, angle, vx_before, vy_before, omega_before, vx, vy, omega, other_x, other_y, other_angle, "
     "other_vx_before, other_vy_before, other_omega_before, other_vx, other_vy, other_omega";
 
+constexpr const char* kKnotColumns =
+    "SELECT t, body, x, y, angle, vx_before, vy_before, omega_before, vx, vy, omega, events FROM knot ";
+
 /// The side of an event whose nine columns begin at column number `first`.
 /// @throws BadInput where x is a number and one of the others is none.
 EventSide side_in(const Row& row, int first) {
@@ -151,7 +155,8 @@ struct RunFile::Impl {
   fs::path file;
   mutable SQLite::Database db;
   std::int64_t bodies = 0, sites = 0;
-  bool has_states = false;  ///< of bodies at collisions; files of before have none
+  bool has_states = false,
+       has_knots = false;  ///< of bodies at collisions, in islands; files of before have none
 
   // Looked for at once, so that any other database is told as what it is not.
   explicit Impl(const fs::path& f) : file(f), db(open_database(f, SQLite::OPEN_READONLY, kBusyMilliseconds)) {
@@ -161,6 +166,7 @@ struct RunFile::Impl {
     bodies = rows_numbered_from_zero("body");
     sites = rows_numbered_from_zero("site");
     has_states = has_column("event", "other_omega");
+    has_knots = db.tableExists("knot");
   }
 
   /// How many rows a table of things has, whose ids are 0, 1, 2 ...
@@ -215,15 +221,60 @@ struct RunFile::Impl {
     }
     return low;
   }
-  /// How bodies come out of the events of [from, to], in the order of the file.
-  /// Calls f(time, body, side) for each owner that is a body of which the event tells something; fixed
-  /// sites are left out, and so are events without states.
+  /// A body at an event or a knot.
+  struct Passed {
+    double t = 0.0;
+    std::int64_t events = 0;  ///< before it
+    bool is_event = false;
+    int body = -1;
+    EventSide side;
+
+    /// In this order they happened: knots of an instant may be of before or after its events.
+    bool operator<(const Passed& b) const {
+      return std::tie(t, events, is_event) < std::tie(b.t, b.events, b.is_event);
+    }
+  };
+
+  /// How bodies pass through events and knots of [from, to], in their order.
+  /// Calls f(time, body, side) for each owner that is a body of which something is told; fixed sites are
+  /// left out, and so are events without states.
   template <class F>
   void each_side_between(double from, double to, F&& f) const {
+    std::vector<Passed> all;
+    add_knots_between(from, to, all);
+    add_events_between(from, to, all);
+    std::stable_sort(all.begin(), all.end());
+    for (const Passed& p : all) f(p.t, p.body, p.side);
+  }
+
+  void add_knots_between(double from, double to, std::vector<Passed>& all) const {
+    if (!has_knots) return;  // of before
+    SQLite::Statement get(db, std::string(kKnotColumns) + "WHERE t BETWEEN ? AND ? ORDER BY rowid");
+    get.bind(1, from);
+    get.bind(2, to);
+    while (get.executeStep()) {
+      const TimedKnot k = knot_in(Row(get));
+      all.push_back({k.time, k.events, false, k.body, {true, {k.pose, k.after}, k.before}});
+    }
+  }
+
+  TimedKnot knot_in(const Row& row) const {
+    const auto twist = [&row](int i) { return Twist{{row.real(i), row.real(i + 1)}, row.real(i + 2)}; };
+    TimedKnot k;
+    k.time = row.real(0);
+    k.body = static_cast<int>(row.count(1, bodies));
+    k.pose = {{row.real(2), row.real(3)}, row.real(4)};
+    k.before = twist(5);
+    k.after = twist(8);
+    k.events = row.count(11);
+    return k;
+  }
+
+  void add_events_between(double from, double to, std::vector<Passed>& all) const {
     if (!has_states) return;  // of before
     // Inclusive at both ends: a frame may stand before or after a collision of its own time.
     SQLite::Statement get(db, std::string("SELECT t, body, other") + kStateColumns +
-                                  " FROM event WHERE t BETWEEN ? AND ? ORDER BY seq");
+                                  ", seq FROM event WHERE t BETWEEN ? AND ? ORDER BY seq");
     get.bind(1, from);
     get.bind(2, to);
     while (get.executeStep()) {
@@ -232,7 +283,8 @@ struct RunFile::Impl {
         const int body = row.id_or_none(1 + side, bodies);
         if (body < 0) continue;
         // Behind t, body and other: columns 3 .. 11 are of `body`, 12 .. 20 of `other`.
-        if (const EventSide how = side_in(row, 3 + 9 * side); how.known) f(row.real(0), body, how);
+        if (const EventSide how = side_in(row, 3 + 9 * side); how.known)
+          all.push_back({row.real(0), row.count(21), true, body, how});
       }
     }
   }
@@ -470,6 +522,35 @@ std::vector<Event> RunFile::events(std::int64_t first, std::int64_t most) const 
   });
 }
 
+std::int64_t RunFile::knot_count() const {
+  return reading(impl_->file, "knot", [&] {
+    return impl_->has_knots ? impl_->db.execAndGet("SELECT ifnull(max(rowid), 0) FROM knot").getInt64() : 0;
+  });
+}
+
+std::optional<double> RunFile::knots_end() const {
+  return reading(impl_->file, "knot", [&]() -> std::optional<double> {
+    if (!impl_->has_knots) return std::nullopt;
+    const nlohmann::json::json_pointer limit("/output/max_knots");
+    const auto options = nlohmann::json::parse(meta("options").value_or("{}"));
+    if (!options.contains(limit) || knot_count() < options.at(limit).get<std::int64_t>()) return std::nullopt;
+    SQLite::Statement get(impl_->db, "SELECT t FROM knot ORDER BY rowid DESC LIMIT 1");
+    return get.executeStep() ? Row(get).real(0) : 0.0;
+  });
+}
+
+std::vector<TimedKnot> RunFile::knots(std::int64_t first, std::int64_t most) const {
+  return reading(impl_->file, "knot", [&] {
+    std::vector<TimedKnot> all;
+    if (!impl_->has_knots) return all;
+    SQLite::Statement get(impl_->db, std::string(kKnotColumns) + "WHERE rowid > ? ORDER BY rowid LIMIT ?");
+    get.bind(1, first);
+    get.bind(2, most);
+    while (get.executeStep()) all.push_back(impl_->knot_in(Row(get)));
+    return all;
+  });
+}
+
 std::vector<RunFile::Spring> RunFile::springs() const {
   return reading(impl_->file, "meta", [&] {
     const auto json = nlohmann::json::parse(meta("springs").value_or("[]"));
@@ -550,14 +631,15 @@ std::optional<ResumePoint> RunFile::checkpoint() const {
   const auto text = [&](const char* key) { return of.contains(key) ? of.at(key) : std::string(); };
   return reading(impl_->file, "checkpoint", [&]() -> std::optional<ResumePoint> {
     SQLite::Statement get(impl_->db,
-                          "SELECT t, state, frames, events, wall_seconds, contacts FROM checkpoint");
+                          "SELECT t, state, frames, events, wall_seconds, contacts, knots FROM checkpoint");
     if (!get.executeStep()) return std::nullopt;
     const Row row(get);
     // The bytes belong to the statement until its next step, so they are copied into the point.
     const SQLite::Column blob = get.getColumn(1);
     const auto* bytes = static_cast<const std::byte*>(blob.getBlob());
-    ResumePoint point{row.real(0), {bytes, bytes + blob.getBytes()}, row.real(4), row.count(2), row.count(3),
-                      row.count(5)};
+    ResumePoint point{
+        row.real(0), {bytes, bytes + blob.getBytes()}, row.real(4), row.count(2), row.count(3), row.count(5),
+        row.count(6)};
     // A seal that does not hold throws: what is damaged is never given out.
     point.state = unsealed(point, run_identity(text("brink_version"), text("options"), text("world_hash")));
     // A recorder keeps a single row. Of two nobody could say which of them counts the rows of the file.
@@ -636,6 +718,7 @@ void RunFile::require_sound() const {
   // Events are numbered from 0, by their own key; the others by SQLite, from 1.
   require("event", 0, point ? point->events : 0);
   require("contact", 1, point ? point->contacts : 0);
+  require("knot", 1, point ? point->knots : 0);
 }
 
 std::pair<double, double> RunFile::time_range() const {
@@ -686,8 +769,8 @@ RunFile::Frame RunFile::states_at(double t) const {
     const Frame b = impl_->read_frame(index + 1);
     if (!(b.t > a.t)) throw BadInput("frames are not in the order of time");
     // What is known of each body before and after t: first the frames around it, then its own
-    // collisions between.
-    std::vector<Knot> left, right;
+    // collisions and knots between.
+    std::vector<KnownState> left, right;
     std::vector<bool> met(a.states.size(), false);  // after t
     for (const BodyState& s : a.states) left.push_back({a.t, s});
     for (const BodyState& s : b.states) right.push_back({b.t, s});

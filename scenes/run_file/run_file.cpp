@@ -110,11 +110,12 @@ struct RunFileRecorder::Impl {
   // the transaction go before the database that they belong to.
   RunFolder folder;
   SQLite::Database db;
-  std::optional<SQLite::Statement> insert_frame, insert_site_frame, insert_event, insert_contact;
+  std::optional<SQLite::Statement> insert_frame, insert_site_frame, insert_event, insert_contact, insert_knot;
   std::optional<SQLite::Transaction> transaction;
   std::int64_t rows_waiting = 0;
   Clock::time_point waiting_since;
-  std::int64_t frames = 0, events = 0, contacts = 0;  // rows in the file
+  std::int64_t frames = 0, events = 0, contacts = 0, knots = 0;  // rows in the file
+  std::int64_t most_knots = 0;
   std::int64_t bodies = 0;
   std::vector<std::pair<int, SiteMotion>> moving_sites;  ///< by id
   double wall_before = 0.0, waited = 0.0;                // [s]
@@ -307,11 +308,13 @@ void RunFileRecorder::Impl::drop_rows_after_checkpoint(const Scene& scene) {
     frames = resume_point->frames;
     events = resume_point->events;
     contacts = resume_point->contacts;
+    knots = resume_point->knots;
     wall_before = resume_point->wall_seconds;
   }
   db.exec(fmt::format("DELETE FROM frame WHERE rowid > {}", frames));
   db.exec(fmt::format("DELETE FROM event WHERE rowid >= {}", events));  // seq counts from 0
   db.exec(fmt::format("DELETE FROM contact WHERE rowid > {}", contacts));
+  db.exec(fmt::format("DELETE FROM knot WHERE rowid > {}", knots));
   drop_early_end_frame(scene.output.frame_interval);
   drop_site_frames(scene.output.frame_interval);
   // Without a resume point there must be none: it would count rows that have just gone.
@@ -346,7 +349,7 @@ void RunFileRecorder::Impl::put_checkpoint(const ResumePoint& row, std::span<con
     throw IoError(
         fmt::format("checkpoint: a state of {} bytes; at most {} can be kept", state.size(), kMost));
   db.exec("DELETE FROM checkpoint");
-  SQLite::Statement put(db, "INSERT INTO checkpoint VALUES (?, ?, ?, ?, ?, ?)");
+  SQLite::Statement put(db, "INSERT INTO checkpoint VALUES (?, ?, ?, ?, ?, ?, ?)");
   put.bind(1, row.t);
   // The bytes outlive the statement, which ends with this function; a snapshot may be large.
   put.bindNoCopy(2, state.data(), static_cast<int>(state.size()));
@@ -354,6 +357,7 @@ void RunFileRecorder::Impl::put_checkpoint(const ResumePoint& row, std::span<con
   put.bind(4, row.events);
   put.bind(5, row.wall_seconds);
   put.bind(6, row.contacts);
+  put.bind(7, row.knots);
   put.exec();
 }
 
@@ -367,6 +371,7 @@ void RunFileRecorder::Impl::prepare_inserts() {
       "INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
       "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   insert_contact.emplace(db, "INSERT INTO contact VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  insert_knot.emplace(db, "INSERT INTO knot VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
 }
 
 /// What both constructors do once the folder is locked and the resume point known.
@@ -379,6 +384,7 @@ void RunFileRecorder::open(RunFolder folder, const Scene& scene, Open how, std::
     // limits.
     impl_->identity = run_identity(std::string(version()), scene.options_json, world_hash_text(scene.world));
     impl_->bodies = static_cast<std::int64_t>(scene.world.bodies.size());
+    impl_->most_knots = scene.output.max_knots;
     impl_->resume_point = std::move(point);
     // Motions of their own, beside those of the simulator: poses at frames are functions of time alone.
     for (std::size_t id = 0; id < scene.world.sites.size(); ++id)
@@ -532,12 +538,34 @@ void RunFileRecorder::contact_lasted(const LastedContact& c) {
   });
 }
 
+// Beyond the limit nothing is kept: what is in the file is then exact up to there, not coarser everywhere.
+void RunFileRecorder::knot(const Knot& k) {
+  if (impl_->knots >= impl_->most_knots) return;
+  impl_->writing([&] {
+    impl_->begin();
+    SQLite::Statement& put = *impl_->insert_knot;
+    put.bind(1, k.time);
+    put.bind(2, k.body);
+    const double reals[] = {k.pose.position.x(),   k.pose.position.y(),   k.pose.angle,
+                            k.before.velocity.x(), k.before.velocity.y(), k.before.omega,
+                            k.after.velocity.x(),  k.after.velocity.y(),  k.after.omega};
+    for (int i = 0; i < 9; ++i) put.bind(3 + i, reals[i]);
+    put.bind(12, impl_->events);
+    put.exec();
+    put.reset();
+    ++impl_->knots;
+    ++impl_->rows_waiting;
+    impl_->commit_if_due();
+  });
+}
+
 void RunFileRecorder::checkpoint(double t, const std::vector<std::byte>& state) {
   impl_->writing([&] {
     impl_->begin();
     // All rows of before are in this transaction or in earlier ones, so these counts hold whatever
     // comes.
-    impl_->put_checkpoint({t, {}, impl_->wall(), impl_->frames, impl_->events, impl_->contacts}, state);
+    impl_->put_checkpoint({t, {}, impl_->wall(), impl_->frames, impl_->events, impl_->contacts, impl_->knots},
+                          state);
     // For a run that is killed: how far it had come.
     impl_->set_meta("end_time", number(t));
     impl_->set_meta("wall_seconds", number(impl_->wall()));
@@ -579,6 +607,7 @@ void RunFileRecorder::finish(const RunSummary& summary, const std::string& summa
     impl_->insert_site_frame.reset();
     impl_->insert_event.reset();
     impl_->insert_contact.reset();
+    impl_->insert_knot.reset();
     impl_->db.tryExec(
         "PRAGMA journal_mode = DELETE");  // one plain file; not possible while somebody reads it
   });

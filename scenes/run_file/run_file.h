@@ -18,10 +18,14 @@
 ///                 mode: rest, stick, slip, roll. A row is one stretch of a mode, with its forces [N], place
 ///                 and normal at its end (scheduler/run/lasted_contact.h). At the end of a run come those
 ///                 that last still, with its time as t_end
+///     knot        t, body, x, y, angle, vx_before, vy_before, omega_before, vx, vy, omega, events
+///                 how bodies move in islands (scheduler/run/knot.h): a place with the twist before and after;
+///                 events: how many rows of `event` came before it. Of each body in the order of time. At most
+///                 output.max_knots: the first ones
 ///     work        counter, value, unit                   written at the end
-///     checkpoint  t, state, frames, events, wall_seconds, contacts   one row, the last one: the simulator's
-///                 snapshot, sealed by a checksum (checkpoint_seal.h), and how many rows of `frame`, `event`
-///                 and `contact` came before it
+///     checkpoint  t, state, frames, events, wall_seconds, contacts, knots   one row, the last one: the
+///                 simulator's snapshot, sealed by a checksum (checkpoint_seal.h), and how many rows of
+///                 `frame`, `event`, `contact` and `knot` came before it
 ///
 /// Views with units in their columns' names: energy_over_time, body_path, contacts_of, timeline. A run that
 /// ends makes indices by body (of frames up to 2 million rows).
@@ -60,8 +64,8 @@ inline constexpr int kRunFileSchema = 2;
 struct ResumePoint {
   double t = 0.0;  ///< [s]
   std::vector<std::byte> state;
-  double wall_seconds = 0.0;                          ///< spent before
-  std::int64_t frames = 0, events = 0, contacts = 0;  ///< rows before
+  double wall_seconds = 0.0;                                     ///< spent before
+  std::int64_t frames = 0, events = 0, contacts = 0, knots = 0;  ///< rows before
 };
 
 class RunFile;
@@ -116,6 +120,7 @@ class RunFileRecorder final : public Recorder {
   void frame(double t, std::span<const BodyState> states) override;
   void event(const Event& event) override;
   void contact_lasted(const LastedContact& contact) override;
+  void knot(const Knot& knot) override;
   void checkpoint(double t, const std::vector<std::byte>& state) override;
 
   /// Commits what has waited longer than 0.25 s. Call now and then where rows are rare.
@@ -132,6 +137,12 @@ class RunFileRecorder final : public Recorder {
 
   struct Impl;
   std::unique_ptr<Impl> impl_;
+};
+
+/// A row of `knot`.
+struct TimedKnot : Knot {
+  std::int64_t events =
+      0;  ///< that were told before it: knots of an event's time may come before or after it
 };
 
 /// Reads a run file, of a finished, killed or going run. Everything read is checked: numbers are finite, ids
@@ -168,6 +179,13 @@ class RunFile {
   /// At most so many, from number `first` on, in the order of their numbers.
   std::vector<Event> events(std::int64_t first = 0,
                             std::int64_t most = std::numeric_limits<std::int64_t>::max()) const;
+  /// None in files of before.
+  std::int64_t knot_count() const;
+  /// Where knots end although the run goes on, as there are no more than output.max_knots [s].
+  std::optional<double> knots_end() const;
+  /// At most so many, behind the first `first`; of each body in the order of time.
+  std::vector<TimedKnot> knots(std::int64_t first = 0,
+                               std::int64_t most = std::numeric_limits<std::int64_t>::max()) const;
   struct Spring {
     int body = 0, other = -1;  ///< -1: anchored
     Vec2 at, other_at;         ///< in the bodies' frames; the anchor in the world [m]
@@ -204,8 +222,8 @@ class RunFile {
   void each_frame(std::int64_t stride, const std::function<void(const Frame&)>& f) const;
   /// The last whole frame at or before t, or the first one. Cost: a binary search.
   Frame frame_at(double t) const;
-  /// States at t for a picture: between two of a body's recorded states (frames, and its collisions with the
-  /// twist before and after) the cubic with their poses and twists; outside the time range, the nearest frame.
+  /// States at t for a picture: between two of a body's recorded states (frames, and its collisions and knots
+  /// with the twist before and after) the cubic with their poses and twists; outside the time range, the nearest frame.
   /// Exact for constant accelerations, but for files of before, which know nothing of bodies at collisions.
   Frame states_at(double t) const;
 

@@ -205,6 +205,28 @@ void put_contacts(hid_t file, const RunFile& run) {
   group.put("force_normal", "N", along), group.put("force_tangential", "N", across);
 }
 
+/// Group `knots`, in the order of the file.
+void put_knots(hid_t file, const RunFile& run) {
+  const Group group(file, "knots");
+  std::vector<double> t;
+  std::vector<int> body, events;
+  std::array<std::vector<double>, 9> columns;
+  for (const TimedKnot& k : run.knots()) {
+    t.push_back(k.time);
+    body.push_back(k.body), events.push_back(static_cast<int>(k.events));
+    const double values[] = {k.pose.position.x(),   k.pose.position.y(),   k.pose.angle,
+                             k.before.velocity.x(), k.before.velocity.y(), k.before.omega,
+                             k.after.velocity.x(),  k.after.velocity.y(),  k.after.omega};
+    for (int c = 0; c < 9; ++c) columns[c].push_back(values[c]);
+  }
+  group.put("t", "s", t);
+  group.put("body", body), group.put("events_before", events);
+  const char* const names[] = {"x",  "y",  "angle", "vx_before", "vy_before", "omega_before",
+                               "vx", "vy", "omega"};
+  const char* const units[] = {"m", "m", "rad", "m/s", "m/s", "rad/s", "m/s", "m/s", "rad/s"};
+  for (int c = 0; c < 9; ++c) group.put(names[c], units[c], columns[c]);
+}
+
 }  // namespace
 
 void write_hdf5(const std::filesystem::path& run_file, const std::filesystem::path& file) {
@@ -218,6 +240,7 @@ void write_hdf5(const std::filesystem::path& run_file, const std::filesystem::pa
     put_frames(out, run);
     put_events(out, run);
     put_contacts(out, run);
+    put_knots(out, run);
     // Errors of writing come now, while they can be told; closing tells nobody.
     require(H5Fflush(out, H5F_SCOPE_GLOBAL));
   } catch (const IoError& e) {

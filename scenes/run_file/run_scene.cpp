@@ -158,6 +158,7 @@ class TellingRecorder final : public Recorder {
     pause_->wait();
   }
   void contact_lasted(const LastedContact& contact) override { file_->contact_lasted(contact); }
+  void knot(const Knot& knot) override { file_->knot(knot); }
   void checkpoint(double t, const std::vector<std::byte>& state) override { file_->checkpoint(t, state); }
 
  private:

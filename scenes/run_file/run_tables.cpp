@@ -97,6 +97,18 @@ void write_contacts(const RunFile& run, const fs::path& folder) {
   table.finish();
 }
 
+/// How bodies move in islands: a place with the twist before and after.
+void write_knots(const RunFile& run, const fs::path& folder) {
+  Table table(folder / "knots.csv",
+              "t_s,body,x_m,y_m,angle_rad,vx_before_m_per_s,vy_before_m_per_s,omega_before_rad_per_s,"
+              "vx_m_per_s,vy_m_per_s,omega_rad_per_s,events_before");
+  for (const TimedKnot& k : run.knots())
+    table.row(k.time, k.body, k.pose.position.x(), k.pose.position.y(), k.pose.angle, k.before.velocity.x(),
+              k.before.velocity.y(), k.before.omega, k.after.velocity.x(), k.after.velocity.y(),
+              k.after.omega, static_cast<int>(k.events));
+  table.finish();
+}
+
 }  // namespace
 
 void write_csv_tables(const fs::path& run_file, const fs::path& folder) {
@@ -107,6 +119,7 @@ void write_csv_tables(const fs::path& run_file, const fs::path& folder) {
   write_frames(run, folder);
   write_events(run, folder);
   write_contacts(run, folder);
+  write_knots(run, folder);
 }
 
 }  // namespace brink

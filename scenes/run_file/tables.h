@@ -17,8 +17,11 @@ CREATE TABLE event (seq INTEGER PRIMARY KEY, t REAL, kind TEXT, body INTEGER, ot
 CREATE TABLE site_frame (t REAL, site INTEGER, x REAL, y REAL, angle REAL, vx REAL, vy REAL, omega REAL);
 CREATE TABLE contact (t_begin REAL, t_end REAL, body INTEGER, other INTEGER, site INTEGER, outline_site INTEGER, sample INTEGER,
   mode TEXT, force_n REAL, force_t REAL, sample_on_body INTEGER, px REAL, py REAL, nx REAL, ny REAL);
+CREATE TABLE knot (t REAL, body INTEGER, x REAL, y REAL, angle REAL, vx_before REAL, vy_before REAL, omega_before REAL,
+  vx REAL, vy REAL, omega REAL, events INTEGER);
 CREATE TABLE work (counter TEXT PRIMARY KEY, value REAL, unit TEXT);
-CREATE TABLE checkpoint (t REAL, state BLOB, frames INTEGER, events INTEGER, wall_seconds REAL, contacts INTEGER);
+CREATE TABLE checkpoint (t REAL, state BLOB, frames INTEGER, events INTEGER, wall_seconds REAL, contacts INTEGER,
+  knots INTEGER);
 )";
 
 /// Questions that people ask, units in the names of the columns.
@@ -52,12 +55,14 @@ CREATE VIEW IF NOT EXISTS timeline AS
 /// Made when a run ends, dropped when it goes on.
 inline constexpr const char* kRunFileIndices = R"(
 CREATE INDEX IF NOT EXISTS event_in_time ON event (t);
+CREATE INDEX IF NOT EXISTS knot_in_time ON knot (t);
 CREATE INDEX IF NOT EXISTS event_of_body ON event (body);
 CREATE INDEX IF NOT EXISTS event_of_other ON event (other) WHERE other IS NOT NULL;
 )";
 inline constexpr const char* kFrameIndex = "CREATE INDEX IF NOT EXISTS frame_of_body ON frame (body)";
 inline constexpr const char* kDropIndices =
-    "DROP INDEX IF EXISTS event_in_time; DROP INDEX IF EXISTS event_of_body; DROP INDEX IF EXISTS "
+    "DROP INDEX IF EXISTS event_in_time; DROP INDEX IF EXISTS knot_in_time; DROP INDEX IF EXISTS "
+    "event_of_body; DROP INDEX IF EXISTS "
     "event_of_other; DROP INDEX IF EXISTS "
     "frame_of_body";
 

@@ -18,6 +18,7 @@ inline constexpr double kLongestRun = 1e12;  ///< no run and no picture goes far
 struct OutputOptions {
   double frame_interval = 0.01;  ///< [s]; 0 = events only
   bool events = true;
+  std::int64_t max_knots = 5'000'000;         ///< rows of knots: of more a run records the first ones
   std::int64_t max_frame_rows = 100'000'000;  ///< frames times bodies; a scene that asks for more is refused
 };
 

@@ -323,6 +323,8 @@ const Schema<OutputOptions>& output_schema() {
                "time between frames; 0: events only")
           .key("max_frame_rows", &OutputOptions::max_frame_rows, whole(1),
                "frames times bodies that a run may record; some 70 bytes each")
+          .key("max_knots", &OutputOptions::max_knots, whole(0),
+               "states within islands that a run records, some 90 bytes each; of more the first ones")
           .key("events", &OutputOptions::events, flag(), "record events");
   return schema;
 }

@@ -18,6 +18,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "brink/core/base/error.h"
 #include "brink/scenes/draw/color.h"
@@ -119,6 +120,7 @@ class ReplayPage {
     about_["live"] = live;
     frames();
     contacts();
+    knots();
     events();
     if (!limits_.trace.empty()) trace();
     curves_.put(numbers_, about_);
@@ -181,11 +183,13 @@ class ReplayPage {
     else if (count > limit)
       notices_.push_back(
           fmt::format("the first {} events of {}: after them motions are interpolated", limit, count));
+    about_["first_event"] = first;
     Column t, px, py, nx, ny, closing, along, across, gap;
     std::vector<std::int32_t> kind, site;
     SideColumns body, other;
     bool any_known = false, any_collision = false;
-    std::vector<Column> of_bodies(world_.bodies.size());
+    // No cubic is held against a motion that has knots on the way.
+    std::vector<Column> of_bodies = std::move(knot_times_);
     for (const Event& e : all) {
       const Contact& c = e.contact;
       t.push_back(c.time);
@@ -206,7 +210,9 @@ class ReplayPage {
       along.push_back(e.impulse_n), across.push_back(e.impulse_t);
       curves_.add(e);
     }
-    off_ = interpolation_error(world_, frame_times_, frame_states_.columns(), of_bodies, lasting_);
+    for (Column& times : of_bodies) std::sort(times.begin(), times.end());
+    const bool bends = lasting_ && !has_knots_;
+    off_ = interpolation_error(world_, frame_times_, frame_states_.columns(), of_bodies, bends);
     // A run file of before the states at collisions.
     if (any_collision && !any_known) notices_.push_back("between frames motions are interpolated");
     numbers_.add("event_t", t);
@@ -223,6 +229,52 @@ class ReplayPage {
                                        {"it", &across},
                                        {"gap", &gap}})
       numbers_.add(std::string("event_") + name, *column);
+  }
+
+  /// How bodies move in islands, in the file's order. A twist before that is the twist after the body's knot before is NaN:
+  /// the page knows it, and equal numbers pack well.
+  void knots() {
+    const std::int64_t count = run_.knot_count(), limit = limits_.knots;
+    const std::int64_t first = live_ ? std::max<std::int64_t>(0, count - limit) : 0;
+    const std::vector<TimedKnot> all = run_.knots(first, limit);
+    const auto cut = run_.knots_end();
+    has_knots_ = !all.empty() && count <= limit && !cut;
+    if (count > limit)
+      notices_.push_back(
+          fmt::format("the {} {} states within islands of {}: {} them motions are interpolated",
+                      live_ ? "last" : "first", limit, count, live_ ? "before" : "after"));
+    else if (cut)
+      notices_.push_back(
+          fmt::format("states within islands up to {} s: after it motions are interpolated", *cut));
+    knot_times_.resize(world_.bodies.size());
+    Column t;
+    std::vector<std::int32_t> body, events;
+    std::array<Column, 9> columns;
+    std::vector<const TimedKnot*> last(world_.bodies.size(), nullptr);
+    for (const TimedKnot& k : all) {
+      t.push_back(k.time), body.push_back(k.body), events.push_back(static_cast<std::int32_t>(k.events));
+      knot_times_[k.body].push_back(k.time);
+      const TimedKnot* before = std::exchange(last[k.body], &k);
+      const auto known = [before](double is, double was) {
+        return before && is == was ? std::numeric_limits<double>::quiet_NaN() : is;
+      };
+      const Twist was = before ? before->after : Twist{};
+      const double values[] = {k.pose.position.x(),
+                               k.pose.position.y(),
+                               k.pose.angle,
+                               known(k.before.velocity.x(), was.velocity.x()),
+                               known(k.before.velocity.y(), was.velocity.y()),
+                               known(k.before.omega, was.omega),
+                               k.after.velocity.x(),
+                               k.after.velocity.y(),
+                               k.after.omega};
+      for (int c = 0; c < 9; ++c) columns[c].push_back(values[c]);
+    }
+    numbers_.add("knot_t", t);
+    numbers_.add("knot_body", body);
+    numbers_.add("knot_events", events);
+    const char* const names[] = {"x", "y", "angle", "vx0", "vy0", "omega0", "vx", "vy", "omega"};
+    for (int c = 0; c < 9; ++c) numbers_.add(std::string("knot_") + names[c], columns[c]);
   }
 
   /// Contacts that lasted, a row for each stretch with its force [N].
@@ -383,7 +435,9 @@ class ReplayPage {
   RunCurves curves_;
   Column frame_times_;
   StateColumns frame_states_;
+  std::vector<Column> knot_times_;       ///< of every body
   bool live_ = false, lasting_ = false;  ///< lasting_: there are contacts that last
+  bool has_knots_ = false;               ///< all of them
   double off_ = 0.0;                     ///< what motions between frames are off by, about [m]
   PageNumbers numbers_;
   Json about_;

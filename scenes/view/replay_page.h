@@ -12,6 +12,7 @@ struct ReplayLimits {
   std::int64_t frame_rows = 1'200'000;
   /// Likewise: of more the page has the first ones, of a run that goes on the last ones.
   std::int64_t events = 300'000;
+  std::int64_t knots = 1'200'000;  ///< likewise
   std::filesystem::path
       trace;  ///< what `brink run --trace` wrote: lanes of what the scheduler did; empty: none
   std::int64_t marks = 300'000;  ///< of the trace, likewise

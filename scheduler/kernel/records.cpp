@@ -86,6 +86,13 @@ void Records::ending(EventKind kind, const PairKey& pair, const FeatureContact& 
   recorder_->event(event);
 }
 
+/// One of the present instant is not told to be before an event that was told: they follow each other.
+void Records::knot(Knot knot) {
+  if (!records_events()) return;
+  if (knot.time == run_->time()) knot.time = std::max(knot.time, last_event_);
+  recorder_->knot(knot);
+}
+
 /// A stretch of no length is none: its step was cut where it began.
 void Records::lasted(const HeldContact& c) {
   if (!records_events() || !(run_->time() > c.since)) return;

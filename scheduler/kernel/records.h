@@ -43,6 +43,9 @@ class Records {
   /// The time of the last event, to which the next one is told not to be before [s].
   double last_event() const { return last_event_; }
 
+  /// How a body moves in an island.
+  void knot(Knot knot);
+
   /// A contact that lasted up to the present time.
   void lasted(const HeldContact& contact);
 

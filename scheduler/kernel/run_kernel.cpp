@@ -70,7 +70,11 @@ void RunKernel::begin(const RunOptions& options, Recorder* recorder) {
   parts_.run.begin(options);
   parts_.records.begin(recorder);
   // events tell twists before and after: kept only where events are told
-  parts_.trajectories.keep_twists_before(recorder && options.record_events);
+  const bool told = recorder && options.record_events;
+  parts_.trajectories.keep_twists_before(told);
+  const auto tell_knot = [this](const Knot& knot) { parts_.records.knot(knot); };
+  parts_.trajectories.tell_knots(told ? Trajectories::TellKnot(tell_knot) : nullptr,
+                                 parts_.search.limits().tolerance);
   // the watch looks at all pairs there, before the first collision
   if (options.first_frame) show_frame();
 }

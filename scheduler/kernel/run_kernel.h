@@ -27,8 +27,11 @@ class RunKernel final : public Kernel {
   void let_touching_last();
   /// Records the last frame, at the present time, unless the frame clock has just done so, and a checkpoint.
   void end();
-  /// Tells the recorder of contacts that last still.
-  void tell_lasting_contacts() const { parts_.islands.tell_lasting(); }
+  /// Tells the recorder of contacts that last still, and of motions that go on still.
+  void tell_lasting() const {
+    parts_.islands.tell_lasting();
+    parts_.trajectories.tell_lasting_knots();
+  }
   WorkCounters& work() { return parts_.run.work(); }
   double max_overlap() const { return parts_.watch.max_overlap(); }
   const TakenGroups& taken() const { return parts_.taken; }

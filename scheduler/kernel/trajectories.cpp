@@ -284,6 +284,7 @@ void Trajectories::start(Coupled& c, ComponentStart from) {
 
 void Trajectories::restart_free(int k, const BodyState& start, const BodyState& low) {
   note_twist_before(k);
+  if (is_held(k)) tell_knot(k, start);
   Motion& motion = bodies_[k].motion;
   // The acceleration stays: a free body's own, or none of one that an island holds.
   if (motion.is_ballistic())
@@ -325,6 +326,7 @@ void Trajectories::restart(std::span<const Restart> touched, std::vector<int>& c
 void Trajectories::hold(std::span<const Restart> bodies, std::vector<int>& changed) {
   for (const Restart& r : bodies) {
     BodyTrack& b = bodies_[r.body];
+    tell_knot(r.body, r.state.rounded());
     // One that is held already keeps what it was before its island: it is let go to that.
     if (b.component != BodyTrack::kHeld) {
       held_[r.body] = {b.component, b.component < 0 ? b.motion.acceleration() : Acceleration{}, {}};
@@ -339,6 +341,53 @@ void Trajectories::hold(std::span<const Restart> bodies, std::vector<int>& chang
     raise_version(b);
     changed.push_back(r.body);
   }
+}
+
+/// Called before the motion is another, also one that begins with the same twist: it may bend from here on.
+void Trajectories::tell_knot(int k, const BodyState& after) const {
+  if (!told_knot_) return;
+  tell_bends(k);
+  told_knot_({run_->time(), k, after.pose, bodies_[k].motion.twist(run_->time()), after.twist});
+}
+
+/// Knots within a motion of an island's own, up to the present time: each of its pieces is cut so that a cubic is off
+/// by no more than the tolerance. A cubic over h that meets both ends with their slopes is off by h^4 / 384 of the
+/// largest fourth derivative.
+void Trajectories::tell_bends(int k) const {
+  constexpr double kMostCuts = 256.0;
+  const Track* track = is_held(k) ? bodies_[k].motion.track() : nullptr;
+  if (!track) return;
+  const double now = run_->time(), radius = world_->bodies[k].outline->bounding_radius;
+  for (const PolynomialPiece& p : track->pieces) {
+    const double end = std::min(p.end, now), length = end - p.begin;
+    if (!(length > 0.0)) continue;
+    const double from_origin = std::max(std::abs(p.begin - p.origin), std::abs(end - p.origin));
+    double fourth = 0.0, factor = 24.0, span = 1.0;
+    for (int n = 4; n <= p.degree; ++n) {
+      fourth += factor * span * (p.c[n].head<2>().norm() + radius * std::abs(p.c[n].z()));
+      factor *= (n + 1.0) / (n - 3.0);
+      span *= from_origin;
+    }
+    const double share = fourth / (384.0 * knot_tolerance_);
+    const double cuts = std::clamp(std::ceil(length * std::sqrt(std::sqrt(share))), 1.0, kMostCuts);
+    for (double n = 1.0; n <= cuts; ++n) {
+      const double t = n < cuts ? p.begin + length * (n / cuts) : end;
+      if (t == now) break;  // who asks tells of it
+      const BodyState s = p.state(t);
+      told_knot_({t, k, s.pose, s.twist, s.twist});
+    }
+  }
+}
+
+void Trajectories::tell_lasting_knots() const {
+  if (!told_knot_) return;
+  for (int k = 0; k < body_count(); ++k) tell_bends(k);
+}
+
+/// What met without a rebound is in the motion, and not in the state that was held.
+void Trajectories::follow_own(int k, Motion motion) {
+  if (told_knot_) tell_knot(k, motion.state(run_->time()));
+  bodies_[k].motion = std::move(motion);
 }
 
 ExtendedState Trajectories::state_now(int k) const {
@@ -378,6 +427,7 @@ void Trajectories::release(std::span<const int> bodies, std::vector<int>& change
   for (const int k : bodies) {
     BodyTrack& b = bodies_[k];
     const Former former = held_.at(k);
+    tell_knot(k, b.motion.state(run_->time()));
     held_.erase(k);
     raise_version(b);
     changed.push_back(k);

@@ -6,6 +6,7 @@
 /// motion that fails is followed to its end, since a collision before may start it afresh.
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -20,6 +21,7 @@
 #include "brink/scheduler/kernel/run_control.h"
 #include "brink/scheduler/kernel/site_motion.h"
 #include "brink/scheduler/run/event.h"
+#include "brink/scheduler/run/knot.h"
 #include "brink/scheduler/run/options.h"
 
 namespace brink {
@@ -103,6 +105,15 @@ class Trajectories {
     if (!keeps_twists_before()) return {};
     return {true, state_now(k).rounded(), before_[k]};
   }
+  using TellKnot = std::function<void(const Knot&)>;
+  /// From now on `tell` is told how held bodies move, by knots between which a cubic is off by no more than
+  /// `tolerance` [m]; empty: nobody is.
+  void tell_knots(TellKnot tell, double tolerance) {
+    told_knot_ = std::move(tell);
+    knot_tolerance_ = tolerance;
+  }
+  /// Tells those of motions that go on still, up to the present time.
+  void tell_lasting_knots() const;
   /// A free body.
   void restart_free(int k, const BodyState& start, const BodyState& low);
   // -- islands --
@@ -110,7 +121,7 @@ class Trajectories {
   /// forces there are, until they are restarted or released. @pre all bodies of a component, or none.
   void hold(std::span<const Restart> bodies, std::vector<int>& changed);
   /// The last hold() of the body begins a motion of its own, from the state that it was given. @pre it has no end.
-  void follow_own(int k, Motion motion) { bodies_[k].motion = std::move(motion); }
+  void follow_own(int k, Motion motion);
   /// The last hold() of the body begins such a step.
   void note_step(int k, const HeldStep& step) { held_.at(k).step = step; }
   /// The body's state now, in extended precision. Of one that is held its motion has the twist of the step's
@@ -184,7 +195,12 @@ class Trajectories {
   void begin_anew(Component component, double t, std::vector<int>& changed);
   void start(Coupled& c, ComponentStart from);
   void put_to_sleep(Coupled& c);
+<<<<<<< HEAD
   ExtendedTwist come_to_by_now(int k, ExtendedTwist at_end) const;
+=======
+  void tell_knot(int k, const BodyState& after) const;
+  void tell_bends(int k) const;
+>>>>>>> page
   void note_twist_before(int k) {
     if (!before_.empty()) before_[k] = twist_now(k).rounded();
   }
@@ -208,6 +224,8 @@ class Trajectories {
   std::vector<SiteMotion> sites_;
   std::vector<Failure> site_failures_;
   std::vector<Twist> before_;  ///< each body's last restart; empty: not kept
+  TellKnot told_knot_;
+  double knot_tolerance_ = 0.0;  ///< [m]
   double reach_ = std::numeric_limits<double>::infinity();
   std::uint64_t forgotten_ = 0;  ///< pieces made when forget_before() was last called
 };

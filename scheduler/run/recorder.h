@@ -7,6 +7,7 @@
 
 #include "brink/core/base/geometry.h"
 #include "brink/scheduler/run/event.h"
+#include "brink/scheduler/run/knot.h"
 #include "brink/scheduler/run/lasted_contact.h"
 #include "brink/scheduler/run/summary.h"
 
@@ -23,6 +24,9 @@ class Recorder {
   /// A contact that lasted, when its stretch ends: at its own `to`, or, last of all, at the end of the run that
   /// it outlasts. A run that goes on from there tells those again, whole, when they end.
   virtual void contact_lasted(const LastedContact& /*contact*/) {}
+  /// A body's motion in an island, told when what follows is known: of each body in the order of time. Those of a
+  /// motion that the end of a run cuts are told last of all; a run that goes on tells them again.
+  virtual void knot(const Knot& /*knot*/) {}
   /// Everything needed to go on from t with the same bits (Simulator::restore). All before is complete.
   virtual void checkpoint(double /*t*/, const std::vector<std::byte>& /*state*/) {}
 };

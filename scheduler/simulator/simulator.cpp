@@ -70,7 +70,7 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
   }
   // Whatever the wall clock says: from here the run can be gone on with.
   if (recorder) recorder->checkpoint(time(), kernel.snapshot());
-  kernel.tell_lasting_contacts();  // beyond the checkpoint: a run that goes on tells them again
+  kernel.tell_lasting();  // beyond the checkpoint: a run that goes on tells them again
   const std::vector<BodyState> last = states();
   // from the same states as the energy, all at the present time
   const Momentum momentum = total_momentum(world(), last);

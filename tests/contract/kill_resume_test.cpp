@@ -83,6 +83,8 @@ material = "m"
 density = 10.0
 )toml";
 
+const std::string kByModes = std::string(kLasting) + "[solver]\nmodes_contacts = 16\n";
+
 struct KilledScene {
   const char* name;
   const char* text;
@@ -174,6 +176,13 @@ std::vector<std::string> contacts(const fs::path& file) {
                         " FROM contact ORDER BY rowid");
 }
 
+std::vector<std::string> knots(const fs::path& file) {
+  return rows(file, "SELECT " +
+                        exact({"t", "body", "x", "y", "angle", "vx_before", "vy_before", "omega_before", "vx",
+                               "vy", "omega", "events"}) +
+                        " FROM knot ORDER BY rowid");
+}
+
 /// Where the second differs from the first, in words; empty: nowhere.
 std::string difference(const std::vector<std::string>& whole, const std::vector<std::string>& other) {
   const auto [a, b] = std::mismatch(whole.begin(), whole.end(), other.begin(), other.end());
@@ -241,6 +250,7 @@ TEST_P(KillResume, TwentyKillsAndOneEndGiveTheUndisturbedRun) {
   EXPECT_EQ(difference(events(a), events(b)), "");
   EXPECT_EQ(difference(frames(a), frames(b)), "");
   EXPECT_EQ(difference(contacts(a), contacts(b)), "");
+  EXPECT_EQ(difference(knots(a), knots(b)), "");
 }
 
 // Killed after its last checkpoint, before it could say that it has ended: by then nothing is left to be done but that,
@@ -279,6 +289,7 @@ TEST_P(KillResume, InterruptedRunStopsInOrderAndGoesOn) {
   EXPECT_EQ(difference(events(a), events(b)), "");
   EXPECT_EQ(difference(frames(a), frames(b)), "");
   EXPECT_EQ(difference(contacts(a), contacts(b)), "");
+  EXPECT_EQ(difference(knots(a), knots(b)), "");
 }
 
 // Ctrl-C, gone on with, killed before the next checkpoint, gone on with again: no frame is there twice. The
@@ -300,11 +311,13 @@ TEST_P(KillResume, StoppedThenKilledRunHasTheUndisturbedFrames) {
   EXPECT_EQ(difference(events(a), events(b)), "");
   EXPECT_EQ(difference(frames(a), frames(b)), "");
   EXPECT_EQ(difference(contacts(a), contacts(b)), "");
+  EXPECT_EQ(difference(knots(a), knots(b)), "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, KillResume,
                          testing::Values(KilledScene{"collisions", kCollisions},
-                                         KilledScene{"contacts_that_last", kLasting}),
+                                         KilledScene{"contacts_that_last", kLasting},
+                                         KilledScene{"modes", kByModes.c_str()}),
                          [](const auto& scene) { return std::string(scene.param.name); });
 
 }  // namespace

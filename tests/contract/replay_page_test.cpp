@@ -18,14 +18,15 @@
 #include "brink/scenes/run_file/run_scene.h"
 #include "brink/scenes/view/replay_page.h"
 #include "brink/scheduler/simulator/simulator.h"
+#include "tests/support/browser.h"
 
 namespace brink {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 // Frames are rare; between two of them most bodies bounce several times.
 const char* const kScene = R"(
@@ -62,7 +63,7 @@ angle_deg = 30
 angular_velocity = -4.0
 )";
 
-class Replayed : public testing::Test {
+class Replayed : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = fs::temp_directory_path() / fmt::format("brink-replay-{}", ::getpid());
@@ -220,39 +221,9 @@ power = -2.0
 
 // ---- the page
 
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// What chromium prints of a page once a script has written its answer (JSON) into it.
-json in_browser(const fs::path& page, const std::string& script) {
-  std::string text = text_of(page);
-  const std::string asking =
-      "<pre id=\"answer\"></pre><script>brink.ready.then(b => JSON.stringify((() => {" + script +
-      "})())).catch(e => JSON.stringify({error: String(e.stack)}))"
-      ".then(words => { const plain = words.replace(/[<>&]/g, c => '\\\\u00' + c.charCodeAt(0).toString(16));"
-      " document.getElementById('answer').textContent = '@@' + plain + '@@'; });</script></body>";
-  text.replace(text.rfind("</body>"), 7, asking);
-  const fs::path asked = page.parent_path() / "asked.html";
-  std::ofstream(asked) << text << std::flush;
-  const std::string command =
-      "timeout 120 chromium --headless=new --no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader "
-      "--user-data-dir=" +
-      (page.parent_path() / "browser").string() + " --virtual-time-budget=20000 --dump-dom file://" +
-      asked.string() + " 2>/dev/null";
-  std::FILE* pipe = ::popen(command.c_str(), "r");
-  std::string dom;
-  for (char buffer[4096]; const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe);)
-    dom.append(buffer, n);
-  ::pclose(pipe);
-  const auto from = dom.find("answer\">@@"), to = dom.find("@@", from + 10);
-  if (from == std::string::npos || to == std::string::npos)
-    return {{"error", "no answer: " + dom.substr(0, 400)}};
-  return json::parse(dom.substr(from + 10, to - from - 10));
-}
-
-bool has_browser() { return std::system("chromium --version >/dev/null 2>&1") == 0; }
+using testing::has_browser;
+using testing::in_browser;
+using testing::text_of;
 
 TEST_F(Replayed, ThePageIsOneFileThatNeedsNoOther) {
   const fs::path page = folder_ / "alone.html";

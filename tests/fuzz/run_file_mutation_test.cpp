@@ -284,6 +284,7 @@ bool reads(const fs::path& file) {
     extent_of(run, run.world());
     trails_of(run, 0.12);
     contacts_before(run, 0.12);
+    run.knots();
   });
   good &= fine(file, false, [&] { replay_page_text(file, {}, false); });
   good &= fine(file, false, [&] { write_csv_tables(file, file.parent_path() / "tables"); });

@@ -50,10 +50,12 @@ const paintFragment = coarse => `#version 300 es
 precision highp float;
 uniform highp usampler2D seen; uniform sampler2D colors;
 uniform vec2 coarse;    // pixels of the first pass a pixel of this one
+uniform uint scenery;    // owners below are sites of the scene: no border between two of them, whose cells may tie where they join
 uniform float ring; uniform float pixel; uniform float large; uniform vec3 paper;    // ring, pixel [m]; large: pixels of the screen
 out vec4 shade;
 uvec2 look(ivec2 at) { return texelFetch(seen, at, 0).xy; }
 bool differ(uvec2 a, uvec2 b) { return (a.x ^ b.x) >= ${WAYS}u; }
+bool apart(uvec2 a, uvec2 b) { return differ(a, b) && max(a.x, b.x) / ${WAYS}u > scenery; }
 vec2 slope(uvec2 s) {    // of the distance: a unit vector, kept as its place on the square |x| + |y| = 1
   float quarters = (float(s.x % ${WAYS}u) + 0.5) * ${4 / WAYS}, x = abs(quarters - 2.0) - 1.0, y = 1.0 - abs(x);
   return normalize(vec2(x, quarters < 2.0 ? y : -y));
@@ -66,7 +68,7 @@ vec3 taken(uvec2 s, vec2 on) {
 }
 // the way from one cell to the other [pixels]
 float way(uvec2 s, vec3 a, uvec2 t, vec3 b) {
-  return differ(s, t) ? max(0.0, b.z - a.z) / (max(length(b.xy - a.xy), 1e-6) * pixel) : 1e30;
+  return apart(s, t) ? max(0.0, b.z - a.z) / (max(length(b.xy - a.xy), 1e-6) * pixel) : 1e30;
 }
 void main() {
   vec2 place = gl_FragCoord.xy * coarse - 0.5;
@@ -75,8 +77,8 @@ void main() {
   if (here.x == 0u) { shade = vec4(paper, 1.0); return; }
   uvec2 right = look(at + ivec2(1, 0)), left = look(at - ivec2(1, 0)), up = look(at + ivec2(0, 1)), down = look(at - ivec2(0, 1));
   float height = uintBitsToFloat(here.y), border = 1e30;    // border: the way to the nearest other cell [pixels]
-  bool r = differ(right, here), l = differ(left, here), u = differ(up, here), d = differ(down, here);
 #if COARSE
+  bool r = differ(right, here), l = differ(left, here), u = differ(up, here), d = differ(down, here);
   vec2 texel = pixel / coarse, on = (place - vec2(at)) * texel;
   if (r || l || u || d) {
     uvec2 middle = here;
@@ -91,6 +93,7 @@ void main() {
     border = min(border, way(here, best, middle, m));
   } else height += dot(slope(here), on);
 #else    // by how many of its neighbours are of another
+  bool r = apart(right, here), l = apart(left, here), u = apart(up, here), d = apart(down, here);
   border = 1.3 - 0.5 * (float(r) + float(l) + float(u) + float(d));
   if (border == 1.3) border = 1e30;
 #endif
@@ -129,7 +132,7 @@ class Cells {
     this.shapes = shapes;
     this.meshProgram = this.program(MESH_VERTEX, MESH_FRAGMENT, ['things', 'which', 'view', 'deepest']);
     this.paintPrograms = [0, 1].map(coarse =>
-      this.program(PAINT_VERTEX, paintFragment(coarse), ['seen', 'colors', 'coarse', 'ring', 'pixel', 'large', 'paper']));
+      this.program(PAINT_VERTEX, paintFragment(coarse), ['seen', 'colors', 'coarse', 'scenery', 'ring', 'pixel', 'large', 'paper']));
     if (![this.meshProgram, ...this.paintPrograms].every(made => made)) { this.gl = null; return; }
     this.meshes = CONES.map(() => []);
     this.nothing = gl.createVertexArray();
@@ -222,7 +225,8 @@ class Cells {
   }
 
   /**
-   * `view`: {x, y, scale} in pixels of a picture of `width` x `height`; `looks`: {ring [m], paper: [r, g, b]}; `detail`: {paint, mesh}, by
+   * `view`: {x, y, scale} in pixels of a picture of `width` x `height`; `looks`: {ring [m], paper: [r, g, b], fixed: how many of the
+   * owners, the first of them, are sites of the scene}; `detail`: {paint, mesh}, by
    * how much coarser than that picture the two passes are.
    */
   draw(things, {x, y, scale}, [width, height], looks, detail) {
@@ -247,6 +251,7 @@ class Cells {
     gl.uniform1i(at.seen, 0);
     gl.uniform1i(at.colors, 1);
     gl.uniform2f(at.coarse, columns / w, rows / h);
+    gl.uniform1ui(at.scenery, looks.fixed);
     gl.uniform1f(at.ring, looks.ring);
     gl.uniform1f(at.pixel, width / (w * scale));
     gl.uniform1f(at.large, width / w);

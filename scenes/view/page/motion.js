@@ -1,9 +1,9 @@
 'use strict';
 // What is known of a run, and where everything is at any time.
 //
-// A body's motion is known at frames (all bodies at once) and at its own events (with the twist before and after). Between
-// two of these it is the cubic with their places and twists: that is the motion itself where accelerations are constant,
-// and off by the fourth order of the interval where an integrator drove it.
+// A body's motion is known at frames (all bodies at once), and at its own events and its knots in islands (with the twist
+// before and after). Between two of these it is the cubic with their places and twists: that is the motion itself where
+// accelerations are constant, and off by the fourth order of the interval where an integrator drove it.
 
 /** The numbers of the page: inflated, each array with the bytes of its values sorted by significance. */
 async function inflated(base64, arrays) {
@@ -42,6 +42,20 @@ function cubic(a, va, b, vb, h, s) {
 
 const COLUMNS = ['x', 'y', 'angle', 'vx', 'vy', 'omega'];
 
+/** What is known of a body where it passes an event or a knot; and the two sides of an event. */
+const PASSED = ['x', 'y', 'angle', 'vx0', 'vy0', 'omega0', 'vx', 'vy', 'omega'];
+const SIDES = [['event_body', 'b_'], ['event_other', 'o_']];
+
+/** 0 .. total - 1 by owner, each owner's in their order: those of b are rows[first[b]] .. rows[first[b + 1] - 1]. */
+function grouped(count, total, ownerOf) {
+  const first = new Int32Array(count + 1), owners = new Int32Array(total);
+  for (let i = 0; i < total; ++i) if ((owners[i] = ownerOf(i)) >= 0) ++first[owners[i] + 1];
+  for (let b = 0; b < count; ++b) first[b + 1] += first[b];
+  const next = first.slice(), rows = new Int32Array(first[count]);
+  for (let i = 0; i < total; ++i) if (owners[i] >= 0) rows[next[owners[i]]++] = i;
+  return {first, rows};
+}
+
 /** Things that move, known at frames: `values[c]` is a column of frames times things. */
 class Frames {
   constructor(times, count, values) {
@@ -62,34 +76,56 @@ class Motions {
     const moving = about.sites.map((s, k) => s.moving ? k : -1).filter(k => k >= 0);
     this.movingPlace = new Map(moving.map((k, i) => [k, i]));
     this.siteFrames = new Frames(n.frame_t, moving.length, COLUMNS.map(c => n['site_' + c]));
-    this.takeEvents(n);
+    this.takeStates(n, about.first_event || 0);
   }
 
   get begin() { return this.frames.times.length ? this.frames.times[0] : 0; }
   get end() {
-    const last = times => times.length ? times[times.length - 1] : 0;
-    return Math.max(last(this.frames.times), this.gravity ? last(this.eventTimes) : 0);
+    const {times} = this.frames;
+    return Math.max(times.length ? times[times.length - 1] : 0, this.gravity ? this.lastPassed : 0);
   }
 
-  /** Of every body, in order: when, and the place, twist before and twist after of its events. */
-  takeEvents(n) {
-    const count = this.bodies.length, events = n.event_t.length;
-    const of = new Int32Array(count + 1);
-    const sides = [['event_body', 'b_'], ['event_other', 'o_']];
-    const known = (side, k) => n[side[0]][k] >= 0 && !Number.isNaN(n[side[1] + 'x'][k]);
-    for (let k = 0; k < events; ++k)
-      for (const side of sides) if (known(side, k)) ++of[n[side[0]][k] + 1];
-    for (let b = 0; b < count; ++b) of[b + 1] += of[b];
-    const next = of.slice(), times = new Float64Array(of[count]), rows = new Float64Array(9 * of[count]);
-    const names = ['x', 'y', 'angle', 'vx0', 'vy0', 'omega0', 'vx', 'vy', 'omega'];
-    for (let k = 0; k < events; ++k)
-      for (const side of sides) {
-        if (!known(side, k)) continue;
-        const i = next[n[side[0]][k]]++;
-        times[i] = n.event_t[k];
-        names.forEach((name, c) => { rows[9 * i + c] = n[side[1] + name][k]; });
+  /** Of every body, in order: when, and the place, twist before and twist after of its events and knots. */
+  takeStates(n, firstEvent) {
+    const count = this.bodies.length;
+    const known = (k, who, x) => who[k] >= 0 && !Number.isNaN(x[k]);
+    const ofEvents = grouped(count, 2 * n.event_t.length, i => {
+      const k = i >> 1, side = SIDES[i & 1];
+      return known(k, n[side[0]], n[side[1] + 'x']) ? n[side[0]][k] : -1;
+    });
+    const ofKnots = grouped(count, n.knot_t.length, k => n.knot_body[k]);
+    const all = ofEvents.rows.length + ofKnots.rows.length;
+    const of = new Int32Array(count + 1), times = new Float64Array(all), rows = new Float64Array(9 * all);
+    const columns = prefix => PASSED.map(name => n[prefix + name]);
+    const sides = SIDES.map(side => columns(side[1])), knots = columns('knot_');
+    let at = 0;
+    const put = (t, from, k) => {
+      times[at] = t;
+      for (let c = 0; c < 9; ++c) rows[9 * at + c] = from[c][k];
+      ++at;
+    };
+    for (let b = 0; b < count; ++b) {
+      let e = ofEvents.first[b], k = ofKnots.first[b], before = -1;
+      const events = ofEvents.first[b + 1], end = ofKnots.first[b + 1];
+      while (e < events || k < end) {
+        const event = e < events ? ofEvents.rows[e] >> 1 : -1, knot = k < end ? ofKnots.rows[k] : -1;
+        const knotFirst = event < 0 || (knot >= 0 && (n.knot_t[knot] < n.event_t[event] ||
+          (n.knot_t[knot] === n.event_t[event] && n.knot_events[knot] <= event + firstEvent)));
+        if (!knotFirst) {
+          put(n.event_t[event], sides[ofEvents.rows[e++] & 1], event);
+          continue;
+        }
+        put(n.knot_t[knot], knots, knot);
+        // NaN: as the knot before left it
+        for (let c = 3; c < 6; ++c)
+          if (Number.isNaN(rows[9 * (at - 1) + c])) rows[9 * (at - 1) + c] = knots[c + 3][before];
+        before = knot;
+        ++k;
       }
-    Object.assign(this, {eventsOf: of, eventTimes: times, eventRows: rows});
+      of[b + 1] = at;
+    }
+    const lastPassed = times.reduce((a, b) => Math.max(a, b), 0);
+    Object.assign(this, {eventsOf: of, eventTimes: times, eventRows: rows, lastPassed});
   }
 
   /** [x, y, angle, vx, vy, omega] of body k at time t; where it jumps, of after. */

@@ -143,6 +143,7 @@ class Player {
     }
     this.picture.draw(this.t);
     if (document.activeElement !== byId('time')) byId('time').value = String(this.t);
+    byId('printed-time').textContent = `t = ${this.t} s`;    // the box is not on paper
     byId('scrub').value = this.t;
     this.placeCursor();
     if (this.playing && now - (this.tablesShown || 0) < 250) return;

@@ -226,7 +226,7 @@ class Picture {
     const wanted = 40 * this.ratio / this.view.scale, decade = 10 ** Math.floor(Math.log10(wanted));
     const ring = [1, 2, 5, 10].map(m => m * decade).find(s => s >= wanted) || wanted;
     this.reach.find(things, first, {radii: this.radii, view: this.view, width, height, closed: this.closed, extent});
-    this.cells.draw(things, this.view, [width, height], {ring, paper: this.paper}, this.detail);
+    this.cells.draw(things, this.view, [width, height], {ring, paper: this.paper, fixed: this.about.sites.length}, this.detail);
   }
 
   drawBodies() {

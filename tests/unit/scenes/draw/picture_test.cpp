@@ -64,6 +64,19 @@ std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
   return value;
 }
 
+// Left out: the picture is the same whatever its name is. Beside the other it is there.
+TEST(Names, OneThatWouldCoverAnotherIsLeftOut) {
+  TwoBodies two;
+  two.options.names = true;
+  const auto drawn = [&](double apart, const char* name) {
+    two.states[1].pose.position = {apart, 0.0};
+    two.world.bodies[1].name = name;
+    return two.draw("scene").pixels;
+  };
+  EXPECT_EQ(drawn(0.2, "square"), drawn(0.2, "quadrat"));
+  EXPECT_NE(drawn(4.0, "square"), drawn(4.0, "quadrat"));
+}
+
 TEST(Png, FileHasTheSignatureAndTheSizeAsked) {
   // PNG (ISO/IEC 15948): eight bytes of signature, then IHDR with width and height at bytes 16 and 20
   TwoBodies two;

@@ -236,11 +236,12 @@ TEST_F(ProgramTest, TablesAreExportedWithUnitsInTheirHeads) {
   if (hdf5.status == 0) {
     const std::string file = text_of(dir_ / "tables/run.h5");
     EXPECT_EQ(file.substr(1, 3), "HDF");
-    // The attribute of each array is in the file by its name: 3 of bodies, 7 of frames, 13 of events, 12 of contacts.
+    // The attribute of each array is in the file by its name: 3 of bodies, 7 of frames, 13 of events, 12 of
+    // contacts, 12 of knots.
     const std::string name("unit\0", 5);
     int units = 0;
     for (std::size_t at = file.find(name); at != std::string::npos; at = file.find(name, at + 1)) ++units;
-    EXPECT_EQ(units, 3 + 7 + 13 + 12);
+    EXPECT_EQ(units, 3 + 7 + 13 + 12 + 12);
   }
   const Outcome vtk = brink("export a --vtk shown");
   EXPECT_TRUE(vtk.status == 0 || vtk.error.find("libvtk9-dev") != std::string::npos) << vtk.error;
