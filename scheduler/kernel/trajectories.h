@@ -195,12 +195,9 @@ class Trajectories {
   void begin_anew(Component component, double t, std::vector<int>& changed);
   void start(Coupled& c, ComponentStart from);
   void put_to_sleep(Coupled& c);
-<<<<<<< HEAD
   ExtendedTwist come_to_by_now(int k, ExtendedTwist at_end) const;
-=======
   void tell_knot(int k, const BodyState& after) const;
   void tell_bends(int k) const;
->>>>>>> page
   void note_twist_before(int k) {
     if (!before_.empty()) before_[k] = twist_now(k).rounded();
   }
