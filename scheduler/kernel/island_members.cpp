@@ -26,6 +26,7 @@ IslandMembers::IslandMembers(const World& world, const Trajectories& trajectorie
     states_.push_back(trajectories.state_now(k));
     accelerations_.push_back(trajectories.acceleration(k));
     const double radius = search.outline_of(k).bounding_radius;
+    are_discs_ = are_discs_ && search.outline_of(k).is_point();
     // a mere point has no size: the scene's
     size_ = std::min(size_, radius > 0.0 ? 2.0 * radius : world.length());
     // as speeds are bounded: |a| + |alpha| r
@@ -108,8 +109,8 @@ std::vector<HeldContact> IslandMembers::contacts(double reach) const {
       // sorted along x: none that follows begins before this one's right edge, either. Images may.
       if (!repeats && owners[y].box.low.x() > owners[x].box.high.x()) break;
       if (owners[x].supports && owners[y].supports) continue;
-      const auto& [a, b] = owners[x].body < owners[y].body ? std::tie(owners[x], owners[y])
-                                                           : std::tie(owners[y], owners[x]);
+      const auto& [a, b] =
+          owners[x].body < owners[y].body ? std::tie(owners[x], owners[y]) : std::tie(owners[y], owners[x]);
       add_images(to, a.body, a.box, b.body, b.box);
     }
   // a site that moves may come towards members, so its box is grown by its own way

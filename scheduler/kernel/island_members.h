@@ -63,6 +63,7 @@ class IslandMembers {
   void find_speeds();
 
   double size() const { return size_; }          ///< of the smallest [m]
+  bool are_discs() const { return are_discs_; }  ///< all of them
   double speed() const { return speed_; }        ///< of the fastest point [m/s]
   double pull() const { return pull_; }          ///< the largest acceleration of a point by forces [m/s^2]
   double heaviest() const { return heaviest_; }  ///< [kg]
@@ -113,10 +114,11 @@ class IslandMembers {
   double now_;
   double h_ = 0.0, reach_ = 0.0;
   std::vector<int> bodies_, supports_;
-  std::vector<ExtendedState> states_;  ///< of members, and of supports after them
+  std::vector<ExtendedState> states_;   ///< of members, and of supports after them
   std::map<int, ExtendedTwist> given_;  ///< by set_twist()
   std::vector<Acceleration> accelerations_;
   std::vector<double> speeds_, pulls_;  ///< [m/s], [m/s^2], of any point of each
+  bool are_discs_ = true;
   double size_ = kForever, speed_ = 0.0, pull_ = 0.0, heaviest_ = 0.0;
 };
 

@@ -15,8 +15,8 @@ namespace {
 
 /// A step lasts this part of the time in which the smallest member falls by its size ...
 constexpr double kOfFall = 0.05;
-/// ... and moves nobody by more than this part of it.
-constexpr double kOfSize = 0.25;
+/// ... and moves nobody by more than this part of it; discs, whose gaps among each other no look can miss, by more.
+constexpr double kOfSize = 0.1, kOfDisc = 0.25;
 /// Features are listed as far as bodies come in so many steps; where impulses take one farther, in more.
 constexpr double kReach = 2.0, kWider = 4.0;
 /// So a list reaches from 2 to 512 steps. Where that does not do, a step is halved, down to 2^-16 of its length.
@@ -61,7 +61,8 @@ double IslandMotion::longest() const {
   const double pull = members_.pull(), speed = members_.speed();
   // the time of the fall is sqrt(2 size / pull): but for the root of 2
   const double fall = pull > 0.0 ? kOfFall * std::sqrt(members_.size() / pull) : kForever;
-  const double way = speed > 0.0 ? kOfSize * members_.size() / speed : kForever;
+  const double of_size = members_.are_discs() ? kOfDisc : kOfSize;
+  const double way = speed > 0.0 ? of_size * members_.size() / speed : kForever;
   return std::min(fall, way);
 }
 

@@ -220,9 +220,8 @@ IslandMotion Islands::set_out(std::set<int>& members, WarmContacts& warm, Island
     // told to nobody: part() and give_up() change the motion of every member once more
     std::vector<int> held;
     trajectories_->hold(as_they_are, held);
-    IslandMotion motion(
-        IslandMembers(*world_, *trajectories_, *search_, run_->time(), members, supports()), *search_,
-        *response_, solver_, tally_, warm);
+    IslandMotion motion(IslandMembers(*world_, *trajectories_, *search_, run_->time(), members, supports()),
+                        *search_, *response_, solver_, tally_, warm);
     // who asked for a tolerance has exact impacts
     if (limits_.tolerance == 0.0 && is_agitated(*world_, pace, members)) motion.expect_agitation();
     std::vector<int> more = motion.joining(*world_, *trajectories_, run_->time());
@@ -286,15 +285,16 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
     if (const double ahead = out->longest(); std::isfinite(ahead) && !follow_sites(now, ahead))
       return give_up();
     met.clear();
-    hit = out->pass_on_impacts([&](const HeldContact& c, const RealVec& from, double closing,
-                                   const ImpulseResult& r) { met.push_back({c, from, closing, r}); });
+    hit = out->pass_on_impacts(
+        [&](const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r) {
+          met.push_back({c, from, closing, r});
+        });
     // a support that is hit is one no more: all over again with it
     if (hit >= 0) gather(hit, members);
   }
   IslandMotion& motion = *out;
   IslandModes& modes = *few;
-  for (const Met& m : met)
-    note_impact(m.contact, m.from, m.closing, m.impulse.normal, m.impulse.tangential);
+  for (const Met& m : met) note_impact(m.contact, m.from, m.closing, m.impulse.normal, m.impulse.tangential);
   // an impact here is news: modes that the step before ended in do not hold
   on_time = on_time && met.empty();
   // bodies at rest beside them that have lost a contact are asked for by step_beside_rest()

@@ -129,7 +129,8 @@ class Islands {
   std::map<int, int> lead_of_;  ///< of every member
   using Feature = std::tuple<PairKey, bool, int, int>;
   std::map<Feature, HeldContact> taken_out_;  ///< that pressed, until it is known whether they go on
-  std::set<int> shaken_;  ///< bodies at rest of which a contact with what moves has changed since their forces were found
+  std::set<int>
+      shaken_;  ///< bodies at rest of which a contact with what moves has changed since their forces were found
   double next_step_ = std::numeric_limits<double>::infinity();
   IslandTally tally_;
 };

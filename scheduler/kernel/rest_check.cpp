@@ -16,8 +16,9 @@ constexpr double kMoves = 1e-3;
 
 /// Members of an island about some of them.
 struct RestCheck::Ring {
-  std::vector<int> bodies;                ///< ascending
-  std::vector<std::size_t> inside, rim;  ///< contacts of the island among these and sites; and that lead out of them
+  std::vector<int> bodies;  ///< ascending
+  std::vector<std::size_t> inside,
+      rim;  ///< contacts of the island among these and sites; and that lead out of them
   int place_of(int body) const {
     const auto found = std::lower_bound(bodies.begin(), bodies.end(), body);
     return found != bodies.end() && *found == body ? static_cast<int>(found - bodies.begin()) : -1;
@@ -51,7 +52,8 @@ RestCheck::Ring RestCheck::ring(const Island& island, const std::set<int>& about
   std::sort(ring.bodies.begin(), ring.bodies.end());
   for (std::size_t k = 0; k < island.contacts.size(); ++k) {
     const PairKey& pair = island.contacts[k].pair;
-    const bool a = ring.place_of(pair.body) >= 0, b = !pair.with_site() && ring.place_of(pair.other_body) >= 0;
+    const bool a = ring.place_of(pair.body) >= 0,
+               b = !pair.with_site() && ring.place_of(pair.other_body) >= 0;
     if (a && (b || pair.with_site()))
       ring.inside.push_back(k);
     else if (a || b)
@@ -62,8 +64,7 @@ RestCheck::Ring RestCheck::ring(const Island& island, const std::set<int>& about
 
 RealVec RestCheck::arm(const HeldContact& c) const {
   const ExtendedState body = trajectories_->state_now(c.pair.body);
-  return c.feature.point.cast<Real>() +
-         (search_->other_state(c.pair, now_).position - body.position);
+  return c.feature.point.cast<Real>() + (search_->other_state(c.pair, now_).position - body.position);
 }
 
 RestProblem RestCheck::problem(const Island& island, const Ring& ring, const RestLoads& loads) const {
