@@ -24,15 +24,12 @@ constexpr double kResidual = 1e-6;
 /// turning.
 constexpr double kWonOf = 1e-3;
 
-/// A body with no more than this part of the speed that its force gives it in the step lies still but for what the step
-/// corrects; and an island of which this part does.
-constexpr double kStill = 1e-3, kMost = 0.8;
+/// An island in which nobody has more than this part of the speed that its force gives it in the step lies still but for
+/// what the step corrects.
+constexpr double kStill = 1e-3;
 /// Where friction bounds do not follow, so many solves more take them from the forces of the one before, until they are
 /// wrong by no more than this part of the largest force: in an island of few members, and in any other.
 constexpr int kFrictionPasses = 2;
-/// More of them, at most, where what the last left is more than this part of the largest force.
-constexpr int kMoreFrictionPasses = 10;
-constexpr double kFrictionWrong = 0.02;
 constexpr double kFrictionExact = 1e-9, kFrictionSettled = 1e-3;
 constexpr std::size_t kFew = 8;
 
@@ -68,32 +65,33 @@ StepProblem problem_of(const IslandStep& step, double h, const std::vector<Part>
   return p;
 }
 
-/// True of an island of which most lie still; turns count by the radius of gyration.
+/// True of an island that lies still; turns count by the radius of gyration.
 bool lies_still(const IslandStep& step, double h) {
-  std::size_t still = 0;
   for (std::size_t i = 0; i < step.mass.size(); ++i) {
     const Vec3 &m = step.mass[i], &v = step.velocity[i];
     const double gains = h * step.force[i].cwiseQuotient(m).head<2>().norm();
     const double turns = std::isinf(m[2]) ? 0.0 : std::abs(v[2]) * std::sqrt(m[2] / std::min(m[0], m[1]));
-    still += v.head<2>().norm() + turns <= kStill * gains;
+    if (v.head<2>().norm() + turns > kStill * gains) return false;
   }
-  return still > kMost * step.mass.size();
+  return true;
 }
 
-/// Solves with bounds that are given: those of the step before, and then those of the pass before.
-/// `more`: beyond kFrictionPasses, at most.
-StepResult solve_in_passes(ConeQp& solver, StepProblem& p, int more, int& factorisations) {
-  const bool few = p.mass.size() <= kFew;
+/// Of a large island that moves one solve, in which friction bounds follow the normal forces. Any other begins with the
+/// bounds of the step before and ends with those of its own forces, so that from step to step forces come to where they
+/// obey Coulomb's law to rounding: whether it is at rest may hang on less than what following leaves.
+StepResult solve(ConeQp& solver, StepProblem p, double h, const IslandStep& step, int& factorisations) {
+  const bool few = p.mass.size() <= kFew, follow = !few && !lies_still(step, h);
+  for (StepContact& s : p.contacts) {
+    s.coulomb = follow;
+    s.friction_bound = s.contact.friction * s.expected.normal;
+    s.rolling_bound = s.contact.rolling_resistance * s.expected.normal;
+  }
   StepResult result;
-  double wrong = 0.0, most = 0.0;  // of the bounds of a pass, as normal forces; the largest of these [N s]
-  for (int pass = 0; pass <= kFrictionPasses || wrong > kFrictionWrong * most; ++pass) {
-    StepResult next = solver.step(p);
-    factorisations += next.factorisations;
-    const bool solved = next.residual <= kResidual;
-    // bounds that the search does not get by are left for those of the pass before
-    if (pass == 0 || solved) result = std::move(next);
-    if (!solved || pass == kFrictionPasses + more) break;
-    most = wrong = 0.0;
+  for (int pass = 0; pass <= kFrictionPasses; ++pass) {
+    result = solver.step(p);
+    factorisations += result.factorisations;
+    if (follow || !(result.residual <= kResidual)) break;
+    double most = 0.0, wrong = 0.0;
     for (std::size_t k = 0; k < p.contacts.size(); ++k) {
       StepContact& s = p.contacts[k];
       s.expected = result.loads[k];
@@ -109,26 +107,6 @@ StepResult solve_in_passes(ConeQp& solver, StepProblem& p, int more, int& factor
     if (wrong <= (few ? kFrictionExact : kFrictionSettled) * most) break;
   }
   return result;
-}
-
-/// Of a large island that moves one solve, in which friction bounds follow the normal forces, if that is found. Any other
-/// begins with the bounds of the step before and ends with those of its own forces, so that from step to step forces come
-/// to where they obey Coulomb's law to rounding: whether it is at rest may hang on less than what following leaves.
-StepResult solve(ConeQp& solver, StepProblem p, double h, const IslandStep& step, int& factorisations) {
-  const bool follow = p.mass.size() > kFew && !lies_still(step, h);
-  for (StepContact& s : p.contacts) {
-    s.coulomb = follow;
-    s.friction_bound = s.contact.friction * s.expected.normal;
-    s.rolling_bound = s.contact.rolling_resistance * s.expected.normal;
-  }
-  if (follow) {
-    StepResult result = solver.step(p);
-    factorisations += result.factorisations;
-    if (result.residual <= kResidual) return result;
-    // with bounds that are given the problem is convex
-    for (StepContact& s : p.contacts) s.coulomb = false;
-  }
-  return solve_in_passes(solver, p, follow ? 0 : kMoreFrictionPasses, factorisations);
 }
 
 /// How a gap is missed along the step [m]; 0: not at all.

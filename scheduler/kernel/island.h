@@ -41,15 +41,11 @@ inline const HeldContact* find_warm(const WarmContacts& warm, const HeldContact&
 struct IslandPace {
   int hasty = 0;      ///< steps by modes in a row that hardly led on
   int agitation = 0;  ///< raised by a step that an impact cuts short, lowered by one in which there is none
-  /// Steps until it is asked again who of the members may come to rest, and how many that were the last time.
-  int pause = 0, last_pause = 0;
 
   /// Of islands that go on as one.
   void join(const IslandPace& other) {
     hasty = std::max(hasty, other.hasty);
     agitation = std::max(agitation, other.agitation);
-    pause = std::max(pause, other.pause);
-    last_pause = std::max(last_pause, other.last_pause);
   }
 };
 

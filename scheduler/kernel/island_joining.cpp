@@ -94,7 +94,7 @@ class Outsider {
 
 }  // namespace
 
-/// Supports stay where they are. Each outsider is asked by itself: one that touches another outsider alone comes with the next call, when that
+/// Each outsider is asked by itself: one that touches another outsider alone comes with the next call, when that
 /// one is a member.
 std::vector<int> joining(const World& world, Trajectories& trajectories, const ContactSearch& search,
                          const IslandMembers& members, double now, double h,
@@ -107,7 +107,7 @@ std::vector<int> joining(const World& world, Trajectories& trajectories, const C
   }
   std::vector<int> found;
   for (int k = 0; k < trajectories.body_count(); ++k) {
-    if (members.has(k) || members.supported_by(k)) continue;
+    if (members.has(k)) continue;
     // bodies with clocks of their own may not have been followed so far
     if (!trajectories.cover_body(k, now)) return {};
     const Outsider outsider(world, trajectories, search, members, k, now, h);

@@ -14,8 +14,7 @@ double speed_of(const Twist& v, double radius) { return v.velocity.norm() + std:
 }  // namespace
 
 IslandMembers::IslandMembers(const World& world, const Trajectories& trajectories,
-                             const ContactSearch& search, double now, const std::set<int>& members,
-                             const std::vector<int>& supports)
+                             const ContactSearch& search, double now, const std::set<int>& members)
     : world_(&world),
       trajectories_(&trajectories),
       search_(&search),
@@ -26,7 +25,6 @@ IslandMembers::IslandMembers(const World& world, const Trajectories& trajectorie
     states_.push_back(trajectories.state_now(k));
     accelerations_.push_back(trajectories.acceleration(k));
     const double radius = search.outline_of(k).bounding_radius;
-    are_discs_ = are_discs_ && search.outline_of(k).is_point();
     // a mere point has no size: the scene's
     size_ = std::min(size_, radius > 0.0 ? 2.0 * radius : world.length());
     // as speeds are bounded: |a| + |alpha| r
@@ -34,22 +32,7 @@ IslandMembers::IslandMembers(const World& world, const Trajectories& trajectorie
     pull_ = std::max(pull_, pulls_.back());
     heaviest_ = std::max(heaviest_, world.bodies[k].mass);
   }
-  for (const int k : supports) {
-    if (members.count(k)) continue;
-    supports_.push_back(k);
-    states_.push_back(trajectories.state_now(k));
-    states_.back().twist = ExtendedTwist();
-  }
   find_speeds();
-}
-
-void IslandMembers::reassign(const std::set<int>& members, const std::vector<int>& supports) {
-  IslandMembers next(*world_, *trajectories_, *search_, now_, members, supports);
-  for (std::size_t i = 0; i < next.count(); ++i) next.states_[i].twist = twist_as_member(next.bodies_[i]);
-  next.given_ = given_;
-  next.find_speeds();
-  next.look_ahead(h_, reach_);
-  *this = std::move(next);
 }
 
 /// Also after impacts of this instant, which change twists.
@@ -63,7 +46,6 @@ void IslandMembers::find_speeds() {
 }
 
 double IslandMembers::reach_of(int member) const {
-  if (is_support(member)) return 0.0;
   // Its speed with what forces on it make of that in the step, the largest pull of anybody, which contacts
   // may hand on, and a hundredth of the fastest member's speed. A guess: steps are checked against it.
   return reach_ * h_ * (speeds_[member] + pulls_[member] * h_ + pull_ * h_ + 0.01 * speed_);
@@ -77,47 +59,29 @@ struct IslandMembers::Listing {
   std::vector<HeldContact> contacts;
 };
 
-/// Members and supports near them are swept along x by the left edges of their boxes; sites are held against every
-/// member.
+/// Members are swept along x by the left edges of their boxes; sites are held against every member.
 std::vector<HeldContact> IslandMembers::contacts(double reach) const {
   Listing to{reach, {}};
-  struct Owner {
-    int body;
-    bool supports;
-    Box box;
-  };
-  std::vector<Owner> owners;
-  Box all;
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    const double far = reach < 0.0 ? reach_of(static_cast<int>(i)) : reach;
-    owners.push_back({bodies_[i], false, box_of(bodies_[i], far)});
-    all.add(owners.back().box);
-  }
-  const std::vector<Owner> members = owners;
-  for (std::size_t i = 0; !members.empty() && i < supports_.size(); ++i) {
-    const Box box = box_of(supports_[i], std::max(reach, 0.0));
-    bool near = false;
-    world_->periods.overlaps(all, box, [&](const Image&) { near = true; });
-    if (near) owners.push_back({supports_[i], true, box});
-  }
-  std::sort(owners.begin(), owners.end(), [](const Owner& a, const Owner& b) {
-    return std::pair(a.box.low.x(), a.body) < std::pair(b.box.low.x(), b.body);
-  });
+  std::vector<Box> boxes;
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    boxes.push_back(box_of(bodies_[i], reach < 0.0 ? reach_of(static_cast<int>(i)) : reach));
+  std::vector<int> by_left(bodies_.size());
+  std::iota(by_left.begin(), by_left.end(), 0);
+  std::sort(by_left.begin(), by_left.end(),
+            [&](int a, int b) { return std::pair(boxes[a].low.x(), a) < std::pair(boxes[b].low.x(), b); });
   const bool repeats = world_->periods.any();
-  for (std::size_t x = 0; x < owners.size(); ++x)
-    for (std::size_t y = x + 1; y < owners.size(); ++y) {
+  for (std::size_t x = 0; x < by_left.size(); ++x)
+    for (std::size_t y = x + 1; y < by_left.size(); ++y) {
+      const auto [a, b] = std::minmax(by_left[x], by_left[y]);
       // sorted along x: none that follows begins before this one's right edge, either. Images may.
-      if (!repeats && owners[y].box.low.x() > owners[x].box.high.x()) break;
-      if (owners[x].supports && owners[y].supports) continue;
-      const auto& [a, b] =
-          owners[x].body < owners[y].body ? std::tie(owners[x], owners[y]) : std::tie(owners[y], owners[x]);
-      add_images(to, a.body, a.box, b.body, b.box);
+      if (!repeats && boxes[by_left[y]].low.x() > boxes[by_left[x]].high.x()) break;
+      add_images(to, bodies_[a], boxes[a], bodies_[b], boxes[b]);
     }
   // a site that moves may come towards members, so its box is grown by its own way
   for (int s = 0; s < trajectories_->site_count(); ++s) {
     const int owner = trajectories_->body_count() + s;
     const Box box = box_of(owner, site_way(s));
-    for (const Owner& member : members) add_images(to, member.body, member.box, owner, box);
+    for (std::size_t i = 0; i < bodies_.size(); ++i) add_images(to, bodies_[i], boxes[i], owner, box);
   }
   // in an order of their own, whatever the boxes: the solver's rounding depends on it
   std::sort(to.contacts.begin(), to.contacts.end(),
@@ -187,7 +151,6 @@ std::vector<int> IslandMembers::coupled_to(int member) const {
 /// A step's motion: constant twists. The member's own forces are in `velocity` already.
 ExtendedState IslandMembers::moved(int member, double later, const std::vector<Vec3>& velocity) const {
   ExtendedState s = states_[member];
-  if (is_support(member)) return s;
   s.twist = ExtendedTwist(as_twist(velocity[member]));
   return s.moved(later);
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 #include <set>
 #include <vector>
 
@@ -19,63 +18,40 @@ namespace brink {
 inline Vec3 as_vector(const Twist& v) { return {v.velocity.x(), v.velocity.y(), v.omega}; }
 inline Twist as_twist(const Vec3& v) { return {{v.x(), v.y()}, v.z()}; }
 
-/// The members' states now and what pulls at them. Members are named by their place in bodies(); after them come the
-/// supports, bodies at rest that do not yield to the members and are no part of the island.
+/// The members' states now and what pulls at them. Members are named by their place in bodies().
 class IslandMembers {
  public:
-  /// What is given must outlive it. `supports`: ascending; those that are members are left out. @pre all are held
-  /// (Trajectories::hold).
+  /// What is given must outlive it. @pre all are held (Trajectories::hold).
   IslandMembers(const World& world, const Trajectories& trajectories, const ContactSearch& search, double now,
-                const std::set<int>& members, const std::vector<int>& supports = {});
-  /// Others are members and supports from now on: members have the twists that they were given, supports have none.
-  void reassign(const std::set<int>& members, const std::vector<int>& supports);
+                const std::set<int>& members);
 
   std::size_t count() const { return bodies_.size(); }
   const std::vector<int>& bodies() const { return bodies_; }  ///< ascending
   const Body& body(int member) const { return world_->bodies[bodies_[member]]; }
-  /// Of a member or a support. @pre it is one of them
+  /// @pre it is one of them
   int place_of(int body) const {
-    const auto found = std::lower_bound(bodies_.begin(), bodies_.end(), body);
-    if (found != bodies_.end() && *found == body) return static_cast<int>(found - bodies_.begin());
-    return static_cast<int>(bodies_.size() +
-                            (std::lower_bound(supports_.begin(), supports_.end(), body) - supports_.begin()));
+    return static_cast<int>(std::lower_bound(bodies_.begin(), bodies_.end(), body) - bodies_.begin());
   }
   bool has(int body) const { return std::binary_search(bodies_.begin(), bodies_.end(), body); }
-  bool supported_by(int body) const { return std::binary_search(supports_.begin(), supports_.end(), body); }
-  const std::vector<int>& supports() const { return supports_; }
-  /// True of the place of a support.
-  bool is_support(int place) const { return place >= static_cast<int>(bodies_.size()); }
-  /// True of a contact that leads to a support.
-  bool leans(const HeldContact& c) const {
-    return !has(c.pair.body) || (!c.pair.with_site() && !has(c.pair.other_body));
-  }
-  const ExtendedState& state(int place) const { return states_[place]; }
+  const ExtendedState& state(int member) const { return states_[member]; }
   const Acceleration& acceleration(int member) const { return accelerations_[member]; }
   /// Gives a member another twist; find_speeds() is due then.
-  void set_twist(int member, const ExtendedTwist& twist) {
-    states_[member].twist = given_[bodies_[member]] = twist;
-  }
-  /// As it is for a member, whatever the body is now.
-  ExtendedTwist twist_as_member(int body) const {
-    const auto given = given_.find(body);
-    return given != given_.end() ? given->second : trajectories_->state_now(body).twist;
-  }
+  void set_twist(int member, const ExtendedTwist& twist) { states_[member].twist = twist; }
   void find_speeds();
 
   double size() const { return size_; }          ///< of the smallest [m]
-  bool are_discs() const { return are_discs_; }  ///< all of them
   double speed() const { return speed_; }        ///< of the fastest point [m/s]
   double pull() const { return pull_; }          ///< the largest acceleration of a point by forces [m/s^2]
   double heaviest() const { return heaviest_; }  ///< [kg]
   double bounding_radius(int member) const { return search_->outline_of(bodies_[member]).bounding_radius; }
   /// Steps of h [s] are looked ahead from now on: bodies come as far as they may in `reach` of them.
   void look_ahead(double h, double reach) { h_ = h, reach_ = reach; }
-  /// How far a member may come in a step [m]; of a support 0.
-  double reach_of(int place) const;
+  /// How far a member may come in a step [m].
+  double reach_of(int member) const;
   /// Where it may come in a step.
   Box box(int member) const { return box_of(bodies_[member], reach_of(member)); }
 
-  /// Every near feature of the members, among each other, with supports and with sites, in order. Features are listed up to
+  /// Every near feature of the members, among each other and with sites, in order. Features are listed up to
   /// a gap of `reach` [m]; < 0: as far as a step may lead. Cost: members sorted along x, times sites.
   std::vector<HeldContact> contacts(double reach) const;
 
@@ -113,12 +89,10 @@ class IslandMembers {
   const ContactSearch* search_;
   double now_;
   double h_ = 0.0, reach_ = 0.0;
-  std::vector<int> bodies_, supports_;
-  std::vector<ExtendedState> states_;   ///< of members, and of supports after them
-  std::map<int, ExtendedTwist> given_;  ///< by set_twist()
+  std::vector<int> bodies_;
+  std::vector<ExtendedState> states_;
   std::vector<Acceleration> accelerations_;
   std::vector<double> speeds_, pulls_;  ///< [m/s], [m/s^2], of any point of each
-  bool are_discs_ = true;
   double size_ = kForever, speed_ = 0.0, pull_ = 0.0, heaviest_ = 0.0;
 };
 

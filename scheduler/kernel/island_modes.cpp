@@ -113,8 +113,7 @@ bool IslandModes::suits() const {
   // rolling resistance has no mode here, and between corners roundings choose the side
   return near.size() <= limits_.contacts &&
          std::none_of(near.begin(), near.end(), [this](const HeldContact& c) {
-           return members_->leans(c) || is_corner_on_corner(c) ||
-                  response_->material_of(c.pair).rolling_resistance > 0.0;
+           return is_corner_on_corner(c) || response_->material_of(c.pair).rolling_resistance > 0.0;
          });
 }
 

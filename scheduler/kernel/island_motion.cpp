@@ -15,8 +15,8 @@ namespace {
 
 /// A step lasts this part of the time in which the smallest member falls by its size ...
 constexpr double kOfFall = 0.05;
-/// ... and moves nobody by more than this part of it; discs, whose gaps among each other no look can miss, by more.
-constexpr double kOfSize = 0.1, kOfDisc = 0.25;
+/// ... and moves nobody by more than this part of it.
+constexpr double kOfSize = 0.1;
 /// Features are listed as far as bodies come in so many steps; where impulses take one farther, in more.
 constexpr double kReach = 2.0, kWider = 4.0;
 /// So a list reaches from 2 to 512 steps. Where that does not do, a step is halved, down to 2^-16 of its length.
@@ -61,8 +61,7 @@ double IslandMotion::longest() const {
   const double pull = members_.pull(), speed = members_.speed();
   // the time of the fall is sqrt(2 size / pull): but for the root of 2
   const double fall = pull > 0.0 ? kOfFall * std::sqrt(members_.size() / pull) : kForever;
-  const double of_size = members_.are_discs() ? kOfDisc : kOfSize;
-  const double way = speed > 0.0 ? of_size * members_.size() / speed : kForever;
+  const double way = speed > 0.0 ? kOfSize * members_.size() / speed : kForever;
   return std::min(fall, way);
 }
 
@@ -96,7 +95,7 @@ std::vector<Vec3> IslandMotion::velocities() const {
 /// While something closes too fast to be taken as plastic, the fastest collides by its own law, and the contacts of
 /// its two bodies are looked at again. Cost of an impact: a look at one number of each contact for the fastest, and
 /// a closing speed for each contact of the two.
-int IslandMotion::pass_on_impacts(const Impact& told) {
+void IslandMotion::pass_on_impacts(const Impact& told) {
   // what a step would absorb, and what would arrive in it, depends on its length
   h_ = longest();
   // of an agitated island what would meet within a step, of any other what touches
@@ -105,8 +104,8 @@ int IslandMotion::pass_on_impacts(const Impact& told) {
   // after an impact only contacts of its two bodies close differently: the others are not asked again
   std::vector<std::vector<std::size_t>> contacts_of(members_.count());
   const auto each_member = [&](const HeldContact& c, auto&& visit) {
-    if (members_.has(c.pair.body)) visit(members_.place_of(c.pair.body));
-    if (!c.pair.with_site() && members_.has(c.pair.other_body)) visit(members_.place_of(c.pair.other_body));
+    visit(members_.place_of(c.pair.body));
+    if (!c.pair.with_site()) visit(members_.place_of(c.pair.other_body));
   };
   std::vector<Vec3> velocity = velocities();
   std::vector<double> impact;  // how fast each contact closes that is an impact now
@@ -120,7 +119,6 @@ int IslandMotion::pass_on_impacts(const Impact& told) {
     const auto fastest = std::max_element(impact.begin(), impact.end());
     if (fastest == impact.end() || !(*fastest > 0.0)) break;
     const HeldContact& c = contacts_[static_cast<std::size_t>(fastest - impact.begin())];
-    if (members_.leans(c)) return members_.has(c.pair.body) ? c.pair.other_body : c.pair.body;
     collide(c, *fastest, told);
     // taken before it came: it would have cut the step
     impacts_in_step_ = impacts_in_step_ || !touches(c);
@@ -131,7 +129,6 @@ int IslandMotion::pass_on_impacts(const Impact& told) {
   }
   // set_twist() leaves them to be found, and the length of the step comes from them
   members_.find_speeds();
-  return -1;
 }
 
 /// Within a contact tolerance of what its features keep: at a wire without thickness a touch, else 0.
@@ -193,8 +190,8 @@ bool IslandMotion::rests(double rest_speed) {
   members_.look_ahead(0.0, kReach);
   list(tolerance);
   for (const HeldContact& c : contacts_)
-    // who stands on a site that moves is not at rest; and whether supports carry it is not asked here
-    if (members_.on_moving_site(c) || members_.leans(c)) return false;
+    // who stands on a site that moves is not at rest
+    if (members_.on_moving_site(c)) return false;
   make_problem();
   if (!stays_at_rest(*solver_, problem_)) return false;
   take_forces();
@@ -204,30 +201,6 @@ bool IslandMotion::rests(double rest_speed) {
   // to the bit: what is still has no search and no step (Motion::is_still)
   for (int i = 0; i < count; ++i) members_.set_twist(i, ExtendedTwist());
   return true;
-}
-
-bool IslandMotion::leans() const {
-  return std::any_of(contacts_.begin(), contacts_.end(),
-                     [this](const HeldContact& c) { return members_.leans(c); });
-}
-
-std::set<int> IslandMotion::slow(double part) const {
-  std::set<int> slow;
-  const double most = part * members_.pull() * longest();
-  for (int i = 0; i < static_cast<int>(members_.count()); ++i) {
-    const Twist v = members_.state(i).twist.rounded();
-    const double speed = v.velocity.norm() + std::abs(v.omega) * members_.bounding_radius(i);
-    if (speed <= most && members_.is_constant(i) && members_.coupled_to(i).size() <= 1)
-      slow.insert(members_.bodies()[i]);
-  }
-  return slow;
-}
-
-void IslandMotion::reassign(const std::set<int>& members, const std::vector<int>& supports,
-                            WarmContacts warm) {
-  members_.reassign(members, supports);
-  warm_.merge(warm);
-  contacts_.clear();
 }
 
 /// Of all members [J].
@@ -250,8 +223,6 @@ bool IslandMotion::take(IslandModes& modes, double now, double h, bool on_time) 
     h_ = h;
     members_.look_ahead(h_, reach);
     list(-1.0);
-    // what supports carry must be known for the whole step, which modes' forces, that change within it, are not
-    if (leans()) return false;
     const IslandModes::Outcome outcome = modes.take(now, h, contacts_, on_time);
     // farther than features were listed: with a longer list, from the same states
     if (outcome == IslandModes::Outcome::wider) continue;
@@ -402,7 +373,6 @@ IslandContact IslandMotion::island_contact(const HeldContact& c) const {
   const int a = members_.place_of(c.pair.body);
   const int b = c.pair.with_site() ? -1 : members_.place_of(c.pair.other_body);
   made.rows = contact_at(a, b, c.feature.normal, members_.arm(c).cast<double>(), c.feature.point);
-  yield_nothing(made.rows);
   made.gap = c.feature.gap - kept(c.feature);
   const Material& material = response_->material_of(c.pair);
   made.friction = material.friction;
@@ -428,19 +398,6 @@ IslandContact IslandMotion::island_contact(const HeldContact& c) const {
   return made;
 }
 
-/// A support is none of the step's bodies: where it is the contact's body the other one takes its place, with the same
-/// relative velocities.
-void IslandMotion::yield_nothing(LastingContact& rows) const {
-  if (members_.is_support(rows.body)) {
-    rows.body = rows.other;
-    rows.normal_on_body = rows.normal_on_other;
-    rows.tangent_on_body = rows.tangent_on_other;
-    rows.other = -1;
-  } else if (members_.is_support(rows.other)) {
-    rows.other = -1;
-  }
-}
-
 /// How the gap behaves along a step. Of a segment it is convex in front of it, so of a wire it is not, nor where there is no
 /// way by an end: there what is beside the segment counts as behind it, too. Of an arc it depends on the side.
 void IslandMotion::note_shape(const HeldContact& c, IslandContact& made) const {
@@ -451,7 +408,7 @@ void IslandMotion::note_shape(const HeldContact& c, IslandContact& made) const {
   const Sample& sample = of_sample->samples[f.sample];
   const SiteKind kind = of_site->sites[f.site].kind;
   made.convex = !made.driven && !f.thin && !f.no_way_by && !of_site->container && kind != SiteKind::arc;
-  made.sample_on_body = f.sample_on_a == members_.has(c.pair.body);
+  made.sample_on_body = f.sample_on_a;
   made.arm = sample.p.norm();
   // from the centre of mass to the point on the site's surface, and on along the normal to the sample
   const Vec2 to_point = f.sample_on_a ? f.point : Vec2(members_.arm(c).cast<double>());
@@ -515,8 +472,8 @@ bool IslandMotion::stays_near(const HeldContact& c) const {
     if (c.feature.gap <= kClear * tolerance && slow) return true;
     return !c.pair.with_site() && c.feature.gap - h_ * (closing + behind) <= tolerance;
   }
-  // a site takes no step, nor does a support: whoever is let go meets it by the ordinary search
-  if (c.pair.with_site() || members_.leans(c)) return false;
+  // a site takes no step: whoever is let go meets it by the ordinary search
+  if (c.pair.with_site()) return false;
   const double closing = members_.closing_speed(c, after(members_.place_of(c.pair.body)).twist,
                                                 after(members_.place_of(c.pair.other_body)).twist);
   return c.feature.gap - h_ * (closing + behind) <= tolerance;
@@ -555,12 +512,10 @@ IslandMotion::Parts IslandMotion::parts(bool rests) const {
     // at rest all that touch stay together: forces of redundant contacts are one choice of many, and 0 for
     // some
     if (!rests && !pushes(c) && !stays_near(c)) continue;
-    int a = members_.place_of(c.pair.body);
-    int b = c.pair.with_site() ? a : members_.place_of(c.pair.other_body);
-    // a site or a support keeps a body in an island, but joins nobody to it: there b is a
-    if (members_.is_support(a)) a = b;
-    if (members_.is_support(b)) b = a;
+    const int a = members_.place_of(c.pair.body);
+    const int b = c.pair.with_site() ? a : members_.place_of(c.pair.other_body);
     pushed[a] = pushed[b] = true;
+    // a site keeps its body in an island, but joins nobody to it: there b is a
     joined.unite(a, b);
   }
   if (agitated_ && !rests)
@@ -593,7 +548,6 @@ ContactMode IslandMotion::mode_of(const HeldContact& c, bool rests) const {
   if (rests) return ContactMode::rest;
   const auto twist = [this](int body) {
     const int member = members_.place_of(body);
-    if (members_.is_support(member)) return Twist{};
     return by_modes_ ? members_.state(member).twist.rounded() : as_twist(problem_.velocity[member]);
   };
   const Twist a = twist(c.pair.body);
@@ -611,12 +565,10 @@ Island IslandMotion::island_of(const std::vector<int>& together, bool rests, dou
   const auto has = [&](int body) {
     return std::binary_search(together.begin(), together.end(), members_.place_of(body));
   };
-  const auto rests_beside = [&](int body) { return members_.supported_by(body); };
   for (const int i : together) island.members.push_back(members_.bodies()[i]);
-  // Contacts among these, and with supports: what leads to a member that leaves is searched again.
+  // Contacts among these alone: what leads to a member that leaves is searched again.
   for (const HeldContact& c : contacts_)
-    if (has(c.pair.body) ? c.pair.with_site() || has(c.pair.other_body) || rests_beside(c.pair.other_body)
-                         : rests_beside(c.pair.body) && has(c.pair.other_body)) {
+    if (has(c.pair.body) && (c.pair.with_site() || has(c.pair.other_body))) {
       HeldContact& held = island.contacts.emplace_back(c);
       held.mode = mode_of(c, rests);
       held.place = members_.other_state(c.pair).position.cast<double>() + c.feature.point;

@@ -3,7 +3,6 @@
 
 #include <functional>
 #include <limits>
-#include <set>
 #include <vector>
 
 #include "brink/core/contacts/impulse.h"
@@ -30,20 +29,11 @@ class IslandMotion {
   /// How long a step may be [s]; infinity: nothing moves or pulls.
   double longest() const;
   /// A collision goes on through contacts of this instant: the one that closes fastest first, each by its own
-  /// law, until none closes faster than what a step takes as plastic. The support that comes to be hit, which is to be a
-  /// member then; -1: none.
-  int pass_on_impacts(const Impact& told);
+  /// law, until none closes faster than what a step takes as plastic.
+  void pass_on_impacts(const Impact& told);
   /// True if the members can be taken to be at rest: what is left of their motion is gone within the contact
   /// tolerance, or slower than `rest_speed` [m/s], and their contacts hold them. They are at rest then.
   bool rests(double rest_speed);
-  /// Members that may come to rest within a step: those slower than this part of what forces make of them in it, under
-  /// forces that do not change.
-  std::set<int> slow(double part) const;
-  /// Others are members and supports from now on (IslandMembers::reassign); `warm`: contacts that come along.
-  void reassign(const std::set<int>& members, const std::vector<int>& supports, WarmContacts warm = {});
-  const std::vector<HeldContact>& contacts() const { return contacts_; }
-  /// True if one of them leads to a support.
-  bool leans() const;
   /// From now on bounces end where they do not leave the contact tolerance any more, not the step.
   void expect_modes() { by_modes_ = true; }
   /// From now on impacts do not end steps: those that would come within a step are taken where it begins, as far apart
@@ -57,8 +47,6 @@ class IslandMotion {
   /// Takes a step of `h` [s] at most, and less where that does not do. False: not even the shortest does.
   /// `tolerance`: what its places may be off by the order of the step [m], 0: any. @pre sites are covered as far.
   bool take(double h, double tolerance);
-  /// Nobody moves for so long [s].
-  void wait(double h) { h_ = h; }
 
   /// Members that push each other, or are coupled to such, together; and those that nothing pushes.
   struct Parts {
@@ -89,7 +77,6 @@ class IslandMotion {
   double kept(const NearFeature& f) const { return f.thin ? search_->limits().touch : 0.0; }
   void make_problem();
   IslandContact island_contact(const HeldContact& c) const;
-  void yield_nothing(LastingContact& rows) const;
   void note_shape(const HeldContact& c, IslandContact& made) const;
   bool stays_within_reach() const;
   double change_of_speed() const;

@@ -69,11 +69,9 @@ void Islands::gather(int body, std::set<int>& members) const {
   // here already, and so are all who come with it
   if (members.count(body)) return;
   const auto lead = lead_of_.find(body);
-  // one of many at rest comes alone, with those who lean on it
-  const bool whole = lead != lead_of_.end() && !is_large(islands_.at(lead->second));
-  const std::vector<int> with = whole ? islands_.at(lead->second).members : std::vector{body};
+  const std::vector<int> with =
+      lead != lead_of_.end() ? islands_.at(lead->second).members : std::vector{body};
   members.insert(with.begin(), with.end());
-  for (const int k : with) gather_leaning(k, members);
   // springs couple each of these to others, and those bring their islands along
   for (const int k : with)
     for (const int j : trajectories_->coupled_to(k)) gather(j, members);
@@ -83,22 +81,15 @@ void Islands::gather(int body, std::set<int>& members) const {
 /// their contacts, to start the next step from, and joins their pace to `pace`.
 WarmContacts Islands::take_out(const std::set<int>& members, IslandPace& pace) {
   WarmContacts warm;
-  std::map<int, std::vector<int>> of_island;
-  for (const int k : members)
-    if (const auto lead = lead_of_.find(k); lead != lead_of_.end()) of_island[lead->second].push_back(k);
-  for (const auto& [lead, bodies] : of_island) {
-    const auto found = islands_.find(lead);
-    if (bodies.size() < found->second.members.size()) {
-      leave_rest(lead, bodies, warm);
-      continue;
-    }
-    if (found->second.rests) note_change(EventKind::wake, lead), ++tally_.woken;
+  for (const int k : members) {
+    // islands are listed by their least member: each is met once
+    const auto found = islands_.find(k);
+    if (found == islands_.end()) continue;
+    if (found->second.rests) note_change(EventKind::wake, k), ++tally_.woken;
     for (const HeldContact& c : found->second.contacts) {
       search_->search_again(c.pair);
       const Feature key{c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site};
       warm[key] = c;
-      for (const int k : {c.pair.body, c.pair.other_body})
-        if (k >= 0 && !members.count(k) && c.mode != ContactMode::none) shaken_.insert(k);
       // told when it has ended (tell_ended); one that presses on in the same mode goes on as one stretch
       // (put_in)
       if (c.mode != ContactMode::none) taken_out_.emplace(key, c);
@@ -209,7 +200,9 @@ double Islands::larger_step_end(int body, std::size_t than) const {
 /// Members are held from now on, also those that join; what they push each other with is taken out. Those of a larger
 /// island in the middle of its step do not: the two meet where that step ends, and `longest` is no later. Else what
 /// falls onto a heap would begin the heap's step anew, and the heap's own look about takes it in in time.
-IslandMotion Islands::set_out(std::set<int>& members, WarmContacts& warm, IslandPace& pace, double& longest) {
+IslandMotion Islands::set_out(std::set<int>& members, IslandPace& pace, double& longest) {
+  WarmContacts warm;
+  pace = {};
   // who joins brings an island of its own along, and may be near to others in turn
   for (;;) {
     warm.merge(take_out(members, pace));
@@ -220,8 +213,8 @@ IslandMotion Islands::set_out(std::set<int>& members, WarmContacts& warm, Island
     // told to nobody: part() and give_up() change the motion of every member once more
     std::vector<int> held;
     trajectories_->hold(as_they_are, held);
-    IslandMotion motion(IslandMembers(*world_, *trajectories_, *search_, run_->time(), members, supports()),
-                        *search_, *response_, solver_, tally_, warm);
+    IslandMotion motion(IslandMembers(*world_, *trajectories_, *search_, run_->time(), members), *search_,
+                        *response_, solver_, tally_, warm);
     // who asked for a tolerance has exact impacts
     if (limits_.tolerance == 0.0 && is_agitated(*world_, pace, members)) motion.expect_agitation();
     std::vector<int> more = motion.joining(*world_, *trajectories_, run_->time());
@@ -257,8 +250,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   // nobody.
   const RunControl::Indivisible whole(*run_);
   IslandPace pace;
-  WarmContacts warm;
-  const bool may_rest = longest == kForever;
+  IslandMotion motion = set_out(members, pace, longest);
   // Members are in no island by now: all are let go to what moved them before.
   const auto give_up = [&] {
     trajectories_->release(std::vector<int>(members.begin(), members.end()), changed);
@@ -267,44 +259,26 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
     return false;
   };
   const double now = run_->time();
-  struct Met {
-    HeldContact contact;
-    RealVec from;
-    double closing;
-    ImpulseResult impulse;
-  };
-  std::vector<Met> met;
-  std::optional<IslandMotion> out;
-  std::optional<IslandModes> few;
-  for (int hit = 0; hit >= 0;) {
-    out.emplace(set_out(members, warm, pace, longest));
-    few.emplace(out->members(), *trajectories_, *search_, *response_, by_modes_, out->warm());
-    // what buzzes is spared modes for some steps (next_hasty)
-    if (pace.hasty < kMostHasty && few->suits()) out->expect_modes();
-    // before impacts: those of an agitated island are looked for along the step
-    if (const double ahead = out->longest(); std::isfinite(ahead) && !follow_sites(now, ahead))
-      return give_up();
-    met.clear();
-    hit = out->pass_on_impacts(
-        [&](const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r) {
-          met.push_back({c, from, closing, r});
-        });
-    // a support that is hit is one no more: all over again with it
-    if (hit >= 0) gather(hit, members);
-  }
-  IslandMotion& motion = *out;
-  IslandModes& modes = *few;
-  for (const Met& m : met) note_impact(m.contact, m.from, m.closing, m.impulse.normal, m.impulse.tangential);
+  IslandModes modes(motion.members(), *trajectories_, *search_, *response_, by_modes_, motion.warm());
+  // what buzzes is spared modes for some steps (next_hasty)
+  if (pace.hasty < kMostHasty && modes.suits()) motion.expect_modes();
+  const std::uint64_t collisions = run_->work().collisions;
+  // before impacts: those of an agitated island are looked for along the step
+  if (const double ahead = motion.longest(); std::isfinite(ahead) && !follow_sites(now, ahead))
+    return give_up();
+  motion.pass_on_impacts(
+      [this](const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r) {
+        note_impact(c, from, closing, r.normal, r.tangential);
+      });
   // an impact here is news: modes that the step before ended in do not hold
-  on_time = on_time && met.empty();
-  // bodies at rest beside them that have lost a contact are asked for by step_beside_rest()
-  const bool rests = shaken_.empty() && motion.rests(limits_.rest_speed);
+  on_time = on_time && run_->work().collisions == collisions;
+  const bool rests = motion.rests(limits_.rest_speed);
   // anew: impacts have changed speeds
   const double h = std::min(longest, motion.longest());
   if (!rests && std::isfinite(h) && !follow_sites(now, h)) return give_up();
   // rest first: it is exact and free; modes next, as they keep to a tolerance; steps of first order last
-  const bool by_modes = !rests && shaken_.empty() && motion.take(modes, now, h, on_time);
-  if (!rests && !by_modes && !step_beside_rest(members, motion, pace, h, may_rest, changed)) {
+  const bool by_modes = !rests && motion.take(modes, now, h, on_time);
+  if (!rests && !by_modes && !motion.take(h, limits_.tolerance)) {
     run_->stop(
         Termination::failed,
         fmt::format("an island of {} bodies, '{}' the first, finds no step at t = {:.17g} that keeps its "
@@ -438,10 +412,9 @@ bool Islands::step(std::vector<int>& changed) {
     find_next();
     return run_->poll();
   }
-  std::set<int> members(island.members.begin(), island.members.end());
-  // of one that rested, all, and those who lean on it
-  for (const int k : std::vector<int>(island.members)) gather_leaning(k, members);
-  return begin_step(std::move(members), std::numeric_limits<double>::infinity(), changed, true);
+  // a copy: the island is taken out
+  const std::vector<int> members = island.members;
+  return begin_step({members.begin(), members.end()}, std::numeric_limits<double>::infinity(), changed, true);
 }
 
 /// How long the sample goes on before it comes to an end of the straight site, as the two move now [s].

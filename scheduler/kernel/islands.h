@@ -7,15 +7,11 @@
 ///              the level of velocities (island_step.h), or come to rest
 ///   collided   a member was hit: what it hit may join, and the island begins a step at once
 ///
-/// A large island comes to rest in part, and wakes in part (islands_rest.cpp): what rests supports what moves like a site
-/// that stands still, so that a step costs what moves in it.
-///
 /// Steps begin at events and see the states of their members alone, so they are the same whoever schedules.
 /// Pairs of an island are not searched for contacts while it takes a step: the step keeps their gaps.
 
 #include <limits>
 #include <map>
-#include <optional>
 #include <set>
 #include <vector>
 
@@ -23,7 +19,6 @@
 #include "brink/scheduler/kernel/island_motion.h"
 #include "brink/scheduler/kernel/near_pairs.h"
 #include "brink/scheduler/kernel/records.h"
-#include "brink/scheduler/kernel/rest_check.h"
 
 namespace brink {
 
@@ -81,29 +76,14 @@ class Islands {
 
  private:
   void gather(int body, std::set<int>& members) const;
-  void gather_leaning(int body, std::set<int>& members) const;
   double slides_off_in(const PairKey& pair, const FeatureContact& f) const;
   double larger_step_end(int body, std::size_t than) const;
-  IslandMotion set_out(std::set<int>& members, WarmContacts& warm, IslandPace& pace, double& longest);
+  IslandMotion set_out(std::set<int>& members, IslandPace& pace, double& longest);
   bool follow_sites(double now, double h);
   bool begin_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time = false);
   bool carry_out_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time);
   void part(const IslandMotion& motion, bool rests, const IslandModes* modes, const IslandPace& pace,
             std::vector<int>& changed);
-  // -- what rests beside what moves (islands_rest.cpp)
-  static bool is_large(const Island& island);
-  std::vector<int> supports() const;
-  void leave_rest(int lead, const std::vector<int>& bodies, WarmContacts& warm);
-  bool step_beside_rest(std::set<int>& members, IslandMotion& motion, IslandPace& pace, double h,
-                        bool may_rest, std::vector<int>& changed);
-  std::set<int> slow_beside(const IslandMotion& motion, IslandPace& pace) const;
-  Island rest_with(const IslandMotion& motion, const std::set<int>& still, std::set<int>& joined) const;
-  RestLoads loads(const IslandMotion& motion) const;
-  std::set<int> cannot_stay(const IslandMotion& motion, const std::set<int>& still, Island& pool,
-                            const std::set<int>& pooled);
-  void come_to_rest(const IslandMotion& motion, const std::set<int>& still, Island pool,
-                    const std::set<int>& pooled, std::vector<int>& changed);
-  void note_rest_modes(Island& island);
   void tell(const IslandModes& modes, const IslandMembers& members);
   FeatureContact as_told(const HeldContact& c, const RealVec& from) const;
   void note_mode(const HeldContact& c, const RealVec& from, EventKind kind);
@@ -129,8 +109,6 @@ class Islands {
   std::map<int, int> lead_of_;  ///< of every member
   using Feature = std::tuple<PairKey, bool, int, int>;
   std::map<Feature, HeldContact> taken_out_;  ///< that pressed, until it is known whether they go on
-  std::set<int>
-      shaken_;  ///< bodies at rest of which a contact with what moves has changed since their forces were found
   double next_step_ = std::numeric_limits<double>::infinity();
   IslandTally tally_;
 };
