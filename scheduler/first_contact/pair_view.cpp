@@ -272,6 +272,8 @@ bool PairView::pokes_through(const Half& half, int i, const Site& site, const Ne
       site.radius + sample.radius > 0.0 || !(f.gap > 0.0))
     return false;
   const Vec2 along = site.b - site.a;
+  // What goes by the very end of the face touches a tip there, and leads past it.
+  const double end = limits_.tolerance * along.norm();
   // The corner is `gap` before the face. An edge that comes nearer by more than that on its way to its
   // other end crosses the face's line, when it has gone the part gap / falls of this way.
   const auto crossed_by = [&](const Site& edge, const Vec2& other_end) {
@@ -281,7 +283,7 @@ bool PairView::pokes_through(const Half& half, int i, const Site& site, const Ne
     const double falls = -f.normal.dot(way);
     if (!(falls > f.gap && falls > kParallel * way.norm())) return false;
     const double at = along.dot(nearest.point + (f.gap / falls) * way - site.a);
-    return at >= 0.0 && at <= along.squaredNorm();
+    return at > end && at < along.squaredNorm() - end;
   };
   const std::vector<Site>& own = half.samples_of().sites;
   return crossed_by(own[sample.before], own[sample.before].a) ||

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "brink/core/base/random.h"
 #include "tests/support/worlds.h"
 
 namespace brink {
@@ -160,6 +161,67 @@ TEST(Corners, BodyThatStartsOnAWireStaysOnItsSide) {
                                 << restitution << (persistent ? ": " : ", no contacts that last: ") << s.why;
             }
   EXPECT_EQ(wrong, 0) << "of " << runs;
+}
+
+/// A triangle's tip that meets the top of a box, at rest or moving, `beside` one of its ends. Both come from where they
+/// are at `contact`, and go on as they come.
+struct TipBesideAnEnd {
+  double contact = 0.05, beside, half_angle, lean, closing, sliding;
+  BodyState of_box;
+  double spin;
+
+  explicit TipBesideAnEnd(Random& r)
+      : beside(std::pow(10.0, r.uniform(-9.0, -4.0))),
+        half_angle(r.uniform(0.2, 0.7)),
+        lean(r.uniform(-1.0, 1.0) * (1.4 - half_angle)),
+        closing(r.uniform(0.2, 2.0)),
+        sliding(r.uniform(-1.0, 1.0)),
+        of_box{{{r.uniform(-10.0, 10.0), r.uniform(-10.0, 10.0)}, r.uniform(-40.0, 40.0)},
+               {{r.uniform(-1.0, 1.0), r.uniform(-1.0, 1.0)}, r.uniform(-2.0, 2.0)}},
+        spin(r.uniform(-2.0, 2.0)) {}
+
+  World world() const {
+    World w;
+    w.materials[0].restitution = 1.0;
+    const Vec2 tip(0.0, -0.5), wide(0.9 * std::tan(half_angle), 0.4);
+    const Shape triangle = centered(make_polygon({tip, wide, {-wide.x(), wide.y()}}));
+    const Vec2 apex(0.0, -0.6);  // of that height from the centre of mass: two thirds of .9
+    const double angle = of_box.pose.angle + lean;
+    const auto turned = [](double by, const Vec2& v) {
+      return Vec2(std::cos(by) * v.x() - std::sin(by) * v.y(), std::sin(by) * v.x() + std::cos(by) * v.y());
+    };
+    const Vec2 arm = turned(of_box.pose.angle, {0.5 - beside, 0.5}), met = of_box.pose.position + arm;
+    const Vec2 relative = turned(of_box.pose.angle, {sliding, -closing});
+    BodyState of_tip{{met - turned(angle, apex), angle}, {Vec2::Zero(), spin}};
+    of_tip.twist.velocity = of_box.twist.at(arm) + relative - cross(spin, turned(angle, apex));
+    Body box = body(make_box(1.0, 1.0), {0, 0}, {0, 0}), other = body(triangle, {0, 0}, {0, 0});
+    box.initial = before(of_box);
+    other.initial = before(of_tip);
+    add(w, box);
+    add(w, other);
+    return w;
+  }
+  BodyState before(BodyState s) const {
+    s.pose.position -= contact * s.twist.velocity;
+    s.pose.angle -= contact * s.twist.omega;
+    return s;
+  }
+};
+
+// The corner at the edge's end is behind one face of the tip and right before the other, through whose end the edge
+// leads: a rounding must not have it met behind the first.
+TEST(Corners, TipThatMeetsAnEdgeRightBesideItsEndMeetsNothingBehindItsFaces) {
+  Random random(20261124);
+  for (int k = 0; k < 400; ++k) {
+    const TipBesideAnEnd met(random);
+    Simulator simulator(met.world(), {});
+    Events events;
+    const RunSummary s = simulator.run(until(2.0 * met.contact), &events);
+    EXPECT_EQ(s.why, "") << "world " << k << ", beside " << met.beside;
+    const auto collisions = events.collisions();
+    ASSERT_FALSE(collisions.empty()) << "world " << k;
+    EXPECT_NEAR(collisions[0].contact.time, met.contact, 1e-9) << "world " << k;
+  }
 }
 
 }  // namespace
