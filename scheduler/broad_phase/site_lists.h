@@ -41,12 +41,16 @@ class SiteLists {
  private:
   void find(const Placed& placed, const Box& box, std::vector<SiteImage>& found) const;
   bool reaches(const Outline& outline, const Box& box) const;
-  /// In empty_: of cells about the origin, where most bodies are; beyond them: none.
+  /// In empty_, of cells about the origin, where most bodies are; beyond them: none. Counted outwards, square about
+  /// square (pairing function of Szudzik 2006), so that a small world needs few bits.
   std::size_t place_of(const Cell& cell) const {
-    const auto column = static_cast<std::uint32_t>(cell.column + kAcross / 2),
-               row = static_cast<std::uint32_t>(cell.row + kAcross / 2);
-    return column < kAcross && row < kAcross ? static_cast<std::size_t>(row) * kAcross + column
-                                             : ~std::size_t{0};
+    // 0, -1, 1, -2 ... are 0, 1, 2, 3 ...
+    const auto outwards = [](std::int32_t k) {
+      return (static_cast<std::uint32_t>(k) << 1) ^ static_cast<std::uint32_t>(k >> 31);
+    };
+    const std::size_t column = outwards(cell.column), row = outwards(cell.row);
+    if (column >= kAcross || row >= kAcross) return ~std::size_t{0};
+    return column < row ? row * row + column : column * column + column + row;
   }
   static constexpr std::uint32_t kAcross = 2048;
 
@@ -55,8 +59,7 @@ class SiteLists {
   Periods periods_;
   double reach_;
   std::unordered_map<std::uint64_t, std::vector<SiteImage>> lists_;
-  std::vector<bool>
-      empty_;  ///< cells for which nothing was found, a row after the other, as far as there are any
+  std::vector<bool> empty_;  ///< cells for which nothing was found, by place_of(), as far as there are any
 };
 
 }  // namespace brink
