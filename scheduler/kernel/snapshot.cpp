@@ -19,14 +19,19 @@ class Writer {
  public:
   template <class T>
   void operator()(const T& value) {
-    const auto* first = reinterpret_cast<const std::byte*>(&value);
-    bytes_.insert(bytes_.end(), first, first + sizeof(T));
+    if (bytes_.size() - end_ < sizeof(T)) bytes_.resize(2 * (end_ + sizeof(T)));
+    std::memcpy(bytes_.data() + end_, &value, sizeof(T));
+    end_ += sizeof(T);
   }
-  void expect(std::size_t bytes) { bytes_.reserve(bytes); }
-  std::vector<std::byte> take() { return std::move(bytes_); }
+  void expect(std::size_t bytes) { bytes_.resize(bytes); }
+  std::vector<std::byte> take() {
+    bytes_.resize(end_);
+    return std::move(bytes_);
+  }
 
  private:
   std::vector<std::byte> bytes_;
+  std::size_t end_ = 0;  ///< of what has been written; behind it there is room
 };
 
 /// Every read is held against what is left: a damaged snapshot is BadInput, never a look beyond its end.
