@@ -209,7 +209,6 @@ std::pair<RealVec, RealVec> CollisionResponse::push_apart(const PairKey& pair, c
   return {of_body * (by / sum), -of_other * (by / sum)};
 }
 
-/// Begins the motions that lead through the moment of contact with the twists that the law gave.
 /// True if a fixed wire without thickness is in that way, and touched already: what two solids are pushed apart by may
 /// be more than the level that is left before it.
 bool CollisionResponse::leads_to_wire(int body, const RealVec& way) {
@@ -230,6 +229,7 @@ bool CollisionResponse::leads_to_wire(int body, const RealVec& way) {
   });
 }
 
+/// Begins the motions that lead through the moment of contact with the twists that the law gave.
 void CollisionResponse::deflect(const PairKey& pair, const Change& r, std::vector<int>& changed) {
   const Restart both[] = {
       {pair.body, deflected(r.body, r.moment.body.twist, r.impulse.body, r.delay)},

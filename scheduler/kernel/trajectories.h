@@ -127,6 +127,7 @@ class Trajectories {
   /// The body's state now, in extended precision. Of one that is held its motion has the twist of the step's
   /// end; this has what it has come to by now, in proportion.
   ExtendedState state_now(int k) const;
+  /// Its twist alone: cheaper.
   ExtendedTwist twist_now(int k) const;
   /// Forces act on the bodies again, from the present time on. @pre held; all bodies of a component, or none.
   void release(std::span<const int> bodies, std::vector<int>& changed);
