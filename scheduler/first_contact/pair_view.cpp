@@ -272,8 +272,7 @@ bool PairView::pokes_through(const Half& half, int i, const Site& site, const Ne
       site.radius + sample.radius > 0.0 || !(f.gap > 0.0))
     return false;
   const Vec2 along = site.b - site.a;
-  // What goes by the very end of the face touches a tip there, and leads past it.
-  const double end = limits_.tolerance * along.norm();
+  const double length = along.norm();
   // The corner is `gap` before the face. An edge that comes nearer by more than that on its way to its
   // other end crosses the face's line, when it has gone the part gap / falls of this way.
   const auto crossed_by = [&](const Site& edge, const Vec2& other_end) {
@@ -282,8 +281,11 @@ bool PairView::pokes_through(const Half& half, int i, const Site& site, const Ne
         placed(half.s).frame.direction_to_world(other_end - sample.p));
     const double falls = -f.normal.dot(way);
     if (!(falls > f.gap && falls > kParallel * way.norm())) return false;
-    const double at = along.dot(nearest.point + (f.gap / falls) * way - site.a);
-    return at > end && at < along.squaredNorm() - end;
+    const double at = along.dot(nearest.point + (f.gap / falls) * way - site.a) / length;
+    // An end of the face no deeper behind the edge than the contact tolerance is touched by the edge, which leads
+    // past it.
+    const double sine = falls / way.norm();
+    return std::min(at, length - at) * sine > limits_.tolerance;
   };
   const std::vector<Site>& own = half.samples_of().sites;
   return crossed_by(own[sample.before], own[sample.before].a) ||
