@@ -42,11 +42,13 @@ constexpr double kBelow = 1e-7;
 
 /// An outline where it stands.
 struct PlacedSolid {
-  const Outline& outline;
-  Pose pose;
+  PlacedSolid(const Outline& o, const Pose& pose) : outline(o), frame(pose) {}
 
   /// > 0: that deep inside [m].
-  double depth_of(const Vec2& p) const { return -gap_by_brute_force(outline, Frame(pose).to_local(p)); }
+  double depth_of(const Vec2& p) const { return -gap_by_brute_force(outline, frame.to_local(p)); }
+
+  const Outline& outline;
+  Frame frame;
 };
 
 /// A solid without thickness.
@@ -78,7 +80,10 @@ OutlineCrossing look_below(const PlacedSolid& a, const PlacedSolid& b, const Vec
   // what is found, if anything, is at least half of its maximum
   for (;; below *= 2.0) {
     const Vec2 q = p + below * n;
-    const double depth = std::min(a.depth_of(q), b.depth_of(q));
+    // below its own edge it is in a as a rule, so b is asked first
+    const double in_b = b.depth_of(q);
+    if (!(in_b > deepest.depth)) return deepest;
+    const double depth = std::min(a.depth_of(q), in_b);
     if (!(depth > deepest.depth)) return deepest;
     deepest = {depth, q, -n};
   }
@@ -117,7 +122,7 @@ OutlineCrossing deepest_crossing(const Outline& a, const Pose& pose_a, const Out
   const bool is_clear = deepest.depth > kBelow * std::min(a.bounding_radius, b.bounding_radius);
   // wires share no inside; of a thick outline, a vertex on an edge's core is a sample that tells
   if (is_clear || !is_sharp_solid(a) || !is_sharp_solid(b)) return deepest;
-  const PlacedSolid solid_a{a, pose_a}, solid_b{b, pose_b};
+  const PlacedSolid solid_a(a, pose_a), solid_b(b, pose_b);
   // from both: what they share may border on edges of one
   // alone, as where a diamond has its corners on a box
   const OutlineCrossing below_a = shared_below_edges(solid_a, of_a, solid_b, of_b);

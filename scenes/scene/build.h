@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "brink/scenes/scene/landing.h"
 #include "brink/scenes/scene/scatter.h"
 #include "brink/scenes/scene/tables.h"
 
@@ -83,8 +84,7 @@ struct PlaceRules {
 
 /// Where the copies of a thing stand that is put where it is told to be, as a function of the position of the
 /// first (of rows: of the middle of the lowest). @pre no scatter, no pile; the thing outlives the function.
-std::function<std::vector<Pose>(const Vec2&)> standing_poses(const PlannedThing& thing,
-                                                             const PlaceRules& rules);
+Copies standing_poses(const PlannedThing& thing, const PlaceRules& rules);
 
 /// Puts bodies on what their key `touching` names, in the order in which they depend on each other, and fills
 /// their copies. @pre everything else that stands where it is told is placed.

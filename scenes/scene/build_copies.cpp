@@ -119,16 +119,19 @@ Obstacle at_start(const PlannedThing& thing, const BodyState& copy) {
 }
 
 // Rows are found once, here; the function that is returned only shifts them.
-std::function<std::vector<Pose>(const Vec2&)> standing_poses(const PlannedThing& thing,
-                                                             const PlaceRules& rules) {
+Copies standing_poses(const PlannedThing& thing, const PlaceRules& rules) {
   const ThingTable& table = *thing.table;
   if (!table.stack.given && !table.pyramid.given && !table.wall.given)
-    return [&thing](const Vec2& position) { return grid_poses(thing, position); };
+    return [&thing](const Vec2& position, std::size_t most) {
+      std::vector<Pose> poses = grid_poses(thing, position);
+      if (poses.size() > most) poses.resize(most);
+      return poses;
+    };
   // Rows need an up; where nothing says which it is, +y.
   const Vec2 down = down_of(table, rules.gravity).value_or(-Vec2::UnitY());
   const TouchingRows rows(
       {thing.shape.outline.get(), thing.pose.angle, -down, lengths_of_rows(table), rules.thin});
-  return [rows](const Vec2& middle) { return rows.at(middle); };
+  return [rows](const Vec2& middle, std::size_t most) { return rows.at(middle, most); };
 }
 
 void Placer::place(std::vector<PlannedThing>& sites, std::vector<PlannedThing>& bodies) {
@@ -166,7 +169,7 @@ void Placer::stand(PlannedThing& thing) {
                        "grid: copies would stand in one place; given spacing [" +
                            number_text(grid.spacing.x()) + ", " + number_text(grid.spacing.y()) +
                            "], allowed: not 0 along x for several columns, along y for several rows");
-  for (const Pose& pose : standing_poses(thing, rules_)(thing.pose.position)) {
+  for (const Pose& pose : standing_poses(thing, rules_)(thing.pose.position, kAllCopies)) {
     thing.copies.push_back(start_of(thing));
     thing.copies.back().pose = pose;
   }

@@ -123,7 +123,7 @@ class Touching {
     for (const Ground& ground : waiting_.at(&thing)) add_obstacles(ground, ask.grounds);
     const Landing landing = land(ask);
     if (landing.status != Landing::Status::lands) return tell(thing, landing.status);
-    for (const Pose& pose : ask.copies(landing.position)) {
+    for (const Pose& pose : ask.copies(landing.position, kAllCopies)) {
       thing.copies.push_back(start_of(thing));
       thing.copies.back().pose = pose;
     }

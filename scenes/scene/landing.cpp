@@ -53,7 +53,7 @@ class Descent {
   /// Moves `position` by the least way of any copy to any ground, and keeps in `touched_` who touches
   /// there.
   Landing::Status fall(Vec2& position) {
-    const std::vector<Pose> copies = ask_.copies(position);
+    const std::vector<Pose> copies = ask_.copies(position, kAllCopies);
     double least = std::numeric_limits<double>::infinity();
     std::vector<std::pair<double, Meeting>> found;
     bool overlaps = false;
@@ -128,7 +128,10 @@ class Descent {
   /// Beyond what it should be.
   /// The least gap of those that touch, less gap_of_touching() [m]; below 0 somebody is too near.
   double least_gap(const Vec2& position) const {
-    const std::vector<Pose> copies = ask_.copies(position);
+    // a place depends on those of the copies before it alone
+    std::size_t last = 0;
+    for (const Meeting& m : touched_) last = std::max(last, m.copy);
+    const std::vector<Pose> copies = ask_.copies(position, last + 1);
     double least = std::numeric_limits<double>::infinity();
     for (const Meeting& m : touched_)
       least =
@@ -178,7 +181,19 @@ double gap_of_touching(const Obstacle& a, const Obstacle& b, double thin) {
   return kTurnedRounding * (a.outline->bounding_radius + std::min(apart, b.outline->bounding_radius));
 }
 
-void push_apart(const Outline& outline, Pose& pose, const std::vector<Touched>& touched, double thin) {
+const CopyGaps::Gap& CopyGaps::between(const Pose& pose, const Pose& other) {
+  const Vec2 way = other.position - pose.position;
+  const auto [at, is_new] = known_.try_emplace({way.x(), way.y()});
+  if (is_new) {
+    // about the origin: the places themselves would not be of the offset alone
+    const OutlineGap is = outline_gap(outline_, {Vec2::Zero(), pose.angle}, outline_, {way, pose.angle});
+    at->second = {is.gap, is.normal};
+  }
+  return at->second;
+}
+
+void push_apart(const Outline& outline, Pose& pose, const std::vector<Touched>& touched, double thin,
+                CopyGaps& gaps) {
   // First along what the caller takes for the way out, which keeps rows straight; where that does not
   // help, along the normals of the gaps.
   const Pose written = pose;
@@ -193,7 +208,7 @@ void push_apart(const Outline& outline, Pose& pose, const std::vector<Touched>& 
       double worst = 0.0;
       Vec2 away = Vec2::Zero();
       for (const Touched& t : touched) {
-        const OutlineGap is = outline_gap(outline, pose, *t.other.outline, t.other.pose);
+        const CopyGaps::Gap& is = gaps.between(pose, t.other.pose);
         const double beyond = is.gap - gap_of_touching({&outline, pose}, t.other, thin);
         if (beyond >= worst) continue;
         worst = beyond;

@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "brink/core/query/cast_outline.h"
-#include "brink/core/query/outline_gap.h"
 #include "brink/scenes/scene/landing.h"
 
 namespace brink {
@@ -33,9 +32,10 @@ TouchingRows::TouchingRows(RowsAsk ask)
       high_(extent_along(ask_.up)),
       wide_(extent_along(along_)),
       width_(distance_in_row()) {
+  CopyGaps gaps(*ask_.outline);
   for (std::size_t row = 0; row < ask_.lengths.size(); ++row) {
     heights_.push_back(height_of(row));
-    neighbours_.push_back(neighbours_of(row));
+    neighbours_.push_back(neighbours_of(row, gaps));
   }
 }
 
@@ -107,14 +107,13 @@ double TouchingRows::height_of(std::size_t row) {
 }
 
 /// Copies beside and below that may touch one of this row, found once for all places of the row.
-std::vector<TouchingRows::Neighbour> TouchingRows::neighbours_of(std::size_t row) const {
+std::vector<TouchingRows::Neighbour> TouchingRows::neighbours_of(std::size_t row, CopyGaps& gaps) const {
   std::vector<Neighbour> out;
   const Pose here{Vec2::Zero(), ask_.angle};
   // With the neighbour at the origin: a gap depends on where the two are to each other alone.
   const auto look = [&](std::size_t below, std::int64_t halves) {
     const Pose there{offset(halves, heights_[row] - heights_[below]), ask_.angle};
-    if (outline_gap(*ask_.outline, there, *ask_.outline, here).gap < kNear * ask_.outline->bounding_radius)
-      out.push_back({below, halves});
+    if (gaps.between(there, here).gap < kNear * ask_.outline->bounding_radius) out.push_back({below, halves});
   };
   // Of its own row only those that at() has placed before it.
   for_offsets(row, row, [&](std::int64_t halves) {
@@ -125,13 +124,14 @@ std::vector<TouchingRows::Neighbour> TouchingRows::neighbours_of(std::size_t row
   return out;
 }
 
-std::vector<Pose> TouchingRows::at(const Vec2& middle) const {
+std::vector<Pose> TouchingRows::at(const Vec2& middle, std::size_t most) const {
   std::vector<Pose> out;
+  CopyGaps gaps(*ask_.outline);
   // Copies of all rows stand in one list, as they are numbered; this is where each row begins.
   std::vector<std::size_t> begin;  // of each row, in out
-  for (std::size_t row = 0; row < ask_.lengths.size(); ++row) {
+  for (std::size_t row = 0; row < ask_.lengths.size() && out.size() < most; ++row) {
     begin.push_back(out.size());
-    for (std::int64_t place = first(row); place <= last(row); place += 2) {
+    for (std::int64_t place = first(row); place <= last(row) && out.size() < most; place += 2) {
       Pose pose{middle + offset(place, heights_[row]), ask_.angle};
       std::vector<Touched> touched;
       for (const Neighbour& neighbour : neighbours_[row]) {
@@ -143,7 +143,7 @@ std::vector<Pose> TouchingRows::at(const Vec2& middle) const {
             {{ask_.outline, out[begin[neighbour.row] + k]}, neighbour.row == row ? along_ : ask_.up});
       }
       // Those that it may touch stand already, and stay: only this one is pushed.
-      push_apart(*ask_.outline, pose, touched, ask_.thin);
+      push_apart(*ask_.outline, pose, touched, ask_.thin, gaps);
       out.push_back(pose);
     }
   }

@@ -17,6 +17,8 @@ struct RowsAsk {
   double thin = 0.0;                  ///< of gap_of_touching() [m]
 };
 
+class CopyGaps;
+
 /// Rows of copies, each row's middle above that of the lowest.
 ///
 /// The copies of a row are as far apart as a copy that comes along the row from far away can come to the next,
@@ -28,8 +30,8 @@ class TouchingRows {
   explicit TouchingRows(RowsAsk ask);
 
   /// Where the copies stand if the middle of the lowest row is there: row by row, each along up turned by -90
-  /// degrees.
-  std::vector<Pose> at(const Vec2& middle) const;
+  /// degrees; the first `most` of them.
+  std::vector<Pose> at(const Vec2& middle, std::size_t most) const;
 
  private:
   /// A copy that another may touch: so many rows below, and so many half distances to the side of it.
@@ -47,7 +49,7 @@ class TouchingRows {
   double distance_in_row() const;
   double drop(std::int64_t halves);
   double height_of(std::size_t row);
-  std::vector<Neighbour> neighbours_of(std::size_t row) const;
+  std::vector<Neighbour> neighbours_of(std::size_t row, CopyGaps& gaps) const;
   template <class Visit>
   void for_offsets(std::size_t row, std::size_t below, Visit&& visit) const;
 
