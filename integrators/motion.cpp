@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <iterator>
 #include <stdexcept>
+#include <utility>
 
 #include "brink/core/base/elementary.h"
 
@@ -94,17 +95,15 @@ Acceleration PolynomialPiece::acceleration(double t) const {
 
 namespace {
 
-/// `kDegree`: of the piece, if it is known when this is compiled: loops without counters, twice as fast; else 0.
-template <int kDegree>
+/// The degree is known when this is compiled: loops without counters, twice as fast.
+template <int degree>
 MotionBounds bounds_of(const PolynomialPiece& piece, double from, double to) {
-  constexpr int kMaxDegree = kDegree > 0 ? kDegree : PolynomialPiece::kMaxDegree;
-  const int degree = kDegree > 0 ? kDegree : piece.degree;
   const auto& c = piece.c;
   // Taylor coefficients about the middle by repeated synthetic division, then sums of absolute values. Place and
   // angle apart: two coordinates fill a register. The pose itself, coefficient 0, is not asked for.
   const double h = 0.5 * (to - from), s = 0.5 * (from + to) - piece.origin;
-  std::array<Vec2, kMaxDegree + 1> place;
-  std::array<double, kMaxDegree + 1> angle;
+  std::array<Vec2, degree + 1> place;
+  std::array<double, degree + 1> angle;
   for (int k = 1; k <= degree; ++k) {
     place[k] = c[k].head<2>();
     angle[k] = c[k].z();
@@ -118,10 +117,10 @@ MotionBounds bounds_of(const PolynomialPiece& piece, double from, double to) {
     }
   }
   MotionBounds b;
-  if (degree < 1) return b;
+  if constexpr (degree < 1) return b;
   b.velocity = place[1];
   b.omega = angle[1];
-  if (degree < 2) return b;
+  if constexpr (degree < 2) return b;
   // |p'(u) - p'(0)| <= sum of k |m_k| h^(k-1) for |u| <= h, and likewise for p''
   // Degree 2 gives p'' no radius: it is constant.
   Vec2 rate_radius = 2.0 * h * place[2].cwiseAbs(), second_radius = Vec2::Zero();
@@ -145,8 +144,11 @@ MotionBounds bounds_of(const PolynomialPiece& piece, double from, double to) {
 }  // namespace
 
 MotionBounds PolynomialPiece::bounds(double from, double to) const {
-  // most dense output is a quintic
-  return degree == 5 ? bounds_of<5>(*this, from, to) : bounds_of<0>(*this, from, to);
+  static constexpr auto of_degree = []<int... kDegree>(std::integer_sequence<int, kDegree...>) {
+    return std::array{&bounds_of<kDegree>...};
+  }
+  (std::make_integer_sequence<int, kMaxDegree + 1>());
+  return of_degree[static_cast<std::size_t>(degree)](*this, from, to);
 }
 
 const PolynomialPiece& Track::at(double t) const {

@@ -29,6 +29,7 @@ class ForceDynamics final : public Dynamics {
   /// Adds a body; returns its place.
   int join(const Body& body) {
     bodies_.push_back(&body);
+    if (body.lock_x || body.lock_y || body.lock_angle) locked_.push_back(size() - 1);
     return size() - 1;
   }
   void take(const SpringForce& spring) { springs_.push_back(spring); }
@@ -76,6 +77,7 @@ class ForceDynamics final : public Dynamics {
 
   Vec2 gravity_;
   std::vector<const Body*> bodies_;
+  std::vector<int> locked_;  ///< places of those with a held coordinate
   std::vector<SpringForce> springs_;
   std::vector<On<DragForce>> drags_;
   std::vector<On<AttractForce>> attracts_;
@@ -102,7 +104,7 @@ void ForceDynamics::add(int place, const Load& load, std::span<Acceleration> out
 }
 
 void ForceDynamics::hold_locked(std::span<Acceleration> out) const {
-  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+  for (const int k : locked_) {
     if (bodies_[k]->lock_x) out[k].linear.x() = 0.0;
     if (bodies_[k]->lock_y) out[k].linear.y() = 0.0;
     if (bodies_[k]->lock_angle) out[k].angular = 0.0;
