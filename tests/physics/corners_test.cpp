@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "brink/core/base/random.h"
+#include "tests/support/outside/frame_watch.h"
 #include "tests/support/worlds.h"
 
 namespace brink {
@@ -222,6 +223,53 @@ TEST(Corners, TipThatMeetsAnEdgeRightBesideItsEndMeetsNothingBehindItsFaces) {
     ASSERT_FALSE(collisions.empty()) << "world " << k;
     EXPECT_NEAR(collisions[0].contact.time, met.contact, 1e-9) << "world " << k;
   }
+}
+
+/// A box that falls with its lower right corner upon the upper left corner of a block, or so far beside it; it may turn,
+/// so it tips over the block's corner while its own slides along the block's top, inclined to it by next to nothing.
+struct CornerOnCorner {
+  double width, height, fall, beside, gravity, restitution, friction;
+
+  explicit CornerOnCorner(Random& r)
+      : width(r.uniform(0.2, 2.0)),
+        height(r.uniform(0.2, 2.0)),
+        fall(r.uniform(0.0, 2.0)),
+        beside((r.below(2) ? 1.0 : -1.0) * (r.below(3) ? std::pow(10.0, r.uniform(-13.0, -5.0)) : 0.0)),
+        gravity(r.uniform(5.0, 12.0)),
+        restitution(r.below(2) ? 0.0 : r.uniform(0.0, 0.9)),
+        friction(r.below(2) ? 0.0 : r.uniform(0.0, 0.8)) {}
+
+  World world() const {
+    World w;
+    w.gravity = {0.0, -gravity};
+    w.materials[0].restitution = restitution;
+    w.materials[0].friction = friction;
+    const Vec2 corner(beside, fall);  // the block's is at the origin
+    add(w, body(make_box(width, height), corner + Vec2(-0.5 * width, 0.5 * height), {0, 0}));
+    add(w, site(make_polygon({{0, -1}, {1, -1}, {1, 0}, {0, 0}})));
+    return w;
+  }
+};
+
+// The box's corner is right before the block's top while its own lower edge leads over the end of that top by less than
+// a contact may sink: it must not be taken for one that has come through the block.
+TEST(Corners, BoxThatTipsOverACornerIsHeldByItAndComesThroughNothing) {
+  Random random(20261125);
+  int wrong = 0;
+  for (int k = 0; k < 300; ++k) {
+    const CornerOnCorner c(random);
+    const World w = c.world();
+    const double end = std::sqrt(2.0 * c.fall / c.gravity) + 0.5;
+    outside::FrameWatch watch(w, end, 1e-9);
+    RunOptions options = until(end);
+    options.frame_interval = 0.01;
+    Simulator simulator(w, {});
+    const RunSummary s = simulator.run(options, &watch);
+    const bool sound = s.termination == Termination::reached_end && watch.sound();
+    wrong += !sound;
+    EXPECT_TRUE(sound) << "world " << k << ", beside " << c.beside << ": " << s.why << watch.report();
+  }
+  EXPECT_EQ(wrong, 0);
 }
 
 }  // namespace
