@@ -522,7 +522,19 @@ class PairSearch {
     const double t = last_clear_time(gap, low, high);
     // at the end of its neighbourhood a sample changes sides without having come near
     if (gap(t) > view_.touching_band(half, f.sample, path)) return false;
-    return remember(half, f, t, 2.0 * moment);
+    return remember(half, f, t, 2.0 * moment) || meets_beyond_tip(half, f, gap, t);
+  }
+
+  /// True if f's two features meet by t_ although they passed each other's tips at `passed`, where the gap was last clear:
+  /// what goes along the line that parts the tips may turn towards it. They meet at half of what may pass, so that the
+  /// next tip that comes along passes, too.
+  template <class Gap>
+  bool meets_beyond_tip(const Half& half, const Feature& f, Gap&& gap, double passed) {
+    if (a_.held && b_.held) return false;  // an island, which keeps their gap
+    const double depth = 0.5 * view_.passing_depth(half, f.sample, view_.path(half, f.sample).q);
+    const auto above = [&](double t) { return gap(t) + depth; };
+    if (!(t_ > passed && above(t_) <= 0.0)) return false;
+    return remember(half, f, last_clear_time(above, passed, t_));
   }
 
   /// Where the gap, which falls now, is smallest, if it rises again within eight times what is left until

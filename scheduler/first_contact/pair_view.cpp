@@ -116,7 +116,10 @@ Feature PairView::vertex_feature(const Half& half, int i, int j, const Nearest& 
     const double rounding = 4.0 * gap_rounding(half, i, path.q);
     if (nearest.foot == Foot::interior && site.kind != SiteKind::point)
       return comes_to_corner(site, nearest, path.q, path.rate, rounding);
-    return outward(site, nearest, side, path.q, rounding).dot(path.rate) < 0.0;
+    // What goes by the end of a wire at its level has a direction of its own.
+    const Vec2 off = path.q - nearest.point;
+    const bool beside = thin && std::abs(cross(path.rate, off)) > rounding * path.rate.norm();
+    return !beside && outward(site, nearest, side, path.q, rounding).dot(path.rate) < 0.0;
   };
   if (site.radius + sample.radius == 0.0 && path.rate.squaredNorm() > 0.0 && f.gap > -limits_.touch &&
       nearest.distance <= limits_.tolerance && comes_to_end())
@@ -259,10 +262,7 @@ bool PairView::passes_tip(const Half& half, const Feature& f) const {
     const double rate = u.dot(path.rate);
     return rate < -noise || (rate <= noise && u.dot(pull) < -none);
   };
-  // how far a tip may be behind the line and still pass: the touching distance, or, where islands or sites
-  // hold both, what their gaps are kept to
-  const double touch = std::max(limits_.touch, 8.0 * gap_rounding(half, f.sample, path.q));
-  return is_parted(of_sample, of_site, way, a_.held && b_.held ? limits_.tolerance : touch, goes_back);
+  return is_parted(of_sample, of_site, way, passing_depth(half, f.sample, path.q), goes_back);
 }
 
 bool PairView::pokes_through(const Half& half, int i, const Site& site, const Nearest& nearest,

@@ -96,6 +96,12 @@ class PairView {
   /// True if f's sample, a sharp corner of a solid, is by such a corner in which f's site ends, and a line parts the
   /// two, to the touching distance, as they go on, whatever becomes of the gap to f's site.
   bool passes_tip(const Half& half, const Feature& f) const;
+  /// How far a tip may be behind that line and still pass [m]: the touching distance, or, where islands or sites hold
+  /// both, what their gaps are kept to.
+  double passing_depth(const Half& half, int i, const Vec2& q) const {
+    const double touch = std::max(limits_.touch, 8.0 * gap_rounding(half, i, q));
+    return a_.held && b_.held ? limits_.tolerance : touch;
+  }
   /// True if site j is near q, where sample i is, but what q would touch is another of the neighbours. At a
   /// joint: one that is as near with its interior. Behind a solid: j is the far side of a sliver, whose near side q has in front
   /// of it, or is deeper in.

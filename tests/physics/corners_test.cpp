@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -225,50 +226,103 @@ TEST(Corners, TipThatMeetsAnEdgeRightBesideItsEndMeetsNothingBehindItsFaces) {
   }
 }
 
-/// A box that falls with its lower right corner upon the upper left corner of a block, or so far beside it; it may turn,
-/// so it tips over the block's corner while its own slides along the block's top, inclined to it by next to nothing.
+/// A box, or a triangle, that falls with its lower right corner upon a corner, or so far beside it, turned by next to
+/// nothing; what it falls on is the upper left corner of a block, of a box on a wire or of a triangle, or a wire's end.
+/// It may slide along a side of the other, or tip over its corner.
 struct CornerOnCorner {
-  double width, height, fall, beside, gravity, restitution, friction;
+  enum Ground { block, box, level_wire, sloping_wire, triangle, block_and_triangle, far_block, turned_block };
+  double width, height, fall, beside, gravity, restitution, friction, angle;
+  Ground ground;
+  bool persistent;
+  double turn;
 
-  explicit CornerOnCorner(Random& r)
-      : width(r.uniform(0.2, 2.0)),
-        height(r.uniform(0.2, 2.0)),
-        fall(r.uniform(0.0, 2.0)),
-        beside((r.below(2) ? 1.0 : -1.0) * (r.below(3) ? std::pow(10.0, r.uniform(-13.0, -5.0)) : 0.0)),
-        gravity(r.uniform(5.0, 12.0)),
-        restitution(r.below(2) ? 0.0 : r.uniform(0.0, 0.9)),
-        friction(r.below(2) ? 0.0 : r.uniform(0.0, 0.8)) {}
+  explicit CornerOnCorner(std::uint64_t seed) {
+    Random r(seed);
+    width = r.uniform(0.2, 2.0);
+    height = r.uniform(0.2, 2.0);
+    fall = r.uniform(0.0, 2.0);
+    beside = sign(r) * (r.below(3) ? std::pow(10.0, r.uniform(-13.0, -5.0)) : 0.0);
+    gravity = r.uniform(5.0, 12.0);
+    restitution = r.below(2) ? 0.0 : r.uniform(0.0, 0.95);
+    friction = r.below(2) ? 0.0 : r.uniform(0.0, 0.8);
+    angle = r.below(2) ? 0.0 : sign(r) * std::pow(10.0, r.uniform(-13.0, -1.0));
+    ground = static_cast<Ground>(r.below(8));
+    persistent = r.below(3) != 0;
+    turn = r.below(2) ? 0.0 : r.uniform(-3.0, 3.0);
+  }
+  static double sign(Random& r) { return r.below(2) ? 1.0 : -1.0; }
 
   World world() const {
     World w;
     w.gravity = {0.0, -gravity};
     w.materials[0].restitution = restitution;
     w.materials[0].friction = friction;
-    const Vec2 corner(beside, fall);  // the block's is at the origin
-    add(w, body(make_box(width, height), corner + Vec2(-0.5 * width, 0.5 * height), {0, 0}));
-    add(w, site(make_polygon({{0, -1}, {1, -1}, {1, 0}, {0, 0}})));
+    Vec2 arm(0.5 * width, -0.5 * height);  // to the corner that falls
+    Shape falls = make_box(width, height);
+    if (ground == block_and_triangle) {
+      const Vec2 top(0.5 * width, 0.5 * height), left(-0.5 * width, -0.1 * height);
+      falls = centered(make_polygon({arm, top, left}));
+      arm -= (arm + top + left) / 3.0;
+    }
+    const Vec2 at = ground == far_block ? Vec2(3.0, 4.0) : Vec2::Zero();
+    const double c = std::cos(angle), s = std::sin(angle);
+    const Vec2 turned_arm(c * arm.x() - s * arm.y(), s * arm.x() + c * arm.y());
+    Body falling = body(falls, {0, 0}, {0, 0});
+    falling.initial = {{Vec2(beside, fall) - turned_arm + at, angle}, {}};
+    add(w, falling);
+    switch (ground) {
+      case box:
+        add(w, body(make_box(1, 1), {0.5, -0.5}, {0, 0}));
+        add(w, site(make_segment({-5, -1}, {5, -1})));
+        break;
+      case level_wire:
+        add(w, site(make_segment({0, 0}, {2, 0})));
+        break;
+      case sloping_wire:
+        add(w, site(make_segment({0, 0}, {2, -0.3})));
+        break;
+      case triangle:
+        add(w, site(make_polygon({{0, -1}, {1, -1}, {0, 0}})));
+        break;
+      default:
+        add(w,
+            site(make_polygon({{0, -1}, {1, -1}, {1, 0}, {0, 0}}), at, ground == turned_block ? turn : 0.0));
+    }
     return w;
   }
 };
 
-// The box's corner is right before the block's top while its own lower edge leads over the end of that top by less than
-// a contact may sink: it must not be taken for one that has come through the block.
-TEST(Corners, BoxThatTipsOverACornerIsHeldByItAndComesThroughNothing) {
-  Random random(20261125);
+/// True if the run comes to its end, or to a Zeno point where that ends it, with nobody in another.
+bool is_sound(std::uint64_t seed) {
+  const CornerOnCorner c(seed);
+  const World w = c.world();
+  SolverOptions solver;
+  solver.persistent = c.persistent;
+  Simulator simulator(w, solver);
+  if (!simulator.start_fault().empty()) return true;  // a block that was turned into the box
+  const double end = std::sqrt(2.0 * c.fall / c.gravity) + 0.5;
+  outside::FrameWatch watch(w, end, 1e-9);
+  RunOptions options = until(end);
+  options.frame_interval = 0.01;
+  const RunSummary s = simulator.run(options, &watch);
+  const bool ends =
+      s.termination != Termination::failed || (!c.persistent && s.why.find("Zeno") != std::string::npos);
+  EXPECT_TRUE(ends && watch.sound()) << "seed " << seed << ": " << s.why << watch.report();
+  return ends && watch.sound();
+}
+
+// A tip right before a face whose end its own edge is pressed on has not come through that face; an edge that passed a
+// tip, inclined by next to nothing, meets it all the same once it leans on it; and who goes by the end of a wire at its
+// level does not come upon it. BRINK_SEED moves the seeds, BRINK_WORLDS their number.
+TEST(Corners, FallOnCornersAndComeThroughNothing) {
+  const auto asked = [](const char* name, std::uint64_t otherwise) {
+    const char* text = std::getenv(name);
+    return text ? std::strtoull(text, nullptr, 10) : otherwise;
+  };
+  const std::uint64_t first = asked("BRINK_SEED", 1), count = asked("BRINK_WORLDS", 600);
   int wrong = 0;
-  for (int k = 0; k < 300; ++k) {
-    const CornerOnCorner c(random);
-    const World w = c.world();
-    const double end = std::sqrt(2.0 * c.fall / c.gravity) + 0.5;
-    outside::FrameWatch watch(w, end, 1e-9);
-    RunOptions options = until(end);
-    options.frame_interval = 0.01;
-    Simulator simulator(w, {});
-    const RunSummary s = simulator.run(options, &watch);
-    const bool sound = s.termination == Termination::reached_end && watch.sound();
-    wrong += !sound;
-    EXPECT_TRUE(sound) << "world " << k << ", beside " << c.beside << ": " << s.why << watch.report();
-  }
+  for (std::uint64_t k = 0; k < count; ++k) wrong += !is_sound(first + k);
+  for (const std::uint64_t seed : {3369, 101460, 119679, 102242, 106107}) wrong += !is_sound(seed);
   EXPECT_EQ(wrong, 0);
 }
 
