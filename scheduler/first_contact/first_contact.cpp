@@ -575,6 +575,7 @@ class PairSearch {
     if (!sharp) return false;
     const bool at_a = (path.q - site.a).squaredNorm() < (path.q - site.b).squaredNorm();
     const Vec2 tip = at_a ? site.a : site.b, way = path.q - tip;
+    if (!half.s_is_a) return meets_tip_from_a(half, f, tip);
     // the gap approaches, so the rate is not 0
     const double slow = path.rate.norm(), off = way.norm() / slow,
                  noise = view_.gap_rounding(half, f.sample, path.q);
@@ -604,18 +605,50 @@ class PairSearch {
     // beside each other: along the way they may be as far apart as one goes within a tick of the clock
     const double speed = then.rate.norm(), beside = std::abs(cross(then.rate, then.q)) / speed;
     if (!(nearest <= window_end_ && beside <= 4.0 * rounding)) return false;
-    // The gap at which a sharp sample meets a wire (nominal_level()).
-    const double before = std::max(0.5 * limits_.touch, 8.0 * rounding);
+    // The gap at which a sharp sample meets a wire (nominal_level()); where they have been nearer from the start, as after
+    // they met, a sink step less than then.
+    double before = std::max(0.5 * limits_.touch, 8.0 * rounding);
+    const double begin = view_.start(), step = sink_step(limits_.touch, rounding);
+    if (a_.motion->remembers(begin) && b_.motion->remembers(begin))
+      before = std::min(before, std::max(to_tip(begin).q.norm() - step, -limits_.touch));
     const auto clear = [&](double t) {
       const SamplePath there_then = to_tip(t);
       return -there_then.q.dot(there_then.rate) / there_then.rate.norm() - before;
     };
     const double ticks = 4.0 * ulp(nearest), last = std::min(a_.motion->end(), b_.motion->end());
-    const double low = std::max(nearest - std::max(2.0 * before / speed, ticks), view_.start()),
-                 high = std::min(nearest + ticks, last);
+    const double high = std::min(nearest + ticks, last);
+    double low = std::max(nearest - std::max(2.0 * before / speed, ticks), begin);
+    // they may have parted first, and not far
+    for (double back = nearest - low; !(clear(low) > 0.0) && back > ticks; back *= 0.5) low = nearest - back;
     if (!(low < high && clear(low) > 0.0)) return remember(half, f, t_);
     if (clear(high) > 0.0) return false;  // the motion ends before
     return remember(half, f, last_clear_time(clear, low, high), 2.0 * rounding / speed);
+  }
+
+  /// The same, asked of a's corner, which site f.site of a has at `tip`: two tips have one moment in which they meet,
+  /// whichever of the two outlines was looked from.
+  bool meets_tip_from_a(const Half& of_b, const Feature& f, const Vec2& tip) {
+    const Half& of_a = view_.half(true);
+    const std::vector<Sample>& samples = of_a.samples_of().samples;
+    const auto corner = std::find_if(samples.begin(), samples.end(),
+                                     [&](const Sample& s) { return s.before >= 0 && s.p == tip; });
+    if (corner == samples.end()) return false;
+    const Sample& other = of_b.sample(f.sample);
+    const int i = static_cast<int>(corner - samples.begin());
+    const SamplePath path = view_.path(of_a, i);
+    // the neighbours of b's sample are asked for again
+    const std::vector<SearchScratch::Neighbour> neighbours = scratch_.neighbours;
+    const Vec2 looked_from = scratch_.looked_from;
+    const int flush_on = scratch_.flush_on;
+    const std::uint32_t sides[] = {static_cast<std::uint32_t>(other.before),
+                                   static_cast<std::uint32_t>(other.after)};
+    view_.find_neighbours(of_a, i, sides, path, 4.0 * view_.touching_band(of_a, i, path));
+    const bool meets =
+        meets_tip(of_a, Feature{i, other.after}, path, path_bounds(path, long_bounds_.of(of_a), to_ - t_));
+    scratch_.neighbours = neighbours;
+    scratch_.looked_from = looked_from;
+    scratch_.flush_on = flush_on;
+    return meets;
   }
 
   /// The sample's corner in T's frame.

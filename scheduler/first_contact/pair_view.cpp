@@ -466,10 +466,12 @@ double PairView::sink_at_start() const {
     // Farther off than a sink step it has room to fall; deeper than any overlap that a start may have, it is
     // not the start of this pair.
     if (!(above < own_step) || above < -kOverlapAtStart * limits_.tolerance) return;
-    // two corners that pass each other do not meet, whatever the gap of one of their sides becomes
-    if (then.approaching(f, path) && then.passes_tip(half, f)) return;
+    const bool approaching = then.approaching(f, path);
+    // Two corners that pass each other do not meet, however fast the gap of one of their sides falls; but they touch, and
+    // what comes along after them is pressed on.
+    const bool passes = approaching && then.passes_tip(half, f);
     // A pair that collides at once has no need to sink until it does.
-    now = now || (above <= 0.0 && then.approaching(f, path) && !then.hidden_behind_others(half, f, path));
+    now = now || (above <= 0.0 && approaching && !passes && !then.hidden_behind_others(half, f, path));
     if (!at_once)
       at_once = RelativeBounds::over(a_.outline(), *a_.motion, b_.outline(), *b_.motion, start(), start());
     const PathBounds bounds = path_bounds(path, half.s_is_a ? *at_once : at_once->swapped(), 0.0);
@@ -478,7 +480,7 @@ double PairView::sink_at_start() const {
     // never too little
     const double hollow = of_arc ? bounds.speed * bounds.speed / (path.q - site.center).norm() : 0.0;
     gap = std::min(gap, above);
-    rate = std::min(rate, f.rate);
+    rate = std::min(rate, passes ? 0.0 : f.rate);
     noise = std::max(noise, then.rate_noise(path));
     bend = std::max(bend, bounds.acceleration + hollow);
     step = std::max(step, own_step);
