@@ -11,7 +11,7 @@
 #include "brink/core/base/random.h"
 #include "tests/support/worlds.h"
 
-namespace brink {
+namespace brink::corners_test {
 namespace {
 
 using testing::add;
@@ -225,4 +225,4 @@ TEST(Corners, TipThatMeetsAnEdgeRightBesideItsEndMeetsNothingBehindItsFaces) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::corners_test
