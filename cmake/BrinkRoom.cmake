@@ -17,6 +17,7 @@ function(brink_flags target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -ffp-contract=off
     -fno-math-errno -fno-trapping-math  # change no bit of a result
     $<$<AND:$<BOOL:${BRINK_UNITY}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>  # each source is still one of its own
+    $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1000000>  # free no memory below 1 GB: a tenth faster
     $<$<BOOL:${BRINK_WERROR}>:-Werror>)
   if(BRINK_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=undefined

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string>
 
+namespace brink::consumer_test {
 namespace {
 
 // The script installs this build, builds tests/consumer against it and runs that: a ball meets the floor when
@@ -23,3 +24,4 @@ TEST(Consumer, InstalledPackageBuildsAndRunsAProject) {
 }
 
 }  // namespace
+}  // namespace brink::consumer_test

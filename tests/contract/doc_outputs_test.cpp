@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+namespace brink::doc_outputs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -121,3 +122,4 @@ TEST_F(DocOutputs, TheWalkOfHello) {
 }
 
 }  // namespace
+}  // namespace brink::doc_outputs_test

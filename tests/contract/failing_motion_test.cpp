@@ -9,7 +9,7 @@
 #include "brink/scheduler/policies/policy.h"
 #include "tests/support/same_events.h"
 
-namespace brink {
+namespace brink::failing_motion_test {
 namespace {
 
 using testing::add;
@@ -177,4 +177,4 @@ TEST(FailingMotion, AShortPushIsNotSteppedOver) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::failing_motion_test

@@ -14,7 +14,7 @@
 #include "tests/support/same_events.h"
 #include "tests/support/seeded_random.h"
 
-namespace brink {
+namespace brink::islands_policies_test {
 namespace {
 
 using testing::LastingWorld;
@@ -269,4 +269,4 @@ TEST(Islands, SeenFromOutsideKeepApartAndWinNothing) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::islands_policies_test

@@ -16,7 +16,7 @@
 #include "brink/core/base/random.h"
 #include "brink/scenes/run_file/run_file.h"
 
-namespace brink {
+namespace brink::kill_resume_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -192,7 +192,7 @@ std::string difference(const std::vector<std::string>& whole, const std::vector<
          (b == other.end() ? "none" : *b);
 }
 
-class KillResume : public testing::TestWithParam<KilledScene> {
+class KillResume : public ::testing::TestWithParam<KilledScene> {
  protected:
   KillResume() {
     std::string name = (fs::temp_directory_path() / "brink-kill-XXXXXX").string();
@@ -315,10 +315,10 @@ TEST_P(KillResume, StoppedThenKilledRunHasTheUndisturbedFrames) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, KillResume,
-                         testing::Values(KilledScene{"collisions", kCollisions},
-                                         KilledScene{"contacts_that_last", kLasting},
-                                         KilledScene{"modes", kByModes.c_str()}),
+                         ::testing::Values(KilledScene{"collisions", kCollisions},
+                                           KilledScene{"contacts_that_last", kLasting},
+                                           KilledScene{"modes", kByModes.c_str()}),
                          [](const auto& scene) { return std::string(scene.param.name); });
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::kill_resume_test

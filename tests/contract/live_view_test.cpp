@@ -15,11 +15,12 @@
 
 #include "brink/scenes/view/live_server.h"
 
+namespace brink::live_view_test {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 // Balls that bounce for longer than anybody waits.
 const char* const kScene = R"(
@@ -72,7 +73,7 @@ std::string answer_of(int port, const std::string& what, const std::string& host
 }
 
 /// "view", or "watch".
-class Live : public testing::TestWithParam<const char*> {
+class Live : public ::testing::TestWithParam<const char*> {
  protected:
   Live() {
     std::string name = (fs::temp_directory_path() / "brink-live-XXXXXX").string();
@@ -181,7 +182,7 @@ TEST_P(Live, WhatIsServedIsNotPacked) {
   ASSERT_FALSE(soon().is_null());
   const std::string answer = ask("GET /data", own(), "Accept-Encoding: gzip, deflate, br\r\n");
   EXPECT_TRUE(begins(answer, "HTTP/1.1 200"));
-  EXPECT_THAT(answer.substr(0, answer.find("\r\n\r\n")), testing::Not(HasSubstr("Content-Encoding")));
+  EXPECT_THAT(answer.substr(0, answer.find("\r\n\r\n")), ::testing::Not(HasSubstr("Content-Encoding")));
   EXPECT_THAT(answer, HasSubstr("{\"about\":"));
 }
 
@@ -214,3 +215,4 @@ INSTANTIATE_TEST_SUITE_P(Program, Live, ::testing::Values("view", "watch"),
                          [](const auto& of) { return std::string(of.param); });
 
 }  // namespace
+}  // namespace brink::live_view_test

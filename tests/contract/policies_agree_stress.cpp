@@ -4,7 +4,7 @@
 #include "tests/support/gases.h"
 #include "tests/support/same_events.h"
 
-namespace brink {
+namespace brink::policies_agree_stress {
 namespace {
 
 constexpr std::uint64_t kCollisions = 100000;
@@ -27,4 +27,4 @@ TEST(PoliciesOnLongRuns, SpinningBoxesGiveTheSameEvents) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::policies_agree_stress

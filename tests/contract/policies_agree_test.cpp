@@ -10,7 +10,7 @@
 #include "brink/scenes/scene/scene.h"
 #include "tests/support/same_events.h"
 
-namespace brink {
+namespace brink::policies_agree_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -158,4 +158,4 @@ TEST(PoliciesOnGases, SimultaneousContactsGiveTheSameEventsInEveryOrder) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::policies_agree_test

@@ -7,7 +7,7 @@
 #include "brink/scheduler/simulator/simulator.h"
 #include "tests/support/gases.h"
 
-namespace brink {
+namespace brink::quick_way_test {
 namespace {
 
 struct End {
@@ -116,4 +116,4 @@ TEST(QuickWay, AmongBoxesAndRoughDiscsIsForPlainDiscsAlone) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::quick_way_test

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+namespace brink::readme_example_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -113,3 +114,4 @@ TEST(Pages, SourceFilesThatTheyNameAreThere) {
 }
 
 }  // namespace
+}  // namespace brink::readme_example_test

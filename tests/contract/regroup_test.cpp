@@ -6,7 +6,7 @@
 #include "brink/scheduler/kernel/run_kernel.h"
 #include "tests/fuzz/random_worlds_checks.h"
 
-namespace brink {
+namespace brink::regroup_test {
 namespace {
 
 using worlds::from_environment;
@@ -244,4 +244,4 @@ TEST(Regroup, ABodyThatJoinsOthersInContactStaysOnItsSide) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::regroup_test

@@ -20,7 +20,7 @@
 #include "brink/scheduler/simulator/simulator.h"
 #include "tests/support/browser.h"
 
-namespace brink {
+namespace brink::replay_page_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -479,4 +479,4 @@ TEST_F(Replayed, ACoarserPictureHasItsBordersWhereTheyAre) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::replay_page_test

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace brink {
+namespace brink::room_order_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -108,4 +108,4 @@ TEST(RoomOrder, ABrokenArrowIsNamedWithItsLine) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::room_order_test

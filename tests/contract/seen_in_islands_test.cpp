@@ -21,7 +21,7 @@
 #include "tests/support/lasting_worlds.h"
 #include "tests/support/same_events.h"
 
-namespace brink {
+namespace brink::seen_in_islands_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -250,4 +250,4 @@ TEST_P(SeenInRandomWorlds, BodiesAreSeenAsTheyMovedUnderEveryPolicy) {
 INSTANTIATE_TEST_SUITE_P(ByStepsAndByModes, SeenInRandomWorlds, ::testing::Values(0, 16));
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::seen_in_islands_test

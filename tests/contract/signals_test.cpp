@@ -14,7 +14,7 @@
 
 #include "brink/scenes/run_file/run_file.h"
 
-namespace brink {
+namespace brink::signals_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -106,7 +106,7 @@ const Slow kSlow[] = {
      "[[sites]]\nsegment = [[0.50000000002, -1], [0.50000000002, 1]]\n"},
 };
 
-class Signals : public testing::TestWithParam<Slow> {
+class Signals : public ::testing::TestWithParam<Slow> {
  protected:
   Signals() {
     std::string name = (fs::temp_directory_path() / "brink-signals-XXXXXX").string();
@@ -131,8 +131,8 @@ TEST_P(Signals, EndTheRunInOrder) {
   EXPECT_FALSE(fs::exists(file.string() + "-wal"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Signals, testing::ValuesIn(kSlow),
+INSTANTIATE_TEST_SUITE_P(Scenes, Signals, ::testing::ValuesIn(kSlow),
                          [](const auto& scene) { return std::string(scene.param.name); });
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::signals_test

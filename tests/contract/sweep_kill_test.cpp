@@ -11,13 +11,14 @@
 #include <sstream>
 #include <thread>
 
+namespace brink::sweep_kill_test {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr int kRuns = 16;
 
-class SweepKillTest : public testing::Test {
+class SweepKillTest : public ::testing::Test {
  protected:
   SweepKillTest() {
     std::string name = (fs::temp_directory_path() / "brink-sweep-kill-XXXXXX").string();
@@ -94,3 +95,4 @@ TEST_F(SweepKillTest, ThreeProcessesAtOnceShareTheRuns) {
 }
 
 }  // namespace
+}  // namespace brink::sweep_kill_test

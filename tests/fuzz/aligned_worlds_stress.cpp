@@ -4,7 +4,7 @@
 #include "aligned_worlds.h"
 #include "random_worlds_checks.h"
 
-namespace brink {
+namespace brink::aligned_worlds_stress {
 namespace {
 
 // As in aligned_worlds_test.cpp.
@@ -18,4 +18,4 @@ TEST(AlignedWorldsStress, NothingPassesAndPoliciesAgree) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::aligned_worlds_stress

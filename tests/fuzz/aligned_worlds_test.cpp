@@ -4,7 +4,7 @@
 #include "aligned_worlds.h"
 #include "random_worlds_checks.h"
 
-namespace brink {
+namespace brink::aligned_worlds_test {
 namespace {
 
 // BRINK_SEED moves the seeds, BRINK_WORLDS their number.
@@ -48,4 +48,4 @@ TEST(AlignedWorlds, ThatOnceFailedAreSound) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::aligned_worlds_test

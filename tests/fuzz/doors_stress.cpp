@@ -4,7 +4,7 @@
 
 #include "doors_checks.h"
 
-namespace brink {
+namespace brink::doors_stress {
 namespace {
 
 using worlds::from_environment;
@@ -24,4 +24,4 @@ TEST(DoorsStress, AreSoundAndTheSameInEveryWay) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::doors_stress

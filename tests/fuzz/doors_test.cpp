@@ -4,7 +4,7 @@
 
 #include "doors_checks.h"
 
-namespace brink {
+namespace brink::doors_test {
 namespace {
 
 using worlds::from_environment;
@@ -26,4 +26,4 @@ TEST(Doors, AreSoundAndTheSameInEveryWay) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::doors_test

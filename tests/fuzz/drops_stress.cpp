@@ -4,7 +4,7 @@
 
 #include "drops.h"
 
-namespace brink {
+namespace brink::drops_stress {
 namespace {
 
 using worlds::from_environment;
@@ -23,4 +23,4 @@ TEST(DropsStress, NothingFallsThrough) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::drops_stress

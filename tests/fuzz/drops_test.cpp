@@ -3,7 +3,7 @@
 
 #include "drops.h"
 
-namespace brink {
+namespace brink::drops_test {
 namespace {
 
 using worlds::from_environment;
@@ -26,4 +26,4 @@ TEST(Drops, ThatOnceFailedAreSound) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::drops_test

@@ -4,7 +4,7 @@
 
 #include "first_contact_checks.h"
 
-namespace brink {
+namespace brink::first_contact_stress {
 namespace {
 
 std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
@@ -29,4 +29,4 @@ TEST(FirstContactStress, MillionFlightsAgreeWithTheSlowReference) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::first_contact_stress

@@ -3,7 +3,7 @@
 
 #include "first_contact_checks.h"
 
-namespace brink {
+namespace brink::first_contact_test {
 namespace {
 
 // Every answer is compared with distances and speed bounds that share no code with the search. BRINK_SEED
@@ -36,4 +36,4 @@ TEST(FirstContactFuzz, FlightsThatOnceFailedAgree) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::first_contact_test

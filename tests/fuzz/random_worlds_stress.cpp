@@ -4,7 +4,7 @@
 
 #include "random_worlds_checks.h"
 
-namespace brink {
+namespace brink::random_worlds_stress {
 namespace {
 
 using worlds::from_environment;
@@ -26,4 +26,4 @@ TEST(RandomWorldsStress, AreSoundAndTheSameInEveryWay) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::random_worlds_stress

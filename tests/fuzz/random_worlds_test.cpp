@@ -4,7 +4,7 @@
 
 #include "random_worlds_checks.h"
 
-namespace brink {
+namespace brink::random_worlds_test {
 namespace {
 
 using worlds::from_environment;
@@ -36,4 +36,4 @@ TEST(RandomWorlds, ThatOnceFailedAreSound) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::random_worlds_test

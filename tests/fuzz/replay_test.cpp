@@ -15,7 +15,7 @@
 #include "brink/scheduler/simulator/simulator.h"
 #include "random_worlds.h"
 
-namespace brink {
+namespace brink::replay_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -25,7 +25,7 @@ std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
   return text ? std::strtoull(text, nullptr, 10) : otherwise;
 }
 
-class Replays : public testing::Test {
+class Replays : public ::testing::Test {
  protected:
   Replays() : folder_(fs::temp_directory_path() / ("brink-replays-" + std::to_string(::getpid()))) {}
   ~Replays() override { fs::remove_all(folder_); }
@@ -169,4 +169,4 @@ TEST_F(Replays, StatesAtCollisionsAreTheSameInEveryWay) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::replay_test

@@ -5,7 +5,7 @@
 #include "random_worlds_checks.h"
 #include "rooms.h"
 
-namespace brink {
+namespace brink::rooms_stress {
 namespace {
 
 using worlds::from_environment;
@@ -26,4 +26,4 @@ TEST(RoomsOfWiresStress, NobodyLeaves) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::rooms_stress

@@ -4,7 +4,7 @@
 #include "random_worlds_checks.h"
 #include "rooms.h"
 
-namespace brink {
+namespace brink::rooms_test {
 namespace {
 
 using worlds::from_environment;
@@ -43,4 +43,4 @@ TEST(RoomsOfWires, ThoseThatOnceWereLeftHold) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::rooms_test

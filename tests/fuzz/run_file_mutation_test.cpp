@@ -26,7 +26,7 @@
 #include "brink/scenes/view/replay_page.h"
 #include "tests/fuzz/mutant_process.h"
 
-namespace brink {
+namespace brink::run_file_mutation_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -314,7 +314,7 @@ bool goes_on(const Scene& scene, const fs::path& dir, std::uint64_t undisturbed)
   return good && after.contains("run.db");
 }
 
-class Mutants : public testing::Test {
+class Mutants : public ::testing::Test {
  protected:
   Mutants() {
     std::string name = (fs::temp_directory_path() / "brink-mutants-XXXXXX").string();
@@ -393,4 +393,4 @@ TEST_F(Mutants, OfASweepGoOnOrAreRefused) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::run_file_mutation_test

@@ -21,7 +21,7 @@
 #include "brink/scheduler/simulator/simulator.h"
 #include "tests/fuzz/mutant_process.h"
 
-namespace brink {
+namespace brink::scene_mutation_test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -387,4 +387,4 @@ TEST(SceneMutation, AThousandMutantsReadOrAreRefusedWithAPlace) { try_mutants(fa
 TEST(SceneMutation, AcceptedMutantsRunForAMoment) { try_mutants(true); }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::scene_mutation_test

@@ -4,7 +4,7 @@
 
 #include "starts.h"
 
-namespace brink {
+namespace brink::starts_stress {
 namespace {
 
 using worlds::from_environment;
@@ -17,4 +17,4 @@ TEST(StartsStress, AtTheTouchAreSound) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::starts_stress

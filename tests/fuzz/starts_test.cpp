@@ -4,7 +4,7 @@
 
 #include "starts.h"
 
-namespace brink {
+namespace brink::starts_test {
 namespace {
 
 using worlds::from_environment;
@@ -27,4 +27,4 @@ TEST(Starts, ThatOnceFailedAreSound) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::starts_test

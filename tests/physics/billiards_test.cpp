@@ -6,7 +6,7 @@
 
 #include "tests/support/worlds.h"
 
-namespace brink {
+namespace brink::billiards_test {
 namespace {
 
 using testing::Events;
@@ -124,4 +124,4 @@ TEST(ThinPlates, FastShotNeverPassesThrough) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::billiards_test

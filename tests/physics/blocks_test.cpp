@@ -6,7 +6,7 @@
 
 #include "tests/support/worlds.h"
 
-namespace brink {
+namespace brink::blocks_test {
 namespace {
 
 /// On a line: the wall at x = 0, the light block at rest at 1, the heavy one coming from 2 with speed 1.
@@ -44,4 +44,4 @@ TEST_P(Galperin, CollisionsSpellPi) {
 INSTANTIATE_TEST_SUITE_P(DigitsOfPi, Galperin, ::testing::Range(0, 5));
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::blocks_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/worlds.h"
 
-namespace brink {
+namespace brink::bouncing_ball_test {
 namespace {
 
 using testing::Events;
@@ -86,4 +86,4 @@ TEST(BouncingBall, PastTheZenoTimeARunOfCollisionsAloneEndsHonestly) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::bouncing_ball_test

@@ -9,7 +9,7 @@
 #include "tests/support/seeded_random.h"
 #include "tests/support/worlds.h"
 
-namespace brink {
+namespace brink::classic_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -184,4 +184,4 @@ TEST(Classic, ExampleBodyRunsFromItsDataFile) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::classic_test

@@ -10,7 +10,7 @@
 #include "brink/core/world/forces.h"
 #include "tests/support/worlds.h"
 
-namespace brink {
+namespace brink::conservation_test {
 namespace {
 
 using testing::Events;
@@ -213,4 +213,4 @@ TEST_P(Orders, GasKeepsItsEnergy) {
 INSTANTIATE_TEST_SUITE_P(OneAtATime, Orders, ::testing::Values("index", "closing_speed", "depth", "random"));
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::conservation_test

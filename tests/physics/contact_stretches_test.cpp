@@ -11,7 +11,7 @@
 #include "brink/scheduler/simulator/simulator.h"
 #include "tests/support/lasting_worlds.h"
 
-namespace brink {
+namespace brink::contact_stretches_test {
 namespace {
 
 constexpr double g = 9.81;
@@ -299,4 +299,4 @@ position = [3.5, 1.25]
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::contact_stretches_test

@@ -14,7 +14,7 @@
 #include "tests/support/outside/frame_watch.h"
 #include "tests/support/worlds.h"
 
-namespace brink {
+namespace brink::corners_test {
 namespace {
 
 using testing::add;
@@ -340,4 +340,4 @@ TEST(Corners, FallOnCornersAndComeThroughNothing) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::corners_test

@@ -5,7 +5,7 @@
 
 #include "tests/support/worlds.h"
 
-namespace brink {
+namespace brink::cradle_test {
 namespace {
 
 using testing::Events;
@@ -64,4 +64,4 @@ TEST(DiscOnTwo, UpperFirstOneAtATimeGivesTheClosedForm) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::cradle_test

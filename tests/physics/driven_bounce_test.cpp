@@ -8,7 +8,7 @@
 #include "brink/scenes/bench/reference.h"
 #include "tests/support/worlds.h"
 
-namespace brink {
+namespace brink::driven_bounce_test {
 namespace {
 
 using testing::Events;
@@ -126,4 +126,4 @@ INSTANTIATE_TEST_SUITE_P(ForcesAndIntegrators, DrivenBounce,
                                            Case{"air", "adams", 1e-10}, Case{"air", "bdf", 5e-9}));
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::driven_bounce_test

@@ -9,7 +9,7 @@
 #include "brink/scheduler/policies/policy.h"
 #include "tests/support/worlds.h"
 
-namespace brink {
+namespace brink::endings_test {
 namespace {
 
 using testing::add;
@@ -209,4 +209,4 @@ TEST(Starts, MaterialsAreCombinedWhereTheyMeet) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::endings_test

@@ -10,7 +10,7 @@
 #include "brink/scenes/scene/scene.h"
 #include "brink/scheduler/simulator/simulator.h"
 
-namespace brink {
+namespace brink::gallery_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -59,7 +59,7 @@ bool left_to_itself(const World& world) {
   return world.sites.empty() && world.gravity.isZero() && world.forces.empty();
 }
 
-class Gallery : public testing::TestWithParam<fs::path> {};
+class Gallery : public ::testing::TestWithParam<fs::path> {};
 
 TEST_P(Gallery, SceneIsSoundAtTheStart) {
   const Scene scene = load_scene(GetParam());
@@ -103,7 +103,7 @@ TEST_P(Gallery, RunKeepsWhatIsConserved) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Gallery, testing::ValuesIn(gallery()),
+INSTANTIATE_TEST_SUITE_P(Scenes, Gallery, ::testing::ValuesIn(gallery()),
                          [](const auto& file) { return file.param.stem().string(); });
 
 TEST(GalleryFolder, HoldsScenesAndEveryRuleOfConservationHasOne) {
@@ -120,4 +120,4 @@ TEST(GalleryFolder, HoldsScenesAndEveryRuleOfConservationHasOne) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::gallery_test

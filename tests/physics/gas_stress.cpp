@@ -5,7 +5,7 @@
 
 #include "tests/support/gas_statistics.h"
 
-namespace brink {
+namespace brink::gas_stress {
 namespace {
 
 using testing::until;
@@ -74,9 +74,9 @@ TEST(Drift, OfTwoHundredStarsAfterAMillionCollisions) {
 }
 
 /// Radius, and millions of collisions.
-class LorentzGas : public ::testing::TestWithParam<std::pair<double, int>> {};
+class LorentzGasStress : public ::testing::TestWithParam<std::pair<double, int>> {};
 
-TEST_P(LorentzGas, MeanFreePath) {
+TEST_P(LorentzGasStress, MeanFreePath) {
   const auto [radius, millions] = GetParam();
   World world;
   world.periods.size = {1.0, 1.0};
@@ -97,8 +97,8 @@ TEST_P(LorentzGas, MeanFreePath) {
 
 // At R = .1 corridors without end make the paths' variance diverge: 1e7 of them scatter by about .1 % (-.113
 // % from this start), so there it takes more.
-INSTANTIATE_TEST_SUITE_P(Radii, LorentzGas,
+INSTANTIATE_TEST_SUITE_P(Radii, LorentzGasStress,
                          ::testing::Values(std::pair(0.1, 40), std::pair(0.2, 10), std::pair(0.3, 10)));
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::gas_stress

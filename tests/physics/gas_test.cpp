@@ -3,7 +3,7 @@
 
 #include "tests/support/gas_statistics.h"
 
-namespace brink {
+namespace brink::gas_test {
 namespace {
 
 using testing::measure_compressibility;
@@ -40,4 +40,4 @@ TEST(Gas, InelasticDiscsCoolAsHaffSays) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::gas_test

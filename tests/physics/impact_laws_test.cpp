@@ -5,7 +5,7 @@
 
 #include "tests/support/worlds.h"
 
-namespace brink {
+namespace brink::impact_laws_test {
 namespace {
 
 using testing::Events;
@@ -76,4 +76,4 @@ TEST(Rod, LandingOnOneEndTurnsAtTheClosedFormRate) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::impact_laws_test

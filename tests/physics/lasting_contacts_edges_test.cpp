@@ -8,7 +8,7 @@
 #include "tests/support/outside/frame_watch.h"
 #include "tests/support/settling.h"
 
-namespace brink {
+namespace brink::lasting_contacts_edges_test {
 namespace {
 
 using testing::add;
@@ -149,4 +149,4 @@ TEST(Spring, BetweenSlidingBoxesKeepsMomentumAndAboutTheEnergy) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::lasting_contacts_edges_test

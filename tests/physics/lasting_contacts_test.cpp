@@ -9,7 +9,7 @@
 #include "tests/support/outside/frame_watch.h"
 #include "tests/support/settling.h"
 
-namespace brink {
+namespace brink::lasting_contacts_test {
 namespace {
 
 using testing::add;
@@ -183,4 +183,4 @@ TEST(Pile, OfThirtyDiscsInABinComesToRest) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::lasting_contacts_test

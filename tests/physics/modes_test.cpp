@@ -8,7 +8,7 @@
 
 #include "tests/support/settling.h"
 
-namespace brink {
+namespace brink::modes_test {
 namespace {
 
 SolverOptions by_modes() {
@@ -103,4 +103,4 @@ TEST(Modes, BlockOnAnInclineSlidesBesideItsFrictionAngle) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::modes_test

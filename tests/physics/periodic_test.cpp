@@ -11,7 +11,7 @@
 #include "tests/support/seeded_random.h"
 #include "tests/support/worlds.h"
 
-namespace brink {
+namespace brink::periodic_test {
 namespace {
 
 using testing::add;
@@ -187,4 +187,4 @@ TEST_F(PeriodicWorld, RefusesWhatCannotRepeat) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::periodic_test

@@ -7,7 +7,7 @@
 #include "brink/core/base/random.h"
 #include "tests/support/worlds.h"
 
-namespace brink {
+namespace brink::reversal_test {
 namespace {
 
 /// Twelve discs of radius 0.2 on a loose grid in a box of 3 m by 4 m, with velocities of the seed.
@@ -65,4 +65,4 @@ TEST(Reversal, ElasticGasComesBack) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::reversal_test

@@ -7,7 +7,7 @@
 #include "brink/scheduler/policies/policy.h"
 #include "tests/support/worlds.h"
 
-namespace brink {
+namespace brink::simultaneous_test {
 namespace {
 
 using testing::Events;
@@ -200,4 +200,4 @@ TEST(TogetherOptions, WithTheMirrorResponseIsABadInputThatSaysSo) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::simultaneous_test

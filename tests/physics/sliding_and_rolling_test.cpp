@@ -7,7 +7,7 @@
 
 #include "tests/support/settling.h"
 
-namespace brink {
+namespace brink::sliding_and_rolling_test {
 namespace {
 
 using testing::add;
@@ -225,4 +225,4 @@ TEST(Conveyor, DragsABlockUntilBothGoAlike) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::sliding_and_rolling_test

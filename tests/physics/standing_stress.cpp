@@ -12,7 +12,7 @@
 #include "brink/scenes/scene/scene.h"
 #include "brink/scheduler/simulator/simulator.h"
 
-namespace brink {
+namespace brink::standing_stress {
 namespace {
 
 struct Built {
@@ -157,4 +157,4 @@ TEST(Standing, CloseToTheBorderForAHundredSeconds) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::standing_stress

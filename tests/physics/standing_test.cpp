@@ -7,7 +7,7 @@
 #include "brink/scenes/scene/scene.h"
 #include "brink/scheduler/simulator/simulator.h"
 
-namespace brink {
+namespace brink::standing_test {
 namespace {
 
 constexpr const char* kPolicies[] = {"body_clocks", "global_backup", "island_backup", "timewarp"};
@@ -110,4 +110,4 @@ TEST(Standing, WhatNothingPressesIsNoIsland) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::standing_test

@@ -16,7 +16,7 @@
 #include "brink/scheduler/simulator/simulator.h"
 #include "tests/support/platform.h"
 
-namespace brink {
+namespace brink::answers_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -126,4 +126,4 @@ TEST(AnswersTable, HasTheScenesOfTheGalleryAndNoOthers) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::answers_test

@@ -14,7 +14,7 @@
 #include "children.h"
 #include "tests/fuzz/world_runs.h"
 
-namespace brink {
+namespace brink::faults_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -408,4 +408,4 @@ INSTANTIATE_TEST_SUITE_P(Peers, PeerScenes, ::testing::ValuesIn(peers()), name_o
 INSTANTIATE_TEST_SUITE_P(Peers, PeersUnderPolicies, ::testing::ValuesIn(peers()), name_of);
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::faults_test

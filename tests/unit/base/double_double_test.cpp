@@ -6,7 +6,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <random>
 
-namespace brink {
+namespace brink::double_double_test {
 namespace {
 
 namespace mp = boost::multiprecision;
@@ -122,4 +122,4 @@ TEST(DoubleDouble, FarNumbersAreAsGoodAsDoubles) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::double_double_test

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-namespace brink {
+namespace brink::elementary_test {
 namespace {
 
 namespace mp = boost::multiprecision;
@@ -84,4 +84,4 @@ TEST_F(Elementary, AnglesAreRounded) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::elementary_test

@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace brink {
+namespace brink::extended_test {
 namespace {
 
 BodyState random_state(std::mt19937_64& random, double size) {
@@ -64,4 +64,4 @@ TEST(ExtendedRotation, ByNothingIsNone) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::extended_test

@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-namespace brink {
+namespace brink::log_test {
 namespace {
 
 /// Logs a line of every kind and ends; `level` null: BRINK_LOG is unset.
@@ -18,22 +18,23 @@ namespace {
 }
 
 TEST(LogDeathTest, LevelUnsetIsWarn) {
-  EXPECT_EXIT(log_and_exit(nullptr), testing::ExitedWithCode(0),
+  EXPECT_EXIT(log_and_exit(nullptr), ::testing::ExitedWithCode(0),
               "^warning: take care\nerror: all is lost\n$");
 }
 
 TEST(LogDeathTest, LevelThatIsKnownIsTaken) {
-  EXPECT_EXIT(log_and_exit("info"), testing::ExitedWithCode(0), "^info: kept to itself\nwarning: take care");
-  EXPECT_EXIT(log_and_exit("error"), testing::ExitedWithCode(0), "^error: all is lost\n$");
-  EXPECT_EXIT(log_and_exit("off"), testing::ExitedWithCode(0), "^$");
+  EXPECT_EXIT(log_and_exit("info"), ::testing::ExitedWithCode(0),
+              "^info: kept to itself\nwarning: take care");
+  EXPECT_EXIT(log_and_exit("error"), ::testing::ExitedWithCode(0), "^error: all is lost\n$");
+  EXPECT_EXIT(log_and_exit("off"), ::testing::ExitedWithCode(0), "^$");
 }
 
 TEST(LogDeathTest, LevelThatIsUnknownIsSaidAndErrorsAreStillHeard) {
   for (const char* level : {"Warn", "verbose", ""})
     EXPECT_EXIT(
-        log_and_exit(level), testing::ExitedWithCode(0),
+        log_and_exit(level), ::testing::ExitedWithCode(0),
         "^warning: BRINK_LOG is .*allowed: trace, debug.*\nwarning: take care\nerror: all is lost\n$");
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::log_test

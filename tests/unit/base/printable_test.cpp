@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace brink {
+namespace brink::printable_test {
 namespace {
 
 using namespace std::string_literals;
@@ -42,4 +42,4 @@ TEST(Printable, BytesThatAreNoUtf8AreEscaped) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::printable_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/seeded_random.h"
 
-namespace brink {
+namespace brink::random_test {
 namespace {
 
 TEST(Random, SameSeedGivesTheSameStreamAndAnotherSeedDoesNot) {
@@ -43,4 +43,4 @@ TEST(Random, UniformHasTheMeanAndVarianceOfTheUnitInterval) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::random_test

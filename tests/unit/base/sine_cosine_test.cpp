@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-namespace brink {
+namespace brink::sine_cosine_test {
 namespace {
 
 namespace mp = boost::multiprecision;
@@ -94,4 +94,4 @@ TEST(WithinHalfATurn, TakesWholeTurnsOffAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::sine_cosine_test

@@ -7,7 +7,7 @@
 
 #include "brink/core/base/random.h"
 
-namespace brink {
+namespace brink::block_ldl_test {
 namespace {
 
 /// diagonal + sum of weight a a^T, a with a part on each end of an edge.
@@ -149,4 +149,4 @@ TEST(BlockLdl, StiffTieLeavesPivotsPositive) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::block_ldl_test

@@ -4,7 +4,7 @@
 #include "brink/core/base/random.h"
 #include "tests/support/lasting_contacts.h"
 
-namespace brink {
+namespace brink::cone_qp_rest_test {
 namespace {
 
 using testing::kGravity;
@@ -354,4 +354,4 @@ TEST(RestForces, SameBitsWhateverWasSolvedBefore) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::cone_qp_rest_test

@@ -6,7 +6,7 @@
 #include "brink/core/contacts/lcp.h"
 #include "tests/support/lasting_contacts.h"
 
-namespace brink {
+namespace brink::cone_qp_step_test {
 namespace {
 
 using testing::kGravity;
@@ -376,4 +376,4 @@ TEST(Step, AgreesWithComplementarityProblemWithoutFriction) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::cone_qp_step_test

@@ -11,7 +11,7 @@
 #include "brink/core/contacts/lcp.h"
 #include "tests/support/seeded_random.h"
 
-namespace brink {
+namespace brink::group_test {
 namespace {
 
 using Bodies = std::vector<GroupBody>;
@@ -454,4 +454,4 @@ TEST(GroupLaws, DiscInATightHoleIsTakenAndSaysWhatItCost) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::group_test

@@ -7,7 +7,7 @@
 #include "brink/core/base/random.h"
 #include "tests/support/seeded_random.h"
 
-namespace brink {
+namespace brink::impulse_test {
 namespace {
 
 RealVec relative_velocity(const ImpulseSide& a, const ExtendedTwist& wa, const ImpulseSide& b,
@@ -146,4 +146,4 @@ TEST(Reflection, AngularChangeIsDividedByTheInertiaAndScaledBySpin) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::impulse_test

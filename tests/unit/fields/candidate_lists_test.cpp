@@ -11,7 +11,7 @@
 #include "tests/support/seeded_random.h"
 #include "tests/unit/fields/field_shapes.h"
 
-namespace brink::detail {
+namespace brink::detail::candidate_lists_test {
 namespace {
 
 std::set<std::uint32_t> list_of(const CandidateLists& lists, std::size_t k) {
@@ -77,7 +77,7 @@ void expect_complete_and_tight(const Case& c, const CandidateLists& lists) {
   EXPECT_GT(listed, 200);
 }
 
-class Lists : public testing::TestWithParam<std::string> {};
+class Lists : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Lists, HoldEverySiteThatCanBeNearestAndNoOther) {
   FieldRenderer renderer(open_gl_context(GetParam()));
@@ -131,7 +131,7 @@ TEST_P(Lists, OverTheCapAreAnsweredByTheTree) {
   EXPECT_GT(scratch.tree_searches, 100U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Backends, Lists, testing::ValuesIn([] {
+INSTANTIATE_TEST_SUITE_P(Backends, Lists, ::testing::ValuesIn([] {
                            std::vector<std::string> names;
                            for (const auto name : gl_backends()) names.emplace_back(name);
                            return names;
@@ -233,4 +233,4 @@ TEST(SiteIndex, FewSitesNeedNoField) {
 }
 
 }  // namespace
-}  // namespace brink::detail
+}  // namespace brink::detail::candidate_lists_test

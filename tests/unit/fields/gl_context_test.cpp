@@ -9,7 +9,7 @@
 #include "brink/core/base/error.h"
 #include "brink/core/fields/field_options.h"
 
-namespace brink {
+namespace brink::gl_context_test {
 namespace {
 
 TEST(GlContext, EveryBackendOfTheBuildOpens) {
@@ -77,4 +77,4 @@ TEST(FieldOptions, BadValuesAreNamed) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::gl_context_test

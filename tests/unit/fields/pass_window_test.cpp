@@ -11,7 +11,7 @@
 #include "brink/core/shapes/distance.h"
 #include "tests/unit/fields/field_shapes.h"
 
-namespace brink {
+namespace brink::pass_window_test {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -69,7 +69,7 @@ Vec2 center_of(const FieldImage& image, std::size_t k) {
          image.pixel * Vec2(static_cast<double>(k % width) + 0.5, static_cast<double>(k / width) + 0.5);
 }
 
-class PassWindow : public testing::TestWithParam<std::string> {
+class PassWindow : public ::testing::TestWithParam<std::string> {
  protected:
   PassWindow() {
     options_.context = GetParam();
@@ -262,7 +262,7 @@ TEST_P(PassWindow, EmptySceneShowsNothing) {
   EXPECT_EQ(near.others_at_least, kInfinite);
 }
 
-INSTANTIATE_TEST_SUITE_P(Backends, PassWindow, testing::ValuesIn([] {
+INSTANTIATE_TEST_SUITE_P(Backends, PassWindow, ::testing::ValuesIn([] {
                            std::vector<std::string> names;
                            for (const auto name : gl_backends()) names.emplace_back(name);
                            return names;
@@ -270,4 +270,4 @@ INSTANTIATE_TEST_SUITE_P(Backends, PassWindow, testing::ValuesIn([] {
                          [](const auto& info_) { return info_.param; });
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::pass_window_test

@@ -8,7 +8,7 @@
 #include "brink/core/fields/site_index.h"
 #include "tests/unit/fields/field_shapes.h"
 
-namespace brink {
+namespace brink::site_index_stress {
 namespace {
 
 std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
@@ -16,7 +16,7 @@ std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
   return text != nullptr ? std::strtoull(text, nullptr, 10) : otherwise;
 }
 
-class SiteIndexStress : public testing::TestWithParam<int> {};
+class SiteIndexStress : public ::testing::TestWithParam<int> {};
 
 // The same sites are evaluated by the same function, so every answer has the bits of the brute-force one.
 TEST_P(SiteIndexStress, MillionsOfQueriesGiveTheBruteForceAnswer) {
@@ -41,7 +41,7 @@ TEST_P(SiteIndexStress, MillionsOfQueriesGiveTheBruteForceAnswer) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, SiteIndexStress,
-                         testing::Range(0, static_cast<int>(field_test::all_shapes().size())));
+                         ::testing::Range(0, static_cast<int>(field_test::all_shapes().size())));
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::site_index_stress

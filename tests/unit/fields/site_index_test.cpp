@@ -10,7 +10,7 @@
 #include "tests/support/seeded_random.h"
 #include "tests/unit/fields/field_shapes.h"
 
-namespace brink {
+namespace brink::site_index_test {
 namespace {
 
 using field_test::NamedOutline;
@@ -21,7 +21,7 @@ FieldOptions always_a_field() {
   return options;
 }
 
-class SiteIndexOnShapes : public testing::TestWithParam<int> {
+class SiteIndexOnShapes : public ::testing::TestWithParam<int> {
  protected:
   NamedOutline shape_ = field_test::all_shapes()[static_cast<std::size_t>(GetParam())];
 };
@@ -96,7 +96,7 @@ TEST_P(SiteIndexOnShapes, UnlistedSitesAreAtLeastAsFarAsPromised) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, SiteIndexOnShapes,
-                         testing::Range(0, static_cast<int>(field_test::all_shapes().size())));
+                         ::testing::Range(0, static_cast<int>(field_test::all_shapes().size())));
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::site_index_test

@@ -1,7 +1,7 @@
 // Cones and tents, the long way: a million pixels of every primitive at every resolution.
 #include "tests/unit/fields/mesh_errors.h"
 
-namespace brink {
+namespace brink::site_mesh_stress {
 namespace {
 
 // From the smallest resolution that an option allows to nearly the largest.
@@ -10,4 +10,4 @@ TEST(SiteMesh, EveryDepthIsWithinTheStatedBoundOnAMillionPixelsOfEveryPrimitiveA
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::site_mesh_stress

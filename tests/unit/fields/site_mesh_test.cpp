@@ -2,7 +2,7 @@
 #include "tests/unit/fields/field_shapes.h"
 #include "tests/unit/fields/mesh_errors.h"
 
-namespace brink {
+namespace brink::site_mesh_test {
 namespace {
 
 using namespace mesh_test;
@@ -68,4 +68,4 @@ TEST(SiteMesh, InsideIsTheSignOfTheExactGap) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::site_mesh_test

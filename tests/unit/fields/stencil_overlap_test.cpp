@@ -8,7 +8,7 @@
 
 #include "brink/core/shapes/shapes.h"
 
-namespace brink {
+namespace brink::stencil_overlap_test {
 namespace {
 
 StencilOverlap overlap(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
@@ -56,4 +56,4 @@ TEST(StencilOverlap, WhatIsApartOrHasNoInsideOverlapsNothing) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::stencil_overlap_test

@@ -10,7 +10,7 @@
 #include "tests/support/seeded_random.h"
 #include "tests/unit/integrators/problems.h"
 
-namespace brink {
+namespace brink::contract_test {
 namespace {
 
 using namespace problems;
@@ -28,7 +28,7 @@ class Falling : public Dynamics {
   bool constant() const override { return true; }
 };
 
-class IntegratorContract : public testing::TestWithParam<std::string> {
+class IntegratorContract : public ::testing::TestWithParam<std::string> {
  protected:
   std::shared_ptr<Dynamics> dynamics() const {
     if (GetParam() == "ballistic") return std::make_shared<Falling>();
@@ -79,7 +79,7 @@ TEST_P(IntegratorContract, ManySmallAsksGiveTheBitsOfOneBigAsk) {
   big->extend(5.0);
   const std::uint64_t seed = 7;
   Random random(seed);
-  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
   for (double t = 0.0; t < 5.0; t += random.uniform(0.0, 0.05)) {
     small->extend(t);
     small->motion(0).state(t);
@@ -165,7 +165,7 @@ TEST_P(IntegratorContract, BoundsEncloseSampledRates) {
   const Motion motion = integrator->motion(1);
   const std::uint64_t seed = 3;
   Random random(seed);
-  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
   for (int i = 0; i < 500; ++i) {
     const double from = random.uniform(0.0, 5.0);
     const double to = from + (5.0 - from) * std::pow(10.0, random.uniform(-5.0, 0.0));
@@ -249,7 +249,7 @@ TEST_P(IntegratorContract, ForceThatIsNotANumberAtTheStartFails) {
     const Extent extent = integrator->extend(2.0);
     EXPECT_EQ(extent.status, Extent::Status::failed);
     EXPECT_EQ(extent.end, 1.0);
-    EXPECT_THAT(extent.why, testing::HasSubstr("not finite"));
+    EXPECT_THAT(extent.why, ::testing::HasSubstr("not finite"));
   }
   EXPECT_TRUE(same_bits(integrator->motion(0).state(1.0), BodyState{}));
 }
@@ -268,7 +268,7 @@ TEST_P(IntegratorContract, ForceThatIsNotANumberOnTheWayFailsThereAndKeepsTheMot
     for (double t = ask; extent.status == Extent::Status::reached && t < 20.0; t += ask)
       extent = integrator->extend(t);
     EXPECT_EQ(extent.status, Extent::Status::failed);
-    EXPECT_THAT(extent.why, testing::HasSubstr("not finite"));
+    EXPECT_THAT(extent.why, ::testing::HasSubstr("not finite"));
     EXPECT_GT(extent.end, 0.3);
     EXPECT_LT(extent.end, 0.6);
     const Motion motion = integrator->motion(0);
@@ -295,7 +295,7 @@ TEST_P(IntegratorContract, ForceThatIsNotANumberFailsUnderATinyAbsoluteTolerance
   integrator->start(0.0, std::vector<BodyState>{state});
   const Extent extent = integrator->extend(10.0);
   EXPECT_EQ(extent.status, Extent::Status::failed);
-  EXPECT_THAT(extent.why, testing::HasSubstr("not finite"));
+  EXPECT_THAT(extent.why, ::testing::HasSubstr("not finite"));
   EXPECT_NEAR(extent.end, 0.45, 0.15);
   EXPECT_TRUE(std::isfinite(difference(integrator->motion(0).state(extent.end), BodyState{})));
 }
@@ -320,7 +320,7 @@ std::vector<std::string> names() {
   for (const IntegratorInfo& info : integrators()) all.emplace_back(info.name);
   return all;
 }
-INSTANTIATE_TEST_SUITE_P(All, IntegratorContract, testing::ValuesIn(names()),
+INSTANTIATE_TEST_SUITE_P(All, IntegratorContract, ::testing::ValuesIn(names()),
                          [](const auto& made) { return made.param; });
 
 TEST(Integrators, FirstListedIsAuto) { EXPECT_EQ(integrators().front().name, "auto"); }
@@ -330,8 +330,8 @@ TEST(Integrators, UnknownNameIsRefusedAndTheNearestNamed) {
     make_integrator("rk5", spring_pair(), {});
     FAIL();
   } catch (const BadInput& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("did you mean \"rk4\""));
-    EXPECT_THAT(error.what(), testing::HasSubstr("semi_implicit_euler"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("did you mean \"rk4\""));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("semi_implicit_euler"));
   }
 }
 
@@ -351,7 +351,7 @@ TEST(Integrators, BreakThatIsNotLaterIsNamed) {
   const Extent extent = integrator->extend(1.0);
   EXPECT_EQ(extent.status, Extent::Status::failed);
   EXPECT_EQ(extent.end, 0.25);
-  EXPECT_THAT(extent.why, testing::HasSubstr("next break is at t = 0.25, which is not later"));
+  EXPECT_THAT(extent.why, ::testing::HasSubstr("next break is at t = 0.25, which is not later"));
 }
 
 TEST(Integrators, BadOptionsAreRefusedAndNamed) {
@@ -364,7 +364,7 @@ TEST(Integrators, BadOptionsAreRefusedAndNamed) {
         std::pair{IntegratorOptions{1e-8, 1e-12, 0.0}, "step"},
         std::pair{IntegratorOptions{1e-8, 1e-12, std::numeric_limits<double>::infinity()}, "step"}}) {
     EXPECT_FALSE(bad.is_valid(&error));
-    EXPECT_THAT(error, testing::HasSubstr(name));
+    EXPECT_THAT(error, ::testing::HasSubstr(name));
     EXPECT_THROW(make_integrator("erk", spring_pair(), bad), BadInput);
   }
 }
@@ -377,4 +377,4 @@ TEST(Integrators, AutoTakesTheParabolaWhereForcesAreConstant) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::contract_test

@@ -7,7 +7,7 @@
 #include "brink/integrators/integrator.h"
 #include "tests/unit/integrators/problems.h"
 
-namespace brink {
+namespace brink::convergence_test {
 namespace {
 
 using namespace problems;
@@ -60,7 +60,7 @@ struct FixedStepCase {
   double order;
 };
 
-class FixedStepOrder : public testing::TestWithParam<FixedStepCase> {};
+class FixedStepOrder : public ::testing::TestWithParam<FixedStepCase> {};
 
 // A method of order p has an error that falls as step^p: halving the step five times must show p in the
 // slope.
@@ -81,12 +81,12 @@ TEST_P(FixedStepOrder, ErrorFallsAsTheStepToTheOrder) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(All, FixedStepOrder,
-                         testing::Values(FixedStepCase{"euler", 1.0},
-                                         FixedStepCase{"semi_implicit_euler", 1.0},
-                                         FixedStepCase{"rk4", 4.0}),
+                         ::testing::Values(FixedStepCase{"euler", 1.0},
+                                           FixedStepCase{"semi_implicit_euler", 1.0},
+                                           FixedStepCase{"rk4", 4.0}),
                          [](const auto& made) { return std::string(made.param.integrator); });
 
-class AdaptiveTolerance : public testing::TestWithParam<const char*> {};
+class AdaptiveTolerance : public ::testing::TestWithParam<const char*> {};
 
 // An adaptive solver keeps its error in proportion to the tolerance, more or less: over six decades of
 // tolerance the slope of log error lies near 1 (Soederlind 2006 calls this tolerance proportionality), and
@@ -115,7 +115,7 @@ TEST_P(AdaptiveTolerance, ErrorFallsWithTheTolerance) {
     EXPECT_LT(dense.back(), 3e-8) << problem.name;
   }
 }
-INSTANTIATE_TEST_SUITE_P(All, AdaptiveTolerance, testing::Values("erk", "adams", "bdf"),
+INSTANTIATE_TEST_SUITE_P(All, AdaptiveTolerance, ::testing::Values("erk", "adams", "bdf"),
                          [](const auto& made) { return std::string(made.param); });
 
 /// Energy drift of the worst moment over 100 s (known answer 26), sampled every 0.1 s.
@@ -132,7 +132,7 @@ double worst_drift(const Motion* motions, std::size_t count, Energy energy) {
   return worst;
 }
 
-class EnergyOver100Seconds : public testing::TestWithParam<const char*> {};
+class EnergyOver100Seconds : public ::testing::TestWithParam<const char*> {};
 
 // The spring pair and the Kepler orbit store energy; a solver of tolerance 1e-10 that makes some thousand
 // steps may lose about 1e-7 of it. Energies here are of order 1 J.
@@ -156,7 +156,7 @@ TEST_P(EnergyOver100Seconds, IsKeptToTheTolerance) {
   EXPECT_LT(kepler_drift, euler ? 0.2 : 1e-6);
 }
 INSTANTIATE_TEST_SUITE_P(All, EnergyOver100Seconds,
-                         testing::Values("euler", "semi_implicit_euler", "rk4", "erk", "adams", "bdf"),
+                         ::testing::Values("euler", "semi_implicit_euler", "rk4", "erk", "adams", "bdf"),
                          [](const auto& made) { return std::string(made.param); });
 
 // Hermite interpolation of exact end values: cubic is O(h^4), quintic O(h^6) (Hairer, Norsett & Wanner 1993,
@@ -206,4 +206,4 @@ TEST(FixedStep, StatesAtStepEndsAreTheClassicSequences) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::convergence_test

@@ -8,7 +8,7 @@
 #include "tests/support/seeded_random.h"
 #include "tests/unit/integrators/problems.h"
 
-namespace brink {
+namespace brink::motion_test {
 namespace {
 
 using namespace problems;
@@ -118,7 +118,7 @@ TEST(Ballistic, BoundsOfTwoFallingBodiesHaveNoRelativeAcceleration) {
 TEST(PolynomialPiece, BoundsEncloseRandomPolynomials) {
   const std::uint64_t seed = 17;
   Random random(seed);
-  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
   for (int i = 0; i < 2000; ++i) {
     PolynomialPiece piece;
     piece.degree = static_cast<int>(random.below(PolynomialPiece::kMaxDegree + 1));
@@ -163,4 +163,4 @@ TEST(ClosedForm, ThrustMakesAChainThatReachesInfinity) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::motion_test

@@ -13,7 +13,7 @@
 #include "brink/core/world/formula.h"
 #include "tests/support/seeded_random.h"
 
-namespace brink {
+namespace brink::prescribed_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -180,7 +180,7 @@ TEST(Prescribed, ValueThatIsNotFiniteFailsAndIsLocated) {
     extent = motion.extend(2.0);
     EXPECT_EQ(extent.status, Extent::Status::failed);
     EXPECT_NEAR(extent.end, 0.7, 1e-8);
-    EXPECT_THAT(extent.why, testing::HasSubstr("site \"piston\" is not finite near t = 0.69999"));
+    EXPECT_THAT(extent.why, ::testing::HasSubstr("site \"piston\" is not finite near t = 0.69999"));
   }
   EXPECT_NEAR(motion.motion().pose(0.69).position.x(), 1.0, 1e-14);
 }
@@ -192,7 +192,7 @@ TEST(Prescribed, JumpOfTheValueFailsAndIsLocated) {
     const Extent extent = motion.extend(2.0);
     EXPECT_EQ(extent.status, Extent::Status::failed);
     EXPECT_NEAR(extent.end, jump, 1e-8);
-    EXPECT_THAT(extent.why, testing::HasSubstr("jumps"));
+    EXPECT_THAT(extent.why, ::testing::HasSubstr("jumps"));
   }
 }
 
@@ -244,7 +244,7 @@ TEST(Prescribed, WhatJumpsIsRefusedWhereItDoes) {
     const Extent extent = prescribed(jumps).extend(2.0);
     EXPECT_EQ(extent.status, Extent::Status::failed) << jumps;
     EXPECT_NEAR(extent.end, 0.7, 1e-8) << jumps;
-    EXPECT_THAT(extent.why, testing::HasSubstr("jumps")) << jumps;
+    EXPECT_THAT(extent.why, ::testing::HasSubstr("jumps")) << jumps;
   }
 }
 
@@ -252,7 +252,7 @@ TEST(Prescribed, WhatJumpsIsRefusedWhereItDoes) {
 TEST(Prescribed, WhatCannotBeBoundedIsSaid) {
   const Extent extent = prescribed("max(sin(t), sin(t) + 0)").extend(2.0);
   EXPECT_EQ(extent.status, Extent::Status::failed);
-  EXPECT_THAT(extent.why, testing::HasSubstr("cannot be bounded"));
+  EXPECT_THAT(extent.why, ::testing::HasSubstr("cannot be bounded"));
 }
 
 TEST(Prescribed, InstalmentsAndForgettingChangeNothing) {
@@ -271,4 +271,4 @@ TEST(Prescribed, AskThatIsNotANumberIsRefused) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::prescribed_test

@@ -10,7 +10,7 @@
 #include "brink/core/base/error.h"
 #include "tests/unit/query/query_shapes.h"
 
-namespace brink {
+namespace brink::cast_outline_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -156,4 +156,4 @@ TEST(CastOutline, GapsAlongTheWayAgree) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::cast_outline_test

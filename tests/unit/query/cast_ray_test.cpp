@@ -10,7 +10,7 @@
 #include "brink/core/shapes/curve_site.h"
 #include "tests/unit/query/query_shapes.h"
 
-namespace brink {
+namespace brink::cast_ray_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -215,4 +215,4 @@ TEST(CastRay, WhatIsNoRayIsRefused) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::cast_ray_test

@@ -10,7 +10,7 @@
 #include "brink/core/query/cast_ray.h"
 #include "tests/unit/query/query_shapes.h"
 
-namespace brink {
+namespace brink::closest_point_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -121,4 +121,4 @@ TEST(ClosestPoint, APlaceTooFarToHaveADistanceIsRefusedAndOneLessFarIsNot) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::closest_point_test

@@ -8,7 +8,7 @@
 
 #include "tests/unit/query/query_shapes.h"
 
-namespace brink {
+namespace brink::outline_gap_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -112,4 +112,4 @@ TEST(OutlineGap, AgreesWithPairsOfPiecesThatShareNoCode) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::outline_gap_test

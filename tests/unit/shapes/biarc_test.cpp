@@ -11,7 +11,7 @@
 #include "brink/core/shapes/distance.h"
 #include "brink/core/shapes/shapes.h"
 
-namespace brink {
+namespace brink::biarc_test {
 namespace {
 
 double distance_to(const std::vector<Site>& sites, const Vec2& q) {
@@ -158,4 +158,4 @@ TEST(Biarc, BezierShapeKeepsItsDeviation) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::biarc_test

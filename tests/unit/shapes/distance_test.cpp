@@ -12,7 +12,7 @@
 #include "brink/core/shapes/polygon.h"
 #include "brink/core/shapes/shapes.h"
 
-namespace brink {
+namespace brink::distance_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -235,4 +235,4 @@ TEST(Distance, RandomPolygonsHaveTheSignOfTheEvenOddRuleAndAreLipschitz) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::distance_test

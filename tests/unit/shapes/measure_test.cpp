@@ -7,7 +7,7 @@
 #include "brink/core/base/random.h"
 #include "brink/core/shapes/outline.h"
 
-namespace brink {
+namespace brink::measure_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -149,4 +149,4 @@ TEST(Measure, CenteredShapeHasItsCentroidAtTheOrigin) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::measure_test

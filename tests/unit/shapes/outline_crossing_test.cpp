@@ -7,7 +7,7 @@
 
 #include "brink/core/shapes/shapes.h"
 
-namespace brink {
+namespace brink::outline_crossing_test {
 namespace {
 
 double depth(const Outline& a, const Pose& pose_a, const Outline& b, const Pose& pose_b) {
@@ -47,4 +47,4 @@ TEST(OutlineCrossing, NeighboursThatTouchAreNone) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::outline_crossing_test

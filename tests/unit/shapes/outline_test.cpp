@@ -11,10 +11,10 @@
 #include "brink/core/shapes/curve_site.h"
 #include "brink/core/shapes/shapes.h"
 
-namespace brink {
+namespace brink::outline_test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 constexpr double pi = std::numbers::pi;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -237,4 +237,4 @@ TEST(Shapes, ArcGivenBackwardsGoesTheLongWayRound) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::outline_test

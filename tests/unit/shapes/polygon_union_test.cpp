@@ -18,7 +18,7 @@
 #include "brink/core/shapes/polygon.h"
 #include "brink/core/shapes/shapes.h"
 
-namespace brink {
+namespace brink::polygon_union_test {
 namespace {
 
 using Polygon = std::vector<Vec2>;
@@ -193,4 +193,4 @@ TEST(PolygonUnion, RandomGridTrianglesMeetInVerticesAndEdgesAndStillAgree) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::polygon_union_test

@@ -8,10 +8,10 @@
 
 #include "brink/core/base/random.h"
 
-namespace brink {
+namespace brink::sample_file_test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr const char* kSquare = R"(// the classic square
 8                      // number of samples
@@ -93,7 +93,7 @@ struct FaultCase {
   const char* message;
 };
 
-class SampleFileFaults : public testing::TestWithParam<FaultCase> {};
+class SampleFileFaults : public ::testing::TestWithParam<FaultCase> {};
 
 TEST_P(SampleFileFaults, AreLocated) {
   std::vector<SampleFileFault> faults;
@@ -106,20 +106,20 @@ TEST_P(SampleFileFaults, AreLocated) {
 
 INSTANTIATE_TEST_SUITE_P(
     Each, SampleFileFaults,
-    testing::Values(FaultCase{"Empty", "", 1, 1, "ends too soon"},
-                    FaultCase{"NoCount", "three\n", 1, 1, "not a number; given \"three\""},
-                    FaultCase{"BrokenCount", "2.5\n1 0 0 0 0 0 0\n", 1, 1, "no count; given \"2.5\""},
-                    FaultCase{"HugeCount", "1e12\n1 0 0 0 0 0 0\n", 1, 1, "no count"},
-                    FaultCase{"ShortState", "1\n1 0 0 0\n0 0\n", 2, 7, "the line has 4 words"},
-                    FaultCase{"NoMass", "1\n0 0 0 0 0 0 0\n0 0\n", 2, 1, "the mass is not > 0"},
-                    FaultCase{"NanPlace", "1\n1 nan 0 0 0 0 0\n0 0\n", 2, 3, "not a number; given \"nan\""},
-                    FaultCase{"WordSample", "1\n1 0 0 0 0 0 0\n  1 x // y\n", 3, 5,
-                              "not a number; given \"x\""},
-                    FaultCase{"ThreeNumbers", "1\n1 0 0 0 0 0 0\n1 2 3\n", 3, 5, "the line has 3 words"},
-                    FaultCase{"TooFew", "2\n1 0 0 0 0 0 0\n0 0\n", 4, 1, "given 1 samples, allowed: the 2"},
-                    FaultCase{"TooMany", "1\n1 0 0 0 0 0 0\n0 0\n1 1\n", 4, 1, "more than the 1 samples"},
-                    FaultCase{"Repeat", "2\n1 0 0 0 0 0 0\n0 0\n 0 0\n", 4, 2, "that of line 3"}),
+    ::testing::Values(FaultCase{"Empty", "", 1, 1, "ends too soon"},
+                      FaultCase{"NoCount", "three\n", 1, 1, "not a number; given \"three\""},
+                      FaultCase{"BrokenCount", "2.5\n1 0 0 0 0 0 0\n", 1, 1, "no count; given \"2.5\""},
+                      FaultCase{"HugeCount", "1e12\n1 0 0 0 0 0 0\n", 1, 1, "no count"},
+                      FaultCase{"ShortState", "1\n1 0 0 0\n0 0\n", 2, 7, "the line has 4 words"},
+                      FaultCase{"NoMass", "1\n0 0 0 0 0 0 0\n0 0\n", 2, 1, "the mass is not > 0"},
+                      FaultCase{"NanPlace", "1\n1 nan 0 0 0 0 0\n0 0\n", 2, 3, "not a number; given \"nan\""},
+                      FaultCase{"WordSample", "1\n1 0 0 0 0 0 0\n  1 x // y\n", 3, 5,
+                                "not a number; given \"x\""},
+                      FaultCase{"ThreeNumbers", "1\n1 0 0 0 0 0 0\n1 2 3\n", 3, 5, "the line has 3 words"},
+                      FaultCase{"TooFew", "2\n1 0 0 0 0 0 0\n0 0\n", 4, 1, "given 1 samples, allowed: the 2"},
+                      FaultCase{"TooMany", "1\n1 0 0 0 0 0 0\n0 0\n1 1\n", 4, 1, "more than the 1 samples"},
+                      FaultCase{"Repeat", "2\n1 0 0 0 0 0 0\n0 0\n 0 0\n", 4, 2, "that of line 3"}),
     [](const auto& info_) { return info_.param.name; });
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::sample_file_test

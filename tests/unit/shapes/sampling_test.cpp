@@ -10,10 +10,10 @@
 #include "brink/core/base/error.h"
 #include "brink/core/shapes/shapes.h"
 
-namespace brink {
+namespace brink::sampling_test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 using Kind = Sampling::Kind;
 
 Sampling by_spacing(Kind kind, double spacing) {
@@ -172,4 +172,4 @@ TEST(Sampling, MissingAndAbsurdNumbersAreRefusedByName) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::sampling_test

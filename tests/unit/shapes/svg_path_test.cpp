@@ -10,10 +10,10 @@
 #include "brink/core/shapes/shapes.h"
 #include "tests/support/seeded_random.h"
 
-namespace brink {
+namespace brink::svg_path_test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 constexpr double pi = std::numbers::pi;
 
 std::string fault(const std::string& d) {
@@ -253,4 +253,4 @@ TEST(PathShape, CrossingSubpathsAreRefused) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::svg_path_test

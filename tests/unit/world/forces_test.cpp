@@ -7,12 +7,12 @@
 
 #include "brink/core/base/random.h"
 
-namespace brink {
+namespace brink::forces_test {
 namespace {
 
 const Vec2 kOrigin(0.0, 0.0);
 
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 
 World world_of(int count) {
   World world;
@@ -254,4 +254,4 @@ TEST(Conservative, DragDampingThrustAndFormulaAreNot) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::forces_test

@@ -9,7 +9,7 @@
 #include "brink/core/world/steady.h"
 #include "tests/support/seeded_random.h"
 
-namespace brink {
+namespace brink::formula_bound_test {
 namespace {
 
 double value(const Formula& f, double t) { return f(std::span<const double>(&t, 1)); }
@@ -199,4 +199,4 @@ TEST(OutwardRounding, GoesToTheNextDouble) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::formula_bound_test

@@ -8,10 +8,10 @@
 
 #include "brink/core/base/error.h"
 
-namespace brink {
+namespace brink::formula_test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 double at(const Formula& formula, std::vector<double> values) { return formula(values); }
 
@@ -93,8 +93,8 @@ TEST(Formula, OneObjectMayBeEvaluatedByManyThreads) {
       }
     });
   for (std::thread& thread : threads) thread.join();
-  EXPECT_THAT(wrong, testing::Each(0));
+  EXPECT_THAT(wrong, ::testing::Each(0));
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::formula_test

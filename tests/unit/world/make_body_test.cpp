@@ -8,7 +8,7 @@
 
 #include "brink/core/base/error.h"
 
-namespace brink {
+namespace brink::make_body_test {
 namespace {
 
 TEST(MakeBody, MassAndInertiaAreThoseOfTextbooks) {
@@ -51,4 +51,4 @@ TEST(MakeBody, InertiaMustBeGiven) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::make_body_test

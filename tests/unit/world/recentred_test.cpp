@@ -6,7 +6,7 @@
 #include "brink/core/shapes/shapes.h"
 #include "tests/support/seeded_random.h"
 
-namespace brink {
+namespace brink::recentred_test {
 namespace {
 
 FixedSite wall(const Vec2& a, const Vec2& b, const Pose& pose = {}) {
@@ -45,4 +45,4 @@ TEST(Recentred, StaysWhereItIsNearOrTurnedOrWhereAPlaceWouldBeRounded) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::recentred_test

@@ -7,12 +7,12 @@
 
 #include "brink/core/base/error.h"
 
-namespace brink {
+namespace brink::world_test {
 namespace {
 
 const Vec2 kOrigin(0.0, 0.0);
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 std::shared_ptr<Outline> disc(double radius) {
   auto outline = std::make_shared<Outline>();
@@ -173,4 +173,4 @@ TEST(Combined, RulesAreTheWorlds) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::world_test

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace brink {
+namespace brink::chart_test {
 namespace {
 
 Chart chart_of(std::vector<ChartPoint> points, ChartAxis x = {}, ChartAxis y = {}) {
@@ -140,4 +140,4 @@ TEST(Chart, ANoteThatDoesNotFitBesideTheTitleStandsBelow) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::chart_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-namespace brink::draw {
+namespace brink::draw::color_test {
 namespace {
 
 World named(std::initializer_list<const char*> names) {
@@ -67,4 +67,4 @@ TEST(Palette, BodiesOfOneNameAloneGetDifferentHues) {
 }
 
 }  // namespace
-}  // namespace brink::draw
+}  // namespace brink::draw::color_test

@@ -4,7 +4,7 @@
 #include "brink/core/shapes/shapes.h"
 #include "brink/scenes/draw/draw.h"
 
-namespace brink {
+namespace brink::forces_test {
 namespace {
 
 /// Two discs of radius 1 at (0, 0) and (4, 0), 50 pixels a metre: world (x, y) lies at column 50 (x + 1), row
@@ -78,4 +78,4 @@ TEST(ForcesLayer, WhatCannotBeDrawnIsRefused) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::forces_test

@@ -3,11 +3,11 @@
 
 #include "brink/scenes/draw/draw.h"
 
-namespace brink {
+namespace brink::options_test {
 namespace {
 
-using testing::HasSubstr;
-using testing::Throws;
+using ::testing::HasSubstr;
+using ::testing::Throws;
 
 template <class Call>
 std::string message_of(Call&& call) {
@@ -77,4 +77,4 @@ TEST(DrawOptions, WrongValuesAreNamed) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::options_test

@@ -7,7 +7,7 @@
 #include "brink/core/shapes/shapes.h"
 #include "brink/scenes/draw/draw.h"
 
-namespace brink {
+namespace brink::periodic_test {
 namespace {
 
 constexpr int kWidth = 500, kHeight = 100;
@@ -115,4 +115,4 @@ TEST(PeriodicPicture, WiresOverColorHaveImages) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::periodic_test

@@ -10,10 +10,10 @@
 #include "brink/scenes/draw/color.h"
 #include "brink/scenes/draw/draw.h"
 
-namespace brink {
+namespace brink::picture_test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 std::shared_ptr<const Outline> outline_of(Shape shape) {
   return std::make_shared<const Outline>(std::move(shape.outline));
@@ -257,4 +257,4 @@ TEST(Picture, AxesHaveWholeNumbers) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::picture_test

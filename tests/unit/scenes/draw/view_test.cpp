@@ -8,7 +8,7 @@
 #include "brink/core/shapes/shapes.h"
 #include "brink/scenes/draw/draw.h"
 
-namespace brink {
+namespace brink::view_test {
 namespace {
 
 struct Still {
@@ -122,4 +122,4 @@ TEST(RoundLength, IsOneTwoOrFiveTimesAPowerOfTenAndNotAbove) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::view_test

@@ -15,12 +15,12 @@
 #include "brink/scenes/run_file/run_moment.h"
 #include "brink/scheduler/policies/policy.h"
 
-namespace brink {
+namespace brink::program_test {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 struct Outcome {
   int status = -1;
@@ -55,7 +55,7 @@ disc = { radius = 0.5 }
 position = [0, 1.5]
 )";
 
-class ProgramTest : public testing::Test {
+class ProgramTest : public ::testing::Test {
  protected:
   ProgramTest() {
     std::string name = (fs::temp_directory_path() / "brink-program-XXXXXX").string();
@@ -171,7 +171,7 @@ TEST_F(ProgramTest, VersionNamesCommitCompilerAndLibraries) {
   const Outcome run = brink("--version");
   EXPECT_EQ(run.status, 0);
   for (const char* word : {"brink 0.", "commit", "GNU", "Eigen 3.", "SUNDIALS ", "SQLite 3.", "cairo 1."})
-    EXPECT_THAT(run.out, testing::AnyOf(HasSubstr(word), HasSubstr("Clang"))) << word;
+    EXPECT_THAT(run.out, ::testing::AnyOf(HasSubstr(word), HasSubstr("Clang"))) << word;
 }
 
 TEST_F(ProgramTest, PicturesAreOfTheKindThatTheirNameSays) {
@@ -182,7 +182,7 @@ TEST_F(ProgramTest, PicturesAreOfTheKindThatTheirNameSays) {
   ASSERT_EQ(brink("draw a --at 0.6 -o p.svg --plain --names --size 320x240").status, 0);
   ASSERT_EQ(brink("draw ball.toml -o p.pdf --plain --view -1,-0.5,1,2 --size 320x240").status, 0);
   EXPECT_EQ(text_of(dir_ / "p.png").substr(1, 3), "PNG");
-  EXPECT_THAT(text_of(dir_ / "p.svg"), testing::AllOf(HasSubstr("<svg"), HasSubstr("width=\"320")));
+  EXPECT_THAT(text_of(dir_ / "p.svg"), ::testing::AllOf(HasSubstr("<svg"), HasSubstr("width=\"320")));
   EXPECT_EQ(text_of(dir_ / "p.pdf").substr(0, 4), "%PDF");
   for (const char* bad : {"draw a -o p.jpg", "draw a -o p", "draw a -o q.png --view 0,0,1",
                           "draw a -o q.png --view 1,0,0,1", "draw ball.toml -o q.png --trails"}) {
@@ -228,7 +228,8 @@ TEST_F(ProgramTest, TablesAreExportedWithUnitsInTheirHeads) {
   ASSERT_EQ(brink("export a --csv tables").status, 0);
   EXPECT_THAT(text_of(dir_ / "tables/bodies.csv"), HasSubstr("body,name,mass_kg,inertia_kg_m2\n0,ball,1,"));
   EXPECT_THAT(text_of(dir_ / "tables/frames.csv"), HasSubstr("\n0.25,0,0,1.25,0,0,-2,0\n"));
-  EXPECT_THAT(text_of(dir_ / "tables/events.csv"), testing::ContainsRegex("0,0.[45][0-9]*,collision,0,,0,"));
+  EXPECT_THAT(text_of(dir_ / "tables/events.csv"),
+              ::testing::ContainsRegex("0,0.[45][0-9]*,collision,0,,0,"));
   EXPECT_EQ(brink("export ball.toml --csv tables").status, 2);
   EXPECT_EQ(brink("export a").status, 2);
   const Outcome hdf5 = brink("export a --hdf5 tables");
@@ -269,7 +270,7 @@ TEST_F(ProgramTest, APageShowsATraceInItsLanes) {
   ASSERT_EQ(brink("view a --trace trace.json -o page.html").status, 0);
   EXPECT_THAT(text_of(dir_ / "page.html"), HasSubstr("\"trace_kinds\":[\"advance\",\"back up\""));
   ASSERT_EQ(brink("view a -o plain.html").status, 0);
-  EXPECT_THAT(text_of(dir_ / "plain.html"), testing::Not(HasSubstr("\"trace_kinds\"")));
+  EXPECT_THAT(text_of(dir_ / "plain.html"), ::testing::Not(HasSubstr("\"trace_kinds\"")));
   EXPECT_EQ(brink("view ball.toml --trace trace.json").status, 2);
   EXPECT_EQ(brink("view a --trace nothing.json -o page.html").status, 3);
   EXPECT_EQ(brink("view a --trace ball.toml -o page.html").status, 3) << "no trace";
@@ -607,4 +608,4 @@ TEST_F(ProgramTest, ExportedNamesAreNoFormulas) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::program_test

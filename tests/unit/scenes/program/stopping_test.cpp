@@ -6,7 +6,7 @@
 #include <csignal>
 #include <cstdlib>
 
-namespace brink {
+namespace brink::stopping_test {
 namespace {
 
 void two_signals(int first, int second) {
@@ -17,10 +17,10 @@ void two_signals(int first, int second) {
 }
 
 TEST(Stopping, ASecondSignalOfEitherKindEndsTheProgram) {
-  EXPECT_EXIT(two_signals(SIGINT, SIGINT), testing::KilledBySignal(SIGINT), "");
-  EXPECT_EXIT(two_signals(SIGINT, SIGTERM), testing::KilledBySignal(SIGTERM), "");
-  EXPECT_EXIT(two_signals(SIGTERM, SIGINT), testing::KilledBySignal(SIGINT), "");
+  EXPECT_EXIT(two_signals(SIGINT, SIGINT), ::testing::KilledBySignal(SIGINT), "");
+  EXPECT_EXIT(two_signals(SIGINT, SIGTERM), ::testing::KilledBySignal(SIGTERM), "");
+  EXPECT_EXIT(two_signals(SIGTERM, SIGINT), ::testing::KilledBySignal(SIGINT), "");
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::stopping_test

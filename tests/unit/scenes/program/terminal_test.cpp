@@ -3,12 +3,12 @@
 
 #include <gmock/gmock.h>
 
-namespace brink {
+namespace brink::terminal_test {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
 
 TEST(BarLine, SaysHowFarItIsAndHowLongItWillTake) {
   EXPECT_EQ(bar_line(80, 0.5, 1.25, 7, "3 s left"),
@@ -27,4 +27,4 @@ TEST(BarLine, FitsEveryWidth) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::terminal_test

@@ -15,12 +15,12 @@
 #include "brink/core/world/world_hash.h"
 #include "brink/scenes/run_file/shape_json.h"
 
-namespace brink {
+namespace brink::run_file_test {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using Open = RunFileRecorder::Open;
 
 std::shared_ptr<const Outline> outline(Shape shape) {
@@ -101,7 +101,7 @@ std::string integrity(const fs::path& file) {
   return db.execAndGet("PRAGMA integrity_check").getString();
 }
 
-class RunFileTest : public testing::Test {
+class RunFileTest : public ::testing::Test {
  protected:
   RunFileTest() {
     std::string name = (fs::temp_directory_path() / "brink-run-file-XXXXXX").string();
@@ -507,7 +507,7 @@ TEST_F(RunFileTest, ResumeWithOtherOptionsNamesTheOption) {
     FAIL() << "other options were accepted";
   } catch (const BadInput& e) {
     EXPECT_THAT(e.what(), HasSubstr("/solver/step was 0.001, is now 0.002"));
-    EXPECT_THAT(e.what(), testing::Not(HasSubstr("policy")));
+    EXPECT_THAT(e.what(), ::testing::Not(HasSubstr("policy")));
   }
 }
 
@@ -670,4 +670,4 @@ TEST(WorldHash, ChangesWithEveryPartButNames) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::run_file_test

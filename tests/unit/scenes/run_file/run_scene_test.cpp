@@ -10,7 +10,7 @@
 
 #include "brink/scenes/run_file/run_file.h"
 
-namespace brink {
+namespace brink::run_scene_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -20,7 +20,7 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-class RunSceneTest : public testing::Test {
+class RunSceneTest : public ::testing::Test {
  protected:
   RunSceneTest() {
     std::string name = (fs::temp_directory_path() / "brink-run-scene-XXXXXX").string();
@@ -119,4 +119,4 @@ TEST_F(RunSceneTest, SitesKeepTheirPosesThoughTheyAreNotAsManyAsTheFrames) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::run_scene_test

@@ -10,7 +10,7 @@
 #include "brink/scenes/run_file/run_scene.h"
 #include "brink/scenes/run_file/trace_file.h"
 
-namespace brink {
+namespace brink::trace_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -37,7 +37,7 @@ position = [2, 0]
 grid = { columns = 4, rows = 1, spacing = [1.5, 0] }
 )";
 
-class TraceTest : public testing::TestWithParam<const char*> {
+class TraceTest : public ::testing::TestWithParam<const char*> {
  protected:
   TraceTest() {
     std::string name = (fs::temp_directory_path() / "brink-trace-XXXXXX").string();
@@ -106,7 +106,8 @@ TEST_P(TraceTest, FileThatCannotBeWrittenIsAnIoError) {
   EXPECT_THROW(run(dir_ / "absent" / "trace.json"), IoError);
 }
 
-INSTANTIATE_TEST_SUITE_P(Policies, TraceTest, testing::Values("body_clocks", "global_backup", "fixed_step"));
+INSTANTIATE_TEST_SUITE_P(Policies, TraceTest,
+                         ::testing::Values("body_clocks", "global_backup", "fixed_step"));
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::trace_test

@@ -15,7 +15,7 @@
 #include "brink/core/shapes/outline.h"
 #include "brink/scenes/toml/codec.h"
 
-namespace brink {
+namespace brink::scene_file_test {
 namespace {
 
 using ::testing::Contains;
@@ -664,4 +664,4 @@ TEST(Points, TooManyAreToldWithTheirMost) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::scene_file_test

@@ -8,7 +8,7 @@
 #include "brink/scenes/scene/scene.h"
 #include "tests/support/outside/worlds.h"
 
-namespace brink {
+namespace brink::touching_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -318,4 +318,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& parameter) { return std::string(parameter.param.name); });
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::touching_test

@@ -6,7 +6,7 @@
 
 #include "brink/core/base/printable.h"
 
-namespace brink {
+namespace brink::shell_word_test {
 namespace {
 
 // What a shell makes of it, asked of one. The final dot keeps the newlines before it.
@@ -30,4 +30,4 @@ TEST(ShellWord, EveryTextComesBackAsItWasOnOnePrintableLine) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::shell_word_test

@@ -13,12 +13,12 @@
 #include "brink/scenes/sweep/plot.h"
 #include "brink/scenes/sweep/sweep.h"
 
-namespace brink {
+namespace brink::sweep_test {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 // Six discs in a box; where they are depends on the seed.
 const char* const kGas = R"(
@@ -34,7 +34,7 @@ disc = { radius = 0.2 }
 scatter = { count = 6, region = [[0.2, 0.2], [1.8, 1.8]], speed = 3.0 }
 )";
 
-class SweepTest : public testing::Test {
+class SweepTest : public ::testing::Test {
  protected:
   SweepTest() {
     std::string name = (fs::temp_directory_path() / "brink-sweep-XXXXXX").string();
@@ -236,9 +236,9 @@ TEST_F(SweepTest, RunThatCannotStartIsARowThatSaysWhy) {
   std::getline(in, heading);
   std::getline(in, first);
   std::getline(in, second);
-  EXPECT_THAT(heading, testing::StartsWith("scene,bodies.1.position,termination,state_hash,end_time,"));
-  EXPECT_THAT(first, testing::StartsWith("two,\"[3, 0]\",reached_end," + results[0]->state_hash + ",1,0,"));
-  EXPECT_THAT(second, testing::StartsWith("two,\"[1, 0]\",\"failed: "));
+  EXPECT_THAT(heading, ::testing::StartsWith("scene,bodies.1.position,termination,state_hash,end_time,"));
+  EXPECT_THAT(first, ::testing::StartsWith("two,\"[3, 0]\",reached_end," + results[0]->state_hash + ",1,0,"));
+  EXPECT_THAT(second, ::testing::StartsWith("two,\"[1, 0]\",\"failed: "));
 }
 
 // Results made up: median and range over seeds 1, 2, 3 of the values 10, 30, 20.
@@ -326,4 +326,4 @@ TEST_F(SweepTest, RunsWithoutBitsAreNotCountedAsTheSame) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::sweep_test

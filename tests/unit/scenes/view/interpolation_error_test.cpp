@@ -8,7 +8,7 @@
 
 #include "brink/core/shapes/shapes.h"
 
-namespace brink {
+namespace brink::interpolation_error_test {
 namespace {
 
 /// One disc that moves along x by a function with its derivative, seen at frames.
@@ -71,4 +71,4 @@ TEST(InterpolationError, CountsBendsThatNoEventTellsOf) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::interpolation_error_test

@@ -7,7 +7,7 @@
 #include "brink/core/base/random.h"
 #include "brink/scheduler/broad_phase/broad_phase.h"
 
-namespace brink {
+namespace brink::broad_phase_test {
 namespace {
 
 // The grid names just the pairs that brute force names, each once, large and endless boxes among them.
@@ -31,4 +31,4 @@ TEST(BroadPhase, GridFindsThePairsOfBruteForce) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::broad_phase_test

@@ -13,7 +13,7 @@
 #include "brink/scheduler/broad_phase/neighbourhood.h"
 #include "tests/support/seeded_random.h"
 
-namespace brink {
+namespace brink::neighbourhood_test {
 namespace {
 
 Flight random_flight(Random& random) {
@@ -187,4 +187,4 @@ TEST(Neighbourhood, BodiesAroundAreThoseNear) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::neighbourhood_test

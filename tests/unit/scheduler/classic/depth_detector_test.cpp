@@ -12,7 +12,7 @@
 #include "brink/scheduler/classic/depth_normal.h"
 #include "tests/support/worlds.h"
 
-namespace brink {
+namespace brink::depth_detector_test {
 namespace {
 
 using brink::testing::add;
@@ -341,4 +341,4 @@ TEST(Classic, BodiesAtRestNeitherSinkNorStopTheRun) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::depth_detector_test

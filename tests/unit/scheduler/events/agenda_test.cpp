@@ -6,7 +6,7 @@
 #include "brink/scheduler/events/agenda.h"
 #include "tests/support/seeded_random.h"
 
-namespace brink {
+namespace brink::agenda_test {
 namespace {
 
 TEST(Agenda, PopsInTheTotalOrder) {
@@ -30,4 +30,4 @@ TEST(Agenda, PopsInTheTotalOrder) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::agenda_test

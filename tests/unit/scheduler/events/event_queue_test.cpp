@@ -9,7 +9,7 @@
 #include "brink/scheduler/events/event_queue.h"
 #include "tests/support/seeded_random.h"
 
-namespace brink {
+namespace brink::event_queue_test {
 namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
@@ -38,4 +38,4 @@ TEST(EventQueue, KnowsTheFirstAndTheSecond) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::event_queue_test

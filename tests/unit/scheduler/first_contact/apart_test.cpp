@@ -7,7 +7,7 @@
 #include "brink/core/shapes/shapes.h"
 #include "tests/support/seeded_random.h"
 
-namespace brink {
+namespace brink::apart_test {
 namespace {
 
 struct Flier {
@@ -94,4 +94,4 @@ TEST(Apart, OfAContainerNothingIsTold) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::apart_test

@@ -7,7 +7,7 @@
 #include "brink/scheduler/first_contact/first_contact.h"
 #include "tests/support/seeded_random.h"
 
-namespace brink {
+namespace brink::closed_forms_test {
 namespace {
 
 struct Flier {
@@ -201,4 +201,4 @@ TEST(ClosedForms, DiscsThatStartAtAWallGiveEveryBit) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::closed_forms_test

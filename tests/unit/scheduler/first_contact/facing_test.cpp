@@ -8,7 +8,7 @@
 #include "brink/scheduler/first_contact/site_step.h"
 #include "tests/support/seeded_random.h"
 
-namespace brink {
+namespace brink::facing_test {
 namespace {
 
 /// Of 3 to 9 corners on an ellipse, anywhere.
@@ -51,4 +51,4 @@ TEST(FacingConvex, IsNeverFartherThanThePolygonWhereverThePointGoes) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::facing_test

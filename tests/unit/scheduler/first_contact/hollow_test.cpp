@@ -7,7 +7,7 @@
 #include "brink/core/shapes/shapes.h"
 #include "brink/scheduler/first_contact/first_contact.h"
 
-namespace brink {
+namespace brink::hollow_test {
 namespace {
 
 // A disc of radius r in a hollow circle of radius R that leaves it at an angle a to the inner normal meets it
@@ -43,4 +43,4 @@ TEST(Hollow, ADiscMeetsTheCircleItLeavesAfterOneChord) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::hollow_test

@@ -9,7 +9,7 @@
 #include "brink/scheduler/first_contact/safe_step.h"
 #include "tests/support/seeded_random.h"
 
-namespace brink {
+namespace brink::safe_step_test {
 namespace {
 
 // The step is the first zero of f + f' h - c h^2 / 2, so the bound is 0 there and above 0 before.
@@ -65,4 +65,4 @@ TEST(FallingRoot, IsTheUniqueFallThroughZero) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::safe_step_test

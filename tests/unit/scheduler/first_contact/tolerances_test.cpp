@@ -6,7 +6,7 @@
 #include "brink/scheduler/first_contact/safe_step.h"
 #include "tests/support/seeded_random.h"
 
-namespace brink {
+namespace brink::tolerances_test {
 namespace {
 
 constexpr double kStep = 1e-14;
@@ -111,4 +111,4 @@ TEST(TimeUntilWithin, IsExactForDiscsAsFarAwayAsABillionSizes) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::tolerances_test

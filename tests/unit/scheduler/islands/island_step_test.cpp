@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace brink {
+namespace brink::island_step_test {
 namespace {
 
 constexpr double kTolerance = 2e-10;
@@ -54,4 +54,4 @@ TEST(IslandStep, GapThatDipsBetweenTwoLooksIsKept) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::island_step_test

@@ -7,7 +7,7 @@
 
 #include "tests/unit/scheduler/islands/outlines_near.h"
 
-namespace brink {
+namespace brink::near_features_known_test {
 namespace {
 
 // A normal from the difference of two points that are a gap apart has a rounding of the place in it, over the gap.
@@ -97,4 +97,4 @@ TEST(NearFeatures, GapGoesOnWhereTheSampleLeavesTheSideOfItsSite) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::near_features_known_test

@@ -11,7 +11,7 @@
 #include "tests/unit/scheduler/islands/facing_points.h"
 #include "tests/unit/scheduler/islands/outlines_near.h"
 
-namespace brink {
+namespace brink::near_features_test {
 namespace {
 
 // ---- known answers
@@ -256,4 +256,4 @@ TEST(NearFeatures, GapsAlongAStraightWayLieAboveTheirTangents) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::near_features_test

@@ -6,7 +6,7 @@
 
 #include "tests/unit/scheduler/kernel/parts.h"
 
-namespace brink {
+namespace brink::certificate_watch_test {
 namespace {
 
 using namespace testing;
@@ -123,4 +123,4 @@ TEST(CertificateWatch, AnOverlapAtTheStartIsNamedAndASmallOneAllowed) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::certificate_watch_test

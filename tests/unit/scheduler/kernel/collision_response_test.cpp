@@ -5,7 +5,7 @@
 
 #include "tests/unit/scheduler/kernel/parts.h"
 
-namespace brink {
+namespace brink::collision_response_test {
 namespace {
 
 using namespace testing;
@@ -78,4 +78,4 @@ TEST(CollisionResponse, TimeSinceTheLastIsTold) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::collision_response_test

@@ -5,7 +5,7 @@
 
 #include "tests/unit/scheduler/kernel/parts.h"
 
-namespace brink {
+namespace brink::contact_search_test {
 namespace {
 
 using namespace testing;
@@ -57,4 +57,4 @@ TEST(ContactSearch, AnImageIsWhereItsPeriodsPutIt) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::contact_search_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace brink {
+namespace brink::endings_test {
 namespace {
 
 Outcome collision(int body, int other, double closing = 1.0) {
@@ -77,4 +77,4 @@ TEST(Endings, GoOnFromWhatWasSaved) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::endings_test

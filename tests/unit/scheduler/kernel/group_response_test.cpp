@@ -5,7 +5,7 @@
 
 #include "tests/unit/scheduler/kernel/parts.h"
 
-namespace brink {
+namespace brink::group_response_test {
 namespace {
 
 using namespace testing;
@@ -51,4 +51,4 @@ TEST(GroupResponse, ACollapsedGroupThatLosesDoesNotRebound) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::group_response_test

@@ -7,7 +7,7 @@
 
 #include "tests/unit/scheduler/kernel/parts.h"
 
-namespace brink {
+namespace brink::near_pairs_test {
 namespace {
 
 using namespace testing;
@@ -65,4 +65,4 @@ TEST(NearPairs, AtATimeThoseThatOverlapThen) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::near_pairs_test

@@ -7,7 +7,7 @@
 #include "brink/core/base/error.h"
 #include "tests/unit/scheduler/kernel/parts.h"
 
-namespace brink {
+namespace brink::policy_watch_test {
 namespace {
 
 using namespace testing;
@@ -43,4 +43,4 @@ TEST(PolicyWatch, ComingBackTooEarlyThrows) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::policy_watch_test

@@ -5,7 +5,7 @@
 
 #include "tests/unit/scheduler/kernel/parts.h"
 
-namespace brink {
+namespace brink::records_test {
 namespace {
 
 using namespace testing;
@@ -68,4 +68,4 @@ TEST(Records, ARecorderThatOverridesNothingIsAsked) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::records_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace brink {
+namespace brink::run_control_test {
 namespace {
 
 TEST(RunControl, TheFirstReasonToStopCounts) {
@@ -39,4 +39,4 @@ TEST(RunControl, ProgressIsAskedAfterEnoughWorkAndMayStop) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::run_control_test

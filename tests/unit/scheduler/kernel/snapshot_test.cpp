@@ -6,7 +6,7 @@
 #include "brink/core/base/error.h"
 #include "tests/unit/scheduler/kernel/parts.h"
 
-namespace brink {
+namespace brink::snapshot_test {
 namespace {
 
 using namespace testing;
@@ -80,4 +80,4 @@ TEST(Snapshot, OfAnotherWorldIsRefused) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::snapshot_test

@@ -5,7 +5,7 @@
 
 #include "tests/unit/scheduler/kernel/parts.h"
 
-namespace brink {
+namespace brink::speculation_test {
 namespace {
 
 using namespace testing;
@@ -65,4 +65,4 @@ TEST(Speculation, SwappingShowsWhatIsCertainAndBack) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::speculation_test

@@ -6,7 +6,7 @@
 
 #include "brink/scheduler/kernel/stage_clock.h"
 
-namespace brink {
+namespace brink::stage_clock_test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -56,4 +56,4 @@ TEST(StageTimer, OneInSixteenCountsForAll) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::stage_clock_test

@@ -3,7 +3,7 @@
 
 #include "tests/support/worlds.h"
 
-namespace brink {
+namespace brink::start_places_test {
 namespace {
 
 using namespace testing;
@@ -79,4 +79,4 @@ TEST(StartPlaces, EdgesThatGoAlongAWireOrAwayFromItAreNotAcross) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::start_places_test

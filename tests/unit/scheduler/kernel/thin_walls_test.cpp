@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace brink {
+namespace brink::thin_walls_test {
 namespace {
 
 std::function<Vec2(double)> straight(Vec2 p, Vec2 q) {
@@ -103,4 +103,4 @@ TEST(ThinWalls, AClearBoxReachesToTheNearestWall) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::thin_walls_test

@@ -7,7 +7,7 @@
 
 #include "tests/unit/scheduler/kernel/parts.h"
 
-namespace brink {
+namespace brink::trajectories_test {
 namespace {
 
 using namespace testing;
@@ -98,4 +98,4 @@ TEST(Trajectories, WhatIsSavedIsMadeAgainBitForBit) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::trajectories_test

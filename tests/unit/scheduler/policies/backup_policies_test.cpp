@@ -4,7 +4,7 @@
 #include "tests/support/gases.h"
 #include "tests/support/same_events.h"
 
-namespace brink {
+namespace brink::backup_policies_test {
 namespace {
 
 using testing::expect_same_events;
@@ -106,4 +106,4 @@ TEST(IslandBackup, BacksUpOnlyTheIslandOfTheContact) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::backup_policies_test

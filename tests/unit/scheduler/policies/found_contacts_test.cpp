@@ -6,7 +6,7 @@
 #include "brink/scheduler/policies/body_clocks/found_contacts.h"
 #include "tests/support/seeded_random.h"
 
-namespace brink {
+namespace brink::found_contacts_test {
 namespace {
 
 TEST(FoundContacts, GivesEachBodyItsOwnUntilItIsForgotten) {
@@ -29,4 +29,4 @@ TEST(FoundContacts, GivesEachBodyItsOwnUntilItIsForgotten) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::found_contacts_test

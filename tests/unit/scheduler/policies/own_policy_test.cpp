@@ -9,7 +9,7 @@
 #include "tests/support/gases.h"
 #include "tests/support/same_events.h"
 
-namespace brink {
+namespace brink::own_policy_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -133,4 +133,4 @@ TEST(OwnPolicy, BrinksOwnPassUnderWatch) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::own_policy_test

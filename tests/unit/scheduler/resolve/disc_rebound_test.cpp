@@ -11,7 +11,7 @@
 #include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/resolve/extended_contact.h"
 
-namespace brink {
+namespace brink::disc_rebound_test {
 namespace {
 
 struct Disc {
@@ -220,4 +220,4 @@ TEST(DiscRebound, SaysNothingOfDiscsThatPart) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::disc_rebound_test

@@ -7,7 +7,7 @@
 #include "brink/core/shapes/distance.h"
 #include "brink/core/shapes/shapes.h"
 
-namespace brink {
+namespace brink::extended_contact_test {
 namespace {
 
 class Random {
@@ -69,4 +69,4 @@ TEST(ExtendedContact, MovedOnIsWhatIsSeenAMomentLater) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::extended_contact_test

@@ -6,7 +6,7 @@
 #include "brink/scheduler/resolve/zeno.h"
 #include "tests/support/seeded_random.h"
 
-namespace brink {
+namespace brink::zeno_test {
 namespace {
 
 // Intervals of a bouncing ball shrink by e: the limit is the sum of their geometric series.
@@ -92,4 +92,4 @@ TEST(ZenoWatch, UnsteadySeriesEnds) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::zeno_test

@@ -8,7 +8,7 @@
 #include "brink/scheduler/policies/policy.h"
 #include "tests/support/worlds.h"
 
-namespace brink {
+namespace brink::simulator_test {
 namespace {
 
 using testing::add;
@@ -403,4 +403,4 @@ TEST(FixedStep, ErrsByItsStepAndMissesThinPlates) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::simulator_test

@@ -8,7 +8,7 @@
 #include "tests/support/seeded_random.h"
 #include "tests/unit/scheduler/islands/modes/mode_scenes.h"
 
-namespace brink {
+namespace brink::choose_modes_test {
 namespace {
 
 ModeMoment now(const ModeScene& s) { return moment_at(s.problem, 0.0, s.states); }
@@ -96,4 +96,4 @@ TEST(ChooseModes, RandomBodiesInRandomCornersKeepCoulombsLaw) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::choose_modes_test

@@ -7,7 +7,7 @@
 
 #include "tests/unit/scheduler/islands/modes/mode_scenes.h"
 
-namespace brink {
+namespace brink::mode_arrival_test {
 namespace {
 
 PolynomialPiece piece(double end, std::initializer_list<Vec3> c) {
@@ -110,4 +110,4 @@ TEST(FirstArrival, WhatHoversForLongIsNotTakenForOpen) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::mode_arrival_test

@@ -10,7 +10,7 @@
 
 #include "tests/unit/scheduler/islands/modes/mode_scenes.h"
 
-namespace brink {
+namespace brink::mode_motion_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -314,4 +314,4 @@ TEST(ModeMotion, RockingBlockComesDownWhenItMust) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::mode_motion_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/seeded_random.h"
 
-namespace brink {
+namespace brink::nonnegative_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -60,4 +60,4 @@ TEST(FitNonnegative, ColumnsThatAreThereTwiceDoNoHarm) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::nonnegative_test

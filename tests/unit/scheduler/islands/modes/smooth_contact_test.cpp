@@ -9,7 +9,7 @@
 #include "brink/core/shapes/shapes.h"
 #include "tests/support/seeded_random.h"
 
-namespace brink {
+namespace brink::smooth_contact_test {
 namespace {
 
 using Long = long double;
@@ -107,7 +107,7 @@ Case random_case(SeededRandom& random, SmoothContact::Kind kind, bool hollow) {
   return c;
 }
 
-class SmoothContactDerivatives : public testing::TestWithParam<std::pair<SmoothContact::Kind, bool>> {};
+class SmoothContactDerivatives : public ::testing::TestWithParam<std::pair<SmoothContact::Kind, bool>> {};
 
 TEST_P(SmoothContactDerivatives, AgreeWithDifferencesOfTheGeometry) {
   SeededRandom random(7);
@@ -136,9 +136,9 @@ TEST_P(SmoothContactDerivatives, AgreeWithDifferencesOfTheGeometry) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, SmoothContactDerivatives,
-                         testing::Values(std::pair(SmoothContact::Kind::line, false),
-                                         std::pair(SmoothContact::Kind::circle, false),
-                                         std::pair(SmoothContact::Kind::circle, true)));
+                         ::testing::Values(std::pair(SmoothContact::Kind::line, false),
+                                           std::pair(SmoothContact::Kind::circle, false),
+                                           std::pair(SmoothContact::Kind::circle, true)));
 
 // ---- from features of outlines
 
@@ -191,4 +191,4 @@ TEST(SmoothContactOfAFeature, DiscBeyondTheEndOfAWireIsAgainstAPoint) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::smooth_contact_test
