@@ -7,7 +7,7 @@
 #include "tests/support/seeded_random.h"
 #include "tests/support/worlds.h"
 
-namespace brink {
+namespace brink::landing_test {
 namespace {
 
 TEST(CopyGaps, AreThoseOfTheOutlinesWhereverTheyStand) {
@@ -35,4 +35,4 @@ TEST(CopyGaps, AreThoseOfTheOutlinesWhereverTheyStand) {
 }
 
 }  // namespace
-}  // namespace brink
+}  // namespace brink::landing_test
