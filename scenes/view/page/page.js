@@ -142,10 +142,10 @@ class Player {
       Object.assign(this.picture.view, {x, y});
     }
     this.picture.draw(this.t);
+    this.placeCursor();  // looks at the layout, which what follows changes
     if (document.activeElement !== byId('time')) byId('time').value = String(this.t);
     byId('printed-time').textContent = `t = ${this.t} s`;    // the box is not on paper
     byId('scrub').value = this.t;
-    this.placeCursor();
     if (this.playing && now - (this.tablesShown || 0) < 250) return;
     this.tablesShown = now;
     this.showState();
