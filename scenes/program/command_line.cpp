@@ -296,7 +296,7 @@ std::string misspelt(const CLI::App& program, const std::vector<std::string>& wo
 
 int run_command_line(int argc, char** argv) {
   CLI::App program("Brink: many rigid bodies in the plane, exact to the contact time.", "brink");
-  program.set_version_flag("--version", version_details());
+  program.set_version_flag("--version", version_details);  // asked when it is wanted
   // Exactly one command: with none the library says that one is needed.
   program.require_subcommand(1);
   program.footer(

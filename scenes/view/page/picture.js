@@ -213,6 +213,22 @@ class Picture {
     if (cells && this.cells.bySoftware) ctx.getImageData(0, 0, 1, 1);
   }
 
+  /** Where the images of a mark at a place [m] are seen [px], if it is no larger than `size` [px]. */
+  seenAt(x, y, size) {
+    const {width, height} = this.canvas, all = [];
+    for (const [u, v] of this.offsets([x, y])) {
+      const at = this.toPixels(x + u, y + v);
+      if (at[0] > -size && at[1] > -size && at[0] < width + size && at[1] < height + size) all.push(at);
+    }
+    return all;
+  }
+
+  /** The image of a place that is nearest to another. */
+  beside(x, y, [u, v]) {
+    const [px, py] = this.about.periods;
+    return [px > 0 ? x + px * Math.round((u - x) / px) : x, py > 0 ? y + py * Math.round((v - y) / py) : y];
+  }
+
   siteOffsets() {
     const [px, py] = this.about.periods, all = [];
     if (!this.layers.images || !(px > 0 || py > 0)) return ITSELF;
@@ -260,72 +276,81 @@ class Picture {
 
   drawSprings() {
     const {ctx} = this;
+    this.leave();
+    ctx.strokeStyle = '#7a6a3a';
+    ctx.lineWidth = 1.3 * this.ratio;
     for (const s of this.about.springs) {
       const a = placed(this.poses[s.body], s.at), b = s.other === null ? s.other_at : placed(this.poses[s.other], s.other_at);
-      const [ax, ay] = this.toPixels(...a), [bx, by] = this.toPixels(...b), l = Math.hypot(bx - ax, by - ay);
-      const turns = 9, w = Math.min(6 * this.ratio, l / 6), ux = (bx - ax) / l, uy = (by - ay) / l;
-      this.leave();
-      ctx.strokeStyle = '#7a6a3a';
-      ctx.lineWidth = 1.3 * this.ratio;
-      ctx.beginPath();
-      ctx.moveTo(ax, ay);
-      for (let i = 1; i < turns; ++i) {
-        const at = i / turns, side = i % 2 ? w : -w;
-        ctx.lineTo(ax + at * (bx - ax) - side * uy, ay + at * (by - ay) + side * ux);
+      const dx = (b[0] - a[0]) * this.view.scale, dy = -(b[1] - a[1]) * this.view.scale, l = Math.hypot(dx, dy);
+      const turns = 9, w = Math.min(6 * this.ratio, l / 6);
+      if (!(l > 0)) continue;
+      for (const [x, y] of this.seenAt(...a, l)) {
+        ctx.beginPath();
+        ctx.moveTo(x, y);
+        for (let i = 1; i < turns; ++i) {
+          const at = i / turns, side = i % 2 ? w : -w;
+          ctx.lineTo(x + at * dx - side * dy / l, y + at * dy + side * dx / l);
+        }
+        ctx.lineTo(x + dx, y + dy);
+        ctx.stroke();
       }
-      ctx.lineTo(bx, by);
-      ctx.stroke();
     }
   }
 
   /** Where bodies have been in the last part of the run. */
   drawTrails() {
-    const {ctx, motions} = this, looks = 120, span = (motions.end - motions.begin) / 8;
+    const {ctx, motions, view: {scale}} = this, looks = 120, span = (motions.end - motions.begin) / 8;
     const some = this.selected >= 0 ? [this.selected] : this.about.bodies.map((b, k) => k).slice(0, 200);
     this.leave();
     ctx.lineWidth = 1.2 * this.ratio;
+    ctx.globalAlpha = 0.6;
     for (const k of some) {
-      ctx.strokeStyle = this.about.bodies[k].line;
-      ctx.globalAlpha = 0.6;
-      ctx.beginPath();
+      const trail = [], [x, y] = this.poses[k];
+      let size = 0;
       for (let i = 0; i <= looks; ++i) {
         const s = this.t - span * (1 - i / looks);
         if (s < motions.begin) continue;
-        const [x, y] = motions.body(k, s);
-        ctx.lineTo(...this.toPixels(x, y));
+        const was = motions.body(k, s), to = [(was[0] - x) * scale, (y - was[1]) * scale];
+        trail.push(to);
+        size = Math.max(size, Math.hypot(...to));
       }
-      ctx.stroke();
-      ctx.globalAlpha = 1;
+      ctx.strokeStyle = this.about.bodies[k].line;
+      for (const [px, py] of this.seenAt(x, y, size)) {
+        ctx.beginPath();
+        for (const [dx, dy] of trail) ctx.lineTo(px + dx, py + dy);
+        ctx.stroke();
+      }
     }
+    ctx.globalAlpha = 1;
   }
 
   drawVelocities() {
     this.leave();
-    const most = Math.max(1e-300, ...this.poses.map(p => Math.hypot(p[3], p[4])));
-    const scale = 60 * this.ratio / most;
-    for (const p of this.poses) {
-      const [x, y] = this.toPixels(p[0], p[1]);
-      this.arrow(x, y, x + scale * p[3], y - scale * p[4], '#1f7a4d', 1.6);
-    }
+    const most = this.poses.reduce((far, p) => Math.max(far, Math.hypot(p[3], p[4])), 1e-300), long = 60 * this.ratio, scale = long / most;
+    for (const p of this.poses)
+      for (const [x, y] of this.seenAt(p[0], p[1], long)) this.arrow(x, y, x + scale * p[3], y - scale * p[4], '#1f7a4d', 1.6);
   }
 
   /** Contacts that last now: from centres to contacts, as wide as the force. */
   drawForces() {
-    const {ctx, n} = this, now = [];
+    const {ctx, n, view: {scale}} = this, now = [];
     for (let i = 0; i < n.contact_from.length; ++i)
       if (n.contact_from[i] <= this.t && this.t <= n.contact_to[i]) now.push(i);
-    const most = Math.max(1e-300, ...now.map(i => n.contact_force[i]));
+    const most = now.reduce((far, i) => Math.max(far, n.contact_force[i]), 1e-300);
     this.leave();
     ctx.strokeStyle = '#a01f5f';
     for (const i of now) {
-      const at = this.toPixels(n.contact_x[i], n.contact_y[i]);
       ctx.lineWidth = Math.max(0.3, 8 * this.ratio * n.contact_force[i] / most);
       for (const k of [n.contact_body[i], n.contact_other[i]]) {
         if (k < 0) continue;
-        ctx.beginPath();
-        ctx.moveTo(...this.toPixels(this.poses[k][0], this.poses[k][1]));
-        ctx.lineTo(...at);
-        ctx.stroke();
+        const [x, y] = this.poses[k], at = this.beside(n.contact_x[i], n.contact_y[i], this.poses[k]);
+        const dx = (at[0] - x) * scale, dy = (y - at[1]) * scale;
+        for (const [px, py] of this.seenAt(x, y, Math.hypot(dx, dy))) {
+          ctx.beginPath();
+          ctx.moveTo(px, py);
+          ctx.lineTo(px + dx, py + dy);
+          ctx.stroke();
+        }
       }
     }
   }
@@ -339,11 +364,12 @@ class Picture {
     if (now.length === MOST_CONTACTS) back = Math.max(this.t - n.event_t[now[MOST_CONTACTS - 1]], 1e-300);
     this.leave();
     for (const k of now.reverse()) {
-      const [x, y] = this.toPixels(n.event_px[k], n.event_py[k]);
       ctx.globalAlpha = 0.25 + 0.75 * (back > 0 ? 1 - (this.t - n.event_t[k]) / back : 1);
-      this.round(x, y, 3.5 * ratio, CONTACT_INK);
       const l = (12 + 36 * (most > 0 ? n.event_in[k] / most : 0)) * ratio;
-      this.arrow(x, y, x + l * n.event_nx[k], y - l * n.event_ny[k], CONTACT_INK, 1.6);
+      for (const [x, y] of this.seenAt(n.event_px[k], n.event_py[k], l)) {
+        this.round(x, y, 3.5 * ratio, CONTACT_INK);
+        this.arrow(x, y, x + l * n.event_nx[k], y - l * n.event_ny[k], CONTACT_INK, 1.6);
+      }
     }
     ctx.globalAlpha = 1;
   }
@@ -359,13 +385,13 @@ class Picture {
     ctx.strokeStyle = 'rgba(255,255,255,.8)';
     ctx.lineWidth = 3 * this.ratio;
     for (const k of bodies.map((b, i) => i).sort((a, b) => size(b) - size(a) || a - b)) {
-      const [x, y] = this.toPixels(this.poses[k][0], this.poses[k][1]);
-      if (x < 0 || y < 0 || x > this.canvas.width || y > this.canvas.height) continue;
       const half = ctx.measureText(bodies[k].name).width / 2;
-      if (taken.some(t => Math.abs(t.y - y) < high && Math.abs(t.x - x) < t.half + half)) continue;
-      taken.push({x, y, half});
-      ctx.strokeText(bodies[k].name, x, y);
-      ctx.fillText(bodies[k].name, x, y);
+      for (const [x, y] of this.seenAt(this.poses[k][0], this.poses[k][1], 0)) {
+        if (taken.some(t => Math.abs(t.y - y) < high && Math.abs(t.x - x) < t.half + half)) continue;
+        taken.push({x, y, half});
+        ctx.strokeText(bodies[k].name, x, y);
+        ctx.fillText(bodies[k].name, x, y);
+      }
     }
   }
 
