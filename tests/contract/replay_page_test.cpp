@@ -445,6 +445,131 @@ TEST(Replay, CellsOfThePageBelongToWhomTheyAreNearest) {
   }
 }
 
+// Bodies that have left the box that repeats itself: what is said of them stands at the images that are seen.
+TEST(Replay, MarksOfAPlaneThatRepeatsItselfAreAtImagesThatAreSeen) {
+  if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
+  const fs::path folder = fs::temp_directory_path() / fmt::format("brink-images-{}", ::getpid());
+  const Scene scene = parse_scene(R"(
+[world]
+duration = 20.0
+periodic = [3.0, 2.0]
+[output]
+frame_interval = 0.5
+[materials.default]
+restitution = 1.0
+[[bodies]]
+name = "slow"
+disc = { radius = 0.2 }
+position = [1.0, 1.0]
+velocity = [1.0, 0.3]
+[[bodies]]
+name = "fast"
+disc = { radius = 0.2 }
+position = [2.2, 1.0]
+velocity = [2.0, 0.3]
+[[forces]]
+kind = "spring"
+bodies = ["slow", "fast"]
+stiffness = 0.01
+rest_length = 1.0
+)",
+                                  "images.toml");
+  RunRequest request;
+  request.dir = folder;
+  ASSERT_TRUE(run_scene(scene, request).summary.sound());
+  write_replay_page(folder / "run.db", folder / "images.html");
+  const json answer = in_browser(folder / "images.html", R"(
+    const b = window.brink, player = b.player, p = player.picture, marks = {};
+    p.resize({getBoundingClientRect: () => ({width: 600, height: 400})});
+    p.fit();
+    const e = b.events.find(e => e.t > 5), t = e.t, [x, y] = p.motions.body(0, t);
+    for (const layer of Object.keys(p.layers)) p.layers[layer] = layer === 'images';
+    const inks = () => {
+      const pixels = p.ctx.getImageData(0, 0, 600, 400).data;
+      let count = 0;
+      for (let k = 3; k < pixels.length; k += 4) count += pixels[k] > 0;
+      return count;
+    };
+    p.flash = 1e-9;
+    p.draw(t);
+    const empty = inks();    // the box and the ruler
+    for (const layer of ['contacts', 'velocities', 'trails', 'names', 'springs']) {
+      p.layers[layer] = true;
+      p.draw(t);
+      marks[layer] = inks() - empty;
+      p.layers[layer] = false;
+    }
+    const [u, v] = p.seenAt(x, y, 0)[0], [px, py] = p.toWorld(u, v);
+    b.select('slow');
+    document.getElementById('follow').checked = true;
+    player.t = t;
+    player.show(0);
+    return {marks, from: [x, y], image: [(px - x) / 3, (py - y) / 2], at: [px, py], follows: [p.view.x, p.view.y]};)");
+  fs::remove_all(folder);
+  ASSERT_FALSE(answer.contains("error")) << answer.dump();
+  EXPECT_GT(answer["from"][0].get<double>(), 3.0) << "it has left the box";
+  for (const auto& [layer, count] : answer["marks"].items()) EXPECT_GT(count.get<int>(), 20) << layer;
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_NEAR(answer["image"][k].get<double>(), std::round(answer["image"][k].get<double>()), 1e-9);
+    EXPECT_GE(answer["follows"][k].get<double>(), 0.0);
+    EXPECT_LE(answer["follows"][k].get<double>(), k == 0 ? 3.0 : 2.0);
+  }
+}
+
+// A scene of more collisions in a moment than can be told apart: those that are marked are the last.
+TEST_F(Replayed, TheLastCollisionsAreMarked) {
+  if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
+  const fs::path page = folder_ / "marks.html";
+  write_replay_page(run_file(), page);
+  const json answer = in_browser(page, R"(
+    const p = window.brink.player.picture, n = 400, one = value => new Float64Array(n).fill(value), rounds = [];
+    p.n = {...p.n, event_t: Float64Array.from({length: n}, (_, k) => 1 + 1e-3 * k), event_px: Float64Array.from({length: n}, (_, k) => k * 1e-4),
+           event_py: one(1), event_nx: one(1), event_ny: one(0), event_in: one(1)};
+    p.t = 2;
+    p.flash = 1;
+    const round = p.round;
+    p.round = function (x, y, r, ink) { rounds.push(p.toWorld(x, y)[0]); round.call(p, x, y, r, ink); };
+    p.drawContacts();
+    return rounds;)");
+  ASSERT_FALSE(answer.contains("error")) << answer.dump();
+  ASSERT_EQ(answer.size(), 300U);
+  EXPECT_NEAR(answer.front().get<double>(), 100e-4, 1e-9);
+  EXPECT_NEAR(answer.back().get<double>(), 399e-4, 1e-9) << "later ones over earlier ones";
+}
+
+// By pointers as fingers make them: one moves the scene, two zoom, a touch selects.
+TEST_F(Replayed, FingersMoveZoomAndSelect) {
+  if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
+  const fs::path page = folder_ / "fingers.html";
+  write_replay_page(run_file(), page);
+  const json answer = in_browser(page, R"(
+    const player = window.brink.player, p = player.picture, {canvas} = p, box = canvas.getBoundingClientRect();
+    canvas.setPointerCapture = () => {};    // of pointers that no screen has
+    const finger = (kind, id, x, y) => canvas.dispatchEvent(new PointerEvent('pointer' + kind,
+      {pointerId: id, pointerType: 'touch', clientX: box.left + x, clientY: box.top + y, bubbles: true}));
+    p.draw(1);
+    const {x, y, scale} = p.view, [bx, by] = p.toPixels(p.poses[2][0], p.poses[2][1]);
+    finger('down', 1, bx / p.ratio, by / p.ratio);
+    finger('up', 1, bx / p.ratio, by / p.ratio);
+    const selected = p.selected;
+    finger('down', 1, 100, 100);
+    for (let k = 1; k <= 10; ++k) finger('move', 1, 100 + 4 * k, 100 - 2 * k);
+    finger('up', 1, 140, 80);
+    const moved = [(p.view.x - x) * scale / p.ratio, (p.view.y - y) * scale / p.ratio];
+    finger('down', 1, 100, 100);
+    finger('down', 2, 200, 100);
+    for (let k = 1; k <= 10; ++k) { finger('move', 1, 100 - 5 * k, 100); finger('move', 2, 200 + 5 * k, 100); }
+    finger('up', 1, 50, 100);
+    finger('up', 2, 250, 100);
+    return {selected, moved, zoomed: p.view.scale / scale, still: p.selected};)");
+  ASSERT_FALSE(answer.contains("error")) << answer.dump();
+  EXPECT_EQ(answer["selected"], 2);
+  EXPECT_EQ(answer["still"], 2) << "moving and zooming select nobody";
+  EXPECT_NEAR(answer["moved"][0].get<double>(), -40.0, 1e-9);
+  EXPECT_NEAR(answer["moved"][1].get<double>(), -20.0, 1e-9);
+  EXPECT_NEAR(answer["zoomed"].get<double>(), 2.0, 1e-9);
+}
+
 // Frames of 16 ms that are late, then in time: coarser, and finer again; a finer picture that was too much is not tried as soon.
 TEST_F(Replayed, CellsAreCoarserWhereFramesAreLateAndFineWhereNothingMoves) {
   if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
