@@ -6,11 +6,11 @@ namespace brink {
 
 std::string_view version() { return BRINK_VERSION; }
 
-std::string version_details() {
+std::string version_details(std::string_view gl) {
   return fmt::format(
       "brink {}\n  commit    {}\n  compiler  {}\n  libraries {}\n"
-      "  fields    OpenGL off screen by OSMesa or EGL, as [field] context says",
-      version(), BRINK_COMMIT, BRINK_COMPILER, BRINK_LIBRARIES);
+      "  GL        {}",
+      version(), BRINK_COMMIT, BRINK_COMPILER, BRINK_LIBRARIES, gl);
 }
 
 }  // namespace brink

@@ -11,7 +11,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <set>
 
 #include "brink/scenes/draw/canvas.h"
 
@@ -29,11 +31,15 @@ constexpr int kPanelWidth = 560, kPanelHeight = 390, kColumns = 2, kMargin = 28,
 constexpr double kLeft = 70.0, kRight = 22.0, kTop = 64.0, kBottom = 56.0;
 constexpr double kLogSpan = 20.0;  // beyond this factor axes are logarithmic
 constexpr int kMostTicks = 8;
+/// Series of one name are so far apart [pixels]; marks in one square of that side count as one place, and who is
+/// covered shows so wide a rim for each above it, for no more than some.
+constexpr double kBeside = 14.0, kSamePlace = 3.0, kRim = 2.2;
+constexpr int kMostRims = 3;
 
 const Color kInk = Tones::ink.rgb(), kPale = Oklch{0.52, 0.015, 260.0}.rgb();
 const Color kGrid = Oklch{0.90, 0.006, 260.0}.rgb(), kPage = Tones::paper.rgb(), kPanel{1.0, 1.0, 1.0};
 
-// Five styles beside the six forms of draw_spot(): both together repeat after thirty series.
+// Five styles beside the nine forms of draw_spot(): both together repeat after 45 series.
 const std::vector<double> kDashes[] = {{}, {9, 4}, {2, 3}, {9, 3, 2, 3}, {14, 4}};  ///< one a series [pixels]
 
 struct Tick {
@@ -230,7 +236,52 @@ class ChartSheet {
     const PanelFrame frame{x0 + kLeft, x0 + kPanelWidth - kRight, y0 + kTop, y0 + kPanelHeight - kBottom};
     const Scale x(panel.x, all_x(panel)), y(panel.y, all_y(panel));
     draw_grid(canvas, frame, panel, x, y);
-    for (const ChartLine& line : panel.lines) draw_line(canvas, frame, x, y, line, !panel.x.names.empty());
+    // Of names there is room beside each: who has the same value stands there.
+    const double lines = static_cast<double>(panel.lines.size()),
+                 names = static_cast<double>(panel.x.names.size());
+    const double step = names > 0 ? std::min(kBeside, 0.8 * (frame.right - frame.left) / names / lines) : 0.0;
+    std::vector<std::vector<Spot>> spots;
+    for (std::size_t k = 0; k < panel.lines.size(); ++k)
+      spots.push_back(
+          spots_of(panel.lines[k], frame, x, y, step * (static_cast<double>(k) - 0.5 * (lines - 1.0))));
+    enlarge_covered(spots);
+    for (std::size_t k = 0; k < panel.lines.size(); ++k)
+      draw_line(canvas, panel.lines[k], spots[k], names > 0);
+  }
+
+  /// Where a point stands, with both ends of its range, and by what its mark is larger than others.
+  struct Spot {
+    Vec2 place, low, high;
+    double more;  ///< [pixels]
+  };
+
+  /// Of all points of a line, set aside by some pixels. @post NaN where a value is none.
+  std::vector<Spot> spots_of(const ChartLine& line, const PanelFrame& frame, const Scale& x, const Scale& y,
+                             double aside) const {
+    std::vector<Spot> spots;
+    for (const ChartPoint& p : line.points) {
+      const auto spot = [&](double value) {
+        return at(frame.x(x.place(p.x)) + aside, frame.y(y.place(value)));
+      };
+      spots.push_back({spot(p.y), spot(p.low), spot(p.high), 0.0});
+    }
+    return spots;
+  }
+
+  /// Marks of later lines would cover earlier ones at the same place: these show a rim.
+  static void enlarge_covered(std::vector<std::vector<Spot>>& lines) {
+    std::map<std::pair<long, long>, int> above;
+    for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
+      std::set<std::pair<long, long>> own;
+      for (Spot& spot : *line) {
+        if (!spot.place.allFinite()) continue;
+        const std::pair<long, long> pixel(std::lround(spot.place.x() / kSamePlace),
+                                          std::lround(spot.place.y() / kSamePlace));
+        spot.more = kRim * std::min(above[pixel], kMostRims);
+        own.insert(pixel);
+      }
+      for (const auto& pixel : own) ++above[pixel];
+    }
   }
 
   /// Ticks with their lines and labels, and the titles of both axes, set to the right.
@@ -251,63 +302,70 @@ class ChartSheet {
   }
 
   /// One series in a panel: the way first, marks over it, so that a mark hides the joint of its line.
-  void draw_line(Canvas& canvas, const PanelFrame& frame, const Scale& x, const Scale& y,
-                 const ChartLine& line, bool categories) const {
+  void draw_line(Canvas& canvas, const ChartLine& line, const std::vector<Spot>& spots,
+                 bool categories) const {
     const Color ink = color(line.series);
-    const auto spot = [&](const ChartPoint& p, double value) {
-      return at(frame.x(x.place(p.x)), frame.y(y.place(value)));
-    };
     // A NaN parts a line into pieces.
     std::vector<Vec2> way;  // through what is finite; categories have nothing between them
     const auto draw_way = [&] {
       if (way.size() > 1) canvas.path(way, ink, 2.0, kDashes[line.series % std::size(kDashes)]);
       way.clear();
     };
-    for (const ChartPoint& p : line.points)
+    for (std::size_t k = 0; k < spots.size(); ++k)
       // An infinite value stays on the way: it is drawn on the rim, where its mark is.
-      if (line.joined && !categories && !std::isnan(p.y))
-        way.push_back(spot(p, p.y));
+      if (line.joined && !categories && !std::isnan(line.points[k].y))
+        way.push_back(spots[k].place);
       else
         draw_way();
     draw_way();
-    for (const ChartPoint& p : line.points) {
+    for (std::size_t k = 0; k < spots.size(); ++k) {
+      const ChartPoint& p = line.points[k];
       if (std::isnan(p.y)) continue;
-      if (p.high > p.low) canvas.line(spot(p, p.low), spot(p, p.high), ink, 1.2);
-      draw_mark(canvas, spot(p, p.y), p.mark, line.series, ink);
+      if (p.high > p.low) canvas.line(spots[k].low, spots[k].high, ink, 1.2);
+      draw_mark(canvas, spots[k].place, spots[k].more, p.mark, line.series, ink);
     }
   }
 
   /// The form tells the series, the mark how the point came about: a ring is its form with a hole in the
-  /// panel's white, a cross is the same for all.
-  static void draw_mark(Canvas& canvas, const Vec2& p, ChartPoint::Mark mark, std::size_t series,
+  /// panel's white, a cross is the same for all. `more`: by that larger.
+  static void draw_mark(Canvas& canvas, const Vec2& p, double more, ChartPoint::Mark mark, std::size_t series,
                         const Color& ink) {
+    const double arm = 4.0 + more;
     switch (mark) {
       case ChartPoint::Mark::dot:
-        return draw_spot(canvas, p, 5.0, series, ink);
+        return draw_spot(canvas, p, 5.0 + more, series, ink);
       case ChartPoint::Mark::small_dot:
-        return draw_spot(canvas, p, 3.0, series, ink);
+        return draw_spot(canvas, p, 3.0 + more, series, ink);
       case ChartPoint::Mark::ring:
-        draw_spot(canvas, p, 5.0, series, ink);
-        return draw_spot(canvas, p, 2.6, series, kPanel);
+        draw_spot(canvas, p, 5.0 + more, series, ink);
+        return draw_spot(canvas, p, 2.6 + more, series, kPanel);
       case ChartPoint::Mark::cross:
-        canvas.line(p + Vec2(-4, -4), p + Vec2(4, 4), ink, 2.0);
-        canvas.line(p + Vec2(-4, 4), p + Vec2(4, -4), ink, 2.0);
+        canvas.line(p + Vec2(-arm, -arm), p + Vec2(arm, arm), ink, 2.0);
+        canvas.line(p + Vec2(-arm, arm), p + Vec2(arm, -arm), ink, 2.0);
     }
   }
 
-  /// One form a series, told apart without colour: disc, square, triangle, diamond, triangle on its tip, hexagon.
+  /// One form a series, told apart without colour: disc, square, triangle, diamond, triangle on its tip, star, plus, bar,
+  /// hexagon.
   static void draw_spot(Canvas& canvas, const Vec2& p, double size, std::size_t series, const Color& ink) {
-    // Corners of each form, and by what part of a turn it is turned.
-    static constexpr int corners[] = {0, 4, 3, 4, 3, 6};
-    static constexpr double turned[] = {0.0, 0.125, 0.25, 0.25, 0.75, 0.0};
-    const std::size_t form = series % std::size(corners);
-    if (corners[form] == 0) return canvas.dot(p, size, ink);
+    // Corners of each form, by what part of a turn it is turned, how far every second corner is in, and how wide it is.
+    struct Form {
+      int corners;
+      double turned, in, wide;
+    };
+    static constexpr Form forms[] = {{0, 0, 1, 1},         {4, 0.125, 1, 1},    {3, 0.25, 1, 1},
+                                     {4, 0.25, 1, 1},      {3, 0.75, 1, 1},     {10, 0.25, 0.45, 1.25},
+                                     {8, 0.0, 0.35, 1.35}, {4, 0.125, 1, 0.45}, {6, 0.0, 1, 1}};
+    const Form& form = forms[series % std::size(forms)];
+    if (form.corners == 0) return canvas.dot(p, size, ink);
     std::vector<Vec2> points;
-    for (int k = 0; k < corners[form]; ++k) {
-      const double angle = 2.0 * std::numbers::pi * (turned[form] + static_cast<double>(k) / corners[form]);
+    for (int k = 0; k < form.corners; ++k) {
+      const double angle = 2.0 * std::numbers::pi * (form.turned + static_cast<double>(k) / form.corners);
       // Corners on a circle a quarter larger: a square then has the area of the disc of that size, as 2 *
-      // 1.25^2 = 3.1 is nearly pi.
-      points.push_back(p + 1.25 * size * Vec2(std::cos(angle), std::sin(angle)));
+      // 1.25^2 = 3.1 is nearly pi. A bar is as much higher as it is narrower.
+      const double r = 1.25 * size * (k % 2 == 1 ? form.in : 1.0);
+      const double wide = form.wide, high = wide < 1.0 ? 1.0 / (2.0 * wide) + 0.3 : wide;
+      points.push_back(p + r * Vec2(wide * std::cos(angle), high * std::sin(angle)));
     }
     canvas.area(points, ink);
   }

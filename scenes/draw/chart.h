@@ -57,7 +57,8 @@ std::string power_text(int exponent);
 draw::Oklch series_color(std::size_t series);
 
 /// The chart with its legend: a colour, a form of mark and a style of line a series. Infinite points are on the upper rim,
-/// those that are no number are left out, and categories are not joined.
+/// those that are no number are left out, categories are not joined and their series stand beside each other, and a mark
+/// that others cover is larger than they.
 Picture chart_picture(const Chart& chart);
 
 /// Writes it as PNG, and as SVG beside it. @throws IoError naming the file.

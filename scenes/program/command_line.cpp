@@ -12,7 +12,9 @@
 #include <algorithm>
 #include <memory>
 
+#include "brink/core/base/error.h"
 #include "brink/core/base/printable.h"
+#include "brink/core/fields/gl_context.h"
 #include "brink/scenes/program/commands.h"
 #include "brink/scenes/toml/faults.h"
 #include "brink/scenes/version.h"
@@ -292,11 +294,20 @@ std::string misspelt(const CLI::App& program, const std::vector<std::string>& wo
   return {};
 }
 
+/// The GL that fields are drawn by. Cost: a context.
+std::string gl_that_opens() {
+  try {
+    return open_gl_context()->description();
+  } catch (const IoError& none) {
+    return fmt::format("none ({})", none.what());
+  }
+}
+
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
   CLI::App program("Brink: many rigid bodies in the plane, exact to the contact time.", "brink");
-  program.set_version_flag("--version", version_details());
+  program.set_version_flag("--version", [] { return version_details(gl_that_opens()); });
   // Exactly one command: with none the library says that one is needed.
   program.require_subcommand(1);
   program.footer(

@@ -42,6 +42,9 @@ constexpr auto kTimePerCommit = std::chrono::milliseconds(250);
 /// The index of frames by body costs a sort and about as many entries as rows: of longer runs it is
 /// left out, and who asks for one body's path reads the whole table.
 constexpr std::int64_t kMostIndexed = 2'000'000;  ///< frame rows
+/// Who stops a run does not want to wait for its indices, a microsecond a row: of more rows there are none
+/// until it has gone on to its end.
+constexpr std::int64_t kMostIndexedOfStopped = 200'000;  ///< rows of all kinds
 
 /// The state hash as the summary prints it.
 std::string hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
@@ -600,8 +603,11 @@ void RunFileRecorder::finish(const RunSummary& summary, const std::string& summa
       put.reset();
     });
     // Made once all rows are in, rather than kept up to date row by row.
-    impl_->db.exec(kRunFileIndices);
-    if (impl_->frames <= kMostIndexed) impl_->db.exec(kFrameIndex);
+    const std::int64_t rows = impl_->frames + 2 * impl_->events + impl_->knots;
+    if (summary.termination != Termination::stopped || rows <= kMostIndexedOfStopped) {
+      impl_->db.exec(kRunFileIndices);
+      if (impl_->frames <= kMostIndexed) impl_->db.exec(kFrameIndex);
+    }
     impl_->commit();
     impl_->insert_frame.reset();
     impl_->insert_site_frame.reset();

@@ -28,7 +28,8 @@
 ///                 `frame`, `event`, `contact` and `knot` came before it
 ///
 /// Views with units in their columns' names: energy_over_time, body_path, contacts_of, timeline. A run that
-/// ends makes indices by body (of frames up to 2 million rows).
+/// ends makes indices by body (of frames up to 2 million rows; one that was stopped after more than
+/// 200 000 rows makes none).
 ///
 /// meta: schema_version, brink_version, scene, title, options (JSON), scene_text, overrides (JSON), springs
 /// (JSON: body, other or null, at, other_at), attractions (JSON: bodies, center, strength, power), world_hash, termination ("running"

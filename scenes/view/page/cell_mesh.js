@@ -2,6 +2,7 @@
 // An outline as the method draws it: every site a mesh whose height is the distance to it (a cone about a point, tents over a
 // segment, a funnel over an arc).
 
+const VERTEX = 7;  // numbers of a vertex
 const OVERLAP = 0.03;  // [rad], of what meets at a vertex: no pixel falls between
 
 const directionOf = ([x, y]) => Math.atan2(y, x);
@@ -13,68 +14,69 @@ function directionAt(site, point) {
   return directionOf([point[0] - site.center[0], point[1] - site.center[1]]) + Math.sign(site.sweep) * Math.PI / 2;
 }
 
+const SECTOR = Math.PI / 3;  // of a fan, at most: a wider one is farther from round, and has more pixels than it needs
+
 /**
- * Vertices (base point, direction of growth, height, and the direction in which the distance grows on the triangles that end
- * there) and the triangles between them.
+ * Vertices and the triangles between them. What a pixel is told is q, the way to it from the nearest place of the site (of an arc
+ * from its centre), which is linear on a triangle: its distance is | |q| - arc_radius | - radius, without an error.
+ *
+ * A vertex is a base point, whence it lies off by `grow` times the farthest distance asked for and the two radii, but no more
+ * than `most`; that is its q, too.
  */
 class CellMesh {
-  /** `cone`: triangles of a whole turn. */
-  constructor(shape, cone) {
-    Object.assign(this, {cone, vertices: [], triangles: []});
-    for (const loop of shape.loops) this.loop(loop);
+  constructor(shape) {
+    Object.assign(this, {vertices: [], triangles: []});
+    for (const loop of shape.loops) {
+      // from inside of a solid it is no farther than that to its outline
+      this.inner = loop.closed && loop.solid && !shape.container ? shape.bounding_radius : Infinity;
+      this.loop(loop);
+    }
   }
 
-  vertex(x, y, dx, dy, z, way = 0) { return this.vertices.push(x, y, dx, dy, z, way) / 6 - 1; }
-  quad(a, b, c, d) { this.triangles.push(a, b, c, a, c, d); }
-  stepsOf(sweep, least) { return Math.max(least, Math.ceil(this.cone * Math.abs(sweep) / (2 * Math.PI))); }
+  vertex([x, y], gx, gy, {radius, arc_radius = 0}, most = Infinity) {
+    return this.vertices.push(x, y, gx, gy, radius, arc_radius, Math.min(most + radius, 1e30)) / VERTEX - 1;
+  }
 
   /** Each site covers what is abreast of it, each vertex the sector between its sites' normals: what is nearest to anything is
    * nearest to what covers it. */
   loop({sites, closed}) {
     const last = sites[sites.length - 1];
-    if (sites[0].kind === 'point') { for (const site of sites) this.fan(site.a, 0, 2 * Math.PI, site.radius); return; }
+    if (sites[0].kind === 'point') { for (const site of sites) this.fan(site.a, 0, 2 * Math.PI, {radius: site.radius}); return; }
     for (const site of sites) site.kind === 'segment' ? this.tents(site) : this.funnel(site);
     for (let i = 1; i < sites.length; ++i) this.joint(sites[i - 1], sites[i]);
     if (closed) { this.joint(last, sites[0]); return; }
     const half = Math.PI + 2 * OVERLAP;
-    this.fan(sites[0].a, directionAt(sites[0], sites[0].a) + Math.PI / 2 - OVERLAP, half, sites[0].radius);
-    this.fan(last.b, directionAt(last, last.b) - Math.PI / 2 - OVERLAP, half, last.radius);
+    this.fan(sites[0].a, directionAt(sites[0], sites[0].a) + Math.PI / 2 - OVERLAP, half, {radius: sites[0].radius});
+    this.fan(last.b, directionAt(last, last.b) - Math.PI / 2 - OVERLAP, half, {radius: last.radius});
   }
 
-  fan([x, y], from, sweep, r) {
-    const steps = this.stepsOf(sweep, 1), m = 1 / Math.cos(sweep / steps / 2), top = this.vertex(x, y, 0, 0, -r);
+  fan(center, from, sweep, radii) {
+    const steps = Math.max(1, Math.ceil(Math.abs(sweep) / SECTOR)), m = 1 / Math.cos(sweep / steps / 2);
+    const top = this.vertex(center, 0, 0, radii);
     for (let i = 0; i <= steps; ++i) {
-      const a = from + sweep * i / steps, k = this.vertex(x, y, m * Math.cos(a), m * Math.sin(a), -r, a - sweep / steps / 2);
+      const a = from + sweep * i / steps, k = this.vertex(center, m * Math.cos(a), m * Math.sin(a), radii);
       if (i > 0) this.triangles.push(top, k - 1, k);
     }
   }
 
-  tents({a, b, radius}) {
-    const dx = b[0] - a[0], dy = b[1] - a[1], l = Math.hypot(dx, dy) || 1, nx = -dy / l, ny = dx / l;
-    const from = this.vertex(...a, 0, 0, -radius), to = this.vertex(...b, 0, 0, -radius);
-    for (const s of [1, -1]) {
-      const way = Math.atan2(s * ny, s * nx);
-      this.quad(from, to, this.vertex(...b, s * nx, s * ny, -radius, way), this.vertex(...a, s * nx, s * ny, -radius, way));
-    }
+  /** Both sides at once: q grows from one to the other, through zero. */
+  tents(site) {
+    const {a, b} = site, dx = b[0] - a[0], dy = b[1] - a[1], l = Math.hypot(dx, dy) || 1, nx = -dy / l, ny = dx / l;
+    const corners = [[a, 1], [b, 1], [b, -1], [a, -1]];  // the solid is on the left
+    const [k] = corners.map(([at, s]) => this.vertex(at, s * nx, s * ny, site, s > 0 ? this.inner : Infinity));
+    this.triangles.push(k, k + 1, k + 2, k, k + 2, k + 3);
   }
 
-  funnel({a, center: [cx, cy], arc_radius: R, sweep, radius}) {
-    const from = directionOf([a[0] - cx, a[1] - cy]), steps = this.stepsOf(sweep, 2);
-    for (let i = 0; i <= steps; ++i) {
-      const at = from + sweep * i / steps, c = Math.cos(at), s = Math.sin(at);
-      const on = this.vertex(cx + R * c, cy + R * s, 0, 0, -radius), out = this.vertex(cx + R * c, cy + R * s, c, s, -radius, at);
-      const bottom = this.vertex(cx, cy, 0, 0, R - radius, at + Math.PI);  // inwards to the centre, where it is R away
-      if (i === 0) continue;
-      this.quad(on - 3, on, out, out - 3);
-      this.triangles.push(on - 3, on, bottom);
-    }
+  /** A fan about the arc's centre covers what is nearer to the centre, too. */
+  funnel({a, center, sweep, radius, arc_radius}) {
+    this.fan(center, directionOf([a[0] - center[0], a[1] - center[1]]), sweep, {radius, arc_radius});
   }
 
   joint(before, after) {
     const from = directionAt(before, before.b), turn = turnTo(from, directionAt(after, after.a));
-    if (before.radius !== after.radius) { this.fan(after.a, 0, 2 * Math.PI, after.radius); return; }
+    if (before.radius !== after.radius) { this.fan(after.a, 0, 2 * Math.PI, {radius: after.radius}); return; }
     const over = Math.sign(turn || 1) * OVERLAP;
-    const side = (sign, sweep) => this.fan(after.a, from + sign * Math.PI / 2 - over, sweep + 2 * over, after.radius);
+    const side = (sign, sweep) => this.fan(after.a, from + sign * Math.PI / 2 - over, sweep + 2 * over, {radius: after.radius});
     side(turn > 0 ? -1 : 1, turn);
     if (Math.abs(turn) < OVERLAP) side(turn > 0 ? 1 : -1, turn);
   }

@@ -5,8 +5,6 @@
 // Where a computer is too slow for that (pace.js) the first pass has fewer pixels. The second one goes on from each of them
 // along its slope, so that borders stay where they are, and lines.
 
-// Triangles of a whole turn, and up to which radius [pixels] of a cone they will do: it is off by a quarter of a pixel then.
-const CONES = [[12, 7.4], [24, 30], [96, Infinity]];
 const COLORS = 1024;  // in a row of their texture
 const WAYS = 4096;  // directions of a whole turn; 2^20 owners are left
 
@@ -14,34 +12,48 @@ const ROW = 512;  // things in a row of their texture, two texels each
 // A mesh is kept many times in one: software draws each instance by itself, which costs more than its few triangles.
 const BUNDLE = 2048, MOST_COPIES = 128;  // vertices, copies
 
+// Of a vertex (cell_mesh.js), and which of the copies it is of.
+const COLUMNS_OF_MESH = [['base', 2, 0], ['grow', 2, 2], ['radii', 2, 4], ['most', 1, 6], ['copy', 1, 7]];
+
 const MESH_VERTEX = `#version 300 es
-in vec2 base; in vec2 grow; in float low; in float way; in float copy;
+in vec2 base; in vec2 grow; in vec2 radii; in float most; in float copy;
 uniform highp sampler2D things;    // x, y, cosine, sine; whose it is, and how far it reaches [m]
 uniform ivec3 which;    // the first, the one behind the last, copies in a mesh
 uniform vec2 view;    // scale to clip space
-uniform float deepest;    // [m]
-out float height; flat out uint owner;    // with the direction in which the distance grows behind it
+out vec2 q; flat out vec2 sizes; flat out uint owner;
 void main() {
   int k = which.x + gl_InstanceID * which.z + int(copy);
-  height = 0.0;
-  owner = 0u;
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);    // nowhere
+  q = vec2(0.0);
+  sizes = radii;
+  owner = 0u;
   if (k >= which.y) return;
   ivec2 at = ivec2(2 * (k % ${ROW}), k / ${ROW});
   vec4 pose = texelFetch(things, at, 0);
-  vec2 cell = texelFetch(things, at + ivec2(1, 0), 0).xy, v = base + cell.y * grow;
-  vec2 p = pose.xy + vec2(pose.z * v.x - pose.w * v.y, pose.w * v.x + pose.z * v.y);
-  height = low + (dot(grow, grow) > 0.0 ? cell.y : 0.0);
-  vec2 away = vec2(pose.z * cos(way) - pose.w * sin(way), pose.w * cos(way) + pose.z * sin(way));
-  float across = away.x / (abs(away.x) + abs(away.y)), quarters = away.y < 0.0 ? 3.0 + across : 1.0 - across;
-  owner = (uint(cell.x) + 1u) * ${WAYS}u + uint(quarters * ${WAYS / 4}.0) % ${WAYS}u;
-  gl_Position = vec4(p * view, clamp(height / deepest, -1.0, 1.0) * 0.999, 1.0);
+  vec2 cell = texelFetch(things, at + ivec2(1, 0), 0).xy, v = min(radii.x + radii.y + cell.y, most) * grow;
+  q = vec2(pose.z * v.x - pose.w * v.y, pose.w * v.x + pose.z * v.y);
+  owner = (uint(cell.x) + 1u) * ${WAYS}u;
+  vec2 p = pose.xy + vec2(pose.z * base.x - pose.w * base.y, pose.w * base.x + pose.z * base.y) + q;
+  gl_Position = vec4(p * view, 0.0, 1.0);
 }`;
-const MESH_FRAGMENT = `#version 300 es
+// `coarse`: the second pass goes on from what is seen, along its slope.
+const meshFragment = coarse => `#version 300 es
+#define COARSE ${coarse}
 precision highp float;
-in float height; flat in uint owner;
-out uvec2 seen;    // 0: nobody's
-void main() { seen = uvec2(owner, floatBitsToUint(height)); }`;
+in vec2 q; flat in vec2 sizes; flat in uint owner;    // see cell_mesh.js
+uniform float deepest;    // [m]
+out uvec2 seen;    // whose, with the direction in which the distance grows; the distance. 0: nobody's
+void main() {
+  float l = length(q), height = abs(l - sizes.y) - sizes.x;
+  uint way = 0u;
+#if COARSE
+  vec2 away = l < sizes.y ? -q : q;
+  float across = away.x / max(abs(away.x) + abs(away.y), 1e-30), quarters = away.y < 0.0 ? 3.0 + across : 1.0 - across;
+  way = uint(quarters * ${WAYS / 4}.0) % ${WAYS}u;
+#endif
+  seen = uvec2(owner + way, floatBitsToUint(height));
+  gl_FragDepth = 0.5 + 0.4995 * clamp(height / deepest, -1.0, 1.0);
+}`;
 const PAINT_VERTEX = `#version 300 es
 void main() { gl_Position = vec4(vec2[3](vec2(-1, -1), vec2(3, -1), vec2(-1, 3))[gl_VertexID], 0.0, 1.0); }`;
 // `coarse`: the first pass has fewer pixels, 0 or 1.
@@ -130,11 +142,11 @@ class Cells {
     this.gl = gl;
     this.canvas = canvas;
     this.shapes = shapes;
-    this.meshProgram = this.program(MESH_VERTEX, MESH_FRAGMENT, ['things', 'which', 'view', 'deepest']);
+    this.meshPrograms = [0, 1].map(coarse => this.program(MESH_VERTEX, meshFragment(coarse), ['things', 'which', 'view', 'deepest']));
     this.paintPrograms = [0, 1].map(coarse =>
       this.program(PAINT_VERTEX, paintFragment(coarse), ['seen', 'colors', 'coarse', 'scenery', 'ring', 'pixel', 'large', 'paper']));
-    if (![this.meshProgram, ...this.paintPrograms].every(made => made)) { this.gl = null; return; }
-    this.meshes = CONES.map(() => []);
+    if (![...this.meshPrograms, ...this.paintPrograms].every(made => made)) { this.gl = null; return; }
+    this.meshes = [];
     this.nothing = gl.createVertexArray();
     this.seen = this.texture();
     this.colors = this.texture();
@@ -149,13 +161,17 @@ class Cells {
 
   /** True where the browser has no graphics card for it. */
   get bySoftware() {
-    const {gl} = this, told = gl && gl.getExtension('WEBGL_debug_renderer_info');
-    const name = gl ? String(gl.getParameter(told ? told.UNMASKED_RENDERER_WEBGL : gl.RENDERER)) : '';
-    return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+    if (this.software === undefined) {
+      const {gl} = this, told = gl && gl.getExtension('WEBGL_debug_renderer_info');
+      const name = gl ? String(gl.getParameter(told ? told.UNMASKED_RENDERER_WEBGL : gl.RENDERER)) : '';
+      this.software = /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+    }
+    return this.software;
   }
 
   program(vertex, fragment, uniforms) {
     const gl = this.gl, name = gl.createProgram();
+    COLUMNS_OF_MESH.forEach(([column], k) => gl.bindAttribLocation(name, k, column));
     for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
       const shader = gl.createShader(kind);
       gl.shaderSource(shader, text);
@@ -189,16 +205,15 @@ class Cells {
   }
 
   /** The mesh of a shape, made when it is first seen. */
-  mesh(shape, level) {
-    const of = this.meshes[level];
-    if (of[shape]) return of[shape];
-    const gl = this.gl, {vertices, triangles} = new CellMesh(this.shapes[shape], CONES[level][0]), n = vertices.length / 6;
+  mesh(shape) {
+    if (this.meshes[shape]) return this.meshes[shape];
+    const gl = this.gl, {vertices, triangles} = new CellMesh(this.shapes[shape]), n = vertices.length / VERTEX, width = VERTEX + 1;
     const copies = Math.min(MOST_COPIES, Math.max(1, Math.floor(BUNDLE / n)));
-    const corners = new Float32Array(7 * n * copies), faces = new Uint32Array(triangles.length * copies);
+    const corners = new Float32Array(width * n * copies), faces = new Uint32Array(triangles.length * copies);
     for (let c = 0; c < copies; ++c) {
       for (let i = 0; i < n; ++i) {
-        for (let j = 0; j < 6; ++j) corners[7 * (c * n + i) + j] = vertices[6 * i + j];
-        corners[7 * (c * n + i) + 6] = c;
+        for (let j = 0; j < VERTEX; ++j) corners[width * (c * n + i) + j] = vertices[VERTEX * i + j];
+        corners[width * (c * n + i) + VERTEX] = c;
       }
       for (let i = 0; i < triangles.length; ++i) faces[c * triangles.length + i] = c * n + triangles[i];
     }
@@ -206,14 +221,13 @@ class Cells {
     gl.bindVertexArray(array);
     gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
     gl.bufferData(gl.ARRAY_BUFFER, corners, gl.STATIC_DRAW);
-    for (const [name, size, offset] of [['base', 2, 0], ['grow', 2, 8], ['low', 1, 16], ['way', 1, 20], ['copy', 1, 24]]) {
-      const where = gl.getAttribLocation(this.meshProgram.name, name);
+    COLUMNS_OF_MESH.forEach(([, size, offset], where) => {
       gl.enableVertexAttribArray(where);
-      gl.vertexAttribPointer(where, size, gl.FLOAT, false, 28, offset);
-    }
+      gl.vertexAttribPointer(where, size, gl.FLOAT, false, 4 * width, 4 * offset);
+    });
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, faces, gl.STATIC_DRAW);
-    return of[shape] = {array, count: triangles.length, copies};
+    return this.meshes[shape] = {array, count: triangles.length, copies};
   }
 
   /** Of every owner, [r, g, b]. */
@@ -236,12 +250,12 @@ class Cells {
     this.fit(...(detail.mesh === detail.paint ? [w, h] : of(detail.mesh)));
     const [columns, rows] = this.size;
     gl.viewport(0, 0, columns, rows);
-    this.drawMeshes(things, {x, y, across: 2 * scale / width, up: 2 * scale / height, scale: scale * columns / width},
-      1.5 * Math.hypot(width, height) / scale);
+    const coarse = columns < w ? 1 : 0;
+    this.drawMeshes(things, {x, y, across: 2 * scale / width, up: 2 * scale / height}, 1.5 * Math.hypot(width, height) / scale, coarse);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(0, 0, w, h);
     gl.disable(gl.DEPTH_TEST);
-    const {name, at} = this.paintPrograms[columns < w ? 1 : 0];
+    const {name, at} = this.paintPrograms[coarse];
     gl.useProgram(name);
     gl.bindVertexArray(this.nothing);
     gl.activeTexture(gl.TEXTURE1);
@@ -257,31 +271,37 @@ class Cells {
     gl.uniform1f(at.large, width / w);
     gl.uniform3f(at.paper, ...looks.paper);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
+    this.begin();
+  }
+
+  /** What was told is begun with: a flush alone is put off until something else is drawn. */
+  begin() {
+    const {gl} = this, fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    gl.deleteSync(fence);
   }
 
   /** `all`: farther than that nothing is seen [m]. */
-  drawMeshes(things, view, all) {
-    const gl = this.gl, {at, name} = this.meshProgram, n = things.count, {shapes} = this;
+  drawMeshes(things, view, all, coarse) {
+    const gl = this.gl, {at, name} = this.meshPrograms[coarse], n = things.count, {shapes} = this;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
     gl.clearBufferuiv(gl.COLOR, 0, [0, 0, 0, 0]);
     gl.clearBufferfv(gl.DEPTH, 0, [1]);
     gl.enable(gl.DEPTH_TEST);
     gl.useProgram(name);
     // things of one mesh follow each other
-    const levels = CONES.length, starts = new Int32Array(shapes.length * levels + 1), which = new Int32Array(n);
+    const starts = new Int32Array(shapes.length + 1);
     let deepest = 0;
     for (let i = 0; i < n; ++i) {
-      const far = Math.min(things.reach[i], all), size = Math.max(far, shapes[things.shape[i]].bounding_radius) * view.scale;
-      deepest = Math.max(deepest, far);
-      which[i] = things.shape[i] * levels + CONES.findIndex(([, largest]) => size < largest);
-      ++starts[which[i] + 1];
+      deepest = Math.max(deepest, Math.min(things.reach[i], all));
+      ++starts[things.shape[i] + 1];
     }
-    for (let m = 0; m + 1 < starts.length; ++m) starts[m + 1] += starts[m];
+    for (let m = 0; m < shapes.length; ++m) starts[m + 1] += starts[m];
     const rows = Math.max(1, Math.ceil(n / ROW)), next = starts.slice();
     if (this.places.length < 8 * ROW * rows) this.places = new Float32Array(8 * ROW * rows);
     const {places} = this;
     for (let i = 0; i < n; ++i) {
-      let to = 8 * next[which[i]]++;
+      let to = 8 * next[things.shape[i]]++;
       // places relative to the view: nothing is lost far from the origin
       places[to++] = things.x[i] - view.x; places[to++] = things.y[i] - view.y;
       places[to++] = Math.cos(things.angle[i]); places[to++] = Math.sin(things.angle[i]);
@@ -293,10 +313,10 @@ class Cells {
     gl.uniform1i(at.things, 0);
     gl.uniform1f(at.deepest, deepest);
     gl.uniform2f(at.view, view.across, view.up);
-    for (let m = 0; m + 1 < starts.length; ++m) {
+    for (let m = 0; m < shapes.length; ++m) {
       const count = starts[m + 1] - starts[m];
       if (!count) continue;
-      const mesh = this.mesh(Math.floor(m / levels), m % levels), bundles = Math.ceil(count / mesh.copies);
+      const mesh = this.mesh(m), bundles = Math.ceil(count / mesh.copies);
       gl.bindVertexArray(mesh.array);
       gl.uniform3i(at.which, starts[m], starts[m + 1], mesh.copies);
       // of a bundle that is not full the copies in use alone

@@ -34,12 +34,6 @@ function lastAtOrBefore(times, t, from = 0, to = times.length) {
   return low >= from ? low : -1;
 }
 
-/** Value and slope of the cubic through (0, a) and (h, b) with slopes va, vb, at s of [0, h]. */
-function cubic(a, va, b, vb, h, s) {
-  const d = (b - a) / h, c2 = (3 * d - 2 * va - vb) / h, c3 = (va + vb - 2 * d) / (h * h);
-  return [a + s * (va + s * (c2 + s * c3)), va + s * (2 * c2 + 3 * s * c3)];
-}
-
 const COLUMNS = ['x', 'y', 'angle', 'vx', 'vy', 'omega'];
 
 /** What is known of a body where it passes an event or a knot; and the two sides of an event. */
@@ -61,9 +55,9 @@ class Frames {
   constructor(times, count, values) {
     Object.assign(this, {times, count, values});
   }
-  /** The six numbers of a thing at a frame. */
-  at(frame, k) {
-    return this.values.map(column => column[frame * this.count + k]);
+  /** Puts the six numbers of a thing at a frame into `out`. */
+  at(frame, k, out) {
+    for (let c = 0, row = frame * this.count + k; c < 6; ++c) out[c] = this.values[c][row];
   }
 }
 
@@ -76,6 +70,8 @@ class Motions {
     const moving = about.sites.map((s, k) => s.moving ? k : -1).filter(k => k >= 0);
     this.movingPlace = new Map(moving.map((k, i) => [k, i]));
     this.siteFrames = new Frames(n.frame_t, moving.length, COLUMNS.map(c => n['site_' + c]));
+    this.left = new Float64Array(6);  // the states before and after the time asked for
+    this.right = new Float64Array(6);
     this.takeStates(n, about.first_event || 0);
   }
 
@@ -128,47 +124,58 @@ class Motions {
     Object.assign(this, {eventsOf: of, eventTimes: times, eventRows: rows, lastPassed});
   }
 
-  /** [x, y, angle, vx, vy, omega] of body k at time t; where it jumps, of after. */
-  body(k, t) {
-    const {times} = this.frames, last = times.length - 1;
-    const f = Math.max(0, lastAtOrBefore(times, t));
-    let left = this.frames.at(f, k), tl = times[f];
-    let right = f < last ? this.frames.at(f + 1, k) : null, tr = f < last ? times[f + 1] : Infinity;
-    const from = this.eventsOf[k], to = this.eventsOf[k + 1];
-    const e = to > from ? lastAtOrBefore(this.eventTimes, t, from, to) : -1;
-    const rows = this.eventRows;
-    if (e >= from && this.eventTimes[e] >= tl) {
-      left = [rows[9 * e], rows[9 * e + 1], rows[9 * e + 2], rows[9 * e + 6], rows[9 * e + 7], rows[9 * e + 8]];
-      tl = this.eventTimes[e];
-    }
+  /** [x, y, angle, vx, vy, omega] of body k at time t; where it jumps, of after. Into `out`, which it gives back. */
+  body(k, t, out = new Array(6)) {
+    const {frames, eventRows: rows, eventTimes, left, right} = this, {times} = frames, last = times.length - 1;
+    const f = Math.max(0, lastAtOrBefore(times, t)), from = this.eventsOf[k], to = this.eventsOf[k + 1];
+    let tl = times[f], tr = Infinity;
+    const e = to > from ? lastAtOrBefore(eventTimes, t, from, to) : -1;
+    if (e >= from && eventTimes[e] >= tl) {
+      tl = eventTimes[e];
+      for (let c = 0; c < 3; ++c) { left[c] = rows[9 * e + c]; left[c + 3] = rows[9 * e + c + 6]; }
+    } else frames.at(f, k, left);
     const g = e >= from ? e + 1 : from;
-    if (g < to && this.eventTimes[g] <= tr) {
-      right = Array.from(rows.subarray(9 * g, 9 * g + 6));
-      tr = this.eventTimes[g];
-    }
+    if (f < last) tr = times[f + 1];
+    if (g < to && eventTimes[g] <= tr) {
+      tr = eventTimes[g];
+      for (let c = 0; c < 6; ++c) right[c] = rows[9 * g + c];
+    } else if (f < last) frames.at(f + 1, k, right);
     // of a run that goes on the next state is not known yet: free flight
-    if (!right && this.gravity && t > tl) return falling(left, t - tl, this.gravity);
-    return between(left, tl, right, tr, t);
+    if (tr === Infinity && this.gravity && t > tl) return falling(left, t - tl, this.gravity, out);
+    return between(left, tl, right, tr, t, out);
   }
 
   /** The same of a fixed site. */
-  site(k, t) {
-    const place = this.movingPlace.get(k);
-    if (place === undefined) return [0, 0, 0, 0, 0, 0];
-    const {times} = this.siteFrames, f = Math.max(0, lastAtOrBefore(times, t)), more = f + 1 < times.length;
-    return between(this.siteFrames.at(f, place), times[f], more ? this.siteFrames.at(f + 1, place) : null,
-      more ? times[f + 1] : Infinity, t);
+  site(k, t, out = new Array(6)) {
+    const place = this.movingPlace.get(k), {siteFrames, left, right} = this, {times} = siteFrames;
+    if (place === undefined) return out.fill(0);
+    const f = Math.max(0, lastAtOrBefore(times, t)), more = f + 1 < times.length;
+    siteFrames.at(f, place, left);
+    if (more) siteFrames.at(f + 1, place, right);
+    return between(left, times[f], right, more ? times[f + 1] : Infinity, t, out);
   }
 }
 
-function falling([x, y, angle, vx, vy, omega], s, [gx, gy]) {
-  return [x + s * (vx + s * gx / 2), y + s * (vy + s * gy / 2), angle + s * omega, vx + s * gx, vy + s * gy, omega];
+function falling(from, s, gravity, out) {
+  for (let c = 0; c < 3; ++c) {
+    const g = c < 2 ? gravity[c] : 0;
+    out[c] = from[c] + s * (from[c + 3] + s * g / 2);
+    out[c + 3] = from[c + 3] + s * g;
+  }
+  return out;
 }
 
-function between(left, tl, right, tr, t) {
-  const s = t - tl, h = tr - tl;
-  if (!right || !(h > 0) || !(s > 0)) return left;
-  const out = new Array(6);
-  for (let c = 0; c < 3; ++c) [out[c], out[c + 3]] = cubic(left[c], left[c + 3], right[c], right[c + 3], h, s);
+/** The cubics from `left` at time tl to `right` at tr, and their slopes; where there is no such time, `left`. */
+function between(left, tl, right, tr, t, out) {
+  const s = t - tl, h = tr - tl, known = h > 0 && h < Infinity && s > 0;
+  for (let c = 0; c < 3; ++c) {
+    const a = left[c], va = left[c + 3];
+    out[c] = a;
+    out[c + 3] = va;
+    if (!known) continue;
+    const d = (right[c] - a) / h, c2 = (3 * d - 2 * va - right[c + 3]) / h, c3 = (va + right[c + 3] - 2 * d) / (h * h);
+    out[c] = a + s * (va + s * (c2 + s * c3));
+    out[c + 3] = va + s * (2 * c2 + 3 * s * c3);
+  }
   return out;
 }

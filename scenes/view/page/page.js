@@ -45,17 +45,18 @@ class Player {
   async follow() {
     if (!about.live) return;
     byId('live').hidden = false;
-    const ask = async what => { await fetch(what, {method: 'POST', headers: {'X-Brink': 'page'}}); };
+    const ask = async what => { await fetch(what, {method: 'POST', headers: {'X-Brink': 'page'}}).catch(() => null); };
     byId('live-pause').onclick = () => ask('pause');
     byId('live-step').onclick = () => ask('step');
     byId('live-go').onclick = () => ask('go');
     this.seek(this.end);
     while (about.live) {
       await new Promise(resolve => setTimeout(resolve, 500));
-      const answer = await fetch('data').catch(() => null);
-      if (!answer) { byId('ending').textContent += ' (the run is gone)'; break; }
-      if (!answer.ok) continue;
-      const {about: newer, numbers} = await answer.json();
+      // null: nobody answers, or not to the end; undefined: there is nothing new yet
+      const answer = await fetch('data').then(a => a.ok ? a.json() : undefined).catch(() => null);
+      if (answer === null) { byId('ending').textContent += ' (the run is gone)'; break; }
+      if (!answer) continue;
+      const {about: newer, numbers} = answer;
       this.take(newer, await inflated(numbers, newer.arrays));
     }
     byId('live').hidden = true;
@@ -138,14 +139,14 @@ class Player {
     // what happened in the last fifth of a second on the screen
     this.picture.flash = this.playing ? 0.2 * this.speed : 1e-12 * Math.max(1, this.t);
     if (byId('follow').checked && this.picture.selected >= 0) {
-      const [x, y] = this.motions.body(this.picture.selected, this.t);
-      Object.assign(this.picture.view, {x, y});
+      const pose = this.motions.body(this.picture.selected, this.t), [u, v] = this.picture.offsets(pose)[0];
+      Object.assign(this.picture.view, {x: pose[0] + u, y: pose[1] + v});
     }
     this.picture.draw(this.t);
+    this.placeCursor();  // looks at the layout, which what follows changes
     if (document.activeElement !== byId('time')) byId('time').value = String(this.t);
     byId('printed-time').textContent = `t = ${this.t} s`;    // the box is not on paper
     byId('scrub').value = this.t;
-    this.placeCursor();
     if (this.playing && now - (this.tablesShown || 0) < 250) return;
     this.tablesShown = now;
     this.showState();

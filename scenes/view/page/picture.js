@@ -8,6 +8,9 @@ const LAYERS = [
   ['names', 'names', false],
 ];
 
+const ITSELF = [[0, 0]];
+const CONTACT_INK = '#d03030';
+const MOST_CONTACTS = 300;  // more at once would cover what they tell of
 const MARK_FROM = 7;  // [px], a smaller body carries no mark of how it has turned
 
 /** An outline as paths: what is filled, and what is stroked (thickness, crisp edge). */
@@ -46,9 +49,11 @@ class Picture {
     // without a graphics card a canvas in memory is ten times as fast
     this.ctx = this.canvas.getContext('2d', {willReadFrequently: this.cells.bySoftware});
     this.paths = about.shapes.map(pathsOf);
-    this.reach = new Reach();
+    this.reach = new Reach(about.shapes);
     this.things = new Things();
     this.detail = DETAILS[0];
+    this.poses = [];
+    this.sitePoses = [];
     this.layers = Object.fromEntries(LAYERS.map(([key, , on]) => [key, on]));
     this.view = {x: 0, y: 0, scale: 1};  // centre [m], pixels a metre
     this.selected = -1;
@@ -90,14 +95,12 @@ class Picture {
 
   /** A disc, which looks the same however it has turned: its rim is what a larger one leaves to be seen. */
   disc(radius, [x, y, angle], ink) {
-    const {ctx} = this, [px, py] = this.toPixels(x, y), r = radius * this.view.scale, half = ink.width * this.ratio / 2;
+    const {ctx, view, canvas} = this, px = canvas.width / 2 + (x - view.x) * view.scale, py = canvas.height / 2 - (y - view.y) * view.scale;
+    const r = radius * view.scale, half = ink.width * this.ratio / 2;
+    if (px + r + half < 0 || py + r + half < 0 || px - r - half > canvas.width || py - r - half > canvas.height) return;
     this.leave();
-    for (const [size, color] of [[r + half, ink.line], [Math.max(0, r - half), ink.fill]]) {
-      ctx.fillStyle = color;
-      ctx.beginPath();
-      ctx.arc(px, py, size, 0, 2 * Math.PI);
-      ctx.fill();
-    }
+    this.round(px, py, r + half, ink.line);
+    this.round(px, py, Math.max(0, r - half), ink.fill);
     if (!ink.spoke || r < MARK_FROM * this.ratio) return;
     ctx.strokeStyle = ink.line;
     ctx.lineWidth = 2 * half;
@@ -105,6 +108,15 @@ class Picture {
     ctx.moveTo(px, py);
     ctx.lineTo(px + r * Math.cos(angle), py - r * Math.sin(angle));
     ctx.stroke();
+  }
+
+  /** Surfaces like this one are sooner done as ellipses than as arcs. */
+  round(px, py, r, color) {
+    const {ctx} = this;
+    ctx.fillStyle = color;
+    ctx.beginPath();
+    ctx.ellipse(px, py, r, r, 0, 0, 2 * Math.PI);
+    ctx.fill();
   }
 
   outline(shape, pose, ink) {
@@ -139,25 +151,27 @@ class Picture {
     }
   }
 
-  arrow(from, to, color, width) {
-    const {ctx} = this, [ax, ay] = this.toPixels(...from), [bx, by] = this.toPixels(...to);
-    const l = Math.hypot(bx - ax, by - ay), h = Math.min(8 * this.ratio, l / 2), ux = (bx - ax) / l, uy = (by - ay) / l;
+  /** A surface, which is sooner done than lines. */
+  arrow(ax, ay, bx, by, color, width) {
+    const {ctx} = this, l = Math.hypot(bx - ax, by - ay), ux = (bx - ax) / l, uy = (by - ay) / l;
     if (!(l > 1)) return;
-    ctx.strokeStyle = ctx.fillStyle = color;
-    ctx.lineWidth = width * this.ratio;
+    const long = Math.min(8 * this.ratio, l / 2), wide = 0.4 * long, w = width * this.ratio / 2, nx = bx - long * ux, ny = by - long * uy;
+    ctx.fillStyle = color;
     ctx.beginPath();
-    ctx.moveTo(ax, ay);
+    ctx.moveTo(ax - w * uy, ay + w * ux);
+    ctx.lineTo(nx - w * uy, ny + w * ux);
+    ctx.lineTo(nx - wide * uy, ny + wide * ux);
     ctx.lineTo(bx, by);
-    ctx.moveTo(bx - h * ux + h / 2 * uy, by - h * uy - h / 2 * ux);
-    ctx.lineTo(bx, by);
-    ctx.lineTo(bx - h * ux - h / 2 * uy, by - h * uy + h / 2 * ux);
-    ctx.stroke();
+    ctx.lineTo(nx + wide * uy, ny - wide * ux);
+    ctx.lineTo(nx + w * uy, ny - w * ux);
+    ctx.lineTo(ax + w * uy, ay - w * ux);
+    ctx.fill();
   }
 
   /** Where the images of a thing are seen; itself first. */
   offsets(pose) {
     const [px, py] = this.about.periods;
-    if (!(px > 0 || py > 0)) return [[0, 0]];
+    if (!(px > 0 || py > 0)) return ITSELF;
     const xs = px > 0 ? [-px, 0, px] : [0], ys = py > 0 ? [-py, 0, py] : [0];
     // the image in the box, and those beside it
     const inX = px > 0 ? -px * Math.floor(pose[0] / px) : 0, inY = py > 0 ? -py * Math.floor(pose[1] / py) : 0;
@@ -172,11 +186,13 @@ class Picture {
     this.leave();
     ctx.clearRect(0, 0, this.canvas.width, this.canvas.height);
     this.t = t;
-    this.poses = about.bodies.map((b, k) => this.motions.body(k, t));
-    this.sitePoses = about.sites.map((s, k) => this.motions.site(k, t));
+    this.poses.length = about.bodies.length;
+    this.sitePoses.length = about.sites.length;
+    for (let k = 0; k < this.poses.length; ++k) this.poses[k] = this.motions.body(k, t, this.poses[k]);
+    for (let k = 0; k < this.sitePoses.length; ++k) this.sitePoses[k] = this.motions.site(k, t, this.sitePoses[k]);
     const cells = this.cells.works && (layers.cells || layers.pass);
     if (this.cells.works) this.cells.canvas.hidden = !cells;
-    if (cells) this.drawCells();
+    if (cells) this.drawCells();  // first: others than this thread draw them, while it draws what is above
     // containers first: they cover all that is outside of them
     for (const container of [true, false])
       about.sites.forEach((s, k) => {
@@ -193,11 +209,29 @@ class Picture {
     if (layers.names) this.drawNames();
     this.drawBox();
     this.drawRuler();
+    // the browser waits for the cells before it draws what it was told of a canvas in memory, unless that is asked for
+    if (cells && this.cells.bySoftware) ctx.getImageData(0, 0, 1, 1);
+  }
+
+  /** Where the images of a mark at a place [m] are seen [px], if it is no larger than `size` [px]. */
+  seenAt(x, y, size) {
+    const {width, height} = this.canvas, all = [];
+    for (const [u, v] of this.offsets([x, y])) {
+      const at = this.toPixels(x + u, y + v);
+      if (at[0] > -size && at[1] > -size && at[0] < width + size && at[1] < height + size) all.push(at);
+    }
+    return all;
+  }
+
+  /** The image of a place that is nearest to another. */
+  beside(x, y, [u, v]) {
+    const [px, py] = this.about.periods;
+    return [px > 0 ? x + px * Math.round((u - x) / px) : x, py > 0 ? y + py * Math.round((v - y) / py) : y];
   }
 
   siteOffsets() {
     const [px, py] = this.about.periods, all = [];
-    if (!this.layers.images || !(px > 0 || py > 0)) return [[0, 0]];
+    if (!this.layers.images || !(px > 0 || py > 0)) return ITSELF;
     for (const x of px > 0 ? [-px, 0, px] : [0]) for (const y of py > 0 ? [-py, 0, py] : [0]) all.push([x, y]);
     return all;
   }
@@ -220,111 +254,122 @@ class Picture {
     if (this.coloured !== this.about) {
       this.coloured = this.about;
       this.cells.setColors([...sites.map(s => s.cell), ...bodies.map((b, k) => shade(b.cell, k))]);
-      this.radii = shapes.map(s => s.bounding_radius);
       this.closed = sites.some(s => shapes[s.shape].container);
     }
     const wanted = 40 * this.ratio / this.view.scale, decade = 10 ** Math.floor(Math.log10(wanted));
     const ring = [1, 2, 5, 10].map(m => m * decade).find(s => s >= wanted) || wanted;
-    this.reach.find(things, first, {radii: this.radii, view: this.view, width, height, closed: this.closed, extent});
+    this.reach.find(things, first, {view: this.view, width, height, closed: this.closed, extent});
     this.cells.draw(things, this.view, [width, height], {ring, paper: this.paper, fixed: this.about.sites.length}, this.detail);
   }
 
   drawBodies() {
-    const pass = this.layers.pass && this.selected >= 0;
-    this.about.bodies.forEach((b, k) => {
-      const sketched = pass && k === this.selected;
-      for (const [x, y] of this.offsets(this.poses[k]))
-        this.outline(b.shape, moved(this.poses[k], x, y), {fill: sketched ? 'transparent' : b.fill,
-          line: k === this.selected ? '#d03030' : b.line, width: k === this.selected ? 2.6 : 1.2, spoke: true});
-    });
+    const {bodies} = this.about, {selected} = this, pass = this.layers.pass && selected >= 0;
+    if (this.inked !== this.about) {
+      this.inked = this.about;
+      this.inks = bodies.map(b => ({fill: b.fill, line: b.line, width: 1.2, spoke: true}));
+    }
+    for (let k = 0; k < bodies.length; ++k) {
+      const ink = k !== selected ? this.inks[k] : {fill: pass ? 'transparent' : bodies[k].fill, line: '#d03030', width: 2.6, spoke: true};
+      for (const [x, y] of this.offsets(this.poses[k])) this.outline(bodies[k].shape, moved(this.poses[k], x, y), ink);
+    }
   }
 
   drawSprings() {
     const {ctx} = this;
+    this.leave();
+    ctx.strokeStyle = '#7a6a3a';
+    ctx.lineWidth = 1.3 * this.ratio;
     for (const s of this.about.springs) {
       const a = placed(this.poses[s.body], s.at), b = s.other === null ? s.other_at : placed(this.poses[s.other], s.other_at);
-      const [ax, ay] = this.toPixels(...a), [bx, by] = this.toPixels(...b), l = Math.hypot(bx - ax, by - ay);
-      const turns = 9, w = Math.min(6 * this.ratio, l / 6), ux = (bx - ax) / l, uy = (by - ay) / l;
-      this.leave();
-      ctx.strokeStyle = '#7a6a3a';
-      ctx.lineWidth = 1.3 * this.ratio;
-      ctx.beginPath();
-      ctx.moveTo(ax, ay);
-      for (let i = 1; i < turns; ++i) {
-        const at = i / turns, side = i % 2 ? w : -w;
-        ctx.lineTo(ax + at * (bx - ax) - side * uy, ay + at * (by - ay) + side * ux);
-      }
-      ctx.lineTo(bx, by);
-      ctx.stroke();
-    }
-  }
-
-  /** Where bodies have been in the last part of the run. */
-  drawTrails() {
-    const {ctx, motions} = this, looks = 120, span = (motions.end - motions.begin) / 8;
-    const some = this.selected >= 0 ? [this.selected] : this.about.bodies.map((b, k) => k).slice(0, 200);
-    this.leave();
-    ctx.lineWidth = 1.2 * this.ratio;
-    for (const k of some) {
-      ctx.strokeStyle = this.about.bodies[k].line;
-      ctx.globalAlpha = 0.6;
-      ctx.beginPath();
-      for (let i = 0; i <= looks; ++i) {
-        const s = this.t - span * (1 - i / looks);
-        if (s < motions.begin) continue;
-        const [x, y] = motions.body(k, s);
-        ctx.lineTo(...this.toPixels(x, y));
-      }
-      ctx.stroke();
-      ctx.globalAlpha = 1;
-    }
-  }
-
-  drawVelocities() {
-    this.leave();
-    const most = Math.max(1e-300, ...this.poses.map(p => Math.hypot(p[3], p[4])));
-    const scale = 60 * this.ratio / this.view.scale / most;
-    for (const p of this.poses) this.arrow([p[0], p[1]], [p[0] + scale * p[3], p[1] + scale * p[4]], '#1f7a4d', 1.6);
-  }
-
-  /** Contacts that last now: from centres to contacts, as wide as the force. */
-  drawForces() {
-    const {ctx, n} = this, now = [];
-    for (let i = 0; i < n.contact_from.length; ++i)
-      if (n.contact_from[i] <= this.t && this.t <= n.contact_to[i]) now.push(i);
-    const most = Math.max(1e-300, ...now.map(i => n.contact_force[i]));
-    this.leave();
-    ctx.strokeStyle = '#a01f5f';
-    for (const i of now) {
-      const at = this.toPixels(n.contact_x[i], n.contact_y[i]);
-      ctx.lineWidth = Math.max(0.3, 8 * this.ratio * n.contact_force[i] / most);
-      for (const k of [n.contact_body[i], n.contact_other[i]]) {
-        if (k < 0) continue;
+      const dx = (b[0] - a[0]) * this.view.scale, dy = -(b[1] - a[1]) * this.view.scale, l = Math.hypot(dx, dy);
+      const turns = 9, w = Math.min(6 * this.ratio, l / 6);
+      if (!(l > 0)) continue;
+      for (const [x, y] of this.seenAt(...a, l)) {
         ctx.beginPath();
-        ctx.moveTo(...this.toPixels(this.poses[k][0], this.poses[k][1]));
-        ctx.lineTo(...at);
+        ctx.moveTo(x, y);
+        for (let i = 1; i < turns; ++i) {
+          const at = i / turns, side = i % 2 ? w : -w;
+          ctx.lineTo(x + at * dx - side * dy / l, y + at * dy + side * dx / l);
+        }
+        ctx.lineTo(x + dx, y + dy);
         ctx.stroke();
       }
     }
   }
 
-  /** Collisions of a moment ago: where, the normal, and its impulse. */
-  drawContacts() {
-    const {ctx, n} = this, back = this.flash, first = lastAtOrBefore(n.event_t, this.t - back) + 1;
+  /** Where bodies have been in the last part of the run. */
+  drawTrails() {
+    const {ctx, motions, view: {scale}} = this, looks = 120, span = (motions.end - motions.begin) / 8;
+    const some = this.selected >= 0 ? [this.selected] : this.about.bodies.map((b, k) => k).slice(0, 200);
     this.leave();
-    let most = 0;
-    const now = [];
-    for (let k = first; k < n.event_t.length && n.event_t[k] <= this.t && now.length < 2000; ++k)
+    ctx.lineWidth = 1.2 * this.ratio;
+    ctx.globalAlpha = 0.6;
+    for (const k of some) {
+      const trail = [], [x, y] = this.poses[k];
+      let size = 0;
+      for (let i = 0; i <= looks; ++i) {
+        const s = this.t - span * (1 - i / looks);
+        if (s < motions.begin) continue;
+        const was = motions.body(k, s), to = [(was[0] - x) * scale, (y - was[1]) * scale];
+        trail.push(to);
+        size = Math.max(size, Math.hypot(...to));
+      }
+      ctx.strokeStyle = this.about.bodies[k].line;
+      for (const [px, py] of this.seenAt(x, y, size)) {
+        ctx.beginPath();
+        for (const [dx, dy] of trail) ctx.lineTo(px + dx, py + dy);
+        ctx.stroke();
+      }
+    }
+    ctx.globalAlpha = 1;
+  }
+
+  drawVelocities() {
+    this.leave();
+    const most = this.poses.reduce((far, p) => Math.max(far, Math.hypot(p[3], p[4])), 1e-300), long = 60 * this.ratio, scale = long / most;
+    for (const p of this.poses)
+      for (const [x, y] of this.seenAt(p[0], p[1], long)) this.arrow(x, y, x + scale * p[3], y - scale * p[4], '#1f7a4d', 1.6);
+  }
+
+  /** Contacts that last now: from centres to contacts, as wide as the force. */
+  drawForces() {
+    const {ctx, n, view: {scale}} = this, now = [];
+    for (let i = 0; i < n.contact_from.length; ++i)
+      if (n.contact_from[i] <= this.t && this.t <= n.contact_to[i]) now.push(i);
+    const most = now.reduce((far, i) => Math.max(far, n.contact_force[i]), 1e-300);
+    this.leave();
+    ctx.strokeStyle = '#a01f5f';
+    for (const i of now) {
+      ctx.lineWidth = Math.max(0.3, 8 * this.ratio * n.contact_force[i] / most);
+      for (const k of [n.contact_body[i], n.contact_other[i]]) {
+        if (k < 0) continue;
+        const [x, y] = this.poses[k], at = this.beside(n.contact_x[i], n.contact_y[i], this.poses[k]);
+        const dx = (at[0] - x) * scale, dy = (y - at[1]) * scale;
+        for (const [px, py] of this.seenAt(x, y, Math.hypot(dx, dy))) {
+          ctx.beginPath();
+          ctx.moveTo(px, py);
+          ctx.lineTo(px + dx, py + dy);
+          ctx.stroke();
+        }
+      }
+    }
+  }
+
+  /** Collisions of a moment ago: where, the normal, and its impulse. Where there are many, the last of them. */
+  drawContacts() {
+    const {ctx, n, ratio} = this, last = lastAtOrBefore(n.event_t, this.t), now = [];
+    let most = 0, back = this.flash;
+    for (let k = last; k >= 0 && n.event_t[k] > this.t - this.flash && now.length < MOST_CONTACTS; --k)
       if (!Number.isNaN(n.event_px[k])) { now.push(k); most = Math.max(most, n.event_in[k]); }
-    for (const k of now) {
-      const fade = back > 0 ? 1 - (this.t - n.event_t[k]) / back : 1, [px, py] = this.toPixels(n.event_px[k], n.event_py[k]);
-      ctx.globalAlpha = 0.25 + 0.75 * fade;
-      ctx.fillStyle = '#d03030';
-      ctx.beginPath();
-      ctx.arc(px, py, 3.5 * this.ratio, 0, 2 * Math.PI);
-      ctx.fill();
-      const l = (12 + 36 * (most > 0 ? n.event_in[k] / most : 0)) * this.ratio / this.view.scale;
-      this.arrow([n.event_px[k], n.event_py[k]], [n.event_px[k] + l * n.event_nx[k], n.event_py[k] + l * n.event_ny[k]], '#d03030', 1.6);
+    if (now.length === MOST_CONTACTS) back = Math.max(this.t - n.event_t[now[MOST_CONTACTS - 1]], 1e-300);
+    this.leave();
+    for (const k of now.reverse()) {
+      ctx.globalAlpha = 0.25 + 0.75 * (back > 0 ? 1 - (this.t - n.event_t[k]) / back : 1);
+      const l = (12 + 36 * (most > 0 ? n.event_in[k] / most : 0)) * ratio;
+      for (const [x, y] of this.seenAt(n.event_px[k], n.event_py[k], l)) {
+        this.round(x, y, 3.5 * ratio, CONTACT_INK);
+        this.arrow(x, y, x + l * n.event_nx[k], y - l * n.event_ny[k], CONTACT_INK, 1.6);
+      }
     }
     ctx.globalAlpha = 1;
   }
@@ -340,13 +385,13 @@ class Picture {
     ctx.strokeStyle = 'rgba(255,255,255,.8)';
     ctx.lineWidth = 3 * this.ratio;
     for (const k of bodies.map((b, i) => i).sort((a, b) => size(b) - size(a) || a - b)) {
-      const [x, y] = this.toPixels(this.poses[k][0], this.poses[k][1]);
-      if (x < 0 || y < 0 || x > this.canvas.width || y > this.canvas.height) continue;
       const half = ctx.measureText(bodies[k].name).width / 2;
-      if (taken.some(t => Math.abs(t.y - y) < high && Math.abs(t.x - x) < t.half + half)) continue;
-      taken.push({x, y, half});
-      ctx.strokeText(bodies[k].name, x, y);
-      ctx.fillText(bodies[k].name, x, y);
+      for (const [x, y] of this.seenAt(this.poses[k][0], this.poses[k][1], 0)) {
+        if (taken.some(t => Math.abs(t.y - y) < high && Math.abs(t.x - x) < t.half + half)) continue;
+        taken.push({x, y, half});
+        ctx.strokeText(bodies[k].name, x, y);
+        ctx.fillText(bodies[k].name, x, y);
+      }
     }
   }
 
@@ -384,7 +429,7 @@ class Picture {
   bodyAt(px, py) {
     const [x, y] = this.toWorld(px, py);
     let found = -1, least = Infinity;
-    (this.poses || []).forEach((p, k) => {
+    this.poses.forEach((p, k) => {
       for (const [dx, dy] of this.offsets(p)) {
         const d = Math.hypot(p[0] + dx - x, p[1] + dy - y);
         if (d <= this.about.shapes[this.about.bodies[k].shape].bounding_radius && d < least) [least, found] = [d, k];
@@ -396,7 +441,7 @@ class Picture {
 
 /** Neighbours of one hue, told apart. */
 function shade(color, k) { return color.map(c => c * (1 - 0.03 * (k % 3))); }
-function moved(pose, x, y) { return [pose[0] + x, pose[1] + y, pose[2]]; }
+function moved(pose, x, y) { return x === 0 && y === 0 ? pose : [pose[0] + x, pose[1] + y, pose[2]]; }
 function placed([x, y, angle], [u, v]) {
   return [x + u * Math.cos(angle) - v * Math.sin(angle), y + u * Math.sin(angle) + v * Math.cos(angle)];
 }

@@ -95,7 +95,7 @@ TEST(Chart, SeriesDifferForColourBlindEyes) {
 
 TEST(Chart, SeriesHaveMarksOfTheirOwn) {
   std::vector<std::vector<bool>> marks;
-  for (std::size_t k = 0; k < 6; ++k) {
+  for (std::size_t k = 0; k < 9; ++k) {
     Chart chart = chart_of({{1.0, 1.0}});
     chart.series.assign(k + 1, {"", draw::Oklch{0.628, 0.2577, 29.23}});
     chart.panels[0].lines[0].series = k;
@@ -119,6 +119,23 @@ TEST(Chart, CategoriesAreNotJoinedAndWhatIsNoNumberIsLeftOut) {
   const int numbers = joined({}, 1.0), names = joined(names_of_three, 1.0), gap = joined({}, std::nan(""));
   EXPECT_GT(numbers, 3 * names);
   EXPECT_LT(gap, names);
+}
+
+// Who has the same values as another series is seen all the same: beside it where there is room, as a rim around it elsewhere.
+TEST(Chart, CoincidentSeriesAreSeen) {
+  const auto red_of = [](ChartAxis x, std::size_t others) {
+    Chart chart = chart_of({{0.0, 1.0}, {1.0, 2.0}}, std::move(x));
+    for (std::size_t k = 0; k < others; ++k) {
+      chart.series.push_back({"other", draw::Oklch{0.4, 0.1, 265.0}});
+      chart.panels[0].lines.push_back(chart.panels[0].lines[0]);
+      chart.panels[0].lines.back().series = k + 1;
+    }
+    return Red(chart_picture(chart)).count;
+  };
+  ChartAxis names;
+  names.names = {"a", "b"};
+  EXPECT_EQ(red_of(names, 2), red_of(names, 0));
+  for (const std::size_t others : {1U, 2U, 3U}) EXPECT_GT(red_of({}, others), red_of({}, 0) / 4) << others;
 }
 
 // A long note beside a long title would be written over it.

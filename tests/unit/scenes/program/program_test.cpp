@@ -170,7 +170,8 @@ TEST_F(ProgramTest, WhatIsMisspeltIsToldWithTheNearestWord) {
 TEST_F(ProgramTest, VersionNamesCommitCompilerAndLibraries) {
   const Outcome run = brink("--version");
   EXPECT_EQ(run.status, 0);
-  for (const char* word : {"brink 0.", "commit", "GNU", "Eigen 3.", "SUNDIALS ", "SQLite 3.", "cairo 1."})
+  for (const char* word : {"brink 0.", "commit", "GNU", "Eigen 3.", "SUNDIALS ", "SQLite 3.", "cairo 1.",
+                           "HDF5", "VTK", "GL  ", "OpenGL"})
     EXPECT_THAT(run.out, ::testing::AnyOf(HasSubstr(word), HasSubstr("Clang"))) << word;
 }
 

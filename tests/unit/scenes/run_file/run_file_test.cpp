@@ -114,6 +114,27 @@ class RunFileTest : public ::testing::Test {
   Scene scene_ = two_bodies();
 };
 
+// An index costs a microsecond a row, which who stops a long run would wait for.
+TEST_F(RunFileTest, ALongRunThatIsStoppedIsNotIndexedBeforeItsEnd) {
+  const auto indices = [&](int frames, Termination termination) {
+    RunFileRecorder recorder(dir_, scene_, Open::fresh);
+    const auto states = states_at_time(0.0);
+    for (int k = 0; k < frames; ++k) recorder.frame(0.1 * k, states);
+    RunSummary summary = finished(0.1 * frames);
+    summary.termination = termination;
+    recorder.finish(summary, "{}");
+    return SQLite::Database(file().string())
+        .execAndGet("SELECT count(*) FROM sqlite_master WHERE type = 'index' AND sql IS NOT NULL")
+        .getInt();
+  };
+  const int all = indices(3, Termination::reached_end);
+  EXPECT_GE(all, 5);
+  EXPECT_EQ(indices(3, Termination::stopped), all);
+  EXPECT_EQ(indices(100'001, Termination::stopped), 0);  // of two bodies
+  EXPECT_EQ(RunFile(file()).frame_count(), 100'001);
+  EXPECT_EQ(indices(100'001, Termination::reached_end), all);
+}
+
 // Doubles go in and out of SQLite as 8-byte IEEE values, so equality is exact.
 TEST_F(RunFileTest, FramesAndEventsReadBackToTheSameBits) {
   RunFileRecorder recorder(dir_, scene_, Open::fresh);
