@@ -575,13 +575,14 @@ class PairSearch {
     if (!sharp) return false;
     const bool at_a = (path.q - site.a).squaredNorm() < (path.q - site.b).squaredNorm();
     const Vec2 tip = at_a ? site.a : site.b, way = path.q - tip;
-    if (!half.s_is_a) return meets_tip_from_a(half, f, tip);
     // the gap approaches, so the rate is not 0
     const double slow = path.rate.norm(), off = way.norm() / slow,
                  noise = view_.gap_rounding(half, f.sample, path.q);
     // A first look: along the straight way they pass each other at this distance. If that is more than
     // rounding and bending explain, they do not meet.
     if (std::abs(cross(path.rate, way)) / slow > 8.0 * noise + bounds.acceleration * off * off) return false;
+    if (const int corner = half.s_is_a ? -1 : corner_of_a(tip); corner >= 0)
+      return meets_tip_from_a(half, f, corner);
     PairView there = view_;
     const auto to_tip = [&](double t) {
       there.place(t);
@@ -625,16 +626,19 @@ class PairSearch {
     return remember(half, f, last_clear_time(clear, low, high), 2.0 * rounding / speed);
   }
 
-  /// The same, asked of a's corner, which site f.site of a has at `tip`: two tips have one moment in which they meet,
-  /// whichever of the two outlines was looked from.
-  bool meets_tip_from_a(const Half& of_b, const Feature& f, const Vec2& tip) {
+  /// The sample of a's corner that is there, in a's frame; -1 if none is.
+  int corner_of_a(const Vec2& tip) const {
+    const std::vector<Sample>& samples = view_.half(true).samples_of().samples;
+    const auto found = std::find_if(samples.begin(), samples.end(),
+                                    [&](const Sample& s) { return s.before >= 0 && s.p == tip; });
+    return found == samples.end() ? -1 : static_cast<int>(found - samples.begin());
+  }
+
+  /// The same, asked of a's corner i, which is the tip that f's sample of b comes upon: two tips have one moment in which
+  /// they meet, whichever of the two outlines was looked from.
+  bool meets_tip_from_a(const Half& of_b, const Feature& f, int i) {
     const Half& of_a = view_.half(true);
-    const std::vector<Sample>& samples = of_a.samples_of().samples;
-    const auto corner = std::find_if(samples.begin(), samples.end(),
-                                     [&](const Sample& s) { return s.before >= 0 && s.p == tip; });
-    if (corner == samples.end()) return false;
     const Sample& other = of_b.sample(f.sample);
-    const int i = static_cast<int>(corner - samples.begin());
     const SamplePath path = view_.path(of_a, i);
     // the neighbours of b's sample are asked for again
     const std::vector<SearchScratch::Neighbour> neighbours = scratch_.neighbours;
