@@ -46,19 +46,37 @@ BRINK_INLINE Result halves(double a) {
 }
 
 /// Exact where |a b| is 2^-960 or more, |a| and |b| are below 2^996 and nothing overflows; else low is 0, NaN or any
-/// rounding. By Dekker's 17 operations, on every processor.
+/// rounding. 17 operations (Dekker 1971).
+BRINK_INLINE Result product(double a, double b) {
+  const double product = a * b;
+  const Result x = halves(a), y = halves(b);
+  return {product, ((x.high * y.high - product) + x.high * y.low + x.low * y.high) + x.low * y.low};
+}
+
+#if defined(__x86_64__) && !defined(__FP_FAST_FMA)
+/// Whether this processor has fused products. Until that is known Plain does without.
+inline const bool has_fused_products = __builtin_cpu_supports("fma");
+#endif
+
+/// product(), with the same bits where that is exact, on every processor: of x86-64 some have fused products.
 struct Plain {
   BRINK_INLINE static Result product(double a, double b) {
-    const double product = a * b;
-    const Result x = halves(a), y = halves(b);
-    return {product, ((x.high * y.high - product) + x.high * y.low + x.low * y.high) + x.low * y.low};
+#if defined(__x86_64__) && !defined(__FP_FAST_FMA)
+    if (!std::is_constant_evaluated() && has_fused_products) {
+      const double product = a * b;
+      double low = product;
+      asm("vfmsub231sd %2, %1, %0" : "+x"(low) : "x"(a), "x"(b));  // a b - low, rounded once
+      return {product, low};
+    }
+#endif
+    return error_free::product(a, b);
   }
 };
 
 /// The same bits by two operations. @pre the caller runs where the processor has fused products.
 struct Fused {
   BRINK_INLINE static Result product(double a, double b) {
-    if (std::is_constant_evaluated()) return Plain::product(a, b);  // to clang it is no constant
+    if (std::is_constant_evaluated()) return error_free::product(a, b);  // to clang it is no constant
     const double product = a * b;
     return {product, __builtin_fma(a, b, -product)};
   }

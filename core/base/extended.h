@@ -105,8 +105,9 @@ struct ExtendedState {
   /// The state `moment` later, to first order: for moments as short as a rounding of the clock.
   ExtendedState moved(Real moment) const {
     ExtendedState s = *this;
-    s.position += moment * twist.velocity;
-    s.angle += moment * twist.omega;
+    // what adds nothing is left out: the sums are the same bits
+    if (twist.velocity.x() != 0 || twist.velocity.y() != 0) s.position += moment * twist.velocity;
+    if (twist.omega != 0) s.angle += moment * twist.omega;
     return s;
   }
 };

@@ -83,22 +83,14 @@ Entry entry_of(double angle) {
   return {kTable[static_cast<std::size_t>(static_cast<int>(k) + kLast)], k / kSteps};
 }
 
-/// Of the angle so many quarters of a turn further on.
+/// Of the angle so many quarters of a turn further on. Without a branch: of what turns, nobody can tell which it is.
 template <class Number>
 SineCosine<Number> turned(const SineCosine<Number>& of, double quarters) {
   // in two's complement the lowest bits tell the quadrant of negative numbers too
-  const auto quadrant = static_cast<long long>(quarters) & 3;
-  const Number &s = of.sine, &c = of.cosine;
-  switch (quadrant) {
-    case 0:
-      return {s, c};
-    case 1:
-      return {c, -s};
-    case 2:
-      return {-s, -c};
-    default:
-      return {-c, s};
-  }
+  const auto quadrant = static_cast<long long>(quarters);
+  const bool across = quadrant & 1;
+  const Number s = across ? of.cosine : of.sine, c = across ? of.sine : of.cosine;
+  return {quadrant & 2 ? -s : s, (quadrant + 1) & 2 ? -c : c};
 }
 
 /// Of what is left within an eighth of a turn, rounded to doubles.

@@ -82,6 +82,20 @@ TEST(DoubleDouble, SumAndProductOfTwoDoublesAreExact) {
   }
 }
 
+// Whichever the processor has: Dekker's operations, or one that is fused.
+TEST(DoubleDouble, ProductsHaveTheSameBitsOnEveryProcessor) {
+  std::mt19937_64 random(20261125);
+  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  std::uniform_int_distribution<int> size(-450, 450);
+  for (int k = 0; k < 100000; ++k) {
+    const double a = std::ldexp(part(random), size(random)), b = std::ldexp(part(random), size(random));
+    const error_free::Result plain = error_free::Plain::product(a, b), dekker = error_free::product(a, b);
+    if (std::abs(a * b) < 0x1p-960) continue;
+    EXPECT_EQ(plain.high, dekker.high) << a << ' ' << b;
+    EXPECT_EQ(plain.low, dekker.low) << a << ' ' << b;
+  }
+}
+
 TEST(DoubleDouble, OrderIsThatOfTheNumbers) {
   Numbers numbers;
   for (int i = 0; i < 100000; ++i) {
