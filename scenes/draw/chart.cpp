@@ -107,7 +107,7 @@ class Scale {
   /// `at`: the value, or on a logarithmic axis its exponent; the axis's own function is asked by value.
   std::string label(double at) const {
     if (axis_.label) return axis_.label(log_ ? std::pow(10.0, at) : at);
-    return log_ ? power_text(static_cast<int>(std::lround(at))) : fmt::format("{:g}", at);
+    return log_ ? power_text(static_cast<int>(std::lround(at))) : fmt::format("{:g}", at + 0.0);  // never -0
   }
 
   const ChartAxis& axis_;

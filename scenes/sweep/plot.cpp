@@ -29,7 +29,8 @@ ChartAxis x_axis_of(const SweepAxis& axis) {
 /// since its sign would keep the axis from being logarithmic.
 ChartPanel panel_of(const Experiment& experiment, const SweepResults& results, const std::string& column) {
   const SweepAxis& axis = experiment.axes[axis_named(experiment, experiment.plot.x)];
-  ChartPanel panel{column == "energy_drift" ? "|energy_drift|" : column, "", x_axis_of(axis), {}, {}};
+  const std::string unit = sweep_unit(column), name = column == "energy_drift" ? "|energy_drift|" : column;
+  ChartPanel panel{unit.empty() ? name : name + " [" + unit + "]", "", x_axis_of(axis), {}, {}};
   for (const auto& points : sweep_lines(experiment, results, column)) {
     ChartLine line{panel.lines.size(), {}, true};
     for (const SweepPoint& p : points) {

@@ -20,6 +20,9 @@ struct SweepResult {
 /// energy_taken, and every work counter.
 const std::vector<std::string>& sweep_columns();
 
+/// "s", "J", "kg m/s"; empty for a number without a unit.
+std::string sweep_unit(const std::string& column);
+
 SweepResult sweep_result(const RunSummary& summary);
 /// Of a run that could not start.
 SweepResult sweep_failure(const std::string& why);

@@ -1,6 +1,7 @@
 // Charts: where marks fall, and what ticks say.
 #include "brink/scenes/draw/chart.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -66,6 +67,13 @@ TEST(Chart, RingsAreHollow) {
 TEST(Chart, WithoutPointsOrPanelsItIsStillAPicture) {
   EXPECT_GT(chart_picture(chart_of({})).width, 500);
   EXPECT_GT(chart_picture({"empty", "", {}, {}}).height, 50);
+}
+
+// About a value a little below 1 the axis begins a little below 0, whose tick is come upon from there.
+TEST(Chart, ZeroHasNoSign) {
+  Chart plain = chart_of({{0.0, 0.999}, {1.0, 0.999}}), named = plain;
+  named.panels[0].y.label = [](double value) { return value == 0.0 ? "0" : fmt::format("{:g}", value); };
+  EXPECT_EQ(chart_picture(plain).pixels, chart_picture(named).pixels);
 }
 
 TEST(Chart, PowersArePrintedRaised) {

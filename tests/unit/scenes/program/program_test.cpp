@@ -457,6 +457,30 @@ TEST_F(ProgramTest, FaultsOfASampleFileNameItsOwnLineAndColumn) {
   EXPECT_THAT(check.error, HasSubstr("given \"x\""));
 }
 
+// As bash asks for it: the last word is being written.
+TEST_F(ProgramTest, CompletionKnowsCommandsOptionsTopicsAndFiles) {
+  const auto completed = [&](const std::string& line) {
+    const std::string script = "cd '" + dir_.string() +
+                               "'; PATH='" BRINK_BINARY_DIR
+                               "/bin':\"$PATH\"; "
+                               "source '" BRINK_SOURCE_DIR
+                               "/scenes/program/install/brink.bash'; "
+                               "COMP_WORDS=(" +
+                               line +
+                               "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _brink; "
+                               "echo \"${COMPREPLY[*]}\"";
+    std::ofstream(dir_ / "complete.sh") << script;
+    const std::string out = (dir_ / "completed.txt").string();
+    EXPECT_EQ(std::system(("bash '" + (dir_ / "complete.sh").string() + "' > '" + out + "'").c_str()), 0);
+    return text_of(out);
+  };
+  EXPECT_EQ(completed("brink swe"), "sweep\n");
+  EXPECT_EQ(completed("brink list po"), "policies\n");
+  EXPECT_EQ(completed("brink list ba"), "\n");
+  EXPECT_EQ(completed("brink run --prof"), "--profile\n");
+  EXPECT_EQ(completed("brink run bal"), "ball.toml\n");
+}
+
 TEST_F(ProgramTest, ListShowsEveryTopicWithItsDefault) {
   const Outcome all = brink("list");
   ASSERT_EQ(all.status, 0);

@@ -261,6 +261,16 @@ TEST_F(SweepTest, PlotShowsMedianAndRangeOverSeeds) {
   EXPECT_GT(picture.width, 0);
 }
 
+TEST_F(SweepTest, PanelsNameTheUnit) {
+  const Experiment e = experiment(
+      "scenes = \"gas.toml\"\n[axes]\nsolver.step = [0.1, 0.2]\n[plot]\n"
+      "y = [\"wall_seconds\", \"energy_drift\", \"backups\", \"angular_momentum\", \"seconds_search\"]\n");
+  std::vector<std::string> titles;
+  for (const ChartPanel& p : sweep_chart(e, SweepResults(e.runs.size())).panels) titles.push_back(p.title);
+  EXPECT_THAT(titles, ::testing::ElementsAre("wall_seconds [s]", "|energy_drift|", "backups",
+                                             "angular_momentum [kg m^2/s]", "seconds_search [s]"));
+}
+
 TEST_F(SweepTest, TableNamesPoliciesThatDisagree) {
   const Experiment e = experiment(
       "scenes = \"gas.toml\"\npolicies = [\"global_backup\", \"timewarp\", \"fixed_step\"]\nseeds = 2\n");
