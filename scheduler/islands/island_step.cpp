@@ -17,6 +17,8 @@ constexpr int kCorrections = 6;  ///< of gaps that were missed
 constexpr double kMissCounts = 0.1;
 /// A correction lifts by so much of what was missed.
 constexpr double kAimHigher = 1.001;
+/// Where that would take a speed that the step has not, no further than to this part of the tolerance below 0.
+constexpr double kLeftBelow = 0.95;
 /// What the solver may miss, of the step's speed: gaps and energy are looked at themselves.
 constexpr double kResidual = 1e-6;
 /// A step may win this part of the energies that it turns over, before it is slowed to win none: the solver's
@@ -182,10 +184,18 @@ bool stays_open(const IslandContact& c, double h, const std::vector<Vec3>& veloc
   return c.gap >= low && c.gap + h * opens - falls_below_tangent(c, h, velocity) >= low;
 }
 
+/// The way that the forces alone make of rest in the step, of the body that they pull most [m].
+double fall(const IslandStep& step, double h) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < step.mass.size(); ++i)
+    most = std::max(most, step.force[i].cwiseQuotient(step.mass[i]).head<2>().norm());
+  return h * h * most;
+}
+
 /// By looks along the step, and where parabolas through them dip in between. A miss that does not count may be told as
-/// none.
+/// none. `cheap`: a lift that costs little in this step [m]; what was below 0 before is not lifted by more.
 Miss missed(const IslandStep& step, std::size_t k, double h, const std::vector<Vec3>& velocity,
-            double tolerance, const GapAlong& gap) {
+            double tolerance, double cheap, const GapAlong& gap) {
   Miss miss;
   if (stays_open(step.contacts[k], h, velocity, tolerance)) return miss;
   std::array<double, kLooks + 1> seen;
@@ -198,7 +208,9 @@ Miss missed(const IslandStep& step, std::size_t k, double h, const std::vector<V
     // A contact aims for a gap at the end of the step; with constant twists a part of the way has that
     // part of the lift. The least part keeps a miss close to the start from asking for a lift without
     // bound.
-    miss.lift = std::max(miss.lift, -there / std::max(part, 0.5 / kLooks));
+    const double own = std::min(start - kept, 0.0) - there, beyond = -there - kLeftBelow * tolerance;
+    const double lift = std::min(-there, std::max({own, beyond, cheap}));
+    miss.lift = std::max(miss.lift, lift / std::max(part, 0.5 / kLooks));
     return there;
   };
   // the gap at the start is what it is: no velocity changes it, and it counts as no miss
@@ -292,7 +304,7 @@ StepOutcome without_loads(IslandStep& step, double h, double tolerance, const Ga
     velocity[i] += h * step.force[i].cwiseQuotient(step.mass[i]);
   // all contacts are asked, those that wait for their turn, too
   for (std::size_t k = 0; k < step.contacts.size(); ++k)
-    if (missed(step, k, h, velocity, tolerance, gap).most > kMissCounts * tolerance) return outcome;
+    if (missed(step, k, h, velocity, tolerance, 0.0, gap).most > kMissCounts * tolerance) return outcome;
   step.velocity = std::move(velocity);
   for (IslandContact& c : step.contacts) c.normal_force = c.tangential_force = 0.0;
   outcome.solved = true;
@@ -311,13 +323,14 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
       waiting.push_back(k);
     else
       parts.push_back({k});
+  const double cheap = fall(step, h);
   // Contacts that wait join once each and are not counted as corrections, so that the loop ends.
   for (int again = 0; again < kCorrections && !outcome.solved;) {
     StepResult result = solve(solver, problem_of(step, h, parts), h, step, outcome.factorisations);
     if (!(result.residual <= kResidual)) return without_loads(step, h, tolerance, gap, outcome);
     // those that are missed take part from now on: each comes once
     const auto met = std::stable_partition(waiting.begin(), waiting.end(), [&](std::size_t k) {
-      return !(missed(step, k, h, result.velocity, tolerance, gap).most > kMissCounts * tolerance);
+      return !(missed(step, k, h, result.velocity, tolerance, cheap, gap).most > kMissCounts * tolerance);
     });
     // solved again with them before any lift is asked for: without them the motion is another
     if (met != waiting.end()) {
@@ -328,7 +341,7 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
     double worst = 0.0;
     std::vector<double> more;  // lifts that one more solve would need
     for (const Part& part : parts) {
-      const Miss miss = missed(step, part.contact, h, result.velocity, tolerance, gap);
+      const Miss miss = missed(step, part.contact, h, result.velocity, tolerance, cheap, gap);
       worst = std::max(worst, miss.most);
       // From a tenth of the tolerance on, though only a miss beyond the tolerance asks for that solve, which then
       // makes up for all of them.

@@ -61,6 +61,13 @@ bool is_beyond_hollow_end(const Site& site, const Nearest& nearest, double side)
   return side < 0.0 && site.solid && site.kind == SiteKind::segment && nearest.foot != Foot::interior;
 }
 
+/// How far q is beyond the ends of a straight site, along it [m].
+double beyond_ends(const Site& site, const Vec2& q) {
+  const Vec2 d = site.b - site.a;
+  const double length = d.norm(), along = d.dot(q - site.a) / length;
+  return std::max({0.0, -along, along - length});
+}
+
 /// Sample i of a half against site j, where it is nearest to it; side: see side_of(). Nothing of an arc that
 /// looks elsewhere.
 std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest& nearest, double side,
@@ -107,7 +114,9 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   f.point = half.other_frame.to_world(nearest.point + site.radius * out);
   f.normal = half.on_a ? outward : Vec2(-outward);
   f.thin = thin;
-  f.at_end = site.kind != SiteKind::point && nearest.foot != Foot::interior;
+  // right on the joint of two wires it may be at the ends of both, and passes by neither
+  const bool on_end = thin && site.kind == SiteKind::segment && beyond_ends(site, q) <= least;
+  f.at_end = site.kind != SiteKind::point && nearest.foot != Foot::interior && !on_end;
   return f;
 }
 
@@ -160,13 +169,6 @@ OnCorner on_corner(const Half& half, std::size_t j, const Vec2& q, double tie) {
   return where;
 }
 
-/// How far q is beyond the ends of a straight site, along it [m].
-double beyond_ends(const Site& site, const Vec2& q) {
-  const Vec2 d = site.b - site.a;
-  const double length = d.norm(), along = d.dot(q - site.a) / length;
-  return std::max({0.0, -along, along - length});
-}
-
 /// True if sample i, upon the line beyond an end of site j, parts from the corner there by no other of its sides: behind site
 /// j the two overlap, be it by a strip of no width (a box right upon another that is as wide).
 bool has_no_way_by(const Half& half, int i, std::size_t j, const Vec2& q) {
@@ -188,6 +190,7 @@ void turn_outward(const Half& half, const Vec2& q, double side, NearFeature& f) 
   const Vec2 out = outward(site), world = half.other_frame.direction_to_world(out);
   if (side < 0.0) f.gap = out.dot(q - site.a) - site.radius - half.carrier.samples[f.sample].radius;
   f.normal = half.on_a ? world : Vec2(-world);
+  f.upon_corner = true;
 }
 
 /// Adds the features of sample i: sites that face it; and where it lies inside by roundings, those that are
@@ -274,6 +277,59 @@ bool is_through_joint(const Outline& outline, const Site& site, const Nearest& n
   });
 }
 
+/// How far q is before the other side at the nearer end of site j, a straight side of a solid, where the two have a convex
+/// corner [m]; <= 0: it is not. At an acute corner what is beside the one is abreast of the other, and behind its line.
+double before_next_side(const Outline& outline, const Site& site, const Vec2& q) {
+  const Vec2& end = (q - site.a).squaredNorm() < (q - site.b).squaredNorm() ? site.a : site.b;
+  double before = 0.0;
+  for (const Site& next : outline.sites) {
+    if (&next == &site || next.kind != SiteKind::segment || (next.a != end && next.b != end)) continue;
+    const Vec2 on = next.a == end ? Vec2(next.b - next.a) : Vec2(next.a - next.b);
+    if (outward(site).dot(on) < 0.0) before = std::max(before, outward(next).dot(q - end));
+  }
+  return before;
+}
+
+/// True if the two segments have a point in common that is inside both.
+bool cross_each_other(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
+  return cross(b - a, c - a) * cross(b - a, d - a) < 0.0 && cross(d - c, a - c) * cross(d - c, b - c) < 0.0;
+}
+
+/// How deep two convex corners are in each other of which neither vertex is in the other solid [m]: their sides cross
+/// beside both. 0: they do not. `nearest`: an end of the site, to which the sample at q is nearest.
+double through_corner(const Half& half, const Sample& sample, const Site& site, const Nearest& nearest,
+                      const Vec2& q) {
+  const bool straight = site.solid && site.kind == SiteKind::segment && sample.radius + site.radius == 0.0;
+  if (!straight || !half.carrier.solid || sample.arc_site >= 0) return 0.0;
+  const Vec2& corner = nearest.foot == Foot::start ? site.a : site.b;
+  const auto to_other = [&](const Vec2& p) {
+    return half.other_frame.to_local(half.carrier_frame.to_world(p));
+  };
+  const auto ends_at = [](const Site& s, const Vec2& p) {
+    return s.kind == SiteKind::segment && (s.a == p || s.b == p);
+  };
+  bool through = false;
+  for (const Site& s : half.carrier.sites) {
+    if (!ends_at(s, sample.p)) continue;
+    const Vec2 from = to_other(s.a), to = to_other(s.b);
+    for (const Site& o : half.other.sites)
+      through = through || (ends_at(o, corner) && cross_each_other(from, to, o.a, o.b));
+  }
+  if (!through) return 0.0;
+  // By the side that leaves the least to go back, of those that could part the two.
+  const Wedge of_sample = turned(wedge_at(half.carrier, sample.p), [&](const Vec2& d) {
+    return half.other_frame.direction_to_local(half.carrier_frame.direction_to_world(d));
+  });
+  const Wedge of_corner = wedge_at(half.other, corner);
+  double depth = std::numeric_limits<double>::infinity();
+  const auto try_side = [&](const Vec2& n) {
+    if (parts(n, of_sample, of_corner)) depth = std::min(depth, -n.dot(q - corner));
+  };
+  for (const Vec2& n : of_corner.normals) try_side(n);
+  for (const Vec2& n : of_sample.normals) try_side(-n);
+  return std::isfinite(depth) ? std::max(0.0, depth) : 0.0;
+}
+
 }  // namespace
 
 std::vector<NearFeature> near_features(const Outline& a, const ExtendedState& state_a, const Outline& b,
@@ -291,7 +347,8 @@ std::vector<NearFeature> near_features(const Outline& a, const ExtendedState& st
 }
 
 /// Unlike near_features() it looks for no other site or side: the feature is followed wherever it goes.
-/// Abreast of the site the gap is negative once the sample is through; beyond an end it is positive again.
+/// Abreast of the site the gap is negative once the sample is through; beyond an end it is positive again, but where
+/// two corners have passed through each other.
 double gap_of(const NearFeature& f, const Outline& a, const ExtendedState& state_a, const Outline& b,
               const ExtendedState& state_b) {
   const Half half = halves(a, state_a, b, state_b)[f.sample_on_a ? 0 : 1];
@@ -299,8 +356,11 @@ double gap_of(const NearFeature& f, const Outline& a, const ExtendedState& state
   const Site& site = half.other.sites[f.site];
   const Vec2 q = half.other_frame.to_local(half.carrier_frame.to_world(sample.p));
   const Nearest nearest = nearest_on(site, q);
-  const Vec2 out = half.other_frame.direction_to_local(half.on_a ? f.normal : Vec2(-f.normal));
-  // a wire's side, and a solid's too, is the one on which the sample was
+  // A wire's side, and a solid's too, is the one on which the sample was. Where that was beyond an end, the way from there
+  // to it tells no side: what goes round the end comes to be abreast from either. Upon a corner the side has been chosen.
+  const bool side_is_known = !f.at_end || f.upon_corner || !site.solid || site.kind != SiteKind::segment;
+  const Vec2 out = side_is_known ? half.other_frame.direction_to_local(half.on_a ? f.normal : Vec2(-f.normal))
+                                 : outward(site);
   // Beyond a free end nothing is crossed. Where there is no way by, roundings do not make one.
   const double size = half.carrier.bounding_radius + half.other.bounding_radius;
   const bool abreast =
@@ -308,7 +368,15 @@ double gap_of(const NearFeature& f, const Outline& a, const ExtendedState& state
   const bool crossed = abreast ? (site.kind == SiteKind::segment ? out.dot(q - nearest.point) < 0.0
                                                                  : side_of(site, nearest, q) < 0.0)
                                : f.thin && is_through_joint(half.other, site, nearest, q, out);
-  return (crossed ? -nearest.distance : nearest.distance) - site.radius - sample.radius;
+  if (!side_is_known && abreast && crossed)
+    if (const double before = before_next_side(half.other, site, q); before > 0.0)
+      return std::min(before, nearest.distance) - site.radius - sample.radius;
+  if (!abreast && !crossed)
+    if (const double through = through_corner(half, sample, site, nearest, q); through > 0.0) return -through;
+  // beside an end, where there is no way by, it is as deep as it is behind the side, however far along that the end is
+  const bool beside = abreast && nearest.foot != Foot::interior && site.kind == SiteKind::segment;
+  const double deep = beside ? -out.dot(q - nearest.point) : nearest.distance;
+  return (crossed ? -deep : nearest.distance) - site.radius - sample.radius;
 }
 
 }  // namespace brink

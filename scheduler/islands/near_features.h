@@ -19,6 +19,8 @@ struct NearFeature {
   double gap = 0.0;            ///< [m]
   bool thin = false;           ///< a sharp sample and a wire without thickness
   bool at_end = false;         ///< of a site that goes on from there: the sample may pass by
+  /// Upon a convex corner: of the side there that was chosen, with that side's own normal, and a gap from its line.
+  bool upon_corner = false;
   /// A corner upon a corner of which no other side parts the two: along this side's end there is no way by, even
   /// where both are flush to the last bit.
   bool no_way_by = false;

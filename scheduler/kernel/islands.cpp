@@ -236,7 +236,7 @@ bool Islands::follow_sites(double now, double h) {
 }
 
 /// `longest`: the step is no longer [s]. `on_time`: the one before has come to its end, so its modes may hold
-/// still.
+/// still. The last thing that its caller does: false where the run stops for now, too, which may go on later.
 bool Islands::begin_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time) {
   return carry_out_step(std::move(members), longest, changed, on_time) && run_->poll();
 }
@@ -353,21 +353,26 @@ bool Islands::capture(const PairKey& pair, const FeatureContact& contact, double
   // that is where the event is told.
   const bool later = left > same_instant(limit);
   if (!later) records_->ending(EventKind::zeno, pair, contact, records_->last_event());
-  if (!begin_step(members, later ? left : std::numeric_limits<double>::infinity(), changed)) return false;
+  if (!carry_out_step(members, later ? left : kForever, changed, false)) return false;
+  if (later) tell_at(limit, pair, contact);
+  return run_->poll();
+}
+
+/// Of the island that the pair's body is in now: the limit of its bounces is told when the clock comes to it.
+void Islands::tell_at(double limit, const PairKey& pair, const FeatureContact& contact) {
   const auto lead = lead_of_.find(pair.body);
-  if (!later || lead == lead_of_.end()) return true;
+  if (lead == lead_of_.end()) return;
   Island& island = islands_.at(lead->second);
   // something else ends the step before: no limit is told that bounces did not come to
-  if (!island.rests && std::abs(island.due - limit) > same_instant(limit)) return true;
+  if (!island.rests && std::abs(island.due - limit) > same_instant(limit)) return;
   // forces jump before: it is woken then
-  if (island.due <= limit && island.rests) return true;
+  if (island.due <= limit && island.rests) return;
   // one at rest has its next step at the limit, only to tell it, and what it waited for afterwards
   island.then = island.due;
   island.due = limit;
   island.series = pair;
   island.series_contact = contact;
   find_next();
-  return true;
 }
 
 /// Bodies that touch, and those that touch them in turn, begin a step together. Pairs are told before any island
@@ -387,9 +392,9 @@ bool Islands::begin(const std::vector<std::pair<PairKey, FeatureContact>>& touch
     std::set<int> members;
     // with whom springs couple to them, as islands hold components whole
     for (const int k : joined.of(pair.body)) gather(k, members);
-    if (!begin_step(members, std::numeric_limits<double>::infinity(), changed)) return false;
+    if (!carry_out_step(members, kForever, changed, false)) return false;
   }
-  return true;
+  return run_->poll();
 }
 
 /// To the bit: next_step_ is the `due` of one of them. The list is by least members, so the first that fits is the
