@@ -302,7 +302,7 @@ ExtendedState Motion::extended_state(double t) const {
   const Real s = static_cast<Real>(t) - t0_;
   ExtendedState e(start_, low_);
   // what adds nothing is left out: the sums are the same bits
-  if (s == 0) return e;
+  if (s == 0 || is_still()) return e;
   if (!has_drive()) {
     e.position += s * e.twist.velocity;
     if (e.twist.omega != 0) e.angle += s * e.twist.omega;

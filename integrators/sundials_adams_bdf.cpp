@@ -66,8 +66,9 @@ class Cvode : public SundialsStepper {
     // CVODE's polynomial is of the order of the step, about its end: Taylor's
     // coefficients are its derivatives there.
     for (int k = 0; k <= order; ++k, factorial *= k) {
-      if (CVodeGetDky(memory_, t, k, derivative()) != 0) return false;
-      const double* d = N_VGetArrayPointer(derivative());
+      // after one step of its own the solver's values are those of its history, to the bit
+      if (k > 0 && CVodeGetDky(memory_, t, k, derivative()) != 0) return false;
+      const double* d = N_VGetArrayPointer(k > 0 ? derivative() : y());
       for (int body = 0; body < size(); ++body, d += kNumbersPerBody)
         pieces[body].c[k] = Eigen::Vector3d(d[0], d[1], d[2]) / factorial;
     }

@@ -129,11 +129,28 @@ inline double stay_in(const Box& box, const Course& c) {
   return stay;
 }
 
+/// time_to() of a course without gravity that begins outside: the first edge that it meets beside the box. All four are
+/// computed, without a branch, as nobody can tell ahead which it is.
+inline double straight_time_to(const Box& box, const Course& c, double margin) {
+  double first = kForever;
+  for (int axis = 0; axis < 2; ++axis)
+    for (const double edge : {box.low[axis], box.high[axis]}) {
+      // no number, or infinite, where it moves along the edge
+      const double s = (edge - c.place[axis]) / c.velocity[axis];
+      const double across = c.place[1 - axis] + s * c.velocity[1 - axis];
+      const bool ahead = s >= 0.0, above = across >= box.low[1 - axis] - margin,
+                 below = across <= box.high[1 - axis] + margin;
+      first = std::min(first, ahead & above & below ? s : kForever);
+    }
+  return first;
+}
+
 /// How long from now until the centre can be in the box; infinity: never.
 inline double time_to(const Box& box, const Course& c) {
   if (box.contains(c.place)) return 0.0;
-  double first = kForever;
   const double margin = kFlightMargin * (box.extent().lpNorm<1>() + c.place.lpNorm<1>());
+  if (c.gravity.isZero(0.0)) return straight_time_to(box, c, margin);
+  double first = kForever;
   for (int axis = 0; axis < 2; ++axis)
     for (const double edge : {box.low[axis], box.high[axis]})
       for (const double s : zeros(c.place[axis] - edge, c.velocity[axis], c.gravity[axis])) {

@@ -8,7 +8,8 @@
 
 namespace brink {
 
-/// Some bodies, and when another's flight can meet them, in a plane that does not repeat.
+/// Some bodies, and when another's flight can meet them, in a plane that does not repeat. To be made by `{}`, which
+/// clears all of it at once: what is computed past size() is of numbers, too.
 class FlightBatch {
  public:
   static constexpr int kMost = 64;
@@ -52,9 +53,9 @@ class FlightBatch {
   template <class T>
   using Row = T[kMost + 8];
 
-  int size_ = 0;
-  Row<int> body_{};
-  alignas(64) Row<double> x_{}, y_{}, vx_{}, vy_{}, start_{}, radius_{}, disc_{}, begin_{};
+  int size_;
+  Row<int> body_;
+  alignas(64) Row<double> x_, y_, vx_, vy_, start_, radius_, disc_, begin_;
 };
 
 }  // namespace brink

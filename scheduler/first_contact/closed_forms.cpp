@@ -261,6 +261,8 @@ struct DiscPath {
 struct SegmentGap {
   const Site* site;
   int index;
+  double length;  ///< [m]
+  Vec2 tangent;   ///< its direction
   Vec2 normal;    ///< towards the disc
   Quadratic gap;  ///< [m]
   double s;       ///< infinite: never
@@ -284,10 +286,14 @@ struct SegmentGap {
 /// Of a wire on the side on which the disc is at s_from; ends are left out, and `s` is for meet() to find.
 SegmentGap measured(const DiscPath& disc, const Site& site, int index) {
   const Vec2 d = site.b - site.a;
-  Vec2 normal = -perp(d / d.norm());  // right of travel: out of a solid
+  const double length = d.norm();
+  const Vec2 tangent = d / length;
+  Vec2 normal = -perp(tangent);  // right of travel: out of a solid
   if (!site.solid && normal.dot(disc.at(disc.s_from) - site.a) < 0.0) normal = -normal;
   return {&site,
           index,
+          length,
+          tangent,
           normal,
           {normal.dot(disc.q - site.a) - disc.radius - site.radius, normal.dot(disc.velocity),
            normal.dot(disc.acceleration)},
@@ -313,11 +319,9 @@ bool stays_away(const DiscPath& disc, const Vec2& place, double reach, double s0
 /// segment's line, its centre does not stay abreast of it.
 bool meet(const DiscPath& disc, const SearchLimits& limits, double level, SegmentGap& m) {
   const Site& site = *m.site;
-  const Vec2 d = site.b - site.a;
-  const double length = d.norm();
-  const Vec2 tangent = d / length;
-  const Quadratic along{tangent.dot(disc.q - site.a), tangent.dot(disc.velocity),
-                        tangent.dot(disc.acceleration)};
+  const double length = m.length;
+  const Quadratic along{m.tangent.dot(disc.q - site.a), m.tangent.dot(disc.velocity),
+                        m.tangent.dot(disc.acceleration)};
   const Quadratic above{m.gap.value - level, m.gap.rate, m.gap.second};
   // At the reference, which is where one of the two motions began, it touches and comes nearer: a graze or a
   // contact, by a rounding.

@@ -48,6 +48,29 @@ bool has_hardly_moved(const Mover& a, const Mover& b, double start, double t, co
   return is_little(since.speed + since.spin_s * reach_a + since.spin_t * reach_b);
 }
 
+/// Puts the neighbours that were found back when it goes: others may be looked for in between.
+class KeptNeighbours {
+ public:
+  explicit KeptNeighbours(SearchScratch& scratch)
+      : scratch_(scratch),
+        neighbours_(scratch.neighbours),
+        looked_from_(scratch.looked_from),
+        flush_on_(scratch.flush_on) {}
+  KeptNeighbours(const KeptNeighbours&) = delete;
+  KeptNeighbours& operator=(const KeptNeighbours&) = delete;
+  ~KeptNeighbours() {
+    scratch_.neighbours.swap(neighbours_);
+    scratch_.looked_from = looked_from_;
+    scratch_.flush_on = flush_on_;
+  }
+
+ private:
+  SearchScratch& scratch_;
+  std::vector<SearchScratch::Neighbour> neighbours_;
+  Vec2 looked_from_;
+  int flush_on_;
+};
+
 /// One search. As it goes on: up to the least safe time every contact is found, but for those that
 /// look_back() tells; to_ is the end that was asked for or, once a contact is found, just behind the
 /// earliest so far; best_ is that contact; and while samples are looked at, the pair is placed at t_.
@@ -461,9 +484,10 @@ class PairSearch {
     const double bend = std::min(1.0, bounds.acceleration * off / speed) * off;
     // no probe may lie beyond a motion
     const double last = std::min(a_.motion->end(), b_.motion->end());
-    // How soon they can meet, if the gap bends down all the way.
-    const double soonest =
-        2.0 * std::abs(now) / (speed + std::sqrt(speed * speed + 2.0 * bounds.acceleration * std::abs(now)));
+    // how soon the gap can fall by so much, if it bends down all the way
+    const auto soonest = [&](double by) {
+      return 2.0 * by / (speed + std::sqrt(speed * speed + 2.0 * bounds.acceleration * by));
+    };
     const double rounding = view_.gap_rounding(half, f.sample, path.q);
     const double moment = rounding / speed + 4.0 * ulp(t_), noise = moment + bend;
     // A canonical time needs an interval that holds this crossing alone, with a gap beyond rounding at both
@@ -474,8 +498,9 @@ class PairSearch {
     if (now <= 2.0 * rounding) {
       low = std::max(std::min(guess, t_), floor);
       for (double back = moment; gap(low) <= rounding; back *= 1.25) {
-        if (low <= floor) {                                  // it never was clear
-          if (gap(t_) <= 0.0) return remember(half, f, t_);  // in each other from the start, and going deeper
+        if (low <= floor) {  // it never was clear
+          if (gap(t_) <= 0.0)
+            return remember(half, f, uncovered_since(half, f));  // in each other from the start
           low = t_;
           break;
         }
@@ -498,7 +523,8 @@ class PairSearch {
     // met later, too.
     bool found = false;
     if (bend >= off)
-      for (double ahead = std::max(soonest, moment); !found && ahead < off + 2.0 * noise; ahead *= 2.0)
+      for (double ahead = soonest(std::max(std::abs(now), rounding)) + 4.0 * ulp(t_);
+           !found && ahead < off + 2.0 * noise; ahead *= 2.0)
         found = is_beyond(t_ + ahead);
     // where two points meet, when they are nearest; where a bent path meets it later; and where a tip is grazed,
     // for less than a rounding
@@ -523,6 +549,28 @@ class PairSearch {
     // at the end of its neighbourhood a sample changes sides without having come near
     if (gap(t) > view_.touching_band(half, f.sample, path)) return false;
     return remember(half, f, t, 2.0 * moment) || meets_beyond_tip(half, f, gap, t);
+  }
+
+  /// Since when another site no longer hides this one from a vertex, if they have been in each other and approaching since
+  /// the motions began; else t_.
+  double uncovered_since(const Half& half, const Feature& f) {
+    if (half.sample(f.sample).arc_site >= 0) return t_;
+    const KeptNeighbours kept(scratch_);
+    bool parting = false;
+    const auto hidden = [&](double t) {
+      PairView there = view_;
+      there.place(t);
+      const SamplePath path = there.path(half, f.sample);
+      const Site& site = half.site(f.site);
+      const Feature then = there.vertex_feature(half, f.sample, f.site, nearest_on(site, path.q), path);
+      parting = !there.approaching(then, path);
+      const bool counts = then.gap <= there.level(half, f.sample, site, path.q) &&
+                          !there.hidden_behind_others(half, then, path);
+      return counts ? -1.0 : 1.0;
+    };
+    const double begin = view_.start();
+    if (!(begin < t_ && hidden(begin) > 0.0) || parting || hidden(t_) > 0.0) return t_;
+    return std::max(asked_from_, last_clear_time(hidden, begin, t_));
   }
 
   /// True if f's two features meet by t_ although they passed each other's tips at `passed`, where the gap was last clear:
@@ -621,7 +669,8 @@ class PairSearch {
     double low = std::max(nearest - std::max(2.0 * before / speed, ticks), begin);
     // they may have parted first, and not far
     for (double back = nearest - low; !(clear(low) > 0.0) && back > ticks; back *= 0.5) low = nearest - back;
-    if (!(low < high && clear(low) > 0.0)) return remember(half, f, t_);
+    // what never was clear of the tip does not come upon it, but upon a side
+    if (!(low < high && clear(low) > 0.0)) return false;
     if (clear(high) > 0.0) return false;  // the motion ends before
     return remember(half, f, last_clear_time(clear, low, high), 2.0 * rounding / speed);
   }
@@ -640,19 +689,11 @@ class PairSearch {
     const Half& of_a = view_.half(true);
     const Sample& other = of_b.sample(f.sample);
     const SamplePath path = view_.path(of_a, i);
-    // the neighbours of b's sample are asked for again
-    const std::vector<SearchScratch::Neighbour> neighbours = scratch_.neighbours;
-    const Vec2 looked_from = scratch_.looked_from;
-    const int flush_on = scratch_.flush_on;
+    const KeptNeighbours kept(scratch_);  // those of b's sample are asked for again
     const std::uint32_t sides[] = {static_cast<std::uint32_t>(other.before),
                                    static_cast<std::uint32_t>(other.after)};
     view_.find_neighbours(of_a, i, sides, path, 4.0 * view_.touching_band(of_a, i, path));
-    const bool meets =
-        meets_tip(of_a, Feature{i, other.after}, path, path_bounds(path, long_bounds_.of(of_a), to_ - t_));
-    scratch_.neighbours = neighbours;
-    scratch_.looked_from = looked_from;
-    scratch_.flush_on = flush_on;
-    return meets;
+    return meets_tip(of_a, Feature{i, other.after}, path, path_bounds(path, long_bounds_.of(of_a), to_ - t_));
   }
 
   /// The sample's corner in T's frame.
@@ -697,15 +738,20 @@ class PairSearch {
   std::optional<FeatureContact> contact_then(const Half& half, const Feature& f, double t) const {
     PairView there = view_;
     there.place(t);
+    // a tip that comes from far has no neighbours yet: its site is the one that was asked for
+    const auto nearest_at = [&](double time) {
+      const int site = view_.gap_at(half, f, time).site;
+      return site >= 0 ? site : f.site;
+    };
     Feature met = f;
-    met.site = view_.gap_at(half, f, t).site;
+    met.site = nearest_at(t);
     if (there.passes_tip(half, met)) return std::nullopt;
     FeatureContact contact = there.look_again(half, met, t);
     if (!(contact.closing_speed > 0.0) && met.site != f.site) contact = there.look_again(half, f, t);
     const double after = next_after(t);
     if (contact.closing_speed > 0.0 || after > std::min(a_.motion->end(), b_.motion->end())) return contact;
     there.place(after);
-    met.site = view_.gap_at(half, f, after).site;
+    met.site = nearest_at(after);
     const FeatureContact next = there.look_again(half, met, t);
     return next.closing_speed > 0.0 ? next : contact;
   }

@@ -27,14 +27,15 @@ ImpulseSide site_side(const ExtendedState& state, const RealVec& point) {
 
 /// Sum of the speeds that a side's velocity at the contact is made of [m/s].
 double speed_of(const ImpulseSide& side) {
-  return static_cast<double>(side.twist.velocity.lpNorm<1>() + abs(side.twist.omega) * side.arm.norm());
+  const Real along = side.twist.velocity.lpNorm<1>();
+  return (side.twist.omega == 0 ? along : along + abs(side.twist.omega) * side.arm.norm()).high();
 }
 
 /// The state `delay` later of what moves so. What forces do to it in so short a while counts on a parabola alone:
 /// elsewhere an integrator is off by far more.
 ExtendedState later(const ExtendedState& s, Real delay, const Motion& motion) {
   ExtendedState then = s.moved(delay);
-  if (!motion.is_ballistic()) return then;
+  if (!motion.is_ballistic() || motion.is_still()) return then;
   then.twist.velocity += delay * motion.acceleration().linear.cast<Real>();
   then.twist.omega += delay * motion.acceleration().angular;
   return then;
@@ -231,11 +232,12 @@ bool CollisionResponse::leads_to_wire(int body, const RealVec& way) {
 
 /// Begins the motions that lead through the moment of contact with the twists that the law gave.
 void CollisionResponse::deflect(const PairKey& pair, const Change& r, std::vector<int>& changed) {
+  const Restart body{pair.body, deflected(r.body, r.moment.body.twist, r.impulse.body, r.delay)};
+  if (pair.with_site()) return trajectories_->restart({&body, 1}, changed);
   const Restart both[] = {
-      {pair.body, deflected(r.body, r.moment.body.twist, r.impulse.body, r.delay)},
+      body,
       {pair.other_body,
        deflected(r.other, r.moment.other.twist, r.impulse.other, r.delay).shifted(-search_->shift_of(pair))}};
-  if (pair.with_site()) return trajectories_->restart({both, 1}, changed);
   const int component = trajectories_->body(pair.body).component;
   // in one component: two restarts would be two motions, the first of them with one side's new twist alone
   if (component >= 0 && component == trajectories_->body(pair.other_body).component)
@@ -345,7 +347,7 @@ bool CollisionResponse::collide_discs(const PairKey& pair, const FeatureContact&
     return false;
   const auto after =
       rebound({&track_a.motion, a.radius, a.inverse_mass}, {&track_b.motion, b.radius, b.inverse_mass},
-              Vec2::Zero(), now, 4.0 * ulp(now), found.level, material.restitution);
+              search_->shift_of(pair), now, 4.0 * ulp(now), found.level, material.restitution);
   if (!after) return false;
   // the flights that end here
   if (!watch_->flight(pair.body, now) || !watch_->flight(pair.other_body, now)) return true;

@@ -38,7 +38,7 @@ bool points_may_meet_wires(const std::vector<const Outline*>& outlines, std::siz
 
 /// Not to be copied: b.motion may point to `image` beside it.
 struct ContactSearch::Sides {
-  Motion image;  ///< of the other, where it is one
+  std::optional<Motion> image;  ///< of the other, where it is one
   Mover a, b;
 
   Sides(const ContactSearch& search, const PairKey& pair, const BodyTrack& body, const BodyTrack* other)
@@ -46,7 +46,7 @@ struct ContactSearch::Sides {
         b(other ? search.mover(pair.other_body, *other) : search.mover(search.other_owner(pair))) {
     if (pair.image == Image{}) return;
     image = b.motion->displaced(search.shift_of(pair));
-    b.motion = &image;
+    b.motion = &*image;
   }
   /// On their newest motions.
   Sides(const ContactSearch& search, const PairKey& pair)
@@ -153,8 +153,11 @@ bool ContactSearch::search_discs(const PairKey& pair, double radius, double othe
   // of simultaneous resolves one may be a rounding ahead
   from = std::max({from, a.motion.origin(), b.motion.origin()});
   if (from > to) return false;
-  if (!discs_meet({&a.motion, radius, a.velocity_rounding}, {&b.motion, other_radius, b.velocity_rounding},
-                  from, to, limits_, contact))
+  std::optional<Motion> image;  // of the other, where it is one
+  if (pair.image != Image{}) image = b.motion.displaced(shift_of(pair));
+  if (!discs_meet({&a.motion, radius, a.velocity_rounding},
+                  {image ? &*image : &b.motion, other_radius, b.velocity_rounding}, from, to, limits_,
+                  contact))
     return false;
   ++work.pair_searches;
   ++work.closed_forms;

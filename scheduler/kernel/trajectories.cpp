@@ -190,6 +190,7 @@ double Trajectories::follow_sites(double t) {
 }
 
 double Trajectories::follow(double t) {
+  if (components_.empty() && sites_.empty()) return t;  // free flights go on by themselves
   const StageTimer::Scope timed(run_->timer(), run_->work().seconds_motion);
   double covered = t;
   for (Coupled& c : components_) {

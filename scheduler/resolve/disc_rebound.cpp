@@ -202,8 +202,6 @@ using FusedNumber = BasicDoubleDouble<error_free::Fused>;
   return rebound_of_wall<FusedNumber>(disc, wall, time, latest, level, restitution);
 }
 
-const bool has_fused_products = __builtin_cpu_supports("fma");
-
 #endif
 
 }  // namespace
@@ -211,7 +209,7 @@ const bool has_fused_products = __builtin_cpu_supports("fma");
 std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const Vec2& shift, double time,
                                    double latest, double level, double restitution) {
 #if defined(__x86_64__) && !defined(__FP_FAST_FMA)
-  if (has_fused_products) return fused_rebound(a, b, shift, time, latest, level, restitution);
+  if (error_free::has_fused_products) return fused_rebound(a, b, shift, time, latest, level, restitution);
 #endif
   return rebound_of_discs<Real>(a, b, shift, time, latest, level, restitution);
 }
@@ -219,7 +217,7 @@ std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const V
 std::optional<DiscRebound> rebound(const DiscSide& disc, const WallSide& wall, double time, double latest,
                                    double level, double restitution) {
 #if defined(__x86_64__) && !defined(__FP_FAST_FMA)
-  if (has_fused_products) return fused_rebound(disc, wall, time, latest, level, restitution);
+  if (error_free::has_fused_products) return fused_rebound(disc, wall, time, latest, level, restitution);
 #endif
   return rebound_of_wall<Real>(disc, wall, time, latest, level, restitution);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
+#include <numbers>
 
 #include "brink/scheduler/first_contact/first_contact.h"
 #include "first_contact_flights.h"
@@ -13,7 +14,7 @@ namespace brink::flights {
 struct Tally {
   long flights = 0, skipped = 0, contacts = 0, slow = 0, clear = 0, grazing = 0, near_misses = 0,
        given_up = 0, undecided = 0;
-  long missed = 0, invented = 0, late = 0, below = 0, bad_normal = 0, bad_speed = 0;
+  long missed = 0, invented = 0, late = 0, below = 0, unnamed = 0, bad_normal = 0, bad_speed = 0;
   long closed_forms = 0, closed_form_differs = 0;
   long far = 0, refused = 0;
   long restarts = 0, not_canonical = 0, restarts_closed = 0, not_canonical_closed = 0;
@@ -24,8 +25,8 @@ struct Tally {
   long reported = 0;
 
   long failures() const {
-    return undecided + missed + invented + late + below + bad_normal + bad_speed + closed_form_differs +
-           not_canonical + not_canonical_closed + rebound_wrong + pressed_wrong;
+    return undecided + missed + invented + late + below + unnamed + bad_normal + bad_speed +
+           closed_form_differs + not_canonical + not_canonical_closed + rebound_wrong + pressed_wrong;
   }
 };
 
@@ -34,12 +35,13 @@ inline std::ostream& operator<<(std::ostream& out, const Tally& t) {
              << "), contacts " << t.contacts << ", clear " << t.clear << ", grazing " << t.grazing
              << ", reference gave up " << t.given_up << "\nmissed " << t.missed << ", invented " << t.invented
              << ", time wrong " << t.late << ", undecided " << t.undecided << ", gap below zero " << t.below
-             << ", normal wrong " << t.bad_normal << ", closing speed wrong " << t.bad_speed << "\nfar away "
-             << t.far << ", of them refused with a reason " << t.refused << "\nclosed forms "
-             << t.closed_forms << ", differ from the search " << t.closed_form_differs << "\nrestarts "
-             << t.restarts << ", other bits " << t.not_canonical << "; with closed forms "
-             << t.restarts_closed << ", other bits " << t.not_canonical_closed << "\nrebounds " << t.rebounds
-             << ", wrong " << t.rebound_wrong << "; pressed on " << t.pressed << ", wrong " << t.pressed_wrong
+             << ", no such feature " << t.unnamed << ", normal wrong " << t.bad_normal
+             << ", closing speed wrong " << t.bad_speed << "\nfar away " << t.far
+             << ", of them refused with a reason " << t.refused << "\nclosed forms " << t.closed_forms
+             << ", differ from the search " << t.closed_form_differs << "\nrestarts " << t.restarts
+             << ", other bits " << t.not_canonical << "; with closed forms " << t.restarts_closed
+             << ", other bits " << t.not_canonical_closed << "\nrebounds " << t.rebounds << ", wrong "
+             << t.rebound_wrong << "; pressed on " << t.pressed << ", wrong " << t.pressed_wrong
              << "\nworst time error " << t.worst_time_error << " s (seed " << t.worst_seed
              << "), relative to the flight " << t.worst_relative_error << "\n";
 }
@@ -225,12 +227,25 @@ class Checker {
     return touch.passed ? beyond_after(f, pair, touch.time) : overlap_after(f, pair, touch.time);
   }
   /// Estimated from how long it lasts: gap(t - duration) / 8, for a parabola whose falling side is continued
-  /// backward.
+  /// backward. None where a shift by kShallow parts the two whenever they are looked at: a tip may slide along a
+  /// side for long, in it by roundings alone.
   static Overlap overlap_after(const Flight& f, const reference::Pair& pair, double t) {
     double lasts = std::max(1e-12 * (f.to - f.from), 2.0 * (std::nextafter(t, reference::kNever) - t));
-    while (t + lasts < f.to && pair.distance(t + lasts) <= 0.0) lasts *= 1.5;
+    bool deep = false;
+    for (; t + lasts < f.to && pair.distance(t + lasts) <= 0.0; lasts *= 1.5)
+      deep = deep || !is_shallow(f, pair, t + lasts);
+    if (!deep) return {0.0, t + lasts};
     const double back = std::min(lasts, 0.5 * (t - f.from));
     return {back > 0.0 ? pair.distance(t - back) / back * lasts / 8.0 : 0.0, t + lasts};
+  }
+  /// True if a shift of a by kShallow in some direction parts the two outlines.
+  static bool is_shallow(const Flight& f, const reference::Pair& pair, double t) {
+    constexpr int directions = 64;
+    for (int k = 0; k < directions; ++k) {
+      const double angle = 2.0 * std::numbers::pi * k / directions;
+      if (pair.distance(t, kShallow * f.size * Vec2(std::cos(angle), std::sin(angle))) > 0.0) return true;
+    }
+    return false;
   }
   /// How far the bare point that crosses right after t gets from the boundary, until it crosses again.
   /// Nowhere, if it cuts off a corner within a rounding of the time.
@@ -330,6 +345,10 @@ class Checker {
   void check_contact(const Flight& f, const reference::Pair& pair, const PairAnswer& answer,
                      const Touch& truth) {
     const FeatureContact& c = answer.contact;
+    const Outline &carrier = c.sample_on_a ? *f.a : *f.b, &other = c.sample_on_a ? *f.b : *f.a;
+    const auto is_one_of = [](int k, const auto& all) { return k >= 0 && k < static_cast<int>(all.size()); };
+    if (!is_one_of(c.sample, carrier.samples) || !is_one_of(c.site, other.sites))
+      return fail(f, tally.unnamed, "feature", answer, truth);
     const double rounding = 64 * (2.2e-16 * f.size + place_rounding(f, c.time));
     const double d = pair.distance(c.time);
     if (c.gap < -rounding || d < -rounding || answer.until != c.time)

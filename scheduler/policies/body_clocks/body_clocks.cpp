@@ -233,7 +233,7 @@ class BodyClocks final : public Policy {
     const BodyClock& clock = views_->clock(k);
     const Candidate& c = clock.candidates.front();
     if (!views_->plain_pair(k, c) || views_->stale(c)) return false;
-    const PairKey pair{std::min(k, c.other), std::max(k, c.other), -1, {}};
+    const PairKey pair{std::min(k, c.other), std::max(k, c.other), -1, k < c.other ? c.image : -c.image};
     FeatureContact contact;
     views_->expect_cells(c.other);
     views_->expect_look(k);
@@ -244,7 +244,7 @@ class BodyClocks final : public Policy {
     if (clock.exit <= instant || clock.horizon <= instant || now > std::min(end(), kernel_->next_step()) ||
         (clock.candidates.size() > 1 && clock.candidates[1].time <= instant))
       return false;
-    if (second.time <= instant && second.body == c.other && drops_copy(c.other, k)) second = queue_.second();
+    if (second.time <= instant && second.body == c.other && drops_copy(c, k)) second = queue_.second();
     if (second.time <= instant) return false;
     if (!kernel_->record_frames(now)) return true;
     kernel_->advance_pair(pair, now);
@@ -274,14 +274,16 @@ class BodyClocks final : public Policy {
     views_->expect(other);
   }
 
-  /// A pair may be in both views. If body j's first candidate is body k, whose own view has the pair, it is dropped.
-  bool drops_copy(int j, int k) {
-    BodyClock& clock = views_->clock(j);
-    if (clock.candidates.empty() || clock.candidates.front().other != k ||
-        views_->stale(clock.candidates.front()))
-      return false;
+  /// A pair may be in both views. If what candidate c of body k is has body k for its own first candidate, by the same
+  /// image, that is dropped.
+  bool drops_copy(const Candidate& c, int k) {
+    BodyClock& clock = views_->clock(c.other);
+    if (clock.candidates.empty()) return false;
+    const Candidate& first = clock.candidates.front();
+    // from the other's place the image is as far the other way
+    if (first.other != k || first.image != -c.image || views_->stale(first)) return false;
     clock.candidates.pop_front();
-    wait_for(j);
+    wait_for(c.other);
     return true;
   }
 

@@ -259,10 +259,10 @@ void Views::see_site(int k, int s, const Image& image, double now) {
     // the centre must be within its disc's radius of a site's box
     const double reach = course.radius + kernel_->contact_tolerance();
     for (const Box& box : site_boxes_[s]) wait = std::min(wait, time_to(box.grown(reach), course));
+    if (wait == kForever) return;                                 // what it leaves behind, or goes by
     wait = std::max(0.0, wait - kFlightRounding * (now + wait));  // never later than it is
   }
-  if (now + wait <= end && wait < kForever)
-    clock.see({now + wait, now + wait, body_count() + s, image, 0, 0}, now);
+  if (now + wait <= end) clock.see({now + wait, now + wait, body_count() + s, image, 0, 0}, now);
 }
 
 /// Sites that move are in no cell: each is bounded by its speed, wherever body k is.

@@ -22,10 +22,9 @@ class Views {
   BodyClock& clock(int k) { return clocks_[k]; }
   const BodyClock& clock(int k) const { return clocks_[k]; }
   bool stale(const Candidate& c) const { return c.version != version_of(c.other); }
-  /// True if body k and what that candidate of its is are two plain discs in free flight, in a plane that is not
-  /// crossed from one period to another.
+  /// True if body k and what that candidate of its is are two plain discs in free flight.
   bool plain_pair(int k, const Candidate& c) const {
-    return c.other < body_count() && flights_[k].plain && flights_[c.other].plain && c.image == Image{};
+    return c.other < body_count() && flights_[k].plain && flights_[c.other].plain;
   }
   /// Starts to fetch body k's clock and flight.
   void expect(int k) const {
@@ -111,7 +110,7 @@ class Views {
   int lookers_ = 0;  ///< in this round: 0, 1, 2, or more
   std::array<int, 2> first_lookers_{};
   std::optional<Neighbourhood> near_;
-  FlightBatch batch_;  ///< empty but while a body looks around
+  FlightBatch batch_{};  ///< empty but while a body looks around
 };
 
 }  // namespace brink

@@ -61,7 +61,7 @@ TEST(Flight, MeetingHoldsEveryOverlapOfTheBoundingDiscs) {
 // However many the processor compares at once: bare discs and others, resting, touching, and not free.
 TEST(FlightBatch, TellsTheBitsOfMeetingsOneByOne) {
   SeededRandom random(16);
-  FlightBatch batch;
+  FlightBatch batch{};
   for (int trial = 0; trial < 3000; ++trial) {
     std::vector<Flight> flights;
     std::vector<int> bodies;
