@@ -22,6 +22,7 @@ const BodyTrack* Speculation::track(int k, std::uint64_t version) const {
 
 std::vector<std::uint64_t> Speculation::versions(int k) const {
   std::vector<std::uint64_t> all;
+  all.reserve(of(k).size() + 1);
   for (const Entry& c : of(k)) all.push_back(c->former_of(k).version);
   all.push_back(trajectories_->body(k).version);
   return all;

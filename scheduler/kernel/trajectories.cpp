@@ -223,6 +223,7 @@ bool Trajectories::cover_sites(double t) {
 }
 
 bool Trajectories::cover(double t) {
+  if (components_.empty() && sites_.empty()) return true;
   const StageTimer::Scope timed(run_->timer(), run_->work().seconds_motion);
   for (Coupled& c : components_)
     if (!cover(c, t)) return false;

@@ -176,26 +176,32 @@ class Timewarp final : public Policy {
   /// Certificates of the newest motions of bodies that have changed, with every motion of others that may
   /// come to be. False on a halt.
   bool look_around(double now) {
-    std::vector<PairKey> pairs;
+    pairs_.clear();
     for (const int k : changed_) {
       const std::vector<PairKey> near = kernel_->near_pairs_of(k, now, end_);
-      pairs.insert(pairs.end(), near.begin(), near.end());
+      pairs_.insert(pairs_.end(), near.begin(), near.end());
     }
-    std::sort(pairs.begin(), pairs.end());  // a pair of two changed bodies is met from both
-    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-    for (const PairKey& pair : pairs)
-      for (const std::uint64_t version : concerned(pair.body))
-        for (const std::uint64_t other : concerned(pair.other_body))
+    std::sort(pairs_.begin(), pairs_.end());  // a pair of two changed bodies is met from both
+    pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+    for (const PairKey& pair : pairs_) {
+      find_concerned(pair.body, concerned_);
+      find_concerned(pair.other_body, concerned_others_);
+      for (const std::uint64_t version : concerned_)
+        for (const std::uint64_t other : concerned_others_)
           if (const auto c = kernel_->search(pair, version, other, now, end_)) note(*c);
+    }
     for (const int k : changed_) wake(k);
     return kernel_->poll();
   }
 
   /// Versions of a body (< 0: a site) that a new search must look at.
-  std::vector<std::uint64_t> concerned(int k) const {
-    if (k < 0) return {0};
-    if (is_changed(k)) return {kernel_->body(k).version};
-    return kernel_->versions(k);
+  void find_concerned(int k, std::vector<std::uint64_t>& versions) const {
+    if (k < 0)
+      versions.assign(1, 0);
+    else if (is_changed(k))
+      versions.assign(1, kernel_->body(k).version);
+    else
+      versions = kernel_->versions(k);
   }
   bool is_changed(int k) const { return std::find(changed_.begin(), changed_.end(), k) != changed_.end(); }
 
@@ -368,9 +374,11 @@ class Timewarp final : public Policy {
   std::vector<std::vector<int>> groups_;
   std::uint64_t groupings_ = 0;  ///< as of the groups
   std::vector<int> changed_, undone_;
-  std::size_t near_ = 0;       ///< pairs that could meet before the horizon
-  int undecided_ = 0;          ///< searches in a row that met their cap
-  double searched_on_ = -1.0;  ///< where the last of them was taken up again
+  std::vector<PairKey> pairs_;                               ///< of look_around()
+  std::vector<std::uint64_t> concerned_, concerned_others_;  ///< versions of a pair of these
+  std::size_t near_ = 0;                                     ///< pairs that could meet before the horizon
+  int undecided_ = 0;                                        ///< searches in a row that met their cap
+  double searched_on_ = -1.0;                                ///< where the last of them was taken up again
 };
 
 }  // namespace
