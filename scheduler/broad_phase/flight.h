@@ -140,7 +140,8 @@ inline double straight_time_to(const Box& box, const Course& c, double margin) {
       const double across = c.place[1 - axis] + s * c.velocity[1 - axis];
       const bool ahead = s >= 0.0, above = across >= box.low[1 - axis] - margin,
                  below = across <= box.high[1 - axis] + margin;
-      first = std::min(first, ahead & above & below ? s : kForever);
+      const bool meets = ahead & above & below;
+      first = std::min(first, meets ? s : kForever);
     }
   return first;
 }
