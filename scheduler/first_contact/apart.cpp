@@ -72,9 +72,13 @@ double apart_until(const Mover& a, const Mover& b, double from, double to, const
   const Outline &oa = a.outline(), &ob = b.outline();
   // What is in a container is in its disc from the start.
   if (oa.container || ob.container) return from;
-  if (stands_beside(oa, ob)) return clear_beside(a, b, from, to, limits);
-  if (stands_beside(ob, oa)) return clear_beside(b, a, from, to, limits);
-  return clear_by_discs(a, b, from, to, limits);
+  const bool beside_b = stands_beside(oa, ob), beside_a = !beside_b && stands_beside(ob, oa);
+  // beside a wall that turns, not before it can come within its reach
+  if (!beside_a && !beside_b) return clear_by_discs(a, b, from, to, limits);
+  const Mover &body = beside_b ? a : b, &wall = beside_b ? b : a;
+  if (!wall.motion->is_still() && wall.motion->twist(from).omega != 0.0)
+    from = clear_by_discs(a, b, from, to, limits);
+  return clear_beside(body, wall, from, to, limits);
 }
 
 }  // namespace brink::detail

@@ -32,6 +32,10 @@ using detail::parts_alone;
 /// Iterations that a search may take if it has found a contact, whatever its cap.
 constexpr int kMostAfterContact = 1000;
 
+/// Where two outlines turn by each other so many times as fast as their origins move, it is worth a look at what they
+/// cannot meet however they turn.
+constexpr double kMuchFaster = 16.0;
+
 /// True if no point of the pair has moved against the other by more than the touching distance since the motions
 /// began. Then all is looked at from there: features that are so near are told apart by how they began.
 bool has_hardly_moved(const Mover& a, const Mover& b, double start, double t, const SearchLimits& limits) {
@@ -262,8 +266,10 @@ class PairSearch {
     const PathBounds over_all = path_bounds(path, relative, long_window);
     const double band = view_.touching_band(half, i, path);
     const Facing line = line_between(half, i, path, band);
-    const double apart = line.gap > 0.0 ? safe_step(line.gap, line.rate, over_all.acceleration)
-                                        : clear_of_disc(half, i, path, band, over_all);
+    double apart = line.gap > 0.0 ? safe_step(line.gap, line.rate, over_all.acceleration)
+                                  : clear_of_disc(half, i, path, band, over_all);
+    if (over_all.speed > kMuchFaster * relative.speed)
+      apart = std::max(apart, clear_however_turned(half, i, path, band, relative.speed));
     // Clear to the end; or so long that the pair will be placed again, for nearer samples, long before:
     // a coarse bound is enough.
     if (apart >= long_window || apart > 2.0 * (least_ - t_)) return apart * (1.0 - 4.0 * kEpsilon);
@@ -280,6 +286,7 @@ class PairSearch {
       safe = arc_sample_step(half, i, path, band, relative, over_all);
       if (safe < short_window) again = arc_sample_step(half, i, path, band, near, over_short);
     }
+    safe = std::max(safe, apart);
     // The short bounds say nothing of what lies beyond their window.
     if (safe < short_window) safe = std::max(safe, std::min(again, short_window));
     return safe * (1.0 - 4.0 * kEpsilon);
@@ -292,7 +299,29 @@ class PairSearch {
     const Outline& outline = half.sites_of();
     const double f = path.distance - outline.bounding_radius - half.sample(i).radius - band;
     if (outline.container || outline.is_point() || !(f > 0.0)) return 0.0;
-    return safe_step(f, path.q.dot(path.rate) / path.distance, bounds.acceleration);
+    return safe_step(f, path.q.dot(path.rate) / path.distance, bounds.inertial_acceleration);
+  }
+
+  /// How long a sample is sure not to meet the other outline however fast the two turn: it stays on its circle about its
+  /// owner's origin, and the other between two circles about its own. 0 if that says nothing.
+  double clear_however_turned(const Half& half, int i, const SamplePath& path, double band, double speed) {
+    const Outline& outline = half.sites_of();
+    const double apart = (view_.placed(half.s).frame.origin - view_.placed(half.t).frame.origin).norm();
+    const double within =
+        free_radius(half) - apart - path.arm;  // the circle is in what the other leaves free
+    const double around = std::abs(apart - path.arm) - outline.bounding_radius;
+    const double gap = (outline.container ? within : std::max(within, around)) - half.sample(i).radius - band;
+    return gap > 0.0 ? gap / speed : 0.0;
+  }
+
+  /// Of the disc about the other outline's origin into which nothing of it leads [m].
+  double free_radius(const Half& half) {
+    double& radius = free_radius_[half.s_is_a ? 0 : 1];
+    if (radius >= 0.0) return radius;
+    radius = kForever;
+    for (const Site& site : half.sites_of().sites)
+      radius = std::min(radius, nearest_on(site, Vec2::Zero()).distance - site.radius);
+    return radius = std::max(radius * (1.0 - 4.0 * kEpsilon), 0.0);
   }
 
   /// The line between a vertex sample and a convex outline, as far out as a step may lead; gap 0 where there
@@ -767,7 +796,8 @@ class PairSearch {
   BothWays long_bounds_, short_bounds_;
   double short_window_ = 0.0, short_end_ = 0.0;
   double t_ = 0.0, next_ = 0.0, reached_ = 0.0;
-  double least_ = kForever;  ///< of the samples looked at from t_, how long all are safe
+  double free_radius_[2] = {-1.0, -1.0};  ///< free_radius() of each half; below 0: not known yet
+  double least_ = kForever;               ///< of the samples looked at from t_, how long all are safe
   FeatureContact best_;
   bool sink_known_ = false;
   bool sinks_ = false;  ///< the step of the sample that is looked at may lead below a level

@@ -140,17 +140,22 @@ struct PathBounds {
   double speed = 0.0;
   double acceleration = 0.0;
   double turning = 0.0;  ///< what of `acceleration` comes of the two that turn, not of the pull between them
+  /// Bound on |d2 rho/dt2|. The distance from T's origin is the same in both frames: d2|q|/dt2 is no less than minus this,
+  /// however fast T turns.
+  double inertial_acceleration = 0.0;
 };
 
 inline PathBounds path_bounds(const SamplePath& path, const RelativeBounds& b, double window) {
   const double inertial_speed = b.speed + b.spin_s * path.arm;
   const double own = (b.alpha_s + b.spin_s * b.spin_s) * path.arm,
                inertial_acceleration = b.acceleration + own;
-  if (b.spin_t == 0.0 && b.alpha_t == 0.0) return {inertial_speed, inertial_acceleration, own};
+  if (b.spin_t == 0.0 && b.alpha_t == 0.0)
+    return {inertial_speed, inertial_acceleration, own, inertial_acceleration};
   const double rho = path.distance + inertial_speed * window;
   const double speed = inertial_speed + b.spin_t * rho;
   const double centrifugal = (b.alpha_t + b.spin_t * b.spin_t) * rho, coriolis = 2.0 * b.spin_t * speed;
-  return {speed, inertial_acceleration + centrifugal + coriolis, own + centrifugal + coriolis};
+  return {speed, inertial_acceleration + centrifugal + coriolis, own + centrifugal + coriolis,
+          inertial_acceleration};
 }
 
 /// Bound on how the path accelerates against a unit direction that is fixed in T's frame, `world` now, over the

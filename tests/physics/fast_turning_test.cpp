@@ -1,0 +1,99 @@
+/// What turns so fast that it goes round thousands of times before anything is met: rings, which look the same at any
+/// angle, and bars, which sweep all that is within their reach.
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "tests/support/same_events.h"
+#include "tests/support/seeded_random.h"
+
+namespace brink::fast_turning_test {
+namespace {
+
+struct Ran {
+  RunSummary summary;
+  testing::Events events;
+};
+
+Ran run(const World& world, const std::string& policy, double until) {
+  SolverOptions options;
+  options.policy = policy;
+  options.max_collisions = 1;
+  Simulator simulator(world, options);
+  Ran ran;
+  ran.summary = simulator.run(testing::until(until), &ran.events);
+  return ran;
+}
+
+/// Between two circles about its own origin.
+Shape ring(double inner, double outer) {
+  return make_path(fmt::format("M {0} 0 A {1} {1} 0 0 1 {1} 0 A {1} {1} 0 0 1 {0} 0 Z "
+                               "M {2} 0 A {3} {3} 0 0 0 {3} 0 A {3} {3} 0 0 0 {2} 0 Z",
+                               -outer, outer, -inner, inner),
+                   1.0, 1e-6);
+}
+
+double spin_of(Random& random) {
+  return std::pow(10.0, random.uniform(2.0, 6.5)) * (random.below(2) == 0 ? 1.0 : -1.0);
+}
+
+TEST(FastTurning, RingsMeetWhatIsInThemAsIfTheyStood) {
+  SeededRandom random(20261126);
+  for (int k = 0; k < 60; ++k) {
+    const double inner = random.uniform(0.6, 2.0), radius = inner * random.uniform(0.1, 0.9);
+    const double turned = random.uniform(0.0, 2.0 * M_PI), off = random.uniform(0.0, 0.9) * (inner - radius);
+    const Vec2 velocity = random.uniform(0.05, 5.0) * Vec2(std::cos(turned), std::sin(turned));
+    // from anywhere in the ring to where the centre is as far off as the ring leaves room
+    const Vec2 from(off, 0.0);
+    const double speed2 = velocity.squaredNorm(), way = from.dot(velocity), room = inner - radius;
+    const double time = (-way + std::sqrt(way * way + speed2 * (room * room - off * off))) / speed2;
+    World world;
+    Body turning = testing::body(ring(inner, inner + 0.2), {0.0, 0.0}, {0.0, 0.0});
+    turning.initial.twist.omega = spin_of(random);
+    testing::add(world, turning);
+    testing::add(world, testing::body(make_disc(radius), from, velocity));
+    for (const std::string& policy : exact_policies()) {
+      const Ran ran = run(world, policy, 1.01 * time);
+      SCOPED_TRACE(
+          fmt::format("{} {}: spin {}, {}", k, policy, turning.initial.twist.omega, ran.summary.why));
+      ASSERT_EQ(ran.events.collisions().size(), 1U);
+      EXPECT_NEAR(ran.events.collisions()[0].contact.time, time, 1e-10 / velocity.norm() + 1e-12 * time);
+      // not looked at once a turn
+      EXPECT_LT(ran.summary.work.distance_queries, 5000U);
+    }
+  }
+}
+
+/// A disc that goes by a bar's sweep meets nothing; one that goes into it is met within half a turn.
+TEST(FastTurning, BarsSweepWhatIsWithinTheirReachAndNothingElse) {
+  SeededRandom random(20261127);
+  for (int k = 0; k < 60; ++k) {
+    const double half = random.uniform(0.5, 3.0), thickness = half * random.uniform(0.01, 0.3);
+    const double reach = std::hypot(half, 0.5 * thickness), radius = random.uniform(0.05, 1.0);
+    const bool into = k % 2 == 0;
+    const double beside =
+        (reach + radius) * (into ? random.uniform(0.0, 0.95) : 1.0 + random.uniform(1e-6, 1.0));
+    const double away = random.uniform(1.1, 4.0) * (reach + radius), speed = random.uniform(0.05, 5.0);
+    World world;
+    Body bar = testing::body(make_box(2.0 * half, thickness), {0.0, 0.0}, {0.0, 0.0});
+    bar.initial.twist.omega = spin_of(random);
+    testing::add(world, bar);
+    testing::add(world, testing::body(make_disc(radius), {-away, beside}, {speed, 0.0}));
+    const double enters = (away - std::sqrt(std::pow(reach + radius, 2) - beside * beside)) / speed;
+    for (const std::string& policy : exact_policies()) {
+      const Ran ran = run(world, policy, 2.0 * away / speed);
+      SCOPED_TRACE(fmt::format("{} {}: spin {}, {}", k, policy, bar.initial.twist.omega, ran.summary.why));
+      EXPECT_LT(ran.summary.work.distance_queries, 20000U);
+      ASSERT_EQ(ran.events.collisions().size(), into ? 1U : 0U);
+      if (!into) continue;
+      EXPECT_GE(ran.events.collisions()[0].contact.time, enters - 1e-9);
+      EXPECT_LE(ran.events.collisions()[0].contact.time,
+                enters + M_PI / std::abs(bar.initial.twist.omega) + 0.02 * enters);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace brink::fast_turning_test
