@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "brink/core/base/limits.h"
+#include "brink/core/shapes/distance.h"
+
 namespace brink {
 
 namespace {
@@ -33,6 +36,27 @@ std::vector<Segment> segments(const Outline& outline, const Pose& pose) {
   for (const Site& site : outline.sites)
     if (site.kind == SiteKind::segment) all.push_back({frame.to_world(site.a), frame.to_world(site.b)});
   return all;
+}
+
+/// What holds an outline where it stands, its arcs as whole circles [m]; all of the plane, where it is solid outside.
+Box box_of(const Outline& outline, const Pose& pose) {
+  if (outline.container) return {Vec2::Constant(-kForever), Vec2::Constant(kForever)};
+  const Frame frame(pose);
+  Box box;
+  for (const Site& site : outline.sites) {
+    const bool arc = site.kind == SiteKind::arc;
+    for (const Vec2& p : {arc ? site.center : site.a, arc ? site.center : site.b})
+      box.add(Box{frame.to_world(p), frame.to_world(p)}.grown(arc ? site.arc_radius : 0.0));
+  }
+  return box;
+}
+
+/// Those that lead through the box.
+std::vector<Segment> within(const Box& box, const std::vector<Segment>& all) {
+  std::vector<Segment> some;
+  for (const Segment& s : all)
+    if (Box{s.a.cwiseMin(s.b), s.a.cwiseMax(s.b)}.overlaps(box)) some.push_back(s);
+  return some;
 }
 
 /// This part of a solid's size is looked below its edges: more than the
@@ -89,12 +113,12 @@ OutlineCrossing look_below(const PlacedSolid& a, const PlacedSolid& b, const Vec
   }
 }
 
-/// The deepest place in both that is found below the edges of a.
-OutlineCrossing shared_below_edges(const PlacedSolid& a, const std::vector<Segment>& of_a,
+/// The deepest place in both that is found below these edges of a.
+OutlineCrossing shared_below_edges(const PlacedSolid& a, const std::vector<Segment>& edges,
                                    const PlacedSolid& b, const std::vector<Segment>& of_b) {
   const double size = std::min(a.outline.bounding_radius, b.outline.bounding_radius);
   OutlineCrossing deepest;
-  for (const Segment& s : of_a) {
+  for (const Segment& s : edges) {
     // placed far from the origin, as in reach_through()
     if ((s.b - s.a).isZero(0.0)) continue;
     const std::vector<double> at = cuts(s, of_b, kBelow * size);
@@ -109,24 +133,30 @@ OutlineCrossing shared_below_edges(const PlacedSolid& a, const std::vector<Segme
 
 }  // namespace
 
+/// All that two share, and all places where they cross, are in what holds both: of most near pairs that is a few edges.
 OutlineCrossing deepest_crossing(const Outline& a, const Pose& pose_a, const Outline& b, const Pose& pose_b) {
   OutlineCrossing deepest;
+  const double below = kBelow * std::min(a.bounding_radius, b.bounding_radius);
+  const Box box_a = box_of(a, pose_a).grown(below), box_b = box_of(b, pose_b).grown(below);
+  if (!box_a.overlaps(box_b)) return deepest;
+  const Box shared{box_a.low.cwiseMax(box_b.low), box_a.high.cwiseMin(box_b.high)};
   const std::vector<Segment> of_a = segments(a, pose_a), of_b = segments(b, pose_b);
-  for (const Segment& s : of_a)
-    for (const Segment& t : of_b) {
+  const std::vector<Segment> near_a = within(shared, of_a), near_b = within(shared, of_b);
+  for (const Segment& s : near_a)
+    for (const Segment& t : near_b) {
       Vec2 point = Vec2::Zero();
       const double depth = reach_through(s, t, point);
       if (depth > deepest.depth) deepest = {depth, point, perp((t.b - t.a).normalized())};
     }
   // edges that coincide may cross by a rounding
-  const bool is_clear = deepest.depth > kBelow * std::min(a.bounding_radius, b.bounding_radius);
+  const bool is_clear = deepest.depth > below;
   // wires share no inside; of a thick outline, a vertex on an edge's core is a sample that tells
   if (is_clear || !is_sharp_solid(a) || !is_sharp_solid(b)) return deepest;
   const PlacedSolid solid_a(a, pose_a), solid_b(b, pose_b);
   // from both: what they share may border on edges of one
   // alone, as where a diamond has its corners on a box
-  const OutlineCrossing below_a = shared_below_edges(solid_a, of_a, solid_b, of_b);
-  const OutlineCrossing below_b = shared_below_edges(solid_b, of_b, solid_a, of_a);
+  const OutlineCrossing below_a = shared_below_edges(solid_a, near_a, solid_b, of_b);
+  const OutlineCrossing below_b = shared_below_edges(solid_b, near_b, solid_a, of_a);
   for (const OutlineCrossing& c : {below_a, below_b})
     if (c.depth > deepest.depth) deepest = c;
   return deepest;

@@ -857,13 +857,13 @@ FeatureContact contact_at(const Mover& a, const Mover& b, double t, const Featur
   return c;
 }
 
-double pair_gap(const Mover& a, const Mover& b, double t, const SearchLimits& limits,
-                SearchScratch& scratch) {
+double pair_gap(const Mover& a, const Mover& b, double t, const SearchLimits& limits, SearchScratch& scratch,
+                double at_most) {
   PairView view(a, b, limits, scratch);
   view.place(t);
   // signed: of each vertex the nearest site, of arcs all that are active
-  double least = kForever;
-  view.each_feature(kForever, [&](const Half&, const Feature& f) { least = std::min(least, f.gap); });
+  double least = at_most;
+  view.each_feature(at_most, [&](const Half&, const Feature& f) { least = std::min(least, f.gap); });
   return least;
 }
 

@@ -115,8 +115,10 @@ std::vector<FeatureContact> touching_features(const Mover& a, const Mover& b, do
 FeatureContact contact_at(const Mover& a, const Mover& b, double t, const FeatureContact& like,
                           const SearchLimits& limits, SearchScratch& scratch);
 
-/// Signed gap of the pair at time t: the least over both sample sets [m]; touching features' exactness.
-double pair_gap(const Mover& a, const Mover& b, double t, const SearchLimits& limits, SearchScratch& scratch);
+/// Signed gap of the pair at time t: the least over both sample sets [m], or `at_most` where it is more; touching
+/// features' exactness.
+double pair_gap(const Mover& a, const Mover& b, double t, const SearchLimits& limits, SearchScratch& scratch,
+                double at_most = std::numeric_limits<double>::infinity());
 
 /// How far below its level a pair that starts touching is met [m], <= 0: see start_sink() in tolerances.h. A
 /// function of the two motions alone.

@@ -39,14 +39,20 @@ double rounding(const ExtendedState& s, double radius) {
 }  // namespace
 
 /// Three looks. After each collision: its two features, as the collision left them (resolved). At each frame: every
-/// pair of which one has moved since the last, its gap and whether boundaries cross (frame). Between two looks at a
+/// pair that may have come to overlap since the last, its gap and whether boundaries cross (frame). Between two looks at a
 /// body: the flight of its centre, by walls (flight). From begin() on what any of them sees ends the run (report).
 CertificateWatch::CertificateWatch(const World& world, const Trajectories& trajectories,
                                    ContactSearch& search, const NearPairs& near, RunControl& run)
-    : world_(&world), trajectories_(&trajectories), search_(&search), near_(&near), run_(&run) {}
+    : world_(&world),
+      trajectories_(&trajectories),
+      search_(&search),
+      near_(&near),
+      run_(&run),
+      pairs_(world, trajectories, search, near, run) {}
 
 void CertificateWatch::begin() {
   on_ = true;
+  pairs_.clear();  // overlaps that were measured are to be judged
   // in a plane that repeats no flight is watched: a wall would have images without end
   if (!world_->periods.any() && !walls_made_) make_walls();
 }
@@ -163,56 +169,35 @@ bool CertificateWatch::discs_resolved(const PairKey& pair, double gap) {
   return !on_ || -gap <= allowed() || report(pair, -gap, run_->time(), "overlaps");
 }
 
-/// Pairs of which one has moved since the last frame; then every centre's flight up to t. Whatever is seen halts
+/// Pairs that may have come to overlap since the last frame; then every centre's flight up to t. Whatever is seen halts
 /// the run, which poll() tells.
 void CertificateWatch::frame(double t) {
-  note_who_moved();
-  const auto same_as_before = [&](const PairKey& pair) {
-    return !moved_[pair.body] && !moved_[search_->other_owner(pair)];
-  };
-  // of bodies that are all at rest a frame costs a look at their versions
-  if (std::find(moved_.begin(), moved_.end(), true) != moved_.end())
-    near_->each_at(t, [&](const PairKey& pair) {
-      if (same_as_before(pair)) return true;
-      pair_at_frame(pair, t);
-      return run_->poll();
-    });
+  pairs_.each(t, [&](const PairKey& pair, double at_most) {
+    const double gap = pair_at_frame(pair, t, at_most);
+    return run_->poll() ? std::optional(gap) : std::nullopt;
+  });
   for (int k = 0; k < trajectories_->body_count() && !run_->halt(); ++k) flight(k, t);
   flown_until_ = t;
 }
 
-/// A body that stands still on the motion that the last frame saw is where it was. One on another motion may have
-/// been moved, even if it stands.
-void CertificateWatch::note_who_moved() {
-  const int bodies = trajectories_->body_count();
-  const bool first = seen_.empty();
-  moved_.assign(trajectories_->owner_count(), true);
-  seen_.resize(bodies);
-  for (int k = 0; k < trajectories_->owner_count(); ++k) {
-    // a site has no version: it is still or it is not
-    const bool same = k >= bodies || seen_[k] == trajectories_->body(k).version;
-    moved_[k] = first || !same || !trajectories_->motion_of(k).is_still();
-    if (k < bodies) seen_[k] = trajectories_->body(k).version;
-  }
-  // overlaps of still pairs were measured, not judged: once judged, they are to be seen again
-  if (!on_) seen_.clear();
-}
-
-/// By samples first, then by boundaries that cross, where that is not too many intersections. False: the run was
-/// ended.
-bool CertificateWatch::pair_at_frame(const PairKey& pair, double t) {
-  const double gap = search_->gap(pair, t);
+/// By samples first, then by boundaries that cross, where that is not too many intersections. The gap [m], or
+/// `at_most` where it is more; where that is an overlap the run has been ended.
+double CertificateWatch::pair_at_frame(const PairKey& pair, double t, double at_most) {
+  const double gap = search_->gap(pair, t, at_most);
   note_overlap(gap);
-  if (!on_) return true;
-  if (gap < -allowed()) return report(pair, -gap, t, "overlaps");
+  if (!on_) return gap;
+  if (gap < -allowed()) report(pair, -gap, t, "overlaps");
   const std::size_t sites = search_->outline_of(pair.body).sites.size() *
                             search_->outline_of(search_->other_owner(pair)).sites.size();
-  if (sites > kMostCrossings) return true;
+  if (gap < -allowed() || sites > kMostCrossings) return gap;
   // samples do not see bars that cross, as no vertex of either is in the other
   const auto crossing = search_->crossing(pair, t);
-  if (!crossing || -crossing->gap <= allowed()) return true;
-  note_overlap(crossing->gap);
-  return report(pair, -crossing->gap, t, "crosses");
+  if (!crossing) return gap;
+  if (-crossing->gap > allowed()) {
+    note_overlap(crossing->gap);
+    report(pair, -crossing->gap, t, "crosses");
+  }
+  return std::min(gap, crossing->gap);
 }
 
 /// Ends the run. Always false, so that callers can return it.

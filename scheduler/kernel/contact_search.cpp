@@ -187,9 +187,9 @@ std::vector<FeatureContact> ContactSearch::touching(const PairKey& pair, double 
   return touching_features(sides.a, sides.b, t, tolerance, limits_, scratch_);
 }
 
-double ContactSearch::gap(const PairKey& pair, double t) {
+double ContactSearch::gap(const PairKey& pair, double t, double at_most) {
   const Sides sides(*this, pair);
-  return pair_gap(sides.a, sides.b, t, limits_, scratch_);
+  return pair_gap(sides.a, sides.b, t, limits_, scratch_, at_most);
 }
 
 /// Samples do not see bars that cross, with no vertex of either in the other: boundaries do. Cost: all pairs of

@@ -74,8 +74,8 @@ class ContactSearch {
   std::vector<Certificate> simultaneous(const Certificate& c, const BodyTrack& body, const BodyTrack* other);
   /// Contacts of the newest motions at time t with gap <= `tolerance`, deepest first.
   std::vector<FeatureContact> touching(const PairKey& pair, double tolerance, double t);
-  /// The least signed gap at time t [m].
-  double gap(const PairKey& pair, double t);
+  /// The least signed gap at time t [m], or `at_most` where it is more.
+  double gap(const PairKey& pair, double t, double at_most = std::numeric_limits<double>::infinity());
   /// Where the outlines cross at time t, by intersections of their boundaries.
   std::optional<Contact> crossing(const PairKey& pair, double t) const;
 

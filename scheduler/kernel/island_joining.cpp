@@ -6,9 +6,6 @@ namespace brink {
 
 namespace {
 
-/// The most that any point within `radius` [m] of the centre of mass has [m/s].
-double speed_of(const Twist& v, double radius) { return v.velocity.norm() + std::abs(v.omega) * radius; }
-
 /// One body beside an island.
 class Outsider {
  public:
@@ -23,7 +20,8 @@ class Outsider {
         going_(trajectories.body(body).motion.twist(now)) {
     const BodyState rounded = state_.rounded();
     const double radius = search.outline_of(body).bounding_radius;
-    const double speed = std::max(speed_of(rounded.twist, radius), speed_of(going_.rounded(), radius));
+    const double speed =
+        std::max(speed_within(rounded.twist, radius), speed_within(going_.rounded(), radius));
     // the members' largest pull stands for its own
     reach_ = h * (speed + members.pull() * h);
     box_.add(rounded.pose.position);

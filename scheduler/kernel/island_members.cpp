@@ -6,13 +6,6 @@
 
 namespace brink {
 
-namespace {
-
-/// The most that any point within `radius` [m] of the centre of mass has [m/s].
-double speed_of(const Twist& v, double radius) { return v.velocity.norm() + std::abs(v.omega) * radius; }
-
-}  // namespace
-
 IslandMembers::IslandMembers(const World& world, const Trajectories& trajectories,
                              const ContactSearch& search, double now, const std::set<int>& members)
     : world_(&world),
@@ -40,7 +33,7 @@ void IslandMembers::find_speeds() {
   speeds_.clear();
   speed_ = 0.0;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    speeds_.push_back(speed_of(states_[i].twist.rounded(), bounding_radius(static_cast<int>(i))));
+    speeds_.push_back(speed_within(states_[i].twist.rounded(), bounding_radius(static_cast<int>(i))));
     speed_ = std::max(speed_, speeds_.back());
   }
 }

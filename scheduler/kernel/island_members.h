@@ -2,6 +2,7 @@
 /// Bodies of one island at one instant, and everything that is near them.
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 #include <vector>
@@ -13,6 +14,11 @@
 #include "brink/scheduler/kernel/trajectories.h"
 
 namespace brink {
+
+/// The most that any point within `radius` [m] of the centre of mass has [m/s].
+inline double speed_within(const Twist& v, double radius) {
+  return v.velocity.norm() + std::abs(v.omega) * radius;
+}
 
 /// A twist as a column: x, y [m/s], angle [rad/s].
 inline Vec3 as_vector(const Twist& v) { return {v.velocity.x(), v.velocity.y(), v.omega}; }

@@ -165,10 +165,10 @@ std::vector<PairKey> NearPairs::by_pass(int body, double from, double to) {
 }
 
 /// Boxes of the moment t, made for this call: nothing of a horizon is needed.
-void NearPairs::each_at(double t, const std::function<bool(const PairKey&)>& visit) const {
+void NearPairs::each_at(double t, const std::function<bool(const PairKey&)>& visit, double grown) const {
   std::vector<Box> now;
   now.reserve(trajectories_->owner_count());
-  for (int k = 0; k < trajectories_->owner_count(); ++k) now.push_back(box_at(k, t));
+  for (int k = 0; k < trajectories_->owner_count(); ++k) now.push_back(box_at(k, t).grown(grown));
   each_overlapping(now, world_->periods, [&](const ImagePair& p) {
     const auto pair = search_->pair_of(p.a, p.b, p.image);
     return !pair || visit(*pair);

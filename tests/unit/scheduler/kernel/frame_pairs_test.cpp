@@ -1,0 +1,103 @@
+// Which pairs are seen at frames: everyone who overlaps, and few of those who do not.
+#include "brink/scheduler/kernel/frame_pairs.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/support/seeded_random.h"
+#include "tests/unit/scheduler/kernel/parts.h"
+
+namespace brink::frame_pairs_test {
+namespace {
+
+using namespace testing;
+
+/// Bodies that fly through each other, as nobody resolves anything, and a wall and a container.
+World flying(Random& random, int bodies, double speed, double spin) {
+  World world;
+  for (int k = 0; k < bodies; ++k) {
+    const double angle = random.uniform(0.0, 2.0 * M_PI);
+    const Shape shape = k % 3 == 0   ? make_disc(0.5)
+                        : k % 3 == 1 ? make_box(1.6, 0.3)
+                                     : make_polygon({{0, 0}, {1, 0.2}, {2, 0}, {1.2, 0.6}, {1, 1.5}});
+    add(world, body(shape, {random.uniform(-6.0, 6.0), random.uniform(-6.0, 6.0)},
+                    speed * Vec2(std::cos(angle), std::sin(angle)), 1.0, angle, random.uniform(-spin, spin)));
+  }
+  add(world, site(make_segment({-7.0, 1.0}, {7.0, -1.0}, 0.0)));
+  return world;
+}
+
+struct Tally {
+  long all = 0, overlapping = 0, looked = 0;
+};
+
+/// Frames at even times. Everyone in another must have been seen, as it is.
+Tally see(const World& world, int frames, double interval) {
+  KernelParts parts(world, {});
+  FramePairs pairs(world, parts.trajectories, parts.search, parts.near, parts.run);
+  Tally tally;
+  for (int k = 0; k < frames; ++k) {
+    const double t = k * interval;
+    std::set<PairKey> looked;
+    pairs.each(t, [&](const PairKey& pair, double at_most) {
+      looked.insert(pair);
+      return std::optional(parts.search.gap(pair, t, at_most));
+    });
+    tally.looked += static_cast<long>(looked.size());
+    for (int a = 0; a < parts.trajectories.body_count(); ++a)
+      for (int b = a + 1; b < parts.trajectories.owner_count(); ++b) {
+        const PairKey pair = *parts.search.pair_of(a, b, {});
+        ++tally.all;
+        if (parts.search.gap(pair, t) >= 0.0) continue;
+        ++tally.overlapping;
+        EXPECT_TRUE(looked.count(pair)) << a << " in " << b << " at frame " << k;
+      }
+  }
+  return tally;
+}
+
+TEST(FramePairs, EveryoneWhoOverlapsIsSeen) {
+  SeededRandom random(20261125);
+  long overlapping = 0;
+  for (int k = 0; k < 20; ++k) {
+    const double speed = std::pow(10.0, random.uniform(-2.0, 2.0)),
+                 spin = std::pow(10.0, random.uniform(-2.0, 2.0));
+    const Tally tally = see(flying(random, 12, speed, spin), 150, 0.02 * std::min(1.0, 3.0 / speed));
+    overlapping += tally.overlapping;
+  }
+  EXPECT_GT(overlapping, 2000);
+}
+
+TEST(FramePairs, WhoIsFarFromAllIsSeldomSeen) {
+  SeededRandom random(20261126);
+  World world;
+  for (int k = 0; k < 30; ++k)
+    add(world, body(make_box(1.0, 0.4), {2.0 * (k % 6), 2.0 * (k / 6)}, {random.uniform(-0.1, 0.1), 0.0}));
+  const Tally tally = see(world, 200, 1.0 / 60.0);
+  EXPECT_EQ(tally.overlapping, 0);
+  EXPECT_LT(tally.looked, tally.all / 100);
+}
+
+TEST(FramePairs, TwoThatStandAreSeenOnceAndAgainWhenAllIsForgotten) {
+  World world;
+  add(world, body(make_box(1.0, 1.0), {0.0, 0.0}, {0.0, 0.0}));
+  add(world, body(make_box(1.0, 1.0), {0.9, 0.0}, {0.0, 0.0}));
+  KernelParts parts(world, {});
+  FramePairs pairs(world, parts.trajectories, parts.search, parts.near, parts.run);
+  int looks = 0;
+  const auto frame = [&](double t) {
+    pairs.each(t, [&](const PairKey& pair, double) {
+      ++looks;
+      return std::optional(parts.search.gap(pair, t));
+    });
+  };
+  for (const double t : {0.0, 1.0, 2.0}) frame(t);
+  EXPECT_EQ(looks, 1);
+  pairs.clear();
+  frame(3.0);
+  EXPECT_EQ(looks, 2);
+}
+
+}  // namespace
+}  // namespace brink::frame_pairs_test
