@@ -29,7 +29,6 @@ constexpr double kCellWidth = 0.0625;     // 2^-4 s
 constexpr double kFitTolerance = 1e-13;   // of the cell's largest value
 constexpr double kNothing = 1e-18;        // [m or rad]: smaller is not followed
 constexpr double kNoiseTolerance = 1e-9;  // the same, of a range of values that cannot be halved
-constexpr int kMostCornersInARow = 4096;  // of 2^-30 s each
 constexpr double kPi = 3.14159265358979323846;
 
 using Matrix = Eigen::Matrix<double, kDegree + 1, kDegree + 1>;
@@ -141,6 +140,10 @@ void PrescribedMotion::fit_next() {
   cells_.pop_back();
   Fitted cell;
   const bool finite = interpolate(at, cell);
+  // distances and speeds are told by their squares
+  if (finite &&
+      !std::isfinite((cell.scale + cell.rate_begin.cwiseAbs() + cell.rate_end.cwiseAbs()).squaredNorm()))
+    return fail(at.begin, "is too fast, or goes too far,");
   const Certainty known = bound(at);
   // Cells are taken depth first, so that at each lesser depth there stands the cell that holds this one.
   spreads_[at.depth] = known.spread;

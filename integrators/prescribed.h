@@ -46,6 +46,8 @@ class PrescribedMotion {
   /// Nobody will ask the motion for a time before t any more.
   void forget_before(double t) { track_->forget_before(t); }
 
+  /// True if it has failed because nothing bounds the function, which may be continuous.
+  bool lacks_bounds() const { return corners_in_a_row_ > kMostCornersInARow; }
   /// True once extend() has reached something.
   bool begun() const { return !track_->pieces.empty(); }
   /// From the beginning to the last extend(); grows with later ones. @pre begun().
@@ -71,7 +73,8 @@ class PrescribedMotion {
   void close(const Fitted& piece, const Eigen::Vector3d& rate_end);
   void fail(double t, const std::string& what);
 
-  static constexpr int kDepths = 27;  ///< from cells of 2^-4 s to 2^-30 s
+  static constexpr int kMostCornersInARow = 4096;  ///< of 2^-30 s each
+  static constexpr int kDepths = 27;               ///< from cells of 2^-4 s to 2^-30 s
 
   Eigen::Vector3d base_;
   Function pose_;

@@ -132,9 +132,10 @@ void BlockLdl::begin(const std::vector<Triple>& diagonal) {
 }
 
 /// Cost: for a column of n blocks about n^2 / 2 products of blocks.
-BRINK_WIDE void BlockLdl::factor() {
+BRINK_WIDE bool BlockLdl::factor(const GoOn& go_on) {
   const int* target = targets_.data();
   for (int k = 0; k < size(); ++k) {
+    if (go_on && !go_on()) return false;
     // The diagonal block becomes its own factor: D on the diagonal, L below it.
     double(&a)[3][4] = diagonal_[k].at;
     const Triple& least = least_[k];
@@ -171,6 +172,7 @@ BRINK_WIDE void BlockLdl::factor() {
       for (int q = p + 1; q < end; ++q) subtract_product(below_[*target++], below_[q], column);
     }
   }
+  return true;
 }
 
 BRINK_WIDE void BlockLdl::solve(std::vector<Triple>& b) const {

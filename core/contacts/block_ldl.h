@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "brink/core/base/go_on.h"
+
 namespace brink {
 
 using Vec3 = Eigen::Vector3d;
@@ -63,8 +65,8 @@ class BlockLdl {
   void begin(const std::vector<Triple>& diagonal);
   Block& diagonal(int place) { return diagonal_[place]; }
   Block& below(int slot) { return below_[slot]; }
-  /// A is replaced by its factor.
-  void factor();
+  /// A is replaced by its factor. False: it was stopped, and is half done.
+  bool factor(const GoOn& go_on = {});
   /// A x = b, in place. @pre factor() was called
   void solve(std::vector<Triple>& b) const;
 

@@ -45,6 +45,7 @@ struct RestResult {
     rests,      ///< `loads` are admissible and balance the forces
     moves,      ///< no admissible loads do: `acceleration` is the proof
     undecided,  ///< rounding ended the search before either was sure
+    stopped,    ///< GoOn said no
   };
   Status status = Status::undecided;
   /// w: the accelerations [m/s^2], [rad/s^2] with w.M w / 2 - f.w least, subject to v_n +- mu v_t >= 0. (Not
@@ -82,6 +83,7 @@ struct StepResult {
   enum class Status {
     solved,
     undecided,  ///< rounding ended the search; what is told is the best that was found
+    stopped,    ///< GoOn said no
   };
   Status status = Status::undecided;
   std::vector<Vec3> velocity;      ///< w, after
@@ -103,7 +105,7 @@ class ConeQp {
   ///
   /// Where forces are not unique (four legs), some well inside their cones are told. Rest is accepted when w is
   /// below 1e-8 in the unit of `residual`.
-  RestResult rest_forces(const RestProblem& problem);
+  RestResult rest_forces(const RestProblem& problem, const GoOn& go_on = {});
 
   /// One step with friction bounds that are given (Tresca):
   ///
@@ -119,7 +121,7 @@ class ConeQp {
   ///
   /// Known limit: where masses of one island are spread at random over 1e6 and more, some steps end `undecided`
   /// (2.6 % of random problems at 1e6).
-  StepResult step(const StepProblem& problem);
+  StepResult step(const StepProblem& problem, const GoOn& go_on = {});
 
  private:
   InteriorPoint solver_;

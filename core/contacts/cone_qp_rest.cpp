@@ -150,7 +150,7 @@ class Verdict {
 
 }  // namespace
 
-RestResult ConeQp::rest_forces(const RestProblem& problem) {
+RestResult ConeQp::rest_forces(const RestProblem& problem, const GoOn& go_on) {
   const Cones cones(problem);
   solver_.begin(cones.problem());
   // The search ends at the sharper bounds. Where steps get short rounding has the word, and the wider ones
@@ -160,13 +160,14 @@ RestResult ConeQp::rest_forces(const RestProblem& problem) {
     if (verdict.rests(kSure) || verdict.moves(kExact)) return true;
     return solver_.hindered() && (verdict.rests(kRest) || verdict.moves(kNearly));
   };
-  while (!sure() && solver_.steps() < kMostSteps && solver_.step()) continue;
+  while (!sure() && solver_.steps() < kMostSteps && solver_.step(go_on)) continue;
 
   RestResult result;
   const Verdict verdict(cones.problem(), solver_);
   // Not both: moves() asks for an acceleration above kRest, rests() for one up to it.
   if (verdict.rests(kRest)) result.status = RestResult::Status::rests;
   if (verdict.moves(kProof)) result.status = RestResult::Status::moves;
+  if (solver_.stopped()) result.status = RestResult::Status::stopped;
   const bool rests = result.status == RestResult::Status::rests;
   for (int k = 0; k < static_cast<int>(problem.mass.size()); ++k)
     // What is called rest is 0 exactly, so that nothing creeps.

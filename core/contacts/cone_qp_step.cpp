@@ -144,17 +144,18 @@ bool solved(const InteriorPoint& solver, double part) {
 
 }  // namespace
 
-StepResult ConeQp::step(const StepProblem& problem) {
+StepResult ConeQp::step(const StepProblem& problem, const GoOn& go_on) {
   const StepRows rows(problem);
   solver_.begin(rows.problem());
   const auto sure = [&] {
     return solved(solver_, kExact) || (solver_.hindered() && solved(solver_, kNearly));
   };
-  while (!sure() && solver_.steps() < kMostSteps && solver_.step()) continue;
+  while (!sure() && solver_.steps() < kMostSteps && solver_.step(go_on)) continue;
 
   StepResult result;
   // Whether the search ended by itself or by rounding, what was found is judged by one measure.
   if (solved(solver_, kEnough)) result.status = StepResult::Status::solved;
+  if (solver_.stopped()) result.status = StepResult::Status::stopped;
   for (int k = 0; k < static_cast<int>(problem.mass.size()); ++k)
     result.velocity.push_back(problem.velocity[k] + rows.units().speed_of(k, solver_.velocity(k)));
   result.loads = rows.loads(solver_);

@@ -86,6 +86,7 @@ void InteriorPoint::begin(const QpProblem& problem) {
   pairs_ = pairs;
   for (OfPairs* of : {&s_, &z_, &ds_, &dz_, &aim_, &per_s_, &per_z_}) of->assign(pairs, 0.0);
   steps_ = 0;
+  stopped_ = false;
   last_length_ = 1.0;
   const bool expects = std::any_of(problem.rows.begin(), problem.rows.end(),
                                    [](const QpRow& row) { return row.expected != 0.0; });
@@ -222,12 +223,15 @@ BRINK_WIDE void InteriorPoint::measure() {
   gap_ = gap_after(0.0);
 }
 
-bool InteriorPoint::step() {
+bool InteriorPoint::step(const GoOn& go_on) {
   // The first step is made always: without rows it is the whole solution, M u = f, at a gap of 0.
   if (steps_ > 0 && gap_ < kNothing) return false;
   ++steps_;
   if (following_) follow();
-  factor();
+  if (!factor(go_on)) {
+    stopped_ = true;
+    return false;
+  }
   // Predictor: how far does the direction to products of 0 lead? Mehrotra's (gap after / gap)^3 says
   // from that how much of the centre the step proper needs.
   find_direction(0.0, false);
@@ -247,7 +251,7 @@ bool InteriorPoint::step() {
   return last_length_ > kNoStep;
 }
 
-BRINK_WIDE void InteriorPoint::factor() {
+BRINK_WIDE bool InteriorPoint::factor(const GoOn& go_on) {
   factor_.begin(mass_);
   const std::size_t count = s_.size();
   for (std::size_t p = 0; p < count; ++p) per_s_[p] = 1.0 / s_[p];
@@ -267,7 +271,7 @@ BRINK_WIDE void InteriorPoint::factor() {
     factor_.diagonal(row.first).add(row.weight, row.on_first, row.on_first);
     factor_.below(row.slot).add(row.weight, row.on_last, row.on_first);
   }
-  factor_.factor();
+  return factor_.factor(go_on);
 }
 
 /// Newton's direction towards products that all are `centre` times their mean; `corrected` by the products of

@@ -45,8 +45,9 @@ class InteriorPoint {
  public:
   /// Before the first step. What is known of the graph is kept from the problem before.
   void begin(const QpProblem& problem);
-  /// One factorisation, one step. False: no step of any length is left to rounding.
-  bool step();
+  /// One factorisation, one step. False: no step of any length is left to rounding, or it was stopped.
+  bool step(const GoOn& go_on = {});
+  bool stopped() const { return stopped_; }
   /// The last step had to be short. Near the solution that is by rounding, and more steps do not help.
   bool hindered() const { return last_length_ < 0.9; }
 
@@ -92,7 +93,7 @@ class InteriorPoint {
   void follow();
   void set_bound(Row& row, double bound, double product);
   void measure();
-  void factor();
+  bool factor(const GoOn& go_on);
   void find_direction(double centre, bool corrected);
   double longest_step() const;
   double gap_after(double length) const;
@@ -105,7 +106,7 @@ class InteriorPoint {
   OfPairs aim_;            ///< what s dz + z ds is to be
   OfPairs per_s_, per_z_;  ///< 1 / s, 1 / z where the factor was made
   int pairs_ = 0, steps_ = 0;
-  bool following_ = false;
+  bool following_ = false, stopped_ = false;
   int stalled_ = 0;  ///< steps since products were last half of `least_mean_`
   double gap_ = 0.0, last_length_ = 1.0, followed_at_ = 0.0, least_mean_ = 0.0;
 };

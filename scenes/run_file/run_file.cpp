@@ -121,6 +121,7 @@ struct RunFileRecorder::Impl {
   std::int64_t most_knots = 0;
   std::int64_t bodies = 0;
   std::vector<std::pair<int, SiteMotion>> moving_sites;  ///< by id
+  double sites_asked_for = -1.0;                         ///< when get_ready() was to follow them to [s]
   double wall_before = 0.0, waited = 0.0;                // [s]
   std::uint64_t identity = 0;
   Clock::time_point opened = Clock::now();
@@ -448,8 +449,10 @@ void RunFileRecorder::Impl::put_state(SQLite::Statement& put, const BodyState& s
 void RunFileRecorder::Impl::put_site_frames(double t) {
   SQLite::Statement& put = *insert_site_frame;
   for (auto& [id, site] : moving_sites) {
-    // A formula that cannot be followed to t ends the run by itself; here the row is left out.
-    if (site.extend(t).status != Extent::Status::reached) continue;
+    if (sites_asked_for != t) site.extend(t);
+    // A formula that cannot be followed to t ends the run by itself; here the row is left out, and so it is where the
+    // run was stopped on the way there.
+    if (!(site.motion().end() >= t) || !site.motion().remembers(t)) continue;
     put.bind(1, t);
     put.bind(2, id);
     put_state(put, site.motion().state(t));
@@ -466,6 +469,19 @@ void RunFileRecorder::Impl::put_side(SQLite::Statement& put, int first, const Ev
                           b.velocity.x(),       b.velocity.y(),       b.omega,
                           s.twist.velocity.x(), s.twist.velocity.y(), s.twist.omega};
   for (int i = 0; i < 9; ++i) side.known ? put.bind(first + i, reals[i]) : put.bind(first + i);
+}
+
+bool RunFileRecorder::get_ready(double t) {
+  constexpr std::uint64_t cells = 1024;  // some milliseconds
+  impl_->sites_asked_for = t;
+  bool ready = true;
+  for (auto& [id, site] : impl_->moving_sites)
+    if (site.extend(t, cells).status == Extent::Status::unfinished) {
+      // only the motion from t on is asked for, unless the run is stopped before
+      site.forget_before(site.motion().end());
+      ready = false;
+    }
+  return ready;
 }
 
 // A frame is never cut by a commit: that comes after its last row.

@@ -118,6 +118,9 @@ class RunFileRecorder final : public Recorder {
   /// True if a run goes on from there, and the frame clock has a frame there, which is kept.
   bool has_frame_of(double t) const;
 
+  /// Follows sites that move by formulas, by an instalment. Where a frame comes before they are at its time, it has no
+  /// rows of theirs.
+  bool get_ready(double t) override;
   void frame(double t, std::span<const BodyState> states) override;
   void event(const Event& event) override;
   void contact_lasted(const LastedContact& contact) override;

@@ -151,6 +151,7 @@ class TellingRecorder final : public Recorder {
   /// The file first, then the request's own function: what it is told of is on its way to the disk.
   TellingRecorder(RunFileRecorder& file, const RunRequest& request, Pause& pause)
       : file_(&file), request_(&request), pause_(&pause) {}
+  bool get_ready(double t) override { return file_->get_ready(t); }
   void frame(double t, std::span<const BodyState> states) override { file_->frame(t, states); }
   void event(const Event& event) override {
     file_->event(event);

@@ -258,9 +258,13 @@ void build_forces(const std::vector<ForceTable>& tables, const BodyNames& names,
 
 namespace {
 
-/// A formula by which a site cannot even begin to move (it jumps there, or cannot be bounded) is a fault.
-void must_begin(std::optional<Formula> FormulaMotion::*part, const FormulaMotion& motion,
-                const std::string& site, const Where& where, FaultList& faults) {
+/// Cells of a formula's motion that are made before the run: some hundredths of a second.
+constexpr std::uint64_t kMostCells = 16384;
+
+/// A formula by which a site cannot even begin to move (it jumps there), or that nothing bounds, is a fault. The motion
+/// is made up to the end of the run for that, or as far as it comes; a jump on the way is met by the run itself.
+void must_move(std::optional<Formula> FormulaMotion::*part, const FormulaMotion& motion, double duration,
+               const std::string& site, const Where& where, FaultList& faults) {
   // A formula alone, without the others of the site: so the fault stands at the key that is wrong.
   FormulaMotion alone;
   alone.*part = motion.*part;
@@ -270,7 +274,9 @@ void must_begin(std::optional<Formula> FormulaMotion::*part, const FormulaMotion
   // After another fault it is not asked: what is not finite at the start would be told twice.
   if (!(motion.*part) || !faults.empty()) return;
   try {
-    SiteMotion{moved};
+    SiteMotion made(moved);
+    const Extent extent = made.extend(duration, kMostCells);
+    if (made.lacks_bounds()) faults.add(where, extent.why);
   } catch (const BadInput& e) {
     faults.add(where, e.what());
   }
@@ -304,9 +310,9 @@ PrescribedPath build_motion(const Given<MotionTable>& given_motion, const std::s
   check(motion.x, table.x.where);
   check(motion.y, table.y.where);
   check(motion.angle, table.angle.where);
-  must_begin(&FormulaMotion::x, motion, site, table.x.where, faults);
-  must_begin(&FormulaMotion::y, motion, site, table.y.where, faults);
-  must_begin(&FormulaMotion::angle, motion, site, table.angle.where, faults);
+  must_move(&FormulaMotion::x, motion, duration, site, table.x.where, faults);
+  must_move(&FormulaMotion::y, motion, duration, site, table.y.where, faults);
+  must_move(&FormulaMotion::angle, motion, duration, site, table.angle.where, faults);
   return motion;
 }
 

@@ -81,7 +81,8 @@ bool lies_still(const IslandStep& step, double h) {
 /// Of a large island that moves one solve, in which friction bounds follow the normal forces. Any other begins with the
 /// bounds of the step before and ends with those of its own forces, so that from step to step forces come to where they
 /// obey Coulomb's law to rounding: whether it is at rest may hang on less than what following leaves.
-StepResult solve(ConeQp& solver, StepProblem p, double h, const IslandStep& step, int& factorisations) {
+StepResult solve(ConeQp& solver, StepProblem p, double h, const IslandStep& step, int& factorisations,
+                 const GoOn& go_on) {
   const bool few = p.mass.size() <= kFew, follow = !few && !lies_still(step, h);
   for (StepContact& s : p.contacts) {
     s.coulomb = follow;
@@ -90,9 +91,9 @@ StepResult solve(ConeQp& solver, StepProblem p, double h, const IslandStep& step
   }
   StepResult result;
   for (int pass = 0; pass <= kFrictionPasses; ++pass) {
-    result = solver.step(p);
+    result = solver.step(p, go_on);
     factorisations += result.factorisations;
-    if (follow || !(result.residual <= kResidual)) break;
+    if (result.status == StepResult::Status::stopped || follow || !(result.residual <= kResidual)) break;
     double most = 0.0, wrong = 0.0;
     for (std::size_t k = 0; k < p.contacts.size(); ++k) {
       StepContact& s = p.contacts[k];
@@ -294,17 +295,20 @@ double residual(const IslandStep& step, const StepResult& result, double h) {
   return most > 0.0 ? beyond / most : 0.0;
 }
 
+bool stops(const GoOn& go_on) { return go_on && !go_on(); }
+
 /// The step on which nobody presses, which is the answer if no gap is missed. For what the solver does not come to:
 /// contacts that part far slower than the step is long.
 StepOutcome without_loads(IslandStep& step, double h, double tolerance, const GapAlong& gap,
-                          StepOutcome outcome) {
+                          const GoOn& go_on, StepOutcome outcome) {
   std::vector<Vec3> velocity = step.velocity;
   for (std::size_t i = 0; i < step.mass.size(); ++i)
     // what is held has an infinite mass: nothing is added to it
     velocity[i] += h * step.force[i].cwiseQuotient(step.mass[i]);
   // all contacts are asked, those that wait for their turn, too
   for (std::size_t k = 0; k < step.contacts.size(); ++k)
-    if (missed(step, k, h, velocity, tolerance, 0.0, gap).most > kMissCounts * tolerance) return outcome;
+    if (stops(go_on) || missed(step, k, h, velocity, tolerance, 0.0, gap).most > kMissCounts * tolerance)
+      return outcome;
   step.velocity = std::move(velocity);
   for (IslandContact& c : step.contacts) c.normal_force = c.tangential_force = 0.0;
   outcome.solved = true;
@@ -314,7 +318,8 @@ StepOutcome without_loads(IslandStep& step, double h, double tolerance, const Ga
 }  // namespace
 
 /// One loop to two ends: a contact at an end joins once it is missed, and a gap that was missed aims higher.
-StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap) {
+StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap,
+                      const GoOn& go_on) {
   StepOutcome outcome;
   std::vector<Part> parts;
   std::vector<std::size_t> waiting;
@@ -326,11 +331,13 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
   const double cheap = fall(step, h);
   // Contacts that wait join once each and are not counted as corrections, so that the loop ends.
   for (int again = 0; again < kCorrections && !outcome.solved;) {
-    StepResult result = solve(solver, problem_of(step, h, parts), h, step, outcome.factorisations);
-    if (!(result.residual <= kResidual)) return without_loads(step, h, tolerance, gap, outcome);
+    StepResult result = solve(solver, problem_of(step, h, parts), h, step, outcome.factorisations, go_on);
+    if (result.status == StepResult::Status::stopped) return outcome;
+    if (!(result.residual <= kResidual)) return without_loads(step, h, tolerance, gap, go_on, outcome);
     // those that are missed take part from now on: each comes once
     const auto met = std::stable_partition(waiting.begin(), waiting.end(), [&](std::size_t k) {
-      return !(missed(step, k, h, result.velocity, tolerance, cheap, gap).most > kMissCounts * tolerance);
+      return stops(go_on) ||
+             !(missed(step, k, h, result.velocity, tolerance, cheap, gap).most > kMissCounts * tolerance);
     });
     // solved again with them before any lift is asked for: without them the motion is another
     if (met != waiting.end()) {
@@ -341,6 +348,7 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
     double worst = 0.0;
     std::vector<double> more;  // lifts that one more solve would need
     for (const Part& part : parts) {
+      if (stops(go_on)) return outcome;
       const Miss miss = missed(step, part.contact, h, result.velocity, tolerance, cheap, gap);
       worst = std::max(worst, miss.most);
       // From a tenth of the tolerance on, though only a miss beyond the tolerance asks for that solve, which then
@@ -355,7 +363,7 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
     double of = 0.0;
     const double won_here = won(step, result, parts, h, tolerance, of);
     // The caller tries a shorter step: by what faces that turn are missed is of second order in h.
-    if (won_here > kWonOf * of) return without_loads(step, h, tolerance, gap, outcome);
+    if (won_here > kWonOf * of) return without_loads(step, h, tolerance, gap, go_on, outcome);
     // from here on loads stand at their contacts' places; won() took them at their parts'
     result.loads = of_all(result.loads, parts, step.contacts.size());
     const bool driven = std::any_of(parts.begin(), parts.end(),
@@ -382,7 +390,7 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
 }
 
 /// A question of forces alone: gaps and velocities are not looked at.
-bool stays_at_rest(ConeQp& solver, IslandStep& step) {
+bool stays_at_rest(ConeQp& solver, IslandStep& step, const GoOn& go_on) {
   RestProblem p;
   p.mass = step.mass;
   p.force = step.force;
@@ -391,7 +399,7 @@ bool stays_at_rest(ConeQp& solver, IslandStep& step) {
     p.contacts.back().friction = c.friction;
     p.contacts.back().rolling_resistance = c.rolling_resistance;
   }
-  const RestResult result = solver.rest_forces(p);
+  const RestResult result = solver.rest_forces(p, go_on);
   if (result.status != RestResult::Status::rests) return false;
   for (std::size_t k = 0; k < step.contacts.size(); ++k) {
     step.contacts[k].normal_force = result.loads[k].normal;

@@ -53,7 +53,7 @@ struct IslandStep {
 using GapAlong = std::function<double(std::size_t k, double moment, const std::vector<Vec3>& velocity)>;
 
 struct StepOutcome {
-  bool solved = false;  ///< every gap stays above -`tolerance` along the step
+  bool solved = false;  ///< every gap stays above -`tolerance` along the step; not where GoOn said no
   int factorisations = 0;
   /// Energy that the step made [J], beyond what sites that move gave: at most 1e-3 of what it turned over. 0 where
   /// none does: all is slowed by as much then.
@@ -62,9 +62,10 @@ struct StepOutcome {
 };
 
 /// Takes a step of h > 0 [s]. What is not solved is to be tried again with a shorter one.
-StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap);
+StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap,
+                      const GoOn& go_on = {});
 
-/// True if the bodies stay at rest under their forces: the contacts' forces are set then.
-bool stays_at_rest(ConeQp& solver, IslandStep& step);
+/// True if the bodies stay at rest under their forces: the contacts' forces are set then. Not where GoOn said no.
+bool stays_at_rest(ConeQp& solver, IslandStep& step, const GoOn& go_on = {});
 
 }  // namespace brink

@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "brink/core/base/go_on.h"
 #include "brink/scheduler/kernel/island_members.h"
 
 namespace brink {
@@ -13,9 +14,9 @@ namespace brink {
 using MostAbsorbed = std::function<double(const PairKey& pair)>;
 
 /// Bodies that are no members and come to touch one within h [s], ascending. Their motions are followed to the
-/// present; nothing on a halt. Cost: a look at every body's box.
+/// present; nothing on a halt, or where GoOn says no. Cost: a look at every body's box.
 std::vector<int> joining(const World& world, Trajectories& trajectories, const ContactSearch& search,
                          const IslandMembers& members, double now, double h,
-                         const MostAbsorbed& most_absorbed);
+                         const MostAbsorbed& most_absorbed, const GoOn& go_on);
 
 }  // namespace brink

@@ -53,7 +53,7 @@ struct IslandMembers::Listing {
 };
 
 /// Members are swept along x by the left edges of their boxes; sites are held against every member.
-std::vector<HeldContact> IslandMembers::contacts(double reach) const {
+std::vector<HeldContact> IslandMembers::contacts(double reach, const GoOn& go_on) const {
   Listing to{reach, {}};
   std::vector<Box> boxes;
   for (std::size_t i = 0; i < bodies_.size(); ++i)
@@ -63,7 +63,8 @@ std::vector<HeldContact> IslandMembers::contacts(double reach) const {
   std::sort(by_left.begin(), by_left.end(),
             [&](int a, int b) { return std::pair(boxes[a].low.x(), a) < std::pair(boxes[b].low.x(), b); });
   const bool repeats = world_->periods.any();
-  for (std::size_t x = 0; x < by_left.size(); ++x)
+  const auto stops = [&] { return go_on && !go_on(); };
+  for (std::size_t x = 0; x < by_left.size() && !stops(); ++x)
     for (std::size_t y = x + 1; y < by_left.size(); ++y) {
       const auto [a, b] = std::minmax(by_left[x], by_left[y]);
       // sorted along x: none that follows begins before this one's right edge, either. Images may.
@@ -74,7 +75,8 @@ std::vector<HeldContact> IslandMembers::contacts(double reach) const {
   for (int s = 0; s < trajectories_->site_count(); ++s) {
     const int owner = trajectories_->body_count() + s;
     const Box box = box_of(owner, site_way(s));
-    for (std::size_t i = 0; i < bodies_.size(); ++i) add_images(to, bodies_[i], boxes[i], owner, box);
+    for (std::size_t i = 0; i < bodies_.size() && !stops(); ++i)
+      add_images(to, bodies_[i], boxes[i], owner, box);
   }
   // in an order of their own, whatever the boxes: the solver's rounding depends on it
   std::sort(to.contacts.begin(), to.contacts.end(),

@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+#include "brink/core/base/go_on.h"
 #include "brink/core/base/limits.h"
 #include "brink/core/contacts/cone_qp.h"
 #include "brink/scheduler/kernel/contact_search.h"
@@ -58,8 +59,9 @@ class IslandMembers {
   Box box(int member) const { return box_of(bodies_[member], reach_of(member)); }
 
   /// Every near feature of the members, among each other and with sites, in order. Features are listed up to
-  /// a gap of `reach` [m]; < 0: as far as a step may lead. Cost: members sorted along x, times sites.
-  std::vector<HeldContact> contacts(double reach) const;
+  /// a gap of `reach` [m]; < 0: as far as a step may lead. Not all where GoOn says no. Cost: members sorted along x,
+  /// times sites.
+  std::vector<HeldContact> contacts(double reach, const GoOn& go_on = {}) const;
 
   /// The state of the pair's other owner, where its image is; a time `later` [s] into the step, where members
   /// move with `velocity` (x, y [m/s], angle [rad/s]), and sites as they do. @pre sites are covered as far.

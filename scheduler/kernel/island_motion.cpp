@@ -48,13 +48,14 @@ constexpr double kNoSpeed = 1e-7;
 /// together. `h_` is the length that is looked ahead by, and in the end that of the step; `contacts_` are the
 /// features of the last look, with forces once there are some.
 IslandMotion::IslandMotion(IslandMembers members, const ContactSearch& search, CollisionResponse& response,
-                           ConeQp& solver, IslandTally& tally, WarmContacts warm)
+                           ConeQp& solver, IslandTally& tally, WarmContacts warm, GoOn go_on)
     : members_(std::move(members)),
       search_(&search),
       response_(&response),
       solver_(&solver),
       tally_(&tally),
-      warm_(std::move(warm)) {}
+      warm_(std::move(warm)),
+      go_on_(std::move(go_on)) {}
 
 /// Of the members as they are now: impacts change speeds, and with them the answer.
 double IslandMotion::longest() const {
@@ -71,14 +72,15 @@ std::vector<int> IslandMotion::joining(const World& world, Trajectories& traject
   if (!(h_ < kForever)) return {};
   members_.look_ahead(h_, kReach);
   // an agitated island takes impacts where its step begins, so it takes in who comes fast, too
-  return brink::joining(world, trajectories, *search_, members_, now, h_,
-                        [this](const PairKey& pair) { return agitated_ ? kForever : most_absorbed(pair); });
+  return brink::joining(
+      world, trajectories, *search_, members_, now, h_,
+      [this](const PairKey& pair) { return agitated_ ? kForever : most_absorbed(pair); }, go_on_);
 }
 
 /// Lists features anew, up to a gap of `reach` [m]; < 0: as far as the step may lead (IslandMembers::contacts).
 /// What a step absorbs is found anew with them.
 void IslandMotion::list(double reach) {
-  contacts_ = members_.contacts(reach);
+  contacts_ = members_.contacts(reach, go_on_);
   absorbed_ = 0.0;
 }
 
@@ -110,6 +112,7 @@ void IslandMotion::pass_on_impacts(const Impact& told) {
   std::vector<Vec3> velocity = velocities();
   std::vector<double> impact;  // how fast each contact closes that is an impact now
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    if (!go_on_()) return;
     impact.push_back(impact_of(contacts_[k], velocity));
     each_member(contacts_[k], [&](int member) { contacts_of[member].push_back(k); });
   }
@@ -117,7 +120,7 @@ void IslandMotion::pass_on_impacts(const Impact& told) {
   // plastic.
   for (std::size_t n = 0; n < kFirstImpacts + kImpactsEach * contacts_.size(); ++n) {
     const auto fastest = std::max_element(impact.begin(), impact.end());
-    if (fastest == impact.end() || !(*fastest > 0.0)) break;
+    if (fastest == impact.end() || !(*fastest > 0.0) || !go_on_()) break;
     const HeldContact& c = contacts_[static_cast<std::size_t>(fastest - impact.begin())];
     collide(c, *fastest, told);
     // taken before it came: it would have cut the step
@@ -192,8 +195,9 @@ bool IslandMotion::rests(double rest_speed) {
   for (const HeldContact& c : contacts_)
     // who stands on a site that moves is not at rest
     if (members_.on_moving_site(c)) return false;
+  if (!go_on_()) return false;
   make_problem();
-  if (!stays_at_rest(*solver_, problem_)) return false;
+  if (!stays_at_rest(*solver_, problem_, go_on_)) return false;
   take_forces();
   // what fades is less than the tolerance times a weight; what the option rest_speed stops may be more,
   // and is told
@@ -256,7 +260,7 @@ bool IslandMotion::take(double h, double tolerance) {
   const double worthwhile = kWorthwhile * h;
   // Each turn returns, or shortens the step, or lengthens the list, and each of these ends: `shortest` bounds what
   // the tolerance asks for, kHalvings and kWidenings the others.
-  for (int halving = 0, widening = 0; halving <= kHalvings;) {
+  for (int halving = 0, widening = 0; halving <= kHalvings && go_on_();) {
     look(h);
     if (const double first = next_arrival(); first < h) {  // an impact ends the step
       impacts_in_step_ = impacts_in_step_ || first < worthwhile;
@@ -267,7 +271,7 @@ bool IslandMotion::take(double h, double tolerance) {
     const auto gap = [this](std::size_t k, double later, const std::vector<Vec3>& velocity) {
       return members_.gap(contacts_[k], later, velocity) - kept(contacts_[k].feature);
     };
-    const StepOutcome outcome = take_step(*solver_, problem_, h, search_->limits().tolerance, gap);
+    const StepOutcome outcome = take_step(*solver_, problem_, h, search_->limits().tolerance, gap, go_on_);
     // work is counted of every try, all else of the step that is taken
     tally_->factorisations += outcome.factorisations;
     // looked at after the solver: contacts may hand on more speed than anybody had
@@ -305,6 +309,7 @@ double IslandMotion::next_arrival() {
   double first = kForever;
   const std::vector<Vec3> velocity = velocities();
   for (const HeldContact& c : contacts_) {
+    if (!go_on_()) break;
     const Arrival come = touches(c) ? Arrival{0.0, members_.closing_speed(c)} : arrival(c, velocity);
     if (!(come.time <= h_)) continue;
     if (!touches(c) && come.closing > most_absorbed(c.pair))

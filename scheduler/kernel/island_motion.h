@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "brink/core/base/go_on.h"
 #include "brink/core/contacts/impulse.h"
 #include "brink/scheduler/islands/island_step.h"
 #include "brink/scheduler/kernel/collision_response.h"
@@ -19,9 +20,10 @@ class IslandMotion {
   using Impact =
       std::function<void(const HeldContact&, const RealVec& from, double closing, const ImpulseResult&)>;
 
-  /// What is given must outlive it. `warm`: forces of the step before.
+  /// What is given must outlive it. `warm`: forces of the step before. Where GoOn says no, nothing that follows
+  /// leads anywhere: there is no rest, and no step.
   IslandMotion(IslandMembers members, const ContactSearch& search, CollisionResponse& response,
-               ConeQp& solver, IslandTally& tally, WarmContacts warm);
+               ConeQp& solver, IslandTally& tally, WarmContacts warm, GoOn go_on);
 
   const IslandMembers& members() const { return members_; }
   /// Bodies that are to be members before it steps, see joining(). None where nothing moves or pulls.
@@ -94,6 +96,7 @@ class IslandMotion {
   ConeQp* solver_;
   IslandTally* tally_;
   WarmContacts warm_;
+  GoOn go_on_;
   bool by_modes_ = false, agitated_ = false, impacts_in_step_ = false;
   double h_ = 0.0, absorbed_ = 0.0;
   std::vector<HeldContact> contacts_;

@@ -25,6 +25,9 @@ constexpr int kMostHasty = 64, kCalmed = 4;
 constexpr std::size_t kCrowd = 8;
 constexpr int kAgitated = 8, kMostAgitation = 32;
 
+/// A step of so many members takes hundredths of a second, and a snapshot of so many bodies for each of them a tenth of that.
+constexpr std::size_t kMany = 256, kBodiesEach = 64;
+
 /// Asks for a member that bounces on another, or on a site: where restitution is 0 a step takes every approach as
 /// plastic, and what cuts it comes from elsewhere.
 bool is_agitated(const World& world, const IslandPace& pace, const std::set<int>& members) {
@@ -214,7 +217,7 @@ IslandMotion Islands::set_out(std::set<int>& members, IslandPace& pace, double& 
     std::vector<int> held;
     trajectories_->hold(as_they_are, held);
     IslandMotion motion(IslandMembers(*world_, *trajectories_, *search_, run_->time(), members), *search_,
-                        *response_, solver_, tally_, warm);
+                        *response_, solver_, tally_, warm, [this] { return !run_->is_cut(); });
     // who asked for a tolerance has exact impacts
     if (limits_.tolerance == 0.0 && is_agitated(*world_, pace, members)) motion.expect_agitation();
     std::vector<int> more = motion.joining(*world_, *trajectories_, run_->time());
@@ -247,7 +250,7 @@ bool Islands::begin_step(std::set<int> members, double longest, std::vector<int>
 /// bounds the step [s]; false where the run is not to go on.
 bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time) {
   // Islands are out of their list while this goes on: a stop in between would leave their bodies held by
-  // nobody.
+  // nobody. What is cut all the same is undone by whoever has made that possible.
   const RunControl::Indivisible whole(*run_);
   IslandPace pace;
   IslandMotion motion = set_out(members, pace, longest);
@@ -272,6 +275,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
       });
   // an impact here is news: modes that the step before ended in do not hold
   on_time = on_time && run_->work().collisions == collisions;
+  if (run_->is_cut()) return give_up();
   const bool rests = motion.rests(limits_.rest_speed);
   // anew: impacts have changed speeds
   const double h = std::min(longest, motion.longest());
@@ -279,6 +283,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   // rest first: it is exact and free; modes next, as they keep to a tolerance; steps of first order last
   const bool by_modes = !rests && motion.take(modes, now, h, on_time);
   if (!rests && !by_modes && !motion.take(h, limits_.tolerance)) {
+    if (run_->is_cut()) return give_up();
     run_->stop(
         Termination::failed,
         fmt::format("an island of {} bodies, '{}' the first, finds no step at t = {:.17g} that keeps its "
@@ -293,6 +298,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   if (rests) note_change(EventKind::sleep, *members.begin()), ++tally_.slept;
   // only for a step that has been found: it puts members into islands again
   part(motion, rests, by_modes ? &modes : nullptr, pace, changed);
+  if (run_->is_cut()) return false;
   tell_ended();
   // a body that was held, let go and held again is in it more than once
   std::sort(changed.begin(), changed.end());
@@ -318,6 +324,7 @@ void Islands::part(const IslandMotion& motion, bool rests, const IslandModes* mo
     Island island = motion.island_of(together, rests, end);
     island.pace = pace;
     put_in(std::move(island));
+    if (run_->is_cut()) return;
   }
   for (const int i : parts.free) {
     free.push_back(members.bodies()[i]);
@@ -395,6 +402,13 @@ bool Islands::begin(const std::vector<std::pair<PairKey, FeatureContact>>& touch
     if (!carry_out_step(members, kForever, changed, false)) return false;
   }
   return run_->poll();
+}
+
+bool Islands::takes_long(int body) const {
+  const auto lead = lead_of_.find(body);
+  if (lead == lead_of_.end()) return false;
+  const std::size_t members = islands_.at(lead->second).members.size();
+  return members >= kMany && kBodiesEach * members >= world_->bodies.size();
 }
 
 /// To the bit: next_step_ is the `due` of one of them. The list is by least members, so the first that fits is the

@@ -44,6 +44,8 @@ class Islands {
   int next_island() const;
   /// By their least member.
   const std::map<int, Island>& all() const { return islands_; }
+  /// True if the next step of its island takes long: so many members that a snapshot of everybody is little beside it.
+  bool takes_long(int body) const;
   bool is_member(int body) const { return trajectories_->is_held(body); }
   /// When the step of that member's island ends [s]; infinity: it is at rest.
   double step_end(int body) const { return islands_.at(lead_of_.at(body)).due; }

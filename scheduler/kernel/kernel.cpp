@@ -142,6 +142,19 @@ std::vector<Certificate> Kernel::simultaneous(const Certificate& c) {
 /// on: each may ask for what the one before has done.
 bool Kernel::resolve(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed) {
   parts_.policy_watch.going_to(time());
+  return do_or_cut(may_step_long(pair), [&] { return respond_and_tell(pair, found, changed); });
+}
+
+/// Of contacts that are taken together any may be with an island.
+bool Kernel::may_step_long(const PairKey& pair) const {
+  const Islands& islands = parts_.islands;
+  if (takes_together(order()))
+    return std::any_of(islands.all().begin(), islands.all().end(),
+                       [&](const auto& island) { return islands.takes_long(island.first); });
+  return islands.takes_long(pair.body) || (!pair.with_site() && islands.takes_long(pair.other_body));
+}
+
+bool Kernel::respond_and_tell(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed) {
   // A group is made of everything that touches now, so nobody may be on a motion that is only guessed. A
   // contact that a picture shows names no features from which a group could be collected.
   if (takes_together(order()) || (!found.seen && parts_.endings.collapsed(time()))) {
@@ -329,7 +342,8 @@ bool Kernel::step_island(std::vector<int>& changed) {
   parts_.policy_watch.going_to(time());
   const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_islands);
   roll_back_all();
-  return parts_.islands.step(changed);
+  return do_or_cut(parts_.islands.takes_long(parts_.islands.next_island()),
+                   [&] { return parts_.islands.step(changed); });
 }
 
 /// Begins a motion at another place with the same twist; nothing is told.
@@ -432,6 +446,8 @@ bool Kernel::record_frames(double t) {
     const auto due = parts_.records.frame_due(t);
     if (!due) break;
     const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_record);
+    // a run that goes on has this frame before it still
+    if (!parts_.records.get_ready(*due)) break;
     // shown and watched are the motions that are certain; the newest may have begun after the frame
     parts_.speculation.swap_with_certain();
     parts_.records.frame_of_clock(*due);
@@ -444,6 +460,7 @@ bool Kernel::record_frames(double t) {
 
 void Kernel::show_frame() {
   const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_record);
+  parts_.records.get_ready(time());
   parts_.records.frame(time());
   parts_.watch.frame(time());
 }

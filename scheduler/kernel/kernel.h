@@ -134,6 +134,10 @@ class Kernel : public KernelView {
   /// Records a frame at the present time, and looks at all pairs.
   void show_frame();
   std::vector<std::byte> snapshot() const;
+  /// Does what may step an island. Where that takes long it may be cut, and is undone at the end of the run: nobody is
+  /// told of any of it, and the run is gone on with from before.
+  template <class Verb>
+  bool do_or_cut(bool takes_long, Verb&& verb);
   /// From now on the bodies of each set are integrated together, beside those that forces couple; sets that
   /// are not named again are split. For what answers collisions, not for policies: they learn of it by
   /// `changed`, to which bodies whose motion changed are appended. What was resolved ahead of time is undone.
@@ -145,6 +149,8 @@ class Kernel : public KernelView {
   bool resolve_group(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed);
   bool tell(const Outcome& outcome, std::vector<int>& changed);
   void count(const PairKey& pair);
+  bool may_step_long(const PairKey& pair) const;
+  bool respond_and_tell(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed);
   bool judge(const Outcome& outcome, std::vector<int>& changed);
   bool stop_at_limit(std::uint64_t collisions);
   bool judge_ending(const Outcome& outcome, std::vector<int>& changed);
@@ -155,5 +161,23 @@ class Kernel : public KernelView {
   unsigned looks_timed_ = 0, responses_timed_ = 0,
            events_timed_ = 0;  ///< how many there were, for one in some of them
 };
+
+template <class Verb>
+bool Kernel::do_or_cut(bool takes_long, Verb&& verb) {
+  // what has met its limit is not asked any more
+  if (!takes_long || halt()) return verb();
+  // a snapshot is of what is certain
+  roll_back_all();
+  std::vector<std::byte> before = snapshot();
+  const RunControl::Undoable undoable(parts_.run);
+  Records::HeldBack held_back(parts_.records);
+  const bool goes_on = verb();
+  if (parts_.run.is_cut()) {
+    parts_.before_cut = std::move(before);
+    return false;
+  }
+  held_back.told();
+  return goes_on;
+}
 
 }  // namespace brink

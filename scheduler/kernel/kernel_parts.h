@@ -55,6 +55,7 @@ struct KernelParts {
   TakenGroups taken;
   double horizon = 0.0;
   std::uint64_t revision = 0;
+  std::vector<std::byte> before_cut;  ///< snapshot of before the verb that was cut; empty: none was
 };
 
 }  // namespace brink

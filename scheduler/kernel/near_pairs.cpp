@@ -117,7 +117,13 @@ std::vector<PairKey> NearPairs::all(double from, double to) {
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   } else if (by_bounds_) {
     // ascending by owners and images, whatever the order in which boxes were met
-    for (const ImagePair& p : overlapping_pairs(boxes_, world_->periods))
+    std::vector<ImagePair> overlapping;
+    each_overlapping(boxes_, world_->periods, [&](const ImagePair& p) {
+      overlapping.push_back(p);
+      return run_->poll();
+    });
+    std::sort(overlapping.begin(), overlapping.end());
+    for (const ImagePair& p : overlapping)
       if (const auto pair = search_->pair_of(p.a, p.b, p.image)) pairs.push_back(*pair);
   } else {
     for (int a = 0; a < trajectories_->body_count() && run_->poll(); ++a)

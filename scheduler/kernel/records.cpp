@@ -43,6 +43,12 @@ std::optional<double> Records::frame_due(double t) const {
   return due > t ? std::nullopt : std::optional(due);
 }
 
+bool Records::get_ready(double t) {
+  while (recorder_ && !recorder_->get_ready(t))
+    if (run_->is_asked_to_stop()) return false;
+  return true;
+}
+
 void Records::frame_of_clock(double due) {
   ++frame_;
   frame(due);
@@ -72,7 +78,7 @@ void Records::event(EventKind kind, const PairKey& pair, const FeatureContact& c
   event.impulse_t = impulse_t;
   event.body = body;
   event.other = other;
-  recorder_->event(event);
+  tell(event);
 }
 
 /// Its time may lie ahead (a Zeno limit), so later events are not held to it.
@@ -83,22 +89,30 @@ void Records::ending(EventKind kind, const PairKey& pair, const FeatureContact& 
   event.kind = kind;
   event.contact = world_contact(pair, contact);
   event.contact.time = time;
-  recorder_->event(event);
+  tell(event);
 }
 
 /// One of the present instant is not told to be before an event that was told: they follow each other.
 void Records::knot(Knot knot) {
   if (!records_events()) return;
   if (knot.time == run_->time()) knot.time = std::max(knot.time, last_event_);
-  recorder_->knot(knot);
+  tell(knot);
 }
 
 /// A stretch of no length is none: its step was cut where it began.
 void Records::lasted(const HeldContact& c) {
   if (!records_events() || !(run_->time() > c.since)) return;
-  recorder_->contact_lasted({c.since, run_->time(), c.mode, c.pair.body, c.pair.other_body, c.pair.other_site,
-                             c.feature.sample, c.feature.site, c.feature.sample_on_a, c.place,
-                             c.feature.normal, c.normal_force, c.tangential_force});
+  tell(LastedContact{c.since, run_->time(), c.mode, c.pair.body, c.pair.other_body, c.pair.other_site,
+                     c.feature.sample, c.feature.site, c.feature.sample_on_a, c.place, c.feature.normal,
+                     c.normal_force, c.tangential_force});
+}
+
+/// In the order in which it happened, also where it is held back.
+void Records::tell(const Told& what) {
+  if (holds_back_) return held_back_.push_back(what);
+  if (const auto* event = std::get_if<Event>(&what)) recorder_->event(*event);
+  if (const auto* knot = std::get_if<Knot>(&what)) recorder_->knot(*knot);
+  if (const auto* contact = std::get_if<LastedContact>(&what)) recorder_->contact_lasted(*contact);
 }
 
 /// By the wall clock: when checkpoints are written changes nothing of the run. Below 0: never.

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "brink/scheduler/kernel/contact_search.h"
 #include "brink/scheduler/kernel/island.h"
@@ -20,6 +23,8 @@ class Records {
   // -- frames --
   /// When the next frame of the clock is due, if that is up to t [s].
   std::optional<double> frame_due(double t) const;
+  /// What the recorder does before a frame at t. False: the run is asked to stop, and that is not done.
+  bool get_ready(double t);
   /// Records that frame.
   void frame_of_clock(double due);
   /// Records one beside the clock.
@@ -49,6 +54,23 @@ class Records {
   /// A contact that lasted up to the present time.
   void lasted(const HeldContact& contact);
 
+  // -- what may be undone --
+  /// While one lives nobody is told of events, knots and contacts that lasted. Those are dropped with it, unless
+  /// they are told() before.
+  class HeldBack {
+   public:
+    explicit HeldBack(Records& records) : records_(&records) { records.holds_back_ = true; }
+    ~HeldBack() { records_->take_back(); }
+    HeldBack(const HeldBack&) = delete;
+    HeldBack& operator=(const HeldBack&) = delete;
+    void told() {
+      for (const auto& what : records_->take_back()) records_->tell(what);
+    }
+
+   private:
+    Records* records_;
+  };
+
   // -- checkpoints --
   bool checkpoint_due() const;
   void checkpoint(const std::vector<std::byte>& state);
@@ -66,7 +88,14 @@ class Records {
   }
 
  private:
+  using Told = std::variant<Event, Knot, LastedContact>;
   void wind_frame_clock(double t);
+  void tell(const Told& what);
+  /// From now on they are told at once. What was held back until now.
+  std::vector<Told> take_back() {
+    holds_back_ = false;
+    return std::exchange(held_back_, {});
+  }
 
   const Trajectories* trajectories_;
   RunControl* run_;
@@ -76,6 +105,8 @@ class Records {
   double last_frame_ = -1.0;      ///< time of the last frame recorded [s]
   double last_event_ = 0.0;       ///< time of the last event recorded [s]
   double next_checkpoint_ = 0.0;  ///< wall clock [s]
+  bool holds_back_ = false;
+  std::vector<Told> held_back_;
 };
 
 }  // namespace brink

@@ -24,6 +24,7 @@ class RunControl {
   void begin(const RunOptions& options) {
     options_ = options;
     halt_.reset();
+    asked_to_stop_ = false;
   }
   const RunOptions& options() const { return options_; }
 
@@ -42,15 +43,12 @@ class RunControl {
   /// Asks `progress` whether to go on, each few thousand search iterations or collisions, and ten times a
   /// second in loops that do neither. Cheap: to be called in every loop that may take long. False on a halt.
   bool poll() {
-    constexpr std::uint64_t between = 4096;
-    if (indivisible_ > 0) return !halt_ || halt_->termination != Termination::failed;
-    const std::uint64_t done = work_.search_iterations + 4 * work_.collisions + 64 * work_.passes + pieces_;
-    if (halt_ || (done - polled_ < between && !ask_.due())) return !halt_;
-    polled_ = done;
+    if (indivisible_ > 0) return !is_cut() && (!halt_ || halt_->termination != Termination::failed);
+    if (halt_ || !is_due()) return !halt_;
     return ask();
   }
-  /// While one lives nobody is asked, and only a failure ends anything: what has begun is carried through, as
-  /// half of it could not be gone on with.
+  /// While one lives only a failure ends anything: what has begun is carried through, as half of it could not be
+  /// gone on with. Nobody is asked unless it can be undone.
   class Indivisible {
    public:
     explicit Indivisible(RunControl& run) : run_(&run) { ++run.indivisible_; }
@@ -62,12 +60,38 @@ class RunControl {
     RunControl* run_;
   };
 
+  /// While one lives what is indivisible can be undone, so it need not be carried through where somebody says
+  /// stop. A limit that is met in the middle of it does not cut it.
+  class Undoable {
+   public:
+    explicit Undoable(RunControl& run) : run_(&run) { run.undoable_ = true; }
+    ~Undoable() { run_->undoable_ = run_->cut_ = false; }
+    Undoable(const Undoable&) = delete;
+    Undoable& operator=(const Undoable&) = delete;
+
+   private:
+    RunControl* run_;
+  };
+  /// In the middle of what is indivisible, as poll(): true if it has been cut, and is to be undone.
+  bool is_cut() {
+    if (cut_ || !undoable_) return cut_;
+    return cut_ = is_asked_to_stop();
+  }
+  /// Asks as poll() does, also where the run has its end already.
+  bool is_asked_to_stop() {
+    if (!asked_to_stop_ && is_due()) ask();
+    return asked_to_stop_;
+  }
+
   /// Asks it now.
   bool ask() {
-    if (options_.progress && !options_.progress(time_, work_.collisions))
-      stop(Termination::stopped, "on request");
+    if (options_.progress && !options_.progress(time_, work_.collisions)) {
+      asked_to_stop_ = true;
+      stop(Termination::stopped, kOnRequest);
+    }
     return !halt_;
   }
+  static constexpr const char* kOnRequest = "on request";
 
   WorkCounters& work() { return work_; }
   StageTimer& timer() { return timer_; }
@@ -83,11 +107,20 @@ class RunControl {
   }
 
  private:
+  bool is_due() {
+    constexpr std::uint64_t between = 4096;
+    const std::uint64_t done = work_.search_iterations + 4 * work_.collisions + 64 * work_.passes + pieces_;
+    if (done - polled_ < between && !ask_.due()) return false;
+    polled_ = done;
+    return true;
+  }
+
   RunOptions options_;
   WorkCounters work_;
   StageTimer timer_;
   std::optional<Halt> halt_;
   int indivisible_ = 0;
+  bool undoable_ = false, cut_ = false, asked_to_stop_ = false;
   double time_ = 0.0;
   std::uint64_t pieces_ = 0;
   std::uint64_t polled_ = 0;  ///< work done when `progress` was last asked

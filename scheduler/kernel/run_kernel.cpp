@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "brink/core/base/error.h"
 #include "brink/core/world/recentred.h"
@@ -69,14 +70,19 @@ RunKernel::RunKernel(World world, SolverOptions options) : Kernel(std::move(worl
 void RunKernel::begin(const RunOptions& options, Recorder* recorder) {
   parts_.run.begin(options);
   parts_.records.begin(recorder);
+  tell_knots();
+  // the watch looks at all pairs there, before the first collision
+  if (options.first_frame) show_frame();
+}
+
+/// What is told of motions, by whichever trajectories there are now.
+void RunKernel::tell_knots() {
   // events tell twists before and after: kept only where events are told
-  const bool told = recorder && options.record_events;
+  const bool told = parts_.records.records_events();
   parts_.trajectories.keep_twists_before(told);
   const auto tell_knot = [this](const Knot& knot) { parts_.records.knot(knot); };
   parts_.trajectories.tell_knots(told ? Trajectories::TellKnot(tell_knot) : nullptr,
                                  parts_.search.limits().tolerance);
-  // the watch looks at all pairs there, before the first collision
-  if (options.first_frame) show_frame();
 }
 
 /// Only at t = 0, and only where forces may press: what touches later has met before.
@@ -87,17 +93,18 @@ void RunKernel::let_touching_last() {
   if (world().gravity.isZero(0.0) && world().forces.empty()) return;  // nothing presses
   std::vector<std::pair<PairKey, FeatureContact>> touching;
   parts_.near.each_at(time(), [&](const PairKey& pair) {
+    if (!parts_.run.poll()) return false;
     if (parts_.search.is_left_out(pair)) return true;
     for (const FeatureContact& c : parts_.search.touching(pair, tolerance, time()))
       // one is enough: the island lists the pair's features itself
       if (std::abs(c.closing_speed) <= kStillAtStart) return touching.emplace_back(pair, c), true;
     return true;
   });
-  if (touching.empty()) return;
+  if (touching.empty() || halt()) return;
   // events in the order of pairs, whatever the order in which boxes met
   std::sort(touching.begin(), touching.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<int> changed;
-  parts_.islands.begin(touching, changed);
+  do_or_cut(true, [&] { return parts_.islands.begin(touching, changed); });
   // motions have changed by no verb of the policy's: what it knows is void
   parts_.policy_watch.forget_all();
   ++parts_.revision;
@@ -106,7 +113,15 @@ void RunKernel::let_touching_last() {
 void RunKernel::end() {
   // what was done ahead of the end is not to be seen
   roll_back_all();
+  if (!parts_.before_cut.empty()) undo_cut();
   if (parts_.records.last_frame() != time()) show_frame();
+}
+
+/// Back to before the verb that was cut, for the reason that it was cut for.
+void RunKernel::undo_cut() {
+  restore(std::exchange(parts_.before_cut, {}));
+  tell_knots();
+  stop(Termination::stopped, RunControl::kOnRequest);
 }
 
 void RunKernel::check_returned(double until) {

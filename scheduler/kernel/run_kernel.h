@@ -79,6 +79,8 @@ class RunKernel final : public Kernel {
   void restore(std::span<const std::byte> bytes);
 
  private:
+  void tell_knots();
+  void undo_cut();
   void go_on_from(int k, const ExtendedState& state);
 
   MovedAtStart moved_at_start_;

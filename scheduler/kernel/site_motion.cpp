@@ -82,6 +82,8 @@ Extent SiteMotion::extend(double t, std::uint64_t most_cells) {
   return extent;
 }
 
+bool SiteMotion::lacks_bounds() const { return prescribed_ && prescribed_->lacks_bounds(); }
+
 void SiteMotion::forget_before(double t) {
   if (prescribed_) prescribed_->forget_before(t);
 }

@@ -26,6 +26,8 @@ class SiteMotion {
   bool is_prescribed() const { return prescribed_ != nullptr; }
   /// Goes on towards t by `most_cells` cells of the fit at most.
   Extent extend(double t, std::uint64_t most_cells = std::numeric_limits<std::uint64_t>::max());
+  /// True if its motion has failed because nothing bounds a formula, which may be continuous.
+  bool lacks_bounds() const;
   /// Nobody will ask for a time before t any more.
   void forget_before(double t);
 

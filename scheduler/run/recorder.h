@@ -18,6 +18,9 @@ namespace brink {
 class Recorder {
  public:
   virtual ~Recorder() = default;
+  /// Does a part of what the frame at t takes, beside the bodies' states; true: nothing is left of it. Asked before
+  /// each frame until it is, or until the run is asked to stop.
+  virtual bool get_ready(double /*t*/) { return true; }
   /// Every body's state at a frame time (t = 0, each frame interval, the end).
   virtual void frame(double /*t*/, std::span<const BodyState> /*states*/) {}
   virtual void event(const Event& /*event*/) {}

@@ -1,5 +1,5 @@
 // SIGTERM to the real program in the middle of what takes long: it ends in order, soon, and the run file is
-// whole. How soon is printed; the limit here is against hanging only.
+// whole. Within a second on a machine that has a core for it; how soon is printed.
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -21,7 +21,9 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 const char* const kProgram = BRINK_BINARY_DIR "/bin/brink";
-constexpr double kPatience = 60.0;  ///< [s]
+constexpr double kPatience = 60.0;  ///< until it has begun [s]
+/// Of the second that is promised: tests run beside each other, and a machine of two cores may have ten of them for each.
+constexpr double kSoon = 5.0;
 
 double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
@@ -100,6 +102,15 @@ const Slow kSlow[] = {
     {"many_bodies_many_frames",
      "[world]\nduration = 100\n[output]\nframe_interval = 1e-4\nmax_frame_rows = 1000000000000\n" +
          grid("box = {width = 0.5, height = 0.5}", 150, 150, 1.0)},
+    {"wall_that_lasts",  // its first step alone takes seconds
+     "[world]\nduration = 10\ngravity = [0, -9.81]\n[materials.default]\nfriction = 0.5\n"
+     "[[sites]]\nname = \"floor\"\nsegment = [[-300, 0], [300, 0]]\n"
+     "[[bodies]]\nname = \"brick\"\nbox = {width = 1, height = 0.5}\nposition = [0, 5]\n"
+     "wall = [150, 120]\ntouching = \"floor\"\n"},
+    {"site_that_trembles",  // a million cells of its motion for each frame
+     "[world]\nduration = 10\n[output]\nframe_interval = 0.5\n"
+     "[[bodies]]\ndisc.radius = 0.5\nvelocity = [1, 0]\n"
+     "[[sites]]\nsegment = [[-3, -10], [3, -10]]\nmotion = {y = \"0.1*sin(1e6*t)\"}\n"},
     {"slot_without_play",
      "[world]\nduration = 1\n[[bodies]]\ndisc.radius = 0.5\nvelocity = [1, 0]\n"
      "[[sites]]\nsegment = [[-0.50000000002, -1], [-0.50000000002, 1]]\n"
@@ -126,7 +137,9 @@ TEST_P(Signals, EndTheRunInOrder) {
   const auto asked = Clock::now();
   ::kill(child, SIGTERM);
   EXPECT_EQ(ending(child), 1);
-  std::printf("%s: ended after %.2f s\n", GetParam().name, seconds_since(asked));
+  const double took = seconds_since(asked);
+  std::printf("%s: ended after %.2f s\n", GetParam().name, took);
+  EXPECT_LT(took, kSoon);
   EXPECT_EQ(RunFile(file).meta("termination"), "stopped");
   EXPECT_FALSE(fs::exists(file.string() + "-wal"));
 }

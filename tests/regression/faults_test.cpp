@@ -206,7 +206,7 @@ TEST_P(TakesLong, HearsASignal) {
       {BRINK_BINARY_DIR "/bin/brink", "run", fault(GetParam()).string(), "--out", out.string(), "--quiet"});
   EXPECT_TRUE(ended.status == 0 || ended.status == 1)
       << "status " << ended.status << " signal " << ended.signal << ": " << ended.output;
-  EXPECT_LT(ended.stopping, 10.0);  // within a second, on a machine that has one to spare
+  EXPECT_LT(ended.stopping, 5.0);  // a second is promised; tests run beside each other, on two cores maybe
   EXPECT_EQ(ended.output.find("bad_alloc"), std::string::npos) << ended.output;
   fs::remove_all(out);
 }

@@ -1,5 +1,7 @@
 #include "brink/scheduler/policies/body_clocks/views.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +16,9 @@ namespace {
 
 /// Outlines of more sites have one box for all: each box costs a look of its own.
 constexpr std::size_t kMostBoxes = 16;
+
+/// Cells that a gap is wide from.
+constexpr double kWide = 1e3;
 
 /// Boxes of an outline's sites; empty where they would not narrow anything down.
 std::vector<Box> boxes_of(const Outline& outline) {
@@ -45,15 +50,18 @@ double time_within(double room, const Motion& motion, double now, double end) {
   }
 }
 
-/// A lower bound of the time in which the bounding discs of a and b, displaced by `shift`, can come together
-/// before `end` [s].
-double gap_over_speed(const Motion& a, double radius, const Motion& b, const Vec2& shift,
-                      const Outline& other, double now, double end) {
+/// Of the bounding discs of a and b, displaced by `shift` [m]; 0: they may overlap.
+double gap_between(const Motion& a, double radius, const Motion& b, const Vec2& shift, const Outline& other,
+                   double now) {
   if (other.container) return 0.0;
   const Vec2 at_a = a.pose(now).position, at_b = b.pose(now).position;
   const double rounding = kFlightRounding * (at_a.lpNorm<1>() + at_b.lpNorm<1>());
-  const double gap =
-      (at_a - at_b - shift).norm() - (radius + other.bounding_radius) * (1.0 + kFlightMargin) - rounding;
+  return std::max(0.0, (at_a - at_b - shift).norm() -
+                           (radius + other.bounding_radius) * (1.0 + kFlightMargin) - rounding);
+}
+
+/// A lower bound of the time in which a and b can close that gap before `end` [s].
+double gap_over_speed(double gap, const Motion& a, const Motion& b, double now, double end) {
   if (gap <= 0.0) return 0.0;
   const auto closing_in = [&](double span) {
     const MotionBounds x = a.bounds(now, now + span), y = b.bounds(now, now + span);
@@ -309,12 +317,18 @@ MeetingTimes Views::bounded_meeting(int k, int owner, const Image& image, double
   const bool is_body = owner < body_count();
   const auto speed_of = [&](int s) { return kernel_->site_motion(s).twist(now).velocity.norm(); };
   if (is_body ? !kernel_->extend_motion(owner, now) : !kernel_->extend_sites(now)) return {};
+  const Vec2 shift = periods_.shift(image);
+  const Outline& outline = kernel_->outline_of(owner);
+  const double gap =
+      gap_between(kernel_->body(k).motion, flights_[k].radius,
+                  is_body ? kernel_->body(owner).motion : kernel_->site_motion(owner - body_count()), shift,
+                  outline, now);
   limit_view(k, now, speed(k, now) + (is_body ? speed(owner, now) : speed_of(owner - body_count())),
-             is_body ? stride(owner, now) : kForever);
+             is_body ? stride(owner, now) : kForever, gap);
   const double end = follow(k, owner, std::max(now, std::min(clocks_[k].horizon, until_)));
+  // anew: to follow a motion makes it longer
   const Motion& other = is_body ? kernel_->body(owner).motion : kernel_->site_motion(owner - body_count());
-  const double wait = gap_over_speed(kernel_->body(k).motion, flights_[k].radius, other,
-                                     periods_.shift(image), kernel_->outline_of(owner), now, end);
+  const double wait = gap_over_speed(gap, kernel_->body(k).motion, other, now, end);
   return now + wait <= end ? MeetingTimes{now + wait, end} : MeetingTimes{};
 }
 
@@ -339,15 +353,20 @@ double Views::stride(int k, double now) const {
   return std::max(now - pace.start, 0.25 * pace.typical);
 }
 
-/// Ends body k's view about when something that closes in at that speed could have crossed a cell, or after
-/// the stride, if that is not next to nothing, beside a cell's time or what the motion has behind it.
-void Views::limit_view(int k, double now, double closing, double stride) {
+/// Ends body k's view about when something that closes in at that speed could have crossed a cell, or the gap to it
+/// where that is wide, or after the stride, if that is not next to nothing, beside a cell's time or what the motion has
+/// behind it.
+void Views::limit_view(int k, double now, double closing, double stride, double gap) {
   const double cell = near_->cell_size(k),
-               length = std::isfinite(cell) ? cell : 4.0 * kernel_->world().length();
+               near = std::isfinite(cell) ? cell : 4.0 * kernel_->world().length();
+  // what flies away fast is looked at less and less often
+  const double length = gap > kWide * near ? gap : near;
   // 100 s at most, however slow the two are.
   const double window = length / (closing + 1e-2 * length);
   const double age = kernel_->is_free(k) ? 0.0 : now - paces_[k].start;
-  const double end = now + std::max({std::min(window, stride), 1e-3 * window, 1e-3 * age});
+  // after `now` at least: what is faster than the clock can tell is for the search to refuse
+  const double end = std::max(now + std::max({std::min(window, stride), 1e-3 * window, 1e-3 * age}),
+                              std::nextafter(now, kForever));
   // a view that holds to the end of the run ends just after it
   clocks_[k].horizon = std::min(clocks_[k].horizon, end >= until_ ? std::nextafter(until_, kForever) : end);
   // a view that holds to the end of an island's step ends just after it: the step comes first
@@ -377,13 +396,20 @@ bool Views::begin_window(int k, double now) {
   const Vec2 place = kernel_->body(k).motion.pose(now).position;
   near_->put_into_cell(k, place);
   clock.exit = kForever;
-  limit_view(k, now, speed(k, now), stride(k, now));
+  limit_view(k, now, speed(k, now), stride(k, now), 0.0);
   const double end = follow(k, body_count(), std::max(now, std::min(clock.horizon, until_)));
   const Box box = near_->box_of(k);
   const double room = std::min((place - box.low).minCoeff(), (box.high - place).minCoeff());
   const double stay = time_within(room, kernel_->body(k).motion, now, end);
-  if (stay < end - now) clock.horizon = now + stay;
-  return true;
+  if (!(stay < end - now)) return true;
+  clock.horizon = now + stay;
+  if (clock.horizon > now) return true;
+  kernel_->stop(
+      Termination::failed,
+      fmt::format("'{}' is too fast for the clock at t = {:.17g}: in no time that it can tell does it stay "
+                  "near its place",
+                  kernel_->world().bodies[k].name, now));
+  return false;
 }
 
 }  // namespace brink

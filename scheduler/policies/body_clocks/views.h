@@ -87,7 +87,7 @@ class Views {
   double follow(int k, int owner, double end);
   double end_view(int k, double followed);
   double speed(int k, double now) const;
-  void limit_view(int k, double now, double closing, double stride);
+  void limit_view(int k, double now, double closing, double stride, double gap);
   void note_start(int k, double start);
   double stride(int k, double now) const;
   MeetingTimes bounded_meeting(int k, int owner, const Image& image, double now);

@@ -353,5 +353,21 @@ TEST(RestForces, SameBitsWhateverWasSolvedBefore) {
   }
 }
 
+// Stopped anywhere it says so, and knows nothing wrong afterwards.
+TEST(RestForces, StopWhereTheyAreAsked) {
+  const RestProblem problem = testing::arch(15, 0.22, 0.7).problem;
+  const RestResult fresh = ConeQp().rest_forces(problem);
+  for (int after = 0; after < 40; after += 3) {
+    ConeQp stopped;
+    int asked = 0;
+    EXPECT_EQ(stopped.rest_forces(problem, [&] { return asked++ < after; }).status, Status::stopped);
+    EXPECT_EQ(asked, after + 1);
+    const RestResult again = stopped.rest_forces(problem);
+    EXPECT_EQ(again.status, fresh.status);
+    for (std::size_t c = 0; c < fresh.loads.size(); ++c)
+      EXPECT_EQ(again.loads[c].normal, fresh.loads[c].normal);
+  }
+}
+
 }  // namespace
 }  // namespace brink::cone_qp_rest_test

@@ -358,6 +358,17 @@ motion = { y = "0.1*sin(6*t)" }
   EXPECT_DOUBLE_EQ((*std::get<FormulaMotion>(world.sites[1].motion).y)({&t, 1}), 0.1 * std::sin(3.0));
 }
 
+// Corners are no fault, and what jumps or ends on the way is met by the run.
+TEST(SceneFile, MotionsAreMadeAheadForWhatNothingBounds) {
+  for (const char* taken : {"abs(sin(5*t))", "min(t, 1)", "max(sin(t), cos(t))", "abs(t - rint(t))",
+                            "0.1*sin(1e6*t)", "sqrt(0.5 - t)*0 + t", "t < 0.7 ? 0 : 1e-3"}) {
+    const std::string scene =
+        std::string("[world]\nduration = 0.4\n[[sites]]\npoint = [0, 0]\nmotion = { y = \"") + taken +
+        "\" }\n";
+    EXPECT_NO_THROW(parse_scene(scene, "t")) << taken;
+  }
+}
+
 TEST(SceneFile, OverridesReachTablesArraysAndNames) {
   const Scene scene = parse_scene(with_ball("mass = 1\n"), "t",
                                   {"solver.integrator=rk4", "bodies.0.mass=2", "bodies.ball.position=[1, 2]",
@@ -440,6 +451,11 @@ INSTANTIATE_TEST_SUITE_P(
                   "6:6 formula \"1/x\" is not finite"},
         FaultCase{"MotionThatCannotBegin", "[[sites]]\npoint = [0, 0]\nmotion = { y = \"sin(-1e16*t)\" }\n",
                   "y = \"sin(-1e16*t)\" jumps, or is infinitely fast, near t = 0 s"},
+        FaultCase{"MotionThatIsTooFast", "[[sites]]\npoint = [0, 0]\nmotion = { y = \"1e300*t\" }\n",
+                  "y = \"1e300*t\" is too fast, or goes too far, near t = 0 s"},
+        FaultCase{"MotionThatCannotBeBounded",
+                  "[[sites]]\npoint = [0, 0]\nmotion = { x = \"t\", y = \"max(sin(t), sin(t) + 0)\" }\n",
+                  "3:25 site"},
         FaultCase{"MotionOfBothKinds",
                   "[[sites]]\npoint = [0, 0]\nmotion = { velocity = [1, 0], x = \"t\" }\n",
                   "3:10 motion: is not clear"},

@@ -53,5 +53,27 @@ TEST(IslandStep, GapThatDipsBetweenTwoLooksIsKept) {
   for (int i = 0; i <= 10000; ++i) ASSERT_GE(gap(0, h * i / 10000.0, step.velocity), -kTolerance) << i;
 }
 
+// Wherever it is stopped, there is no step, and the problem is as it was.
+TEST(IslandStep, StoppedIsNone) {
+  const GapAlong gap = [](std::size_t k, double later, const std::vector<Vec3>& v) {
+    return 1e-3 + later * (v[0].y() + (k == 0 ? -1.0 : 1.0) * v[0].z());
+  };
+  const auto take = [&](int most, int& asked) {
+    IslandStep step = over_floor(1e-3, Vec3(0.0, -1.0, 0.1));
+    ConeQp solver;
+    const bool solved = take_step(solver, step, 0.01, kTolerance, gap, [&] { return asked++ < most; }).solved;
+    EXPECT_EQ(step.velocity[0] == Vec3(0.0, -1.0, 0.1), !solved);
+    return solved;
+  };
+  int needed = 0;
+  ASSERT_TRUE(take(1000, needed));
+  EXPECT_GT(needed, 2);
+  for (int most = 0; most < needed; ++most) {
+    int asked = 0;
+    EXPECT_FALSE(take(most, asked));
+    EXPECT_EQ(asked, most + 1);
+  }
+}
+
 }  // namespace
 }  // namespace brink::island_step_test

@@ -40,6 +40,23 @@ TEST(Records, EventsAreNeverToldBeforeTheLast) {
   EXPECT_EQ(told.events[1].contact.time_low, std::nextafter(1.0, 0.0) - 1.0);
 }
 
+TEST(Records, WhatIsHeldBackIsToldInOrderOrDropped) {
+  KernelParts parts(two_discs(), {});
+  Events told;
+  parts.records.begin(&told);
+  for (const bool tells : {true, false}) {
+    Records::HeldBack held_back(parts.records);
+    parts.records.event(EventKind::collision, kDiscs, {}, 1.0, 0.0, Real(0));
+    parts.records.event(EventKind::collision, kWall, {}, 2.0, 0.0, Real(0));
+    if (tells) held_back.told();
+  }
+  parts.records.event(EventKind::collision, kDiscs, {}, 3.0, 0.0, Real(0));
+  ASSERT_EQ(told.events.size(), 3U);
+  EXPECT_EQ(told.events[0].impulse_n, 1.0);
+  EXPECT_EQ(told.events[1].impulse_n, 2.0);
+  EXPECT_EQ(told.events[2].impulse_n, 3.0);
+}
+
 TEST(Records, EventsThatNobodyWantsAreCountedAllTheSame) {
   KernelParts parts(two_discs(), {});
   RunOptions options;

@@ -38,5 +38,40 @@ TEST(RunControl, ProgressIsAskedAfterEnoughWorkAndMayStop) {
   EXPECT_EQ(run.halt()->termination, Termination::stopped);
 }
 
+// What cannot be undone is carried through unasked; what can be is cut.
+TEST(RunControl, WhatIsIndivisibleIsCutOnlyWhereItCanBeUndone) {
+  RunControl run;
+  RunOptions options;
+  int asked = 0;
+  options.progress = [&](double, std::uint64_t) { return ++asked < 1; };
+  run.begin(options);
+  run.count_pieces(1U << 20);
+  {
+    const RunControl::Indivisible whole(run);
+    EXPECT_TRUE(run.poll());
+    EXPECT_FALSE(run.is_cut());
+    EXPECT_EQ(asked, 0);
+  }
+  {
+    const RunControl::Undoable undoable(run);
+    const RunControl::Indivisible whole(run);
+    EXPECT_FALSE(run.poll());
+    EXPECT_TRUE(run.is_cut());
+    EXPECT_EQ(asked, 1);
+  }
+  EXPECT_FALSE(run.is_cut());
+  EXPECT_EQ(run.halt()->why, RunControl::kOnRequest);
+}
+
+TEST(RunControl, ALimitThatIsMetCutsNothing) {
+  RunControl run;
+  const RunControl::Undoable undoable(run);
+  const RunControl::Indivisible whole(run);
+  run.stop(Termination::stopped, "a limit");
+  run.count_pieces(1U << 20);
+  EXPECT_TRUE(run.poll());
+  EXPECT_FALSE(run.is_cut());
+}
+
 }  // namespace
 }  // namespace brink::run_control_test
