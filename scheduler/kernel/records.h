@@ -1,5 +1,6 @@
 #pragma once
-/// A run's records: frames on the frame clock, events, checkpoints.
+/// A run's records: frames on the frame clock, events, checkpoints. A state that is not finite is told to nobody:
+/// the run fails instead, and names the body and the time.
 
 #include <algorithm>
 #include <optional>
@@ -67,6 +68,8 @@ class Records {
 
  private:
   void wind_frame_clock(double t);
+  /// True if `number`, a sum of all that is to be told of the body at t, is finite; else the run has failed.
+  bool is_told(double number, int body, double t);
 
   const Trajectories* trajectories_;
   RunControl* run_;
