@@ -68,13 +68,16 @@ RunMoment moment_of_scene(const DrawArguments& arguments, const Scene& scene) {
   return moment;
 }
 
-/// The subject at the time asked for; `field` is set to the scene's own options.
+/// The subject at the time asked for; `field` is set to the scene's own options. What is read is not written over.
 RunMoment moment_of(const DrawArguments& arguments, const fs::path& run, FieldOptions& field) {
   if (!run.empty()) {
-    field = RunFile(run).field_options();
+    const RunFile file(run);
+    refuse_overwriting(arguments.out, "-o", file.files());
+    field = file.field_options();
     return moment_of_run(run, arguments.at);
   }
   const Scene scene = load_scene(arguments.subject, arguments.overrides);
+  refuse_overwriting(arguments.out, "-o", scene.files);
   field = scene.solver.field;
   return moment_of_scene(arguments, scene);
 }
@@ -135,7 +138,6 @@ int draw_command(const DrawArguments& arguments) {
   // A scene is run to one moment here, and nothing of what was before is kept.
   if (run.empty() && (arguments.trails || arguments.contacts))
     throw BadInput("--trails, --contacts: are of runs; a scene has none yet");
-  refuse_overwriting(arguments.out, "-o", {run.empty() ? fs::path(arguments.subject) : run});
   // Everything that can be refused without it has been: a scene is now run up to the time.
   const RunMoment moment = moment_of(arguments, run, options.field);
   options.time = moment.t;

@@ -130,12 +130,11 @@ int film_command(const FilmArguments& arguments) {
     throw BadInput(fmt::format("{}: not a run; allowed: a run folder or a run file", arguments.run));
   require(arguments.fps >= 1.0 && arguments.fps <= 1000.0, "--fps", arguments.fps, "1 .. 1000");
   require(arguments.speed >= 1e-9 && arguments.speed <= 1e9, "--speed", arguments.speed, "1e-9 .. 1e9");
-  // Before the run is opened: nothing that is read may be written over.
-  refuse_overwriting(arguments.out, "-o", {file});
   // Times are checked against what the file has: of a run that was killed the frames end before its
   // duration.
   RunFile run(file);
   run.hold();  // a run that goes on: all pictures are of one moment of its file
+  refuse_overwriting(arguments.out, "-o", run.files());
   const auto [first, last] = run.time_range();
   const double from = arguments.from.value_or(first), to = arguments.to.value_or(last);
   const std::string range = fmt::format("{} .. {} s, --from before --to", first, last);

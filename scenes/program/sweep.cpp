@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 #include "brink/core/base/error.h"
 #include "brink/core/base/printable.h"
@@ -62,14 +61,6 @@ void list_runs(const Experiment& experiment) {
   }
 }
 
-/// The experiment and its scenes.
-/// What the results must not be written over.
-std::vector<fs::path> files_read(const Experiment& experiment) {
-  std::set<fs::path> files{experiment.path};
-  for (const SweepRun& run : experiment.runs) files.insert(run.scene);
-  return {files.begin(), files.end()};
-}
-
 /// Tables, CSV and plot of what is done. Returns how many runs are not.
 std::size_t report(const Experiment& experiment, SweepStore& store, const fs::path& folder, bool quiet) {
   // Read again from the database: what other processes have made is in it.
@@ -98,7 +89,7 @@ int sweep_command(const SweepArguments& arguments) {
       arguments.out.empty() ? fs::path("runs") / experiment.path.stem() : fs::path(arguments.out);
   // Before the folder is made: nothing of the experiment may be lost.
   for (const char* name : {"sweep.csv", "sweep.png", "sweep.svg"})
-    refuse_overwriting(folder / name, "--out", files_read(experiment));
+    refuse_overwriting(folder / name, "--out", {experiment.files.begin(), experiment.files.end()});
   // Before the store is opened: a signal from here on lets go of runs and leaves the database whole.
   stop_on_signals();
   // Opened after the experiment is known to be sound: what it adds to the database can be run.

@@ -14,6 +14,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
+#include <vector>
 
 #include "brink/core/base/printable.h"
 #include "brink/scenes/files/written_file.h"
@@ -22,6 +23,7 @@
 #include "brink/scenes/program/run_folder.h"
 #include "brink/scenes/program/stopping.h"
 #include "brink/scenes/program/terminal.h"
+#include "brink/scenes/run_file/run_file.h"
 #include "brink/scenes/run_file/run_scene.h"
 #include "brink/scenes/sweep/shell_word.h"
 
@@ -40,6 +42,8 @@ void open_in_browser(const std::string& page) {
 /// Runs the scene; `stays`: while its page follows it, which is there until Ctrl-C.
 RunReport run_here(const ViewArguments& arguments, bool stays) {
   const Scene scene = load_scene(arguments.subject, arguments.overrides);
+  // Before the run, which may take long.
+  refuse_overwriting(arguments.out, "-o", scene.files);
   RunRequest request;
   request.dir = default_run_folder(scene.path, false);
   request.begins = stop_on_signals;
@@ -66,9 +70,6 @@ int view_command(const ViewArguments& arguments) {
     throw BadInput("--set: is for scenes; a run has been made");
   if (run.empty() && !arguments.trace.empty())
     throw BadInput("--trace: is for runs; of a scene: brink run SCENE --trace FILE first");
-  // Asked before a scene is run, which may take long.
-  if (!arguments.out.empty())
-    refuse_overwriting(arguments.out, "-o", {run.empty() ? fs::path(arguments.subject) : run});
   // Of a scene without -o the page is served as the run goes; with -o it is written when the run has ended.
   const bool live = run.empty() && arguments.out.empty();
   RunSummary summary;  // of the run that is made here, if one is
@@ -79,6 +80,9 @@ int view_command(const ViewArguments& arguments) {
   }
   if (!live) {
     const fs::path page = arguments.out.empty() ? run.parent_path() / "replay.html" : fs::path(arguments.out);
+    std::vector<fs::path> read = RunFile(run).files();
+    read.push_back(arguments.trace);
+    refuse_overwriting(page, "-o", read);
     // The defaults bound the size of the page; only the trace is the caller's.
     ReplayLimits limits;
     limits.trace = arguments.trace;

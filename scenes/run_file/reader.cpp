@@ -404,6 +404,21 @@ std::string RunFile::summary() const {
   });
 }
 
+// Of a file of before the scene alone is known, which is as it was named in the folder where it was run.
+std::vector<std::filesystem::path> RunFile::files() const {
+  return reading(impl_->file, "meta", [&] {
+    std::vector<std::filesystem::path> all{impl_->file};
+    const auto take = [&all](const std::filesystem::path& file) {
+      std::error_code missing;
+      if (std::filesystem::exists(file, missing)) all.push_back(file);
+    };
+    take(meta("scene").value_or(""));
+    for (const auto& file : nlohmann::json::parse(meta("files").value_or("[]")))
+      take(file.get<std::string>());
+    return all;
+  });
+}
+
 // An outline for each row. Copies that shared one when the run was made have equal ones here.
 std::vector<RunFile::BodyRow> RunFile::bodies() const {
   return reading(impl_->file, "body", [&] {

@@ -204,6 +204,14 @@ struct RunFileRecorder::Impl {
   void put_side(SQLite::Statement& put, int first, const EventSide& side);
 };
 
+/// With their whole paths: who reads them may be in another folder.
+std::string files_json(const Scene& scene) {
+  nlohmann::json files = nlohmann::json::array();
+  for (const fs::path& file : scene.files) files.push_back(fs::absolute(file).lexically_normal().string());
+  // A name may have bytes that are no UTF-8.
+  return files.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 /// All keys of a run that begins; `summary` comes when it ends. Version, options and world hash are
 /// what resuming compares, and what the seal of a checkpoint is made with: they are written once and
 /// never changed but for limits in the options.
@@ -211,6 +219,7 @@ void RunFileRecorder::Impl::write_meta(const Scene& scene) {
   set_meta("schema_version", std::to_string(kRunFileSchema));
   set_meta("brink_version", std::string(version()));
   set_meta("scene", scene.path.string());
+  set_meta("files", files_json(scene));
   set_meta("title", scene.world.title);
   set_meta("options", scene.options_json);
   set_meta("scene_text", scene.text);

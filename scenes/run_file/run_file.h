@@ -31,7 +31,7 @@
 /// ends makes indices by body (of frames up to 2 million rows; one that was stopped after more than
 /// 200 000 rows makes none).
 ///
-/// meta: schema_version, brink_version, scene, title, options (JSON), scene_text, overrides (JSON), springs
+/// meta: schema_version, brink_version, scene, files (JSON: the scene's file and its data files, whole paths), title, options (JSON), scene_text, overrides (JSON), springs
 /// (JSON: body, other or null, at, other_at), attractions (JSON: bodies, center, strength, power), world_hash, termination ("running"
 /// until the end), duration, end_time, state_hash, wall_seconds, summary (the JSON of `brink run --json`).
 ///
@@ -174,6 +174,9 @@ class RunFile {
 
   std::map<std::string, std::string> meta() const;
   std::optional<std::string> meta(const std::string& key) const;
+  /// What nobody may write over while this run is worth keeping: its file, and what it was made of (the scene's file and
+  /// its data files), as far as they are there still.
+  std::vector<std::filesystem::path> files() const;
   std::vector<BodyRow> bodies() const;
   std::vector<FixedSite> sites() const;
   /// What pictures need of the world: title, bodies with their states in the first frame, fixed sites,

@@ -207,7 +207,9 @@ RunReport run_scene(const Scene& scene, const RunRequest& request) {
   const auto start = Clock::now();
   const double until = end_of(scene, request);
   // What is read or kept by this run must not be written over before it is read.
-  refuse_overwriting(request.trace, "--trace", {scene.path, request.dir / "run.db"});
+  std::vector<std::filesystem::path> kept = scene.files;
+  kept.push_back(request.dir / "run.db");
+  refuse_overwriting(request.trace, "--trace", kept);
   std::optional<RunFolder> folder;
   if (request.resume) {
     // A resume that has nothing to do is told before the world is planned.
@@ -279,6 +281,7 @@ std::string summary_to_json(const RunSummary& summary, double load_seconds) {
                                     {"max_overlap", summary.max_overlap},
                                     {"groups_taken", summary.groups_taken},
                                     {"energy_taken", summary.energy_taken},
+                                    {"first_taken", summary.first_taken},
                                     {"moved_at_start", summary.moved_at_start},
                                     {"moved_by", summary.moved_by},
                                     {"contacts_lasting", summary.contacts_lasting},

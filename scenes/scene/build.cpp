@@ -363,11 +363,13 @@ Scene parse_scene(std::string_view text, const std::string& name, const std::vec
   if (!document.readable()) document.faults().throw_if_any(name);
   FileTable file;
   file_schema().read(document.root(), {1, 1}, document, file);
-  take_sample_files(file, std::filesystem::path(name).parent_path(), document.faults());
+  std::vector<std::filesystem::path> files{name};
+  take_sample_files(file, std::filesystem::path(name).parent_path(), files, document.faults());
   Scene scene = build_scene(file, document.faults());
   document.faults().throw_if_any(name);
   // For the run file, which keeps text and overrides (scene_of_run()).
   scene.path = name;
+  scene.files = std::move(files);
   scene.text = text;
   scene.overrides = overrides;
   return scene;

@@ -151,8 +151,9 @@ PrescribedPath build_motion(const Given<MotionTable>& table, const std::string& 
 
 /// Reads the classic text data files that shapes name, from `folder`: each becomes its thing's shape, and
 /// gives mass, position, angle and velocities where the thing itself says nothing. Faults in a file name that
-/// file.
-void take_sample_files(FileTable& file, const std::filesystem::path& folder, FaultList& faults);
+/// file. The files are added to `files`, each once.
+void take_sample_files(FileTable& file, const std::filesystem::path& folder,
+                       std::vector<std::filesystem::path>& files, FaultList& faults);
 
 /// The whole scene, or faults.
 Scene build_scene(const FileTable& file, FaultList& faults);

@@ -1,6 +1,8 @@
 // The classic text data files that a scene names.
 // They are read after all tables, as only then it is known what the scene itself says of each body, and
 // before any shape is built. The format is in docs/scene-format.md.
+#include <algorithm>
+
 #include "brink/core/base/error.h"
 #include "brink/core/shapes/sample_file.h"
 #include "brink/scenes/files/text_file.h"
@@ -41,9 +43,8 @@ std::optional<std::string> text_of(const std::filesystem::path& path) {
 
 /// One data file. After a fault in it the shape stays without `build`, which ShapeBuilder takes for
 /// told.
-void take(ThingTable& thing, ShapeSpec& spec, const std::filesystem::path& folder, bool is_body,
+void take(ThingTable& thing, ShapeSpec& spec, const std::filesystem::path& path, bool is_body,
           FaultList& faults) {
-  const std::filesystem::path path = folder / *spec.data_file;
   const auto text = text_of(path);
   if (!text)
     return faults.add(spec.where,
@@ -62,11 +63,17 @@ void take(ThingTable& thing, ShapeSpec& spec, const std::filesystem::path& folde
 
 }  // namespace
 
-void take_sample_files(FileTable& file, const std::filesystem::path& folder, FaultList& faults) {
+void take_sample_files(FileTable& file, const std::filesystem::path& folder,
+                       std::vector<std::filesystem::path>& files, FaultList& faults) {
   for (auto* things : {&file.bodies, &file.sites})
     for (ThingTable& thing : *things)
       for (ShapeSpec& spec : thing.shapes)
-        if (spec.data_file) take(thing, spec, folder, things == &file.bodies, faults);
+        if (spec.data_file) {
+          const std::filesystem::path path = folder / *spec.data_file;
+          // Bodies may share a file.
+          if (std::find(files.begin(), files.end(), path) == files.end()) files.push_back(path);
+          take(thing, spec, path, things == &file.bodies, faults);
+        }
 }
 
 }  // namespace brink

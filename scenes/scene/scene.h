@@ -24,6 +24,8 @@ struct OutputOptions {
 
 struct Scene {
   std::filesystem::path path;
+  std::vector<std::filesystem::path>
+      files;                           ///< all that was read for it: the scene file, then its data files
   std::string text;                    ///< of the file
   std::vector<std::string> overrides;  ///< PATH=VALUE
   World world;

@@ -338,8 +338,10 @@ std::string override_text(const std::string& path, const Value& value) { return 
 /// experiment file asked for it.
 class SceneTrial {
  public:
-  SceneTrial(const fs::path& folder, const std::vector<Setting>& settings, TomlDocument& doc)
-      : folder_(folder), settings_(settings), doc_(doc) {
+  /// What is read is added to `files`.
+  SceneTrial(const fs::path& folder, const std::vector<Setting>& settings, std::set<fs::path>& files,
+             TomlDocument& doc)
+      : folder_(folder), settings_(settings), files_(files), doc_(doc) {
     for (const Setting& s : settings) common_.push_back(override_text(s.path, s.value));
   }
 
@@ -347,6 +349,7 @@ class SceneTrial {
   std::optional<std::uint64_t> base(const Value& scene) {
     try {
       const Scene loaded = load_scene(folder_ / scene.toml, common_);
+      files_.insert(loaded.files.begin(), loaded.files.end());
       StateHash hash;
       hash.add(world_hash(loaded.world));
       // Options and world: a title or a comment that is changed does not make a run another one.
@@ -383,7 +386,8 @@ class SceneTrial {
     std::vector<std::string> overrides = common_;
     overrides.push_back(override_text(axis.path, value));
     try {
-      load_scene(folder_ / scene.toml, overrides);
+      const Scene loaded = load_scene(folder_ / scene.toml, overrides);
+      files_.insert(loaded.files.begin(), loaded.files.end());
     } catch (const SceneFaults& faults) {
       // what is wrong elsewhere may be right in combination with other axes: it is told of the run, if it
       // comes to it
@@ -411,14 +415,15 @@ class SceneTrial {
 
   fs::path folder_;
   const std::vector<Setting>& settings_;
+  std::set<fs::path>& files_;
   TomlDocument& doc_;
   std::vector<std::string> common_;
 };
 
-/// Every base scene's identity. Adds faults of values.
+/// Every base scene's identity. Adds faults of values, and the files that are read.
 std::vector<std::uint64_t> try_scenes(const std::vector<Axis>& axes, const ExperimentTable& table,
-                                      const fs::path& folder, TomlDocument& doc) {
-  SceneTrial trial(folder, table.settings, doc);
+                                      const fs::path& folder, std::set<fs::path>& files, TomlDocument& doc) {
+  SceneTrial trial(folder, table.settings, files, doc);
   std::vector<std::uint64_t> identities;
   for (const Axis& axis : axes)
     if (axis.path == kSeed)
@@ -500,8 +505,9 @@ Experiment load_experiment(const fs::path& file) {
   experiment.plot = plot_of(table.plot, axes, doc);
   stop_on_faults();
   // Reads every base scene anew for each value of each axis, but for seeds.
-  const auto identities = try_scenes(axes, table, file.parent_path(), doc);
+  const auto identities = try_scenes(axes, table, file.parent_path(), experiment.files, doc);
   stop_on_faults();
+  experiment.files.insert(file);
   experiment.path = file;
   experiment.title = table.title.empty() ? file.stem().string() : table.title;
   if (table.until.given) experiment.until = table.until.value;

@@ -15,6 +15,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,7 @@ struct SweepPlot {
 
 struct Experiment {
   std::filesystem::path path;
+  std::set<std::filesystem::path> files;  ///< all that was read for it: its own, scenes and their data files
   std::string title;
   std::optional<double> until;  ///< [s]; none: each scene's duration
   double seconds_limit = 0.0;   ///< wall seconds after which a run is stopped; 0: none

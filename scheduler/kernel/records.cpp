@@ -1,7 +1,10 @@
 #include "brink/scheduler/kernel/records.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 namespace brink {
 
@@ -12,7 +15,22 @@ double wall_clock() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+/// Sums of which no part can be infinite or NaN unless they are.
+double sum(const Vec2& v) { return v.x() + v.y(); }
+double sum(const Twist& t) { return sum(t.velocity) + t.omega; }
+double sum(const Pose& p) { return sum(p.position) + p.angle; }
+double sum(const BodyState& s) { return sum(s.pose) + sum(s.twist); }
+double sum(const EventSide& side) { return side.known ? sum(side.after) + sum(side.before) : 0.0; }
+
 }  // namespace
+
+/// Numbers of which a sum overflows are beyond any that a run can go on with (is_in_range).
+bool Records::is_told(double number, int body, double t) {
+  if (std::isfinite(number)) return true;
+  run_->stop(Termination::failed, fmt::format("the state of '{}' is not finite at t = {:.17g} s",
+                                              trajectories_->world().bodies[body].name, t));
+  return false;
+}
 
 /// The recorder may be null: the frame clock and the numbers of events go on all the same.
 void Records::begin(Recorder* recorder) {
@@ -57,7 +75,11 @@ void Records::frame_of_clock(double due) {
 /// A frame beside the clock does not move it on.
 void Records::frame(double t) {
   last_frame_ = t;
-  if (recorder_) recorder_->frame(t, trajectories_->states(t));
+  if (!recorder_) return;
+  const std::vector<BodyState> states = trajectories_->states(t);
+  for (std::size_t k = 0; k < states.size(); ++k)
+    if (!is_told(sum(states[k]), static_cast<int>(k), t)) return;
+  recorder_->frame(t, states);
 }
 
 void Records::event(EventKind kind, const PairKey& pair, const FeatureContact& contact, double impulse_n,
@@ -78,6 +100,9 @@ void Records::event(EventKind kind, const PairKey& pair, const FeatureContact& c
   event.impulse_t = impulse_t;
   event.body = body;
   event.other = other;
+  const double of_contact = sum(event.contact.point) + impulse_n + impulse_t;
+  if (!is_told(of_contact + sum(body), pair.body, last_event_)) return;
+  if (other.known && !is_told(sum(other), pair.other_body, last_event_)) return;
   tell(event);
 }
 
@@ -96,7 +121,7 @@ void Records::ending(EventKind kind, const PairKey& pair, const FeatureContact& 
 void Records::knot(Knot knot) {
   if (!records_events()) return;
   if (knot.time == run_->time()) knot.time = std::max(knot.time, last_event_);
-  tell(knot);
+  if (is_told(sum(knot.pose) + sum(knot.before) + sum(knot.after), knot.body, knot.time)) tell(knot);
 }
 
 /// A stretch of no length is none: its step was cut where it began.

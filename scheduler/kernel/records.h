@@ -1,5 +1,6 @@
 #pragma once
-/// A run's records: frames on the frame clock, events, checkpoints.
+/// A run's records: frames on the frame clock, events, checkpoints. A state that is not finite is told to nobody:
+/// the run fails instead, and names the body and the time.
 
 #include <algorithm>
 #include <optional>
@@ -96,6 +97,8 @@ class Records {
     holds_back_ = false;
     return std::exchange(held_back_, {});
   }
+  /// True if `number`, a sum of all that is to be told of the body at t, is finite; else the run has failed.
+  bool is_told(double number, int body, double t);
 
   const Trajectories* trajectories_;
   RunControl* run_;

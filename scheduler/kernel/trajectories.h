@@ -55,6 +55,7 @@ class Trajectories {
   /// Starts everything at t = 0. `world` must outlive it. @throws BadInput as make_integrator.
   Trajectories(const World& world, const SolverOptions& options, RunControl& run);
 
+  const World& world() const { return *world_; }
   int body_count() const { return static_cast<int>(bodies_.size()); }
   int site_count() const { return static_cast<int>(sites_.size()); }
   /// Owners count bodies first, then sites.

@@ -2,11 +2,13 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "brink/core/base/error.h"
 #include "brink/core/base/hash.h"
+#include "brink/integrators/stepping.h"
 #include "brink/scheduler/kernel/run_kernel.h"
 #include "brink/scheduler/policies/policy.h"
 #include "brink/scheduler/simulator/make_plan.h"
@@ -69,9 +71,11 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
     summary.termination = Termination::reached_end;
   }
   // Whatever the wall clock says: from here the run can be gone on with.
-  if (recorder) recorder->checkpoint(time(), kernel.snapshot());
-  kernel.tell_lasting();  // beyond the checkpoint: a run that goes on tells them again
   const std::vector<BodyState> last = states();
+  // nothing goes on from states that are not finite: the checkpoint before stays
+  if (recorder && std::all_of(last.begin(), last.end(), [](const BodyState& s) { return is_finite(s); }))
+    recorder->checkpoint(time(), kernel.snapshot());
+  kernel.tell_lasting();  // beyond the checkpoint: a run that goes on tells them again
   // from the same states as the energy, all at the present time
   const Momentum momentum = total_momentum(world(), last);
   summary.end_time = time();

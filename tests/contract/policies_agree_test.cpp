@@ -31,8 +31,14 @@ TEST_P(PoliciesOnTheGallery, GiveTheSameEvents) {
   if (scene.solver.policy == "fixed_step" || scene.solver.detector == "depth")
     GTEST_SKIP() << "an approximate scene";
   const bool lasts = scene.solver.persistent;  // what starts at rest has its collisions later, if at all
-  const std::uint64_t collisions =
-      expect_same_events(scene.world, scene.solver, (lasts ? 0.5 : 0.2) * scene.duration);
+  // these two went different ways late in the run (faults/README.md)
+  const std::string name = GetParam().stem().string();
+  const bool whole = name == "letters" || name == "mixed_shapes";
+  const std::uint64_t collisions = expect_same_events(scene.world, scene.solver,
+                                                      (whole   ? 1.0
+                                                       : lasts ? 0.5
+                                                               : 0.2) *
+                                                          scene.duration);
   EXPECT_TRUE(lasts || collisions > 0);
 }
 

@@ -18,7 +18,7 @@ struct Tally {
   long closed_forms = 0, closed_form_differs = 0;
   long far = 0, refused = 0;
   long restarts = 0, not_canonical = 0, restarts_closed = 0, not_canonical_closed = 0;
-  long rebounds = 0, rebound_wrong = 0, pressed = 0, pressed_wrong = 0;
+  long rebounds = 0, partings = 0, far_rebounds = 0, rebound_wrong = 0, pressed = 0, pressed_wrong = 0;
   double worst_time_error = 0.0;      ///< [s]
   double worst_relative_error = 0.0;  ///< of the time since `from`
   std::uint64_t worst_seed = 0;
@@ -40,8 +40,9 @@ inline std::ostream& operator<<(std::ostream& out, const Tally& t) {
              << ", of them refused with a reason " << t.refused << "\nclosed forms " << t.closed_forms
              << ", differ from the search " << t.closed_form_differs << "\nrestarts " << t.restarts
              << ", other bits " << t.not_canonical << "; with closed forms " << t.restarts_closed
-             << ", other bits " << t.not_canonical_closed << "\nrebounds " << t.rebounds << ", wrong "
-             << t.rebound_wrong << "; pressed on " << t.pressed << ", wrong " << t.pressed_wrong
+             << ", other bits " << t.not_canonical_closed << "\nrebounds " << t.rebounds
+             << ", without restitution " << t.partings << ", of both far away " << t.far_rebounds
+             << ", wrong " << t.rebound_wrong << "; pressed on " << t.pressed << ", wrong " << t.pressed_wrong
              << "\nworst time error " << t.worst_time_error << " s (seed " << t.worst_seed
              << "), relative to the flight " << t.worst_relative_error << "\n";
 }
@@ -374,7 +375,10 @@ class Checker {
     check_normal(f, pair, answer, truth, rounding);
     check_speed(f, pair, answer, truth, rounding);
     check_restarts(f, answer, truth);
-    if (!f.far && f.motion_a.is_ballistic() && f.motion_b.is_ballistic()) check_rebound(f, answer, truth);
+    if (!f.motion_a.is_ballistic() || !f.motion_b.is_ballistic()) return;
+    check_pressed(f, answer, truth);
+    check_rebound(f, answer, 1.1 + 0.1 * static_cast<double>(seed_ % 10));  // restitution .1 to 1
+    check_rebound(f, answer, 1.0);                                          // none
   }
 
   /// A small shift of a along the normal is a gap of that size; against it, none.
@@ -532,36 +536,79 @@ class Checker {
       fail(f, tally.closed_form_differs, "closed form: another normal", quick, none);
   }
 
-  /// Starts in contact: thrown back along the normal (separating), and going on as before (approaching).
-  void check_rebound(const Flight& f, const PairAnswer& answer, const Touch& truth) {
+  /// Starts in contact, going on as before: approaching.
+  void check_pressed(const Flight& f, const PairAnswer& answer, const Touch& truth) {
     const FeatureContact& c = answer.contact;
     const double t = c.time;
     const Sides sides(f);
     const PairAnswer pressed = search(sides, t, f.to, SearchLimits());
+    if (f.far && pressed.status == PairAnswer::Status::undecided) return;
     ++tally.pressed;
     // two tips are met a part of the touching distance before they are nearest, where that is told at all
     const double moment = 2 * time_tolerance(f, truth) + SearchLimits{}.touch / c.closing_speed;
     if (pressed.status != PairAnswer::Status::contact || pressed.contact.time > t + moment)
       fail(f, tally.pressed_wrong, "approaching from contact", pressed, truth);
+  }
 
+  /// The same flight near by, for the reference, of a motion that starts anew where the far one has come to.
+  static Motion near_by(const Motion& far, const Motion& near, const Motion& anew) {
+    BodyState start = anew.start();
+    // both are multiples of the place's grain: nothing is rounded
+    start.pose.position -= far.start().pose.position - near.start().pose.position;
+    start.pose.angle = without_turns(start.pose.angle);
+    return Motion::ballistic(anew.origin(), start, anew.acceleration());
+  }
+
+  /// How far the features of a contact have parted by time t, along the normal as it turns with the outline that has
+  /// the site [m]; less than 0: one is in the other.
+  static double parted(const Flight& back, const FeatureContact& c, double t) {
+    const Motion &a = back.far ? back.near_a : back.motion_a, &b = back.far ? back.near_b : back.motion_b;
+    const Vec2 away = back.motion_a.start().pose.position - a.start().pose.position, point = c.point - away;
+    const auto at = [&](const Motion& m) {
+      return Frame(m.pose(t)).to_world(Frame(m.pose(back.from)).to_local(point));
+    };
+    const Motion& side = c.sample_on_a ? b : a;
+    const Vec2 normal =
+        Frame(side.pose(t)).direction_to_world(Frame(side.pose(back.from)).direction_to_local(c.normal));
+    return normal.dot(at(a) - at(b));
+  }
+
+  /// Starts in contact, thrown back along the normal by so many times the closing speed. With 1 it parts by
+  /// accelerations and turning alone.
+  void check_rebound(const Flight& f, const PairAnswer& answer, double thrown) {
+    const FeatureContact& c = answer.contact;
+    const double t = c.time;
     Flight back = f;
     BodyState sa = f.motion_a.state(t);
-    const double kick =
-        (1.1 + 0.1 * static_cast<double>(seed_ % 10)) * c.closing_speed;  // restitution .1 to 1
+    const double kick = thrown * c.closing_speed;
     sa.twist.velocity += kick * c.normal;
     back.motion_a = Motion::ballistic(t, sa, f.motion_a.acceleration());
     back.motion_b = Motion::ballistic(t, f.motion_b.state(t), f.motion_b.acceleration());
+    if (f.far) {
+      back.near_a = near_by(f.motion_a, f.near_a, back.motion_a);
+      back.near_b = near_by(f.motion_b, f.near_b, back.motion_b);
+    }
     back.from = t;
     back.relative_speed += kick;
     const reference::Pair pair = back.pair();
+    // what places far away are rounded by; near by it is less than what is allowed for anyway
+    const double rounding = f.far ? 64.0 * place_rounding(back, f.to) : 0.0;
+    const double touching = 1e-12 * std::max(1.0, f.size) + rounding;
     // by then it must have left, or this is no clean rebound
     double gone = std::max(1e-12 * (f.to - f.from), std::nextafter(t, reference::kNever) - t);
-    const double well_apart = std::max(1e-9 * f.size, 100.0 * 2.2e-16 * f.to * body_speed(back));
+    const double well_apart =
+        std::max({1e-9 * f.size, 100.0 * 2.2e-16 * f.to * body_speed(back), 4.0 * rounding});
     while (t + gone < f.to && pair.distance(t + gone) < well_apart) gone *= 2.0;
     if (gone > 1e-3 * (f.to - f.from) || t + gone >= f.to) return;
-    for (double s = gone; s > 1e-3 * gone; s *= 0.7)
-      if (pair.distance(t + s) <= 0.2 * kick / 3.0 * s) return;
-    ++tally.rebounds;
+    for (double s = gone; s > 1e-3 * gone; s *= 0.7) {
+      const double part = s / gone;
+      const double least = thrown > 1.0 ? 0.2 * kick / 3.0 * s : 0.2 * pair.distance(t + gone) * part * part;
+      if (pair.distance(t + s) <= least) return;
+      // without restitution accelerations may press: then the distance is that behind the surface
+      if (thrown == 1.0 && parted(back, c, t + s) <= least) return;
+    }
+    ++(thrown > 1.0 ? tally.rebounds : tally.partings);
+    if (f.far) ++tally.far_rebounds;
     Sides sides_back(back);
     sides_back.a.velocity_rounding = sides_back.b.velocity_rounding = 16 * 2.2e-16 * pair.relative_speed;
     SearchLimits limits;
@@ -573,24 +620,28 @@ class Checker {
       const bool clean = next.real && next.closing > 1e-3 * c.closing_speed;
       const double error = says ? std::abs(again.contact.time - next.time) : 0.0;
       bool wrong = false;
+      if (again.status == PairAnswer::Status::undecided && f.far) continue;
       if (again.status == PairAnswer::Status::undecided)
         wrong = true;
       else if (next.time > f.to)
-        wrong = says && pair.distance(again.contact.time) > 1e-12 * std::max(1.0, f.size);
+        wrong = says && pair.distance(again.contact.time) > touching;
       else if (!says)
         wrong = clean;
       else if (next.grazed && again.contact.time < next.time - time_tolerance(back, next))
-        wrong = pair.distance(again.contact.time) > 1e-12 * std::max(1.0, f.size);
+        wrong = pair.distance(again.contact.time) > touching;
       else
         wrong = again.contact.time <= t ||
                 (clean && error > 1e-10 + 1e-13 / next.closing && error > 16 * time_tolerance(back, next));
       if (says && again.contact.time <= t + gone) {
         // before the reference looks: the same contact once more is wrong, another one (in a notch) is not
         const bool another = again.contact.normal.dot(c.normal) < 0.999;
-        wrong = !another || pair.distance(again.contact.time) > 1e-12 * std::max(1.0, f.size);
+        wrong = !another || pair.distance(again.contact.time) > touching;
       }
       if (wrong && !next.given_up)
-        fail(back, tally.rebound_wrong, closed ? "rebound, closed form" : "rebound", again, next);
+        fail(back, tally.rebound_wrong,
+             thrown > 1.0 ? (closed ? "rebound, closed form" : "rebound")
+                          : (closed ? "parting, closed form" : "parting"),
+             again, next);
     }
   }
 

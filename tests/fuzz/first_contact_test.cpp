@@ -18,6 +18,10 @@ TEST(FirstContactFuzz, RandomFlightsAgreeWithTheSlowReference) {
   std::cout << "seeds " << first << " .. " << first + count - 1 << "\n" << checker.tally;
   EXPECT_EQ(checker.tally.failures(), 0);
   EXPECT_GT(checker.tally.contacts, static_cast<long>(count) / 4);
+  if (count >= 10000) {
+    EXPECT_GT(checker.tally.partings, static_cast<long>(count) / 100);
+    EXPECT_GT(checker.tally.far_rebounds, static_cast<long>(count) / 100);
+  }
   // a near miss may be so near that the reference cannot tell in reasonable time
   EXPECT_LE(checker.tally.given_up, static_cast<long>(count) / 1000);
 }

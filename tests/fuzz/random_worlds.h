@@ -23,6 +23,9 @@ struct Taste {
   bool moving = true;   ///< sites that move as told
   bool periodic = true;
   double hits = 60;  ///< about so many collisions
+  /// Every force, smooth integrators, held coordinates, unions, Bezier curves: worlds of their own, as all others stay
+  /// what they are.
+  bool all = false;
 };
 
 class Maker {
@@ -36,6 +39,7 @@ class Maker {
     room();
     things();
     if (springs_) tie();
+    if (taste_.all) forces();
     return out_.str();
   }
 
@@ -88,8 +92,8 @@ class Maker {
 
   void head() {
     const double cells = columns_ * rows_;
-    const double duration = taste_.hits / (0.8 * cells * (1.0 + 0.1 * spin_)) * pitch_ / speed_;
-    out_ << "# random world " << seed_ << "\n[world]\nduration = " << text(std::max(duration, 1e-9))
+    duration_ = taste_.hits / (0.8 * cells * (1.0 + 0.1 * spin_)) * pitch_ / speed_;
+    out_ << "# random world " << seed_ << "\n[world]\nduration = " << text(std::max(duration_, 1e-9))
          << "\nseed = " << seed_ << "\n";
     if (fall_ > 0.0)
       out_ << "gravity = " << (chance(0.8) ? text(0.0, -fall_) : text(0.6 * fall_, 0.8 * fall_)) << "\n";
@@ -99,6 +103,8 @@ class Maker {
     const char* orders[] = {"closing_speed", "depth", "random", "lcp", "reflections"};
     if (chance(0.3)) out_ << "order = \"" << orders[below(5)] << "\"\n";
     if (springs_) out_ << "integrator = \"erk\"\n";
+    if (const char* names[] = {"auto", "erk", "adams", "bdf"}; taste_.all && !springs_)
+      out_ << "integrator = \"" << names[below(4)] << "\"\n";
     materials();
   }
 
@@ -183,17 +189,27 @@ class Maker {
 
   void body(double x, double y) {
     const double size = pitch_ * 0.3 * log_uniform(0.3, 1.0);
+    // what is held does not move
+    static const char* const locks[] = {"x", "y", "angle", "x\", \"angle", "y\", \"angle"};
+    const std::string lock = taste_.all && chance(0.15) ? locks[below(5)] : "";
+    const auto moves = [&](const char* coordinate) {
+      return lock.find(coordinate) == std::string::npos ? 1.0 : 0.0;
+    };
     out_ << "[[bodies]]\nname = \"b" << bodies_++ << "\"\n"
-         << solid_or_wire(size) << "\nposition = " << place(x, y) << "\nangle = " << angle()
-         << "\nvelocity = " << text(uniform(-speed_, speed_), uniform(-speed_, speed_))
-         << "\nangular_velocity = " << text(uniform(-spin_, spin_) * speed_ / pitch_) << "\n";
+         << (taste_.all && chance(0.15) ? joined(size) : solid_or_wire(size))
+         << "\nposition = " << place(x, y) << "\nangle = " << angle() << "\nvelocity = "
+         << text(moves("x") * uniform(-speed_, speed_), moves("y") * uniform(-speed_, speed_))
+         << "\nangular_velocity = " << text(moves("angle") * uniform(-spin_, spin_) * speed_ / pitch_)
+         << "\n";
     if (chance(0.7)) out_ << "mass = " << text(log_uniform(0.3, 5.0)) << "\n";
+    if (!lock.empty()) out_ << "lock = [\"" << lock << "\"]\n";
   }
 
   void obstacle(double x, double y) {
     const double s = 0.25 * pitch_;
     std::string more;
     if (taste_.moving && chance(0.4)) more = motion();
+    if (taste_.all && chance(0.25)) return site("bezier = " + bend(s), x, y, more);
     switch (below(6)) {
       case 0:
         return site("point = [0.0, 0.0]", x, y, more);
@@ -259,6 +275,21 @@ class Maker {
     }
   }
 
+  /// Two boxes across each other: an L, a T, a cross.
+  std::string joined(double s) {
+    const double w = s * uniform(0.15, 0.5), x = s * uniform(-0.6, 0.6), y = s * uniform(-0.6, 0.6);
+    const auto part = [](double x0, double y0, double x1, double y1) {
+      return "{ vertices = " + ring({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}) + " }";
+    };
+    return "polygons = [" + part(-0.7 * s, y - 0.5 * w, 0.7 * s, y + 0.5 * w) + ", " +
+           part(x - 0.5 * w, -0.7 * s, x + 0.5 * w, 0.7 * s) + "]";
+  }
+  /// A bow or an S.
+  std::string bend(double s) {
+    return "[" + text(-s, 0.0) + ", " + text(-0.3 * s, uniform(-s, s)) + ", " +
+           text(0.3 * s, uniform(-s, s)) + ", " + text(s, 0.0) + "]";
+  }
+
   std::string spikes(int n, double s, double inner) const {
     std::vector<std::pair<double, double>> p;
     for (int k = 0; k < 2 * n; ++k) {
@@ -291,12 +322,63 @@ class Maker {
            << "\nrest_length = " << text(pitch_) << "\n";
   }
 
+  // ---- forces of every kind, as large as what turns a body round within a cell or two
+
+  void forces() {
+    const double pull = uniform(0.1, 1.0) * speed_ * speed_ / pitch_, rate = speed_ / pitch_;
+    for (int k = 1 + below(3); k > 0; --k) {
+      const std::string one = "\"b" + std::to_string(below(bodies_)) + "\"";
+      out_ << "[[forces]]\n";
+      // Of a plane that repeats itself only what does not depend on the place.
+      switch (below(room_ == Room::periodic ? 3 : 6)) {
+        case 0:
+          out_ << "kind = \"drag\"\nlinear = " << text(uniform(0.0, 0.3) * rate);
+          if (chance(0.5)) out_ << "\nquadratic = " << text(uniform(0.0, 0.3) / pitch_);
+          if (chance(0.5)) out_ << "\nangular = " << text(uniform(0.0, 0.03) * rate * pitch_ * pitch_);
+          break;
+        case 1: {
+          const double from = uniform(0.0, 0.5) * duration_;
+          out_ << "kind = \"thrust\"\nbody = " << one
+               << "\nforce = " << text(uniform(-pull, pull), uniform(-pull, pull))
+               << "\ntorque = " << text(uniform(-0.1, 0.1) * pull * pitch_);
+          if (chance(0.7))
+            out_ << "\nfrom = " << text(from) << "\nto = " << text(from + uniform(0.1, 0.5) * duration_);
+          break;
+        }
+        case 2:
+          out_ << "kind = \"formula\"\nfx = \"" << text(pull) << "*m*sin(" << text(uniform(0.5, 6.0) * rate)
+               << "*t)\"\ntorque = \"" << text(-0.01 * rate * pitch_ * pitch_) << "*omega\"";
+          break;
+        case 3:
+          out_ << "kind = \"formula\"\nbodies = [" << one << "]\nfx = \"" << text(-pull / pitch_) << "*(x - ("
+               << text(at_x_) << "))\"\nfy = \"" << text(0.3 * rate) << "*vx\"";
+          break;
+        case 4: {
+          // Nobody gets to the centre of one that pulls without bounds there.
+          const bool outside = chance(0.5);
+          const double off = outside ? 3.0 * (half_x_ + half_y_) : 0.0;
+          out_ << "kind = \"attract\"\ncenter = " << place(off, 0.3 * off)
+               << "\nstrength = " << text(outside ? pull * off * off : pull / pitch_)
+               << "\npower = " << (outside ? "-2" : "1");
+          break;
+        }
+        default:
+          out_ << "kind = \"spring\"\nbody = " << one << "\nanchor = " << place(0.3 * half_x_, 0.2 * half_y_)
+               << "\nat = " << text(0.05 * pitch_, 0.0) << "\nstiffness = " << text(pull / pitch_)
+               << "\ndamping = " << text(uniform(0.0, 0.2) * rate)
+               << "\nrest_length = " << text(0.2 * pitch_);
+      }
+      out_ << "\n";
+    }
+  }
+
   std::uint64_t seed_;
   Random random_;
   Taste taste_;
   std::ostringstream out_;
   int columns_ = 0, rows_ = 0, bodies_ = 0;
-  double pitch_ = 1, half_x_ = 1, half_y_ = 1, at_x_ = 0, at_y_ = 0, speed_ = 1, spin_ = 1, fall_ = 0;
+  double pitch_ = 1, half_x_ = 1, half_y_ = 1, at_x_ = 0, at_y_ = 0, speed_ = 1, spin_ = 1, fall_ = 0,
+         duration_ = 1;
   Room room_ = Room::box;
   bool loss_ = false, springs_ = false;
 };

@@ -24,6 +24,20 @@ TEST(RandomWorlds, AreSoundAndTheSameInEveryWay) {
   EXPECT_LT(tally.refused, static_cast<long>(count) / 10);
 }
 
+// The same of worlds with every force, smooth integrators, held coordinates, unions and Bezier curves.
+TEST(RandomWorlds, OfEveryForceAreSoundAndTheSameInEveryWay) {
+  const std::uint64_t first = from_environment("BRINK_SEED", 1), count = from_environment("BRINK_WORLDS", 30);
+  worlds::Taste taste;
+  taste.all = true;
+  worlds::Tally tally;
+  for (std::uint64_t k = 0; k < count; ++k)
+    if (!worlds::examine_seed(first + k, taste, tally)) ADD_FAILURE() << "seed " << first + k;
+  std::cout << "seeds " << first << " .. " << first + count - 1 << ": " << tally;
+  if (count < 30) return;
+  EXPECT_GT(tally.reached_end, static_cast<long>(count) / 4);
+  EXPECT_LT(tally.refused, static_cast<long>(count) / 10);
+}
+
 // Worlds in which something was once missed, or told otherwise in another way of running them (40534: a dip of less than
 // a rounding below the level of a contact).
 TEST(RandomWorlds, ThatOnceFailedAreSound) {

@@ -13,6 +13,7 @@
 #include "brink/scheduler/policies/policy.h"
 #include "children.h"
 #include "tests/fuzz/world_runs.h"
+#include "tests/support/outside/frame_watch.h"
 
 namespace brink::faults_test {
 namespace {
@@ -30,24 +31,38 @@ struct Watched {
   std::vector<std::string> faults;
 };
 
-/// Runs a scene as its file says, but with collisions alone, followed from outside by their impulses.
-Watched watched(const Scene& as_written, double until = 0.0) {
-  Scene scene = as_written;
-  scene.solver.persistent = false;
-  outside::WatchOptions options;
-  options.until = until > 0.0 ? until : scene.duration;
-  options.contact_tolerance = scene.solver.contact_tolerance;
-  options.laws = !takes_together(order_of(scene.solver.order)) && scene.solver.response == "impulse";
-  outside::Watch watch(scene.world, options);
+/// Runs a scene under the eyes of `watch`.
+template <class Watch>
+Watched run_under(const Scene& scene, double until, Watch& watch) {
   Watched run;
   Simulator simulator(scene.world, scene.solver);
   RunOptions how;
-  how.until = options.until;
+  how.until = until;
   how.frame_interval = scene.output.frame_interval;
   how.checkpoint_seconds = -1.0;
   run.told.summary = simulator.run(how, &watch);  // ten million events are looked at, not kept
   run.faults = watch.faults;
   return run;
+}
+
+/// Runs a scene as its file says, but, unless contacts may last, with collisions alone, followed from outside by their
+/// impulses. `depth`: how deep bodies may be in each other, in parts of the scene's contact tolerance.
+Watched watched(const Scene& as_written, double until = 0.0, bool lasting = false, double depth = 2.0) {
+  Scene scene = as_written;
+  scene.solver.persistent = lasting;
+  outside::WatchOptions options;
+  options.until = until > 0.0 ? until : scene.duration;
+  options.contact_tolerance = 0.5 * depth * scene.solver.contact_tolerance;  // it allows for two of them
+  options.laws = !takes_together(order_of(scene.solver.order)) && scene.solver.response == "impulse";
+  outside::Watch watch(scene.world, options);
+  return run_under(scene, options.until, watch);
+}
+
+/// The same with contacts that last, by default: at every frame nobody is in anybody else by more than the contact
+/// tolerance.
+Watched watched_lasting(const Scene& scene) {
+  outside::FrameWatch watch(scene.world, scene.duration, scene.solver.contact_tolerance);
+  return run_under(scene, scene.duration, watch);
 }
 
 /// What a child prints when all is well.
@@ -85,14 +100,22 @@ std::string name_of(const ::testing::TestParamInfo<std::string>& info) {
 
 class ReachesItsEnd : public ::testing::TestWithParam<std::string> {};
 
+// Nothing in them comes to last: with contacts that may they are followed by their impulses just as well.
 TEST_P(ReachesItsEnd, Soundly) {
-  const Ended ended = guarded([&] {
-    Watched run = watched(load_scene(fault(GetParam())));
-    if (run.told.summary.termination != Termination::reached_end)
-      run.faults.push_back("ends: " + run.told.summary.termination_text());
-    return run.faults;
-  });
-  EXPECT_EQ(ended.output, kSound) << "signal " << ended.signal << " after " << ended.seconds << " s";
+  for (const bool lasting : {false, true}) {
+    const Ended ended = guarded([&] {
+      Watched run = watched(load_scene(fault(GetParam())), 0.0, lasting);
+      const RunSummary& s = run.told.summary;
+      if (!s.sound()) run.faults.push_back("ends: " + s.termination_text());
+      if (s.contacts_lasting > 0) run.faults.push_back("contacts last");
+      return run.faults;
+    });
+    EXPECT_EQ(ended.output, kSound) << "signal " << ended.signal << " after " << ended.seconds << " s";
+    // These took more than a minute, or did not end; now they take a second, with the looks from outside.
+    if (GetParam() == "asin_site_slow" || GetParam() == "ring") {
+      EXPECT_LT(ended.seconds, 20.0);
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Faults, ReachesItsEnd,
@@ -112,34 +135,105 @@ TEST(Faults, ElasticRattlingIsNoZenoSeries) {
 
 // ---- what loses its energy, or is beyond what doubles can hold: an honest end is right, nothing else
 
-class EndsHonestly : public ::testing::TestWithParam<std::string> {};
+/// How a scene ends, by collisions alone and with contacts that last: the reason and, of whom, the pair. Empty: it
+/// reaches its end.
+struct Honest {
+  const char* scene;
+  const char* alone;
+  const char* pair;
+  const char* lasting;
+  friend void PrintTo(const Honest& honest, std::ostream* out) { *out << honest.scene; }
+};
 
-TEST_P(EndsHonestly, SoundUpToThere) {
-  const Ended ended = guarded([&] {
-    Watched run = watched(load_scene(fault(GetParam())));
-    const RunSummary& s = run.told.summary;
-    if (s.termination == Termination::failed && s.why.size() < 20)
-      run.faults.push_back("fails without a reason");
-    // what Brink refuses as too fast or too far the watch from outside may give up on as well
-    if (s.why.rfind("undecided", 0) == 0)
-      std::erase_if(run.faults, [](const std::string& f) { return f.find("gives up") != std::string::npos; });
-    return run.faults;
-  });
-  const bool refused = ended.output.rfind("refused: ", 0) == 0;
-  EXPECT_TRUE(ended.output == kSound || refused)
-      << ended.output << "signal " << ended.signal << " after " << ended.seconds << " s";
+const char* const kFast = "but too fast for the clock: they move more than a thousandth of their size";
+const char* const kFar = "but too far from the origin, or turned too often, for their gap to be told";
+
+// The needle's angle, 1e9 rad, is a double: where it stands then it reaches over the segment from the start on.
+const Honest kHonest[] = {
+    {"box_falls_through", "failed: Zeno at t = 0.4586704", "'b' on 'floor'", ""},
+    {"wire_floor_fall", "failed: Zeno at t = 0.2797568", "'box' on 'floor'", ""},
+    {"box_wire_floor", "failed: Zeno at t = 0.5898151", "'body0' on 'site0'", ""},
+    {"stacking_tower_blocks_3_cor_minus1_x_offset_0", "failed: Zeno at t = 0.2797568", "'b1' on 'b0'", ""},
+    {"disc_thick_segment", "failed: Zeno at t = 0.8748850", "'body0' on 'site0'", ""},
+    {"disc_placed_touching", "stopped", "max_collisions",
+     ""},  // it is lossless: an approach of a rounding has no end
+    {"slide", "failed: Zeno at t = 2.7477840", "'b' on 'site0'", ""},
+    {"sink_e0", "failed: Zeno at t = 2.5901781", "'b0' on 'site0'", ""},
+    {"orbit", "failed: undecided at t = 8.3062630", "'a' on 'b'", kFar},
+    {"far", "", "", ""},
+    {"angle", "refused: ", "'needle' and 'site0' overlap by 0.0652 m at the start", "refused: "},
+    {"tunnel_small_far_discs", "", "", ""},
+    {"escape_speed1e15", "failed: undecided at t = 7.99999999", "'a' on 'b'", kFast},
+    {"corner_slide_off", "", "", ""},
+    {"crash_null_contact_group_1e12", "failed: undecided at t = 2.21067804", "'b0' on 's0'", kFast},
+    {"crash_null_contact_group_fastspin", "failed: undecided at t = 0.64995000", "'b' on 'site0'", kFast},
+    {"tumbler_inside", "failed: Zeno at t = 1.5396619", "'b1' on 'b2'", ""},
+    {"policies_differ_arc", "", "", ""},
+    {"arc_policies", "", "", ""},
+    {"pressed_e0_policies", "failed: Zeno at t = 1.7507954", "'b2' on 'b4'", ""},
+};
+
+/// What an ending is due to say and does not.
+std::vector<std::string> not_said(const std::string& ending, const std::vector<std::string>& due) {
+  std::vector<std::string> faults;
+  for (const std::string& words : due)
+    if (ending.find(words) == std::string::npos)
+      faults.push_back("ends '" + ending + "', not '" + words + "'");
+  return faults;
 }
 
-INSTANTIATE_TEST_SUITE_P(Faults, EndsHonestly,
-                         ::testing::Values("box_falls_through", "wire_floor_fall", "box_wire_floor",
-                                           "stacking_tower_blocks_3_cor_minus1_x_offset_0",
-                                           "disc_thick_segment", "disc_placed_touching", "slide", "sink_e0",
-                                           "orbit", "far", "angle", "tunnel_small_far_discs",
-                                           "escape_speed1e15", "corner_slide_off",
-                                           "crash_null_contact_group_1e12",
-                                           "crash_null_contact_group_fastspin", "tumbler_inside",
-                                           "policies_differ_arc", "arc_policies", "pressed_e0_policies"),
-                         name_of);
+class EndsHonestly : public ::testing::TestWithParam<Honest> {
+ protected:
+  /// What is wrong with a run that should end so.
+  static std::vector<std::string> faults_of(const std::function<Watched(const Scene&)>& run,
+                                            const std::vector<std::string>& due) {
+    std::vector<std::string> sets;
+    // as lossless as it is, ten million are no better than one
+    if (GetParam().scene == std::string("disc_placed_touching")) sets = {"solver.max_collisions=1000000"};
+    Watched came;
+    std::string ending;
+    try {
+      came = run(load_scene(fault(GetParam().scene), sets));
+      const RunSummary& s = came.told.summary;
+      ending = s.termination_text() + " " + s.why;
+      if (s.groups_taken > 0) came.faults.push_back("groups taken: " + s.first_taken);
+    } catch (const BadInput& e) {
+      ending = std::string("refused: ") + e.what();
+    }
+    for (const std::string& f : not_said(ending, due)) came.faults.push_back(f);
+    // what Brink refuses as too fast or too far the watch from outside may give up on as well
+    if (ending.find("undecided") != std::string::npos)
+      std::erase_if(came.faults,
+                    [](const std::string& f) { return f.find("gives up") != std::string::npos; });
+    return came.faults;
+  }
+};
+
+TEST_P(EndsHonestly, SoundUpToThere) {
+  const Honest& h = GetParam();
+  const bool ends = *h.alone == '\0';
+  const std::string scene = h.scene;
+  // Of these the README says: no deeper than the tolerance.
+  const double depth = scene == "slide" || scene == "sink_e0" ? 1.0 : 2.0;
+  const Ended ended = guarded([&] {
+    return faults_of([&](const Scene& s) { return watched(s, 0.0, false, depth); },
+                     {ends ? "reached_end" : h.alone, h.pair});
+  });
+  EXPECT_EQ(ended.output, kSound) << "signal " << ended.signal << " after " << ended.seconds << " s";
+}
+
+// What ends for another reason than that a contact lasts ends so here, too.
+TEST_P(EndsHonestly, OrGoesOnWhereContactsMayLast) {
+  const Honest& h = GetParam();
+  const bool ends = *h.lasting == '\0';
+  const Ended ended = guarded([&] {
+    return faults_of(watched_lasting, {ends ? "reached_end" : h.alone, ends ? "" : h.pair, h.lasting});
+  });
+  EXPECT_EQ(ended.output, kSound) << "signal " << ended.signal << " after " << ended.seconds << " s";
+}
+
+INSTANTIATE_TEST_SUITE_P(Faults, EndsHonestly, ::testing::ValuesIn(kHonest),
+                         [](const auto& honest) { return std::string(honest.param.scene); });
 
 // ---- one event list in every way: policies, skips, detectors, resumes
 
@@ -249,14 +343,23 @@ TEST(Faults, ABoxThatSlidesOverTheEdgeFliesOn) {
   EXPECT_NEAR(state.twist.velocity.y(), 0.0, 1e-9);
 }
 
-// Of energy that is lost with restitution 1 the ending tells.
+// Of energy that is lost with restitution 1 the ending tells: how much, in how many groups, and who was the first.
 TEST(Faults, EnergyIsKeptOrTheEndingSaysSo) {
-  for (const char* name : {"energy_half_lost_3_boxes", "tight_fit_energy_gone"}) {
-    const Watched run = watched(load_scene(fault(name)));
-    const RunSummary& s = run.told.summary;
-    if (s.sound()) {
-      EXPECT_NEAR(s.energy_final, s.energy_initial, 1e-9 * s.energy_initial) << name;
-    }
+  for (const bool lasting : {false, true}) {
+    const Watched kept = watched(load_scene(fault("energy_half_lost_3_boxes")), 0.0, lasting);
+    const RunSummary& k = kept.told.summary;
+    EXPECT_TRUE(k.sound()) << k.termination_text() << ", " << k.groups_taken << " groups taken";
+    EXPECT_NEAR(k.energy_initial, 50.0, 1e-9);
+    EXPECT_NEAR(k.energy_final, k.energy_initial, 1e-9 * k.energy_initial);
+
+    const Watched gone = watched(load_scene(fault("tight_fit_energy_gone")), 0.0, lasting);
+    const RunSummary& g = gone.told.summary;
+    EXPECT_EQ(g.termination, Termination::reached_end) << g.why;
+    EXPECT_FALSE(g.sound());
+    EXPECT_EQ(g.groups_taken, 1U);
+    EXPECT_NEAR(g.energy_taken, g.energy_initial - g.energy_final, 1e-12 * g.energy_initial);
+    EXPECT_NEAR(g.energy_taken, 0.545, 1e-12);
+    EXPECT_EQ(g.first_taken, "'a' on 'w' at t = 0 s");
   }
 }
 

@@ -345,6 +345,46 @@ TEST_F(ProgramTest, WhatIsReadIsNotWrittenOver) {
   EXPECT_EQ(text_of(dir_ / "a/run.db"), run);
 }
 
+// Samples in files whose names are those of what is written, of a scene that is read, of a run that was made of it.
+TEST_F(ProgramTest, WhatAScenesFilesHoldIsNotWrittenOver) {
+  const char* const files[] = {"smp.png", "smp.html", "smp.mp4",  "bodies.csv",
+                               "run.h5",  "run.pvd",  "sweep.csv"};
+  std::string scene = "[world]\nduration = 0.1\n[output]\nframe_interval = 0.05\n";
+  double x = 0.0;
+  for (const char* file : files) {
+    write(file, "4\n1 0 0 0 0 0 0\n0 0\n1 0\n1 1\n0 1\n");
+    scene += std::string("[[bodies]]\nsamples = { file = \"") + file + "\" }\nposition = [" +
+             std::to_string(x += 3.0) + ", 0]\n";
+  }
+  write("smp.toml", scene);
+  write("exp.toml", "scenes = [\"smp.toml\"]\n[axes]\nworld.duration = [0.1, 0.2]\n");
+  ASSERT_EQ(brink("run smp.toml --out a --quiet --trace trace.json").status, 0);
+  const std::string samples = text_of(dir_ / "smp.png"), trace = text_of(dir_ / "trace.json");
+  for (const char* command :
+       {"run smp.toml --out b --trace smp.png", "draw smp.toml -o smp.png", "view smp.toml -o smp.html",
+        "view smp.toml -o smp.toml", "run a/run.db --out b --trace smp.png", "run a --out b --trace smp.toml",
+        "draw a -o smp.png", "view a -o smp.toml", "view a -o smp.html", "view a/run.db -o a/../smp.toml",
+        "view a --trace trace.json -o trace.json", "film a -o smp.mp4", "export a --csv .",
+        "export a --hdf5 .", "export a --vtk .", "sweep exp.toml --out ."}) {
+    const Outcome run = brink(command);
+    EXPECT_EQ(run.status, 2) << command;
+    EXPECT_THAT(run.error, HasSubstr("read or kept by this command")) << command << ": " << run.error;
+  }
+  EXPECT_EQ(text_of(dir_ / "smp.toml"), scene);
+  EXPECT_EQ(text_of(dir_ / "trace.json"), trace);
+  for (const char* file : files) EXPECT_EQ(text_of(dir_ / file), samples) << file;
+  EXPECT_FALSE(fs::exists(dir_ / "b"));
+  EXPECT_FALSE(fs::exists(dir_ / "runs"));
+  // Seen from elsewhere, too, where the scene's name is no path to it; what is gone is nobody's.
+  EXPECT_EQ(
+      brink("--version >/dev/null && cd a && '" BRINK_BINARY_DIR "/bin/brink' view run.db -o ../smp.toml")
+          .status,
+      2);
+  EXPECT_EQ(text_of(dir_ / "smp.toml"), scene);
+  fs::remove(dir_ / "smp.html");
+  EXPECT_EQ(brink("view a -o smp.html").status, 0);
+}
+
 // Names and titles are data: nothing in them reaches the terminal as a control, and a fault stays one line.
 TEST_F(ProgramTest, TextFromFilesIsPrintedEscaped) {
   std::string named = kBall;
@@ -380,11 +420,85 @@ TEST_F(ProgramTest, FullDiskBehindStandardOutputIsStatusThree) {
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 3);
 }
 
+// A run of 4 MB, with room for half of it, and then for all.
+class FullDisk : public ProgramTest {
+ protected:
+  FullDisk() { EXPECT_EQ(brink("run ball.toml --out whole --quiet" + many_).status, 0); }
+
+  /// What a script of bash prints in the test's folder, where `run` is the command without --out.
+  std::string printed(const std::string& script) {
+    write("script.sh", "run() { '" BRINK_BINARY_DIR "/bin/brink' run ball.toml --quiet" + many_ +
+                           " \"$@\" 2>error.txt; }\n" + script);
+    const std::string command = "cd '" + dir_.string() + "' && " + shell_ + " script.sh >printed.txt 2>&1";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    return text_of(dir_ / "printed.txt");
+  }
+  /// That the run in `out` is the one that nothing disturbed.
+  void expect_whole(const char* out) {
+    const RunFile run(dir_ / out / "run.db"), whole(dir_ / "whole/run.db");
+    EXPECT_EQ(run.meta("termination"), "reached_end");
+    EXPECT_EQ(run.meta("state_hash"), whole.meta("state_hash"));
+    EXPECT_EQ(run.frame_count(), whole.frame_count());
+    EXPECT_EQ(run.event_count(), whole.event_count());
+    EXPECT_NO_THROW(run.require_sound());
+  }
+
+  const std::string many_ = " --until 40 --set output.frame_interval=5e-4";
+  std::string shell_ = "bash";
+};
+
+// A file system in memory, in a mount space of the script's own: it is gone with the script.
+TEST_F(FullDisk, IsStatusThreeWithItsCauseAndTheRunGoesOnWhenThereIsRoom) {
+  shell_ = "unshare -m bash";
+  if (::geteuid() != 0 || std::system("unshare -m sh -c 'mount -t tmpfs none /mnt' 2>/dev/null") != 0)
+    GTEST_SKIP() << "no file system can be mounted here: needs root in a space of its own";
+  const std::string told = printed(
+      "mkdir small && mount -t tmpfs -o size=2m none small && run --out small; echo $?; cat error.txt\n"
+      "run --out small --resume; echo $?; cat error.txt\n"
+      "mount -o remount,size=64m small && run --out small --resume; echo $?; cat error.txt\n"
+      "cp -r small kept\n");
+  const std::string full = "3\nbrink: small/run.db: cannot be read or written as a run file: disk full\n";
+  EXPECT_EQ(told, full + full + "0\n");
+  expect_whole("kept");
+}
+
+// A limit on the size of files stops the same writes, as an error of the device.
+TEST_F(FullDisk, AWriteThatFailsIsStatusThreeAndTheRunGoesOnAfterwards) {
+  const std::string told = printed(
+      "(trap '' XFSZ; ulimit -f 1024; run --out small; echo $?; cat error.txt)\n"
+      "run --out small --resume; echo $?; cat error.txt\n");
+  EXPECT_EQ(told, "3\nbrink: small/run.db: cannot be read or written as a run file: disk I/O error\n0\n");
+  expect_whole("small");
+}
+
 TEST_F(ProgramTest, WhatCannotBeReadOrWrittenIsStatusThree) {
   EXPECT_EQ(brink("run absent.toml").status, 3);
   EXPECT_EQ(brink("run ball.toml --out ball.toml/x").status, 3);
   write("plain.db", std::string(4096, 'x'));
   EXPECT_EQ(brink("draw plain.db -o x.png").status, 3);
+}
+
+// A disc in a hole of its own size.
+TEST_F(ProgramTest, AGroupThatIsTakenIsNamedInTheSummaryAndInTheJson) {
+  write("hole.toml", R"([world]
+duration = 1
+[[sites]]
+name = "hole"
+box = { width = 2, height = 2 }
+inside_of = true
+[[bodies]]
+name = "disc"
+disc = { radius = 1 }
+velocity = [1, 0.3]
+)");
+  const Outcome run = brink("run hole.toml --out a --json");
+  EXPECT_EQ(run.status, 1) << run.error;
+  const auto summary = nlohmann::json::parse(last_line(run.out));
+  EXPECT_GE(summary["groups_taken"], 1);
+  const std::string first = summary["first_taken"];
+  EXPECT_THAT(first, ::testing::StartsWith("'disc' on 'hole' at t = 0"));
+  EXPECT_THAT(brink("run hole.toml --out b").out, HasSubstr("the first " + first));
+  EXPECT_EQ(nlohmann::json::parse(last_line(brink("run ball.toml --json").out))["first_taken"], "");
 }
 
 TEST_F(ProgramTest, RunThatEndsEarlyIsStatusOneAndSaysWhy) {

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "tests/unit/scheduler/kernel/parts.h"
 
 namespace brink::records_test {
@@ -82,6 +85,48 @@ TEST(Records, ARecorderThatOverridesNothingIsAsked) {
   options.checkpoint_seconds = -1.0;
   parts.run.begin(options);
   EXPECT_FALSE(parts.records.checkpoint_due());
+}
+
+// Whatever led there, and whichever number of the state it is.
+TEST(Records, AStateThatIsNotFiniteIsNeverTold) {
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  const BodyState still{{Vec2(3.0, 0.0), 0.0}, {Vec2(0.0, 0.0), 0.0}};
+  std::vector<BodyState> bad(6, still);
+  bad[0].pose.position.x() = nan;
+  bad[1].pose.position.y() = inf;
+  bad[2].pose.angle = -inf;
+  bad[3].twist.velocity.x() = inf;
+  bad[4].twist.velocity.y() = nan;
+  bad[5].twist.omega = inf;
+  for (std::size_t k = 0; k < bad.size(); ++k) {
+    KernelParts parts(two_discs(), {});
+    Events told;
+    parts.records.begin(&told);
+    const FeatureContact contact = meeting(parts).contact;
+    parts.records.frame(0.0);
+    parts.records.event(EventKind::collision, kDiscs, contact, 1.0, 0.0, Real(0), {true, still, {}},
+                        {true, still, {}});
+    ASSERT_FALSE(parts.run.halt());
+    parts.run.set_time(0.5);
+    parts.records.event(EventKind::collision, kDiscs, contact, 1.0, 0.0, Real(0), {true, still, {}},
+                        {true, bad[k], {}});
+    ASSERT_TRUE(parts.run.halt()) << k;
+    EXPECT_EQ(parts.run.halt()->termination, Termination::failed);
+    EXPECT_EQ(parts.run.halt()->why, "the state of 'body1' is not finite at t = 0.5 s");
+    parts.run.forget_halt();
+    parts.records.event(EventKind::collision, kDiscs, contact, nan, 0.0, Real(0));
+    EXPECT_TRUE(parts.run.halt()) << "an impulse";
+    EXPECT_EQ(told.events.size(), 1U) << k;
+    parts.run.forget_halt();
+    parts.records.knot({0.5, 0, bad[k].pose, {}, bad[k].twist});
+    EXPECT_TRUE(parts.run.halt()) << k;
+    parts.run.forget_halt();
+    parts.trajectories.restart_free(1, bad[k], {});
+    parts.records.frame(0.5);
+    ASSERT_TRUE(parts.run.halt()) << k;
+    EXPECT_EQ(parts.run.halt()->why, "the state of 'body1' is not finite at t = 0.5 s");
+    EXPECT_EQ(told.frame_times, std::vector<double>{0.0}) << k;
+  }
 }
 
 }  // namespace
