@@ -7,7 +7,7 @@ namespace brink {
 namespace {
 
 /// The most that any point within `radius` [m] of the centre of mass has [m/s].
-double speed_of(const Twist& v, double radius) { return v.velocity.norm() + std::abs(v.omega) * radius; }
+double fastest_point(const Twist& v, double radius) { return v.velocity.norm() + std::abs(v.omega) * radius; }
 
 /// One body beside an island.
 class Outsider {
@@ -23,7 +23,8 @@ class Outsider {
         going_(trajectories.body(body).motion.twist(now)) {
     const BodyState rounded = state_.rounded();
     const double radius = search.outline_of(body).bounding_radius;
-    const double speed = std::max(speed_of(rounded.twist, radius), speed_of(going_.rounded(), radius));
+    const double speed =
+        std::max(fastest_point(rounded.twist, radius), fastest_point(going_.rounded(), radius));
     // the members' largest pull stands for its own
     reach_ = h * (speed + members.pull() * h);
     box_.add(rounded.pose.position);
