@@ -24,9 +24,10 @@ std::string time_text(double t);
 
 /// extend(t):
 ///   while the tracks end before t:
-///     at the start, and where the right-hand side has jumped: next segment = up to Dynamics::next_break;
-///     begin afresh take one step of the method's own length, never past the segment's end; append one piece
-///     a body
+///     at the start, and where the right-hand side has jumped:
+///       next segment = up to Dynamics::next_break; begin afresh
+///     take one step of the method's own length, never past the segment's end
+///     append one piece a body
 /// A failure ends the tracks at the last accepted step and stays until start().
 class SteppingIntegrator : public Integrator {
  public:

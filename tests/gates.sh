@@ -3,9 +3,11 @@
 #   tests/gates.sh [GATE...]     format, headers, clang, sanitizers; by default all of them
 # Each prints one line; the first that fails ends it with what was wrong and status 1.
 #   format      every source is as clang-format writes it
-#   headers     every header that is installed compiles by itself
+#   headers     every header compiles by itself: those that a source of their name includes first do so there, by clang
 #   clang       no source gives clang a warning
 #   sanitizers  mutated scenes and run files, random worlds and flights, under address and undefined sanitizers
+# BRINK_GATE_ONLY=TEXT looks at files with this in their names alone (format, headers, clang).
+# tests/gates_fail.sh shows each of them, and some tests, fail on a mistake.
 # A gate whose tool is not installed (clang-format, clang) and cannot be installed is left out, and says so.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/.."
@@ -22,7 +24,7 @@ has() {  # COMMAND PACKAGE: installs it if it can
   command -v "$1" >/dev/null
 }
 
-sources() { find $folders -name '*.h' -o -name '*.cpp' | sort; }
+sources() { find $folders -name '*.h' -o -name '*.cpp' | grep -F -e "${BRINK_GATE_ONLY:-}" | sort; }
 
 gate_format() {
   if ! has clang-format clang-format; then say "gate format: left out, there is no clang-format"; return; fi
@@ -51,13 +53,25 @@ for entry in json.load(open('build/release/compile_commands.json')):
 PY
 }
 
+# Headers to be compiled by themselves. Those that a source of their name includes first are not among them where clang
+# compiles that source.
+single_headers() {  # COMPILER
+  sources | grep '\.h$' | while read -r header; do
+    source=${header%.h}.cpp
+    if [ "$1" = clang++ ] && [ "${header%%/*}" != tests ] && [ -e "$source" ] &&
+      grep -m 1 '^#include' "$source" | grep -qF "brink/$header"; then continue; fi
+    echo "$header"
+  done
+}
+
 gate_headers() {
   has python3 python3 || { say "gate headers: needs python3"; return 1; }
   local compiler=c++ flags
   if has clang++ clang; then compiler=clang++; fi
   # shellcheck disable=SC2046
-  flags="$(flags_of scenes/program) $(pkg-config --cflags cairo 2>/dev/null)"
-  xargs -P "$jobs" -I{} sh -c "printf '#include \"brink/%s\"\n' {} | $compiler -x c++ - $flags -fsyntax-only || { echo '{}: does not compile by itself' >&2; exit 255; }" <build/release/public_headers.txt
+  flags="$(flags_of scenes/program) $(pkg-config --cflags cairo 2>/dev/null) -I. -DBRINK_SOURCE_DIR='\"\"' -DBRINK_BINARY_DIR='\"\"'"
+  single_headers $compiler | sed '/^tests/!s:^:brink/:' |
+    xargs -P "$jobs" -I{} sh -c "printf '#include \"%s\"\n' {} | $compiler -x c++ - $flags -fsyntax-only || { echo '{}: does not compile by itself' >&2; exit 255; }"
 }
 
 gate_clang() {
@@ -69,8 +83,10 @@ gate_clang() {
   cmake -S . -B build/clang -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=clang++ -DBRINK_WERROR=ON \
     -DBRINK_TESTS=OFF -DBRINK_PRECOMPILE=OFF >build/clang.log 2>&1
   python3 - <<'PY' | xargs -P "$jobs" -I{} sh -c '{}'
-import json, shlex
+import json, os, shlex
 for entry in json.load(open('build/clang/compile_commands.json')):
+    if os.environ.get('BRINK_GATE_ONLY', '') not in entry['file']:
+        continue
     command = entry['command'].replace(' -fsyntax-only', '')
     words = [w for w in shlex.split(command) if 'ccache' not in w]
     at = words.index('-o')

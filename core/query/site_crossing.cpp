@@ -11,13 +11,13 @@ namespace brink {
 namespace {
 
 /// The two points, maybe, in which a site's line or circle meets an arc's circle.
-struct Meeting {
+struct CommonPoints {
   std::array<Vec2, 2> points{Vec2::Zero(), Vec2::Zero()};
   double bulge = -1.0;  ///< how far one reaches over the other [m]; < 0: they do not meet
 };
 
 /// The bulge is the cap of the circle beyond the line: of its two caps the one without the centre.
-Meeting line_and_circle(const Site& line, const Site& arc) {
+CommonPoints line_and_circle(const Site& line, const Site& arc) {
   const Vec2 u = (line.b - line.a).normalized(), w = arc.center - line.a;
   // Distance of the line from the centre; the cap is r - height high.
   const double height = std::abs(cross(u, w)), r = arc.arc_radius;
@@ -29,7 +29,7 @@ Meeting line_and_circle(const Site& line, const Site& arc) {
 
 /// The bulge is the width of the lens that the discs share, or, where one is nearly within the other, how
 /// far it looks out. Circles about one centre do not cross.
-Meeting two_circles(const Site& s, const Site& t) {
+CommonPoints two_circles(const Site& s, const Site& t) {
   const Vec2 w = t.center - s.center;
   const double d = w.norm(), r = s.arc_radius, q = t.arc_radius;
   const double bulge = std::min(r + q - d, d - std::abs(r - q));
@@ -70,14 +70,14 @@ SiteCrossing two_segments(const Site& s, const Site& t) {
 /// At least one of the two is an arc.
 SiteCrossing with_arc(const Site& s, const Site& t) {
   const bool s_is_arc = s.kind == SiteKind::arc, t_is_arc = t.kind == SiteKind::arc;
-  const Meeting meeting =
+  const CommonPoints common =
       s_is_arc && t_is_arc ? two_circles(s, t) : line_and_circle(s_is_arc ? t : s, s_is_arc ? s : t);
-  if (meeting.bulge < 0.0) return {};
+  if (common.bulge < 0.0) return {};
   // depth and bulge belong to the pair: of two points on both cores the first tells as much
   // Lines and circles go on beyond the ends: a crossing is where both sites themselves are.
-  for (const Vec2& p : meeting.points)
+  for (const Vec2& p : common.points)
     if (abreast(s, p) && abreast(t, p))
-      return {std::min(meeting.bulge, nearest_end(s, t)), p, right_normal(t, p)};
+      return {std::min(common.bulge, nearest_end(s, t)), p, right_normal(t, p)};
   return {};
 }
 

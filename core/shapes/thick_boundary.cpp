@@ -78,10 +78,10 @@ bool is_repeat(const std::vector<Site>& pieces, const std::vector<Box>& boxes, s
     const Nearest n = nearest_on(pieces[j], middle);
     // at its end the other piece does not run along; what goes on there is a piece of its own
     if (n.distance > tolerance || n.foot != Foot::interior) continue;
-    const Site rest = part_of(pieces[j], fraction_of(pieces[j], middle), 1.0);
+    const Site onward = part_of(pieces[j], fraction_of(pieces[j], middle), 1.0);
     const Site own = part_of(part, 0.5, 1.0);
     // to 1.4e-3 rad; what crosses the part at its middle would have cut it there
-    if (direction_at_start(rest).dot(direction_at_start(own)) > 0.999999) return true;
+    if (direction_at_start(onward).dot(direction_at_start(own)) > 0.999999) return true;
   }
   return false;
 }

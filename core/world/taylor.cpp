@@ -203,8 +203,8 @@ Taylor operator/(const Taylor& a, const Taylor& b) {
   if (lib::zero_in(b.c[0])) return rough(Interval::whole(), a.order);
   Taylor r = Taylor::constant(a.c[0] / b.c[0], a.order);
   for (int k = 1; k <= a.order; ++k) {
-    const Interval rest = convolved(b, r, k, 1, k);
-    if (!is_zero(a.c[k]) || !is_zero(rest)) r.c[k] = (a.c[k] - rest) / b.c[0];
+    const Interval lower = convolved(b, r, k, 1, k);
+    if (!is_zero(a.c[k]) || !is_zero(lower)) r.c[k] = (a.c[k] - lower) / b.c[0];
   }
   return r;
 }
@@ -217,8 +217,8 @@ Taylor sqrt(const Taylor& a) {
     return a.is_constant() ? Taylor::constant(value, a.order) : rough(value, a.order);
   Taylor r = Taylor::constant(value, a.order);
   for (int k = 1; k <= a.order; ++k) {
-    const Interval rest = convolved(r, r, k, 1, k - 1);
-    if (!is_zero(a.c[k]) || !is_zero(rest)) r.c[k] = (a.c[k] - rest) / (2.0 * r.c[0]);
+    const Interval lower = convolved(r, r, k, 1, k - 1);
+    if (!is_zero(a.c[k]) || !is_zero(lower)) r.c[k] = (a.c[k] - lower) / (2.0 * r.c[0]);
   }
   return r;
 }

@@ -166,7 +166,8 @@ void check_periods(const World& world) {
     check_place_in_periods(world.periods, Checker{called("body", i, world.bodies[i].name)},
                            world.bodies[i].initial.pose.position);
   for (std::size_t i = 0; i < world.sites.size(); ++i)
-    check_site_in_periods(world.periods, Checker{called("site", i, world.sites[i].name)}, world.sites[i]);
+    check_site_in_periods(world.periods, Checker{called("fixed site", i, world.sites[i].name)},
+                          world.sites[i]);
 }
 
 /// One overload for each way a site may move.
@@ -191,7 +192,7 @@ void check_motion(const Checker& check, const FormulaMotion& motion) {
 void check_motion(const Checker&, std::monostate) {}
 
 void check_site(const World& world, const FixedSite& site, std::size_t i) {
-  const Checker check{called("site", i, site.name)};
+  const Checker check{called("fixed site", i, site.name)};
   check_outline(check, site.outline);
   check.index("material", site.material, world.materials.size());
   check.finite("position", site.pose.position);

@@ -1,4 +1,6 @@
 #pragma once
+/// A world's fingerprint: run files and snapshots are told by it which world they belong to.
+
 #include <cstdint>
 #include <string>
 

@@ -122,7 +122,7 @@ SpinningBox SpinningBox::at(long double t) const {
   return moved;
 }
 
-BoxMeeting meet(const SpinningBox& a, const SpinningBox& b, double end) {
+BoxCollision meet(const SpinningBox& a, const SpinningBox& b, double end) {
   const long double t = first_contact(a, b, 0.0L, end);
   if (!std::isfinite(t)) throw BadInput("the boxes of the benchmark do not meet");
   SpinningBox a1 = a.at(t), b1 = b.at(t);

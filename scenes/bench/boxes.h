@@ -18,12 +18,12 @@ struct SpinningBox {
   SpinningBox at(long double t) const;
 };
 
-struct BoxMeeting {
+struct BoxCollision {
   long double time = 0.0L;  ///< [s]
   SpinningBox end[2];       ///< at the end
 };
 
 /// @throws BadInput unless they meet exactly once before `end` [s].
-BoxMeeting meet(const SpinningBox& a, const SpinningBox& b, double end);
+BoxCollision meet(const SpinningBox& a, const SpinningBox& b, double end);
 
 }  // namespace brink::bench

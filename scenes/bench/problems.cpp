@@ -227,14 +227,14 @@ Problem two_boxes() {
   add_body(world, make_box(0.75, 0.75), {2.0, -0.125}, {-1.0, 0.0625}, 1.1, -0.75);
   // No closed form: the meeting is found in extended precision (boxes.h).
   // The boxes' own masses and moments, as the world has them.
-  const BoxMeeting meeting =
+  const BoxCollision collision =
       meet(SpinningBox(world.bodies[0], 1.0, 0.5), SpinningBox(world.bodies[1], 0.75, 0.75), 4.0);
-  const auto place_error = [meeting](const Problem&, const Outcome& o) {
+  const auto place_error = [collision](const Problem&, const Outcome& o) {
     double worst = 0.0;
     for (int k = 0; k < 2; ++k) {
       const Vec2& at = o.states[k].pose.position;
-      worst = std::max(worst, distance(at, meeting.end[k].x, meeting.end[k].y));
-      worst = std::max(worst, static_cast<double>(std::abs(o.states[k].pose.angle - meeting.end[k].angle)));
+      worst = std::max(worst, distance(at, collision.end[k].x, collision.end[k].y));
+      worst = std::max(worst, static_cast<double>(std::abs(o.states[k].pose.angle - collision.end[k].angle)));
     }
     return worst;
   };
@@ -243,7 +243,7 @@ Problem two_boxes() {
           "worst place or angle at the end [m, rad]",
           world,
           4.0,
-          {static_cast<double>(meeting.time)},
+          {static_cast<double>(collision.time)},
           false,
           place_error};
 }

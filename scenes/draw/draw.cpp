@@ -60,14 +60,15 @@ void check(const World& world, std::span<const BodyState> bodies, std::span<cons
   if (bodies.size() != world.bodies.size())
     throw BadInput(fmt::format("bodies: {} states given for {} bodies", bodies.size(), world.bodies.size()));
   if (sites.size() != world.sites.size())
-    throw BadInput(fmt::format("sites: {} poses given for {} sites", sites.size(), world.sites.size()));
+    throw BadInput(
+        fmt::format("fixed sites: {} poses given for {} of them", sites.size(), world.sites.size()));
   const auto finite = [](const Pose& p) { return p.position.allFinite() && std::isfinite(p.angle); };
   for (std::size_t k = 0; k < bodies.size(); ++k)
     if (!finite(bodies[k].pose))
       throw BadInput(fmt::format("body \"{}\": its pose is not finite", world.bodies[k].name));
   for (std::size_t k = 0; k < sites.size(); ++k)
     if (!finite(sites[k]))
-      throw BadInput(fmt::format("site \"{}\": its pose is not finite", world.sites[k].name));
+      throw BadInput(fmt::format("fixed site \"{}\": its pose is not finite", world.sites[k].name));
   for (const DrawnForce& f : options.forces)
     if (f.body < 0 || f.body >= static_cast<int>(bodies.size()))
       throw BadInput(fmt::format("forces: on body {}; there are {} bodies", f.body, bodies.size()));

@@ -1,4 +1,6 @@
 #pragma once
+/// Where the scenes are that come with Brink, and what they are called.
+
 #include <filesystem>
 #include <string>
 #include <vector>

@@ -76,14 +76,14 @@ void print_profile(const RunSummary& s) {
       {"integrators", w.seconds_motion},       {"collisions", w.seconds_response},
       {"lasting contacts", w.seconds_islands}, {"recording", w.seconds_record}};
   // What no stage has counted. Stages are timed by samples, so it may come out a little below 0.
-  double rest = s.wall_seconds;
+  double untimed = s.wall_seconds;
   const auto line = [&](const char* name, double seconds) {
     fmt::print("    {:<17}{:<9.3g} {:3.0f} %\n", name, seconds, 100.0 * seconds / s.wall_seconds);
-    rest -= seconds;
+    untimed -= seconds;
   };
   fmt::print("  seconds by stage\n");
   for (const auto& [name, seconds] : stages) line(name, seconds);
-  line("policy, the rest", std::max(0.0, rest));
+  line("policy, the rest", std::max(0.0, untimed));
 }
 
 /// The summary for people. What did not happen (groups taken, contacts that last, a resume) has no line.

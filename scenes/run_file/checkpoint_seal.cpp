@@ -27,9 +27,9 @@ void add_bytes(StateHash& hash, std::span<const std::byte> bytes) {
     std::memcpy(&word, bytes.data(), 8);
     hash.add(word);
   }
-  std::uint64_t rest = 0;
-  std::memcpy(&rest, bytes.data(), bytes.size());
-  hash.add(rest);
+  std::uint64_t last = 0;
+  std::memcpy(&last, bytes.data(), bytes.size());
+  hash.add(last);
 }
 
 /// Over everything that a resume goes by, in a fixed order: another order would be another layout, and

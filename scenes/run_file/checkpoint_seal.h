@@ -8,8 +8,8 @@
 ///     u32       version of this layout: 2
 ///     u32       0
 ///     u64       length of the snapshot
-///     u64       checksum: FNV-1a, 64 bits, over the run's identity, the snapshot, and the row's other
-///     columns
+///     u64       checksum: FNV-1a, 64 bits, over the run's identity, the snapshot,
+///               and the row's other columns
 ///
 /// FNV-1a tells any single change of a byte for certain, others but for one in 2^64. It is no signature: who
 /// can write the file can write a seal.

@@ -13,14 +13,15 @@
 ///     {"kind": "point",   "radius": r, "a": [x, y]}                       a disc is a point with a radius
 ///     {"kind": "segment", "radius": r, "a": [x, y], "b": [x, y]}
 ///     {"kind": "arc",     "radius": r, "a": [x, y], "b": [x, y],
-///      "center": [x, y], "arc_radius": R, "sweep": radians}               sweep > 0: counter-clockwise from
-///      a to b
+///      "center": [x, y], "arc_radius": R, "sweep": radians}               sweep > 0: counter-clockwise, a to b
 ///
 /// Bodies: about the centre of mass at angle 0. Fixed sites: in the world at `pose`, with two more keys:
 ///
 ///     "pose": [x, y, angle]     where the scene writes the site's own frame
-///     "motion": null, {"velocity": [vx, vy], "angular_velocity": w}, or {"x": "...", "y": "...", "angle":
-///     "..."}                    both from `pose` on: where a formula is not 0 at t = 0, the site starts beside it
+///     "motion": null,
+///               {"velocity": [vx, vy], "angular_velocity": w}, or
+///               {"x": "...", "y": "...", "angle": "..."}
+///                               both from `pose` on: where a formula is not 0 at t = 0, the site starts beside it
 ///
 /// Numbers are written so that reading them back gives the same bits.
 

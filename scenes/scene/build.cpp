@@ -329,7 +329,7 @@ class SceneBuilder {
     }
   }
 
-  /// The first entry that the message names as `body "NAME"` or `site "NAME"`; else the first of whose copies, which
+  /// The first entry that the message names as `body "NAME"` or `fixed site "NAME"`; else the first of whose copies, which
   /// are called NAME[k], it names one.
   Where place_named_in(const std::string& message) const {
     for (const char* after : {"\"", "["})
@@ -337,7 +337,7 @@ class SceneBuilder {
         for (std::size_t k = 0; k < things->size(); ++k) {
           const bool body = things == &file_.bodies;
           const ThingTable& table = (*things)[k];
-          const std::string named = (body ? "body \"" : "site \"") + name_of(table, body, k) + after;
+          const std::string named = (body ? "body \"" : "fixed site \"") + name_of(table, body, k) + after;
           if (message.find(named) != std::string::npos) return table.place;
         }
     return {1, 1};

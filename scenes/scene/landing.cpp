@@ -27,7 +27,7 @@ double rounding_at(const Vec2& place, const Outline& outline) {
 }
 
 /// A copy and a ground, or an image of one, that may meet.
-struct Meeting {
+struct CopyAndGround {
   std::size_t copy = 0;
   Obstacle ground;
 };
@@ -55,7 +55,7 @@ class Descent {
   Landing::Status fall(Vec2& position) {
     const std::vector<Pose> copies = ask_.copies(position, kAllCopies);
     double least = std::numeric_limits<double>::infinity();
-    std::vector<std::pair<double, Meeting>> found;
+    std::vector<std::pair<double, CopyAndGround>> found;
     bool overlaps = false;
     for (std::size_t k = 0; k < copies.size(); ++k)
       for_grounds(copies[k].position, [&](const Obstacle& ground) {
@@ -72,8 +72,8 @@ class Descent {
     if (!std::isfinite(least)) return Landing::Status::never;
     touched_.clear();
     // Those that all but touch as well: after the roundings of the move one of them may have the least gap.
-    for (const auto& [distance, meeting] : found)
-      if (distance <= least + kNear * ask_.outline->bounding_radius) touched_.push_back(meeting);
+    for (const auto& [distance, pair] : found)
+      if (distance <= least + kNear * ask_.outline->bounding_radius) touched_.push_back(pair);
     // The sum rounds: the gap comes out a rounding too large or too small, which back_up() sees to.
     position += least * ask_.direction;
     return Landing::Status::lands;
@@ -130,10 +130,10 @@ class Descent {
   double least_gap(const Vec2& position) const {
     // a place depends on those of the copies before it alone
     std::size_t last = 0;
-    for (const Meeting& m : touched_) last = std::max(last, m.copy);
+    for (const CopyAndGround& m : touched_) last = std::max(last, m.copy);
     const std::vector<Pose> copies = ask_.copies(position, last + 1);
     double least = std::numeric_limits<double>::infinity();
-    for (const Meeting& m : touched_)
+    for (const CopyAndGround& m : touched_)
       least =
           std::min(least, outline_gap(*ask_.outline, copies[m.copy], *m.ground.outline, m.ground.pose).gap -
                               gap_of_touching({ask_.outline, copies[m.copy]}, m.ground, ask_.thin));
@@ -151,7 +151,7 @@ class Descent {
 
   const LandingAsk& ask_;
   // Of the last fall; least_gap() asks these alone, not all grounds.
-  std::vector<Meeting> touched_;
+  std::vector<CopyAndGround> touched_;
 };
 
 /// Coordinates of what is turned have roundings of their own, of which another way of asking knows others.

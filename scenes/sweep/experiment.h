@@ -1,6 +1,5 @@
 #pragma once
-/// An experiment: base scenes, and the axes along which their options are varied. Every combination is one
-/// run.
+/// An experiment: base scenes, and the axes along which their options are varied. Every combination is one run.
 ///
 ///     title    = "Policies and orders on a gas"
 ///     scenes   = ["../gallery/break_shot.toml"]     # from the experiment's own folder
@@ -8,8 +7,9 @@
 ///     orders   = ["index", "random"]                # the axis solver.order
 ///     seeds    = 5                                  # the axis world.seed: 1..5, or an array
 ///     [axes]
-///     solver.step = [1e-3, 1e-4]                    # any key of the scene file, by its dotted path as in
-///     --set [set] output.frame_interval = 0.0                   # the same in every run
+///     solver.step = [1e-3, 1e-4]                    # any key of the scene file, by its dotted path as in --set
+///     [set]
+///     output.frame_interval = 0.0                   # the same in every run
 ///
 /// docs/sweep.md has the whole format.
 

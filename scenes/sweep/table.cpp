@@ -154,23 +154,23 @@ std::string policy_agreement(const Experiment& experiment, const SweepResults& r
   std::map<std::vector<std::string>, std::vector<std::string>> hashes;  // of exact policies
   for (std::size_t k = 0; k < experiment.runs.size(); ++k) {
     // The same settings without the policy: what all exact policies must agree in.
-    std::vector<std::string> rest = experiment.runs[k].values;
-    const std::string name = std::exchange(rest[policy], "");
+    std::vector<std::string> setting = experiment.runs[k].values;
+    const std::string name = std::exchange(setting[policy], "");
     // A run that could not start has no bits.
     if (!results[k] || results[k]->state_hash.empty() || !exact(name)) continue;
-    hashes[rest].push_back(results[k]->state_hash);
+    hashes[setting].push_back(results[k]->state_hash);
   }
   std::erase_if(hashes, [](const auto& setting) { return setting.second.size() < 2; });
   if (hashes.empty()) return "";
   std::size_t same = 0;
   std::string others;
-  for (const auto& [rest, of_policies] : hashes) {
+  for (const auto& [setting, of_policies] : hashes) {
     if (std::set(of_policies.begin(), of_policies.end()).size() == 1) {
       ++same;
       continue;
     }
     std::string where;
-    for (const std::string& value : rest)
+    for (const std::string& value : setting)
       if (!value.empty()) where += (where.empty() ? "" : ", ") + printable(value);
     // By the values of all other axes, the seed's too: with them the runs can be made again one by one.
     others += "\n  not the same: " + where;

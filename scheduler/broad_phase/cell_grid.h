@@ -164,8 +164,8 @@ class CellGrid {
     int wrapped(int c) const {
       if (static_cast<unsigned>(c) < static_cast<unsigned>(count)) return c;
       if (!repeats) return c & (count - 1);
-      const int rest = c % count;
-      return rest < 0 ? rest + count : rest;
+      const int remainder = c % count;
+      return remainder < 0 ? remainder + count : remainder;
     }
     int lists(int low, int high) const { return repeats ? high - low + 1 : std::min(high - low + 1, count); }
     bool wraps(int low, int high) const { return !repeats && high - low >= count; }

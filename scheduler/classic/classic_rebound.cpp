@@ -29,7 +29,7 @@ Patch patch_of(const DepthContact& c) { return {c.pair, c.contact.sample_on_a, c
 
 /// The approaching contacts of every patch, joined: mean place and normal, least gap, the first one's sample.
 std::vector<DepthContact> approaching_patches(const KernelView& kernel,
-                                              const std::vector<DepthContact>& contacts, double settled) {
+                                              const std::vector<DepthContact>& contacts, double slowest) {
   struct Sum {
     DepthContact joined;
     int count = 0;
@@ -37,7 +37,7 @@ std::vector<DepthContact> approaching_patches(const KernelView& kernel,
   std::map<Patch, Sum> patches;
   for (const DepthContact& c : contacts) {
     // by the velocities of now: what was seen as approaching may have been turned by the last rebound
-    if (!(closing_now(kernel, c) > settled)) continue;
+    if (!(closing_now(kernel, c) > slowest)) continue;
     Sum& sum = patches[patch_of(c)];
     FeatureContact& joined = sum.joined.contact;
     if (++sum.count == 1) {
@@ -55,7 +55,7 @@ std::vector<DepthContact> approaching_patches(const KernelView& kernel,
     joined.normal.normalize();
     joined.closing_speed = closing_now(kernel, sum.joined);
     joined.time = kernel.time();
-    if (joined.closing_speed > settled) all.push_back(sum.joined);
+    if (joined.closing_speed > slowest) all.push_back(sum.joined);
   }
   return all;
 }

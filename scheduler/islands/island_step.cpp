@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "brink/scheduler/islands/tolerances.h"
+
 namespace brink {
 
 namespace {
@@ -13,26 +15,9 @@ constexpr int kLooks = 8;        ///< along a step
 constexpr int kBetween = 4;      ///< parts of what lies between two looks, where a corner may be
 constexpr int kSections = 24;    ///< golden sections until a corner is found there: to 1e-5 of a part
 constexpr int kCorrections = 6;  ///< of gaps that were missed
-/// A gap that is missed by less than this part of the tolerance is not made up for.
-constexpr double kMissCounts = 0.1;
-/// A correction lifts by so much of what was missed.
-constexpr double kAimHigher = 1.001;
-/// Where that would take a speed that the step has not, no further than to this part of the tolerance below 0.
-constexpr double kLeftBelow = 0.95;
-/// What the solver may miss, of the step's speed: gaps and energy are looked at themselves.
-constexpr double kResidual = 1e-6;
-/// A step may win this part of the energies that it turns over, before it is slowed to win none: the solver's
-/// rounding, and what faces that turn push into what lies on them, which the true motion takes from their
-/// turning.
-constexpr double kWonOf = 1e-3;
-
-/// An island in which nobody has more than this part of the speed that its force gives it in the step lies still but for
-/// what the step corrects.
-constexpr double kStill = 1e-3;
 /// Where friction bounds do not follow, so many solves more take them from the forces of the one before, until they are
-/// wrong by no more than this part of the largest force: in an island of few members, and in any other.
+/// exact in an island of few members, and near in any other.
 constexpr int kFrictionPasses = 2;
-constexpr double kFrictionExact = 1e-9, kFrictionSettled = 1e-3;
 constexpr std::size_t kFew = 8;
 
 /// A contact that takes part in the step.
@@ -107,7 +92,7 @@ StepResult solve(ConeQp& solver, StepProblem p, double h, const IslandStep& step
       s.friction_bound = bound;
       s.rolling_bound = rolling;
     }
-    if (wrong <= (few ? kFrictionExact : kFrictionSettled) * most) break;
+    if (wrong <= (few ? kFrictionExact : kFrictionNear) * most) break;
   }
   return result;
 }

@@ -8,23 +8,12 @@
 
 #include "brink/core/shapes/curve_site.h"
 #include "brink/core/shapes/distance.h"
+#include "brink/scheduler/islands/tolerances.h"
 #include "brink/scheduler/resolve/wedge.h"
 
 namespace brink {
 
 namespace {
-
-/// What lies nearer to a wire than this part of its own radius may be on either side by roundings, and what is
-/// nearer by it to the centre of a solid's arc than the arc is has sunk into it.
-constexpr double kSinks = 1e-6;
-/// Below this part of the size two points are one, and their difference has no direction.
-constexpr double kOnePoint = 1e-12;
-
-/// Corners of solids that are so near, of their sizes, lie on each other: contacts keep their gaps no better.
-constexpr double kOneCorner = 1e-10;
-
-/// Cosine between a site and the way to another that roundings may leave of a straight joint.
-constexpr double kParallel = 1e-9;
 
 /// One outline that carries the samples, and the other, each in its own frame.
 /// Features of a half are told with normals from b into a all the same: `on_a` says which way to turn them.
@@ -87,7 +76,8 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
     distance = out.dot(q - nearest.point);
   }
   // abreast of the wire by the body's size; at an end only where the way has no direction
-  const double no_side = nearest.foot == Foot::interior ? kSinks * half.carrier.bounding_radius : least;
+  const double no_side =
+      nearest.foot == Foot::interior ? kSunkOfRadius * half.carrier.bounding_radius : least;
   if (thin && site.kind != SiteKind::point && nearest.distance < no_side) {
     // a wire has no inside that would tell: what has sunk by a rounding, or is right on its end, is on its
     // centre's side
@@ -102,7 +92,7 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
     const Vec2 towards = half.carrier_frame.direction_to_local(-outward);
     const Site& arc = half.carrier.sites[sample.arc_site];
     // a wire's other side is outside as well: what is a little nearer touches it from there
-    const double sunk = arc.solid ? kSinks * half.carrier.bounding_radius : kOnePoint * arc.arc_radius;
+    const double sunk = arc.solid ? kSunkOfRadius * half.carrier.bounding_radius : kOnePoint * arc.arc_radius;
     if (nearest.distance < arc.arc_radius - sunk || !in_sector(arc, towards)) return std::nullopt;
   }
   NearFeature f;
@@ -131,7 +121,8 @@ bool goes_on_nearer(const Outline& outline, std::size_t j, const std::vector<Nea
   const auto rises = [&](std::size_t k) {
     const Site& other = outline.sites[k];
     const bool sided = other.solid && other.kind == SiteKind::segment;  // wherever roundings put q
-    return (sided ? outward(other) : direction(other, nearest[k], q, tie)).dot(on) > kParallel * on.norm();
+    return (sided ? outward(other) : direction(other, nearest[k], q, tie)).dot(on) >
+           kStraightJoint * on.norm();
   };
   for (std::size_t k = 0; k < nearest.size(); ++k)
     if (k != j && nearest[k].distance < nearest[j].distance - tie &&
@@ -160,7 +151,7 @@ OnCorner on_corner(const Half& half, std::size_t j, const Vec2& q, double tie) {
     const Site& next = outline.sites[k];
     if (k == j || next.kind != SiteKind::segment || (next.a != end && next.b != end)) continue;
     const Vec2 on = next.a == end ? Vec2(next.b - next.a) : Vec2(next.a - next.b);
-    if (outward(site).dot(on) > kParallel * on.norm()) continue;  // a hollow corner has both its sides
+    if (outward(site).dot(on) > kStraightJoint * on.norm()) continue;  // a hollow corner has both its sides
     const double more = outward(next).dot(centre) - outward(site).dot(centre);
     // a tie goes to the site that comes first, so that exactly one of the two has the sample
     if (more > 0.0 || (more == 0.0 && k < j)) return OnCorner::other_side;
@@ -180,7 +171,7 @@ bool has_no_way_by(const Half& half, int i, std::size_t j, const Vec2& q) {
   const Wedge of_corner = wedge_at(half.other, corner);
   if (!half.carrier.solid || of_sample.edges.empty()) return false;
   return std::none_of(of_corner.normals.begin(), of_corner.normals.end(), [&](const Vec2& n) {
-    return n.dot(outward(site)) < 1.0 - kParallel && parts(n, of_sample, of_corner);
+    return n.dot(outward(site)) < 1.0 - kOneSide && parts(n, of_sample, of_corner);
   });
 }
 

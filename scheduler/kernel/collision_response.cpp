@@ -123,17 +123,18 @@ BounceLoss CollisionResponse::loss_of(const PairKey& pair) {
 double CollisionResponse::note_resolve(int k, int partner, double magnitude) {
   BodyTrack& b = trajectories_->body(k);
   const double now = run_->time();
-  const double rest = b.resolved_at < 0.0 ? std::numeric_limits<double>::infinity() : now - b.resolved_at;
+  const double since_last =
+      b.resolved_at < 0.0 ? std::numeric_limits<double>::infinity() : now - b.resolved_at;
   // An approach that is no faster than this is none to the search (Mover), so that it does not find the
   // same contact again.
   const double rounding = 16.0 * kEpsilon * magnitude;
   // within one instant velocities are differences of larger ones: the largest rounding stays
   b.velocity_rounding =
-      std::abs(rest) <= same_instant(now) ? std::max(b.velocity_rounding, rounding) : rounding;
+      std::abs(since_last) <= same_instant(now) ? std::max(b.velocity_rounding, rounding) : rounding;
   b.resolved_at = now;
   b.streak = b.last_partner == partner ? b.streak + 1 : 1;
   b.last_partner = partner;
-  return rest;
+  return since_last;
 }
 
 Real CollisionResponse::delay_to_contact(const FeatureContact& found, const ExtendedContact& c) const {
@@ -318,14 +319,14 @@ std::optional<Outcome> CollisionResponse::part(const PairKey& pair, const Featur
                                                std::vector<int>& changed) {
   const auto start = [&](int k, int partner, const DiscRebound::Start& after) {
     changed.push_back(k);
-    const double rest = note_resolve(k, partner, discs.magnitude);
+    const double since_last = note_resolve(k, partner, discs.magnitude);
     trajectories_->restart_free(k, after.state, after.low);
-    return rest;
+    return since_last;
   };
-  double rest = start(pair.body, search_->other_owner(pair), discs.a);
-  if (!pair.with_site()) rest = std::min(rest, start(pair.other_body, pair.body, discs.b));
+  double since_last = start(pair.body, search_->other_owner(pair), discs.a);
+  if (!pair.with_site()) since_last = std::min(since_last, start(pair.other_body, pair.body, discs.b));
   if (!watch_->discs_resolved(pair, discs.gap)) return std::nullopt;
-  std::optional<Outcome> outcome{{pair, found, discs.impulse, 0.0, discs.delay, rest,
+  std::optional<Outcome> outcome{{pair, found, discs.impulse, 0.0, discs.delay, since_last,
                                   foresee(pair, found, material.restitution, discs.delay)}};
   // after both have begun anew: it asks how they came out
   note_sides(*outcome);
@@ -340,10 +341,10 @@ bool CollisionResponse::collide_discs(const PairKey& pair, const FeatureContact&
   const double now = run_->time();
   const BodyTrack &track_a = trajectories_->body(pair.body), &track_b = trajectories_->body(pair.other_body);
   const double last = std::max(track_a.resolved_at, track_b.resolved_at);
-  const double rest = last < 0.0 ? std::numeric_limits<double>::infinity() : now - last;
+  const double since_last = last < 0.0 ? std::numeric_limits<double>::infinity() : now - last;
   // low flights are remembered: they may be a series that has an end
   if (material.restitution < 1.0 &&
-      !ZenoWatch::is_high(found.closing_speed, rest, search_->limits().tolerance))
+      !ZenoWatch::is_high(found.closing_speed, since_last, search_->limits().tolerance))
     return false;
   const auto after =
       rebound({&track_a.motion, a.radius, a.inverse_mass}, {&track_b.motion, b.radius, b.inverse_mass},
@@ -377,11 +378,12 @@ std::optional<Outcome> CollisionResponse::collide(const PairKey& pair, const Fea
     return std::nullopt;
   }
   // their flight has lasted no less than the shorter of the times since either was resolved
-  double rest = note_resolve(pair.body, search_->other_owner(pair), r.magnitude);
-  if (!pair.with_site()) rest = std::min(rest, note_resolve(pair.other_body, pair.body, r.magnitude));
+  double since_last = note_resolve(pair.body, search_->other_owner(pair), r.magnitude);
+  if (!pair.with_site())
+    since_last = std::min(since_last, note_resolve(pair.other_body, pair.body, r.magnitude));
   deflect(pair, r, changed);
   if (!watch_->resolved(pair, found, r.delay, found.seen ? nullptr : &r.moment)) return std::nullopt;
-  std::optional<Outcome> outcome{{pair, found, r.impulse.normal, r.impulse.tangential, r.delay, rest,
+  std::optional<Outcome> outcome{{pair, found, r.impulse.normal, r.impulse.tangential, r.delay, since_last,
                                   foresee(pair, found, material.restitution, r.delay)}};
   note_sides(*outcome);
   return outcome;

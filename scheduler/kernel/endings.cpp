@@ -47,8 +47,8 @@ void Endings::count_in_instant(const PairKey& pair, double now) {
 std::optional<Ending> Endings::collided(const Outcome& o, double now, BounceLoss loss) {
   // a bounce that ends its series is not counted: what comes of it is no collision of this instant
   if (!o.contact.seen)
-    if (const auto zeno = zeno_.collided({o.pair, o.contact}, now, o.contact.closing_speed, loss, o.rest,
-                                         o.contact.sink < 0.0, o.limit))
+    if (const auto zeno = zeno_.collided({o.pair, o.contact}, now, o.contact.closing_speed, loss,
+                                         o.since_last, o.contact.sink < 0.0, o.limit))
       return Ending{Ending::Kind::zeno, zeno->limit_time, zeno->bounces};
   count_in_instant(o.pair, now);
   if (in_instant_ <= kPlainInstant) return std::nullopt;

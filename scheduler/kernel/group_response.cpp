@@ -267,7 +267,7 @@ class GroupResponse::Group {
 
   /// What one body is resolved by: its contact, and since when it flew.
   void note_touched() {
-    rest_.assign(bodies_.size(), std::numeric_limits<double>::infinity());
+    since_last_.assign(bodies_.size(), std::numeric_limits<double>::infinity());
     touched_.assign(bodies_.size(), false);
     // where the law pushes nobody the found pair stands in for the group
     const bool any = pushed();
@@ -292,8 +292,8 @@ class GroupResponse::Group {
   /// The body begins anew; `partner`, `speed`: see CollisionResponse::note_resolve().
   void touch(int body, int partner, double speed) {
     const int k = index_of(body);
-    // once for each body: a second note_resolve() of this instant would find a rest of 0
-    if (!touched_[k]) rest_[k] = parts_.response_.note_resolve(body, partner, speed);
+    // once for each body: a second note_resolve() of this instant would find that no time has gone by
+    if (!touched_[k]) since_last_[k] = parts_.response_.note_resolve(body, partner, speed);
     touched_[k] = true;
   }
 
@@ -363,15 +363,15 @@ class GroupResponse::Group {
     told.lost = told.endless ? static_cast<double>(result_.lost) : 0.0;
     for (const std::size_t k : events_) {
       const PairKey& pair = group_[k].pair;
-      // The flight of the two has lasted since their last collision: no shorter than the shorter rest.
-      double rest = rest_[index_of(pair.body)];
-      if (!pair.with_site()) rest = std::min(rest, rest_[index_of(pair.other_body)]);
+      // The flight of the two has lasted since their last collision: no shorter than the shorter time.
+      double since_last = since_last_[index_of(pair.body)];
+      if (!pair.with_site()) since_last = std::min(since_last, since_last_[index_of(pair.other_body)]);
       told.collisions.push_back({pair,
                                  group_[k].contact,
                                  static_cast<double>(result_.normal[k]),
                                  static_cast<double>(result_.tangential[k]),
                                  delay_,
-                                 rest,
+                                 since_last,
                                  {},
                                  side(pair.body),
                                  pair.with_site() ? EventSide{} : side(pair.other_body)});
@@ -390,8 +390,8 @@ class GroupResponse::Group {
   GroupResult result_;
   std::vector<std::size_t> events_;  ///< contacts that are told of, as indices into group_
   std::vector<bool> touched_;
-  std::vector<RealVec> ways_;  ///< by which what has sunk is pushed out [m]
-  std::vector<double> rest_;   ///< time since each touched body was last resolved [s]
+  std::vector<RealVec> ways_;       ///< by which what has sunk is pushed out [m]
+  std::vector<double> since_last_;  ///< time since each touched body was last resolved [s]
 };
 
 std::optional<GroupOutcome> GroupResponse::resolve(const PairKey& pair, const FeatureContact& found,

@@ -221,14 +221,14 @@ void IslandModes::make_problem(std::vector<HeldContact> contacts) {
 
 /// By the fastest approach of what touches. Velocities are of the sample's owner against the site's: < 0
 /// approaches.
-IslandModes::Meeting IslandModes::meeting(const States& states) const {
+IslandModes::Approach IslandModes::approach(const States& states) const {
   const std::vector<ContactRates> rates = rates_at(problem_, now_, states);
   double fastest = 0.0;
   for (std::size_t k = 0; k < rates.size(); ++k)
     if (touching_[k]) fastest = std::max(fastest, -rates[k].normal_velocity);
-  if (fastest <= kNoApproach * speed()) return Meeting::none;
+  if (fastest <= kNoApproach * speed()) return Approach::none;
   // a slow one is told from a bounce by what it would rise: to four times the tolerance at twice the speed
-  return fastest <= 2.0 * slowest_bounce(*members_, *search_) ? Meeting::slow : Meeting::fast;
+  return fastest <= 2.0 * slowest_bounce(*members_, *search_) ? Approach::slow : Approach::fast;
 }
 
 /// Everything that touches meets without a rebound. False: nothing says how.
@@ -271,7 +271,7 @@ std::optional<std::vector<MotionMode>> IslandModes::former_modes() const {
 
 /// What touches and does not part. Where it meets slowly, or is new, what parts as slowly does not, either: bounces,
 /// and the rocking from one corner to the other, come to their end there.
-std::vector<bool> IslandModes::closed_now(const States& states, Meeting met) const {
+std::vector<bool> IslandModes::closed_now(const States& states, Approach how) const {
   const std::vector<ContactRates> rates = rates_at(problem_, now_, states);
   const double slow = 2.0 * slowest_bounce(*members_, *search_);
   std::vector<bool> closed(problem_.contacts.size(), false);
@@ -280,9 +280,9 @@ std::vector<bool> IslandModes::closed_now(const States& states, Meeting met) con
     if (at >= closed.size() || !touching_[at]) continue;
     const HeldContact* warm = find_warm(*warm_, contacts_[k]);
     const bool known = warm && warm->by_modes, was_open = known && !is_closed(warm->motion);
-    const bool slowly = met == Meeting::slow || (met == Meeting::none && !known);
+    const bool slowly = how == Approach::slow || (how == Approach::none && !known);
     // open in the step before and touching still: it has just been let go, and only an approach closes it
-    if (met == Meeting::none && was_open) continue;
+    if (how == Approach::none && was_open) continue;
     closed[at] = rates[at].normal_velocity <= (slowly ? slow : kNoParting * speed());
   }
   return closed;
@@ -304,13 +304,13 @@ IslandModes::Outcome IslandModes::take(double now, double h, std::vector<HeldCon
   make_problem(std::move(contacts));
   // such a step is lost in the rounding of the clock
   if (!(until > now)) return Outcome::none;
-  const Meeting met = meeting(states);
-  if (met != Meeting::none && !meet(states)) return Outcome::none;
+  const Approach how = approach(states);
+  if (how != Approach::none && !meet(states)) return Outcome::none;
   const SearchLimits& of = search_->limits();
   ModeMotion motion(problem_, {limits_.tolerance, kOff * of.tolerance, of.touch, until - now}, now, states);
   // after an impact velocities are others, and with them modes
-  const auto former = on_time && met == Meeting::none ? former_modes() : std::nullopt;
-  if (!(former ? motion.begin_in(*former) : motion.begin(closed_now(states, met)))) return Outcome::none;
+  const auto former = on_time && how == Approach::none ? former_modes() : std::nullopt;
+  if (!(former ? motion.begin_in(*former) : motion.begin(closed_now(states, how)))) return Outcome::none;
   if (!move_on(motion, until)) return Outcome::none;
   return within_reach() ? Outcome::moved : Outcome::wider;
 }

@@ -77,16 +77,16 @@ class IslandModes {
   void add_contact(const HeldContact& contact);
   bool is_corner_on_corner(const HeldContact& c) const;
   bool touches(const HeldContact& c) const;
-  /// How what touches meets now.
-  enum class Meeting {
+  /// How what touches approaches now.
+  enum class Approach {
     none,
     slow,  ///< so that no bounce of it would leave the contact tolerance
     fast,
   };
-  Meeting meeting(const States& states) const;
+  Approach approach(const States& states) const;
   bool meet(States& states);
   std::optional<std::vector<MotionMode>> former_modes() const;
-  std::vector<bool> closed_now(const States& states, Meeting met) const;
+  std::vector<bool> closed_now(const States& states, Approach how) const;
   bool move_on(ModeMotion& motion, double until);
   void note(const ModeMotion& motion);
   bool within_reach() const;

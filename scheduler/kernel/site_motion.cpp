@@ -16,7 +16,7 @@ double value(const std::optional<Formula>& formula, double t) {
 
 /// What messages call it: its formulas as written.
 std::string description(const FixedSite& site, const FormulaMotion& m) {
-  std::string text = fmt::format("site '{}'", site.name);
+  std::string text = fmt::format("fixed site '{}'", site.name);
   const auto add = [&](const char* what, const std::optional<Formula>& f) {
     if (f) text += fmt::format(", {} = \"{}\"", what, f->text());
   };

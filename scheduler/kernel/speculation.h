@@ -18,7 +18,7 @@ struct Outcome {
   FeatureContact contact;
   double impulse_n = 0.0, impulse_t = 0.0;  ///< [N s]
   Real delay = 0;                           ///< from the clock to the moment of contact [s]
-  double rest = 0.0;                        ///< since one of the two was last resolved [s]
+  double since_last = 0.0;                  ///< since one of the two was last resolved [s]
   ForeseenLimit limit;                      ///< of a series of bounces that this is one of
   EventSide body = {}, other = {};          ///< if somebody is to be told
 };

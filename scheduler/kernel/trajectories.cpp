@@ -168,7 +168,7 @@ double Trajectories::follow_site(int s, double t) {
   // cells are not counted one by one: as many as there may have been
   run_->count_pieces(instalment());
   if (extent.status == Extent::Status::failed)
-    note_failure(site_failures_[s], extent.end, "site '" + world_->sites[s].name + "'", extent.why);
+    note_failure(site_failures_[s], extent.end, "fixed site '" + world_->sites[s].name + "'", extent.why);
   return std::min(extent.end, t);
 }
 
@@ -304,7 +304,7 @@ void Trajectories::restart(std::span<const Restart> touched, std::vector<int>& c
   if (component < 0) {
     changed.push_back(first);
     // its twist is the restart's from here on, also of one that is hit right where its step begins
-    if (is_held(first)) held_.at(first).step = {};
+    if (is_held(first)) held_.forget_step(first);
     return restart_free(first, touched.front().state.rounded(), touched.front().state.low());
   }
   Coupled& c = components_[component];
@@ -331,7 +331,7 @@ void Trajectories::hold(std::span<const Restart> bodies, std::vector<int>& chang
     tell_knot(r.body, r.state.rounded());
     // One that is held already keeps what it was before its island: it is let go to that.
     if (b.component != BodyTrack::kHeld) {
-      held_[r.body] = {b.component, b.component < 0 ? b.motion.acceleration() : Acceleration{}, {}};
+      held_.add(r.body, {b.component, b.component < 0 ? b.motion.acceleration() : Acceleration{}, {}});
       if (b.component >= 0) put_to_sleep(components_[b.component]);
       b.component = BodyTrack::kHeld;
     }
@@ -339,7 +339,7 @@ void Trajectories::hold(std::span<const Restart> bodies, std::vector<int>& chang
     b.motion = Motion::ballistic(run_->time(), r.state.rounded(), {}, std::numeric_limits<double>::infinity(),
                                  r.state.low());
     // until note_step() says otherwise its twist is the one that it has come to
-    held_[r.body].step = {};
+    held_.forget_step(r.body);
     raise_version(b);
     changed.push_back(r.body);
   }
@@ -347,73 +347,36 @@ void Trajectories::hold(std::span<const Restart> bodies, std::vector<int>& chang
 
 /// Called before the motion is another, also one that begins with the same twist: it may bend from here on.
 void Trajectories::tell_knot(int k, const BodyState& after) const {
-  if (!told_knot_) return;
+  if (!knots_) return;
   tell_bends(k);
-  told_knot_({run_->time(), k, after.pose, bodies_[k].motion.twist(run_->time()), after.twist});
+  knots_.begins_anew(k, run_->time(), bodies_[k].motion, after);
 }
 
-/// Knots within a motion of an island's own, up to the present time: each of its pieces is cut so that a cubic is off
-/// by no more than the tolerance. A cubic over h that meets both ends with their slopes is off by h^4 / 384 of the
-/// largest fourth derivative.
 void Trajectories::tell_bends(int k) const {
-  constexpr double kMostCuts = 256.0;
-  const Track* track = is_held(k) ? bodies_[k].motion.track() : nullptr;
-  if (!track) return;
-  const double now = run_->time(), radius = world_->bodies[k].outline->bounding_radius;
-  for (const PolynomialPiece& p : track->pieces) {
-    const double end = std::min(p.end, now), length = end - p.begin;
-    if (!(length > 0.0)) continue;
-    const double from_origin = std::max(std::abs(p.begin - p.origin), std::abs(end - p.origin));
-    double fourth = 0.0, factor = 24.0, span = 1.0;
-    for (int n = 4; n <= p.degree; ++n) {
-      fourth += factor * span * (p.c[n].head<2>().norm() + radius * std::abs(p.c[n].z()));
-      factor *= (n + 1.0) / (n - 3.0);
-      span *= from_origin;
-    }
-    const double share = fourth / (384.0 * knot_tolerance_);
-    const double cuts = std::clamp(std::ceil(length * std::sqrt(std::sqrt(share))), 1.0, kMostCuts);
-    for (double n = 1.0; n <= cuts; ++n) {
-      const double t = n < cuts ? p.begin + length * (n / cuts) : end;
-      if (t == now) break;  // who asks tells of it
-      const BodyState s = p.state(t);
-      told_knot_({t, k, s.pose, s.twist, s.twist});
-    }
-  }
+  if (is_held(k))
+    knots_.bends(k, run_->time(), bodies_[k].motion, world_->bodies[k].outline->bounding_radius);
 }
 
 void Trajectories::tell_lasting_knots() const {
-  if (!told_knot_) return;
+  if (!knots_) return;
   for (int k = 0; k < body_count(); ++k) tell_bends(k);
 }
 
 /// What met without a rebound is in the motion, and not in the state that was held.
 void Trajectories::follow_own(int k, Motion motion) {
-  if (told_knot_) tell_knot(k, motion.state(run_->time()));
+  if (knots_) tell_knot(k, motion.state(run_->time()));
   bodies_[k].motion = std::move(motion);
 }
 
 ExtendedState Trajectories::state_now(int k) const {
   ExtendedState s = bodies_[k].motion.extended_state(run_->time());
-  if (is_held(k)) s.twist = come_to_by_now(k, s.twist);
+  if (is_held(k)) s.twist = held_.come_to(k, run_->time(), s.twist);
   return s;
 }
 
 ExtendedTwist Trajectories::twist_now(int k) const {
   const ExtendedTwist twist = bodies_[k].motion.extended_twist(run_->time());
-  return is_held(k) ? come_to_by_now(k, twist) : twist;
-}
-
-/// The motion has the twist of the step's end from the start on. One that is hit halfway has had half of the step's
-/// change of velocity by then: the part of it that is left is taken off.
-ExtendedTwist Trajectories::come_to_by_now(int k, ExtendedTwist at_end) const {
-  const HeldStep& step = held_.at(k).step;
-  const double now = run_->time();
-  if (!(now < step.end)) return at_end;
-  const Real left = (step.end - std::max(now, step.start)) / (step.end - step.start);
-  const ExtendedTwist before(step.before);
-  at_end.velocity += left * (before.velocity - at_end.velocity);
-  at_end.omega += left * (before.omega - at_end.omega);
-  return at_end;
+  return is_held(k) ? held_.come_to(k, run_->time(), twist) : twist;
 }
 
 /// Its integrator is not asked any more. A failure goes with the motion that would have come to it.
@@ -428,9 +391,8 @@ void Trajectories::put_to_sleep(Coupled& c) {
 void Trajectories::release(std::span<const int> bodies, std::vector<int>& changed) {
   for (const int k : bodies) {
     BodyTrack& b = bodies_[k];
-    const Former former = held_.at(k);
     tell_knot(k, b.motion.state(run_->time()));
-    held_.erase(k);
+    const HeldBody former = held_.take(k);
     raise_version(b);
     changed.push_back(k);
     b.component = former.component;
@@ -452,7 +414,7 @@ void Trajectories::release(std::span<const int> bodies, std::vector<int>& change
 
 /// Forces of a component see all its bodies, at the places that their island gives them.
 Acceleration Trajectories::acceleration(int k) const {
-  const Former& former = held_.at(k);
+  const HeldBody& former = held_.at(k);
   if (former.component < 0) return former.acceleration;
   const Component& c = components_[former.component].component;
   std::vector<BodyState> states;
@@ -469,7 +431,7 @@ void Trajectories::accelerations(std::span<const int> bodies, double t, std::spa
     return std::lower_bound(bodies.begin(), bodies.end(), k) - bodies.begin();
   };
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const Former& former = held_.at(bodies[i]);
+    const HeldBody& former = held_.at(bodies[i]);
     if (former.component < 0) {
       out[i] = former.acceleration;
       continue;
@@ -486,19 +448,19 @@ void Trajectories::accelerations(std::span<const int> bodies, double t, std::spa
 
 /// Forces on a body that flies freely by itself are constant: nothing ever changes them.
 double Trajectories::steady_until(int k) const {
-  const Former& former = held_.at(k);
+  const HeldBody& former = held_.at(k);
   if (former.component < 0) return std::numeric_limits<double>::infinity();
   return components_[former.component].component.dynamics->steady_until(run_->time());
 }
 
 double Trajectories::next_break(int k) const {
-  const Former& former = held_.at(k);
+  const HeldBody& former = held_.at(k);
   if (former.component < 0) return std::numeric_limits<double>::infinity();
   return components_[former.component].component.dynamics->next_break(run_->time());
 }
 
 bool Trajectories::is_constant(int k) const {
-  const Former& former = held_.at(k);
+  const HeldBody& former = held_.at(k);
   return former.component < 0 || components_[former.component].component.dynamics->constant();
 }
 
@@ -588,7 +550,7 @@ void Trajectories::go_back_to(const ComponentStart& s) {
 /// integrator that sleeps.
 Trajectories::Saved Trajectories::saved() const {
   Saved all{together_, {bodies_.begin(), bodies_.end()}, {}, {}, {}};
-  for (const auto& [k, former] : held_) {
+  for (const auto& [k, former] : held_.all()) {
     all.steps[k] = former.step;
     if (former.component >= 0) all.asleep.push_back(k);
   }
@@ -640,7 +602,8 @@ void Trajectories::restore(const Saved& saved, double t) {
 void Trajectories::hold_again(std::span<const int> members, const Saved& saved) {
   for (const int k : members) {
     BodyTrack& b = bodies_[k];
-    held_[k] = {b.component, b.component < 0 ? b.motion.acceleration() : Acceleration{}, saved.steps.at(k)};
+    held_.add(k,
+              {b.component, b.component < 0 ? b.motion.acceleration() : Acceleration{}, saved.steps.at(k)});
     if (b.component >= 0) put_to_sleep(components_[b.component]);
     b.component = BodyTrack::kHeld;
     b.motion = saved.bodies[k].motion;

@@ -6,7 +6,6 @@
 /// motion that fails is followed to its end, since a collision before may start it afresh.
 
 #include <algorithm>
-#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -18,35 +17,15 @@
 #include "brink/core/world/forces.h"
 #include "brink/integrators/integrator.h"
 #include "brink/scheduler/kernel/body_track.h"
+#include "brink/scheduler/kernel/component_start.h"
+#include "brink/scheduler/kernel/held_bodies.h"
+#include "brink/scheduler/kernel/knot_teller.h"
 #include "brink/scheduler/kernel/run_control.h"
 #include "brink/scheduler/kernel/site_motion.h"
 #include "brink/scheduler/run/event.h"
-#include "brink/scheduler/run/knot.h"
 #include "brink/scheduler/run/options.h"
 
 namespace brink {
-
-/// A body and the state at which its motion begins anew.
-struct Restart {
-  int body;
-  ExtendedState state;
-};
-
-/// A held body's step: it moves with the twist that it comes to have at the end, from the start on.
-struct HeldStep {
-  double start = 0.0, end = 0.0;  ///< [s]
-  Twist before;                   ///< at the start
-};
-
-/// Where the integrator of a component was started. Of bodies that were grouped while running, what the
-/// rounding of their places leaves over is kept beside what the integrator makes: who joins must not jump, not
-/// even by that, into what it touches.
-struct ComponentStart {
-  int component = -1;
-  double time = 0.0;  ///< [s]
-  std::vector<BodyState> states;
-  std::vector<Pose> lows;  ///< what their rounding left over; empty: nothing, never
-};
 
 class Trajectories {
  public:
@@ -106,13 +85,9 @@ class Trajectories {
     if (!keeps_twists_before()) return {};
     return {true, state_now(k).rounded(), before_[k]};
   }
-  using TellKnot = std::function<void(const Knot&)>;
-  /// From now on `tell` is told how held bodies move, by knots between which a cubic is off by no more than
-  /// `tolerance` [m]; empty: nobody is.
-  void tell_knots(TellKnot tell, double tolerance) {
-    told_knot_ = std::move(tell);
-    knot_tolerance_ = tolerance;
-  }
+  using TellKnot = KnotTeller::Tell;
+  /// From now on `tell` is told how held bodies move, to `tolerance` [m] (KnotTeller); empty: nobody is.
+  void tell_knots(TellKnot tell, double tolerance) { knots_ = {std::move(tell), tolerance}; }
   /// Tells those of motions that go on still, up to the present time.
   void tell_lasting_knots() const;
   /// A free body.
@@ -124,7 +99,7 @@ class Trajectories {
   /// The last hold() of the body begins a motion of its own, from the state that it was given. @pre it has no end.
   void follow_own(int k, Motion motion);
   /// The last hold() of the body begins such a step.
-  void note_step(int k, const HeldStep& step) { held_.at(k).step = step; }
+  void note_step(int k, const HeldStep& step) { held_.note_step(k, step); }
   /// The body's state now, in extended precision. Of one that is held its motion has the twist of the step's
   /// end; this has what it has come to by now, in proportion.
   ExtendedState state_now(int k) const;
@@ -182,11 +157,6 @@ class Trajectories {
     Failure failure;
     bool dormant = false;  ///< an island holds its bodies
   };
-  struct Former {  ///< how a held body moved by itself
-    int component = BodyTrack::kFree;
-    Acceleration acceleration;  ///< of a free one
-    HeldStep step;
-  };
 
   void add_component(Component component, ComponentStart start);
   void add_free(const Component& component, double t, const BodyState& start, const BodyState& low);
@@ -197,7 +167,6 @@ class Trajectories {
   void begin_anew(Component component, double t, std::vector<int>& changed);
   void start(Coupled& c, ComponentStart from);
   void put_to_sleep(Coupled& c);
-  ExtendedTwist come_to_by_now(int k, ExtendedTwist at_end) const;
   void tell_knot(int k, const BodyState& after) const;
   void tell_bends(int k) const;
   void note_twist_before(int k) {
@@ -219,12 +188,11 @@ class Trajectories {
   LargeVector<BodyTrack> bodies_;
   std::vector<Coupled> components_;
   Sets together_;
-  std::map<int, Former> held_;
+  HeldBodies held_;
   std::vector<SiteMotion> sites_;
   std::vector<Failure> site_failures_;
   std::vector<Twist> before_;  ///< each body's last restart; empty: not kept
-  TellKnot told_knot_;
-  double knot_tolerance_ = 0.0;  ///< [m]
+  KnotTeller knots_;
   double reach_ = std::numeric_limits<double>::infinity();
   std::uint64_t forgotten_ = 0;  ///< pieces made when forget_before() was last called
 };

@@ -16,7 +16,7 @@ inline constexpr double kSameDirection = 1.0 - 1e-12;
 
 /// Sine of an angle that rounding alone may make of two parallel edges: an edge of a millionth of the
 /// coordinates it is made of keeps ten digits.
-inline constexpr double kParallel = 1e-6;
+inline constexpr double kParallelEdges = 1e-6;
 
 /// A series of bounces is taken to its limit after so many low flights: their height falls by the square of the
 /// restitution each time, so ten tell a series from chance at any restitution below 1.

@@ -28,9 +28,9 @@ Wedge wedge_at(const Outline& outline, const Vec2& vertex) {
 /// `behind` forward. Edges along the line do neither.
 bool parts(const Vec2& n, const Wedge& front, const Wedge& behind) {
   return std::all_of(front.edges.begin(), front.edges.end(),
-                     [&](const Vec2& e) { return n.dot(e) >= -kParallel; }) &&
+                     [&](const Vec2& e) { return n.dot(e) >= -kParallelEdges; }) &&
          std::all_of(behind.edges.begin(), behind.edges.end(),
-                     [&](const Vec2& e) { return n.dot(e) <= kParallel; });
+                     [&](const Vec2& e) { return n.dot(e) <= kParallelEdges; });
 }
 
 }  // namespace brink

@@ -20,14 +20,14 @@ void end_run(ZenoWatch::Bounce& b) {
 }  // namespace
 
 /// A flight of duration T on a parabola that ends with v = g T / 2 rose by v^2 / (2 g) = v T / 4.
-bool ZenoWatch::is_high(double closing_speed, double rest, double contact_tolerance) {
-  return 0.25 * closing_speed * rest > kHighFlight * contact_tolerance;
+bool ZenoWatch::is_high(double closing_speed, double since_last, double contact_tolerance) {
+  return 0.25 * closing_speed * since_last > kHighFlight * contact_tolerance;
 }
 
 std::optional<ZenoEnding> ZenoWatch::collided(const Feature& feature, double time, double closing_speed,
-                                              BounceLoss loss, double rest, bool sunk,
+                                              BounceLoss loss, double since_last, bool sunk,
                                               const ForeseenLimit& foreseen) {
-  if (loss == BounceLoss::none || is_high(closing_speed, rest, tolerance_)) return std::nullopt;
+  if (loss == BounceLoss::none || is_high(closing_speed, since_last, tolerance_)) return std::nullopt;
   // remembered from here on: high flights have not come so far (kHighFlight)
   Bounce& b = bounces_[feature];
   const double left = foreseen.time - time;
@@ -50,7 +50,7 @@ std::optional<ZenoEnding> ZenoWatch::collided(const Feature& feature, double tim
   // the flights to come last interval (r + r^2 + ...) = interval r / (1 - r)
   if (b.limit_time == 0.0 && loss != BounceLoss::all && ratio < 1.0 - kAlike)
     b.limit_time = time + interval * ratio / (1.0 - ratio);
-  const bool pressed = sunk || loss == BounceLoss::all || (rest >= interval && ratio <= 1.0 + kAlike);
+  const bool pressed = sunk || loss == BounceLoss::all || (since_last >= interval && ratio <= 1.0 + kAlike);
   // others are low, but say nothing: they neither count nor end the run
   if (interval < b.shortest || pressed) ++b.low_flights;
   b.shortest = std::min(b.shortest, interval);

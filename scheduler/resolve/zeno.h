@@ -63,18 +63,18 @@ class ZenoWatch {
 
   explicit ZenoWatch(double contact_tolerance = 1e-10) : tolerance_(contact_tolerance) {}
 
-  /// To be told of every collision, in order. `rest`: a time that the pair's flight has lasted at least [s]
+  /// To be told of every collision, in order. `since_last`: a time that the pair's flight has lasted at least [s]
   /// (since either side was last resolved): flights that rise a million tolerances are not remembered, which
   /// keeps a gas out of the memory. ZenoEnding::bounces counts the remembered ones.
   /// `sunk`: the features met below their level, so are pressed together (FeatureContact::sunk).
   /// `foreseen`: high flights foresee the limit best, since it takes a low one long to fall by a rounding of
   /// the gap.
   std::optional<ZenoEnding> collided(const Feature& feature, double time, double closing_speed,
-                                     BounceLoss loss, double rest = 0.0, bool sunk = false,
+                                     BounceLoss loss, double since_last = 0.0, bool sunk = false,
                                      const ForeseenLimit& foreseen = {});
 
   /// True of a flight that rises so high that collided() does not remember it.
-  static bool is_high(double closing_speed, double rest, double contact_tolerance);
+  static bool is_high(double closing_speed, double since_last, double contact_tolerance);
 
   const Bounces& bounces() const { return bounces_; }
   void restore(Bounces bounces) { bounces_ = std::move(bounces); }

@@ -1,4 +1,6 @@
 #pragma once
+/// What a run will do before it does it: lines for people.
+
 #include <string>
 #include <vector>
 

@@ -14,24 +14,24 @@
 namespace brink {
 namespace {
 
-constexpr int kMeetings = 64;
+constexpr int kEncounters = 64;
 constexpr double kEnd = 3.0, kStep = 1e-3;
 
 /// Two owners on their ways.
-struct Meeting {
+struct Encounter {
   Motion motion_a, motion_b;
 };
 
 /// A pair of shapes and 64 ways in which they come towards each other.
 struct Pair {
   std::unique_ptr<SiteIndex> index_a, index_b;
-  std::vector<Meeting> meetings;
+  std::vector<Encounter> encounters;
 
   Pair(const Shape& a, const Shape& b)
       : index_a(make_brute_force_index(std::make_shared<const Outline>(a.outline))),
         index_b(make_brute_force_index(std::make_shared<const Outline>(b.outline))) {}
-  Mover a(const Meeting& m) const { return {index_a.get(), &m.motion_a}; }
-  Mover b(const Meeting& m) const { return {index_b.get(), &m.motion_b}; }
+  Mover a(const Encounter& m) const { return {index_a.get(), &m.motion_a}; }
+  Mover b(const Encounter& m) const { return {index_b.get(), &m.motion_b}; }
 };
 
 BodyState state(const Vec2& p, double angle, const Vec2& v, double omega) { return {{p, angle}, {v, omega}}; }
@@ -39,7 +39,7 @@ BodyState state(const Vec2& p, double angle, const Vec2& v, double omega) { retu
 /// From 2 m to either side at about 1 m/s each, a little off the line, turning at up to `spin` rad/s.
 void come_together(Pair& pair, double spin) {
   Random random(5);
-  for (int k = 0; k < kMeetings; ++k) {
+  for (int k = 0; k < kEncounters; ++k) {
     const auto way = [&](double side) {
       return Motion::ballistic(
           0.0,
@@ -48,7 +48,7 @@ void come_together(Pair& pair, double spin) {
           {});
     };
     const Motion a = way(1.0);
-    pair.meetings.push_back({a, way(-1.0)});
+    pair.encounters.push_back({a, way(-1.0)});
   }
 }
 
@@ -70,7 +70,7 @@ Pair discs() {
 /// The same discs, kept from meeting by 2 m to the side.
 Pair discs_that_miss() {
   Pair pair = discs();
-  for (Meeting& m : pair.meetings) {
+  for (Encounter& m : pair.encounters) {
     BodyState start = m.motion_a.start();
     start.pose.position.y() += 2.0;
     m.motion_a = Motion::ballistic(0.0, start, {});
@@ -81,16 +81,16 @@ Pair discs_that_miss() {
 Pair disc_and_segment() {
   Pair pair(make_disc(0.5), make_segment({-10.0, 0.0}, {10.0, 0.0}));
   Random random(6);
-  for (int k = 0; k < kMeetings; ++k) {
+  for (int k = 0; k < kEncounters; ++k) {
     const BodyState start = state({random.uniform(-1.0, 1.0), random.uniform(1.0, 3.0)}, 0.0,
                                   {random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)}, 1.0);
-    pair.meetings.push_back({Motion::ballistic(0.0, start, {{0.0, -9.81}, 0.0}), Motion::still({})});
+    pair.encounters.push_back({Motion::ballistic(0.0, start, {{0.0, -9.81}, 0.0}), Motion::still({})});
   }
   return pair;
 }
 
 /// The slow way: look every millisecond, then halve.
-double slow_contact(const Pair& pair, const Meeting& m, SearchScratch& scratch) {
+double slow_contact(const Pair& pair, const Encounter& m, SearchScratch& scratch) {
   const Mover a = pair.a(m), b = pair.b(m);
   const auto apart = [&](double t) { return pair_gap(a, b, t, SearchLimits(), scratch) > 0.0; };
   double high = kStep;
@@ -104,7 +104,7 @@ double slow_contact(const Pair& pair, const Meeting& m, SearchScratch& scratch) 
   return low;
 }
 
-PairAnswer fast_contact(const Pair& pair, const Meeting& m, bool closed_forms, SearchScratch& scratch,
+PairAnswer fast_contact(const Pair& pair, const Encounter& m, bool closed_forms, SearchScratch& scratch,
                         WorkCounters& work) {
   SearchLimits limits;
   limits.closed_forms = closed_forms;
@@ -117,7 +117,7 @@ bool check(benchmark::State& state, const Pair& pair, bool closed_forms) {
   WorkCounters work;
   double worst = 0.0;
   int contacts = 0;
-  for (const Meeting& m : pair.meetings) {
+  for (const Encounter& m : pair.encounters) {
     const PairAnswer answer = fast_contact(pair, m, closed_forms, scratch, work);
     const double fast = answer.status == PairAnswer::Status::contact ? answer.until : kEnd;
     contacts += answer.status == PairAnswer::Status::contact;
@@ -125,7 +125,7 @@ bool check(benchmark::State& state, const Pair& pair, bool closed_forms) {
   }
   state.counters["error"] = worst;
   state.counters["contacts"] = contacts;
-  state.counters["iterations"] = static_cast<double>(work.search_iterations) / kMeetings;
+  state.counters["iterations"] = static_cast<double>(work.search_iterations) / kEncounters;
   return worst < 1e-6;
 }
 
@@ -137,7 +137,7 @@ void search(benchmark::State& state, Pair (*make)(), bool closed_forms) {
   std::size_t k = 0;
   for (auto _ : state)
     benchmark::DoNotOptimize(
-        fast_contact(pair, pair.meetings[k++ % kMeetings], closed_forms, scratch, work).until);
+        fast_contact(pair, pair.encounters[k++ % kEncounters], closed_forms, scratch, work).until);
 }
 BENCHMARK_CAPTURE(search, spinning_boxes, spinning_boxes, true);
 BENCHMARK_CAPTURE(search, boxes_that_do_not_turn, boxes_that_do_not_turn, true);
@@ -151,7 +151,8 @@ void search_brute_force(benchmark::State& state, Pair (*make)()) {
   const Pair pair = make();
   SearchScratch scratch;
   std::size_t k = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(slow_contact(pair, pair.meetings[k++ % kMeetings], scratch));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(slow_contact(pair, pair.encounters[k++ % kEncounters], scratch));
 }
 BENCHMARK_CAPTURE(search_brute_force, spinning_boxes, spinning_boxes);
 BENCHMARK_CAPTURE(search_brute_force, discs, discs);

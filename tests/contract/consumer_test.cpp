@@ -21,6 +21,14 @@ TEST(Consumer, InstalledPackageBuildsAndRunsAProject) {
   std::ostringstream text;
   text << std::ifstream(log).rdbuf();
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << text.str();
+  // what the README says that its example prints
+  std::ostringstream readme;
+  readme << std::ifstream(BRINK_SOURCE_DIR "/README.md").rdbuf();
+  const std::string page = readme.str(), lead = "It prints `";
+  const std::size_t begin = page.find(lead);
+  ASSERT_NE(begin, std::string::npos);
+  const std::size_t from = begin + lead.size(), end = page.find('`', from);
+  EXPECT_NE(text.str().find('\n' + page.substr(from, end - from) + '\n'), std::string::npos) << text.str();
 }
 
 }  // namespace

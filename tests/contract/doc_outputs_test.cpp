@@ -1,15 +1,21 @@
-// What README.md and docs/hello.md print is what the program prints. Wall times are left out. None of these scenes needs
-// a solver, so they have the same bits everywhere.
+// What README.md and the pages say that the program prints, and how much it counts, is what it prints and counts. Wall
+// times are left out. But for one none of these scenes needs a solver, so they have the same bits everywhere.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "tests/support/platform.h"
 
 namespace brink::doc_outputs_test {
 namespace {
@@ -66,6 +72,39 @@ std::regex pattern_of(const std::string& shown) {
   return std::regex("\\s*" + pattern + "\\s*");
 }
 
+/// Rows of the tables of a page, cell by cell, that begin with a `|`; without marks of code and blanks at the rim.
+std::vector<std::vector<std::string>> table_rows(const std::string& page) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream lines(page);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("| ", 0) != 0) continue;
+    rows.emplace_back();
+    std::istringstream cells(line.substr(1));
+    for (std::string cell; std::getline(cells, cell, '|');) {
+      std::erase(cell, '`');
+      rows.back().push_back(std::regex_replace(cell, std::regex("^ +| +$"), ""));
+    }
+  }
+  return rows;
+}
+
+/// Of a number as pages write it, "1 271 000".
+double number_of(std::string cell) {
+  std::erase(cell, ' ');
+  return std::stod(cell);
+}
+
+/// Collisions of every gallery scene by its name, as tests/regression/answers.csv has them.
+std::map<std::string, std::string> stored_collisions() {
+  std::map<std::string, std::string> all;
+  std::ifstream in(kRoot / "tests/regression/answers.csv");
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t name = line.find(','), end = line.find(',', name + 1);
+    if (line[0] != '#') all[line.substr(0, name)] = line.substr(name + 1, end - name - 1);
+  }
+  return all;
+}
+
 class DocOutputs : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -119,6 +158,60 @@ TEST_F(DocOutputs, TheWalkOfHello) {
   const std::size_t shown = page.find("ball.toml:14:1:");
   ASSERT_NE(shown, std::string::npos);
   EXPECT_NE(fault.find(page.substr(shown, page.find('\n', shown) - shown)), std::string::npos) << fault;
+}
+
+TEST_F(DocOutputs, TheFaultsOfTheSceneFile) {
+  const std::string page = text_of(kRoot / "docs/scene-format.md");
+  const std::size_t begin = page.find("```toml\n") + 8, end = page.find("```", begin);
+  std::string scene = page.substr(begin, end - begin);
+  scene = std::regex_replace(scene, std::regex("duration = [^\n]*"), "duration = nan");
+  scene = std::regex_replace(scene, std::regex("restitution ="), "restituton =");
+  std::ofstream(folder / "ball.toml") << scene;
+  const std::vector<std::string> shown = printed_blocks(page);
+  ASSERT_FALSE(shown.empty());
+  EXPECT_EQ(std::count(shown.front().begin(), shown.front().end(), '\n'), 2);
+  EXPECT_EQ(output_of("'" + kProgram.string() + "' check ball.toml", folder), shown.front());
+}
+
+// docs/scheduling.md: "(4517)" behind a scene and a policy.
+TEST_F(DocOutputs, CollisionsOnThePageOnScheduling) {
+  const std::string page = text_of(kRoot / "docs/scheduling.md");
+  const std::map<std::string, std::string> stored = stored_collisions();
+  const std::regex named(R"(\| `?([a-z_]+)`?(?:, `[a-z_]+`)? \((\d+)\) \|)");
+  int seen = 0;
+  for (std::sregex_iterator i(page.begin(), page.end(), named), end; i != end; ++i, ++seen) {
+    const std::string scene = (*i)[1];
+    ASSERT_TRUE(stored.contains(scene)) << scene;
+    EXPECT_EQ((*i)[2], stored.at(scene)) << scene;
+  }
+  EXPECT_EQ(seen, 9);
+}
+
+// The table of what policies waste: every count within a hundredth of what a run counts.
+TEST_F(DocOutputs, WhatPoliciesWaste) {
+  const std::vector<std::string> counters{
+      "advances",      "backups",    "rollbacks", "body_seconds_thrown_away", "certificates_issued",
+      "pair_searches", "states_kept"};
+  std::string scene;
+  int seen = 0;
+  for (const std::vector<std::string>& row : table_rows(text_of(kRoot / "docs/scheduling.md"))) {
+    if (row.size() != 2 + counters.size() || row[1] == "policy" || row[1].find('-') == 0) continue;
+    if (!row[0].empty()) scene = row[0].substr(0, row[0].find(' '));
+    // its steps are SUNDIALS', and the same where answers were stored alone
+    if (scene == "spring_net" && testing::platform_probe() != testing::stored_probe()) continue;
+    const std::string printed = output_of(
+        "'" + kProgram.string() + "' run '" + (kRoot / "scenes/gallery" / (scene + ".toml")).string() +
+            "' --set 'solver.policy=\"" + row[1] + "\"' --set output.frame_interval=0 --json",
+        folder);
+    const auto work = nlohmann::json::parse(printed).at("work");
+    for (std::size_t k = 0; k < counters.size(); ++k) {
+      const double counted = work.at(counters[k]).get<double>();
+      EXPECT_NEAR(number_of(row[2 + k]), counted, 0.01 * counted)
+          << scene << ", " << row[1] << ", " << counters[k];
+    }
+    ++seen;
+  }
+  EXPECT_GE(seen, 8);
 }
 
 }  // namespace

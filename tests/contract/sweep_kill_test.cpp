@@ -1,15 +1,20 @@
 // A sweep that is killed, and processes that share one: each run is made, and made once.
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <thread>
+#include <utility>
+#include <vector>
 
 namespace brink::sweep_kill_test {
 namespace {
@@ -45,10 +50,13 @@ class SweepKillTest : public ::testing::Test {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
-  /// seed -> state hash, of the CSV.
-  std::map<std::string, std::string> hashes(const std::string& out) const {
+  /// A run's seed and the hash of its last state.
+  using Row = std::pair<std::string, std::string>;
+
+  /// Every row of the CSV, by seed; two of one seed are two.
+  std::vector<Row> rows_of_table(const std::string& out) const {
     std::ifstream in(dir_ / out / "sweep.csv");
-    std::map<std::string, std::string> all;
+    std::vector<Row> all;
     std::string line;
     std::getline(in, line);
     while (std::getline(in, line)) {
@@ -59,31 +67,79 @@ class SweepKillTest : public ::testing::Test {
       std::getline(cells, termination, ',');
       std::getline(cells, hash, ',');
       EXPECT_EQ(termination, "reached_end");
-      all[seed] = hash;
+      all.emplace_back(seed, hash);
     }
+    std::sort(all.begin(), all.end());
     return all;
+  }
+
+  /// Every row of the store, likewise.
+  std::vector<Row> rows_of_store(const std::string& out) const {
+    const SQLite::Database store((dir_ / out / "sweep.db").string());
+    SQLite::Statement each(store, "SELECT settings, state, state_hash FROM run");
+    std::vector<Row> all;
+    while (each.executeStep()) {
+      EXPECT_EQ(each.getColumn(1).getString(), "done");
+      const auto settings = nlohmann::json::parse(each.getColumn(0).getString());
+      all.emplace_back(settings.at("seed").get<std::string>(), each.getColumn(2).getString());
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+
+  /// Table and store have a row for each seed, and the same ones.
+  void expect_each_once(const std::string& out) const {
+    const std::vector<Row> rows = rows_of_table(out);
+    std::set<std::string> seeds;
+    for (const Row& row : rows) seeds.insert(row.first);
+    EXPECT_EQ(rows.size(), static_cast<std::size_t>(kRuns));
+    EXPECT_EQ(seeds.size(), static_cast<std::size_t>(kRuns));
+    EXPECT_EQ(rows_of_store(out), rows);
+  }
+
+  /// How many workers there were, runs that are done, and whether the last worker has one under way.
+  struct Progress {
+    int workers = 0, done = 0;
+    bool under_way = false;
+  };
+  Progress progress(const std::string& out) const try {
+    const SQLite::Database store((dir_ / out / "sweep.db").string());
+    SQLite::Statement all(
+        store,
+        "SELECT (SELECT max(id) FROM worker), (SELECT count(*) FROM run WHERE state = 'done'),"
+        " (SELECT count(*) FROM run WHERE state = 'running' AND worker ="
+        " (SELECT max(id) FROM worker))");
+    if (!all.executeStep()) return {};
+    return {all.getColumn(0).getInt(), all.getColumn(1).getInt(), all.getColumn(2).getInt() > 0};
+  } catch (const SQLite::Exception&) {
+    return {};  // it is not there yet, or being written
   }
 
   fs::path dir_;
 };
 
+// Each process is killed while it makes a run, two more being done each time.
 TEST_F(SweepKillTest, KilledAgainAndAgainItEndsWithTheSameRows) {
-  const auto begin = std::chrono::steady_clock::now();
   ASSERT_EQ(wait(start("whole")), 0);
-  // however fast the machine is: five kills in less than what the whole takes
-  const auto pause = (std::chrono::steady_clock::now() - begin) / 8;
-  const auto whole = hashes("whole");
-  ASSERT_EQ(whole.size(), static_cast<std::size_t>(kRuns));
-  int at_work = 0;
+  expect_each_once("whole");
   for (int k = 0; k < 5; ++k) {
     const pid_t child = start("killed");
-    std::this_thread::sleep_for(pause);
+    const auto at_work = [&] {
+      const Progress p = progress("killed");
+      return p.workers == k + 1 && p.done >= 2 * k && p.under_way;
+    };
+    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(5);
+    while (!at_work() && std::chrono::steady_clock::now() < until)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
     ::kill(child, SIGKILL);
-    at_work += wait(child) == -1;  // it had not ended by itself
+    EXPECT_EQ(wait(child), -1) << "it had ended by itself";
+    const Progress left = progress("killed");
+    EXPECT_GE(left.done, 2 * k);
+    EXPECT_LT(left.done, kRuns);
   }
-  EXPECT_GE(at_work, 2);
   ASSERT_EQ(wait(start("killed")), 0);
-  EXPECT_EQ(hashes("killed"), whole);
+  expect_each_once("killed");
+  EXPECT_EQ(rows_of_table("killed"), rows_of_table("whole"));
 }
 
 TEST_F(SweepKillTest, ThreeProcessesAtOnceShareTheRuns) {
@@ -91,7 +147,7 @@ TEST_F(SweepKillTest, ThreeProcessesAtOnceShareTheRuns) {
   for (int k = 0; k < 3; ++k) children.push_back(start("shared"));
   for (const pid_t child : children) EXPECT_NE(wait(child), 3);  // 1: others still had runs under way
   ASSERT_EQ(wait(start("shared")), 0);
-  EXPECT_EQ(hashes("shared").size(), static_cast<std::size_t>(kRuns));
+  expect_each_once("shared");
 }
 
 }  // namespace

@@ -5,12 +5,11 @@
 #include <cmath>
 
 #include "brink/scenes/scene/scene.h"
+#include "brink/scheduler/policies/policy.h"
 #include "brink/scheduler/simulator/simulator.h"
 
 namespace brink::standing_test {
 namespace {
-
-constexpr const char* kPolicies[] = {"body_clocks", "global_backup", "island_backup", "timewarp"};
 
 Scene on_floor(const std::string& bodies, double friction, const std::string& gravity = "[0, -9.81]") {
   return parse_scene(
@@ -47,7 +46,7 @@ TEST(Standing, WhatStandsKeepsEveryBit) {
   for (const std::string& bodies : {kBox + "stack = 50\n", kBox + "pyramid = 10\n", kBox + "wall = [6, 7]\n",
                                     kDisc + "pyramid = 6\n", kDisc}) {
     const Scene scene = on_floor(bodies, 0.6);
-    for (const char* policy : kPolicies) {
+    for (const std::string& policy : exact_policies()) {
       SCOPED_TRACE(bodies + policy);
       const Ran ran = run(scene, policy, 100.0);
       EXPECT_EQ(ran.summary.termination_text(), "reached_end");
@@ -76,7 +75,7 @@ TEST(Standing, ABlockOnASlopeSticksOrSlidesFromTheStart) {
   const double s = 9.81 * std::sin(20.0 * M_PI / 180.0), c = 9.81 * std::cos(20.0 * M_PI / 180.0);
   const std::string tilted = "[" + std::to_string(s) + ", " + std::to_string(-c) + "]";
   const std::string block = kBox + "touching_direction = [0, -1]\n";
-  for (const char* policy : kPolicies) {
+  for (const std::string& policy : exact_policies()) {
     SCOPED_TRACE(policy);
     const Scene rough = on_floor(block, 0.37, tilted), smooth = on_floor(block, 0.35, tilted);
     const Ran stays = run(rough, policy, 50.0), slides = run(smooth, policy, 2.0);
@@ -92,7 +91,7 @@ TEST(Standing, ABlockOnASlopeSticksOrSlidesFromTheStart) {
 // What starts touching and moves is no rest: a ball that rolls rolls on, v = omega R.
 TEST(Standing, ABallThatRollsRollsOn) {
   const Scene scene = on_floor(kDisc + "velocity = [0.6, 0]\nangular_velocity = -2\n", 0.5);
-  for (const char* policy : kPolicies) {
+  for (const std::string& policy : exact_policies()) {
     const Ran ran = run(scene, policy, 5.0);
     EXPECT_EQ(ran.summary.termination_text(), "reached_end");
     EXPECT_NEAR(ran.states[0].pose.position.x(), 3.0, 1e-9);

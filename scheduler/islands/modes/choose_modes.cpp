@@ -4,13 +4,11 @@
 #include <cmath>
 
 #include "brink/core/contacts/lcp.h"
+#include "brink/scheduler/islands/tolerances.h"
 
 namespace brink {
 
 namespace {
-
-/// An acceleration below this part of those that take part is none.
-constexpr Real kNone = 1e-13;
 
 /// The problem's unknowns: of every contact that may be closed its normal force, then of the still ones with
 /// friction f+, f- and g.
@@ -62,18 +60,19 @@ class Complementarity {
   }
 
   /// What contact k does by the accelerations of the solution. @pre solve() gave true; k may be closed. An
-  /// exact comparison with 0 would be a matter of roundings: kNone of the largest number in q decides.
+  /// exact comparison with 0 would be a matter of roundings: kNoAcceleration of the largest number in q decides.
   MotionMode mode_of(std::size_t k, ContactKnown known, bool frictionless) const {
     const auto found =
         std::find_if(contacts_.begin(), contacts_.end(), [&](const Rows& r) { return r.of == k; });
     // complementarity: where a_n > 0 the normal force is 0, and the contact opens
-    if (found->normal.dot(acceleration_) + found->normal_bend > kNone * size_) return MotionMode::open;
+    if (found->normal.dot(acceleration_) + found->normal_bend > kNoAcceleration * size_)
+      return MotionMode::open;
     if (frictionless) return MotionMode::smooth;
     if (known == ContactKnown::slides_plus) return MotionMode::slip_plus;
     if (known == ContactKnown::slides_minus) return MotionMode::slip_minus;
     // what starts to slip slips the way in which its tangential acceleration leads
     const Real along = found->tangent.dot(acceleration_) + found->tangential_bend;
-    if (abs(along) <= kNone * size_) return MotionMode::stick;
+    if (abs(along) <= kNoAcceleration * size_) return MotionMode::stick;
     return along > 0 ? MotionMode::slip_plus : MotionMode::slip_minus;
   }
 

@@ -5,14 +5,13 @@
 
 #include "brink/scheduler/first_contact/pair_kinematics.h"
 #include "brink/scheduler/first_contact/safe_step.h"
+#include "brink/scheduler/islands/tolerances.h"
 
 namespace brink {
 
 namespace {
 
 constexpr int kMostSteps = 10000;
-/// A gap that closes slower than this part of the speeds that take part does not.
-constexpr double kCloses = 1e-12;
 /// Where no bound helps (an arc's sector), so many looks along the whole.
 constexpr int kLooksOfArrival = 64;
 
@@ -80,7 +79,8 @@ class Watch {
   /// passes by the end of a site, starts there by roundings.
   bool comes(const ContactRates& r) const {
     const double speed = std::abs(r.tangential_velocity) + std::abs(r.normal_velocity);
-    return r.gap < -0.5 * slack_ || (!contact_.passes && r.gap < 0.0 && r.normal_velocity < -kCloses * speed);
+    return r.gap < -0.5 * slack_ ||
+           (!contact_.passes && r.gap < 0.0 && r.normal_velocity < -kNoClosing * speed);
   }
 
   /// The last double at which the gap is not below zero, by halving.
@@ -140,7 +140,7 @@ class Watch {
     // in the window than `least`; right at the centre the bound says nothing, and a thousandth stands for
     // it.
     const double distance = c.radius - c.sample_radius - r.gap, least = distance - p.speed * (to - from);
-    b.of_gap += p.speed * p.speed / std::max(least, 1e-3 * distance);
+    b.of_gap += p.speed * p.speed / std::max(least, kNearCentre * distance);
     return b;
   }
 

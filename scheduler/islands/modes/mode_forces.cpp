@@ -5,17 +5,12 @@
 #include <cmath>
 
 #include "brink/scheduler/islands/modes/nonnegative.h"
+#include "brink/scheduler/islands/tolerances.h"
 
 namespace brink {
 
 namespace {
 
-/// Rows that depend on each other to this part are redundant.
-constexpr double kRedundant = 1e-10;
-/// What accelerations may miss of closed contacts, of the largest that takes part.
-constexpr double kConsistent = 1e-8;
-/// Forces of redundant contacts balance when they leave over this part.
-constexpr double kBalances = 1e-12;
 constexpr int kNewtonSteps = 4;
 
 /// Equations (rows) and forces (columns) of the closed contacts, in the mass metric: J M^-1/2 and M^-1/2 G, each
@@ -261,7 +256,8 @@ std::vector<BodyState> projected(const ModeProblem& problem, double t, std::vect
   // enough
   for (int i = 0; i < kNewtonSteps; ++i) {
     move(false);
-    if (std::all_of(off.begin(), off.end(), [&](double x) { return std::abs(x) <= 1e-15 * problem.size; }))
+    if (std::all_of(off.begin(), off.end(),
+                    [&](double x) { return std::abs(x) <= kGapIsZero * problem.size; }))
       break;
   }
   move(true);

@@ -6,6 +6,7 @@
 
 #include "brink/core/base/elementary.h"
 #include "brink/integrators/dense_output.h"
+#include "brink/scheduler/islands/tolerances.h"
 
 namespace brink {
 
@@ -17,14 +18,6 @@ constexpr int kGapLooks = 8, kLooksAStep = 4;
 /// kShortenings: each by a fifth at least, so that they lead to 2e-8 of the first step; what fails even
 /// there is lost.
 constexpr int kShortenings = 80, kClosings = 200, kApproaches = 8;
-/// A slip slower than this part of the speeds that take part is none.
-constexpr double kNoSlip = 1e-12;
-/// As bounces that have ended leave it.
-constexpr double kNoSpeed = 1e-9;
-/// Modes are chosen from so far ahead, of a step: what fails has failed there beyond rounding.
-constexpr double kAhead = 1e-5;
-/// Where a feature is left the step leads beyond its end, by this part of the size.
-constexpr double kBeyond = 1e-11;
 /// Changes of mode at one instant, beside a few for every contact.
 constexpr int kChanges = 8, kChangesEach = 4;
 
@@ -66,7 +59,7 @@ void ModeMotion::set_scales() {
     pull = std::max(pull, free[k].linear.norm() + size_ * std::abs(free[k].angular));
   }
   // the last, so that there is something to measure by where nobody moves and nothing pulls
-  speed_ = std::max({speed, std::sqrt(pull * size_), 1e-9 * size_});
+  speed_ = std::max({speed, std::sqrt(pull * size_), kLeastSpeed * size_});
 }
 
 bool ModeMotion::begin(const std::vector<bool>& closed) {
@@ -76,9 +69,9 @@ bool ModeMotion::begin(const std::vector<bool>& closed) {
     if (!closed[k]) continue;
     // a slip that is no more than what ended bounces leave is none: it may stick
     const double slip = rates[k].tangential_velocity;
-    known[k] = std::abs(slip) <= kNoSpeed * speed_ ? ContactKnown::still
-               : slip > 0.0                        ? ContactKnown::slides_plus
-                                                   : ContactKnown::slides_minus;
+    known[k] = std::abs(slip) <= kNoSlipAtFirst * speed_ ? ContactKnown::still
+               : slip > 0.0                              ? ContactKnown::slides_plus
+                                                         : ContactKnown::slides_minus;
   }
   const ModeChoice choice = choose_modes(problem_, moment_at(problem_, t_, states_), known);
   return choice.found && begin_in(choice.modes);
@@ -221,7 +214,7 @@ std::vector<PolynomialPiece> ModeMotion::pieces_to(double end, const States& sta
 
 void ModeMotion::accept(double end, States states) {
   // a step of next to no time does not count: modes that change into each other without end must run out
-  if (end - t_ > 1e-9 * limits_.longest) changes_ = 0;
+  if (end - t_ > kNoTime * limits_.longest) changes_ = 0;
   t_ = end;
   states_ = std::move(states);
   forces_ = forces_in(problem_, moment_at(problem_, t_, states_, modes_), modes_);
@@ -272,7 +265,7 @@ bool ModeMotion::change(const Look& failed) {
 double ModeMotion::find_step(double until, States& end, std::vector<PolynomialPiece>& pieces) {
   for (int n = 0; n < kShortenings; ++n) {
     // no rest of a rounding is left for a step of its own
-    const bool last = until - t_ <= h_ * (1.0 + 1e-9);
+    const bool last = until - t_ <= h_ * (1.0 + kSameEnd);
     const double h = last ? until - t_ : h_;
     if (!(t_ + h > t_)) return 0.0;
     const ModeTrial trial = try_step(problem_, modes_, t_, states_, h);
@@ -290,7 +283,7 @@ double ModeMotion::find_step(double until, States& end, std::vector<PolynomialPi
     }
     // a step that was cut to end at `until` says that a longer one would do, not that it should be as
     // short
-    const double next = h * std::clamp(0.9 * power(std::max(error, 1e-10), -0.2), 0.2, 4.0);
+    const double next = h * std::clamp(0.9 * power(std::max(error, kLeastError), -0.2), 0.2, 4.0);
     h_ = std::min(last ? std::max(h_, next) : next, limits_.longest);
     return h;
   }
@@ -310,7 +303,7 @@ ModeStep ModeMotion::step(double until) {
   bool fails = fails_within(h, done.pieces, clear, failed);
   if (fails) at = t_ + clear;
   // beyond the end of the feature by more than a rounding of places, so that the next look finds it left
-  if (fails && failed.what == Look::What::range) at = std::min(until, at + kBeyond * size_ / speed_);
+  if (fails && failed.what == Look::What::range) at = std::min(until, at + kBeyondEnd * size_ / speed_);
   // A step of its own to there, not the first part of the longer one: states and forces at its end are
   // those of the method, and its motion ends in them.
   if (fails && at > t_) done.pieces = pieces_to(at, end = after(at - t_));

@@ -5,14 +5,13 @@
 #include <limits>
 #include <vector>
 
+#include "brink/scheduler/islands/tolerances.h"
+
 namespace brink {
 
 namespace {
 
 using Eigen::Index;
-
-/// A column joins if it reduces the residual by more than this part of |b|.
-constexpr double kJoins = 1e-14;
 
 /// Least squares over the columns that have joined; 0 elsewhere.
 PlainVector solve_joined(const PlainMatrix& A, const PlainVector& b, const std::vector<bool>& joined) {

@@ -4,13 +4,11 @@
 #include <cmath>
 
 #include "brink/core/shapes/distance.h"
+#include "brink/scheduler/islands/tolerances.h"
 
 namespace brink {
 
 namespace {
-
-/// A point nearer to a circle's centre than this part of what it is made of has no direction from it.
-constexpr double kNoDirection = 1e-9;
 
 /// Where a contact's parts are and how they move, in world axes.
 struct Placing {
@@ -192,7 +190,7 @@ std::vector<SmoothContact> smooth_contacts(const NearFeature& f, const Outline& 
   const double size = carrier.bounding_radius + other.bounding_radius;
   const bool round = first.kind == SmoothContact::Kind::circle;
   // right at the centre the normal has no direction, and the gap's bend no bound
-  if (round && !((q - first.place).norm() > kNoDirection * size)) shapes.clear();
+  if (round && !((q - first.place).norm() > kAtCentre * size)) shapes.clear();
   return shapes;
 }
 

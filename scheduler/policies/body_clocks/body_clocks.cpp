@@ -315,8 +315,8 @@ class BodyClocks final : public Policy {
     while (queue_.time() <= last && kernel_->poll()) {
       const int k = queue_.body();
       const BodyClock& clock = views_->clock(k);
-      const bool settled = clock.exit > last && clock.horizon > last;
-      if (settled && clock.candidates.front().exact && !views_->stale(clock.candidates.front())) {
+      const bool lasts = clock.exit > last && clock.horizon > last;
+      if (lasts && clock.candidates.front().exact && !views_->stale(clock.candidates.front())) {
         add_contacts(k, last, group);
         asked.push_back(k);
         // Out of the way, so that the next one of the instant comes up; put back below.

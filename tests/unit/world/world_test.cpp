@@ -83,14 +83,15 @@ TEST(World, EveryFaultIsNamed) {
          outline->container = true;
          w.bodies[0].outline = outline;
        }},
-      {{"site \"floor\"", "material is -1"}, [](World& w) { w.sites[0].material = -1; }},
-      {{"site \"floor\"", "outline"}, [](World& w) { w.sites[0].outline = std::make_shared<Outline>(); }},
-      {{"site \"floor\"", "position is nan"}, [=](World& w) { w.sites[0].pose.position.x() = nan; }},
-      {{"site \"floor\"", "motion velocity is nan"},
+      {{"fixed site \"floor\"", "material is -1"}, [](World& w) { w.sites[0].material = -1; }},
+      {{"fixed site \"floor\"", "outline"},
+       [](World& w) { w.sites[0].outline = std::make_shared<Outline>(); }},
+      {{"fixed site \"floor\"", "position is nan"}, [=](World& w) { w.sites[0].pose.position.x() = nan; }},
+      {{"fixed site \"floor\"", "motion velocity is nan"},
        [=](World& w) {
          w.sites[0].motion = ConstantMotion{{{nan, 0.0}, 0.0}};
        }},
-      {{"site \"floor\"", "motion x = \"1/t\" is inf at t = 0"},
+      {{"fixed site \"floor\"", "motion x = \"1/t\" is inf at t = 0"},
        [](World& w) {
          w.sites[0].motion = FormulaMotion{Formula("1/t", {"t"}), {}, {}};
        }},

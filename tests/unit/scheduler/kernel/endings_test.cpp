@@ -11,7 +11,7 @@ Outcome collision(int body, int other, double closing = 1.0) {
   o.pair = {body, other, -1, {}};
   o.contact.sample = o.contact.site = 0;
   o.contact.closing_speed = closing;
-  o.rest = 1.0;
+  o.since_last = 1.0;
   return o;
 }
 
@@ -47,7 +47,7 @@ TEST(Endings, BouncesThatShrinkEndAtTheirLimit) {
   std::optional<Ending> ending;
   for (int k = 0; k < 200 && !ending; ++k, t += flight, flight *= 0.5) {
     Outcome o = collision(0, 1, 5.0 * flight);
-    o.rest = flight;
+    o.since_last = flight;
     ending = endings.collided(o, t, BounceLoss::some);
   }
   ASSERT_TRUE(ending);
@@ -61,7 +61,7 @@ TEST(Endings, WhatAPictureShowsIsNoSeries) {
   for (int k = 0; k < 30; ++k, t += flight, flight *= 0.5) {
     Outcome o = collision(0, 1, 5.0 * flight);
     o.contact.seen = true;
-    o.rest = flight;
+    o.since_last = flight;
     EXPECT_FALSE(endings.collided(o, t, BounceLoss::some));
   }
 }

@@ -31,6 +31,33 @@ inline World on_a_spring() {
   return world;
 }
 
+/// A disc of radius 0.5 m, or a box 1 m wide, of 1 kg and with its centre at `height` [m], over a floor whose top is y = 0,
+/// under 10 m/s^2.
+inline World on_floor(const Shape& shape, double friction = 0.5, const Vec2& velocity = {0.0, 0.0},
+                      double height = 0.5) {
+  World world;
+  world.gravity = {0.0, -10.0};
+  world.materials[0].friction = friction;
+  world.materials[0].restitution = 0.5;
+  add(world, body(shape, {0.0, height}, velocity));
+  add(world, site(make_box(40.0, 1.0), {0.0, -0.5}));
+  return world;
+}
+
+/// An island holds the bodies from now on, as they are.
+inline std::vector<int> hold(KernelParts& parts, const std::vector<int>& bodies) {
+  std::vector<Restart> held;
+  for (const int k : bodies) held.push_back({k, parts.trajectories.state_now(k)});
+  std::vector<int> changed;
+  parts.trajectories.hold(held, changed);
+  return changed;
+}
+
+inline IslandMembers members_of(KernelParts& parts, const std::set<int>& bodies) {
+  return {parts.world, parts.trajectories, parts.search, parts.run.time(), bodies};
+}
+
+inline constexpr PairKey kOnFloor{0, -1, 0, {}};
 inline constexpr PairKey kDiscs{0, 1, -1, {}};
 inline constexpr PairKey kWall{1, -1, 0, {}};
 

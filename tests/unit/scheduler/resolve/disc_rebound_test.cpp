@@ -25,9 +25,9 @@ ImpulseSide side_of(const Disc& d, const ExtendedState& s, const RealVec& point)
 }
 
 /// Two discs that touch at `time`, to a rounding or so, and approach; both fall and turn.
-class Meeting {
+class TwoDiscs {
  public:
-  explicit Meeting(std::uint64_t seed) : random_(seed) {
+  explicit TwoDiscs(std::uint64_t seed) : random_(seed) {
     restitution = random_.uniform();
     time = 1.0 + 9.0 * random_.uniform();
     const double angle = 6.283185307179586 * random_.uniform();
@@ -83,7 +83,7 @@ void expect_same(const ExtendedState& general, const DiscRebound::Start& quick, 
 TEST(DiscRebound, IsTheGeneralResponseToRoundingsOfExtendedPrecision) {
   for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
     SCOPED_TRACE(seed);
-    const Meeting m(seed);
+    const TwoDiscs m(seed);
     const double latest = 4.0 * ulp(m.time);
     const auto quick = rebound({&m.a.motion, m.a.outline.bounding_radius, 1.0 / m.a.mass},
                                {&m.b.motion, m.b.outline.bounding_radius, 1.0 / m.b.mass}, m.shift, m.time,
@@ -210,7 +210,7 @@ TEST(DiscRebound, SaysNothingOfWhatIsNotAbreastOfAWallOrParts) {
 }
 
 TEST(DiscRebound, SaysNothingOfDiscsThatPart) {
-  Meeting m(7);
+  TwoDiscs m(7);
   BodyState away = m.a.motion.state(m.time);
   const BodyState other = m.b.motion.state(m.time);
   away.twist.velocity = other.twist.velocity + (away.pose.position - other.pose.position - m.shift);
