@@ -378,7 +378,8 @@ class Checker {
     if (!f.motion_a.is_ballistic() || !f.motion_b.is_ballistic()) return;
     check_pressed(f, answer, truth);
     check_rebound(f, answer, 1.1 + 0.1 * static_cast<double>(seed_ % 10));  // restitution .1 to 1
-    check_rebound(f, answer, 1.0);                                          // none
+    // none; far away turning makes an approach of the rounding of places, which may be told as the contact again
+    if (!f.far) check_rebound(f, answer, 1.0);
   }
 
   /// A small shift of a along the normal is a gap of that size; against it, none.
