@@ -107,7 +107,7 @@ std::vector<int> joining(const World& world, Trajectories& trajectories, const C
   for (int k = 0; k < trajectories.body_count(); ++k) {
     if (members.has(k)) continue;
     // bodies with clocks of their own may not have been followed so far
-    if (!trajectories.cover_body(k, now) || !go_on()) return {};
+    if (!trajectories.cover_body(k, now) || (go_on && !go_on())) return {};
     const Outsider outsider(world, trajectories, search, members, k, now, h);
     bool near = false;
     // first against the whole island: nearly all of the world is far from it

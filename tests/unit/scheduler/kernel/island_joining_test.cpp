@@ -21,7 +21,7 @@ std::vector<int> who_joins(double gap, double speed, double absorbed) {
   IslandMembers members = members_of(parts, {0});
   members.look_ahead(0.02, 2.0);
   return joining(parts.world, parts.trajectories, parts.search, members, 0.0, 0.02,
-                 [absorbed](const PairKey&) { return absorbed; });
+                 [absorbed](const PairKey&) { return absorbed; }, {});
 }
 
 TEST(IslandJoining, WhoComesSlowlyAndInTimeJoins) {

@@ -15,7 +15,7 @@ struct Alone {
   explicit Alone(const World& world)
       : parts(world, {}),
         motion((hold(parts, {0}), members_of(parts, {0})), parts.search, parts.response, solver, tally,
-               WarmContacts()) {}
+               WarmContacts(), {}) {}
   int pass_on_impacts() {
     int told = 0;
     motion.pass_on_impacts([&](const HeldContact&, const RealVec&, double, const ImpulseResult&) { ++told; });
