@@ -55,7 +55,7 @@ IslandMotion::IslandMotion(IslandMembers members, const ContactSearch& search, C
       solver_(&solver),
       tally_(&tally),
       warm_(std::move(warm)),
-      go_on_(std::move(go_on)) {}
+      go_on_(go_on ? std::move(go_on) : GoOn([] { return true; })) {}
 
 /// Of the members as they are now: impacts change speeds, and with them the answer.
 double IslandMotion::longest() const {
