@@ -455,7 +455,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "y = \"1e300*t\" is too fast, or goes too far, near t = 0 s"},
         FaultCase{"MotionThatCannotBeBounded",
                   "[[sites]]\npoint = [0, 0]\nmotion = { x = \"t\", y = \"max(sin(t), sin(t) + 0)\" }\n",
-                  "3:25 site"},
+                  "3:25 fixed site"},
         FaultCase{"MotionOfBothKinds",
                   "[[sites]]\npoint = [0, 0]\nmotion = { velocity = [1, 0], x = \"t\" }\n",
                   "3:10 motion: is not clear"},
