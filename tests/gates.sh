@@ -53,8 +53,8 @@ for entry in json.load(open('build/release/compile_commands.json')):
 PY
 }
 
-# Headers to be compiled by themselves: those of tests as the tests are, which clang need not compile. Those that a source of their name includes first are not among them where clang
-# compiles that source.
+# Headers to be compiled by themselves: those of tests as the tests are, which clang need not compile. Those that a source
+# of their name includes first are not among them where clang compiles that source.
 single_headers() {  # COMPILER
   sources | grep '\.h$' | while read -r header; do
     source=${header%.h}.cpp
