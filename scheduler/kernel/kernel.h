@@ -172,7 +172,8 @@ bool Kernel::do_or_cut(bool takes_long, Verb&& verb) {
   const RunControl::Undoable undoable(parts_.run);
   Records::HeldBack held_back(parts_.records);
   const bool goes_on = verb();
-  if (parts_.run.is_cut()) {
+  // not asked again: what is complete by now stays
+  if (parts_.run.was_cut()) {
     parts_.before_cut = std::move(before);
     return false;
   }

@@ -132,12 +132,9 @@ void Records::lasted(const HeldContact& c) {
                      c.normal_force, c.tangential_force});
 }
 
-/// In the order in which it happened, also where it is held back.
-void Records::tell(const Told& what) {
-  if (holds_back_) return held_back_.push_back(what);
-  if (const auto* event = std::get_if<Event>(&what)) recorder_->event(*event);
-  if (const auto* knot = std::get_if<Knot>(&what)) recorder_->knot(*knot);
-  if (const auto* contact = std::get_if<LastedContact>(&what)) recorder_->contact_lasted(*contact);
+/// In the order in which it happened.
+void Records::tell_held_back() {
+  for (const auto& what : take_back()) std::visit([this](const auto& of) { pass_on(of); }, what);
 }
 
 /// By the wall clock: when checkpoints are written changes nothing of the run. Below 0: never.

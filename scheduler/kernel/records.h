@@ -64,9 +64,7 @@ class Records {
     ~HeldBack() { records_->take_back(); }
     HeldBack(const HeldBack&) = delete;
     HeldBack& operator=(const HeldBack&) = delete;
-    void told() {
-      for (const auto& what : records_->take_back()) records_->tell(what);
-    }
+    void told() { records_->tell_held_back(); }
 
    private:
     Records* records_;
@@ -91,7 +89,18 @@ class Records {
  private:
   using Told = std::variant<Event, Knot, LastedContact>;
   void wind_frame_clock(double t);
-  void tell(const Told& what);
+  /// Now, or once it is known that it stays.
+  template <class What>
+  void tell(const What& what) {
+    if (holds_back_)
+      held_back_.emplace_back(what);
+    else
+      pass_on(what);
+  }
+  void pass_on(const Event& event) { recorder_->event(event); }
+  void pass_on(const Knot& knot) { recorder_->knot(knot); }
+  void pass_on(const LastedContact& contact) { recorder_->contact_lasted(contact); }
+  void tell_held_back();
   /// From now on they are told at once. What was held back until now.
   std::vector<Told> take_back() {
     holds_back_ = false;

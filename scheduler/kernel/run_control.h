@@ -77,6 +77,8 @@ class RunControl {
     if (cut_ || !undoable_) return cut_;
     return cut_ = is_asked_to_stop();
   }
+  /// The same, with nobody asked.
+  bool was_cut() const { return cut_; }
   /// Asks as poll() does, also where the run has its end already.
   bool is_asked_to_stop() {
     if (!asked_to_stop_ && is_due()) ask();
