@@ -13,7 +13,7 @@ namespace {
 /// piece, to infinity, and motions are that piece itself; else they are chains, which grow as time goes on.
 class ClosedForm final : public Integrator {
  public:
-  ClosedForm(std::shared_ptr<const Dynamics> dynamics, WorkCounters* work)
+  ClosedForm(std::shared_ptr<Dynamics> dynamics, WorkCounters* work)
       : dynamics_(std::move(dynamics)), work_(work) {}
 
   void start(double t, std::span<const BodyState> states) override {
@@ -94,7 +94,7 @@ class ClosedForm final : public Integrator {
     return pieces;
   }
 
-  std::shared_ptr<const Dynamics> dynamics_;
+  std::shared_ptr<Dynamics> dynamics_;
   WorkCounters* work_;
   double time_ = 0.0;
   bool chained_ = false;
@@ -110,7 +110,7 @@ bool has_closed_form(const Dynamics& dynamics) {
   return dynamics.constant() || (dynamics.size() == 1 && dynamics.linear_drag(0.0).valid);
 }
 
-std::unique_ptr<Integrator> make_closed_form(std::shared_ptr<const Dynamics> dynamics, WorkCounters* work) {
+std::unique_ptr<Integrator> make_closed_form(std::shared_ptr<Dynamics> dynamics, WorkCounters* work) {
   return std::make_unique<ClosedForm>(std::move(dynamics), work);
 }
 

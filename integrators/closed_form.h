@@ -11,6 +11,6 @@ bool has_closed_form(const Dynamics& dynamics);
 /// One motion from start() to the next break of the forces, to infinity where there is none: a plain parabola
 /// or drag motion then. With breaks ahead it is a chain of them, joined at the break times exactly.
 /// @pre has_closed_form(*dynamics).
-std::unique_ptr<Integrator> make_closed_form(std::shared_ptr<const Dynamics> dynamics, WorkCounters* work);
+std::unique_ptr<Integrator> make_closed_form(std::shared_ptr<Dynamics> dynamics, WorkCounters* work);
 
 }  // namespace brink

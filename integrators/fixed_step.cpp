@@ -27,7 +27,7 @@ BodyState moved(const BodyState& from, const Twist& twist, const Acceleration& a
 /// a step leads. A segment ends at a break of the forces, and steps are counted afresh from there.
 class FixedStep : public SteppingIntegrator {
  protected:
-  FixedStep(std::shared_ptr<const Dynamics> dynamics, double step, WorkCounters* work)
+  FixedStep(std::shared_ptr<Dynamics> dynamics, double step, WorkCounters* work)
       : SteppingIntegrator(std::move(dynamics), work), step_(step), end_(size()), a_(size()) {}
 
   /// Writes the states after h into `end`. False where an acceleration is not finite.
@@ -69,7 +69,7 @@ class FixedStep : public SteppingIntegrator {
 /// the factor 1 + (w h)^2 a step: a baseline, not a method to use.
 class Euler final : public FixedStep {
  public:
-  Euler(std::shared_ptr<const Dynamics> dynamics, double step, WorkCounters* work)
+  Euler(std::shared_ptr<Dynamics> dynamics, double step, WorkCounters* work)
       : FixedStep(std::move(dynamics), step, work) {}
 
  private:
@@ -85,7 +85,7 @@ class Euler final : public FixedStep {
 /// the energy of an oscillator swings about its value instead of growing, as long as w h < 2.
 class SemiImplicitEuler final : public FixedStep {
  public:
-  SemiImplicitEuler(std::shared_ptr<const Dynamics> dynamics, double step, WorkCounters* work)
+  SemiImplicitEuler(std::shared_ptr<Dynamics> dynamics, double step, WorkCounters* work)
       : FixedStep(std::move(dynamics), step, work) {}
 
  private:
@@ -104,7 +104,7 @@ class SemiImplicitEuler final : public FixedStep {
 /// The classic fourth-order method (Kutta 1901). Four evaluations a step; the error of a step falls with h^5.
 class Rk4 final : public FixedStep {
  public:
-  Rk4(std::shared_ptr<const Dynamics> dynamics, double step, WorkCounters* work)
+  Rk4(std::shared_ptr<Dynamics> dynamics, double step, WorkCounters* work)
       : FixedStep(std::move(dynamics), step, work), stage_(size()), sums_(size()) {}
 
  private:
@@ -148,16 +148,14 @@ class Rk4 final : public FixedStep {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_euler(std::shared_ptr<const Dynamics> dynamics, double step,
-                                       WorkCounters* work) {
+std::unique_ptr<Integrator> make_euler(std::shared_ptr<Dynamics> dynamics, double step, WorkCounters* work) {
   return std::make_unique<Euler>(std::move(dynamics), step, work);
 }
-std::unique_ptr<Integrator> make_semi_implicit_euler(std::shared_ptr<const Dynamics> dynamics, double step,
+std::unique_ptr<Integrator> make_semi_implicit_euler(std::shared_ptr<Dynamics> dynamics, double step,
                                                      WorkCounters* work) {
   return std::make_unique<SemiImplicitEuler>(std::move(dynamics), step, work);
 }
-std::unique_ptr<Integrator> make_rk4(std::shared_ptr<const Dynamics> dynamics, double step,
-                                     WorkCounters* work) {
+std::unique_ptr<Integrator> make_rk4(std::shared_ptr<Dynamics> dynamics, double step, WorkCounters* work) {
   return std::make_unique<Rk4>(std::move(dynamics), step, work);
 }
 

@@ -11,11 +11,9 @@
 
 namespace brink {
 
-std::unique_ptr<Integrator> make_euler(std::shared_ptr<const Dynamics> dynamics, double step,
-                                       WorkCounters* work);
-std::unique_ptr<Integrator> make_semi_implicit_euler(std::shared_ptr<const Dynamics> dynamics, double step,
+std::unique_ptr<Integrator> make_euler(std::shared_ptr<Dynamics> dynamics, double step, WorkCounters* work);
+std::unique_ptr<Integrator> make_semi_implicit_euler(std::shared_ptr<Dynamics> dynamics, double step,
                                                      WorkCounters* work);
-std::unique_ptr<Integrator> make_rk4(std::shared_ptr<const Dynamics> dynamics, double step,
-                                     WorkCounters* work);
+std::unique_ptr<Integrator> make_rk4(std::shared_ptr<Dynamics> dynamics, double step, WorkCounters* work);
 
 }  // namespace brink

@@ -81,7 +81,7 @@ bool IntegratorOptions::is_valid(std::string* error) const {
 // `brink list` shows these.
 std::span<const IntegratorInfo> integrators() { return kIntegrators; }
 
-std::unique_ptr<Integrator> make_integrator(std::string_view name, std::shared_ptr<const Dynamics> dynamics,
+std::unique_ptr<Integrator> make_integrator(std::string_view name, std::shared_ptr<Dynamics> dynamics,
                                             const IntegratorOptions& options, WorkCounters* work) {
   if (!dynamics || dynamics->size() <= 0)
     throw BadInput("make_integrator: dynamics of no body; allowed: at least one");

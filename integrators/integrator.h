@@ -73,7 +73,7 @@ std::span<const IntegratorInfo> integrators();
 /// `erk`.
 /// @throws BadInput on an unknown name (naming those allowed), bad options, or `ballistic` where the dynamics
 /// have no closed form.
-std::unique_ptr<Integrator> make_integrator(std::string_view name, std::shared_ptr<const Dynamics> dynamics,
+std::unique_ptr<Integrator> make_integrator(std::string_view name, std::shared_ptr<Dynamics> dynamics,
                                             const IntegratorOptions& options, WorkCounters* work = nullptr);
 
 }  // namespace brink

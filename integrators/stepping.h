@@ -38,7 +38,7 @@ class SteppingIntegrator : public Integrator {
   Motion motion(int k) const final;
 
  protected:
-  SteppingIntegrator(std::shared_ptr<const Dynamics> dynamics, WorkCounters* work)
+  SteppingIntegrator(std::shared_ptr<Dynamics> dynamics, WorkCounters* work)
       : dynamics_(std::move(dynamics)), work_(work) {}
 
   /// The method's own start at time() with states(), where nothing before counts. False: fail() was called.
@@ -50,7 +50,7 @@ class SteppingIntegrator : public Integrator {
   double time() const { return time_; }
   double segment_end() const { return segment_end_; }
   /// See Dynamics, from the present time on.
-  double steady_until() const { return dynamics_->steady_until(time_); }
+  double steady_until() { return dynamics_->steady_until(time_); }
   std::span<const BodyState> states() const { return states_; }
 
   /// Accelerations at time t of the present segment: a time at its end counts as just before the jump there.
@@ -66,7 +66,7 @@ class SteppingIntegrator : public Integrator {
  private:
   bool next_segment();
 
-  std::shared_ptr<const Dynamics> dynamics_;
+  std::shared_ptr<Dynamics> dynamics_;
   WorkCounters* work_;
   std::vector<std::shared_ptr<Track>> tracks_;
   std::vector<BodyState> states_;

@@ -14,18 +14,18 @@ namespace brink {
 /// ARKODE's ERKStep with the method of Dormand & Prince (1980), order 5 with 4. Dense output: quintic Hermite
 /// through pose, twist and acceleration at both ends, error O(h^6), so it is finer than the step itself, and
 /// C2.
-std::unique_ptr<Integrator> make_erk(std::shared_ptr<const Dynamics> dynamics,
-                                     const IntegratorOptions& options, WorkCounters* work);
+std::unique_ptr<Integrator> make_erk(std::shared_ptr<Dynamics> dynamics, const IntegratorOptions& options,
+                                     WorkCounters* work);
 
 /// CVODE's Adams-Moulton methods, orders 1 to 12, with fixed-point iteration. For smooth forces and tight
 /// tolerances. Dense output: CVODE's own polynomial, and the cubic that makes it meet the accepted states at
 /// both ends.
-std::unique_ptr<Integrator> make_adams(std::shared_ptr<const Dynamics> dynamics,
-                                       const IntegratorOptions& options, WorkCounters* work);
+std::unique_ptr<Integrator> make_adams(std::shared_ptr<Dynamics> dynamics, const IntegratorOptions& options,
+                                       WorkCounters* work);
 
 /// CVODE's backward differentiation formulas, orders 1 to 5, with Newton iteration on a dense
 /// difference-quotient Jacobian. For stiff forces. Dense output as for make_adams.
-std::unique_ptr<Integrator> make_bdf(std::shared_ptr<const Dynamics> dynamics,
-                                     const IntegratorOptions& options, WorkCounters* work);
+std::unique_ptr<Integrator> make_bdf(std::shared_ptr<Dynamics> dynamics, const IntegratorOptions& options,
+                                     WorkCounters* work);
 
 }  // namespace brink

@@ -26,8 +26,7 @@ void keep_message(int, const char*, const char*, char* message, void* self) {
 /// What both methods of CVODE share: everything but the solver of their implicit equations.
 class Cvode : public SundialsStepper {
  protected:
-  Cvode(std::shared_ptr<const Dynamics> dynamics, const IntegratorOptions& options, WorkCounters* work,
-        int method)
+  Cvode(std::shared_ptr<Dynamics> dynamics, const IntegratorOptions& options, WorkCounters* work, int method)
       : SundialsStepper(std::move(dynamics), options, work), method_(method) {}
   ~Cvode() override { CVodeFree(&memory_); }
 
@@ -93,7 +92,7 @@ class Cvode : public SundialsStepper {
 /// while a step is short beside 1 / (largest rate of the forces): for forces that are not stiff.
 class Adams final : public Cvode {
  public:
-  Adams(std::shared_ptr<const Dynamics> dynamics, const IntegratorOptions& options, WorkCounters* work)
+  Adams(std::shared_ptr<Dynamics> dynamics, const IntegratorOptions& options, WorkCounters* work)
       : Cvode(std::move(dynamics), options, work, CV_ADAMS),
         solver_(SUNNonlinSol_FixedPoint(y(), 0, context())) {}
   ~Adams() override { SUNNonlinSolFree(solver_); }
@@ -108,7 +107,7 @@ class Adams final : public Cvode {
 /// rows a body: n bodies cost about (6 n)^3 / 3 multiplications a factorisation.
 class Bdf final : public Cvode {
  public:
-  Bdf(std::shared_ptr<const Dynamics> dynamics, const IntegratorOptions& options, WorkCounters* work)
+  Bdf(std::shared_ptr<Dynamics> dynamics, const IntegratorOptions& options, WorkCounters* work)
       : Cvode(std::move(dynamics), options, work, CV_BDF),
         matrix_(SUNDenseMatrix(kNumbersPerBody * size(), kNumbersPerBody * size(), context())),
         solver_(SUNLinSol_Dense(y(), matrix_, context())) {}
@@ -125,12 +124,12 @@ class Bdf final : public Cvode {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_adams(std::shared_ptr<const Dynamics> dynamics,
-                                       const IntegratorOptions& options, WorkCounters* work) {
+std::unique_ptr<Integrator> make_adams(std::shared_ptr<Dynamics> dynamics, const IntegratorOptions& options,
+                                       WorkCounters* work) {
   return std::make_unique<Adams>(std::move(dynamics), options, work);
 }
-std::unique_ptr<Integrator> make_bdf(std::shared_ptr<const Dynamics> dynamics,
-                                     const IntegratorOptions& options, WorkCounters* work) {
+std::unique_ptr<Integrator> make_bdf(std::shared_ptr<Dynamics> dynamics, const IntegratorOptions& options,
+                                     WorkCounters* work) {
   return std::make_unique<Bdf>(std::move(dynamics), options, work);
 }
 

@@ -37,7 +37,7 @@ void unpack(const double* y, std::span<BodyState> states) {
 
 }  // namespace
 
-SundialsStepper::SundialsStepper(std::shared_ptr<const Dynamics> dynamics, const IntegratorOptions& options,
+SundialsStepper::SundialsStepper(std::shared_ptr<Dynamics> dynamics, const IntegratorOptions& options,
                                  WorkCounters* work)
     : SteppingIntegrator(std::move(dynamics), work),
       options_(options),

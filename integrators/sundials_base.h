@@ -25,8 +25,7 @@ class SundialsStepper : public SteppingIntegrator {
  protected:
   static constexpr int kNumbersPerBody = 6;
 
-  SundialsStepper(std::shared_ptr<const Dynamics> dynamics, const IntegratorOptions& options,
-                  WorkCounters* work);
+  SundialsStepper(std::shared_ptr<Dynamics> dynamics, const IntegratorOptions& options, WorkCounters* work);
   ~SundialsStepper() override;
 
   /// Makes or re-initialises the solver at time() with y; 0 if done.

@@ -27,7 +27,7 @@ void keep_message(int, const char*, const char*, char* message, void* self) {
 /// One explicit Runge-Kutta solver a component; pieces from pose, twist and acceleration at both ends.
 class Erk final : public SundialsStepper {
  public:
-  Erk(std::shared_ptr<const Dynamics> dynamics, const IntegratorOptions& options, WorkCounters* work)
+  Erk(std::shared_ptr<Dynamics> dynamics, const IntegratorOptions& options, WorkCounters* work)
       : SundialsStepper(std::move(dynamics), options, work), before_(size()), after_(size()) {}
   ~Erk() override { ERKStepFree(&memory_); }
 
@@ -75,8 +75,8 @@ class Erk final : public SundialsStepper {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_erk(std::shared_ptr<const Dynamics> dynamics,
-                                     const IntegratorOptions& options, WorkCounters* work) {
+std::unique_ptr<Integrator> make_erk(std::shared_ptr<Dynamics> dynamics, const IntegratorOptions& options,
+                                     WorkCounters* work) {
   return std::make_unique<Erk>(std::move(dynamics), options, work);
 }
 

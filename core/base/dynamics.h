@@ -30,8 +30,8 @@ class Dynamics {
 
   /// A time > t up to which the right-hand side is certain to change evenly with the time itself, as far as
   /// that is known: adaptive integrators step no farther, so that nothing short is stepped over. Infinity
-  /// where it does not depend on the time between breaks. A function of t alone.
-  virtual double steady_until(double t) const {
+  /// where it does not depend on the time between breaks. A function of t alone, which may be remembered for the next t.
+  virtual double steady_until(double t) {
     (void)t;
     return std::numeric_limits<double>::infinity();
   }

@@ -27,10 +27,10 @@ void GrowingCholesky::solve_upper(RealVector& y) const {
   }
 }
 
-void GrowingCholesky::append(const RealVector& y, Real rest) {
-  // The new row r of L has L r = a and r.r + d^2 = A's diagonal entry, so that d^2 is `rest`.
+void GrowingCholesky::append(const RealVector& y, Real left) {
+  // The new row r of L has L r = a and r.r + d^2 = A's diagonal entry, so that d^2 is `left`.
   rows_.emplace_back(y.data(), y.data() + y.size());
-  rows_.back().push_back(sqrt(rest));
+  rows_.back().push_back(sqrt(left));
 }
 
 void GrowingCholesky::remove(int k) {

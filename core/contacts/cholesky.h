@@ -17,9 +17,9 @@ class GrowingCholesky {
   void solve_lower(RealVector& b) const;
   /// L^T x = y, in place. Cost: n^2 / 2.
   void solve_upper(RealVector& y) const;
-  /// One more row and column of A: `y` is L^-1 times the new column, `rest` > 0 what y.y leaves of its
+  /// One more row and column of A: `y` is L^-1 times the new column, `left` > 0 what y.y leaves of its
   /// diagonal.
-  void append(const RealVector& y, Real rest);
+  void append(const RealVector& y, Real left);
   /// Row and column k of A go. Cost: (n - k)^2.
   void remove(int k);
 

@@ -15,14 +15,14 @@ namespace brink {
 
 namespace {
 
-constexpr int kMostSteps = 80;
+constexpr int kMostRestSteps = 80;
 /// Accelerations below this part of the unit are rest; the search goes on to the lesser one where it can.
 constexpr double kRest = 1e-8, kSure = 1e-10;
 /// Rounding of what loads add up to, as a part of them.
 constexpr double kRoundingOfLoads = 1e-13;
 /// Of w.M w: the gap at which w is known to the square root of this; where that does if rounding hinders; and
 /// at which w is known not to be 0.
-constexpr double kExact = 1e-18, kNearly = 1e-14, kProof = 1e-8;
+constexpr double kRestExact = 1e-18, kRestNearly = 1e-14, kProof = 1e-8;
 
 /// The problem's rows: the edges of each contact's cone of forces.
 class Cones {
@@ -157,10 +157,10 @@ RestResult ConeQp::rest_forces(const RestProblem& problem, const GoOn& go_on) {
   // are taken; else the last steps would be spent on nothing.
   const auto sure = [&] {
     const Verdict verdict(cones.problem(), solver_);
-    if (verdict.rests(kSure) || verdict.moves(kExact)) return true;
-    return solver_.hindered() && (verdict.rests(kRest) || verdict.moves(kNearly));
+    if (verdict.rests(kSure) || verdict.moves(kRestExact)) return true;
+    return solver_.hindered() && (verdict.rests(kRest) || verdict.moves(kRestNearly));
   };
-  while (!sure() && solver_.steps() < kMostSteps && solver_.step(go_on)) continue;
+  while (!sure() && solver_.steps() < kMostRestSteps && solver_.step(go_on)) continue;
 
   RestResult result;
   const Verdict verdict(cones.problem(), solver_);

@@ -140,7 +140,7 @@ CandidateLists render_lists(FieldRenderer& renderer, const Outline& outline, con
   // The sum of bound and slack is rounded to single precision in the shader: a few units in the last place.
   const double slack = 2.0 * (kHalfDiagonal + grid.snap()) + 0x1.0p-22 * batch.largest_value;
   // Nothing else may be drawn until the candidates are: they are compared with what this leaves in its target.
-  const std::vector<float>& bounds = renderer.draw_bounds(grid, batch);
+  const std::vector<float> bounds = renderer.draw_bounds(grid, batch);
   std::vector<std::uint32_t> sorted;
   std::vector<std::uint32_t> start;
   if (renderer.context().has_storage_buffers() && !rules.collect_on_cpu) {

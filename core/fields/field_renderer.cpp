@@ -284,7 +284,7 @@ void FieldRenderer::read_image(int x, int y, int width, int height, std::uint32_
   pixels_read_ += static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
 }
 
-const std::vector<float>& FieldRenderer::draw_bounds(const PixelGrid& grid, const SiteBatch& batch) {
+std::vector<float> FieldRenderer::draw_bounds(const PixelGrid& grid, const SiteBatch& batch) {
   context_->make_current();
   fit(bound_, grid, /*with_ids=*/false);
   Program& program = use(FieldProgram::bound, grid, batch);
@@ -293,11 +293,11 @@ const std::vector<float>& FieldRenderer::draw_bounds(const PixelGrid& grid, cons
   upload(batch);
   gl_.Enable(GL_DEPTH_TEST);
   draw(grid, batch);
-  bounds_.resize(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height));
+  std::vector<float> bounds(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height));
   gl_.ReadBuffer(GL_COLOR_ATTACHMENT0);
-  gl_.ReadPixels(0, 0, grid.width, grid.height, GL_RED, GL_FLOAT, bounds_.data());
-  pixels_read_ += bounds_.size();
-  return bounds_;
+  gl_.ReadPixels(0, 0, grid.width, grid.height, GL_RED, GL_FLOAT, bounds.data());
+  pixels_read_ += bounds.size();
+  return bounds;
 }
 
 /// A storage buffer of at least this size at binding 0.
@@ -312,8 +312,8 @@ void FieldRenderer::bind_storage(std::size_t bytes) {
   }
 }
 
-const std::vector<PixelEntry>& FieldRenderer::draw_candidates(const PixelGrid& grid, const SiteBatch& batch,
-                                                              double slack, std::size_t capacity) {
+std::vector<PixelEntry> FieldRenderer::draw_candidates(const PixelGrid& grid, const SiteBatch& batch,
+                                                       double slack, std::size_t capacity) {
   Program& program = use(FieldProgram::append, grid, batch);
   gl_.Uniform1f(program.slack, static_cast<float>(slack));
   gl_.Uniform1ui(program.width, static_cast<GLuint>(grid.width));
@@ -341,13 +341,13 @@ const std::vector<PixelEntry>& FieldRenderer::draw_candidates(const PixelGrid& g
     if (!fits) ++redraws_;
     capacity = std::max<std::size_t>(capacity, head[0]);
   }
-  entries_.resize(head[0]);
+  std::vector<PixelEntry> entries(head[0]);
   gl_.GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 8, static_cast<GLsizeiptr>(head[0] * sizeof(PixelEntry)),
-                       entries_.data());
+                       entries.data());
   // The draw buffers are state of the target, which draw_bounds() will use again.
   const GLenum first = GL_COLOR_ATTACHMENT0;
   gl_.DrawBuffers(1, &first);
-  return entries_;
+  return entries;
 }
 
 /// Nothing of the picture is looked at: the target only makes the rasteriser go over the window.

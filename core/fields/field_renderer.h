@@ -39,12 +39,12 @@ class FieldRenderer {
   int target_width() const { return current_->width; }
   int target_height() const { return current_->height; }
 
-  /// Draws the nearest upper bounds; infinity where nothing is drawn. The result lives until the next call.
-  const std::vector<float>& draw_bounds(const PixelGrid& grid, const SiteBatch& batch);
+  /// Draws the nearest upper bounds; infinity where nothing is drawn.
+  std::vector<float> draw_bounds(const PixelGrid& grid, const SiteBatch& batch);
   /// Every (pixel, site) with lower bound <= nearest upper bound + slack, unsorted. @pre draw_bounds() just
   /// before, and storage buffers. Draws again with more room if `capacity` entries do not hold them.
-  const std::vector<PixelEntry>& draw_candidates(const PixelGrid& grid, const SiteBatch& batch, double slack,
-                                                 std::size_t capacity);
+  std::vector<PixelEntry> draw_candidates(const PixelGrid& grid, const SiteBatch& batch, double slack,
+                                          std::size_t capacity);
   /// For every id below `count`: 1 if somewhere in the window its lower bound is <= limit. @pre storage
   /// buffers.
   std::vector<std::uint32_t> draw_marks(const PixelGrid& grid, const SiteBatch& batch, double limit,
@@ -88,8 +88,6 @@ class FieldRenderer {
   GLuint vertices_ = 0, instances_ = 0, mesh_vertices_ = 0, mesh_ = 0, storage_ = 0, owner_buffer_ = 0,
          owner_texture_ = 0;
   std::size_t storage_bytes_ = 0;
-  std::vector<float> bounds_;
-  std::vector<PixelEntry> entries_;
   int redraws_ = 0;
   std::uint64_t pixels_drawn_ = 0, pixels_read_ = 0;
 };

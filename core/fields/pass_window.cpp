@@ -97,7 +97,10 @@ struct Decoder {
 
 /// A public call is: check, grid, names, draw, read back, count.
 struct PassRenderer::Impl {
-  FieldOptions options;
+  bool mesh;          ///< cones and tents, else exact distances
+  bool reads_target;  ///< all of it, not the window alone
+  bool reads_pixels;  ///< one by one
+  double mesh_error;  ///< [pixel]
   WorkCounters* work;
   detail::FieldRenderer renderer;
   std::vector<std::uint32_t> ids;
@@ -111,7 +114,13 @@ struct PassRenderer::Impl {
     bool was_read = false;
   } drawn;
 
-  Impl(const FieldOptions& o, WorkCounters* w) : options(o), work(w), renderer(open_gl_context(o.context)) {}
+  Impl(const FieldOptions& o, WorkCounters* w)
+      : mesh(o.primitives == "mesh"),
+        reads_target(o.readback == "full"),
+        reads_pixels(o.readback == "pixel"),
+        mesh_error(o.mesh_error),
+        work(w),
+        renderer(open_gl_context(o.context)) {}
 
   /// Adds what was drawn and read since the renderer's counters stood at the two numbers given.
   void count(std::uint64_t passes, std::uint64_t drawn_before, std::uint64_t read_before) const {
@@ -123,10 +132,9 @@ struct PassRenderer::Impl {
 
   /// Reads the window into ids and values; returns the length of their rows.
   int read(const PixelGrid& grid) {
-    // "full" reads the target, whose rows may be longer than the window's
-    const bool full = options.readback == "full";
-    const int width = full ? renderer.target_width() : grid.width,
-              height = full ? renderer.target_height() : grid.height;
+    // the target's rows may be longer than the window's
+    const int width = reads_target ? renderer.target_width() : grid.width,
+              height = reads_target ? renderer.target_height() : grid.height;
     ids.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     values.resize(ids.size());
     renderer.read_image(0, 0, width, height, ids.data(), values.data());
@@ -172,8 +180,7 @@ struct PassRenderer::Impl {
   SiteBatch draw_first(const PixelGrid& grid, std::span<const PlacedOutline> scene, std::uint32_t excluded,
                        double band, const SiteNames& names, int layers) {
     check_distance("band", band);
-    const bool mesh = options.primitives == "mesh";
-    SiteBatch batch = mesh ? detail::make_mesh_batch(grid, scene, excluded, band, options.mesh_error)
+    SiteBatch batch = mesh ? detail::make_mesh_batch(grid, scene, excluded, band, mesh_error)
                            : detail::make_batch(grid, scene, excluded, {band, 0.0, false});
     // a band narrower than a tile cuts sites closer than tiles would
     const bool large = !mesh && std::min(grid.width, grid.height) > detail::kTile &&
@@ -189,11 +196,10 @@ struct PassRenderer::Impl {
   std::vector<PixelValue> pick(std::span<const Vec2> points) {
     const PixelGrid& grid = drawn.grid;
     const Decoder decoder{drawn.names, grid, drawn.batch};
-    const bool one_by_one = options.readback == "pixel";
     // the picture is read once, however often points of it are asked for
-    if (!one_by_one && !drawn.was_read) read(grid);
-    drawn.was_read = !one_by_one;
-    const std::size_t row = options.readback == "full" ? renderer.target_width() : grid.width;
+    if (!reads_pixels && !drawn.was_read) read(grid);
+    drawn.was_read = !reads_pixels;
+    const std::size_t row = reads_target ? renderer.target_width() : grid.width;
     std::vector<PixelValue> picked;
     picked.reserve(points.size());
     for (const Vec2& p : points) {
@@ -207,7 +213,7 @@ struct PassRenderer::Impl {
       // from the target pixel by pixel, or from what was read whole
       std::uint32_t id = 0;
       float value = 0.0F;
-      if (one_by_one) {
+      if (reads_pixels) {
         renderer.read_image(i, j, 1, 1, &id, &value);
       } else {
         const std::size_t place = static_cast<std::size_t>(j) * row + static_cast<std::size_t>(i);

@@ -54,6 +54,10 @@ struct Outline {
   bool is_point() const { return sites.size() == 1 && sites[0].kind == SiteKind::point; }
 };
 
+/// A disc about its owner's origin: it looks the same at any angle, so its angle is left out of every
+/// computation.
+inline bool is_centred_disc(const Outline& o) { return o.is_point() && o.sites[0].a.isZero(0.0); }
+
 /// Fills Site::solid, pseudo-normals, samples, facets, bounds and bounding radius from sites and loops. Call
 /// once after assembling; loops must cover all sites in order and join up bit for bit. Samples: each loop's
 /// vertices (of wires the distinct ones), then its arcs.

@@ -63,6 +63,8 @@ std::vector<Segment> within(const Box& box, const std::vector<Segment>& all) {
 /// roundings of a depth, by which neighbours whose edges coincide would be
 /// in each other. An overlap along an edge is seen if it is thicker.
 constexpr double kBelow = 1e-7;
+/// A vertex that is further than this part of the size from all edges lies on none.
+constexpr double kSeemsToTouch = 1e-6;
 
 /// An outline where it stands.
 struct PlacedSolid {
@@ -134,9 +136,10 @@ OutlineCrossing shared_below_edges(const PlacedSolid& a, const std::vector<Segme
 }  // namespace
 
 /// All that two share, and all places where they cross, are in what holds both: of most near pairs that is a few edges.
-OutlineCrossing deepest_crossing(const Outline& a, const Pose& pose_a, const Outline& b, const Pose& pose_b) {
+OutlineCrossing deepest_crossing(const Outline& a, const Pose& pose_a, const Outline& b, const Pose& pose_b,
+                                 double gap) {
   OutlineCrossing deepest;
-  const double below = kBelow * std::min(a.bounding_radius, b.bounding_radius);
+  const double size = std::min(a.bounding_radius, b.bounding_radius), below = kBelow * size;
   const Box box_a = box_of(a, pose_a).grown(below), box_b = box_of(b, pose_b).grown(below);
   if (!box_a.overlaps(box_b)) return deepest;
   const Box shared{box_a.low.cwiseMax(box_b.low), box_a.high.cwiseMin(box_b.high)};
@@ -151,7 +154,7 @@ OutlineCrossing deepest_crossing(const Outline& a, const Pose& pose_a, const Out
   // edges that coincide may cross by a rounding
   const bool is_clear = deepest.depth > below;
   // wires share no inside; of a thick outline, a vertex on an edge's core is a sample that tells
-  if (is_clear || !is_sharp_solid(a) || !is_sharp_solid(b)) return deepest;
+  if (is_clear || gap > kSeemsToTouch * size || !is_sharp_solid(a) || !is_sharp_solid(b)) return deepest;
   const PlacedSolid solid_a(a, pose_a), solid_b(b, pose_b);
   // from both: what they share may border on edges of one
   // alone, as where a diamond has its corners on a box

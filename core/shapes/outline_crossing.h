@@ -16,6 +16,9 @@ struct OutlineCrossing {
 /// vertex on edge to vertex on edge (boxes of one height in one row; a shape on itself): then a place in
 /// both, and how deep it lies in the one that has it less deep. Arcs are left out: an arc that crosses has an
 /// end, or its own sample, inside. Cost: all pairs of segments.
-OutlineCrossing deepest_crossing(const Outline& a, const Pose& pose_a, const Outline& b, const Pose& pose_b);
+/// @param gap  what their samples say [m], where that is known: two that share an inside along edges have vertices on
+///             edges, so nobody looks for it where the gap is more than 1e-6 of the lesser size.
+OutlineCrossing deepest_crossing(const Outline& a, const Pose& pose_a, const Outline& b, const Pose& pose_b,
+                                 double gap = 0.0);
 
 }  // namespace brink

@@ -46,7 +46,7 @@ class ForceDynamics final : public Dynamics {
   int size() const override { return static_cast<int>(bodies_.size()); }
   void accelerations(double t, std::span<const BodyState> states, std::span<Acceleration> out) const override;
   double next_break(double t) const override;
-  double steady_until(double t) const override;
+  double steady_until(double t) override;
   // Gravity never changes, and thrusts do at breaks only; all other forces go by the states or by the time.
   bool constant() const override {
     return springs_.empty() && drags_.empty() && attracts_.empty() && formulas_.empty();
@@ -83,7 +83,7 @@ class ForceDynamics final : public Dynamics {
   std::vector<On<AttractForce>> attracts_;
   std::vector<On<ThrustForce>> thrusts_;
   std::vector<On<FormulaForce>> formulas_;
-  mutable std::vector<SteadyFormula> in_time_;  ///< every part of a formula that depends on time
+  std::vector<SteadyFormula> in_time_;  ///< every part of a formula that depends on time
 };
 
 void ForceDynamics::accelerations(double t, std::span<const BodyState> states,
@@ -198,7 +198,7 @@ double ForceDynamics::next_break(double t) const {
 
 /// Each part keeps the cells of its last answer, which changes what an answer costs and not what it is; so it
 /// is not for two threads at once.
-double ForceDynamics::steady_until(double t) const {
+double ForceDynamics::steady_until(double t) {
   double until = std::numeric_limits<double>::infinity();
   for (SteadyFormula& f : in_time_) until = std::min(until, f.until(t));
   return until;

@@ -14,7 +14,7 @@ namespace brink {
 /// Bodies coupled by forces, in ascending order. Every body is in exactly one component.
 struct Component {
   std::vector<int> bodies;
-  std::shared_ptr<const Dynamics> dynamics;  ///< over `bodies`, in that order
+  std::shared_ptr<Dynamics> dynamics;  ///< over `bodies`, in that order
 };
 
 /// Splits the world into components: bodies joined by a spring are in one, and so are the bodies of each set

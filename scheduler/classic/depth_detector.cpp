@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "brink/core/base/error.h"
 #include "brink/core/shapes/distance.h"
@@ -73,9 +74,7 @@ std::vector<int> DepthDetector::near_owners(int body, std::span<const OwnerMomen
   return near;
 }
 
-const DepthSight& DepthDetector::look(std::span<const OwnerMoment> owners, double travel) {
-  sight_.contacts.clear();
-  sight_.overlaps.clear();
+DepthSight DepthDetector::look(std::span<const OwnerMoment> owners, double travel) {
   areas_.clear();
   double coarsest = 0.0;
   for (int k = 0; k < static_cast<int>(particles_.size()); ++k)
@@ -100,7 +99,7 @@ const DepthSight& DepthDetector::look(std::span<const OwnerMoment> owners, doubl
   // found body by body: a pair may come from its second body first
   std::stable_sort(sight_.overlaps.begin(), sight_.overlaps.end(),
                    [](const DepthOverlap& a, const DepthOverlap& b) { return a.pair < b.pair; });
-  return sight_;
+  return std::exchange(sight_, {});
 }
 
 /// Reads the picture at the particles of one body, and turns what touches into contacts.

@@ -55,7 +55,7 @@ class DepthDetector {
 
   /// Looks at one moment. `owners`: bodies, then fixed sites. `travel`: no two owners' points come nearer by
   /// more than this [m] before the next look: diagrams are truncated to what it and the tolerance need.
-  const DepthSight& look(std::span<const OwnerMoment> owners, double travel);
+  DepthSight look(std::span<const OwnerMoment> owners, double travel);
 
   /// Depth below which a particle touches [m]: contact_tolerance of the scene's length, but at least half a
   /// pixel's diagonal, by which a particle is off the centre that its pixel speaks for.
@@ -78,7 +78,7 @@ class DepthDetector {
   std::vector<std::vector<Particle>> particles_;  ///< of every body
   double largest_particle_ = 0.0;                 ///< radius [m]
   DepthPictures pictures_;
-  DepthSight sight_;
+  DepthSight sight_;                              ///< of the present look, so far
   std::vector<std::pair<double, double>> areas_;  ///< of sight_.overlaps: by each body's particles
 };
 

@@ -14,15 +14,13 @@ constexpr int kRim = 2;          // pixels around it: room for differences of ne
 
 DepthPictures::DepthPictures(const FieldOptions& options, std::vector<double> radii, double length,
                              WorkCounters* work)
-    : options_(options), radii_(std::move(radii)), renderer_(options, work) {
-  const int across = options_.resolution > 0 ? options_.resolution : kResolution;
+    : each_body_(options.passes == "each"), radii_(std::move(radii)), renderer_(options, work) {
+  const int across = options.resolution > 0 ? options.resolution : kResolution;
   for (const double r : radii_) pixels_.push_back((r > 0.0 ? 2.0 * r : length) / across);
   common_pixel_ = pixels_.empty() ? length : *std::min_element(pixels_.begin(), pixels_.end());
 }
 
-double DepthPictures::pixel(int body) const {
-  return options_.passes == "each" ? pixels_[body] : common_pixel_;
-}
+double DepthPictures::pixel(int body) const { return each_body_ ? pixels_[body] : common_pixel_; }
 
 /// A square about the body's bounding circle, with its rim [m, world].
 Box DepthPictures::window_of(int body) const {
@@ -35,7 +33,7 @@ void DepthPictures::begin(std::vector<PlacedOutline> scene, double band) {
   scene_ = std::move(scene);
   band_ = band;
   body_ = -1;
-  if (options_.passes != "each") draw_layers();
+  if (!each_body_) draw_layers();
 }
 
 /// One grid over the windows of all bodies, of square pixels: of the finest body's, or as coarse as it takes
@@ -58,7 +56,7 @@ void DepthPictures::draw_layers() {
 
 void DepthPictures::open(int body, const std::vector<int>& near) {
   body_ = body;
-  if (options_.passes != "each") return;
+  if (!each_body_) return;
   // left out by a flag: the others keep their numbers, and so their bits
   if (!near.empty()) {
     for (PlacedOutline& item : scene_) item.drawn = false;
@@ -84,13 +82,13 @@ PixelValue DepthPictures::value_at(const Vec2& p) const {
 
 Vec2 DepthPictures::pixel_center(const Vec2& p) const {
   // the corner from which the pixels of this picture are counted
-  const Vec2 low = options_.passes == "each" ? window_of(body_).low : layers_[0].window.low;
+  const Vec2 low = each_body_ ? window_of(body_).low : layers_[0].window.low;
   const Vec2 at = ((p - low) / pixel(body_)).array().floor() + 0.5;
   return low + pixel(body_) * at;
 }
 
 std::vector<PixelValue> DepthPictures::read(std::span<const Vec2> points) {
-  if (options_.passes == "each") return renderer_.read(points);
+  if (each_body_) return renderer_.read(points);
   std::vector<PixelValue> values;
   for (const Vec2& p : points) values.push_back(value_at(p));
   return values;

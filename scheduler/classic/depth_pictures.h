@@ -40,7 +40,7 @@ class DepthPictures {
   Box window_of(int body) const;
   PixelValue value_at(const Vec2& p) const;
 
-  FieldOptions options_;
+  bool each_body_;  ///< has a window of its own, else two layers for all
   std::vector<double> radii_, pixels_;
   double common_pixel_;
   PassRenderer renderer_;

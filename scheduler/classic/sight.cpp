@@ -7,7 +7,7 @@ namespace brink {
 
 Sight::Sight(Kernel& kernel) : kernel_(kernel), detector_(kernel.world(), kernel.options(), &drawn_) {}
 
-const DepthSight& Sight::look(double from, double t) {
+DepthSight Sight::look(double from, double t) {
   std::vector<OwnerMoment> owners;
   double fastest = 0.0;
   for (int k = 0; k < kernel_.owner_count(); ++k) {
@@ -22,7 +22,7 @@ const DepthSight& Sight::look(double from, double t) {
       fastest = std::max(fastest, twist.velocity.norm() + std::abs(twist.omega) * reach);
   }
   // two owners come nearer at twice the fastest speed at most; as much again for what accelerates
-  const DepthSight& seen = detector_.look(owners, 4.0 * fastest * std::max(t - from, kernel_.options().step));
+  DepthSight seen = detector_.look(owners, 4.0 * fastest * std::max(t - from, kernel_.options().step));
   kernel_.note_pictures(std::exchange(drawn_, {}));
   return seen;
 }

@@ -15,9 +15,8 @@ class Sight {
   /// outlive it.
   explicit Sight(Kernel& kernel);
 
-  /// What the particles see at time t, `from` being when they looked last. @pre the motions cover t. Valid
-  /// until the next look.
-  const DepthSight& look(double from, double t);
+  /// What the particles see at time t, `from` being when they looked last. @pre the motions cover t.
+  DepthSight look(double from, double t);
   /// One line a sampling: how many particles, and what can slip between them.
   std::vector<std::string> describe() const { return detector_.describe(); }
 

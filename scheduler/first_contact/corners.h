@@ -25,9 +25,9 @@ inline Vec2 right_of(const Vec2& direction) { return -perp(direction); }
 inline Corner corner_at(const Site& site, bool at_a) {
   const Vec2 own = right_of(at_a ? direction_at_start(site) : direction_at_end(site));
   const Vec2 sum = at_a ? site.pseudo_a : site.pseudo_b;
-  const Vec2 rest = sum - own;
-  const bool cusp = std::abs(rest.norm() - 1.0) > 1e-6;  // the pseudo-normal is its tangent then
-  const Vec2 other = cusp ? Vec2(-own) : rest;
+  const Vec2 left = sum - own;
+  const bool cusp = std::abs(left.norm() - 1.0) > 1e-6;  // the pseudo-normal is its tangent then
+  const Vec2 other = cusp ? Vec2(-own) : left;
   return at_a ? Corner{other, own} : Corner{own, other};
 }
 

@@ -10,10 +10,6 @@
 
 namespace brink {
 
-/// A disc about its owner's origin: it looks the same at any angle, so its angle is left out of every
-/// computation.
-inline bool is_centred_disc(const Outline& o) { return o.is_point() && o.sites[0].a.isZero(0.0); }
-
 /// Of two outlines' bounding discs the smaller; of a mere point and another, the other's [m].
 inline double smallest_radius(double ra, double rb) {
   return ra > 0.0 && rb > 0.0 ? std::min(ra, rb) : std::max(ra, rb);

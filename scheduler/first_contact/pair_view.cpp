@@ -12,9 +12,6 @@ namespace brink::detail {
 
 namespace {
 
-/// Sine of an angle between an edge and a face that roundings may make of two that lie flush.
-constexpr double kParallel = 1e-6;
-
 /// True if q, on its way in direction `d`, is at a convex corner of a solid at an end of the site, to
 /// `rounding`, and the corner is the nearest to where it comes from, though now its foot lies a rounding
 /// inside.

@@ -150,7 +150,12 @@ class PairView {
  private:
   template <class Visit>
   void each_arc_feature(const Half& half, int i, double tolerance, Visit&& visit) const {
+    const Vec2 centre = path(half, i).q;
     for (std::size_t j = 0; j < half.sites_of().sites.size(); ++j) {
+      // the whole circle is further away
+      const Site& site = half.site(static_cast<int>(j));
+      const double reach = tolerance + limits_.tolerance + site.radius + half.sample(i).radius;
+      if (nearest_on(site, centre).distance > reach) continue;
       const ArcStep step = arc_now(half, i, static_cast<int>(j));
       if (step.active && step.gap <= tolerance)
         visit(half, Feature{i, static_cast<int>(j), step.gap, step.rate, step.normal, step.point});

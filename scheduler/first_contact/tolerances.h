@@ -78,15 +78,9 @@ class MotionRounding {
   WayRounding place_, angle_;
 };
 
-/// Bound on the rounding of a motion's place at time t, `now` [m].
-inline double place_rounding(const Motion& motion, double t, const Vec2& now, double u = kRoundoff) {
-  return MotionRounding(motion).place(t, now, u);
-}
-
-/// Likewise of its angle [rad].
-inline double angle_rounding(const Motion& motion, double t, double now, double u = kRoundoff) {
-  return MotionRounding(motion).angle(t, now, u);
-}
+/// Sine of an angle between an edge and a face, or of a pull beside its size, that roundings may make of none: far more
+/// than those of directions (some 1e-15), far less than an angle that a scene means.
+inline constexpr double kParallel = 1e-6;
 
 /// Places are taken relative to the pair, in extended precision, where their rounding in double is more than
 /// this part of the contact tolerance.

@@ -88,7 +88,7 @@ std::vector<Contact> CertificateWatch::overlaps(std::size_t most) {
     if (!contacts.empty() && contacts.front().gap < 0.0)
       found.push_back(world_contact(pair, contacts.front()));
     // bars that cross, with no vertex of one in the other
-    else if (const auto crossing = search_->crossing(pair, now))
+    else if (const auto crossing = search_->crossing(pair, now, 0.0))
       found.push_back(*crossing);
     return found.size() < most;
   });
@@ -191,7 +191,7 @@ double CertificateWatch::pair_at_frame(const PairKey& pair, double t, double at_
                             search_->outline_of(search_->other_owner(pair)).sites.size();
   if (gap < -allowed() || sites > kMostCrossings) return gap;
   // samples do not see bars that cross, as no vertex of either is in the other
-  const auto crossing = search_->crossing(pair, t);
+  const auto crossing = search_->crossing(pair, t, gap);
   if (!crossing) return gap;
   if (-crossing->gap > allowed()) {
     note_overlap(crossing->gap);

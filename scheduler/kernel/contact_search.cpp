@@ -194,7 +194,7 @@ double ContactSearch::gap(const PairKey& pair, double t, double at_most) {
 
 /// Samples do not see bars that cross, with no vertex of either in the other: boundaries do. Cost: all pairs of
 /// sites.
-std::optional<Contact> ContactSearch::crossing(const PairKey& pair, double t) const {
+std::optional<Contact> ContactSearch::crossing(const PairKey& pair, double t, double gap) const {
   // the gap of a disc's one sample is the whole distance
   if (outline_of(pair.body).is_point() || outline_of(other_owner(pair)).is_point()) return std::nullopt;
   const ExtendedState at = trajectories_->body(pair.body).motion.extended_state(t),
@@ -202,7 +202,7 @@ std::optional<Contact> ContactSearch::crossing(const PairKey& pair, double t) co
   const Vec2 base = other.position.cast<double>();  // far away, nothing of what is between them is lost
   const OutlineCrossing crossing =
       deepest_crossing(outline_of(pair.body), at.seen_from(base).pose, outline_of(other_owner(pair)),
-                       other.seen_from(base).pose);
+                       other.seen_from(base).pose, gap);
   if (crossing.depth <= 0.0) return std::nullopt;
   // boundaries that cross name no features: sample and site stay -1
   FeatureContact f;

@@ -76,8 +76,8 @@ class ContactSearch {
   std::vector<FeatureContact> touching(const PairKey& pair, double tolerance, double t);
   /// The least signed gap at time t [m], or `at_most` where it is more.
   double gap(const PairKey& pair, double t, double at_most = std::numeric_limits<double>::infinity());
-  /// Where the outlines cross at time t, by intersections of their boundaries.
-  std::optional<Contact> crossing(const PairKey& pair, double t) const;
+  /// Where the outlines cross at time t, by intersections of their boundaries; `gap`: what samples say of them [m].
+  std::optional<Contact> crossing(const PairKey& pair, double t, double gap) const;
 
  private:
   /// The two sides of a pair, the second where its image is.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brink/core/query/gap_bound.h"
 #include "brink/scheduler/first_contact/pair_kinematics.h"
 #include "brink/scheduler/kernel/tolerances.h"
 
@@ -13,6 +14,8 @@ namespace {
 /// A list is made for so many frames like the last, as long as that is no more than this part of the world's length: a
 /// wider one would hold too many pairs that never come near.
 constexpr double kFramesOfAList = 16.0, kReachOfLength = 0.25;
+/// A gap is told up to so many ways of the last frame: more would take a look at features further away.
+constexpr double kFramesOfALook = 4.0;
 /// Rounding of a sum of ways and of a place, as parts of them; ways are told larger by it, gaps smaller.
 constexpr double kRoundingOfWay = 1e-12, kRoundingOfPlace = 1e-15;
 /// Gaps below this part of the world's length are looked at at every frame at which one of the two has moved.
@@ -41,13 +44,13 @@ void FramePairs::each(double t, const Look& look) {
   if (trajectories_->owner_count() == 0) return;
   const double step = go_to(t);
   if (reach_ < 0.0 || *std::max_element(way_.begin(), way_.end()) > 0.5 * reach_) list(t, step);
-  // who is further apart needs no look before the next list
-  const double at_most = reach_ > 0.0 ? reach_ : kReachOfLength * length_;
+  // who is further apart needs no look at the next frames
+  const double at_most = std::min(kFramesOfALook * step, kReachOfLength * length_);
   for (Near& near : near_pairs_) {
     const double gone = way(near.pair);
     if (gone <= near.clear_until) continue;
-    std::optional<double> gap = apart(near.pair);
     const double least = margin(near.pair);
+    std::optional<double> gap = apart(near.pair, least);
     if (*gap <= least) gap = look(near.pair, at_most);
     if (!gap) return;
     near.clear_until = gone + std::max(0.0, *gap - least);
@@ -103,13 +106,13 @@ double FramePairs::way(const PairKey& pair) const {
   return way_[pair.body] + way_[search_->other_owner(pair)];
 }
 
-/// By the discs that hold them; minus infinity where that says nothing.
-double FramePairs::apart(const PairKey& pair) const {
+/// A bound below their gap [m].
+double FramePairs::apart(const PairKey& pair, double enough) const {
   const int other = search_->other_owner(pair);
-  const Outline &a = search_->outline_of(pair.body), &b = search_->outline_of(other);
-  if (a.container || b.container) return -kForever;
-  const Vec2 between = poses_[pair.body].position - poses_[other].position - search_->shift_of(pair);
-  return between.norm() - a.bounding_radius - b.bounding_radius;
+  Pose image = poses_[other];
+  image.position += search_->shift_of(pair);
+  return gap_at_least(search_->outline_of(pair.body), poses_[pair.body], search_->outline_of(other), image,
+                      enough);
 }
 
 double FramePairs::margin(const PairKey& pair) const {

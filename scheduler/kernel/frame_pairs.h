@@ -36,7 +36,7 @@ class FramePairs {
   double go_to(double t);
   void list(double t, double step);
   double way(const PairKey& pair) const;
-  double apart(const PairKey& pair) const;
+  double apart(const PairKey& pair, double enough) const;
   double margin(const PairKey& pair) const;
 
   const Trajectories* trajectories_;

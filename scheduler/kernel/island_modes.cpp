@@ -61,7 +61,7 @@ PolynomialPiece onward(double t, const BodyState& s) {
 
 }  // namespace
 
-IslandModes::IslandModes(const IslandMembers& members, const Trajectories& trajectories,
+IslandModes::IslandModes(const IslandMembers& members, Trajectories& trajectories,
                          const ContactSearch& search, CollisionResponse& response, const Limits& limits,
                          const WarmContacts& warm)
     : members_(&members),

@@ -35,7 +35,7 @@ class IslandModes {
   };
 
   /// What is given must outlive it. `warm`: contacts of the step before.
-  IslandModes(const IslandMembers& members, const Trajectories& trajectories, const ContactSearch& search,
+  IslandModes(const IslandMembers& members, Trajectories& trajectories, const ContactSearch& search,
               CollisionResponse& response, const Limits& limits, const WarmContacts& warm);
 
   /// False: not by modes, for there are too many, or they are too far away for gaps to be kept.
@@ -93,7 +93,7 @@ class IslandModes {
   double speed() const;
 
   const IslandMembers* members_;
-  const Trajectories* trajectories_;
+  Trajectories* trajectories_;
   const ContactSearch* search_;
   CollisionResponse* response_;
   Limits limits_;

@@ -14,18 +14,6 @@ namespace {
 
 constexpr double kMostPairs = 1e7;  ///< that are kept at once: 400 MB
 
-/// `body_clocks` has views of its own and never asks for all pairs at once.
-void check_pairs(const World& world, const SolverOptions& options) {
-  const auto bodies = static_cast<double>(world.bodies.size()),
-             sites = static_cast<double>(world.sites.size());
-  const double pairs = bodies * (0.5 * bodies + sites);
-  if (options.broad_phase || options.policy == "body_clocks" || pairs <= kMostPairs) return;
-  throw BadInput(
-      fmt::format("solver: broad_phase = false, and {} bodies and {} sites make {:.3g} pairs; allowed "
-                  "without a broad phase: up to {:.0e}",
-                  bodies, sites, pairs, kMostPairs));
-}
-
 /// The box of a still site where it stands; empty if it moves, or is everywhere.
 Box still_box(const FixedSite& site, bool moves) {
   if (moves || site.outline->container) return {};
@@ -36,6 +24,17 @@ Box still_box(const FixedSite& site, bool moves) {
 
 }  // namespace
 
+void check_all_pairs(const World& world, const SolverOptions& options) {
+  const auto bodies = static_cast<double>(world.bodies.size()),
+             sites = static_cast<double>(world.sites.size());
+  const double pairs = bodies * (0.5 * bodies + sites);
+  if (options.broad_phase || pairs <= kMostPairs) return;
+  throw BadInput(
+      fmt::format("solver: broad_phase = false, and {} bodies and {} sites make {:.3g} pairs; allowed "
+                  "without a broad phase: up to {:.0e}",
+                  bodies, sites, pairs, kMostPairs));
+}
+
 NearPairs::NearPairs(const World& world, const SolverOptions& options, const Trajectories& trajectories,
                      const ContactSearch& search, RunControl& run)
     : world_(&world),
@@ -43,7 +42,6 @@ NearPairs::NearPairs(const World& world, const SolverOptions& options, const Tra
       search_(&search),
       run_(&run),
       by_bounds_(options.broad_phase) {
-  check_pairs(world, options);
   for (int s = 0; s < trajectories.site_count(); ++s)
     still_boxes_.push_back(still_box(world.sites[s], trajectories.site(s).moves()));
   if (options.detector == "pass") passes_ = std::make_unique<PassRenderer>(options.field, &run.work());

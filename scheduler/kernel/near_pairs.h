@@ -10,10 +10,12 @@
 
 namespace brink {
 
+/// @throws BadInput where NearPairs::all() would be every pair, and there are too many to keep.
+void check_all_pairs(const World& world, const SolverOptions& options);
+
 class NearPairs {
  public:
-  /// @throws IoError where detector "pass" opens no GL context; BadInput where every pair is to be looked at,
-  /// and there are too many to keep. What is given must outlive it.
+  /// @throws IoError where detector "pass" opens no GL context. What is given must outlive it.
   NearPairs(const World& world, const SolverOptions& options, const Trajectories& trajectories,
             const ContactSearch& search, RunControl& run);
 

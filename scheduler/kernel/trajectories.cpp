@@ -44,10 +44,8 @@ ComponentStart start_from(double t, std::span<const ExtendedState> states, bool 
 
 /// True for a parabola that no break ends: it needs no integrator. One whose thrust starts or stops is
 /// made of several.
-bool moves_in_closed_form(const SolverOptions& options, const Dynamics& dynamics, double t) {
-  // another integrator that is named drives even what has a closed form
-  const bool asked = options.integrator == "auto" || options.integrator == "ballistic";
-  return asked && dynamics.size() == 1 && dynamics.constant() && std::isinf(dynamics.next_break(t));
+bool moves_in_closed_form(const Dynamics& dynamics, double t) {
+  return dynamics.size() == 1 && dynamics.constant() && std::isinf(dynamics.next_break(t));
 }
 
 }  // namespace
@@ -60,7 +58,10 @@ bool moves_in_closed_form(const SolverOptions& options, const Dynamics& dynamics
 /// Bodies pass from one to another at the present time alone, but where a state is put back, and each time the
 /// version is raised.
 Trajectories::Trajectories(const World& world, const SolverOptions& options, RunControl& run)
-    : world_(&world), options_(&options), run_(&run) {
+    : world_(&world),
+      options_(&options),
+      closed_forms_(options.integrator == "auto" || options.integrator == "ballistic"),
+      run_(&run) {
   bodies_.resize(world.bodies.size());
   std::vector<BodyState> initial;
   for (const Body& b : world.bodies) initial.push_back(held(b, b.initial));
@@ -77,7 +78,7 @@ Trajectories::Trajectories(const World& world, const SolverOptions& options, Run
 
 /// A parabola where nothing else is needed, an integrator otherwise.
 void Trajectories::add_component(Component component, ComponentStart start) {
-  if (!moves_in_closed_form(*options_, *component.dynamics, start.time))
+  if (!closed_forms_ || !moves_in_closed_form(*component.dynamics, start.time))
     return add_coupled(std::move(component), std::move(start));
   BodyState low;
   if (!start.lows.empty()) low.pose = start.lows.front();
@@ -116,9 +117,8 @@ std::vector<BodyState> Trajectories::states(double t) const {
 }
 
 bool Trajectories::is_ballistic(int k) const {
-  const bool asked = options_->integrator == "auto" || options_->integrator == "ballistic";
   return bodies_[k].component < 0 ||
-         (asked && components_[bodies_[k].component].component.dynamics->constant());
+         (closed_forms_ && components_[bodies_[k].component].component.dynamics->constant());
 }
 
 // -- going on --
@@ -447,7 +447,7 @@ void Trajectories::accelerations(std::span<const int> bodies, double t, std::spa
 }
 
 /// Forces on a body that flies freely by itself are constant: nothing ever changes them.
-double Trajectories::steady_until(int k) const {
+double Trajectories::steady_until(int k) {
   const HeldBody& former = held_.at(k);
   if (former.component < 0) return std::numeric_limits<double>::infinity();
   return components_[former.component].component.dynamics->steady_until(run_->time());

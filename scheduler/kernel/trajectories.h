@@ -1,9 +1,8 @@
 #pragma once
 /// Every body's motion, and every moving site's.
 ///
-/// How far a motion is made at a time is work, not physics: steps depend on the start alone. So a long horizon
-/// is cut where an instalment ends, which bounds memory and the time between two looks at `progress`; and a
-/// motion that fails is followed to its end, since a collision before may start it afresh.
+/// How far a motion is made at a time is work, not physics: steps depend on the start alone, so a long horizon is cut into
+/// instalments (memory, looks at `progress`). What fails is followed to its end: a collision before may start it afresh.
 
 #include <algorithm>
 #include <limits>
@@ -115,7 +114,7 @@ class Trajectories {
   /// When that next jumps [s]; until when it changes evenly (Dynamics); and whether until then it depends on
   /// nothing.
   double next_break(int k) const;
-  double steady_until(int k) const;
+  double steady_until(int k);
   bool is_constant(int k) const;
   /// The component that drives the body where no island holds it.
   int own_component(int k) const { return is_held(k) ? held_.at(k).component : bodies_[k].component; }
@@ -184,6 +183,7 @@ class Trajectories {
 
   const World* world_;
   const SolverOptions* options_;
+  bool closed_forms_;  ///< are asked for: another integrator that is named drives even what has one
   RunControl* run_;
   LargeVector<BodyTrack> bodies_;
   std::vector<Coupled> components_;

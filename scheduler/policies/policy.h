@@ -26,6 +26,8 @@ class Policy {
   virtual bool steps_islands() const { return false; }
   /// True if it may skip contacts (the kernel then does not hold it to the exact order of events).
   virtual bool approximate() const { return false; }
+  /// True if it asks for Kernel::near_pairs() of all bodies at once.
+  virtual bool looks_at_all_pairs() const { return true; }
 };
 
 using PolicyMaker = std::function<std::unique_ptr<Policy>()>;

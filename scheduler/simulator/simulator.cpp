@@ -9,6 +9,7 @@
 #include "brink/core/base/error.h"
 #include "brink/core/base/hash.h"
 #include "brink/integrators/stepping.h"
+#include "brink/scheduler/kernel/near_pairs.h"
 #include "brink/scheduler/kernel/run_kernel.h"
 #include "brink/scheduler/policies/policy.h"
 #include "brink/scheduler/simulator/make_plan.h"
@@ -20,6 +21,7 @@ namespace brink {
 struct Simulator::Impl {
   Impl(World world, SolverOptions options)
       : kernel(std::move(world), options), policy(make_policy(options.policy, options.detector)) {
+    if (policy->looks_at_all_pairs()) check_all_pairs(kernel.world(), options);
     policy->prepare(kernel);
     if (options.persistent && policy->steps_islands()) kernel.let_contacts_last();
     // What may miss contacts is not held to certificates; Brink's own exact policies are held to the

@@ -140,7 +140,7 @@ TEST_F(Replays, StatesAtCollisionsAreTheSameInEveryWay) {
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     SCOPED_TRACE(seed);
     std::vector<Event> told;
-    for (const char* policy : {"body_clocks", "global_backup", "island_backup", "timewarp"}) {
+    for (const std::string& policy : exact_policies()) {
       SCOPED_TRACE(policy);
       Scene scene;
       try {

@@ -45,6 +45,7 @@ constexpr int instalment(unsigned undecided) {
 class BodyClocks final : public Policy {
  public:
   bool steps_islands() const override { return true; }
+  bool looks_at_all_pairs() const override { return false; }
   void run(Kernel& kernel, double until) override {
     kernel_ = &kernel;
     until_ = until;

@@ -34,7 +34,7 @@ class IntegratorContract : public ::testing::TestWithParam<std::string> {
     if (GetParam() == "ballistic") return std::make_shared<Falling>();
     return spring_pair();
   }
-  std::unique_ptr<Integrator> make(std::shared_ptr<const Dynamics> d, WorkCounters* work = nullptr) const {
+  std::unique_ptr<Integrator> make(std::shared_ptr<Dynamics> d, WorkCounters* work = nullptr) const {
     return make_integrator(GetParam(), std::move(d), kOptions, work);
   }
   std::unique_ptr<Integrator> make() const { return make(dynamics()); }

@@ -1,5 +1,6 @@
 /// Gaps of two outlines against known distances, and against pairs of pieces that share no code.
 #include "brink/core/query/outline_gap.h"
+#include "brink/core/query/gap_bound.h"
 
 #include <gtest/gtest.h>
 
@@ -83,7 +84,7 @@ TEST(OutlineGap, AgreesWithPairsOfPiecesThatShareNoCode) {
   constexpr std::uint64_t seed = 404;
   Random random(seed);
   const std::vector<NamedOutline> outlines = query_outlines();
-  int apart = 0, overlapping = 0;
+  int apart = 0, overlapping = 0, parted = 0;
   for (const NamedOutline& a : outlines)
     for (const NamedOutline& b : outlines)
       for (int k = 0; k < 30; ++k) {
@@ -105,10 +106,16 @@ TEST(OutlineGap, AgreesWithPairsOfPiecesThatShareNoCode) {
         } else {
           EXPECT_FALSE(surely_apart(a.outline, pose_a, b.outline, pose_b, 0.0));
         }
+        for (const double enough : {-1.0, 0.0, 0.1, 1e9}) {
+          const double bound = gap_at_least(a.outline, pose_a, b.outline, pose_b, enough);
+          EXPECT_LE(bound, reference + noise) << "enough: " << enough;
+          parted += enough == 0.0 && bound > 0.0;
+        }
         ++(reference > 0.0 ? apart : overlapping);
       }
   EXPECT_GT(apart, 1000);
   EXPECT_GT(overlapping, 1000);
+  EXPECT_GT(parted, 3 * apart / 4);
 }
 
 }  // namespace

@@ -99,7 +99,7 @@ TEST(PlaceRounding, BoundsTheErrorOfAParabola) {
     const Vec2 place = motion.pose(t).position;
     const RealVec exact = motion.extended_state(t).position;
     const double error = static_cast<double>((place.cast<Real>() - exact).lpNorm<1>());
-    EXPECT_LE(error, place_rounding(motion, t, place));
+    EXPECT_LE(error, MotionRounding(motion).place(t, place));
   }
 }
 

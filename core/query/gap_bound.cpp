@@ -1,0 +1,88 @@
+#include "brink/core/query/gap_bound.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "brink/core/base/limits.h"
+
+namespace brink {
+
+namespace {
+
+/// Outlines of more sites are not looked at from the other's centre: an exact look by a site index costs less.
+constexpr std::size_t kMostSites = 64;
+/// Lines that are tried: two polygons are parted by the third as a rule, if any line parts them.
+constexpr int kMostLines = 8;
+/// Of the distance of two hulls: a line that can be better by no more than this is the last.
+constexpr double kGoodLine = 0.05;
+
+struct PlacedOutline {
+  PlacedOutline(const Outline& o, const Pose& pose, const Vec2& base)
+      : outline(o), frame(Pose{pose.position - base, pose.angle}) {}
+  const Outline& outline;
+  Frame frame;
+};
+
+/// How far b's origin is from a's sites, less the disc that holds b.
+double seen_from_centre(const PlacedOutline& a, const PlacedOutline& b) {
+  if (b.outline.container || a.outline.sites.size() > kMostSites) return -kForever;
+  return gap_by_brute_force(a.outline, a.frame.to_local(b.frame.origin)) - b.outline.bounding_radius;
+}
+
+/// The outline's place that is furthest along u, in the frame in which it was placed.
+Vec2 support(const PlacedOutline& placed, const Vec2& u) {
+  const Vec2 local = placed.frame.direction_to_local(u);
+  const Sample* furthest = nullptr;
+  double most = -kForever;
+  for (const Sample& s : placed.outline.samples)
+    if (const double along = s.p.dot(local) + s.radius; along > most) {
+      most = along;
+      furthest = &s;
+    }
+  return placed.frame.to_world(furthest->p) + furthest->radius * u;
+}
+
+/// The place of the way from p to q that is nearest to the origin.
+Vec2 nearest_to_origin(const Vec2& p, const Vec2& q) {
+  const Vec2 way = q - p;
+  const double length2 = way.squaredNorm();
+  return length2 > 0.0 ? Vec2(p + std::clamp(-p.dot(way) / length2, 0.0, 1.0) * way) : p;
+}
+
+/// By Gilbert's method on the difference of the two: x is a place of its hull, and comes nearer to the origin.
+double parted_by_lines(const PlacedOutline& a, const PlacedOutline& b, double enough) {
+  const auto middle = [](const PlacedOutline& p) { return p.frame.to_world(p.outline.bounds.center()); };
+  Vec2 x = middle(b) - middle(a);
+  double best = -kForever;
+  for (int k = 0; k < kMostLines; ++k) {
+    const double distance = x.norm();
+    if (!(distance > 0.0)) return best;  // the hulls overlap
+    const Vec2 u = x / distance;
+    const Vec2 lowest = support(b, -u) - support(a, u);
+    best = std::max(best, lowest.dot(u));
+    if (best > enough || (k > 0 && distance - best <= kGoodLine * distance)) return best;
+    // the first x is any place, not one of the hull
+    x = k == 0 ? lowest : nearest_to_origin(x, lowest);
+  }
+  return best;
+}
+
+}  // namespace
+
+double gap_at_least(const Outline& a, const Pose& pose_a, const Outline& b, const Pose& pose_b,
+                    double enough) {
+  const bool held_by_discs = !a.container && !b.container;
+  double least = held_by_discs
+                     ? (pose_b.position - pose_a.position).norm() - a.bounding_radius - b.bounding_radius
+                     : -kForever;
+  // two discs are as far apart as those that hold them
+  if (least > enough || (is_centred_disc(a) && is_centred_disc(b))) return least;
+  const PlacedOutline placed_a(a, pose_a, pose_a.position), placed_b(b, pose_b, pose_a.position);
+  for (const auto& [other, one] : {std::pair(&placed_a, &placed_b), std::pair(&placed_b, &placed_a)}) {
+    least = std::max(least, seen_from_centre(*other, *one));
+    if (least > enough || (is_centred_disc(one->outline) && least > -kForever)) return least;
+  }
+  return held_by_discs ? std::max(least, parted_by_lines(placed_a, placed_b, enough)) : least;
+}
+
+}  // namespace brink
