@@ -25,12 +25,8 @@ void check_arc(const Site& s, int k) {
   if (!(std::abs(s.sweep) > 0.0 && std::abs(s.sweep) <= kMostArcSweep * (1 + 1e-15)))
     throw BadInput(name_of(k) + " turns by " + text(s.sweep) +
                    " rad; an arc site turns by at most a quarter turn");
-  // the end is looked for where the sweep takes the start: being on the circle somewhere is not enough
-  const double off =
-      std::max(std::abs((s.a - s.center).norm() - s.arc_radius), (point_along(s, 1.0) - s.b).norm());
-  // |centre| too: coordinates of an outline that was moved far away are rounded to their own size
-  if (!(off <= 1e-9 * (s.arc_radius + s.center.norm())))
-    throw BadInput(name_of(k) + " is an arc whose ends lie " + text(off) + " m off its circle");
+  if (!is_arc_fit(s))
+    throw BadInput(name_of(k) + " is an arc whose ends lie " + text(arc_misfit(s)) + " m off its circle");
 }
 
 /// @throws BadInput on a site to which no distance can be told.
@@ -229,6 +225,13 @@ double gap_by_brute_force(const Outline& outline, const Vec2& q, int* site) {
   // inside a thick solid the surface is the radius beyond the core: there both count negative
   return side_of_outline(outline, s, nearest, q) * nearest.distance - s.radius;
 }
+
+/// The end is looked for where the sweep takes the start: being on the circle somewhere is not enough.
+double arc_misfit(const Site& s) {
+  return std::max(std::abs((s.a - s.center).norm() - s.arc_radius), (point_along(s, 1.0) - s.b).norm());
+}
+
+bool is_arc_fit(const Site& s) { return arc_misfit(s) <= 1e-9 * (s.arc_radius + s.center.norm()); }
 
 Outline as_container(Outline outline) {
   if (!outline.solid)

@@ -83,6 +83,12 @@ double side_of_outline(const Outline& outline, const Site& site, const Nearest& 
 /// @pre |q| < 1e150 m: beyond, squares overflow and the gap means nothing.
 double gap_by_brute_force(const Outline& outline, const Vec2& q, int* site = nullptr);
 
+/// How far an arc's ends lie off where its circle and sweep have them [m].
+double arc_misfit(const Site& arc);
+/// True if finish_outline() takes that for a rounding: of the arc's radius, and of its centre's coordinates, as in an
+/// outline that was moved far away.
+bool is_arc_fit(const Site& arc);
+
 /// Reverses every loop and marks the outline as a container: what was inside is now free, all else solid.
 /// @throws BadInput if the outline is not solid.
 Outline as_container(Outline outline);

@@ -29,19 +29,9 @@ double reach_through(const Segment& s, const Segment& t, Vec2& point) {
   return std::min({std::abs(ta), std::abs(tb), std::abs(sa), std::abs(sb)});
 }
 
-/// The outline's straight sides where it stands, in the world [m].
-std::vector<Segment> segments(const Outline& outline, const Pose& pose) {
-  const Frame frame(pose);
-  std::vector<Segment> all;
-  for (const Site& site : outline.sites)
-    if (site.kind == SiteKind::segment) all.push_back({frame.to_world(site.a), frame.to_world(site.b)});
-  return all;
-}
-
 /// What holds an outline where it stands, its arcs as whole circles [m]; all of the plane, where it is solid outside.
-Box box_of(const Outline& outline, const Pose& pose) {
+Box box_of(const Outline& outline, const Frame& frame) {
   if (outline.container) return {Vec2::Constant(-kForever), Vec2::Constant(kForever)};
-  const Frame frame(pose);
   Box box;
   for (const Site& site : outline.sites) {
     const bool arc = site.kind == SiteKind::arc;
@@ -51,11 +41,14 @@ Box box_of(const Outline& outline, const Pose& pose) {
   return box;
 }
 
-/// Those that lead through the box.
-std::vector<Segment> within(const Box& box, const std::vector<Segment>& all) {
+/// The outline's straight sides that lead through the box, where it stands [m].
+std::vector<Segment> segments(const Outline& outline, const Frame& frame, const Box& box) {
   std::vector<Segment> some;
-  for (const Segment& s : all)
+  for (const Site& site : outline.sites) {
+    if (site.kind != SiteKind::segment) continue;
+    const Segment s{frame.to_world(site.a), frame.to_world(site.b)};
     if (Box{s.a.cwiseMin(s.b), s.a.cwiseMax(s.b)}.overlaps(box)) some.push_back(s);
+  }
   return some;
 }
 
@@ -68,7 +61,7 @@ constexpr double kSeemsToTouch = 1e-6;
 
 /// An outline where it stands.
 struct PlacedSolid {
-  PlacedSolid(const Outline& o, const Pose& pose) : outline(o), frame(pose) {}
+  PlacedSolid(const Outline& o, const Frame& f) : outline(o), frame(f) {}
 
   /// > 0: that deep inside [m].
   double depth_of(const Vec2& p) const { return -gap_by_brute_force(outline, frame.to_local(p)); }
@@ -133,20 +126,17 @@ OutlineCrossing shared_below_edges(const PlacedSolid& a, const std::vector<Segme
   return deepest;
 }
 
-}  // namespace
-
-/// All that two share, and all places where they cross, are in what holds both: of most near pairs that is a few edges.
-OutlineCrossing deepest_crossing(const Outline& a, const Pose& pose_a, const Outline& b, const Pose& pose_b,
-                                 double gap) {
+/// In a's frame, where b stands at `frame`. All that two share, and all places where they cross, are in what holds both: of
+/// most near pairs that is a few edges.
+OutlineCrossing crossing_seen_from(const Outline& a, const Outline& b, const Frame& frame, double gap) {
   OutlineCrossing deepest;
   const double size = std::min(a.bounding_radius, b.bounding_radius), below = kBelow * size;
-  const Box box_a = box_of(a, pose_a).grown(below), box_b = box_of(b, pose_b).grown(below);
+  const Box box_a = box_of(a, {}).grown(below), box_b = box_of(b, frame).grown(below);
   if (!box_a.overlaps(box_b)) return deepest;
   const Box shared{box_a.low.cwiseMax(box_b.low), box_a.high.cwiseMin(box_b.high)};
-  const std::vector<Segment> of_a = segments(a, pose_a), of_b = segments(b, pose_b);
-  const std::vector<Segment> near_a = within(shared, of_a), near_b = within(shared, of_b);
-  for (const Segment& s : near_a)
-    for (const Segment& t : near_b) {
+  const std::vector<Segment> of_a = segments(a, {}, shared), of_b = segments(b, frame, shared);
+  for (const Segment& s : of_a)
+    for (const Segment& t : of_b) {
       Vec2 point = Vec2::Zero();
       const double depth = reach_through(s, t, point);
       if (depth > deepest.depth) deepest = {depth, point, perp((t.b - t.a).normalized())};
@@ -155,13 +145,25 @@ OutlineCrossing deepest_crossing(const Outline& a, const Pose& pose_a, const Out
   const bool is_clear = deepest.depth > below;
   // wires share no inside; of a thick outline, a vertex on an edge's core is a sample that tells
   if (is_clear || gap > kSeemsToTouch * size || !is_sharp_solid(a) || !is_sharp_solid(b)) return deepest;
-  const PlacedSolid solid_a(a, pose_a), solid_b(b, pose_b);
+  const PlacedSolid solid_a(a, {}), solid_b(b, frame);
   // from both: what they share may border on edges of one
   // alone, as where a diamond has its corners on a box
-  const OutlineCrossing below_a = shared_below_edges(solid_a, near_a, solid_b, of_b);
-  const OutlineCrossing below_b = shared_below_edges(solid_b, near_b, solid_a, of_a);
+  const OutlineCrossing below_a = shared_below_edges(solid_a, of_a, solid_b, of_b);
+  const OutlineCrossing below_b = shared_below_edges(solid_b, of_b, solid_a, of_a);
   for (const OutlineCrossing& c : {below_a, below_b})
     if (c.depth > deepest.depth) deepest = c;
+  return deepest;
+}
+
+}  // namespace
+
+OutlineCrossing deepest_crossing(const Outline& a, const Pose& pose_a, const Outline& b, const Pose& pose_b,
+                                 double gap) {
+  const Frame of_a(pose_a);
+  const Frame seen(Pose{of_a.to_local(pose_b.position), pose_b.angle - pose_a.angle});
+  OutlineCrossing deepest = crossing_seen_from(a, b, seen, gap);
+  deepest.point = of_a.to_world(deepest.point);
+  deepest.normal = of_a.direction_to_world(deepest.normal);
   return deepest;
 }
 

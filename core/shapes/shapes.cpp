@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "brink/core/base/error.h"
+#include "brink/core/base/limits.h"
 #include "brink/core/shapes/biarc.h"
 #include "brink/core/shapes/curve_site.h"
 #include "brink/core/shapes/loops.h"
@@ -16,6 +17,8 @@ namespace brink {
 namespace {
 
 constexpr double whole_turn = 2 * std::numbers::pi;
+/// An arc's places may be rounded by this part of its radius: more would be another curve.
+constexpr double kMostRounded = 1e-6;
 
 /// A solid of straight sides, measured. Several loops are several parts, or holes.
 /// @pre the loops have the solid on their left.
@@ -124,6 +127,11 @@ Shape make_arc(const Vec2& center, double arc_radius, double from, double to, do
   if (!std::isfinite(from) || !std::isfinite(to) || from == to)
     throw BadInput("arc: runs from " + text(from) + " to " + text(to) +
                    " rad; angles must be finite and differ");
+  const double rounded = kEpsilon * (center.lpNorm<Eigen::Infinity>() + arc_radius);
+  if (!(rounded <= kMostRounded * arc_radius))
+    throw BadInput("arc: about " + text(center) + " its places are rounded by " + text(rounded) +
+                   " m; allowed: a millionth of its radius, " + text(kMostRounded * arc_radius) +
+                   " m (give it near the origin, and a position)");
   double sweep = to - from;
   // whole turns until it is past `from`; 0 then means that the two are whole turns apart
   if (sweep < 0.0) sweep += whole_turn * std::ceil(-sweep / whole_turn);

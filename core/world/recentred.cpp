@@ -34,9 +34,13 @@ Vec2 round_place_in(const Box& box) {
 bool exactly_moved(const Vec2& p, const Vec2& by) { return (p + by) - by == p && (p + by) - p == by; }
 
 bool exactly_moved(const Outline& outline, const Vec2& by) {
-  return std::all_of(outline.sites.begin(), outline.sites.end(), [&](const Site& s) {
-    return exactly_moved(s.a, by) && exactly_moved(s.b, by) &&
-           (s.kind != SiteKind::arc || exactly_moved(s.center, by));
+  return std::all_of(outline.sites.begin(), outline.sites.end(), [&](Site s) {
+    if (!exactly_moved(s.a, by) || !exactly_moved(s.b, by)) return false;
+    if (s.kind != SiteKind::arc) return true;
+    if (!exactly_moved(s.center, by)) return false;
+    // ends that were rounded far away may be no ends of that circle nearer by
+    for (Vec2* p : {&s.a, &s.b, &s.center}) *p += by;
+    return is_arc_fit(s);
   });
 }
 

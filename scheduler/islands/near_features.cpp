@@ -57,6 +57,28 @@ double beyond_ends(const Site& site, const Vec2& q) {
   return std::max({0.0, -along, along - length});
 }
 
+/// A direction in which the carrier lies, seen from its vertex at q, in the other's frame, to tell on which side of a line
+/// through q along `out`'s tangent it is: its edge that leads away from that line most steeply, as no edge crosses a wire.
+/// Where edges lead to both sides, or along the line, it is the way to its centre.
+Vec2 way_inwards(const Half& half, const Sample& sample, const Vec2& q, const Vec2& out) {
+  Vec2 steepest = Vec2::Zero();
+  double least = 0.0, most = 0.0;
+  const auto see = [&](const Vec2& edge) {
+    const Vec2 way = half.other_frame.direction_to_local(half.carrier_frame.direction_to_world(edge));
+    const double rise = out.dot(way);
+    if (std::abs(rise) > std::max(most, -least)) steepest = way;
+    least = std::min(least, rise);
+    most = std::max(most, rise);
+  };
+  for (const Site& s : half.carrier.sites) {
+    if (s.kind == SiteKind::point) continue;
+    if (s.a == sample.p) see(direction_at_start(s));
+    if (s.b == sample.p) see(-direction_at_end(s));
+  }
+  const bool one_side = std::min(most, -least) <= kAlongLine && std::max(most, -least) > kAlongLine;
+  return one_side ? steepest : Vec2(half.other_frame.to_local(half.carrier_frame.origin) - q);
+}
+
 /// Sample i of a half against site j, where it is nearest to it; side: see side_of(). Nothing of an arc that
 /// looks elsewhere.
 std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest& nearest, double side,
@@ -79,10 +101,9 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   const double no_side =
       nearest.foot == Foot::interior ? kSunkOfRadius * half.carrier.bounding_radius : least;
   if (thin && site.kind != SiteKind::point && nearest.distance < no_side) {
-    // a wire has no inside that would tell: what has sunk by a rounding, or is right on its end, is on its
-    // centre's side
-    const Vec2 centre = half.other_frame.to_local(half.carrier_frame.origin);
-    if (out.dot(centre - nearest.point) < 0.0) out = -out;
+    // a wire has no inside that would tell: what has sunk by a rounding, or is right on its end, is on the side of its
+    // own edges
+    if (out.dot(way_inwards(half, sample, q, out)) < 0.0) out = -out;
     distance = out.dot(q - nearest.point);
   }
   const Vec2 outward = half.other_frame.direction_to_world(out);

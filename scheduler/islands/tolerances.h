@@ -19,6 +19,9 @@ inline constexpr double kOneCorner = 1e-10;
 /// moved it, and what is nearer by it to the centre of a solid's arc than the arc is has sunk into it: ten thousand contact
 /// tolerances, as an overlap at the start may be.
 inline constexpr double kSunkOfRadius = 1e-6;
+/// Sine of an angle between an edge and a wire that it lies along: far more than roundings of directions make of none, far
+/// less than an angle at which a body leans on it.
+inline constexpr double kAlongLine = 1e-6;
 /// Cosine between a site's normal, or the way to it, and the next site that roundings may leave of a straight joint: ends that
 /// are written to 1e-16 of the outline's size leave 1e-9 of the direction of a piece of a ten-millionth of it.
 inline constexpr double kStraightJoint = 1e-9;

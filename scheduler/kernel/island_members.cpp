@@ -46,15 +46,9 @@ double IslandMembers::reach_of(int member) const {
 
 // ---- who is near
 
-/// A list in the making. `reach`: up to which gap [m]; < 0: as far as a step may lead.
-struct IslandMembers::Listing {
-  double reach = 0.0;
-  std::vector<HeldContact> contacts;
-};
-
 /// Members are swept along x by the left edges of their boxes; sites are held against every member.
-std::vector<HeldContact> IslandMembers::contacts(double reach, const GoOn& go_on) const {
-  Listing to{reach, {}};
+std::vector<PairKey> IslandMembers::near_pairs(double reach, const GoOn& go_on) const {
+  std::vector<PairKey> to;
   std::vector<Box> boxes;
   for (std::size_t i = 0; i < bodies_.size(); ++i)
     boxes.push_back(box_of(bodies_[i], reach < 0.0 ? reach_of(static_cast<int>(i)) : reach));
@@ -78,10 +72,32 @@ std::vector<HeldContact> IslandMembers::contacts(double reach, const GoOn& go_on
     for (std::size_t i = 0; i < bodies_.size() && !stops(); ++i)
       add_images(to, bodies_[i], boxes[i], owner, box);
   }
+  return to;
+}
+
+/// Features of a pair's images alone.
+std::vector<HeldContact> IslandMembers::contacts(double reach, const GoOn& go_on) const {
+  std::vector<HeldContact> all;
+  for (const PairKey& pair : near_pairs(reach, go_on)) {
+    if (go_on && !go_on()) break;
+    const Outline &outline = search_->outline_of(pair.body),
+                  &other = search_->outline_of(search_->other_owner(pair));
+    for (const NearFeature& f : near_features(outline, states_[place_of(pair.body)], other, other_state(pair),
+                                              reach_of(pair, reach)))
+      all.push_back({pair, f, 0.0, 0.0, 0.0});
+  }
   // in an order of their own, whatever the boxes: the solver's rounding depends on it
-  std::sort(to.contacts.begin(), to.contacts.end(),
+  std::sort(all.begin(), all.end(),
             [](const HeldContact& a, const HeldContact& b) { return a.order() < b.order(); });
-  return std::move(to.contacts);
+  return all;
+}
+
+/// Up to which gap the pair's features are listed [m].
+double IslandMembers::reach_of(const PairKey& pair, double reach) const {
+  if (reach >= 0.0) return reach;
+  // both may come that far towards each other, and a gap of the tolerance is a contact still
+  return search_->limits().tolerance + reach_of(place_of(pair.body)) +
+         (pair.with_site() ? site_way(pair.other_site) : reach_of(place_of(pair.other_body)));
 }
 
 /// Where an owner may be within `reach` [m] of where it is now.
@@ -112,27 +128,15 @@ double IslandMembers::site_way(int s) const {
          (over.speed() + over.spin() * search_->outline_of(trajectories_->body_count() + s).bounding_radius);
 }
 
-/// Of b every image whose box meets that of a.
-void IslandMembers::add_images(Listing& to, int a, const Box& box_a, int b, const Box& box_b) const {
+/// Of b every image whose box meets that of a, but for those that never meet (ContactSearch::pair_of).
+void IslandMembers::add_images(std::vector<PairKey>& to, int a, const Box& box_a, int b,
+                               const Box& box_b) const {
+  const auto add = [&](const Image& image) {
+    if (const auto pair = search_->pair_of(a, b, image)) to.push_back(*pair);
+  };
   // solid everywhere beyond its loops: a box does not tell
-  if (search_->outline_of(b).container) return add_pair(to, a, b, Image{});
-  world_->periods.overlaps(box_a, box_b, [&](const Image& image) { add_pair(to, a, b, image); });
-}
-
-/// Features of that image alone; nothing where the two never meet (ContactSearch::pair_of).
-void IslandMembers::add_pair(Listing& to, int a, int b, const Image& image) const {
-  const auto pair = search_->pair_of(a, b, image);
-  if (!pair) return;
-  const int member = place_of(pair->body);
-  double far = to.reach;
-  // both may come that far towards each other, and a gap of the tolerance is a contact still
-  if (far < 0.0)
-    far = search_->limits().tolerance + reach_of(member) +
-          (pair->with_site() ? site_way(pair->other_site) : reach_of(place_of(pair->other_body)));
-  const Outline &outline = search_->outline_of(pair->body),
-                &other_outline = search_->outline_of(search_->other_owner(*pair));
-  for (const NearFeature& f : near_features(outline, states_[member], other_outline, other_state(*pair), far))
-    to.contacts.push_back({*pair, f, 0.0, 0.0, 0.0});
+  if (search_->outline_of(b).container) return add(Image{});
+  world_->periods.overlaps(box_a, box_b, add);
 }
 
 std::vector<int> IslandMembers::coupled_to(int member) const {

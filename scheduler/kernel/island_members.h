@@ -62,6 +62,8 @@ class IslandMembers {
   /// a gap of `reach` [m]; < 0: as far as a step may lead. Not all where GoOn says no. Cost: members sorted along x,
   /// times sites.
   std::vector<HeldContact> contacts(double reach, const GoOn& go_on = {}) const;
+  /// Pairs of members, and with sites, that may come nearer to each other than that: all of which features are listed.
+  std::vector<PairKey> near_pairs(double reach, const GoOn& go_on = {}) const;
 
   /// The state of the pair's other owner, where its image is; a time `later` [s] into the step, where members
   /// move with `velocity` (x, y [m/s], angle [rad/s]), and sites as they do. @pre sites are covered as far.
@@ -86,11 +88,10 @@ class IslandMembers {
   std::vector<int> coupled_to(int member) const;
 
  private:
-  struct Listing;
   Box box_of(int owner, double reach) const;
   double site_way(int site) const;
-  void add_images(Listing& to, int a, const Box& box_a, int b, const Box& box_b) const;
-  void add_pair(Listing& to, int a, int b, const Image& image) const;
+  void add_images(std::vector<PairKey>& to, int a, const Box& box_a, int b, const Box& box_b) const;
+  double reach_of(const PairKey& pair, double reach) const;
 
   const World* world_;
   const Trajectories* trajectories_;

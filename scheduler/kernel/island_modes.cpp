@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
+#include "brink/core/query/gap_bound.h"
+#include "brink/core/query/outline_gap.h"
 #include "brink/core/shapes/curve_site.h"
 #include "brink/scheduler/kernel/tolerances.h"
 
@@ -312,7 +315,8 @@ IslandModes::Outcome IslandModes::take(double now, double h, std::vector<HeldCon
   const auto former = on_time && how == Approach::none ? former_modes() : std::nullopt;
   if (!(former ? motion.begin_in(*former) : motion.begin(closed_now(states, how)))) return Outcome::none;
   if (!move_on(motion, until)) return Outcome::none;
-  return within_reach() ? Outcome::moved : Outcome::wider;
+  if (!within_reach()) return Outcome::wider;
+  return keeps_apart() ? Outcome::moved : Outcome::none;
 }
 
 /// Modes and forces from the present time on.
@@ -377,6 +381,32 @@ bool IslandModes::within_reach() const {
     if (way > members_->reach_of(i)) return false;
   }
   return true;
+}
+
+/// True if no pair of members is deeper in each other than it was, to the contact tolerance, where a piece of the
+/// motion ends: a look at whole outlines, at features that nobody listed as well.
+bool IslandModes::keeps_apart() const {
+  std::set<double> looks;
+  for (const auto& track : tracks_)
+    for (const PolynomialPiece& p : track->pieces)
+      if (p.end <= end_) looks.insert(p.end);
+  const std::vector<PairKey> pairs = members_->near_pairs(-1.0);
+  return std::all_of(pairs.begin(), pairs.end(), [&](const PairKey& pair) {
+    const double least = std::min(0.0, gap(pair, now_)) - search_->limits().tolerance;
+    return std::all_of(looks.begin(), looks.end(), [&](double t) { return gap(pair, t) >= least; });
+  });
+}
+
+/// Of the pair as it moves in this step [m]; at most a bound below it, where that is more than 0.
+double IslandModes::gap(const PairKey& pair, double t) const {
+  const auto pose_of = [&](int body) { return motion(members_->place_of(body)).pose(t); };
+  const Pose body = pose_of(pair.body);
+  Pose other =
+      pair.with_site() ? trajectories_->site(pair.other_site).motion().pose(t) : pose_of(pair.other_body);
+  other.position += search_->shift_of(pair);
+  const Outline &a = search_->outline_of(pair.body), &b = search_->outline_of(search_->other_owner(pair));
+  const double bound = gap_at_least(a, body, b, other, 0.0);
+  return bound > 0.0 ? bound : outline_gap(a, body, b, other).gap;
 }
 
 /// Of contacts that a step by modes had closed before. One that was open, or is new, has met: that is an impact.

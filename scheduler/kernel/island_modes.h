@@ -90,6 +90,8 @@ class IslandModes {
   bool move_on(ModeMotion& motion, double until);
   void note(const ModeMotion& motion);
   bool within_reach() const;
+  bool keeps_apart() const;
+  double gap(const PairKey& pair, double t) const;
   double speed() const;
 
   const IslandMembers* members_;

@@ -166,6 +166,10 @@ TEST(Shapes, BadNumbersAreNamed) {
   EXPECT_THAT(fault([] { make_capsule(1, 0); }), HasSubstr("radius is 0"));
   EXPECT_THAT(fault([] { make_segment({1, 2}, {1, 2}); }), HasSubstr("both ends are (1, 2)"));
   EXPECT_THAT(fault([] { make_arc({0, 0}, 1, 1, 1); }), HasSubstr("angles must be finite and differ"));
+  EXPECT_THAT(fault([] {
+                make_arc({-1e15, 1}, 1, 0, 2);
+              }),
+              HasSubstr("about (-1e+15, 1) its places are rounded by 0.222"));
   EXPECT_THAT(fault([] { make_chain({{0, 0}}); }), HasSubstr("at least 2"));
   EXPECT_THAT(fault([] {
                 make_bezier({Vec2(1, 1), Vec2(1, 1), Vec2(1, 1), Vec2(1, 1)}, 1e-3);

@@ -31,6 +31,19 @@ TEST(Recentred, FarWallKeepsItsPlaceExactly) {
   }
 }
 
+// The ends of an arc that is written far away are rounded by more than an arc nearer by may be.
+TEST(Recentred, AnArcWhoseEndsAreRoundedStaysWhereItIs) {
+  for (const double far : {1e3, 1e6, 1e7, 1e8, 1e9}) {
+    FixedSite site;
+    site.outline =
+        std::make_shared<const Outline>(make_arc({-far, 1.0}, 1.1547005383792515, 4.2, 9.3).outline);
+    const FixedSite moved = recentred(site);
+    for (std::size_t k = 0; k < site.outline->sites.size(); ++k)
+      EXPECT_EQ(Vec2(moved.outline->sites[k].center + moved.pose.position), site.outline->sites[k].center)
+          << far;
+  }
+}
+
 TEST(Recentred, StaysWhereItIsNearOrTurnedOrWhereAPlaceWouldBeRounded) {
   const Vec2 a(1000.0, 0.0), b(1001.0, 0.5);
   EXPECT_EQ(recentred(wall({-1.0, 0.0}, {2.0, 0.5})).pose.position, Vec2(0.0, 0.0));
