@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kCellsPerBox = 2.0;                        ///< a cell is this many times the median box
 constexpr int kMostCellsAcross = 4;                         ///< boxes wider than this many cells are large
-constexpr std::size_t kFewBoxes = 256;                      ///< boxes that need no cells
+constexpr std::size_t kFewBoxes = 512;                      ///< boxes that need no cells
 constexpr std::int64_t kMostCells = std::int64_t{1} << 60;  ///< only those that hold a box take room
 
 /// Cells of a window, counted row by row.
@@ -161,11 +161,14 @@ Box swept_box(const Outline& outline, const Motion& motion, double from, double 
   }
   Box box;
   box.add(motion.pose(from).position);
-  box.add(motion.pose(to).position);
-  const MotionBounds b = motion.bounds(from, to);
-  // A path leaves its chord by e(t) with e = 0 at both ends and |e''| <= a, so |e| <= a t (T - t) / 2,
-  // which is a T^2 / 8 at most.
-  const double bulge = (b.acceleration.norm() + b.acceleration_radius) * (to - from) * (to - from) / 8.0;
+  double bulge = 0.0;
+  if (from < to) {
+    box.add(motion.pose(to).position);
+    const MotionBounds b = motion.bounds(from, to);
+    // A path leaves its chord by e(t) with e = 0 at both ends and |e''| <= a, so |e| <= a t (T - t) / 2,
+    // which is a T^2 / 8 at most.
+    bulge = (b.acceleration.norm() + b.acceleration_radius) * (to - from) * (to - from) / 8.0;
+  }
   // rounding goes with the coordinates, which may be far larger than the box
   const double scale = box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
   return box.grown(outline.bounding_radius + bulge + kBoxMargin * (scale + outline.bounding_radius));

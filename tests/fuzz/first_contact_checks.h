@@ -560,18 +560,28 @@ class Checker {
     return Motion::ballistic(anew.origin(), start, anew.acceleration());
   }
 
-  /// How far the features of a contact have parted by time t, along the normal as it turns with the outline that has
-  /// the site [m]; less than 0: one is in the other.
+  /// How much further from the site of a contact its sample is at time t than where `back` begins [m]; less than 0: it goes
+  /// in. Of an arc by the distance from its centre, of what is straight along its normal.
   static double parted(const Flight& back, const FeatureContact& c, double t) {
     const Motion &a = back.far ? back.near_a : back.motion_a, &b = back.far ? back.near_b : back.motion_b;
-    const Vec2 away = back.motion_a.start().pose.position - a.start().pose.position, point = c.point - away;
-    const auto at = [&](const Motion& m) {
-      return Frame(m.pose(t)).to_world(Frame(m.pose(back.from)).to_local(point));
+    const Sample& sample = (c.sample_on_a ? back.a : back.b)->samples[static_cast<std::size_t>(c.sample)];
+    const Site& site = (c.sample_on_a ? back.b : back.a)->sites[static_cast<std::size_t>(c.site)];
+    const auto height = [&](double time) {
+      const Vec2 p = Frame((c.sample_on_a ? a : b).pose(time)).to_world(sample.p);
+      const Frame of_site((c.sample_on_a ? b : a).pose(time));
+      if (site.kind == SiteKind::arc) return (of_site.to_local(p) - site.center).norm();
+      const Frame before((c.sample_on_a ? b : a).pose(back.from));
+      const Vec2 out = c.sample_on_a ? c.normal : Vec2(-c.normal);
+      return of_site.to_local(p).dot(before.direction_to_local(out));
     };
-    const Motion& side = c.sample_on_a ? b : a;
-    const Vec2 normal =
-        Frame(side.pose(t)).direction_to_world(Frame(side.pose(back.from)).direction_to_local(c.normal));
-    return normal.dot(at(a) - at(b));
+    double outward = 1.0;
+    if (site.kind == SiteKind::arc) {
+      const Frame of_site((c.sample_on_a ? b : a).pose(back.from));
+      const Vec2 p = Frame((c.sample_on_a ? a : b).pose(back.from)).to_world(sample.p);
+      const Vec2 out = c.sample_on_a ? c.normal : Vec2(-c.normal);
+      outward = out.dot(p - of_site.to_world(site.center)) < 0.0 ? -1.0 : 1.0;
+    }
+    return outward * (height(t) - height(back.from));
   }
 
   /// Starts in contact, thrown back along the normal by so many times the closing speed. With 1 it parts by
