@@ -693,7 +693,9 @@ class PairSearch {
       const SamplePath there_then = to_tip(t);
       return -there_then.q.dot(there_then.rate) / there_then.rate.norm() - before;
     };
-    const double ticks = 4.0 * ulp(nearest), last = std::min(a_.motion->end(), b_.motion->end());
+    // where they are nearest is known to the rounding of their places: the moment lies in what is surely wider
+    const double ticks = 4.0 * (ulp(nearest) + rounding / speed);
+    const double last = std::min(a_.motion->end(), b_.motion->end());
     const double high = std::min(nearest + ticks, last);
     double low = std::max(nearest - std::max(2.0 * before / speed, ticks), begin);
     // they may have parted first, and not far

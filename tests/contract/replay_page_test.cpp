@@ -570,6 +570,54 @@ TEST_F(Replayed, FingersMoveZoomAndSelect) {
   EXPECT_NEAR(answer["zoomed"].get<double>(), 2.0, 1e-9);
 }
 
+// A touch on a lane goes to its nearest event; of a body that only the trace tells of, to the time itself.
+TEST(Replay, ATouchOnALaneLeadsToItsEventOrItsTime) {
+  if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
+  const fs::path folder = fs::temp_directory_path() / fmt::format("brink-lanes-{}", ::getpid());
+  const Scene scene = parse_scene(R"(
+[world]
+duration = 4.0
+[materials.default]
+restitution = 1.0
+[[sites]]
+segment = [[1.0, -1.0], [1.0, 1.0]]
+[[bodies]]
+name = "meets"
+disc = { radius = 0.2 }
+velocity = [0.4, 0.0]
+[[bodies]]
+name = "alone"
+disc = { radius = 0.2 }
+position = [-5.0, 0.0]
+velocity = [-1.0, 0.0]
+)",
+                                  "lanes.toml");
+  RunRequest request;
+  request.dir = folder;
+  request.trace = folder.string() + ".json";  // the folder is made by the run
+  ASSERT_TRUE(run_scene(scene, request).summary.sound());
+  ReplayLimits options;
+  options.trace = request.trace;
+  write_replay_page(folder / "run.db", folder / "lanes.html", options);
+  const json answer = in_browser(folder / "lanes.html", R"(
+    const player = window.brink.player, p = player.picture, canvas = document.getElementById('lanes');
+    const box = canvas.getBoundingClientRect(), rows = player.lanes.length, seen = [];
+    for (let row = 0; row < rows; ++row) {
+      const x = box.left + 70 + 0.75 * (box.width - 70), y = box.top + (row + 0.5) * box.height / rows;
+      canvas.dispatchEvent(new MouseEvent('click', {clientX: x, clientY: y, bubbles: true}));
+      seen.push([player.lanes[row], p.selected, player.t]);
+    }
+    return seen;)");
+  fs::remove_all(folder);
+  fs::remove(request.trace);
+  ASSERT_TRUE(answer.is_array()) << answer.dump();
+  ASSERT_EQ(answer.size(), 2U) << answer.dump();
+  EXPECT_EQ(answer[0][1], 0);
+  EXPECT_NEAR(answer[0][2].get<double>(), 2.0, 1e-9) << "its one collision";
+  EXPECT_EQ(answer[1][1], 1);
+  EXPECT_NEAR(answer[1][2].get<double>(), 3.0, 0.05) << "where the finger was";
+}
+
 // Frames of 16 ms that are late, then in time: coarser, and finer again; a finer picture that was too much is not tried as soon.
 TEST_F(Replayed, CellsAreCoarserWhereFramesAreLateAndFineWhereNothingMoves) {
   if (!has_browser()) GTEST_SKIP() << "chromium is not installed";

@@ -392,11 +392,13 @@ class Player {
 
   clickLane(e) {
     const b = this.lanes[Math.floor(e.offsetY / LANE)], t = this.timeAt(byId('lanes'), e.clientX), {n} = this;
+    if (b === undefined) return;  // on the line below the last
     let best = -1;
     for (let k = 0; k < n.event_t.length; ++k)
       if ((n.event_body[k] === b || n.event_other[k] === b) && (best < 0 || Math.abs(n.event_t[k] - t) < Math.abs(n.event_t[best] - t))) best = k;
-    if (best < 0) return;
-    this.toEvent(best);
+    // a body of which the trace alone tells has no event: the time itself is gone to
+    if (best >= 0) this.toEvent(best);
+    else { this.pause(); this.seek(t); }
     this.select(b);
   }
 
