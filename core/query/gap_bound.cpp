@@ -16,23 +16,23 @@ constexpr int kMostLines = 8;
 /// Of the distance of two hulls: a line that can be better by no more than this is the last.
 constexpr double kGoodLine = 0.05;
 
-struct PlacedOutline {
-  PlacedOutline(const Outline& o, const Pose& pose, const Vec2& base)
+struct Standing {
+  Standing(const Outline& o, const Pose& pose, const Vec2& base)
       : outline(o), frame(Pose{pose.position - base, pose.angle}) {}
   const Outline& outline;
   Frame frame;
 };
 
 /// How far b's origin is from a's sites, less the disc that holds b.
-double seen_from_centre(const PlacedOutline& a, const PlacedOutline& b) {
+double seen_from_centre(const Standing& a, const Standing& b) {
   if (b.outline.container || a.outline.sites.size() > kMostSites) return -kForever;
   return gap_by_brute_force(a.outline, a.frame.to_local(b.frame.origin)) - b.outline.bounding_radius;
 }
 
 /// The outline's place that is furthest along u, in the frame in which it was placed.
-Vec2 support(const PlacedOutline& placed, const Vec2& u) {
+Vec2 support(const Standing& placed, const Vec2& u) {
   const Vec2 local = placed.frame.direction_to_local(u);
-  const Sample* furthest = nullptr;
+  const Sample* furthest = &placed.outline.samples.front();  // also where no number is one
   double most = -kForever;
   for (const Sample& s : placed.outline.samples)
     if (const double along = s.p.dot(local) + s.radius; along > most) {
@@ -50,8 +50,8 @@ Vec2 nearest_to_origin(const Vec2& p, const Vec2& q) {
 }
 
 /// By Gilbert's method on the difference of the two: x is a place of its hull, and comes nearer to the origin.
-double parted_by_lines(const PlacedOutline& a, const PlacedOutline& b, double enough) {
-  const auto middle = [](const PlacedOutline& p) { return p.frame.to_world(p.outline.bounds.center()); };
+double parted_by_lines(const Standing& a, const Standing& b, double enough) {
+  const auto middle = [](const Standing& p) { return p.frame.to_world(p.outline.bounds.center()); };
   Vec2 x = middle(b) - middle(a);
   double best = -kForever;
   for (int k = 0; k < kMostLines; ++k) {
@@ -77,7 +77,7 @@ double gap_at_least(const Outline& a, const Pose& pose_a, const Outline& b, cons
                      : -kForever;
   // two discs are as far apart as those that hold them
   if (least > enough || (is_centred_disc(a) && is_centred_disc(b))) return least;
-  const PlacedOutline placed_a(a, pose_a, pose_a.position), placed_b(b, pose_b, pose_a.position);
+  const Standing placed_a(a, pose_a, pose_a.position), placed_b(b, pose_b, pose_a.position);
   for (const auto& [other, one] : {std::pair(&placed_a, &placed_b), std::pair(&placed_b, &placed_a)}) {
     least = std::max(least, seen_from_centre(*other, *one));
     if (least > enough || (is_centred_disc(one->outline) && least > -kForever)) return least;
