@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "brink/core/contacts/coulomb_sweeps.h"
 #include "brink/scheduler/islands/tolerances.h"
 
 namespace brink {
@@ -16,9 +15,10 @@ constexpr int kLooks = 8;        ///< along a step
 constexpr int kBetween = 4;      ///< parts of what lies between two looks, where a corner may be
 constexpr int kSections = 24;    ///< golden sections until a corner is found there: to 1e-5 of a part
 constexpr int kCorrections = 6;  ///< of gaps that were missed
-/// In an island of few members so many solves more take friction bounds from the forces of the one before, until they are
-/// exact; in any other (kFewBodies), friction comes of so many sweeps.
-constexpr int kFrictionPasses = 2, kMostSweeps = 100;
+/// Where friction bounds do not follow, so many solves more take them from the forces of the one before, until they are
+/// exact in an island of few members, and near in any other.
+constexpr int kFrictionPasses = 2;
+constexpr std::size_t kFew = 8;
 
 /// A contact that takes part in the step.
 struct Part {
@@ -52,37 +52,37 @@ StepProblem problem_of(const IslandStep& step, double h, const std::vector<Part>
   return p;
 }
 
-/// What a solve tells of the step.
-struct Solved {
-  StepResult result;               ///< twists, and the impulses that make them
-  std::vector<ContactLoad> loads;  ///< by Coulomb's law, of all that take part
-  double residual = 0.0;           ///< what these leave unexplained, or are beyond their cones [N s]
-};
-
-/// Impulses beyond the cones of friction, at most [N s].
-double beyond_cones(const StepProblem& p, const std::vector<ContactLoad>& loads) {
-  double beyond = 0.0;
-  for (std::size_t k = 0; k < loads.size(); ++k)
-    beyond =
-        std::max(beyond, std::abs(loads[k].tangential) - p.contacts[k].contact.friction * loads[k].normal);
-  return beyond;
+/// True of an island that lies still; turns count by the radius of gyration.
+bool lies_still(const IslandStep& step, double h) {
+  for (std::size_t i = 0; i < step.mass.size(); ++i) {
+    const Vec3 &m = step.mass[i], &v = step.velocity[i];
+    const double gains = h * step.force[i].cwiseQuotient(m).head<2>().norm();
+    const double turns = std::isinf(m[2]) ? 0.0 : std::abs(v[2]) * std::sqrt(m[2] / std::min(m[0], m[1]));
+    if (v.head<2>().norm() + turns > kStill * gains) return false;
+  }
+  return true;
 }
 
-/// Of a few members: begins with the bounds of the step before and ends with those of its own forces (Haslinger 1983).
-Solved solve_few(ConeQp& solver, StepProblem p, int& factorisations, const GoOn& go_on) {
+/// Of a large island that moves one solve, in which friction bounds follow the normal forces. Any other begins with the
+/// bounds of the step before and ends with those of its own forces, so that from step to step forces come to where they
+/// obey Coulomb's law to rounding: whether it is at rest may hang on less than what following leaves.
+StepResult solve(ConeQp& solver, StepProblem p, double h, const IslandStep& step, int& factorisations,
+                 const GoOn& go_on) {
+  const bool few = p.mass.size() <= kFew, follow = !few && !lies_still(step, h);
   for (StepContact& s : p.contacts) {
+    s.coulomb = follow;
     s.friction_bound = s.contact.friction * s.expected.normal;
     s.rolling_bound = s.contact.rolling_resistance * s.expected.normal;
   }
-  Solved solved;
+  StepResult result;
   for (int pass = 0; pass <= kFrictionPasses; ++pass) {
-    solved.result = solver.step(p, go_on);
-    factorisations += solved.result.factorisations;
-    if (solved.result.status == StepResult::Status::stopped || !(solved.result.residual <= kResidual)) break;
+    result = solver.step(p, go_on);
+    factorisations += result.factorisations;
+    if (result.status == StepResult::Status::stopped || follow || !(result.residual <= kResidual)) break;
     double most = 0.0, wrong = 0.0;
     for (std::size_t k = 0; k < p.contacts.size(); ++k) {
       StepContact& s = p.contacts[k];
-      s.expected = solved.result.loads[k];
+      s.expected = result.loads[k];
       const double bound = s.contact.friction * s.expected.normal,
                    rolling = s.contact.rolling_resistance * s.expected.normal;
       most = std::max(most, s.expected.normal);
@@ -92,79 +92,9 @@ Solved solve_few(ConeQp& solver, StepProblem p, int& factorisations, const GoOn&
       s.friction_bound = bound;
       s.rolling_bound = rolling;
     }
-    if (wrong <= kFrictionExact * most) break;
+    if (wrong <= (few ? kFrictionExact : kFrictionNear) * most) break;
   }
-  solved.loads = solved.result.loads;
-  solved.residual = beyond_cones(p, solved.loads);
-  return solved;
-}
-
-/// Kinetic energy before and after [J].
-double turned_over(const StepProblem& p, const std::vector<Vec3>& velocity) {
-  double twice = 0.0;
-  for (std::size_t i = 0; i < velocity.size(); ++i)
-    for (int c = 0; c < 3; ++c)
-      if (std::isfinite(p.mass[i][c]))
-        twice += p.mass[i][c] * (velocity[i][c] * velocity[i][c] + p.velocity[i][c] * p.velocity[i][c]);
-  return 0.5 * twice;
-}
-
-/// Of many: friction as sweeps find it, gaps as the convex problem with that friction keeps them. A contact that slips has
-/// its friction as a force; one that is held is held within the bounds of its normal force. Which of the normal forces of a
-/// heap carry it is not unique, so those of the sweeps are told, which obey Coulomb's law.
-Solved solve_many(ConeQp& solver, StepProblem p, int& factorisations, const GoOn& go_on) {
-  Solved solved;
-  const StepProblem given = p;
-  CoulombLoads coulomb = sweep_by_coulomb(p, kMostSweeps, go_on);
-  const auto push = [&](std::size_t k, double impulse) {
-    const LastingContact& c = p.contacts[k].contact;
-    p.force[c.body] += impulse / p.duration * c.tangent_on_body;
-    if (c.other >= 0) p.force[c.other] += impulse / p.duration * c.tangent_on_other;
-  };
-  for (std::size_t k = 0; k < p.contacts.size(); ++k) {
-    StepContact& s = p.contacts[k];
-    s.expected = coulomb.loads[k];
-    s.friction_bound = s.contact.friction * s.expected.normal;
-    s.rolling_bound = s.contact.rolling_resistance * s.expected.normal;
-    if (!coulomb.slips[k]) continue;
-    push(k, s.expected.tangential);
-    s.friction_bound = 0.0;
-  }
-  // what the friction of a contact that slips adds to the energy [J]: as a rule nothing
-  const auto drives = [&](std::size_t k) {
-    const LastingContact& c = p.contacts[k].contact;
-    const std::vector<Vec3>& w = solved.result.velocity;
-    const double slip = c.tangent_on_body.dot(w[c.body]) +
-                        (c.other < 0 ? 0.0 : c.tangent_on_other.dot(w[c.other])) -
-                        p.contacts[k].support_velocity[1];
-    return coulomb.slips[k] ? std::max(0.0, coulomb.loads[k].tangential * slip) : 0.0;
-  };
-  for (;;) {
-    solved.result = solver.step(p, go_on);
-    factorisations += solved.result.factorisations;
-    if (solved.result.status == StepResult::Status::stopped || !(solved.result.residual <= kResidual))
-      return solved;
-    double driven = 0.0;
-    for (std::size_t k = 0; k < p.contacts.size(); ++k) driven += drives(k);
-    if (driven <= kWonOf * turned_over(given, solved.result.velocity)) break;
-    // Such contacts are held, or slip the other way: within bounds. Each comes once. In what lies all but still they would
-    // creep for ever.
-    for (std::size_t k = 0; k < p.contacts.size(); ++k) {
-      if (drives(k) == 0.0) continue;
-      coulomb.slips[k] = 0;
-      push(k, -coulomb.loads[k].tangential);
-      p.contacts[k].friction_bound = p.contacts[k].contact.friction * coulomb.loads[k].normal;
-    }
-  }
-  for (std::size_t k = 0; k < p.contacts.size(); ++k)
-    if (coulomb.slips[k]) solved.result.loads[k].tangential = coulomb.loads[k].tangential;
-  solved.loads = std::move(coulomb.loads);
-  solved.residual = unexplained(given, solved.result.velocity, solved.loads);
-  return solved;
-}
-
-Solved solve(ConeQp& solver, const StepProblem& p, int& factorisations, const GoOn& go_on) {
-  return (p.mass.size() <= kFewBodies ? solve_few : solve_many)(solver, p, factorisations, go_on);
+  return result;
 }
 
 /// How a gap is missed along the step [m]; 0: not at all.
@@ -338,12 +268,16 @@ double without_winning(const IslandStep& step, const std::vector<Vec3>& velocity
   return after > 0.0 ? std::min(1.0, (work + std::sqrt(work * work + after * before)) / after) : 1.0;
 }
 
-/// What is left of Coulomb's law, as a part of the largest normal or other force.
-double residual(const IslandStep& step, const Solved& solved, double h) {
-  double most = 0.0;
+/// Friction beyond the cones, as a part of the largest normal or other force.
+double residual(const IslandStep& step, const StepResult& result, double h) {
+  double most = 0.0, beyond = 0.0;
   for (const Vec3& f : step.force) most = std::max(most, h * f.head<2>().norm());
-  for (const ContactLoad& load : solved.loads) most = std::max(most, load.normal);
-  return most > 0.0 ? solved.residual / most : 0.0;
+  for (std::size_t k = 0; k < step.contacts.size(); ++k) {
+    const ContactLoad& load = result.loads[k];
+    most = std::max(most, load.normal);
+    beyond = std::max(beyond, std::abs(load.tangential) - step.contacts[k].friction * load.normal);
+  }
+  return most > 0.0 ? beyond / most : 0.0;
 }
 
 bool stops(const GoOn& go_on) { return go_on && !go_on(); }
@@ -382,8 +316,7 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
   const double cheap = fall(step, h);
   // Contacts that wait join once each and are not counted as corrections, so that the loop ends.
   for (int again = 0; again < kCorrections && !outcome.solved;) {
-    Solved solved = solve(solver, problem_of(step, h, parts), outcome.factorisations, go_on);
-    StepResult& result = solved.result;
+    StepResult result = solve(solver, problem_of(step, h, parts), h, step, outcome.factorisations, go_on);
     if (result.status == StepResult::Status::stopped) return outcome;
     if (!(result.residual <= kResidual)) return without_loads(step, h, tolerance, gap, go_on, outcome);
     // those that are missed take part from now on: each comes once
@@ -417,7 +350,7 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
     // The caller tries a shorter step: by what faces that turn are missed is of second order in h.
     if (won_here > kWonOf * of) return without_loads(step, h, tolerance, gap, go_on, outcome);
     // from here on loads stand at their contacts' places; won() took them at their parts'
-    const std::vector<ContactLoad> loads = of_all(solved.loads, parts, step.contacts.size());
+    result.loads = of_all(result.loads, parts, step.contacts.size());
     const bool driven = std::any_of(parts.begin(), parts.end(),
                                     [&](const Part& part) { return step.contacts[part.contact].driven; });
     // Slower by one factor, constant twists lead through the same poses, only not as far: no gap is missed
@@ -430,12 +363,12 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
       outcome.won = std::max(0.0, won_here);
     }
     outcome.solved = true;
-    outcome.friction_residual = residual(step, solved, h);
+    outcome.friction_residual = residual(step, result, h);
     step.velocity = result.velocity;
     for (std::size_t k = 0; k < step.contacts.size(); ++k) {
       // impulses over the step: told as mean forces
-      step.contacts[k].normal_force = loads[k].normal / h;
-      step.contacts[k].tangential_force = loads[k].tangential / h;
+      step.contacts[k].normal_force = result.loads[k].normal / h;
+      step.contacts[k].tangential_force = result.loads[k].tangential / h;
     }
   }
   return outcome;

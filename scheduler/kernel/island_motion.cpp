@@ -30,9 +30,6 @@ constexpr int kTangents = 32;
 constexpr std::size_t kFirstImpacts = 100, kImpactsEach = 20;
 /// No tolerance makes a step shorter than this part of what it would be.
 constexpr double kShortest = 1e-4;
-/// Contacts hold an island of many bodies at rest that are open by no more than this part of the smallest member's size: some
-/// hundredths of what a step of first order leaves places off by.
-constexpr double kHolds = 1e-5;
 /// Halving a step makes its change of velocity fall to this part at most, if forces make it.
 /// What forces change goes with the step, so half is left at most; what an impact changes stays: 3/4 lies between.
 constexpr double kFalls = 0.75;
@@ -194,8 +191,7 @@ bool IslandMotion::rests(double rest_speed) {
   // the forces that are found are noted as means over so long (take_forces)
   h_ = longest();
   members_.look_ahead(0.0, kReach);
-  // Of many, what will carry them comes closer for ever, each time by a part: so near it holds.
-  list(members_.count() > kFewBodies ? std::max(tolerance, kHolds * members_.size()) : tolerance);
+  list(tolerance);
   for (const HeldContact& c : contacts_)
     // who stands on a site that moves is not at rest
     if (members_.on_moving_site(c)) return false;
