@@ -8,6 +8,9 @@ brink=$root/build/release/bin/brink
 [ -x "$brink" ] || "$root/brink" --version >/dev/null
 mkdir -p "$folder"
 
+# What a thumbnail shows of a scene that is long and flat, instead of all of it.
+declare -A views=([curling]=9,-2,17,4)
+
 title_of() { sed -n 's/^title *= *"\(.*\)".*/\1/p' "$1" | head -n 1 | sed 's/&/\&amp;/g; s/</\&lt;/g; s/>/\&gt;/g'; }
 
 {
@@ -32,7 +35,8 @@ HTML
     "$brink" run "$scene" --out "$folder/runs/$name" --quiet || continue
     "$brink" view "$folder/runs/$name" -o "$folder/$name.html" >/dev/null
     end=$("$brink" export "$folder/runs/$name" --csv "$folder/runs/$name" && tail -n 1 "$folder/runs/$name/frames.csv" | cut -d, -f1)
-    "$brink" draw "$folder/runs/$name" --at "$(awk -v t="$end" 'BEGIN { print 0.4 * t }')" --size 480x360 -o "$folder/$name.png"
+    "$brink" draw "$folder/runs/$name" --at "$(awk -v t="$end" 'BEGIN { print 0.4 * t }')" --size 480x360 \
+      ${views[$name]:+--view "${views[$name]}"} -o "$folder/$name.png"
     printf '<a href="%s.html"><img src="%s.png" alt="" loading="lazy"><span>%s</span></a>\n' "$name" "$name" "$(title_of "$scene")"
   done
   printf '</main></body></html>\n'

@@ -59,14 +59,10 @@ struct RestResult {
 };
 
 struct StepContact {
-  LastingContact
-      contact;       ///< unless `coulomb`, friction and rolling resistance are not looked at, but these:
-  double gap = 0.0;  ///< at the step's start [m]
-  double friction_bound = 0.0;  ///< largest tangential impulse [N s], >= 0
-  double rolling_bound = 0.0;   ///< largest rolling impulse [N m s], >= 0
-  /// The bounds are instead the contact's own friction and rolling resistance times its normal impulse, nearly: see
-  /// step().
-  bool coulomb = false;
+  LastingContact contact;                ///< friction and rolling resistance are not looked at, but these:
+  double gap = 0.0;                      ///< at the step's start [m]
+  double friction_bound = 0.0;           ///< largest tangential impulse [N s], >= 0
+  double rolling_bound = 0.0;            ///< largest rolling impulse [N m s], >= 0
   ContactLoad expected;                  ///< impulses, as far as they are known: makes the search shorter
   Vec3 support_velocity = Vec3::Zero();  ///< of a support that moves: along normal, tangent [m/s], in turning
 };
@@ -114,10 +110,6 @@ class ConeQp {
   /// It is convex and always has one answer w. Gaps that are linearised stay >= 0 whatever the bounds; with
   /// b = mu p of a step before it is Coulomb's law to first order. Sources: Moreau 1988, "Unilateral contact and
   /// dry friction in finite freedom dynamics"; Acary & Brogliato 2008.
-  ///
-  /// Bounds of contacts that are `coulomb` follow b = mu p while the search is far from its end, and then stay
-  /// (InteriorPoint): of few contacts Coulomb's law to a rounding or a thousandth, of heaps to some hundredths of the
-  /// largest impulse. Gaps stay >= 0 all the same.
   ///
   /// Known limit: where masses of one island are spread at random over 1e6 and more, some steps end `undecided`
   /// (2.6 % of random problems at 1e6).

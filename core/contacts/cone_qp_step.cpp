@@ -78,26 +78,16 @@ class StepRows {
     const LastingContact& c = s.contact;
     // Turning as the speed at one unit of length, so that the row is of order 1 like the others.
     const Vec3 turn(0.0, 0.0, units_.length());
-    const int normal =
-        add_row({k, &ContactLoad::normal, 1.0}, c.normal_on_body, c.normal_on_other, room(s), kNone, {});
-    const auto of = [&](double ratio) { return s.coulomb && normal >= 0 ? Leader{normal, ratio} : Leader{}; };
+    add_row({k, &ContactLoad::normal, 1.0}, c.normal_on_body, c.normal_on_other, room(s), kNone);
     add_row({k, &ContactLoad::tangential, 1.0}, c.tangent_on_body, c.tangent_on_other,
-            before(c, c.tangent_on_body, c.tangent_on_other) - s.support_velocity[1],
-            s.coulomb ? 0.0 : s.friction_bound, of(c.friction));
+            before(c, c.tangent_on_body, c.tangent_on_other) - s.support_velocity[1], s.friction_bound);
     add_row({k, &ContactLoad::rolling, units_.length()}, turn, -turn,
             before(c, turn, -turn) - units_.length() * s.support_velocity[2],
-            s.coulomb ? 0.0 : s.rolling_bound / units_.length(), of(c.rolling_resistance / units_.length()));
+            s.rolling_bound / units_.length());
   }
 
-  /// Which row's force a bound follows, and what part of it is the bound.
-  struct Leader {
-    int row = -1;
-    double ratio = 0.0;
-  };
-
-  /// The row's place, -1: it is left out.
-  int add_row(const Source& source, const Vec3& on_body, const Vec3& on_other, double speed, double bound,
-              const Leader& leader) {
+  /// May leave the row out.
+  void add_row(const Source& source, const Vec3& on_body, const Vec3& on_other, double speed, double bound) {
     const LastingContact& c = given_.contacts[source.contact].contact;
     QpRow row;
     row.body = c.body;
@@ -106,20 +96,14 @@ class StepRows {
     if (c.other >= 0) row.on_other = units_.scaled_row(c.other, on_other);
     row.offset = std::clamp(speed / units_.speed(), -kFar, kFar);
     row.expected = given_.contacts[source.contact].expected.*source.load / (units_.force() * source.unit);
-    if (leader.ratio > 0.0) {
-      row.leader = leader.row;
-      row.ratio = leader.ratio;
-      bound = leader.ratio * units_.force();  // that of a force of 1
-    }
     row.bound = bound / units_.force();
     // A row's pairs (bound - x, bound + x) begin at its bound, which must not be 0. So contacts without
     // friction have no tangential row, and without rolling resistance none that turns.
-    if (row.bound <= kNoFriction) return -1;
-    if (row.on_body.isZero(0.0) && row.on_other.isZero(0.0)) return -1;  // between what is held
+    if (row.bound <= kNoFriction) return;
+    if (row.on_body.isZero(0.0) && row.on_other.isZero(0.0)) return;  // between what is held
     sources_.push_back(source);
     // Sources and rows are in step: a row's index names its source.
     problem_.rows.push_back(row);
-    return static_cast<int>(problem_.rows.size()) - 1;
   }
 
   static constexpr double kNone = std::numeric_limits<double>::infinity();

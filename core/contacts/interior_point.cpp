@@ -47,15 +47,8 @@ constexpr double kRounding = 1e-13;
 /// to be made up for than what is expected rightly saves.
 constexpr double kNear = 0.1;
 
-/// Bounds stop to follow once products are down to the first on the mean and a step leaves more than the second of them; and
-/// where so many steps have not left less than half of them.
-constexpr double kFollowed = 1e-3, kFalls = 0.4;
-constexpr int kMostStalled = 4;
-/// A leader is known to be open once its speed, in the units of the problem, is so many times its force; and a bound below
-/// this is none.
-constexpr double kOpen = 100.0, kNoBound = 1e-6;
-/// A force keeps to this part of a bound that comes to lie below it, and a pair's product to this part of the mean.
-constexpr double kInside = 0.7, kCentred = 0.5;
+/// A force begins within this part of its bound.
+constexpr double kInside = 0.7;
 
 /// Numbers that are gone through side by side.
 constexpr std::size_t kLanes = 8;
@@ -91,10 +84,7 @@ void InteriorPoint::begin(const QpProblem& problem) {
   const bool expects = std::any_of(problem.rows.begin(), problem.rows.end(),
                                    [](const QpRow& row) { return row.expected != 0.0; });
   expects ? start_near(problem) : start_pairs(problem);
-  following_ = std::any_of(rows_.begin(), rows_.end(), [](const Row& row) { return row.leader >= 0; });
   measure();
-  followed_at_ = least_mean_ = gap_ / std::max(1, pairs_);
-  stalled_ = 0;
 }
 
 InteriorPoint::Row InteriorPoint::ordered(const QpRow& given) const {
@@ -104,8 +94,6 @@ InteriorPoint::Row InteriorPoint::ordered(const QpRow& given) const {
   row.on_last = Triple::of(given.on_body);
   row.offset = given.offset;
   row.pairs = std::isinf(given.bound) ? 1 : 2;
-  row.leader = given.leader;
-  row.ratio = given.ratio;
   row.expected = given.expected;
   if (given.other < 0) return row;
   row.first = factor_.place(given.other);
@@ -149,8 +137,7 @@ void InteriorPoint::start_near(const QpProblem& problem) {
       s[0] = std::max(row.expected, kNear);
       z[0] = std::max(row.offset, kNear);
     } else {
-      // the leader's row comes before, and has its force by now
-      const double bound = row.leader >= 0 ? row.ratio * s_[rows_[row.leader].pair] : problem.rows[r].bound;
+      const double bound = problem.rows[r].bound;
       // what slips has its force close to the bound against it, the closer the faster: at products of kNear^2
       const double slips = std::abs(row.offset), product = kNear * kNear;
       const double most = std::max(kInside * bound, bound - product / std::max(slips, kNear));
@@ -163,44 +150,6 @@ void InteriorPoint::start_near(const QpProblem& problem) {
   }
 }
 
-/// Bounds to what their leaders' forces are now. The last time, what is open by then has no friction; and what may be open
-/// or press lightly has the friction of the force that was expected, or of that at which it is.
-void InteriorPoint::follow() {
-  const double mean = gap_ / pairs_;
-  stalled_ = mean < 0.5 * least_mean_ ? 0 : stalled_ + 1;
-  const bool last = (mean <= kFollowed && mean > kFalls * followed_at_) || stalled_ >= kMostStalled;
-  least_mean_ = stalled_ == 0 ? mean : least_mean_;
-  followed_at_ = mean;
-  for (Row& row : rows_) {
-    if (row.leader < 0) continue;
-    const Row& leader = rows_[row.leader];
-    double presses = s_[leader.pair];
-    if (last && presses < z_[leader.pair])
-      presses = presses * kOpen < z_[leader.pair] ? 0.0 : std::clamp(leader.expected, 0.0, presses);
-    const double bound = row.ratio * presses;
-    set_bound(row, last && bound < kNoBound ? 0.0 : bound, mean);
-  }
-  following_ = !last;
-  measure();
-}
-
-/// @pre two pairs. From a bound of 0 the row has no part in anything any more.
-void InteriorPoint::set_bound(Row& row, double bound, double product) {
-  double *s = &s_[row.pair], *z = &z_[row.pair];
-  const double x = std::clamp(force_of(row), -kInside * bound, kInside * bound);
-  s[0] = bound - x;
-  s[1] = bound + x;
-  for (int p = 0; p < 2; ++p) z[p] = std::max(z[p], kCentred * product / s[p]);
-  if (bound > 0.0) return;
-  // its pairs stand still, at a product of 0
-  for (int p = 0; p < 2; ++p) {
-    s[p] = 1.0;
-    z[p] = ds_[row.pair + p] = dz_[row.pair + p] = 0.0;
-  }
-  row.pairs = 0;
-  pairs_ -= 2;
-}
-
 /// Residuals and gap where u, s and z stand.
 BRINK_WIDE void InteriorPoint::measure() {
   imbalance_.resize(u_.size());
@@ -209,7 +158,6 @@ BRINK_WIDE void InteriorPoint::measure() {
     for (int c = 0; c < 4; ++c) imbalance_[k].at[c] = f_[k].at[c] - mass_[k].at[c] * u_[k].at[c];
   for (Row& row : rows_) {
     row.residual = 0.0;
-    if (row.pairs == 0) continue;
     const double force = force_of(row);
     imbalance_[row.last].add(force, row.on_last);
     double y = row.on_last.dot(u_[row.last]);
@@ -227,7 +175,6 @@ bool InteriorPoint::step(const GoOn& go_on) {
   // The first step is made always: without rows it is the whole solution, M u = f, at a gap of 0.
   if (steps_ > 0 && gap_ < kNothing) return false;
   ++steps_;
-  if (following_) follow();
   if (!factor(go_on)) {
     stopped_ = true;
     return false;
@@ -258,7 +205,6 @@ BRINK_WIDE bool InteriorPoint::factor(const GoOn& go_on) {
   for (std::size_t p = 0; p < count; ++p) per_z_[p] = 1.0 / z_[p];
   for (Row& row : rows_) {
     row.weight = 0.0;
-    if (row.pairs == 0) continue;
     // dx = push - weight dy follows from z ds + s dz = aim with ds = sign dx: dz = (aim - z ds) / s, and
     // sum of sign dz = dy + residual.
     double yields = kYield;
@@ -288,7 +234,6 @@ BRINK_WIDE void InteriorPoint::find_direction(double centre, bool corrected) {
   du_ = imbalance_;
   for (Row& row : rows_) {
     row.push = 0.0;
-    if (row.pairs == 0) continue;
     // The residual goes in as well, so that a whole step brings it to 0.
     const int p = row.pair;
     const double dy = row.pairs == 1 ? aim_[p] * per_s_[p] - row.residual
@@ -299,7 +244,6 @@ BRINK_WIDE void InteriorPoint::find_direction(double centre, bool corrected) {
   }
   factor_.solve(du_);
   for (const Row& row : rows_) {
-    if (row.pairs == 0) continue;
     double dy = row.on_last.dot(du_[row.last]);
     if (row.first >= 0) dy += row.on_first.dot(du_[row.first]);
     const double dx = row.push - row.weight * dy;
@@ -307,10 +251,6 @@ BRINK_WIDE void InteriorPoint::find_direction(double centre, bool corrected) {
     if (row.pairs == 2) ds_[row.pair + 1] = dx;
   }
   for (std::size_t p = 0; p < count; ++p) dz_[p] = (aim_[p] - z_[p] * ds_[p]) * per_s_[p];
-  // rows without pairs stand still
-  for (const Row& row : rows_)
-    if (row.pairs == 0)
-      for (int p = row.pair; p < row.pair + 2; ++p) dz_[p] = 0.0;
 }
 
 /// How far the direction goes until a first s or z is 0, in whole steps; at most 2.

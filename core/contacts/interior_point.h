@@ -17,10 +17,6 @@ struct QpRow {
   double offset = 0.0;
   /// infinity: 0 <= x _|_ y >= 0. Else > 0: |x| <= bound, and x is -bound * sign(y) where y is not 0.
   double bound = std::numeric_limits<double>::infinity();
-  /// An earlier row without a bound, `ratio` times the force of which this one's bound is; -1: the bound given. Such a
-  /// bound follows while the search is far from its end, see InteriorPoint.
-  int leader = -1;
-  double ratio = 0.0;
   double expected = 0.0;  ///< force that the search begins near; 0 in all rows: nothing is known
 };
 
@@ -36,11 +32,6 @@ struct QpProblem {
 /// (W > 0 diagonal), in blocks of a body. Rows that depend on others, or are given twice, do no harm.
 /// Sources: Mehrotra 1992, "On the implementation of a primal-dual interior point method"; Wright 1997,
 /// "Primal-dual interior-point methods", ch. 10; Nocedal & Wright, "Numerical optimization", 16.6.
-///
-/// Bounds that follow are set anew before each step, to what their leaders have by then, until products are small or
-/// that keeps them from falling; from then on they stay, the problem is convex, and the search ends as any other.
-/// That is the fixed point of Haslinger 1983 (bounds from the solution with the bounds before) with one step of the
-/// search instead of a whole one for each pass: Coulomb's law to some per cent of the largest force.
 class InteriorPoint {
  public:
   /// Before the first step. What is known of the graph is kept from the problem before.
@@ -74,24 +65,21 @@ class InteriorPoint {
   struct Row {
     Triple on_first, on_last;
     int first, last, slot;  ///< places of bodies, first < last; first -1: one body only
-    int pair, pairs;        ///< 0 pairs: its bound is 0, and so is its force
+    int pair, pairs;
     double offset;
     double residual;      ///< y of the velocities less y of the pairs
     double weight, push;  ///< dx = push - weight dy
-    int leader;
-    double ratio, expected;
+    double expected;
   };
   /// One number of each pair, in the order of rows.
   using OfPairs = std::vector<double>;
 
   double force_of(const Row& row) const {
-    return row.pairs == 0 ? 0.0 : row.pairs == 1 ? s_[row.pair] : (s_[row.pair + 1] - s_[row.pair]) / 2;
+    return row.pairs == 1 ? s_[row.pair] : (s_[row.pair + 1] - s_[row.pair]) / 2;
   }
   Row ordered(const QpRow& row) const;
   void start_pairs(const QpProblem& problem);
   void start_near(const QpProblem& problem);
-  void follow();
-  void set_bound(Row& row, double bound, double product);
   void measure();
   bool factor(const GoOn& go_on);
   void find_direction(double centre, bool corrected);
@@ -106,9 +94,8 @@ class InteriorPoint {
   OfPairs aim_;            ///< what s dz + z ds is to be
   OfPairs per_s_, per_z_;  ///< 1 / s, 1 / z where the factor was made
   int pairs_ = 0, steps_ = 0;
-  bool following_ = false, stopped_ = false;
-  int stalled_ = 0;  ///< steps since products were last half of `least_mean_`
-  double gap_ = 0.0, last_length_ = 1.0, followed_at_ = 0.0, least_mean_ = 0.0;
+  bool stopped_ = false;
+  double gap_ = 0.0, last_length_ = 1.0;
 };
 
 }  // namespace brink

@@ -16,6 +16,8 @@ namespace {
 
 /// [s], the end. Who is not at rest by then has infinity as its time.
 constexpr double kSettled = 8.0;
+/// [m] Brink's: without it a disc that rolls on the level floor does so for ever. Peers stop whoever is slower than 1 cm/s.
+constexpr double kRollingResistance = 1e-4;
 
 /// A bin of three walls, and bodies in a pile above it to fall; as a scene file, so that
 /// anybody can make it.
@@ -23,8 +25,8 @@ Heap heap(std::string name, const std::string& shape, int count, double width) {
   // Restitution 0: an engine that bounces would come to rest later for that alone.
   std::string text = fmt::format(
       "[world]\nduration = {}\ngravity = [0, -9.81]\nseed = 7\n[materials.default]\nrestitution = "
-      "0\nfriction = 0.5\n",
-      kSettled);
+      "0\nfriction = 0.5\nrolling_resistance = {}\n",
+      kSettled, kRollingResistance);
   // High enough for the pile; walls are boxes, a shape that all engines have.
   const double height = 20.0, thick = 0.5;
   // Its middle [m], width and height.

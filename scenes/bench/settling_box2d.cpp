@@ -11,7 +11,7 @@ namespace brink::bench {
 namespace {
 
 /// Rounded to float.
-b2Vec2 vector(const Vec2& v) { return {static_cast<float>(v.x()), static_cast<float>(v.y())}; }
+b2Vec2 box2d_vector(const Vec2& v) { return {static_cast<float>(v.x()), static_cast<float>(v.y())}; }
 
 /// Gives `body` the outline of a disc or of a convex polygon. @pre it is one of these
 void add_fixture(b2Body* body, const Outline& outline, double density) {
@@ -24,7 +24,7 @@ void add_fixture(b2Body* body, const Outline& outline, double density) {
   } else {
     // The samples of a convex polygon are its vertices.
     std::vector<b2Vec2> corners;
-    for (const Sample& s : outline.samples) corners.push_back(vector(s.p));
+    for (const Sample& s : outline.samples) corners.push_back(box2d_vector(s.p));
     polygon.Set(corners.data(), static_cast<int32>(corners.size()));
     fixture.shape = &polygon;
   }
@@ -39,7 +39,7 @@ void add_fixture(b2Body* body, const Outline& outline, double density) {
 b2Body* add(b2World& world, b2BodyType type, const Outline& outline, const Pose& pose) {
   b2BodyDef def;
   def.type = type;
-  def.position = vector(pose.position);
+  def.position = box2d_vector(pose.position);
   def.angle = static_cast<float>(pose.angle);
   b2Body* body = world.CreateBody(&def);
   // The density of the scene is 1 kg/m^2.
@@ -51,7 +51,7 @@ b2Body* add(b2World& world, b2BodyType type, const Outline& outline, const Pose&
 
 Settled settle_with_box2d(const Heap& heap) {
   const World& given = heap.scene.world;
-  b2World world(vector(given.gravity));
+  b2World world(box2d_vector(given.gravity));
   for (const FixedSite& site : given.sites) add(world, b2_staticBody, *site.outline, site.pose);
   std::vector<b2Body*> bodies;
   for (const Body& b : given.bodies) bodies.push_back(add(world, b2_dynamicBody, *b.outline, b.initial.pose));

@@ -11,7 +11,7 @@ namespace brink::bench {
 
 namespace {
 
-cpVect vector(const Vec2& v) { return cpv(v.x(), v.y()); }
+cpVect chipmunk_vector(const Vec2& v) { return cpv(v.x(), v.y()); }
 
 /// Frees what it holds in the order in which Chipmunk wants it.
 struct Space {
@@ -31,7 +31,7 @@ struct Space {
 
   /// Takes the body over, and gives it the shape of a disc or of a convex polygon. @pre it is one of these
   void add(cpBody* body, const Outline& outline, const Pose& pose) {
-    cpBodySetPosition(body, vector(pose.position));
+    cpBodySetPosition(body, chipmunk_vector(pose.position));
     cpBodySetAngle(body, pose.angle);
     cpSpaceAddBody(space, body);
     bodies.push_back(body);
@@ -41,7 +41,7 @@ struct Space {
       shape = cpCircleShapeNew(body, outline.bounding_radius, cpvzero);
     } else {
       std::vector<cpVect> corners;
-      for (const Sample& s : outline.samples) corners.push_back(vector(s.p));
+      for (const Sample& s : outline.samples) corners.push_back(chipmunk_vector(s.p));
       shape =
           cpPolyShapeNew(body, static_cast<int>(corners.size()), corners.data(), cpTransformIdentity, 0.0);
     }
@@ -57,7 +57,7 @@ struct Space {
 Settled settle_with_chipmunk(const Heap& heap) {
   const World& given = heap.scene.world;
   Space world;
-  cpSpaceSetGravity(world.space, vector(given.gravity));
+  cpSpaceSetGravity(world.space, chipmunk_vector(given.gravity));
   cpSpaceSetCollisionSlop(world.space, 0.005);
   // Bodies sleep after half a second at rest, as Box2D's do; without this they never do.
   cpSpaceSetSleepTimeThreshold(world.space, 0.5);

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <utility>
 
@@ -19,6 +20,7 @@ constexpr Color kEdge{1.0, 1.0, 1.0};
 constexpr Oklch kNothing{0.90, 0.0, 0.0};   // no site anywhere
 constexpr Oklch kSolid{0.13, 0.02, 300.0};  // inside solids on the depth layer
 constexpr int kStripRows = 256;             // of the field, at a time
+constexpr double kTie = 1e-2;               // of a pixel: distances less different are the same
 constexpr double kEdgeStrength = 0.85;      // white of the lines where owners meet
 constexpr double kContourStrength = 0.055;  // darkness of the lines of equal distance
 
@@ -147,6 +149,26 @@ class CellPainter {
   Color ink_ = Tones::ink.rgb(), nothing_ = kNothing.rgb();
 };
 
+/// Fixed sites thicker by next to nothing. Behind a floor what stands on it is as near as the floor, and roundings
+/// would say whose cell that is: it is the floor's.
+class ThickerSites {
+ public:
+  ThickerSites(std::span<const PlacedOutline> placed, std::size_t body_count, double by)
+      : placed_(placed.begin(), placed.end()) {
+    for (PlacedOutline& p : placed_) {
+      if (p.owner < body_count) continue;
+      Outline& thicker = outlines_.emplace_back(*p.outline);
+      for (Site& site : thicker.sites) site.radius += by;
+      p.outline = &thicker;
+    }
+  }
+  std::span<const PlacedOutline> placed() const { return placed_; }
+
+ private:
+  std::deque<Outline> outlines_;
+  std::vector<PlacedOutline> placed_;
+};
+
 }  // namespace
 
 std::vector<PlacedOutline> placed_outlines(const World& world, std::span<const BodyState> bodies,
@@ -175,10 +197,12 @@ double largest_distance(const FieldImage& field) {
   return largest;
 }
 
-Picture cells_picture(std::span<const PlacedOutline> placed, const View& view, int wanted,
+Picture cells_picture(std::span<const PlacedOutline> all, const View& view, int wanted,
                       std::uint32_t excluded, const FieldOptions& options, const Palette& palette,
                       std::size_t body_count, const std::function<double(double)>& contour_step) {
   const int fineness = std::clamp(kMostPassPixels / view.width, 1, wanted);  // a strip is one window
+  const ThickerSites thicker(all, body_count, kTie / view.scale);
+  const std::span<const PlacedOutline> placed = thicker.placed();
   PassRenderer renderer(options);
   // The distance between lines is one for the picture, so it is chosen before the first strip.
   const CoarseLook seen = look(renderer, placed, view, excluded, options);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 
 #include "brink/scheduler/broad_phase/tolerances.h"
 
@@ -141,37 +140,52 @@ bool each_with_large(const std::vector<Box>& boxes, const Sorted& sorted,
 
 /// By a sweep over their left edges: for a few boxes quicker than cells. False if a visit was the last.
 bool each_of_few(const std::vector<Box>& boxes, const std::function<bool(int, int)>& visit) {
-  std::vector<int> by_left(boxes.size());
-  std::iota(by_left.begin(), by_left.end(), 0);
-  std::sort(by_left.begin(), by_left.end(),
-            [&](int i, int j) { return std::pair(boxes[i].low.x(), i) < std::pair(boxes[j].low.x(), j); });
-  for (auto i = by_left.begin(); i != by_left.end(); ++i)
-    for (auto j = i + 1; j != by_left.end() && boxes[*j].low.x() <= boxes[*i].high.x(); ++j)
-      if (boxes[*i].overlaps(boxes[*j]) && !visit(std::min(*i, *j), std::max(*i, *j))) return false;
+  struct Edge {
+    double left;
+    int box;
+  };
+  std::vector<Edge> edges;
+  edges.reserve(boxes.size());
+  for (const Box& b : boxes) edges.push_back({b.low.x(), static_cast<int>(edges.size())});
+  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+    return a.left < b.left || (a.left == b.left && a.box < b.box);
+  });
+  for (auto i = edges.begin(); i != edges.end(); ++i) {
+    const Box& box = boxes[i->box];
+    for (auto j = i + 1; j != edges.end() && j->left <= box.high.x(); ++j)
+      if (box.overlaps(boxes[j->box]) && !visit(std::min(i->box, j->box), std::max(i->box, j->box)))
+        return false;
+  }
   return true;
+}
+
+/// A box about places of an outline's origin, grown by the outline and by `more` [m].
+Box with_outline(const Box& places, const Outline& outline, double more) {
+  // rounding goes with the coordinates, which may be far larger than the box
+  const double scale = places.low.cwiseAbs().cwiseMax(places.high.cwiseAbs()).maxCoeff();
+  return places.grown(outline.bounding_radius + more + kBoxMargin * (scale + outline.bounding_radius));
 }
 
 }  // namespace
 
 Box swept_box(const Outline& outline, const Motion& motion, double from, double to) {
-  if (outline.container) {
-    // a container is solid without end: its box leaves nobody out
-    constexpr double everywhere = std::numeric_limits<double>::infinity();
-    return {{-everywhere, -everywhere}, {everywhere, everywhere}};
-  }
+  const Vec2 start = motion.pose(from).position;
+  if (!(from < to) || outline.container) return standing_box(outline, start);
   Box box;
-  box.add(motion.pose(from).position);
-  double bulge = 0.0;
-  if (from < to) {
-    box.add(motion.pose(to).position);
-    const MotionBounds b = motion.bounds(from, to);
-    // A path leaves its chord by e(t) with e = 0 at both ends and |e''| <= a, so |e| <= a t (T - t) / 2,
-    // which is a T^2 / 8 at most.
-    bulge = (b.acceleration.norm() + b.acceleration_radius) * (to - from) * (to - from) / 8.0;
-  }
-  // rounding goes with the coordinates, which may be far larger than the box
-  const double scale = box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
-  return box.grown(outline.bounding_radius + bulge + kBoxMargin * (scale + outline.bounding_radius));
+  box.add(start);
+  box.add(motion.pose(to).position);
+  const MotionBounds b = motion.bounds(from, to);
+  // A path leaves its chord by e(t) with e = 0 at both ends and |e''| <= a, so |e| <= a t (T - t) / 2,
+  // which is a T^2 / 8 at most.
+  const double bulge = (b.acceleration.norm() + b.acceleration_radius) * (to - from) * (to - from) / 8.0;
+  return with_outline(box, outline, bulge);
+}
+
+Box standing_box(const Outline& outline, const Vec2& place) {
+  // a container is solid without end: its box leaves nobody out
+  constexpr double everywhere = std::numeric_limits<double>::infinity();
+  if (outline.container) return {{-everywhere, -everywhere}, {everywhere, everywhere}};
+  return with_outline({place, place}, outline, 0.0);
 }
 
 bool each_overlapping(const std::vector<Box>& boxes, const std::function<bool(int i, int j)>& visit) {

@@ -15,6 +15,9 @@ namespace brink {
 /// bounding radius; containers hold everything. @pre the motion covers [from, to].
 Box swept_box(const Outline& outline, const Motion& motion, double from, double to);
 
+/// The box that holds an outline about a place of its origin, however it has turned.
+Box standing_box(const Outline& outline, const Vec2& place);
+
 /// Calls visit(i, j), i < j, once for each two boxes that overlap, until it returns false; true if it never
 /// did. One by one, as pairs can be far too many to keep (boxes all in one place). A uniform grid with cells
 /// sized to the typical box; boxes of many cells are kept apart and met by everyone. Cost: O(n log n) for

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "brink/core/contacts/coulomb_sweeps.h"
 #include "brink/scheduler/islands/tolerances.h"
 
 namespace brink {
@@ -15,10 +16,13 @@ constexpr int kLooks = 8;        ///< along a step
 constexpr int kBetween = 4;      ///< parts of what lies between two looks, where a corner may be
 constexpr int kSections = 24;    ///< golden sections until a corner is found there: to 1e-5 of a part
 constexpr int kCorrections = 6;  ///< of gaps that were missed
-/// Where friction bounds do not follow, so many solves more take them from the forces of the one before, until they are
-/// exact in an island of few members, and near in any other.
+/// In an island of few members so many solves more take friction bounds from the forces of the one before.
 constexpr int kFrictionPasses = 2;
-constexpr std::size_t kFew = 8;
+/// In any other friction comes of sweeps: a hundred go on well enough from the step before, an impact takes more.
+constexpr int kFewestSweeps = 100, kMostSweeps = 1000;
+/// Friction drives that goes along with a slip of more than this part of the fastest member's speed, and of the speed that forces
+/// alone make of rest in the step: of a ten-thousandth of that at least.
+constexpr double kDrives = 1e-2, kNeverDrives = 1e-4;
 
 /// A contact that takes part in the step.
 struct Part {
@@ -52,37 +56,37 @@ StepProblem problem_of(const IslandStep& step, double h, const std::vector<Part>
   return p;
 }
 
-/// True of an island that lies still; turns count by the radius of gyration.
-bool lies_still(const IslandStep& step, double h) {
-  for (std::size_t i = 0; i < step.mass.size(); ++i) {
-    const Vec3 &m = step.mass[i], &v = step.velocity[i];
-    const double gains = h * step.force[i].cwiseQuotient(m).head<2>().norm();
-    const double turns = std::isinf(m[2]) ? 0.0 : std::abs(v[2]) * std::sqrt(m[2] / std::min(m[0], m[1]));
-    if (v.head<2>().norm() + turns > kStill * gains) return false;
-  }
-  return true;
+/// What a solve tells of the step.
+struct Solved {
+  StepResult result;               ///< twists, and the impulses that make them
+  std::vector<ContactLoad> loads;  ///< by Coulomb's law, of all that take part
+  double residual = 0.0;           ///< what these leave unexplained, or are beyond their cones [N s]
+};
+
+/// Impulses beyond the cones of friction, at most [N s].
+double beyond_cones(const StepProblem& p, const std::vector<ContactLoad>& loads) {
+  double beyond = 0.0;
+  for (std::size_t k = 0; k < loads.size(); ++k)
+    beyond =
+        std::max(beyond, std::abs(loads[k].tangential) - p.contacts[k].contact.friction * loads[k].normal);
+  return beyond;
 }
 
-/// Of a large island that moves one solve, in which friction bounds follow the normal forces. Any other begins with the
-/// bounds of the step before and ends with those of its own forces, so that from step to step forces come to where they
-/// obey Coulomb's law to rounding: whether it is at rest may hang on less than what following leaves.
-StepResult solve(ConeQp& solver, StepProblem p, double h, const IslandStep& step, int& factorisations,
-                 const GoOn& go_on) {
-  const bool few = p.mass.size() <= kFew, follow = !few && !lies_still(step, h);
+/// Of a few members: begins with the bounds of the step before and ends with those of its own forces (Haslinger 1983).
+Solved solve_few(ConeQp& solver, StepProblem p, int& factorisations, const GoOn& go_on) {
   for (StepContact& s : p.contacts) {
-    s.coulomb = follow;
     s.friction_bound = s.contact.friction * s.expected.normal;
     s.rolling_bound = s.contact.rolling_resistance * s.expected.normal;
   }
-  StepResult result;
+  Solved solved;
   for (int pass = 0; pass <= kFrictionPasses; ++pass) {
-    result = solver.step(p, go_on);
-    factorisations += result.factorisations;
-    if (result.status == StepResult::Status::stopped || follow || !(result.residual <= kResidual)) break;
+    solved.result = solver.step(p, go_on);
+    factorisations += solved.result.factorisations;
+    if (solved.result.status == StepResult::Status::stopped || !(solved.result.residual <= kResidual)) break;
     double most = 0.0, wrong = 0.0;
     for (std::size_t k = 0; k < p.contacts.size(); ++k) {
       StepContact& s = p.contacts[k];
-      s.expected = result.loads[k];
+      s.expected = solved.result.loads[k];
       const double bound = s.contact.friction * s.expected.normal,
                    rolling = s.contact.rolling_resistance * s.expected.normal;
       most = std::max(most, s.expected.normal);
@@ -92,9 +96,91 @@ StepResult solve(ConeQp& solver, StepProblem p, double h, const IslandStep& step
       s.friction_bound = bound;
       s.rolling_bound = rolling;
     }
-    if (wrong <= (few ? kFrictionExact : kFrictionNear) * most) break;
+    if (wrong <= kFrictionExact * most) break;
   }
-  return result;
+  solved.loads = solved.result.loads;
+  solved.residual = beyond_cones(p, solved.loads);
+  return solved;
+}
+
+/// The speed that the forces alone make of rest in so long, of the body that they pull most [m/s].
+double falling_speed(const std::vector<Vec3>& force, const std::vector<Vec3>& mass, double h) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < mass.size(); ++i)
+    most = std::max(most, force[i].cwiseQuotient(mass[i]).head<2>().norm());
+  return h * most;
+}
+
+double fastest(const std::vector<Vec3>& velocity) {
+  double most = 0.0;
+  for (const Vec3& v : velocity) most = std::max(most, v.head<2>().norm());
+  return most;
+}
+
+/// Of many: friction as sweeps find it, gaps as the convex problem with that friction keeps them. A contact that slips has
+/// its friction as a force; one that is held is held within the bounds of its normal force. Which of the normal forces of a
+/// heap carry it is not unique, so those of the sweeps are told, which obey Coulomb's law.
+Solved solve_many(ConeQp& solver, StepProblem p, int& factorisations, const GoOn& go_on) {
+  Solved solved;
+  const StepProblem given = p;
+  CoulombLoads coulomb = sweep_by_coulomb(p, kFewestSweeps, kMostSweeps, go_on);
+  const auto push = [&](std::size_t k, double impulse) {
+    const LastingContact& c = p.contacts[k].contact;
+    p.force[c.body] += impulse / p.duration * c.tangent_on_body;
+    if (c.other >= 0) p.force[c.other] += impulse / p.duration * c.tangent_on_other;
+  };
+  const auto bound = [&](std::size_t k) { return p.contacts[k].contact.friction * coulomb.loads[k].normal; };
+  for (std::size_t k = 0; k < p.contacts.size(); ++k) {
+    StepContact& s = p.contacts[k];
+    s.expected = coulomb.loads[k];
+    s.friction_bound = coulomb.slips[k] ? 0.0 : bound(k);
+    s.rolling_bound = s.contact.rolling_resistance * s.expected.normal;
+    if (coulomb.slips[k]) push(k, s.expected.tangential);
+  }
+  const double falling = falling_speed(given.force, given.mass, given.duration);
+  double slow = 0.0;
+  const auto drives = [&](std::size_t k) {
+    const LastingContact& c = p.contacts[k].contact;
+    const std::vector<Vec3>& w = solved.result.velocity;
+    const double slip = c.tangent_on_body.dot(w[c.body]) +
+                        (c.other < 0 ? 0.0 : c.tangent_on_other.dot(w[c.other])) -
+                        p.contacts[k].support_velocity[1];
+    return coulomb.slips[k] && std::copysign(slip, slip * coulomb.loads[k].tangential) > slow;
+  };
+  for (bool driven = true; driven;) {
+    solved.result = solver.step(p, go_on);
+    factorisations += solved.result.factorisations;
+    if (solved.result.status == StepResult::Status::stopped || !(solved.result.residual <= kResidual))
+      return solved;
+    driven = false;
+    slow = std::clamp(kDrives * fastest(solved.result.velocity), kNeverDrives * falling, kDrives * falling);
+    // Such contacts are held, or slip the other way: within bounds. Each comes once. In what lies all but still they would
+    // creep for ever.
+    for (std::size_t k = 0; k < p.contacts.size(); ++k) {
+      if (!drives(k)) continue;
+      driven = true;
+      coulomb.slips[k] = 0;
+      push(k, -coulomb.loads[k].tangential);
+      p.contacts[k].friction_bound = bound(k);
+    }
+  }
+  for (std::size_t k = 0; k < p.contacts.size(); ++k)
+    if (coulomb.slips[k]) solved.result.loads[k].tangential = coulomb.loads[k].tangential;
+  solved.loads = std::move(coulomb.loads);
+  solved.residual = unexplained(given, solved.result.velocity, solved.loads);
+  return solved;
+}
+
+Solved solve(ConeQp& solver, const StepProblem& p, int& factorisations, const GoOn& go_on) {
+  if (p.mass.size() <= kFewMembers) {
+    Solved solved = solve_few(solver, p, factorisations, go_on);
+    double most = 0.0;
+    for (const ContactLoad& load : solved.loads) most = std::max(most, load.normal);
+    // where bounds and forces go round in a circle, sweeps do not
+    if (solved.result.status == StepResult::Status::stopped || solved.residual <= kFrictionNear * most)
+      return solved;
+  }
+  return solve_many(solver, p, factorisations, go_on);
 }
 
 /// How a gap is missed along the step [m]; 0: not at all.
@@ -168,14 +254,6 @@ bool stays_open(const IslandContact& c, double h, const std::vector<Vec3>& veloc
   // beside an end the tangent itself leads behind the site: nothing below it counts as open there
   const double low = c.at_end ? tolerance : -kMissCounts * tolerance;
   return c.gap >= low && c.gap + h * opens - falls_below_tangent(c, h, velocity) >= low;
-}
-
-/// The way that the forces alone make of rest in the step, of the body that they pull most [m].
-double fall(const IslandStep& step, double h) {
-  double most = 0.0;
-  for (std::size_t i = 0; i < step.mass.size(); ++i)
-    most = std::max(most, step.force[i].cwiseQuotient(step.mass[i]).head<2>().norm());
-  return h * h * most;
 }
 
 /// By looks along the step, and where parabolas through them dip in between. A miss that does not count may be told as
@@ -268,16 +346,12 @@ double without_winning(const IslandStep& step, const std::vector<Vec3>& velocity
   return after > 0.0 ? std::min(1.0, (work + std::sqrt(work * work + after * before)) / after) : 1.0;
 }
 
-/// Friction beyond the cones, as a part of the largest normal or other force.
-double residual(const IslandStep& step, const StepResult& result, double h) {
-  double most = 0.0, beyond = 0.0;
+/// What is left of Coulomb's law, as a part of the largest normal or other force.
+double residual(const IslandStep& step, const Solved& solved, double h) {
+  double most = 0.0;
   for (const Vec3& f : step.force) most = std::max(most, h * f.head<2>().norm());
-  for (std::size_t k = 0; k < step.contacts.size(); ++k) {
-    const ContactLoad& load = result.loads[k];
-    most = std::max(most, load.normal);
-    beyond = std::max(beyond, std::abs(load.tangential) - step.contacts[k].friction * load.normal);
-  }
-  return most > 0.0 ? beyond / most : 0.0;
+  for (const ContactLoad& load : solved.loads) most = std::max(most, load.normal);
+  return most > 0.0 ? solved.residual / most : 0.0;
 }
 
 bool stops(const GoOn& go_on) { return go_on && !go_on(); }
@@ -313,10 +387,12 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
       waiting.push_back(k);
     else
       parts.push_back({k});
-  const double cheap = fall(step, h);
+  // the way that the forces alone make of rest in the step [m]
+  const double cheap = h * falling_speed(step.force, step.mass, h);
   // Contacts that wait join once each and are not counted as corrections, so that the loop ends.
   for (int again = 0; again < kCorrections && !outcome.solved;) {
-    StepResult result = solve(solver, problem_of(step, h, parts), h, step, outcome.factorisations, go_on);
+    Solved solved = solve(solver, problem_of(step, h, parts), outcome.factorisations, go_on);
+    StepResult& result = solved.result;
     if (result.status == StepResult::Status::stopped) return outcome;
     if (!(result.residual <= kResidual)) return without_loads(step, h, tolerance, gap, go_on, outcome);
     // those that are missed take part from now on: each comes once
@@ -350,7 +426,7 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
     // The caller tries a shorter step: by what faces that turn are missed is of second order in h.
     if (won_here > kWonOf * of) return without_loads(step, h, tolerance, gap, go_on, outcome);
     // from here on loads stand at their contacts' places; won() took them at their parts'
-    result.loads = of_all(result.loads, parts, step.contacts.size());
+    const std::vector<ContactLoad> loads = of_all(solved.loads, parts, step.contacts.size());
     const bool driven = std::any_of(parts.begin(), parts.end(),
                                     [&](const Part& part) { return step.contacts[part.contact].driven; });
     // Slower by one factor, constant twists lead through the same poses, only not as far: no gap is missed
@@ -363,12 +439,12 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
       outcome.won = std::max(0.0, won_here);
     }
     outcome.solved = true;
-    outcome.friction_residual = residual(step, result, h);
+    outcome.friction_residual = residual(step, solved, h);
     step.velocity = result.velocity;
     for (std::size_t k = 0; k < step.contacts.size(); ++k) {
       // impulses over the step: told as mean forces
-      step.contacts[k].normal_force = result.loads[k].normal / h;
-      step.contacts[k].tangential_force = result.loads[k].tangential / h;
+      step.contacts[k].normal_force = loads[k].normal / h;
+      step.contacts[k].tangential_force = loads[k].tangential / h;
     }
   }
   return outcome;

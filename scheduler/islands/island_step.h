@@ -11,8 +11,8 @@
 /// over the joint of two floors does not feel it.
 ///
 /// Gaps that are convex in the relative place (discs, straight sides that do not turn) lie above their
-/// tangents: none is missed. Order 1 in h; gaps exact. Sources: Moreau 1988; Anitescu & Potra 1997; friction by
-/// a fixed point of given bounds: Haslinger 1983 (interior_point.h).
+/// tangents: none is missed. Order 1 in h; gaps exact. Sources: Moreau 1988; Anitescu & Potra 1997; friction of few by
+/// a fixed point of given bounds: Haslinger 1983; of many by sweeps (coulomb_sweeps.h).
 
 #include <functional>
 #include <vector>
@@ -58,8 +58,14 @@ struct StepOutcome {
   /// Energy that the step made [J], beyond what sites that move gave: at most 1e-3 of what it turned over. 0 where
   /// none does: all is slowed by as much then.
   double won = 0.0;
-  double friction_residual = 0.0;  ///< largest |q| - mu p left by bounds that lag, of the largest force
+  /// By how much friction is beyond its cone or, of many bodies, forces within their cones fail to make the velocities; of
+  /// the largest force.
+  double friction_residual = 0.0;
 };
+
+/// Islands of so many bodies obey Coulomb's law to the digits of the solver, larger ones to what sweeps leave (see
+/// StepOutcome::friction_residual).
+inline constexpr std::size_t kFewMembers = 8;
 
 /// Takes a step of h > 0 [s]. What is not solved is to be tried again with a shorter one.
 StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap,

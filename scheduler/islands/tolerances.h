@@ -47,12 +47,9 @@ inline constexpr double kResidual = 1e-6;
 /// rounding, and what faces that turn push into what lies on them, which the true motion takes from their
 /// turning.
 inline constexpr double kWonOf = 1e-3;
-/// An island in which nobody has more than this part of the speed that its force gives it in the step lies still but for
-/// what the step corrects: no more than a thousandth of it can be motion.
-inline constexpr double kStill = 1e-3;
 /// Friction bounds are exact that are wrong by no more than this part of the largest force: the solver's own digits.
 inline constexpr double kFrictionExact = 1e-9;
-/// And good enough for many bodies, where one pass costs most: the order of what a step of order 1 is off anyway (kWonOf).
+/// And good enough: the order of what a step of order 1 is off anyway (kWonOf).
 inline constexpr double kFrictionNear = 1e-3;
 
 // -- motion by modes (modes/) --

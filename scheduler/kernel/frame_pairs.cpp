@@ -42,10 +42,14 @@ void FramePairs::clear() {
 
 void FramePairs::each(double t, const Look& look) {
   if (trajectories_->owner_count() == 0) return;
-  const double step = go_to(t);
-  if (reach_ < 0.0 || *std::max_element(way_.begin(), way_.end()) > 0.5 * reach_) list(t, step);
+  const double step = go_to(t), reach = kFramesOfAList * step;
   // who is further apart needs no look at the next frames
   const double at_most = std::min(kFramesOfALook * step, kReachOfLength * length_);
+  if (reach_ < 0.0 || *std::max_element(way_.begin(), way_.end()) > 0.5 * reach_) {
+    const bool begins = step == kForever;
+    if (!begins && !(reach <= kReachOfLength * length_)) return each_once(look, at_most);
+    list(begins ? 0.0 : reach);
+  }
   for (Near& near : near_pairs_) {
     const double gone = way(near.pair);
     if (gone <= near.clear_until) continue;
@@ -55,6 +59,22 @@ void FramePairs::each(double t, const Look& look) {
     if (!gap) return;
     near.clear_until = gone + std::max(0.0, *gap - least);
   }
+}
+
+/// Of what moves too far for a list nothing is kept: pairs are asked as they come, and those that may overlap looked at in order.
+void FramePairs::each_once(const Look& look, double at_most) {
+  near_pairs_.clear();
+  reach_ = -1.0;
+  close_.clear();
+  near_->each_among(poses_, [&](const PairKey& pair) {
+    const double least = margin(pair);
+    if (apart(pair, least) <= least) close_.push_back(pair);
+    return run_->poll();
+  });
+  if (run_->halt()) return;
+  std::sort(close_.begin(), close_.end());
+  for (const PairKey& pair : close_)
+    if (!look(pair, at_most)) return;
 }
 
 /// The largest way since the last frame; infinity: nobody knows.
@@ -77,15 +97,14 @@ double FramePairs::go_to(double t) {
 }
 
 /// What is known of a pair holds on: what both had gone is taken off it.
-void FramePairs::list(double t, double step) {
-  const double reach = kFramesOfAList * step;
-  reach_ = reach <= kReachOfLength * length_ ? reach : 0.0;
+void FramePairs::list(double reach) {
+  reach_ = reach;
   std::vector<Near> before = std::move(near_pairs_);
   for (Near& near : before) near.clear_until -= way(near.pair);
   std::fill(way_.begin(), way_.end(), 0.0);
   near_pairs_.clear();
-  near_->each_at(
-      t,
+  near_->each_among(
+      poses_,
       [&](const PairKey& pair) {
         near_pairs_.push_back({pair});
         return run_->poll();

@@ -34,7 +34,8 @@ class FramePairs {
   };
 
   double go_to(double t);
-  void list(double t, double step);
+  void list(double reach);
+  void each_once(const Look& look, double at_most);
   double way(const PairKey& pair) const;
   double apart(const PairKey& pair, double enough) const;
   double margin(const PairKey& pair) const;
@@ -48,6 +49,7 @@ class FramePairs {
   std::vector<double> way_;       ///< of any point of an owner at most, since the pairs were listed [m]
   std::vector<Near> near_pairs_;  ///< in order; all that can overlap while nobody has gone half of reach_
   double reach_ = -1.0;           ///< [m]; below 0: not listed
+  std::vector<PairKey> close_;    ///< of one frame
 };
 
 }  // namespace brink

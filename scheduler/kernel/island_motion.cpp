@@ -30,6 +30,9 @@ constexpr int kTangents = 32;
 constexpr std::size_t kFirstImpacts = 100, kImpactsEach = 20;
 /// No tolerance makes a step shorter than this part of what it would be.
 constexpr double kShortest = 1e-4;
+/// Contacts hold an island of many bodies at rest that are open by no more than this part of the smallest member's size: some
+/// hundredths of what a step of first order leaves places off by.
+constexpr double kHolds = 1e-4;
 /// Halving a step makes its change of velocity fall to this part at most, if forces make it.
 /// What forces change goes with the step, so half is left at most; what an impact changes stays: 3/4 lies between.
 constexpr double kFalls = 0.75;
@@ -191,7 +194,8 @@ bool IslandMotion::rests(double rest_speed) {
   // the forces that are found are noted as means over so long (take_forces)
   h_ = longest();
   members_.look_ahead(0.0, kReach);
-  list(tolerance);
+  // Of many, what will carry them comes closer for ever, each time by a part: so near it holds.
+  list(members_.count() > kFewMembers ? std::max(tolerance, kHolds * members_.size()) : tolerance);
   for (const HeldContact& c : contacts_)
     // who stands on a site that moves is not at rest
     if (members_.on_moving_site(c)) return false;
@@ -322,18 +326,32 @@ double IslandMotion::next_arrival() {
   return first;
 }
 
+/// No gap of the two closes faster if the members go on as they do now [m/s]: both centres, and both arms as far from them
+/// as a member reaches.
+double IslandMotion::fastest_approach(const HeldContact& c, const std::vector<Vec3>& velocity) const {
+  const int member = members_.place_of(c.pair.body);
+  const Vec3 of_body = velocity[member],
+             of_other = c.pair.with_site() ? as_vector(members_.other_state(c.pair).twist.rounded())
+                                           : velocity[members_.place_of(c.pair.other_body)];
+  const double radius = members_.bounding_radius(member);
+  return (of_body - of_other).head<2>().norm() + std::abs(of_body[2]) * radius +
+         std::abs(of_other[2]) * (c.feature.point.norm() + radius);
+}
+
 /// When the two features meet if the members go on as they do now, by its tangents: those of a convex gap lead
 /// to before its root, and so do its secants.
 IslandMotion::Arrival IslandMotion::arrival(const HeldContact& c, const std::vector<Vec3>& velocity) const {
   double closing = members_.closing_speed(c), gap = c.feature.gap - kept(c.feature), t = 0.0;
+  const double fastest = fastest_approach(c, velocity);
   for (int k = 0; k < kTangents; ++k) {
     // where the line through the gap reaches 0
     const double way = gap / closing;
     // it opens, or the step ends before it comes
     if (!(closing > 0.0 && t + way <= h_)) return {};
     const double next = members_.gap(c, t + way, velocity) - kept(c.feature);
-    // the secant's slope: no derivative of the gap is at hand there
-    closing = (gap - next) / way;
+    // the secant's slope: no derivative of the gap is at hand there. What comes past an end is behind a site at once: the gap
+    // jumps, and no slope is as steep.
+    closing = std::min((gap - next) / way, fastest);
     t += way;
     gap = next;
     if (gap <= search_->limits().tolerance) break;

@@ -74,6 +74,7 @@ class IslandMotion {
   ImpulseSide side_of(int member, const RealVec& arm) const;
   double next_arrival();
   Arrival arrival(const HeldContact& c, const std::vector<Vec3>& velocity) const;
+  double fastest_approach(const HeldContact& c, const std::vector<Vec3>& velocity) const;
   bool passes_by(const HeldContact& c, double then, double closing) const;
   double most_absorbed(const PairKey& pair) const;
   double kept(const NearFeature& f) const { return f.thin ? search_->limits().touch : 0.0; }

@@ -168,11 +168,24 @@ std::vector<PairKey> NearPairs::by_pass(int body, double from, double to) {
   return pairs;
 }
 
-/// Boxes of the moment t, made for this call: nothing of a horizon is needed.
-void NearPairs::each_at(double t, const std::function<bool(const PairKey&)>& visit, double grown) const {
+void NearPairs::each_at(double t, const std::function<bool(const PairKey&)>& visit) const {
+  std::vector<Pose> poses;
+  poses.reserve(trajectories_->owner_count());
+  for (int k = 0; k < trajectories_->owner_count(); ++k) poses.push_back(trajectories_->motion_of(k).pose(t));
+  each_among(poses, visit);
+}
+
+/// Boxes of that moment, made for this call: nothing of a horizon is needed.
+void NearPairs::each_among(const std::vector<Pose>& poses, const std::function<bool(const PairKey&)>& visit,
+                           double grown) const {
+  const int n = trajectories_->body_count();
   std::vector<Box> now;
-  now.reserve(trajectories_->owner_count());
-  for (int k = 0; k < trajectories_->owner_count(); ++k) now.push_back(box_at(k, t).grown(grown));
+  now.reserve(poses.size());
+  for (int k = 0; k < trajectories_->owner_count(); ++k)
+    now.push_back((k < n || still_boxes_[k - n].empty()
+                       ? standing_box(search_->outline_of(k), poses[k].position)
+                       : still_boxes_[k - n])
+                      .grown(grown));
   each_overlapping(now, world_->periods, [&](const ImagePair& p) {
     const auto pair = search_->pair_of(p.a, p.b, p.image);
     return !pair || visit(*pair);

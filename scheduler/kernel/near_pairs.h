@@ -26,8 +26,11 @@ class NearPairs {
   /// Pairs of one body with everything else, `to` being the end of the last all(). `several_motions`: bodies
   /// have motions ahead of what is certain, whose bounds count together.
   std::vector<PairKey> of(int body, double from, double to, bool several_motions);
-  /// Calls visit for each pair whose boxes at t, `grown` to all sides [m], overlap, until it returns false.
-  void each_at(double t, const std::function<bool(const PairKey&)>& visit, double grown = 0.0) const;
+  /// Calls visit for each pair whose boxes at t overlap, until it returns false.
+  void each_at(double t, const std::function<bool(const PairKey&)>& visit) const;
+  /// The same of owners at these poses, their boxes `grown` to all sides [m].
+  void each_among(const std::vector<Pose>& poses, const std::function<bool(const PairKey&)>& visit,
+                  double grown = 0.0) const;
   /// What holds an owner at t; a still site's own box, not a disc's: it may lie far from its frame's origin.
   Box box_at(int owner, double t) const;
 

@@ -144,12 +144,16 @@ struct Pair {
   double relative_speed;  ///< bound on the speed of a's origin against b's [m/s]
   double spin_a, spin_b;  ///< bounds on |omega| [rad/s]
 
-  double site_distance(std::size_t i, std::size_t j, double t, const Vec2& shift_a = Vec2::Zero()) const {
+  /// Of a site of a, shifted, and one of b.
+  double site_distance(const Site& sa, const Site& sb, double t, const Vec2& shift_a) const {
     const Pose pa = motion_a->pose(t), pb = motion_b->pose(t);
-    const Site &sa = a->sites[i], &sb = b->sites[j];
     return core_distance(placed(sa, Turn(pa.angle), pa.position - pb.position + shift_a),
                          placed(sb, Turn(pb.angle), Vec2::Zero())) -
            sa.radius - sb.radius;
+  }
+
+  double site_distance(std::size_t i, std::size_t j, double t) const {
+    return site_distance(a->sites[i], b->sites[j], t, Vec2::Zero());
   }
 
   /// Least distance of the two outlines at time t, a shifted; <= 0 where boundaries touch or cross.

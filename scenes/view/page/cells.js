@@ -6,6 +6,7 @@
 // along its slope, so that borders stay where they are, and lines.
 
 const COLORS = 1024;  // in a row of their texture
+const TIE = 0.01;  // of a pixel: distances less different are the same
 const WAYS = 4096;  // directions of a whole turn; 2^20 owners are left
 
 const ROW = 512;  // things in a row of their texture, two texels each
@@ -42,6 +43,7 @@ const meshFragment = coarse => `#version 300 es
 precision highp float;
 in vec2 q; flat in vec2 sizes; flat in uint owner;    // see cell_mesh.js
 uniform float deepest;    // [m]
+uniform uint first; uniform float tie;    // the first of the bodies; behind a floor what stands on it is no nearer than the floor [m]
 out uvec2 seen;    // whose, with the direction in which the distance grows; the distance. 0: nobody's
 void main() {
   float l = length(q), height = abs(l - sizes.y) - sizes.x;
@@ -52,6 +54,7 @@ void main() {
   way = uint(quarters * ${WAYS / 4}.0) % ${WAYS}u;
 #endif
   seen = uvec2(owner + way, floatBitsToUint(height));
+  if (owner >= first) height += tie;
   gl_FragDepth = 0.5 + 0.4995 * clamp(height / deepest, -1.0, 1.0);
 }`;
 const PAINT_VERTEX = `#version 300 es
@@ -142,7 +145,7 @@ class Cells {
     this.gl = gl;
     this.canvas = canvas;
     this.shapes = shapes;
-    this.meshPrograms = [0, 1].map(coarse => this.program(MESH_VERTEX, meshFragment(coarse), ['things', 'which', 'view', 'deepest']));
+    this.meshPrograms = [0, 1].map(coarse => this.program(MESH_VERTEX, meshFragment(coarse), ['things', 'which', 'view', 'deepest', 'first', 'tie']));
     this.paintPrograms = [0, 1].map(coarse =>
       this.program(PAINT_VERTEX, paintFragment(coarse), ['seen', 'colors', 'coarse', 'scenery', 'ring', 'pixel', 'large', 'paper']));
     if (![...this.meshPrograms, ...this.paintPrograms].every(made => made)) { this.gl = null; return; }
@@ -251,7 +254,7 @@ class Cells {
     const [columns, rows] = this.size;
     gl.viewport(0, 0, columns, rows);
     const coarse = columns < w ? 1 : 0;
-    this.drawMeshes(things, {x, y, across: 2 * scale / width, up: 2 * scale / height}, 1.5 * Math.hypot(width, height) / scale, coarse);
+    this.drawMeshes(things, {x, y, across: 2 * scale / width, up: 2 * scale / height, tie: TIE / scale}, 1.5 * Math.hypot(width, height) / scale, coarse, looks.fixed);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(0, 0, w, h);
     gl.disable(gl.DEPTH_TEST);
@@ -282,7 +285,7 @@ class Cells {
   }
 
   /** `all`: farther than that nothing is seen [m]. */
-  drawMeshes(things, view, all, coarse) {
+  drawMeshes(things, view, all, coarse, fixed) {
     const gl = this.gl, {at, name} = this.meshPrograms[coarse], n = things.count, {shapes} = this;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
     gl.clearBufferuiv(gl.COLOR, 0, [0, 0, 0, 0]);
@@ -312,6 +315,8 @@ class Cells {
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, 2 * ROW, rows, 0, gl.RGBA, gl.FLOAT, places);
     gl.uniform1i(at.things, 0);
     gl.uniform1f(at.deepest, deepest);
+    gl.uniform1ui(at.first, (fixed + 1) * WAYS);
+    gl.uniform1f(at.tie, view.tie);
     gl.uniform2f(at.view, view.across, view.up);
     for (let m = 0; m < shapes.length; ++m) {
       const count = starts[m + 1] - starts[m];

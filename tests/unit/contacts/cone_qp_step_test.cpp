@@ -315,25 +315,6 @@ TEST(Step, WhatIsExpectedChangesNoAnswer) {
   }
 }
 
-// A disc that slides at 1 m/s and one that is pressed upon it from above: friction is mu times what presses, without a bound
-// that is given.
-TEST(Step, BoundsFollowWhatPresses) {
-  StepProblem problem = discs(2);
-  problem.velocity[0].x() = problem.velocity[1].x() = 1.0;
-  problem.contacts = {on_floor(0, 0.0), {}};
-  problem.contacts[1].contact = contact_at(1, 0, {0.0, 1.0}, {0.0, -0.5}, {0.0, 0.5});
-  for (StepContact& s : problem.contacts) {
-    s.contact.friction = 0.1;
-    s.coulomb = true;
-  }
-  const StepResult result = ConeQp().step(problem);
-  ASSERT_EQ(result.status, Status::solved);
-  const double weight = 0.01 * kGravity;
-  EXPECT_NEAR(result.loads[0].normal, 2.0 * weight, 1e-9);
-  EXPECT_NEAR(result.loads[0].tangential, 0.1 * 2.0 * weight, 0.01 * weight);
-  EXPECT_LE(std::abs(result.loads[1].tangential), 0.1 * weight * 1.01);
-}
-
 /// Without friction: normal impulses as a linear complementarity problem in the contacts.
 std::vector<Vec3> by_lcp(const StepProblem& problem) {
   const auto n = static_cast<Eigen::Index>(problem.contacts.size());
