@@ -570,6 +570,43 @@ TEST_F(Replayed, FingersMoveZoomAndSelect) {
   EXPECT_NEAR(answer["zoomed"].get<double>(), 2.0, 1e-9);
 }
 
+// Behind a floor a stone that stands on it is as near as the floor: the cell there is the floor's, to every pixel.
+TEST(Replay, BehindAFloorIsNoCellOfWhatStandsOnIt) {
+  if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
+  const fs::path folder = fs::temp_directory_path() / fmt::format("brink-floor-{}", ::getpid());
+  const Scene scene = parse_scene(R"(
+[world]
+duration = 0.1
+gravity = [0.0, -9.81]
+[[sites]]
+segment = [[-2, 0], [24, 0]]
+[[bodies]]
+name = "stone"
+box = { width = 0.8, height = 0.2, radius = 0.05 }
+position = [11.1727, 0.15]
+)",
+                                  "floor.toml");
+  RunRequest request;
+  request.dir = folder;
+  ASSERT_TRUE(run_scene(scene, request).summary.sound());
+  write_replay_page(folder / "run.db", folder / "floor.html");
+  const json answer = in_browser(folder / "floor.html", R"(
+    const p = window.brink.player.picture, owners = {};
+    p.resize({getBoundingClientRect: () => ({width: 981, height: 560})});
+    Object.assign(p.view, {x: 11, y: 0.15, scale: 35.5});
+    p.draw(0.05);
+    for (let row = 5; row < 270; row += 5)
+      for (let column = 440; column < 540; ++column) {
+        const {owner} = p.cells.at(column, row);
+        owners[owner] = (owners[owner] || 0) + 1;
+      }
+    return {owners, above: p.cells.at(496, 300).owner};)");
+  fs::remove_all(folder);
+  ASSERT_FALSE(answer.contains("error")) << answer.dump();
+  EXPECT_EQ(answer["owners"], json({{"0", 5300}}));
+  EXPECT_EQ(answer["above"], 1);
+}
+
 // A touch on a lane goes to its nearest event; of a body that only the trace tells of, to the time itself.
 TEST(Replay, ATouchOnALaneLeadsToItsEventOrItsTime) {
   if (!has_browser()) GTEST_SKIP() << "chromium is not installed";

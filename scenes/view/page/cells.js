@@ -6,7 +6,7 @@
 // along its slope, so that borders stay where they are, and lines.
 
 const COLORS = 1024;  // in a row of their texture
-const TIE = 0.01;  // of a pixel: distances less different are the same
+const TIE = 0.1;  // of a pixel: distances less different are the same (corners of triangles are rounded to 1/16)
 const WAYS = 4096;  // directions of a whole turn; 2^20 owners are left
 
 const ROW = 512;  // things in a row of their texture, two texels each

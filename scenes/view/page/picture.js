@@ -48,6 +48,7 @@ class Picture {
     this.cells = new Cells(stage.querySelector('#cells'), about.shapes);
     // without a graphics card a canvas in memory is ten times as fast
     this.ctx = this.canvas.getContext('2d', {willReadFrequently: this.cells.bySoftware});
+    this.discs = this.cells.bySoftware ? new Discs() : null;
     this.paths = about.shapes.map(pathsOf);
     this.reach = new Reach(about.shapes);
     this.things = new Things();
@@ -98,10 +99,16 @@ class Picture {
     const {ctx, view, canvas} = this, px = canvas.width / 2 + (x - view.x) * view.scale, py = canvas.height / 2 - (y - view.y) * view.scale;
     const r = radius * view.scale, half = ink.width * this.ratio / 2;
     if (px + r + half < 0 || py + r + half < 0 || px - r - half > canvas.width || py - r - half > canvas.height) return;
+    const spoke = ink.spoke && r >= MARK_FROM * this.ratio;
+    if (this.discs) {
+      this.discs.disc(px, py, Math.max(0, r - half), r + half, ink.fill, ink.line);
+      if (spoke) this.discs.line(px, py, px + r * Math.cos(angle), py - r * Math.sin(angle), 2 * half, ink.line);
+      return;
+    }
     this.leave();
     this.round(px, py, r + half, ink.line);
     this.round(px, py, Math.max(0, r - half), ink.fill);
-    if (!ink.spoke || r < MARK_FROM * this.ratio) return;
+    if (!spoke) return;
     ctx.strokeStyle = ink.line;
     ctx.lineWidth = 2 * half;
     ctx.beginPath();
@@ -192,6 +199,7 @@ class Picture {
     for (let k = 0; k < this.sitePoses.length; ++k) this.sitePoses[k] = this.motions.site(k, t, this.sitePoses[k]);
     const cells = this.cells.works && (layers.cells || layers.pass);
     if (this.cells.works) this.cells.canvas.hidden = !cells;
+    if (this.discs) this.discs.clear(this.canvas);
     if (cells) this.drawCells();  // first: others than this thread draw them, while it draws what is above
     // containers first: they cover all that is outside of them
     for (const container of [true, false])
@@ -203,6 +211,10 @@ class Picture {
     if (layers.springs) this.drawSprings();
     if (layers.trails) this.drawTrails();
     if (layers.bodies) this.drawBodies();
+    if (this.discs) {
+      this.leave();
+      this.discs.onto(ctx);
+    }
     if (layers.velocities) this.drawVelocities();
     if (layers.forces) this.drawForces();
     if (layers.contacts) this.drawContacts();

@@ -144,6 +144,32 @@ TEST(SceneLayer, CellsMeetWhereBothAreEquallyNear) {
   EXPECT_EQ(picture.at(middle + 3, 75), picture.at(220, 75));
 }
 
+// What stands on a floor is as near as the floor to all that lies behind both: there every pixel of a row is the same.
+TEST(SceneLayer, BehindAFloorIsNoCellOfWhatStandsOnIt) {
+  World world;
+  Body stone;
+  stone.name = "stone";
+  stone.outline = outline_of(make_box(0.8, 0.2, 0.05));
+  world.bodies = {stone};
+  FixedSite floor;
+  floor.name = "floor";
+  floor.outline = outline_of(make_segment({-9.0, 0.0}, {9.0, 0.0}));
+  world.sites = {floor};
+  std::vector<BodyState> states(1);
+  states[0].pose.position = {0.0123, 0.15};
+  DrawOptions options;
+  options.size = {300, 200};
+  options.caption = false;
+  options.margin = 0.0;
+  options.view = Box{{-1.5, -1.5}, {1.5, 0.5}};  // 100 pixels a metre: the floor is row 50
+  const std::vector<Pose> sites(1);
+  const Picture picture = draw_scene(world, states, sites, options);
+  for (int row = 55; row < 200; ++row)
+    for (int column = 0; column < 300; ++column)
+      ASSERT_EQ(picture.at(column, row), picture.at(0, row)) << "column " << column << " of row " << row;
+  EXPECT_NE(picture.at(150, 20), picture.at(0, 20)) << "above is the stone's cell";
+}
+
 TEST(ColorLayer, HoldsOneColorASiteOutsideAndOneInside) {
   // the disc is one site, the square four: five cells, each in two tones (outside and inside its solid)
   TwoBodies two;
