@@ -32,15 +32,16 @@ struct Tally {
   long all = 0, overlapping = 0, looked = 0;
 };
 
-/// Frames at even times. Everyone in another must have been seen, as it is.
-Tally see(const World& world, int frames, double interval) {
+/// Frames at times. Everyone in another must have been seen, as it is, and each once, in order.
+Tally see(const World& world, const std::vector<double>& times) {
   KernelParts parts(world, {});
   FramePairs pairs(world, parts.trajectories, parts.search, parts.near, parts.run);
   Tally tally;
-  for (int k = 0; k < frames; ++k) {
-    const double t = k * interval;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const double t = times[k];
     std::set<PairKey> looked;
     pairs.each(t, [&](const PairKey& pair, double at_most) {
+      EXPECT_TRUE(looked.empty() || *looked.rbegin() < pair) << "frame " << k;
       looked.insert(pair);
       return std::optional(parts.search.gap(pair, t, at_most));
     });
@@ -57,16 +58,42 @@ Tally see(const World& world, int frames, double interval) {
   return tally;
 }
 
+std::vector<double> even(int frames, double interval) {
+  std::vector<double> times;
+  for (int k = 0; k < frames; ++k) times.push_back(k * interval);
+  return times;
+}
+
 TEST(FramePairs, EveryoneWhoOverlapsIsSeen) {
   SeededRandom random(20261125);
   long overlapping = 0;
   for (int k = 0; k < 20; ++k) {
     const double speed = std::pow(10.0, random.uniform(-2.0, 2.0)),
                  spin = std::pow(10.0, random.uniform(-2.0, 2.0));
-    const Tally tally = see(flying(random, 12, speed, spin), 150, 0.02 * std::min(1.0, 3.0 / speed));
+    const Tally tally = see(flying(random, 12, speed, spin), even(150, 0.02 * std::min(1.0, 3.0 / speed)));
     overlapping += tally.overlapping;
   }
   EXPECT_GT(overlapping, 2000);
+}
+
+// From frame to frame bodies go a hundredth of the world, or farther than any list of near pairs would hold for.
+TEST(FramePairs, EveryoneWhoOverlapsIsSeenWhereSomeFramesAreFarApart) {
+  SeededRandom random(20261127);
+  Tally all;
+  for (int k = 0; k < 60; ++k) {
+    const World world = flying(random, 12, 1.0, random.uniform(0.0, 1.0));
+    std::vector<double> times{0.0};
+    while (times.size() < 20) {
+      const bool far = random.uniform(0.0, 1.0) < 0.5;
+      times.push_back(times.back() + random.uniform(0.5, 1.0) * (far ? 1.0 : 0.01));
+    }
+    const Tally tally = see(world, times);
+    all.all += tally.all;
+    all.overlapping += tally.overlapping;
+    all.looked += tally.looked;
+  }
+  EXPECT_GT(all.overlapping, 1000);
+  EXPECT_LT(all.looked, all.all / 4);
 }
 
 TEST(FramePairs, WhoIsFarFromAllIsSeldomSeen) {
@@ -74,7 +101,7 @@ TEST(FramePairs, WhoIsFarFromAllIsSeldomSeen) {
   World world;
   for (int k = 0; k < 30; ++k)
     add(world, body(make_box(1.0, 0.4), {2.0 * (k % 6), 2.0 * (k / 6)}, {random.uniform(-0.1, 0.1), 0.0}));
-  const Tally tally = see(world, 200, 1.0 / 60.0);
+  const Tally tally = see(world, even(200, 1.0 / 60.0));
   EXPECT_EQ(tally.overlapping, 0);
   EXPECT_LT(tally.looked, tally.all / 100);
 }
