@@ -20,6 +20,12 @@ double sum(const Vec2& v) { return v.x() + v.y(); }
 double sum(const Twist& t) { return sum(t.velocity) + t.omega; }
 double sum(const Pose& p) { return sum(p.position) + p.angle; }
 double sum(const BodyState& s) { return sum(s.pose) + sum(s.twist); }
+double sum(const Contact& c) {
+  return c.time + c.time_low + sum(c.point) + sum(c.normal) + c.closing_speed + c.gap;
+}
+double sum(const LastedContact& c) {
+  return c.from + c.to + sum(c.point) + sum(c.normal) + c.normal_force + c.tangential_force;
+}
 double sum(const EventSide& side) { return side.known ? sum(side.after) + sum(side.before) : 0.0; }
 
 }  // namespace
@@ -100,7 +106,7 @@ void Records::event(EventKind kind, const PairKey& pair, const FeatureContact& c
   event.impulse_t = impulse_t;
   event.body = body;
   event.other = other;
-  const double of_contact = sum(event.contact.point) + impulse_n + impulse_t;
+  const double of_contact = sum(event.contact) + impulse_n + impulse_t;
   if (!is_told(of_contact + sum(body), pair.body, last_event_)) return;
   if (other.known && !is_told(sum(other), pair.other_body, last_event_)) return;
   tell(event);
@@ -114,7 +120,7 @@ void Records::ending(EventKind kind, const PairKey& pair, const FeatureContact& 
   event.kind = kind;
   event.contact = world_contact(pair, contact);
   event.contact.time = time;
-  tell(event);
+  if (is_told(sum(event.contact), pair.body, run_->time())) tell(event);
 }
 
 /// One of the present instant is not told to be before an event that was told: they follow each other.
@@ -127,9 +133,12 @@ void Records::knot(Knot knot) {
 /// A stretch of no length is none: its step was cut where it began.
 void Records::lasted(const HeldContact& c) {
   if (!records_events() || !(run_->time() > c.since)) return;
-  tell(LastedContact{c.since, run_->time(), c.mode, c.pair.body, c.pair.other_body, c.pair.other_site,
-                     c.feature.sample, c.feature.site, c.feature.sample_on_a, c.place, c.feature.normal,
-                     c.normal_force, c.tangential_force});
+  const LastedContact lasted{c.since,           run_->time(),      c.mode,
+                             c.pair.body,       c.pair.other_body, c.pair.other_site,
+                             c.feature.sample,  c.feature.site,    c.feature.sample_on_a,
+                             c.place,           c.feature.normal,  c.normal_force,
+                             c.tangential_force};
+  if (is_told(sum(lasted), c.pair.body, run_->time())) tell(lasted);
 }
 
 /// In the order in which it happened.

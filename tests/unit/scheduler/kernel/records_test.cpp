@@ -1,7 +1,7 @@
 // Frames on the clock, events in order, checkpoints when they are due.
 #include "brink/scheduler/kernel/records.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
@@ -127,6 +127,55 @@ TEST(Records, AStateThatIsNotFiniteIsNeverTold) {
     EXPECT_EQ(parts.run.halt()->why, "the state of 'body1' is not finite at t = 0.5 s");
     EXPECT_EQ(told.frame_times, std::vector<double>{0.0}) << k;
   }
+}
+
+struct Lasted : Events {
+  void contact_lasted(const LastedContact& c) override { lasted.push_back(c); }
+  std::vector<LastedContact> lasted;
+};
+
+TEST(Records, AnEndingOrAContactThatLastedIsNeverToldWithANumberThatIsNotFinite) {
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  KernelParts parts(two_discs(), {});
+  Lasted told;
+  parts.records.begin(&told);
+  parts.run.set_time(0.5);
+  const FeatureContact good = meeting(parts).contact;
+  std::vector<FeatureContact> bad(4, good);
+  bad[0].point.x() = inf;
+  bad[1].normal.y() = nan;
+  bad[2].gap = nan;
+  bad[3].closing_speed = -inf;
+  parts.records.ending(EventKind::zeno, kDiscs, good, 0.75);
+  ASSERT_FALSE(parts.run.halt());
+  for (const FeatureContact& contact : bad) {
+    parts.records.ending(EventKind::zeno, kDiscs, contact, 0.75);
+    ASSERT_TRUE(parts.run.halt());
+    EXPECT_EQ(parts.run.halt()->termination, Termination::failed);
+    EXPECT_THAT(parts.run.halt()->why, ::testing::HasSubstr("is not finite at t = 0.5 s"));
+    parts.run.forget_halt();
+  }
+  parts.records.ending(EventKind::zeno, kDiscs, good, nan);
+  ASSERT_TRUE(parts.run.halt()) << "a limit";
+  parts.run.forget_halt();
+  EXPECT_EQ(told.events.size(), 1U);
+
+  HeldContact held;
+  held.pair = kDiscs;
+  held.feature.normal = Vec2(1.0, 0.0);
+  held.since = 0.25;
+  std::vector<HeldContact> wrong(3, held);
+  wrong[0].place.x() = nan;
+  wrong[1].normal_force = inf;
+  wrong[2].tangential_force = nan;
+  parts.records.lasted(held);
+  ASSERT_FALSE(parts.run.halt());
+  for (const HeldContact& c : wrong) {
+    parts.records.lasted(c);
+    EXPECT_TRUE(parts.run.halt());
+    parts.run.forget_halt();
+  }
+  EXPECT_EQ(told.lasted.size(), 1U);
 }
 
 }  // namespace
