@@ -7,8 +7,8 @@ namespace brink {
 
 namespace {
 
-/// Sweeps end where no impulse changes by more than this part of the largest, or by more than that after the fewest: what is left
-/// to come is a hundred times as much, or less.
+/// Sweeps end where no impulse changes by more than this part of the largest, or by more than that after the fewest. What is
+/// left to come may be a hundred times as much: see unexplained().
 constexpr double kSettled = 1e-9, kNearlySettled = 1e-3;
 
 Vec3 inverse(const Vec3& mass) {

@@ -26,7 +26,8 @@ struct CoulombLoads {
 /// 1999, "The non-smooth contact dynamics method".
 CoulombLoads sweep_by_coulomb(const StepProblem& problem, int fewest, int most, const GoOn& go_on = {});
 
-/// The largest force by which those impulses fail to make the velocities of the step [N s]: M (w - v) - h f - J^T load.
+/// The largest force by which those impulses fail to make the velocities of the step [N s]: M (w - v) - h f - J^T load. Torques
+/// are not looked at.
 double unexplained(const StepProblem& problem, const std::vector<Vec3>& velocity,
                    const std::vector<ContactLoad>& loads);
 

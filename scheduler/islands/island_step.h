@@ -63,8 +63,8 @@ struct StepOutcome {
   double friction_residual = 0.0;
 };
 
-/// Islands of so many bodies obey Coulomb's law to the digits of the solver, larger ones to what sweeps leave (see
-/// StepOutcome::friction_residual).
+/// Islands of so many bodies obey Coulomb's law to the digits of the solver, as a rule; larger ones, and those whose bounds go
+/// round in a circle, to what sweeps leave (StepOutcome::friction_residual).
 inline constexpr std::size_t kFewMembers = 8;
 
 /// Takes a step of h > 0 [s]. What is not solved is to be tried again with a shorter one.

@@ -446,10 +446,21 @@ TEST(Replay, CellsOfThePageBelongToWhomTheyAreNearest) {
 }
 
 // Bodies that have left the box that repeats itself: what is said of them stands at the images that are seen.
+/// What the page of a scene's run says, all in a folder of its own.
+json told_by_the_page_of(const std::string& scene, const std::string& script) {
+  const fs::path folder = fs::temp_directory_path() / fmt::format("brink-page-{}", ::getpid());
+  RunRequest request;
+  request.dir = folder;
+  EXPECT_TRUE(run_scene(parse_scene(scene, "page.toml"), request).summary.sound());
+  write_replay_page(folder / "run.db", folder / "page.html");
+  json answer = in_browser(folder / "page.html", script);
+  fs::remove_all(folder);
+  return answer;
+}
+
 TEST(Replay, MarksOfAPlaneThatRepeatsItselfAreAtImagesThatAreSeen) {
   if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
-  const fs::path folder = fs::temp_directory_path() / fmt::format("brink-images-{}", ::getpid());
-  const Scene scene = parse_scene(R"(
+  const json answer = told_by_the_page_of(R"(
 [world]
 duration = 20.0
 periodic = [3.0, 2.0]
@@ -473,12 +484,7 @@ bodies = ["slow", "fast"]
 stiffness = 0.01
 rest_length = 1.0
 )",
-                                  "images.toml");
-  RunRequest request;
-  request.dir = folder;
-  ASSERT_TRUE(run_scene(scene, request).summary.sound());
-  write_replay_page(folder / "run.db", folder / "images.html");
-  const json answer = in_browser(folder / "images.html", R"(
+                                          R"(
     const b = window.brink, player = b.player, p = player.picture, marks = {};
     p.resize({getBoundingClientRect: () => ({width: 600, height: 400})});
     p.fit();
@@ -505,7 +511,6 @@ rest_length = 1.0
     player.t = t;
     player.show(0);
     return {marks, from: [x, y], image: [(px - x) / 3, (py - y) / 2], at: [px, py], follows: [p.view.x, p.view.y]};)");
-  fs::remove_all(folder);
   ASSERT_FALSE(answer.contains("error")) << answer.dump();
   EXPECT_GT(answer["from"][0].get<double>(), 3.0) << "it has left the box";
   for (const auto& [layer, count] : answer["marks"].items()) EXPECT_GT(count.get<int>(), 20) << layer;
@@ -573,8 +578,7 @@ TEST_F(Replayed, FingersMoveZoomAndSelect) {
 // Behind a floor a stone that stands on it is as near as the floor: the cell there is the floor's, to every pixel.
 TEST(Replay, BehindAFloorIsNoCellOfWhatStandsOnIt) {
   if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
-  const fs::path folder = fs::temp_directory_path() / fmt::format("brink-floor-{}", ::getpid());
-  const Scene scene = parse_scene(R"(
+  const json answer = told_by_the_page_of(R"(
 [world]
 duration = 0.1
 gravity = [0.0, -9.81]
@@ -585,12 +589,7 @@ name = "stone"
 box = { width = 0.8, height = 0.2, radius = 0.05 }
 position = [11.1727, 0.15]
 )",
-                                  "floor.toml");
-  RunRequest request;
-  request.dir = folder;
-  ASSERT_TRUE(run_scene(scene, request).summary.sound());
-  write_replay_page(folder / "run.db", folder / "floor.html");
-  const json answer = in_browser(folder / "floor.html", R"(
+                                          R"(
     const p = window.brink.player.picture, owners = {};
     p.resize({getBoundingClientRect: () => ({width: 981, height: 560})});
     Object.assign(p.view, {x: 11, y: 0.15, scale: 35.5});
@@ -601,10 +600,69 @@ position = [11.1727, 0.15]
         owners[owner] = (owners[owner] || 0) + 1;
       }
     return {owners, above: p.cells.at(496, 300).owner};)");
-  fs::remove_all(folder);
   ASSERT_FALSE(answer.contains("error")) << answer.dump();
   EXPECT_EQ(answer["owners"], json({{"0", 5300}}));
   EXPECT_EQ(answer["above"], 1);
+}
+
+// Without a graphics card discs are drawn by the pixel. The truth is from many places in each pixel; the browser's own ellipses are held
+// against it beside.
+TEST(Replay, DiscsByThePixelAreWhereTheyAre) {
+  if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
+  std::string scene = "[world]\nduration = 0.1\n";
+  for (int k = 0; k < 12; ++k)  // of 1.2 to 53 pixels; some reach over the picture's edges
+    scene +=
+        fmt::format("[[bodies]]\ndisc = {{ radius = {} }}\nposition = [{}, {}]\nangle = {}\n",
+                    0.012 * std::pow(1.41, k), -1.9 + 0.33 * k + 0.02 * k * k, k % 2 ? 0.7 : -0.6, 0.7 * k);
+  const json answer = told_by_the_page_of(scene, R"(
+    const p = window.brink.player.picture, views = [];
+    p.resize({getBoundingClientRect: () => ({width: 600, height: 200})});
+    Object.assign(p.view, {x: 0.5, y: 0.1, scale: 100.3});
+    p.layers.cells = false;
+    const {discs} = p;
+    p.draw(0.05);
+    for (const ink of p.inks) ink.spoke = false;
+    for (const by of [discs, null]) {
+      p.discs = by;
+      p.draw(0.05);
+      views.push(p.ctx.getImageData(0, 0, 600, 170).data);    // above the ruler
+    }
+    const parts = 10, rgb = ink => [1, 3, 5].map(k => parseInt(ink.slice(k, k + 2), 16)), half = 0.6;    // of a rim
+    const all = p.about.bodies.map((body, k) => ({at: p.toPixels(p.poses[k][0], p.poses[k][1]), fill: rgb(body.fill), line: rgb(body.line),
+      r: p.about.shapes[body.shape].bounding_radius * p.view.scale}));
+    const off = [0, 0], sum = [0, 0];
+    let drawn = 0;
+    for (let row = 0; row < 170; ++row)
+      for (let column = 0; column < 600; ++column) {
+        const near = all.filter(d => Math.hypot(d.at[0] - column - 0.5, d.at[1] - row - 0.5) < d.r + half + 2), k = 4 * (600 * row + column);
+        const truth = [0, 0, 0];
+        for (let i = 0; i < parts * parts; ++i) {
+          let color = [255, 255, 255];    // over white, so that a colour that is not seen counts for nothing
+          for (const d of near) {
+            const away = Math.hypot(d.at[0] - column - (i % parts + 0.5) / parts, d.at[1] - row - (Math.floor(i / parts) + 0.5) / parts);
+            if (away < d.r + half) color = away < d.r - half ? d.fill : d.line;
+          }
+          color.forEach((x, c) => { truth[c] += x / (parts * parts); });
+        }
+        if (near.length === 0 && views[0][k + 3] === 0) continue;
+        ++drawn;
+        views.forEach((v, by) => {
+          const wrong = Math.max(...truth.map((x, c) => Math.abs(255 + (v[k + c] - 255) * v[k + 3] / 255 - x)));
+          off[by] = Math.max(off[by], wrong);
+          sum[by] += wrong;
+        });
+      }
+    return {by: !!discs, off, mean: sum.map(x => x / drawn), drawn};)");
+  ASSERT_FALSE(answer.contains("error")) << answer.dump();
+  EXPECT_TRUE(answer["by"].get<bool>()) << "the test's browser has no graphics card";
+  std::printf(
+      "%s pixels, of 255: by the pixel off by at most %.0f, %.2f on the mean; the browser's ellipses %.0f, "
+      "%.2f\n",
+      answer["drawn"].dump().c_str(), answer["off"][0].get<double>(), answer["mean"][0].get<double>(),
+      answer["off"][1].get<double>(), answer["mean"][1].get<double>());
+  EXPECT_GT(answer["drawn"], 5000);
+  EXPECT_LT(answer["off"][0].get<double>(), 20.0);
+  EXPECT_LT(answer["mean"][0].get<double>(), 1.0);
 }
 
 // A touch on a lane goes to its nearest event; of a body that only the trace tells of, to the time itself.
