@@ -381,7 +381,8 @@ double gap_of(const NearFeature& f, const Outline& a, const ExtendedState& state
                                                                  : side_of(site, nearest, q) < 0.0)
                                : f.thin && is_through_joint(half.other, site, nearest, q, out);
   if (!side_is_known && abreast && crossed)
-    if (const double before = before_next_side(half.other, site, q); before > 0.0)
+    if (const double before = before_next_side(half.other, site, q);
+        before > (f.no_way_by ? kOneCorner * size : 0.0))
       return std::min(before, nearest.distance) - site.radius - sample.radius;
   if (!abreast && !crossed)
     if (const double through = through_corner(half, sample, site, nearest, q); through > 0.0) return -through;

@@ -134,6 +134,28 @@ TEST(NearFeatures, CornersThatHavePassedThroughEachOtherAreNotApart) {
   }
 }
 
+// A triangle's lowest corner comes along the floor to that of a box that stands on it: neither corner is ever in the other body. On
+// which side of the box's lower face roundings put the one must not make a way below the box.
+TEST(NearFeatures, CornerThatComesAlongAFloorDoesNotGoBelowWhatStandsThere) {
+  const Outline box = make_box(0.3, 0.3).outline,
+                triangle = make_polygon({{0, 0}, {0.3, 0.17}, {0, 0.3}}).outline;
+  const auto lowest = std::min_element(triangle.samples.begin(), triangle.samples.end(),
+                                       [](const Sample& a, const Sample& b) { return a.p.y() < b.p.y(); });
+  for (int k = 0; k < 200; ++k) {
+    const double turn = 0.0314 * k;  // each turn rounds otherwise
+    const Frame turned({Vec2::Zero(), turn});
+    const auto at = [&](double gap) {
+      const Vec2 place = turned.to_world(Vec2(0.15 + gap, -0.15) - lowest->p);
+      return ExtendedState(BodyState{{place, turn}, {}});
+    };
+    const ExtendedState stands(BodyState{{Vec2::Zero(), turn}, {}});
+    double least = 1.0;
+    for (const NearFeature& f : near_features(triangle, at(1e-3), box, stands, 0.01))
+      least = std::min(least, gap_of(f, triangle, at(-1e-3), box, stands));
+    EXPECT_NEAR(least, -1e-3, 1e-9) << "turned by " << turn;
+  }
+}
+
 // Corners upon each other: of the side that was chosen there each step keeps what the step before has kept. Where a gap was told
 // along the way, and the next list began with another, a groove let a triangle's corner in by the difference, and on.
 TEST(NearFeatures, GapUponACornerIsAsTheNextListHasIt) {
