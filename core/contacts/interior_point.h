@@ -28,7 +28,7 @@ struct QpProblem {
   std::vector<QpRow> rows;
 };
 
-/// Steps towards the solution: primal-dual, predictor and corrector, with one factor of M + J^T W J a step
+/// Steps towards the solution: primal-dual, predictor and correctors, with one factor of M + J^T W J a step
 /// (W > 0 diagonal), in blocks of a body. Rows that depend on others, or are given twice, do no harm.
 /// Sources: Mehrotra 1992, "On the implementation of a primal-dual interior point method"; Wright 1997,
 /// "Primal-dual interior-point methods", ch. 10; Nocedal & Wright, "Numerical optimization", 16.6.
@@ -83,6 +83,8 @@ class InteriorPoint {
   void measure();
   bool factor(const GoOn& go_on);
   void find_direction(double centre, bool corrected);
+  void correct_outliers(double centre);
+  void solve_for_aim();
   double longest_step() const;
   double gap_after(double length) const;
   void take(double length);
@@ -93,6 +95,10 @@ class InteriorPoint {
   OfPairs s_, z_, ds_, dz_;
   OfPairs aim_;            ///< what s dz + z ds is to be
   OfPairs per_s_, per_z_;  ///< 1 / s, 1 / z where the factor was made
+  struct {
+    std::vector<Triple> du;
+    OfPairs ds, dz;
+  } kept_;  ///< a direction, while another one is tried
   int pairs_ = 0, steps_ = 0;
   bool stopped_ = false;
   double gap_ = 0.0, last_length_ = 1.0;

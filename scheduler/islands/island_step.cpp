@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include "brink/core/contacts/coulomb_sweeps.h"
@@ -12,10 +14,16 @@ namespace brink {
 
 namespace {
 
-constexpr int kLooks = 8;        ///< along a step
-constexpr int kBetween = 4;      ///< parts of what lies between two looks, where a corner may be
-constexpr int kSections = 24;    ///< golden sections until a corner is found there: to 1e-5 of a part
-constexpr int kCorrections = 6;  ///< of gaps that were missed
+constexpr int kLooks = 8;         ///< along a step
+constexpr int kBetween = 4;       ///< parts of what lies between two looks, where a corner may be
+constexpr int kSections = 24;     ///< golden sections until a corner is found there: to 1e-5 of a part
+constexpr int kCorrections = 12;  ///< of gaps that were missed
+/// What is left of a miss is not taken to be more than this part of it the next time.
+constexpr double kFallsAtMost = 0.5;
+/// After so many of them friction is kept: what sweeps leave unsolved would change gaps by more than is left to correct. After
+/// a few where that is little beside the way that forces make of rest in the step, so that what the last lifts push is so, too.
+constexpr int kFrictionAnew = 2, kFrictionAtMost = 6;
+constexpr double kLittleLeft = 1e-3;
 /// In an island of few members so many solves more take friction bounds from the forces of the one before.
 constexpr int kFrictionPasses = 2;
 /// In any other friction comes of sweeps: a hundred go on well enough from the step before, an impact takes more.
@@ -27,8 +35,24 @@ constexpr double kDrives = 1e-2, kNeverDrives = 1e-4;
 /// A contact that takes part in the step.
 struct Part {
   std::size_t contact;
-  double lift = 0.0;  ///< how much higher than its gap it aims [m]
+  double lift = 0.0;     ///< how much higher than its gap it aims [m]
+  ContactLoad expected;  ///< impulses, as the solve before has found them
+  double missed = 0.0;   ///< by what it was lifted last [m]
 };
+
+/// The impulses, if the forces go on as they were. A step before that was shorter than this one counts with its own impulse
+/// alone: where it took an impact, its mean force is as large as it was short.
+ContactLoad from_step_before(const IslandContact& c, double h) {
+  const double lasts = std::min(h, c.force_lasted);
+  return {c.normal_force * lasts, c.tangential_force * lasts, 0.0};
+}
+
+/// Misses fall by about the same part each time: so far as that leads.
+void lift(Part& part, double by) {
+  const double falls_to = part.missed > 0.0 ? std::min(by / part.missed, kFallsAtMost) : 0.0;
+  part.missed = by;
+  part.lift += by / (1.0 - falls_to);
+}
 
 /// The problem of one solve: the contacts that take part, and what is expected of them.
 StepProblem problem_of(const IslandStep& step, double h, const std::vector<Part>& parts) {
@@ -46,10 +70,7 @@ StepProblem problem_of(const IslandStep& step, double h, const std::vector<Part>
     // A gap below zero by a rounding must not be opened within the step: that takes a speed of gap / h,
     // and the energy of it. Only what a look along the step has missed is made up for.
     s.gap = std::max(c.gap, 0.0) - part.lift;
-    // The impulse, if the force goes on as it was. A step before that was shorter than this one counts
-    // with its own impulse alone: where it took an impact, its mean force is as large as it was short.
-    const double lasts = std::min(h, c.force_lasted);
-    s.expected = {c.normal_force * lasts, c.tangential_force * lasts, 0.0};
+    s.expected = part.expected;
     s.support_velocity = Vec3(c.normal_support, c.tangential_support, 0.0);
     p.contacts.push_back(s);
   }
@@ -120,58 +141,84 @@ double fastest(const std::vector<Vec3>& velocity) {
 /// Of many: friction as sweeps find it, gaps as the convex problem with that friction keeps them. A contact that slips has
 /// its friction as a force; one that is held is held within the bounds of its normal force. Which of the normal forces of a
 /// heap carry it is not unique, so those of the sweeps are told, which obey Coulomb's law.
-Solved solve_many(ConeQp& solver, StepProblem p, int& factorisations, const GoOn& go_on) {
-  Solved solved;
-  const StepProblem given = p;
-  CoulombLoads coulomb = sweep_by_coulomb(p, kFewestSweeps, kMostSweeps, go_on);
-  const auto push = [&](std::size_t k, double impulse) {
-    const LastingContact& c = p.contacts[k].contact;
-    p.force[c.body] += impulse / p.duration * c.tangent_on_body;
-    if (c.other >= 0) p.force[c.other] += impulse / p.duration * c.tangent_on_other;
-  };
-  const auto bound = [&](std::size_t k) { return p.contacts[k].contact.friction * coulomb.loads[k].normal; };
-  for (std::size_t k = 0; k < p.contacts.size(); ++k) {
-    StepContact& s = p.contacts[k];
-    s.expected = coulomb.loads[k];
-    s.friction_bound = coulomb.slips[k] ? 0.0 : bound(k);
-    s.rolling_bound = s.contact.rolling_resistance * s.expected.normal;
-    if (coulomb.slips[k]) push(k, s.expected.tangential);
-  }
-  const double falling = falling_speed(given.force, given.mass, given.duration);
-  double slow = 0.0;
-  const auto drives = [&](std::size_t k) {
-    const LastingContact& c = p.contacts[k].contact;
-    const std::vector<Vec3>& w = solved.result.velocity;
-    const double slip = c.tangent_on_body.dot(w[c.body]) +
-                        (c.other < 0 ? 0.0 : c.tangent_on_other.dot(w[c.other])) -
-                        p.contacts[k].support_velocity[1];
-    return coulomb.slips[k] && std::copysign(slip, slip * coulomb.loads[k].tangential) > slow;
-  };
-  for (bool driven = true; driven;) {
-    solved.result = solver.step(p, go_on);
-    factorisations += solved.result.factorisations;
-    if (solved.result.status == StepResult::Status::stopped || !(solved.result.residual <= kResidual))
-      return solved;
-    driven = false;
-    slow = std::clamp(kDrives * fastest(solved.result.velocity), kNeverDrives * falling, kDrives * falling);
-    // Such contacts are held, or slip the other way: within bounds. Each comes once. In what lies all but still they would
-    // creep for ever.
-    for (std::size_t k = 0; k < p.contacts.size(); ++k) {
-      if (!drives(k)) continue;
-      driven = true;
-      coulomb.slips[k] = 0;
-      push(k, -coulomb.loads[k].tangential);
-      p.contacts[k].friction_bound = bound(k);
+class SweptFriction {
+ public:
+  SweptFriction(StepProblem given, const GoOn& go_on)
+      : given_(std::move(given)),
+        coulomb_(sweep_by_coulomb(given_, kFewestSweeps, kMostSweeps, go_on)),
+        problem_(given_) {
+    for (std::size_t k = 0; k < problem_.contacts.size(); ++k) {
+      StepContact& s = problem_.contacts[k];
+      s.expected = coulomb_.loads[k];
+      s.friction_bound = coulomb_.slips[k] ? 0.0 : bound(k);
+      s.rolling_bound = s.contact.rolling_resistance * s.expected.normal;
+      if (coulomb_.slips[k]) push(k, s.expected.tangential);
     }
   }
-  for (std::size_t k = 0; k < p.contacts.size(); ++k)
-    if (coulomb.slips[k]) solved.result.loads[k].tangential = coulomb.loads[k].tangential;
-  solved.loads = std::move(coulomb.loads);
-  solved.residual = unexplained(given, solved.result.velocity, solved.loads);
-  return solved;
-}
 
-Solved solve(ConeQp& solver, const StepProblem& p, int& factorisations, const GoOn& go_on) {
+  /// The same friction, and the gaps of another problem of the same contacts.
+  void take_gaps(const StepProblem& other) {
+    for (std::size_t k = 0; k < problem_.contacts.size(); ++k)
+      given_.contacts[k].gap = problem_.contacts[k].gap = other.contacts[k].gap;
+  }
+
+  Solved solve(ConeQp& solver, int& factorisations, const GoOn& go_on) {
+    Solved solved;
+    const double falling = falling_speed(given_.force, given_.mass, given_.duration);
+    for (bool driven = true; driven;) {
+      solved.result = solver.step(problem_, go_on);
+      factorisations += solved.result.factorisations;
+      if (solved.result.status == StepResult::Status::stopped || !(solved.result.residual <= kResidual))
+        return solved;
+      driven = hold_what_drives(solved.result.velocity, falling);
+    }
+    for (std::size_t k = 0; k < problem_.contacts.size(); ++k)
+      if (coulomb_.slips[k]) solved.result.loads[k].tangential = coulomb_.loads[k].tangential;
+    solved.loads = coulomb_.loads;
+    solved.residual = unexplained(given_, solved.result.velocity, solved.loads);
+    return solved;
+  }
+
+ private:
+  double bound(std::size_t k) const {
+    return problem_.contacts[k].contact.friction * coulomb_.loads[k].normal;
+  }
+  void push(std::size_t k, double impulse) {
+    const LastingContact& c = problem_.contacts[k].contact;
+    problem_.force[c.body] += impulse / problem_.duration * c.tangent_on_body;
+    if (c.other >= 0) problem_.force[c.other] += impulse / problem_.duration * c.tangent_on_other;
+  }
+  /// Of what slips faster than `slow` [m/s]: true if its friction goes along with that.
+  bool drives(std::size_t k, const std::vector<Vec3>& w, double slow) const {
+    const LastingContact& c = problem_.contacts[k].contact;
+    const double slip = c.tangent_on_body.dot(w[c.body]) +
+                        (c.other < 0 ? 0.0 : c.tangent_on_other.dot(w[c.other])) -
+                        problem_.contacts[k].support_velocity[1];
+    return coulomb_.slips[k] && std::copysign(slip, slip * coulomb_.loads[k].tangential) > slow;
+  }
+  /// Such contacts are held, or slip the other way: within bounds. Each comes once. In what lies all but still they would
+  /// creep for ever. True if there were any.
+  bool hold_what_drives(const std::vector<Vec3>& w, double falling) {
+    const double slow = std::clamp(kDrives * fastest(w), kNeverDrives * falling, kDrives * falling);
+    bool any = false;
+    for (std::size_t k = 0; k < problem_.contacts.size(); ++k) {
+      if (!drives(k, w, slow)) continue;
+      any = true;
+      coulomb_.slips[k] = 0;
+      push(k, -coulomb_.loads[k].tangential);
+      problem_.contacts[k].friction_bound = bound(k);
+    }
+    return any;
+  }
+
+  StepProblem given_;
+  CoulombLoads coulomb_;
+  StepProblem problem_;  ///< that with this friction
+};
+
+/// `swept`: the friction of many, kept where `keep` says so.
+Solved solve(ConeQp& solver, const StepProblem& p, std::optional<SweptFriction>& swept, bool keep,
+             int& factorisations, const GoOn& go_on) {
   if (p.mass.size() <= kFewMembers) {
     Solved solved = solve_few(solver, p, factorisations, go_on);
     double most = 0.0;
@@ -180,7 +227,11 @@ Solved solve(ConeQp& solver, const StepProblem& p, int& factorisations, const Go
     if (solved.result.status == StepResult::Status::stopped || solved.residual <= kFrictionNear * most)
       return solved;
   }
-  return solve_many(solver, p, factorisations, go_on);
+  if (keep && swept)
+    swept->take_gaps(p);
+  else
+    swept.emplace(p, go_on);
+  return swept->solve(solver, factorisations, go_on);
 }
 
 /// How a gap is missed along the step [m]; 0: not at all.
@@ -359,11 +410,12 @@ bool stops(const GoOn& go_on) { return go_on && !go_on(); }
 /// The step on which nobody presses, which is the answer if no gap is missed. For what the solver does not come to:
 /// contacts that part far slower than the step is long.
 StepOutcome without_loads(IslandStep& step, double h, double tolerance, const GapAlong& gap,
-                          const GoOn& go_on, StepOutcome outcome) {
+                          const GoOn& go_on, const ListFarther& farther, StepOutcome outcome) {
   std::vector<Vec3> velocity = step.velocity;
   for (std::size_t i = 0; i < step.mass.size(); ++i)
     // what is held has an infinite mass: nothing is added to it
     velocity[i] += h * step.force[i].cwiseQuotient(step.mass[i]);
+  if (farther) farther(velocity);
   // all contacts are asked, those that wait for their turn, too
   for (std::size_t k = 0; k < step.contacts.size(); ++k)
     if (stops(go_on) || missed(step, k, h, velocity, tolerance, 0.0, gap).most > kMissCounts * tolerance)
@@ -378,7 +430,7 @@ StepOutcome without_loads(IslandStep& step, double h, double tolerance, const Ga
 
 /// One loop to two ends: a contact at an end joins once it is missed, and a gap that was missed aims higher.
 StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap,
-                      const GoOn& go_on) {
+                      const GoOn& go_on, const ListFarther& farther) {
   StepOutcome outcome;
   std::vector<Part> parts;
   std::vector<std::size_t> waiting;
@@ -386,15 +438,24 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
     if (step.contacts[k].at_end && !(step.contacts[k].normal_force > 0.0))
       waiting.push_back(k);
     else
-      parts.push_back({k});
+      parts.push_back({k, 0.0, from_step_before(step.contacts[k], h), 0.0});
   // the way that the forces alone make of rest in the step [m]
   const double cheap = h * falling_speed(step.force, step.mass, h);
+  std::optional<SweptFriction> swept;
+  bool joined = false;
+  double left = std::numeric_limits<double>::infinity();  // to correct [m]
   // Contacts that wait join once each and are not counted as corrections, so that the loop ends.
   for (int again = 0; again < kCorrections && !outcome.solved;) {
-    Solved solved = solve(solver, problem_of(step, h, parts), outcome.factorisations, go_on);
+    const bool keep = !joined && again > (left <= kLittleLeft * cheap ? kFrictionAnew : kFrictionAtMost);
+    Solved solved = solve(solver, problem_of(step, h, parts), swept, keep, outcome.factorisations, go_on);
     StepResult& result = solved.result;
     if (result.status == StepResult::Status::stopped) return outcome;
-    if (!(result.residual <= kResidual)) return without_loads(step, h, tolerance, gap, go_on, outcome);
+    if (!(result.residual <= kResidual))
+      return without_loads(step, h, tolerance, gap, go_on, farther, outcome);
+    const std::size_t listed = step.contacts.size();
+    if (farther) farther(result.velocity);
+    for (std::size_t k = listed; k < step.contacts.size(); ++k) waiting.push_back(k);
+    for (std::size_t k = 0; k < parts.size(); ++k) parts[k].expected = solved.loads[k];
     // those that are missed take part from now on: each comes once
     const auto met = std::stable_partition(waiting.begin(), waiting.end(), [&](std::size_t k) {
       return stops(go_on) ||
@@ -402,10 +463,12 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
     });
     // solved again with them before any lift is asked for: without them the motion is another
     if (met != waiting.end()) {
-      for (auto k = met; k != waiting.end(); ++k) parts.push_back({*k});
+      for (auto k = met; k != waiting.end(); ++k) parts.push_back({*k, 0.0, {}, 0.0});
       waiting.erase(met, waiting.end());
+      joined = true;
       continue;
     }
+    joined = false;
     double worst = 0.0;
     std::vector<double> more;  // lifts that one more solve would need
     for (const Part& part : parts) {
@@ -417,14 +480,15 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
       more.push_back(miss.most > kMissCounts * tolerance ? kAimHigher * miss.lift : 0.0);
     }
     ++again;
+    left = worst;
     if (worst > tolerance) {
-      for (std::size_t k = 0; k < parts.size(); ++k) parts[k].lift += more[k];
+      for (std::size_t k = 0; k < parts.size(); ++k) lift(parts[k], more[k]);
       continue;
     }
     double of = 0.0;
     const double won_here = won(step, result, parts, h, tolerance, of);
     // The caller tries a shorter step: by what faces that turn are missed is of second order in h.
-    if (won_here > kWonOf * of) return without_loads(step, h, tolerance, gap, go_on, outcome);
+    if (won_here > kWonOf * of) return without_loads(step, h, tolerance, gap, go_on, farther, outcome);
     // from here on loads stand at their contacts' places; won() took them at their parts'
     const std::vector<ContactLoad> loads = of_all(solved.loads, parts, step.contacts.size());
     const bool driven = std::any_of(parts.begin(), parts.end(),

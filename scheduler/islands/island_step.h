@@ -52,6 +52,9 @@ struct IslandStep {
 /// The gap of contact k a time into the step, were the bodies to move with these velocities [m].
 using GapAlong = std::function<double(std::size_t k, double moment, const std::vector<Vec3>& velocity)>;
 
+/// Adds contacts to the step that bodies may come to with these velocities, and that it has not yet.
+using ListFarther = std::function<void(const std::vector<Vec3>& velocity)>;
+
 struct StepOutcome {
   bool solved = false;  ///< every gap stays above -`tolerance` along the step; not where GoOn said no
   int factorisations = 0;
@@ -67,9 +70,10 @@ struct StepOutcome {
 /// round in a circle, to what sweeps leave (StepOutcome::friction_residual).
 inline constexpr std::size_t kFewMembers = 8;
 
-/// Takes a step of h > 0 [s]. What is not solved is to be tried again with a shorter one.
+/// Takes a step of h > 0 [s]. What is not solved is to be tried again with a shorter one. `farther` is asked after every
+/// solve; what it adds takes part once it is missed.
 StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap,
-                      const GoOn& go_on = {});
+                      const GoOn& go_on = {}, const ListFarther& farther = {});
 
 /// True if the bodies stay at rest under their forces: the contacts' forces are set then. Not where GoOn said no.
 bool stays_at_rest(ConeQp& solver, IslandStep& step, const GoOn& go_on = {});

@@ -30,14 +30,20 @@ Vec2 outward(const Site& site) {
   return Vec2(d.y(), -d.x()) / d.norm();
 }
 
+/// True if the way from the site to q has a direction: it is longer than `least`.
+bool has_direction(const Nearest& nearest, const Vec2& q, double least) {
+  return (q - nearest.point).norm() > least;
+}
+
 /// Out of the site, in its frame; where the two points are one, the site's own normal.
 Vec2 direction(const Site& site, const Nearest& nearest, const Vec2& q, double least) {
   const Vec2 way = q - nearest.point;
-  if (way.norm() > least && nearest.foot == Foot::interior && site.kind == SiteKind::segment) {
+  const bool told = has_direction(nearest, q, least);
+  if (told && nearest.foot == Foot::interior && site.kind == SiteKind::segment) {
     const Vec2 d = site.b - site.a;  // its own normal: that of a short way has lost digits
     return perp(d) * ((cross(d, q - site.a) < 0.0 ? -1.0 : 1.0) / d.norm());
   }
-  if (way.norm() > least) return way.normalized();
+  if (told) return way.normalized();
   if (site.solid && site.kind == SiteKind::segment) return outward(site);
   if (site.solid && nearest.foot != Foot::interior)
     return (nearest.foot == Foot::start ? site.pseudo_a : site.pseudo_b).normalized();
@@ -90,7 +96,7 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   Vec2 out = direction(site, nearest, q, least);
   // the way from the core leads inwards where q lies inside; what stands in for too short a way leads
   // outwards
-  if (side < 0.0 && nearest.distance > least) out = -out;
+  if (side < 0.0 && has_direction(nearest, q, least)) out = -out;
   const bool thin = !site.solid && site.radius + sample.radius == 0.0;
   double distance = side * nearest.distance;
   if (is_beyond_hollow_end(site, nearest, side)) {

@@ -14,6 +14,9 @@
 
 namespace brink {
 
+/// Names a contact: pair, side, sample, site.
+using ContactKey = std::tuple<PairKey, bool, int, int>;
+
 /// A contact of an island, at the start of its step.
 struct HeldContact {
   PairKey pair;
@@ -28,12 +31,15 @@ struct HeldContact {
   MotionMode motion = MotionMode::open, next_motion = MotionMode::open;
 
   auto order() const { return std::tuple(pair.order(), feature.sample_on_a, feature.sample, feature.site); }
+  ContactKey key() const { return {pair, feature.sample_on_a, feature.sample, feature.site}; }
 };
 
-/// What is known of contacts from the step before: by pair, side, sample, site.
-using WarmContacts = std::map<std::tuple<PairKey, bool, int, int>, HeldContact>;
+inline bool in_order(const HeldContact& a, const HeldContact& b) { return a.order() < b.order(); }
+
+/// What is known of contacts from the step before.
+using WarmContacts = std::map<ContactKey, HeldContact>;
 inline const HeldContact* find_warm(const WarmContacts& warm, const HeldContact& c) {
-  const auto found = warm.find({c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site});
+  const auto found = warm.find(c.key());
   return found == warm.end() ? nullptr : &found->second;
 }
 

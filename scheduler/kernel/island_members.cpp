@@ -25,6 +25,7 @@ IslandMembers::IslandMembers(const World& world, const Trajectories& trajectorie
     pull_ = std::max(pull_, pulls_.back());
     heaviest_ = std::max(heaviest_, world.bodies[k].mass);
   }
+  farther_.assign(count(), 0.0);
   find_speeds();
 }
 
@@ -38,9 +39,9 @@ void IslandMembers::find_speeds() {
   }
 }
 
-double IslandMembers::reach_of(int member) const {
+double IslandMembers::guess_of(int member) const {
   // Its speed with what forces on it make of that in the step, the largest pull of anybody, which contacts
-  // may hand on, and a hundredth of the fastest member's speed. A guess: steps are checked against it.
+  // may hand on, and a hundredth of the fastest member's speed. Steps are checked against it.
   return reach_ * h_ * (speeds_[member] + pulls_[member] * h_ + pull_ * h_ + 0.01 * speed_);
 }
 
@@ -75,10 +76,24 @@ std::vector<PairKey> IslandMembers::near_pairs(double reach, const GoOn& go_on) 
   return to;
 }
 
-/// Features of a pair's images alone.
 std::vector<HeldContact> IslandMembers::contacts(double reach, const GoOn& go_on) const {
+  return features(near_pairs(reach, go_on), reach, go_on);
+}
+
+std::vector<HeldContact> IslandMembers::contacts_of(const std::vector<char>& whose, const GoOn& go_on) const {
+  std::vector<PairKey> pairs = near_pairs(-1.0, go_on);
+  const auto others = [&](const PairKey& pair) {
+    return whose[place_of(pair.body)] == 0 && (pair.with_site() || whose[place_of(pair.other_body)] == 0);
+  };
+  pairs.erase(std::remove_if(pairs.begin(), pairs.end(), others), pairs.end());
+  return features(pairs, -1.0, go_on);
+}
+
+/// Features of a pair's images alone.
+std::vector<HeldContact> IslandMembers::features(const std::vector<PairKey>& pairs, double reach,
+                                                 const GoOn& go_on) const {
   std::vector<HeldContact> all;
-  for (const PairKey& pair : near_pairs(reach, go_on)) {
+  for (const PairKey& pair : pairs) {
     if (go_on && !go_on()) break;
     const Outline &outline = search_->outline_of(pair.body),
                   &other = search_->outline_of(search_->other_owner(pair));
@@ -87,8 +102,7 @@ std::vector<HeldContact> IslandMembers::contacts(double reach, const GoOn& go_on
       all.push_back({pair, f, 0.0, 0.0, 0.0});
   }
   // in an order of their own, whatever the boxes: the solver's rounding depends on it
-  std::sort(all.begin(), all.end(),
-            [](const HeldContact& a, const HeldContact& b) { return a.order() < b.order(); });
+  std::sort(all.begin(), all.end(), in_order);
   return all;
 }
 

@@ -52,9 +52,15 @@ class IslandMembers {
   double heaviest() const { return heaviest_; }  ///< [kg]
   double bounding_radius(int member) const { return search_->outline_of(bodies_[member]).bounding_radius; }
   /// Steps of h [s] are looked ahead from now on: bodies come as far as they may in `reach` of them.
-  void look_ahead(double h, double reach) { h_ = h, reach_ = reach; }
-  /// How far a member may come in a step [m].
-  double reach_of(int member) const;
+  void look_ahead(double h, double reach) {
+    h_ = h, reach_ = reach;
+    farther_.assign(count(), 0.0);
+  }
+  /// Until then this one may come so far [m].
+  void look_farther(int member, double way) { farther_[member] = std::max(farther_[member], way); }
+  /// How far a member may come in a step [m]: a guess, and no less than look_farther() was told.
+  double reach_of(int member) const { return std::max(guess_of(member), farther_[member]); }
+  double guess_of(int member) const;
   /// Where it may come in a step.
   Box box(int member) const { return box_of(bodies_[member], reach_of(member)); }
 
@@ -62,6 +68,8 @@ class IslandMembers {
   /// a gap of `reach` [m]; < 0: as far as a step may lead. Not all where GoOn says no. Cost: members sorted along x,
   /// times sites.
   std::vector<HeldContact> contacts(double reach, const GoOn& go_on = {}) const;
+  /// As far as a step may lead, of those in which one takes part of whom `whose` is not 0.
+  std::vector<HeldContact> contacts_of(const std::vector<char>& whose, const GoOn& go_on = {}) const;
   /// Pairs of members, and with sites, that may come nearer to each other than that: all of which features are listed.
   std::vector<PairKey> near_pairs(double reach, const GoOn& go_on = {}) const;
 
@@ -92,6 +100,7 @@ class IslandMembers {
   double site_way(int site) const;
   void add_images(std::vector<PairKey>& to, int a, const Box& box_a, int b, const Box& box_b) const;
   double reach_of(const PairKey& pair, double reach) const;
+  std::vector<HeldContact> features(const std::vector<PairKey>& pairs, double reach, const GoOn& go_on) const;
 
   const World* world_;
   const Trajectories* trajectories_;
@@ -102,6 +111,7 @@ class IslandMembers {
   std::vector<ExtendedState> states_;
   std::vector<Acceleration> accelerations_;
   std::vector<double> speeds_, pulls_;  ///< [m/s], [m/s^2], of any point of each
+  std::vector<double> farther_;         ///< of each, what look_farther() was told [m]
   double size_ = kForever, speed_ = 0.0, pull_ = 0.0, heaviest_ = 0.0;
 };
 

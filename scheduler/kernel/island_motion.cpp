@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "brink/core/base/disjoint_sets.h"
@@ -17,10 +18,13 @@ namespace {
 constexpr double kOfFall = 0.05;
 /// ... and moves nobody by more than this part of it.
 constexpr double kOfSize = 0.1;
-/// Features are listed as far as bodies come in so many steps; where impulses take one farther, in more.
+/// Features are listed as far as bodies come in so many steps; where impulses take one farther, so many times as far as that.
+/// By modes a list reaches so many times as far for all.
 constexpr double kReach = 2.0, kWider = 4.0;
-/// So a list reaches from 2 to 512 steps. Where that does not do, a step is halved, down to 2^-16 of its length.
+/// At most so many times.
 constexpr int kWidenings = 4;
+/// A list reaches to 512 times the guess. Where that does not do, a step is halved, down to 2^-16 of its length.
+constexpr double kFarthest = 512.0;
 constexpr int kHalvings = 16;
 /// Contact tolerances that a contact is open before its bodies are let go from modes.
 constexpr double kClear = 100.0;
@@ -85,6 +89,26 @@ std::vector<int> IslandMotion::joining(const World& world, Trajectories& traject
 void IslandMotion::list(double reach) {
   contacts_ = members_.contacts(reach, go_on_);
   absorbed_ = 0.0;
+}
+
+/// Those who come farther with these velocities than features are listed: theirs, as far as they come several times. Not of
+/// one who would go beyond all measure: the step is to be shorter then.
+void IslandMotion::list_farther(const std::vector<Vec3>& velocity) {
+  std::vector<char> far(members_.count(), 0);
+  for (int i = 0; i < static_cast<int>(members_.count()); ++i) {
+    const double way = way_in_step(i, velocity);
+    if (way <= members_.reach_of(i) || way > kFarthest * members_.guess_of(i)) continue;
+    far[i] = 1;
+    members_.look_farther(i, kWider * way);
+  }
+  if (std::find(far.begin(), far.end(), 1) == far.end()) return;
+  std::set<ContactKey> listed;
+  for (const HeldContact& c : contacts_) listed.insert(c.key());
+  for (const HeldContact& c : members_.contacts_of(far, go_on_)) {
+    if (!listed.insert(c.key()).second) continue;
+    contacts_.push_back(c);
+    problem_.contacts.push_back(island_contact(c));
+  }
 }
 
 /// Of each member now, as the step's problem has them: x, y [m/s], angle [rad/s].
@@ -243,28 +267,27 @@ bool IslandMotion::take(IslandModes& modes, double now, double h, bool on_time) 
   return false;
 }
 
-/// Tries until a step is accepted: one that ends at an impact, one short enough for `tolerance`, one with
-/// a longer list of features where somebody goes beyond it, one of half the length where there is no
-/// solution.
+/// Tries until a step is accepted: one that ends at an impact, one short enough for `tolerance`, one of half the
+/// length where there is no solution.
 bool IslandMotion::take(double h, double tolerance) {
   // from here on the length of the step says which approach is plastic (most_absorbed)
   by_modes_ = false;
   contacts_.clear();
   if (!(h < kForever)) return true;  // nothing moves or pulls: nobody needs anybody
-  double reach = kReach, change_before = kForever;
+  double change_before = kForever;
   const double shortest = kShortest * h, pull = members_.pull();
   // h^2 a / 2 = tolerance for a body that falls: what places may be off in a step that begins at rest
   if (tolerance > 0.0 && pull > 0.0) h = std::clamp(std::sqrt(2.0 * tolerance / pull), shortest, h);
   // the length that is tried and the list of features go together
   const auto look = [&](double step) {
     h_ = step;
-    members_.look_ahead(h_, reach);
+    members_.look_ahead(h_, kReach);
     list(-1.0);
   };
   const double worthwhile = kWorthwhile * h;
-  // Each turn returns, or shortens the step, or lengthens the list, and each of these ends: `shortest` bounds what
-  // the tolerance asks for, kHalvings and kWidenings the others.
-  for (int halving = 0, widening = 0; halving <= kHalvings && go_on_();) {
+  // Each turn returns, or shortens the step, and that ends: `shortest` bounds what the tolerance asks for, kHalvings
+  // the others.
+  for (int halving = 0; halving <= kHalvings && go_on_();) {
     look(h);
     if (const double first = next_arrival(); first < h) {  // an impact ends the step
       impacts_in_step_ = impacts_in_step_ || first < worthwhile;
@@ -275,7 +298,9 @@ bool IslandMotion::take(double h, double tolerance) {
     const auto gap = [this](std::size_t k, double later, const std::vector<Vec3>& velocity) {
       return members_.gap(contacts_[k], later, velocity) - kept(contacts_[k].feature);
     };
-    const StepOutcome outcome = take_step(*solver_, problem_, h, search_->limits().tolerance, gap, go_on_);
+    const StepOutcome outcome =
+        take_step(*solver_, problem_, h, search_->limits().tolerance, gap, go_on_,
+                  [this](const std::vector<Vec3>& velocity) { list_farther(velocity); });
     // work is counted of every try, all else of the step that is taken
     tally_->factorisations += outcome.factorisations;
     // looked at after the solver: contacts may hand on more speed than anybody had
@@ -294,12 +319,8 @@ bool IslandMotion::take(double h, double tolerance) {
       tally_->energy_won += outcome.won;
       tally_->absorbed = std::max(tally_->absorbed, absorbed_);
       take_forces();
+      std::sort(contacts_.begin(), contacts_.end(), in_order);
       return true;
-    }
-    // solved, but somebody went where no features were listed: the same step with more of them
-    if (outcome.solved && ++widening <= kWidenings) {
-      reach *= kWider;
-      continue;
     }
     ++halving;
     h *= 0.5;
@@ -438,14 +459,15 @@ void IslandMotion::note_shape(const HeldContact& c, IslandContact& made) const {
   made.apart = to_point.norm() + std::abs(f.gap) + sample.radius;
 }
 
+/// The farthest that any point of it comes [m].
+double IslandMotion::way_in_step(int member, const std::vector<Vec3>& velocity) const {
+  return h_ * speed_within(as_twist(velocity[member]), members_.bounding_radius(member));
+}
+
 /// True if nobody moves farther than features were listed for.
 bool IslandMotion::stays_within_reach() const {
-  for (int i = 0; i < static_cast<int>(members_.count()); ++i) {
-    const Twist v = as_twist(problem_.velocity[i]);
-    // no point of it is faster than |v| + |omega| r
-    if (h_ * (v.velocity.norm() + std::abs(v.omega) * members_.bounding_radius(i)) > members_.reach_of(i))
-      return false;
-  }
+  for (int i = 0; i < static_cast<int>(members_.count()); ++i)
+    if (way_in_step(i, problem_.velocity) > members_.reach_of(i)) return false;
   return true;
 }
 

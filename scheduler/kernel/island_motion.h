@@ -68,6 +68,7 @@ class IslandMotion {
     double closing = 0.0;                                   ///< then, or a little before [m/s]
   };
   void list(double reach);
+  void list_farther(const std::vector<Vec3>& velocity);
   bool touches(const HeldContact& c) const;
   double impact_of(const HeldContact& c, const std::vector<Vec3>& velocity) const;
   void collide(const HeldContact& c, double closing, const Impact& told);
@@ -81,6 +82,7 @@ class IslandMotion {
   void make_problem();
   IslandContact island_contact(const HeldContact& c) const;
   void note_shape(const HeldContact& c, IslandContact& made) const;
+  double way_in_step(int member, const std::vector<Vec3>& velocity) const;
   bool stays_within_reach() const;
   double change_of_speed() const;
   void take_forces();

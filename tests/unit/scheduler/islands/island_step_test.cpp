@@ -53,6 +53,51 @@ TEST(IslandStep, GapThatDipsBetweenTwoLooksIsKept) {
   for (int i = 0; i <= 10000; ++i) ASSERT_GE(gap(0, h * i / 10000.0, step.velocity), -kTolerance) << i;
 }
 
+// However much of a lift is lost again: the gap opens by little more than half of what its contact aims higher.
+TEST(IslandStep, LiftsOfWhichPartIsLostReachTheGap) {
+  const double h = 0.01, lost = 0.45, misses = 1e-4;
+  IslandStep step = over_floor(0.0, Vec3(0.0, -1.0, 0.0));
+  const GapAlong gap = [&](std::size_t, double later, const std::vector<Vec3>& v) {
+    return (1.0 - lost) * later * v[0].y() - misses * later / h;
+  };
+  ConeQp solver;
+  ASSERT_TRUE(take_step(solver, step, h, kTolerance, gap).solved);
+  for (int i = 0; i <= 8; ++i) EXPECT_GE(gap(0, h * i / 8.0, step.velocity), -kTolerance);
+  EXPECT_NEAR(step.velocity[0].y(), misses / h / (1.0 - lost), 1e-3);
+}
+
+// A contact that nobody came to at first is listed where an impulse leads to it, and bars the way as the others do.
+TEST(IslandStep, ContactThatIsListedLateBarsTheWay) {
+  const double h = 0.01, far = 0.02;
+  // the heavy one drives the light one before it towards a wall
+  IslandStep step;
+  step.mass = {Vec3(1.0, 1.0, 1.0), Vec3(100.0, 100.0, 100.0)};
+  step.velocity = {Vec3(0.0, 0.0, 0.0), Vec3(5.0, 0.0, 0.0)};
+  step.force = {Vec3::Zero(), Vec3::Zero()};
+  IslandContact hit;
+  hit.rows = contact_at(0, 1, {1.0, 0.0}, Vec2::Zero(), Vec2::Zero());
+  step.contacts.push_back(hit);
+  IslandContact wall;
+  wall.rows = contact_at(0, -1, {-1.0, 0.0}, Vec2::Zero(), Vec2::Zero());
+  wall.gap = far;
+  const GapAlong gap = [&](std::size_t k, double later, const std::vector<Vec3>& v) {
+    return k == 0 ? later * (v[0].x() - v[1].x()) : far - later * v[0].x();
+  };
+  int listed = 0;
+  const ListFarther farther = [&](const std::vector<Vec3>& v) {
+    if (h * v[0].x() > 0.5 * far && step.contacts.size() == 1) {
+      step.contacts.push_back(wall);
+      ++listed;
+    }
+  };
+  ConeQp solver;
+  ASSERT_TRUE(take_step(solver, step, h, kTolerance, gap, {}, farther).solved);
+  EXPECT_EQ(listed, 1);
+  EXPECT_NEAR(step.velocity[0].x(), far / h, 1e-8);
+  EXPECT_NEAR(step.velocity[1].x(), far / h, 1e-8);
+  EXPECT_NEAR(step.contacts[1].normal_force * h, 100.0 * (5.0 - far / h) - far / h, 1e-6);
+}
+
 // Wherever it is stopped, there is no step, and the problem is as it was.
 TEST(IslandStep, StoppedIsNone) {
   const GapAlong gap = [](std::size_t k, double later, const std::vector<Vec3>& v) {

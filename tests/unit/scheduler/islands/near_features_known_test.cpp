@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "brink/core/base/random.h"
 #include "tests/unit/scheduler/islands/outlines_near.h"
 
 namespace brink::near_features_known_test {
@@ -153,6 +154,31 @@ TEST(NearFeatures, CornerThatComesAlongAFloorDoesNotGoBelowWhatStandsThere) {
     for (const NearFeature& f : near_features(triangle, at(1e-3), box, stands, 0.01))
       least = std::min(least, gap_of(f, triangle, at(-1e-3), box, stands));
     EXPECT_NEAR(least, -1e-3, 1e-9) << "turned by " << turn;
+  }
+}
+
+// A box's corner that has sunk into a pentagon's side by about as much as still tells a direction: whether it does is said once,
+// or the normal is turned that was the side's own.
+TEST(NearFeatures, NormalOfWhatHasSunkByARoundingLeadsOut) {
+  const Outline box = make_box(0.249, 0.164).outline,
+                pentagon =
+                    make_polygon({{0.3, 0.15}, {0.2, 0.3}, {0.02, 0.24}, {0.02, 0.06}, {0.2, 0.0}}).outline;
+  const double size = box.bounding_radius + pentagon.bounding_radius;
+  const Vec2 corner(0.1245, 0.082);
+  Random random(1);
+  for (int k = 0; k < 20000; ++k) {
+    const Site& side = pentagon.sites[static_cast<std::size_t>(k) % 5];
+    const Vec2 along = (side.b - side.a).normalized(), out(along.y(), -along.x());
+    const Pose stands{Vec2::Zero(), random.uniform(0.0, 6.28)};
+    const Frame frame(stands);
+    // the corner leads straight into the side
+    const Vec2 way = frame.direction_to_world(-out);
+    const double turn = std::atan2(way.y(), way.x()) - std::atan2(corner.y(), corner.x());
+    const double deep = 1e-12 * size * (1.0 + random.uniform(-1e-3, 1e-3));
+    const Vec2 at = side.a + random.uniform(0.2, 0.8) * (side.b - side.a) - deep * out;
+    const Pose sunk{frame.to_world(at) - Frame({Vec2::Zero(), turn}).to_world(corner), turn};
+    for (const NearFeature& f : between(box, sunk, pentagon, stands, 1e-6))
+      ASSERT_LT(f.normal.dot(way), -0.9) << k << ": gap " << f.gap;
   }
 }
 
