@@ -36,11 +36,18 @@ struct PolynomialPiece {
   double begin = 0.0, end = 0.0;
   double origin = 0.0;
   int degree = 0;
-  std::array<Eigen::Vector3d, kMaxDegree + 1> c{};
+  std::array<Eigen::Vector3d, kMaxDegree + 1> c = none();  // {} would leave them as they are
 
   BodyState state(double t) const;
   Acceleration acceleration(double t) const;
   MotionBounds bounds(double from, double to) const;
+
+ private:
+  static std::array<Eigen::Vector3d, kMaxDegree + 1> none() {
+    std::array<Eigen::Vector3d, kMaxDegree + 1> zeros;
+    zeros.fill(Eigen::Vector3d::Zero());
+    return zeros;
+  }
 };
 
 /// Consecutive pieces of one body, each beginning where the last ended, pose and twist continuous (C1)

@@ -45,6 +45,14 @@ TEST(Drag, StateIsTheExponentialFormula) {
     EXPECT_LT(difference(motion.state(t), spinning_drag_state(t)), 1e-12) << t;
 }
 
+// Whatever its memory held before: who sets some coefficients leaves the others at 0.
+TEST(Motion, APieceBeginsWithCoefficientsOfZero) {
+  alignas(PolynomialPiece) std::array<std::byte, sizeof(PolynomialPiece)> memory;
+  memory.fill(std::byte{0xff});
+  const auto* const piece = new (memory.data()) PolynomialPiece;
+  for (const Eigen::Vector3d& c : piece->c) EXPECT_TRUE(c.isZero(0.0));
+}
+
 // Of every kind of motion, against differences of its own twist.
 TEST(Motion, RateIsTheDerivativeOfTheTwist) {
   PolynomialPiece piece;
