@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstddef>
+#include <new>
+
 #include "brink/core/base/random.h"
 #include "brink/integrators/integrator.h"
 #include "tests/support/seeded_random.h"
