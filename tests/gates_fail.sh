@@ -51,7 +51,7 @@ show() {  # NAME MISTAKE GATE...
     say "$name: LETS THE MISTAKE PASS"
     failed=1
   else
-    say "$name: fails, as it must: $(grep -m 1 -i -e error -e failure -e 'does not compile' "$scratch/build/gate.log" || tail -n 1 "$scratch/build/gate.log")"
+    say "$name: fails, as it must: $(grep -v '^Note' "$scratch/build/gate.log" | grep -m 1 -i -e error -e failure -e 'does not compile' || tail -n 1 "$scratch/build/gate.log")"
   fi
   undo
 }
