@@ -26,8 +26,8 @@ function(brink_flags target)
   endif()
 endfunction()
 
-# Of targets in which no run spends its time: LEVEL of optimisation (-O2 compiles in two thirds of the time of -O3, -O1 in
-# half). Results have the same bits.
+# Of targets in which no run spends its time: LEVEL of optimisation (-O2 compiles a fifth faster than -O3, -O1 some 30 % faster
+# than that). Results have the same bits.
 function(brink_not_hot target level)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${level}>)
 endfunction()
