@@ -91,11 +91,10 @@ WarmContacts Islands::take_out(const std::set<int>& members, IslandPace& pace) {
     if (found->second.rests) note_change(EventKind::wake, k), ++tally_.woken;
     for (const HeldContact& c : found->second.contacts) {
       search_->search_again(c.pair);
-      const Feature key{c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site};
-      warm[key] = c;
+      warm[c.key()] = c;
       // told when it has ended (tell_ended); one that presses on in the same mode goes on as one stretch
       // (put_in)
-      if (c.mode != ContactMode::none) taken_out_.emplace(key, c);
+      if (c.mode != ContactMode::none) taken_out_.emplace(c.key(), c);
     }
     // what cuts a step short may be others, too: one more than its end takes off
     const bool cut_short = !found->second.rests && found->second.due > run_->time();
@@ -487,8 +486,7 @@ void Islands::restore(const Saved& saved) {
   taken_out_.clear();
   for (const Island& island : saved.islands) {
     for (const HeldContact& c : island.contacts)  // they go on
-      if (c.mode != ContactMode::none)
-        taken_out_.emplace(Feature{c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site}, c);
+      if (c.mode != ContactMode::none) taken_out_.emplace(c.key(), c);
     // which finds the contacts there, so that their stretches go on
     put_in(island);
   }
