@@ -50,13 +50,20 @@ class CellMesh {
     this.fan(last.b, directionAt(last, last.b) - Math.PI / 2 - OVERLAP, half, {radius: last.radius});
   }
 
+  /** Of a whole turn a square about the centre does: what it has more than a fan takes less time than a fan's triangles. */
   fan(center, from, sweep, radii) {
+    if (Math.abs(sweep) >= 2 * Math.PI) { this.square(center, radii); return; }
     const steps = Math.max(1, Math.ceil(Math.abs(sweep) / SECTOR)), m = 1 / Math.cos(sweep / steps / 2);
     const top = this.vertex(center, 0, 0, radii);
     for (let i = 0; i <= steps; ++i) {
       const a = from + sweep * i / steps, k = this.vertex(center, m * Math.cos(a), m * Math.sin(a), radii);
       if (i > 0) this.triangles.push(top, k - 1, k);
     }
+  }
+
+  square(center, radii) {
+    const [k] = [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(([gx, gy]) => this.vertex(center, gx, gy, radii));
+    this.triangles.push(k, k + 1, k + 2, k, k + 2, k + 3);
   }
 
   /** Both sides at once: q grows from one to the other, through zero. */

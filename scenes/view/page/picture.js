@@ -10,7 +10,7 @@ const LAYERS = [
 
 const ITSELF = [[0, 0]];
 const CONTACT_INK = '#d03030';
-const MOST_CONTACTS = 300;  // more at once would cover what they tell of
+const MOST_CONTACTS = 100;  // more at once would cover what they tell of
 const MARK_FROM = 7;  // [px], a smaller body carries no mark of how it has turned
 
 /** An outline as paths: what is filled, and what is stroked (thickness, crisp edge). */

@@ -3,7 +3,7 @@
 // body is so far off that another is nearer whatever their outlines, its cell is not.
 
 const SQUARES = 15000;  // of the grid, at most
-const FINE = 3;  // squares along the room of a body
+const FINE = 2;  // squares along the room of a body
 
 /** Places along a site; none where it is a point. */
 function alongSite({kind, a, b, center, sweep}) {
