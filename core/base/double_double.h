@@ -108,7 +108,7 @@ class BasicDoubleDouble {
   /// Of any two doubles, exactly.
   BRINK_INLINE static BasicDoubleDouble sum(double a, double b) {
     const error_free::Result r = error_free::sum(a, b);
-    return told(r.high, r.low);
+    return finite(r.low) ? BasicDoubleDouble(r.high, r.low) : BasicDoubleDouble(r.high);
   }
   /// Of any two doubles, exactly where error_free::Plain is.
   BRINK_INLINE static BasicDoubleDouble product(double a, double b) {
@@ -121,34 +121,34 @@ class BasicDoubleDouble {
 
   BRINK_INLINE friend BasicDoubleDouble operator+(const BasicDoubleDouble& a, double b) {
     const error_free::Result r = error_free::sum(a.high_, b);
-    return normalized(r.high, a.low_ + r.low);
+    return normalized(r.high, a.low_ + r.low, r.high);
   }
   BRINK_INLINE friend BasicDoubleDouble operator+(const BasicDoubleDouble& a, const BasicDoubleDouble& b) {
     const error_free::Result highs = error_free::sum(a.high_, b.high_),
                              lows = error_free::sum(a.low_, b.low_);
     const error_free::Result r = error_free::quick_sum(highs.high, highs.low + lows.high);
-    return finite(highs.high) ? normalized(r.high, lows.low + r.low) : BasicDoubleDouble(highs.high);
+    return normalized(r.high, lows.low + r.low, highs.high);
   }
   BRINK_INLINE friend BasicDoubleDouble operator*(const BasicDoubleDouble& a, double b) {
     const error_free::Result r = Product::product(a.high_, b);
-    return exact(r) ? normalized(r.high, r.low + a.low_ * b) : BasicDoubleDouble(r.high);
+    return in_range(r.high) ? normalized(r.high, r.low + a.low_ * b, r.high) : BasicDoubleDouble(r.high);
   }
   BRINK_INLINE friend BasicDoubleDouble operator*(const BasicDoubleDouble& a, const BasicDoubleDouble& b) {
     const error_free::Result r = Product::product(a.high_, b.high_);
     const double crossed = a.high_ * b.low_ + a.low_ * b.high_;
-    return exact(r) ? normalized(r.high, r.low + crossed) : BasicDoubleDouble(r.high);
+    return in_range(r.high) ? normalized(r.high, r.low + crossed, r.high) : BasicDoubleDouble(r.high);
   }
   BRINK_INLINE friend BasicDoubleDouble operator/(const BasicDoubleDouble& a, double b) {
     const double first = a.high_ / b;
     if (!in_range(first) || !in_range(b)) return first;
     const BasicDoubleDouble rest = a - product(first, b);
-    return normalized(first, rest.high_ / b);
+    return normalized(first, rest.high_ / b, first);
   }
   BRINK_INLINE friend BasicDoubleDouble operator/(const BasicDoubleDouble& a, const BasicDoubleDouble& b) {
     const double first = a.high_ / b.high_;
     if (!in_range(first) || !in_range(b.high_)) return first;
     const BasicDoubleDouble rest = a - b * first;
-    return normalized(first, rest.high_ / b.high_);
+    return normalized(first, rest.high_ / b.high_, first);
   }
   BRINK_INLINE friend BasicDoubleDouble operator+(double a, const BasicDoubleDouble& b) { return b + a; }
   BRINK_INLINE friend BasicDoubleDouble operator-(const BasicDoubleDouble& a, const BasicDoubleDouble& b) {
@@ -191,7 +191,7 @@ class BasicDoubleDouble {
     const double first = std::sqrt(a.high_);
     if (!in_range(first)) return first;
     const BasicDoubleDouble rest = a - product(first, first);
-    return normalized(first, rest.high_ / (2.0 * first));
+    return normalized(first, rest.high_ / (2.0 * first), first);
   }
 
  private:
@@ -206,13 +206,10 @@ class BasicDoubleDouble {
     const double size = x < 0.0 ? -x : x;
     return size >= kLeast && size <= kMost;
   }
-  BRINK_INLINE static BasicDoubleDouble told(double high, double low) {
-    return finite(high) ? BasicDoubleDouble(high, low) : BasicDoubleDouble(high);
-  }
-  /// @pre |high| >= |low|, or high = 0.
-  BRINK_INLINE static BasicDoubleDouble normalized(double high, double low) {
+  /// The sum of the two; where its low part is no number, `else_high` alone. @pre |high| >= |low|, or high = 0.
+  BRINK_INLINE static BasicDoubleDouble normalized(double high, double low, double else_high) {
     const error_free::Result r = error_free::quick_sum(high, low);
-    return told(r.high, r.low);
+    return finite(r.low) ? BasicDoubleDouble(r.high, r.low) : BasicDoubleDouble(else_high);
   }
 
   double high_ = 0.0, low_ = 0.0;

@@ -142,7 +142,7 @@ class PairSearch {
       // Steps before the time that was asked from are not counted. A search that began earlier for the sake
       // of its bits would with a cap of a few steps never come as far as that time, and so never on.
       // with a contact in hand little is left to look at
-      if (t >= asked_from_ && ++iterations > limits_.max_iterations &&
+      if (t >= asked_from_ && ++iterations > most_iterations(t) &&
           (best_.sample < 0 || iterations > kMostAfterContact)) {
         capped_ = true;
         return look_back(t);
@@ -170,6 +170,12 @@ class PairSearch {
       // is room, and bounds stay tight where there is none.
       short_window_ = std::max(4.0 * (least_ - t), 64.0 * ulp(t));
     }
+  }
+
+  /// How many steps have led to time t at most.
+  int most_iterations(double t) const {
+    const bool needed = t < limits_.needed_until;
+    return needed ? std::max(limits_.min_iterations, limits_.max_iterations) : limits_.max_iterations;
   }
 
   /// Steps of samples on a surface lead a little beyond where they meet: what was met by t on the way is found now, so

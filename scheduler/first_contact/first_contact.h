@@ -15,6 +15,7 @@
 /// under rotation); docs/first-contact.md.
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -40,7 +41,10 @@ struct SearchLimits {
   double touch = 1e-13;        ///< gaps below this count as touching [m]
   double tolerance = 1e-10;    ///< gap at which Newton steps give way to polishing the root [m]
   int max_iterations = 10000;  ///< then the answer is "clear until" where the search stood
-  bool closed_forms = true;    ///< use quadratics where the pair has them
+  /// Before this time [s] it goes on for `min_iterations` at least: so far it must be known in any case.
+  double needed_until = -std::numeric_limits<double>::infinity();
+  int min_iterations = 64;
+  bool closed_forms = true;  ///< use quadratics where the pair has them
 };
 
 /// Which features touch, and how.

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "brink/scheduler/first_contact/canonical_time.h"
@@ -27,8 +28,8 @@ ImpulseSide site_side(const ExtendedState& state, const RealVec& point) {
 
 /// Sum of the speeds that a side's velocity at the contact is made of [m/s].
 double speed_of(const ImpulseSide& side) {
-  const Real along = side.twist.velocity.lpNorm<1>();
-  return (side.twist.omega == 0 ? along : along + abs(side.twist.omega) * side.arm.norm()).high();
+  const Twist twist = side.twist.rounded();
+  return twist.velocity.lpNorm<1>() + std::abs(twist.omega) * side.arm.cast<double>().norm();
 }
 
 /// The state `delay` later of what moves so. What forces do to it in so short a while counts on a parabola alone:
@@ -36,8 +37,10 @@ double speed_of(const ImpulseSide& side) {
 ExtendedState later(const ExtendedState& s, Real delay, const Motion& motion) {
   ExtendedState then = s.moved(delay);
   if (!motion.is_ballistic() || motion.is_still()) return then;
-  then.twist.velocity += delay * motion.acceleration().linear.cast<Real>();
-  then.twist.omega += delay * motion.acceleration().angular;
+  const Acceleration& by = motion.acceleration();
+  // what adds nothing is left out: the sums are the same bits
+  if (!by.linear.isZero(0)) then.twist.velocity += delay * by.linear.cast<Real>();
+  if (by.angular != 0.0) then.twist.omega += delay * by.angular;
   return then;
 }
 
@@ -154,7 +157,8 @@ CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const F
   r.body = trajectories_->state_now(pair.body);
   r.other = search_->other_state(pair, now);
   // of one that an island holds what its step has brought by now
-  if (!pair.with_site()) r.other.twist = trajectories_->state_now(pair.other_body).twist;
+  if (!pair.with_site() && trajectories_->is_held(pair.other_body))
+    r.other.twist = trajectories_->state_now(pair.other_body).twist;
   const ExtendedContact at_present =
       found.seen ? as_seen(found)
                  : contact_in(search_->outline_of(pair.body), search_->outline_of(search_->other_owner(pair)),

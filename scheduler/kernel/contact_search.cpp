@@ -114,7 +114,7 @@ Mover ContactSearch::mover(int owner) const {
 /// The certificate names the versions of the two motions: it is stale as soon as one of them ends.
 std::optional<Certificate> ContactSearch::search(const PairKey& pair, const BodyTrack& body,
                                                  const BodyTrack* other, double from, double to,
-                                                 int most_steps) {
+                                                 const Instalment& instalment) {
   if (is_left_out(pair)) return std::nullopt;
   const Sides sides(*this, pair, body, other);
   // of simultaneous resolves one may be a rounding ahead
@@ -123,7 +123,10 @@ std::optional<Certificate> ContactSearch::search(const PairKey& pair, const Body
   const TraceScope scope(run_->trace(), {TraceKind::search, pair.body, other_owner(pair), from, to});
   SearchLimits limits = limits_;
   // the answer "undecided" at the cap is what makes an instalment
-  if (most_steps > 0) limits.max_iterations = most_steps;
+  if (instalment.most_steps > 0) {
+    limits.max_iterations = instalment.most_steps;
+    limits.needed_until = instalment.needed_until;
+  }
   WorkCounters& work = run_->work();
   const StageTimer::Sampled timed(run_->timer(), work.seconds_search, timed_);
   const PairAnswer answer = first_contact(sides.a, sides.b, from, to, limits, scratch_, work);

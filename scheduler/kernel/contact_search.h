@@ -2,6 +2,7 @@
 /// Who meets whom, and when: searches of one pair on the motions that its owners have, or had.
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <set>
@@ -17,6 +18,13 @@ namespace brink {
 
 /// Whether owners a and b (bodies first, then sites) may meet at all.
 using PairFilter = std::function<bool(int a, int b)>;
+
+/// A search that stops, undecided, after so many of its steps (0: as many as it takes): to go on later, if it then still
+/// matters. Before `needed_until` [s] it will be gone on with in any case, and stops less soon.
+struct Instalment {
+  int most_steps = 0;
+  double needed_until = -std::numeric_limits<double>::infinity();
+};
 
 class ContactSearch {
  public:
@@ -61,9 +69,9 @@ class ContactSearch {
 
   // -- searches --
   /// The certificate of a contact or of an undecided end, or nothing if clear to the end, on the motions of
-  /// `body` and `other` (null: a site). `most_steps` > 0: the search stops after so many of its steps.
+  /// `body` and `other` (null: a site).
   std::optional<Certificate> search(const PairKey& pair, const BodyTrack& body, const BodyTrack* other,
-                                    double from, double to, int most_steps = 0);
+                                    double from, double to, const Instalment& instalment = {});
   /// The contact of two plain discs on their newest motions, as search() tells it; false: none that is told here,
   /// ask search(). @pre in free flight, and not left_out().
   bool search_discs(const PairKey& pair, double radius, double other_radius, double from, double to,

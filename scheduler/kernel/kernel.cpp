@@ -105,9 +105,10 @@ std::vector<PairKey> Kernel::near_pairs_of(int body, double from, double to) {
   return parts_.near.of(body, from, to, !parts_.speculation.empty());
 }
 
-std::optional<Certificate> Kernel::search(const PairKey& pair, double from, double to, int most_steps) {
+std::optional<Certificate> Kernel::search(const PairKey& pair, double from, double to,
+                                          const Instalment& instalment) {
   const BodyTrack* other = pair.with_site() ? nullptr : &body(pair.other_body);
-  auto found = parts_.search.search(pair, body(pair.body), other, from, to, most_steps);
+  auto found = parts_.search.search(pair, body(pair.body), other, from, to, instalment);
   // a policy that is held to known contacts is told of this one here
   if (found) parts_.policy_watch.found(*found);
   return found;

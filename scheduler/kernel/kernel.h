@@ -55,9 +55,8 @@ class Kernel : public KernelView {
     return StageTimer::Sampled(parts_.run.timer(), parts_.run.work().seconds_look, looks_timed_);
   }
   /// Searches one pair; the certificate of a contact or an undecided end, or nothing if clear to the end.
-  /// With `most_steps` > 0 the search stops after so many of its steps, undecided: to go on later, if it then
-  /// still matters.
-  std::optional<Certificate> search(const PairKey& pair, double from, double to, int most_steps = 0);
+  std::optional<Certificate> search(const PairKey& pair, double from, double to,
+                                    const Instalment& instalment = {});
   /// The same with motions of those versions. @pre among versions() of the two.
   std::optional<Certificate> search(const PairKey& pair, std::uint64_t version, std::uint64_t other_version,
                                     double from, double to);

@@ -77,8 +77,9 @@ class BodyClocks final : public Policy {
     revision_ = kernel_->revision();
     found_.emplace(kernel_->body_count());
     queue_.reset(kernel_->body_count(), kernel_->time());
+    views_->begin_round();
     for (int k = 0; k < kernel_->body_count() && kernel_->poll(); ++k) {
-      look_alone(k, kernel_->time());
+      look_around(k, kernel_->time());
       wait_for(k);
     }
   }
@@ -128,7 +129,7 @@ class BodyClocks final : public Policy {
         break;
       case Due::Kind::may_meet:
         if (quick_ && meet_quickly(k, second)) return;
-        sharpen(k);
+        sharpen(k, second.time);
         // what was just found may be next in any case: that saves a turn in the queue
         if (is_next(k, second.time)) return meet(k, second.time);
         break;
@@ -189,8 +190,9 @@ class BodyClocks final : public Policy {
            time < std::min(clock.exit, clock.horizon);
   }
 
-  /// The first candidate of body k is dropped if it is stale, and searched if it is not.
-  void sharpen(int k) {
+  /// The first candidate of body k is dropped if it is stale, and searched if it is not. Nothing else is due before
+  /// `next`: until then the search would go on at once.
+  void sharpen(int k, double next) {
     BodyClock& clock = views_->clock(k);
     Candidate c = clock.candidates.front();
     clock.candidates.pop_front();
@@ -200,8 +202,8 @@ class BodyClocks final : public Policy {
     }
     const double now = c.time, end = views_->end_of(k, c),
                  to = std::min(beyond(end), std::max(now, seen_end()));
-    const auto found =
-        kernel_->search(*kernel_->pair_of(k, c.other, c.image), c.clear, to, instalment(clock.undecided));
+    const auto found = kernel_->search(*kernel_->pair_of(k, c.other, c.image), c.clear, to,
+                                       {instalment(clock.undecided), next});
     const bool undecided = found && found->kind == Certificate::Kind::undecided;
     clock.undecided = undecided ? clock.undecided + 1 : 0;
     // no headway, or a million steps: the run ends and says so
@@ -323,7 +325,7 @@ class BodyClocks final : public Policy {
         // Out of the way, so that the next one of the instant comes up; put back below.
         queue_.update(k, kForever);
       } else {
-        take_next_step(k, looked_again);
+        take_next_step(k, last, looked_again);
       }
     }
     for (const int k : asked) queue_.update(k, views_->clock(k).expiry());
@@ -336,12 +338,12 @@ class BodyClocks final : public Policy {
 
   /// What is due first for body k, short of meeting. A view that ends after a contact of this instant is
   /// begun again at that contact, not beyond it: once, as it may always end that soon.
-  void take_next_step(int k, std::vector<int>& looked_again) {
+  void take_next_step(int k, double last, std::vector<int>& looked_again) {
     const Due due = due_of(k);
     const BodyClock& clock = views_->clock(k);
     const bool again = std::find(looked_again.begin(), looked_again.end(), k) != looked_again.end();
     if (due.kind == Due::Kind::may_meet)
-      sharpen(k);
+      sharpen(k, last);
     else if (clock.exit <= clock.horizon)
       views_->look_ahead(k, clock.exit);
     else if (due.kind == Due::Kind::meets && !again)

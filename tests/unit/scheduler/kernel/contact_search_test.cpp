@@ -41,6 +41,47 @@ TEST(ContactSearch, GapsTouchesAndCrossingsAreThoseOfATime) {
   EXPECT_EQ(parts.search.touching(kDiscs, 0.0, 1.5).size(), 1U);
 }
 
+// Two boxes that turn and meet: in instalments or at once it is the same contact; as far as the answer is needed a search does
+// not stop, and beyond that it does.
+TEST(ContactSearch, StopsBeyondWhatIsNeeded) {
+  World world;
+  add(world, body(make_box(2.0, 1.0), {-2.0, 0.125}, {1.5, 0.0}));
+  add(world, body(make_box(1.5, 1.5), {2.0, -0.125}, {-1.0, 0.0625}));
+  world.bodies[0].initial.twist.omega = 1.5;
+  world.bodies[1].initial.twist.omega = -0.75;
+  KernelParts parts(world, {});
+  const auto search = [&](double from, const Instalment& instalment) {
+    return parts.search.search({0, 1, -1, {}}, parts.trajectories.body(0), &parts.trajectories.body(1), from,
+                               4.0, instalment);
+  };
+  const auto at_once = search(0.0, {});
+  ASSERT_TRUE(at_once);
+  ASSERT_EQ(at_once->kind, Certificate::Kind::contact);
+  const auto same = [&](const std::optional<Certificate>& c) {
+    return c && c->kind == Certificate::Kind::contact && c->time == at_once->time &&
+           c->contact.sample == at_once->contact.sample && c->contact.site == at_once->contact.site &&
+           c->contact.point == at_once->contact.point && c->contact.normal == at_once->contact.normal;
+  };
+  const auto first = search(0.0, {1});
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->kind, Certificate::Kind::undecided);
+  EXPECT_LT(first->time, at_once->time);
+  EXPECT_TRUE(same(search(0.0, {1, 4.0})));
+  // no further than one step beyond
+  const double needed = 0.5 * (first->time + at_once->time);
+  const auto second = search(0.0, {1, needed});
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->kind, Certificate::Kind::undecided);
+  EXPECT_GT(second->time, needed);
+  EXPECT_LT(second->time, at_once->time);
+  int instalments = 1;
+  auto found = first;
+  for (; found && found->kind == Certificate::Kind::undecided && instalments < 1000; ++instalments)
+    found = search(found->time, {1});
+  EXPECT_GT(instalments, 3);
+  EXPECT_TRUE(same(found));
+}
+
 // In a plane that repeats every 6 m, disc 1 is met behind disc 0 too: its image stands at -3.
 TEST(ContactSearch, AnImageIsWhereItsPeriodsPutIt) {
   World world = two_discs();
