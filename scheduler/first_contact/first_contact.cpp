@@ -13,6 +13,7 @@
 #include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/first_contact/closed_forms.h"
 #include "brink/scheduler/first_contact/corners.h"
+#include "brink/scheduler/first_contact/falling_gap.h"
 #include "brink/scheduler/first_contact/pair_view.h"
 #include "brink/scheduler/first_contact/site_step.h"
 
@@ -24,6 +25,7 @@ using detail::come_to_overlap;
 using detail::Corner;
 using detail::corner_at;
 using detail::corner_seen;
+using detail::FallingGap;
 using detail::Feature;
 using detail::Half;
 using detail::PairView;
@@ -511,69 +513,25 @@ class PairSearch {
     const double begin = view_.start();
     if (t_ <= begin && now <= 0.0) return remember(half, f, t_);  // touching from the start, and approaching
     if (meets_tip(half, f, path, bounds)) return true;
-    // Newton's last step, `guess`; by how much the bending of the gap can make it wrong, `bend` (over
-    // the time `off` the rate changes by a part a off / speed of itself); and in what time the gap falls
-    // by its own rounding, `moment`, a few ticks of the clock included.
-    const double guess = t_ + now / speed;
-    const double off = std::abs(now) / speed;
-    const double bend = std::min(1.0, bounds.acceleration * off / speed) * off;
+    const double rounding = view_.gap_rounding(half, f.sample, path.q);
+    const FallingGap falling(t_, now, speed, bounds.acceleration, rounding);
+    // A canonical time needs an interval that holds this crossing alone, with a gap beyond rounding at both ends. It was
+    // clear until the search began.
+    const auto clear = falling.clear_end(gap, std::max(begin, from_ - 1024.0 * falling.moment()));
+    if (!clear && gap(t_) <= 0.0)
+      return remember(half, f, uncovered_since(half, f));  // in each other from the start
+    const double low = clear.value_or(t_);
     // no probe may lie beyond a motion
     const double last = std::min(a_.motion->end(), b_.motion->end());
-    // how soon the gap can fall by so much, if it bends down all the way
-    const auto soonest = [&](double by) {
-      return 2.0 * by / (speed + std::sqrt(speed * speed + 2.0 * bounds.acceleration * by));
-    };
-    const double rounding = view_.gap_rounding(half, f.sample, path.q);
-    const double moment = rounding / speed + 4.0 * ulp(t_), noise = moment + bend;
-    // A canonical time needs an interval that holds this crossing alone, with a gap beyond rounding at both
-    // ends. Its lower end:
-    // clear now, or a little before, but not before it rose; it was clear until the search began
-    const double floor = std::max(begin, from_ - 1024.0 * moment);
-    double low = t_;
-    if (now <= 2.0 * rounding) {
-      low = std::max(std::min(guess, t_), floor);
-      for (double back = moment; gap(low) <= rounding; back *= 1.25) {
-        if (low <= floor) {  // it never was clear
-          if (gap(t_) <= 0.0)
-            return remember(half, f, uncovered_since(half, f));  // in each other from the start
-          low = t_;
-          break;
-        }
-        low = std::max(low - back, floor);
-      }
-    } else if (const double before = guess - 2.0 * noise; before > t_ && gap(before) > rounding) {
-      low = before;  // it falls all the way, as far as it bends: the fewer probes
-    }
-    // beyond the surface, by more than rounding if one of these is
-    double high = low, beyond_by = 0.0;
-    const auto is_beyond = [&](double t) {
-      const double then = std::min(t, last);
-      const double by = then > low ? -gap(then) : -1.0;
-      if (!(by >= 0.0) || (high > low && by <= rounding)) return false;
-      high = then;
-      beyond_by = by;
-      return beyond_by > rounding;
-    };
-    // Bent so much that Newton's step says nothing: from the earliest time on, or the window would hold what is
-    // met later, too.
-    bool found = false;
-    if (bend >= off)
-      for (double ahead = soonest(std::max(std::abs(now), rounding)) + 4.0 * ulp(t_);
-           !found && ahead < off + 2.0 * noise; ahead *= 2.0)
-        found = is_beyond(t_ + ahead);
-    // where two points meet, when they are nearest; where a bent path meets it later; and where a tip is grazed,
-    // for less than a rounding
-    const double nearest = t_ + now / speed, later = t_ + 4.0 * std::max(0.0, now) / speed + 64.0 * noise;
-    for (const double t : {guess + 2.0 * noise, guess + 8.0 * noise, nearest, later, nearest + 0.125 * noise,
-                           nearest + 0.25 * noise, nearest + 0.5 * noise, nearest + noise})
-      found = found || is_beyond(t);
-    // `high` is where the gap is surely gone. If no probe found such a place, the bottom of the dip decides.
+    const FallingGap::Beyond beyond = falling.beyond_end(gap, low, last);
+    double high = beyond.end;
+    // If no probe found where the gap is surely gone, the bottom of the dip decides.
     // A dip of less than a rounding is none, whoever looked where; what falls on is looked at again from nearer. But
     // behind a sharp tip there may be no more room than that: what comes upon it meets it.
-    if (!found) {
+    if (!beyond.surely) {
       const bool tip = site.radius + half.sample(f.sample).radius == 0.0 &&
                        nearest_on(site, path.q).foot != Foot::interior;
-      const double deepest = deepest_after(half, f, later, last);
+      const double deepest = deepest_after(half, f, falling.later(), last);
       if (!tip)
         high = deepest > low && gap(deepest) < -rounding ? deepest : low;
       else if (deepest > low)
@@ -583,7 +541,7 @@ class PairSearch {
     const double t = last_clear_time(gap, low, high);
     // at the end of its neighbourhood a sample changes sides without having come near
     if (gap(t) > view_.touching_band(half, f.sample, path)) return false;
-    return remember(half, f, t, 2.0 * moment) || meets_beyond_tip(half, f, gap, t);
+    return remember(half, f, t, 2.0 * falling.moment()) || meets_beyond_tip(half, f, gap, t);
   }
 
   /// Since when another site no longer hides this one from a vertex, if they have been in each other and approaching since
@@ -666,6 +624,13 @@ class PairSearch {
     if (std::abs(cross(path.rate, way)) / slow > 8.0 * noise + bounds.acceleration * off * off) return false;
     if (const int corner = half.s_is_a ? -1 : corner_of_a(tip); corner >= 0)
       return meets_tip_from_a(half, f, corner);
+    return comes_upon_tip(half, f, path, at_a);
+  }
+
+  /// The same of a sample that goes straight for the tip.
+  bool comes_upon_tip(const Half& half, const Feature& f, const SamplePath& path, bool at_a) {
+    const Site& site = half.site(f.site);
+    const Vec2 tip = at_a ? site.a : site.b;
     PairView there = view_;
     const auto to_tip = [&](double t) {
       there.place(t);
@@ -675,7 +640,7 @@ class PairSearch {
     };
     // They are nearest to each other where way . rate = 0: found by Newton's steps, from here and twice
     // from there.
-    double nearest = t_ - way.dot(path.rate) / path.rate.squaredNorm();
+    double nearest = t_ - (path.q - tip).dot(path.rate) / path.rate.squaredNorm();
     SamplePath then;
     for (int i = 0; i < 2; ++i) {
       if (!(nearest >= view_.start() && nearest <= window_end_)) return false;

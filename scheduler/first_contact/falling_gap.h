@@ -1,0 +1,94 @@
+#pragma once
+/// An interval in which a gap that falls goes through zero once, and no other crossing lies: what a canonical time needs
+/// (canonical_time.h).
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "brink/scheduler/first_contact/canonical_time.h"
+
+namespace brink::detail {
+
+/// A gap as it falls at time `t`. `Gap` of its functions: the gap [m] at any time [s].
+class FallingGap {
+ public:
+  /// `now`: the gap at t [m]; it falls at `speed` > 0 [m/s], which changes by no more than `acceleration` >= 0 [m/s^2];
+  /// what is computed of it is off by `rounding` > 0 [m].
+  FallingGap(double t, double now, double speed, double acceleration, double rounding)
+      : t_(t),
+        now_(now),
+        speed_(speed),
+        acceleration_(acceleration),
+        rounding_(rounding),
+        guess_(t + now / speed),
+        off_(std::abs(now) / speed),
+        bend_(std::min(1.0, acceleration * off_ / speed) * off_),
+        moment_(rounding / speed + 4.0 * ulp(t)) {}
+
+  /// In what time the gap falls by its own rounding, a few ticks of the clock included [s].
+  double moment() const { return moment_; }
+  /// By when a bent path has met as well, if it meets [s].
+  double later() const { return t_ + 4.0 * std::max(0.0, now_) / speed_ + 64.0 * noise(); }
+
+  /// The lower end: clear now, or a little before, but not before it rose; none where it never was clear since `floor`.
+  template <class Gap>
+  std::optional<double> clear_end(Gap&& gap, double floor) const {
+    if (now_ <= 2.0 * rounding_) {
+      double low = std::max(std::min(guess_, t_), floor);
+      for (double back = moment_; gap(low) <= rounding_; back *= 1.25) {
+        if (low <= floor) return std::nullopt;
+        low = std::max(low - back, floor);
+      }
+      return low;
+    }
+    // it falls all the way, as far as it bends: the fewer probes
+    const double before = guess_ - 2.0 * noise();
+    return before > t_ && gap(before) > rounding_ ? before : t_;
+  }
+
+  /// The upper end, beyond the surface; `low` where no place beyond it was found.
+  struct Beyond {
+    double end;
+    bool surely;  ///< by more than rounding
+  };
+  /// No probe lies beyond `last`, where a motion ends.
+  template <class Gap>
+  Beyond beyond_end(Gap&& gap, double low, double last) const {
+    Beyond found{low, false};
+    const auto look = [&](double t) {
+      const double then = std::min(t, last), by = then > low ? -gap(then) : -1.0;
+      if (!(by >= 0.0) || (found.end > low && by <= rounding_)) return;
+      found = {then, by > rounding_};
+    };
+    // Bent so much that Newton's step says nothing: from the earliest time on, or the window would hold what is met
+    // later, too.
+    if (bend_ >= off_)
+      for (double ahead = soonest(std::max(std::abs(now_), rounding_)) + 4.0 * ulp(t_);
+           !found.surely && ahead < off_ + 2.0 * noise(); ahead *= 2.0)
+        look(t_ + ahead);
+    // where two points meet, when they are nearest; where a bent path meets it later; and where a tip is grazed, for
+    // less than a rounding
+    for (const double t :
+         {guess_ + 2.0 * noise(), guess_ + 8.0 * noise(), guess_, later(), guess_ + 0.125 * noise(),
+          guess_ + 0.25 * noise(), guess_ + 0.5 * noise(), guess_ + noise()})
+      if (!found.surely) look(t);
+    return found;
+  }
+
+ private:
+  /// How soon it can fall by so much, if it bends down all the way [s].
+  double soonest(double by) const {
+    return 2.0 * by / (speed_ + std::sqrt(speed_ * speed_ + 2.0 * acceleration_ * by));
+  }
+  double noise() const { return moment_ + bend_; }
+
+  double t_, now_, speed_, acceleration_, rounding_;
+  double guess_;  ///< of Newton's last step [s]
+  double off_;    ///< from t to there [s]
+  double
+      bend_;  ///< how wrong the bending of the gap can make it: the rate changes by a part a off / speed of itself [s]
+  double moment_;
+};
+
+}  // namespace brink::detail

@@ -1,0 +1,97 @@
+// Intervals that hold one crossing of a gap, for gaps whose crossings are known.
+#include "brink/scheduler/first_contact/falling_gap.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "tests/support/seeded_random.h"
+
+namespace brink::falling_gap_test {
+namespace {
+
+using detail::FallingGap;
+
+constexpr double kLast = std::numeric_limits<double>::infinity();
+
+TEST(FallingGap, AStraightOneIsHeldWithinRoundings) {
+  const double t = 3.0, rounding = 1e-15;
+  const auto gap = [&](double at) { return 1e-11 - 2.0 * (at - t); };
+  const FallingGap falling(t, 1e-11, 2.0, 0.0, rounding);
+  const std::optional<double> low = falling.clear_end(gap, 0.0);
+  ASSERT_TRUE(low);
+  EXPECT_GT(gap(*low), rounding);
+  const FallingGap::Beyond beyond = falling.beyond_end(gap, *low, kLast);
+  EXPECT_TRUE(beyond.surely);
+  EXPECT_LT(gap(beyond.end), -rounding);
+  EXPECT_LT(beyond.end - *low, 64.0 * falling.moment());
+}
+
+TEST(FallingGap, WhatNeverWasClearHasNoLowerEnd) {
+  const auto gap = [](double at) { return -1e-12 - (at - 1.0); };
+  const FallingGap falling(1.0, -1e-12, 1.0, 0.0, 1e-15);
+  EXPECT_FALSE(falling.clear_end(gap, 1.0));
+  // it was, a little before
+  const std::optional<double> low = falling.clear_end(gap, 0.5);
+  ASSERT_TRUE(low);
+  EXPECT_GT(gap(*low), 0.0);
+}
+
+TEST(FallingGap, ProbesStayWithinTheMotion) {
+  double latest = 0.0;
+  const auto gap = [&](double at) {
+    latest = std::max(latest, at);
+    return 1e-11 - (at - 1.0);
+  };
+  const FallingGap falling(1.0, 1e-11, 1.0, 0.0, 1e-15);
+  const double last = 1.0 + 5e-12;
+  const FallingGap::Beyond beyond = falling.beyond_end(gap, 1.0, last);
+  EXPECT_EQ(beyond.end, 1.0);
+  EXPECT_FALSE(beyond.surely);
+  EXPECT_LE(latest, last);
+}
+
+// now - v s + c s^2 / 2: parabolas that bend to either side by no more than what is told, from above the surface and from
+// below. The interval holds the first crossing and not the second; if none is found, it dips by less than a few roundings.
+TEST(FallingGap, OfParabolasTheFirstCrossingAloneIsHeld) {
+  SeededRandom r(20261126);
+  int held = 0, passed = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double t = std::exp(r.uniform(-3.0, 8.0)), rounding = std::exp(r.uniform(-35.0, -30.0));
+    const double now =
+        r.uniform(-4.0, 1.0) < 0.0 ? r.uniform(-1.0, 1.0) * 4.0 * rounding : r.uniform(0.0, 1e-10);
+    const double v = std::exp(r.uniform(-4.0, 4.0));
+    // bent so that it turns before, about or after it is gone
+    const double c = (r.below(2) ? 1.0 : -1.0) * v * v / (1e-10 * std::exp(r.uniform(-1.0, 8.0)));
+    const auto gap = [&](double at) { return now - v * (at - t) + 0.5 * c * (at - t) * (at - t); };
+    const FallingGap falling(t, now, v, std::abs(c) * r.uniform(1.0, 2.0), rounding);
+    const std::optional<double> low = falling.clear_end(gap, t - 1024.0 * falling.moment());
+    if (!low) continue;
+    EXPECT_TRUE(gap(*low) > rounding || *low == t) << i;
+    const FallingGap::Beyond beyond = falling.beyond_end(gap, *low, kLast);
+    const double root = v * v - 2.0 * c * now;  // > 0: it crosses
+    const double depth = c > 0.0 ? 0.5 * v * v / c - now : kLast;
+    if (!beyond.surely) {
+      EXPECT_LT(depth, 64.0 * (rounding + v * ulp(t))) << i << ": a dip that was not found";
+      ++passed;
+      continue;
+    }
+    ASSERT_GT(root, 0.0) << i;
+    EXPECT_LT(gap(beyond.end), -rounding) << i;
+    EXPECT_GT(beyond.end, *low) << i;
+    // the crossing that begins below lies before t, the one that begins above behind it
+    const double first = t + 2.0 * now / (v + std::sqrt(root)), slack = 8.0 * ulp(t) + 2.0 * rounding / v;
+    EXPECT_GE(first, *low - slack) << i;
+    EXPECT_LE(first, beyond.end + slack) << i;
+    const double second = c > 0.0 ? t + (v + std::sqrt(root)) / c : kLast;
+    EXPECT_LT(beyond.end, second + slack) << i;
+    ++held;
+  }
+  EXPECT_GT(held, 10000);
+  EXPECT_GT(passed, 10);
+}
+
+}  // namespace
+}  // namespace brink::falling_gap_test
