@@ -37,22 +37,26 @@ inline void subtract_transposed(Triple& x, const Block& A, const Triple& y) {
 
 }  // namespace
 
-void BlockLdl::analyse(int n, std::vector<Edge> edges) {
+bool BlockLdl::analyse(int n, std::vector<Edge> edges, const GoOn& go_on) {
   // in one order and without repeats, so that equal graphs have equal lists
   for (Edge& e : edges) e = std::minmax({e.first, e.second});
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  if (n == size() && edges == edges_) return;
+  if (n == size() && edges == edges_) return true;
   edges_ = std::move(edges);
   order_.resize(n);
   find_order();
-  find_blocks();
-  find_targets();
+  if (!find_blocks(go_on) || !find_targets(go_on)) {
+    order_.clear();  // the same graph is a new one, then
+    edges_.clear();
+    return false;
+  }
   diagonal_.resize(n);
   below_.resize(rows_.size());
   int longest = 0;
   for (int k = 0; k < n; ++k) longest = std::max(longest, begins_[k + 1] - begins_[k]);
   undivided_.resize(longest);
+  return true;
 }
 
 void BlockLdl::find_order() {
@@ -75,7 +79,7 @@ void BlockLdl::find_order() {
 
 /// Symbolic factorisation along the elimination tree. The parent of a column is its first row below the
 /// diagonal. Source: Davis 2006, "Direct methods for sparse linear systems", ch. 4.
-void BlockLdl::find_blocks() {
+bool BlockLdl::find_blocks(const GoOn& go_on) {
   const int n = size();
   std::vector<std::vector<int>> columns(n), children(n);
   for (const auto& [i, j] : edges_) {
@@ -86,6 +90,7 @@ void BlockLdl::find_blocks() {
   begins_.assign(1, 0);
   rows_.clear();
   for (int k = 0; k < n; ++k) {
+    if (go_on && !go_on()) return false;
     // what is eliminated leaves its neighbours joined: column k takes over those of its children in the tree
     std::vector<int>& column = columns[k];
     for (const int child : children[k])
@@ -97,13 +102,15 @@ void BlockLdl::find_blocks() {
     rows_.insert(rows_.end(), column.begin(), column.end());
     begins_.push_back(static_cast<int>(rows_.size()));
   }
+  return true;
 }
 
 /// Walks through pairs in the very order in which factor() will use up the list. Eliminating column
 /// k joins any two of its rows, so that block (q, p) of such a pair is sure to be found in column p.
-void BlockLdl::find_targets() {
+bool BlockLdl::find_targets(const GoOn& go_on) {
   targets_.clear();
-  for (int k = 0; k < size(); ++k)
+  for (int k = 0; k < size(); ++k) {
+    if (go_on && !go_on()) return false;
     for (int p = begins_[k]; p < begins_[k + 1]; ++p) {
       // Rows of a column ascend, so that one walk through column rows_[p] finds the targets of all q.
       int target = begins_[rows_[p]];
@@ -112,6 +119,8 @@ void BlockLdl::find_targets() {
         targets_.push_back(target);
       }
     }
+  }
+  return true;
 }
 
 int BlockLdl::slot(int row, int column) const {

@@ -50,8 +50,9 @@ class BlockLdl {
   using Edge = std::pair<int, int>;
 
   /// The graph: rows of blocks 0 .. n-1, and the pairs that may have a block (in any order, any number of
-  /// times). The same graph as before costs a comparison. @pre no edge from a row to itself
-  void analyse(int n, std::vector<Edge> edges);
+  /// times). The same graph as before costs a comparison. False: it was stopped, and there is no graph.
+  /// @pre no edge from a row to itself
+  bool analyse(int n, std::vector<Edge> edges, const GoOn& go_on = {});
 
   int size() const { return static_cast<int>(order_.size()); }
   /// Number of blocks below the diagonal of L.
@@ -72,8 +73,8 @@ class BlockLdl {
 
  private:
   void find_order();
-  void find_blocks();
-  void find_targets();
+  bool find_blocks(const GoOn& go_on);
+  bool find_targets(const GoOn& go_on);
 
   std::vector<Edge> edges_;
   std::vector<int> order_, place_;  ///< order_[place_[k]] == k

@@ -152,7 +152,9 @@ class Verdict {
 
 RestResult ConeQp::rest_forces(const RestProblem& problem, const GoOn& go_on) {
   const Cones cones(problem);
-  solver_.begin(cones.problem());
+  if (!solver_.begin(cones.problem(), go_on))
+    return {RestResult::Status::stopped, std::vector<Vec3>(problem.mass.size(), Vec3::Zero()),
+            std::vector<ContactLoad>(problem.contacts.size())};
   // The search ends at the sharper bounds. Where steps get short rounding has the word, and the wider ones
   // are taken; else the last steps would be spent on nothing.
   const auto sure = [&] {

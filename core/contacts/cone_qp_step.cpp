@@ -130,7 +130,8 @@ bool solved(const InteriorPoint& solver, double part) {
 
 StepResult ConeQp::step(const StepProblem& problem, const GoOn& go_on) {
   const StepRows rows(problem);
-  solver_.begin(rows.problem());
+  if (!solver_.begin(rows.problem(), go_on))
+    return {StepResult::Status::stopped, problem.velocity, std::vector<ContactLoad>(problem.contacts.size())};
   const auto sure = [&] {
     return solved(solver_, kExact) || (solver_.hindered() && solved(solver_, kNearly));
   };

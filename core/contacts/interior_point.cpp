@@ -62,13 +62,13 @@ constexpr std::size_t kLanes = 8;
 
 }  // namespace
 
-void InteriorPoint::begin(const QpProblem& problem) {
+bool InteriorPoint::begin(const QpProblem& problem, const GoOn& go_on) {
   const int n = static_cast<int>(problem.mass.size());
   // J^T W J couples two bodies only where a row sees both.
   std::vector<BlockLdl::Edge> edges;
   for (const QpRow& row : problem.rows)
     if (row.other >= 0) edges.emplace_back(row.body, row.other);
-  factor_.analyse(n, std::move(edges));
+  if (!factor_.analyse(n, std::move(edges), go_on)) return false;
   mass_.resize(n);
   f_.resize(n);
   for (int k = 0; k < n; ++k) {
@@ -92,6 +92,7 @@ void InteriorPoint::begin(const QpProblem& problem) {
                                    [](const QpRow& row) { return row.expected != 0.0; });
   expects ? start_near(problem) : start_pairs(problem);
   measure();
+  return true;
 }
 
 InteriorPoint::Row InteriorPoint::ordered(const QpRow& given) const {

@@ -34,8 +34,9 @@ struct QpProblem {
 /// "Primal-dual interior-point methods", ch. 10; Nocedal & Wright, "Numerical optimization", 16.6.
 class InteriorPoint {
  public:
-  /// Before the first step. What is known of the graph is kept from the problem before.
-  void begin(const QpProblem& problem);
+  /// Before the first step. What is known of the graph is kept from the problem before. False: it was stopped, and there
+  /// is nothing to ask.
+  bool begin(const QpProblem& problem, const GoOn& go_on = {});
   /// One factorisation, one step. False: no step of any length is left to rounding, or it was stopped.
   bool step(const GoOn& go_on = {});
   bool stopped() const { return stopped_; }

@@ -123,6 +123,21 @@ TEST(BlockLdl, LatticeNeedsFewerBlocksThanByRows) {
   EXPECT_LE(ldl.blocks(), k * k * k / 2);
 }
 
+TEST(BlockLdl, AGraphWhoseLookWasStoppedIsLookedAtAnew) {
+  std::vector<BlockLdl::Edge> edges;
+  for (int k = 1; k < 200; ++k) edges.emplace_back(k, k / 2);
+  BlockLdl fresh, stopped;
+  EXPECT_TRUE(fresh.analyse(200, edges));
+  for (const int after : {0, 150, 350}) {
+    int asked = 0;
+    EXPECT_FALSE(stopped.analyse(200, edges, [&] { return asked++ < after; })) << after;
+    EXPECT_EQ(stopped.size(), 0);
+  }
+  EXPECT_TRUE(stopped.analyse(200, edges));
+  EXPECT_EQ(stopped.blocks(), fresh.blocks());
+  for (int k = 0; k < 200; ++k) EXPECT_EQ(stopped.place(k), fresh.place(k));
+}
+
 TEST(BlockLdl, EdgesTwiceAndTurnedAreTheSameGraph) {
   BlockLdl ldl;
   ldl.analyse(3, {{0, 1}, {1, 2}});

@@ -357,7 +357,7 @@ TEST(RestForces, SameBitsWhateverWasSolvedBefore) {
 TEST(RestForces, StopWhereTheyAreAsked) {
   const RestProblem problem = testing::arch(15, 0.22, 0.7).problem;
   const RestResult fresh = ConeQp().rest_forces(problem);
-  for (int after = 0; after < 40; after += 3) {
+  for (int after = 0; after < 80; after += 3) {  // 30: while its graph is looked at
     ConeQp stopped;
     int asked = 0;
     EXPECT_EQ(stopped.rest_forces(problem, [&] { return asked++ < after; }).status, Status::stopped);

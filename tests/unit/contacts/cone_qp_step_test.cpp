@@ -239,6 +239,25 @@ TEST(Step, UnitsOfMassAndTimeChangeNoBit) {
     EXPECT_EQ(scaled.loads[k].normal, result.loads[k].normal * mass * rate);
 }
 
+// Stopped anywhere, in the look at its graph or in a factor, it says so, and knows nothing wrong afterwards.
+TEST(Step, StopsWhereItIsAsked) {
+  const StepProblem problem = testing::heap_step(5, 4, 1e-3, 0.5, 1.0 / 128);
+  const StepResult fresh = ConeQp().step(problem);
+  for (int after = 0; after < 100; after += 7) {
+    ConeQp solver;
+    int asked = 0;
+    const StepResult stopped = solver.step(problem, [&] { return asked++ < after; });
+    EXPECT_EQ(stopped.status, Status::stopped);
+    EXPECT_EQ(asked, after + 1);
+    EXPECT_EQ(stopped.velocity.size(), problem.mass.size());
+    EXPECT_EQ(stopped.loads.size(), problem.contacts.size());
+    const StepResult again = solver.step(problem);
+    EXPECT_EQ(again.status, fresh.status);
+    for (std::size_t c = 0; c < fresh.loads.size(); ++c)
+      EXPECT_EQ(again.loads[c].normal, fresh.loads[c].normal);
+  }
+}
+
 TEST(Step, NotANumberIsNeverSolved) {
   StepProblem problem = discs(2);
   problem.contacts = {on_floor(0, 0.1), on_floor(1, 0.1)};
