@@ -7,9 +7,9 @@
 ///     8 nu before it (nominal_level): what stays beyond the level is never in doubt about its side; nor is it
 ///     where places are seen in extended precision now and in doubles a moment later: nu is that of doubles there;
 ///   - a pair that starts touching, pressed together or all but at rest, has its next contact when it has
-///     sunk by a *sink step* of at least 2.5 nu (sink_step), but a quarter of the wire's level is left: so
+///     sunk by a *sink step* of at least 2.5 nu (sink_step), of a wire's level by no more than kThinSinks: so
 ///     every contact is a crossing of its level from clear above, and what has sunk is pushed out again as it
-///     is resolved;
+///     is resolved, off a wire by less than is left of the level;
 ///   - steps of the search end at half the *band* (the contact tolerance, or what the clock cannot tell
 ///     apart), never on the surface.
 /// Where nu is not small beside the contact tolerance the search does not tell a contact but says so
@@ -105,18 +105,21 @@ inline constexpr double kSlowOfSize = 1e-3;
 /// How far a pair that is pressed together sinks until that is a contact again [m].
 inline double sink_step(double touch, double rounding) { return std::max(0.125 * touch, 2.5 * rounding); }
 
+/// How far a pair sinks at most below the level before a wire, and how far it is pushed out again at most, in units of
+/// that level (3 nu of 8, where nu decides): so the next contact is a crossing from more than nu above, and no push leads
+/// past another wire, of whose level 5 nu are left, too.
+inline constexpr double kThinSinks = 3.0 / 8.0;
+
 /// How far features are pushed apart that have sunk into each other by `sunk` > 0 [m], as they collide: as
-/// far as the loss of energy, as a part of it, pays for the way: at least as much was won on it; thin ones by
-/// a few roundings, which their next sink needs, and less than they keep of their level: so a push leads past
-/// no other wire.
+/// far as the loss of energy, as a part of it, pays for the way: at least as much was won on it; thin ones, whatever the
+/// loss, as their next sink needs it: all of it.
 inline double push_of(double sunk, double nominal, double tolerance, double loss) {
-  return nominal > 0.0 ? std::min(sunk, nominal / 6.0) : std::min(loss * sunk, 0.5 * tolerance);
+  return nominal > 0.0 ? std::min(sunk, kThinSinks * nominal) : std::min(loss * sunk, 0.5 * tolerance);
 }
 
-/// The gap at which features meet of a pair that may have sunk by `sink` <= 0 [m]; of thin ones a quarter of
-/// their level is left.
+/// The gap at which features meet of a pair that may have sunk by `sink` <= 0 [m].
 inline double level_of(double nominal, double sink) {
-  return std::max(nominal + sink, nominal > 0.0 ? 0.25 * nominal : sink);
+  return std::max(nominal + sink, nominal > 0.0 ? (1.0 - kThinSinks) * nominal : sink);
 }
 
 /// The level at which a pair that starts touching meets [m], below its nominal one (0): `gap` and `rate` are

@@ -151,9 +151,9 @@ const char* const kFar = "but too far from the origin, or turned too often, for 
 // The needle's angle, 1e9 rad, is a double: where it stands then it reaches over the segment from the start on.
 const Honest kHonest[] = {
     {"box_falls_through", "failed: Zeno at t = 0.4586704", "'b' on 'floor'", ""},
-    {"wire_floor_fall", "failed: Zeno at t = 0.2797568", "'box' on 'floor'", ""},
+    {"wire_floor_fall", "failed: Zeno at t = 0.2797569", "'box' on 'floor'", ""},
     {"box_wire_floor", "failed: Zeno at t = 0.5898151", "'body0' on 'site0'", ""},
-    {"stacking_tower_blocks_3_cor_minus1_x_offset_0", "failed: Zeno at t = 0.2797568", "'b1' on 'b0'", ""},
+    {"stacking_tower_blocks_3_cor_minus1_x_offset_0", "failed: Zeno at t = 0.2797569", "'b1' on 'b0'", ""},
     {"disc_thick_segment", "failed: Zeno at t = 0.8748850", "'body0' on 'site0'", ""},
     {"disc_placed_touching", "stopped", "max_collisions",
      ""},  // it is lossless: an approach of a rounding has no end

@@ -52,6 +52,29 @@ TEST(StartSink, EveryLevelIsCrossedFromAbove) {
   }
 }
 
+// What is pressed onto a wire meets it, is pushed out, sinks and meets it again: whatever roundings make of each gap, the
+// next contact is crossed from above by more than one of them, nobody comes to the wire itself, and a push does not lead
+// past another wire that was met at its level.
+TEST(ThinLevel, WhatIsPressedOnAWireCrossesItsLevelFromClearAboveForEver) {
+  SeededRandom random(8);
+  for (int i = 0; i < 1000; ++i) {
+    const double rounding = std::exp(random.uniform(-45.0, -25.0)), tolerance = 1e-3,
+                 touch = rounding * std::exp(random.uniform(-3.0, 6.0));
+    const double nominal = nominal_level(touch, tolerance, rounding, true), step = sink_step(touch, rounding);
+    const auto seen = [&](double gap) { return gap + random.uniform(-1.0, 1.0) * rounding; };
+    double level = nominal;
+    for (int bounce = 0; bounce < 100; ++bounce) {
+      const double met = seen(level);  // where it is when its gap is seen to be the level
+      EXPECT_GT(met, 3.99 * rounding);
+      const double push = push_of(nominal - level, nominal, tolerance, random.uniform(0.0, 1.0));
+      const double start = seen(met + push);
+      level = level_of(nominal, start_sink(start - nominal, 0.0, 1e-30, 10.0, step));
+      EXPECT_GE(start - level, 0.99 * rounding) << "bounce " << bounce << " touch " << touch / rounding;
+      EXPECT_GT(met - push, 0.99 * rounding);
+    }
+  }
+}
+
 // gap(s) = above + rate s - curvature s^2 / 2 is the lowest that the bounds allow.
 TEST(BandStep, NeverLeadsOntoTheLevel) {
   SeededRandom random(6);
