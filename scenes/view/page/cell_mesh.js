@@ -50,9 +50,9 @@ class CellMesh {
     this.fan(last.b, directionAt(last, last.b) - Math.PI / 2 - OVERLAP, half, {radius: last.radius});
   }
 
-  /** Of a whole turn a square about the centre does: what it has more than a fan takes less time than a fan's triangles. */
+  /** Of a whole turn one triangle about the centre does: what it has more than a fan takes less time than a fan's triangles. */
   fan(center, from, sweep, radii) {
-    if (Math.abs(sweep) >= 2 * Math.PI) { this.square(center, radii); return; }
+    if (Math.abs(sweep) >= 2 * Math.PI) { this.around(center, radii); return; }
     const steps = Math.max(1, Math.ceil(Math.abs(sweep) / SECTOR)), m = 1 / Math.cos(sweep / steps / 2);
     const top = this.vertex(center, 0, 0, radii);
     for (let i = 0; i <= steps; ++i) {
@@ -61,9 +61,10 @@ class CellMesh {
     }
   }
 
-  square(center, radii) {
-    const [k] = [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(([gx, gy]) => this.vertex(center, gx, gy, radii));
-    this.triangles.push(k, k + 1, k + 2, k, k + 2, k + 3);
+  /** Equal sides that touch the circle. */
+  around(center, radii) {
+    const [k] = [0, 1, 2].map(i => 2 * Math.PI * i / 3).map(a => this.vertex(center, 2 * Math.cos(a), 2 * Math.sin(a), radii));
+    this.triangles.push(k, k + 1, k + 2);
   }
 
   /** Both sides at once: q grows from one to the other, through zero. */

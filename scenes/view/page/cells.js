@@ -7,7 +7,6 @@
 
 const COLORS = 1024;  // in a row of their texture
 const TIE = 0.1;  // of a pixel: distances less different are the same (corners of triangles are rounded to 1/16)
-const WAYS = 4096;  // directions of a whole turn; 2^20 owners are left
 
 const ROW = 512;  // things in a row of their texture, two texels each
 // A mesh is kept many times in one: software draws each instance by itself, which costs more than its few triangles.
@@ -33,7 +32,7 @@ void main() {
   vec4 pose = texelFetch(things, at, 0);
   vec2 cell = texelFetch(things, at + ivec2(1, 0), 0).xy, v = min(radii.x + radii.y + cell.y, most) * grow;
   q = vec2(pose.z * v.x - pose.w * v.y, pose.w * v.x + pose.z * v.y);
-  owner = (uint(cell.x) + 1u) * ${WAYS}u;
+  owner = uint(cell.x) + 1u;
   vec2 p = pose.xy + vec2(pose.z * base.x - pose.w * base.y, pose.w * base.x + pose.z * base.y) + q;
   gl_Position = vec4(p * view, 0.0, 1.0);
 }`;
@@ -44,16 +43,19 @@ precision highp float;
 in vec2 q; flat in vec2 sizes; flat in uint owner;    // see cell_mesh.js
 uniform float deepest;    // [m]
 uniform uint first; uniform float tie;    // the first of the bodies; behind a floor what stands on it is no nearer than the floor [m]
-out uvec2 seen;    // whose, with the direction in which the distance grows; the distance. 0: nobody's
+// whose, 0: nobody's; the distance; the unit vector in whose direction that grows
+#if COARSE
+out uvec4 seen;
+#else
+out uvec2 seen;
+#endif
 void main() {
   float l = length(q), height = abs(l - sizes.y) - sizes.x;
-  uint way = 0u;
 #if COARSE
-  vec2 away = l < sizes.y ? -q : q;
-  float across = away.x / max(abs(away.x) + abs(away.y), 1e-30), quarters = away.y < 0.0 ? 3.0 + across : 1.0 - across;
-  way = uint(quarters * ${WAYS / 4}.0) % ${WAYS}u;
+  seen = uvec4(owner, floatBitsToUint(vec3(height, q * ((l < sizes.y ? -1.0 : 1.0) / max(l, 1e-30)))));
+#else
+  seen = uvec2(owner, floatBitsToUint(height));
 #endif
-  seen = uvec2(owner + way, floatBitsToUint(height));
   if (owner >= first) height += tie;
   gl_FragDepth = 0.5 + 0.4995 * clamp(height / deepest, -1.0, 1.0);
 }`;
@@ -68,35 +70,29 @@ uniform vec2 coarse;    // pixels of the first pass a pixel of this one
 uniform uint scenery;    // owners below are sites of the scene: no border between two of them, whose cells may tie where they join
 uniform float ring; uniform float pixel; uniform float large; uniform vec3 paper;    // ring, pixel [m]; large: pixels of the screen
 out vec4 shade;
-uvec2 look(ivec2 at) { return texelFetch(seen, at, 0).xy; }
-bool differ(uvec2 a, uvec2 b) { return (a.x ^ b.x) >= ${WAYS}u; }
-bool apart(uvec2 a, uvec2 b) { return differ(a, b) && max(a.x, b.x) / ${WAYS}u > scenery; }
-vec2 slope(uvec2 s) {    // of the distance: a unit vector, kept as its place on the square |x| + |y| = 1
-  float quarters = (float(s.x % ${WAYS}u) + 0.5) * ${4 / WAYS}, x = abs(quarters - 2.0) - 1.0, y = 1.0 - abs(x);
-  return normalize(vec2(x, quarters < 2.0 ? y : -y));
-}
+uvec4 look(ivec2 at) { return texelFetch(seen, at, 0); }
+bool apart(uvec4 a, uvec4 b) { return a.x != b.x && max(a.x, b.x) > scenery; }
 // a pixel of the first pass as seen from here: the slope there, and the distance taken on from there [m]
-vec3 taken(uvec2 s, vec2 on) {
-  if (s.x == 0u) return vec3(0.0, 0.0, 1e30);
-  vec2 along = slope(s);
-  return vec3(along, uintBitsToFloat(s.y) + dot(along, on));
+vec3 taken(uvec4 s, vec2 on) {
+  vec2 slope = uintBitsToFloat(s.zw);
+  return vec3(slope, s.x == 0u ? 1e30 : uintBitsToFloat(s.y) + dot(slope, on));
 }
-// the way from one cell to the other [pixels]
-float way(uvec2 s, vec3 a, uvec2 t, vec3 b) {
-  return apart(s, t) ? max(0.0, b.z - a.z) / (max(length(b.xy - a.xy), 1e-6) * pixel) : 1e30;
+// the way from one cell to the other [m]
+float way(uvec4 s, vec3 a, uvec4 t, vec3 b) {
+  vec2 turn = b.xy - a.xy;
+  return apart(s, t) ? (b.z - a.z) * inversesqrt(max(dot(turn, turn), 1e-12)) : 1e30;
 }
 void main() {
   vec2 place = gl_FragCoord.xy * coarse - 0.5;
   ivec2 at = ivec2(round(place));
-  uvec2 here = look(at);
+  uvec4 here = look(at);
   if (here.x == 0u) { shade = vec4(paper, 1.0); return; }
-  uvec2 right = look(at + ivec2(1, 0)), left = look(at - ivec2(1, 0)), up = look(at + ivec2(0, 1)), down = look(at - ivec2(0, 1));
+  uvec4 right = look(at + ivec2(1, 0)), left = look(at - ivec2(1, 0)), up = look(at + ivec2(0, 1)), down = look(at - ivec2(0, 1));
   float height = uintBitsToFloat(here.y), border = 1e30;    // border: the way to the nearest other cell [pixels]
 #if COARSE
-  bool r = differ(right, here), l = differ(left, here), u = differ(up, here), d = differ(down, here);
   vec2 texel = pixel / coarse, on = (place - vec2(at)) * texel;
-  if (r || l || u || d) {
-    uvec2 middle = here;
+  if (any(notEqual(uvec4(right.x, left.x, up.x, down.x), uvec4(here.x)))) {
+    uvec4 middle = here;
     vec3 m = taken(here, on), e = taken(right, on - vec2(texel.x, 0.0)), w = taken(left, on + vec2(texel.x, 0.0));
     vec3 n = taken(up, on - vec2(0.0, texel.y)), s = taken(down, on + vec2(0.0, texel.y)), best = m;
     if (e.z < best.z) { best = e; here = right; }
@@ -105,14 +101,14 @@ void main() {
     if (s.z < best.z) { best = s; here = down; }
     height = best.z;
     border = min(min(way(here, best, right, e), way(here, best, left, w)), min(way(here, best, up, n), way(here, best, down, s)));
-    border = min(border, way(here, best, middle, m));
-  } else height += dot(slope(here), on);
+    border = min(border, way(here, best, middle, m)) / pixel;
+  } else height += dot(uintBitsToFloat(here.zw), on);
 #else    // by how many of its neighbours are of another
   bool r = apart(right, here), l = apart(left, here), u = apart(up, here), d = apart(down, here);
   border = 1.3 - 0.5 * (float(r) + float(l) + float(u) + float(d));
   if (border == 1.3) border = 1e30;
 #endif
-  int owner = int(here.x / ${WAYS}u - 1u);
+  int owner = int(here.x - 1u);
   vec3 color = texelFetch(colors, ivec2(owner % ${COLORS}, owner / ${COLORS}), 0).rgb;
   float away = abs(fract(height / ring + 0.5) - 0.5) * ring;
   color *= mix(0.93, 1.0, height > 0.0 ? smoothstep(0.5, 1.5, away / pixel) : 1.0);
@@ -193,13 +189,14 @@ class Cells {
     return name;
   }
 
-  /** What the first pass draws into. */
-  fit(width, height) {
+  /** What the first pass draws into; coarse: with slopes. */
+  fit(width, height, coarse) {
     const gl = this.gl;
-    if (this.size[0] === width && this.size[1] === height) return;
-    this.size = [width, height];
+    if (this.size[0] === width && this.size[1] === height && this.sloped === coarse) return;
+    Object.assign(this, {size: [width, height], sloped: coarse});
     gl.bindTexture(gl.TEXTURE_2D, this.seen);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RG32UI, width, height, 0, gl.RG_INTEGER, gl.UNSIGNED_INT, null);
+    const [kind, parts] = coarse ? [gl.RGBA32UI, gl.RGBA_INTEGER] : [gl.RG32UI, gl.RG_INTEGER];
+    gl.texImage2D(gl.TEXTURE_2D, 0, kind, width, height, 0, parts, gl.UNSIGNED_INT, null);
     gl.bindRenderbuffer(gl.RENDERBUFFER, this.depth);
     gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT32F, width, height);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
@@ -250,10 +247,9 @@ class Cells {
     const gl = this.gl, {canvas} = this, of = by => [Math.max(1, Math.round(width / by)), Math.max(1, Math.round(height / by))];
     const [w, h] = of(detail.paint);
     if (canvas.width !== w || canvas.height !== h) Object.assign(canvas, {width: w, height: h});
-    this.fit(...(detail.mesh === detail.paint ? [w, h] : of(detail.mesh)));
-    const [columns, rows] = this.size;
+    const [columns, rows] = detail.mesh === detail.paint ? [w, h] : of(detail.mesh), coarse = columns < w ? 1 : 0;
+    this.fit(columns, rows, coarse);
     gl.viewport(0, 0, columns, rows);
-    const coarse = columns < w ? 1 : 0;
     this.drawMeshes(things, {x, y, across: 2 * scale / width, up: 2 * scale / height, tie: TIE / scale}, 1.5 * Math.hypot(width, height) / scale, coarse, looks.fixed);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(0, 0, w, h);
@@ -315,7 +311,7 @@ class Cells {
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, 2 * ROW, rows, 0, gl.RGBA, gl.FLOAT, places);
     gl.uniform1i(at.things, 0);
     gl.uniform1f(at.deepest, deepest);
-    gl.uniform1ui(at.first, (fixed + 1) * WAYS);
+    gl.uniform1ui(at.first, fixed + 1);
     gl.uniform1f(at.tie, view.tie);
     gl.uniform2f(at.view, view.across, view.up);
     for (let m = 0; m < shapes.length; ++m) {
@@ -335,6 +331,6 @@ class Cells {
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
     gl.readPixels(column, row, 1, 1, gl.RGBA_INTEGER, gl.UNSIGNED_INT, words);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    return words[0] ? {owner: Math.floor(words[0] / WAYS) - 1, distance: new Float32Array(words.buffer)[1]} : null;
+    return words[0] ? {owner: words[0] - 1, distance: new Float32Array(words.buffer)[1]} : null;
   }
 }

@@ -5,6 +5,7 @@ const byId = id => document.getElementById(id);
 const darkness = matchMedia('(prefers-color-scheme: dark)');
 const inkOf = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const LANE = 11;  // height of a body's lane [px]
+const TOLD = 100;  // [ms] between times that are written out, where frames come too late
 let about = JSON.parse(byId('about').textContent);
 
 class Player {
@@ -143,6 +144,8 @@ class Player {
       Object.assign(this.picture.view, {x: pose[0] + u, y: pose[1] + v});
     }
     this.picture.draw(this.t);
+    if (this.playing && this.pace.level > 0 && now - (this.told || 0) < TOLD) return;
+    this.told = now;
     this.placeCursor();  // looks at the layout, which what follows changes
     if (document.activeElement !== byId('time')) byId('time').value = String(this.t);
     byId('printed-time').textContent = `t = ${this.t} s`;    // the box is not on paper
