@@ -198,6 +198,7 @@ void finish_outline(Outline& outline) {
       add_vertex_samples(outline, loop);
     add_arc_samples(outline, loop);
   }
+  outline.hull = outline.container ? Hull() : hull_of(outline.sites);
   outline.facets = facets_of(outline);
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "brink/core/shapes/distance.h"
+#include "brink/core/shapes/hull.h"
 #include "brink/core/shapes/site.h"
 
 namespace brink {
@@ -42,6 +43,7 @@ struct Outline {
   std::vector<Site> sites;
   std::vector<Loop> loops;
   std::vector<Sample> samples;  ///< the exact two-sided sample set
+  Hull hull;                    ///< holds it; of a container empty
   std::vector<Vec2> facets;  ///< of a convex polygon, rounded or not: its sites' outward normals; else none
   bool solid = false;        ///< has an inside (every loop closed); distance is signed
   bool container = false;    ///< solid outside: the loops bound a hole in an infinite solid
@@ -58,7 +60,7 @@ struct Outline {
 /// computation.
 inline bool is_centred_disc(const Outline& o) { return o.is_point() && o.sites[0].a.isZero(0.0); }
 
-/// Fills Site::solid, pseudo-normals, samples, facets, bounds and bounding radius from sites and loops. Call
+/// Fills Site::solid, pseudo-normals, samples, hull, facets, bounds and bounding radius from sites and loops. Call
 /// once after assembling; loops must cover all sites in order and join up bit for bit. Samples: each loop's
 /// vertices (of wires the distinct ones), then its arcs.
 /// @throws BadInput on a site of zero length, an arc over a quarter turn or off its circle, a loop that does

@@ -44,7 +44,7 @@ class WorldHasher {
     add(m.restitution, m.friction, m.tangential_restitution, m.rolling_resistance, m.slip, m.spin);
   }
   void one(const Site& s) {
-    // Pseudo-normals, samples, facets and bounds follow from these (finish_outline).
+    // Pseudo-normals, samples, hull, facets and bounds follow from these (finish_outline).
     add(static_cast<int>(s.kind), s.solid, s.radius, s.a, s.b, s.center, s.arc_radius, s.sweep);
   }
   void one(const Outline& o) {

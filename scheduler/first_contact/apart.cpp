@@ -1,6 +1,7 @@
 #include "brink/scheduler/first_contact/apart.h"
 
 #include "brink/core/base/limits.h"
+#include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/first_contact/pair_kinematics.h"
 #include "brink/scheduler/first_contact/site_step.h"
 
@@ -9,7 +10,9 @@ namespace brink::detail {
 namespace {
 
 /// Certified steps before the samples are looked at; each is safe, so it does not matter where they end.
-constexpr int kMostStepsOfDiscs = 64, kMostStepsBeside = 16;
+constexpr int kMostStepsOfDiscs = 64, kMostStepsBeside = 16, kMostStepsBetween = 8;
+/// Hulls of more corners are not held against each other, side by side.
+constexpr std::size_t kMostCorners = 16;
 
 /// What is nearer than this is near [m]: as near as makes no difference.
 double near_by(double reach, const SearchLimits& limits) { return 1e-3 * reach + limits.tolerance; }
@@ -66,19 +69,120 @@ double clear_by_discs(const Mover& a, const Mover& b, double from, double to, co
   return t;
 }
 
+/// True of what few corners hold.
+bool has_few_corners(const Outline& o) {
+  return !o.hull.corners.empty() && o.hull.corners.size() <= kMostCorners;
+}
+
+/// Corners of S's hull in the frame of T, and the line of that side of T's hull from which they are farthest.
+class Beside {
+ public:
+  Beside(const Outline& s, const Placed& placed_s, const Outline& t, const Placed& placed_t)
+      : t_(t.hull),
+        count_(s.hull.corners.size()),
+        thickness_(s.hull.thickness + t.hull.thickness),
+        spin_(placed_s.twist.omega - placed_t.twist.omega) {
+    const Frame& frame = placed_t.frame;
+    const Vec2 origin = frame.to_local(placed_s.frame.origin);
+    const Vec2 x = frame.direction_to_local(placed_s.frame.direction_to_world(Vec2::UnitX())), y = perp(x);
+    for (std::size_t i = 0; i < count_; ++i) {
+      const Vec2& p = s.hull.corners[i];
+      corners_[i] = origin + p.x() * x + p.y() * y;
+    }
+    drift_ = frame.direction_to_local(placed_s.twist.velocity - placed_t.twist.velocity) -
+             placed_s.twist.omega * perp(origin);
+    double widest = -kForever;
+    for (std::size_t k = 0; k < t_.normals.size(); ++k) {
+      const double nearest = beyond(k);
+      side_ = nearest > widest ? k : side_;
+      widest = nearest > widest ? nearest : widest;
+    }
+    gap_ = widest - thickness_;
+  }
+
+  /// From that line to the nearest corner, less the thickness of both [m]; far below 0 where T has no side.
+  double gap() const { return gap_; }
+  /// How long all corners are sure to stay beyond the line by more than `rest` [s], if none bends by more than
+  /// `acceleration` [m/s^2].
+  double step(double rest, double acceleration) const {
+    const Vec2& n = t_.normals[side_];
+    const double from = n.dot(t_.corners[side_]) + thickness_ + rest, falls = n.dot(drift_);
+    double least = kForever;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const Vec2& q = corners_[i];
+      least = std::min(least, safe_step(n.dot(q) - from, falls + spin_ * n.dot(perp(q)), acceleration));
+    }
+    return least;
+  }
+
+ private:
+  /// Of all corners, from side k [m].
+  double beyond(std::size_t k) const {
+    const Vec2& n = t_.normals[k];
+    double nearest = n.dot(corners_[0]);
+    for (std::size_t i = 1; i < count_; ++i) nearest = std::min(nearest, n.dot(corners_[i]));
+    return nearest - n.dot(t_.corners[k]);
+  }
+
+  const Hull& t_;
+  std::size_t count_, side_ = 0;
+  double thickness_, gap_;
+  double spin_;  ///< of S against T [rad/s]
+  Vec2 drift_;   ///< of a corner at T's origin that turns with S, against T [m/s]
+  Vec2 corners_[kMostCorners];
+};
+
+/// By a line between the two hulls, that of a side of either: a step that is safe for all corners of the one beyond a side
+/// of the other is safe for the pair.
+Apart clear_between(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits) {
+  const Outline &oa = a.outline(), &ob = b.outline();
+  if (!has_few_corners(oa) || !has_few_corners(ob)) return {from};
+  const double near = near_by(oa.bounding_radius + ob.bounding_radius, limits);
+  Placed pa, pb;
+  double t = from;
+  for (int i = 0; t < to; ++i) {
+    if (i == kMostStepsBetween || i == limits.max_iterations) return {t, i == limits.max_iterations};
+    const BodyState sa = a.motion->state(t), sb = b.motion->state(t);
+    // places and angles are told no better than that
+    const double rounding =
+        16.0 * kEpsilon *
+        (sa.pose.position.lpNorm<1>() + sb.pose.position.lpNorm<1>() +
+         std::abs(sa.pose.angle) * oa.bounding_radius + std::abs(sb.pose.angle) * ob.bounding_radius);
+    if (rounding > 0.25 * near) break;
+    pa.move(oa, sa);
+    pb.move(ob, sb);
+    const Beside a_beside(oa, pa, ob, pb), b_beside(ob, pb, oa, pa);
+    const bool of_b = a_beside.gap() >= b_beside.gap();  // the line
+    const Beside& beside = of_b ? a_beside : b_beside;
+    const RelativeBounds whole = RelativeBounds::over(oa, *a.motion, ob, *b.motion, t, to);
+    const double speed = whole.speed + whole.spin_s * oa.bounding_radius + whole.spin_t * ob.bounding_radius;
+    // a step is told to a tick of the clock
+    const double rest = std::max(0.5 * near, 8.0 * ulp(t) * speed);
+    if (beside.gap() <= 2.0 * rest) break;
+    SamplePath corner{};  // as far out as any
+    corner.arm = (of_b ? oa : ob).hull.reach;
+    corner.distance = (sa.pose.position - sb.pose.position).norm() + corner.arm;
+    // no longer than the gap may last: bounds are tight then
+    const double window = std::min(to - t, speed > 0.0 ? 8.0 * beside.gap() / speed : kForever);
+    const PathBounds bounds = path_bounds(corner, of_b ? whole : whole.swapped(), window);
+    t += std::min(window, rounded_down(beside.step(rest, bounds.acceleration)));
+  }
+  return {t};
+}
+
 }  // namespace
 
-double apart_until(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits) {
+Apart apart_until(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits) {
   const Outline &oa = a.outline(), &ob = b.outline();
   // What is in a container is in its disc from the start.
-  if (oa.container || ob.container) return from;
+  if (oa.container || ob.container) return {from};
   const bool beside_b = stands_beside(oa, ob), beside_a = !beside_b && stands_beside(ob, oa);
   // beside a wall that turns, not before it can come within its reach
-  if (!beside_a && !beside_b) return clear_by_discs(a, b, from, to, limits);
+  if (!beside_a && !beside_b) return clear_between(a, b, clear_by_discs(a, b, from, to, limits), to, limits);
   const Mover &body = beside_b ? a : b, &wall = beside_b ? b : a;
   if (!wall.motion->is_still() && wall.motion->twist(from).omega != 0.0)
     from = clear_by_discs(a, b, from, to, limits);
-  return clear_beside(body, wall, from, to, limits);
+  return {clear_beside(body, wall, from, to, limits)};
 }
 
 }  // namespace brink::detail

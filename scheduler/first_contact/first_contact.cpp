@@ -528,9 +528,9 @@ class PairSearch {
     // If no probe found where the gap is surely gone, the bottom of the dip decides.
     // A dip of less than a rounding is none, whoever looked where; what falls on is looked at again from nearer. But
     // behind a sharp tip there may be no more room than that: what comes upon it meets it.
+    const bool sharp = site.radius + half.sample(f.sample).radius == 0.0;
+    const bool tip = !beyond.surely && sharp && nearest_on(site, path.q).foot != Foot::interior;
     if (!beyond.surely) {
-      const bool tip = site.radius + half.sample(f.sample).radius == 0.0 &&
-                       nearest_on(site, path.q).foot != Foot::interior;
       const double deepest = deepest_after(half, f, falling.later(), last);
       if (!tip)
         high = deepest > low && gap(deepest) < -rounding ? deepest : low;
@@ -539,9 +539,18 @@ class PairSearch {
     }
     if (high <= low) return false;  // passes by
     const double t = last_clear_time(gap, low, high);
+    // along the site's face, before the tip, it was such a dip
+    if (tip && foot_at(half, f, t) == Foot::interior) return false;
     // at the end of its neighbourhood a sample changes sides without having come near
     if (gap(t) > view_.touching_band(half, f.sample, path)) return false;
     return remember(half, f, t, 2.0 * falling.moment()) || meets_beyond_tip(half, f, gap, t);
+  }
+
+  /// Where on f's site its sample is nearest to that at time t.
+  Foot foot_at(const Half& half, const Feature& f, double t) const {
+    PairView there = view_;
+    there.place(t);
+    return nearest_on(half.site(f.site), there.path(half, f.sample).q).foot;
   }
 
   /// Since when another site no longer hides this one from a vertex, if they have been in each other and approaching since
@@ -797,9 +806,11 @@ PairAnswer first_contact(const Mover& a, const Mover& b, double from, double to,
   }
   const double start = std::max(a.motion->begin(), b.motion->begin());
   const double first = has_hardly_moved(a, b, start, from, limits) ? start : from;
-  const double apart_until = detail::apart_until(a, b, first, to, limits);
-  if (apart_until >= to) return {PairAnswer::Status::clear, to, {}};
-  return PairSearch(a, b, apart_until, from, to, limits, scratch, work).run();
+  const detail::Apart apart = detail::apart_until(a, b, first, to, limits);
+  if (apart.until >= to) return {PairAnswer::Status::clear, to, {}};
+  if (apart.stopped && apart.until > std::max(from, limits.needed_until))
+    return {PairAnswer::Status::undecided, apart.until, {}};
+  return PairSearch(a, b, apart.until, from, to, limits, scratch, work).run();
 }
 
 std::vector<FeatureContact> touching_features(const Mover& a, const Mover& b, double t, double tolerance,
