@@ -538,11 +538,18 @@ class PairSearch {
         high = gap(deepest) <= 0.0 ? deepest : low;
     }
     if (high <= low) return false;  // passes by
-    const double t = last_clear_time(gap, low, high);
+    double clear_gap = 0.0;         // where it was last clear
+    const auto probed = [&](double time) {
+      const double there = gap(time);
+      clear_gap = there > 0.0 ? there : clear_gap;
+      return there;
+    };
+    const double t = last_clear_time(probed, low, high);
+    if (t == low) clear_gap = gap(low);
     // along the site's face, before the tip, it was such a dip
     if (tip && foot_at(half, f, t) == Foot::interior) return false;
     // at the end of its neighbourhood a sample changes sides without having come near
-    if (gap(t) > view_.touching_band(half, f.sample, path)) return false;
+    if (clear_gap > view_.touching_band(half, f.sample, path)) return false;
     return remember(half, f, t, 2.0 * falling.moment()) || meets_beyond_tip(half, f, gap, t);
   }
 
@@ -750,19 +757,19 @@ class PairSearch {
     PairView there = view_;
     there.place(t);
     // a tip that comes from far has no neighbours yet: its site is the one that was asked for
-    const auto nearest_at = [&](double time) {
-      const int site = view_.gap_at(half, f, time).site;
+    const auto nearest_there = [&] {
+      const int site = view_.gap_where(there, half, f).site;
       return site >= 0 ? site : f.site;
     };
     Feature met = f;
-    met.site = nearest_at(t);
+    met.site = nearest_there();
     if (there.passes_tip(half, met)) return std::nullopt;
     FeatureContact contact = there.look_again(half, met, t);
     if (!(contact.closing_speed > 0.0) && met.site != f.site) contact = there.look_again(half, f, t);
     const double after = next_after(t);
     if (contact.closing_speed > 0.0 || after > std::min(a_.motion->end(), b_.motion->end())) return contact;
     there.place(after);
-    met.site = nearest_at(after);
+    met.site = nearest_there();
     const FeatureContact next = there.look_again(half, met, t);
     return next.closing_speed > 0.0 ? next : contact;
   }

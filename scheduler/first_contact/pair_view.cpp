@@ -566,6 +566,10 @@ PairView::GapAndSite PairView::gap_at(const Half& half, const Feature& f, double
   // (Placed::move()).
   Placing then = now_;
   put(then, t);
+  return gap_when(then, half, f);
+}
+
+PairView::GapAndSite PairView::gap_when(const Placing& then, const Half& half, const Feature& f) const {
   const Placed &s = half.s_is_a ? then.a : then.b, &u = half.s_is_a ? then.b : then.a;
   const Vec2 q = u.frame.direction_to_local(s.frame.direction_to_world(half.sample(f.sample).p) +
                                             (s.frame.origin - u.frame.origin));

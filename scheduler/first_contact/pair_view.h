@@ -135,6 +135,10 @@ class PairView {
   /// together, so that it does not matter from which of them, or when, one began to look; those that it
   /// touches and leaves are left out. An arc: to f's site, on the side that f has.
   GapAndSite gap_at(const Half& half, const Feature& f, double t) const;
+  /// The same at the time at which a copy of this is placed.
+  GapAndSite gap_where(const PairView& copy, const Half& half, const Feature& f) const {
+    return gap_when(copy.now_, half, f);
+  }
 
   /// Bound on the rounding of the gap of sample i, at q, to any site now [m]: one for all sites, or the
   /// nearest by level might not be the nearest.
@@ -206,6 +210,7 @@ class PairView {
   /// of its ends.
   bool way_leads_through(const Site& site, const Vec2& q, double rounding) const;
   GapAndSite gap_to_neighbours(const Placing& placing, const Half& half, int i, const Vec2& q) const;
+  GapAndSite gap_when(const Placing& then, const Half& half, const Feature& f) const;
   double arc_gap(const Half& half, const Feature& f, const Vec2& center) const;
   /// Which samples of a half may be within reach [m] of a site, told by their places alone.
   class Reach {

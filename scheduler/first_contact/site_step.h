@@ -44,18 +44,17 @@ inline bool has_facing(const Outline& o) {
 /// at a glance. A step that is safe for the line is safe for the outline. @pre has_facing(outline).
 Facing facing(const Outline& outline, const Vec2& q, const Vec2& rate);
 
-/// d(distance)/dt of q from the site's core. Close to the core the foot's rounding would turn the direction,
-/// so there it is the site's own normal.
+/// d(distance)/dt of q from the site's core. Abreast of the site it is that along the site's own normal: the foot's rounding,
+/// which is one of the site's size, would turn the way from it.
 inline double distance_rate(const Site& site, const Nearest& nearest, const Vec2& q, const Vec2& rate) {
-  if (nearest.foot == Foot::interior && nearest.distance < 1e-4 * q.lpNorm<1>()) {
+  if (nearest.foot == Foot::interior) {
     if (site.kind == SiteKind::segment) {
       const Vec2 d = site.b - site.a;
       return cross(d, rate) / (cross(d, q - site.a) < 0.0 ? -d.norm() : d.norm());
     }
-    if (site.kind == SiteKind::arc) {
-      const Vec2 w = q - site.center;
+    const Vec2 w = q - site.center;
+    if (site.kind == SiteKind::arc && !w.isZero(0.0))
       return w.dot(rate) / (beyond_circle(site, q, w) < 0.0 ? -w.norm() : w.norm());
-    }
   }
   return nearest.distance > 0.0 ? (q - nearest.point).dot(rate) / nearest.distance : 0.0;
 }

@@ -50,5 +50,22 @@ TEST(FacingConvex, IsNeverFartherThanThePolygonWhereverThePointGoes) {
   EXPECT_GT(exact, 9 * outside / 10);  // it is the distance itself nearly everywhere
 }
 
+// Right beside a long site, and where its frame's origin is: the foot is rounded as the site's ends are, which are far.
+TEST(DistanceRate, OfWhatSlidesAlongASiteIsNone) {
+  SeededRandom random(991002714);
+  for (int trial = 0; trial < 20000; ++trial) {
+    const double length = std::pow(10.0, random.uniform(-2.0, 6.0)), angle = random.uniform(-4.0, 4.0);
+    const double at = random.below(2) ? 1e-9 * random.uniform(-1.0, 1.0) : length * random.uniform(-0.9, 0.9);
+    const Vec2 along(std::cos(angle), std::sin(angle)), out = perp(along);
+    const Outline wall = make_segment(-length * along, length * along).outline;
+    const double gap = std::pow(10.0, random.uniform(-12.0, 0.0)), falls = random.uniform(-1.0, 1.0);
+    const Vec2 q = at * along + gap * out, rate = 10.0 * along + falls * out;
+    const Nearest nearest = nearest_on(wall.sites[0], q);
+    if (nearest.foot != Foot::interior || gap < 1e-14 * length)
+      continue;  // else on which side it is, is rounding
+    EXPECT_NEAR(distance_rate(wall.sites[0], nearest, q, rate), falls, 1e-13) << "trial " << trial;
+  }
+}
+
 }  // namespace
 }  // namespace brink::facing_test
