@@ -137,6 +137,7 @@ class Beside {
 Apart clear_between(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits) {
   const Outline &oa = a.outline(), &ob = b.outline();
   if (!has_few_corners(oa) || !has_few_corners(ob)) return {from};
+  if (oa.hull.normals.empty() && ob.hull.normals.empty()) return {from};  // two points have no side
   const double near = near_by(oa.bounding_radius + ob.bounding_radius, limits);
   Placed pa, pb;
   double t = from;

@@ -42,7 +42,7 @@ Vec2 face_at_end(const Site& site, bool at_a) {
   return right_of(at_a ? direction_at_start(site) : direction_at_end(site));
 }
 
-/// What is nearer to a wire than this part of its level has started there: what collides keeps a quarter of it.
+/// What is nearer to a wire than this part of its level has started there: what collides keeps five eighths of it.
 constexpr double kStartsOnWire = 0.2;
 
 /// A direction out of the site's end at which q is nearest; where they are one, to `rounding`, that of a
