@@ -147,6 +147,12 @@ std::optional<double> canonical_root(Gap&& gap, double t, double begin, double r
   return std::nullopt;
 }
 
+/// True if the root t is after `to` for sure: the general search's time, which alone says whether it is, may be earlier by so
+/// much as roundings are worth (canonical_root()). Of what creeps onto what it is pressed on that is not little.
+bool is_after(double t, double to, double rounding, double speed) {
+  return (t - to) * speed > 64.0 * (rounding + 4.0 * ulp(t) * speed);
+}
+
 /// Two centred discs as the general search sees them at time t: the same operations in the same order.
 FeatureContact disc_contact(const DiscMover& a, const Parabola& path_a, const DiscMover& b,
                             const Parabola& path_b, double t) {
@@ -214,9 +220,11 @@ bool discs(const DiscMover& a, const DiscMover& b, double from, double to, const
   const double place_noise =
       PlaceNoise(*a.motion, *b.motion)(nearest, path_a.at(nearest), path_b.at(nearest));
   if (!near_enough(place_noise, limits)) return false;
-  if (!(t <= to)) return true;
-  if (too_fast(rel.velocity, t, smallest_radius(a.radius, b.radius))) return false;
+  if (t == kForever) return true;
   const Vec2 then = rel.offset + s * rel.velocity;
+  if (t > to && is_after(t, to, gap_noise(place_noise, then, Vec2::Zero()), -then.dot(rel.velocity) / met))
+    return true;
+  if (too_fast(rel.velocity, t, smallest_radius(a.radius, b.radius))) return false;
   const double closing = -then.dot(rel.velocity) / then.norm();
   if (doubtful(closing, rel.noise)) return false;
   if (closing < 0.0) return true;
@@ -227,6 +235,7 @@ bool discs(const DiscMover& a, const DiscMover& b, double from, double to, const
   const auto root = canonical_root(gap, t, std::max(rel.reference, 0.0), rounding, closing);
   if (!root) return false;
   t = *root;
+  if (t > to) return true;
   answer = {PairAnswer::Status::contact, t, disc_contact(a, path_a, b, path_b, t)};
   answer.contact.level = answer.contact.sink = level;
   return true;
@@ -394,12 +403,13 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
     place_noise = noise(time, parabola.at(time), parabola_of_other.at(time));
     if (!near_enough(place_noise, limits)) return false;
   }
-  if (!(t <= to)) return true;
+  if (t == kForever) return true;
   const double speed =
       std::max(-normal.dot(path.velocity + (t - rel.reference) * path.acceleration), rel.noise);
-  const Vec2 at_disc = parabola.at(t), at_other = parabola_of_other.at(t);
   // no site has coordinates larger than that
   const Vec2 far_off = Vec2::Constant(other.outline().bounding_radius);
+  if (t > to) return is_after(t, to, gap_noise(place_noise, path.at(t - rel.reference), far_off), speed);
+  const Vec2 at_disc = parabola.at(t), at_other = parabola_of_other.at(t);
   const double rounding = gap_noise(place_noise, at_disc - at_other, far_off);
   const double moment = rounding / speed + 4.0 * ulp(t);
   // segments that are met at the same time to rounding (a notch) count together, as in the general search
@@ -420,6 +430,7 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
       canonical_root([&](double time) { return nearest_at(time).first; }, t, rel.reference, rounding, speed);
   if (!root) return false;
   t = *root;
+  if (t > to) return true;
   // the one that is nearest at the canonical time, which need not be the one with the least root
   const auto [above, met] = nearest_at(t);
   const Vec2 q = frame.direction_to_local(parabola.at(t) - parabola_of_other.at(t));

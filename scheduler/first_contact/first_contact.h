@@ -92,8 +92,7 @@ struct SearchScratch {
   struct Neighbour {
     int site = -1;
     Vec2 normal = Vec2::Zero();
-    bool leaving = false;  ///< touching, but not approaching
-    bool at_end = false;   ///< its nearest point is an end of it: the sample is on neither of its sides
+    bool at_end = false;  ///< its nearest point is an end of it: the sample is on neither of its sides
   };
   SiteIndex::Scratch index;    ///< of the candidates that are being looked through
   SiteIndex::Scratch nearest;  ///< of single questions beside them

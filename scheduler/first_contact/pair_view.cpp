@@ -72,7 +72,7 @@ PairView::PairView(const Mover& a, const Mover& b, const SearchLimits& limits, S
 /// in a notch or flush beside it, the side counts as a face that goes on beyond the end. Right on a wire
 /// without thickness the side is that of the sample's own body. And of two points that meet the direction
 /// between them is rounding: they have that of their way.
-Feature PairView::vertex_feature(const Half& half, int i, int j, const Nearest& nearest,
+Feature PairView::vertex_feature(const Placing& p, const Half& half, int i, int j, const Nearest& nearest,
                                  const SamplePath& path) const {
   const Sample& sample = half.sample(i);
   const Site& site = half.site(j);
@@ -81,12 +81,12 @@ Feature PairView::vertex_feature(const Half& half, int i, int j, const Nearest& 
   f.gap = side * nearest.distance - site.radius - sample.radius;
   const bool at_end = nearest.foot != Foot::interior && site.kind != SiteKind::point;
   if (at_end && site.solid && nearest.distance <= limits_.tolerance) {
-    const double rounding = gap_rounding(half, i, path.q);
+    const double rounding = p.gap_rounding(half, i, path.q);
     const bool at_a = nearest.foot == Foot::start;
     // In a hollow corner each side is a face: the way from the corner itself is rounding, and between the two
     // normals lies one that says of neither how long it is clear.
     const bool in_notch = nearest.distance <= 4.0 * rounding && is_hollow(site, at_a);
-    if (in_notch || is_flush_on(half, i, site, path.q, rounding)) {
+    if (in_notch || is_flush_on(p, half, i, site, path.q, rounding)) {
       f.normal = face_at_end(site, at_a);
       if (!in_notch) f.gap = f.normal.dot(path.q - nearest.point);
       f.rate = f.normal.dot(path.rate);
@@ -96,21 +96,21 @@ Feature PairView::vertex_feature(const Half& half, int i, int j, const Nearest& 
   }
   const bool thin = !site.solid && site.kind != SiteKind::point && site.radius + sample.radius == 0.0;
   if (thin && nearest.distance <= limits_.touch &&
-      nearest.distance <= kStartsOnWire * nominal_level(now_, half, i, site, path.q)) {
+      nearest.distance <= kStartsOnWire * nominal_level(p, half, i, site, path.q)) {
     // on the wire itself, or by less than a step beyond: it is on the side on which its body is
     const Vec2 inside =
-        way_inside(half.samples_of(), sample, placed(half.s).frame, placed(half.t).frame, path.q);
+        way_inside(half.samples_of(), sample, p.of(half.s_is_a).frame, p.of(!half.s_is_a).frame, path.q);
     const bool at_a = nearest.foot == Foot::start;
     const Vec2 face = at_end ? face_at_end(site, at_a) : f.normal, off = path.q - nearest.point;
     // at an end only where it is abreast of that, to rounding
-    if (!at_end || std::abs(cross(face, off)) <= 4.0 * gap_rounding(half, i, path.q)) {
+    if (!at_end || std::abs(cross(face, off)) <= 4.0 * p.gap_rounding(half, i, path.q)) {
       const bool beyond = face.dot(inside) < 0.0;
       f.normal = beyond ? Vec2(-face) : face;
       f.gap = at_end ? f.normal.dot(off) : beyond ? -nearest.distance : nearest.distance;
     }
   }
   const auto comes_to_end = [&] {
-    const double rounding = 4.0 * gap_rounding(half, i, path.q);
+    const double rounding = 4.0 * p.gap_rounding(half, i, path.q);
     if (nearest.foot == Foot::interior && site.kind != SiteKind::point)
       return comes_to_corner(site, nearest, path.q, path.rate, rounding);
     // What goes by the end of a wire at its level has a direction of its own.
@@ -195,11 +195,7 @@ void PairView::find_neighbours(const Half& half, int i, std::span<const std::uin
     const Feature f = vertex_feature(half, i, static_cast<int>(k), nearest, path);
     // a face through which the corner's own edge leads does not count for it
     if (pokes_through(half, i, site, nearest, f)) continue;
-    // What is touched and left is the nearest for a while yet: it would hide a neighbour that is
-    // approached (a disc that goes from wall to wall of a corner), so gap_to_neighbours() passes over
-    // it.
-    const bool leaving = f.gap - level(half, i, site, path.q) <= limits_.touch && !approaching(f, path);
-    scratch_.neighbours.push_back({f.site, f.normal, leaving, nearest.foot != Foot::interior});
+    scratch_.neighbours.push_back({f.site, f.normal, nearest.foot != Foot::interior});
   }
   // A corner flush on one side lies beyond the end of the other:
   // the corner's other side says nothing of how far the flush one is
@@ -222,7 +218,7 @@ bool PairView::is_flush_on(const Placing& p, const Half& half, int i, const Site
   if (!(way.squaredNorm() <= limits_.tolerance * limits_.tolerance)) return false;
   const Vec2 normal = face_at_end(site, at_a);
   if (std::abs(cross(normal, way)) > 4.0 * rounding) return false;
-  const Frame &s = (half.s_is_a ? p.a : p.b).frame, &t = (half.s_is_a ? p.b : p.a).frame;
+  const Frame &s = p.of(half.s_is_a).frame, &t = p.of(!half.s_is_a).frame;
   const Corner corner = corner_seen(half.samples_of(), sample, s, t);
   return parts_alone(normal, corner, corner_at(site, at_a));
 }
@@ -506,10 +502,21 @@ bool PairView::way_leads_through(const Site& site, const Vec2& q, double roundin
   return along >= -slack && along <= d.squaredNorm() + slack;
 }
 
-/// To the side on which a corner lies flush, if it does; else to the nearest site that it is not just
-/// leaving. Infinite, with no site, if there is none.
-PairView::GapAndSite PairView::gap_to_neighbours(const Placing& p, const Half& half, int i,
+bool PairView::is_left(const Placing& p, const Half& half, int i, const SearchScratch::Neighbour& neighbour,
+                       const Nearest& nearest) const {
+  const SamplePath path = sample_path(p.of(half.s_is_a), p.of(!half.s_is_a), half.sample(i).p);
+  Feature f = vertex_feature(p, half, i, neighbour.site, nearest, path);
+  // what has crossed a wire goes on against the normal of the side from which it came
+  if (!half.site(neighbour.site).solid && f.normal.dot(neighbour.normal) < 0.0) f.rate = -f.rate;
+  return !approaching(f, path);
+}
+
+/// To the side on which a corner lies flush, if it does; else to the nearest site but those that it touches and does
+/// not approach: they are the nearest for a while yet, and would hide one that is approached (a disc that goes from
+/// wall to wall of a corner). Infinite, with no site, if there is none.
+PairView::GapAndSite PairView::gap_to_neighbours(const Placing& p, const Half& half, const Feature& f,
                                                  const Vec2& q) const {
+  const int i = f.sample;
   const double sample_radius = half.sample(i).radius;
   // within so few ticks of the clock every way is straight
   const bool at_once = std::abs(p.time - now_.time) <= 64.0 * ulp(p.time);
@@ -525,21 +532,26 @@ PairView::GapAndSite PairView::gap_to_neighbours(const Placing& p, const Half& h
   }
   double least = kForever;
   for (const SearchScratch::Neighbour& neighbour : scratch_.neighbours) {
-    if (neighbour.leaving) continue;
     const Site& site = half.site(neighbour.site);
     const Nearest n = nearest_on(site, q);
     const bool interior = n.foot == Foot::interior && site.kind != SiteKind::point;
     // an interior foot comes before an end that is as near
     const double rank = n.distance - site.radius - (interior ? limits_.touch : 0.0);
     if (!(rank < least)) continue;
-    least = rank;
     const double radius = site.radius + sample_radius;
     const bool wire = radius == 0.0 && !site.solid && site.kind != SiteKind::point;
     // A wire has no inside, so its distance has no sign of its own: measured from the side that the
     // sample was on, its gap falls through 0 where it crosses, and the bisection has something to find.
-    const double side = wire ? side_kept(site, neighbour, n, q, rounding, at_once) : side_of(site, n, q);
-    found = {side * n.distance - radius - level_of(nominal_level(p, half, i, site, q), sink_),
-             neighbour.site};
+    double side = wire ? side_kept(site, neighbour, n, q, rounding, at_once) : side_of(site, n, q);
+    // Nothing is in a solid and nearest to a convex tip: what is behind it is in, or along, the other side that ends there.
+    if (side < 0.0 && !wire && n.foot != Foot::interior && corner_at(site, n.foot == Foot::start).convex())
+      side = 1.0;
+    const double gap = side * n.distance - radius - level_of(nominal_level(p, half, i, site, q), sink_);
+    // asked of the moment itself, not of when the neighbours were found: what is left then may be pressed on later;
+    // what the search follows is approached
+    if (neighbour.site != f.site && gap <= limits_.touch && is_left(p, half, i, neighbour, n)) continue;
+    least = rank;
+    found = {gap, neighbour.site};
   }
   return found;
 }
@@ -573,7 +585,7 @@ PairView::GapAndSite PairView::gap_when(const Placing& then, const Half& half, c
   const Placed &s = half.s_is_a ? then.a : then.b, &u = half.s_is_a ? then.b : then.a;
   const Vec2 q = u.frame.direction_to_local(s.frame.direction_to_world(half.sample(f.sample).p) +
                                             (s.frame.origin - u.frame.origin));
-  if (half.sample(f.sample).arc_site < 0) return gap_to_neighbours(then, half, f.sample, q);
+  if (half.sample(f.sample).arc_site < 0) return gap_to_neighbours(then, half, f, q);
   const double nominal = nominal_level(then, half, f.sample, half.site(f.site), q);
   return {arc_gap(half, f, q) - level_of(nominal, sink_), f.site};
 }

@@ -69,7 +69,9 @@ class PairView {
 
   /// Vertex sample i against site j, whose nearest point is given.
   Feature vertex_feature(const Half& half, int i, int j, const Nearest& nearest,
-                         const SamplePath& path) const;
+                         const SamplePath& path) const {
+    return vertex_feature(now_, half, i, j, nearest, path);
+  }
   /// The same two features as `f`, looked at now; `time` is noted in the answer.
   FeatureContact look_again(const Half& half, const Feature& f, double time) const;
   FeatureContact contact_of(const Half& half, const Feature& f, double time) const;
@@ -179,6 +181,7 @@ class PairView {
     /// what is met here would have no side there.
     double in_double = 0.0;
 
+    const Placed& of(bool is_a) const { return is_a ? a : b; }
     void note_turning();
     double gap_rounding(const Half& half, int i, const Vec2& q) const {
       const double arm = half.sample(i).p.lpNorm<1>(), distance = q.lpNorm<1>();
@@ -194,6 +197,8 @@ class PairView {
   /// d2q/dt2 of sample i now, in T's turning frame (path_bounds() of pair_kinematics.h) [m/s^2]. Of motions that an
   /// integrator has made without what changes their turning.
   Vec2 acceleration_now(const Half& half, int i, const SamplePath& path) const;
+  Feature vertex_feature(const Placing& placing, const Half& half, int i, int j, const Nearest& nearest,
+                         const SamplePath& path) const;
   Feature nearest_feature(const Half& half, int i, double tolerance) const;
   ArcStep arc_now(const Half& half, int i, int j) const;
   void put(Placing& placing, double t) const;
@@ -209,7 +214,11 @@ class PairView {
   /// True if the straight way to q from where the neighbours were found crosses the segment, to `rounding` [m]
   /// of its ends.
   bool way_leads_through(const Site& site, const Vec2& q, double rounding) const;
-  GapAndSite gap_to_neighbours(const Placing& placing, const Half& half, int i, const Vec2& q) const;
+  /// True of a neighbour that the sample, at `nearest` from it in this placing, does not approach.
+  bool is_left(const Placing& placing, const Half& half, int i, const SearchScratch::Neighbour& neighbour,
+               const Nearest& nearest) const;
+  GapAndSite gap_to_neighbours(const Placing& placing, const Half& half, const Feature& f,
+                               const Vec2& q) const;
   GapAndSite gap_when(const Placing& then, const Half& half, const Feature& f) const;
   double arc_gap(const Half& half, const Feature& f, const Vec2& center) const;
   /// Which samples of a half may be within reach [m] of a site, told by their places alone.

@@ -200,5 +200,51 @@ TEST(ClosedForms, DiscsThatStartAtAWallGiveEveryBit) {
   EXPECT_GT(both.search.closed_forms(), 5000U);
 }
 
+/// True if, wherever the window ends about the time of contact, that is told by both ways where it is in the window, and
+/// nowhere else.
+bool told_by_its_window(BothWays& search, SeededRandom& r, const Flier& a, const Flier& b, double from,
+                        double contact) {
+  for (int k = 0; k < 24; ++k) {
+    const double off = std::pow(10.0, r.uniform(-17.0, -7.0)) * (k % 2 ? 1.0 : -1.0);
+    const double to = k < 2 ? std::nextafter(contact, k ? 1e9 : 0.0) : contact + off;
+    if (to < from) continue;
+    for (const PairAnswer& answer : {search.quick(a, b, from, to), search.slow(a, b, from, to)}) {
+      const bool told = answer.status == PairAnswer::Status::contact;
+      if (told != (contact <= to) || (told && answer.contact.time != contact)) return false;
+    }
+  }
+  return true;
+}
+
+// What creeps towards what it is pressed on takes long over a rounding: whether it meets by the end of a window is for
+// the canonical time to say, not for the root of a quadratic.
+TEST(ClosedForms, AWindowThatEndsRightAfterTheContactHasIt) {
+  SeededRandom r(14);
+  BothWays search;
+  int met = 0;
+  for (int k = 0; k < 4000; ++k) {
+    const double radius = r.uniform(0.1, 1.0), from = r.uniform(0.0, 2.0), x = r.uniform(-20.0, 20.0);
+    const bool discs = k % 4 == 0;
+    const Vec2 gravity(0.0, discs ? 0.0 : -8.0);
+    const double creep = discs   ? std::pow(10.0, r.uniform(-8.0, -2.0))
+                         : k % 2 ? 0.0
+                                 : 1e-8 * r.uniform(-1.0, 1.0);
+    // on a floor of two pieces that join below it, or on a disc
+    const double floor = r.uniform(-1.0, 1.0), above = discs ? 1e-6 : 0.0;
+    const Flier ball(
+        make_disc(radius),
+        Motion::ballistic(from, {{{x, floor + radius + above}, 0.0}, {{0.0, -creep}, 0.0}}, {gravity, 0.0}));
+    const Flier ground =
+        discs ? Flier(make_disc(0.5), Motion::still({{x, floor - 0.5}, 0.0}))
+              : Flier(make_segment({x, 0.0}, {x + 4.0, 0.0}), Motion::still({{0.0, floor}, 0.0}));
+    const PairAnswer first = search.slow(ball, ground, from, from + 1e3);
+    if (first.status != PairAnswer::Status::contact || first.contact.time == from) continue;
+    ++met;
+    ASSERT_TRUE(told_by_its_window(search, r, ball, ground, from, first.contact.time))
+        << "case " << k << ": " << std::setprecision(17) << first.contact.time << " from " << from;
+  }
+  EXPECT_GT(met, 2000);
+}
+
 }  // namespace
 }  // namespace brink::closed_forms_test
