@@ -408,6 +408,7 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
       std::max(-normal.dot(path.velocity + (t - rel.reference) * path.acceleration), rel.noise);
   // no site has coordinates larger than that
   const Vec2 far_off = Vec2::Constant(other.outline().bounding_radius);
+  // where roundings decide the general search does: whether a root beyond the window is on its segment was not looked at
   if (t > to) return is_after(t, to, gap_noise(place_noise, path.at(t - rel.reference), far_off), speed);
   const Vec2 at_disc = parabola.at(t), at_other = parabola_of_other.at(t);
   const double rounding = gap_noise(place_noise, at_disc - at_other, far_off);

@@ -502,8 +502,7 @@ class PairSearch {
       return false;
     }
     // Within a tick of the clock it is somewhere else: no probe can say whether it meets, and told() says so.
-    if (path.rate.norm() * same_instant(t_) > kSlowOfSize * smallest_radius(a_.outline(), b_.outline()))
-      return remember(half, f, t_);
+    if (view_.is_too_fast(path)) return remember(half, f, t_);
     // of a sample past its contact, so far that sides may have changed, nothing more is to be learnt
     const bool past = best_.sample == f.sample && best_.sample_on_a == half.s_is_a && t_ > best_.time;
     if (past) return true;

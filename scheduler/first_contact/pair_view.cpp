@@ -378,8 +378,7 @@ PairView::Doubt PairView::doubt(const Half& half, const Feature& f) const {
   const double rounding = gap_rounding(half, f.sample, now.q);
   const double nominal = nominal_level(now_, half, f.sample, half.site(f.site), now.q);
   if (!can_hold(rounding, limits_.tolerance, nominal, sink_ < 0.0)) return Doubt::place;
-  const double moved = now.rate.norm() * same_instant(now_.time);
-  return moved > kSlowOfSize * smallest_radius(a_.outline(), b_.outline()) ? Doubt::speed : Doubt::none;
+  return is_too_fast(now) ? Doubt::speed : Doubt::none;
 }
 
 bool PairView::beyond_doubt() const {

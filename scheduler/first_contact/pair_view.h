@@ -8,6 +8,7 @@
 
 #include "brink/core/shapes/distance.h"
 #include "brink/scheduler/first_contact/arc_contact.h"
+#include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/first_contact/first_contact.h"
 #include "brink/scheduler/first_contact/pair_kinematics.h"
 #include "brink/scheduler/first_contact/tolerances.h"
@@ -119,6 +120,11 @@ class PairView {
   /// Why a contact of these features that is met now cannot be told, if it cannot.
   enum class Doubt { none, place, speed };
   Doubt doubt(const Half& half, const Feature& f) const;
+  /// True of a sample that moves a part of the pair's size within one instant: no time can be told for it.
+  bool is_too_fast(const SamplePath& path) const {
+    return path.rate.norm() * same_instant(now_.time) >
+           kSlowOfSize * smallest_radius(a_.outline(), b_.outline());
+  }
   /// True if no feature's contact near the present time can be in doubt, by far: a quick look.
   bool beyond_doubt() const;
   /// Sets what is taken off every level, <= 0: sink_at_start().

@@ -229,7 +229,7 @@ TEST(ClosedForms, AWindowThatEndsRightAfterTheContactHasIt) {
     const double creep = discs   ? std::pow(10.0, r.uniform(-8.0, -2.0))
                          : k % 2 ? 0.0
                                  : 1e-8 * r.uniform(-1.0, 1.0);
-    // on a floor of two pieces that join below it, or on a disc
+    // on the end of a floor, or near a disc
     const double floor = r.uniform(-1.0, 1.0), above = discs ? 1e-6 : 0.0;
     const Flier ball(
         make_disc(radius),
