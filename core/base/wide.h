@@ -9,3 +9,14 @@
 #else
 #define BRINK_WIDE
 #endif
+
+namespace brink {
+
+/// Four numbers as one register, where there is one that wide: each operation is that of all four.
+using Four = double __attribute__((vector_size(32), may_alias));
+
+/// @pre `of` is aligned to 32 bytes
+inline Four& four(double (&of)[4]) { return reinterpret_cast<Four&>(of); }
+inline const Four& four(const double (&of)[4]) { return reinterpret_cast<const Four&>(of); }
+
+}  // namespace brink

@@ -20,14 +20,18 @@ namespace {
 
 /// C -= A B^T
 inline void subtract_product(Block& C, const Block& A, const Block& B) {
-  for (int c = 0; c < 3; ++c)
-    for (int r = 0; r < 4; ++r)
-      C.at[c][r] -= A.at[0][r] * B.at[0][c] + A.at[1][r] * B.at[1][c] + A.at[2][r] * B.at[2][c];
+  const Four a0 = four(A.at[0]), a1 = four(A.at[1]), a2 = four(A.at[2]);
+  const Four c0 = four(C.at[0]) - (a0 * B.at[0][0] + a1 * B.at[1][0] + a2 * B.at[2][0]);
+  const Four c1 = four(C.at[1]) - (a0 * B.at[0][1] + a1 * B.at[1][1] + a2 * B.at[2][1]);
+  const Four c2 = four(C.at[2]) - (a0 * B.at[0][2] + a1 * B.at[1][2] + a2 * B.at[2][2]);
+  four(C.at[0]) = c0;
+  four(C.at[1]) = c1;
+  four(C.at[2]) = c2;
 }
 
 /// x -= A y
 inline void subtract_product(Triple& x, const Block& A, const Triple& y) {
-  for (int r = 0; r < 4; ++r) x.at[r] -= A.at[0][r] * y.at[0] + A.at[1][r] * y.at[1] + A.at[2][r] * y.at[2];
+  four(x.at) = four(x.at) - (four(A.at[0]) * y.at[0] + four(A.at[1]) * y.at[1] + four(A.at[2]) * y.at[2]);
 }
 
 /// x -= A^T y

@@ -9,7 +9,6 @@ namespace brink {
 
 struct CoulombLoads {
   std::vector<ContactLoad> loads;  ///< of each contact: p >= 0, |q| <= mu p, |torque| <= r p, to the bit
-  std::vector<char> slips;         ///< of each contact: q is mu p, against the slip
   int sweeps = 0;
 };
 

@@ -22,15 +22,12 @@ constexpr int kCorrections = 12;  ///< of gaps that were missed
 constexpr double kFallsAtMost = 0.5;
 /// After so many of them friction is kept: what sweeps leave unsolved would change gaps by more than is left to correct. After
 /// a few where that is little beside the way that forces make of rest in the step, so that what the last lifts push is so, too.
-constexpr int kFrictionAnew = 2, kFrictionAtMost = 6;
-constexpr double kLittleLeft = 1e-3;
+constexpr int kFrictionAnew = 1, kFrictionAtMost = 6;
+constexpr double kLittleLeft = 1e-2;
 /// In an island of few members so many solves more take friction bounds from the forces of the one before.
 constexpr int kFrictionPasses = 2;
 /// In any other friction comes of sweeps: a hundred go on well enough from the step before, an impact takes more.
 constexpr int kFewestSweeps = 100, kMostSweeps = 1000;
-/// Friction drives that goes along with a slip of more than this part of the fastest member's speed, and of the speed that forces
-/// alone make of rest in the step: of a ten-thousandth of that at least.
-constexpr double kDrives = 1e-2, kNeverDrives = 1e-4;
 
 /// A contact that takes part in the step.
 struct Part {
@@ -132,88 +129,42 @@ double falling_speed(const std::vector<Vec3>& force, const std::vector<Vec3>& ma
   return h * most;
 }
 
-double fastest(const std::vector<Vec3>& velocity) {
-  double most = 0.0;
-  for (const Vec3& v : velocity) most = std::max(most, v.head<2>().norm());
-  return most;
-}
-
-/// Of many: friction as sweeps find it, gaps as the convex problem with that friction keeps them. A contact that slips has
-/// its friction as a force; one that is held is held within the bounds of its normal force. Which of the normal forces of a
-/// heap carry it is not unique, so those of the sweeps are told, which obey Coulomb's law.
+/// Of many: friction as sweeps find it, gaps as the convex problem with that friction keeps them. Every contact is held
+/// within the bounds of its normal force from the sweeps; what slips has its friction at the bound. Which of the normal
+/// forces of a heap carry it is not unique, so those of the sweeps are told, which obey Coulomb's law.
 class SweptFriction {
  public:
   SweptFriction(StepProblem given, const GoOn& go_on)
-      : given_(std::move(given)),
-        coulomb_(sweep_by_coulomb(given_, kFewestSweeps, kMostSweeps, go_on)),
-        problem_(given_) {
+      : coulomb_(sweep_by_coulomb(given, kFewestSweeps, kMostSweeps, go_on).loads),
+        problem_(std::move(given)) {
     for (std::size_t k = 0; k < problem_.contacts.size(); ++k) {
       StepContact& s = problem_.contacts[k];
-      s.expected = coulomb_.loads[k];
-      s.friction_bound = coulomb_.slips[k] ? 0.0 : bound(k);
+      s.expected = coulomb_[k];
+      s.friction_bound = s.contact.friction * s.expected.normal;
       s.rolling_bound = s.contact.rolling_resistance * s.expected.normal;
-      if (coulomb_.slips[k]) push(k, s.expected.tangential);
     }
   }
 
   /// The same friction, and the gaps of another problem of the same contacts.
   void take_gaps(const StepProblem& other) {
     for (std::size_t k = 0; k < problem_.contacts.size(); ++k)
-      given_.contacts[k].gap = problem_.contacts[k].gap = other.contacts[k].gap;
+      problem_.contacts[k].gap = other.contacts[k].gap;
   }
 
-  Solved solve(ConeQp& solver, int& factorisations, const GoOn& go_on) {
+  Solved solve(ConeQp& solver, int& factorisations, const GoOn& go_on) const {
     Solved solved;
-    const double falling = falling_speed(given_.force, given_.mass, given_.duration);
-    for (bool driven = true; driven;) {
-      solved.result = solver.step(problem_, go_on);
-      factorisations += solved.result.factorisations;
-      if (solved.result.status == StepResult::Status::stopped || !(solved.result.residual <= kResidual))
-        return solved;
-      driven = hold_what_drives(solved.result.velocity, falling);
-    }
-    for (std::size_t k = 0; k < problem_.contacts.size(); ++k)
-      if (coulomb_.slips[k]) solved.result.loads[k].tangential = coulomb_.loads[k].tangential;
-    solved.loads = coulomb_.loads;
-    solved.residual = unexplained(given_, solved.result.velocity, solved.loads);
+    solved.result = solver.step(problem_, go_on);
+    factorisations += solved.result.factorisations;
+    if (solved.result.status == StepResult::Status::stopped || !(solved.result.residual <= kResidual))
+      return solved;
+    solved.loads = coulomb_;
+    solved.residual = unexplained(problem_, solved.result.velocity, solved.loads);
     return solved;
   }
 
  private:
-  double bound(std::size_t k) const {
-    return problem_.contacts[k].contact.friction * coulomb_.loads[k].normal;
-  }
-  void push(std::size_t k, double impulse) {
-    const LastingContact& c = problem_.contacts[k].contact;
-    problem_.force[c.body] += impulse / problem_.duration * c.tangent_on_body;
-    if (c.other >= 0) problem_.force[c.other] += impulse / problem_.duration * c.tangent_on_other;
-  }
-  /// Of what slips faster than `slow` [m/s]: true if its friction goes along with that.
-  bool drives(std::size_t k, const std::vector<Vec3>& w, double slow) const {
-    const LastingContact& c = problem_.contacts[k].contact;
-    const double slip = c.tangent_on_body.dot(w[c.body]) +
-                        (c.other < 0 ? 0.0 : c.tangent_on_other.dot(w[c.other])) -
-                        problem_.contacts[k].support_velocity[1];
-    return coulomb_.slips[k] && std::copysign(slip, slip * coulomb_.loads[k].tangential) > slow;
-  }
-  /// Such contacts are held, or slip the other way: within bounds. Each comes once. In what lies all but still they would
-  /// creep for ever. True if there were any.
-  bool hold_what_drives(const std::vector<Vec3>& w, double falling) {
-    const double slow = std::clamp(kDrives * fastest(w), kNeverDrives * falling, kDrives * falling);
-    bool any = false;
-    for (std::size_t k = 0; k < problem_.contacts.size(); ++k) {
-      if (!drives(k, w, slow)) continue;
-      any = true;
-      coulomb_.slips[k] = 0;
-      push(k, -coulomb_.loads[k].tangential);
-      problem_.contacts[k].friction_bound = bound(k);
-    }
-    return any;
-  }
-
-  StepProblem given_;
-  CoulombLoads coulomb_;
-  StepProblem problem_;  ///< that with this friction
+  std::vector<ContactLoad> coulomb_;
+  StepProblem problem_;
 };
 
 /// `swept`: the friction of many, kept where `keep` says so.

@@ -6,6 +6,12 @@ namespace brink {
 
 namespace {
 
+/// Others may give a member so much of the fastest one's speed in the step. Who joins for that and is met by nobody is let go
+/// as it was; who is met and had not joined cuts the step.
+constexpr double kPassedOn = 0.1;
+/// ... but of two islands no more than so many times the fastest one's of both.
+constexpr double kCalm = 2.0;
+
 /// One body beside an island.
 class Outsider {
  public:
@@ -23,7 +29,12 @@ class Outsider {
     const double speed =
         std::max(speed_within(rounded.twist, radius), speed_within(going_.rounded(), radius));
     // the members' largest pull stands for its own
-    reach_ = h * (speed + members.pull() * h);
+    member_gains_ = members.pull() * h + kPassedOn * members.speed();
+    // Of two islands that hardly move nobody will fall freely in the step: what rolls slowly beside a heap, touching nobody, is
+    // not taken into it, nor does it wake it.
+    if (trajectories.is_held(body))
+      member_gains_ = std::min(member_gains_, kCalm * std::max(speed, members.speed()));
+    reach_ = h * (speed + member_gains_);
     box_.add(rounded.pose.position);
     box_ = box_.grown(radius + reach_ + search.limits().tolerance);
   }
@@ -52,9 +63,7 @@ class Outsider {
     const Vec2 shift = search_.shift_of(*pair);
     const ExtendedState &of_member = members_.state(member), a = member_first ? of_member : state_,
                         b = (member_first ? state_ : of_member).shifted(shift);
-    // a member has its last twist from the start on, ahead of the present one by what forces make in the
-    // step
-    const double behind = members_.pull() * h_, most = most_absorbed(*pair);
+    const double most = most_absorbed(*pair);
     const double far = search_.limits().tolerance + reach_ + members_.reach_of(member);
     for (const NearFeature& f :
          near_features(search_.outline_of(pair->body), a, search_.outline_of(pair->other_body), b, far)) {
@@ -75,7 +84,8 @@ class Outsider {
       // What closes faster is an impact and meets the island by itself. What parts now may still be caught
       // up with.
       // The gap that is left is that of the step's end, closing by as much as the two may.
-      if (closing <= most && f.gap - h_ * (may_close + behind) <= search_.limits().tolerance) return true;
+      if (closing <= most && f.gap - h_ * (may_close + member_gains_) <= search_.limits().tolerance)
+        return true;
     }
     return false;
   }
@@ -85,6 +95,8 @@ class Outsider {
   const IslandMembers& members_;
   int body_;
   double h_, reach_ = 0.0;
+  /// A member has its last twist from the start on, ahead of the present one by what forces and others make in the step [m/s].
+  double member_gains_ = 0.0;
   ExtendedState state_;
   ExtendedTwist going_;  ///< of its motion: of one that another island holds that of the end of its step
   Box box_;

@@ -12,9 +12,11 @@ IslandMembers::IslandMembers(const World& world, const Trajectories& trajectorie
       trajectories_(&trajectories),
       search_(&search),
       now_(now),
-      bodies_(members.begin(), members.end()) {
+      bodies_(members.begin(), members.end()),
+      places_(bodies_.empty() ? 0 : bodies_.back() - bodies_.front() + 1) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const int k = bodies_[i];
+    places_[k - bodies_.front()] = static_cast<int>(i);
     states_.push_back(trajectories.state_now(k));
     accelerations_.push_back(trajectories.acceleration(k));
     const double radius = search.outline_of(k).bounding_radius;

@@ -36,9 +36,7 @@ class IslandMembers {
   const std::vector<int>& bodies() const { return bodies_; }  ///< ascending
   const Body& body(int member) const { return world_->bodies[bodies_[member]]; }
   /// @pre it is one of them
-  int place_of(int body) const {
-    return static_cast<int>(std::lower_bound(bodies_.begin(), bodies_.end(), body) - bodies_.begin());
-  }
+  int place_of(int body) const { return places_[body - bodies_.front()]; }
   bool has(int body) const { return std::binary_search(bodies_.begin(), bodies_.end(), body); }
   const ExtendedState& state(int member) const { return states_[member]; }
   const Acceleration& acceleration(int member) const { return accelerations_[member]; }
@@ -108,6 +106,7 @@ class IslandMembers {
   double now_;
   double h_ = 0.0, reach_ = 0.0;
   std::vector<int> bodies_;
+  std::vector<int> places_;  ///< of every body from the first to the last of them
   std::vector<ExtendedState> states_;
   std::vector<Acceleration> accelerations_;
   std::vector<double> speeds_, pulls_;  ///< [m/s], [m/s^2], of any point of each

