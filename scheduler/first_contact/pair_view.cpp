@@ -441,29 +441,30 @@ double PairView::sink_at_start() const {
   // what was pressed then has met since; of thousands of steps ago nothing is left to tell
   if (!a_.motion->remembers(start()) || !b_.motion->remembers(start())) return 0.0;
   if (discs_were_apart()) return 0.0;
-  // One sink for the pair, whichever of its features is met: start_sink() is given the least favourable of
-  // each number.
   // The copy has the scratch in common: neighbours that were found before are lost.
   PairView then = *this;
   if (then.now_.time != start()) then.place(start());
   std::optional<RelativeBounds> at_once;  // most pairs have nothing near: theirs are not asked for
-  double gap = kForever, rate = kForever, noise = 0.0, bend = 0.0, step = 0.0;
-  bool now = false;
-  then.each_feature(limits_.tolerance, [&](const Half& half, const Feature& f) {
+  // What start_sink() is given of one feature. One that has room to fall, or is deeper than any overlap that a start may
+  // have and so is not the start of this pair, gives nothing.
+  struct Start {
+    double gap = kForever, rate = kForever, noise = 0.0, bend = 0.0, step = 0.0;
+    bool at_once = false;  ///< it collides at once
+    double sink() const { return start_sink(gap, rate, noise, bend, step); }
+  };
+  const auto start_of = [&](const Half& half, const Feature& f) -> std::optional<Start> {
     const SamplePath path = then.path(half, f.sample);
     const Site& site = half.site(f.site);
     const double rounding = then.gap_rounding(half, f.sample, path.q);
-    const double own_step = sink_step(limits_.touch, rounding);
-    const double above = f.gap - then.nominal_level(then.now_, half, f.sample, site, path.q);
-    // Farther off than a sink step it has room to fall; deeper than any overlap that a start may have, it is
-    // not the start of this pair.
-    if (!(above < own_step) || above < -kOverlapAtStart * limits_.tolerance) return;
+    Start s;
+    s.step = sink_step(limits_.touch, rounding);
+    s.gap = f.gap - then.nominal_level(then.now_, half, f.sample, site, path.q);
+    if (!(s.gap < s.step) || s.gap < -kOverlapAtStart * limits_.tolerance) return std::nullopt;
     const bool approaching = then.approaching(f, path);
     // Two corners that pass each other do not meet, however fast the gap of one of their sides falls; but they touch, and
     // what comes along after them is pressed on.
     const bool passes = approaching && then.passes_tip(half, f);
-    // A pair that collides at once has no need to sink until it does.
-    now = now || (above <= 0.0 && approaching && !passes && !then.hidden_behind_others(half, f, path));
+    s.at_once = s.gap <= 0.0 && approaching && !passes && !then.hidden_behind_others(half, f, path);
     if (!at_once)
       at_once = RelativeBounds::over(a_.outline(), *a_.motion, b_.outline(), *b_.motion, start(), start());
     const PathBounds bounds = path_bounds(path, half.s_is_a ? *at_once : at_once->swapped(), 0.0);
@@ -471,14 +472,32 @@ double PairView::sink_at_start() const {
     // seen from within an arc the gap bends by v^2 / rho besides (site_step.h); outside that is too much,
     // never too little
     const double hollow = of_arc ? bounds.speed * bounds.speed / (path.q - site.center).norm() : 0.0;
-    gap = std::min(gap, above);
-    rate = std::min(rate, passes ? 0.0 : f.rate);
-    noise = std::max(noise, then.rate_noise(path));
-    bend = std::max(bend, bounds.acceleration + hollow);
-    step = std::max(step, own_step);
+    s.rate = passes ? 0.0 : f.rate;
+    s.noise = then.rate_noise(path);
+    s.bend = bounds.acceleration + hollow;
+    return s;
+  };
+  // One sink for the pair, whichever of its features is met: start_sink() is given the least favourable of
+  // each number.
+  Start least;
+  double of_others = 0.0;
+  then.each_feature(limits_.tolerance, [&](const Half& half, const Feature& f) {
+    const std::optional<Start> s = start_of(half, f);
+    if (!s) return;
+    least.at_once = least.at_once || s->at_once;
+    least.gap = std::min(least.gap, s->gap);
+    least.rate = std::min(least.rate, s->rate);
+    least.noise = std::max(least.noise, s->noise);
+    least.bend = std::max(least.bend, s->bend);
+    least.step = std::max(least.step, s->step);
+    // a sample in a groove, or between two tips, touches other sites than the nearest, elsewhere, and may leave those slower
+    then.each_other_place(half, f, limits_.tolerance, [&](const Feature& other) {
+      if (const std::optional<Start> o = start_of(half, other)) of_others = std::min(of_others, o->sink());
+    });
   });
-  if (now || !(gap < kForever)) return 0.0;
-  return start_sink(gap, rate, noise, bend, step);
+  // A pair that collides at once has no need to sink until it does.
+  if (least.at_once || !(least.gap < kForever)) return 0.0;
+  return std::min(least.sink(), of_others);
 }
 
 double PairView::side_kept(const Site& site, const SearchScratch::Neighbour& as_found, const Nearest& now,

@@ -173,6 +173,20 @@ class PairView {
         visit(half, Feature{i, static_cast<int>(j), step.gap, step.rate, step.normal, step.point});
     }
   }
+  /// Of a vertex f's sample against all sites that are as near to it, up to `tolerance`, in another place than f's.
+  template <class Visit>
+  void each_other_place(const Half& half, const Feature& f, double tolerance, Visit&& visit) const {
+    const Sample& sample = half.sample(f.sample);
+    if (sample.arc_site >= 0) return;
+    const SamplePath now = path(half, f.sample);
+    const Vec2 here = nearest_on(half.site(f.site), now.q).point;
+    for (int j = 0; j < static_cast<int>(half.sites_of().sites.size()); ++j) {
+      const Nearest nearest = nearest_on(half.site(j), now.q);
+      const double gap = nearest.distance - half.site(j).radius - sample.radius;
+      if (j == f.site || gap > tolerance || (nearest.point - here).norm() <= limits_.tolerance) continue;
+      visit(vertex_feature(half, f.sample, j, nearest, now));
+    }
+  }
   /// The two outlines at one moment, seen from `base`: the world's origin, or the pair's own where the
   /// world's is too far away for doubles.
   struct Placing {

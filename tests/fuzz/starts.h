@@ -186,13 +186,61 @@ inline worlds::Verdict examine(const std::string& text, const std::string& name)
   return verdict;
 }
 
+/// A disc that touches two places at once: in the groove of a solid, a wire or a container, or under the two ends of a bent
+/// wire. It starts sunk by a rounding up to what outlines may overlap, all but at rest, and is pulled about any way.
+inline std::string between_two_places(std::uint64_t seed) {
+  Random random(seed);
+  const auto log_uniform = [&](double low, double high) {
+    return low * std::pow(high / low, random.uniform());
+  };
+  const double size = log_uniform(0.02, 1.0), steep = random.uniform(0.2, 1.3), w = size * std::cos(steep),
+               h = size * std::sin(steep);
+  const double radius = 0.3 * size, sunk = size * log_uniform(1e-16, 1e-12);
+  const bool legs = random.below(4) == 0;
+  const double e = random.below(2) ? 1.0 : random.uniform();
+  const double pulls = random.below(3) == 0 ? random.uniform(0.0, 6.3) : -0.5 * std::numbers::pi;
+  std::ostringstream t;
+  t << std::setprecision(17) << "# between two places " << seed << "\n[world]\nduration = 0.2\ngravity = ["
+    << 9.81 * std::cos(pulls) << ", " << 9.81 * std::sin(pulls)
+    << "]\n[solver]\nmax_collisions = 3000\n[materials.default]\nrestitution = " << e << "\n[[sites]]\n";
+  const auto v = [&] { return (random.below(2) ? 1.0 : -1.0) * log_uniform(1e-12, 1e-3); };
+  if (legs) {  // its ends w to either side, h / 2 below its centre of mass, on the upper half of a disc
+    const double large = w / std::sin(steep) * random.uniform(1.05, 3.0);  // clear of the legs
+    t << "disc = { radius = " << large << " }\n[[bodies]]\nchain = { vertices = [[" << -w << ", 0], [0, " << h
+      << "], [" << w << ", 0]] }\nposition = [0, " << std::sqrt(large * large - w * w) + 0.5 * h - sunk
+      << "]\n";
+  } else {
+    switch (random.below(3)) {
+      case 0:
+        t << "chain = { vertices = [[" << -w << ", " << h << "], [0, 0], [" << w << ", " << h << "]] }\n";
+        break;
+      case 1:
+        t << "polygon = { vertices = [[" << -w << ", " << -h << "], [" << w << ", " << -h << "], [" << w
+          << ", " << h << "], [0, 0], [" << -w << ", " << h << "]] }\n";
+        break;
+      default:
+        t << "polygon = { vertices = [[0, 0], [" << w << ", " << h << "], [" << w << ", " << 4.0 * size
+          << "], [" << -w << ", " << 4.0 * size << "], [" << -w << ", " << h << "]] }\ninside_of = true\n";
+    }
+    // the sides rise at the angle `steep`, so the disc touches both from a height of radius / cos(steep) on
+    t << "[[bodies]]\ndisc = { radius = " << radius << " }\nposition = [0, "
+      << radius / std::cos(steep) - sunk << "]\n";
+  }
+  t << "velocity = [" << v() << ", " << v() << "]\nangular_velocity = " << v() << "\n";
+  return t.str();
+}
+
 /// So many seeds; what is wrong is told, and counted.
-inline void examine_all(std::uint64_t first, std::uint64_t number, worlds::Tally& tally) {
+template <class Make>
+void examine_all(std::uint64_t first, std::uint64_t number, worlds::Tally& tally, Make&& make) {
   for (std::uint64_t seed = first; seed < first + number; ++seed) {
-    const std::string text = Maker(seed).make();
+    const std::string text = make(seed);
     worlds::count(seed, text, tally, [&](const std::string& name) { return examine(text, name); });
   }
   std::cout << "seeds " << first << " .. " << first + number - 1 << ": " << tally;
+}
+inline void examine_all(std::uint64_t first, std::uint64_t number, worlds::Tally& tally) {
+  examine_all(first, number, tally, [](std::uint64_t seed) { return Maker(seed).make(); });
 }
 
 }  // namespace brink::starts

@@ -16,5 +16,12 @@ TEST(StartsStress, AtTheTouchAreSound) {
   EXPECT_EQ(tally.wrong, 0);
 }
 
+TEST(StartsStress, BetweenTwoPlacesAreSound) {
+  worlds::Tally tally;
+  starts::examine_all(from_environment("BRINK_SEED", 10001), from_environment("BRINK_WORLDS", 2000), tally,
+                      starts::between_two_places);
+  EXPECT_EQ(tally.wrong, 0);
+}
+
 }  // namespace
 }  // namespace brink::starts_stress
