@@ -492,7 +492,10 @@ double PairView::sink_at_start() const {
     least.step = std::max(least.step, s->step);
     // a sample in a groove, or between two tips, touches other sites than the nearest, elsewhere, and may leave those slower
     then.each_other_place(half, f, limits_.tolerance, [&](const Feature& other) {
-      if (const std::optional<Start> o = start_of(half, other)) of_others = std::min(of_others, o->sink());
+      const std::optional<Start> o = start_of(half, other);
+      if (!o) return;
+      least.at_once = least.at_once || o->at_once;
+      of_others = std::min(of_others, o->sink());
     });
   });
   // A pair that collides at once has no need to sink until it does.
