@@ -235,6 +235,13 @@ bool IslandMotion::rests(double rest_speed) {
     if (!held) return false;
     for (IslandContact& c : problem_.contacts) c.friction *= kWidened;
     if (!stays_at_rest(*solver_, problem_, go_on_)) return false;
+    // told as that of steps is: by how much friction is beyond its cone, of the largest force
+    double beyond = 0.0, most = 0.0;
+    for (const IslandContact& c : problem_.contacts) {
+      most = std::max(most, c.normal_force);
+      beyond = std::max(beyond, std::abs(c.tangential_force) - c.friction / kWidened * c.normal_force);
+    }
+    if (most > 0.0) tally_->friction_residual = std::max(tally_->friction_residual, beyond / most);
   }
   take_forces();
   // what fades is less than the tolerance times a weight; what the option rest_speed stops may be more,

@@ -187,7 +187,7 @@ inline worlds::Verdict examine(const std::string& text, const std::string& name)
 }
 
 /// A disc that touches two places at once: in the groove of a solid, a wire or a container, or under the two ends of a bent
-/// wire. It starts sunk by a rounding up to what outlines may overlap, all but at rest, and is pulled about any way.
+/// wire. It starts sunk by 1e-16 to 1e-12 of its size, all but at rest, and is pulled into the groove or any way.
 inline std::string between_two_places(std::uint64_t seed) {
   Random random(seed);
   const auto log_uniform = [&](double low, double high) {
