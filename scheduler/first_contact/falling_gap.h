@@ -31,6 +31,17 @@ class FallingGap {
   /// By when a bent path has met as well, if it meets [s].
   double later() const { return t_ + 4.0 * std::max(0.0, now_) / speed_ + 64.0 * noise(); }
 
+  /// True if by `then` it may have bent up by more than `height` [m] and down again: what is met then may be another crossing.
+  bool may_rise_first(double then, double height) const {
+    return bend_ >= off_ && 0.5 * acceleration_ * (then - t_) * (then - t_) > height;
+  }
+  /// No sooner than then it rises, but for a thousand ticks of the clock [s].
+  double soonest_rise() const {
+    const double at_least = 1024.0 * ulp(t_),
+                 bends = acceleration_ > 0.0 ? speed_ / acceleration_ : later() - t_;
+    return t_ + std::max(at_least, std::min(bends, later() - t_));
+  }
+
   /// The lower end: clear now, or a little before, but not before it rose; none where it never was clear since `floor`.
   template <class Gap>
   std::optional<double> clear_end(Gap&& gap, double floor) const {

@@ -525,7 +525,12 @@ class PairSearch {
     const double low = clear.value_or(t_);
     // no probe may lie beyond a motion
     const double last = std::min(a_.motion->end(), b_.motion->end());
-    const FallingGap::Beyond beyond = falling.beyond_end(gap, low, last);
+    FallingGap::Beyond beyond = falling.beyond_end(gap, low, last);
+    // What may have risen by more than the touching distance in between has its crossing on the way down to its first dip, or
+    // none there: what it comes to after that, half a turn later, say, is another one.
+    const bool may_rise = falling.may_rise_first(beyond.end, limits_.touch);
+    const double dip = may_rise ? deepest_after(half, f, falling, last) : 0.0;
+    if (dip > 0.0 && dip < beyond.end) beyond = {dip, dip > low && gap(dip) < -rounding};
     double high = beyond.end;
     // If no probe found where the gap is surely gone, the bottom of the dip decides.
     // A dip of less than a rounding is none, whoever looked where; what falls on is looked at again from nearer. But
@@ -533,7 +538,7 @@ class PairSearch {
     const bool sharp = site.radius + half.sample(f.sample).radius == 0.0;
     const bool tip = !beyond.surely && sharp && nearest_on(site, path.q).foot != Foot::interior;
     if (!beyond.surely) {
-      const double deepest = deepest_after(half, f, falling.later(), last);
+      const double deepest = dip > 0.0 ? dip : deepest_after(half, f, falling, last);
       if (!tip)
         high = deepest > low && gap(deepest) < -rounding ? deepest : low;
       else if (deepest > low)
@@ -596,21 +601,22 @@ class PairSearch {
     return remember(half, f, last_clear_time(above, passed, t_));
   }
 
-  /// Where the gap, which falls now, is smallest, if it rises again within eight times what is left until
-  /// `about`, and not after `last`; 0 if it does not. On a grid of 1024 ticks of the clock, which is wider
+  /// Where the gap, which falls now, is smallest, if it rises again within eight times what is left until it has met for
+  /// sure, and not after `last`; 0 if it does not. What turns may rise and fall again before that: it is asked from the
+  /// soonest on at which it can rise, so that the first dip is found. On a grid of 1024 ticks of the clock, which is wider
   /// than what roundings of the rate make of it, and much narrower than the dip.
-  double deepest_after(const Half& half, const Feature& f, double about, double last) const {
+  double deepest_after(const Half& half, const Feature& f, const FallingGap& gap, double last) const {
     // a copy is placed elsewhere: this search goes on at t_
     PairView there = view_;
     const auto rises = [&](double t) {
       there.place(t);
       return there.look_again(half, f, t).closing_speed <= 0.0;
     };
-    double falling = t_, rising = about;
-    for (int k = 0; !(rising > falling && rises(std::min(rising, last))); ++k) {
-      // three doublings: eight times what was left
-      if (k == 3 || rising >= last) return 0.0;
-      falling = std::max(falling, rising);
+    const double until = t_ + 8.0 * (gap.later() - t_);
+    double falling = t_, rising = gap.soonest_rise();
+    while (!rises(std::min(rising, last))) {
+      if (rising >= until || rising >= last) return 0.0;
+      falling = rising;
       rising = t_ + 2.0 * (rising - t_);
     }
     rising = std::min(rising, last);
