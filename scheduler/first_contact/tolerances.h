@@ -99,6 +99,12 @@ inline double nominal_level(double touch, double tolerance, double rounding, boo
   return can_hold(rounding, tolerance) ? 0.0 : 2.0 * rounding;
 }
 
+/// The highest at which thin ones meet that are seen in double precision, or finer [m]: where they lie at this gap, no
+/// rounding of their places puts them on a wire's other side.
+inline double thin_level_at_most(double touch, double tolerance) {
+  return nominal_level(touch, tolerance, kFarOfTolerance * tolerance, true);
+}
+
 /// What moves more than this part of its radius within one instant (same_instant()) is too fast to be told.
 inline constexpr double kSlowOfSize = 1e-3;
 

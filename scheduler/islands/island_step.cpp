@@ -189,6 +189,8 @@ Solved solve(ConeQp& solver, const StepProblem& p, std::optional<SweptFriction>&
 struct Miss {
   double most = 0.0;
   double lift = 0.0;  ///< how much higher the contact must aim for the step's end, not to miss it
+  bool counts = false,
+       too_much = false;  ///< by more than kMissCounts of the contact's tolerance, or all of it
 };
 
 /// Where a parabola through three looks, one apart, is lowest, from the middle one; 0: at none between them.
@@ -249,27 +251,32 @@ double falls_below_tangent(const IslandContact& c, double h, const std::vector<V
 }
 
 /// True of a gap that cannot be missed: along the tangent it stays open by more than it can fall below it.
-bool stays_open(const IslandContact& c, double h, const std::vector<Vec3>& velocity, double tolerance) {
+bool stays_open(const IslandContact& c, double h, const std::vector<Vec3>& velocity) {
   if (!c.convex) return false;
   double opens = c.rows.normal_on_body.dot(velocity[c.rows.body]);
   if (c.rows.other >= 0) opens += c.rows.normal_on_other.dot(velocity[c.rows.other]);
   // beside an end the tangent itself leads behind the site: nothing below it counts as open there
-  const double low = c.at_end ? tolerance : -kMissCounts * tolerance;
+  const double low = c.at_end ? c.tolerance : -kMissCounts * c.tolerance;
   return c.gap >= low && c.gap + h * opens - falls_below_tangent(c, h, velocity) >= low;
 }
 
 /// By looks along the step, and where parabolas through them dip in between. A miss that does not count may be told as
 /// none. `cheap`: a lift that costs little in this step [m]; what was below 0 before is not lifted by more.
-Miss missed(const IslandStep& step, std::size_t k, double h, const std::vector<Vec3>& velocity,
-            double tolerance, double cheap, const GapAlong& gap) {
+Miss missed(const IslandStep& step, std::size_t k, double h, const std::vector<Vec3>& velocity, double cheap,
+            bool rise, const GapAlong& gap) {
   Miss miss;
-  if (stays_open(step.contacts[k], h, velocity, tolerance)) return miss;
+  if (stays_open(step.contacts[k], h, velocity)) return miss;
+  const IslandContact& contact = step.contacts[k];
+  const double tolerance = contact.tolerance;
   std::array<double, kLooks + 1> seen;
   const double start = gap(k, 0.0, velocity);
-  // what the scene lets overlap may stay as deep as it is
+  // What the scene lets overlap may stay as deep as it is; what begins at a wire, as near as that, rises along the step if
+  // that costs little.
   const double kept = start < -tolerance ? start : 0.0;
+  const bool rises = rise && contact.thin && -kept <= cheap;
   const auto look = [&](double at) {
-    const double part = at / kLooks, there = gap(k, h * part, velocity) - kept;
+    const double part = at / kLooks, floor = rises ? (1.0 - part) * kept : kept;
+    const double there = gap(k, h * part, velocity) - floor;
     miss.most = std::max(miss.most, -there);
     // A contact aims for a gap at the end of the step; with constant twists a part of the way has that
     // part of the lift. The least part keeps a miss close to the start from asking for a lift without
@@ -292,6 +299,8 @@ Miss missed(const IslandStep& step, std::size_t k, double h, const std::vector<V
     if (const double most = std::max(bend(i), bend(i + 1));
         most > kMissCounts * tolerance && std::min(seen[i], seen[i + 1]) < most)
       look_for_corner(i, seen[i], seen[i + 1], look);
+  miss.counts = miss.most > kMissCounts * tolerance;
+  miss.too_much = miss.most > tolerance;
   return miss;
 }
 
@@ -360,8 +369,8 @@ bool stops(const GoOn& go_on) { return go_on && !go_on(); }
 
 /// The step on which nobody presses, which is the answer if no gap is missed. For what the solver does not come to:
 /// contacts that part far slower than the step is long.
-StepOutcome without_loads(IslandStep& step, double h, double tolerance, const GapAlong& gap,
-                          const GoOn& go_on, const ListFarther& farther, StepOutcome outcome) {
+StepOutcome without_loads(IslandStep& step, double h, const GapAlong& gap, const GoOn& go_on,
+                          const ListFarther& farther, StepOutcome outcome) {
   std::vector<Vec3> velocity = step.velocity;
   for (std::size_t i = 0; i < step.mass.size(); ++i)
     // what is held has an infinite mass: nothing is added to it
@@ -369,19 +378,17 @@ StepOutcome without_loads(IslandStep& step, double h, double tolerance, const Ga
   if (farther) farther(velocity);
   // all contacts are asked, those that wait for their turn, too
   for (std::size_t k = 0; k < step.contacts.size(); ++k)
-    if (stops(go_on) || missed(step, k, h, velocity, tolerance, 0.0, gap).most > kMissCounts * tolerance)
-      return outcome;
+    if (stops(go_on) || missed(step, k, h, velocity, 0.0, false, gap).counts) return outcome;
   step.velocity = std::move(velocity);
   for (IslandContact& c : step.contacts) c.normal_force = c.tangential_force = 0.0;
   outcome.solved = true;
   return outcome;
 }
 
-}  // namespace
-
-/// One loop to two ends: a contact at an end joins once it is missed, and a gap that was missed aims higher.
-StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap,
-                      const GoOn& go_on, const ListFarther& farther) {
+/// One loop to two ends: a contact at an end joins once it is missed, and a gap that was missed aims higher. `rise`: thin
+/// ones that begin below what they must keep do so.
+StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, bool rise, const GapAlong& gap,
+                 const GoOn& go_on, const ListFarther& farther) {
   StepOutcome outcome;
   std::vector<Part> parts;
   std::vector<std::size_t> waiting;
@@ -401,16 +408,14 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
     Solved solved = solve(solver, problem_of(step, h, parts), swept, keep, outcome.factorisations, go_on);
     StepResult& result = solved.result;
     if (result.status == StepResult::Status::stopped) return outcome;
-    if (!(result.residual <= kResidual))
-      return without_loads(step, h, tolerance, gap, go_on, farther, outcome);
+    if (!(result.residual <= kResidual)) return without_loads(step, h, gap, go_on, farther, outcome);
     const std::size_t listed = step.contacts.size();
     if (farther) farther(result.velocity);
     for (std::size_t k = listed; k < step.contacts.size(); ++k) waiting.push_back(k);
     for (std::size_t k = 0; k < parts.size(); ++k) parts[k].expected = solved.loads[k];
     // those that are missed take part from now on: each comes once
     const auto met = std::stable_partition(waiting.begin(), waiting.end(), [&](std::size_t k) {
-      return stops(go_on) ||
-             !(missed(step, k, h, result.velocity, tolerance, cheap, gap).most > kMissCounts * tolerance);
+      return stops(go_on) || !missed(step, k, h, result.velocity, cheap, rise, gap).counts;
     });
     // solved again with them before any lift is asked for: without them the motion is another
     if (met != waiting.end()) {
@@ -421,25 +426,27 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
     }
     joined = false;
     double worst = 0.0;
+    bool too_much = false;
     std::vector<double> more;  // lifts that one more solve would need
     for (const Part& part : parts) {
       if (stops(go_on)) return outcome;
-      const Miss miss = missed(step, part.contact, h, result.velocity, tolerance, cheap, gap);
+      const Miss miss = missed(step, part.contact, h, result.velocity, cheap, rise, gap);
       worst = std::max(worst, miss.most);
+      too_much = too_much || miss.too_much;
       // From a tenth of the tolerance on, though only a miss beyond the tolerance asks for that solve, which then
       // makes up for all of them.
-      more.push_back(miss.most > kMissCounts * tolerance ? kAimHigher * miss.lift : 0.0);
+      more.push_back(miss.counts ? kAimHigher * miss.lift : 0.0);
     }
     ++again;
     left = worst;
-    if (worst > tolerance) {
+    if (too_much) {
       for (std::size_t k = 0; k < parts.size(); ++k) lift(parts[k], more[k]);
       continue;
     }
     double of = 0.0;
     const double won_here = won(step, result, parts, h, tolerance, of);
     // The caller tries a shorter step: by what faces that turn are missed is of second order in h.
-    if (won_here > kWonOf * of) return without_loads(step, h, tolerance, gap, go_on, farther, outcome);
+    if (won_here > kWonOf * of) return without_loads(step, h, gap, go_on, farther, outcome);
     // from here on loads stand at their contacts' places; won() took them at their parts'
     const std::vector<ContactLoad> loads = of_all(solved.loads, parts, step.contacts.size());
     const bool driven = std::any_of(parts.begin(), parts.end(),
@@ -462,6 +469,21 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
       step.contacts[k].tangential_force = loads[k].tangential / h;
     }
   }
+  return outcome;
+}
+
+}  // namespace
+
+StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap,
+                      const GoOn& go_on, const ListFarther& farther) {
+  const bool rise = std::any_of(step.contacts.begin(), step.contacts.end(),
+                                [](const IslandContact& c) { return c.thin && c.gap < -c.tolerance; });
+  StepOutcome outcome = take(solver, step, h, tolerance, rise, gap, go_on, farther);
+  if (outcome.solved || !rise || stops(go_on)) return outcome;
+  // what wires hold from both sides has nowhere to rise to
+  const int before = outcome.factorisations;
+  outcome = take(solver, step, h, tolerance, false, gap, go_on, farther);
+  outcome.factorisations += before;
   return outcome;
 }
 

@@ -25,7 +25,10 @@ namespace brink {
 /// A contact of the step, beside its geometry.
 struct IslandContact {
   LastingContact rows;
-  double gap = 0.0;  ///< at the start, less what it must keep [m]
+  double gap = 0.0;        ///< at the start, less what it must keep [m]
+  double tolerance = 0.0;  ///< by which its gap may be missed along the step [m]
+  bool thin =
+      false;  ///< it must keep off a wire without thickness: where it starts below that, it rises, where that costs little
   double friction = 0.0;
   double rolling_resistance = 0.0;  ///< largest torque for a normal force of 1 [m]
   bool driven = false;              ///< its site moves as it is told, and gives what energy that takes
@@ -56,7 +59,7 @@ using GapAlong = std::function<double(std::size_t k, double moment, const std::v
 using ListFarther = std::function<void(const std::vector<Vec3>& velocity)>;
 
 struct StepOutcome {
-  bool solved = false;  ///< every gap stays above -`tolerance` along the step; not where GoOn said no
+  bool solved = false;  ///< every gap stays within its tolerance along the step; not where GoOn said no
   int factorisations = 0;
   /// Energy that the step made [J], beyond what sites that move gave: at most 1e-3 of what it turned over. 0 where
   /// none does: all is slowed by as much then.
@@ -71,7 +74,7 @@ struct StepOutcome {
 inline constexpr std::size_t kFewMembers = 8;
 
 /// Takes a step of h > 0 [s]. What is not solved is to be tried again with a shorter one. `farther` is asked after every
-/// solve; what it adds takes part once it is missed.
+/// solve; what it adds takes part once it is missed. `tolerance`: the way by which places may be off in its energy [m].
 StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap,
                       const GoOn& go_on = {}, const ListFarther& farther = {});
 

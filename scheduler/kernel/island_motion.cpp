@@ -40,6 +40,9 @@ constexpr double kHolds = 1e-4;
 /// A step has held still what is slower than this part of the speed that falling for as long gives; its friction is then within
 /// cones so much wider.
 constexpr double kHeld = 1e-11, kWidened = 1.03;
+/// By how much a step may miss the gap to a wire without thickness, in touching distances: from half of one, at which a sharp
+/// sample meets it, a few such misses do not lead through it.
+constexpr double kThinMiss = 0.125;
 /// Halving a step makes its change of velocity fall to this part at most, if forces make it.
 /// What forces change goes with the step, so half is left at most; what an impact changes stays: 3/4 lies between.
 constexpr double kFalls = 0.75;
@@ -435,6 +438,9 @@ IslandContact IslandMotion::island_contact(const HeldContact& c) const {
   const int b = c.pair.with_site() ? -1 : members_.place_of(c.pair.other_body);
   made.rows = contact_at(a, b, c.feature.normal, members_.arm(c).cast<double>(), c.feature.point);
   made.gap = c.feature.gap - kept(c.feature);
+  made.thin = c.feature.thin;
+  // a wire has no inside: what is through it, by however little, is on its other side
+  made.tolerance = made.thin ? kThinMiss * search_->limits().touch : search_->limits().tolerance;
   const Material& material = response_->material_of(c.pair);
   made.friction = material.friction;
   made.rolling_resistance = material.rolling_resistance;

@@ -7,6 +7,7 @@
 
 #include "brink/core/base/go_on.h"
 #include "brink/core/contacts/impulse.h"
+#include "brink/scheduler/first_contact/tolerances.h"
 #include "brink/scheduler/islands/island_step.h"
 #include "brink/scheduler/kernel/collision_response.h"
 #include "brink/scheduler/kernel/island_members.h"
@@ -78,7 +79,9 @@ class IslandMotion {
   double fastest_approach(const HeldContact& c, const std::vector<Vec3>& velocity) const;
   bool passes_by(const HeldContact& c, double then, double closing) const;
   double most_absorbed(const PairKey& pair) const;
-  double kept(const NearFeature& f) const { return f.thin ? search_->limits().touch : 0.0; }
+  double kept(const NearFeature& f) const {
+    return f.thin ? thin_level_at_most(search_->limits().touch, search_->limits().tolerance) : 0.0;
+  }
   void make_problem();
   IslandContact island_contact(const HeldContact& c) const;
   void note_shape(const HeldContact& c, IslandContact& made) const;

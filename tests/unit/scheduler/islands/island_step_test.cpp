@@ -18,6 +18,7 @@ IslandStep over_floor(double gap, const Vec3& velocity) {
     IslandContact contact;
     contact.rows = contact_at(0, -1, {0.0, 1.0}, {x, -0.5}, {x, 0.0});
     contact.gap = gap;
+    contact.tolerance = kTolerance;
     step.contacts.push_back(contact);
   }
   return step;
@@ -66,6 +67,30 @@ TEST(IslandStep, LiftsOfWhichPartIsLostReachTheGap) {
   EXPECT_NEAR(step.velocity[0].y(), misses / h / (1.0 - lost), 1e-3);
 }
 
+// At a wire it keeps the gap that it has to the touching distance, far below the tolerance of places; and rises to what it
+// must keep in a step in which that costs little.
+TEST(IslandStep, GapAtAWireIsKeptFinely) {
+  constexpr double kTouch = 1e-3 * kTolerance;
+  for (const double h : {1e-7, 1e-2}) {
+    const double sinks = h > 1e-3 ? 0.5 * kTolerance : 0.0;            // of a face that turns, say
+    IslandStep step = over_floor(-8.0 * kTouch, Vec3(1.0, 0.0, 0.0));  // it has what that costs
+    step.force[0].y() = -9.81;
+    for (IslandContact& c : step.contacts) {
+      c.tolerance = 0.125 * kTouch;
+      c.thin = true;
+    }
+    const GapAlong gap = [&](std::size_t, double later, const std::vector<Vec3>& v) {
+      return -8.0 * kTouch + later * v[0].y() - sinks * later / h * later / h;
+    };
+    ConeQp solver;
+    ASSERT_TRUE(take_step(solver, step, h, kTolerance, gap).solved) << h;
+    const double least = h > 1e-3 ? 0.0 : -8.0 * kTouch;
+    const double ends = gap(0, h, step.velocity);
+    EXPECT_GE(ends, least - 0.125 * kTouch) << h;
+    EXPECT_LE(ends, least + 2e-3 * sinks) << h;  // corrections aim a thousandth too high
+  }
+}
+
 // A contact that nobody came to at first is listed where an impulse leads to it, and bars the way as the others do.
 TEST(IslandStep, ContactThatIsListedLateBarsTheWay) {
   const double h = 0.01, far = 0.02;
@@ -75,11 +100,13 @@ TEST(IslandStep, ContactThatIsListedLateBarsTheWay) {
   step.velocity = {Vec3(0.0, 0.0, 0.0), Vec3(5.0, 0.0, 0.0)};
   step.force = {Vec3::Zero(), Vec3::Zero()};
   IslandContact hit;
+  hit.tolerance = kTolerance;
   hit.rows = contact_at(0, 1, {1.0, 0.0}, Vec2::Zero(), Vec2::Zero());
   step.contacts.push_back(hit);
   IslandContact wall;
   wall.rows = contact_at(0, -1, {-1.0, 0.0}, Vec2::Zero(), Vec2::Zero());
   wall.gap = far;
+  wall.tolerance = kTolerance;
   const GapAlong gap = [&](std::size_t k, double later, const std::vector<Vec3>& v) {
     return k == 0 ? later * (v[0].x() - v[1].x()) : far - later * v[0].x();
   };
