@@ -728,7 +728,7 @@ TEST_F(Replayed, CellsAreCoarserWhereFramesAreLateAndFineWhereNothingMoves) {
     frames(40, 16);    // finer after 90
     frames(20, 60);    // which was too much
     frames(110, 16);
-    frames(110, 16);    // finer after 180
+    frames(610, 16);    // finer after 720
     const still = [pace.still(now + 100), pace.still(now + 200)], coarse = pace.detail.paint;
     pace.forget();
     const p = window.brink.player;

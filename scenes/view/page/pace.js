@@ -6,7 +6,8 @@
 const DETAILS = [{paint: 1, mesh: 1}, {paint: 1.5, mesh: 3}, {paint: 2, mesh: 4}, {paint: 3, mesh: 6}];
 const LATE = 1.25;  // of what a frame may take
 const LOOKS = 8;  // frames looked at before it is made coarser
-const PATIENCE = 90;  // frames in time before it is made finer; doubled each time that this was too much
+const PATIENCE = 90;  // frames in time before it is made finer; each time that this was too much, so many times as many
+const MORE_PATIENCE = 8, MOST_PATIENCE = 64 * PATIENCE;
 const STILL = 150;  // [ms] without a new frame: it stands still
 
 class Pace {
@@ -32,7 +33,7 @@ class Pace {
     this.inTime = slow ? 0 : this.inTime + this.looked;
     this.late = this.looked = 0;
     if (slow && this.level + 1 < DETAILS.length) {
-      if (this.triedAt === this.level) this.patience = Math.min(2 * this.patience, 64 * PATIENCE);
+      if (this.triedAt === this.level) this.patience = Math.min(MORE_PATIENCE * this.patience, MOST_PATIENCE);
       ++this.level;
     } else if (!slow && this.level > 0 && this.inTime >= this.patience) {
       this.triedAt = --this.level;

@@ -16,7 +16,6 @@ class Player {
     this.t = this.motions.begin;
     this.playing = false;
     this.pace = new Pace();
-    this.shown = [];  // rows of the table of events
     this.makeControls();
     this.makeTables();
     this.makeTimeline();
@@ -232,19 +231,28 @@ class Player {
     const now = lastAtOrBefore(n.event_t, this.t), before = [], after = [], limit = 20000;
     for (let k = now, looked = 0; k >= 0 && before.length < 8 && looked < limit; --k, ++looked) if (wanted(k)) before.unshift(k);
     for (let k = now + 1, looked = 0; k < n.event_t.length && after.length < 12 && looked < limit; ++k, ++looked) if (wanted(k)) after.push(k);
-    const table = byId('events');
-    table.replaceChildren();
-    for (const k of before.concat(after)) {
-      const row = table.insertRow();
-      row.className = k === before[before.length - 1] ? 'now' : '';
-      row.insertCell().textContent = Number(n.event_t[k].toPrecision(9));
-      row.cells[0].title = String(n.event_t[k]);
-      row.insertCell().textContent = about.kinds[n.event_kind[k]];
-      row.insertCell().textContent = [nameOf(n.event_body[k]), n.event_other[k] >= 0 ? nameOf(n.event_other[k]) : siteName(n.event_site[k])]
+    // rows are kept and filled anew: the browser lays out no more than what has changed
+    const shown = before.concat(after), table = byId('events'), {rows} = table;
+    while (rows.length > shown.length) table.deleteRow(-1);
+    while (rows.length < shown.length) this.insertEventRow(table);
+    shown.forEach((k, i) => {
+      const row = rows[i], [time, kindCell, who] = row.cells;
+      row.event = k;
+      setTo(row, 'className', k === before[before.length - 1] ? 'now' : '');
+      setTo(time, 'textContent', String(Number(n.event_t[k].toPrecision(9))));
+      setTo(time, 'title', String(n.event_t[k]));
+      setTo(kindCell, 'textContent', about.kinds[n.event_kind[k]]);
+      const names = [nameOf(n.event_body[k]), n.event_other[k] >= 0 ? nameOf(n.event_other[k]) : siteName(n.event_site[k])]
         .filter(s => s).join(' on ');
-      row.cells[2].title = row.cells[2].textContent;
-      row.onclick = () => this.toEvent(k);
-    }
+      setTo(who, 'textContent', names);
+      setTo(who, 'title', names);
+    });
+  }
+
+  insertEventRow(table) {
+    const row = table.insertRow();
+    for (let i = 0; i < 3; ++i) row.insertCell();
+    row.onclick = () => this.toEvent(row.event);
   }
 
   // -- the timeline --
@@ -457,6 +465,11 @@ function roomy(rows) {
     for (const y of row.slice(1)) [low, high] = [Math.min(low, y), Math.max(high, y)];
   const room = Math.max(0.05 * (high - low), 1e-3 * Math.max(Math.abs(low), Math.abs(high)), 1e-12);
   return [low - room, high + room];
+}
+
+/** Sets a property of an element if it has another value. */
+function setTo(element, name, value) {
+  if (element[name] !== value) element[name] = value;
 }
 
 /** A row for each name and value. */
