@@ -1,6 +1,7 @@
 #include "brink/core/query/gap_bound.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "brink/core/base/limits.h"
@@ -13,6 +14,8 @@ namespace {
 constexpr std::size_t kMostSites = 64;
 /// Lines that are tried: two polygons are parted by the third as a rule, if any line parts them.
 constexpr int kMostLines = 8;
+/// Hulls of more corners are not held against each other, side by side.
+constexpr std::size_t kMostCorners = 16;
 /// Of the distance of two hulls: a line that can be better by no more than this is the last.
 constexpr double kGoodLine = 0.05;
 
@@ -63,8 +66,35 @@ double parted_by_lines(const Standing& a, const Standing& b, double enough) {
     if (best > enough || (k > 0 && distance - best <= kGoodLine * distance)) return best;
     // the first x is any place, not one of the hull
     x = k == 0 ? lowest : nearest_to_origin(x, lowest);
+    // nor can any line be better than the hulls' own distance
+    if (x.norm() <= enough) return best;
   }
   return best;
+}
+
+/// How far the corners of s's hull are beyond that side of t's hull from which they are farthest.
+double beyond_a_side(const Standing& s, const Standing& t) {
+  const Hull &corners = s.outline.hull, &sides = t.outline.hull;
+  std::array<Vec2, kMostCorners> seen;
+  const std::size_t n = corners.corners.size();
+  for (std::size_t i = 0; i < n; ++i) seen[i] = t.frame.to_local(s.frame.to_world(corners.corners[i]));
+  double best = -kForever;
+  for (std::size_t k = 0; k < sides.normals.size(); ++k) {
+    double nearest = kForever;
+    for (std::size_t i = 0; i < n; ++i)
+      nearest = std::min(nearest, sides.normals[k].dot(seen[i] - sides.corners[k]));
+    best = std::max(best, nearest);
+  }
+  return best - corners.thickness - sides.thickness;
+}
+
+/// Of what touches along a side this is the gap, to rounding.
+double parted_by_sides(const Standing& a, const Standing& b) {
+  const auto suits = [](const Outline& o) {
+    return !o.hull.corners.empty() && o.hull.corners.size() <= kMostCorners;
+  };
+  if (!suits(a.outline) || !suits(b.outline)) return -kForever;
+  return std::max(beyond_a_side(a, b), beyond_a_side(b, a));
 }
 
 }  // namespace
@@ -82,7 +112,9 @@ double gap_at_least(const Outline& a, const Pose& pose_a, const Outline& b, cons
     least = std::max(least, seen_from_centre(*other, *one));
     if (least > enough || (is_centred_disc(one->outline) && least > -kForever)) return least;
   }
-  return held_by_discs ? std::max(least, parted_by_lines(placed_a, placed_b, enough)) : least;
+  if (!held_by_discs) return least;
+  least = std::max(least, parted_by_lines(placed_a, placed_b, enough));
+  return least > enough ? least : std::max(least, parted_by_sides(placed_a, placed_b));
 }
 
 }  // namespace brink

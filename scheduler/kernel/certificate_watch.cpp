@@ -15,6 +15,8 @@ namespace {
 
 /// More pairs of sites than this are not looked at for a crossing at every frame.
 constexpr std::size_t kMostCrossings = 4096;
+/// What is deeper in each other by less than this part of the contact tolerance at a frame is not looked at again.
+constexpr double kLittleOfTolerance = 1e-2;
 /// The search for overlaps at the start ends after so many: all bodies may be in one place.
 constexpr std::size_t kOverlapsCounted = 1000;
 
@@ -172,12 +174,19 @@ bool CertificateWatch::discs_resolved(const PairKey& pair, double gap) {
 /// Pairs that may have come to overlap since the last frame; then every centre's flight up to t. Whatever is seen halts
 /// the run, which poll() tells.
 void CertificateWatch::frame(double t) {
-  pairs_.each(t, [&](const PairKey& pair, double at_most) {
-    const double gap = pair_at_frame(pair, t, at_most);
+  pairs_.each(t, [&](const PairKey& pair, double at_least, double at_most) {
+    const double gap = is_nothing_new(at_least) ? at_least : pair_at_frame(pair, t, at_most);
     return run_->poll() ? std::optional(gap) : std::nullopt;
   });
   for (int k = 0; k < trajectories_->body_count() && !run_->halt(); ++k) flight(k, t);
   flown_until_ = t;
+}
+
+/// True of two that a line parts: they do not cross, and are no deeper in each other than what was seen before, or than
+/// roundings make.
+bool CertificateWatch::is_nothing_new(double at_least) const {
+  const double little = kLittleOfTolerance * search_->limits().tolerance;
+  return at_least >= -std::min(allowed(), std::max(max_overlap_, little));
 }
 
 /// By samples first, then by boundaries that cross, where that is not too many intersections. The gap [m], or

@@ -69,6 +69,7 @@ class CertificateWatch {
   void make_walls();
   /// The deepest overlap that is none [m]: the contact tolerance, on top of what the world started with.
   double allowed() const { return search_->limits().tolerance + start_overlap_; }
+  bool is_nothing_new(double at_least) const;
   double pair_at_frame(const PairKey& pair, double t, double at_most);
   bool report(const PairKey& pair, double depth, double t, const char* what);
 

@@ -47,7 +47,7 @@ void FramePairs::each(double t, const Look& look) {
   const double at_most = std::min(kFramesOfALook * step, kReachOfLength * length_);
   if (reach_ < 0.0 || *std::max_element(way_.begin(), way_.end()) > 0.5 * reach_) {
     const bool begins = step == kForever;
-    if (!begins && !(reach <= kReachOfLength * length_)) return each_once(look, at_most);
+    if (!begins && !(reach <= kReachOfLength * length_)) return each_once(look);
     list(begins ? 0.0 : reach);
   }
   for (Near& near : near_pairs_) {
@@ -55,26 +55,27 @@ void FramePairs::each(double t, const Look& look) {
     if (gone <= near.clear_until) continue;
     const double least = margin(near.pair);
     std::optional<double> gap = apart(near.pair, least);
-    if (*gap <= least) gap = look(near.pair, at_most);
+    if (*gap <= least) gap = look(near.pair, *gap - rounding(near.pair), at_most);
     if (!gap) return;
     near.clear_until = gone + std::max(0.0, *gap - least);
   }
 }
 
 /// Of what moves too far for a list nothing is kept: pairs are asked as they come, and those that may overlap looked at in order.
-void FramePairs::each_once(const Look& look, double at_most) {
+void FramePairs::each_once(const Look& look) {
   near_pairs_.clear();
   reach_ = -1.0;
   close_.clear();
   near_->each_among(poses_, [&](const PairKey& pair) {
-    const double least = margin(pair);
-    if (apart(pair, least) <= least) close_.push_back(pair);
+    const double least = margin(pair), gap = apart(pair, least);
+    if (gap <= least) close_.push_back({pair, gap - rounding(pair)});
     return run_->poll();
   });
   if (run_->halt()) return;
   std::sort(close_.begin(), close_.end());
-  for (const PairKey& pair : close_)
-    if (!look(pair, at_most)) return;
+  // nothing is known of them at the next frame: only what they are in each other now is asked for
+  for (const auto& [pair, at_least] : close_)
+    if (!look(pair, at_least, 0.0)) return;
 }
 
 /// The largest way since the last frame; infinity: nobody knows.
@@ -134,10 +135,15 @@ double FramePairs::apart(const PairKey& pair, double enough) const {
                       enough);
 }
 
-double FramePairs::margin(const PairKey& pair) const {
-  return kCloseOfLength * length_ + 8.0 * kRoundingOfPlace *
-                                        (poses_[pair.body].position.lpNorm<1>() +
-                                         poses_[search_->other_owner(pair)].position.lpNorm<1>());
+double FramePairs::margin(const PairKey& pair) const { return kCloseOfLength * length_ + rounding(pair); }
+
+/// Of apart(), by the poses [m].
+double FramePairs::rounding(const PairKey& pair) const {
+  const auto of = [&](int k) {
+    return poses_[k].position.lpNorm<1>() +
+           (1.0 + std::abs(poses_[k].angle)) * search_->outline_of(k).bounding_radius;
+  };
+  return 2.0 * kRoundingOfPlace * (of(pair.body) + of(search_->other_owner(pair)));
 }
 
 }  // namespace brink

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "brink/scheduler/kernel/near_pairs.h"
@@ -19,8 +20,9 @@ class FramePairs {
   /// Nothing is known: all pairs are to be seen at the next frame.
   void clear();
 
-  /// The gap of two [m], or a bound below it, `at_most` where it is more; nothing: no more pairs are to be seen.
-  using Look = std::function<std::optional<double>(const PairKey& pair, double at_most)>;
+  /// The gap of two [m], or a bound below it such as `at_least`, which is known to rounding; `at_most` where it is more;
+  /// nothing: no more pairs are to be seen.
+  using Look = std::function<std::optional<double>(const PairKey& pair, double at_least, double at_most)>;
   /// Calls look for each pair that may overlap at t: not for two that have not moved since they were seen, nor for two
   /// that were further apart than they have come since. Cost: a pose of every owner, what is left of all near pairs,
   /// and, once somebody has gone as far as the list of these holds, NearPairs::each_at().
@@ -35,10 +37,11 @@ class FramePairs {
 
   double go_to(double t);
   void list(double reach);
-  void each_once(const Look& look, double at_most);
+  void each_once(const Look& look);
   double way(const PairKey& pair) const;
   double apart(const PairKey& pair, double enough) const;
   double margin(const PairKey& pair) const;
+  double rounding(const PairKey& pair) const;
 
   const Trajectories* trajectories_;
   const ContactSearch* search_;
@@ -49,7 +52,7 @@ class FramePairs {
   std::vector<double> way_;       ///< of any point of an owner at most, since the pairs were listed [m]
   std::vector<Near> near_pairs_;  ///< in order; all that can overlap while nobody has gone half of reach_
   double reach_ = -1.0;           ///< [m]; below 0: not listed
-  std::vector<PairKey> close_;    ///< of one frame
+  std::vector<std::pair<PairKey, double>> close_;  ///< of one frame, each with a bound below its gap [m]
 };
 
 }  // namespace brink

@@ -40,7 +40,8 @@ Tally see(const World& world, const std::vector<double>& times) {
   for (std::size_t k = 0; k < times.size(); ++k) {
     const double t = times[k];
     std::set<PairKey> looked;
-    pairs.each(t, [&](const PairKey& pair, double at_most) {
+    pairs.each(t, [&](const PairKey& pair, double at_least, double at_most) {
+      EXPECT_LE(at_least, parts.search.gap(pair, t)) << "frame " << k;
       EXPECT_TRUE(looked.empty() || *looked.rbegin() < pair) << "frame " << k;
       looked.insert(pair);
       return std::optional(parts.search.gap(pair, t, at_most));
@@ -114,7 +115,7 @@ TEST(FramePairs, TwoThatStandAreSeenOnceAndAgainWhenAllIsForgotten) {
   FramePairs pairs(world, parts.trajectories, parts.search, parts.near, parts.run);
   int looks = 0;
   const auto frame = [&](double t) {
-    pairs.each(t, [&](const PairKey& pair, double) {
+    pairs.each(t, [&](const PairKey& pair, double, double) {
       ++looks;
       return std::optional(parts.search.gap(pair, t));
     });
