@@ -74,7 +74,11 @@ Box automatic_view(const World& world, std::span<const BodyState> bodies, std::s
     for (const Box& box : whole) core.add(box);
     return core;
   }
+  // a spring is seen whole, so its anchor is
   Box near = core;
+  for (const Force& force : world.forces)
+    if (const auto* spring = std::get_if<SpringForce>(&force); spring && spring->body_b < 0)
+      near.add(spring->at_b);
   std::vector<std::size_t> shown;
   // By the nearest point of each site, as a floor 1000 m long may begin far away and still pass
   // below the bodies.

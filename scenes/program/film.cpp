@@ -3,12 +3,14 @@
 // The run's times [s] go from --from to --to in steps of speed / fps. Each picture is drawn from the states
 // at its time and handed on: no more than one is in memory.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <sstream>
 #include <utility>
 
 #include "brink/core/base/printable.h"
@@ -16,6 +18,7 @@
 #include "brink/scenes/files/written_file.h"
 #include "brink/scenes/program/commands.h"
 #include "brink/scenes/program/run_folder.h"
+#include "brink/scenes/program/stopping.h"
 #include "brink/scenes/program/terminal.h"
 #include "brink/scenes/run_file/run_file.h"
 #include "brink/scenes/run_file/run_moment.h"
@@ -31,8 +34,14 @@ namespace fs = std::filesystem;
 /// the disk.
 constexpr double kMostPictures = 1e6;
 
-/// By the shell, as ffmpeg may be anywhere on its path.
-bool has_ffmpeg() { return std::system("ffmpeg -version >/dev/null 2>&1") == 0; }
+/// Looked for as the shell does, but not run: what runs meanwhile would take a Ctrl-C for itself.
+bool has_ffmpeg() {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (::access((fs::path(folder.empty() ? "." : folder) / "ffmpeg").c_str(), X_OK) == 0) return true;
+  return false;
+}
 
 /// Takes pictures one after another.
 class Film {
@@ -40,8 +49,10 @@ class Film {
   virtual ~Film() = default;
   /// @throws IoError. All pictures are of one size, the film's.
   virtual void add(const Picture& picture) = 0;
-  // To be called after the last picture; a film that is not finished is whatever came of it.
+  // To be called after the last picture.
   virtual void finish() {}
+  /// Nothing but whole files is left.
+  virtual void abandon() {}
 };
 
 /// FILE-00001.png, FILE-00002.png ...: beside each other in the order of their names.
@@ -79,6 +90,12 @@ class FfmpegFilm final : public Film {
   // After an exception: ffmpeg sees the end of its input and closes a shorter film.
   ~FfmpegFilm() override {
     if (pipe_) ::pclose(pipe_);
+  }
+  // A Ctrl-C has ended ffmpeg, too, wherever it was.
+  void abandon() override {
+    if (pipe_) ::pclose(std::exchange(pipe_, nullptr));
+    std::error_code ignored;
+    fs::remove(out_, ignored);
   }
   void add(const Picture& picture) override {
     if (std::fwrite(picture.pixels.data(), 4, picture.pixels.size(), pipe_) != picture.pixels.size())
@@ -159,10 +176,9 @@ int film_command(const FilmArguments& arguments) {
   options.view = extent_of(run, world);
   // Last of all checks: from here on there is a file, or a process that writes one.
   const auto film = film_into(arguments.out, options.size, arguments.fps);
+  stop_on_signals();
   ProgressBar bar(from, to, on_terminal(stderr));
-  // By a product: the last picture is not off by the sum of all steps.
-  for (double k = 0; k < pictures; ++k) {
-    const double t = std::min(to, from + k * arguments.speed / arguments.fps);
+  const auto add_picture = [&](double t) {
     // Between frames bodies are on the cubic of their recorded states; fixed sites are where they are told to be.
     RunMoment moment{t, world, run.states_at(t).states, site_poses(world, t), {}};
     options.time = t;
@@ -173,10 +189,20 @@ int film_command(const FilmArguments& arguments) {
     }
     film->add(draw_scene(world, moment.bodies, moment.sites, options));
     bar.show(t);
+  };
+  try {
+    // By a product: the last picture is not off by the sum of all steps.
+    for (double k = 0; k < pictures && !stop_asked(); ++k)
+      add_picture(std::min(to, from + k * arguments.speed / arguments.fps));
+    // Only now does ffmpeg write its last picture; whether it could is told by its exit status.
+    if (!stop_asked()) film->finish();
+  } catch (const IoError&) {
+    if (!stop_asked()) throw;  // a Ctrl-C has ended ffmpeg, too
   }
-  // Only now has ffmpeg written its last picture; whether it could is told by its exit status.
-  film->finish();
-  return kDone;
+  if (!stop_asked()) return kDone;
+  film->abandon();
+  fmt::print(stderr, "brink: stopped before the film was whole\n");
+  return kEndedEarly;
 }
 
 }  // namespace brink

@@ -137,10 +137,15 @@ std::string sweep_table(const Experiment& experiment, const SweepResults& result
     std::vector<std::string>& line = lines.emplace_back();
     for (const std::size_t k : axes) line.push_back(printable(group.values[k]));
     line.push_back(endings(group, results));
-    line.push_back(fmt::format("{}", middle("collisions")));
-    line.push_back(duration_text(middle("wall_seconds")));
-    line.push_back(fmt::format("{:.1e}", middle("energy_drift")));
-    line.push_back(fmt::format("{:.1e} m", middle("max_overlap")));
+    // what has not run yet has no numbers
+    const auto number = [&](const char* column, const auto& text) {
+      const double value = middle(column);
+      line.push_back(std::isnan(value) ? "" : text(value));
+    };
+    number("collisions", [](double x) { return fmt::format("{}", x); });
+    number("wall_seconds", duration_text);
+    number("energy_drift", [](double x) { return fmt::format("{:.1e}", x); });
+    number("max_overlap", [](double x) { return fmt::format("{:.1e} m", x); });
     line.push_back(hash_text(group, results));
   }
   return aligned(lines);

@@ -113,7 +113,7 @@ void main() {
   float away = abs(fract(height / ring + 0.5) - 0.5) * ring;
   color *= mix(0.93, 1.0, height > 0.0 ? smoothstep(0.5, 1.5, away / pixel) : 1.0);
   float line = min(1.0, 1.6 / large) * clamp(1.0 + 0.3 / large - border, 0.0, 1.0);
-  shade = vec4(mix(color, vec3(1.0), 0.75 * line), 1.0);
+  shade = vec4(mix(color, paper.g > 0.5 ? vec3(1.0) : paper, 0.75 * line), 1.0);
 }`;
 
 /** Outlines where they are, of whom and how far their cells reach: columns that grow as need be. */

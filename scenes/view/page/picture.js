@@ -13,6 +13,13 @@ const CONTACT_INK = '#d03030';
 const MOST_CONTACTS = 100;  // more at once would cover what they tell of
 const MARK_FROM = 7;  // [px], a smaller body carries no mark of how it has turned
 
+/** A cell's pale colour; on dark paper as much of its hue, and little more light than that has. */
+function onPaper(color, paper) {
+  if (paper[1] > 0.5) return color;
+  const grey = Math.min(...color);
+  return color.map((part, k) => Math.min(1, paper[k] + 0.05 + 1.5 * (part - grey)));
+}
+
 /** An outline as paths: what is filled, and what is stroked (thickness, crisp edge). */
 function pathsOf(shape) {
   const fill = new Path2D(), edge = new Path2D();
@@ -263,9 +270,9 @@ class Picture {
       const [x, y, angle] = this.poses[k];
       for (const [u, v] of this.offsets(this.poses[k])) things.add(b.shape, sites.length + k, x + u, y + v, angle);
     });
-    if (this.coloured !== this.about) {
-      this.coloured = this.about;
-      this.cells.setColors([...sites.map(s => s.cell), ...bodies.map((b, k) => shade(b.cell, k))]);
+    if (this.coloured !== this.about || this.colouredOn !== this.paperInk) {
+      Object.assign(this, {coloured: this.about, colouredOn: this.paperInk});
+      this.cells.setColors([...sites.map(s => s.cell), ...bodies.map((b, k) => shade(b.cell, k))].map(c => onPaper(c, this.paper)));
       this.closed = sites.some(s => shapes[s.shape].container);
     }
     const wanted = 40 * this.ratio / this.view.scale, decade = 10 ** Math.floor(Math.log10(wanted));

@@ -33,6 +33,21 @@ struct Still {
   Box view() const { return automatic_view(world, bodies, sites); }
 };
 
+TEST(AutomaticView, AnchorsOfSpringsAreSeen) {
+  Still still;
+  still.body(make_disc(0.1), {0.0, 0.0});
+  SpringForce hung;
+  hung.at_b = {0.5, 1.2};
+  still.world.forces.push_back(hung);
+  SpringForce between = hung;  // two bodies: its places are in their frames
+  between.body_b = 0;
+  between.at_b = {7.0, 7.0};
+  still.world.forces.push_back(between);
+  const Box view = still.view();
+  EXPECT_NEAR((view.low - Vec2(-0.1, -0.1)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((view.high - Vec2(0.5, 1.2)).norm(), 0.0, 1e-12);
+}
+
 TEST(AutomaticView, OneDiscIsSeenWhole) {
   Still still;
   still.body(make_disc(0.5), {3.0, 4.0});
