@@ -142,6 +142,7 @@ void require(bool good, const char* option, double given, const char* allowed) {
 }  // namespace
 
 int film_command(const FilmArguments& arguments) {
+  stop_on_signals();
   const fs::path file = run_file_of(arguments.run);
   if (file.empty())
     throw BadInput(fmt::format("{}: not a run; allowed: a run folder or a run file", arguments.run));
@@ -176,7 +177,6 @@ int film_command(const FilmArguments& arguments) {
   options.view = extent_of(run, world);
   // Last of all checks: from here on there is a file, or a process that writes one.
   const auto film = film_into(arguments.out, options.size, arguments.fps);
-  stop_on_signals();
   ProgressBar bar(from, to, on_terminal(stderr));
   const auto add_picture = [&](double t) {
     // Between frames bodies are on the cubic of their recorded states; fixed sites are where they are told to be.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "brink/scenes/draw/chart.h"
+#include "brink/scenes/scene/scene.h"
 
 namespace brink {
 namespace {
@@ -17,12 +18,22 @@ std::size_t axis_named(const Experiment& experiment, const std::string& name) {
   return experiment.axes.size();
 }
 
+/// The axis's name with the unit of the key that it sets, where that is a number with one.
+std::string name_with_unit(const SweepAxis& axis) {
+  const std::vector<OptionInfo> options = scene_options();
+  const auto option = std::find_if(options.begin(), options.end(),
+                                   [&](const OptionInfo& o) { return o.table + '.' + o.key == axis.path; });
+  if (option == options.end() || !option->type.starts_with("a number")) return axis.name;
+  const std::size_t unit = option->type.rfind(" in ");
+  return unit == std::string::npos ? axis.name : axis.name + " [" + option->type.substr(unit + 4) + "]";
+}
+
 /// Numbers by their value, names side by side.
 ChartAxis x_axis_of(const SweepAxis& axis) {
   const auto numeric = [](const std::string& v) { return as_number(v).has_value(); };
   // A single number is a name: an axis of numbers needs two.
   const bool numbers = axis.values.size() > 1 && std::all_of(axis.values.begin(), axis.values.end(), numeric);
-  return {axis.name, numbers ? std::vector<std::string>() : axis.values, false, {}};
+  return {name_with_unit(axis), numbers ? std::vector<std::string>() : axis.values, false, {}};
 }
 
 /// One column over x, a line for each value of the series axis. Of energy_drift the magnitude is shown,

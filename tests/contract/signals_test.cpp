@@ -29,14 +29,17 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-pid_t start(const fs::path& scene, const fs::path& out) {
+/// The program with these words.
+pid_t start(std::vector<std::string> words) {
+  std::vector<char*> pointers{const_cast<char*>(kProgram)};
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
   const pid_t child = ::fork();
   if (child == 0) {
     const int nowhere = ::open("/dev/null", O_WRONLY);
     ::dup2(nowhere, STDOUT_FILENO);
     ::dup2(nowhere, STDERR_FILENO);
-    ::execl(kProgram, kProgram, "run", scene.c_str(), "--out", out.c_str(), "--quiet",
-            static_cast<char*>(nullptr));
+    ::execv(kProgram, pointers.data());
     ::_exit(127);
   }
   return child;
@@ -117,20 +120,29 @@ const Slow kSlow[] = {
      "[[sites]]\nsegment = [[0.50000000002, -1], [0.50000000002, 1]]\n"},
 };
 
-class Signals : public ::testing::TestWithParam<Slow> {
- protected:
-  Signals() {
+/// A folder of its own.
+class Folder {
+ public:
+  Folder() {
     std::string name = (fs::temp_directory_path() / "brink-signals-XXXXXX").string();
     dir_ = ::mkdtemp(name.data());
-    std::ofstream(dir_ / "scene.toml") << GetParam().scene;
   }
-  ~Signals() override { fs::remove_all(dir_); }
+  ~Folder() { fs::remove_all(dir_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+ protected:
   fs::path dir_;
+};
+
+class Signals : public ::testing::TestWithParam<Slow>, protected Folder {
+ protected:
+  Signals() { std::ofstream(dir_ / "scene.toml") << GetParam().scene; }
 };
 
 TEST_P(Signals, EndTheRunInOrder) {
   const fs::path file = dir_ / "out" / "run.db";
-  const pid_t child = start(dir_ / "scene.toml", dir_ / "out");
+  const pid_t child = start({"run", dir_ / "scene.toml", "--out", dir_ / "out", "--quiet"});
   wait_until(child, [&] { return has_frame(file); });
   ::usleep(500'000);
   ASSERT_TRUE(is_running(child)) << "ended by itself, with " << ending(child);
@@ -142,6 +154,25 @@ TEST_P(Signals, EndTheRunInOrder) {
   EXPECT_LT(took, kSoon);
   EXPECT_EQ(RunFile(file).meta("termination"), "stopped");
   EXPECT_FALSE(fs::exists(file.string() + "-wal"));
+}
+
+class FilmSignals : public ::testing::Test, protected Folder {};
+
+// Asked at once, and in the midst: a shorter film would be taken for the whole one.
+TEST_F(FilmSignals, EndAFilmAndLeaveNothingOfIt) {
+  std::ofstream(dir_ / "scene.toml")
+      << "[world]\nduration = 1\n[[bodies]]\ndisc.radius = 0.5\nvelocity = [1, 0]\n";
+  ASSERT_EQ(ending(start({"run", dir_ / "scene.toml", "--out", dir_ / "out", "--quiet"})), 0);
+  for (const int milliseconds : {300, 1500}) {
+    const pid_t child = start({"film", dir_ / "out", "-o", dir_ / "film.mp4", "--speed", "1e-3"});
+    ::usleep(1000 * milliseconds);
+    ASSERT_TRUE(is_running(child)) << "ended by itself, with " << ending(child);
+    const auto asked = Clock::now();
+    ::kill(child, SIGINT);
+    EXPECT_EQ(ending(child), 1) << milliseconds;
+    EXPECT_LT(seconds_since(asked), kSoon) << milliseconds;
+    EXPECT_FALSE(fs::exists(dir_ / "film.mp4")) << milliseconds;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Signals, ::testing::ValuesIn(kSlow),
