@@ -116,9 +116,9 @@ void RunCurves::put(PageNumbers& to, nlohmann::ordered_json& about) const {
   if (!attractions_.empty()) energies.emplace_back("of attraction", &of_attraction_);
   // A sum of one is that one.
   if (energies.size() > 1) energies.emplace_back("sum", &total_);
-  curve("Energy", "J", false, energies);
-  curve("Momentum", "N s", false, {{"x", &px_}, {"y", &py_}});
-  curve("Angular momentum", "N m s", false, {{"about the origin", &turning_}});
+  curve("Energy at frames", "J", false, energies);
+  curve("Momentum at frames", "N s", false, {{"x", &px_}, {"y", &py_}});
+  curve("Angular momentum at frames", "N m s", false, {{"about the origin", &turning_}});
   curve("Collisions", "1/s", true, {{"collisions a second", &collisions_}});
 }
 

@@ -5,6 +5,7 @@ const byId = id => document.getElementById(id);
 const darkness = matchMedia('(prefers-color-scheme: dark)');
 const inkOf = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const LANE = 11;  // height of a body's lane [px]
+const MOST_LANES = 200;  // of the bodies with most events
 const TOLD = 100;  // [ms] between times that are written out, where frames come too late
 let about = JSON.parse(byId('about').textContent);
 
@@ -197,6 +198,8 @@ class Player {
   select(k) {
     this.picture.selected = k;
     byId('who').value = k < 0 ? '' : k;
+    const lane = this.lanes.indexOf(k), box = byId('lane-box');
+    if (lane >= 0) box.scrollTop = Math.max(Math.min(box.scrollTop, lane * LANE), (lane + 1) * LANE - box.clientHeight);
     this.stale = true;
   }
 
@@ -291,7 +294,7 @@ class Player {
     for (let k = 0; k < n.event_t.length; ++k)
       for (const b of [n.event_body[k], n.event_other[k]]) if (b >= 0) counts.set(b, (counts.get(b) || 0) + 1);
     for (const b of n.trace_body || []) counts.set(b, (counts.get(b) || 0) + 1e-6);
-    this.lanes = [...counts].sort((a, b) => b[1] - a[1]).slice(0, 12).map(([b]) => b).sort((a, b) => a - b);
+    this.lanes = [...counts].sort((a, b) => b[1] - a[1]).slice(0, MOST_LANES).map(([b]) => b).sort((a, b) => a - b);
     const height = LANE, rows = this.lanes.length;
     canvas.style.height = `${rows * height}px`;
     canvas.hidden = rows === 0;
