@@ -30,8 +30,9 @@ TEST(Starts, BetweenTwoPlacesAreSound) {
 // other; a corner on a wire that an island let sink through it; the end of a capsule that comes round.
 TEST(Starts, ThatOnceFailedAreSound) {
   worlds::Tally tally;
-  for (const std::uint64_t seed : {5155, 5159, 5205, 5276, 5351, 5448, 5452, 5623, 5738, 5746, 5823, 6178,
-                                   6199, 6369, 11522, 20752, 251132, 991002714, 997000063, 997001020})
+  for (const std::uint64_t seed :
+       {5155, 5159, 5205, 5276, 5351,  5448,  5452,   5623,      5738,      5746,
+        5823, 6178, 6199, 6369, 11522, 20752, 251132, 991002714, 997000063, 997001020})
     starts::examine_all(seed, 1, tally);
   EXPECT_EQ(tally.wrong, 0);
 }
