@@ -46,7 +46,11 @@ class Player {
   async follow() {
     if (!about.live) return;
     byId('live').hidden = false;
-    const ask = async what => { await fetch(what, {method: 'POST', headers: {'X-Brink': 'page'}}).catch(() => null); };
+    const ask = async what => {
+      await fetch(what, {method: 'POST', headers: {'X-Brink': 'page'}}).catch(() => null);
+      this.waits = what !== 'go';  // after a step, too
+      this.showFacts();
+    };
     byId('live-pause').onclick = () => ask('pause');
     byId('live-step').onclick = () => ask('step');
     byId('live-go').onclick = () => ask('go');
@@ -213,7 +217,7 @@ class Player {
 
   /** What is said of the run as a whole. */
   showFacts() {
-    byId('ending').textContent = about.termination;
+    byId('ending').textContent = about.live && this.waits ? about.termination.replace('running', 'paused') : about.termination;
     Object.assign(byId('notice'), {textContent: about.notice, hidden: !about.notice});
     fillTable(byId('run'), about.facts);
   }
