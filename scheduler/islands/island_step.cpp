@@ -476,14 +476,27 @@ StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, b
 
 StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap,
                       const GoOn& go_on, const ListFarther& farther) {
-  const bool rise = std::any_of(step.contacts.begin(), step.contacts.end(),
-                                [](const IslandContact& c) { return c.thin && c.gap < -c.tolerance; });
-  StepOutcome outcome = take(solver, step, h, tolerance, rise, gap, go_on, farther);
-  if (outcome.solved || !rise || stops(go_on)) return outcome;
+  const auto any_thin = [&](auto&& is) {
+    return std::any_of(step.contacts.begin(), step.contacts.end(),
+                       [&](const IslandContact& c) { return c.thin && is(c); });
+  };
+  int before = 0;
+  const auto attempt = [&](bool rise) {
+    StepOutcome outcome = take(solver, step, h, tolerance, rise, gap, go_on, farther);
+    outcome.factorisations += before;
+    before = outcome.factorisations;
+    return outcome;
+  };
+  const bool rise = any_thin([](const IslandContact& c) { return c.gap < -c.tolerance; });
+  StepOutcome outcome = attempt(rise);
   // what wires hold from both sides has nowhere to rise to
-  const int before = outcome.factorisations;
-  outcome = take(solver, step, h, tolerance, false, gap, go_on, farther);
-  outcome.factorisations += before;
+  if (!outcome.solved && rise && !stops(go_on)) outcome = attempt(false);
+  // and right by a joint of wires, where another one of them is as near, no lift may reach a gap that is told so finely
+  if (!outcome.solved && any_thin([](const IslandContact&) { return true; }) && !stops(go_on)) {
+    for (IslandContact& c : step.contacts)
+      if (c.thin) c.tolerance = std::max(c.tolerance, tolerance);
+    outcome = attempt(false);
+  }
   return outcome;
 }
 

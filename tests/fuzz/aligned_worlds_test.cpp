@@ -23,26 +23,27 @@ TEST(AlignedWorlds, ThatOnceFailedAreSound) {
       30,        34,  // right on the end of a wire
       989,            // flush in a corner of a wall and a block
       83,             // an instant that a horizon ends in
-      107,       771,       1371,      100109, 100645,
+      107,       771,       1371,      100109,    100645,
       101105,  // a corner that passes another, along it or pressed over it
       409,     // the same, held by an island and hit where its step begins
-      471,       703,       808,       1189,   100053,  // in a slot of its own width
+      471,       703,       808,       1189,      100053,  // in a slot of its own width
       100606,    101446,                        // a search that is broken off within the touching distance
       101411,                                   // many collisions in one horizon of timewarp
       200405,    201903,    300023,    301063,  // stopped right after a contact, where corners come upon each other
       400091,    404808,    504959,             // a disc in a slot of its own width
       402099,    501011,    502103,             // many collisions under timewarp, drawn by chance
       402536,                                   // pushed towards a wire
-      604314,                                   // a search that stopped, and an order that draws
-      601755,    301235,    602346,             // without forces, parting far slower than an island steps
-      201361,    301146,    301259,             // sliding off an end within an island's step
-      502740,    300025,    700509,    501101,  // a gap that dips between two looks along a step
-      500868,    803485,                        // pushed towards a wire
-      1600003,                                  // right on the joint of two wires, in an island
-      1600916,                                  // in each other when they come to count
-      1600929,   1601906,                       // lifted within a step of a microsecond
-      201589,                                   // beside the end of a wire by a rounding
-      301343,                                   // a corner in another, flush on one side
+      998000147, 998000503, 998000640, 998000997,  // an island right by a joint of wires
+      604314,                                      // a search that stopped, and an order that draws
+      601755,    301235,    602346,                // without forces, parting far slower than an island steps
+      201361,    301146,    301259,                // sliding off an end within an island's step
+      502740,    300025,    700509,    501101,     // a gap that dips between two looks along a step
+      500868,    803485,                           // pushed towards a wire
+      1600003,                                     // right on the joint of two wires, in an island
+      1600916,                                     // in each other when they come to count
+      1600929,   1601906,                          // lifted within a step of a microsecond
+      201589,                                      // beside the end of a wire by a rounding
+      301343,                                      // a corner in another, flush on one side
       200657,     // a corner less deep behind one side of another than behind its other side
       991000181,  // grazing a side for long, and at its end when something else is met
       991001030,  // a corner pressed on a corner, of which a neighbour is left at first, and pressed on later
