@@ -15,7 +15,8 @@ namespace brink {
 ///            set", SIAM J. Control 4(1)); an arc counts as its whole circle
 ///   sides    of either hull, beyond which all corners of the other are: what touches along a side is told to rounding
 ///
-/// Cost: all sites of both once, all samples of both up to eight times, and up to 16 corners beside 16 sides, where every look is needed.
+/// Cost: all sites of both once, all samples of both up to eight times, and up to 16 corners beside 16 sides, where every
+/// look is needed.
 double gap_at_least(const Outline& a, const Pose& pose_a, const Outline& b, const Pose& pose_b,
                     double enough);
 

@@ -195,11 +195,13 @@ int film_command(const FilmArguments& arguments) {
     for (double k = 0; k < pictures && !stop_asked(); ++k)
       add_picture(std::min(to, from + k * arguments.speed / arguments.fps));
     // Only now does ffmpeg write its last picture; whether it could is told by its exit status.
-    if (!stop_asked()) film->finish();
+    if (!stop_asked()) {
+      film->finish();
+      return kDone;  // whole, whatever is asked from now on
+    }
   } catch (const IoError&) {
     if (!stop_asked()) throw;  // a Ctrl-C has ended ffmpeg, too
   }
-  if (!stop_asked()) return kDone;
   film->abandon();
   fmt::print(stderr, "brink: stopped before the film was whole\n");
   return kEndedEarly;

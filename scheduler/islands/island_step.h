@@ -27,8 +27,8 @@ struct IslandContact {
   LastingContact rows;
   double gap = 0.0;        ///< at the start, less what it must keep [m]
   double tolerance = 0.0;  ///< by which its gap may be missed along the step [m]
-  bool thin =
-      false;  ///< it must keep off a wire without thickness: where it starts below that, it rises, where that costs little
+  /// It must keep off a wire without thickness: what starts nearer rises where that costs little.
+  bool thin = false;
   double friction = 0.0;
   double rolling_resistance = 0.0;  ///< largest torque for a normal force of 1 [m]
   bool driven = false;              ///< its site moves as it is told, and gives what energy that takes
@@ -74,7 +74,8 @@ struct StepOutcome {
 inline constexpr std::size_t kFewMembers = 8;
 
 /// Takes a step of h > 0 [s]. What is not solved is to be tried again with a shorter one. `farther` is asked after every
-/// solve; what it adds takes part once it is missed. `tolerance`: the way by which places may be off in its energy [m].
+/// solve; what it adds takes part once it is missed. `tolerance`: the way by which places may be off in
+/// its energy [m]; a thin contact's, too, where no step keeps its own (its `tolerance` says so then).
 StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap,
                       const GoOn& go_on = {}, const ListFarther& farther = {});
 

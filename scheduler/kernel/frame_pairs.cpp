@@ -20,6 +20,8 @@ constexpr double kFramesOfALook = 4.0;
 constexpr double kRoundingOfWay = 1e-12, kRoundingOfPlace = 1e-15;
 /// Gaps below this part of the world's length are looked at at every frame at which one of the two has moved.
 constexpr double kCloseOfLength = 1e-6;
+/// A gap of this part of it is one, whatever a vertex seems to lie on.
+constexpr double kSurelyApartOfLength = 1e-5;
 
 /// How far any point of an outline is at most from where it was [m].
 double way_between(const Outline& outline, const Pose& p, const Pose& q) {
@@ -73,9 +75,10 @@ void FramePairs::each_once(const Look& look) {
   });
   if (run_->halt()) return;
   std::sort(close_.begin(), close_.end());
-  // nothing is known of them at the next frame: only what they are in each other now is asked for
+  // nothing is kept for the next frame: no more is asked than whether they are near enough to look below their edges
+  const double at_most = kSurelyApartOfLength * length_;
   for (const auto& [pair, at_least] : close_)
-    if (!look(pair, at_least, 0.0)) return;
+    if (!look(pair, at_least, at_most)) return;
 }
 
 /// The largest way since the last frame; infinity: nobody knows.
@@ -135,7 +138,9 @@ double FramePairs::apart(const PairKey& pair, double enough) const {
                       enough);
 }
 
-double FramePairs::margin(const PairKey& pair) const { return kCloseOfLength * length_ + rounding(pair); }
+double FramePairs::margin(const PairKey& pair) const {
+  return kCloseOfLength * length_ + 4.0 * rounding(pair);
+}
 
 /// Of apart(), by the poses [m].
 double FramePairs::rounding(const PairKey& pair) const {

@@ -25,6 +25,18 @@ TEST(GapBound, OfTwoLongBarsIsToldByALine) {
   EXPECT_LE(bound, 0.3 + 1e-15);
 }
 
+// A box on a floor, turned with it, lifted and sunk by what a watch must tell from nothing.
+TEST(GapBound, OfWhatTouchesAlongASideIsTheGap) {
+  const Outline box = make_box(0.6, 0.4).outline, floor = make_box(20.0, 1.0).outline;
+  for (const double gap : {1e-9, 1e-13, 0.0, -1e-13, -1e-9})
+    for (const double turn : {0.0, 0.3, 2.0}) {
+      const Vec2 up(-std::sin(turn), std::cos(turn)), along(std::cos(turn), std::sin(turn));
+      const Pose on{(0.5 + 0.2 + gap) * up + 3.0 * along, turn};
+      EXPECT_NEAR(gap_at_least(box, on, floor, {{0, 0}, turn}, 1e-6), gap, 1e-14) << turn;
+      EXPECT_NEAR(gap_at_least(floor, {{0, 0}, turn}, box, on, 1e-6), gap, 1e-14) << turn;
+    }
+}
+
 TEST(GapBound, OfABodyInAContainerIsToldByItsCentre) {
   const Outline room = as_container(make_box(4.0, 2.0).outline), body = make_box(0.6, 0.8).outline;
   EXPECT_NEAR(gap_at_least(body, {{1.0, 0.0}, 0.3}, room, {}, 0.0), 0.5, 1e-14);
