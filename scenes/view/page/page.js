@@ -16,7 +16,7 @@ class Player {
     this.picture = new Picture(byId('stage'), this.motions, about, numbers);
     this.t = this.motions.begin;
     this.playing = false;
-    this.pace = new Pace();
+    this.pace = new Pace(this.picture.cells.bySoftware);
     this.makeControls();
     this.makeTables();
     this.makeTimeline();
@@ -129,8 +129,10 @@ class Player {
     }
     this.last = now;
     if (this.stale) {
+      const begun = performance.now();
       this.pace.moved(now);
       this.show(now);
+      this.pace.drew(performance.now() - begun);
     } else if (this.pace.still(now) && this.pace.last !== undefined) {
       this.pace.forget();
       if (this.picture.detail !== DETAILS[0]) this.show(now);
