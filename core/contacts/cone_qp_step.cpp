@@ -22,6 +22,10 @@ constexpr double kExact = 1e-16, kNearly = 1e-14, kEnough = 1e-10;
 /// have no more. (A short step's unit is small beside what else moves, and roundings of that would be large
 /// beside it.)
 constexpr double kFar = 1e8;
+/// Nor are forces expected, or held by friction, of more than so many units of the step's impulse. What fits between two sides
+/// to a rounding is pressed by both as much as one likes, and friction that took its bound from that would raise it from
+/// step to step.
+constexpr double kMostForce = 1e6;
 
 /// The step's rows, in w - v: so that what is held keeps its velocity.
 class StepRows {
@@ -95,8 +99,11 @@ class StepRows {
     row.other = c.other;
     if (c.other >= 0) row.on_other = units_.scaled_row(c.other, on_other);
     row.offset = std::clamp(speed / units_.speed(), -kFar, kFar);
-    row.expected = given_.contacts[source.contact].expected.*source.load / (units_.force() * source.unit);
+    const double expected =
+        given_.contacts[source.contact].expected.*source.load / (units_.force() * source.unit);
+    row.expected = std::clamp(expected, -kMostForce, kMostForce);
     row.bound = bound / units_.force();
+    if (source.load != &ContactLoad::normal) row.bound = std::min(row.bound, kMostForce);
     // A row's pairs (bound - x, bound + x) begin at its bound, which must not be 0. So contacts without
     // friction have no tangential row, and without rolling resistance none that turns.
     if (row.bound <= kNoFriction) return;

@@ -1,6 +1,8 @@
 #pragma once
 /// Two corners of solids that are at one point: do they come to overlap as one goes on?
 
+#include <optional>
+
 #include "brink/core/shapes/curve_site.h"
 #include "brink/core/shapes/outline.h"
 
@@ -37,11 +39,28 @@ inline Corner corner_at(const Outline& outline, const Sample& sample) {
           right_of(direction_at_start(outline.sites[static_cast<std::size_t>(sample.after)]))};
 }
 
+/// A wire's end as a corner: a needle, all directions but those along which the wire lies. Nothing where it goes on, or does
+/// not end.
+inline std::optional<Corner> end_of_wire(const Outline& outline, const Vec2& p) {
+  std::optional<Corner> found;
+  for (const Site& site : outline.sites) {
+    if (site.kind == SiteKind::point || (site.a != p && site.b != p)) continue;
+    if (found) return std::nullopt;
+    const Vec2 inwards = site.a == p ? direction_at_start(site) : Vec2(-direction_at_end(site));
+    found = Corner{perp(inwards), -perp(inwards)};
+  }
+  return found;
+}
+
 /// The same in the frame of another outline.
-inline Corner corner_seen(const Outline& outline, const Sample& sample, const Frame& from, const Frame& to) {
+inline Corner seen_from(const Corner& own, const Frame& from, const Frame& to) {
   const auto seen = [&](const Vec2& n) { return to.direction_to_local(from.direction_to_world(n)); };
-  const Corner own = corner_at(outline, sample);
   return {seen(own.before), seen(own.after)};
+}
+
+/// The corner at a solid's vertex sample, in the frame of another outline.
+inline Corner corner_seen(const Outline& outline, const Sample& sample, const Frame& from, const Frame& to) {
+  return seen_from(corner_at(outline, sample), from, to);
 }
 
 /// The way from a sample, at q in the frame `to`, into what carries it: of a solid's corner, of anything else to

@@ -80,14 +80,14 @@ Feature PairView::vertex_feature(const Placing& p, const Half& half, int i, int 
   const double side = side_of(site, nearest, path.q);
   f.gap = side * nearest.distance - site.radius - sample.radius;
   const bool at_end = nearest.foot != Foot::interior && site.kind != SiteKind::point;
-  if (at_end && site.solid && nearest.distance <= limits_.tolerance) {
+  if (at_end && nearest.distance <= limits_.tolerance) {
     const double rounding = p.gap_rounding(half, i, path.q);
     const bool at_a = nearest.foot == Foot::start;
     // In a hollow corner each side is a face: the way from the corner itself is rounding, and between the two
     // normals lies one that says of neither how long it is clear.
-    const bool in_notch = nearest.distance <= 4.0 * rounding && is_hollow(site, at_a);
+    const bool in_notch = site.solid && nearest.distance <= 4.0 * rounding && is_hollow(site, at_a);
     if (in_notch || is_flush_on(p, half, i, site, path.q, rounding)) {
-      f.normal = face_at_end(site, at_a);
+      f.normal = face_for(p, half, i, site, at_a, path.q);
       if (!in_notch) f.gap = f.normal.dot(path.q - nearest.point);
       f.rate = f.normal.dot(path.rate);
       f.point = path.q - f.normal * (f.gap + sample.radius);
@@ -211,16 +211,32 @@ void PairView::find_neighbours(const Half& half, int i, std::span<const std::uin
 bool PairView::is_flush_on(const Placing& p, const Half& half, int i, const Site& site, const Vec2& q,
                            double rounding) const {
   const Sample& sample = half.sample(i);
-  if (sample.before < 0 || sample.hollow || !site.solid || site.radius + sample.radius > 0.0) return false;
+  const Outline &carrier = half.samples_of(), &other = half.sites_of();
+  const bool corner_of_solid = sample.before >= 0,
+             end = !corner_of_solid && !carrier.solid && sample.arc_site < 0;
+  if (sample.hollow || site.kind == SiteKind::point || site.radius + sample.radius > 0.0) return false;
+  if (!(site.solid ? corner_of_solid || end : corner_of_solid)) return false;
   const bool at_a = (q - site.a).squaredNorm() < (q - site.b).squaredNorm();
   const Vec2 way = q - (at_a ? site.a : site.b);
   // the cheap question first: most samples are at no corner
   if (!(way.squaredNorm() <= limits_.tolerance * limits_.tolerance)) return false;
-  const Vec2 normal = face_at_end(site, at_a);
-  if (std::abs(cross(normal, way)) > 4.0 * rounding) return false;
   const Frame &s = p.of(half.s_is_a).frame, &t = p.of(!half.s_is_a).frame;
-  const Corner corner = corner_seen(half.samples_of(), sample, s, t);
-  return parts_alone(normal, corner, corner_at(site, at_a));
+  const Vec2 normal = face_for(p, half, i, site, at_a, q);
+  if (std::abs(cross(normal, way)) > 4.0 * rounding) return false;
+  // a wire that goes on from there is no corner
+  const std::optional<Corner> of_sample = end ? end_of_wire(carrier, sample.p) : corner_at(carrier, sample),
+                              of_site = site.solid ? corner_at(site, at_a)
+                                                   : end_of_wire(other, at_a ? site.a : site.b);
+  return of_sample && of_site && parts_alone(normal, seen_from(*of_sample, s, t), *of_site);
+}
+
+Vec2 PairView::face_for(const Placing& p, const Half& half, int i, const Site& site, bool at_a,
+                        const Vec2& q) const {
+  const Vec2 face = face_at_end(site, at_a);
+  if (site.solid) return face;
+  const Vec2 inside =
+      way_inside(half.samples_of(), half.sample(i), p.of(half.s_is_a).frame, p.of(!half.s_is_a).frame, q);
+  return face.dot(inside) < 0.0 ? Vec2(-face) : face;
 }
 
 Vec2 PairView::acceleration_now(const Half& half, int i, const SamplePath& path) const {
@@ -249,7 +265,10 @@ bool PairView::passes_tip(const Half& half, const Feature& f) const {
   if (!of_sample.convex() || !of_site.convex() || of_sample.needle() || of_site.needle()) return false;
   // A needle has its thickness just behind its tip: that a line parts the tips says nothing of it.
   const Vec2 pull = acceleration_now(half, f.sample, path);
-  const double noise = rate_noise(path), none = kParallel * pull.norm();
+  const double noise = rate_noise(path);
+  // a turning that is no more than a rounding bends the way by so much
+  const double turned = noise * path.rate.norm() / smallest_radius(a_.outline(), b_.outline());
+  const double none = std::max(kParallel * pull.norm(), turned);
   // who runs along a line goes over it if it is pulled there
   const auto goes_back = [&](const Vec2& u) {
     const double rate = u.dot(path.rate);
@@ -548,7 +567,7 @@ PairView::GapAndSite PairView::gap_to_neighbours(const Placing& p, const Half& h
     const Site& site = half.site(neighbour.site);
     if (!is_flush_on(p, half, i, site, q, rounding)) continue;
     const bool at_a = (q - site.a).squaredNorm() < (q - site.b).squaredNorm();
-    const double gap = face_at_end(site, at_a).dot(q - (at_a ? site.a : site.b));
+    const double gap = face_for(p, half, i, site, at_a, q).dot(q - (at_a ? site.a : site.b));
     return {gap - level_of(nominal_level(p, half, i, site, q), sink_), neighbour.site};
   }
   double least = kForever;

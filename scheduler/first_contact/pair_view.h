@@ -92,7 +92,7 @@ class PairView {
                      const Feature& f) const;
   /// True if the sharp corner of a solid at sample i lies with its tip, to rounding, on the line that goes on from
   /// site j beyond its end, which is as sharp; and that line alone parts the two corners: the site is a face for it
-  /// there, too (a box right upon another of its width).
+  /// there, too (a box right upon another of its width). One of the two may be a wire's end.
   bool is_flush_on(const Half& half, int i, const Site& site, const Vec2& q, double rounding) const {
     return is_flush_on(now_, half, i, site, q, rounding);
   }
@@ -225,6 +225,9 @@ class PairView {
   void put_relative(Placing& placing, double t) const;
   bool is_flush_on(const Placing& placing, const Half& half, int i, const Site& site, const Vec2& q,
                    double rounding) const;
+  /// The site's own normal at its end: of a solid's outwards, of a wire's to the side on which the sample's owner is.
+  Vec2 face_for(const Placing& placing, const Half& half, int i, const Site& site, bool at_a,
+                const Vec2& q) const;
   double nominal_level(const Placing& placing, const Half& half, int i, const Site& site,
                        const Vec2& q) const;
   /// Of a wire without thickness: 1 where the sample, now at q, has not crossed it since its neighbours were

@@ -24,6 +24,11 @@ struct Half {
   bool on_a;
 };
 
+/// The middle of what carries the samples, in the other's frame: a site's own frame may be anywhere.
+Vec2 centre(const Half& half) {
+  return half.other_frame.to_local(half.carrier_frame.to_world(half.carrier.bounds.center()));
+}
+
 /// Of a segment of a solid: to its right.
 Vec2 outward(const Site& site) {
   const Vec2 d = site.b - site.a;
@@ -44,7 +49,8 @@ Vec2 direction(const Site& site, const Nearest& nearest, const Vec2& q, double l
     return perp(d) * ((cross(d, q - site.a) < 0.0 ? -1.0 : 1.0) / d.norm());
   }
   if (told) return way.normalized();
-  if (site.solid && site.kind == SiteKind::segment) return outward(site);
+  // of a solid outwards; of a wire, right upon its end, one of the two
+  if (site.kind == SiteKind::segment && (site.solid || nearest.foot != Foot::interior)) return outward(site);
   if (site.solid && nearest.foot != Foot::interior)
     return (nearest.foot == Foot::start ? site.pseudo_a : site.pseudo_b).normalized();
   return normal_at(site, nearest, q);
@@ -82,7 +88,7 @@ Vec2 way_inwards(const Half& half, const Sample& sample, const Vec2& q, const Ve
     if (s.b == sample.p) see(-direction_at_end(s));
   }
   const bool one_side = std::min(most, -least) <= kAlongLine && std::max(most, -least) > kAlongLine;
-  return one_side ? steepest : Vec2(half.other_frame.to_local(half.carrier_frame.origin) - q);
+  return one_side ? steepest : Vec2(centre(half) - q);
 }
 
 /// Sample i of a half against site j, where it is nearest to it; side: see side_of(). Nothing of an arc that
@@ -172,14 +178,14 @@ OnCorner on_corner(const Half& half, std::size_t j, const Vec2& q, double tie) {
   if (!((q - end).norm() <= tie)) return OnCorner::nowhere;
   // Both sides are equally near there, and roundings alone would choose between them, in every step anew.
   // Where the owner's centre lies is no matter of roundings.
-  const Vec2 centre = half.other_frame.to_local(half.carrier_frame.origin) - q;
+  const Vec2 to_centre = centre(half) - q;
   OnCorner where = OnCorner::nowhere;
   for (std::size_t k = 0; k < outline.sites.size(); ++k) {
     const Site& next = outline.sites[k];
     if (k == j || next.kind != SiteKind::segment || (next.a != end && next.b != end)) continue;
     const Vec2 on = next.a == end ? Vec2(next.b - next.a) : Vec2(next.a - next.b);
     if (outward(site).dot(on) > kStraightJoint * on.norm()) continue;  // a hollow corner has both its sides
-    const double more = outward(next).dot(centre) - outward(site).dot(centre);
+    const double more = outward(next).dot(to_centre) - outward(site).dot(to_centre);
     // a tie goes to the site that comes first, so that exactly one of the two has the sample
     if (more > 0.0 || (more == 0.0 && k < j)) return OnCorner::other_side;
     where = OnCorner::this_side;

@@ -172,12 +172,14 @@ std::vector<Certificate> ContactSearch::simultaneous(const Certificate& c, const
                                                      const BodyTrack* other) {
   std::vector<Certificate> others;
   const Sides sides(*this, c.pair, body, other);
+  // what approaches as slowly as that is rounding of those speeds, and no search finds it
+  const double rounding =
+      std::max(kApproaches * c.contact.closing_speed, sides.a.velocity_rounding + sides.b.velocity_rounding);
   for (const FeatureContact& f :
        touching_features(sides.a, sides.b, c.time, limits_.touch, limits_, scratch_)) {
     // the found one's sample at any site: a vertex in a corner is one contact here
     if (f.sample == c.contact.sample && f.sample_on_a == c.contact.sample_on_a) continue;
-    // what approaches as slowly as that is rounding of those speeds
-    if (f.closing_speed <= kApproaches * c.contact.closing_speed) continue;
+    if (f.closing_speed <= rounding) continue;
     // time and versions of the one that was found: all are one instant
     others.push_back(c);
     others.back().contact = f;

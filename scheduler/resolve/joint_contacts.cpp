@@ -114,8 +114,8 @@ class Joint {
     near_.push_back({j, n, gap, corner || n.foot != Foot::interior || site(j).kind == SiteKind::point});
   }
 
-  /// One contact for all sites that meet there: with the normal that parts the wedges, or, where none does or
-  /// nothing is known of an inside, with the one that was found.
+  /// One contact for all sites that meet there: with the normal that parts the wedges, of which one may be a wire's end, or,
+  /// where none does or both are wires, with the one that was found.
   void add_corner(const Near& n) {
     const Site& edge = site(n.site);
     const Vec2 vertex = (path_.q - edge.a).norm() <= (path_.q - edge.b).norm() ? edge.a : edge.b;
@@ -123,7 +123,7 @@ class Joint {
     const Vec2 out = f_.sample_on_a ? f_.normal : Vec2(-f_.normal);
     const Vec2 wanted = t_.frame.direction_to_local(out);
     std::optional<Vec2> normal;
-    if (outline_s_.solid && outline_t_.solid && sample_.arc_site < 0)
+    if ((outline_s_.solid || outline_t_.solid) && sample_.arc_site < 0)
       normal = parting_normal(
           turned(wedge_at(outline_s_, sample_.p),
                  [&](const Vec2& d) { return t_.frame.direction_to_local(s_.frame.direction_to_world(d)); }),

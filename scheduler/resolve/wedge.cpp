@@ -15,6 +15,7 @@ Wedge wedge_at(const Outline& outline, const Vec2& vertex) {
     w.edges.push_back(sense * travel);
     // the solid lies to the left of the travel: out of it is to the right
     w.normals.push_back(-perp(travel));
+    if (!outline.solid) w.normals.push_back(perp(travel));  // a wire has two sides
   };
   for (const Site& site : outline.sites) {
     if (site.kind == SiteKind::point) continue;

@@ -1,5 +1,5 @@
 #pragma once
-/// The corners of two solids that lie on each other: which lines have the one before them and the other behind.
+/// The corners of two solids, or a corner and a wire's end, that lie on each other: which lines have the one before them and the other behind.
 
 #include <vector>
 
@@ -7,10 +7,10 @@
 
 namespace brink {
 
-/// A solid's boundary at one of its vertices.
+/// An outline at one of its vertices: a solid's boundary, or a wire.
 struct Wedge {
   std::vector<Vec2> edges;    ///< unit directions away from the vertex
-  std::vector<Vec2> normals;  ///< of those edges, out of the solid
+  std::vector<Vec2> normals;  ///< of those edges, out of the solid; of a wire to both sides
 };
 
 /// In the outline's frame; empty where no site ends. `vertex`: bit for bit an end of a site.

@@ -34,16 +34,21 @@ TEST(AlignedWorlds, ThatOnceFailedAreSound) {
       402099,    501011,    502103,             // many collisions under timewarp, drawn by chance
       402536,                                   // pushed towards a wire
       998000147, 998000503, 998000640, 998000997,  // an island right by a joint of wires
-      604314,                                      // a search that stopped, and an order that draws
-      601755,    301235,    602346,                // without forces, parting far slower than an island steps
-      201361,    301146,    301259,                // sliding off an end within an island's step
-      502740,    300025,    700509,    501101,     // a gap that dips between two looks along a step
-      500868,    803485,                           // pushed towards a wire
-      1600003,                                     // right on the joint of two wires, in an island
-      1600916,                                     // in each other when they come to count
-      1600929,   1601906,                          // lifted within a step of a microsecond
-      201589,                                      // beside the end of a wire by a rounding
-      301343,                                      // a corner in another, flush on one side
+      997300351,                        // fits between walls to a rounding, pressed by both beyond measure
+      991002349, 991007714, 995000879,  // flush along a wire, whose end is upon a corner
+      996502337,                        // rounding of an approach beside one that is in earnest
+      995000072,                        // into a corner, along a wire that ends there
+      997303846,                        // flush past a corner of what turns by no more than a rounding
+      604314,                           // a search that stopped, and an order that draws
+      601755,    301235,    602346,     // without forces, parting far slower than an island steps
+      201361,    301146,    301259,     // sliding off an end within an island's step
+      502740,    300025,    700509,    501101,  // a gap that dips between two looks along a step
+      500868,    803485,                        // pushed towards a wire
+      1600003,                                  // right on the joint of two wires, in an island
+      1600916,                                  // in each other when they come to count
+      1600929,   1601906,                       // lifted within a step of a microsecond
+      201589,                                   // beside the end of a wire by a rounding
+      301343,                                   // a corner in another, flush on one side
       200657,     // a corner less deep behind one side of another than behind its other side
       991000181,  // grazing a side for long, and at its end when something else is met
       991001030,  // a corner pressed on a corner, of which a neighbour is left at first, and pressed on later

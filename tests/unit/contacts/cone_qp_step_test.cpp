@@ -210,6 +210,26 @@ TEST(Step, SqueezedBodyIsUndecided) {
   EXPECT_EQ(ConeQp().step(problem).status, Status::undecided);
 }
 
+// What fits between two supports to a rounding may be pressed by both as much as one likes: the step before may have been told
+// forces of any size, and friction bounds come of them.
+TEST(Step, ForcesBeyondMeasureOfTheStepBeforeDoNotHinder) {
+  for (const double told : {1e2, 1e6, 1e10, 1e12, 1e14}) {
+    StepProblem problem = discs(3);
+    problem.contacts = {on_floor(0, 0.0), on_floor(0, 0.0), on_floor(1, 0.1), on_floor(2, 0.1)};
+    problem.contacts[1].contact = contact_at(0, -1, {0.0, -1.0}, {0.0, 0.5}, {0.0, 0.0});
+    problem.contacts[2].contact = contact_at(1, 0, {1.0, 0.0}, {-0.5, 0.0}, {0.5, 0.0});
+    problem.contacts[0].gap = 1.1e-12;
+    problem.contacts[1].gap = -1.2e-12;
+    for (StepContact& s : problem.contacts) {
+      s.expected.normal = told;
+      s.friction_bound = 0.5 * told;
+    }
+    const StepResult result = ConeQp().step(problem);
+    EXPECT_LE(result.residual, 1e-6) << told;  // as islands ask for
+    EXPECT_NEAR(result.velocity[0].y(), 0.0, 1e-8);
+  }
+}
+
 // A hexagonal lattice has twice as many rows as it needs; touching, near to it, and apart.
 TEST(Step, HeapOfDiscsIsProved) {
   for (const double apart : {0.0, 1e-6, 1e-3, 3e-2})

@@ -50,6 +50,24 @@ TEST(NearFeatures, ATipThatLeavesAHollowThroughAJointOfWiresHasCrossed) {
   }
 }
 
+// A box against a wall of wire that ends on the floor, right at its corner, wherever roundings put the one beside the other:
+// all of the wall holds its side, and the wall's end is on the box's side, not on its bottom.
+TEST(NearFeatures, AWireThatEndsAtACornerIsBesideIt) {
+  const Outline box = make_box(2, 1).outline, wall = make_segment({4, 0}, {4, 6}).outline;
+  for (const double off : {-3e-13, 0.0, 3e-13})
+    for (const double up : {-3e-13, 0.0, 3e-13}) {
+      int corners = 0, ends = 0;
+      for (const NearFeature& f : between(box, {{3.0 + off, 0.5 + up}, 0}, wall, {}, 0.01)) {
+        // how far beyond the end it is may count, too
+        EXPECT_NEAR((f.normal - Vec2(-1, 0)).norm(), 0.0, 1e-9) << off << ' ' << up;
+        EXPECT_NEAR(f.gap, -off, 4e-13) << off << ' ' << up;
+        ++(f.sample_on_a ? corners : ends);
+      }
+      EXPECT_EQ(corners, 2) << off << ' ' << up;
+      EXPECT_EQ(ends, 1) << off << ' ' << up;
+    }
+}
+
 TEST(NearFeatures, DiscInAGrooveTouchesBothSides) {
   const Outline groove = make_polygon({{-2, -2}, {2, -2}, {2, 1}, {0, -1}, {-2, 1}}).outline;
   const double r = 0.5, slack = 0.01;
