@@ -719,16 +719,25 @@ TEST_F(Replayed, CellsAreCoarserWhereFramesAreLateAndFineWhereNothingMoves) {
   const fs::path page = folder_ / "pace.html";
   write_replay_page(run_file(), page);
   const json answer = in_browser(page, R"(
-    const pace = new Pace(16), levels = [];
+    const pace = new Pace(false, 16), levels = [];
     let now = 1000;
-    const frames = (count, length) => { for (let k = 0; k < count; ++k) pace.moved(now += length); levels.push(pace.level); };
+    const frames = (count, length, drawing = 2) => {
+      for (let k = 0; k < count; ++k) { pace.moved(now += length); pace.drew(drawing); }
+      levels.push(pace.level);
+    };
     frames(5, 60);    // too few to tell
     frames(200, 60);
-    frames(80, 16);
-    frames(40, 16);    // finer after 90
-    frames(20, 60);    // which was too much
-    frames(110, 16);
-    frames(610, 16);    // finer after 720
+    frames(27, 16);    // 4 of them with late ones before
+    frames(1, 16);    // finer after 24
+    frames(8, 60);    // which was too much
+    frames(24, 16);
+    frames(8, 60);    // again
+    frames(300, 16);    // no third time
+    pace.forget();
+    frames(25, 16);    // but after it stood still
+    frames(95, 16, 8);    // no time to spare
+    frames(1, 33);    // a late one
+    const begins = new Pace(true).level;
     const still = [pace.still(now + 100), pace.still(now + 200)], coarse = pace.detail.paint;
     pace.forget();
     const p = window.brink.player;
@@ -739,10 +748,11 @@ TEST_F(Replayed, CellsAreCoarserWhereFramesAreLateAndFineWhereNothingMoves) {
     p.playing = false;
     p.stale = false;
     p.tick(1000);
-    return {levels, still, coarse, playing, paused: p.picture.cells.canvas.width / p.picture.canvas.width,
+    return {levels, begins, still, coarse, playing, paused: p.picture.cells.canvas.width / p.picture.canvas.width,
             works: p.picture.cells.works};)");
   ASSERT_FALSE(answer.contains("error")) << answer.dump();
-  EXPECT_EQ(answer["levels"], json({0, 3, 3, 2, 3, 3, 2})) << answer.dump();
+  EXPECT_EQ(answer["levels"], json({0, 6, 6, 5, 6, 5, 6, 6, 5, 5, 6})) << answer.dump();
+  EXPECT_EQ(answer["begins"], 4) << "without a graphics card";
   EXPECT_EQ(answer["still"], json({false, true}));
   ASSERT_TRUE(answer["works"]);
   EXPECT_LT(answer["playing"], 0.4);
