@@ -1,5 +1,6 @@
 #pragma once
-/// The corners of two solids, or a corner and a wire's end, that lie on each other: which lines have the one before them and the other behind.
+/// The corners of two solids, or a corner and a wire's end, that lie on each other: which lines have the one before them and
+/// the other behind.
 
 #include <vector>
 
