@@ -212,10 +212,10 @@ bool PairView::is_flush_on(const Placing& p, const Half& half, int i, const Site
                            double rounding) const {
   const Sample& sample = half.sample(i);
   const Outline &carrier = half.samples_of(), &other = half.sites_of();
-  const bool corner_of_solid = sample.before >= 0,
-             end = !corner_of_solid && !carrier.solid && sample.arc_site < 0;
+  // a corner of a solid on a side of a solid or on a wire, or a wire's end on a side of a solid
+  const bool end = sample.before < 0;
+  if (end && (carrier.solid || !site.solid || sample.arc_site >= 0)) return false;
   if (sample.hollow || site.kind == SiteKind::point || site.radius + sample.radius > 0.0) return false;
-  if (!(site.solid ? corner_of_solid || end : corner_of_solid)) return false;
   const bool at_a = (q - site.a).squaredNorm() < (q - site.b).squaredNorm();
   const Vec2 way = q - (at_a ? site.a : site.b);
   // the cheap question first: most samples are at no corner
