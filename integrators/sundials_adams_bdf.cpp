@@ -13,14 +13,9 @@ namespace brink {
 namespace {
 
 /// CVODE tries a smaller step where the right-hand side says that it failed.
-int evaluate(realtype t, N_Vector y, N_Vector rate, void* self) {
+int evaluate_cvode(realtype t, N_Vector y, N_Vector rate, void* self) {
   return static_cast<SundialsStepper*>(self)->right_hand_side(
       t, N_VGetArrayPointer(y), N_VGetArrayPointer(rate), SundialsStepper::WhereNotFinite::say_so);
-}
-
-/// Instead of printing it: the message goes into the failure's why.
-void keep_message(int, const char*, const char*, char* message, void* self) {
-  static_cast<SundialsStepper*>(self)->note(message);
 }
 
 /// What both methods of CVODE share: everything but the solver of their implicit equations.
@@ -44,7 +39,7 @@ class Cvode : public SundialsStepper {
     // more trials than the defaults before giving up: forces may have corners
     // A braced list is evaluated from left to right, which is the order that CVODE wants, and to its end.
     for (int flag : {CVodeSetErrHandlerFn(memory_, keep_message, static_cast<SundialsStepper*>(this)),
-                     CVodeInit(memory_, evaluate, time(), y()),
+                     CVodeInit(memory_, evaluate_cvode, time(), y()),
                      CVodeSetUserData(memory_, static_cast<SundialsStepper*>(this)),
                      CVodeSStolerances(memory_, options().tolerance, options().absolute_tolerance),
                      CVodeSetMaxErrTestFails(memory_, 40), CVodeSetMaxConvFails(memory_, 40),

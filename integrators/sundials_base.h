@@ -19,8 +19,10 @@ class SundialsStepper : public SteppingIntegrator {
   enum class WhereNotFinite { say_so, answer_enormous };
   /// The right-hand side; 0, > 0 for "try a smaller step", < 0 for "give up".
   int right_hand_side(double t, const double* y, double* rate, WhereNotFinite where_not_finite);
-  /// Keeps the solver's last message for a failure's why.
-  void note(const char* message) { message_ = message; }
+  /// A solver's message, instead of printing it: the last one goes into the failure's why. `self` is a SundialsStepper.
+  static void keep_message(int, const char*, const char*, char* message, void* self) {
+    static_cast<SundialsStepper*>(self)->message_ = message;
+  }
 
  protected:
   static constexpr int kNumbersPerBody = 6;

@@ -14,14 +14,9 @@ namespace {
 
 /// ERKStep (6.4) gives up where a stage says that it failed, so a stage answers with a rate that fails the
 /// error test.
-int evaluate(realtype t, N_Vector y, N_Vector rate, void* self) {
+int evaluate_erk(realtype t, N_Vector y, N_Vector rate, void* self) {
   return static_cast<SundialsStepper*>(self)->right_hand_side(
       t, N_VGetArrayPointer(y), N_VGetArrayPointer(rate), SundialsStepper::WhereNotFinite::answer_enormous);
-}
-
-/// Instead of printing it: the message goes into the failure's why.
-void keep_message(int, const char*, const char*, char* message, void* self) {
-  static_cast<SundialsStepper*>(self)->note(message);
 }
 
 /// One explicit Runge-Kutta solver a component; pieces from pose, twist and acceleration at both ends.
@@ -34,13 +29,13 @@ class Erk final : public SundialsStepper {
  private:
   int restart_solver() override {
     fresh_ = true;
-    return memory_ ? ERKStepReInit(memory_, evaluate, time(), y()) : create();
+    return memory_ ? ERKStepReInit(memory_, evaluate_erk, time(), y()) : create();
   }
   int set_stop_time(double stop_time) override { return ERKStepSetStopTime(memory_, stop_time); }
 
   /// The solver itself, once; later segments only re-initialise it.
   int create() {
-    memory_ = ERKStepCreate(evaluate, time(), y(), context());
+    memory_ = ERKStepCreate(evaluate_erk, time(), y(), context());
     if (!memory_) return -1;
     // more trials than the defaults before giving up: forces may have corners
     for (int flag : {ERKStepSetErrHandlerFn(memory_, keep_message, static_cast<SundialsStepper*>(this)),

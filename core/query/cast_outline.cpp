@@ -36,9 +36,9 @@ Passage passage(const Vec2& center, double reach, const Mover& mover) {
 }
 
 /// Where the samples of one outline, moving, may first come within their radius of the other's sites.
-class Candidates {
+class TouchCandidates {
  public:
-  explicit Candidates(double slack) : slack_(slack) {}
+  explicit TouchCandidates(double slack) : slack_(slack) {}
 
   void look(const Outline& samples_of, const Frame& samples_at, const Outline& sites_of,
             const Frame& sites_at, const Vec2& direction) {
@@ -191,7 +191,7 @@ OutlineHit cast_outline(const Outline& a, const Pose& pose_a, const Vec2& direct
   const Trial trial(a, b, b_from_a, along);
   // what touches may have a gap of a rounding below 0: only what is deeper overlaps
   if (trial.gap_after(0.0) < -trial.deep) return {OutlineHit::Status::overlaps, 0.0};
-  Candidates candidates(trial.deep);
+  TouchCandidates candidates(trial.deep);
   candidates.look(a, Frame(), b, Frame(b_from_a), along);
   candidates.look(b, Frame(b_from_a), a, Frame(), -along);
   const std::vector<double>& at = candidates.in_order();

@@ -21,7 +21,8 @@ void add_to_chain(std::vector<Vec2>& chain, std::size_t kept, const Vec2& p) {
   chain.push_back(p);
 }
 
-/// Of the points, counter-clockwise; each once.
+}  // namespace
+
 std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
   const auto before = [](const Vec2& p, const Vec2& q) {
     return std::tuple(p.x(), p.y()) < std::tuple(q.x(), q.y());
@@ -36,8 +37,6 @@ std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
   chain.pop_back();  // the first one again
   return chain;
 }
-
-}  // namespace
 
 Hull hull_of(std::span<const Site> sites) {
   Hull hull;

@@ -19,7 +19,11 @@ struct Hull {
   double reach = 0.0;      ///< of the farthest corner from the origin [m]
 };
 
-/// Cost: O(n log n) for n sites. Source: Andrew 1979, "Another efficient algorithm for convex hulls in two dimensions".
+/// Corners of the convex hull of points, counter-clockwise from the leftmost, no three in a line; of points on a line its two
+/// ends. Cost: O(n log n). Source: Andrew 1979, "Another efficient algorithm for convex hulls in two dimensions".
+std::vector<Vec2> convex_hull(std::vector<Vec2> points);
+
+/// Cost: O(n log n) for n sites.
 Hull hull_of(std::span<const Site> sites);
 
 }  // namespace brink

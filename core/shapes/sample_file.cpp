@@ -7,6 +7,7 @@
 #include <map>
 
 #include "brink/core/base/error.h"
+#include "brink/core/shapes/hull.h"
 #include "brink/core/shapes/sampling.h"
 
 namespace brink {
@@ -162,26 +163,6 @@ class Reader {
   /// The file has ended, or its head is wrong: what follows would be misread.
   bool stopped_ = false;
 };
-
-/// Counter-clockwise, corners alone (Andrew 1979, monotone chain). @pre two distinct points or more.
-std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
-  std::sort(points.begin(), points.end(),
-            [](const Vec2& a, const Vec2& b) { return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y()); });
-  std::vector<Vec2> hull;
-  // the first `keep` + 1 points stay; above them what does not turn left is taken away, collinear points too
-  const auto add = [&](const Vec2& p, std::size_t keep) {
-    while (hull.size() >= keep + 2 && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0.0)
-      hull.pop_back();
-    hull.push_back(p);
-  };
-  for (const Vec2& p : points) add(p, 0);
-  // the upper chain starts at the last point, and takes nothing of the lower one away
-  const std::size_t lower = hull.size() - 1;
-  for (auto p = points.rbegin() + 1; p != points.rend(); ++p) add(*p, lower);
-  // the upper chain came back to the first point
-  hull.pop_back();
-  return hull;
-}
 
 /// The point that is farthest from p.
 const Vec2& farthest(const std::vector<Vec2>& points, const Vec2& p) {

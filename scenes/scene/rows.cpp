@@ -14,12 +14,12 @@ namespace brink {
 
 namespace {
 
-constexpr double kNear = 1e-6;  // of a copy's radius: nearer ones may touch
+constexpr double kMayTouch = 1e-6;  // of a copy's radius: nearer ones may touch
 
 // From where a copy is clear of another, a power of two, so that what is exact stays so.
 // From two to four times the distance of the centres at which the two discs touch.
 double far_away(const Outline& outline) {
-  return std::exp2(std::ceil(std::log2(2.0 * outline.bounding_radius * (1.0 + kNear))) + 1.0);
+  return std::exp2(std::ceil(std::log2(2.0 * outline.bounding_radius * (1.0 + kMayTouch))) + 1.0);
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ double TouchingRows::extent_along(const Vec2& direction) const {
     add(site.b, site.radius);
     if (site.kind == SiteKind::arc) add(site.center, site.radius + site.arc_radius);
   }
-  return (most - least) * (1.0 + kNear);
+  return (most - least) * (1.0 + kMayTouch);
 }
 
 /// From copy to copy in a row; where the one that comes only grazes the other, as far as their discs.
@@ -113,7 +113,8 @@ std::vector<TouchingRows::Neighbour> TouchingRows::neighbours_of(std::size_t row
   // With the neighbour at the origin: a gap depends on where the two are to each other alone.
   const auto look = [&](std::size_t below, std::int64_t halves) {
     const Pose there{offset(halves, heights_[row] - heights_[below]), ask_.angle};
-    if (gaps.between(there, here).gap < kNear * ask_.outline->bounding_radius) out.push_back({below, halves});
+    if (gaps.between(there, here).gap < kMayTouch * ask_.outline->bounding_radius)
+      out.push_back({below, halves});
   };
   // Of its own row only those that at() has placed before it.
   for_offsets(row, row, [&](std::int64_t halves) {

@@ -51,7 +51,7 @@ constexpr EventKind kKinds[] = {
 std::string hex(const draw::Color& c) { return fmt::format("#{:06x}", c.argb() & 0xffffff); }
 /// Red, green and blue 0..1, as WebGL takes them.
 Json shares(const draw::Color& c) { return Json::array({c.red, c.green, c.blue}); }
-Json pair(const Vec2& v) { return Json::array({v.x(), v.y()}); }
+Json xy(const Vec2& v) { return Json::array({v.x(), v.y()}); }
 
 /// Columns of states, one after another: x, y, angle, vx, vy, omega.
 /// Rows are frames times things, things within a frame by id: the page finds a state by frame * count + id.
@@ -357,8 +357,8 @@ class ReplayPage {
     for (const RunFile::Spring& s : run_.springs())
       about_["springs"].push_back({{"body", s.body},
                                    {"other", s.other < 0 ? Json() : Json(s.other)},
-                                   {"at", pair(s.at)},
-                                   {"other_at", pair(s.other_at)}});
+                                   {"at", xy(s.at)},
+                                   {"other_at", xy(s.other_at)}});
   }
 
   /// What the page says of the run in words: title, ending, extent, the run file's meta, summary, options,
@@ -375,8 +375,8 @@ class ReplayPage {
     const bool running = of("termination") == "running";
     about_["termination"] = fmt::format("{} at {} s", of("termination"),
                                         running ? fmt::format("{}", curves_.end()) : of("end_time"));
-    about_["periods"] = pair(world_.periods.size);
-    about_["gravity"] = pair(curves_.gravity());
+    about_["periods"] = xy(world_.periods.size);
+    about_["gravity"] = xy(curves_.gravity());
     about_["extent"] = {extent.low.x(), extent.low.y(), extent.low.x() + size.x(), extent.low.y() + size.y()};
     about_["kinds"] = Json::array();
     for (const EventKind kind : kKinds) about_["kinds"].push_back(to_string(kind));
