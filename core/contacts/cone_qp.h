@@ -113,10 +113,14 @@ class ConeQp {
   ///
   /// Known limit: where masses of one island are spread at random over 1e6 and more, some steps end `undecided`
   /// (2.6 % of random problems at 1e6).
-  StepResult step(const StepProblem& problem, const GoOn& go_on = {});
+  ///
+  /// `again`: the last problem was the same but for gaps and bounds, which have changed little. Then the search goes on from
+  /// where it was halfway there.
+  StepResult step(const StepProblem& problem, const GoOn& go_on = {}, bool again = false);
 
  private:
   InteriorPoint solver_;
+  double unit_ = 0.0;  ///< of speed, in the last step
 };
 
 }  // namespace brink

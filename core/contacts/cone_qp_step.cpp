@@ -135,14 +135,27 @@ bool solved(const InteriorPoint& solver, double part) {
 
 }  // namespace
 
-StepResult ConeQp::step(const StepProblem& problem, const GoOn& go_on) {
+StepResult ConeQp::step(const StepProblem& problem, const GoOn& go_on, bool again) {
   const StepRows rows(problem);
-  if (!solver_.begin(rows.problem(), go_on))
-    return {StepResult::Status::stopped, problem.velocity, std::vector<ContactLoad>(problem.contacts.size())};
   const auto sure = [&] {
     return solved(solver_, kExact) || (solver_.hindered() && solved(solver_, kNearly));
   };
-  while (!sure() && solver_.steps() < kMostSteps && solver_.step(go_on)) continue;
+  int steps = 0;
+  const auto search = [&] {
+    while (!sure() && solver_.steps() < kMostSteps && solver_.step(go_on)) continue;
+    steps += solver_.steps();
+  };
+  const bool same_unit = rows.units().speed() == unit_;
+  unit_ = rows.units().speed();
+  const bool goes_on = again && same_unit && solver_.begin_again(rows.problem());
+  if (goes_on) search();
+  // what has changed by too much for that is searched for from its beginning
+  if (!goes_on || (!solver_.stopped() && !solved(solver_, kEnough))) {
+    if (!solver_.begin(rows.problem(), go_on))
+      return {StepResult::Status::stopped, problem.velocity,
+              std::vector<ContactLoad>(problem.contacts.size())};
+    search();
+  }
 
   StepResult result;
   // Whether the search ended by itself or by rounding, what was found is judged by one measure.
@@ -152,7 +165,7 @@ StepResult ConeQp::step(const StepProblem& problem, const GoOn& go_on) {
     result.velocity.push_back(problem.velocity[k] + rows.units().speed_of(k, solver_.velocity(k)));
   result.loads = rows.loads(solver_);
   result.residual = residual(solver_);
-  result.factorisations = solver_.steps();
+  result.factorisations = steps;
   return result;
 }
 

@@ -57,6 +57,9 @@ constexpr double kNear = 0.1;
 /// A force begins within this part of its bound.
 constexpr double kInside = 0.7;
 
+/// Where the mean product first is below this, the search is halfway to 0.
+constexpr double kHalfway = 1e-6;
+
 /// Numbers that are gone through side by side.
 constexpr std::size_t kLanes = 8;
 
@@ -88,9 +91,50 @@ bool InteriorPoint::begin(const QpProblem& problem, const GoOn& go_on) {
   steps_ = 0;
   stopped_ = false;
   last_length_ = 1.0;
+  halfway_ = {};
   const bool expects = std::any_of(problem.rows.begin(), problem.rows.end(),
                                    [](const QpRow& row) { return row.expected != 0.0; });
   expects ? start_near(problem) : start_pairs(problem);
+  measure();
+  return true;
+}
+
+bool InteriorPoint::has_rows(const QpProblem& problem) const {
+  if (problem.mass.size() != u_.size() || problem.rows.size() != rows_.size()) return false;
+  const auto same = [](const Triple& a, const Triple& b) { return std::equal(a.at, a.at + 3, b.at); };
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    const Row row = ordered(problem.rows[r]), &own = rows_[r];
+    if (row.first != own.first || row.last != own.last || row.pairs != own.pairs ||
+        !same(row.on_first, own.on_first) || !same(row.on_last, own.on_last))
+      return false;
+  }
+  return true;
+}
+
+bool InteriorPoint::begin_again(const QpProblem& problem) {
+  if (halfway_.u.empty() || !has_rows(problem)) return false;
+  u_ = halfway_.u;
+  s_ = halfway_.s;
+  z_ = halfway_.z;
+  for (std::size_t k = 0; k < u_.size(); ++k) {
+    mass_[factor_.place(static_cast<int>(k))] = Triple::of(problem.mass[k]);
+    f_[factor_.place(static_cast<int>(k))] = Triple::of(problem.force[k]);
+  }
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    Row& row = rows_[r];
+    row.offset = problem.rows[r].offset;
+    if (row.pairs == 1) continue;
+    // the same part of another bound
+    double* s = &s_[row.pair];
+    const double grows = 2.0 * problem.rows[r].bound / (s[0] + s[1]);
+    s[0] *= grows;
+    s[1] *= grows;
+  }
+  std::fill(ds_.begin(), ds_.end(), 0.0);
+  std::fill(dz_.begin(), dz_.end(), 0.0);
+  steps_ = 0;
+  stopped_ = false;
+  last_length_ = 1.0;
   measure();
   return true;
 }
@@ -204,6 +248,7 @@ bool InteriorPoint::step(const GoOn& go_on) {
   last_length_ = std::min(1.0, part_of_way(gap_ / std::max(1, pairs_)) * longest_step());
   take(last_length_);
   measure();
+  if (halfway_.u.empty() && mean_product() <= kHalfway) halfway_ = {u_, s_, z_};
   return last_length_ > kNoStep;
 }
 

@@ -37,6 +37,9 @@ class InteriorPoint {
   /// Before the first step. What is known of the graph is kept from the problem before. False: it was stopped, and there
   /// is nothing to ask.
   bool begin(const QpProblem& problem, const GoOn& go_on = {});
+  /// From where the last search was halfway, for the same rows with other offsets and bounds: a few steps do where these have
+  /// changed little. False: it never was there, or the rows are others; then begin() is to be asked.
+  bool begin_again(const QpProblem& problem);
   /// One factorisation, one step. False: no step of any length is left to rounding, or it was stopped.
   bool step(const GoOn& go_on = {});
   bool stopped() const { return stopped_; }
@@ -81,6 +84,7 @@ class InteriorPoint {
   Row ordered(const QpRow& row) const;
   void start_pairs(const QpProblem& problem);
   void start_near(const QpProblem& problem);
+  bool has_rows(const QpProblem& problem) const;
   void measure();
   bool factor(const GoOn& go_on);
   void find_direction(double centre, bool corrected);
@@ -100,6 +104,10 @@ class InteriorPoint {
     std::vector<Triple> du;
     OfPairs ds, dz;
   } kept_;  ///< a direction, while another one is tried
+  struct {
+    std::vector<Triple> u;
+    OfPairs s, z;
+  } halfway_;  ///< where products first were small, all alike still; empty: not yet
   int pairs_ = 0, steps_ = 0;
   bool stopped_ = false;
   double gap_ = 0.0, last_length_ = 1.0;

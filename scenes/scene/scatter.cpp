@@ -1,6 +1,6 @@
 /// Two ways to place copies, in this order:
 ///
-///     insertion:  draw a place until one is free; give up after kTries in a row
+///     insertion:  draw a place until one is free; give up after kPlacesTried in a row
 ///     lattice:    free places of a triangular lattice, as wide as the count allows; too few: 3 % narrower;
 ///                 draw among them, shake each within the room that the spacing leaves
 ///
@@ -185,17 +185,17 @@ Pose anywhere(const ScatterAsk& ask, Random& random) {
 }
 
 // The room is a copy: where this fails the lattice begins with the obstacles alone.
-// Empty if kTries places in a row are taken. A greater count draws the same places first.
+// Empty if kPlacesTried places in a row are taken. A greater count draws the same places first.
 std::optional<std::vector<Pose>> insert_one_by_one(const ScatterAsk& ask, Room room, Random& random) {
   // Random insertion of discs jams at a coverage of 0.547; below 45 % a free place is found in
   // far fewer tries.
-  constexpr int kTries = 5000;
+  constexpr int kPlacesTried = 5000;
   std::vector<Pose> out;
   while (static_cast<std::int64_t>(out.size()) < ask.count) {
     int tries = 0;
     Pose pose = anywhere(ask, random);
-    while (!room.free(pose) && ++tries < kTries) pose = anywhere(ask, random);
-    if (tries == kTries) return std::nullopt;
+    while (!room.free(pose) && ++tries < kPlacesTried) pose = anywhere(ask, random);
+    if (tries == kPlacesTried) return std::nullopt;
     room.take({ask.outline, pose});
     out.push_back(pose);
   }

@@ -151,9 +151,10 @@ class SweptFriction {
       problem_.contacts[k].gap = other.contacts[k].gap;
   }
 
-  Solved solve(ConeQp& solver, int& factorisations, const GoOn& go_on) const {
+  /// `again`: the solver's last problem was this one with other gaps, and friction that was swept for them.
+  Solved solve(ConeQp& solver, bool again, int& factorisations, const GoOn& go_on) const {
     Solved solved;
-    solved.result = solver.step(problem_, go_on);
+    solved.result = solver.step(problem_, go_on, again);
     factorisations += solved.result.factorisations;
     if (solved.result.status == StepResult::Status::stopped || !(solved.result.residual <= kResidual))
       return solved;
@@ -178,11 +179,12 @@ Solved solve(ConeQp& solver, const StepProblem& p, std::optional<SweptFriction>&
     if (solved.result.status == StepResult::Status::stopped || solved.residual <= kFrictionNear * most)
       return solved;
   }
-  if (keep && swept)
+  const bool again = swept.has_value();
+  if (keep && again)
     swept->take_gaps(p);
   else
     swept.emplace(p, go_on);
-  return swept->solve(solver, factorisations, go_on);
+  return swept->solve(solver, again, factorisations, go_on);
 }
 
 /// How a gap is missed along the step [m]; 0: not at all.
@@ -269,14 +271,14 @@ Miss missed(const IslandStep& step, std::size_t k, double h, const std::vector<V
   const IslandContact& contact = step.contacts[k];
   const double tolerance = contact.tolerance;
   std::array<double, kLooks + 1> seen;
-  const double start = gap(k, 0.0, velocity);
+  const double start = gap(k, 0.0);
   // What the scene lets overlap may stay as deep as it is; what begins at a wire, as near as that, rises along the step if
   // that costs little.
   const double kept = start < -tolerance ? start : 0.0;
   const bool rises = rise && contact.thin && -kept <= cheap;
   const auto look = [&](double at) {
     const double part = at / kLooks, floor = rises ? (1.0 - part) * kept : kept;
-    const double there = gap(k, h * part, velocity) - floor;
+    const double there = gap(k, h * part) - floor;
     miss.most = std::max(miss.most, -there);
     // A contact aims for a gap at the end of the step; with constant twists a part of the way has that
     // part of the lift. The least part keeps a miss close to the start from asking for a lift without
@@ -288,15 +290,17 @@ Miss missed(const IslandStep& step, std::size_t k, double h, const std::vector<V
   };
   // the gap at the start is what it is: no velocity changes it, and it counts as no miss
   for (int i = 0; i <= kLooks; ++i) seen[i] = i == 0 ? start - kept : look(i);
+  const auto bend = [&](int i) {
+    return i > 0 && i < kLooks ? seen[i - 1] - 2.0 * seen[i] + seen[i + 1] : 0.0;
+  };
+  // From three looks a parabola dips by half of its bend at most.
   for (int i = 1; i < kLooks; ++i)
-    if (const double at = lowest(seen[i - 1], seen[i], seen[i + 1]); at != 0.0) look(i + at);
+    if (bend(i) > std::max(seen[i], kNoDip * tolerance))
+      if (const double at = lowest(seen[i - 1], seen[i], seen[i + 1]); at != 0.0) look(i + at);
   // What bends by more between looks than it is high, and by more than counts, may have a corner there that goes
   // below.
-  const auto bend = [&](int i) {
-    return i > 0 && i < kLooks ? std::abs(seen[i - 1] - 2.0 * seen[i] + seen[i + 1]) : 0.0;
-  };
   for (int i = 0; i < kLooks; ++i)
-    if (const double most = std::max(bend(i), bend(i + 1));
+    if (const double most = std::max(std::abs(bend(i)), std::abs(bend(i + 1)));
         most > kMissCounts * tolerance && std::min(seen[i], seen[i + 1]) < most)
       look_for_corner(i, seen[i], seen[i + 1], look);
   miss.counts = miss.most > kMissCounts * tolerance;
@@ -369,13 +373,14 @@ bool stops(const GoOn& go_on) { return go_on && !go_on(); }
 
 /// The step on which nobody presses, which is the answer if no gap is missed. For what the solver does not come to:
 /// contacts that part far slower than the step is long.
-StepOutcome without_loads(IslandStep& step, double h, const GapAlong& gap, const GoOn& go_on,
+StepOutcome without_loads(IslandStep& step, double h, const GapsAlong& gaps, const GoOn& go_on,
                           const ListFarther& farther, StepOutcome outcome) {
   std::vector<Vec3> velocity = step.velocity;
   for (std::size_t i = 0; i < step.mass.size(); ++i)
     // what is held has an infinite mass: nothing is added to it
     velocity[i] += h * step.force[i].cwiseQuotient(step.mass[i]);
   if (farther) farther(velocity);
+  const GapAlong gap = gaps(velocity);
   // all contacts are asked, those that wait for their turn, too
   for (std::size_t k = 0; k < step.contacts.size(); ++k)
     if (stops(go_on) || missed(step, k, h, velocity, 0.0, false, gap).counts) return outcome;
@@ -387,8 +392,8 @@ StepOutcome without_loads(IslandStep& step, double h, const GapAlong& gap, const
 
 /// One loop to two ends: a contact at an end joins once it is missed, and a gap that was missed aims higher. `rise`: thin
 /// ones that begin below what they must keep do so.
-StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, bool rise, const GapAlong& gap,
-                 const GoOn& go_on, const ListFarther& farther) {
+StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, bool rise,
+                 const GapsAlong& gaps, const GoOn& go_on, const ListFarther& farther) {
   StepOutcome outcome;
   std::vector<Part> parts;
   std::vector<std::size_t> waiting;
@@ -408,11 +413,12 @@ StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, b
     Solved solved = solve(solver, problem_of(step, h, parts), swept, keep, outcome.factorisations, go_on);
     StepResult& result = solved.result;
     if (result.status == StepResult::Status::stopped) return outcome;
-    if (!(result.residual <= kResidual)) return without_loads(step, h, gap, go_on, farther, outcome);
+    if (!(result.residual <= kResidual)) return without_loads(step, h, gaps, go_on, farther, outcome);
     const std::size_t listed = step.contacts.size();
     if (farther) farther(result.velocity);
     for (std::size_t k = listed; k < step.contacts.size(); ++k) waiting.push_back(k);
     for (std::size_t k = 0; k < parts.size(); ++k) parts[k].expected = solved.loads[k];
+    const GapAlong gap = gaps(result.velocity);
     // those that are missed take part from now on: each comes once
     const auto met = std::stable_partition(waiting.begin(), waiting.end(), [&](std::size_t k) {
       return stops(go_on) || !missed(step, k, h, result.velocity, cheap, rise, gap).counts;
@@ -446,7 +452,7 @@ StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, b
     double of = 0.0;
     const double won_here = won(step, result, parts, h, tolerance, of);
     // The caller tries a shorter step: by what faces that turn are missed is of second order in h.
-    if (won_here > kWonOf * of) return without_loads(step, h, gap, go_on, farther, outcome);
+    if (won_here > kWonOf * of) return without_loads(step, h, gaps, go_on, farther, outcome);
     // from here on loads stand at their contacts' places; won() took them at their parts'
     const std::vector<ContactLoad> loads = of_all(solved.loads, parts, step.contacts.size());
     const bool driven = std::any_of(parts.begin(), parts.end(),
@@ -474,7 +480,7 @@ StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, b
 
 }  // namespace
 
-StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap,
+StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapsAlong& gaps,
                       const GoOn& go_on, const ListFarther& farther) {
   const auto any_thin = [&](auto&& is) {
     return std::any_of(step.contacts.begin(), step.contacts.end(),
@@ -482,7 +488,7 @@ StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double toleran
   };
   int before = 0;
   const auto attempt = [&](bool rise) {
-    StepOutcome outcome = take(solver, step, h, tolerance, rise, gap, go_on, farther);
+    StepOutcome outcome = take(solver, step, h, tolerance, rise, gaps, go_on, farther);
     outcome.factorisations += before;
     before = outcome.factorisations;
     return outcome;

@@ -52,8 +52,11 @@ struct IslandStep {
   std::vector<IslandContact> contacts;
 };
 
-/// The gap of contact k a time into the step, were the bodies to move with these velocities [m].
-using GapAlong = std::function<double(std::size_t k, double moment, const std::vector<Vec3>& velocity)>;
+/// The gap of contact k a time into the step [m].
+using GapAlong = std::function<double(std::size_t k, double moment)>;
+
+/// That, were the bodies to move with these velocities, which outlive it.
+using GapsAlong = std::function<GapAlong(const std::vector<Vec3>& velocity)>;
 
 /// Adds contacts to the step that bodies may come to with these velocities, and that it has not yet.
 using ListFarther = std::function<void(const std::vector<Vec3>& velocity)>;
@@ -76,7 +79,7 @@ inline constexpr std::size_t kFewMembers = 8;
 /// Takes a step of h > 0 [s]. What is not solved is to be tried again with a shorter one. `farther` is asked after every
 /// solve; what it adds takes part once it is missed. `tolerance`: the way by which places may be off in
 /// its energy [m]; a thin contact's, too, where no step keeps its own (its `tolerance` says so then).
-StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapAlong& gap,
+StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapsAlong& gaps,
                       const GoOn& go_on = {}, const ListFarther& farther = {});
 
 /// True if the bodies stay at rest under their forces: the contacts' forces are set then. Not where GoOn said no.

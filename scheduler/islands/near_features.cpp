@@ -263,16 +263,9 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
 
 /// Both outlines as carrier and as other, in frames that are seen from b's position.
 /// Differences of places are taken in extended precision, before they are rounded to doubles.
-std::array<Half, 2> halves(const Outline& a, const ExtendedState& state_a, const Outline& b,
-                           const ExtendedState& state_b) {
-  const ExtendedState origin = state_b;
-  const auto frame = [&](const ExtendedState& s) {
-    ExtendedState from = s;
-    from.position -= origin.position;
-    return Frame(from.seen_from(Vec2::Zero()).pose);
-  };
-  const Frame of_a = frame(state_a), of_b = frame(state_b);
-  return {Half{a, b, of_a, of_b, true}, Half{b, a, of_b, of_a, false}};
+std::array<Half, 2> halves(const OutlineAt& a, const OutlineAt& b) {
+  const Frame of_a((a.position - b.position).cast<double>(), a.of_angle), of_b(Vec2::Zero(), b.of_angle);
+  return {Half{*a.outline, *b.outline, of_a, of_b, true}, Half{*b.outline, *a.outline, of_b, of_a, false}};
 }
 
 /// True if the sample is clear of the other's box, a quick look.
@@ -356,10 +349,15 @@ double through_corner(const Half& half, const Sample& sample, const Site& site, 
 
 }  // namespace
 
+OutlineAt::OutlineAt(const Outline& of, const ExtendedState& state)
+    : outline(&of),
+      position(state.position),
+      of_angle(sine_cosine(state.seen_from(Vec2::Zero()).pose.angle)) {}
+
 std::vector<NearFeature> near_features(const Outline& a, const ExtendedState& state_a, const Outline& b,
                                        const ExtendedState& state_b, double reach) {
   std::vector<NearFeature> found;
-  for (const Half& half : halves(a, state_a, b, state_b)) {
+  for (const Half& half : halves({a, state_a}, {b, state_b})) {
     // a disc's centre sees all that its surface meets: what the other's samples see is the same once more
     const bool both = half.carrier.is_point() && half.other.is_point();
     if (half.other.is_point() && !(both && half.on_a)) continue;
@@ -373,9 +371,8 @@ std::vector<NearFeature> near_features(const Outline& a, const ExtendedState& st
 /// Unlike near_features() it looks for no other site or side: the feature is followed wherever it goes.
 /// Abreast of the site the gap is negative once the sample is through; beyond an end it is positive again, but where
 /// two corners have passed through each other.
-double gap_of(const NearFeature& f, const Outline& a, const ExtendedState& state_a, const Outline& b,
-              const ExtendedState& state_b) {
-  const Half half = halves(a, state_a, b, state_b)[f.sample_on_a ? 0 : 1];
+double gap_of(const NearFeature& f, const OutlineAt& a, const OutlineAt& b) {
+  const Half half = halves(a, b)[f.sample_on_a ? 0 : 1];
   const Sample& sample = half.carrier.samples[f.sample];
   const Site& site = half.other.sites[f.site];
   const Vec2 q = half.other_frame.to_local(half.carrier_frame.to_world(sample.p));
@@ -402,6 +399,11 @@ double gap_of(const NearFeature& f, const Outline& a, const ExtendedState& state
   const bool beside = abreast && nearest.foot != Foot::interior && site.kind == SiteKind::segment;
   const double deep = beside ? -out.dot(q - nearest.point) : nearest.distance;
   return (crossed ? -deep : nearest.distance) - site.radius - sample.radius;
+}
+
+double gap_of(const NearFeature& f, const Outline& a, const ExtendedState& state_a, const Outline& b,
+              const ExtendedState& state_b) {
+  return gap_of(f, {a, state_a}, {b, state_b});
 }
 
 }  // namespace brink

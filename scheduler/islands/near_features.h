@@ -33,7 +33,17 @@ struct NearFeature {
 std::vector<NearFeature> near_features(const Outline& a, const ExtendedState& state_a, const Outline& b,
                                        const ExtendedState& state_b, double reach);
 
+/// An outline where it is, with the sine and cosine of its angle, which all its features ask for.
+struct OutlineAt {
+  OutlineAt(const Outline& outline, const ExtendedState& state);
+
+  const Outline* outline;
+  RealVec position;
+  SineCosine<double> of_angle;
+};
+
 /// The gap of one such feature with the outlines elsewhere [m].
+double gap_of(const NearFeature& feature, const OutlineAt& a, const OutlineAt& b);
 double gap_of(const NearFeature& feature, const Outline& a, const ExtendedState& state_a, const Outline& b,
               const ExtendedState& state_b);
 

@@ -34,6 +34,9 @@ inline constexpr double kOneSide = 1e-9;
 /// A gap that is missed by less than this part of the tolerance is not made up for: ten such misses in a row keep the
 /// tolerance still.
 inline constexpr double kMissCounts = 0.1;
+/// What bends between looks by less than this part of the tolerance dips by nothing that counts: by half as much at most, a
+/// two-hundredth of kMissCounts.
+inline constexpr double kNoDip = 1e-3;
 /// A correction lifts by so much of what was missed: by more than the rounding of the solve, by less than kMissCounts
 /// would see.
 inline constexpr double kAimHigher = 1.001;

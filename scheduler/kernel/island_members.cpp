@@ -181,6 +181,15 @@ ExtendedState IslandMembers::other_state(const PairKey& pair, double later,
   return moved(place_of(pair.other_body), later, velocity).shifted(search_->shift_of(pair));
 }
 
+OutlineAt IslandMembers::placed(int member, double later, const std::vector<Vec3>& velocity) const {
+  return {search_->outline_of(bodies_[member]), moved(member, later, velocity)};
+}
+
+OutlineAt IslandMembers::placed_site(int site, double later) const {
+  const int owner = trajectories_->body_count() + site;
+  return {search_->outline_of(owner), trajectories_->motion_of(owner).extended_state(now_ + later)};
+}
+
 /// Of the same two features, wherever they are by then: another one may have come nearer.
 double IslandMembers::gap(const HeldContact& c, double later, const std::vector<Vec3>& velocity) const {
   const Outline &a = search_->outline_of(c.pair.body), &b = search_->outline_of(search_->other_owner(c.pair));

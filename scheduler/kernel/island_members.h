@@ -76,6 +76,10 @@ class IslandMembers {
   ExtendedState other_state(const PairKey& pair) const;
   ExtendedState other_state(const PairKey& pair, double later, const std::vector<Vec3>& velocity) const;
   ExtendedState moved(int member, double later, const std::vector<Vec3>& velocity) const;
+  /// The same with its outline, of a member or a site itself, whichever image of it is met.
+  OutlineAt placed(int member, double later, const std::vector<Vec3>& velocity) const;
+  OutlineAt placed_site(int site, double later) const;
+  Vec2 shift_of(const PairKey& pair) const { return search_->shift_of(pair); }
   /// The gap of the contact's features then [m].
   double gap(const HeldContact& contact, double later, const std::vector<Vec3>& velocity) const;
   /// How fast the two features approach now [m/s].

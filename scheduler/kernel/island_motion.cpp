@@ -9,6 +9,7 @@
 #include "brink/core/base/disjoint_sets.h"
 #include "brink/core/base/limits.h"
 #include "brink/scheduler/kernel/island_joining.h"
+#include "brink/scheduler/kernel/step_places.h"
 
 namespace brink {
 
@@ -315,11 +316,13 @@ bool IslandMotion::take(double h, double tolerance) {
       if (!agitated_) look(h = first);
     }
     make_problem();
-    const auto gap = [this](std::size_t k, double later, const std::vector<Vec3>& velocity) {
-      return members_.gap(contacts_[k], later, velocity) - kept(contacts_[k].feature);
+    const auto gaps = [this](const std::vector<Vec3>& velocity) -> GapAlong {
+      return [this, places = StepPlaces(members_, velocity)](std::size_t k, double later) mutable {
+        return places.gap(contacts_[k], later) - kept(contacts_[k].feature);
+      };
     };
     const StepOutcome outcome =
-        take_step(*solver_, problem_, h, search_->limits().tolerance, gap, go_on_,
+        take_step(*solver_, problem_, h, search_->limits().tolerance, gaps, go_on_,
                   [this](const std::vector<Vec3>& velocity) { list_farther(velocity); });
     // work is counted of every try, all else of the step that is taken
     tally_->factorisations += outcome.factorisations;

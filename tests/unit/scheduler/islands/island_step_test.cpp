@@ -3,10 +3,21 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 namespace brink::island_step_test {
 namespace {
 
 constexpr double kTolerance = 2e-10;
+
+/// The gap of contact k so long into a step with these velocities.
+using GapOf = std::function<double(std::size_t k, double later, const std::vector<Vec3>& velocity)>;
+
+GapsAlong along(const GapOf& gap) {
+  return [gap](const std::vector<Vec3>& v) {
+    return [gap, &v](std::size_t k, double later) { return gap(k, later, v); };
+  };
+}
 
 /// A body of 1 kg and 1 kg m^2 over a floor, under no force; contacts at both its feet.
 IslandStep over_floor(double gap, const Vec3& velocity) {
@@ -30,10 +41,10 @@ TEST(IslandStep, ContactsThatPartSlowlyGoOnAsTheyDo) {
     const Vec3 velocity(0.0, 1.2e-8, -3e-14);
     IslandStep step = over_floor(6.7e-9, velocity);
     ConeQp solver;
-    const GapAlong gap = [](std::size_t k, double later, const std::vector<Vec3>& v) {
+    const GapOf gap = [](std::size_t k, double later, const std::vector<Vec3>& v) {
       return 6.7e-9 + later * (v[0].y() + (k == 0 ? -1.0 : 1.0) * v[0].z());
     };
-    ASSERT_TRUE(take_step(solver, step, h, kTolerance, gap).solved) << h;
+    ASSERT_TRUE(take_step(solver, step, h, kTolerance, along(gap)).solved) << h;
     EXPECT_NEAR(step.velocity[0].y(), 1.2e-8, 1e-10) << h;
     for (const IslandContact& c : step.contacts) EXPECT_LE(c.normal_force * h, 1e-9) << h;
   }
@@ -44,13 +55,13 @@ TEST(IslandStep, ContactsThatPartSlowlyGoOnAsTheyDo) {
 TEST(IslandStep, GapThatDipsBetweenTwoLooksIsKept) {
   const double h = 0.01;
   IslandStep step = over_floor(1.2e-6, Vec3(1.0, 0.0, 0.0));
-  const GapAlong gap = [&](std::size_t, double later, const std::vector<Vec3>& v) {
+  const GapOf gap = [&](std::size_t, double later, const std::vector<Vec3>& v) {
     const double s = later / h, fall = s / 0.36;
     return (s < 0.36 ? 1.2e-6 - 1.4e-6 * fall * fall : -2e-7 + 4e-5 * (s - 0.36)) + later * v[0].y();
   };
   ASSERT_LT(gap(0, 0.36 * h, step.velocity), -1.9e-7);
   ConeQp solver;
-  ASSERT_TRUE(take_step(solver, step, h, kTolerance, gap).solved);
+  ASSERT_TRUE(take_step(solver, step, h, kTolerance, along(gap)).solved);
   for (int i = 0; i <= 10000; ++i) ASSERT_GE(gap(0, h * i / 10000.0, step.velocity), -kTolerance) << i;
 }
 
@@ -58,11 +69,11 @@ TEST(IslandStep, GapThatDipsBetweenTwoLooksIsKept) {
 TEST(IslandStep, LiftsOfWhichPartIsLostReachTheGap) {
   const double h = 0.01, lost = 0.45, misses = 1e-4;
   IslandStep step = over_floor(0.0, Vec3(0.0, -1.0, 0.0));
-  const GapAlong gap = [&](std::size_t, double later, const std::vector<Vec3>& v) {
+  const GapOf gap = [&](std::size_t, double later, const std::vector<Vec3>& v) {
     return (1.0 - lost) * later * v[0].y() - misses * later / h;
   };
   ConeQp solver;
-  ASSERT_TRUE(take_step(solver, step, h, kTolerance, gap).solved);
+  ASSERT_TRUE(take_step(solver, step, h, kTolerance, along(gap)).solved);
   for (int i = 0; i <= 8; ++i) EXPECT_GE(gap(0, h * i / 8.0, step.velocity), -kTolerance);
   EXPECT_NEAR(step.velocity[0].y(), misses / h / (1.0 - lost), 1e-3);
 }
@@ -79,11 +90,11 @@ TEST(IslandStep, GapAtAWireIsKeptFinely) {
       c.tolerance = 0.125 * kTouch;
       c.thin = true;
     }
-    const GapAlong gap = [&](std::size_t, double later, const std::vector<Vec3>& v) {
+    const GapOf gap = [&](std::size_t, double later, const std::vector<Vec3>& v) {
       return -8.0 * kTouch + later * v[0].y() - sinks * later / h * later / h;
     };
     ConeQp solver;
-    ASSERT_TRUE(take_step(solver, step, h, kTolerance, gap).solved) << h;
+    ASSERT_TRUE(take_step(solver, step, h, kTolerance, along(gap)).solved) << h;
     const double least = h > 1e-3 ? 0.0 : -8.0 * kTouch;
     const double ends = gap(0, h, step.velocity);
     EXPECT_GE(ends, least - 0.125 * kTouch) << h;
@@ -107,7 +118,7 @@ TEST(IslandStep, ContactThatIsListedLateBarsTheWay) {
   wall.rows = contact_at(0, -1, {-1.0, 0.0}, Vec2::Zero(), Vec2::Zero());
   wall.gap = far;
   wall.tolerance = kTolerance;
-  const GapAlong gap = [&](std::size_t k, double later, const std::vector<Vec3>& v) {
+  const GapOf gap = [&](std::size_t k, double later, const std::vector<Vec3>& v) {
     return k == 0 ? later * (v[0].x() - v[1].x()) : far - later * v[0].x();
   };
   int listed = 0;
@@ -118,7 +129,7 @@ TEST(IslandStep, ContactThatIsListedLateBarsTheWay) {
     }
   };
   ConeQp solver;
-  ASSERT_TRUE(take_step(solver, step, h, kTolerance, gap, {}, farther).solved);
+  ASSERT_TRUE(take_step(solver, step, h, kTolerance, along(gap), {}, farther).solved);
   EXPECT_EQ(listed, 1);
   EXPECT_NEAR(step.velocity[0].x(), far / h, 1e-8);
   EXPECT_NEAR(step.velocity[1].x(), far / h, 1e-8);
@@ -127,13 +138,14 @@ TEST(IslandStep, ContactThatIsListedLateBarsTheWay) {
 
 // Wherever it is stopped, there is no step, and the problem is as it was.
 TEST(IslandStep, StoppedIsNone) {
-  const GapAlong gap = [](std::size_t k, double later, const std::vector<Vec3>& v) {
+  const GapOf gap = [](std::size_t k, double later, const std::vector<Vec3>& v) {
     return 1e-3 + later * (v[0].y() + (k == 0 ? -1.0 : 1.0) * v[0].z());
   };
   const auto take = [&](int most, int& asked) {
     IslandStep step = over_floor(1e-3, Vec3(0.0, -1.0, 0.1));
     ConeQp solver;
-    const bool solved = take_step(solver, step, 0.01, kTolerance, gap, [&] { return asked++ < most; }).solved;
+    const bool solved =
+        take_step(solver, step, 0.01, kTolerance, along(gap), [&] { return asked++ < most; }).solved;
     EXPECT_EQ(step.velocity[0] == Vec3(0.0, -1.0, 0.1), !solved);
     return solved;
   };
