@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "brink/scheduler/events/agenda.h"
@@ -36,12 +36,29 @@ struct HeldContact {
 
 inline bool in_order(const HeldContact& a, const HeldContact& b) { return a.order() < b.order(); }
 
-/// What is known of contacts from the step before.
-using WarmContacts = std::map<ContactKey, HeldContact>;
-inline const HeldContact* find_warm(const WarmContacts& warm, const HeldContact& c) {
-  const auto found = warm.find(c.key());
-  return found == warm.end() ? nullptr : &found->second;
-}
+/// What is known of contacts from the step before, in order.
+class WarmContacts {
+ public:
+  /// Those of one more island. @pre they are in order, and none is known yet
+  void add(const std::vector<HeldContact>& contacts) {
+    const auto before = static_cast<std::ptrdiff_t>(known_.size());
+    known_.insert(known_.end(), contacts.begin(), contacts.end());
+    std::inplace_merge(known_.begin(), known_.begin() + before, known_.end(), in_order);
+  }
+  /// The contact of the same features; none: nullptr.
+  const HeldContact* find(const HeldContact& c) const {
+    const auto found = std::lower_bound(known_.begin(), known_.end(), c, in_order);
+    return found == known_.end() || in_order(c, *found) ? nullptr : &*found;
+  }
+  HeldContact* find(const HeldContact& c) { return const_cast<HeldContact*>(std::as_const(*this).find(c)); }
+  bool empty() const { return known_.empty(); }
+  void clear() { known_.clear(); }
+  auto begin() const { return known_.begin(); }
+  auto end() const { return known_.end(); }
+
+ private:
+  std::vector<HeldContact> known_;
+};
 
 /// How an island came on in the steps that it took last.
 struct IslandPace {

@@ -137,7 +137,7 @@ bool IslandModes::is_corner_on_corner(const HeldContact& c) const {
 
 bool IslandModes::touches(const HeldContact& c) const {
   const double tolerance = search_->limits().tolerance;
-  const HeldContact* warm = find_warm(*warm_, c);
+  const HeldContact* warm = warm_->find(c);
   const bool was_closed = warm && warm->by_modes && is_closed(warm->motion);
   // A closed gap keeps what it had to a quarter of the tolerance: one that began at the tolerance must not
   // open by that.
@@ -258,15 +258,15 @@ std::optional<std::vector<MotionMode>> IslandModes::former_modes() const {
   std::ptrdiff_t closed = 0;
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     if (place_[k] >= modes.size() || !touching_[place_[k]]) continue;
-    const HeldContact* warm = find_warm(*warm_, contacts_[k]);
+    const HeldContact* warm = warm_->find(contacts_[k]);
     // new, or not from a step by modes: what it does is to be chosen
     if (!warm || !warm->by_modes) return std::nullopt;
     modes[place_[k]] = warm->next_motion;
     closed += is_closed(warm->next_motion);
   }
   // one that was closed and no longer touches has come apart in another way: the former modes are void
-  const auto were_closed = std::count_if(warm_->begin(), warm_->end(), [](const auto& w) {
-    return !w.second.by_modes || is_closed(w.second.next_motion);
+  const auto were_closed = std::count_if(warm_->begin(), warm_->end(), [](const HeldContact& w) {
+    return !w.by_modes || is_closed(w.next_motion);
   });
   if (closed != were_closed) return std::nullopt;
   return modes;
@@ -281,7 +281,7 @@ std::vector<bool> IslandModes::closed_now(const States& states, Approach how) co
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     const std::size_t at = place_[k];
     if (at >= closed.size() || !touching_[at]) continue;
-    const HeldContact* warm = find_warm(*warm_, contacts_[k]);
+    const HeldContact* warm = warm_->find(contacts_[k]);
     const bool known = warm && warm->by_modes, was_open = known && !is_closed(warm->motion);
     const bool slowly = how == Approach::slow || (how == Approach::none && !known);
     // open in the step before and touching still: it has just been let go, and only an approach closes it
@@ -414,7 +414,7 @@ std::vector<IslandModes::Change> IslandModes::changes() const {
   std::vector<Change> changes;
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     const HeldContact& c = contacts_[k];
-    const HeldContact* warm = find_warm(*warm_, c);
+    const HeldContact* warm = warm_->find(c);
     if (!warm || !warm->by_modes || warm->motion == c.motion || !is_closed(warm->motion)) continue;
     if (c.motion == MotionMode::stick) changes.push_back({c, EventKind::stick});
     if (is_slip(c.motion)) changes.push_back({c, EventKind::slip});

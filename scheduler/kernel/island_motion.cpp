@@ -447,7 +447,7 @@ IslandContact IslandMotion::island_contact(const HeldContact& c) const {
   const Material& material = response_->material_of(c.pair);
   made.friction = material.friction;
   made.rolling_resistance = material.rolling_resistance;
-  if (const HeldContact* warm = find_warm(warm_, c)) {
+  if (const HeldContact* warm = warm_.find(c)) {
     made.normal_force = warm->normal_force;
     made.tangential_force = warm->tangential_force;
     made.force_lasted = warm->lasted;

@@ -57,6 +57,14 @@ int next_hasty(int hasty, bool by_modes, bool was_short) {
   return hasty >= kMostHasty && hasty < kMostHasty + kCalmed ? hasty + 1 : 0;
 }
 
+/// Of these those that press.
+std::vector<HeldContact> pressing(const std::vector<HeldContact>& contacts) {
+  std::vector<HeldContact> pressed;
+  for (const HeldContact& c : contacts)
+    if (c.mode != ContactMode::none) pressed.push_back(c);
+  return pressed;
+}
+
 }  // namespace
 
 Islands::Islands(const World& world, Trajectories& trajectories, ContactSearch& search,
@@ -83,22 +91,18 @@ void Islands::gather(int body, std::set<int>& members) const {
     for (const int j : trajectories_->coupled_to(k)) gather(j, members);
 }
 
-/// Takes the islands of these members out of the list; their pairs are searched again. Returns what is known of
-/// their contacts, to start the next step from, and joins their pace to `pace`.
-WarmContacts Islands::take_out(const std::set<int>& members, IslandPace& pace) {
-  WarmContacts warm;
+/// Takes the islands of these members out of the list; their pairs are searched again. What is known of their contacts, to
+/// start the next step from, goes to `warm`, and their pace joins `pace`.
+void Islands::take_out(const std::set<int>& members, IslandPace& pace, WarmContacts& warm) {
   for (const int k : members) {
     // islands are listed by their least member: each is met once
     const auto found = islands_.find(k);
     if (found == islands_.end()) continue;
     if (found->second.rests) note_change(EventKind::wake, k), ++tally_.woken;
-    for (const HeldContact& c : found->second.contacts) {
-      search_->search_again(c.pair);
-      warm[c.key()] = c;
-      // told when it has ended (tell_ended); one that presses on in the same mode goes on as one stretch
-      // (put_in)
-      if (c.mode != ContactMode::none) taken_out_.emplace(c.key(), c);
-    }
+    for (const HeldContact& c : found->second.contacts) search_->search_again(c.pair);
+    warm.add(found->second.contacts);
+    // told when they have ended (tell_ended); what presses on in the same mode goes on as one stretch (put_in)
+    taken_out_.add(pressing(found->second.contacts));
     // what cuts a step short may be others, too: one more than its end takes off
     const bool cut_short = !found->second.rests && found->second.due > run_->time();
     if (cut_short) found->second.pace.agitation += 2;
@@ -106,7 +110,6 @@ WarmContacts Islands::take_out(const std::set<int>& members, IslandPace& pace) {
     for (const int j : found->second.members) lead_of_.erase(j);
     islands_.erase(found);
   }
-  return warm;
 }
 
 /// Enters an island: its pairs are left out of searches. A contact that presses in the mode that it had when it was
@@ -115,11 +118,11 @@ void Islands::put_in(Island island) {
   for (HeldContact& c : island.contacts) {
     search_->leave_out(c.pair);
     if (c.mode == ContactMode::none) continue;
-    const auto before = taken_out_.find({c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site});
-    const bool goes_on = before != taken_out_.end() && before->second.mode == c.mode;
+    HeldContact* before = taken_out_.find(c);
+    const bool goes_on = before != nullptr && before->mode == c.mode;
     // a stretch that goes on keeps its beginning
-    c.since = goes_on ? before->second.since : run_->time();
-    if (goes_on) taken_out_.erase(before);
+    c.since = goes_on ? before->since : run_->time();
+    if (goes_on) before->mode = ContactMode::none;  // it has not ended
   }
   // the least member names its island, in lists and events
   const int lead = island.members.front();
@@ -129,7 +132,8 @@ void Islands::put_in(Island island) {
 
 /// Those that were taken out and are in no island now have ended.
 void Islands::tell_ended() {
-  for (const auto& [feature, c] : taken_out_) records_->lasted(c);
+  for (const HeldContact& c : taken_out_)
+    if (c.mode != ContactMode::none) records_->lasted(c);
   taken_out_.clear();
 }
 
@@ -210,7 +214,7 @@ IslandMotion Islands::set_out(std::set<int>& members, IslandPace& pace, double& 
   pace = {};
   // who joins brings an island of its own along, and may be near to others in turn
   for (;;) {
-    warm.merge(take_out(members, pace));
+    take_out(members, pace, warm);
     std::vector<Restart> as_they_are;
     for (const int k : members)
       if (!trajectories_->is_held(k))
@@ -489,9 +493,8 @@ void Islands::restore(const Saved& saved) {
   lead_of_.clear();
   taken_out_.clear();
   for (const Island& island : saved.islands) {
-    for (const HeldContact& c : island.contacts)  // they go on
-      if (c.mode != ContactMode::none) taken_out_.emplace(c.key(), c);
-    // which finds the contacts there, so that their stretches go on
+    // put_in() finds them there, so that their stretches go on
+    taken_out_.add(pressing(island.contacts));
     put_in(island);
   }
   tally_ = saved.tally;

@@ -93,7 +93,7 @@ class Islands {
   void note_change(EventKind kind, int lead);
   void note_impact(const HeldContact& c, const RealVec& from, double closing, double normal,
                    double tangential);
-  WarmContacts take_out(const std::set<int>& members, IslandPace& pace);
+  void take_out(const std::set<int>& members, IslandPace& pace, WarmContacts& warm);
   void put_in(Island island);
   void tell_ended();
   void find_next();
