@@ -671,13 +671,15 @@ class PairSearch {
       then = to_tip(nearest);
       nearest -= then.q.dot(then.rate) / then.rate.squaredNorm();
     }
+    // what is nearest before its motions begin has gone by, or turns: it does not go straight for the tip
+    if (!(nearest >= view_.start() && nearest <= window_end_)) return false;
     then = to_tip(nearest);
     if (!corners_cross(half, f, at_a, then.rate, there)) return false;
     if (lies_flush(half, f, at_a, there)) return false;  // it meets a face, not a tip
     const double rounding = there.gap_rounding(half, f.sample, then.q + tip);
     // beside each other: along the way they may be as far apart as one goes within a tick of the clock
     const double speed = then.rate.norm(), beside = std::abs(cross(then.rate, then.q)) / speed;
-    if (!(nearest <= window_end_ && beside <= 4.0 * rounding)) return false;
+    if (!(beside <= 4.0 * rounding)) return false;
     // The gap at which a sharp sample meets a wire (nominal_level()); where they have been nearer from the start, as after
     // they met, a sink step less than then.
     double before = std::max(0.5 * limits_.touch, 8.0 * rounding);

@@ -497,6 +497,7 @@ void Islands::restore(const Saved& saved) {
     taken_out_.add(pressing(island.contacts));
     put_in(island);
   }
+  taken_out_.clear();  // all of them go on
   tally_ = saved.tally;
   find_next();
 }

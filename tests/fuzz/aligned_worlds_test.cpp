@@ -37,6 +37,7 @@ TEST(AlignedWorlds, ThatOnceFailedAreSound) {
       997300351,                        // fits between walls to a rounding, pressed by both beyond measure
       991002349, 991007714, 995000879,  // flush along a wire, whose end is upon a corner
       996502337,                        // rounding of an approach beside one that is in earnest
+      996704052,                        // upon a corner, by a place from before the motions
       995000072,                        // into a corner, along a wire that ends there
       997303846,                        // flush past a corner of what turns by no more than a rounding
       604314,                           // a search that stopped, and an order that draws
