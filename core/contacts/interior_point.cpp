@@ -66,18 +66,13 @@ constexpr std::size_t kLanes = 8;
 }  // namespace
 
 bool InteriorPoint::begin(const QpProblem& problem, const GoOn& go_on) {
+  halfway_ = {};
   const int n = static_cast<int>(problem.mass.size());
   // J^T W J couples two bodies only where a row sees both.
   std::vector<BlockLdl::Edge> edges;
   for (const QpRow& row : problem.rows)
     if (row.other >= 0) edges.emplace_back(row.body, row.other);
   if (!factor_.analyse(n, std::move(edges), go_on)) return false;
-  mass_.resize(n);
-  f_.resize(n);
-  for (int k = 0; k < n; ++k) {
-    mass_[factor_.place(k)] = Triple::of(problem.mass[k]);
-    f_[factor_.place(k)] = Triple::of(problem.force[k]);
-  }
   u_.assign(n, Triple{});
   rows_.clear();
   int pairs = 0;
@@ -87,16 +82,28 @@ bool InteriorPoint::begin(const QpProblem& problem, const GoOn& go_on) {
     pairs += rows_.back().pairs;
   }
   pairs_ = pairs;
-  for (OfPairs* of : {&s_, &z_, &ds_, &dz_, &aim_, &per_s_, &per_z_}) of->assign(pairs, 0.0);
-  steps_ = 0;
-  stopped_ = false;
-  last_length_ = 1.0;
-  halfway_ = {};
+  s_.assign(pairs, 0.0);
+  z_.assign(pairs, 0.0);
   const bool expects = std::any_of(problem.rows.begin(), problem.rows.end(),
                                    [](const QpRow& row) { return row.expected != 0.0; });
   expects ? start_near(problem) : start_pairs(problem);
-  measure();
+  start(problem);
   return true;
+}
+
+/// From u, s and z as they are, which everything else follows from.
+void InteriorPoint::start(const QpProblem& problem) {
+  mass_.resize(u_.size());
+  f_.resize(u_.size());
+  for (int k = 0; k < static_cast<int>(u_.size()); ++k) {
+    mass_[factor_.place(k)] = Triple::of(problem.mass[k]);
+    f_[factor_.place(k)] = Triple::of(problem.force[k]);
+  }
+  for (OfPairs* of : {&ds_, &dz_, &aim_, &per_s_, &per_z_}) of->assign(pairs_, 0.0);
+  steps_ = 0;
+  stopped_ = false;
+  last_length_ = 1.0;
+  measure();
 }
 
 bool InteriorPoint::has_rows(const QpProblem& problem) const {
@@ -116,10 +123,6 @@ bool InteriorPoint::begin_again(const QpProblem& problem) {
   u_ = halfway_.u;
   s_ = halfway_.s;
   z_ = halfway_.z;
-  for (std::size_t k = 0; k < u_.size(); ++k) {
-    mass_[factor_.place(static_cast<int>(k))] = Triple::of(problem.mass[k]);
-    f_[factor_.place(static_cast<int>(k))] = Triple::of(problem.force[k]);
-  }
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     Row& row = rows_[r];
     row.offset = problem.rows[r].offset;
@@ -130,12 +133,7 @@ bool InteriorPoint::begin_again(const QpProblem& problem) {
     s[0] *= grows;
     s[1] *= grows;
   }
-  std::fill(ds_.begin(), ds_.end(), 0.0);
-  std::fill(dz_.begin(), dz_.end(), 0.0);
-  steps_ = 0;
-  stopped_ = false;
-  last_length_ = 1.0;
-  measure();
+  start(problem);
   return true;
 }
 

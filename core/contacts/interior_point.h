@@ -85,6 +85,7 @@ class InteriorPoint {
   void start_pairs(const QpProblem& problem);
   void start_near(const QpProblem& problem);
   bool has_rows(const QpProblem& problem) const;
+  void start(const QpProblem& problem);
   void measure();
   bool factor(const GoOn& go_on);
   void find_direction(double centre, bool corrected);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include "brink/scheduler/events/agenda.h"
@@ -38,6 +37,12 @@ inline bool in_order(const HeldContact& a, const HeldContact& b) { return a.orde
 
 /// What is known of contacts from the step before, in order.
 class WarmContacts {
+  template <class Known>
+  static auto* find_in(Known& known, const HeldContact& c) {
+    const auto found = std::lower_bound(known.begin(), known.end(), c, in_order);
+    return found == known.end() || in_order(c, *found) ? nullptr : &*found;
+  }
+
  public:
   /// Those of one more island. @pre they are in order, and none is known yet
   void add(const std::vector<HeldContact>& contacts) {
@@ -46,11 +51,8 @@ class WarmContacts {
     std::inplace_merge(known_.begin(), known_.begin() + before, known_.end(), in_order);
   }
   /// The contact of the same features; none: nullptr.
-  const HeldContact* find(const HeldContact& c) const {
-    const auto found = std::lower_bound(known_.begin(), known_.end(), c, in_order);
-    return found == known_.end() || in_order(c, *found) ? nullptr : &*found;
-  }
-  HeldContact* find(const HeldContact& c) { return const_cast<HeldContact*>(std::as_const(*this).find(c)); }
+  const HeldContact* find(const HeldContact& c) const { return find_in(known_, c); }
+  HeldContact* find(const HeldContact& c) { return find_in(known_, c); }
   bool empty() const { return known_.empty(); }
   void clear() { known_.clear(); }
   auto begin() const { return known_.begin(); }

@@ -110,7 +110,7 @@ class Islands {
   IslandModes::Limits by_modes_;
   std::map<int, Island> islands_;
   std::map<int, int> lead_of_;  ///< of every member
-  WarmContacts taken_out_;      ///< that pressed, until it is known whether they go on
+  WarmContacts taken_out_;      ///< that pressed, until it is known whether they go on; who does has no mode
   double next_step_ = std::numeric_limits<double>::infinity();
   IslandTally tally_;
 };

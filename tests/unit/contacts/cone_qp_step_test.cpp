@@ -318,14 +318,20 @@ StepProblem random_problem(Random& random, bool friction) {
   return problem;
 }
 
+/// With friction. Nobody's place is locked, which may squeeze: then there is no answer.
+StepProblem answerable_problem(Random& random) {
+  StepProblem problem = random_problem(random, true);
+  for (Vec3& m : problem.mass)
+    for (int c = 0; c < 2; ++c)
+      if (std::isinf(m[c])) m[c] = 1.0;
+  return problem;
+}
+
 TEST(Step, RandomProblemsAreProved) {
   for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     Random random(seed);
-    StepProblem problem = random_problem(random, true);
-    for (Vec3& m : problem.mass)  // a locked coordinate may squeeze: then there is no answer
-      for (int c = 0; c < 2; ++c)
-        if (std::isinf(m[c])) m[c] = 1.0;
+    const StepProblem problem = answerable_problem(random);
     expect_proved(problem, ConeQp().step(problem));
     if (HasFailure()) return;
   }
@@ -336,10 +342,7 @@ TEST(Step, WhatIsExpectedChangesNoAnswer) {
   for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     Random random(seed);
-    StepProblem problem = random_problem(random, true);
-    for (Vec3& m : problem.mass)
-      for (int c = 0; c < 2; ++c)
-        if (std::isinf(m[c])) m[c] = 1.0;
+    StepProblem problem = answerable_problem(random);
     const StepResult before = ConeQp().step(problem);
     for (std::size_t k = 0; k < problem.contacts.size(); ++k) {
       const ContactLoad& load = before.loads[k];
@@ -361,10 +364,7 @@ TEST(Step, GoingOnFromTheLastSearchChangesNoAnswer) {
   for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     Random random(seed);
-    StepProblem problem = random_problem(random, true);
-    for (Vec3& m : problem.mass)
-      for (int c = 0; c < 2; ++c)
-        if (std::isinf(m[c])) m[c] = 1.0;
+    StepProblem problem = answerable_problem(random);
     ConeQp solver;
     solver.step(problem);
     const double part = std::exp2(random.uniform(-40, 0));

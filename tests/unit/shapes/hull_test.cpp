@@ -103,5 +103,14 @@ TEST(Hull, HoldsArcs) {
   expect_holds(make_path("M -1 -1 A 1.2 1.2 0 0 1 1 -1 L 1 1 A 2 2 0 0 0 -1 1 Z", 0.2, 1e-6).outline);
 }
 
+TEST(ConvexHull, GoesRoundItsCornersOnce) {
+  const std::vector<Vec2> square = {{0.0, 0.0}, {2.0, 0.0}, {2.0, 2.0}, {0.0, 2.0}};
+  EXPECT_EQ(convex_hull({{2.0, 2.0}, {1.0, 0.0}, {0.0, 0.0}, {2.0, 0.0}, {0.0, 2.0}, {1.0, 1.0}, {2.0, 2.0}}),
+            square);
+  const std::vector<Vec2> ends = {{-1.0, -2.0}, {2.0, 4.0}};
+  EXPECT_EQ(convex_hull({{0.0, 0.0}, {2.0, 4.0}, {-1.0, -2.0}, {1.0, 2.0}, {2.0, 4.0}}), ends);
+  EXPECT_EQ(convex_hull({{3.0, 1.0}, {3.0, 1.0}}).size(), 1U);
+}
+
 }  // namespace
 }  // namespace brink::hull_test
