@@ -33,7 +33,7 @@ class FallingGap {
 
   /// True if by `then` it may have bent up by more than `height` [m] and down again: what is met then may be another crossing.
   bool may_rise_first(double then, double height) const {
-    return bend_ >= off_ && 0.5 * acceleration_ * (then - t_) * (then - t_) > height;
+    return may_turn() && 0.5 * acceleration_ * (then - t_) * (then - t_) > height;
   }
   /// No sooner than then it rises, but for a thousand ticks of the clock [s].
   double soonest_rise() const {
@@ -72,9 +72,9 @@ class FallingGap {
       if (!(by >= 0.0) || (found.end > low && by <= rounding_)) return;
       found = {then, by > rounding_};
     };
-    // Bent so much that Newton's step says nothing: from the earliest time on, or the window would hold what is met
+    // Where it may turn, Newton's step says nothing: from the earliest time on, or the window would hold what is met
     // later, too.
-    if (bend_ >= off_)
+    if (may_turn())
       for (double ahead = soonest(std::max(std::abs(now_), rounding_)) + 4.0 * ulp(t_);
            !found.surely && ahead < off_ + 2.0 * noise(); ahead *= 2.0)
         look(t_ + ahead);
@@ -93,6 +93,9 @@ class FallingGap {
     return 2.0 * by / (speed_ + std::sqrt(speed_ * speed_ + 2.0 * acceleration_ * by));
   }
   double noise() const { return moment_ + bend_; }
+  /// True if it may turn before it meets: it stops, at the soonest, after it has fallen by speed^2 / (2 acceleration).
+  /// What cannot has its crossing before guess_ + 2 noise(), and no other by then.
+  bool may_turn() const { return bend_ >= 0.5 * off_; }
 
   double t_, now_, speed_, acceleration_, rounding_;
   double guess_;  ///< of Newton's last step [s]

@@ -223,8 +223,10 @@ class Watch : public Recorder {
     impact.after = velocity_at(body, arm) - velocity_at(partner, other_arm);
     bodies_[k].flight = {t, body, bodies_[k].flight.pull};
     if (is_body(other)) bodies_[other].flight = {t, partner, bodies_[other].flight.pull};
-    // the point is told in doubles: an impulse there turns the bodies by a little more or less
-    const Real off = 4 * kUlp * (norm(point) + norm(arm)), given = norm(impulse) * off;
+    // the point is told in doubles, and a body that starts inside another is moved out of it, which no event tells: an
+    // impulse there turns the bodies by a little more or less
+    const Real off = 4 * kUlp * (norm(point) + norm(arm)) + options_.start_overlap,
+               given = norm(impulse) * off;
     impact.noise += given * turned_by(k, arm);
     bodies_[k].astray += blur * speed + given * turned_by(k, arm);
     if (is_body(other)) {

@@ -93,5 +93,29 @@ TEST(FallingGap, OfParabolasTheFirstCrossingAloneIsHeld) {
   EXPECT_GT(passed, 10);
 }
 
+// A parabola that dips below the surface and rises out of it, and falls again soon after, as beside another surface: where
+// the upper end is beyond that, it is told that the gap may have risen, so that the first dip is looked for.
+TEST(FallingGap, WhatMayHaveRisenBeforeIsTold) {
+  SeededRandom r(20261127);
+  int doubtful = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double t = r.uniform(0.0, 100.0), now = std::exp(r.uniform(-27.0, -22.0)),
+                 v = std::exp(r.uniform(-13.0, 0.0)), rounding = 1e-16;
+    const double c = r.uniform(0.05, 0.499) * v * v / now, root = std::sqrt(v * v - 2.0 * c * now);
+    const double first = t + (v - root) / c, second = t + (v + root) / c;
+    if (second - first < 1024.0 * ulp(t)) continue;  // told from none by no clock
+    const double again = second + r.uniform(0.01, 2.0) * (second - t);
+    const auto gap = [&](double at) {
+      return at > again ? again - at : now - v * (at - t) + 0.5 * c * (at - t) * (at - t);
+    };
+    const FallingGap falling(t, now, v, c * r.uniform(1.0, 3.0), rounding);
+    const double end = falling.beyond_end(gap, t, kLast).end;
+    if (end < again) continue;
+    EXPECT_TRUE(falling.may_rise_first(end, 0.0)) << i;
+    ++doubtful;
+  }
+  EXPECT_GT(doubtful, 100);
+}
+
 }  // namespace
 }  // namespace brink::falling_gap_test
