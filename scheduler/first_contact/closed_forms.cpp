@@ -131,18 +131,19 @@ double gap_noise(double place_noise, const Vec2& q, const Vec2& site) {
 }
 
 /// The general search's time near the root t, so that it does not matter which of the two a window was given
-/// to. Any interval will do that has the crossing and whose ends are beyond rounding: the narrowest first.
+/// to. Any interval will do that has the crossing and whose ends are beyond twice the rounding (falling_gap.h): the
+/// narrowest first.
 /// `rounding`: of the gap [m]; `speed`: its own [m/s]. Nothing if there is none: too near the beginning for
 /// the gap to have risen above rounding, and not at it.
 template <class Gap>
 std::optional<double> canonical_root(Gap&& gap, double t, double begin, double rounding, double speed) {
   // where the motions began nothing lies before to bisect from
   if (t <= begin) return gap(begin) <= 0.0 ? std::optional(begin) : std::nullopt;
-  const double moment = rounding / speed + 4.0 * ulp(t);
+  const double moment = rounding / speed + 4.0 * ulp(t), sure = 2.0 * rounding;
   for (const double reach : {2.0 * moment, 8.0 * moment, 64.0 * moment})
-    if (t - reach > begin && gap(t - reach) > rounding && gap(t + reach) < -rounding)
+    if (t - reach > begin && gap(t - reach) > sure && gap(t + reach) < -sure)
       return last_clear_time(gap, t - reach, t + reach);
-  if (gap(begin) > rounding && gap(t + 8.0 * moment) < -rounding)
+  if (gap(begin) > sure && gap(t + 8.0 * moment) < -sure)
     return last_clear_time(gap, begin, t + 8.0 * moment);
   return std::nullopt;
 }

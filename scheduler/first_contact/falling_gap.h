@@ -1,6 +1,7 @@
 #pragma once
 /// An interval in which a gap that falls goes through zero once, and no other crossing lies: what a canonical time needs
-/// (canonical_time.h).
+/// (canonical_time.h). What is computed of the gap may go through zero many times while it is within its rounding of that, so
+/// an end is sure only beyond twice the rounding: by more than one it may lie between two of these crossings.
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +22,7 @@ class FallingGap {
         speed_(speed),
         acceleration_(acceleration),
         rounding_(rounding),
+        sure_(2.0 * rounding),
         guess_(t + now / speed),
         off_(std::abs(now) / speed),
         bend_(std::min(1.0, acceleration * off_ / speed) * off_),
@@ -45,23 +47,26 @@ class FallingGap {
   /// The lower end: clear now, or a little before, but not before it rose; none where it never was clear since `floor`.
   template <class Gap>
   std::optional<double> clear_end(Gap&& gap, double floor) const {
-    if (now_ <= 2.0 * rounding_) {
+    if (now_ <= sure_) {
+      std::optional<double> hardly;  // what hops by no more than its rounding is clear of nothing for sure
       double low = std::max(std::min(guess_, t_), floor);
-      for (double back = moment_; gap(low) <= rounding_; back *= 1.25) {
-        if (low <= floor) return std::nullopt;
+      for (double back = moment_;; back *= 1.25) {
+        const double there = gap(low);
+        if (there > sure_) return low;
+        if (there > rounding_ && !hardly) hardly = low;
+        if (low <= floor) return hardly;
         low = std::max(low - back, floor);
       }
-      return low;
     }
     // it falls all the way, as far as it bends: the fewer probes
     const double before = guess_ - 2.0 * noise();
-    return before > t_ && gap(before) > rounding_ ? before : t_;
+    return before > t_ && gap(before) > sure_ ? before : t_;
   }
 
   /// The upper end, beyond the surface; `low` where no place beyond it was found.
   struct Beyond {
     double end;
-    bool surely;  ///< by more than rounding
+    bool surely;  ///< by more than twice the rounding
   };
   /// No probe lies beyond `last`, where a motion ends.
   template <class Gap>
@@ -69,8 +74,8 @@ class FallingGap {
     Beyond found{low, false};
     const auto look = [&](double t) {
       const double then = std::min(t, last), by = then > low ? -gap(then) : -1.0;
-      if (!(by >= 0.0) || (found.end > low && by <= rounding_)) return;
-      found = {then, by > rounding_};
+      if (!(by >= 0.0) || (found.end > low && by <= sure_)) return;
+      found = {then, by > sure_};
     };
     // Where it may turn, Newton's step says nothing: from the earliest time on, or the window would hold what is met
     // later, too.
@@ -98,6 +103,7 @@ class FallingGap {
   bool may_turn() const { return bend_ >= 0.5 * off_; }
 
   double t_, now_, speed_, acceleration_, rounding_;
+  double sure_;   ///< what a computed gap differs from 0 by where the gap itself differs by its rounding [m]
   double guess_;  ///< of Newton's last step [s]
   double off_;    ///< from t to there [s]
   double
