@@ -66,29 +66,33 @@ class FallingGap {
   /// The upper end, beyond the surface; `low` where no place beyond it was found.
   struct Beyond {
     double end;
-    bool surely;  ///< by more than twice the rounding
+    bool
+        surely;  ///< by more than rounding; by twice that, where it goes so deep before the motion ends or it rises
   };
   /// No probe lies beyond `last`, where a motion ends.
   template <class Gap>
   Beyond beyond_end(Gap&& gap, double low, double last) const {
     Beyond found{low, false};
+    bool done = false;
     const auto look = [&](double t) {
       const double then = std::min(t, last), by = then > low ? -gap(then) : -1.0;
-      if (!(by >= 0.0) || (found.end > low && by <= sure_)) return;
-      found = {then, by > sure_};
+      done = found.surely && then > found.end && by <= rounding_;  // it has risen since
+      if (done || !(by >= 0.0) || (found.end > low && by <= rounding_)) return;
+      found = {then, by > rounding_};
+      done = by > sure_;
     };
     // Where it may turn, Newton's step says nothing: from the earliest time on, or the window would hold what is met
     // later, too.
     if (may_turn())
       for (double ahead = soonest(std::max(std::abs(now_), rounding_)) + 4.0 * ulp(t_);
-           !found.surely && ahead < off_ + 2.0 * noise(); ahead *= 2.0)
+           !done && ahead < off_ + 2.0 * noise(); ahead *= 2.0)
         look(t_ + ahead);
     // where two points meet, when they are nearest; where a bent path meets it later; and where a tip is grazed, for
     // less than a rounding
     for (const double t :
          {guess_ + 2.0 * noise(), guess_ + 8.0 * noise(), guess_, later(), guess_ + 0.125 * noise(),
           guess_ + 0.25 * noise(), guess_ + 0.5 * noise(), guess_ + noise()})
-      if (!found.surely) look(t);
+      if (!done) look(t);
     return found;
   }
 
