@@ -66,8 +66,8 @@ class FallingGap {
   /// The upper end, beyond the surface; `low` where no place beyond it was found.
   struct Beyond {
     double end;
-    bool
-        surely;  ///< by more than rounding; by twice that, where it goes so deep before the motion ends or it rises
+    /// By more than rounding; by twice that, where it goes so deep before the motion ends or it rises.
+    bool surely;
   };
   /// No probe lies beyond `last`, where a motion ends.
   template <class Gap>
