@@ -4,10 +4,13 @@
 ///
 /// The distance of two curves is the least over finitely many pairs of points: ends against curves, points on
 /// a line through a centre, crossings. It changes no faster than any point of one body moves against any of
-/// the other (V), so from t the pair stays apart until t + distance / V. Each pair of sites is stepped alone
+/// the other (V), so from t the pair stays apart until t + distance / V. What falls freely is followed farther by a line
+/// between the two: corners about one stay ahead of those about the other along it for as long as their speeds and the
+/// greatest acceleration of any point tell; and inside a hollow arc, within its circle. Each pair of sites is stepped alone
 /// until it touches, leaves the window, or is later than the earliest contact found.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -42,9 +45,10 @@ inline Curve placed(const Site& site, const Turn& turn, const Vec2& shift) {
   if (site.kind != SiteKind::arc) return curve;
   curve.center = turn(site.center) + shift;
   curve.circle = site.arc_radius;
-  curve.half_cosine = std::cos(0.5 * site.sweep);
-  const double from = std::atan2(site.a.y() - site.center.y(), site.a.x() - site.center.x());
-  curve.middle = turn(Vec2(std::cos(from + 0.5 * site.sweep), std::sin(from + 0.5 * site.sweep)));
+  // no site sweeps more than a quarter turn: the middle of its chord is well away from the centre
+  const Vec2 chord = 0.5 * (site.a + site.b) - site.center;
+  curve.half_cosine = chord.norm() / site.arc_radius;
+  curve.middle = turn(chord / chord.norm());
   return curve;
 }
 
@@ -131,11 +135,92 @@ inline double reach_of(const Site& site) {
   return site.kind == SiteKind::arc ? std::max(ends, site.center.norm() + site.arc_radius) : ends;
 }
 
-/// How fast a body can be over the window of a flight: |velocity - drift| and |omega| (drift: of both bodies
-/// alike).
-struct SpeedBound {
-  double linear = 0.0, spin = 0.0;
+/// A point of a body in free fall, as it is now, from b's place; its speed [m/s] and what turning bends its path [m/s^2] are
+/// bounds over the flight.
+struct Falling {
+  Vec2 at, velocity;
+  double speed, bend;
 };
+
+/// What a site lies in: everything within `radius` of a polygon of corners.
+struct Cover {
+  std::array<Falling, 3> corners;
+  int count;
+  double radius;
+
+  double least(const Vec2& along) const {
+    double best = kNever;
+    for (int k = 0; k < count; ++k) best = std::min(best, corners[k].at.dot(along));
+    return best - radius;
+  }
+};
+
+/// For how long `gap` > 0 stays so that opens at a rate which falls by `bend` at most.
+inline double stays_open_for(double gap, double opens, double bend) {
+  // gap + opens s - bend s^2 / 2 = 0, the root written without cancellation
+  const double root = std::sqrt(opens * opens + 2.0 * bend * gap);
+  if (opens > 0.0) return bend > 0.0 ? (opens + root) / bend : kNever;
+  return root - opens > 0.0 ? 2.0 * gap / (root - opens) : kNever;
+}
+
+/// The unit direction along which all of p is farthest ahead of all of q, as far as lines through two corners and
+/// across two of the same polygon tell; zero: along none.
+inline Vec2 parting_direction(const Cover& p, const Cover& q) {
+  Vec2 best = Vec2::Zero();
+  double most = 0.0;
+  const auto try_along = [&](const Vec2& d) {
+    const double length = d.norm();
+    if (length == 0.0) return;
+    const Vec2 n = d / length;
+    if (const double ahead = p.least(n) + q.least(-n); ahead > most) {
+      most = ahead;
+      best = n;
+    }
+  };
+  for (int i = 0; i < p.count; ++i)
+    for (int j = 0; j < q.count; ++j) try_along(p.corners[i].at - q.corners[j].at);
+  for (const Cover* c : {&p, &q})
+    for (int i = 0; i < c->count; ++i) {
+      const Vec2 edge = c->corners[(i + 1) % c->count].at - c->corners[i].at, across(-edge.y(), edge.x());
+      try_along(across);
+      try_along(-across);
+    }
+  return best;
+}
+
+/// How long all of p stays more than `tiny` ahead of all of q along a line that is fixed now; 0: none is. `pull`: of one
+/// body's acceleration against the other's.
+inline double ahead_for(const Cover& p, const Cover& q, double pull, double tiny) {
+  const Vec2 n = parting_direction(p, q);
+  if (n.isZero(0.0)) return 0.0;
+  double lasts = kNever;
+  for (int i = 0; i < p.count; ++i)
+    for (int j = 0; j < q.count; ++j) {
+      const Falling &x = p.corners[i], &y = q.corners[j];
+      const double gap = n.dot(x.at - y.at) - p.radius - q.radius - tiny;
+      if (!(gap > 0.0)) return 0.0;
+      lasts = std::min(lasts, stays_open_for(gap, n.dot(x.velocity - y.velocity), pull + x.bend + y.bend));
+    }
+  return lasts;
+}
+
+/// How long all of p stays in the circle, by more than `tiny`; 0: it is not.
+inline double inside_for(const Cover& p, const Falling& center, double circle, double pull, double tiny) {
+  const double room = circle - p.radius - tiny;
+  if (!(room > 0.0)) return 0.0;
+  double lasts = kNever;
+  for (int i = 0; i < p.count; ++i) {
+    const Falling& x = p.corners[i];
+    const Vec2 off = x.at - center.at;
+    const double gap = (room - off.norm()) * (room + off.norm());
+    if (!(gap > 0.0)) return 0.0;
+    // the square of the distance from the centre: its second derivative is 2 (v^2 + off . a)
+    const double speed = x.speed + center.speed,
+                 bend = 2.0 * (speed * speed + circle * (pull + x.bend + center.bend));
+    lasts = std::min(lasts, stays_open_for(gap, -2.0 * off.dot(x.velocity - center.velocity), bend));
+  }
+  return lasts;
+}
 
 /// Two bodies of a flight.
 struct Pair {
@@ -143,6 +228,40 @@ struct Pair {
   const Motion *motion_a, *motion_b;
   double relative_speed;  ///< bound on the speed of a's origin against b's [m/s]
   double spin_a, spin_b;  ///< bounds on |omega| [rad/s]
+
+  bool falls_freely() const { return motion_a->is_ballistic() && motion_b->is_ballistic(); }
+
+  /// How long a site of a stays more than `tiny` away from one of b after t, as lines between the two tell, and circles
+  /// of hollow arcs; 0: they tell nothing. @pre falls_freely().
+  double apart_for(const Site& sa, const Site& sb, double t, double tiny) const {
+    const BodyState now_a = motion_a->state(t), now_b = motion_b->state(t);
+    const Acceleration pull_a = motion_a->acceleration(), pull_b = motion_b->acceleration();
+    const double pull = (pull_a.linear - pull_b.linear).norm();
+    const Vec2 offset = now_a.pose.position - now_b.pose.position,
+               drift = now_a.twist.velocity - now_b.twist.velocity;
+    const Curve ca = placed(sa, Turn(now_a.pose.angle), offset),
+                cb = placed(sb, Turn(now_b.pose.angle), Vec2::Zero());
+    const auto of_a = [&](const Vec2& x) -> Falling {
+      const Vec2 arm = x - offset;
+      return {x, drift + now_a.twist.omega * Vec2(-arm.y(), arm.x()), relative_speed + spin_a * arm.norm(),
+              (std::abs(pull_a.angular) + spin_a * spin_a) * arm.norm()};
+    };
+    const auto of_b = [&](const Vec2& x) -> Falling {
+      return {x, now_b.twist.omega * Vec2(-x.y(), x.x()), spin_b * x.norm(),
+              (std::abs(pull_b.angular) + spin_b * spin_b) * x.norm()};
+    };
+    const std::vector<Cover> covers_a = covers(ca, sa.radius, of_a), covers_b = covers(cb, sb.radius, of_b);
+    double lasts = 0.0;
+    for (const Cover& p : covers_a)
+      for (const Cover& q : covers_b) lasts = std::max(lasts, ahead_for(p, q, pull, tiny));
+    if (ca.kind == SiteKind::arc)
+      for (const Cover& q : covers_b)
+        lasts = std::max(lasts, inside_for(q, of_a(ca.center), ca.circle - sa.radius, pull, tiny));
+    if (cb.kind == SiteKind::arc)
+      for (const Cover& p : covers_a)
+        lasts = std::max(lasts, inside_for(p, of_b(cb.center), cb.circle - sb.radius, pull, tiny));
+    return (1.0 - 1e-9) * lasts;
+  }
 
   /// Of a site of a, shifted, and one of b.
   double site_distance(const Site& sa, const Site& sb, double t, const Vec2& shift_a) const {
@@ -212,6 +331,15 @@ struct Pair {
   }
 
  private:
+  /// A curve lies between its ends, an arc in the triangle of its ends and its tangents there, and in its circle.
+  template <class Fall>
+  static std::vector<Cover> covers(const Curve& c, double radius, const Fall& falling) {
+    if (c.kind == SiteKind::point) return {{{falling(c.a)}, 1, radius}};
+    if (c.kind == SiteKind::segment) return {{{falling(c.a), falling(c.b)}, 2, radius}};
+    const Vec2 tip = c.center + c.circle / c.half_cosine * c.middle;
+    return {{{falling(c.a), falling(c.b), falling(tip)}, 3, radius},
+            {{falling(c.center)}, 1, radius + c.circle}};
+  }
   /// How often a straight path meets a site's core.
   static int times_crossed(const Curve& path, const Curve& site) {
     if (site.kind != SiteKind::arc) return core_distance(path, site) == 0.0 ? 1 : 0;
@@ -254,6 +382,7 @@ inline FirstTouch first_touch(const Pair& pair, double from, double to, double t
       items.push_back({pair.site_distance(i, j, from), speed * (1.0 + 1e-12), i, j});
     }
   std::sort(items.begin(), items.end(), [](const Item& x, const Item& y) { return x.distance < y.distance; });
+  const bool free = pair.falls_freely();
   double end = to;
   for (const Item& item : items) {
     double t = from, distance = item.distance;
@@ -268,7 +397,9 @@ inline FirstTouch first_touch(const Pair& pair, double from, double to, double t
         }
         break;
       }
-      const double next = item.speed > 0.0 ? t + distance / item.speed : kNever;
+      double next = item.speed > 0.0 ? t + distance / item.speed : kNever;
+      if (free && next <= end)
+        next = std::max(next, t + pair.apart_for(pair.a->sites[item.i], pair.b->sites[item.j], t, tiny));
       if (next > end) break;
       t = std::max(next, std::nextafter(t, kNever));
       if (t > end) break;
