@@ -13,9 +13,14 @@ struct Corner {
   Vec2 before = Vec2::Zero(), after = Vec2::Zero();
 
   static constexpr double kRounding = 1e-12;  ///< of unit normals
+  /// Sine of a turn at which the foot of a place 1e-10 of the size behind a tip is some ten roundings beside that.
+  static constexpr double kTurns = 1e-5;
 
   /// Needles included: their two normals are opposite.
   bool convex() const { return cross(before, after) >= -kRounding; }
+  /// True of a convex corner that turns enough for every place in the solid to be nearer to one of its sides than to its tip.
+  /// Where two sides go on into each other, or all but do, what is right behind the joint is nearest to that, by rounding.
+  bool sharp() const { return cross(before, after) > kTurns || needle(); }
   bool needle() const { return std::abs(cross(before, after)) <= kRounding && before.dot(after) < 0.0; }
   /// True if the direction is an outward normal of the corner: one between its sides', both included.
   bool faces(const Vec2& u) const { return cross(before, u) >= -kRounding && cross(u, after) >= -kRounding; }

@@ -584,7 +584,7 @@ PairView::GapAndSite PairView::gap_to_neighbours(const Placing& p, const Half& h
     // sample was on, its gap falls through 0 where it crosses, and the bisection has something to find.
     double side = wire ? side_kept(site, neighbour, n, q, rounding, at_once) : side_of(site, n, q);
     // Nothing is in a solid and nearest to a convex tip: what is behind it is in, or along, the other side that ends there.
-    if (side < 0.0 && !wire && n.foot != Foot::interior && corner_at(site, n.foot == Foot::start).convex())
+    if (side < 0.0 && !wire && n.foot != Foot::interior && corner_at(site, n.foot == Foot::start).sharp())
       side = 1.0;
     const double gap = side * n.distance - radius - level_of(nominal_level(p, half, i, site, q), sink_);
     // asked of the moment itself, not of when the neighbours were found: what is left then may be pressed on later;

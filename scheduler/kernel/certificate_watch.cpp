@@ -50,16 +50,16 @@ CertificateWatch::CertificateWatch(const World& world, const Trajectories& traje
       search_(&search),
       near_(&near),
       run_(&run),
-      pairs_(world, trajectories, search, near, run) {}
+      pairs_(world, trajectories, search, near, run),
+      walls_(world.periods) {}
 
 void CertificateWatch::begin() {
   on_ = true;
   pairs_.clear();  // overlaps that were measured are to be judged
-  // in a plane that repeats no flight is watched: a wall would have images without end
-  if (!world_->periods.any() && !walls_made_) make_walls();
+  if (!walls_made_) make_walls();
 }
 
-/// Straight wires without thickness, as they stand in the world, and which bodies' centres are in their material.
+/// Wires without thickness, as they stand in the world, and which bodies' centres are in their material.
 /// Cost: that of the outlines, once.
 void CertificateWatch::make_walls() {
   walls_made_ = true;
@@ -70,7 +70,7 @@ void CertificateWatch::make_walls() {
     // still: where it is at the beginning it is always
     const Outline placed = transformed(search_->outline_of(n + s), motion.motion().pose(0.0));
     for (const Site& site : placed.sites)
-      if (!site.solid && site.radius == 0.0 && site.kind == SiteKind::segment) walls_.add(site.a, site.b, s);
+      if (!site.solid && site.radius == 0.0 && site.kind != SiteKind::point) walls_.add(site, s);
   }
   for (const Body& b : world_->bodies) {
     const Outline& o = *b.outline;

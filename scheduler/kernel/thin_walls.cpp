@@ -21,19 +21,28 @@ namespace {
 using Point = boost::geometry::model::d2::point_xy<double>;
 using BoxOfPoints = boost::geometry::model::box<Point>;
 
-/// A wire's segment in the world, the fixed site that it is of, and the box about it.
+/// A wire's segment or arc in the world, the fixed site that it is of, and a box that holds it.
 struct Wall {
-  Vec2 a, b;
+  Site core;
   int site;
   Box box;
 
-  Wall(const Vec2& from, const Vec2& to, int of) : a(from), b(to), site(of) {
-    box.add(a);
-    box.add(b);
+  Wall(const Site& placed, int of) : core(placed), site(of) {
+    box.add(core.a);
+    box.add(core.b);
+    if (!is_arc()) return;
+    // where the tangents at its ends meet: an arc of a quarter turn at most lies in that triangle
+    const Vec2 chord = to_chord();
+    box.add(core.center + chord * (core.arc_radius * core.arc_radius / chord.squaredNorm()));
   }
+  bool is_arc() const { return core.kind == SiteKind::arc; }
+  /// From the centre to the middle of the chord.
+  Vec2 to_chord() const { return 0.5 * (core.a + core.b) - core.center; }
 };
 
 constexpr std::size_t kFewWalls = 16;  ///< which are looked at one by one
+/// A way past more images of the walls than this is not looked at.
+constexpr double kMostImages = 1e4;
 
 /// How far p is from the box, along the axis in which that is more [m]; 0 inside.
 double distance_to(const Box& box, const Vec2& p) {
@@ -45,20 +54,37 @@ BoxOfPoints box_of(const Vec2& p, const Vec2& q) {
   return {{low.x(), low.y()}, {high.x(), high.y()}};
 }
 
-/// On which side of the line through the wall p lies: 0 if that is lost in rounding.
+/// On which side of the line, or the circle, that the wall is of p lies: 0 if that is lost in rounding.
 int side(const Wall& wall, const Vec2& p) {
-  const Vec2 d = wall.b - wall.a, w = p - wall.a;
-  const double reach = p.lpNorm<1>() + wall.a.lpNorm<1>() + wall.b.lpNorm<1>();
+  const auto sign = [](double offset, double noise) { return offset > noise ? 1 : offset < -noise ? -1 : 0; };
+  if (wall.is_arc()) {
+    const double reach = p.lpNorm<1>() + wall.core.center.lpNorm<1>() + wall.core.arc_radius;
+    return sign((p - wall.core.center).norm() - wall.core.arc_radius, kSideRounding * reach);
+  }
+  const Vec2 &a = wall.core.a, &b = wall.core.b, d = b - a;
+  const double reach = p.lpNorm<1>() + a.lpNorm<1>() + b.lpNorm<1>();
   // twice the area between the wall and p: > 0 on its left
-  const double offset = cross(d, w), noise = kSideRounding * reach * d.lpNorm<1>();
-  return offset > noise ? 1 : offset < -noise ? -1 : 0;
+  return sign(cross(d, p - a), kSideRounding * reach * d.lpNorm<1>());
 }
 
-/// True if the straight way from p to q crosses the wall between its ends. @pre p and q lie on two sides.
+/// True if the straight way from p to q crosses the wall between its ends, and does not come back through it. @pre both
+/// lie on a side of it.
 bool crosses(const Wall& wall, const Vec2& p, const Vec2& q) {
   const Vec2 way = q - p;
-  // the wall's ends lie on two sides of the way
-  return (cross(way, wall.a - p) > 0.0) != (cross(way, wall.b - p) > 0.0);
+  if (!wall.is_arc())
+    // the wall's ends lie on two sides of the way, too
+    return side(wall, p) != side(wall, q) &&
+           (cross(way, wall.core.a - p) > 0.0) != (cross(way, wall.core.b - p) > 0.0);
+  // |w + s way| = radius
+  const Vec2 w = p - wall.core.center, chord = wall.to_chord();
+  const double along = w.dot(way), length = way.squaredNorm(), radius = wall.core.arc_radius,
+               off = (w.norm() - radius) * (w.norm() + radius), bend = along * along - length * off;
+  if (!(bend > 0.0)) return false;
+  const auto on_arc = [&](double s) {
+    return s > 0.0 && s < 1.0 && (w + s * way).dot(chord) >= chord.squaredNorm();
+  };
+  const double root = std::sqrt(bend);
+  return on_arc((-along - root) / length) != on_arc((-along + root) / length);
 }
 
 }  // namespace
@@ -68,15 +94,30 @@ struct ThinWalls::Tree {
   boost::geometry::index::rtree<std::pair<BoxOfPoints, int>, boost::geometry::index::quadratic<16>> boxes;
 };
 
-ThinWalls::ThinWalls() : tree_(std::make_unique<Tree>()) {}
+ThinWalls::ThinWalls(const Periods& periods) : tree_(std::make_unique<Tree>()), periods_(periods) {}
 ThinWalls::~ThinWalls() = default;
 
-void ThinWalls::add(const Vec2& a, const Vec2& b, int site) {
-  tree_->boxes.insert({box_of(a, b), count_++});
-  tree_->walls.emplace_back(a, b, site);
+void ThinWalls::add(const Site& core, int site) {
+  const Wall& wall = tree_->walls.emplace_back(core, site);
+  tree_->boxes.insert({box_of(wall.box.low, wall.box.high), count_++});
+  extent_.add(wall.box.low);
+  extent_.add(wall.box.high);
 }
 
 Box ThinWalls::clear_around(const Vec2& p) const {
+  const Box here{p, p};
+  // by a little less, so that no rounding puts a wall inside
+  const auto clear = [&](double room) { return here.grown(room * (1.0 - 1e-9)); };
+  if (!periods_.any()) return clear(room_about(p));
+  double room = periods_.least();
+  periods_.overlaps(here.grown(room), extent_, [&](const Image& image) {
+    room = std::min(room, room_about(p - periods_.shift(image)));
+  });
+  return clear(room);
+}
+
+/// How far every side of a square about p may be away from it until it meets a wall [m].
+double ThinWalls::room_about(const Vec2& p) const {
   double room = std::numeric_limits<double>::infinity();
   // By boxes, not by walls: a box holds its wall, so room about boxes is room about walls. The largest norm gives
   // the largest square; the tree knows the distance alone.
@@ -90,37 +131,48 @@ Box ThinWalls::clear_around(const Vec2& p) const {
     // axes.
     room = (box.low - p).cwiseMax(p - box.high).cwiseMax(0.0).norm() * std::numbers::sqrt2 * 0.5;
   }
-  // by a little less, so that no rounding puts a wall inside
-  return Box{p, p}.grown(room * (1.0 - 1e-9));
+  return room;
+}
+
+std::optional<int> ThinWalls::crossed(const Place& place, double from, double to, double turns) const {
+  if (!periods_.any()) return crossed_image(place, from, to, turns);
+  Box way;
+  way.add(place(from));
+  way.add(place(to));
+  double images = 1.0;
+  for (int axis = 0; axis < 2; ++axis)
+    if (periods_.size[axis] > 0.0)
+      images *= 1.0 + (way.extent()[axis] + extent_.extent()[axis]) / periods_.size[axis];
+  if (!(images <= kMostImages)) return std::nullopt;
+  std::optional<int> found;
+  periods_.overlaps(way, extent_, [&](const Image& image) {
+    const Vec2 shift = periods_.shift(image);
+    if (!found) found = crossed_image([&](double t) { return Vec2(place(t) - shift); }, from, to, turns);
+  });
+  return found;
 }
 
 /// Whoever ends on the other side of a wall has gone through it or round an end of it: places along the way tell
 /// which.
-std::optional<int> ThinWalls::crossed(const std::function<Vec2(double)>& place, double from, double to,
-                                      double turns) const {
+std::optional<int> ThinWalls::crossed_image(const Place& place, double from, double to, double turns) const {
   const Vec2 p = place(from), q = place(to);
   std::vector<std::pair<BoxOfPoints, int>> near;
   tree_->boxes.query(boost::geometry::index::intersects(box_of(p, q)), std::back_inserter(near));
-  // A path that comes back to the side where it began has crossed nothing for good, so ends on two sides
-  // are asked for first. Then each crossing between two places changes the side, and an odd number has led
-  // through.
+  // The straight way between the ends is asked first: what comes back through the wall has crossed nothing for good. Then
+  // an odd number of crossings between two places has led through.
   for (const auto& [box, k] : near) {
     const Wall& wall = tree_->walls[static_cast<std::size_t>(k)];
-    if (side(wall, p) * side(wall, q) >= 0 || !crosses(wall, p, q)) continue;
+    if (side(wall, p) == 0 || side(wall, q) == 0 || !crosses(wall, p, q)) continue;
     // round its end, or through it?
     const int steps = 64 * (1 + static_cast<int>(std::min(std::abs(turns), 1000.0)));
     bool through = false;
-    Vec2 last = p;
-    // of the last place whose side could be told
-    int last_side = side(wall, p);
+    Vec2 last = p;  // whose side could be told
     for (int i = 1; i <= steps; ++i) {
       const Vec2 next = i == steps ? q : place(from + (to - from) * i / steps);
-      const int next_side = side(wall, next);
       // too near to tell: the way to the next place that tells counts as one
-      if (next_side == 0) continue;
-      if (next_side != last_side && crosses(wall, last, next)) through = !through;
+      if (side(wall, next) == 0) continue;
+      if (crosses(wall, last, next)) through = !through;
       last = next;
-      last_side = next_side;
     }
     if (through) return wall.site;
   }

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "tests/unit/scheduler/kernel/parts.h"
 
 namespace brink::certificate_watch_test {
@@ -62,6 +64,32 @@ TEST(CertificateWatch, AWayThroughAWireEndsTheRun) {
   parts.watch.begin();
   EXPECT_TRUE(parts.watch.flight(1, 0.03));
   EXPECT_FALSE(parts.watch.flight(1, 1.0));
+  EXPECT_THAT(parts.run.halt()->why, HasSubstr("'body1' went through a wire of 'site0'"));
+}
+
+TEST(CertificateWatch, AWayThroughAnArcEndsTheRun) {
+  World world = two_discs();
+  world.bodies[1].initial.twist.velocity.x() = 50.0;
+  // a bowl of wire that is open to the left
+  world.sites[0].outline = std::make_shared<const Outline>(
+      make_arc({3.0, 0.0}, 2.0, -0.5 * std::numbers::pi, 0.5 * std::numbers::pi, 0.0).outline);
+  KernelParts parts(world, {});
+  parts.watch.begin();
+  EXPECT_TRUE(parts.watch.flight(1, 0.03));
+  EXPECT_FALSE(parts.watch.flight(1, 1.0));
+  EXPECT_THAT(parts.run.halt()->why, HasSubstr("'body1' went through a wire of 'site0'"));
+}
+
+TEST(CertificateWatch, AWayThroughTheImageOfAWireEndsTheRun) {
+  World world = two_discs();
+  world.bodies[1].initial.twist.velocity.x() = -50.0;
+  world.bodies[0].initial.pose.position.y() = 5.0;
+  world.periods.size = {20.0, 0.0};
+  KernelParts parts(world, {});
+  parts.watch.begin();
+  // the wire at x = 5 stands at x = -15, too
+  EXPECT_TRUE(parts.watch.flight(1, 0.3));
+  EXPECT_FALSE(parts.watch.flight(1, 0.5));
   EXPECT_THAT(parts.run.halt()->why, HasSubstr("'body1' went through a wire of 'site0'"));
 }
 
