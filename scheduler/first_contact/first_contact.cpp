@@ -640,15 +640,25 @@ class PairSearch {
     if (!sharp) return false;
     const bool at_a = (path.q - site.a).squaredNorm() < (path.q - site.b).squaredNorm();
     const Vec2 tip = at_a ? site.a : site.b, way = path.q - tip;
+    const double noise = view_.gap_rounding(half, f.sample, path.q);
+    if (meets_arc_before(site, tip, way, 8.0 * noise)) return false;
     // the gap approaches, so the rate is not 0
-    const double slow = path.rate.norm(), off = way.norm() / slow,
-                 noise = view_.gap_rounding(half, f.sample, path.q);
+    const double slow = path.rate.norm(), off = way.norm() / slow;
     // A first look: along the straight way they pass each other at this distance. If that is more than
     // rounding and bending explain, they do not meet.
     if (std::abs(cross(path.rate, way)) / slow > 8.0 * noise + bounds.acceleration * off * off) return false;
     if (const int corner = half.s_is_a ? -1 : corner_of_a(tip); corner >= 0)
       return meets_tip_from_a(half, f, corner);
     return comes_upon_tip(half, f, path, at_a);
+  }
+
+  /// True if the straight way to the tip, from `way` off it, leads through the convex arc that ends there, by more than
+  /// `depth`.
+  static bool meets_arc_before(const Site& site, const Vec2& tip, const Vec2& way, double depth) {
+    if (site.kind != SiteKind::arc || site.sweep < 0.0) return false;
+    // half the chord that the line cuts from the circle
+    const double half_chord = -way.dot(tip - site.center) / way.norm();
+    return half_chord > 0.0 && half_chord * half_chord > 2.0 * site.arc_radius * depth;
   }
 
   /// The same of a sample that goes straight for the tip.

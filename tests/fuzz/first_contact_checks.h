@@ -58,6 +58,11 @@ class Checker {
     if (seed % 256 == 0) check_near_misses(f, seed);
   }
 
+  /// The flight of that seed aimed at a tip, if there is one.
+  void check_aimed(std::uint64_t seed) {
+    if (const std::optional<Flight> f = aimed_flight(seed)) check(*f, seed);
+  }
+
   /// b's path moved sideways to where it only just touches a, then by ever smaller steps to either side of
   /// that.
   void check_near_misses(const Flight& f, std::uint64_t seed) {
@@ -451,7 +456,9 @@ class Checker {
         4.0 * spin * (spin * (f.a->bounding_radius + f.b->bounding_radius) + pair.relative_speed) +
         4.0 * body_speed(f) * body_speed(f) / (1e-6 * f.size);
     const double h = 1e-2 * c.closing_speed / bend;
-    if (h < c.time - f.from && h * c.closing_speed > 1e4 * rounding && h > 1e4 * 2.2e-16 * c.time) {
+    // two tips come nearer by all of their speed, whichever of the directions between them is told
+    if (h < c.time - f.from && h * c.closing_speed > 1e4 * rounding && h > 1e4 * 2.2e-16 * c.time &&
+        !at_both_tips(f, c, 1e-9 * f.size)) {
       // into a notch the distance to its flanks falls slower than that to its bottom: the closing speed is a
       // bound
       const double measured = (pair.distance(c.time - h) - pair.distance(c.time)) / h;

@@ -9,6 +9,7 @@
 #include <iostream>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -383,6 +384,52 @@ inline Flight random_flight(std::uint64_t seed) {
 }
 
 /// The same flight with b's whole path moved by `shift`. @pre b's motion is ballistic.
+/// Ends of its sites, in its frame.
+inline std::vector<Vec2> tips(const Outline& outline) {
+  std::vector<Vec2> found;
+  for (const Site& site : outline.sites) {
+    found.push_back(site.a);
+    if (site.kind != SiteKind::point) found.push_back(site.b);
+  }
+  return found;
+}
+
+/// The flight of that seed with b put where one of its tips comes dead on to one of a's, or past it by a part of 1e-11 of
+/// the size or less, if nothing is met before; half of them do not turn, and half of these lie along the axes. Nothing
+/// where that would begin near each other, or no parabolas.
+inline std::optional<Flight> aimed_flight(std::uint64_t seed) {
+  Flight f = random_flight(seed);
+  if (f.far || f.a->container || f.b->container || !f.motion_a.is_ballistic() || !f.motion_b.is_ballistic())
+    return std::nullopt;
+  Random r(seed * 7919 + 3);
+  const std::vector<Vec2> of_a = tips(*f.a), of_b = tips(*f.b);
+  const Vec2 tip_a = of_a[r.below(of_a.size())], tip_b = of_b[r.below(of_b.size())];
+  const bool turns = r.below(2) != 0, along_axes = r.below(2) == 0;
+  const auto begun_anew = [&](const Motion& m) {
+    BodyState start = m.start();
+    Acceleration pull = m.acceleration();
+    if (!turns) {
+      start.twist.omega = pull.angular = 0.0;
+      if (along_axes) start.pose.angle = 0.5 * kPi * static_cast<double>(r.below(4));
+    }
+    return Motion::ballistic(m.origin(), start, pull);
+  };
+  f.motion_a = begun_anew(f.motion_a);
+  f.motion_b = begun_anew(f.motion_b);
+  const double t = f.from + r.uniform(0.3, 0.7) * (f.to - f.from);
+  BodyState start = f.motion_b.start();
+  start.pose.position +=
+      Frame(f.motion_a.pose(t)).to_world(tip_a) - Frame(f.motion_b.pose(t)).to_world(tip_b);
+  if (r.below(4) == 0)
+    start.pose.position +=
+        f.size * std::ldexp(1.0, -36 - static_cast<int>(r.below(20))) * direction(r.uniform(0.0, 2.0 * kPi));
+  f.motion_b = Motion::ballistic(f.motion_b.origin(), start, f.motion_b.acceleration());
+  f.story += ", aimed";
+  const double apart = (f.motion_a.pose(f.from).position - f.motion_b.pose(f.from).position).norm();
+  if (apart < 1.0001 * (f.a->bounding_radius + f.b->bounding_radius)) return std::nullopt;
+  return f;
+}
+
 inline Flight shifted(const Flight& f, const Vec2& shift) {
   Flight g = f;
   BodyState start = f.motion_b.start();
