@@ -164,8 +164,10 @@ const PolynomialPiece& Track::at(double t) const {
 void Track::forget_before(double t) {
   constexpr std::ptrdiff_t fewest = 1024;  // worth the moving of the others
   // A piece that ends at t itself stays: t may still be asked for.
-  const auto kept =
-      std::partition_point(pieces.begin(), pieces.end(), [&](const PolynomialPiece& p) { return p.end < t; });
+  if (pieces.empty()) return;
+  // and the last: the motion ends there, and goes on from there
+  const auto kept = std::partition_point(pieces.begin(), std::prev(pieces.end()),
+                                         [&](const PolynomialPiece& p) { return p.end < t; });
   const std::ptrdiff_t gone = kept - pieces.begin();
   // Erasing moves all that is kept. Done when half is gone, its cost a piece does not depend on the length.
   if (gone < fewest || 2 * gone < std::ssize(pieces)) return;

@@ -69,26 +69,88 @@ double beyond_ends(const Site& site, const Vec2& q) {
   return std::max({0.0, -along, along - length});
 }
 
-/// A direction in which the carrier lies, seen from its vertex at q, in the other's frame, to tell on which side of a line
-/// through q along `out`'s tangent it is: its edge that leads away from that line most steeply, as no edge crosses a wire.
-/// Where edges lead to both sides, or along the line, it is the way to its centre.
-Vec2 way_inwards(const Half& half, const Sample& sample, const Vec2& q, const Vec2& out) {
-  Vec2 steepest = Vec2::Zero();
-  double least = 0.0, most = 0.0;
+/// True if the carrier lies on the side of a wire to which `out` points, as told from its vertex at q, `height` on that side
+/// of a place of the wire: by whichever of the vertex and the other ends of its edges is farthest from there, as no edge
+/// crosses a wire. A rod that comes to lie flat leads from its upper end down to the wire. Where edges lead to both sides, or
+/// all lie along the wire, its centre says.
+bool lies_before(const Half& half, const Sample& sample, const Vec2& q, const Vec2& out, double height) {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
   const auto see = [&](const Vec2& edge) {
-    const Vec2 way = half.other_frame.direction_to_local(half.carrier_frame.direction_to_world(edge));
-    const double rise = out.dot(way);
-    if (std::abs(rise) > std::max(most, -least)) steepest = way;
-    least = std::min(least, rise);
-    most = std::max(most, rise);
+    const double there =
+        height + out.dot(half.other_frame.direction_to_local(half.carrier_frame.direction_to_world(edge)));
+    least = std::min(least, there);
+    most = std::max(most, there);
   };
   for (const Site& s : half.carrier.sites) {
     if (s.kind == SiteKind::point) continue;
-    if (s.a == sample.p) see(direction_at_start(s));
-    if (s.b == sample.p) see(-direction_at_end(s));
+    if (s.a == sample.p) see(s.b - s.a);
+    if (s.b == sample.p) see(s.a - s.b);
   }
-  const bool one_side = std::min(most, -least) <= kAlongLine && std::max(most, -least) > kAlongLine;
-  return one_side ? steepest : Vec2(centre(half) - q);
+  const double told = kAlongLine * half.carrier.bounding_radius;
+  const bool both_sides = most > told && -least > told;
+  most = std::max(most, height);
+  least = std::min(least, height);
+  if (!both_sides && std::max(most, -least) > told) return most > -least;
+  return out.dot(centre(half) - q) + height >= 0.0;
+}
+
+/// True of q, abreast of the site, on the other side of it than that to which `out` points from `at`, about there on the
+/// site. A wire's arc has no inside: of that the side is the one of its circle on which q was.
+bool is_behind(const Site& site, const Nearest& nearest, const Vec2& q, const Vec2& out, const Vec2& at) {
+  if (site.kind == SiteKind::segment) return out.dot(q - nearest.point) < 0.0;
+  if (site.kind == SiteKind::point || site.solid) return side_of(site, nearest, q) < 0.0;
+  const bool was_outside = out.dot(at - site.center) > 0.0;
+  return ((q - site.center).norm() > site.arc_radius) != was_outside;
+}
+
+/// Where an end of an arc lies beside a site of the other.
+struct ArcEnd {
+  Vec2 q;  ///< in the other's frame
+  Nearest nearest;
+  double gap = 0.0;  ///< [m]
+};
+
+/// The end of a carrier's arc beyond which the direction `towards` points, in the carrier's frame. `out`: to which side of the
+/// site, as seen from `at` there, counts as before it.
+ArcEnd end_beside(const Half& half, const Site& arc, const Vec2& towards, const Site& site, const Vec2& out,
+                  const Vec2& at) {
+  const Vec2 middle = 0.5 * (arc.a + arc.b) - arc.center;
+  const Vec2& end = (cross(middle, towards) > 0.0) == (arc.sweep > 0.0) ? arc.b : arc.a;
+  const Vec2 q = half.other_frame.to_local(half.carrier_frame.to_world(end));
+  const Nearest nearest = nearest_on(site, q);
+  const bool behind =
+      site.kind != SiteKind::point && nearest.foot == Foot::interior && is_behind(site, nearest, q, out, at);
+  return {q, nearest, (behind ? -nearest.distance : nearest.distance) - site.radius - arc.radius};
+}
+
+/// The feature of an arc's sample i that looks past site j, if by no more than may be turned in a step: the end of it there, which
+/// has a feature of its own, and stands here for the arc that may come to lie on the site. Not of what is behind the site; nor of
+/// a wire's arc that looks past the end of one: that may be within its hollow.
+std::optional<NearFeature> beside_arc(const Half& half, int i, int j, const Vec2& towards, double side,
+                                      const Nearest& nearest) {
+  const Site &arc = half.carrier.sites[half.carrier.samples[i].arc_site], &site = half.other.sites[j];
+  const Vec2 middle = 0.5 * (arc.a + arc.b) - arc.center;
+  const double off =
+      std::abs(std::atan2(cross(middle, towards), middle.dot(towards))) - 0.5 * std::abs(arc.sweep);
+  if (side < 0.0 || off > kTurnedInStep || (!arc.solid && nearest.foot != Foot::interior))
+    return std::nullopt;
+  const Vec2 out = half.other_frame.direction_to_local(half.carrier_frame.direction_to_world(-towards));
+  const ArcEnd end = end_beside(half, arc, towards, site, out, nearest.point);
+  if (end.gap < -kSunkOfRadius * half.carrier.bounding_radius) return std::nullopt;
+  NearFeature f;
+  f.sample = i;
+  f.site = j;
+  f.sample_on_a = half.on_a;
+  f.gap = end.gap;
+  const double least = kOnePoint * (half.carrier.bounding_radius + half.other.bounding_radius);
+  const Vec2 away = has_direction(end.nearest, end.q, least) && end.gap > -site.radius - arc.radius
+                        ? direction(site, end.nearest, end.q, least)
+                        : out;
+  f.point = half.other_frame.to_world(end.nearest.point + site.radius * away);
+  const Vec2 outward = half.other_frame.direction_to_world(away);
+  f.normal = half.on_a ? outward : Vec2(-outward);
+  f.beside_arc = true;
+  return f;
 }
 
 /// Sample i of a half against site j, where it is nearest to it; side: see side_of(). Nothing of an arc that
@@ -115,7 +177,7 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   if (thin && site.kind != SiteKind::point && nearest.distance < no_side) {
     // a wire has no inside that would tell: what has sunk by a rounding, or is right on its end, is on the side of its
     // own edges
-    if (out.dot(way_inwards(half, sample, q, out)) < 0.0) out = -out;
+    if (!lies_before(half, sample, q, out, out.dot(q - nearest.point))) out = -out;
     distance = out.dot(q - nearest.point);
   }
   const Vec2 outward = half.other_frame.direction_to_world(out);
@@ -124,9 +186,13 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   if (sample.arc_site >= 0) {
     const Vec2 towards = half.carrier_frame.direction_to_local(-outward);
     const Site& arc = half.carrier.sites[sample.arc_site];
-    // a wire's other side is outside as well: what is a little nearer touches it from there
-    const double sunk = arc.solid ? kSunkOfRadius * half.carrier.bounding_radius : kOnePoint * arc.arc_radius;
-    if (nearest.distance < arc.arc_radius - sunk || !in_sector(arc, towards)) return std::nullopt;
+    // a wire's other side is outside as well: what is a little nearer touches it from there, but for a straight side, whose
+    // ends would have to be through the arc
+    const bool from_outside = arc.solid || (site.kind == SiteKind::segment && nearest.foot == Foot::interior);
+    const double sunk =
+        from_outside ? kSunkOfRadius * half.carrier.bounding_radius : kOnePoint * arc.arc_radius;
+    if (nearest.distance < arc.arc_radius - sunk && in_sector(arc, towards)) return std::nullopt;
+    if (!in_sector(arc, towards)) return beside_arc(half, i, j, towards, side, nearest);
   }
   NearFeature f;
   f.sample = i;
@@ -157,11 +223,40 @@ bool goes_on_nearer(const Outline& outline, std::size_t j, const std::vector<Nea
     return (sided ? outward(other) : direction(other, nearest[k], q, tie)).dot(on) >
            kStraightJoint * on.norm();
   };
+  // over the joint with an arc q may come within a step, and be as near as this site bends away from the end
+  const auto bends = [&](std::size_t k) {
+    return site.kind == SiteKind::arc || outline.sites[k].kind == SiteKind::arc;
+  };
   for (std::size_t k = 0; k < nearest.size(); ++k)
     if (k != j && nearest[k].distance < nearest[j].distance - tie &&
-        (outline.sites[k].a == end || outline.sites[k].b == end) && !rises(k))
+        (outline.sites[k].a == end || outline.sites[k].b == end) && !bends(k) && !rises(k))
       return true;
   return false;
+}
+
+/// Of a site that goes on smoothly, in a hollow, from one that is nearer to q, with an arc on either side of the joint: its
+/// normal at that end, on q's side. What comes over the joint in a step meets that, not the end as a point.
+std::optional<Vec2> normal_over_joint(const Outline& outline, std::size_t j,
+                                      const std::vector<Nearest>& nearest, const Vec2& q, double tie) {
+  const Site& site = outline.sites[j];
+  if (site.kind == SiteKind::point || nearest[j].foot == Foot::interior) return std::nullopt;
+  const bool at_start = nearest[j].foot == Foot::start;
+  const Vec2& end = at_start ? site.a : site.b;
+  const auto leads = [&](const Site& s) {
+    return s.a == end ? direction_at_start(s) : Vec2(-direction_at_end(s));
+  };
+  for (std::size_t k = 0; k < nearest.size(); ++k) {
+    const Site& other = outline.sites[k];
+    if (k == j || other.kind == SiteKind::point || (other.a != end && other.b != end)) continue;
+    if (site.kind != SiteKind::arc && other.kind != SiteKind::arc) continue;
+    if (!(nearest[k].distance < nearest[j].distance - tie)) continue;
+    if (leads(site).dot(leads(other)) > -1.0 + kSmoothJoint) continue;
+    Vec2 n = perp(leads(site));
+    if (n.dot(direction(other, nearest[k], q, tie)) < 0.0) n = -n;
+    // over a hump the tangent would be nearer than the site
+    if (n.dot(q - end) >= nearest[k].distance - tie) return n;
+  }
+  return std::nullopt;
 }
 
 /// Where a sample lies that is upon a corner of a solid.
@@ -193,6 +288,16 @@ OnCorner on_corner(const Half& half, std::size_t j, const Vec2& q, double tie) {
   return where;
 }
 
+/// True if the straight side j of a solid has a hollow corner with another at that end.
+bool has_hollow_corner(const Outline& outline, std::size_t j, const Vec2& end) {
+  return std::any_of(outline.sites.begin(), outline.sites.end(), [&](const Site& next) {
+    if (&next == &outline.sites[j] || next.kind != SiteKind::segment || (next.a != end && next.b != end))
+      return false;
+    const Vec2 on = next.a == end ? Vec2(next.b - next.a) : Vec2(next.a - next.b);
+    return outward(outline.sites[j]).dot(on) > kStraightJoint * on.norm();
+  });
+}
+
 /// True if sample i, upon the line beyond an end of site j, parts from the corner there by no other of its sides: behind site
 /// j the two overlap, be it by a strip of no width (a box right upon another that is as wide).
 bool has_no_way_by(const Half& half, int i, std::size_t j, const Vec2& q) {
@@ -202,10 +307,24 @@ bool has_no_way_by(const Half& half, int i, std::size_t j, const Vec2& q) {
     return half.other_frame.direction_to_local(half.carrier_frame.direction_to_world(d));
   });
   const Wedge of_corner = wedge_at(half.other, corner);
-  if (!half.carrier.solid || of_sample.edges.empty()) return false;
+  // a wire has sides, but no inside that would overlap: in a hollow corner what is beyond the end is in the other side
+  if (!half.carrier.solid) return has_hollow_corner(half.other, j, corner);
+  if (of_sample.edges.empty()) return false;
   return std::none_of(of_corner.normals.begin(), of_corner.normals.end(), [&](const Vec2& n) {
     return n.dot(outward(site)) < 1.0 - kOneSide && parts(n, of_sample, of_corner);
   });
+}
+
+/// The feature of a sample that comes over a smooth joint is that of the tangent there.
+void put_on_tangent(const Half& half, const Vec2& q, const Vec2& normal, NearFeature& f) {
+  const Site& site = half.other.sites[f.site];
+  const Vec2& end = (q - site.a).squaredNorm() < (q - site.b).squaredNorm() ? site.a : site.b;
+  const double height = normal.dot(q - end), radius = half.carrier.samples[f.sample].radius;
+  const Vec2 world = half.other_frame.direction_to_world(normal);
+  f.gap = height - site.radius - radius;
+  f.normal = half.on_a ? world : Vec2(-world);
+  f.point = half.other_frame.to_world(q - (height - site.radius) * normal);
+  f.over_joint = true;
 }
 
 /// The feature of a sample upon the corner is that of the side on which it lies.
@@ -251,6 +370,8 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
     }
     auto f = feature(half, i, static_cast<int>(j), nearest[j], side, q);
     if (f && where == OnCorner::this_side) turn_outward(half, q, side, *f);
+    if (f && bare && side > 0.0)
+      if (const auto n = normal_over_joint(half.other, j, nearest, q, tie)) put_on_tangent(half, q, *n, *f);
     // also of one that is still on its way there
     const Site& site = half.other.sites[j];
     const bool flush = bare && site.solid && site.kind == SiteKind::segment &&
@@ -382,12 +503,19 @@ double gap_of(const NearFeature& f, const OutlineAt& a, const OutlineAt& b) {
   const bool side_is_known = !f.at_end || f.upon_corner || !site.solid || site.kind != SiteKind::segment;
   const Vec2 out = side_is_known ? half.other_frame.direction_to_local(half.on_a ? f.normal : Vec2(-f.normal))
                                  : outward(site);
+  if (sample.arc_site >= 0) {
+    // its circle counts where it is that of the arc
+    const Site& arc = half.carrier.sites[sample.arc_site];
+    const Vec2 towards =
+        half.carrier_frame.direction_to_local(half.other_frame.direction_to_world(nearest.point - q));
+    if (!in_sector(arc, towards))
+      return end_beside(half, arc, towards, site, out, half.other_frame.to_local(f.point)).gap;
+  }
   // Beyond a free end nothing is crossed. Where there is no way by, roundings do not make one.
   const double size = half.carrier.bounding_radius + half.other.bounding_radius;
   const bool abreast =
       nearest.foot == Foot::interior || (f.no_way_by && beyond_ends(site, q) <= kOneCorner * size);
-  const bool crossed = abreast ? (site.kind == SiteKind::segment ? out.dot(q - nearest.point) < 0.0
-                                                                 : side_of(site, nearest, q) < 0.0)
+  const bool crossed = abreast ? is_behind(site, nearest, q, out, nearest.point)
                                : f.thin && is_through_joint(half.other, site, nearest, q, out);
   if (!side_is_known && abreast && crossed)
     if (const double before = before_next_side(half.other, site, q);

@@ -19,6 +19,11 @@ struct NearFeature {
   double gap = 0.0;            ///< [m]
   bool thin = false;           ///< a sharp sample and a wire without thickness
   bool at_end = false;         ///< of a site that goes on from there: the sample may pass by
+  /// Of an arc's sample whose sector the site lies beside, by what a body may turn in a step: the gap is that of the arc's
+  /// end, and of the arc once it has rolled there.
+  bool beside_arc = false;
+  /// Over a smooth joint in a hollow: of the tangent at the site's end.
+  bool over_joint = false;
   /// Upon a convex corner: of the side there that was chosen, with that side's own normal, and a gap from its line.
   bool upon_corner = false;
   /// A corner upon a corner of which no other side parts the two: along this side's end there is no way by, even

@@ -19,6 +19,11 @@ inline constexpr double kOneCorner = 1e-10;
 /// moved it, and what is nearer by it to the centre of a solid's arc than the arc is has sunk into it: ten thousand contact
 /// tolerances, as an overlap at the start may be.
 inline constexpr double kSunkOfRadius = 1e-6;
+/// An arc that looks past a site by no more than this may come to face it within a step [rad]: a step moves no point of a body
+/// by more than a tenth of the smallest member's size, if no impulse does.
+inline constexpr double kTurnedInStep = 0.5;
+/// Two sites go on into each other where their directions are opposite to this: within some 1e-5 rad.
+inline constexpr double kSmoothJoint = 1e-10;
 /// Sine of an angle between an edge and a wire that it lies along: far more than roundings of directions make of none, far
 /// less than an angle at which a body leans on it.
 inline constexpr double kAlongLine = 1e-6;

@@ -178,8 +178,13 @@ void CertificateWatch::frame(double t) {
     const double gap = is_nothing_new(at_least) ? at_least : pair_at_frame(pair, t, at_most);
     return run_->poll() ? std::optional(gap) : std::nullopt;
   });
+  flights(t);
+}
+
+/// Every centre's flight up to t, which will not be looked at again.
+void CertificateWatch::flights(double t) {
   for (int k = 0; k < trajectories_->body_count() && !run_->halt(); ++k) flight(k, t);
-  flown_until_ = t;
+  flown_until_ = std::max(flown_until_, t);
 }
 
 /// True of two that a line parts: they do not cross, and are no deeper in each other than what was seen before, or than

@@ -34,6 +34,8 @@ class CertificateWatch {
 
   /// Before body k is resolved, or shown, at time `to`: did its centre fly through a wire?
   bool flight(int k, double to);
+  /// That of all bodies. Nobody will be asked for a time before `to` by the watch any more.
+  void flights(double to);
   /// Starts to fetch what that reads of the body.
   void expect(int k) const {
     if (!clear_.empty()) prefetch(&clear_[k]);

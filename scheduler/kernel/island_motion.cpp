@@ -95,6 +95,9 @@ std::vector<int> IslandMotion::joining(const World& world, Trajectories& traject
 /// What a step absorbs is found anew with them.
 void IslandMotion::list(double reach) {
   contacts_ = members_.contacts(reach, go_on_);
+  // what an arc may roll to counts along a step alone: until then its end tells all
+  if (reach >= 0.0 || by_modes_)
+    std::erase_if(contacts_, [](const HeldContact& c) { return c.feature.beside_arc; });
   absorbed_ = 0.0;
 }
 
@@ -177,7 +180,7 @@ bool IslandMotion::touches(const HeldContact& c) const {
 /// agitated island, and faster than a step takes as plastic.
 double IslandMotion::impact_of(const HeldContact& c, const std::vector<Vec3>& velocity) const {
   const double closing = members_.closing_speed(c);
-  if (closing <= most_absorbed(c.pair)) return 0.0;
+  if (closing <= most_absorbed(c.pair) || c.feature.beside_arc) return 0.0;
   if (!touches(c)) return arrival(c, velocity).time < h_ ? closing : 0.0;
   // at a joint of two floors the tangent at an end bars the way to what slides over it
   if (passes_by(c, 0.0, closing)) return 0.0;
@@ -358,6 +361,7 @@ double IslandMotion::next_arrival() {
   const std::vector<Vec3> velocity = velocities();
   for (const HeldContact& c : contacts_) {
     if (!go_on_()) break;
+    if (c.feature.beside_arc) continue;
     const Arrival come = touches(c) ? Arrival{0.0, members_.closing_speed(c)} : arrival(c, velocity);
     if (!(come.time <= h_)) continue;
     if (!touches(c) && come.closing > most_absorbed(c.pair))
@@ -452,7 +456,7 @@ IslandContact IslandMotion::island_contact(const HeldContact& c) const {
     made.tangential_force = warm->tangential_force;
     made.force_lasted = warm->lasted;
   }
-  made.at_end = c.feature.at_end;
+  made.at_end = c.feature.at_end || c.feature.beside_arc;
   made.driven = members_.on_moving_site(c);
   // a body that is a member moves by the unknown twists; a site by what it is told
   note_shape(c, made);
@@ -477,7 +481,8 @@ void IslandMotion::note_shape(const HeldContact& c, IslandContact& made) const {
   if (!f.sample_on_a) std::swap(of_sample, of_site);
   const Sample& sample = of_sample->samples[f.sample];
   const SiteKind kind = of_site->sites[f.site].kind;
-  made.convex = !made.driven && !f.thin && !f.no_way_by && !of_site->container && kind != SiteKind::arc;
+  made.convex = !made.driven && !f.thin && !f.beside_arc && !f.no_way_by && !of_site->container &&
+                kind != SiteKind::arc;
   made.sample_on_body = f.sample_on_a;
   made.arm = sample.p.norm();
   // from the centre of mass to the point on the site's surface, and on along the normal to the sample

@@ -25,7 +25,11 @@ class Kernel : public KernelView {
   /// Ends the run as failed if it has come to reach(), and that lies before `until`; true if so.
   bool fail_before(double until);
   /// Nobody will ask a motion for a time before t any more.
-  void forget_before(double t) { parts_.trajectories.forget_before(t); }
+  void forget_before(double t) {
+    // the watch looks at flights from where it last did
+    if (much_to_forget()) parts_.watch.flights(t);
+    parts_.trajectories.forget_before(t);
+  }
 
   // -- clocks --
   /// All bodies go forward to t; frames due on the way are recorded by record_frames().

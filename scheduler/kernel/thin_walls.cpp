@@ -87,6 +87,27 @@ bool crosses(const Wall& wall, const Vec2& p, const Vec2& q) {
   return on_arc((-along - root) / length) != on_arc((-along + root) / length);
 }
 
+/// True if what is at place(t) goes through the wall between two times, at which it lies on a side of it: where it changes
+/// sides it is between the wall's ends. Where that is, is found by halving the time.
+bool goes_through(const Wall& wall, const std::function<Vec2(double)>& place, double from, double to) {
+  const Vec2 p = place(from), q = place(to);
+  const int before = side(wall, p);
+  if (before == side(wall, q)) return crosses(wall, p, q);
+  for (;;) {
+    const double middle = from + 0.5 * (to - from);
+    if (!(from < middle && middle < to)) break;
+    (side(wall, place(middle)) == before ? from : to) = middle;
+  }
+  const Vec2 there = place(from);
+  if (wall.is_arc()) {
+    const Vec2 chord = wall.to_chord();
+    return (there - wall.core.center).dot(chord) >= chord.squaredNorm();
+  }
+  const Vec2 d = wall.core.b - wall.core.a;
+  const double along = d.dot(there - wall.core.a);
+  return along >= 0.0 && along <= d.squaredNorm();
+}
+
 }  // namespace
 
 struct ThinWalls::Tree {
@@ -166,12 +187,12 @@ std::optional<int> ThinWalls::crossed_image(const Place& place, double from, dou
     // round its end, or through it?
     const int steps = 64 * (1 + static_cast<int>(std::min(std::abs(turns), 1000.0)));
     bool through = false;
-    Vec2 last = p;  // whose side could be told
+    double last = from;  // where the side could be told
     for (int i = 1; i <= steps; ++i) {
-      const Vec2 next = i == steps ? q : place(from + (to - from) * i / steps);
+      const double next = i == steps ? to : from + (to - from) * i / steps;
       // too near to tell: the way to the next place that tells counts as one
-      if (side(wall, next) == 0) continue;
-      if (crosses(wall, last, next)) through = !through;
+      if (side(wall, place(next)) == 0) continue;
+      if (goes_through(wall, place, last, next)) through = !through;
       last = next;
     }
     if (through) return wall.site;

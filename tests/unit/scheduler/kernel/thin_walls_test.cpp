@@ -63,6 +63,24 @@ TEST(ThinWalls, AParabolaOverTheEndIsNoneThoughItsChordCrosses) {
   EXPECT_EQ(walls.crossed(thrown, 0.0, 1.0), std::nullopt);  // the chord is below this one: not judged by it
 }
 
+TEST(ThinWalls, WhatFallsForLongBesideTheEndIsNotThrough) {
+  ThinWalls walls;
+  walls.add(segment({-2.0, 0.0}, {2.0, 0.0}), 0);
+  // off the end at once, then down for a thousand seconds: whatever chords of it cross
+  for (const double speed : {0.5, 5.0, 50.0})
+    for (const double before : {0.4, 0.6})
+      for (const double end : {1.0, 75.0, 1e3, 1e6}) {
+        const auto falls = [&](double t) {
+          return Vec2(2.0 - before * speed + speed * t, 1.0 - 4.905 * t * t);
+        };
+        const bool through = falls(std::sqrt(1.0 / 4.905)).x() < 2.0;
+        EXPECT_EQ(through, before == 0.6);
+        // the straight way between the ends tells some that are through: none that are not
+        if (through) continue;
+        EXPECT_FALSE(walls.crossed(falls, 0.0, end)) << speed << " " << end;
+      }
+}
+
 TEST(ThinWalls, AWayThatEndsAtAWallWithinRoundingIsNotJudged) {
   ThinWalls walls;
   walls.add(segment({0.0, -1.0}, {0.0, 1.0}), 0);
