@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "brink/core/query/outline_gap.h"
 #include "brink/core/shapes/outline_crossing.h"
 #include "brink/scheduler/first_contact/closed_forms.h"
 #include "brink/scheduler/first_contact/tolerances.h"
@@ -13,6 +14,14 @@
 namespace brink {
 
 namespace {
+
+/// Arcs cross where they are in each other by more than this part of the lesser size: many roundings.
+constexpr double kArcsCross = 1e-9;
+
+bool has_arcs(const Outline& outline) {
+  return std::any_of(outline.sites.begin(), outline.sites.end(),
+                     [](const Site& s) { return s.kind == SiteKind::arc; });
+}
 
 /// True if a sharp vertex of one owner may meet a wire without thickness of another.
 /// Two sites never meet, so one of the two must be a body.
@@ -205,9 +214,14 @@ std::optional<Contact> ContactSearch::crossing(const PairKey& pair, double t, do
   const ExtendedState at = trajectories_->body(pair.body).motion.extended_state(t),
                       other = other_state(pair, t);
   const Vec2 base = other.position.cast<double>();  // far away, nothing of what is between them is lost
-  const OutlineCrossing crossing =
-      deepest_crossing(outline_of(pair.body), at.seen_from(base).pose, outline_of(other_owner(pair)),
-                       other.seen_from(base).pose, gap);
+  const Outline &a = outline_of(pair.body), &b = outline_of(other_owner(pair));
+  const Pose pose_a = at.seen_from(base).pose, pose_b = other.seen_from(base).pose;
+  OutlineCrossing crossing = deepest_crossing(a, pose_a, b, pose_b, gap);
+  // of arcs that cross with no end of either in the other
+  if (crossing.depth <= 0.0 && (has_arcs(a) || has_arcs(b)))
+    if (const OutlineGap seen = outline_gap(a, pose_a, b, pose_b);
+        seen.gap < -kArcsCross * std::min(a.bounding_radius, b.bounding_radius))
+      crossing = {-seen.gap, seen.point_b, seen.normal};
   if (crossing.depth <= 0.0) return std::nullopt;
   // boundaries that cross name no features: sample and site stay -1
   FeatureContact f;

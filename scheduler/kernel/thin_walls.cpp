@@ -41,6 +41,8 @@ struct Wall {
 };
 
 constexpr std::size_t kFewWalls = 16;  ///< which are looked at one by one
+/// Walls are longer by this part at their ends, where the place of a crossing is asked for.
+constexpr double kBeyondEnds = 1e-12;
 /// A way past more images of the walls than this is not looked at.
 constexpr double kMostImages = 1e4;
 
@@ -98,14 +100,15 @@ bool goes_through(const Wall& wall, const std::function<Vec2(double)>& place, do
     if (!(from < middle && middle < to)) break;
     (side(wall, place(middle)) == before ? from : to) = middle;
   }
+  // by a little more than its ends: what goes right through a joint of two goes through one of them
   const Vec2 there = place(from);
   if (wall.is_arc()) {
     const Vec2 chord = wall.to_chord();
-    return (there - wall.core.center).dot(chord) >= chord.squaredNorm();
+    return (there - wall.core.center).dot(chord) >= (1.0 - kBeyondEnds) * chord.squaredNorm();
   }
   const Vec2 d = wall.core.b - wall.core.a;
-  const double along = d.dot(there - wall.core.a);
-  return along >= 0.0 && along <= d.squaredNorm();
+  const double along = d.dot(there - wall.core.a) / d.squaredNorm();
+  return along >= -kBeyondEnds && along <= 1.0 + kBeyondEnds;
 }
 
 }  // namespace
