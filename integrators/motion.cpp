@@ -163,9 +163,8 @@ const PolynomialPiece& Track::at(double t) const {
 
 void Track::forget_before(double t) {
   constexpr std::ptrdiff_t fewest = 1024;  // worth the moving of the others
-  // A piece that ends at t itself stays: t may still be asked for.
   if (pieces.empty()) return;
-  // and the last: the motion ends there, and goes on from there
+  // A piece that ends at t itself stays, as t may still be asked for; and the last one, from which the motion goes on.
   const auto kept = std::partition_point(pieces.begin(), std::prev(pieces.end()),
                                          [&](const PolynomialPiece& p) { return p.end < t; });
   const std::ptrdiff_t gone = kept - pieces.begin();
