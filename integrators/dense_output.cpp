@@ -11,20 +11,26 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
 /// x, y, angle as one vector; so for rates and accelerations.
 Vector3d stacked(const Pose& pose) { return {pose.position.x(), pose.position.y(), pose.angle}; }
 Vector3d stacked(const Twist& twist) { return {twist.velocity.x(), twist.velocity.y(), twist.omega}; }
 Vector3d stacked(const Acceleration& a) { return {a.linear.x(), a.linear.y(), a.angular}; }
 
-/// True where a pose difference is rounding of the poses themselves. Divided by a tiny step it would turn
-/// into a large velocity that is not there, so it is left out: the piece then ends within rounding of the
-/// accepted pose.
-bool is_rounding(double difference, double a, double b) {
+/// True where what a step from a to b does not explain is rounding: of the two, or of the clock, which has moved them at
+/// this rate. Divided by a tiny step it would turn into a large velocity and an enormous acceleration that are not there,
+/// so it is left out: the piece then ends within rounding of the accepted pose.
+bool is_rounding(double difference, double a, double b, double rate, double clock) {
   return std::abs(difference) <=
-         8.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(a), std::abs(b));
+         8.0 * kEpsilon * (std::max(std::abs(a), std::abs(b)) + std::abs(rate * clock));
 }
 
 }  // namespace
+
+bool is_rounding_of(double a, double b) {
+  return std::abs(a - b) <= 8.0 * kEpsilon * std::max(std::abs(a), std::abs(b));
+}
 
 void add_cubic(PolynomialPiece& piece, const Vector3d& pose_begin, const Vector3d& rate_begin,
                const Vector3d& pose_end, const Vector3d& rate_end) {
@@ -57,7 +63,7 @@ void match_ends(PolynomialPiece& piece, const BodyState& from, const BodyState& 
   const BodyState end = piece.state(piece.end);
   Vector3d pose_error = target - stacked(end.pose);
   for (int i = 0; i < 3; ++i)
-    if (is_rounding(pose_error[i], piece.c[0][i], target[i])) pose_error[i] = 0.0;
+    if (is_rounding(pose_error[i], piece.c[0][i], target[i], piece.c[1][i], piece.end)) pose_error[i] = 0.0;
   add_cubic(piece, Vector3d::Zero(), Vector3d::Zero(), pose_error, stacked(to.twist) - stacked(end.twist));
 }
 
@@ -91,7 +97,8 @@ PolynomialPiece quintic_piece(double begin, const BodyState& from, const Acceler
     double third = 10.0 * x[i] - 4.0 * v[i] + 0.5 * a[i];
     double fourth = -15.0 * x[i] + 7.0 * v[i] - a[i];
     double fifth = 6.0 * x[i] - 3.0 * v[i] + 0.5 * a[i];
-    if (is_rounding(x[i], x0[i], x1[i])) {  // twist and acceleration alone: the pose follows to rounding
+    // twist and acceleration alone: the pose follows to rounding
+    if (is_rounding(x[i], x0[i], x1[i], v0[i], end)) {
       // 3 third + 4 fourth = v and 6 third + 12 fourth = a: a quartic.
       fourth = 0.25 * (a[i] - 2.0 * v[i]);
       third = (v[i] - 4.0 * fourth) / 3.0;

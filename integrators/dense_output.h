@@ -6,8 +6,11 @@
 
 namespace brink {
 
+/// True if two places (or angles) along an axis differ by what a few roundings of theirs may come to.
+bool is_rounding_of(double a, double b);
+
 /// Makes `piece` start exactly at `from` and adds the cubic that makes it end at `to`: pose and twist at both
-/// ends are then the solver's accepted states (the end to rounding). A piece of degree 0 becomes the cubic
+/// ends are then the solver's accepted states (the end to rounding: of the place, and of the clock, which moves it). A piece of degree 0 becomes the cubic
 /// Hermite interpolant. Between the ends the change is of the size of the mismatch there, that is of the
 /// solver's local error.
 /// @pre piece.origin == piece.begin < piece.end.

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "brink/core/base/error.h"
+#include "brink/integrators/dense_output.h"
 
 namespace brink {
 
@@ -115,9 +116,17 @@ bool SteppingIntegrator::accelerations(double t, std::span<const BodyState> stat
   return true;
 }
 
-/// The step to t is made: its end states become the present ones.
+/// The step to t is made: its end states become the present ones. Where a piece has left out what the clock rounded
+/// (dense_output.cpp), the next goes on from where it ended: pieces meet to the rounding of the place.
 bool SteppingIntegrator::accept(double t, std::span<const BodyState> states) {
   states_.assign(states.begin(), states.end());
+  for (int k = 0; k < size(); ++k) {
+    const Pose met = tracks_[k]->pieces.back().state(t).pose;
+    Pose& pose = states_[k].pose;
+    for (int i = 0; i < 2; ++i)
+      if (!is_rounding_of(met.position[i], pose.position[i])) pose.position[i] = met.position[i];
+    if (!is_rounding_of(met.angle, pose.angle)) pose.angle = met.angle;
+  }
   time_ = t;
   if (work_) ++work_->solver_steps;
   // at a break the method starts afresh with the next step

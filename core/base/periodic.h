@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <compare>
+#include <type_traits>
 
 #include "brink/core/base/geometry.h"
 
@@ -32,15 +33,19 @@ struct Periods {
   }
   Vec2 shift(const Image& image) const { return {image.right * size.x(), image.up * size.y()}; }
 
-  /// Calls visit(image) for every image of b that overlaps a, row by row; in a plane that does not repeat for
-  /// b itself. @pre finite boxes along axes that repeat.
+  /// Calls visit(image) for every image of b that overlaps a, row by row, until it returns false (a visitor that returns
+  /// nothing sees all); in a plane that does not repeat for b itself. @pre finite boxes along axes that repeat.
   template <class Visit>
   void overlaps(const Box& a, const Box& b, Visit&& visit) const {
     const Span right = span(a, b, 0);
     if (right.last < right.first) return;  // most are not near
     const Span up = span(a, b, 1);
     for (int j = up.first; j <= up.last; ++j)
-      for (int i = right.first; i <= right.last; ++i) visit(Image{i, j});
+      for (int i = right.first; i <= right.last; ++i)
+        if constexpr (std::is_void_v<std::invoke_result_t<Visit&, const Image&>>)
+          visit(Image{i, j});
+        else if (!visit(Image{i, j}))
+          return;
   }
 
   static constexpr double kFarthest = 1e9;  ///< periods from the origin [1]: images beyond have no number

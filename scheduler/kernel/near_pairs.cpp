@@ -92,7 +92,9 @@ void NearPairs::box_changed(double to, bool several_motions) {
 /// whatever its bounds, but in a plane that repeats there is no end of images.
 void NearPairs::add_images(int a, int b, std::vector<PairKey>& pairs) const {
   const auto add = [&](const Image& image) {
+    if (!run_->poll()) return false;
     if (const auto pair = search_->pair_of(a, b, image)) pairs.push_back(*pair);
+    return true;
   };
   if (!by_bounds_ && !world_->periods.any())
     add({});

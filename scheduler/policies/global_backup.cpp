@@ -27,7 +27,7 @@ class GlobalBackup final : public Policy {
   /// One horizon, contact by contact: the number of pairs that could meet before it; nothing on a halt.
   std::optional<std::size_t> run_horizon(Kernel& kernel, double end) {
     const double begin = kernel.time();
-    double seen = kernel.follow_motions(seen_beyond(end));
+    double seen = look_ahead(kernel, seen_beyond(end));
     double last = last_beginning(kernel, begin, end, seen);
     if (!agenda_.pass(kernel, begin, seen)) return std::nullopt;
     // of the whole pass: the next pass_again() looks at a few pairs alone
@@ -53,7 +53,7 @@ class GlobalBackup final : public Policy {
                           ? kernel.step_island(changed_)
                           : kernel.resolve(next.pair, next.contact, changed_);
     if (!done) return false;
-    seen = kernel.follow_motions(seen);
+    seen = look_ahead(kernel, seen);
     return agenda_.pass_again(kernel, changed_, seen);
   }
 

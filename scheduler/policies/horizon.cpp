@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brink/scheduler/broad_phase/broad_phase.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/policies/order.h"
 #include "brink/scheduler/policies/tolerances.h"
@@ -22,24 +23,10 @@ double first_length(const KernelView& kernel, double until) {
   return std::max(horizon, kShortestHorizon * std::max(1.0, until));
 }
 
-/// In a plane that repeats, a body that crosses many periods before the horizon's end would be near as many
-/// images of everybody: the time in which the fastest goes no farther than a few, under gravity [s].
-double within_periods(const KernelView& kernel) {
-  constexpr double few = 4.0;
-  const double length = few * kernel.world().periods.least();
-  if (!std::isfinite(length)) return length;
-  double fastest = 0.0;
-  for (int k = 0; k < kernel.body_count(); ++k)
-    fastest = std::max(fastest, kernel.state(k, kernel.time()).twist.velocity.norm());
-  // v t + g t^2 / 2 = length, solved for t without cancellation.
-  const double root = std::sqrt(fastest * fastest + 2.0 * kernel.world().gravity.norm() * length);
-  return std::max(2.0 * length / (fastest + root), kShortestHorizon);
-}
-
 /// The end of the next horizon from the present time [s].
 double next_end(Kernel& kernel, double until) {
   if (kernel.horizon() <= 0.0) kernel.choose_horizon(first_length(kernel, until));
-  return std::min(until, kernel.time() + std::min(kernel.horizon(), within_periods(kernel)));
+  return std::min(until, kernel.time() + kernel.horizon());
 }
 
 /// Learns from a horizon that had so many near pairs and collisions.
@@ -71,6 +58,23 @@ void run_horizons(Kernel& kernel, double until,
 }
 
 double seen_beyond(double end) { return end + 4.0 * same_instant(end); }
+
+double look_ahead(Kernel& kernel, double end) {
+  double seen = kernel.follow_motions(end);
+  const Periods& periods = kernel.world().periods;
+  if (!periods.any()) return seen;
+  const double most = kMostPeriods * periods.least(), now = kernel.time();
+  const int bodies = kernel.body_count(), sites = static_cast<int>(kernel.world().sites.size());
+  for (int k = 0; k < bodies + sites; ++k) {
+    const Motion& motion = k < bodies ? kernel.body(k).motion : kernel.site_motion(k - bodies);
+    if (motion.is_still()) continue;
+    const auto goes_far = [&] {
+      return !(swept_box(kernel.outline_of(k), motion, now, seen).extent().maxCoeff() <= most);
+    };
+    while (seen - now > kShortestHorizon && goes_far()) seen = now + 0.5 * (seen - now);
+  }
+  return seen;
+}
 
 double last_beginning(const KernelView& kernel, double begin, double end, double seen) {
   // an instant that begins by then is over before `seen`

@@ -21,6 +21,11 @@ void run_horizons(Kernel& kernel, double until,
 /// horizons, and as by a run that goes on; so an instant that begins by the end is seen whole.
 double seen_beyond(double end);
 
+/// Lets motions go on towards `end`, and says how far all can be looked at [s]: to where they cover and, in a plane that
+/// repeats, no body passes more than a few periods. One that passes many is near as many images of everybody. A policy
+/// that knows horizons asks for motions by this alone.
+double look_ahead(Kernel& kernel, double end);
+
 /// Of a horizon from `begin` to `end` that could look as far as `seen` [s], the last time at which anything in it may
 /// begin: the end, if an instant that begins there is seen; but where a motion fails.
 double last_beginning(const KernelView& kernel, double begin, double end, double seen);

@@ -30,7 +30,7 @@ class IslandBackup final : public Policy {
   /// One horizon, contact by contact: the number of pairs that could meet before it; nothing on a halt.
   std::optional<std::size_t> run_horizon(Kernel& kernel, double end) {
     const double begin = kernel.time();
-    double seen = kernel.follow_motions(seen_beyond(end));
+    double seen = look_ahead(kernel, seen_beyond(end));
     double last = last_beginning(kernel, begin, end, seen);
     if (!agenda_.pass(kernel, begin, seen)) return std::nullopt;
     const std::size_t near = agenda_.pairs().size();
@@ -57,7 +57,7 @@ class IslandBackup final : public Policy {
                           ? kernel.step_island(changed_)
                           : kernel.resolve(next.pair, next.contact, changed_);
     if (!done) return false;
-    seen = kernel.follow_motions(seen);
+    seen = look_ahead(kernel, seen);
     if (!agenda_.pass_again(kernel, changed_, seen)) return false;
     // Islands only grow until the horizon ends. Three reasons: components are others now; the collision has
     // changed these bodies together; and what they may now reach could meet them.

@@ -50,7 +50,7 @@ class Timewarp final : public Policy {
  private:
   /// One horizon, contact by contact. False on a halt.
   bool run_horizon(double end) {
-    end_ = kernel_->follow_motions(seen_beyond(end));
+    end_ = look_ahead(*kernel_, seen_beyond(end));
     const double begin = kernel_->time();
     const std::uint64_t before = kernel_->collisions();
     if (!look_at_all()) return false;
@@ -96,7 +96,7 @@ class Timewarp final : public Policy {
     changed_.clear();
     if (next.kind == Certificate::Kind::island) {  // its members never run ahead
       if (!kernel_->step_island(changed_)) return false;
-      end_ = kernel_->follow_motions(end_);
+      end_ = look_ahead(*kernel_, end_);
       return look_around(next.time);
     }
     if (kernel_->is_resolved_ahead(next)) {
@@ -104,7 +104,7 @@ class Timewarp final : public Policy {
       if (!kernel_->confirm(next, changed_)) return false;
       // an island that it began has taken its bodies elsewhere than they had gone
       if (kernel_->island_steps() != steps) {
-        end_ = kernel_->follow_motions(end_);
+        end_ = look_ahead(*kernel_, end_);
         return look_around(next.time);
       }
       // who changes together with whom is different from now on
@@ -118,14 +118,14 @@ class Timewarp final : public Policy {
     kernel_->advance_pair(next.pair, next.time);
     if (!kernel_->resolve(next.pair, next.contact, changed_)) return false;
     if (groupings_ != kernel_->groupings()) return look_at_groups(next.time);
-    end_ = kernel_->follow_motions(end_);
+    end_ = look_ahead(*kernel_, end_);
     return look_around(next.time);
   }
 
   /// Bodies have been grouped anew, and nobody is ahead any more. False on a halt.
   bool look_at_groups(double now) {
     group_bodies();
-    end_ = kernel_->follow_motions(end_);
+    end_ = look_ahead(*kernel_, end_);
     for (int k = 0; k < kernel_->body_count(); ++k) give_a_turn_to(k);
     return look_around(now);
   }

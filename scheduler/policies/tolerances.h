@@ -8,6 +8,9 @@ namespace brink {
 /// no run could do a billion of them.
 inline constexpr double kShortestHorizon = 1e-9;
 
+/// How far a body may go in a horizon, its own size with it, where the plane repeats [periods].
+inline constexpr double kMostPeriods = 6.0;
+
 /// A time that lies this part of a step before a step's end is that end: a quotient of times is told to 1e-16 of
 /// itself, so up to ten million steps are counted right.
 inline constexpr double kSameStep = 1e-9;

@@ -1,6 +1,9 @@
 // Motions of so many pieces that the first are forgotten: nobody asks for them, and a run goes on from a snapshot.
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <set>
+
 #include "brink/scenes/scene/scene.h"
 #include "brink/scheduler/policies/policy.h"
 #include "brink/scheduler/simulator/simulator.h"
@@ -43,6 +46,54 @@ stiffness = 1000.0
 body = "b1"
 anchor = [0.5600726, -0.1483287]
 )";
+
+/// Boxes that a spring throws at each other over several images, in steps that begin with some 1e-15 s, which the clock
+/// rounds by a percent.
+const char* const kThrown = R"(
+[world]
+duration = 2.0
+periodic = [40.0, 4.0]
+gravity = [0.0, -9.81]
+[materials.m]
+restitution = 0.5
+[[bodies]]
+name = "b0"
+box = { width = 0.2, height = 0.1 }
+mass = 1.0
+material = "m"
+position = [0.3, 0.3]
+[[bodies]]
+name = "b1"
+box = { width = 0.2, height = 0.1 }
+mass = 1.0
+material = "m"
+position = [0.7, 0.3]
+velocity = [0.0, 0.39166573353688694]
+[[bodies]]
+disc = { radius = 0.1 }
+mass = 1.0
+material = "m"
+position = [0.7, 0.7]
+velocity = [-94.91082780130785, -0.98159012289123]
+[[forces]]
+kind = "spring"
+bodies = ["b0", "b1"]
+stiffness = 50.0
+rest_length = 100.0
+)";
+
+TEST(LongMotions, AHorizonEndsBeforeABodyPassesManyPeriods) {
+  std::set<std::uint64_t> hashes;
+  for (const std::string& policy : exact_policies()) {
+    const Scene scene = parse_scene(kThrown, "thrown.toml", {"solver.policy=" + policy});
+    Simulator simulator(scene.world, scene.solver);
+    const RunSummary s = simulator.run(testing::until(scene.duration));
+    EXPECT_EQ(s.termination, Termination::reached_end) << policy << ": " << s.why;
+    EXPECT_LT(s.work.pair_searches, 20'000u) << policy;
+    hashes.insert(s.state_hash);
+  }
+  EXPECT_EQ(hashes.size(), 1u);
+}
 
 TEST(LongMotions, TheWatchAsksForNothingThatIsForgotten) {
   for (const std::string& policy : exact_policies()) {

@@ -8,6 +8,7 @@
 #include <new>
 
 #include "brink/core/base/random.h"
+#include "brink/integrators/dense_output.h"
 #include "brink/integrators/integrator.h"
 #include "tests/support/seeded_random.h"
 #include "tests/unit/integrators/problems.h"
@@ -156,6 +157,34 @@ TEST(PolynomialPiece, BoundsEncloseRandomPolynomials) {
 
 // With a thrust from 0.3 to 0.55 the closed form is a chain of three parabolas: x(0.55) = 5/32, then 1.25 m/s
 // for ever.
+// A step of some hundred roundings of the clock: what the clock rounds of a fast body's way is no acceleration.
+TEST(DenseOutput, ATinyStepOfAFastBodyHasTheAccelerationOfItsEnds) {
+  SeededRandom random(11);
+  for (int i = 0; i < 2000; ++i) {
+    const double begin = random.uniform(0.01, 100.0), rounding = begin * 2.2e-16;
+    const double h = rounding * random.uniform(20.0, 2000.0), end = begin + h;
+    const auto any = [&](double most) {
+      return Vec2(random.uniform(-most, most), random.uniform(-most, most));
+    };
+    const Acceleration a{any(1000.0), random.uniform(-1000.0, 1000.0)};
+    const BodyState from{{any(2.0), random.uniform(-2.0, 2.0)}, {any(500.0), random.uniform(-500.0, 500.0)}};
+    // as the solver steps, which does not round its own h
+    BodyState to = from;
+    to.pose.position += h * from.twist.velocity;
+    to.pose.angle += h * from.twist.omega;
+    to.twist.velocity += h * a.linear;
+    to.twist.omega += h * a.angular;
+    for (const PolynomialPiece& piece :
+         {quintic_piece(begin, from, a, end, to, a), cubic_piece(begin, from, end, to)}) {
+      const MotionBounds b = piece.bounds(begin, end);
+      // twists are rounded as well, by some 1e-13 m/s
+      const double of_twists = 8.0 * 2.2e-16 * 700.0 / h;
+      EXPECT_LT(b.acceleration.norm() + b.acceleration_radius, 2.0e4 + 20.0 * of_twists) << i;
+      EXPECT_LT(b.alpha, 2.0e4 + 20.0 * of_twists) << i;
+    }
+  }
+}
+
 TEST(ClosedForm, ThrustMakesAChainThatReachesInfinity) {
   const auto integrator = make_integrator("auto", std::make_shared<Thrusted>(0.3, 0.55, true), {});
   integrator->start(0.0, std::vector<BodyState>{{}});
