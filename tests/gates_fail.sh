@@ -74,7 +74,7 @@ unused_member() {
 show_clang() { BRINK_GATE_ONLY=core/base/log show clang unused_member tests/gates.sh clang; }
 
 # One digit of one stored hash.
-another_answer() { sed -i '/^break_shot,/s/,\([0-9a-f]\{15\}\)[0-9a-f],/,\1x,/' tests/regression/answers.csv; }
+another_answer() { sed -i '/^break_shot,/s/,\([0-9a-f]\{15\}\)[0-9a-f],/,\1x,/' scenes/gallery/answers.csv; }
 show_answers() {
   build regression_answers_test
   show answers another_answer test_of regression_answers_test --gtest_filter='*/break_shot*'

@@ -126,7 +126,7 @@ done
 awk -F, -v names="${builds[*]}" '
   FNR == 1 { ++file }
   /^#/ { next }
-  { hash[$1, file] = $4; if (file == 1) scenes[++count] = $1; if ($NF == "solver") solver[$1] = 1 }
+  { hash[$1, file] = $6; if (file == 1) scenes[++count] = $1; if ($NF == "solver") solver[$1] = 1 }
   END {
     builds = split(names, name, " ")
     printf "%-22s", "scene"

@@ -266,6 +266,32 @@ void add_sweep(CLI::App& program, int& status) {
   command->callback([arguments, &status] { status = sweep_command(*arguments); });
 }
 
+/// What is stored is a table of the folder's own, so there is nothing to name but the folder.
+void add_regress(CLI::App& program, int& status) {
+  auto arguments = std::make_shared<RegressArguments>();
+  CLI::App* command = program.add_subcommand("regress", "Run scenes and compare with their stored answers");
+  command->add_option("DIR", arguments->folder, "Folder of scenes (TOML) and of answers.csv")->required();
+  command->add_flag("--update", arguments->update, "Store what is met: write answers.csv anew");
+  command->add_option("--reason", arguments->reason, "With --update: why answers have changed")
+      ->type_name("TEXT");
+  command->add_option("--set", arguments->overrides, "Override a key of every scene; may be repeated")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  command->add_flag("--quiet", arguments->quiet, "No progress and no lines");
+  command->add_flag("--json", arguments->json, "The comparison as one JSON object on the last line");
+  command->footer(
+      "Every scene in the folder is run to its duration. Exit status: 0 all are the same, 1 one differs, is "
+      "new or is "
+      "gone.\n"
+      "Answers by a solver (SUNDIALS) that is another one than where they were stored are not compared.\n"
+      "Ctrl-C stops, and writes nothing.\n"
+      "Examples:\n"
+      "  brink regress scenes/gallery\n"
+      "  brink regress scenes/gallery --set solver.policy=timewarp\n"
+      "  brink regress my_scenes --update --reason \"heavier discs\"");
+  command->callback([arguments, &status] { status = regress_command(*arguments); });
+}
+
 /// What to say of a command or an option that there is not, with the nearest that there is; empty: all are known.
 std::string misspelt(const CLI::App& program, const std::vector<std::string>& words) {
   // A bare word first is a command; --help and --version are left to the library.
@@ -319,6 +345,7 @@ int run_command_line(int argc, char** argv) {
       "  brink list options\n"
       "  brink bench bouncing_ball\n"
       "  brink sweep scenes/experiments/policies_and_orders.toml\n"
+      "  brink regress scenes/gallery\n"
       "Exit status: 0 done, 1 ended early, 2 bad usage or input, 3 could not read or write.\n"
       "`brink COMMAND --help` says more.");
   // Written by the one callback that runs. What the command throws goes through the library to main().
@@ -332,6 +359,7 @@ int run_command_line(int argc, char** argv) {
   add_list(program, status);
   add_bench(program, status);
   add_sweep(program, status);
+  add_regress(program, status);
   if (const std::string words = misspelt(program, {argv + 1, argv + argc}); !words.empty()) {
     fmt::print(stderr, "{}\n", words);
     return kBadInput;

@@ -68,6 +68,13 @@ struct SweepArguments {
   bool quiet = false, dry = false;
 };
 
+struct RegressArguments {
+  std::string folder;
+  std::vector<std::string> overrides;
+  std::optional<std::string> reason;
+  bool update = false, quiet = false, json = false;
+};
+
 /// Each returns an ExitStatus. @throws BadInput, SceneFaults (a BadInput), IoError
 int run_command(const RunArguments& arguments);
 int check_command(const CheckArguments& arguments);
@@ -78,6 +85,7 @@ int export_command(const ExportArguments& arguments);
 int list_command(const ListArguments& arguments);
 int bench_command(const BenchArguments& arguments);
 int sweep_command(const SweepArguments& arguments);
+int regress_command(const RegressArguments& arguments);
 /// What `brink list` can be asked for.
 std::vector<std::string> list_topics();
 

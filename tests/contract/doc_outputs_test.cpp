@@ -15,7 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/platform.h"
+#include "brink/integrators/solver_probe.h"
+#include "brink/scenes/regress/answers.h"
 
 namespace brink::doc_outputs_test {
 namespace {
@@ -94,16 +95,8 @@ double number_of(std::string cell) {
   return std::stod(cell);
 }
 
-/// Collisions of every gallery scene by its name, as tests/regression/answers.csv has them.
-std::map<std::string, std::string> stored_collisions() {
-  std::map<std::string, std::string> all;
-  std::ifstream in(kRoot / "tests/regression/answers.csv");
-  for (std::string line; std::getline(in, line);) {
-    const std::size_t name = line.find(','), end = line.find(',', name + 1);
-    if (line[0] != '#') all[line.substr(0, name)] = line.substr(name + 1, end - name - 1);
-  }
-  return all;
-}
+/// What every gallery scene came to.
+AnswerTable stored_answers() { return read_answers(kRoot / "scenes/gallery/answers.csv"); }
 
 class DocOutputs : public ::testing::Test {
  protected:
@@ -176,13 +169,13 @@ TEST_F(DocOutputs, TheFaultsOfTheSceneFile) {
 // docs/scheduling.md: "(4517)" behind a scene and a policy.
 TEST_F(DocOutputs, CollisionsOnThePageOnScheduling) {
   const std::string page = text_of(kRoot / "docs/scheduling.md");
-  const std::map<std::string, std::string> stored = stored_collisions();
+  const std::map<std::string, Answer> stored = stored_answers().answers;
   const std::regex named(R"(\| `?([a-z_]+)`?(?:, `[a-z_]+`)? \((\d+)\) \|)");
   int seen = 0;
   for (std::sregex_iterator i(page.begin(), page.end(), named), end; i != end; ++i, ++seen) {
     const std::string scene = (*i)[1];
     ASSERT_TRUE(stored.contains(scene)) << scene;
-    EXPECT_EQ((*i)[2], stored.at(scene)) << scene;
+    EXPECT_EQ((*i)[2], stored.at(scene).collisions) << scene;
   }
   EXPECT_EQ(seen, 9);
 }
@@ -198,7 +191,7 @@ TEST_F(DocOutputs, WhatPoliciesWaste) {
     if (row.size() != 2 + counters.size() || row[1] == "policy" || row[1].find('-') == 0) continue;
     if (!row[0].empty()) scene = row[0].substr(0, row[0].find(' '));
     // its steps are SUNDIALS', and the same where answers were stored alone
-    if (scene == "spring_net" && testing::platform_probe() != testing::stored_probe()) continue;
+    if (scene == "spring_net" && solver_probe() != stored_answers().probe) continue;
     const std::string printed = output_of(
         "'" + kProgram.string() + "' run '" + (kRoot / "scenes/gallery" / (scene + ".toml")).string() +
             "' --set 'solver.policy=\"" + row[1] + "\"' --set output.frame_interval=0 --json",

@@ -46,7 +46,7 @@ const std::map<std::string, Rooms>& order() {
     rooms["scenes"] = {};
     before.push_back("scenes");
     for (const char* room :
-         {"files", "toml", "draw", "scene", "run_file", "sweep", "view", "program", "bench"}) {
+         {"files", "toml", "draw", "scene", "run_file", "sweep", "regress", "view", "program", "bench"}) {
       const std::string path = std::string("scenes/") + room;
       rooms[path] = before;
       before.push_back(path);
