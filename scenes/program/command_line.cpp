@@ -292,7 +292,8 @@ void add_regress(CLI::App& program, int& status) {
   command->callback([arguments, &status] { status = regress_command(*arguments); });
 }
 
-/// What to say of a command or an option that there is not, with the nearest that there is; empty: all are known.
+/// What to say of a command or an option that there is not, with the nearest that there is, and of `--option=` without a
+/// value; empty: all are known.
 std::string misspelt(const CLI::App& program, const std::vector<std::string>& words) {
   // A bare word first is a command; --help and --version are left to the library.
   if (words.empty() || words[0].starts_with('-')) return {};
@@ -313,11 +314,23 @@ std::string misspelt(const CLI::App& program, const std::vector<std::string>& wo
     const std::string option = word.substr(0, word.find('='));
     // After "--" everything is a value.
     if (option == "--") break;
+    // The library would take the next word for the value.
+    if (option.starts_with("--") && word == option + '=')
+      return fmt::format("{}: is empty; allowed: a value", printable(option));
     if (!option.starts_with("--") || std::find(known.begin(), known.end(), option) != known.end()) continue;
     return fmt::format("{}: brink {} has no such option; the nearest is {}. `brink {} --help` lists all",
                        printable(option), words[0], nearest_word(option, known), words[0]);
   }
   return {};
+}
+
+/// An empty word, as of a variable that is not set, would be taken as if the option were not there.
+void refuse_empty_words(CLI::App& program) {
+  const CLI::Validator filled(
+      [](std::string& word) { return word.empty() ? "is empty; allowed: a value" : ""; }, std::string());
+  for (CLI::App* command : program.get_subcommands({}))
+    for (CLI::Option* option : command->get_options())
+      if (option->get_items_expected_max() > 0) option->check(filled);
 }
 
 /// The GL that fields are drawn by. Cost: a context.
@@ -360,6 +373,7 @@ int run_command_line(int argc, char** argv) {
   add_bench(program, status);
   add_sweep(program, status);
   add_regress(program, status);
+  refuse_empty_words(program);
   if (const std::string words = misspelt(program, {argv + 1, argv + argc}); !words.empty()) {
     fmt::print(stderr, "{}\n", words);
     return kBadInput;

@@ -176,6 +176,39 @@ TEST_F(ProgramTest, BadUsageIsStatusTwo) {
   }
 }
 
+// As of a variable of the shell that is not set.
+TEST_F(ProgramTest, EmptyValuesAreStatusTwo) {
+  ASSERT_EQ(brink("run ball.toml --out a --quiet").status, 0);
+  for (const auto& [command, name] : {std::pair("run ball.toml --until ''", "--until: "),
+                                      {"run ball.toml --out ''", "--out: "},
+                                      {"run ball.toml --out= --json", "--out: "},
+                                      {"run ball.toml --trace ''", "--trace: "},
+                                      {"run ball.toml --set ''", "--set: "},
+                                      {"run ''", "SCENE: "},
+                                      {"check ''", "SCENE: "},
+                                      {"draw ball.toml -o x.png --at ''", "--at: "},
+                                      {"draw ball.toml -o ''", "--output: "},
+                                      {"draw ball.toml -o x.png --view ''", "--view: "},
+                                      {"view a -o ''", "--output: "},
+                                      {"film a -o f.png --from ''", "--from: "},
+                                      {"film a -o f.png --fps ''", "--fps: "},
+                                      {"export a --csv ''", "--csv: "},
+                                      {"export a --csv t --vtk ''", "--vtk: "},
+                                      {"list ''", "TOPIC: "},
+                                      {"bench ''", "NAME: "},
+                                      {"sweep x.toml --out ''", "--out: "},
+                                      {"sweep x.toml --jobs ''", "--jobs: "},
+                                      {"regress . --update --reason ''", "--reason: "},
+                                      {"regress ''", "DIR: "}}) {
+    const Outcome run = brink(command);
+    EXPECT_EQ(run.status, 2) << command;
+    EXPECT_THAT(run.error, HasSubstr(name)) << command;
+    EXPECT_EQ(run.out, "") << command;
+  }
+  EXPECT_FALSE(fs::exists(dir_ / "runs"));
+  EXPECT_FALSE(fs::exists(dir_ / "t"));
+}
+
 // The limits of world.duration hold on the command line too, before anything is written.
 TEST_F(ProgramTest, WhatIsMisspeltIsToldWithTheNearestWord) {
   for (const auto& [command, nearest] : {std::pair("rn ball.toml", "\"run\""),
