@@ -20,12 +20,17 @@
 #include "brink/scenes/run_file/run_file.h"
 #include "brink/scenes/run_file/run_moment.h"
 #include "brink/scenes/scene/scene.h"
+#include "brink/scheduler/kernel/site_motion.h"
 #include "brink/scheduler/simulator/simulator.h"
 
 namespace brink {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// A view is at least this part of all that there is to see. A closer one shows a line without its other side, and takes the
+/// longer the closer it is, as a curve is drawn by pieces of a size with its pixels.
+constexpr double kClosest = 1e-9;
 
 /// Keeps the contacts that last at the end of a run.
 class LastContacts final : public Recorder {
@@ -68,17 +73,37 @@ RunMoment moment_of_scene(const DrawArguments& arguments, const Scene& scene) {
   return moment;
 }
 
-/// The subject at the time asked for; `field` is set to the scene's own options. What is read is not written over.
-RunMoment moment_of(const DrawArguments& arguments, const fs::path& run, FieldOptions& field) {
+/// @throws BadInput for a view that is too close to see anything of `all`, the extent of what there is [m].
+void require_not_too_close(const std::string& text, const Box& view, const Box& all) {
+  const double least = kClosest * all.extent().maxCoeff(), side = view.extent().minCoeff();
+  if (side >= least) return;
+  throw BadInput(fmt::format(
+      "--view: {} given, with a side of {:.3g} m; allowed: {:.3g} m or more, {:g} of what there is to see",
+      text, side, least, kClosest));
+}
+
+/// All that is seen of a scene at its start [m].
+Box extent_at_start(const Scene& scene) {
+  std::vector<BodyState> bodies;
+  for (const Body& body : scene.world.bodies) bodies.push_back(body.initial);
+  std::vector<Pose> sites;
+  for (const FixedSite& site : scene.world.sites) sites.push_back(told_pose(site, 0.0));
+  return automatic_view(scene.world, bodies, sites);
+}
+
+/// The subject at the time asked for; the field's options are set to the scene's own. What is read is not written over.
+RunMoment moment_of(const DrawArguments& arguments, const fs::path& run, DrawOptions& options) {
   if (!run.empty()) {
     const RunFile file(run);
     refuse_overwriting(arguments.out, "-o", file.files());
-    field = file.field_options();
+    options.field = file.field_options();
+    if (options.view) require_not_too_close(arguments.view, *options.view, extent_of(file, file.world()));
     return moment_of_run(run, arguments.at);
   }
   const Scene scene = load_scene(arguments.subject, arguments.overrides);
   refuse_overwriting(arguments.out, "-o", scene.files);
-  field = scene.solver.field;
+  options.field = scene.solver.field;
+  if (options.view) require_not_too_close(arguments.view, *options.view, extent_at_start(scene));
   return moment_of_scene(arguments, scene);
 }
 
@@ -139,7 +164,7 @@ int draw_command(const DrawArguments& arguments) {
   if (run.empty() && (arguments.trails || arguments.contacts))
     throw BadInput("--trails, --contacts: are of runs; a scene has none yet");
   // Everything that can be refused without it has been: a scene is now run up to the time.
-  const RunMoment moment = moment_of(arguments, run, options.field);
+  const RunMoment moment = moment_of(arguments, run, options);
   options.time = moment.t;
   if (options.layer.kind == DrawLayer::Kind::forces) options.forces = forces_of(moment);
   if (!run.empty()) add_history(arguments, run, moment, options);

@@ -1,7 +1,5 @@
 /// brink export: a run's tables for other programs.
 
-#include <fmt/format.h>
-
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -32,9 +30,7 @@ void refuse_in(const std::string& folder, const std::string& option, const std::
 int export_command(const ExportArguments& arguments) {
   // What is missing is told before anything is read: a folder of results is made only for a run that there
   // is.
-  const fs::path file = run_file_of(arguments.run);
-  if (file.empty())
-    throw BadInput(fmt::format("{}: not a run; allowed: a run folder or a run file", arguments.run));
+  const fs::path file = required_run_file(arguments.run);
   // A command that does nothing would look as if it had worked.
   if (arguments.csv.empty() && arguments.hdf5.empty() && arguments.vtk.empty())
     throw BadInput("nothing to write; allowed: --csv DIR, --hdf5 DIR, --vtk DIR");
@@ -44,6 +40,9 @@ int export_command(const ExportArguments& arguments) {
   refuse_in(arguments.hdf5, "--hdf5", {"run.h5"}, kept);
   // Of the frames, which are many, the first.
   refuse_in(arguments.vtk, "--vtk", {"run.pvd", "events.vtp", "frame_000000.vtp"}, kept);
+  // Before a folder is made.
+  if (!arguments.hdf5.empty()) require_hdf5();
+  if (!arguments.vtk.empty()) require_vtk();
   // Each kind is written for itself: what was written before one fails stays.
   if (!arguments.csv.empty()) write_csv_tables(file, arguments.csv);
   if (!arguments.hdf5.empty()) write_hdf5(file, made_folder(arguments.hdf5) / "run.h5");

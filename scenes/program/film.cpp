@@ -143,9 +143,7 @@ void require(bool good, const char* option, double given, const char* allowed) {
 
 int film_command(const FilmArguments& arguments) {
   stop_on_signals();
-  const fs::path file = run_file_of(arguments.run);
-  if (file.empty())
-    throw BadInput(fmt::format("{}: not a run; allowed: a run folder or a run file", arguments.run));
+  const fs::path file = required_run_file(arguments.run);
   require(arguments.fps >= 1.0 && arguments.fps <= 1000.0, "--fps", arguments.fps, "1 .. 1000");
   require(arguments.speed >= 1e-9 && arguments.speed <= 1e9, "--speed", arguments.speed, "1e-9 .. 1e9");
   // Times are checked against what the file has: of a run that was killed the frames end before its
@@ -157,7 +155,9 @@ int film_command(const FilmArguments& arguments) {
   const double from = arguments.from.value_or(first), to = arguments.to.value_or(last);
   const std::string range = fmt::format("{} .. {} s, --from before --to", first, last);
   require(from >= first && from <= last, "--from", from, range.c_str());
-  require(to >= from && to <= last, "--to", to, range.c_str());
+  // A run that has got no farther than its first frame is a film of one picture, but nobody asks for that.
+  const bool whole = !arguments.from && !arguments.to;
+  require((to > from || whole) && to <= last, "--to", to, range.c_str());
   // As many as begin within the time, the first included.
   // In double: what is refused below may be beyond any integer.
   const double pictures = std::floor((to - from) / arguments.speed * arguments.fps) + 1.0;

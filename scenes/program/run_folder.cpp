@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "brink/core/base/error.h"
+
 namespace brink {
 namespace fs = std::filesystem;
 
@@ -44,6 +46,13 @@ fs::path default_run_folder(const fs::path& scene, bool resume) {
 fs::path run_file_of(const fs::path& subject) {
   if (fs::is_directory(subject)) return subject / "run.db";
   return subject.extension() == ".db" ? subject : fs::path();
+}
+
+fs::path required_run_file(const fs::path& subject) {
+  const fs::path file = run_file_of(subject);
+  if (!file.empty()) return file;
+  if (!fs::exists(subject)) throw IoError(subject.string() + ": cannot be opened for reading");
+  throw BadInput(subject.string() + ": not a run; allowed: a run folder or a run file");
 }
 
 }  // namespace brink

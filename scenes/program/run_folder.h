@@ -12,4 +12,8 @@ std::filesystem::path default_run_folder(const std::filesystem::path& scene, boo
 /// The run file that `subject` names (the file, or the folder it is in), or an empty path.
 std::filesystem::path run_file_of(const std::filesystem::path& subject);
 
+/// The same for commands that know nothing but runs.
+/// @throws IoError where there is nothing of that name; BadInput for what is no run.
+std::filesystem::path required_run_file(const std::filesystem::path& subject);
+
 }  // namespace brink

@@ -22,11 +22,15 @@ namespace brink {
 
 #ifndef BRINK_HDF5
 
-void write_hdf5(const std::filesystem::path&, const std::filesystem::path&) {
+void require_hdf5() {
   throw BadInput("--hdf5: this Brink was built without HDF5 (Debian: libhdf5-dev); allowed: --csv");
 }
 
+void write_hdf5(const std::filesystem::path&, const std::filesystem::path&) { require_hdf5(); }
+
 #else
+
+void require_hdf5() {}
 
 namespace {
 

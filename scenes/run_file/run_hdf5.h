@@ -5,6 +5,9 @@
 
 namespace brink {
 
+/// @throws BadInput where Brink was built without HDF5.
+void require_hdf5();
+
 /// Writes `file`:
 ///
 ///     bodies/    name, mass [kg], inertia [kg m^2]                                       one a body

@@ -29,11 +29,15 @@ namespace brink {
 
 #ifndef BRINK_VTK
 
-void write_vtk(const std::filesystem::path&, const std::filesystem::path&) {
+void require_vtk() {
   throw BadInput("--vtk: this Brink was built without VTK (Debian: libvtk9-dev); allowed: --csv, --hdf5");
 }
 
+void write_vtk(const std::filesystem::path&, const std::filesystem::path&) { require_vtk(); }
+
 #else
+
+void require_vtk() {}
 
 namespace {
 

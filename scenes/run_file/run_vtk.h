@@ -5,6 +5,9 @@
 
 namespace brink {
 
+/// @throws BadInput where Brink was built without VTK.
+void require_vtk();
+
 /// Writes into `folder`, which is there:
 ///
 ///     run.pvd              the frames with their times [s]: what one opens

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "brink/core/base/limits.h"
+#include "brink/core/base/printable.h"
 #include "brink/core/base/random.h"
 #include "brink/core/shapes/distance.h"
 #include "brink/scenes/run_file/run_file.h"
@@ -266,6 +267,35 @@ TEST_F(Replayed, ThePageShowsTheStatesOfTheRun) {
   }
 }
 
+// Title and names are shown as the program shows them; programs get names as they are.
+TEST(Replay, WhatTurnsTheReadingDirectionIsShownAsAnEscape) {
+  if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
+  std::string name = (fs::temp_directory_path() / "brink-shown-XXXXXX").string();
+  const fs::path folder = ::mkdtemp(name.data());
+  const Scene scene = parse_scene(
+      "title = \"run \\u202egnp.exe\\nof two\"\n[world]\nduration = 0.2\n"
+      "[[bodies]]\nname = \"a\\u2066b\"\ndisc.radius = 0.5\nvelocity = [10, 0]\n"
+      "[[bodies]]\nname = \"c\\u0007d\"\ndisc.radius = 0.5\nposition = [2, 0]\n",
+      "shown");
+  RunRequest request;
+  request.dir = folder;
+  run_scene(scene, request);
+  write_replay_page(folder / "run.db", folder / "page.html");
+  const json answer =
+      in_browser(folder / "page.html",
+                 "const b = window.brink, on = id => document.getElementById(id); b.seek(b.duration); "
+                 "b.player.showEvents();"
+                 "return {title: document.title, head: on('title').textContent, who: on('who').textContent,"
+                 " events: on('events').textContent, names: b.state(0).map(s => s.name)};");
+  fs::remove_all(folder);
+  ASSERT_FALSE(answer.contains("error")) << answer.dump();
+  EXPECT_EQ(answer["title"], printable(scene.world.title));
+  EXPECT_EQ(answer["head"], "run \\u202egnp.exe\\nof two");
+  EXPECT_THAT(answer["who"], HasSubstr("a\\u2066bc\\x07d"));
+  EXPECT_THAT(answer["events"], HasSubstr("c\\x07d"));
+  for (int k = 0; k < 2; ++k) EXPECT_EQ(answer["names"][k], scene.world.bodies[k].name);
+}
+
 TEST_F(Replayed, ThePageStepsFromEventToEventAndPlays) {
   if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
   const fs::path page = folder_ / "steps.html";
@@ -275,8 +305,9 @@ TEST_F(Replayed, ThePageStepsFromEventToEventAndPlays) {
                                  "for (let k = 0; k < 10; ++k) { b.step(1); on.push(b.time()); }"
                                  "for (let k = 0; k < 9; ++k) { b.step(-1); back.push(b.time()); }"
                                  "b.seek(-5); const low = b.time(); b.seek(1e9); const high = b.time();"
+                                 "b.seek(NaN); b.seek(undefined); const still = b.time();"
                                  "b.play(); const playing = b.player.playing; b.pause();"
-                                 "return {on, back, low, high, playing, paused: !b.player.playing};");
+                                 "return {on, back, low, high, still, playing, paused: !b.player.playing};");
   ASSERT_FALSE(answer.contains("error")) << answer.dump();
   std::vector<double> times;
   for (const Event& e : RunFile(run_file()).events())
@@ -285,6 +316,7 @@ TEST_F(Replayed, ThePageStepsFromEventToEventAndPlays) {
   for (int k = 0; k < 9; ++k) EXPECT_EQ(answer["back"][k], times[8 - k]);
   EXPECT_EQ(answer["low"], 0.0);
   EXPECT_EQ(answer["high"], scene_.duration);
+  EXPECT_EQ(answer["still"], scene_.duration) << "what is no number leads nowhere";
   EXPECT_TRUE(answer["playing"] && answer["paused"]);
 }
 

@@ -5,6 +5,18 @@
 // before and after). Between two of these it is the cubic with their places and twists: that is the motion itself where
 // accelerations are constant, and off by the fourth order of the interval where an integrator drove it.
 
+/**
+ * Text that came from a file, fit to be shown: what would break a line, turn the reading direction or not be seen is written
+ * as an escape, as the program does (core/base/printable.h).
+ */
+function printable(text) {
+  return text.replace(/[\p{Cc}\p{Zl}\p{Zp}\p{DI}\ufff0-\ufffb]/gu, c => {
+    const code = c.codePointAt(0), digits = code.toString(16);
+    return {'\n': '\\n', '\t': '\\t', '\r': '\\r'}[c] ??
+      (code < 0x80 ? '\\x' + digits.padStart(2, '0') : '\\u' + digits.padStart(4, '0'));
+  });
+}
+
 /** The numbers of the page: inflated, each array with the bytes of its values sorted by significance. */
 async function inflated(base64, arrays) {
   const text = atob(base64.trim());

@@ -77,7 +77,9 @@ class Player {
   }
 
   // -- time --
+  /** To the time, or the nearer end of the run; what is no number leads nowhere. */
   seek(t) {
+    if (!Number.isFinite(t)) return;
     this.t = Math.min(Math.max(t, this.begin), this.end);
     this.stale = true;
   }
@@ -164,8 +166,7 @@ class Player {
 
   // -- controls --
   makeControls() {
-    byId('title').textContent = about.title;
-    document.title = about.title;
+    byId('title').textContent = document.title = printable(about.title);
     const layers = byId('layers');
     for (const [key, words] of LAYERS) {
       const label = document.createElement('label'), box = document.createElement('input');
@@ -219,8 +220,9 @@ class Player {
 
   /** What is said of the run as a whole. */
   showFacts() {
-    byId('ending').textContent = about.live && this.waits ? about.termination.replace('running', 'paused') : about.termination;
-    Object.assign(byId('notice'), {textContent: about.notice, hidden: !about.notice});
+    const ending = about.live && this.waits ? about.termination.replace('running', 'paused') : about.termination;
+    byId('ending').textContent = printable(ending);
+    Object.assign(byId('notice'), {textContent: printable(about.notice), hidden: !about.notice});
     fillTable(byId('run'), about.facts);
   }
 
@@ -252,7 +254,7 @@ class Player {
       setTo(time, 'title', String(n.event_t[k]));
       setTo(kindCell, 'textContent', about.kinds[n.event_kind[k]]);
       const names = [nameOf(n.event_body[k]), n.event_other[k] >= 0 ? nameOf(n.event_other[k]) : siteName(n.event_site[k])]
-        .filter(s => s).join(' on ');
+        .filter(s => s).map(printable).join(' on ');
       setTo(who, 'textContent', names);
       setTo(who, 'title', names);
     });
@@ -312,7 +314,7 @@ class Player {
     ctx.font = `${9 * ratio}px sans-serif`;
     this.lanes.forEach((b, i) => {
       ctx.fillStyle = inkOf('--faint');
-      ctx.fillText(about.bodies[b].name, 2, (i + 0.82) * height * ratio, 62 * ratio);
+      ctx.fillText(printable(about.bodies[b].name), 2, (i + 0.82) * height * ratio, 62 * ratio);
       ctx.fillStyle = inkOf('--line');
       ctx.fillRect(at.left * ratio, (i + 1) * height * ratio - 1, canvas.width, 1);
     });
@@ -488,14 +490,14 @@ function fillTable(table, pairs) {
     const row = table.insertRow(), head = document.createElement('th');
     head.textContent = name;
     row.append(head);
-    row.insertCell().textContent = value;
+    row.insertCell().textContent = printable(String(value));
   }
 }
 
 function option(select, value, words) {
   const made = document.createElement('option');
   made.value = value;
-  made.textContent = words;
+  made.textContent = printable(words);
   select.append(made);
 }
 function nameOf(k) { return k >= 0 ? about.bodies[k].name : ''; }

@@ -404,12 +404,12 @@ class Picture {
     ctx.strokeStyle = 'rgba(255,255,255,.8)';
     ctx.lineWidth = 3 * this.ratio;
     for (const k of bodies.map((b, i) => i).sort((a, b) => size(b) - size(a) || a - b)) {
-      const half = ctx.measureText(bodies[k].name).width / 2;
+      const name = printable(bodies[k].name), half = ctx.measureText(name).width / 2;
       for (const [x, y] of this.seenAt(this.poses[k][0], this.poses[k][1], 0)) {
         if (taken.some(t => Math.abs(t.y - y) < high && Math.abs(t.x - x) < t.half + half)) continue;
         taken.push({x, y, half});
-        ctx.strokeText(bodies[k].name, x, y);
-        ctx.fillText(bodies[k].name, x, y);
+        ctx.strokeText(name, x, y);
+        ctx.fillText(name, x, y);
       }
     }
   }

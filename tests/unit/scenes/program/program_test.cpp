@@ -239,10 +239,17 @@ TEST_F(ProgramTest, PicturesAreOfTheKindThatTheirNameSays) {
   EXPECT_EQ(text_of(dir_ / "p.png").substr(1, 3), "PNG");
   EXPECT_THAT(text_of(dir_ / "p.svg"), ::testing::AllOf(HasSubstr("<svg"), HasSubstr("width=\"320")));
   EXPECT_EQ(text_of(dir_ / "p.pdf").substr(0, 4), "%PDF");
-  for (const char* bad : {"draw a -o p.jpg", "draw a -o p", "draw a -o q.png --view 0,0,1",
-                          "draw a -o q.png --view 1,0,0,1", "draw ball.toml -o q.png --trails"}) {
+  for (const char* bad :
+       {"draw a -o p.jpg", "draw a -o p", "draw a -o q.png --view 0,0,1", "draw a -o q.png --view 1,0,0,1",
+        "draw ball.toml -o q.png --trails", "draw a -o q.png --view 0,0,1e-20,1e-20"}) {
     EXPECT_EQ(brink(bad).status, 2) << bad;
   }
+  // So close that a circle would be drawn for minutes.
+  const Outcome close = brink("draw ball.toml -o q.png --view 0,0,1,1e-20");
+  EXPECT_EQ(close.status, 2);
+  EXPECT_THAT(close.error,
+              HasSubstr("--view: 0,0,1,1e-20 given, with a side of 1e-20 m; allowed: 2e-09 m or more"));
+  EXPECT_EQ(brink("draw ball.toml -o near.png --size 64x48 --view 0,1,1e-8,1.00000001").status, 0);
   EXPECT_FALSE(fs::exists(dir_ / "q.png"));
 }
 
@@ -270,7 +277,8 @@ TEST_F(ProgramTest, AFilmIsWrittenOrItsPictures) {
   }
   for (const char* bad :
        {"film a -o f.avi", "film a -o f.mp4 --fps 0", "film a -o f.mp4 --from 2", "film ball.toml -o f.mp4",
-        "film a -o f.mp4 --from 0.5 --to 0.25", "film a -o a/run.db"}) {
+        "film a -o f.mp4 --from 0.5 --to 0.25", "film a -o f.mp4 --from 0.5 --to 0.5",
+        "film a -o f.mp4 --to 0", "film a -o a/run.db"}) {
     EXPECT_EQ(brink(bad).status, 2) << bad;
   }
   const Outcome nowhere = brink("film a -o nowhere/f.mp4 --size 1280x720");
@@ -301,12 +309,20 @@ TEST_F(ProgramTest, TablesAreExportedWithUnitsInTheirHeads) {
   }
   const Outcome vtk = brink("export a --vtk shown");
   EXPECT_TRUE(vtk.status == 0 || vtk.error.find("libvtk9-dev") != std::string::npos) << vtk.error;
-  if (vtk.status == 0) {
+  EXPECT_EQ(fs::exists(dir_ / "shown"), vtk.status == 0) << "nothing is made in vain";
+  if (vtk.status != 0) {
+    EXPECT_EQ(brink("export a --csv both --vtk both").status, 2);
+    EXPECT_FALSE(fs::exists(dir_ / "both"));
+  } else {
     EXPECT_THAT(text_of(dir_ / "shown/run.pvd"), HasSubstr("timestep=\"0.25\" file=\"frame_000001.vtp\""));
     EXPECT_THAT(text_of(dir_ / "shown/frame_000001.vtp"), HasSubstr("Name=\"thickness\""));
     EXPECT_THAT(text_of(dir_ / "shown/events.vtp"), HasSubstr("NumberOfPoints=\"1\""));
   }
-  EXPECT_EQ(brink("export nothing.db --csv tables").status, 3);
+  for (const char* missing :
+       {"export nothing.db --csv none", "export nothing --csv none", "film nothing -o f.png",
+        "film nothing.db -o f.png", "view nothing", "draw nothing -o f.png", "run nothing"})
+    EXPECT_EQ(brink(missing).status, 3) << missing;
+  EXPECT_FALSE(fs::exists(dir_ / "none"));
 }
 
 TEST_F(ProgramTest, ViewsOfARunFileAnswerWithUnits) {
