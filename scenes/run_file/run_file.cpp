@@ -124,7 +124,7 @@ struct RunFileRecorder::Impl {
   double sites_asked_for = -1.0;                         ///< when get_ready() was to follow them to [s]
   double wall_before = 0.0, waited = 0.0;                // [s]
   std::uint64_t identity = 0;
-  Clock::time_point opened = Clock::now();
+  Clock::time_point begun = Clock::now();  ///< the simulation
   std::optional<ResumePoint> resume_point;
   bool resumes_off_the_clock = false;  ///< no frame of the time of the resume point is kept
   std::string failed;                  // why nothing more is written
@@ -175,10 +175,10 @@ struct RunFileRecorder::Impl {
     if (rows_waiting >= kRowsPerCommit || Clock::now() - waiting_since >= kTimePerCommit) commit();
   }
   void put_checkpoint(const ResumePoint& row, std::span<const std::byte> snapshot);
-  /// Wall-clock seconds of the simulation up to now: those of before a resume, and those since the file
-  /// was opened without the pauses (leave_out()).
+  /// Wall-clock seconds of the simulation up to now: those of before a resume, and those since it
+  /// began here without the pauses (leave_out()).
   double wall() const {
-    return wall_before + std::chrono::duration<double>(Clock::now() - opened).count() - waited;
+    return wall_before + std::chrono::duration<double>(Clock::now() - begun).count() - waited;
   }
 
   /// A key of `meta` gets a new value. @pre inside a transaction, or it is committed by itself.
@@ -604,6 +604,13 @@ void RunFileRecorder::checkpoint(double t, const std::vector<std::byte>& state) 
 // Inside writing(), so a full disk is told here, too, and not first at the next event.
 void RunFileRecorder::poll() {
   impl_->writing([&] { impl_->commit_if_due(); });
+}
+
+void RunFileRecorder::simulation_begins() {
+  if (impl_->resume_point)
+    while (!get_ready(impl_->resume_point->t)) {
+    }
+  impl_->begun = Clock::now();
 }
 
 void RunFileRecorder::leave_out(double seconds) { impl_->waited += seconds; }

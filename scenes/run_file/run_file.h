@@ -130,6 +130,10 @@ class RunFileRecorder final : public Recorder {
   /// Commits what has waited longer than 0.25 s. Call now and then where rows are rare.
   void poll();
 
+  /// From now on wall-clock seconds are the simulation's: what comes before, the motion of sites up to where a run goes
+  /// on among it, is made here, and may take long.
+  void simulation_begins();
+
   /// So many wall-clock seconds were not the simulation's: checkpoints do not count them.
   void leave_out(double seconds);
 

@@ -236,7 +236,8 @@ RunReport run_scene(const Scene& scene, const RunRequest& request) {
   RunReport report;
   report.file = recorder.file();
   if (recorder.resume_point()) report.resumed_from = recorder.resume_point()->t;
-  // All up to the first step, checks of a resume included.
+  recorder.simulation_begins();
+  // All up to the first step, checks of a resume and catching up included.
   const double load_seconds = request.load_seconds + seconds_since(start);
   Pause pause(recorder, request);
   RunOptions options = run_options(scene, request, until, recorder, pause);

@@ -145,6 +145,8 @@ class Kernel : public KernelView {
   /// are not named again are split. For what answers collisions, not for policies: they learn of it by
   /// `changed`, to which bodies whose motion changed are appended. What was resolved ahead of time is undone.
   bool regroup(std::vector<std::vector<int>> together, std::vector<int>& changed);
+  /// Ends the run if that many collisions are the limit; true if so.
+  bool stop_at_limit(std::uint64_t collisions);
 
  private:
   std::optional<Outcome> respond(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed);
@@ -155,7 +157,6 @@ class Kernel : public KernelView {
   bool may_step_long(const PairKey& pair) const;
   bool respond_and_tell(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed);
   bool judge(const Outcome& outcome, std::vector<int>& changed);
-  bool stop_at_limit(std::uint64_t collisions);
   bool judge_ending(const Outcome& outcome, std::vector<int>& changed);
   bool begin_to_last(const Outcome& outcome, double limit, std::vector<int>& changed);
   bool go_on_in_islands(const Outcome& outcome, std::vector<int>& changed);

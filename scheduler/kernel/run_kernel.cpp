@@ -73,6 +73,8 @@ void RunKernel::begin(const RunOptions& options, Recorder* recorder) {
   tell_knots();
   // the watch looks at all pairs there, before the first collision
   if (options.first_frame) show_frame();
+  // a run that goes on from where it met the limit has met it
+  stop_at_limit(collisions());
 }
 
 /// What is told of motions, by whichever trajectories there are now.

@@ -79,6 +79,40 @@ TEST_F(RunSceneTest, WaitingIsNotCountedAsWallSeconds) {
 }
 
 // A swing of one site and no body: its rows are those of a run that nobody disturbed.
+// A run that goes on follows its sites to where it was: that is done before, and is no part of the simulation.
+TEST_F(RunSceneTest, CatchingUpIsNotCountedAsWallSeconds) {
+  const Scene scene = parse_scene(
+      "[world]\nduration = 40\n[output]\nframe_interval = 0.5\n[[bodies]]\ndisc.radius = 0.5\n"
+      "[[sites]]\nsegment = [[-3, -10], [3, -10]]\nmotion = {y = \"0.1*sin(2e3*t)\"}\n",
+      "trembles.toml");
+  const RunReport before = run(scene, "out", 36.0, false);
+  const RunReport after = run(scene, "out", 36.001, true);
+  ASSERT_EQ(after.resumed_from, 36.0);
+  EXPECT_GE(after.summary.wall_seconds, before.summary.wall_seconds * 0.99);
+  EXPECT_LT(after.summary.wall_seconds, before.summary.wall_seconds * 1.2);
+}
+
+// A run that has met the limit has met it, however often it is gone on with.
+TEST_F(RunSceneTest, GoingOnFromTheLimitOfCollisionsMakesNoneMore) {
+  for (const char* policy : {"body_clocks", "global_backup", "island_backup", "timewarp"}) {
+    const Scene scene =
+        parse_scene(std::string(kBall) + "velocity = [0, -1]\n[solver]\nmax_collisions = 2\npolicy = \"" +
+                        policy + "\"\n",
+                    "ball.toml");
+    const RunReport first = run(scene, policy, 20.0, false);
+    EXPECT_EQ(first.summary.termination, Termination::stopped) << policy;
+    ASSERT_EQ(first.summary.collisions, 2U) << policy;
+    for (const double until : {20.0, 20.0, 30.0}) {
+      const RunReport again = run(scene, policy, until, true);
+      EXPECT_EQ(again.summary.collisions, 2U) << policy;
+      EXPECT_EQ(again.summary.termination, Termination::stopped) << policy;
+      EXPECT_EQ(again.summary.why, first.summary.why) << policy;
+      EXPECT_EQ(again.summary.state_hash, first.summary.state_hash) << policy;
+    }
+    EXPECT_EQ(RunFile(dir_ / policy / "run.db").events().size(), 2U) << policy;
+  }
+}
+
 TEST_F(RunSceneTest, SitesOfAWorldWithoutBodiesKeepTheirPosesWhenItGoesOn) {
   const Scene scene = parse_scene(
       "[world]\nduration = 1\n[output]\nframe_interval = 0.25\n[[sites]]\nsegment = [[-1, 0], [1, 0]]\n"
