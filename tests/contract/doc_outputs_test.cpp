@@ -1,5 +1,6 @@
 // What README.md and the pages say that the program prints, and how much it counts, is what it prints and counts. Wall
 // times are left out. But for one none of these scenes needs a solver, so they have the same bits everywhere.
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -143,6 +144,22 @@ TEST_F(DocOutputs, TheWalkOfHello) {
   int commands = 0;
   for (const std::string& block : printed_blocks(page)) commands += check_command(block);
   EXPECT_GE(commands, 3);
+
+  // The table that the page asks of the run file, without the program that asks there.
+  for (const std::string& block : printed_blocks(page)) {
+    const std::size_t quote = block.find('"');
+    if (block.rfind("$ sqlite3", 0) != 0 || quote == std::string::npos) continue;
+    const std::size_t rows = block.find("\n0 ");
+    ASSERT_NE(rows, std::string::npos) << block;
+    const SQLite::Database run((folder / "runs/ball-1/run.db").string());
+    SQLite::Statement query(run, block.substr(quote + 1, block.find('"', quote + 1) - quote - 1));
+    std::string table;
+    for (; query.executeStep(); table += '\n')
+      for (int c = 0; c < query.getColumnCount(); ++c) table += query.getColumn(c).getString() + ' ';
+    expect_shown(block.substr(rows), table);
+    ++commands;
+  }
+  EXPECT_GE(commands, 4) << "the table is one";
 
   std::string misspelt = scene;
   misspelt.replace(misspelt.find("mass ="), 4, "mas");
