@@ -108,6 +108,8 @@ bool SteppingIntegrator::accelerations(double t, std::span<const BodyState> stat
   for (std::size_t k = 0; k < out.size(); ++k) {
     // a sum that is finite has no part that is not
     if (std::isfinite(out[k].linear.x() + out[k].linear.y() + out[k].angular) || is_finite(out[k])) continue;
+    why_ = dynamics_->not_finite(inside, states);
+    if (!why_.empty()) return false;
     why_ = "the acceleration of body " + std::to_string(k) +
            " of the component is not finite at t = " + time_text(inside) + ", position (" +
            time_text(states[k].pose.position.x()) + ", " + time_text(states[k].pose.position.y()) + ")";

@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <span>
+#include <string>
 
 #include "brink/core/base/geometry.h"
 
@@ -20,6 +21,14 @@ class Dynamics {
   /// Writes the acceleration of every body at time t [s]. @pre states.size() == out.size() == size().
   virtual void accelerations(double t, std::span<const BodyState> states,
                              std::span<Acceleration> out) const = 0;
+
+  /// Which of the accelerations' causes is not finite at time t, in words that name it; empty where all are, or where
+  /// nothing is known of them.
+  virtual std::string not_finite(double t, std::span<const BodyState> states) const {
+    (void)t;
+    (void)states;
+    return {};
+  }
 
   /// The first time > t at which the right-hand side jumps (a thrust that starts or stops), or infinity.
   /// Integrators stop a step there and start afresh.

@@ -7,6 +7,8 @@
 /// So a step of one component asks for its own forces alone, however many the world has.
 #include "brink/core/world/forces.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,6 +21,15 @@
 namespace brink {
 
 namespace {
+
+/// In the order of force_formula_variables().
+using FormulaValues = std::array<double, 8>;
+FormulaValues formula_values(double t, const BodyState& state, const Body& body) {
+  const auto& [pose, twist] = state;
+  return {t,           pose.position.x(),  pose.position.y(),
+          pose.angle,  twist.velocity.x(), twist.velocity.y(),
+          twist.omega, body.mass};
+}
 
 /// The accelerations of one component. Forces on single bodies are pointers into the world; springs are kept
 /// with their bodies renumbered to places in the component.
@@ -45,6 +56,7 @@ class ForceDynamics final : public Dynamics {
 
   int size() const override { return static_cast<int>(bodies_.size()); }
   void accelerations(double t, std::span<const BodyState> states, std::span<Acceleration> out) const override;
+  std::string not_finite(double t, std::span<const BodyState> states) const override;
   double next_break(double t) const override;
   double steady_until(double t) override;
   // Gravity never changes, and thrusts do at breaks only; all other forces go by the states or by the time.
@@ -172,17 +184,25 @@ void ForceDynamics::add_formulas(double t, std::span<const BodyState> states,
                                  std::span<Acceleration> out) const {
   for (const auto& [place, f] : formulas_) {
     // A formula gives a force and a torque about the centre of mass, in world axes; what is left out is 0.
-    const auto& [pose, twist] = states[place];
-    // in the order of force_formula_variables()
-    const std::array<double, 8> values{t,           pose.position.x(),   pose.position.y(),
-                                       pose.angle,  twist.velocity.x(),  twist.velocity.y(),
-                                       twist.omega, bodies_[place]->mass};
+    const FormulaValues values = formula_values(t, states[place], *bodies_[place]);
     Load load;
     if (f->fx) load.force.x() = (*f->fx)(values);
     if (f->fy) load.force.y() = (*f->fy)(values);
     if (f->torque) load.torque = (*f->torque)(values);
     add(place, load, out);
   }
+}
+
+/// Of formulas: whatever else may fail to be finite says nothing by its name.
+std::string ForceDynamics::not_finite(double t, std::span<const BodyState> states) const {
+  for (const auto& [place, f] : formulas_) {
+    const FormulaValues values = formula_values(t, states[place], *bodies_[place]);
+    for (const auto& [key, formula] : {std::pair("fx", &f->fx), {"fy", &f->fy}, {"torque", &f->torque}})
+      if (*formula && !std::isfinite((**formula)(values)))
+        return fmt::format("the formula {} = \"{}\" is not finite at t = {:.12g} s for '{}'", key,
+                           (*formula)->text(), t, bodies_[place]->name);
+  }
+  return {};
 }
 
 /// Thrusts alone jump at times that are known. Where a formula jumps with the time no break is told: steps

@@ -20,6 +20,7 @@
 #include "brink/scenes/run_file/run_file.h"
 #include "brink/scenes/run_file/run_moment.h"
 #include "brink/scenes/scene/scene.h"
+#include "brink/scenes/scene/start.h"
 #include "brink/scheduler/kernel/site_motion.h"
 #include "brink/scheduler/simulator/simulator.h"
 
@@ -59,6 +60,7 @@ RunMoment moment_of_scene(const DrawArguments& arguments, const Scene& scene) {
   options.checkpoint_seconds = -1.0;
   // At 0 the simulator stands at the start: nothing to run, and overlaps may be looked at.
   if (t > 0.0) {
+    require_start(scene, simulator);
     const RunSummary summary = simulator.run(options, &last);
     // A picture of another time than the one asked for would not be noticed: refused.
     if (summary.termination != Termination::reached_end) {

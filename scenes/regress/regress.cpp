@@ -5,6 +5,7 @@
 #include "brink/core/base/error.h"
 #include "brink/core/base/printable.h"
 #include "brink/integrators/solver_probe.h"
+#include "brink/scenes/scene/start.h"
 #include "brink/scheduler/simulator/simulator.h"
 
 namespace brink {
@@ -40,8 +41,7 @@ fs::path answers_file(const fs::path& folder) { return folder / "answers.csv"; }
 
 RunSummary run_for_answer(const Scene& scene, const std::function<bool(double, std::uint64_t)>& progress) {
   Simulator simulator(scene.world, scene.solver);
-  if (const std::string why = simulator.start_fault(); !why.empty())
-    throw SceneFaults(scene.path, {{1, 1, printable(why), {}}});
+  require_start(scene, simulator);
   RunOptions options;
   options.until = scene.duration;
   options.checkpoint_seconds = -1.0;

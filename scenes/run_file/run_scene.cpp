@@ -20,6 +20,7 @@
 #include "brink/scenes/files/written_file.h"
 #include "brink/scenes/run_file/run_file.h"
 #include "brink/scenes/run_file/trace_file.h"
+#include "brink/scenes/scene/start.h"
 #include "brink/scenes/scene/tables.h"
 #include "brink/scheduler/simulator/simulator.h"
 
@@ -219,8 +220,7 @@ RunReport run_scene(const Scene& scene, const RunRequest& request) {
   // Checks the world and makes its fields: the long part of planning, counted in load_seconds.
   Simulator simulator(scene.world, scene.solver);
   // No run file has been touched yet: a scene that cannot start leaves the earlier one in its place.
-  if (const std::string why = simulator.start_fault(); !why.empty())
-    throw SceneFaults(scene.path, {{1, 1, printable(why), {}}});
+  require_start(scene, simulator);
   std::optional<ResumePoint> point;
   if (request.resume) point = folder->resume_point(scene);
   // Before the run file is opened for writing: a snapshot that does not fit changes nothing.

@@ -13,11 +13,16 @@
 #include <numbers>
 #include <set>
 
+#include "brink/core/world/forces.h"
+#include "brink/integrators/closed_form.h"
 #include "brink/scenes/files/text_file.h"
 #include "brink/scheduler/first_contact/tolerances.h"
 
 namespace brink {
 namespace {
+
+/// What entries without a name are called, with their index.
+constexpr const char *kUnnamedBody = "body", *kUnnamedSite = "site";
 
 /// Builds a scene part by part. It goes on after a fault, so that all of them are told at once; what
 /// needs a part that has failed is left out.
@@ -32,8 +37,12 @@ class SceneBuilder {
     materials();
     std::vector<PlannedThing> sites = plan(file_.sites, false), bodies = plan(file_.bodies, true);
     count(bodies);
-    // @pre of place_rules and Placer: no faults, so every thing has its outline.
-    if (faults_.empty()) Placer(file_.world.seed, place_rules(sites, bodies), faults_).place(sites, bodies);
+    // @pre of place_rules and Placer: no faults, so every thing has its outline. Else nothing is placed, but what is put on
+    // others can be told to name nobody.
+    if (faults_.empty())
+      Placer(file_.world.seed, place_rules(sites, bodies), faults_).place(sites, bodies);
+    else
+      put_on_others(sites, bodies, {scene_.world.gravity, scene_.world.periods, 0.0}, faults_);
     const bool placed = faults_.empty();
     if (placed) {
       add_sites(sites);
@@ -44,10 +53,10 @@ class SceneBuilder {
     }
     build_forces(file_.forces, names_, origins_, placed, scene_.world, faults_);
     for (std::string& note : shapes_.take_notes()) scene_.notes.push_back(std::move(note));
-    // World::check() and the frame count need the whole world; after a fault they would tell
-    // its consequences.
+    check_integrator();
+    check_frames();
+    // World::check() needs the whole world; after a fault it would tell its consequences.
     if (faults_.empty()) last_check();
-    if (faults_.empty()) check_frames();
     return std::move(scene_);
   }
 
@@ -68,7 +77,8 @@ class SceneBuilder {
     scene_.solver.field = file_.field.options;
     std::string error;
     // After a fault in the keys some options are defaults; what they would be together is not known.
-    if (faults_.empty() && !scene_.solver.is_valid(&error)) faults_.add(file_.solver_place, error);
+    if (is_sound("solver") && is_sound("field") && !scene_.solver.is_valid(&error))
+      faults_.add(place_of_option(error), error);
     options_json();
   }
 
@@ -85,10 +95,39 @@ class SceneBuilder {
     return {scene_.world.gravity, scene_.world.periods, thin};
   }
 
+  /// Of the option that a message of SolverOptions::is_valid() begins with.
+  Where place_of_option(const std::string& message) const {
+    const std::string key = message.substr(0, message.find(' '));
+    return file_.place_of(file_.places.contains("field." + key) ? "field" : "solver", key);
+  }
+
+  /// Of the tables that there are once.
+  bool is_sound(const std::string& table) const { return !file_.faulty.contains(table); }
+
+  /// An integrator that has no steps moves bodies only by forces of which it knows the motion.
+  void check_integrator() {
+    if (scene_.solver.integrator != "ballistic") return;
+    const std::vector<Component> components = make_components(scene_.world);
+    if (std::all_of(components.begin(), components.end(),
+                    [](const Component& c) { return has_closed_form(*c.dynamics); }))
+      return;
+    std::vector<std::string> kinds;
+    for (const ForceTable& force : file_.forces) {
+      const bool closed = force.kind == "thrust" || (force.kind == "drag" && force.drag.quadratic == 0.0);
+      const std::string kind = force.kind == "drag" ? "quadratic drag" : force.kind;
+      if (!closed && std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) kinds.push_back(kind);
+    }
+    faults_.add(file_.place_of("solver", "integrator"),
+                fault_text("integrator", "ballistic has no closed form for these forces", listed(kinds),
+                           "gravity, thrusts and linear drag, or another integrator, as \"auto\""));
+  }
+
   void check_frames() {
+    // After a fault in one of these they are not what is meant.
+    if (!is_sound("world") || !is_sound("output")) return;
     const std::size_t bodies = scene_.world.bodies.size();
     if (const std::string why = too_many_frames(scene_.output, scene_.duration, bodies); !why.empty())
-      faults_.add(file_.output_place, "output: " + why);
+      faults_.add(file_.place_of("output"), "output: " + why);
   }
 
   /// Every option as it is used, for the run file: resuming compares these texts. Overrides are in it
@@ -128,7 +167,7 @@ class SceneBuilder {
 
   /// The `index`-th body or site that has no name is called by its place in the file.
   static std::string name_of(const ThingTable& table, bool body, std::size_t index) {
-    return table.name.given ? table.name.value : (body ? "body" : "site") + std::to_string(index);
+    return table.name.given ? table.name.value : (body ? kUnnamedBody : kUnnamedSite) + std::to_string(index);
   }
 
   /// One entry of the file after the other, with all faults that can be told of an entry by itself.
@@ -223,6 +262,7 @@ class SceneBuilder {
         body.initial = thing.copies[k];
         hold(body);
         scene_.world.bodies.push_back(std::move(body));
+        scene_.body_places.push_back({thing.table->place.line, thing.table->place.column});
         // build_forces() adds this to places given in the file's frame: there the outline's origin is
         // at `shift`.
         const bool keep_origin = thing.table->centered.given && !thing.table->centered.value;
@@ -358,7 +398,7 @@ class SceneBuilder {
 Scene build_scene(const FileTable& file, FaultList& faults) { return SceneBuilder(file, faults).build(); }
 
 Scene parse_scene(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
-  TomlDocument document(text, overrides);
+  TomlDocument document(text, overrides, {{"bodies", kUnnamedBody}, {"sites", kUnnamedSite}});
   // After a syntax error there are no tables; every other fault leaves the rest of the file readable.
   if (!document.readable()) document.faults().throw_if_any(name);
   FileTable file;

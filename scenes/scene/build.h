@@ -87,7 +87,8 @@ struct PlaceRules {
 Copies standing_poses(const PlannedThing& thing, const PlaceRules& rules);
 
 /// Puts bodies on what their key `touching` names, in the order in which they depend on each other, and fills
-/// their copies. @pre everything else that stands where it is told is placed.
+/// their copies. @pre everything else that stands where it is told is placed; after a fault nothing is, and names and
+/// circles are told alone.
 void put_on_others(std::vector<PlannedThing>& sites, std::vector<PlannedThing>& bodies,
                    const PlaceRules& rules, FaultList& faults);
 

@@ -58,15 +58,23 @@ class ForceBuilder {
     // Either `bodies`, or `body` and `anchor`, and not half of the latter: the first comparison finds
     // both or neither, the second a body without an anchor or an anchor without a body.
     SpringForce force = table.spring;
+    if (table.bodies.faulty || table.body.faulty || table.anchor.faulty || table.at.faulty) return;
     if (table.bodies.given == (table.body.given || table.anchor.given) ||
         table.body.given != table.anchor.given)
       return faults_.add(table.place,
-                         std::string("spring: who it joins is not clear; given ") +
-                             (table.bodies.given ? "bodies " : "") + (table.body.given ? "body " : "") +
-                             (table.anchor.given ? "anchor" : "") +
+                         "spring: who it joins is not clear; given " + ends_given(table) +
                              ", allowed: bodies = [\"A\", \"B\"], or body = \"A\" and anchor = [x, y]");
     if (table.bodies.given ? !two_bodies(table, force) : !body_and_anchor(table, force)) return;
     world_.forces.emplace_back(force);
+  }
+
+  /// The keys of a spring's ends that the file has.
+  static std::string ends_given(const ForceTable& table) {
+    std::vector<std::string> keys;
+    if (table.bodies.given) keys.emplace_back("bodies");
+    if (table.body.given) keys.emplace_back("body");
+    if (table.anchor.given) keys.emplace_back("anchor");
+    return keys.empty() ? "nothing" : listed(keys);
   }
 
   /// Fills both ends; false after a fault. An attachment that is not given is at the centre of mass.
@@ -154,6 +162,7 @@ class ForceBuilder {
 
   void thrust(const ForceTable& table) {
     ThrustForce force = table.thrust;
+    if (table.body.faulty) return;
     if (!table.body.given)
       return faults_.add(table.place, "thrust: body is missing; given nothing, allowed: the name of a body");
     // Looked up before the times are compared, so that both faults are told.
@@ -168,6 +177,7 @@ class ForceBuilder {
     FormulaForce force;
     force.bodies = targets(table);
     const std::vector<std::string>& variables = force_formula_variables();
+    if (table.fx.faulty || table.fy.faulty || table.torque.faulty) return;
     if (!table.fx.given && !table.fy.given && !table.torque.given)
       return faults_.add(table.place,
                          "formula: says nothing; given no formula, allowed: any of fx, fy, torque");

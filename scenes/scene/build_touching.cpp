@@ -36,7 +36,6 @@ class Touching {
   /// Kahn's algorithm (1962): `missing` counts the grounds that are not placed yet, `above` says who
   /// waits for whom. Maps by pointer are looked up, never walked, so the order is that of the file.
   void place() {
-    if (!faults_.empty()) return;
     std::map<const PlannedThing*, std::vector<PlannedThing*>> above;
     std::map<const PlannedThing*, std::size_t> missing;
     // Bodies whose grounds are all placed, in the order in which they became so.
@@ -155,7 +154,6 @@ class Touching {
 
   /// One of those that wait for each other, and all between.
   void tell_circle(const std::map<const PlannedThing*, std::size_t>& missing) {
-    if (!faults_.empty()) return;
     const auto waits = [&](const PlannedThing* thing) {
       const auto found = missing.find(thing);
       return found != missing.end() && found->second > 0;

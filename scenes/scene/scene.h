@@ -22,6 +22,11 @@ struct OutputOptions {
   std::int64_t max_frame_rows = 100'000'000;  ///< frames times bodies; a scene that asks for more is refused
 };
 
+/// A place in the scene file; both count from 1, and are 0 where the command line's --set said it.
+struct ScenePlace {
+  int line = 1, column = 1;
+};
+
 struct Scene {
   std::filesystem::path path;
   std::vector<std::filesystem::path>
@@ -29,7 +34,8 @@ struct Scene {
   std::string text;                    ///< of the file
   std::vector<std::string> overrides;  ///< PATH=VALUE
   World world;
-  double duration = 1.0;  ///< [s]
+  std::vector<ScenePlace> body_places;  ///< where the entry of each body begins
+  double duration = 1.0;                ///< [s]
   SolverOptions solver;
   OutputOptions output;
   std::vector<std::string> notes;  ///< for people: achieved curve deviations, sampling limits ...

@@ -95,14 +95,18 @@ void read_force(const toml::table& table, TomlDocument& doc, std::vector<ForceTa
   out.push_back(std::move(force));
 }
 
-/// `place`: kept for faults that concern the table as a whole.
-/// Reader of a table that there is once. The schema is one of those with a static life: the reader
-/// keeps a reference.
+/// Reader of a table that there is once. Its places are kept for faults that are found later. The schema is one of those
+/// with a static life: the reader keeps a reference.
 template <class T>
-auto table_reader(const Schema<T>& schema, T FileTable::*member, Where FileTable::*place = nullptr) {
-  return [&schema, member, place](const toml::node& node, TomlDocument& doc, FileTable& out) {
+auto table_reader(const Schema<T>& schema, T FileTable::*member) {
+  return [&schema, member](const toml::node& node, TomlDocument& doc, FileTable& out) {
+    const std::size_t before = doc.faults().size();
     schema.read_node(node, doc, out.*member);
-    if (place != nullptr) out.*place = doc.where(node);
+    if (doc.faults().size() > before) out.faulty.insert(schema.table());
+    out.places[schema.table()] = doc.where(node);
+    if (const toml::table* table = node.as_table())
+      for (const auto& [key, value] : *table)
+        out.places[schema.table() + '.' + std::string(key.str())] = doc.where(value);
   };
 }
 
@@ -206,6 +210,12 @@ Combine combine_rule(const std::string& name) {
   return static_cast<Combine>(found - kCombineRules.begin());  // kCombineRules is in the order of Combine
 }
 
+Where FileTable::place_of(const std::string& table, const std::string& key) const {
+  for (const std::string& path : {table + '.' + key, table})
+    if (const auto found = places.find(path); found != places.end()) return found->second;
+  return {1, 1};
+}
+
 Range duration_range() { return {kShortest, kLongestRun, false, "s"}; }
 
 /// Frames at 0, at every interval, and at the end. A world without bodies has frames, too.
@@ -228,7 +238,7 @@ const Schema<WorldTable>& world_schema() {
       Schema<WorldTable>("world")
           .key("duration", &WorldTable::duration, number(duration_range()), "simulated time")
           .key("gravity", &WorldTable::gravity, point("m/s^2"), "uniform acceleration")
-          .key("periodic", &WorldTable::periodic, point("m"),
+          .key("periodic", &WorldTable::periodic, point(not_negative("m")),
                "the plane repeats after so much to the right and up; 0: never")
           .count("seed", &WorldTable::seed, whole(), "of everything that is drawn at random")
           .key("restitution_rule", &WorldTable::restitution_rule, choice(kCombineRules),
@@ -387,12 +397,11 @@ const Schema<FileTable>& file_schema() {
           .key("title", &FileTable::title, text(), "what people call the scene")
           .custom("world", "table", "", "what holds everywhere",
                   table_reader(world_schema(), &FileTable::world))
-          .custom("solver", "table", "", "how it is run",
-                  table_reader(solver_schema(), &FileTable::solver, &FileTable::solver_place))
+          .custom("solver", "table", "", "how it is run", table_reader(solver_schema(), &FileTable::solver))
           .custom("field", "table", "", "how fields are drawn",
-                  table_reader(field_schema(), &FileTable::field, &FileTable::field_place))
+                  table_reader(field_schema(), &FileTable::field))
           .custom("output", "table", "", "what is recorded",
-                  table_reader(output_schema(), &FileTable::output, &FileTable::output_place))
+                  table_reader(output_schema(), &FileTable::output))
           .custom("materials", "tables by name", "", "what surfaces are like", read_materials)
           .custom("sites", "array of tables", "", "what is fixed, or moves as told",
                   things_reader("sites", site_schema(), &FileTable::sites))

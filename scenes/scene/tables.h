@@ -2,6 +2,9 @@
 /// The tables of a scene file as plain structs, and the schema of each: the only home of keys, types and
 /// meanings. Internal to the scene reader.
 
+#include <map>
+#include <set>
+
 #include "brink/core/shapes/shapes.h"
 #include "brink/scenes/scene/scene.h"
 #include "brink/scenes/toml/schema.h"
@@ -120,7 +123,12 @@ struct FileTable {
   std::vector<MaterialTable> materials;
   std::vector<ThingTable> sites, bodies;
   std::vector<ForceTable> forces;
-  Where solver_place{1, 1}, field_place{1, 1}, output_place{1, 1};
+  std::map<std::string, Where>
+      places;                    ///< of [world], [solver] ... and of their keys: "solver", "solver.order"
+  std::set<std::string> faulty;  ///< those of these tables that have a fault
+
+  /// The place of a key; of its table where the key is not given, of the file's beginning where neither is.
+  Where place_of(const std::string& table, const std::string& key = "") const;
 };
 
 const Schema<FileTable>& file_schema();

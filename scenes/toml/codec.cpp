@@ -200,8 +200,9 @@ Codec<std::string> formula_text() {
           [](const std::string& x) { return Json(x); }};
 }
 
-Codec<Vec2> point(std::string unit) {
-  const Range range = any(std::move(unit));
+Codec<Vec2> point(std::string unit) { return point(any(std::move(unit))); }
+
+Codec<Vec2> point(Range range) {
   return {"[x, y]" + (range.unit.empty() ? "" : " in " + range.unit),
           [range](const toml::node& node, TomlDocument& doc, const std::string& key, Vec2& out) {
             return read_point(node, doc, key, range, out);

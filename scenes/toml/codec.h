@@ -64,6 +64,8 @@ Codec<std::string> open_choice(std::function<std::vector<std::string>()> allowed
 /// A formula: a string, or a number meaning itself.
 Codec<std::string> formula_text();
 Codec<Vec2> point(std::string unit = "m");
+/// The same, both numbers within the range.
+Codec<Vec2> point(Range range);
 Codec<std::vector<Vec2>> points(std::size_t least, std::size_t most = 1'000'000, std::string unit = "m");
 /// Strings; one string alone stands for a list of one.
 Codec<std::vector<std::string>> names(std::vector<std::string> allowed = {});

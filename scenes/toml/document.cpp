@@ -155,20 +155,24 @@ bool is_index(const std::string& part, std::size_t size, std::size_t* index) {
   return *index < size;
 }
 
-// Index of the table in `array` whose name is `name`, or the array's size.
+// Index of the table in `array` whose name is `name`, or the array's size. One without a name is called by `unnamed`, if
+// that is not empty, and its index.
 // So `bodies.ball.mass=2` finds the body called "ball" wherever it stands in the file.
-std::size_t index_of_name(const toml::array& array, const std::string& name) {
+std::size_t index_of_name(const toml::array& array, const std::string& name, const std::string& unnamed) {
   for (std::size_t i = 0; i < array.size(); ++i)
-    if (const toml::table* table = array[i].as_table())
-      if (const auto* text = table->get_as<std::string>("name"); text != nullptr && text->get() == name)
-        return i;
+    if (const toml::table* table = array[i].as_table()) {
+      const auto* text = table->get_as<std::string>("name");
+      if (text != nullptr && text->get() == name) return i;
+      if (!table->contains("name") && !unnamed.empty() && name == unnamed + std::to_string(i)) return i;
+    }
   return array.size();
 }
 
 }  // namespace
 
-TomlDocument::TomlDocument(std::string_view text, const std::vector<std::string>& overrides)
-    : faults_(paths_of(overrides)) {
+TomlDocument::TomlDocument(std::string_view text, const std::vector<std::string>& overrides,
+                           DefaultNames unnamed)
+    : faults_(paths_of(overrides)), unnamed_(std::move(unnamed)) {
   parse(text);
   readable_ = faults_.empty();
   // After a syntax error there is nothing to override, and an override's fault would hide it among others.
@@ -206,7 +210,7 @@ void TomlDocument::apply(const std::string& override_text, int index) {
   // All parts but the last lead to a table or an array, the last one is what is set in it.
   toml::node* node = &root_;
   for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
-    toml::node* next = step(*node, parts[i]);
+    toml::node* next = step(*node, i > 0 ? parts[i - 1] : std::string(), parts[i]);
     // A table that the file does not have is made ("world.gravity=..." in a scene without [world]). An
     // array never grows.
     if (next == nullptr && node->is_table()) {
@@ -225,12 +229,15 @@ void TomlDocument::apply(const std::string& override_text, int index) {
 }
 
 // An index goes before a name; a number that is no index of the array may still be one.
-toml::node* TomlDocument::step(toml::node& node, const std::string& part) {
+toml::node* TomlDocument::step(toml::node& node, const std::string& key, const std::string& part) {
   if (toml::table* table = node.as_table()) return table->get(part);
   toml::array* array = node.as_array();
   if (array == nullptr) return nullptr;
   std::size_t index = 0;
-  if (!is_index(part, array->size(), &index)) index = index_of_name(*array, part);
+  if (!is_index(part, array->size(), &index)) {
+    const auto unnamed = unnamed_.find(key);
+    index = index_of_name(*array, part, unnamed == unnamed_.end() ? std::string() : unnamed->second);
+  }
   return index < array->size() ? &(*array)[index] : nullptr;
 }
 

@@ -17,6 +17,8 @@ struct Given {
   V value = blank<V>();
   Where where;
   bool given = false;
+  bool faulty =
+      false;  ///< the file says something else than it may, which has been told; `given` is false then
 };
 
 /// JSON has no word for an infinite time.
@@ -63,7 +65,11 @@ class Schema {
         {name, codec.type, otherwise, meaning, false,
          [=](const toml::node& node, TomlDocument& doc, T& out) {
            V value = blank<V>();
-           if (codec.read(node, doc, name, value)) out.*member = {std::move(value), doc.where(node), true};
+           const bool good = codec.read(node, doc, name, value);
+           if (good) (out.*member).value = std::move(value);
+           (out.*member).where = doc.where(node);
+           (out.*member).given = good;
+           (out.*member).faulty = !good;
          },
          [=](const T& from) { return (from.*member).given ? codec.write((from.*member).value) : Json(); }});
   }

@@ -578,6 +578,33 @@ TEST_F(ProgramTest, RunThatEndsEarlyIsStatusOneAndSaysWhy) {
   EXPECT_EQ(RunFile(dir_ / "a/run.db").meta("termination"), "stopped");
 }
 
+TEST_F(ProgramTest, AFormulaThatStopsBeingANumberIsNamedWithItsTime) {
+  for (const char* integrator : {"auto", "rk4", "adams", "bdf"}) {
+    write("root.toml",
+          "[world]\nduration = 3\n[[bodies]]\nname = \"sled\"\ndisc = { radius = 0.5 }\n"
+          "[[forces]]\nkind = \"formula\"\nfx = \"sqrt(1.25-t)\"\n");
+    const Outcome run = brink(std::string("run root.toml --json --out ") + integrator +
+                              " --set solver.integrator=" + integrator);
+    EXPECT_EQ(run.status, 1) << integrator;
+    const auto summary = nlohmann::json::parse(last_line(run.out));
+    EXPECT_NEAR(summary["end_time"].get<double>(), 1.25, 2e-3) << integrator;
+    EXPECT_THAT(run.error, HasSubstr("the formula fx = \"sqrt(1.25-t)\" is not finite at t = 1.25"))
+        << integrator;
+    EXPECT_THAT(run.error, ::testing::AllOf(HasSubstr("for 'sled'"), Not(HasSubstr("position"))))
+        << integrator;
+  }
+}
+
+TEST_F(ProgramTest, AnOverlapAtTheStartIsToldWithItsPlace) {
+  write("sunk.toml", std::string(kBall) + "[[bodies]]\ndisc = { radius = 0.5 }\nposition = [0.5, 1.5]\n");
+  for (const char* command :
+       {"run sunk.toml", "draw sunk.toml --at 0.1 -o x.png", "view sunk.toml -o x.html"}) {
+    const Outcome run = brink(command);
+    EXPECT_EQ(run.status, 2) << command;
+    EXPECT_THAT(run.error, HasSubstr("sunk.toml:11:1: ")) << command;
+  }
+}
+
 TEST_F(ProgramTest, ResumingAFinishedRunSaysSoAndChangesNothing) {
   ASSERT_EQ(brink("run ball.toml --out a").status, 0);
   const std::string before = text_of(dir_ / "a/run.db");

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "brink/core/shapes/outline.h"
+#include "brink/scenes/scene/start.h"
 #include "brink/scenes/toml/codec.h"
 
 namespace brink::scene_file_test {
@@ -471,6 +472,16 @@ INSTANTIATE_TEST_SUITE_P(
                   "4:8 grid: copies would stand in one place; given spacing [0, 2]"},
         FaultCase{"TooManyFrames", with_ball("[output]\nframe_interval = 1e-6\n[world]\nduration = 200\n"),
                   "4:1 output: too many rows of frames; given 200000002"},
+        FaultCase{"NegativePeriod", "[world]\nperiodic = [4, -1]\n",
+                  "2:16 periodic: out of range; given -1, allowed: a number >= 0 in m"},
+        FaultCase{"SpringOfNobody", with_ball("[[forces]]\nkind = \"spring\"\nstiffness = 1\n"),
+                  "4:1 spring: who it joins is not clear; given nothing, allowed: bodies"},
+        FaultCase{"NoClosedForm",
+                  "[solver]\nintegrator = \"ballistic\"\n" +
+                      with_ball("[[forces]]\nkind = \"drag\"\nquadratic = 1\n[[forces]]\nkind = "
+                                "\"formula\"\nfx = \"t\"\n"),
+                  "2:14 integrator: ballistic has no closed form for these forces; given quadratic drag, "
+                  "formula, allowed: "},
         FaultCase{"DateAsNumber", "[world]\nduration = 2020-01-01\n",
                   "2:12 duration: wrong type; given a date or time"}),
     [](const auto& parameter) { return std::string(parameter.param.name); });
@@ -496,6 +507,112 @@ body = "c"
   ASSERT_EQ(faults.size(), 6U) << ::testing::PrintToString(faults);
   const char* places[] = {"2:12", "4:12", "7:19", "8:1", "11:12", "15:8"};
   for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(faults[k].substr(0, faults[k].find(' ')), places[k]);
+}
+
+// What is found later than by reading the keys: names that touching, forces and materials use, options together, frames,
+// the integrator. None hides another.
+TEST(SceneFile, FaultsOfLaterStagesComeWithTheOthers) {
+  const auto faults = faults_of(R"toml([world]
+duration = 1e9
+[solver]
+integrator = "ballistic"
+order = "lcp"
+response = "reflection"
+[output]
+frame_interval = 1e-6
+[[bodies]]
+name = "a"
+disc = { radius = 1 }
+mas = 1
+[[bodies]]
+name = "b"
+material = "wood"
+touching = "flor"
+touching_direction = [0, -1]
+disc = { radius = 1 }
+[[bodies]]
+name = "c"
+touching = "d"
+touching_direction = [0, -1]
+disc = { radius = 1 }
+[[bodies]]
+name = "d"
+touching = "c"
+touching_direction = [0, -1]
+disc = { radius = 1 }
+[[forces]]
+kind = "formula"
+bodies = ["e"]
+fx = "t"
+[[forces]]
+kind = "attract"
+center = [0, 0]
+strength = 1
+)toml");
+  std::vector<std::string> places;
+  for (const std::string& fault : faults) places.push_back(fault.substr(0, fault.find(' ')));
+  EXPECT_EQ(places,
+            (std::vector<std::string>{"4:14", "5:9", "7:1", "12:1", "15:12", "16:12", "21:12", "31:10"}))
+      << ::testing::PrintToString(faults);
+}
+
+// The loader refuses what an integrator without steps would, and nothing else.
+TEST(SceneFile, BallisticIsRefusedWhereItHasNoClosedForm) {
+  for (const auto& [force, closed] :
+       {std::pair("kind = \"thrust\"\nbody = \"ball\"\nforce = [1, 0]\n", true),
+        {"kind = \"drag\"\nlinear = 1\n", true},
+        {"kind = \"drag\"\nquadratic = 1\n", false},
+        {"kind = \"formula\"\nfx = \"1\"\n", false},
+        {"kind = \"attract\"\ncenter = [5, 5]\nstrength = 1\n", false},
+        {"kind = \"spring\"\nbody = \"ball\"\nanchor = [5, 5]\nstiffness = 1\n", false}}) {
+    const std::string text = with_ball(std::string("[[forces]]\n") + force);
+    EXPECT_EQ(faults_of(text, {"solver.integrator=ballistic"}).empty(), closed) << force;
+    const Scene scene = parse_scene(text, "t");
+    SolverOptions ballistic;
+    ballistic.integrator = "ballistic";
+    if (closed)
+      EXPECT_NO_THROW(Simulator(scene.world, ballistic)) << force;
+    else
+      EXPECT_THROW(Simulator(scene.world, ballistic), BadInput) << force;
+  }
+}
+
+// What is not what it should be is told once: that it is there is known.
+TEST(SceneFile, AKeyOfAWrongTypeIsNotMissing) {
+  for (const char* force :
+       {"kind = \"spring\"\nbody = 0\nanchor = [0, 1]\nstiffness = 1\n",
+        "kind = \"spring\"\nbodies = 3\nstiffness = 1\n",
+        "kind = \"spring\"\nbody = \"ball\"\nanchor = 1\nstiffness = 1\n",
+        "kind = \"thrust\"\nbody = 0\nforce = [1, 0]\n", "kind = \"formula\"\nfx = [1]\n"}) {
+    const auto faults = faults_of(with_ball(std::string("[[forces]]\n") + force));
+    ASSERT_EQ(faults.size(), 1U) << ::testing::PrintToString(faults);
+    EXPECT_THAT(faults[0], HasSubstr(": wrong type; given ")) << force;
+  }
+}
+
+TEST(SceneFile, AnOverlapAtTheStartIsToldAtItsBody) {
+  const Scene scene =
+      parse_scene(with_ball("") + "[[bodies]]\nname = \"k\"\ndisc = { radius = 1 }\nposition = [5, 0]\n" +
+                      "grid = { columns = 2, spacing = [1, 0] }\n",
+                  "test.toml");
+  ASSERT_EQ(scene.body_places.size(), 3U);
+  try {
+    require_start(scene, Simulator(scene.world, scene.solver));
+    FAIL();
+  } catch (const SceneFaults& faults) {
+    EXPECT_THAT(faults.what(), HasSubstr("test.toml:4:1: 'k[0]' and 'k[1]' overlap by 1 m at the start"));
+  }
+}
+
+TEST(SceneFile, OverridesKnowTheNamesOfEntriesWithoutOne) {
+  const std::string text = "[[sites]]\npoint = [9, 9]\n" + with_ball("") +
+                           "[[bodies]]\ndisc = { radius = 0.5 }\nposition = [3, 0]\n";
+  const Scene scene = parse_scene(text, "t", {"bodies.body1.mass=2", "sites.site0.position=[1, 0]"});
+  EXPECT_EQ(scene.world.bodies[1].mass, 2.0);
+  EXPECT_EQ(scene.world.sites[0].pose.position, Vec2(1.0, 0.0));
+  EXPECT_THAT(faults_of(text, {"bodies.body0.mass=2"}), Contains(HasSubstr("nothing is called \"body0\"")))
+      << "that one is called ball";
+  EXPECT_THAT(faults_of(text, {"forces.body0.mass=2"}), Contains(HasSubstr("forces")));
 }
 
 TEST(SceneFile, FaultsOfOverridesNameThePath) {
