@@ -1,6 +1,7 @@
 #include "brink/scenes/regress/regress.h"
 
 #include <algorithm>
+#include <set>
 
 #include "brink/core/base/error.h"
 #include "brink/core/base/printable.h"
@@ -62,11 +63,11 @@ Comparison compare(const std::string& scene, const RunSummary& met, const Answer
 }
 
 std::vector<Comparison> gone_from(const AnswerTable& stored, const std::vector<fs::path>& scenes) {
+  std::set<std::string> there;
+  for (const fs::path& file : scenes) there.insert(file.stem().string());
   std::vector<Comparison> gone;
   for (const auto& [scene, answer] : stored.answers)
-    if (std::none_of(scenes.begin(), scenes.end(),
-                     [&](const fs::path& file) { return file.stem() == scene; }))
-      gone.push_back({scene, Verdict::gone, answer, {}});
+    if (!there.contains(scene)) gone.push_back({scene, Verdict::gone, answer, {}});
   return gone;
 }
 
