@@ -168,23 +168,28 @@ class SweptFriction {
   StepProblem problem_;
 };
 
-/// `swept`: the friction of many, kept where `keep` says so.
+/// `swept`: the friction of many, kept where `keep` says so, of the solve before this one. Of few that go without it nothing
+/// is kept: contacts may have joined since.
 Solved solve(ConeQp& solver, const StepProblem& p, std::optional<SweptFriction>& swept, bool keep,
              int& factorisations, const GoOn& go_on) {
-  if (p.mass.size() <= kFewMembers) {
+  const bool few = p.mass.size() <= kFewMembers;
+  if (few) {
     Solved solved = solve_few(solver, p, factorisations, go_on);
     double most = 0.0;
     for (const ContactLoad& load : solved.loads) most = std::max(most, load.normal);
     // where bounds and forces go round in a circle, sweeps do not
-    if (solved.result.status == StepResult::Status::stopped || solved.residual <= kFrictionNear * most)
+    if (solved.result.status == StepResult::Status::stopped || solved.residual <= kFrictionNear * most) {
+      swept.reset();
       return solved;
+    }
   }
   const bool again = swept.has_value();
   if (keep && again)
     swept->take_gaps(p);
   else
     swept.emplace(p, go_on);
-  return swept->solve(solver, again, factorisations, go_on);
+  // the solver's last problem is that of the few, where they are
+  return swept->solve(solver, again && !few, factorisations, go_on);
 }
 
 /// How a gap is missed along the step [m]; 0: not at all.

@@ -69,28 +69,73 @@ double beyond_ends(const Site& site, const Vec2& q) {
   return std::max({0.0, -along, along - length});
 }
 
-/// True if the carrier lies on the side of a wire to which `out` points, as told from its vertex at q, `height` on that side
-/// of a place of the wire: by whichever of the vertex and the other ends of its edges is farthest from there, as no edge
-/// crosses a wire. A rod that comes to lie flat leads from its upper end down to the wire. Where edges lead to both sides, or
-/// all lie along the wire, its centre says.
-bool lies_before(const Half& half, const Sample& sample, const Vec2& q, const Vec2& out, double height) {
+/// How far a curve leads to either side of a line.
+struct Sides {
   double least = std::numeric_limits<double>::infinity(), most = -least;
-  const auto see = [&](const Vec2& edge) {
-    const double there =
-        height + out.dot(half.other_frame.direction_to_local(half.carrier_frame.direction_to_world(edge)));
-    least = std::min(least, there);
-    most = std::max(most, there);
-  };
-  for (const Site& s : half.carrier.sites) {
-    if (s.kind == SiteKind::point) continue;
-    if (s.a == sample.p) see(s.b - s.a);
-    if (s.b == sample.p) see(s.a - s.b);
+
+  void see(double height) {
+    least = std::min(least, height);
+    most = std::max(most, height);
   }
+  /// To one side alone, and by more than `told`.
+  bool tells(double told) const { return !(most > told && -least > told) && std::max(most, -least) > told; }
+};
+
+/// Sees the height of places along `walked` from an end of it, as far as they are abreast of `beside`. Both map from a
+/// site's frame: to where it lies beside `beside`, and to its height.
+template <class ToBeside, class Height>
+void walk(const Site& walked, bool from_start, const Site& beside, ToBeside&& to_beside, Height&& height,
+          Sides& sides) {
+  constexpr int kHalvings = 20;
+  double part = std::ldexp(1.0, -kHalvings);
+  for (int k = 0; k <= kHalvings; ++k, part *= 2.0) {
+    const Vec2 p = point_along(walked, from_start ? part : 1.0 - part);
+    if (nearest_on(beside, to_beside(p)).foot != Foot::interior) return;
+    sides.see(height(p));
+  }
+}
+
+/// Sees where the wire leads, to which `out` points, from those ends of a straight site that lie between the ends of an edge
+/// of the carrier, `off` from both: the edge, which goes on beyond, lies on the other side.
+void see_wire(const Half& half, const Site& edge, const Site& site, const Vec2& out, double off,
+              Sides& sides) {
+  const auto to_carrier = [&](const Vec2& p) {
+    return half.carrier_frame.to_local(half.other_frame.to_world(p));
+  };
+  for (const Vec2& end : {site.a, site.b}) {
+    const Vec2 beside = nearest_on(edge, to_carrier(end)).point;
+    if (std::min((beside - edge.a).norm(), (beside - edge.b).norm()) < off) continue;
+    for (const Site& next : half.other.sites)
+      if (&next != &site && next.kind != SiteKind::point && (next.a == end || next.b == end))
+        walk(
+            next, next.a == end, edge, to_carrier, [&](const Vec2& p) { return out.dot(p - end); }, sides);
+  }
+}
+
+/// True if the carrier lies on the side of a wire's site to which `out` points, as told from its vertex at q, `height` on
+/// that side of a place of the site: by whichever of the vertex and its edges, as far as they are abreast of the site, is
+/// farthest from there, as no edge crosses a wire. A rod that comes to lie flat leads from its upper end down to the wire;
+/// round the end of the site an edge may lead anywhere. Where its edges lie along the wire, the wire tells, by where it leads
+/// from the site's ends; and where nothing does, or edges lead to both sides, the carrier's centre.
+bool lies_before(const Half& half, const Sample& sample, const Site& site, const Vec2& q, const Vec2& out,
+                 double height) {
   const double told = kAlongLine * half.carrier.bounding_radius;
-  const bool both_sides = most > told && -least > told;
-  most = std::max(most, height);
-  least = std::min(least, height);
-  if (!both_sides && std::max(most, -least) > told) return most > -least;
+  const auto to_other = [&](const Vec2& p) {
+    return half.other_frame.to_local(half.carrier_frame.to_world(p));
+  };
+  const auto above = [&](const Vec2& p) { return height + out.dot(to_other(p) - q); };
+  Sides of_edges, of_wire;
+  for (const Site& edge : half.carrier.sites) {
+    if (edge.kind == SiteKind::point || (edge.a != sample.p && edge.b != sample.p)) continue;
+    walk(edge, edge.a == sample.p, site, to_other, above, of_edges);
+    if (edge.kind == SiteKind::segment && site.kind == SiteKind::segment)
+      see_wire(half, edge, site, out, told, of_wire);
+  }
+  const bool both_sides = of_edges.most > told && -of_edges.least > told;
+  const bool flush = of_edges.least <= of_edges.most && !both_sides;
+  of_edges.see(height);
+  if (!both_sides && of_edges.tells(told)) return of_edges.most > -of_edges.least;
+  if (flush && of_wire.tells(told)) return of_wire.most < -of_wire.least;
   return out.dot(centre(half) - q) + height >= 0.0;
 }
 
@@ -101,6 +146,26 @@ bool is_behind(const Site& site, const Nearest& nearest, const Vec2& q, const Ve
   if (site.kind == SiteKind::point || site.solid) return side_of(site, nearest, q) < 0.0;
   const bool was_outside = out.dot(at - site.center) > 0.0;
   return ((q - site.center).norm() > site.arc_radius) != was_outside;
+}
+
+/// The direction in which a site leads away from that end of it.
+Vec2 leads_from(const Vec2& end, const Site& site) {
+  return site.a == end ? direction_at_start(site) : Vec2(-direction_at_end(site));
+}
+
+/// True if the two, which share that end, go on into each other there.
+bool joins_smoothly(const Vec2& end, const Site& one, const Site& other) {
+  return leads_from(end, one).dot(leads_from(end, other)) <= -1.0 + kSmoothJoint;
+}
+
+/// True if what is nearest is an end of the site from which no other goes on smoothly.
+bool ends_at(const Outline& outline, const Site& site, const Nearest& nearest) {
+  if (site.kind == SiteKind::point || nearest.foot == Foot::interior) return false;
+  const Vec2& end = nearest.foot == Foot::start ? site.a : site.b;
+  return std::none_of(outline.sites.begin(), outline.sites.end(), [&](const Site& s) {
+    return &s != &site && s.kind != SiteKind::point && (s.a == end || s.b == end) &&
+           joins_smoothly(end, site, s);
+  });
 }
 
 /// Where an end of an arc lies beside a site of the other.
@@ -123,17 +188,31 @@ ArcEnd end_beside(const Half& half, const Site& arc, const Vec2& towards, const 
   return {q, nearest, (behind ? -nearest.distance : nearest.distance) - site.radius - arc.radius};
 }
 
+/// True if the site's end that is nearest to an arc's centre lies in the arc's hollow; of one on the arc, if the site leads
+/// inwards from there, or nothing tells.
+bool lies_within(const Half& half, const Site& arc, const Site& site, const Nearest& nearest) {
+  const double sunk = kSunkOfRadius * half.carrier.bounding_radius, above = nearest.distance - arc.arc_radius;
+  if (std::abs(above) > sunk) return above < 0.0;
+  const auto to_carrier = [&](const Vec2& p) {
+    return half.carrier_frame.to_local(half.other_frame.to_world(p));
+  };
+  Sides sides;
+  const auto height = [&](const Vec2& p) { return (to_carrier(p) - arc.center).norm() - arc.arc_radius; };
+  walk(site, nearest.foot == Foot::start, arc, to_carrier, height, sides);
+  return !(sides.tells(sunk) && sides.most > -sides.least);
+}
+
 /// The feature of an arc's sample i that looks past site j, if by no more than may be turned in a step: the end of it there, which
 /// has a feature of its own, and stands here for the arc that may come to lie on the site. Not of what is behind the site; nor of
-/// a wire's arc that looks past the end of one: that may be within its hollow.
+/// a wire's arc whose hollow holds the end of one.
 std::optional<NearFeature> beside_arc(const Half& half, int i, int j, const Vec2& towards, double side,
                                       const Nearest& nearest) {
   const Site &arc = half.carrier.sites[half.carrier.samples[i].arc_site], &site = half.other.sites[j];
   const Vec2 middle = 0.5 * (arc.a + arc.b) - arc.center;
   const double off =
       std::abs(std::atan2(cross(middle, towards), middle.dot(towards))) - 0.5 * std::abs(arc.sweep);
-  if (side < 0.0 || off > kTurnedInStep || (!arc.solid && nearest.foot != Foot::interior))
-    return std::nullopt;
+  const bool within = ends_at(half.other, site, nearest) && lies_within(half, arc, site, nearest);
+  if (side < 0.0 || off > kTurnedInStep || (!arc.solid && within)) return std::nullopt;
   const Vec2 out = half.other_frame.direction_to_local(half.carrier_frame.direction_to_world(-towards));
   const ArcEnd end = end_beside(half, arc, towards, site, out, nearest.point);
   if (end.gap < -kSunkOfRadius * half.carrier.bounding_radius) return std::nullopt;
@@ -177,7 +256,7 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   if (thin && site.kind != SiteKind::point && nearest.distance < no_side) {
     // a wire has no inside that would tell: what has sunk by a rounding, or is right on its end, is on the side of its
     // own edges
-    if (!lies_before(half, sample, q, out, out.dot(q - nearest.point))) out = -out;
+    if (!lies_before(half, sample, site, q, out, out.dot(q - nearest.point))) out = -out;
     distance = out.dot(q - nearest.point);
   }
   const Vec2 outward = half.other_frame.direction_to_world(out);
@@ -186,9 +265,9 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   if (sample.arc_site >= 0) {
     const Vec2 towards = half.carrier_frame.direction_to_local(-outward);
     const Site& arc = half.carrier.sites[sample.arc_site];
-    // a wire's other side is outside as well: what is a little nearer touches it from there, but for a straight side, whose
-    // ends would have to be through the arc
-    const bool from_outside = arc.solid || (site.kind == SiteKind::segment && nearest.foot == Foot::interior);
+    // a wire's other side is outside as well: what is a little nearer touches it from there, but where a side or an arc is
+    // nearest between its ends: what lies to both sides of that place is farther, and would be through the arc
+    const bool from_outside = arc.solid || (site.kind != SiteKind::point && nearest.foot == Foot::interior);
     const double sunk =
         from_outside ? kSunkOfRadius * half.carrier.bounding_radius : kOnePoint * arc.arc_radius;
     if (nearest.distance < arc.arc_radius - sunk && in_sector(arc, towards)) return std::nullopt;
@@ -235,26 +314,35 @@ bool goes_on_nearer(const Outline& outline, std::size_t j, const std::vector<Nea
 }
 
 /// Of a site that goes on smoothly, in a hollow, from one that is nearer to q, with an arc on either side of the joint: its
-/// normal at that end, on q's side. What comes over the joint in a step meets that, not the end as a point.
-std::optional<Vec2> normal_over_joint(const Outline& outline, std::size_t j,
+/// normal at that end, on the side of the sample's owner. What comes over the joint in a step meets that, not the end as a
+/// point; so does what has sunk by roundings.
+std::optional<Vec2> normal_over_joint(const Half& half, const Sample& sample, std::size_t j,
                                       const std::vector<Nearest>& nearest, const Vec2& q, double tie) {
+  const Outline& outline = half.other;
   const Site& site = outline.sites[j];
   if (site.kind == SiteKind::point || nearest[j].foot == Foot::interior) return std::nullopt;
   const bool at_start = nearest[j].foot == Foot::start;
   const Vec2& end = at_start ? site.a : site.b;
-  const auto leads = [&](const Site& s) {
-    return s.a == end ? direction_at_start(s) : Vec2(-direction_at_end(s));
-  };
+  const double sunk = kSunkOfRadius * half.carrier.bounding_radius;
   for (std::size_t k = 0; k < nearest.size(); ++k) {
     const Site& other = outline.sites[k];
     if (k == j || other.kind == SiteKind::point || (other.a != end && other.b != end)) continue;
     if (site.kind != SiteKind::arc && other.kind != SiteKind::arc) continue;
     if (!(nearest[k].distance < nearest[j].distance - tie)) continue;
-    if (leads(site).dot(leads(other)) > -1.0 + kSmoothJoint) continue;
-    Vec2 n = perp(leads(site));
-    if (n.dot(direction(other, nearest[k], q, tie)) < 0.0) n = -n;
+    if (!joins_smoothly(end, site, other)) continue;
+    // to the right of the site: out of a solid; of a wire it is on the side where the sample is, or was
+    Vec2 n = perp(leads_from(end, site)) * (at_start ? -1.0 : 1.0);
+    double above = nearest[k].distance;
+    if (site.solid) {
+      above *= side_of(other, nearest[k], q);
+    } else if (above < sunk) {
+      if (!lies_before(half, sample, other, q, n, n.dot(q - end))) n = -n;
+      above = n.dot(q - nearest[k].point);
+    } else if (n.dot(direction(other, nearest[k], q, tie)) < 0.0) {
+      n = -n;
+    }
     // over a hump the tangent would be nearer than the site
-    if (n.dot(q - end) >= nearest[k].distance - tie) return n;
+    if (above > -sunk && n.dot(q - end) >= above - tie) return n;
   }
   return std::nullopt;
 }
@@ -362,7 +450,9 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
     const double side = side_of(half.other.sites[j], nearest[j], q);
     const OnCorner where = bare ? on_corner(half, j, q, corner) : OnCorner::nowhere;
     if (where == OnCorner::other_side) continue;
-    if (where == OnCorner::nowhere) {
+    const auto over =
+        bare ? normal_over_joint(half, half.carrier.samples[i], j, nearest, q, tie) : std::nullopt;
+    if (where == OnCorner::nowhere && !over) {
       // Behind a site and not on it: a feature only if the sample is inside the solid, and then of the
       // sites that are nearest, as those are what it sank through.
       if (side < 0.0 && nearest[j].distance > tie && (outside || nearest[j].distance > least + tie)) continue;
@@ -370,8 +460,7 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
     }
     auto f = feature(half, i, static_cast<int>(j), nearest[j], side, q);
     if (f && where == OnCorner::this_side) turn_outward(half, q, side, *f);
-    if (f && bare && side > 0.0)
-      if (const auto n = normal_over_joint(half.other, j, nearest, q, tie)) put_on_tangent(half, q, *n, *f);
+    if (f && over) put_on_tangent(half, q, *over, *f);
     // also of one that is still on its way there
     const Site& site = half.other.sites[j];
     const bool flush = bare && site.solid && site.kind == SiteKind::segment &&
@@ -403,16 +492,30 @@ bool out_of_reach(const Half& half, const Sample& sample, double reach) {
 bool is_through_joint(const Outline& outline, const Site& site, const Nearest& nearest, const Vec2& q,
                       const Vec2& out) {
   const Vec2& end = nearest.foot == Foot::start ? site.a : site.b;
-  const auto leads = [&](const Site& s) {
-    return s.a == end ? direction_at_start(s) : Vec2(-direction_at_end(s));
-  };
   const auto ends_there = [&](const Site& s) {
     const Foot foot = nearest_on(s, q).foot;
     return (foot == Foot::start && s.a == end) || (foot == Foot::end && s.b == end);
   };
   return std::any_of(outline.sites.begin(), outline.sites.end(), [&](const Site& s) {
-    return &s != &site && s.kind != SiteKind::point && ends_there(s) && out.dot(leads(site) + leads(s)) > 0.0;
+    return &s != &site && s.kind != SiteKind::point && ends_there(s) &&
+           out.dot(leads_from(end, site) + leads_from(end, s)) > 0.0;
   });
+}
+
+/// True of a bare sample where an arc and the next piece go on into each other, of a wire or in a solid's hollow: all that
+/// meets the outline there meets the two up to their ends. The point alone has no side of its own.
+bool is_smooth_joint(const Outline& outline, const Sample& sample) {
+  if (sample.arc_site >= 0) return false;
+  const Site* first = nullptr;
+  for (const Site& s : outline.sites) {
+    if (s.kind == SiteKind::point || (s.a != sample.p && s.b != sample.p)) continue;
+    // of a solid, which lies to the left, an arc that turns right is hollow
+    if (outline.solid && !(s.kind == SiteKind::arc && s.sweep < 0.0)) return false;
+    if (first && (first->kind == SiteKind::arc || s.kind == SiteKind::arc))
+      return joins_smoothly(sample.p, *first, s);
+    first = &s;
+  }
+  return false;
 }
 
 /// How far q is before the other side at the nearer end of site j, a straight side of a solid, where the two have a convex
@@ -483,7 +586,8 @@ std::vector<NearFeature> near_features(const Outline& a, const ExtendedState& st
     const bool both = half.carrier.is_point() && half.other.is_point();
     if (half.other.is_point() && !(both && half.on_a)) continue;
     for (int i = 0; i < static_cast<int>(half.carrier.samples.size()); ++i)
-      if (const Sample& s = half.carrier.samples[i]; !s.hollow && !out_of_reach(half, s, reach))
+      if (const Sample& s = half.carrier.samples[i];
+          !s.hollow && !is_smooth_joint(half.carrier, s) && !out_of_reach(half, s, reach))
         add_features(half, i, reach, found);
   }
   return found;

@@ -481,6 +481,7 @@ std::vector<std::byte> Kernel::snapshot() const {
   SavedRun saved;
   saved.time = time();
   saved.horizon = horizon();
+  if (halt() && halt()->termination == Termination::failed) saved.failure = halt()->why;
   saved.watch = parts_.watch.saved();
   saved.records = parts_.records.saved();
   saved.endings = parts_.endings.saved();

@@ -23,7 +23,8 @@ class RunControl {
  public:
   void begin(const RunOptions& options) {
     options_ = options;
-    halt_.reset();
+    // what has failed cannot go on from there
+    if (halt_ && halt_->termination != Termination::failed) halt_.reset();
     asked_to_stop_ = false;
   }
   const RunOptions& options() const { return options_; }

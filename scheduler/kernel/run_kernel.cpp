@@ -224,6 +224,7 @@ void RunKernel::restore(std::span<const std::byte> bytes) {
   // Nothing is refused from here on: the snapshot is put back whole.
   parts_.run.set_time(saved.time);
   parts_.run.forget_halt();
+  if (!saved.failure.empty()) parts_.run.stop(Termination::failed, saved.failure);
   parts_.horizon = saved.horizon;
   parts_.watch.restore(saved.watch);
   parts_.records.restore(saved.records);

@@ -12,7 +12,7 @@ namespace brink {
 namespace {
 
 /// With a newline and a zero in front of the letters: no text file begins so.
-constexpr std::uint64_t kMagic = 0x344b4e495242000aULL;  // "\12\0BRINK4"
+constexpr std::uint64_t kMagic = 0x354b4e495242000aULL;  // "\12\0BRINK5"
 
 /// Objects as they lie in memory: a snapshot is read by the program that wrote it.
 class Writer {
@@ -340,6 +340,7 @@ std::uint64_t snapshot_fingerprint(const World& world, const SolverOptions& opti
 /// In this order, each as it lies in memory:
 ///   magic, fingerprint
 ///   numbers of fixed size      time, records, counters ...
+///   why it failed              the text; empty where it can go on
 ///   sets of bodies             that were grouped
 ///   bodies                     track, kind; motion, where no integrator makes it again
 ///   starts                     of components, in their order
@@ -354,6 +355,8 @@ std::vector<std::byte> encode(const SavedRun& saved, std::uint64_t fingerprint) 
   out(kMagic);
   out(fingerprint);
   scalars(out, saved);
+  out(static_cast<std::uint64_t>(saved.failure.size()));
+  for (const char c : saved.failure) out(c);
   write(out, saved.trajectories);
   write_islands(out, saved.islands);
   out(saved.endings.often);
@@ -378,6 +381,8 @@ SavedRun decode(std::span<const std::byte> bytes, const World& world, std::uint6
   if (print != fingerprint) throw BadInput("snapshot: it was taken of another world or with other options");
   SavedRun saved;
   scalars(in, saved);
+  saved.failure.resize(in.count(sizeof(char)));
+  for (char& c : saved.failure) in(c);
   saved.trajectories = read_trajectories(in, world);
   read_islands(in, saved.trajectories, world, saved.islands);
   in(saved.endings.often);

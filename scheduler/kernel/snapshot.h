@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "brink/scheduler/kernel/kernel_parts.h"
@@ -17,6 +18,7 @@ namespace brink {
 /// Everything that a run goes on from.
 struct SavedRun {
   double time = 0.0, horizon = 0.0;  ///< [s]
+  std::string failure;  ///< why it cannot go on from here; empty: it can
   CertificateWatch::Saved watch;
   Records::Saved records;
   Endings::Saved endings;

@@ -59,10 +59,12 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
     if (const std::string why = start_fault(); !why.empty()) throw BadInput(why);
   const auto begin = std::chrono::steady_clock::now();
   kernel.begin(options, recorder);
-  // after the first frame, before the policy has looked at anything
-  kernel.let_touching_last();
-  impl_->policy->run(kernel, options.until);
-  kernel.check_returned(options.until);
+  if (!kernel.halt()) {
+    // after the first frame, before the policy has looked at anything
+    kernel.let_touching_last();
+    impl_->policy->run(kernel, options.until);
+    kernel.check_returned(options.until);
+  }
   kernel.end();
 
   RunSummary summary;

@@ -250,7 +250,8 @@ TEST_P(SameInEveryWay, AndSound) {
 
 INSTANTIATE_TEST_SUITE_P(Faults, SameInEveryWay,
                          ::testing::Values("policies_differ_arc", "arc_policies", "arc_resume",
-                                           "pressed_e0_policies", "wire_periodic_drift", "slide"),
+                                           "pressed_e0_policies", "wire_periodic_drift", "slide",
+                                           "few_with_swept_friction"),
                          name_of);
 
 // ---- what is wrong from the start is refused, at once and without gigabytes
@@ -420,6 +421,13 @@ TEST(Faults, AFailedSimulatorAnswersTheSameAgain) {
   EXPECT_EQ(failed.termination, Termination::failed);
   const std::string first = failed.termination_text();
   EXPECT_EQ(simulator.run(options).termination_text(), first);
+  // nor does one that goes on from its last checkpoint go past what failed: nothing more is looked at
+  Simulator resumed(scene.world, scene.solver);
+  resumed.restore(simulator.snapshot());
+  const RunSummary again = resumed.run(options);
+  EXPECT_EQ(again.termination_text(), first);
+  EXPECT_EQ(again.work.pair_searches, failed.work.pair_searches);
+  EXPECT_EQ(again.state_hash, failed.state_hash);
 }
 
 // What grows past all numbers ends at the last moment that can be told.
