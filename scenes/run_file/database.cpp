@@ -7,6 +7,10 @@ namespace fs = std::filesystem;
 
 /// The settings belong to the connection and not to the file: each that is opened gets them anew.
 SQLite::Database open_database(const fs::path& file, int flags, int busy_milliseconds) {
+  // Beside a journal there may be half a transaction, of a run that was killed in the first moment of its file or in the
+  // last: only who may write can take it back. One that is still being made is left alone.
+  if (flags == SQLite::OPEN_READONLY && fs::exists(file.string() + "-journal"))
+    flags = SQLite::OPEN_READWRITE;
   // Debian's SQLite reads names that begin with "file:" as URIs; an absolute path begins with a slash.
   SQLite::Database db(fs::absolute(file).string(), flags, busy_milliseconds);
   // Against a file made to do harm: no statement may corrupt it (DEFENSIVE), and what its schema would

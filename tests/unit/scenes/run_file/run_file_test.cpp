@@ -583,6 +583,29 @@ TEST_F(RunFileTest, KilledWriterLeavesAWholeFileUpToItsCheckpoint) {
   EXPECT_EQ(event_times(file()).size(), 1000u);
 }
 
+// Before the file has a log, and when it is given up for one plain file, SQLite keeps a journal: who is killed then leaves
+// half a transaction, which only a writer can take back.
+TEST_F(RunFileTest, KilledBesideAJournalItOpensAllTheSame) {
+  RunFileRecorder(dir_, scene_, Open::fresh).finish(finished(1), "{}");
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    SQLite::Database db(file().string(), SQLite::OPEN_READWRITE);
+    db.exec("PRAGMA cache_size = 1");  // pages go to disk before the commit
+    db.exec("BEGIN IMMEDIATE");
+    db.exec("UPDATE meta SET value = 'torn'");
+    db.exec("INSERT INTO meta VALUES ('more', zeroblob(1000000))");
+    ::raise(SIGKILL);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  ASSERT_TRUE(fs::exists(file().string() + "-journal"));
+  EXPECT_EQ(RunFile(file()).meta("termination"), "reached_end");
+  EXPECT_FALSE(fs::exists(file().string() + "-journal"));
+  EXPECT_NO_THROW(RunFileRecorder(dir_, scene_, Open::resume));
+}
+
 // Where rows are rare, poll() alone must bring them to disk: another process then sees them.
 TEST_F(RunFileTest, PollCommitsWhatHasWaited) {
   RunFileRecorder recorder(dir_, scene_, Open::fresh);
