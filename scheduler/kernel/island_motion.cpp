@@ -8,6 +8,7 @@
 
 #include "brink/core/base/disjoint_sets.h"
 #include "brink/core/base/limits.h"
+#include "brink/scheduler/islands/tolerances.h"
 #include "brink/scheduler/kernel/island_joining.h"
 #include "brink/scheduler/kernel/step_places.h"
 
@@ -95,10 +96,23 @@ std::vector<int> IslandMotion::joining(const World& world, Trajectories& traject
 /// What a step absorbs is found anew with them.
 void IslandMotion::list(double reach) {
   contacts_ = members_.contacts(reach, go_on_);
+  for (HeldContact& c : contacts_) remember_side(c);
   // what an arc may roll to counts along a step alone: until then its end tells all
   if (reach >= 0.0 || by_modes_)
     std::erase_if(contacts_, [](const HeldContact& c) { return c.feature.beside_arc; });
   absorbed_ = 0.0;
+}
+
+/// Where roundings could tell either side of a wire, it is the one on which the step before had the contact.
+void IslandMotion::remember_side(HeldContact& c) const {
+  const Outline& carrier =
+      search_->outline_of(c.feature.sample_on_a ? c.pair.body : search_->other_owner(c.pair));
+  NearFeature& f = c.feature;
+  if (!f.thin || f.at_end || !(std::abs(f.gap) < kSunkOfRadius * carrier.bounding_radius)) return;
+  const HeldContact* known = warm_.find(c);
+  if (known == nullptr || known->feature.at_end || known->feature.normal.dot(f.normal) >= 0.0) return;
+  f.normal = -f.normal;
+  f.gap = -f.gap;
 }
 
 /// Those who come farther with these velocities than features are listed: theirs, as far as they come several times. Not of
@@ -114,8 +128,9 @@ void IslandMotion::list_farther(const std::vector<Vec3>& velocity) {
   if (std::find(far.begin(), far.end(), 1) == far.end()) return;
   std::set<ContactKey> listed;
   for (const HeldContact& c : contacts_) listed.insert(c.key());
-  for (const HeldContact& c : members_.contacts_of(far, go_on_)) {
+  for (HeldContact c : members_.contacts_of(far, go_on_)) {
     if (!listed.insert(c.key()).second) continue;
+    remember_side(c);
     contacts_.push_back(c);
     problem_.contacts.push_back(island_contact(c));
   }

@@ -69,6 +69,7 @@ class IslandMotion {
     double closing = 0.0;                                   ///< then, or a little before [m/s]
   };
   void list(double reach);
+  void remember_side(HeldContact& c) const;
   void list_farther(const std::vector<Vec3>& velocity);
   bool touches(const HeldContact& c) const;
   double impact_of(const HeldContact& c, const std::vector<Vec3>& velocity) const;
