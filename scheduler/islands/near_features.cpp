@@ -313,7 +313,7 @@ bool goes_on_nearer(const Outline& outline, std::size_t j, const std::vector<Nea
   return false;
 }
 
-/// Of a site that goes on smoothly, in a hollow, from one that is nearer to q, with an arc on either side of the joint: its
+/// Of a site that goes on smoothly, in a hollow, from one that is as near to q, with an arc on either side of the joint: its
 /// normal at that end, on the side of the sample's owner. What comes over the joint in a step meets that, not the end as a
 /// point; so does what has sunk by roundings.
 std::optional<Vec2> normal_over_joint(const Half& half, const Sample& sample, std::size_t j,
@@ -328,7 +328,6 @@ std::optional<Vec2> normal_over_joint(const Half& half, const Sample& sample, st
     const Site& other = outline.sites[k];
     if (k == j || other.kind == SiteKind::point || (other.a != end && other.b != end)) continue;
     if (site.kind != SiteKind::arc && other.kind != SiteKind::arc) continue;
-    if (!(nearest[k].distance < nearest[j].distance - tie)) continue;
     if (!joins_smoothly(end, site, other)) continue;
     // to the right of the site: out of a solid; of a wire it is on the side where the sample is, or was
     Vec2 n = perp(leads_from(end, site)) * (at_start ? -1.0 : 1.0);
