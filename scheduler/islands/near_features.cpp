@@ -423,6 +423,46 @@ void turn_outward(const Half& half, const Vec2& q, double side, NearFeature& f) 
   f.upon_corner = true;
 }
 
+/// Where a sample lies that is upon an end of a wire's site, or upon its corner with others.
+struct OnWire {
+  OnCorner where = OnCorner::nowhere;
+  Vec2 normal = Vec2::Zero();  ///< of this side, towards the sample's owner
+};
+
+/// Of a vertex upon an end of site j of a wire: on that of its sides that parts the two there, if one does. On another site's
+/// if one of those does, and none of this: round a corner the vertex meets it no more than a free end. In a hollow corner
+/// none parts the two, and each site counts as elsewhere.
+OnWire on_wire(const Half& half, const Sample& sample, std::size_t j, const Vec2& q, double tie) {
+  const Site& site = half.other.sites[j];
+  if (half.other.solid || site.kind == SiteKind::point || site.radius + sample.radius > 0.0) return {};
+  const Vec2& end = (q - site.a).squaredNorm() < (q - site.b).squaredNorm() ? site.a : site.b;
+  if (!((q - end).norm() <= tie)) return {};
+  const Wedge of_sample = turned(wedge_at(half.carrier, sample.p), [&](const Vec2& d) {
+    return half.other_frame.direction_to_local(half.carrier_frame.direction_to_world(d));
+  });
+  if (of_sample.edges.empty()) return {};
+  const Wedge of_wire = wedge_at(half.other, end);
+  // edges that all lie along the line tell no side
+  const auto has_before = [&](const Vec2& n) {
+    return parts(n, of_sample, of_wire) && std::any_of(of_sample.edges.begin(), of_sample.edges.end(),
+                                                       [&](const Vec2& e) { return n.dot(e) > kAlongLine; });
+  };
+  const Vec2 across = perp(leads_from(end, site));
+  for (const Vec2& n : {across, Vec2(-across)})
+    if (has_before(n)) return {OnCorner::this_side, n};
+  const bool by_another = std::any_of(of_wire.normals.begin(), of_wire.normals.end(), has_before);
+  return {by_another ? OnCorner::other_side : OnCorner::nowhere, Vec2::Zero()};
+}
+
+/// The feature of a vertex upon an end of a wire's site is that of the side on which it lies.
+void turn_to_side(const Half& half, const Vec2& q, const Vec2& normal, NearFeature& f) {
+  const Site& site = half.other.sites[f.site];
+  const Vec2& end = (q - site.a).squaredNorm() < (q - site.b).squaredNorm() ? site.a : site.b;
+  const Vec2 world = half.other_frame.direction_to_world(normal);
+  f.gap = normal.dot(q - end);
+  f.normal = half.on_a ? world : Vec2(-world);
+}
+
 /// Adds the features of sample i: sites that face it; and where it lies inside by roundings, those that are
 /// nearest. What it is merely behind, beyond a tip, is none.
 /// Per site, in this order: upon a corner only the side that faces the owner counts, whatever the distances
@@ -448,7 +488,8 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
   for (std::size_t j = 0; j < nearest.size(); ++j) {
     const double side = side_of(half.other.sites[j], nearest[j], q);
     const OnCorner where = bare ? on_corner(half, j, q, corner) : OnCorner::nowhere;
-    if (where == OnCorner::other_side) continue;
+    const OnWire upon = bare ? on_wire(half, half.carrier.samples[i], j, q, corner) : OnWire{};
+    if (where == OnCorner::other_side || upon.where == OnCorner::other_side) continue;
     const auto over =
         bare ? normal_over_joint(half, half.carrier.samples[i], j, nearest, q, tie) : std::nullopt;
     if (where == OnCorner::nowhere && !over) {
@@ -459,7 +500,10 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
     }
     auto f = feature(half, i, static_cast<int>(j), nearest[j], side, q);
     if (f && where == OnCorner::this_side) turn_outward(half, q, side, *f);
-    if (f && over) put_on_tangent(half, q, *over, *f);
+    if (f && over)
+      put_on_tangent(half, q, *over, *f);
+    else if (f && upon.where == OnCorner::this_side)
+      turn_to_side(half, q, upon.normal, *f);
     // also of one that is still on its way there
     const Site& site = half.other.sites[j];
     const bool flush = bare && site.solid && site.kind == SiteKind::segment &&
