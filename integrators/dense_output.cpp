@@ -22,8 +22,9 @@ Vector3d stacked(const Acceleration& a) { return {a.linear.x(), a.linear.y(), a.
 /// this rate. Divided by a tiny step it would turn into a large velocity and an enormous acceleration that are not there,
 /// so it is left out: the piece then ends within rounding of the accepted pose.
 bool is_rounding(double difference, double a, double b, double rate, double clock) {
+  // of the clock half a rounding at either end of the step, and what h times the rate makes of them
   return std::abs(difference) <=
-         8.0 * kEpsilon * (std::max(std::abs(a), std::abs(b)) + std::abs(rate * clock));
+         kEpsilon * (8.0 * std::max(std::abs(a), std::abs(b)) + 2.0 * std::abs(rate * clock));
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace brink {
 /// Everything that a run goes on from.
 struct SavedRun {
   double time = 0.0, horizon = 0.0;  ///< [s]
-  std::string failure;  ///< why it cannot go on from here; empty: it can
+  std::string failure;               ///< why it cannot go on from here; empty: it can
   CertificateWatch::Saved watch;
   Records::Saved records;
   Endings::Saved endings;
