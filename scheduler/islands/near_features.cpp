@@ -202,13 +202,22 @@ bool lies_within(const Half& half, const Site& arc, const Site& site, const Near
   return !(sides.tells(sunk) && sides.most > -sides.least);
 }
 
+/// To where an arc whose centre is at q would have to face for it to lie on the site, in the carrier's frame: `towards` its
+/// nearest place, which is across it; beyond an end of a straight one, across its line.
+Vec2 facing(const Half& half, const Site& site, const Nearest& nearest, const Vec2& q, const Vec2& towards) {
+  if (site.kind != SiteKind::segment || nearest.foot == Foot::interior) return towards;
+  const Vec2 across = perp(site.b - site.a);
+  const Vec2 way = across.dot(q - site.a) > 0.0 ? Vec2(-across) : across;
+  return half.carrier_frame.direction_to_local(half.other_frame.direction_to_world(way)).normalized();
+}
+
 /// The feature of an arc's sample i that looks past site j, if by no more than may be turned in a step: the end of it there, which
 /// has a feature of its own, and stands here for the arc that may come to lie on the site. Not of what is behind the site; nor of
 /// a wire's arc whose hollow holds the end of one.
-std::optional<NearFeature> beside_arc(const Half& half, int i, int j, const Vec2& towards, double side,
-                                      const Nearest& nearest) {
+std::optional<NearFeature> beside_arc(const Half& half, int i, int j, const Vec2& q, const Vec2& way,
+                                      double side, const Nearest& nearest) {
   const Site &arc = half.carrier.sites[half.carrier.samples[i].arc_site], &site = half.other.sites[j];
-  const Vec2 middle = 0.5 * (arc.a + arc.b) - arc.center;
+  const Vec2 middle = 0.5 * (arc.a + arc.b) - arc.center, towards = facing(half, site, nearest, q, way);
   const double off =
       std::abs(std::atan2(cross(middle, towards), middle.dot(towards))) - 0.5 * std::abs(arc.sweep);
   const bool within = ends_at(half.other, site, nearest) && lies_within(half, arc, site, nearest);
@@ -271,7 +280,7 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
     const double sunk =
         from_outside ? kSunkOfRadius * half.carrier.bounding_radius : kOnePoint * arc.arc_radius;
     if (nearest.distance < arc.arc_radius - sunk && in_sector(arc, towards)) return std::nullopt;
-    if (!in_sector(arc, towards)) return beside_arc(half, i, j, towards, side, nearest);
+    if (!in_sector(arc, towards)) return beside_arc(half, i, j, q, towards, side, nearest);
   }
   NearFeature f;
   f.sample = i;
@@ -290,8 +299,9 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
 
 /// True if the nearest point of site j is an end of it, and another site that has that end, too, is nearer: a
 /// joint of two straight pieces is no corner. A site that rises from there to q's side is a wall ahead.
-bool goes_on_nearer(const Outline& outline, std::size_t j, const std::vector<Nearest>& nearest, const Vec2& q,
-                    double tie) {
+bool goes_on_nearer(const Half& half, const Sample& sample, std::size_t j,
+                    const std::vector<Nearest>& nearest, const Vec2& q, double tie) {
+  const Outline& outline = half.other;
   const Site& site = outline.sites[j];
   if (site.kind == SiteKind::point || nearest[j].foot == Foot::interior) return false;
   const bool at_start = nearest[j].foot == Foot::start;
@@ -306,9 +316,17 @@ bool goes_on_nearer(const Outline& outline, std::size_t j, const std::vector<Nea
   const auto bends = [&](std::size_t k) {
     return site.kind == SiteKind::arc || outline.sites[k].kind == SiteKind::arc;
   };
+  // an arc's centre may be near to what the arc does not face, or has around it
+  const auto is_faced = [&](std::size_t k) {
+    if (sample.arc_site < 0) return true;
+    const Site& arc = half.carrier.sites[sample.arc_site];
+    const Vec2 way = half.other_frame.direction_to_world(nearest[k].point - q);
+    return nearest[k].distance > arc.arc_radius - kSunkOfRadius * half.carrier.bounding_radius &&
+           in_sector(arc, half.carrier_frame.direction_to_local(way));
+  };
   for (std::size_t k = 0; k < nearest.size(); ++k)
     if (k != j && nearest[k].distance < nearest[j].distance - tie &&
-        (outline.sites[k].a == end || outline.sites[k].b == end) && !bends(k) && !rises(k))
+        (outline.sites[k].a == end || outline.sites[k].b == end) && !bends(k) && !rises(k) && is_faced(k))
       return true;
   return false;
 }
@@ -496,7 +514,7 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
       // Behind a site and not on it: a feature only if the sample is inside the solid, and then of the
       // sites that are nearest, as those are what it sank through.
       if (side < 0.0 && nearest[j].distance > tie && (outside || nearest[j].distance > least + tie)) continue;
-      if (goes_on_nearer(half.other, j, nearest, q, tie)) continue;
+      if (goes_on_nearer(half, half.carrier.samples[i], j, nearest, q, tie)) continue;
     }
     auto f = feature(half, i, static_cast<int>(j), nearest[j], side, q);
     if (f && where == OnCorner::this_side) turn_outward(half, q, side, *f);
@@ -656,7 +674,9 @@ double gap_of(const NearFeature& f, const OutlineAt& a, const OutlineAt& b) {
     const Vec2 towards =
         half.carrier_frame.direction_to_local(half.other_frame.direction_to_world(nearest.point - q));
     if (!in_sector(arc, towards))
-      return end_beside(half, arc, towards, site, out, half.other_frame.to_local(f.point)).gap;
+      return end_beside(half, arc, facing(half, site, nearest, q, towards), site, out,
+                        half.other_frame.to_local(f.point))
+          .gap;
   }
   // Beyond a free end nothing is crossed. Where there is no way by, roundings do not make one.
   const double size = half.carrier.bounding_radius + half.other.bounding_radius;
