@@ -62,6 +62,11 @@ bool is_beyond_hollow_end(const Site& site, const Nearest& nearest, double side)
   return side < 0.0 && site.solid && site.kind == SiteKind::segment && nearest.foot != Foot::interior;
 }
 
+/// The end of a site that is nearer to q.
+const Vec2& nearer_end(const Site& site, const Vec2& q) {
+  return (q - site.a).squaredNorm() < (q - site.b).squaredNorm() ? site.a : site.b;
+}
+
 /// How far q is beyond the ends of a straight site, along it [m].
 double beyond_ends(const Site& site, const Vec2& q) {
   const Vec2 d = site.b - site.a;
@@ -373,8 +378,7 @@ OnCorner on_corner(const Half& half, std::size_t j, const Vec2& q, double tie) {
   const Outline& outline = half.other;
   const Site& site = outline.sites[j];
   if (!site.solid || site.kind != SiteKind::segment) return OnCorner::nowhere;
-  const bool at_start = (q - site.a).squaredNorm() < (q - site.b).squaredNorm();
-  const Vec2& end = at_start ? site.a : site.b;
+  const Vec2& end = nearer_end(site, q);
   if (!((q - end).norm() <= tie)) return OnCorner::nowhere;
   // Both sides are equally near there, and roundings alone would choose between them, in every step anew.
   // Where the owner's centre lies is no matter of roundings.
@@ -407,7 +411,7 @@ bool has_hollow_corner(const Outline& outline, std::size_t j, const Vec2& end) {
 /// j the two overlap, be it by a strip of no width (a box right upon another that is as wide).
 bool has_no_way_by(const Half& half, int i, std::size_t j, const Vec2& q) {
   const Site& site = half.other.sites[j];
-  const Vec2& corner = (q - site.a).squaredNorm() < (q - site.b).squaredNorm() ? site.a : site.b;
+  const Vec2& corner = nearer_end(site, q);
   const Wedge of_sample = turned(wedge_at(half.carrier, half.carrier.samples[i].p), [&](const Vec2& d) {
     return half.other_frame.direction_to_local(half.carrier_frame.direction_to_world(d));
   });
@@ -423,7 +427,7 @@ bool has_no_way_by(const Half& half, int i, std::size_t j, const Vec2& q) {
 /// The feature of a sample that comes over a smooth joint is that of the tangent there.
 void put_on_tangent(const Half& half, const Vec2& q, const Vec2& normal, NearFeature& f) {
   const Site& site = half.other.sites[f.site];
-  const Vec2& end = (q - site.a).squaredNorm() < (q - site.b).squaredNorm() ? site.a : site.b;
+  const Vec2& end = nearer_end(site, q);
   const double height = normal.dot(q - end), radius = half.carrier.samples[f.sample].radius;
   const Vec2 world = half.other_frame.direction_to_world(normal);
   f.gap = height - site.radius - radius;
@@ -453,7 +457,7 @@ struct OnWire {
 OnWire on_wire(const Half& half, const Sample& sample, std::size_t j, const Vec2& q, double tie) {
   const Site& site = half.other.sites[j];
   if (half.other.solid || site.kind == SiteKind::point || site.radius + sample.radius > 0.0) return {};
-  const Vec2& end = (q - site.a).squaredNorm() < (q - site.b).squaredNorm() ? site.a : site.b;
+  const Vec2& end = nearer_end(site, q);
   if (!((q - end).norm() <= tie)) return {};
   const Wedge of_sample = turned(wedge_at(half.carrier, sample.p), [&](const Vec2& d) {
     return half.other_frame.direction_to_local(half.carrier_frame.direction_to_world(d));
@@ -475,7 +479,7 @@ OnWire on_wire(const Half& half, const Sample& sample, std::size_t j, const Vec2
 /// The feature of a vertex upon an end of a wire's site is that of the side on which it lies.
 void turn_to_side(const Half& half, const Vec2& q, const Vec2& normal, NearFeature& f) {
   const Site& site = half.other.sites[f.site];
-  const Vec2& end = (q - site.a).squaredNorm() < (q - site.b).squaredNorm() ? site.a : site.b;
+  const Vec2& end = nearer_end(site, q);
   const Vec2 world = half.other_frame.direction_to_world(normal);
   f.gap = normal.dot(q - end);
   f.normal = half.on_a ? world : Vec2(-world);
@@ -582,7 +586,7 @@ bool is_smooth_joint(const Outline& outline, const Sample& sample) {
 /// How far q is before the other side at the nearer end of site j, a straight side of a solid, where the two have a convex
 /// corner [m]; <= 0: it is not. At an acute corner what is beside the one is abreast of the other, and behind its line.
 double before_next_side(const Outline& outline, const Site& site, const Vec2& q) {
-  const Vec2& end = (q - site.a).squaredNorm() < (q - site.b).squaredNorm() ? site.a : site.b;
+  const Vec2& end = nearer_end(site, q);
   double before = 0.0;
   for (const Site& next : outline.sites) {
     if (&next == &site || next.kind != SiteKind::segment || (next.a != end && next.b != end)) continue;
@@ -648,7 +652,7 @@ std::vector<NearFeature> near_features(const Outline& a, const ExtendedState& st
     if (half.other.is_point() && !(both && half.on_a)) continue;
     for (int i = 0; i < static_cast<int>(half.carrier.samples.size()); ++i)
       if (const Sample& s = half.carrier.samples[i];
-          !s.hollow && !is_smooth_joint(half.carrier, s) && !out_of_reach(half, s, reach))
+          !s.hollow && !out_of_reach(half, s, reach) && !is_smooth_joint(half.carrier, s))
         add_features(half, i, reach, found);
   }
   return found;

@@ -63,15 +63,18 @@ double look_ahead(Kernel& kernel, double end) {
   double seen = kernel.follow_motions(end);
   const Periods& periods = kernel.world().periods;
   if (!periods.any()) return seen;
-  const double most = kMostPeriods * periods.least(), now = kernel.time();
+  const double now = kernel.time();
   const int bodies = kernel.body_count(), sites = static_cast<int>(kernel.world().sites.size());
   for (int k = 0; k < bodies + sites; ++k) {
     const Motion& motion = k < bodies ? kernel.body(k).motion : kernel.site_motion(k - bodies);
     if (motion.is_still()) continue;
+    // ahead of what is certain a motion may begin later than now
+    const double from = std::max(now, motion.begin());
     const auto goes_far = [&] {
-      return !(swept_box(kernel.outline_of(k), motion, now, seen).extent().maxCoeff() <= most);
+      const Vec2 way = swept_box(kernel.outline_of(k), motion, from, seen).extent();
+      return (periods.size.array() > 0.0 && !(way.array() <= kMostPeriods * periods.size.array())).any();
     };
-    while (seen - now > kShortestHorizon && goes_far()) seen = now + 0.5 * (seen - now);
+    while (seen - now > kShortestHorizon && from < seen && goes_far()) seen = now + 0.5 * (seen - now);
   }
   return seen;
 }
