@@ -418,7 +418,8 @@ StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, b
     Solved solved = solve(solver, problem_of(step, h, parts), swept, keep, outcome.factorisations, go_on);
     StepResult& result = solved.result;
     if (result.status == StepResult::Status::stopped) return outcome;
-    if (!(result.residual <= kResidual)) return without_loads(step, h, gaps, go_on, farther, outcome);
+    outcome.no_room = !(result.residual <= kResidual);
+    if (outcome.no_room) return without_loads(step, h, gaps, go_on, farther, outcome);
     const std::size_t listed = step.contacts.size();
     if (farther) farther(result.velocity);
     for (std::size_t k = listed; k < step.contacts.size(); ++k) waiting.push_back(k);

@@ -63,6 +63,8 @@ using ListFarther = std::function<void(const std::vector<Vec3>& velocity)>;
 
 struct StepOutcome {
   bool solved = false;  ///< every gap stays within its tolerance along the step; not where GoOn said no
+  /// Where it is not solved: no velocities keep all gaps, as where sites that move close in on a body.
+  bool no_room = false;
   int factorisations = 0;
   /// Energy that the step made [J], beyond what sites that move gave: at most 1e-3 of what it turned over. 0 where
   /// none does: all is slowed by as much then.

@@ -207,6 +207,15 @@ bool lies_within(const Half& half, const Site& arc, const Site& site, const Near
   return !(sides.tells(sunk) && sides.most > -sides.least);
 }
 
+/// True if the site leads into the arc's circle: by the one of its ends that is farther from that.
+bool leads_within(const Half& half, const Site& arc, const Site& site) {
+  const auto above = [&](const Vec2& p) {
+    return (half.carrier_frame.to_local(half.other_frame.to_world(p)) - arc.center).norm() - arc.arc_radius;
+  };
+  const double a = above(site.a), b = above(site.b);
+  return (std::abs(a) > std::abs(b) ? a : b) < 0.0;
+}
+
 /// To where an arc whose centre is at q would have to face for it to lie on the site, in the carrier's frame: `towards` its
 /// nearest place, which is across it; beyond an end of a straight one, across its line.
 Vec2 facing(const Half& half, const Site& site, const Nearest& nearest, const Vec2& q, const Vec2& towards) {
@@ -229,7 +238,9 @@ std::optional<NearFeature> beside_arc(const Half& half, int i, int j, const Vec2
   if (side < 0.0 || off > kTurnedInStep || (!arc.solid && within)) return std::nullopt;
   const Vec2 out = half.other_frame.direction_to_local(half.carrier_frame.direction_to_world(-towards));
   const ArcEnd end = end_beside(half, arc, towards, site, out, nearest.point);
-  if (end.gap < -kSunkOfRadius * half.carrier.bounding_radius) return std::nullopt;
+  // who is sunk into a wire's arc from its hollow is on that side of it
+  const bool sunk_from_within = end.gap < 0.0 && !arc.solid && leads_within(half, arc, site);
+  if (end.gap < -kSunkOfRadius * half.carrier.bounding_radius || sunk_from_within) return std::nullopt;
   NearFeature f;
   f.sample = i;
   f.site = j;
@@ -451,9 +462,20 @@ struct OnWire {
   Vec2 normal = Vec2::Zero();  ///< of this side, towards the sample's owner
 };
 
+/// True of two corners at one place if the edges of the one lie between those of the other.
+bool is_within(const Wedge& inner, const Wedge& outer) {
+  if (inner.edges.size() != 2 || outer.edges.size() != 2) return false;
+  const Vec2 &from = outer.edges[0], &to = outer.edges[1];
+  const double turn = cross(from, to) > 0.0 ? 1.0 : -1.0;
+  return std::all_of(inner.edges.begin(), inner.edges.end(), [&](const Vec2& e) {
+    return turn * cross(from, e) >= -kAlongLine && turn * cross(e, to) >= -kAlongLine &&
+           e.dot(from + to) > 0.0;
+  });
+}
+
 /// Of a vertex upon an end of site j of a wire: on that of its sides that parts the two there, if one does. On another site's
 /// if one of those does, and none of this: round a corner the vertex meets it no more than a free end. In a hollow corner
-/// none parts the two, and each site counts as elsewhere.
+/// none parts the two, and each site counts as elsewhere; but the hollow itself meets no side of the corner that is in it.
 OnWire on_wire(const Half& half, const Sample& sample, std::size_t j, const Vec2& q, double tie) {
   const Site& site = half.other.sites[j];
   if (half.other.solid || site.kind == SiteKind::point || site.radius + sample.radius > 0.0) return {};
@@ -473,7 +495,8 @@ OnWire on_wire(const Half& half, const Sample& sample, std::size_t j, const Vec2
   for (const Vec2& n : {across, Vec2(-across)})
     if (has_before(n)) return {OnCorner::this_side, n};
   const bool by_another = std::any_of(of_wire.normals.begin(), of_wire.normals.end(), has_before);
-  return {by_another ? OnCorner::other_side : OnCorner::nowhere, Vec2::Zero()};
+  const bool elsewhere = by_another || is_within(of_wire, of_sample);
+  return {elsewhere ? OnCorner::other_side : OnCorner::nowhere, Vec2::Zero()};
 }
 
 /// The feature of a vertex upon an end of a wire's site is that of the side on which it lies.

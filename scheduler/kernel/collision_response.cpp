@@ -32,6 +32,12 @@ double speed_of(const ImpulseSide& side) {
   return twist.velocity.lpNorm<1>() + std::abs(twist.omega) * side.arm.cast<double>().norm();
 }
 
+/// By how much the speed of the body's point there differs between two states of one moment and another [m/s].
+double change_of_speed(const ExtendedState& now, const ExtendedState& then, const RealVec& point) {
+  const ExtendedTwist change{now.twist.velocity - then.twist.velocity, now.twist.omega - then.twist.omega};
+  return speed_of({change, point - now.position, 0.0, 0.0, 0.0});
+}
+
 /// The state `delay` later of what moves so. What forces do to it in so short a while counts on a parabola alone:
 /// elsewhere an integrator is off by far more.
 ExtendedState later(const ExtendedState& s, Real delay, const Motion& motion) {
@@ -175,6 +181,10 @@ CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const F
   const auto law = reflects_ ? resolve_reflection : resolve_impulse;
   r.impulse = law(side, other_side, c.normal, material);
   r.magnitude = std::max(speed_of(side), speed_of(other_side));
+  // where the moment of contact lies before the clock, what forces have added by now is no approach
+  if (r.delay < 0)
+    r.magnitude +=
+        (change_of_speed(r.body, body, c.point) + change_of_speed(r.other, other, c.point)) / kEpsilon;
   // an approach that the law does not see was rounding, all of it
   const bool held = trajectories_->is_held(pair.body) ||
                     (!pair.with_site() && trajectories_->is_held(pair.other_body));  // by state_now()

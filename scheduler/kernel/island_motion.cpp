@@ -54,6 +54,9 @@ constexpr double kNoForce = 1e-9;
 constexpr double kWorthwhile = 0.25;
 /// Members of an agitated island that are closer than this part of the smallest member's size stay together.
 constexpr double kRattles = 0.25;
+/// What meets again within this part of a step has never been apart; so many halvings of that are looked at.
+constexpr double kAtOnce = 1.0 / 32.0;
+constexpr int kLooksBack = 6;
 /// A speed below this part of what the smallest member gains as it falls by its size is none.
 constexpr double kNoSpeed = 1e-7;
 
@@ -342,6 +345,9 @@ bool IslandMotion::take(double h, double tolerance) {
     const StepOutcome outcome =
         take_step(*solver_, problem_, h, search_->limits().tolerance, gaps, go_on_,
                   [this](const std::vector<Vec3>& velocity) { list_farther(velocity); });
+    no_room_ =
+        outcome.no_room && std::any_of(contacts_.begin(), contacts_.end(),
+                                       [this](const HeldContact& c) { return members_.on_moving_site(c); });
     // work is counted of every try, all else of the step that is taken
     tally_->factorisations += outcome.factorisations;
     // looked at after the solver: contacts may hand on more speed than anybody had
@@ -551,6 +557,26 @@ bool IslandMotion::pushes(const HeldContact& c) const {
          kNoForce * members_.heaviest() * members_.pull();
 }
 
+/// True if the two, which touch, would meet again at once if both were let go, in a small part of the step, though a step of
+/// constant twists opens their gap: an arc that turns under a body which forces lift, but not as fast as it bends away.
+bool IslandMotion::falls_back(const HeldContact& c) const {
+  if (!touches(c)) return false;
+  std::vector<Vec3> velocity = velocities();
+  const auto add_fall = [&](int member, double time) {
+    const Acceleration& a = members_.acceleration(member);
+    // the way of a time with the mean velocity of a fall is that of the fall
+    velocity[member] += 0.5 * time * Vec3(a.linear.x(), a.linear.y(), a.angular);
+  };
+  double before = 0.0;
+  for (double time = h_ * kAtOnce * std::ldexp(1.0, -kLooksBack); time <= h_ * kAtOnce; time *= 2.0) {
+    add_fall(members_.place_of(c.pair.body), time - before);
+    if (!c.pair.with_site()) add_fall(members_.place_of(c.pair.other_body), time - before);
+    before = time;
+    if (members_.gap(c, time, velocity) - kept(c.feature) < -search_->limits().tolerance) return true;
+  }
+  return false;
+}
+
 /// Nothing pushes, but one of the two alone, left to its parabola, could run into the other's step: that has the
 /// twist of its end from the start on, which a parabola comes to by and by. Where others push both, each takes steps, and
 /// there is no parabola: what rolls along beside a heap, touching nobody, does not keep it awake. By modes, it has just been
@@ -566,7 +592,7 @@ bool IslandMotion::stays_near(const HeldContact& c, bool both_pushed) const {
     return !c.pair.with_site() && c.feature.gap - h_ * (closing + behind) <= tolerance;
   }
   // a site takes no step: whoever is let go meets it by the ordinary search
-  if (c.pair.with_site()) return false;
+  if (c.pair.with_site()) return falls_back(c);
   const double closing = members_.closing_speed(c, after(members_.place_of(c.pair.body)).twist,
                                                 after(members_.place_of(c.pair.other_body)).twist);
   return c.feature.gap - h_ * (closing + behind) <= tolerance;

@@ -50,6 +50,8 @@ class IslandMotion {
   /// Takes a step of `h` [s] at most, and less where that does not do. False: not even the shortest does.
   /// `tolerance`: what its places may be off by the order of the step [m], 0: any. @pre sites are covered as far.
   bool take(double h, double tolerance);
+  /// True where that was so as sites that move leave the members no room.
+  bool has_no_room() const { return no_room_; }
 
   /// Members that push each other, or are coupled to such, together; and those that nothing pushes.
   struct Parts {
@@ -93,6 +95,7 @@ class IslandMotion {
   double kinetic_energy() const;
   bool pushes(const HeldContact& c) const;
   bool stays_near(const HeldContact& c, bool both_pushed) const;
+  bool falls_back(const HeldContact& c) const;
   std::vector<std::pair<int, int>> neighbours() const;
   ContactMode mode_of(const HeldContact& c, bool rests) const;
   std::vector<Vec3> velocities() const;
@@ -104,7 +107,7 @@ class IslandMotion {
   IslandTally* tally_;
   WarmContacts warm_;
   GoOn go_on_;
-  bool by_modes_ = false, agitated_ = false, impacts_in_step_ = false;
+  bool by_modes_ = false, agitated_ = false, impacts_in_step_ = false, no_room_ = false;
   double h_ = 0.0, absorbed_ = 0.0;
   std::vector<HeldContact> contacts_;
   IslandStep problem_;

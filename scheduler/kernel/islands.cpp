@@ -294,8 +294,9 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
     run_->stop(
         Termination::failed,
         fmt::format("an island of {} bodies, '{}' the first, finds no step at t = {:.17g} that keeps its "
-                    "contacts",
-                    members.size(), world_->bodies[*members.begin()].name, now));
+                    "contacts{}",
+                    members.size(), world_->bodies[*members.begin()].name, now,
+                    motion.has_no_room() ? ": sites that move leave no room" : ""));
     return give_up();
   }
   ++tally_.steps;

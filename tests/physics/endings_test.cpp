@@ -154,6 +154,26 @@ TEST(Stops, LeaveNoGapAndNothingTwiceInTheFrames) {
   }
 }
 
+// A piston comes down on a box that lies on a floor, which nothing can keep both out of.
+TEST(Endings, ABodyThatASiteCrushesIsTold) {
+  World world;
+  world.gravity = {0.0, -9.81};
+  world.materials[0].restitution = 0.0;
+  add(world, site(make_box(10.0, 1.0), {0.0, -0.5}));
+  FixedSite piston = site(make_box(3.0, 0.5), {0.0, 2.0});
+  piston.motion = ConstantMotion{{Vec2(0.0, -1.0), 0.0}};
+  add(world, piston);
+  add(world, body(make_box(1.0, 1.0), {0.0, 0.5}, {0.0, 0.0}));
+  SolverOptions options;
+  options.persistent = true;
+  Simulator simulator(world, options);
+  const RunSummary summary = simulator.run(until(3.0));
+  EXPECT_EQ(summary.termination, Termination::failed);
+  EXPECT_NE(summary.why.find("finds no step"), std::string::npos) << summary.why;
+  EXPECT_NE(summary.why.find("sites that move leave no room"), std::string::npos) << summary.why;
+  EXPECT_NEAR(simulator.time(), 0.75, 1e-9);
+}
+
 // Fifty million overlapping pairs: the first are named.
 TEST(Starts, TenThousandBodiesInOnePlaceAreRefusedByTheFirstFew) {
   World world;

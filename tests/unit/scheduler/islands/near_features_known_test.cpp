@@ -47,6 +47,20 @@ bool lists(const std::vector<NearFeature>& found, int sample, int site) {
   });
 }
 
+// A corner of wire in the hollow corner of another, its side flush upon the one piece: the hollow meets it from below alone.
+TEST(NearFeatures, CornerOfWireInAHollowOfWireIsAboveIt) {
+  const Outline hollow = make_chain({{-2.0, 1.5}, {0.0, 0.0}, {2.0, 1.0}}, false).outline;
+  const Outline triangle = make_chain({{0.0, 0.0}, {0.4, 0.2}, {0.1, 0.4}}, true).outline;
+  Random random(1);
+  for (int k = 0; k < 200; ++k) {
+    const Vec2 off(random.uniform(-1e-12, 1e-12), random.uniform(0.0, 1e-12));
+    for (const NearFeature& f : between(triangle, {off, random.uniform(-1e-13, 1e-13)}, hollow, {}, 1e-9))
+      EXPECT_GT(f.normal.y(), 0.0) << "sample " << f.sample << (f.sample_on_a ? "" : " of the hollow")
+                                   << ", site " << f.site << ", gap " << f.gap << ", off by "
+                                   << off.transpose();
+  }
+}
+
 // Still over the floor, it comes to a wall that rises from the floor's end: whatever its slope.
 TEST(NearFeatures, WallThatRisesFromAJointIsAhead) {
   for (const Vec2& top : {Vec2(1, 1), Vec2(2, 0.1), Vec2(0, 1)}) {
