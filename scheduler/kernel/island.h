@@ -66,11 +66,14 @@ class WarmContacts {
 struct IslandPace {
   int hasty = 0;      ///< steps by modes in a row that hardly led on
   int agitation = 0;  ///< raised by a step that an impact cuts short, lowered by one in which there is none
+  double step =
+      std::numeric_limits<double>::infinity();  ///< the last, where forces that change bounded it [s]
 
   /// Of islands that go on as one.
   void join(const IslandPace& other) {
     hasty = std::max(hasty, other.hasty);
     agitation = std::max(agitation, other.agitation);
+    step = std::min(step, other.step);
   }
 };
 

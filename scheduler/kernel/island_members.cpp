@@ -41,6 +41,24 @@ void IslandMembers::find_speeds() {
   }
 }
 
+bool IslandMembers::are_constant() const {
+  for (int i = 0; i < static_cast<int>(count()); ++i)
+    if (!is_constant(i)) return false;
+  return true;
+}
+
+std::vector<Acceleration> IslandMembers::accelerations_along(double h,
+                                                             const std::vector<Vec3>& velocity) const {
+  std::vector<BodyState> halfway;
+  for (int i = 0; i < static_cast<int>(count()); ++i) {
+    halfway.push_back(moved(i, 0.5 * h, velocity).rounded());
+    halfway.back().twist = as_twist(velocity[i]);
+  }
+  std::vector<Acceleration> along(count());
+  trajectories_->accelerations(bodies_, now_ + 0.5 * h, halfway, along);
+  return along;
+}
+
 double IslandMembers::guess_of(int member) const {
   // Its speed with what forces on it make of that in the step, the largest pull of anybody, which contacts
   // may hand on, and a hundredth of the fastest member's speed. Steps are checked against it.

@@ -40,6 +40,7 @@ class IslandMembers {
   bool has(int body) const { return std::binary_search(bodies_.begin(), bodies_.end(), body); }
   const ExtendedState& state(int member) const { return states_[member]; }
   const Acceleration& acceleration(int member) const { return accelerations_[member]; }
+  const std::vector<Acceleration>& accelerations() const { return accelerations_; }
   /// Gives a member another twist; find_speeds() is due then.
   void set_twist(int member, const ExtendedTwist& twist) { states_[member].twist = twist; }
   void find_speeds();
@@ -95,6 +96,9 @@ class IslandMembers {
   /// When forces on the member next jump [s]; whether until then they depend on nothing; who is coupled to it.
   double next_break(int member) const { return trajectories_->next_break(bodies_[member]); }
   bool is_constant(int member) const { return trajectories_->is_constant(bodies_[member]); }
+  bool are_constant() const;
+  /// What forces make of the members' motion in the middle of a step of h [s] that they take with these twists.
+  std::vector<Acceleration> accelerations_along(double h, const std::vector<Vec3>& velocity) const;
   std::vector<int> coupled_to(int member) const;
 
  private:

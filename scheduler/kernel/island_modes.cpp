@@ -107,15 +107,16 @@ double IslandModes::speed() const {
 }
 
 bool IslandModes::suits() const {
-  if (limits_.contacts == 0 || members_->count() > kModeBodies) return false;
+  const std::size_t most =
+      members_->are_constant() ? limits_.contacts : std::max(limits_.contacts, kContactsOfChanging);
+  if (most == 0 || members_->count() > kModeBodies) return false;
   // places are doubles in modes: far from the origin a touch is lost in their rounding
   for (int i = 0; i < static_cast<int>(members_->count()); ++i)
     if (kEpsilon * members_->state(i).position.cast<double>().norm() > kRounding * search_->limits().touch)
       return false;
   const std::vector<HeldContact> near = members_->contacts(search_->limits().tolerance);
   // rolling resistance has no mode here, and between corners roundings choose the side
-  return near.size() <= limits_.contacts &&
-         std::none_of(near.begin(), near.end(), [this](const HeldContact& c) {
+  return near.size() <= most && std::none_of(near.begin(), near.end(), [this](const HeldContact& c) {
            return is_corner_on_corner(c) || response_->material_of(c.pair).rolling_resistance > 0.0;
          });
 }

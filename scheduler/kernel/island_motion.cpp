@@ -54,6 +54,12 @@ constexpr double kNoForce = 1e-9;
 constexpr double kWorthwhile = 0.25;
 /// Members of an agitated island that are closer than this part of the smallest member's size stay together.
 constexpr double kRattles = 0.25;
+/// Forces that change with place, velocity or time may change by this part of the largest pull that a step so long may have
+/// in half of it, and are asked for again until they do by no more than roundings; each time they come nearer by half at least.
+constexpr double kChanges = 0.1, kForcesAgree = 1e-10, kComesNearer = 0.5;
+constexpr int kForcePasses = 30;
+/// A step under such forces is no longer than so many times the one before.
+constexpr double kLonger = 2.0;
 /// What meets again within this part of a step has never been apart; so many halvings of that are looked at.
 constexpr double kAtOnce = 1.0 / 32.0;
 constexpr int kLooksBack = 6;
@@ -317,6 +323,7 @@ bool IslandMotion::take(double h, double tolerance) {
   contacts_.clear();
   if (!(h < kForever)) return true;  // nothing moves or pulls: nobody needs anybody
   double change_before = kForever;
+  if (!members_.are_constant()) h = std::min(h, kLonger * expected_);
   const double shortest = kShortest * h, pull = members_.pull();
   // h^2 a / 2 = tolerance for a body that falls: what places may be off in a step that begins at rest
   if (tolerance > 0.0 && pull > 0.0) h = std::clamp(std::sqrt(2.0 * tolerance / pull), shortest, h);
@@ -330,7 +337,7 @@ bool IslandMotion::take(double h, double tolerance) {
   // Each turn returns, or shortens the step, and that ends: `shortest` bounds what the tolerance asks for, kHalvings
   // the others.
   for (int halving = 0; halving <= kHalvings && go_on_();) {
-    look(h);
+    look(asked_ = h);
     if (const double first = next_arrival(); first < h) {  // an impact ends the step
       impacts_in_step_ = impacts_in_step_ || first < worthwhile;
       // up to the impact, with which the next step begins; features are listed for the shorter way
@@ -342,9 +349,7 @@ bool IslandMotion::take(double h, double tolerance) {
         return places.gap(contacts_[k], later) - kept(contacts_[k].feature);
       };
     };
-    const StepOutcome outcome =
-        take_step(*solver_, problem_, h, search_->limits().tolerance, gaps, go_on_,
-                  [this](const std::vector<Vec3>& velocity) { list_farther(velocity); });
+    const StepOutcome outcome = take_under_forces(gaps);
     no_room_ =
         outcome.no_room && std::any_of(contacts_.begin(), contacts_.end(),
                                        [this](const HeldContact& c) { return members_.on_moving_site(c); });
@@ -449,14 +454,65 @@ void IslandMotion::make_problem() {
   problem_.velocity = velocities();
   for (std::size_t i = 0; i < members_.count(); ++i) {
     const Body& b = members_.body(static_cast<int>(i));
-    const Acceleration& a = members_.acceleration(static_cast<int>(i));
     // infinity: held (RestProblem)
     problem_.mass.emplace_back(b.lock_x ? kForever : b.mass, b.lock_y ? kForever : b.mass,
                                b.lock_angle ? kForever : b.inertia);
-    problem_.force.emplace_back(b.mass * a.linear.x(), b.mass * a.linear.y(), b.inertia * a.angular);
   }
+  problem_.force = forces(members_.accelerations());
   // in the order of contacts_: take_forces() leads back by place
   for (const HeldContact& c : contacts_) problem_.contacts.push_back(island_contact(c));
+}
+
+/// On each member [N], [N m].
+std::vector<Vec3> IslandMotion::forces(const std::vector<Acceleration>& accelerations) const {
+  std::vector<Vec3> all;
+  for (std::size_t i = 0; i < accelerations.size(); ++i) {
+    const Body& b = members_.body(static_cast<int>(i));
+    const Acceleration& a = accelerations[i];
+    all.emplace_back(b.mass * a.linear.x(), b.mass * a.linear.y(), b.inertia * a.angular);
+  }
+  return all;
+}
+
+/// By how much the accelerations of any member's points differ at most [m/s^2].
+double IslandMotion::largest_change(const std::vector<Vec3>& forces, const std::vector<Vec3>& others) const {
+  double most = 0.0;
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    const Body& b = members_.body(static_cast<int>(i));
+    const Vec3 change = forces[i] - others[i];
+    most =
+        std::max(most, change.head<2>().norm() / b.mass +
+                           std::abs(change[2]) / b.inertia * members_.bounding_radius(static_cast<int>(i)));
+  }
+  return most;
+}
+
+/// A step of h_ under the forces that its members have halfway, with the twists of the step: these are found by asking for them
+/// again with what they make, until that changes nothing. So a step wins nothing from a spring, as it wins nothing from
+/// gravity: what it takes is the force's work along its way. Not solved where forces change by so much in the step that
+/// they do not come to an end, or that an explicit look at them says little.
+StepOutcome IslandMotion::take_under_forces(const GapsAlong& gaps) {
+  const std::vector<Vec3> before = problem_.velocity, at_start = problem_.force;
+  const bool constant = members_.are_constant();
+  const double most = kOfFall * kOfFall * members_.size() / (h_ * h_);  // longest() has no larger pull
+  StepOutcome outcome;
+  double last = kForever;
+  for (int pass = 0; pass < kForcePasses; ++pass) {
+    const int so_far = outcome.factorisations;
+    outcome = take_step(*solver_, problem_, h_, search_->limits().tolerance, gaps, go_on_,
+                        [this](const std::vector<Vec3>& velocity) { list_farther(velocity); });
+    outcome.factorisations += so_far;
+    if (!outcome.solved || constant) return outcome;
+    std::vector<Vec3> along = forces(members_.accelerations_along(h_, problem_.velocity));
+    const double off = largest_change(along, problem_.force);
+    if (largest_change(along, at_start) > kChanges * most || off > kComesNearer * last) break;
+    if (off <= kForcesAgree * most) return outcome;
+    last = off;
+    problem_.velocity = before;
+    problem_.force = std::move(along);
+  }
+  outcome.solved = false;
+  return outcome;
 }
 
 /// Geometry at the start of the step; forces of the step before, from which friction bounds come.

@@ -42,6 +42,10 @@ class IslandMotion {
   /// From now on impacts do not end steps: those that would come within a step are taken where it begins, as far apart
   /// as the two still are.
   void expect_agitation() { agitated_ = true; }
+  /// Where forces change with place, velocity or time, a step of so long will do [s], about.
+  void expect_step(double h) { expected_ = h; }
+  /// What to expect for the next [s]; infinity: anything.
+  double next_step() const { return members_.are_constant() ? kForever : asked_; }
   /// True if impacts cut the step short, or were taken before they came.
   bool impacts_in_step() const { return impacts_in_step_; }
   const WarmContacts& warm() const { return warm_; }
@@ -86,6 +90,9 @@ class IslandMotion {
     return f.thin ? thin_level_at_most(search_->limits().touch, search_->limits().tolerance) : 0.0;
   }
   void make_problem();
+  std::vector<Vec3> forces(const std::vector<Acceleration>& accelerations) const;
+  double largest_change(const std::vector<Vec3>& forces, const std::vector<Vec3>& others) const;
+  StepOutcome take_under_forces(const GapsAlong& gaps);
   IslandContact island_contact(const HeldContact& c) const;
   void note_shape(const HeldContact& c, IslandContact& made) const;
   double way_in_step(int member, const std::vector<Vec3>& velocity) const;
@@ -109,6 +116,8 @@ class IslandMotion {
   GoOn go_on_;
   bool by_modes_ = false, agitated_ = false, impacts_in_step_ = false, no_room_ = false;
   double h_ = 0.0, absorbed_ = 0.0;
+  double expected_ = std::numeric_limits<double>::infinity();
+  double asked_ = 0.0;  ///< the length of the step, but for what impacts cut off it [s]
   std::vector<HeldContact> contacts_;
   IslandStep problem_;
 };

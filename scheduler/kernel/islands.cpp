@@ -244,6 +244,14 @@ bool Islands::follow_sites(double now, double h) {
   return true;
 }
 
+/// How long no force on the members jumps, or changes by more than a step sees that looks at its begin and halfway [s].
+double Islands::steady_for(const std::set<int>& members, double now) {
+  double until = kForever;
+  for (const int k : members)
+    until = std::min({until, trajectories_->next_break(k), trajectories_->steady_until(k)});
+  return until - now;
+}
+
 /// `longest`: the step is no longer [s]. `on_time`: the one before has come to its end, so its modes may hold
 /// still. The last thing that its caller does: false where the run stops for now, too, which may go on later.
 bool Islands::begin_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time) {
@@ -268,6 +276,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
     return false;
   };
   const double now = run_->time();
+  motion.expect_step(pace.step);
   IslandModes modes(motion.members(), *trajectories_, *search_, *response_, by_modes_, motion.warm());
   // what buzzes is spared modes for some steps (next_hasty)
   if (pace.hasty < kMostHasty && modes.suits()) motion.expect_modes();
@@ -285,7 +294,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   if (run_->is_cut()) return give_up();
   const bool rests = motion.rests(limits_.rest_speed);
   // anew: impacts have changed speeds
-  const double h = std::min(longest, motion.longest());
+  const double h = std::min({longest, motion.longest(), steady_for(members, now)});
   if (!rests && std::isfinite(h) && !follow_sites(now, h)) return give_up();
   // rest first: it is exact and free; modes next, as they keep to a tolerance; steps of first order last
   const bool by_modes = !rests && motion.take(modes, now, h, on_time);
@@ -303,6 +312,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   if (by_modes) tell(modes, motion.members());
   pace.hasty = next_hasty(pace.hasty, by_modes, by_modes && modes.end() - now < kHasty * h);
   pace.agitation = next_agitation(pace.agitation, motion.impacts_in_step());
+  pace.step = rests || by_modes ? kForever : motion.next_step();
   if (rests) note_change(EventKind::sleep, *members.begin()), ++tally_.slept;
   // only for a step that has been found: it puts members into islands again
   part(motion, rests, by_modes ? &modes : nullptr, pace, changed);

@@ -82,6 +82,7 @@ class Islands {
   double larger_step_end(int body, std::size_t than) const;
   IslandMotion set_out(std::set<int>& members, IslandPace& pace, double& longest);
   bool follow_sites(double now, double h);
+  double steady_for(const std::set<int>& members, double now);
   void tell_at(double limit, const PairKey& pair, const FeatureContact& contact);
   bool begin_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time = false);
   bool carry_out_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time);
