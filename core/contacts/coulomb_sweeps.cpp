@@ -18,30 +18,47 @@ Triple inverse(const Vec3& mass) {
   return Triple::of(mass.unaryExpr([](double m) { return std::isinf(m) ? 0.0 : 1.0 / m; }));
 }
 
-/// A contact with what its two bodies yield to it.
-struct Yielding {
-  Triple normal_on_body, normal_on_other, tangent_on_body, tangent_on_other;
-  int body, other;    ///< places of bodies; of what does not yield the last
-  double nn, nt, tt;  ///< change of v_n, v_t at the contact for an impulse of 1 along each
-  /// Impulses for a change of 1: of both along the two, where both are to be 0; of the normal alone; of the normal with
-  /// friction at its most along the tangent, and against it; of the spin. 0 where nothing yields.
-  double nn_of, nt_of, tt_of, normal_alone, with_friction, against_friction, rolling_alone;
-  double room;                   ///< speed of opening at which the gap is closed in the step, below 0 [m/s]
-  double slides, turns;          ///< tangential speed and spin of the support
-  double friction, rolling_arm;  ///< largest q, and torque, for p = 1
-};
-
-double dot(const Triple& a, const Triple& u, const Triple& b, const Triple& v) {
-  const Four sum = four(a.at) * four(u.at) + four(b.at) * four(v.at);
-  return sum[0] + sum[1] + sum[2];
-}
-
 double yields(const Triple& a, const Triple& of_body, const Triple& b, const Triple& of_other,
               const Triple& c, const Triple& d) {
   double sum = 0.0;
   for (int k = 0; k < 3; ++k) sum += a.at[k] * of_body.at[k] * c.at[k] + b.at[k] * of_other.at[k] * d.at[k];
   return sum;
 }
+
+/// Contacts that share no body are taken side by side, so many at a time: one number of each is in one register.
+constexpr int kAbreast = 8;
+using Lanes = double[kAbreast];
+
+/// Of bodies side by side.
+struct alignas(64) Motions {
+  Lanes x, y, angle;
+};
+
+/// Impulses of contacts side by side.
+struct alignas(64) Loads {
+  Lanes normal, tangential, rolling;
+};
+
+/// Of a sweep, lane by lane.
+struct alignas(64) Largest {
+  Lanes change, load;
+};
+inline double larger(double a, double b) { return a < b ? b : a; }
+
+/// Contacts side by side, with what their bodies yield to them.
+struct alignas(64) Yielding {
+  Motions inverse_mass, other_inverse_mass;
+  Lanes x, y;  ///< the normal, for the body: the tangent is (-y, x), and for the other both are the opposite
+  Lanes normal_turns, other_normal_turns, tangent_turns, other_tangent_turns;  ///< along the angle
+  Lanes nn, nt, tt;  ///< change of v_n, v_t at the contact for an impulse of 1 along each
+  /// Impulses for a change of 1: of both along the two, where both are to be 0; of the normal alone; of the normal with
+  /// friction at its most along the tangent, and against it; of the spin. 0 where nothing yields.
+  Lanes nn_of, nt_of, tt_of, normal_alone, with_friction, against_friction, rolling_alone;
+  Lanes room;                   ///< speed of opening at which the gap is closed in the step, below 0 [m/s]
+  Lanes slides, turns;          ///< tangential speed and spin of the support
+  Lanes friction, rolling_arm;  ///< largest q, and torque, for p = 1
+  int body[kAbreast], other[kAbreast];  ///< places of bodies; of what does not yield the last
+};
 
 class Sweeps {
  public:
@@ -56,133 +73,211 @@ class Sweeps {
     // what does not yield: at rest, and nothing moves it
     inverse_mass_.push_back(Triple{});
     velocity_.push_back(Triple{});
-    for (const StepContact& s : problem.contacts) add(s, problem.duration);
-  }
-
-  void begin_with(const std::vector<ContactLoad>& loads) {
-    for (std::size_t k = 0; k < loads.size(); ++k) change(contacts_[k], loads[k]);
+    take_places(problem.contacts);
+    for (std::size_t k = 0; k < places_.size(); ++k) add(problem.contacts[k], problem.duration, places_[k]);
+    for (std::size_t n = 0; n < contacts_.size(); ++n) change(contacts_[n], loads_[n]);
   }
 
   /// All contacts once, in their order or in the reverse.
-  void sweep(bool forwards, std::vector<ContactLoad>& loads, double& most_changed, double& largest);
+  void sweep(bool forwards, double& most_changed, double& largest);
+
+  /// Of the problem's contacts, in their order.
+  std::vector<ContactLoad> loads() const {
+    std::vector<ContactLoad> loads;
+    for (const auto [n, lane] : places_)
+      loads.push_back({loads_[n].normal[lane], loads_[n].tangential[lane], loads_[n].rolling[lane]});
+    return loads;
+  }
 
  private:
-  void add(const StepContact& s, double h) {
-    const LastingContact& c = s.contact;
-    Yielding y{};
-    y.normal_on_body = Triple::of(c.normal_on_body);
-    y.tangent_on_body = Triple::of(c.tangent_on_body);
-    if (c.other >= 0) {
-      y.normal_on_other = Triple::of(c.normal_on_other);
-      y.tangent_on_other = Triple::of(c.tangent_on_other);
+  struct Place {
+    std::size_t n;
+    int lane;
+  };
+
+  /// Each contact comes as early as it can behind those of its bodies that come before it, so that it finds what it would find
+  /// in the problem's order.
+  void take_places(const std::vector<StepContact>& contacts) {
+    std::vector<std::size_t> next(velocity_.size(), 0);  // for a contact of the body
+    std::vector<int> taken;                              // lanes
+    for (const StepContact& s : contacts) {
+      std::size_t& of_body = next[s.contact.body];
+      std::size_t n = s.contact.other < 0 ? of_body : std::max(of_body, next[s.contact.other]);
+      while (n < taken.size() && taken[n] == kAbreast) ++n;
+      if (n == taken.size()) taken.push_back(0);
+      places_.push_back({n, taken[n]++});
+      of_body = n + 1;
+      if (s.contact.other >= 0) next[s.contact.other] = n + 1;
     }
-    y.body = c.body;
-    y.other = c.other < 0 ? static_cast<int>(inverse_mass_.size()) - 1 : c.other;
-    const Triple &body = inverse_mass_[y.body], &other = inverse_mass_[y.other];
-    y.nn = yields(y.normal_on_body, body, y.normal_on_other, other, y.normal_on_body, y.normal_on_other);
-    y.nt = yields(y.normal_on_body, body, y.normal_on_other, other, y.tangent_on_body, y.tangent_on_other);
-    y.tt = yields(y.tangent_on_body, body, y.tangent_on_other, other, y.tangent_on_body, y.tangent_on_other);
-    const double det = y.nn * y.tt - y.nt * y.nt;
+    // in a lane that is left nothing yields
+    Yielding nothing{};
+    std::fill_n(nothing.body, kAbreast, static_cast<int>(velocity_.size()) - 1);
+    std::copy_n(nothing.body, kAbreast, nothing.other);
+    contacts_.assign(taken.size(), nothing);
+    loads_.resize(taken.size());
+  }
+
+  void add(const StepContact& s, double h, const Place& at) {
+    const LastingContact& c = s.contact;
+    const auto [n, k] = at;
+    Yielding& y = contacts_[n];
+    const Triple normal = Triple::of(c.normal_on_body), tangent = Triple::of(c.tangent_on_body);
+    Triple other_normal{}, other_tangent{};
+    y.body[k] = c.body;
+    if (c.other >= 0) {
+      y.other[k] = c.other;
+      other_normal = Triple::of(c.normal_on_other);
+      other_tangent = Triple::of(c.tangent_on_other);
+    }
+    const Triple &body = inverse_mass_[y.body[k]], &other = inverse_mass_[y.other[k]];
+    put(body, y.inverse_mass, k);
+    put(other, y.other_inverse_mass, k);
+    y.x[k] = normal.at[0];
+    y.y[k] = normal.at[1];
+    y.normal_turns[k] = normal.at[2];
+    y.other_normal_turns[k] = other_normal.at[2];
+    y.tangent_turns[k] = tangent.at[2];
+    y.other_tangent_turns[k] = other_tangent.at[2];
+    const double nn = y.nn[k] = yields(normal, body, other_normal, other, normal, other_normal);
+    const double nt = y.nt[k] = yields(normal, body, other_normal, other, tangent, other_tangent);
+    const double tt = y.tt[k] = yields(tangent, body, other_tangent, other, tangent, other_tangent);
+    const double det = nn * tt - nt * nt;
     if (det > 0.0) {
-      y.nn_of = y.tt / det;
-      y.nt_of = y.nt / det;
-      y.tt_of = y.nn / det;
+      y.nn_of[k] = tt / det;
+      y.nt_of[k] = nt / det;
+      y.tt_of[k] = nn / det;
     }
     const auto impulse = [](double yields) { return yields > 0.0 ? 1.0 / yields : 0.0; };
-    y.normal_alone = impulse(y.nn);
-    y.with_friction = impulse(y.nn + c.friction * y.nt);
-    y.against_friction = impulse(y.nn - c.friction * y.nt);
-    y.rolling_alone = impulse(body.at[2] + other.at[2]);
-    y.room = s.gap / h - s.support_velocity[0];
-    y.slides = s.support_velocity[1];
-    y.turns = s.support_velocity[2];
-    y.friction = c.friction;
-    y.rolling_arm = c.rolling_resistance;
-    contacts_.push_back(y);
+    y.normal_alone[k] = impulse(nn);
+    y.with_friction[k] = impulse(nn + c.friction * nt);
+    y.against_friction[k] = impulse(nn - c.friction * nt);
+    y.rolling_alone[k] = impulse(body.at[2] + other.at[2]);
+    y.room[k] = s.gap / h - s.support_velocity[0];
+    y.slides[k] = s.support_velocity[1];
+    y.turns[k] = s.support_velocity[2];
+    y.friction[k] = c.friction;
+    y.rolling_arm[k] = c.rolling_resistance;
+    loads_[n].normal[k] = s.expected.normal;
+    loads_[n].tangential[k] = s.expected.tangential;
+    loads_[n].rolling[k] = s.expected.rolling;
   }
 
-  /// The contact's impulse with all others as they are.
-  ContactLoad renewed(const Yielding& y, const ContactLoad& load) const {
-    const Triple &body = velocity_[y.body], &other = velocity_[y.other];
-    ContactLoad next;
-    if (!(y.nn > 0.0)) return load;  // between what is held
-    // speeds without the impulse that it has; of the normal, gap / h more than what is to be 0 at least
-    const double normal = dot(y.normal_on_body, body, y.normal_on_other, other) + y.room -
-                          y.nn * load.normal - y.nt * load.tangential;
-    if (!(normal < 0.0)) return next;
-    const double slip = dot(y.tangent_on_body, body, y.tangent_on_other, other) - y.slides -
-                        y.nt * load.normal - y.tt * load.tangential;
-    hold_or_slip(y, normal, slip, next);
-    // the torque against the turning, within its arm times the normal impulse
-    if (y.rolling_arm > 0.0 && y.rolling_alone > 0.0) {
-      const double turns = body.at[2] - other.at[2] - y.turns, most = y.rolling_arm * next.normal;
-      next.rolling = std::clamp(load.rolling - turns * y.rolling_alone, -most, most);
+  static void put(const Triple& one, Motions& in, int k) {
+    in.x[k] = one.at[0];
+    in.y[k] = one.at[1];
+    in.angle[k] = one.at[2];
+  }
+  void get(const int (&bodies)[kAbreast], Motions& velocities) const {
+    for (int k = 0; k < kAbreast; ++k) put(velocity_[bodies[k]], velocities, k);
+  }
+  void set(const int (&bodies)[kAbreast], const Motions& to) {
+    for (int k = 0; k < kAbreast; ++k) velocity_[bodies[k]] = {{to.x[k], to.y[k], to.angle[k], 0.0}};
+  }
+
+  /// The contacts' impulses with all others as they are, and by how much they are `more` than before.
+  void renew(const Yielding& y, Loads& load, Loads& more, Largest& seen) const {
+    Motions body, other;
+    get(y.body, body);
+    get(y.other, other);
+    for (int k = 0; k < kAbreast; ++k) {
+      // speeds without the impulse that it has; of the normal, gap / h more than what is to be 0 at least
+      const double normal = (y.x[k] * body.x[k] - y.x[k] * other.x[k]) +
+                            (y.y[k] * body.y[k] - y.y[k] * other.y[k]) +
+                            (y.normal_turns[k] * body.angle[k] + y.other_normal_turns[k] * other.angle[k]) +
+                            y.room[k] - y.nn[k] * load.normal[k] - y.nt[k] * load.tangential[k];
+      const double slip = (y.y[k] * other.x[k] - y.y[k] * body.x[k]) +
+                          (y.x[k] * body.y[k] - y.x[k] * other.y[k]) +
+                          (y.tangent_turns[k] * body.angle[k] + y.other_tangent_turns[k] * other.angle[k]) -
+                          y.slides[k] - y.nt[k] * load.normal[k] - y.tt[k] * load.tangential[k];
+      // held, where friction can; where both directions move the same, nothing is left for it
+      const bool both = y.nn_of[k] > 0.0;
+      const double holds = both ? y.nt_of[k] * slip - y.nn_of[k] * normal : -normal * y.normal_alone[k];
+      const double along = both ? y.nt_of[k] * normal - y.tt_of[k] * slip : 0.0;
+      // It slips where what would hold it is outside the cone.
+      const double way = along < 0.0 ? -y.friction[k] : y.friction[k];
+      const double impulse = way > 0.0 ? y.with_friction[k] : y.against_friction[k];
+      // Painleve: friction would press harder than the contact yields; without it there is always an answer
+      const double slips = -normal * (impulse > 0.0 ? impulse : y.normal_alone[k]);
+      const double drags = impulse > 0.0 ? way * slips : 0.0;
+      const bool within = (holds >= 0.0) & (std::abs(along) <= y.friction[k] * holds);
+      const double pressed = within ? holds : slips, pulled = within ? along : drags;
+      // the torque against the turning, within its arm times the normal impulse
+      const double most = y.rolling_arm[k] * pressed;
+      const double turns =
+          load.rolling[k] - (body.angle[k] - other.angle[k] - y.turns[k]) * y.rolling_alone[k];
+      const double clamped = turns < -most ? -most : (most < turns ? most : turns);
+      const double rolled = y.rolling_alone[k] > 0.0 ? clamped : 0.0;
+      // what opens has none; between what is held they stay as they are
+      const bool yields = y.nn[k] > 0.0, closes = normal < 0.0;
+      const double p = yields ? (closes ? pressed : 0.0) : load.normal[k];
+      const double q = yields ? (closes ? pulled : 0.0) : load.tangential[k];
+      const double torque = yields ? (closes ? rolled : 0.0) : load.rolling[k];
+      more.normal[k] = p - load.normal[k];
+      more.tangential[k] = q - load.tangential[k];
+      more.rolling[k] = torque - load.rolling[k];
+      seen.change[k] = larger(seen.change[k], larger(std::abs(more.normal[k]), std::abs(more.tangential[k])));
+      seen.load[k] = larger(seen.load[k], p);
+      load.normal[k] = p;
+      load.tangential[k] = q;
+      load.rolling[k] = torque;
     }
-    return next;
   }
 
-  void change(const Yielding& y, const ContactLoad& by) {
-    const Four turns = {0.0, 0.0, by.rolling, 0.0};
-    Four &body = four(velocity_[y.body].at), &other = four(velocity_[y.other].at);
-    body += four(inverse_mass_[y.body].at) *
-            (four(y.normal_on_body.at) * by.normal + four(y.tangent_on_body.at) * by.tangential + turns);
-    other += four(inverse_mass_[y.other].at) *
-             (four(y.normal_on_other.at) * by.normal + four(y.tangent_on_other.at) * by.tangential - turns);
-  }
-
-  /// Of a contact that would close at `normal` < 0 and slip by `slip`: it slips where what would hold it is outside the
-  /// cone.
-  static void hold_or_slip(const Yielding& y, double normal, double slip, ContactLoad& load) {
-    if (y.nn_of > 0.0) {
-      load.normal = y.nt_of * slip - y.nn_of * normal;
-      load.tangential = y.nt_of * normal - y.tt_of * slip;
-    } else {
-      // both directions move the same: nothing is left for friction
-      load.normal = -normal * y.normal_alone;
-      load.tangential = 0.0;
+  /// The velocities, by impulses.
+  void change(const Yielding& y, const Loads& by) {
+    Motions body, other;
+    get(y.body, body);
+    get(y.other, other);
+    for (int k = 0; k < kAbreast; ++k) {
+      const double x = y.x[k] * by.normal[k] - y.y[k] * by.tangential[k];
+      const double along_y = y.y[k] * by.normal[k] + y.x[k] * by.tangential[k];
+      body.x[k] += y.inverse_mass.x[k] * x;
+      body.y[k] += y.inverse_mass.y[k] * along_y;
+      body.angle[k] += y.inverse_mass.angle[k] * (y.normal_turns[k] * by.normal[k] +
+                                                  y.tangent_turns[k] * by.tangential[k] + by.rolling[k]);
+      other.x[k] -= y.other_inverse_mass.x[k] * x;
+      other.y[k] -= y.other_inverse_mass.y[k] * along_y;
+      other.angle[k] +=
+          y.other_inverse_mass.angle[k] * (y.other_normal_turns[k] * by.normal[k] +
+                                           y.other_tangent_turns[k] * by.tangential[k] - by.rolling[k]);
     }
-    if (load.normal >= 0.0 && std::abs(load.tangential) <= y.friction * load.normal) return;
-    const double way = std::copysign(y.friction, load.tangential);
-    const double impulse = way > 0.0 ? y.with_friction : y.against_friction;
-    // Painleve: friction would press harder than the contact yields; without it there is always an answer
-    load.normal = -normal * (impulse > 0.0 ? impulse : y.normal_alone);
-    load.tangential = impulse > 0.0 ? way * load.normal : 0.0;
+    set(y.body, body);
+    set(y.other, other);
   }
 
   std::vector<Triple> inverse_mass_,
-      velocity_;  ///< of every body, the latter with the impulses that contacts have
+      velocity_;               ///< of every body, the latter with the impulses that contacts have
+  std::vector<Place> places_;  ///< of the problem's contacts in the two below
   std::vector<Yielding> contacts_;
+  std::vector<Loads> loads_;
 };
 
-BRINK_WIDE void Sweeps::sweep(bool forwards, std::vector<ContactLoad>& loads, double& most_changed,
-                              double& largest) {
-  const std::size_t count = loads.size();
-  for (std::size_t n = 0; n < count; ++n) {
-    const std::size_t k = forwards ? n : count - 1 - n;
-    const ContactLoad next = renewed(contacts_[k], loads[k]);
-    const ContactLoad more{next.normal - loads[k].normal, next.tangential - loads[k].tangential,
-                           next.rolling - loads[k].rolling};
-    if (more.normal != 0.0 || more.tangential != 0.0 || more.rolling != 0.0) change(contacts_[k], more);
-    most_changed = std::max({most_changed, std::abs(more.normal), std::abs(more.tangential)});
-    largest = std::max(largest, next.normal);
-    loads[k] = next;
+BRINK_WIDE void Sweeps::sweep(bool forwards, double& most_changed, double& largest) {
+  const std::size_t count = contacts_.size();
+  Largest seen{};
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t n = forwards ? i : count - 1 - i;
+    Loads more;
+    renew(contacts_[n], loads_[n], more, seen);
+    change(contacts_[n], more);
   }
+  most_changed = *std::max_element(seen.change, seen.change + kAbreast);
+  largest = *std::max_element(seen.load, seen.load + kAbreast);
 }
 
 }  // namespace
 
 CoulombLoads sweep_by_coulomb(const StepProblem& problem, int fewest, int most, const GoOn& go_on) {
   CoulombLoads found;
-  for (const StepContact& s : problem.contacts) found.loads.push_back(s.expected);
   Sweeps sweeps(problem);
-  sweeps.begin_with(found.loads);
   for (; found.sweeps < most; ++found.sweeps) {
     if (go_on && !go_on()) break;
-    double changed = 0.0, largest = 0.0;
+    double changed, largest;
     // forwards and backwards in turn: what is known at one end of a heap comes to the other in a sweep
-    sweeps.sweep(found.sweeps % 2 == 0, found.loads, changed, largest);
+    sweeps.sweep(found.sweeps % 2 == 0, changed, largest);
     if (changed <= (found.sweeps < fewest ? kSettled : kNearlySettled) * largest) break;
   }
+  found.loads = sweeps.loads();
   return found;
 }
 
