@@ -38,9 +38,9 @@ std::string ending(const RunSummary& s) {
   return paint(stdout, Paint::bad, "did not run");
 }
 
-/// Of the larger of the two, as energy may pass 0.
+/// Of what there was; where that is next to nothing beside what there is, of that, as energy may pass 0.
 std::string change(double before, double after) {
-  const double scale = std::max(std::abs(before), std::abs(after));
+  const double scale = std::abs(std::abs(before) > 1e-6 * std::abs(after) ? before : after);
   return scale > 0 ? fmt::format("{:.3g} of it", (after - before) / scale) : std::string("none");
 }
 
@@ -53,10 +53,11 @@ std::string taken(const RunSummary& s) {
 /// What came of contacts that last. Where bodies slid or rolled on them, that is exact to first order alone.
 std::string lasting(const RunSummary& s) {
   return fmt::format(
-      "{} captured, {} island(s) at rest at the end; {} steps of order 1, which took approaches up to {:.3g} "
-      "m/s as plastic, friction to {:.2g} of the largest force, and made {:.2g} J; rest_speed took {:.2g} J",
-      s.contacts_lasting, s.islands_at_rest, s.island_steps, s.approach_absorbed, s.friction_residual,
-      s.island_energy, s.rest_energy);
+      "{} captured, {} island(s) at rest at the end; {} steps by modes; {} of order 1, which took approaches "
+      "up to {:.3g} m/s as plastic, friction to {:.2g} of the largest force, and made {:.2g} J; rest_speed "
+      "took {:.2g} J",
+      s.contacts_lasting, s.islands_at_rest, s.steps_by_modes, s.island_steps - s.steps_by_modes,
+      s.approach_absorbed, s.friction_residual, s.island_energy, s.rest_energy);
 }
 
 /// What the policy did and what of it was in vain.

@@ -343,7 +343,8 @@ bool IslandModes::move_on(ModeMotion& motion, double until) {
     if (!(motion.time() > now_)) note(motion);
     step = motion.step(until);
     for (std::size_t i = 0; i < step.pieces.size(); ++i) tracks_[i]->pieces.push_back(step.pieces[i]);
-    // a change ends the island's step: it is an event, from which the next step begins
+    // A change ends the island's step: it is an event, from which the next step begins. So does what takes long: in between a
+    // signal is heard.
     if (step.end != ModeEnd::step && motion.time() > now_) break;
     // before time goes on modes may be chosen again; any other end leads nowhere
     if (step.end != ModeEnd::step && step.end != ModeEnd::change) return false;

@@ -130,7 +130,8 @@ void IslandMotion::list_farther(const std::vector<Vec3>& velocity) {
   std::vector<char> far(members_.count(), 0);
   for (int i = 0; i < static_cast<int>(members_.count()); ++i) {
     const double way = way_in_step(i, velocity);
-    if (way <= members_.reach_of(i) || way > kFarthest * members_.guess_of(i)) continue;
+    const double most = std::max(kFarthest * members_.guess_of(i), kOfSize * members_.size());
+    if (way <= members_.reach_of(i) || way > most) continue;
     far[i] = 1;
     members_.look_farther(i, kWider * way);
   }
@@ -350,9 +351,10 @@ bool IslandMotion::take(double h, double tolerance) {
       };
     };
     const StepOutcome outcome = take_under_forces(gaps);
-    no_room_ =
-        outcome.no_room && std::any_of(contacts_.begin(), contacts_.end(),
-                                       [this](const HeldContact& c) { return members_.on_moving_site(c); });
+    closes_in_ = -1;
+    if (outcome.no_room)
+      for (const HeldContact& c : contacts_)
+        if (members_.on_moving_site(c)) closes_in_ = c.pair.other_site;
     // work is counted of every try, all else of the step that is taken
     tally_->factorisations += outcome.factorisations;
     // looked at after the solver: contacts may hand on more speed than anybody had

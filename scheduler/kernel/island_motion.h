@@ -54,8 +54,8 @@ class IslandMotion {
   /// Takes a step of `h` [s] at most, and less where that does not do. False: not even the shortest does.
   /// `tolerance`: what its places may be off by the order of the step [m], 0: any. @pre sites are covered as far.
   bool take(double h, double tolerance);
-  /// True where that was so as sites that move leave the members no room.
-  bool has_no_room() const { return no_room_; }
+  /// The site that moves and leaves the members no room, where that was so; else -1.
+  int closes_in() const { return closes_in_; }
 
   /// Members that push each other, or are coupled to such, together; and those that nothing pushes.
   struct Parts {
@@ -114,7 +114,8 @@ class IslandMotion {
   IslandTally* tally_;
   WarmContacts warm_;
   GoOn go_on_;
-  bool by_modes_ = false, agitated_ = false, impacts_in_step_ = false, no_room_ = false;
+  bool by_modes_ = false, agitated_ = false, impacts_in_step_ = false;
+  int closes_in_ = -1;
   double h_ = 0.0, absorbed_ = 0.0;
   double expected_ = std::numeric_limits<double>::infinity();
   double asked_ = 0.0;  ///< the length of the step, but for what impacts cut off it [s]

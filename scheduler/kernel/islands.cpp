@@ -305,7 +305,9 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
         fmt::format("an island of {} bodies, '{}' the first, finds no step at t = {:.17g} that keeps its "
                     "contacts{}",
                     members.size(), world_->bodies[*members.begin()].name, now,
-                    motion.has_no_room() ? ": sites that move leave no room" : ""));
+                    motion.closes_in() < 0 ? ""
+                                           : fmt::format(": '{}', which moves, leaves no room",
+                                                         world_->sites[motion.closes_in()].name)));
     return give_up();
   }
   ++tally_.steps;

@@ -100,6 +100,7 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
   summary.contacts_lasting = islands.captured;
   // those that came to rest moved nobody
   summary.island_steps = islands.steps - islands.slept;
+  summary.steps_by_modes = islands.by_modes;
   for (const auto& [lead, island] : kernel.islands()) {
     if (!island.rests) continue;
     ++summary.islands_at_rest;

@@ -170,7 +170,7 @@ TEST(Endings, ABodyThatASiteCrushesIsTold) {
   const RunSummary summary = simulator.run(until(3.0));
   EXPECT_EQ(summary.termination, Termination::failed);
   EXPECT_NE(summary.why.find("finds no step"), std::string::npos) << summary.why;
-  EXPECT_NE(summary.why.find("sites that move leave no room"), std::string::npos) << summary.why;
+  EXPECT_NE(summary.why.find("'site1', which moves, leaves no room"), std::string::npos) << summary.why;
   EXPECT_NEAR(simulator.time(), 0.75, 1e-9);
 }
 

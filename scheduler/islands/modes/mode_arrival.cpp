@@ -11,7 +11,7 @@ namespace brink {
 
 namespace {
 
-constexpr int kMostSteps = 10000;
+constexpr int kMostSteps = 1000;
 /// Where no bound helps (an arc's sector), so many looks along the whole.
 constexpr int kLooksOfArrival = 64;
 

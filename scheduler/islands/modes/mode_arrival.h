@@ -17,7 +17,7 @@ struct Arrival {
 };
 
 /// The first contact that is `open` and closes in [from, to] on these motions of the bodies; of several at one time
-/// the first in order. `slack` > 0: what a gap may be below zero by rounding [m]. Looks 10 000 times at each; one
+/// the first in order. `slack` > 0: what a gap may be below zero by rounding [m]. Looks a thousand times at each; one
 /// that hovers near touching all along may be told to stay open for less than was asked.
 Arrival first_arrival(const ModeProblem& problem, const std::vector<MotionMode>& modes,
                       const std::vector<PolynomialPiece>& bodies, double from, double to, double slack);

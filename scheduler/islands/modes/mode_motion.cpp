@@ -317,6 +317,7 @@ ModeStep ModeMotion::step(double until) {
     // nobody knows what is open beyond: a step to there, and the next looks on
     fails = false;
     at = arrival.time;
+    done.end = ModeEnd::hovers;
     if (at > t_) done.pieces = pieces_to(at, end = after(at - t_));
   }
   if (at > t_)

@@ -30,6 +30,7 @@ enum class ModeEnd {
   change,    ///< a contact changed its mode: see modes()
   range,     ///< a closed contact comes to the end of its feature: `contact` of the end
   arrival,   ///< an open contact closes
+  hovers,    ///< an open contact stays so near that nobody can tell soon enough what comes of it
   no_modes,  ///< no modes were found, or they changed without end: nothing is done
   lost,      ///< no step is short enough: forces that are not finite, or contacts that contradict each other
 };
