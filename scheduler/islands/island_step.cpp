@@ -51,12 +51,12 @@ void lift(Part& part, double by) {
   part.lift += by / (1.0 - falls_to);
 }
 
-/// How far the tangent of the part's gap lies above its aim at the end of the step, >= 0 [m]: of a site that moves by the way
-/// that it comes in all.
+/// How far the part's gap comes to lie above its aim at the end of the step, where its site moves, >= 0 [m]: on the way the
+/// site may come nearer than there, and no small lift shows then.
 double above_aim(const IslandStep& step, const Part& part, double h, const std::vector<Vec3>& velocity) {
   const IslandContact& c = step.contacts[part.contact];
-  double opens = c.rows.normal_on_body.dot(velocity[c.rows.body]) - c.normal_support;
-  if (c.rows.other >= 0) opens += c.rows.normal_on_other.dot(velocity[c.rows.other]);
+  if (!c.driven) return 0.0;
+  const double opens = c.rows.normal_on_body.dot(velocity[c.rows.body]) - c.normal_support;
   return std::max(0.0, std::max(c.gap, 0.0) + h * opens - part.lift);
 }
 
@@ -463,7 +463,6 @@ StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, b
     if (too_much) {
       for (std::size_t k = 0; k < parts.size(); ++k) {
         const double above = above_aim(step, parts[k], h, result.velocity);
-        // what comes farther than its aim, and is missed on the way there, has to aim higher than it comes
         if (more[k] > 0.0 && above > more[k]) parts[k].lift += above;
         lift(parts[k], more[k]);
       }

@@ -24,7 +24,10 @@ constexpr double kOfSize = 0.1;
 /// By modes a list reaches so many times as far for all.
 constexpr double kReach = 2.0, kWider = 4.0;
 /// At most so many times.
-constexpr int kWidenings = 4;
+constexpr int kWidenings = 6;
+/// Where forces balance now, and will not for long, nothing tells how far they lead: a wider list reaches to this part of the
+/// smallest member's size first.
+constexpr double kUnforeseen = 1e-3;
 /// A list reaches to 512 times the guess. Where that does not do, a step is halved, down to 2^-16 of its length.
 constexpr double kFarthest = 512.0;
 constexpr int kHalvings = 16;
@@ -299,10 +302,12 @@ double IslandMotion::kinetic_energy() const {
 /// Modes decide how long the step is. It is tried again only where a member left the features that were listed.
 bool IslandMotion::take(IslandModes& modes, double now, double h, bool on_time) {
   if (!by_modes_ || !(h < kForever)) return false;
-  double reach = kReach;
+  double reach = kReach, least = 0.0;
   for (int widening = 0; widening <= kWidenings; ++widening, reach *= kWider) {
     h_ = h;
     members_.look_ahead(h_, reach);
+    for (int i = 0; i < static_cast<int>(members_.count()); ++i) members_.look_farther(i, least);
+    least = std::max(kUnforeseen * members_.size(), kWider * least);
     list(-1.0);
     const IslandModes::Outcome outcome = modes.take(now, h, contacts_, on_time);
     // farther than features were listed: with a longer list, from the same states
