@@ -350,7 +350,6 @@ bool IslandModes::move_on(ModeMotion& motion, double until) {
     if (step.end != ModeEnd::step && step.end != ModeEnd::change) return false;
   }
   end_ = motion.time();
-  hovers_ = step.end == ModeEnd::hovers;
   if (!(end_ > now_)) return false;
   const bool lost = step.end == ModeEnd::no_modes || step.end == ModeEnd::lost;
   for (std::size_t k = 0; k < contacts_.size(); ++k) {

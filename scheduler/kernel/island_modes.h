@@ -49,8 +49,6 @@ class IslandModes {
   // -- what take() has found
   const std::vector<HeldContact>& contacts() const { return contacts_; }
   double end() const { return end_; }  ///< of the step [s]
-  /// True if it ended as a contact hovers: that says nothing of how it comes on.
-  bool hovers() const { return hovers_; }
   /// Of a member; after the end it goes on with the twist that it has there.
   Motion motion(int member) const { return Motion::dense(tracks_[member]); }
   /// Contacts that begin to stick, slip or part with this step.
@@ -105,7 +103,6 @@ class IslandModes {
   Limits limits_;
   const WarmContacts* warm_;
   double now_ = 0.0, end_ = 0.0;
-  bool hovers_ = false;
   std::vector<HeldContact> contacts_;
   std::vector<Impact> impacts_;
   std::vector<bool> touching_;      ///< of each contact of the problem

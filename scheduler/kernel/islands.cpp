@@ -312,8 +312,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   }
   ++tally_.steps;
   if (by_modes) tell(modes, motion.members());
-  const bool was_short = by_modes && !modes.hovers() && modes.end() - now < kHasty * h;
-  pace.hasty = next_hasty(pace.hasty, by_modes, was_short);
+  pace.hasty = next_hasty(pace.hasty, by_modes, by_modes && modes.end() - now < kHasty * h);
   pace.agitation = next_agitation(pace.agitation, motion.impacts_in_step());
   pace.step = rests || by_modes ? kForever : motion.next_step();
   if (rests) note_change(EventKind::sleep, *members.begin()), ++tally_.slept;
