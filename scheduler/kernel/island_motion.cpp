@@ -635,7 +635,7 @@ bool IslandMotion::falls_back(const HeldContact& c) const {
     add_fall(members_.place_of(c.pair.body), time - before);
     if (!c.pair.with_site()) add_fall(members_.place_of(c.pair.other_body), time - before);
     before = time;
-    if (members_.gap(c, time, velocity) - kept(c.feature) < -search_->limits().tolerance) return true;
+    if (members_.gap(c, time, velocity) - kept(c.feature) < -search_->limits().touch) return true;
   }
   return false;
 }
@@ -654,8 +654,9 @@ bool IslandMotion::stays_near(const HeldContact& c, bool both_pushed) const {
     if (c.feature.gap <= kClear * tolerance && slow) return true;
     return !c.pair.with_site() && c.feature.gap - h_ * (closing + behind) <= tolerance;
   }
+  if (falls_back(c)) return true;
   // a site takes no step: whoever is let go meets it by the ordinary search
-  if (c.pair.with_site()) return falls_back(c);
+  if (c.pair.with_site()) return false;
   const double closing = members_.closing_speed(c, after(members_.place_of(c.pair.body)).twist,
                                                 after(members_.place_of(c.pair.other_body)).twist);
   return c.feature.gap - h_ * (closing + behind) <= tolerance;
