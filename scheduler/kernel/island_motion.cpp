@@ -622,29 +622,34 @@ bool IslandMotion::pushes(const HeldContact& c) const {
 
 /// True if the two, which touch, would meet again at once if both were let go, in a small part of the step, though a step of
 /// constant twists opens their gap: an arc that turns under a body which forces lift, but not as fast as it bends away.
-bool IslandMotion::falls_back(const HeldContact& c) const {
+/// `velocity`: that of all members now; it is the same afterwards.
+bool IslandMotion::falls_back(const HeldContact& c, std::vector<Vec3>& velocity) const {
   if (!touches(c)) return false;
-  std::vector<Vec3> velocity = velocities();
-  const auto add_fall = [&](int member, double time) {
-    const Acceleration& a = members_.acceleration(member);
-    // the way of a time with the mean velocity of a fall is that of the fall
-    velocity[member] += 0.5 * time * Vec3(a.linear.x(), a.linear.y(), a.angular);
+  const int a = members_.place_of(c.pair.body),
+            b = c.pair.with_site() ? a : members_.place_of(c.pair.other_body);
+  const Vec3 of_a = velocity[a], of_b = velocity[b];
+  // the way of a time with the mean velocity of a fall is that of the fall
+  const auto mean = [&](int member, const Vec3& before, double time) {
+    const Acceleration& by = members_.acceleration(member);
+    return Vec3(before + 0.5 * time * Vec3(by.linear.x(), by.linear.y(), by.angular));
   };
-  double before = 0.0;
-  for (double time = h_ * kAtOnce * std::ldexp(1.0, -kLooksBack); time <= h_ * kAtOnce; time *= 2.0) {
-    add_fall(members_.place_of(c.pair.body), time - before);
-    if (!c.pair.with_site()) add_fall(members_.place_of(c.pair.other_body), time - before);
-    before = time;
-    if (members_.gap(c, time, velocity) - kept(c.feature) < -search_->limits().touch) return true;
+  bool meets = false;
+  for (int k = kLooksBack; k >= 0 && !meets; --k) {
+    const double time = std::ldexp(h_ * kAtOnce, -k);
+    velocity[a] = mean(a, of_a, time);
+    velocity[b] = mean(b, of_b, time);
+    meets = members_.gap(c, time, velocity) - kept(c.feature) < -search_->limits().touch;
   }
-  return false;
+  velocity[a] = of_a;
+  velocity[b] = of_b;
+  return meets;
 }
 
 /// Nothing pushes, but one of the two alone, left to its parabola, could run into the other's step: that has the
 /// twist of its end from the start on, which a parabola comes to by and by. Where others push both, each takes steps, and
 /// there is no parabola: what rolls along beside a heap, touching nobody, does not keep it awake. By modes, it has just been
 /// let go: an open contact is looked at from there on as well as any other, until it is clear of it.
-bool IslandMotion::stays_near(const HeldContact& c, bool both_pushed) const {
+bool IslandMotion::stays_near(const HeldContact& c, bool both_pushed, std::vector<Vec3>& velocity) const {
   const double behind = both_pushed && !by_modes_ ? 0.0 : members_.pull() * h_;
   const double tolerance = search_->limits().tolerance;
   if (by_modes_) {
@@ -654,7 +659,7 @@ bool IslandMotion::stays_near(const HeldContact& c, bool both_pushed) const {
     if (c.feature.gap <= kClear * tolerance && slow) return true;
     return !c.pair.with_site() && c.feature.gap - h_ * (closing + behind) <= tolerance;
   }
-  if (falls_back(c)) return true;
+  if (falls_back(c, velocity)) return true;
   // a site takes no step: whoever is let go meets it by the ordinary search
   if (c.pair.with_site()) return false;
   const double closing = members_.closing_speed(c, after(members_.place_of(c.pair.body)).twist,
@@ -705,9 +710,10 @@ IslandMotion::Parts IslandMotion::parts(bool rests) const {
     joined.unite(a, b);
   }
   const std::vector<bool> by_others = pushed;
+  std::vector<Vec3> velocity = velocities();
   for (const HeldContact& c : contacts_) {
     const auto [a, b] = places(c);
-    if (rests || pushes(c) || !stays_near(c, by_others[a] && by_others[b])) continue;
+    if (rests || pushes(c) || !stays_near(c, by_others[a] && by_others[b], velocity)) continue;
     pushed[a] = pushed[b] = true;
     joined.unite(a, b);
   }

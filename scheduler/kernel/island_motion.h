@@ -101,8 +101,8 @@ class IslandMotion {
   void take_forces();
   double kinetic_energy() const;
   bool pushes(const HeldContact& c) const;
-  bool stays_near(const HeldContact& c, bool both_pushed) const;
-  bool falls_back(const HeldContact& c) const;
+  bool stays_near(const HeldContact& c, bool both_pushed, std::vector<Vec3>& velocity) const;
+  bool falls_back(const HeldContact& c, std::vector<Vec3>& velocity) const;
   std::vector<std::pair<int, int>> neighbours() const;
   ContactMode mode_of(const HeldContact& c, bool rests) const;
   std::vector<Vec3> velocities() const;
