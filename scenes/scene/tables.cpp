@@ -273,7 +273,7 @@ const Schema<SolverOptions>& solver_schema() {
           .count("modes_contacts", &S::modes_contacts, whole(),
                  "few bodies with at most so many contacts that last move to `tolerance`, others to first "
                  "order; "
-                 "where forces change with place, velocity or time 32 at least")
+                 "where forces change with place, velocity or time 16 at least")
           .key("island_tolerance", &S::island_tolerance, number(between(0.0, 1e6, "m")),
                "what a step of first order may be off in place; 0: steps as long as a fall by the smallest "
                "allows")

@@ -107,9 +107,9 @@ double IslandModes::speed() const {
 }
 
 bool IslandModes::suits() const {
-  const bool constant = members_->are_constant();
-  const std::size_t most = constant ? limits_.contacts : std::max(limits_.contacts, kChangingContacts);
-  if (most == 0 || members_->count() > (constant ? kModeBodies : kChangingBodies)) return false;
+  const std::size_t most =
+      members_->are_constant() ? limits_.contacts : std::max(limits_.contacts, kContactsOfChanging);
+  if (most == 0 || members_->count() > kModeBodies) return false;
   // places are doubles in modes: far from the origin a touch is lost in their rounding
   for (int i = 0; i < static_cast<int>(members_->count()); ++i)
     if (kEpsilon * members_->state(i).position.cast<double>().norm() > kRounding * search_->limits().touch)

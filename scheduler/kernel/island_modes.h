@@ -21,8 +21,8 @@ namespace brink {
 
 /// At most so many bodies; contacts that touch: an option.
 inline constexpr std::size_t kModeBodies = 8;
-/// Where forces change with place, velocity or time first order says little: so many bodies there, and contacts at least.
-inline constexpr std::size_t kChangingBodies = 16, kChangingContacts = 32;
+/// Where forces change with place, velocity or time, so many contacts at least: first order says little there.
+inline constexpr std::size_t kContactsOfChanging = 16;
 
 class IslandModes {
  public:

@@ -58,8 +58,8 @@ constexpr double kWorthwhile = 0.25;
 /// Members of an agitated island that are closer than this part of the smallest member's size stay together.
 constexpr double kRattles = 0.25;
 /// Forces that change with place, velocity or time may change by this part of the largest pull that a step so long may have
-/// in half of it, and are asked for again until they do by no more than roundings; each time they come nearer by half at least.
-constexpr double kChanges = 0.1, kForcesAgree = 1e-10, kComesNearer = 0.5;
+/// in half of it, and are asked for again until they do by a millionth of that; each time they come nearer by half at least.
+constexpr double kChanges = 0.1, kForcesAgree = 1e-6, kComesNearer = 0.5;
 constexpr int kForcePasses = 30;
 /// A step under such forces is no longer than so many times the one before.
 constexpr double kLonger = 2.0;
@@ -633,12 +633,14 @@ bool IslandMotion::falls_back(const HeldContact& c, std::vector<Vec3>& velocity)
     const Acceleration& by = members_.acceleration(member);
     return Vec3(before + 0.5 * time * Vec3(by.linear.x(), by.linear.y(), by.angular));
   };
+  // what has sunk already is none that falls
+  const double deeper = std::min(c.feature.gap, kept(c.feature)) - search_->limits().touch;
   bool meets = false;
   for (int k = kLooksBack; k >= 0 && !meets; --k) {
     const double time = std::ldexp(h_ * kAtOnce, -k);
     velocity[a] = mean(a, of_a, time);
     velocity[b] = mean(b, of_b, time);
-    meets = members_.gap(c, time, velocity) - kept(c.feature) < -search_->limits().touch;
+    meets = members_.gap(c, time, velocity) < deeper;
   }
   velocity[a] = of_a;
   velocity[b] = of_b;
