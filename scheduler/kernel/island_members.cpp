@@ -19,6 +19,7 @@ IslandMembers::IslandMembers(const World& world, const Trajectories& trajectorie
     places_[k - bodies_.front()] = static_cast<int>(i);
     states_.push_back(trajectories.state_now(k));
     accelerations_.push_back(trajectories.acceleration(k));
+    constant_ = constant_ && trajectories.is_constant(k);
     const double radius = search.outline_of(k).bounding_radius;
     // a mere point has no size: the scene's
     size_ = std::min(size_, radius > 0.0 ? 2.0 * radius : world.length());
@@ -39,12 +40,6 @@ void IslandMembers::find_speeds() {
     speeds_.push_back(speed_within(states_[i].twist.rounded(), bounding_radius(static_cast<int>(i))));
     speed_ = std::max(speed_, speeds_.back());
   }
-}
-
-bool IslandMembers::are_constant() const {
-  for (int i = 0; i < static_cast<int>(count()); ++i)
-    if (!is_constant(i)) return false;
-  return true;
 }
 
 std::vector<Acceleration> IslandMembers::accelerations_along(double h,

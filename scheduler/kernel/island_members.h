@@ -93,10 +93,9 @@ class IslandMembers {
   bool on_moving_site(const HeldContact& contact) const {
     return contact.pair.with_site() && trajectories_->site(contact.pair.other_site).moves();
   }
-  /// When forces on the member next jump [s]; whether until then they depend on nothing; who is coupled to it.
+  /// When forces on the member next jump [s]; whether until then all members' depend on nothing; who is coupled to it.
   double next_break(int member) const { return trajectories_->next_break(bodies_[member]); }
-  bool is_constant(int member) const { return trajectories_->is_constant(bodies_[member]); }
-  bool are_constant() const;
+  bool are_constant() const { return constant_; }
   /// What forces make of the members' motion in the middle of a step of h [s] that they take with these twists.
   std::vector<Acceleration> accelerations_along(double h, const std::vector<Vec3>& velocity) const;
   std::vector<int> coupled_to(int member) const;
@@ -119,6 +118,7 @@ class IslandMembers {
   std::vector<Acceleration> accelerations_;
   std::vector<double> speeds_, pulls_;  ///< [m/s], [m/s^2], of any point of each
   std::vector<double> farther_;         ///< of each, what look_farther() was told [m]
+  bool constant_ = true;
   double size_ = kForever, speed_ = 0.0, pull_ = 0.0, heaviest_ = 0.0;
 };
 

@@ -250,9 +250,8 @@ bool IslandMotion::rests(double rest_speed) {
   const bool fades = 2.0 * speed * speed <= tolerance * pull;
   if (!(pull > 0.0) || !(fades || speed <= rest_speed)) return false;
   const int count = static_cast<int>(members_.count());
-  for (int i = 0; i < count; ++i)
-    // forces that change with time or place would have to be balanced ever anew
-    if (!members_.is_constant(i)) return false;
+  // forces that change with time or place would have to be balanced ever anew
+  if (!members_.are_constant()) return false;
   // the forces that are found are noted as means over so long (take_forces)
   h_ = longest();
   members_.look_ahead(0.0, kReach);
@@ -499,17 +498,20 @@ double IslandMotion::largest_change(const std::vector<Vec3>& forces, const std::
 /// gravity: what it takes is the force's work along its way. Not solved where forces change by so much in the step that
 /// they do not come to an end, or that an explicit look at them says little.
 StepOutcome IslandMotion::take_under_forces(const GapsAlong& gaps) {
+  const auto solve = [&] {
+    return take_step(*solver_, problem_, h_, search_->limits().tolerance, gaps, go_on_,
+                     [this](const std::vector<Vec3>& velocity) { list_farther(velocity); });
+  };
+  if (members_.are_constant()) return solve();
   const std::vector<Vec3> before = problem_.velocity, at_start = problem_.force;
-  const bool constant = members_.are_constant();
   const double most = kOfFall * kOfFall * members_.size() / (h_ * h_);  // longest() has no larger pull
   StepOutcome outcome;
   double last = kForever;
   for (int pass = 0; pass < kForcePasses; ++pass) {
     const int so_far = outcome.factorisations;
-    outcome = take_step(*solver_, problem_, h_, search_->limits().tolerance, gaps, go_on_,
-                        [this](const std::vector<Vec3>& velocity) { list_farther(velocity); });
+    outcome = solve();
     outcome.factorisations += so_far;
-    if (!outcome.solved || constant) return outcome;
+    if (!outcome.solved) return outcome;
     std::vector<Vec3> along = forces(members_.accelerations_along(h_, problem_.velocity));
     const double off = largest_change(along, problem_.force);
     if (largest_change(along, at_start) > kChanges * most || off > kComesNearer * last) break;

@@ -36,8 +36,8 @@ struct RunSummary {
   /// Bodies that the scene places a hair across a wire, and that were moved to just before it; by how much at most [m].
   int moved_at_start = 0;
   double moved_by = 0.0;
-  /// Contacts that lasted (Islands): captured at the end of their bounces; steps that islands took, and how many of them by modes, others being of order 1;
-  /// islands that are at rest at the end, and their bodies; the fastest approach that a step took without a rebound [m/s]; how
+  /// Contacts that lasted (Islands): captured at the end of their bounces; steps that islands took, and how many of them by
+  /// modes, others being of order 1; islands that are at rest at the end, and their bodies; the fastest approach that a step took without a rebound [m/s]; how
   /// far friction was from its cone at most, as a part of the largest force there.
   std::uint64_t contacts_lasting = 0, island_steps = 0, steps_by_modes = 0, islands_at_rest = 0, resting = 0;
   double approach_absorbed = 0.0, friction_residual = 0.0;
