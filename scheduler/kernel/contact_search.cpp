@@ -129,7 +129,8 @@ std::optional<Certificate> ContactSearch::search(const PairKey& pair, const Body
   // of simultaneous resolves one may be a rounding ahead
   from = std::max({from, sides.a.motion->begin(), sides.b.motion->begin()});
   if (from > to) return std::nullopt;
-  const TraceScope scope(run_->trace(), {TraceKind::search, pair.body, other_owner(pair), from, to});
+  const double end = std::min(to, std::max(from, instalment.until));
+  const TraceScope scope(run_->trace(), {TraceKind::search, pair.body, other_owner(pair), from, end});
   SearchLimits limits = limits_;
   // the answer "undecided" at the cap is what makes an instalment
   if (instalment.most_steps > 0) {
@@ -138,8 +139,11 @@ std::optional<Certificate> ContactSearch::search(const PairKey& pair, const Body
   }
   WorkCounters& work = run_->work();
   const StageTimer::Sampled timed(run_->timer(), work.seconds_search, timed_);
-  const PairAnswer answer = first_contact(sides.a, sides.b, from, to, limits, scratch_, work);
-  if (answer.status == PairAnswer::Status::clear) return std::nullopt;
+  PairAnswer answer = first_contact(sides.a, sides.b, from, end, limits, scratch_, work);
+  if (answer.status == PairAnswer::Status::clear) {
+    if (end == to) return std::nullopt;
+    answer = {PairAnswer::Status::undecided, end, {}};
+  }
   Certificate c;
   c.time = answer.until;
   c.pair = pair;

@@ -19,11 +19,13 @@ namespace brink {
 /// Whether owners a and b (bodies first, then sites) may meet at all.
 using PairFilter = std::function<bool(int a, int b)>;
 
-/// A search that stops, undecided, after so many of its steps (0: as many as it takes): to go on later, if it then still
-/// matters. Before `needed_until` [s] it will be gone on with in any case, and stops less soon.
+/// A search that stops, undecided, after so many of its steps (0: as many as it takes), or where it is clear up to `until` [s]:
+/// to go on later, if it then still matters. Before `needed_until` [s] it will be gone on with in any case, and stops less
+/// soon.
 struct Instalment {
   int most_steps = 0;
   double needed_until = -std::numeric_limits<double>::infinity();
+  double until = std::numeric_limits<double>::infinity();
 };
 
 class ContactSearch {

@@ -105,20 +105,35 @@ std::vector<PairKey> Kernel::near_pairs_of(int body, double from, double to) {
   return parts_.near.of(body, from, to, !parts_.speculation.empty());
 }
 
+/// Until when an island that steps leaves the two on those motions [s], and an instant that begins then is over.
+double KernelView::end_of_steps(const BodyTrack& body, const BodyTrack* other, const PairKey& pair) const {
+  const auto end_of = [&](int k, const BodyTrack& track) {
+    return track.component == BodyTrack::kHeld && is_held(k) ? step_end(k) : kForever;
+  };
+  const double end = std::min(end_of(pair.body, body), other ? end_of(pair.other_body, *other) : kForever);
+  return end < kForever ? end + kWholeInstant * same_instant(end) : end;
+}
+
 std::optional<Certificate> Kernel::search(const PairKey& pair, double from, double to,
                                           const Instalment& instalment) {
   const BodyTrack* other = pair.with_site() ? nullptr : &body(pair.other_body);
-  auto found = parts_.search.search(pair, body(pair.body), other, from, to, instalment);
+  Instalment part = instalment;
+  part.until = std::min(part.until, end_of_steps(body(pair.body), other, pair));
+  auto found = parts_.search.search(pair, body(pair.body), other, from, to, part);
   // a policy that is held to known contacts is told of this one here
   if (found) parts_.policy_watch.found(*found);
   return found;
 }
 
 std::optional<Certificate> Kernel::search(const PairKey& pair, std::uint64_t version,
-                                          std::uint64_t other_version, double from, double to) {
+                                          std::uint64_t other_version, double from, double to,
+                                          const Instalment& instalment) {
   const Speculation& of = parts_.speculation;
   const BodyTrack* other = pair.with_site() ? nullptr : of.track(pair.other_body, other_version);
-  auto found = parts_.search.search(pair, *of.track(pair.body, version), other, from, to);
+  const BodyTrack& body = *of.track(pair.body, version);
+  Instalment part = instalment;
+  part.until = std::min(part.until, end_of_steps(body, other, pair));
+  auto found = parts_.search.search(pair, body, other, from, to, part);
   if (found) parts_.policy_watch.found(*found);
   return found;
 }

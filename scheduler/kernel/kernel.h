@@ -59,11 +59,12 @@ class Kernel : public KernelView {
     return StageTimer::Sampled(parts_.run.timer(), parts_.run.work().seconds_look, looks_timed_);
   }
   /// Searches one pair; the certificate of a contact or an undecided end, or nothing if clear to the end.
+  /// Of two that an island holds until the end of its step, undecided from there on: they move otherwise then.
   std::optional<Certificate> search(const PairKey& pair, double from, double to,
                                     const Instalment& instalment = {});
   /// The same with motions of those versions. @pre among versions() of the two.
   std::optional<Certificate> search(const PairKey& pair, std::uint64_t version, std::uint64_t other_version,
-                                    double from, double to);
+                                    double from, double to, const Instalment& instalment = {});
   /// The other features of the certificate's pair that touch and approach at its time, each as a certificate
   /// of its own (two corners of a box that lands flat): what an order other than `index` chooses from.
   std::vector<Certificate> simultaneous(const Certificate& c);

@@ -118,6 +118,7 @@ class KernelView {
 
  protected:
   KernelView(World world, SolverOptions options) : parts_(std::move(world), std::move(options)) {}
+  double end_of_steps(const BodyTrack& body, const BodyTrack* other, const PairKey& pair) const;
 
   KernelParts parts_;
 };

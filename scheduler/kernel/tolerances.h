@@ -31,6 +31,10 @@ inline constexpr double kSameInTwoDoubles = 0x1p-90;
 /// Overlaps at the start up to this part of the scene's length are let go: coordinates written with six digits.
 inline constexpr double kStartOverlap = 1e-6;
 
+/// Of a step's end, instants by which a search goes past it: whatever belongs to the instant in which the step ends is seen
+/// before.
+inline constexpr double kWholeInstant = 128.0;
+
 /// Rounding of the doubled area between a wall and a point, of their coordinates times the wall's length: two
 /// differences and two products of them, each half kEpsilon, make 7e-16 at most; the rest holds the rounding of the
 /// coordinates themselves, a turn and a shift.

@@ -12,15 +12,21 @@ namespace brink {
 
 namespace {
 
-/// About the time in which the fastest body crosses itself.
-double first_length(const KernelView& kernel, double until) {
+/// About the time in which a first body crosses itself, as fast as it is and as it is pulled.
+double first_length(Kernel& kernel, double until) {
   double horizon = until;
+  const double shortest = kShortestHorizon * std::max(1.0, until);
+  // an integrator has told no acceleration before its first step
+  kernel.follow_motions(kernel.time() + shortest);
   for (int k = 0; k < kernel.body_count(); ++k) {
-    const double speed = kernel.state(k, kernel.time()).twist.velocity.norm();
+    const double speed = kernel.state(k, kernel.time()).twist.velocity.norm(),
+                 pull = kernel.body(k).motion.rate(kernel.time()).linear.norm();
     const double size = 2.0 * kernel.world().bodies[k].outline->bounding_radius;
-    if (speed > 0.0 && size > 0.0) horizon = std::min(horizon, size / speed);
+    // size = speed t + pull t^2 / 2
+    const double crossing = 2.0 * size / (speed + std::sqrt(speed * speed + 2.0 * pull * size));
+    if (crossing > 0.0) horizon = std::min(horizon, crossing);
   }
-  return std::max(horizon, kShortestHorizon * std::max(1.0, until));
+  return std::max(horizon, shortest);
 }
 
 /// The end of the next horizon from the present time [s].
@@ -29,31 +35,30 @@ double next_end(Kernel& kernel, double until) {
   return std::min(until, kernel.time() + kernel.horizon());
 }
 
-/// Learns from a horizon that had so many near pairs and collisions.
-void adapt(Kernel& kernel, std::size_t pairs, std::uint64_t collisions) {
-  const auto n = static_cast<std::uint64_t>(kernel.body_count());
-  if (!kernel.options().broad_phase) pairs = 0;  // every pair is met at any horizon
+void adapt(Kernel& kernel, const HorizonTally& had) {
+  const auto n = static_cast<std::size_t>(kernel.body_count());
+  const std::size_t pairs =
+      kernel.options().broad_phase ? had.pairs : 0;  // else every pair is met at any horizon
   // Halved, grown by half, or, between two bounds that lie well apart, kept: so it does not swing. Each body
   // counts for a few neighbours; the constants are for worlds of few bodies.
-  if (pairs > 6 * n + 16 || collisions > 2 * n + 16)
+  if (pairs > 6 * n + 16 || had.restarts > 4 * n + 32)
     kernel.choose_horizon(std::max(0.5 * kernel.horizon(), kShortestHorizon));
-  else if (pairs < 3 * n + 8 && collisions < n / 2 + 4)
+  else if (pairs < 3 * n + 8 && had.restarts < n + 8)
     kernel.choose_horizon(1.5 * kernel.horizon());
 }
 
 }  // namespace
 
 void run_horizons(Kernel& kernel, double until,
-                  const std::function<std::optional<std::size_t>(double end)>& run_one) {
+                  const std::function<std::optional<HorizonTally>(double end)>& run_one) {
   // Between horizons nothing is left before the present time: a run may be resumed from there, and no motion
   // is asked for what lies before.
   while (kernel.time() < until && !kernel.halt()) {
     if (!kernel.pause_point()) return;
     kernel.forget_before(kernel.time());
-    const std::uint64_t before = kernel.collisions();
-    const std::optional<std::size_t> pairs = run_one(next_end(kernel, until));
-    if (!pairs || kernel.fail_before(until)) return;
-    adapt(kernel, *pairs, kernel.collisions() - before);
+    const std::optional<HorizonTally> had = run_one(next_end(kernel, until));
+    if (!had || kernel.fail_before(until)) return;
+    adapt(kernel, *had);
   }
 }
 

@@ -10,12 +10,18 @@
 
 namespace brink {
 
+/// What a horizon had.
+struct HorizonTally {
+  std::size_t pairs = 0;  ///< that could meet in it
+  std::size_t restarts =
+      0;  ///< bodies whose motion began anew, each time: what they had ahead was for nothing
+};
+
 /// Horizon after horizon to `until`, longer while little happens, shorter while much does: that changes what
-/// work is done, never what happens. `run_one` takes the kernel to a horizon's end and returns how many pairs
-/// could meet in it; nothing on a halt. It may come less far: where a motion fails, or an instalment of it
-/// ends.
+/// work is done, never what happens. `run_one` takes the kernel to a horizon's end; it returns nothing on a halt.
+/// It may come less far: where a motion fails, or an instalment of it ends.
 void run_horizons(Kernel& kernel, double until,
-                  const std::function<std::optional<std::size_t>(double end)>& run_one);
+                  const std::function<std::optional<HorizonTally>(double end)>& run_one);
 
 /// How far a horizon, or a run, to `end` looks [s]: what belongs to one instant is chosen from together, as by a policy that knows no
 /// horizons, and as by a run that goes on; so an instant that begins by the end is seen whole.

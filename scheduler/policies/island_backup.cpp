@@ -27,13 +27,13 @@ class IslandBackup final : public Policy {
   }
 
  private:
-  /// One horizon, contact by contact: the number of pairs that could meet before it; nothing on a halt.
-  std::optional<std::size_t> run_horizon(Kernel& kernel, double end) {
+  /// One horizon, contact by contact; nothing on a halt.
+  std::optional<HorizonTally> run_horizon(Kernel& kernel, double end) {
     const double begin = kernel.time();
     double seen = look_ahead(kernel, seen_beyond(end));
     double last = last_beginning(kernel, begin, end, seen);
     if (!agenda_.pass(kernel, begin, seen)) return std::nullopt;
-    const std::size_t near = agenda_.pairs().size();
+    HorizonTally had{agenda_.pairs().size(), 0};
     make_islands(kernel);
     kernel.advance_all(last);
     while (const auto next = agenda_.take_earliest(kernel, last)) {
@@ -42,17 +42,18 @@ class IslandBackup final : public Policy {
       // forward again.
       island_.assign(islands_.of(next->pair.body).begin(), islands_.of(next->pair.body).end());
       kernel.back_up(island_, last, next->time);
+      changed_.clear();
       if (!deal_with(kernel, *next, seen)) return std::nullopt;
+      had.restarts += changed_.size();
       last = last_beginning(kernel, begin, end, seen);
       kernel.advance(island_, next->time, last);
     }
-    return kernel.record_frames(last) ? std::optional(near) : std::nullopt;
+    return kernel.record_frames(last) ? std::optional(had) : std::nullopt;
   }
 
   /// False on a halt. A new motion may fail before, and then no more is seen.
   bool deal_with(Kernel& kernel, const Certificate& next, double& seen) {
     if (next.kind == Certificate::Kind::undecided) return agenda_.search_on(kernel, next, seen);
-    changed_.clear();
     const bool done = next.kind == Certificate::Kind::island
                           ? kernel.step_island(changed_)
                           : kernel.resolve(next.pair, next.contact, changed_);

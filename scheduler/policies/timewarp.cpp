@@ -35,6 +35,10 @@ double too_close(double t) { return 4.0 * same_instant(t); }
 /// In a world of few bodies a horizon may end early after so many collisions (knows_enough()).
 constexpr std::uint64_t kManyCollisions = 512;
 
+/// Steps of a search whose answer may never be asked for: most take ten, and who creeps along another for thousands has
+/// often been thrown off its way by then.
+constexpr int kStepsAhead = 256;
+
 class Timewarp final : public Policy {
  public:
   bool steps_islands() const override { return true; }
@@ -44,7 +48,7 @@ class Timewarp final : public Policy {
     searched_on_ = -1.0;  // of another run, or of later than now
     group_bodies();
     run_horizons(kernel, until,
-                 [&](double end) { return run_horizon(end) ? std::optional(near_) : std::nullopt; });
+                 [&](double end) { return run_horizon(end) ? std::optional(had_) : std::nullopt; });
   }
 
  private:
@@ -71,7 +75,9 @@ class Timewarp final : public Policy {
       const auto next = take_earliest(*kernel_, agenda_, last);
       if (!next) break;
       if (!kernel_->record_frames(next->time)) return false;
+      changed_.clear();
       if (!make_certain(*next)) return false;
+      had_.restarts += changed_.size();
     }
     // what is ahead of an end that a failure has brought nearer, or in the last instant
     kernel_->roll_back_all();
@@ -93,7 +99,6 @@ class Timewarp final : public Policy {
   /// False on a halt.
   bool make_certain(const Certificate& next) {
     if (next.kind == Certificate::Kind::undecided) return search_on(next);
-    changed_.clear();
     if (next.kind == Certificate::Kind::island) {  // its members never run ahead
       if (!kernel_->step_island(changed_)) return false;
       end_ = look_ahead(*kernel_, end_);
@@ -164,7 +169,7 @@ class Timewarp final : public Policy {
     is_restless_.assign(kernel_->body_count(), false);
     const double from = kernel_->time();
     const std::vector<PairKey> pairs = kernel_->near_pairs(from, end_);
-    near_ = pairs.size();
+    had_ = {pairs.size(), 0};
     for (const PairKey& pair : pairs) {
       if (!kernel_->poll()) return false;
       if (const auto c = kernel_->search(pair, from, end_)) note(*c);
@@ -188,7 +193,7 @@ class Timewarp final : public Policy {
       find_concerned(pair.other_body, concerned_others_);
       for (const std::uint64_t version : concerned_)
         for (const std::uint64_t other : concerned_others_)
-          if (const auto c = kernel_->search(pair, version, other, now, end_)) note(*c);
+          if (const auto c = kernel_->search(pair, version, other, now, end_, {kStepsAhead})) note(*c);
     }
     for (const int k : changed_) wake(k);
     return kernel_->poll();
@@ -376,7 +381,7 @@ class Timewarp final : public Policy {
   std::vector<int> changed_, undone_;
   std::vector<PairKey> pairs_;                               ///< of look_around()
   std::vector<std::uint64_t> concerned_, concerned_others_;  ///< versions of a pair of these
-  std::size_t near_ = 0;                                     ///< pairs that could meet before the horizon
+  HorizonTally had_;                                         ///< of the present horizon
   int undecided_ = 0;                                        ///< searches in a row that met their cap
   double searched_on_ = -1.0;                                ///< where the last of them was taken up again
 };
