@@ -113,6 +113,21 @@ bool is_notch(const Site& before, const Site& after) {
   return cross(direction_at_end(before), direction_at_start(after)) < -kStraight;
 }
 
+/// Notes straight joints, at sites and samples. Not where more than two sites of a wire meet.
+void note_straight_joints(Outline& outline) {
+  std::map<std::pair<double, double>, int> ends;
+  for (const Site& s : outline.sites)
+    for (const Vec2& end : {s.a, s.b}) ++ends[{end.x(), end.y()}];
+  for (const Loop& loop : outline.loops)
+    for (int k = 0; k + (loop.closed ? 0 : 1) < loop.count; ++k) {
+      Site &in = outline.sites[loop.first + k], &out = outline.sites[loop.first + (k + 1) % loop.count];
+      if (&in == &out || ends[{out.a.x(), out.a.y()}] != 2 || !go_on_straight(in, out)) continue;
+      in.straight_b = out.straight_a = true;
+      for (Sample& s : outline.samples)
+        if (s.arc_site < 0 && s.p == out.a) s.hollow = true;
+    }
+}
+
 /// One sample a corner: where a union pinches, each of the corners that meet there has its own.
 void add_corner_samples(Outline& outline, const Loop& loop) {
   for (int k = 0; k < loop.count; ++k) {
@@ -187,6 +202,7 @@ void finish_outline(Outline& outline) {
   for (Site& s : outline.sites) {
     s.solid = outline.solid;
     s.pseudo_a = s.pseudo_b = Vec2::Zero();
+    s.straight_a = s.straight_b = s.covered = false;
     outline.bounds.add(core_bounds(s).grown(s.radius));
     outline.bounding_radius = std::max(outline.bounding_radius, farthest_from_origin(s) + s.radius);
   }
@@ -198,8 +214,19 @@ void finish_outline(Outline& outline) {
       add_vertex_samples(outline, loop);
     add_arc_samples(outline, loop);
   }
+  note_straight_joints(outline);
   outline.hull = outline.container ? Hull() : hull_of(outline.sites);
   outline.facets = facets_of(outline);
+}
+
+bool go_on_straight(const Site& in, const Site& out) {
+  if (in.kind != SiteKind::segment || out.kind != SiteKind::segment || in.radius != out.radius) return false;
+  constexpr double kStraight = 1e-12, kRounding = 4e-16;
+  const Vec2 a = in.b - in.a, b = out.b - out.a;
+  const double places =
+      kRounding * (in.a.lpNorm<1>() + in.b.lpNorm<1>() + out.a.lpNorm<1>() + out.b.lpNorm<1>());
+  return a.dot(b) > 0.0 &&
+         std::abs(cross(a, b)) <= kStraight * a.norm() * b.norm() + places * (a.norm() + b.norm());
 }
 
 double side_of_outline(const Outline& outline, const Site& site, const Nearest& nearest, const Vec2& q) {

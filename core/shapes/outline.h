@@ -34,7 +34,8 @@ struct Sample {
   int arc_site =
       -1;  ///< -1: vertex (counts in every direction); else the arc's site: counts in its sector only
   int before = -1, after = -1;  ///< of a solid's vertex: the sites that end and begin there
-  /// A solid's vertex at the bottom of a notch: whatever comes from outside meets one of its sides before.
+  /// A solid's vertex at the bottom of a notch: whatever comes from outside meets one of its sides before. Or a straight joint,
+  /// which nothing meets but along what joins there.
   bool hollow = false;
 };
 
@@ -77,6 +78,10 @@ inline bool is_beyond(const Outline& outline, double distance) {
 /// side_of() that nearest site of the outline; of a place that is_beyond() a solid, outside it, or in a container's
 /// solid part.
 double side_of_outline(const Outline& outline, const Site& site, const Nearest& nearest, const Vec2& q);
+
+/// True if two segments of one thickness go on into each other straight, the one from the end of the other, to roundings of
+/// their ends.
+bool go_on_straight(const Site& in, const Site& out);
 
 /// Signed gap [m] from q to the whole outline by brute force over its sites (the reference the fields are
 /// tested against), with the nearest site in `*site` if given. The sign is the nearest site's side; of sites

@@ -27,6 +27,9 @@ struct Site {
   Vec2 pseudo_a =
       Vec2::Zero();  ///< solid sites: sum of the outward unit normals of the two sites that meet at a
   Vec2 pseudo_b = Vec2::Zero();  ///< the same at b (sign of the distance where the nearest point is a vertex)
+  /// Segments: another one goes on straight from that end, so that nothing ends there that could be run against.
+  bool straight_a = false, straight_b = false;
+  bool covered = false;  ///< a solid's side that others lie against all along: nothing comes to it
 };
 
 }  // namespace brink

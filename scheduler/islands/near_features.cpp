@@ -257,6 +257,24 @@ std::optional<NearFeature> beside_arc(const Half& half, int i, int j, const Vec2
   return f;
 }
 
+/// The feature of a sample beyond an end from which another side goes on straight is that of the line, on the side of it on which
+/// the sample is, or its owner. Right upon the end it lies on this side as well as on the next.
+void put_on_line(const Half& half, const Sample& sample, const Site& site, const Vec2& q, NearFeature& f) {
+  const double upon = kOneCorner * (half.carrier.bounding_radius + half.other.bounding_radius);
+  Vec2 n = outward(site);
+  double height = n.dot(q - site.a);
+  const bool behind = std::abs(height) <= upon ? n.dot(centre(half) - site.a) < 0.0 : height < 0.0;
+  if (!site.solid && behind) {
+    n = -n;
+    height = -height;
+  }
+  const Vec2 world = half.other_frame.direction_to_world(n);
+  f.gap = height - site.radius - sample.radius;
+  f.normal = half.on_a ? world : Vec2(-world);
+  f.point = half.other_frame.to_world(q - (height - site.radius) * n);
+  if (beyond_ends(site, q) <= upon) f.at_end = f.goes_on = false;
+}
+
 /// Sample i of a half against site j, where it is nearest to it; side: see side_of(). Nothing of an arc that
 /// looks elsewhere.
 std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest& nearest, double side,
@@ -310,6 +328,8 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   // right on the joint of two wires it may be at the ends of both, and passes by neither
   const bool on_end = thin && site.kind == SiteKind::segment && beyond_ends(site, q) <= least;
   f.at_end = site.kind != SiteKind::point && nearest.foot != Foot::interior && !on_end;
+  f.goes_on = nearest.foot == Foot::start ? site.straight_a : nearest.foot == Foot::end && site.straight_b;
+  if (f.goes_on) put_on_line(half, sample, site, q, f);
   return f;
 }
 
@@ -397,7 +417,8 @@ OnCorner on_corner(const Half& half, std::size_t j, const Vec2& q, double tie) {
   OnCorner where = OnCorner::nowhere;
   for (std::size_t k = 0; k < outline.sites.size(); ++k) {
     const Site& next = outline.sites[k];
-    if (k == j || next.kind != SiteKind::segment || (next.a != end && next.b != end)) continue;
+    if (k == j || next.kind != SiteKind::segment || (next.a != end && next.b != end) || next.covered)
+      continue;
     const Vec2 on = next.a == end ? Vec2(next.b - next.a) : Vec2(next.a - next.b);
     if (outward(site).dot(on) > kStraightJoint * on.norm()) continue;  // a hollow corner has both its sides
     const double more = outward(next).dot(to_centre) - outward(site).dot(to_centre);
@@ -495,7 +516,8 @@ OnWire on_wire(const Half& half, const Sample& sample, std::size_t j, const Vec2
   for (const Vec2& n : {across, Vec2(-across)})
     if (has_before(n)) return {OnCorner::this_side, n};
   const bool by_another = std::any_of(of_wire.normals.begin(), of_wire.normals.end(), has_before);
-  const bool elsewhere = by_another || is_within(of_wire, of_sample);
+  // the corner of a solid fills the hollow that it is in
+  const bool elsewhere = by_another || (!half.carrier.solid && is_within(of_wire, of_sample));
   return {elsewhere ? OnCorner::other_side : OnCorner::nowhere, Vec2::Zero()};
 }
 
@@ -531,6 +553,7 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
         outside || (nearest[j].distance <= least + tie && side_of(half.other.sites[j], nearest[j], q) > 0.0);
   const bool bare = half.carrier.samples[i].arc_site < 0;
   for (std::size_t j = 0; j < nearest.size(); ++j) {
+    if (half.other.sites[j].covered) continue;
     const double side = side_of(half.other.sites[j], nearest[j], q);
     const OnCorner where = bare ? on_corner(half, j, q, corner) : OnCorner::nowhere;
     const OnWire upon = bare ? on_wire(half, half.carrier.samples[i], j, q, corner) : OnWire{};
@@ -555,7 +578,9 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
                        (where == OnCorner::this_side || nearest[j].foot != Foot::interior) &&
                        beyond_ends(site, q) <= corner;
     if (f && flush) f->no_way_by = has_no_way_by(half, i, j, q);
-    if (f && f->gap <= reach) found.push_back(*f);
+    const bool far =
+        f && f->goes_on && nearest[j].distance - site.radius - half.carrier.samples[i].radius > reach;
+    if (f && f->gap <= reach && !far) found.push_back(*f);
   }
 }
 
@@ -715,6 +740,12 @@ double gap_of(const NearFeature& f, const OutlineAt& a, const OutlineAt& b) {
     if (const double before = before_next_side(half.other, site, q);
         before > (f.no_way_by ? kOneCorner * size : 0.0))
       return std::min(before, nearest.distance) - site.radius - sample.radius;
+  // past the hollow corner at an end, behind the side, is the solid, too
+  if (!abreast && site.solid && site.kind == SiteKind::segment &&
+      has_hollow_corner(half.other, static_cast<std::size_t>(f.site),
+                        nearest.foot == Foot::start ? site.a : site.b))
+    if (const double behind_line = outward(site).dot(q - site.a); behind_line < 0.0)
+      return behind_line - site.radius - sample.radius;
   if (!abreast && !crossed)
     if (const double through = through_corner(half, sample, site, nearest, q); through > 0.0) return -through;
   // beside an end, where there is no way by, it is as deep as it is behind the side, however far along that the end is

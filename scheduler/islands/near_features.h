@@ -22,6 +22,9 @@ struct NearFeature {
   /// Of an arc's sample whose sector the site lies beside, by what a body may turn in a step: the gap is that of the arc's
   /// end, and of the arc once it has rolled there.
   bool beside_arc = false;
+  /// Beyond an end from which another side goes on straight: it meets that one, and this one only as it comes to be abreast of it
+  /// within a step. Normal, point and gap are those of the line.
+  bool goes_on = false;
   /// Over a smooth joint in a hollow: of the tangent at the site's end.
   bool over_joint = false;
   /// Upon a convex corner: of the side there that was chosen, with that side's own normal, and a gap from its line.

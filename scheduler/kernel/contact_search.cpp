@@ -7,6 +7,7 @@
 
 #include "brink/core/query/outline_gap.h"
 #include "brink/core/shapes/outline_crossing.h"
+#include "brink/core/world/straight_joints.h"
 #include "brink/scheduler/first_contact/closed_forms.h"
 #include "brink/scheduler/first_contact/tolerances.h"
 #include "brink/scheduler/kernel/tolerances.h"
@@ -68,27 +69,46 @@ struct ContactSearch::Sides {
 /// Cost: an index of each distinct outline, and with it a rendered field where it has many sites.
 ContactSearch::ContactSearch(const World& world, const SolverOptions& options,
                              const Trajectories& trajectories, RunControl& run)
-    : world_(&world), trajectories_(&trajectories), run_(&run) {
+    : world_(&world),
+      trajectories_(&trajectories),
+      run_(&run),
+      field_(options.field),
+      share_fields_(options.share_fields) {
   // relative to the scene, so that its unit of length does not matter
   limits_.tolerance = options.contact_tolerance * world.length();
   limits_.touch = kTouchOfTolerance * limits_.tolerance;
   limits_.closed_forms = options.closed_forms;
-  FieldOptions field = options.field;
-  if (options.fields_for_small_shapes) field.brute_force_below = 0;
+  if (options.fields_for_small_shapes) field_.brute_force_below = 0;
+  take_outlines(with_straight_joints(world, limits_.tolerance));
+}
+
+/// Who does not meet one of two sites may run against the end of the other.
+void ContactSearch::set_filter(PairFilter filter) {
+  filter_ = std::move(filter);
+  std::vector<std::shared_ptr<const Outline>> given;
+  for (const FixedSite& s : world_->sites) given.push_back(s.outline);
+  take_outlines(filter_ ? given : with_straight_joints(*world_, limits_.tolerance));
+}
+
+void ContactSearch::take_outlines(const std::vector<std::shared_ptr<const Outline>>& of_sites) {
+  outlines_.clear();
+  indices_of_.clear();
+  indices_.clear();
+  of_sites_ = of_sites;
   std::map<const Outline*, const SiteIndex*> made;
   const auto add = [&](const std::shared_ptr<const Outline>& outline) {
     const SiteIndex*& index = made[outline.get()];
     // by the outline's address: copies of a body share it. The order of the map is never looked at.
-    if (!index || !options.share_fields) {
-      indices_.push_back(make_site_index(outline, field, &run.work()));
+    if (!index || !share_fields_) {
+      indices_.push_back(make_site_index(outline, field_, &run_->work()));
       index = indices_.back().get();
     }
     outlines_.push_back(outline.get());
     indices_of_.push_back(index);
   };
-  for (const Body& b : world.bodies) add(b.outline);
-  for (const FixedSite& s : world.sites) add(s.outline);
-  points_meet_wires_ = points_may_meet_wires(outlines_, world.bodies.size());
+  for (const Body& b : world_->bodies) add(b.outline);
+  for (const std::shared_ptr<const Outline>& outline : of_sites_) add(outline);
+  points_meet_wires_ = points_may_meet_wires(outlines_, world_->bodies.size());
 }
 
 /// Bodies come first among owners, so of two owners that may meet the lower one is a body.

@@ -49,7 +49,7 @@ class ContactSearch {
 
   // -- pairs --
   /// From now on owners whom it says no to never meet. It is asked with a < b.
-  void set_filter(PairFilter filter) { filter_ = std::move(filter); }
+  void set_filter(PairFilter filter);
   bool may_meet(int a, int b) const { return !filter_ || filter_(std::min(a, b), std::max(a, b)); }
   /// From now on, until search_again(), searches of the pair find nothing: somebody else keeps its gap.
   void leave_out(const PairKey& pair) { left_out_.insert(pair); }
@@ -92,6 +92,7 @@ class ContactSearch {
  private:
   /// The two sides of a pair, the second where its image is.
   struct Sides;
+  void take_outlines(const std::vector<std::shared_ptr<const Outline>>& of_sites);
   Mover mover(int owner, const BodyTrack& track) const {
     return {indices_of_[owner], &track.motion, track.velocity_rounding, track.component == BodyTrack::kHeld};
   }
@@ -104,6 +105,9 @@ class ContactSearch {
   std::vector<const Outline*> outlines_;  ///< of every owner
   std::vector<const SiteIndex*> indices_of_;
   std::vector<std::unique_ptr<SiteIndex>> indices_;
+  std::vector<std::shared_ptr<const Outline>> of_sites_;
+  FieldOptions field_;
+  bool share_fields_;
   SearchScratch scratch_;
   PairFilter filter_;
   std::set<PairKey> left_out_;

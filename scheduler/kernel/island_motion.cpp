@@ -20,6 +20,8 @@ namespace {
 constexpr double kOfFall = 0.05;
 /// ... and moves nobody by more than this part of it.
 constexpr double kOfSize = 0.1;
+/// However slow all are, a step is no longer [s]: what sites do in it is followed beforehand.
+constexpr double kLongestStep = 100.0;
 /// Features are listed as far as bodies come in so many steps; where impulses take one farther, so many times as far as that.
 /// By modes a list reaches so many times as far for all.
 constexpr double kReach = 2.0, kWider = 4.0;
@@ -89,7 +91,7 @@ double IslandMotion::longest() const {
   const double pull = members_.pull(), speed = members_.speed();
   // the time of the fall is sqrt(2 size / pull): but for the root of 2
   const double fall = pull > 0.0 ? kOfFall * std::sqrt(members_.size() / pull) : kForever;
-  const double way = speed > 0.0 ? kOfSize * members_.size() / speed : kForever;
+  const double way = speed > 0.0 ? std::min(kOfSize * members_.size() / speed, kLongestStep) : kForever;
   return std::min(fall, way);
 }
 
@@ -111,7 +113,7 @@ void IslandMotion::list(double reach) {
   for (HeldContact& c : contacts_) remember_side(c);
   // what an arc may roll to counts along a step alone: until then its end tells all
   if (reach >= 0.0 || by_modes_)
-    std::erase_if(contacts_, [](const HeldContact& c) { return c.feature.beside_arc; });
+    std::erase_if(contacts_, [](const HeldContact& c) { return c.feature.beside_arc || c.feature.goes_on; });
   absorbed_ = 0.0;
 }
 
@@ -208,7 +210,7 @@ bool IslandMotion::touches(const HeldContact& c) const {
 /// agitated island, and faster than a step takes as plastic.
 double IslandMotion::impact_of(const HeldContact& c, const std::vector<Vec3>& velocity) const {
   const double closing = members_.closing_speed(c);
-  if (closing <= most_absorbed(c.pair) || c.feature.beside_arc) return 0.0;
+  if (closing <= most_absorbed(c.pair) || c.feature.beside_arc || c.feature.goes_on) return 0.0;
   if (!touches(c)) return arrival(c, velocity).time < h_ ? closing : 0.0;
   // at a joint of two floors the tangent at an end bars the way to what slides over it
   if (passes_by(c, 0.0, closing)) return 0.0;
@@ -393,7 +395,7 @@ double IslandMotion::next_arrival() {
   const std::vector<Vec3> velocity = velocities();
   for (const HeldContact& c : contacts_) {
     if (!go_on_()) break;
-    if (c.feature.beside_arc) continue;
+    if (c.feature.beside_arc || c.feature.goes_on) continue;
     const Arrival come = touches(c) ? Arrival{0.0, members_.closing_speed(c)} : arrival(c, velocity);
     if (!(come.time <= h_)) continue;
     if (!touches(c) && come.closing > most_absorbed(c.pair))
@@ -626,7 +628,7 @@ bool IslandMotion::pushes(const HeldContact& c) const {
 /// constant twists opens their gap: an arc that turns under a body which forces lift, but not as fast as it bends away.
 /// `velocity`: that of all members now; it is the same afterwards.
 bool IslandMotion::falls_back(const HeldContact& c, std::vector<Vec3>& velocity) const {
-  if (!touches(c)) return false;
+  if (!touches(c) || c.feature.goes_on) return false;
   const int a = members_.place_of(c.pair.body),
             b = c.pair.with_site() ? a : members_.place_of(c.pair.other_body);
   const Vec3 of_a = velocity[a], of_b = velocity[b];

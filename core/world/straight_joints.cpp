@@ -1,0 +1,150 @@
+#include "brink/core/world/straight_joints.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <span>
+#include <utility>
+#include <variant>
+
+#include "brink/core/shapes/outline.h"
+
+namespace brink {
+
+namespace {
+
+/// An end of a straight side, in the world.
+struct End {
+  Vec2 place;
+  int site;     ///< of the world
+  int side;     ///< of its outline
+  bool starts;  ///< the side begins here
+};
+
+/// Ends that are near each other, pair by pair, of different sites.
+template <class Visit>
+void each_pair(std::vector<End>& ends, double tolerance, Visit&& visit) {
+  // along a slanting line, on which the ends of rows and columns have places of their own
+  const auto along = [](const End& e) { return 0.7548776662 * e.place.x() + 0.6558656180 * e.place.y(); };
+  std::sort(ends.begin(), ends.end(), [&](const End& a, const End& b) { return along(a) < along(b); });
+  for (std::size_t k = 0; k < ends.size(); ++k)
+    for (std::size_t m = k + 1; m < ends.size() && along(ends[m]) - along(ends[k]) <= tolerance; ++m)
+      if (ends[m].site != ends[k].site && (ends[m].place - ends[k].place).norm() <= tolerance)
+        visit(ends[k], ends[m]);
+}
+
+/// A side of a solid without thickness, on its line: the same for all that lie on it, whichever way they run.
+struct Side {
+  double angle, offset;  ///< of the line [rad], [m]
+  double from, to;       ///< along it [m]
+  bool forwards;
+  int site, side;
+};
+
+Side on_its_line(const Site& s, int site, int side) {
+  Vec2 along = (s.b - s.a).normalized();
+  const bool forwards = along.x() > 0.0 || (along.x() == 0.0 && along.y() > 0.0);
+  if (!forwards) along = -along;
+  const double from = along.dot(s.a), to = along.dot(s.b);
+  return {std::atan2(along.y(), along.x()),
+          cross(along, s.a),
+          std::min(from, to),
+          std::max(from, to),
+          forwards,
+          site,
+          side};
+}
+
+/// Runs of neighbours in order that differ by no more than `most` in what is asked of them.
+template <class Value, class Visit>
+void each_run(std::span<Side> sides, double most, Value&& value, Visit&& visit) {
+  std::sort(sides.begin(), sides.end(), [&](const Side& a, const Side& b) { return value(a) < value(b); });
+  for (std::size_t begin = 0, end; begin < sides.size(); begin = end) {
+    for (end = begin + 1; end < sides.size() && value(sides[end]) - value(sides[end - 1]) <= most;) ++end;
+    if (end - begin > 1) visit(sides.subspan(begin, end - begin));
+  }
+}
+
+/// Sides of one line along all of which sides lie that run the other way.
+template <class Visit>
+void each_covered(std::span<Side> line, double tolerance, Visit&& visit) {
+  for (const bool forwards : {false, true}) {
+    std::vector<std::pair<double, double>> covers;  // apart from each other, in order
+    std::vector<const Side*> in_order;
+    for (const Side& s : line)
+      if (s.forwards != forwards) in_order.push_back(&s);
+    std::sort(in_order.begin(), in_order.end(),
+              [](const Side* a, const Side* b) { return a->from < b->from; });
+    for (const Side* s : in_order)
+      if (!covers.empty() && s->from <= covers.back().second + tolerance)
+        covers.back().second = std::max(covers.back().second, s->to);
+      else
+        covers.emplace_back(s->from, s->to);
+    for (const Side& s : line) {
+      if (s.forwards != forwards) continue;
+      auto after = std::upper_bound(covers.begin(), covers.end(), s.from + tolerance,
+                                    [](double at, const auto& c) { return at < c.first; });
+      if (after != covers.begin() && s.to <= std::prev(after)->second + tolerance) visit(s);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::shared_ptr<const Outline>> with_straight_joints(const World& world, double tolerance) {
+  std::vector<std::shared_ptr<const Outline>> outlines;
+  std::vector<Outline> placed(world.sites.size());
+  std::vector<End> ends;
+  std::vector<Side> sides;
+  for (int s = 0; s < static_cast<int>(world.sites.size()); ++s) {
+    const FixedSite& site = world.sites[s];
+    outlines.push_back(site.outline);
+    if (!std::holds_alternative<std::monostate>(site.motion)) continue;
+    placed[s] = transformed(*site.outline, site.pose);
+    for (int k = 0; k < static_cast<int>(placed[s].sites.size()); ++k) {
+      const Site& side = placed[s].sites[k];
+      if (side.kind != SiteKind::segment) continue;
+      ends.push_back({side.a, s, k, true});
+      ends.push_back({side.b, s, k, false});
+      if (side.solid && side.radius == 0.0) sides.push_back(on_its_line(side, s, k));
+    }
+  }
+  std::map<int, Outline> joined;
+  const auto outline_of = [&](int site) -> Outline& {
+    return joined.try_emplace(site, *world.sites[site].outline).first->second;
+  };
+  const auto note = [&](const End& end) {
+    Outline& outline = outline_of(end.site);
+    Site& side = outline.sites[end.side];
+    (end.starts ? side.straight_a : side.straight_b) = true;
+    for (Sample& sample : outline.samples)
+      if (sample.arc_site < 0 && sample.p == (end.starts ? side.a : side.b)) sample.hollow = true;
+  };
+  each_pair(ends, tolerance, [&](const End& a, const End& b) {
+    const Outline &of_a = placed[a.site], &of_b = placed[b.site];
+    if (of_a.solid != of_b.solid) return;
+    Site in = of_a.sites[a.side], out = of_b.sites[b.side];
+    // Sides of solids have their inside to the left, so the one goes on where the other ends. Of a wire they may run either way.
+    if (of_a.solid && a.starts == b.starts) return;
+    if (a.starts) std::swap(in.a, in.b);
+    if (!b.starts) std::swap(out.a, out.b);
+    if (!go_on_straight(in, out)) return;
+    note(a);
+    note(b);
+  });
+  constexpr double kOneDirection = 1e-12;
+  each_run(
+      sides, kOneDirection, [](const Side& s) { return s.angle; },
+      [&](std::span<Side> parallel) {
+        each_run(
+            parallel, tolerance, [](const Side& s) { return s.offset; },
+            [&](std::span<Side> line) {
+              each_covered(line, tolerance,
+                           [&](const Side& s) { outline_of(s.site).sites[s.side].covered = true; });
+            });
+      });
+  for (auto& [site, outline] : joined) outlines[site] = std::make_shared<const Outline>(std::move(outline));
+  return outlines;
+}
+
+}  // namespace brink
