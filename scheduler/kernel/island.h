@@ -64,7 +64,7 @@ class WarmContacts {
 
 /// How an island came on in the steps that it took last.
 struct IslandPace {
-  int hasty = 0;      ///< steps by modes in a row that hardly led on
+  int hasty = 0;      ///< owed for steps by modes that hardly led on
   int agitation = 0;  ///< raised by a step that an impact cuts short, lowered by one in which there is none
   double step =
       std::numeric_limits<double>::infinity();  ///< the last, where forces that change bounded it [s]

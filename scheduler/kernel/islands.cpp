@@ -15,10 +15,11 @@ namespace brink {
 
 namespace {
 
-/// Steps by modes that led on by less than this part of what was asked for are hasty; after so many in a row some
-/// steps at the level of velocities are taken: what buzzes without end gets on.
+/// A step by modes that led on by less than this part of what was asked for is hasty, and so is a try at one that failed.
 constexpr double kHasty = 0.05;
-constexpr int kMostHasty = 64, kCalmed = 4;
+/// It costs as much as so many others: of steps at the level of velocities each makes up for one, of longer ones by modes
+/// for so many. Who owes more than so many hasty steps takes none by modes: what buzzes without end gets on.
+constexpr int kCostOfHasty = 16, kWorthOfLong = 4, kMostHasty = 64;
 
 /// From this many members on, an island of which so many steps were cut short by impacts is agitated: its impacts
 /// are taken where a step begins then. It stays so until some steps more had none.
@@ -50,12 +51,15 @@ int next_agitation(int agitation, bool impacts) {
   return std::clamp(agitation + (impacts ? 1 : -1), 0, kMostAgitation);
 }
 
-/// After kMostHasty steps by modes it counts on through kCalmed steps of the other kind, and begins at 0
-/// again.
-int next_hasty(int hasty, bool by_modes, bool was_short) {
-  if (by_modes) return was_short ? hasty + 1 : 0;
-  return hasty >= kMostHasty && hasty < kMostHasty + kCalmed ? hasty + 1 : 0;
+/// What an island owes after one more step. A chatter that ends is followed to its end; in one that does not a hasty step
+/// by modes comes to kCostOfHasty of the other kind.
+int next_hasty(int hasty, bool tried, bool led_on) {
+  if (tried && !led_on) return hasty + kCostOfHasty;
+  return std::max(0, hasty - (tried ? kWorthOfLong : 1));
 }
+
+/// True if the last steps by modes led on by too little for more of them.
+bool buzzes(const IslandPace& pace) { return pace.hasty >= kMostHasty * kCostOfHasty; }
 
 /// Of these those that press.
 std::vector<HeldContact> pressing(const std::vector<HeldContact>& contacts) {
@@ -278,8 +282,9 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   const double now = run_->time();
   motion.expect_step(pace.step);
   IslandModes modes(motion.members(), *trajectories_, *search_, *response_, by_modes_, motion.warm());
-  // what buzzes is spared modes for some steps (next_hasty)
-  if (pace.hasty < kMostHasty && modes.suits()) motion.expect_modes();
+  // what buzzes is spared modes for some steps
+  const bool may_have_modes = !buzzes(pace) && modes.suits();
+  if (may_have_modes) motion.expect_modes();
   const std::uint64_t collisions = run_->work().collisions;
   // before impacts: those of an agitated island are looked for along the step
   if (const double ahead = motion.longest(); std::isfinite(ahead) && !follow_sites(now, ahead))
@@ -312,7 +317,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   }
   ++tally_.steps;
   if (by_modes) tell(modes, motion.members());
-  pace.hasty = next_hasty(pace.hasty, by_modes, by_modes && modes.end() - now < kHasty * h);
+  pace.hasty = next_hasty(pace.hasty, may_have_modes && !rests, by_modes && modes.end() - now >= kHasty * h);
   pace.agitation = next_agitation(pace.agitation, motion.impacts_in_step());
   pace.step = rests || by_modes ? kForever : motion.next_step();
   if (rests) note_change(EventKind::sleep, *members.begin()), ++tally_.slept;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/lasting_worlds.h"
 #include "tests/support/settling.h"
 
 namespace brink::modes_test {
@@ -47,6 +48,19 @@ TEST(Modes, SlidingBlockStopsWhereItMustAndIsAtRest) {
   const std::vector<double> sleeps = times_of(events, EventKind::sleep);
   ASSERT_EQ(sleeps.size(), 1U);
   EXPECT_NEAR(sleeps[0], v / (mu * kEarth), 1e-9);
+}
+
+// Eleven bodies on a shaker: impacts and lifts that follow each other within microseconds, without end. Each is a step by
+// modes, which costs ten others; of 20 000 steps two thirds once were of these, in a quarter of the time asked for.
+TEST(Modes, WhatBuzzesWithoutEndIsMostlyLeftToSteps) {
+  const testing::LastingWorld made = testing::LastingWorldMaker(46).make();
+  SolverOptions options = by_modes();
+  options.island_tolerance = made.island_tolerance;
+  Simulator simulator(made.world, options);
+  const RunSummary summary = simulator.run(testing::until(2.5));
+  EXPECT_EQ(summary.termination, Termination::reached_end);
+  EXPECT_GT(summary.steps_by_modes, 0U);
+  EXPECT_LT(4 * summary.steps_by_modes, summary.island_steps);
 }
 
 // Housner 1963: known impacts of a block that rocks on its corners without bounce or slip.
