@@ -411,6 +411,19 @@ double IslandModes::gap(const PairKey& pair, double t) const {
   return bound > 0.0 ? bound : outline_gap(a, body, b, other).gap;
 }
 
+std::vector<double> IslandModes::gaps_at_end() const {
+  std::vector<double> gaps;
+  for (const HeldContact& c : contacts_) {
+    const auto state_of = [&](int body) { return motion(members_->place_of(body)).extended_state(end_); };
+    const ExtendedState other = c.pair.with_site()
+                                    ? search_->other_state(c.pair, end_)
+                                    : state_of(c.pair.other_body).shifted(search_->shift_of(c.pair));
+    gaps.push_back(gap_of(c.feature, search_->outline_of(c.pair.body), state_of(c.pair.body),
+                          search_->outline_of(search_->other_owner(c.pair)), other));
+  }
+  return gaps;
+}
+
 /// Of contacts that a step by modes had closed before. One that was open, or is new, has met: that is an impact.
 std::vector<IslandModes::Change> IslandModes::changes() const {
   std::vector<Change> changes;

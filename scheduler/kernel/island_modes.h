@@ -49,6 +49,8 @@ class IslandModes {
   // -- what take() has found
   const std::vector<HeldContact>& contacts() const { return contacts_; }
   double end() const { return end_; }  ///< of the step [s]
+  /// Of each of contacts(), where the step ends [m].
+  std::vector<double> gaps_at_end() const;
   /// Of a member; after the end it goes on with the twist that it has there.
   Motion motion(int member) const { return Motion::dense(tracks_[member]); }
   /// Contacts that begin to stick, slip or part with this step.

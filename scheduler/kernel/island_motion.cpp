@@ -316,6 +316,7 @@ bool IslandMotion::take(IslandModes& modes, double now, double h, bool on_time) 
     if (outcome == IslandModes::Outcome::none) return false;
     // with the modes and forces that they have from here on
     contacts_ = modes.contacts();
+    gaps_at_end_ = modes.gaps_at_end();
     h_ = modes.end() - now;
     return true;
   }
@@ -654,8 +655,10 @@ bool IslandMotion::falls_back(const HeldContact& c, std::vector<Vec3>& velocity)
 /// Nothing pushes, but one of the two alone, left to its parabola, could run into the other's step: that has the
 /// twist of its end from the start on, which a parabola comes to by and by. Where others push both, each takes steps, and
 /// there is no parabola: what rolls along beside a heap, touching nobody, does not keep it awake. By modes, it has just been
-/// let go: an open contact is looked at from there on as well as any other, until it is clear of it.
-bool IslandMotion::stays_near(const HeldContact& c, bool both_pushed, std::vector<Vec3>& velocity) const {
+/// let go: an open contact is looked at from there on as well as any other, until it is clear of it. And who meets where the
+/// step ends: a search as far as that could tell either, by roundings.
+bool IslandMotion::stays_near(std::size_t contact, bool both_pushed, std::vector<Vec3>& velocity) const {
+  const HeldContact& c = contacts_[contact];
   const double behind = both_pushed && !by_modes_ ? 0.0 : members_.pull() * h_;
   const double tolerance = search_->limits().tolerance;
   if (by_modes_) {
@@ -663,7 +666,8 @@ bool IslandMotion::stays_near(const HeldContact& c, bool both_pushed, std::vecto
     // a parting of this speed rises kClear tolerances: v^2 / 2 a
     const bool slow = closing >= -std::sqrt(kClear) * IslandModes::slowest_bounce(members_, *search_);
     if (c.feature.gap <= kClear * tolerance && slow) return true;
-    return !c.pair.with_site() && c.feature.gap - h_ * (closing + behind) <= tolerance;
+    return !c.pair.with_site() && (c.feature.gap - h_ * (closing + behind) <= tolerance ||
+                                   gaps_at_end_[contact] <= kClear * tolerance);
   }
   if (falls_back(c, velocity)) return true;
   // a site takes no step: whoever is let go meets it by the ordinary search
@@ -717,9 +721,9 @@ IslandMotion::Parts IslandMotion::parts(bool rests) const {
   }
   const std::vector<bool> by_others = pushed;
   std::vector<Vec3> velocity = velocities();
-  for (const HeldContact& c : contacts_) {
-    const auto [a, b] = places(c);
-    if (rests || pushes(c) || !stays_near(c, by_others[a] && by_others[b], velocity)) continue;
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const auto [a, b] = places(contacts_[k]);
+    if (rests || pushes(contacts_[k]) || !stays_near(k, by_others[a] && by_others[b], velocity)) continue;
     pushed[a] = pushed[b] = true;
     joined.unite(a, b);
   }

@@ -101,7 +101,7 @@ class IslandMotion {
   void take_forces();
   double kinetic_energy() const;
   bool pushes(const HeldContact& c) const;
-  bool stays_near(const HeldContact& c, bool both_pushed, std::vector<Vec3>& velocity) const;
+  bool stays_near(std::size_t contact, bool both_pushed, std::vector<Vec3>& velocity) const;
   bool falls_back(const HeldContact& c, std::vector<Vec3>& velocity) const;
   std::vector<std::pair<int, int>> neighbours() const;
   ContactMode mode_of(const HeldContact& c, bool rests) const;
@@ -120,6 +120,7 @@ class IslandMotion {
   double expected_ = std::numeric_limits<double>::infinity();
   double asked_ = 0.0;  ///< the length of the step, but for what impacts cut off it [s]
   std::vector<HeldContact> contacts_;
+  std::vector<double> gaps_at_end_;  ///< of each of them, of a step by modes [m]
   IslandStep problem_;
 };
 

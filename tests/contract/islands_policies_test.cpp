@@ -26,8 +26,9 @@ using testing::LastingWorld;
 constexpr std::uint64_t kWorlds = 32, kBreaks = 4, kHeaps = 8, kOrdered = 15;
 /// Seeds from this one on: of another order than "index".
 constexpr std::uint64_t kOtherOrder = 2 * testing::LastingWorldMaker::kHeaps;
-/// Hollow corners, walls that rise from a joint, and a corner that comes along the floor of another were passed through in these.
-constexpr std::array<std::uint64_t, 9> kOnceFailed{43, 44, 51, 58, 59, 76, 84, 98, 153};
+/// Hollow corners, walls that rise from a joint, and a corner that comes along the floor of another were passed through in these;
+/// in 110 two who met where a step by modes of both ended did so under some policies only.
+constexpr std::array<std::uint64_t, 10> kOnceFailed{43, 44, 51, 58, 59, 76, 84, 98, 110, 153};
 
 std::vector<std::uint64_t> seeds() {
   if (const char* one = std::getenv("BRINK_SEED")) return {std::stoull(one)};
