@@ -16,6 +16,8 @@ namespace {
 
 /// Integration steps of one island's step, at most.
 constexpr int kMostPieces = 256;
+/// Looks at whole outlines along each of them.
+constexpr int kLooks = 8;
 /// A closed contact's gap may be off by this part of the contact tolerance inside a step, or of what it keeps.
 constexpr double kOff = 0.25;
 /// Where places are rounded to more than this part of a touch, gaps cannot be kept in double precision.
@@ -161,7 +163,9 @@ void IslandModes::add_contact(const HeldContact& c) {
     b = members_->place_of(c.pair.other_body);
   }
   // A shadow that touches says what another contact says; one that is apart may come to be met by itself.
-  const bool shadow = is_shadow(*search_, c, contacts_), touching = !shadow && touches(c);
+  // So may an arc that does not face the site yet: its gap is that of its end.
+  const bool shadow = !c.feature.beside_arc && is_shadow(*search_, c, contacts_),
+             touching = !shadow && !c.feature.beside_arc && touches(c);
   const Vec2 shift = search_->shift_of(c.pair);
   place_.push_back(problem_.contacts.size());
   bool present = true;
@@ -184,7 +188,7 @@ void IslandModes::add_contact(const HeldContact& c) {
     const bool deep = c.feature.gap < -search_->limits().tolerance;  // as the scene has it
     made.kept =
         deep ? c.feature.gap : std::max(c.feature.gap, c.feature.thin ? search_->limits().touch : 0.0);
-    if (c.feature.thin) made.off = kOff * made.kept;
+    if (c.feature.thin) made.off = kOff * made.kept, made.closes_at = search_->limits().touch;
     // what a sample is not abreast of now it may go by
     made.passes = c.feature.at_end || !present;
     problem_.contacts.push_back(made);
@@ -385,13 +389,14 @@ bool IslandModes::within_reach() const {
   return true;
 }
 
-/// True if no pair of members is deeper in each other than it was, to the contact tolerance, where a piece of the
-/// motion ends: a look at whole outlines, at features that nobody listed as well.
+/// True if no pair of members is deeper in each other than it was, to the contact tolerance, at some places along each piece
+/// of the motion: a look at whole outlines, at features that nobody listed as well.
 bool IslandModes::keeps_apart() const {
   std::set<double> looks;
   for (const auto& track : tracks_)
     for (const PolynomialPiece& p : track->pieces)
-      if (p.end <= end_) looks.insert(p.end);
+      for (int k = 1; k <= kLooks && p.end <= end_; ++k)
+        looks.insert(k == kLooks ? p.end : p.begin + k * (p.end - p.begin) / kLooks);
   const std::vector<PairKey> pairs = members_->near_pairs(-1.0);
   return std::all_of(pairs.begin(), pairs.end(), [&](const PairKey& pair) {
     const double least = std::min(0.0, gap(pair, now_)) - search_->limits().tolerance;

@@ -112,8 +112,9 @@ void IslandMotion::list(double reach) {
   contacts_ = members_.contacts(reach, go_on_);
   for (HeldContact& c : contacts_) remember_side(c);
   // what an arc may roll to counts along a step alone: until then its end tells all
-  if (reach >= 0.0 || by_modes_)
-    std::erase_if(contacts_, [](const HeldContact& c) { return c.feature.beside_arc || c.feature.goes_on; });
+  std::erase_if(contacts_, [&](const HeldContact& c) {
+    return (c.feature.beside_arc && reach >= 0.0) || (c.feature.goes_on && (reach >= 0.0 || by_modes_));
+  });
   absorbed_ = 0.0;
 }
 

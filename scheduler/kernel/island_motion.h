@@ -39,6 +39,8 @@ class IslandMotion {
   bool rests(double rest_speed);
   /// From now on bounces end where they do not leave the contact tolerance any more, not the step.
   void expect_modes() { by_modes_ = true; }
+  /// None were found: impacts are looked at anew, as steps have them.
+  void expect_steps() { by_modes_ = false; }
   /// From now on impacts do not end steps: those that would come within a step are taken where it begins, as far apart
   /// as the two still are.
   void expect_agitation() { agitated_ = true; }

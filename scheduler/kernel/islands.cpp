@@ -289,20 +289,33 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   // before impacts: those of an agitated island are looked for along the step
   if (const double ahead = motion.longest(); std::isfinite(ahead) && !follow_sites(now, ahead))
     return give_up();
-  if (any_bounces(*world_, members))
+  const auto pass_on_impacts = [&] {
+    if (!any_bounces(*world_, members)) return;
     motion.pass_on_impacts(
         [this](const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r) {
           note_impact(c, from, closing, r.normal, r.tangential);
         });
+  };
+  pass_on_impacts();
   // an impact here is news: modes that the step before ended in do not hold
   on_time = on_time && run_->work().collisions == collisions;
   if (run_->is_cut()) return give_up();
   const bool rests = motion.rests(limits_.rest_speed);
   // anew: impacts have changed speeds
-  const double h = std::min({longest, motion.longest(), steady_for(members, now)});
-  if (!rests && std::isfinite(h) && !follow_sites(now, h)) return give_up();
+  double h = 0.0;
+  const auto set_length = [&] {
+    h = std::min({longest, motion.longest(), steady_for(members, now)});
+    return rests || !std::isfinite(h) || follow_sites(now, h);
+  };
+  if (!set_length()) return give_up();
   // rest first: it is exact and free; modes next, as they keep to a tolerance; steps of first order last
   const bool by_modes = !rests && motion.take(modes, now, h, on_time);
+  if (may_have_modes && !rests && !by_modes) {
+    // what modes would have met all at once, or left to another contact, is an impact where a step begins
+    motion.expect_steps();
+    pass_on_impacts();
+    if (run_->is_cut() || !set_length()) return give_up();
+  }
   if (!rests && !by_modes && !motion.take(h, limits_.tolerance)) {
     if (run_->is_cut()) return give_up();
     run_->stop(

@@ -30,19 +30,20 @@ class Complementarity {
     const auto n = static_cast<Eigen::Index>(unknowns_.size());
     RealMatrix A(n, n);
     RealVector q(n);
+    std::vector<RealVector> pushed;  // what a unit of each force accelerates
+    for (const Unknown& u : unknowns_) pushed.emplace_back(inverse_mass_.cwiseProduct(u.force));
     for (Eigen::Index i = 0; i < n; ++i) {
       q[i] = unknowns_[i].row.dot(free_) + unknowns_[i].bend;
       for (Eigen::Index j = 0; j < n; ++j)
         // w = A z + q: what each unit of force adds to the acceleration along a row
-        A(i, j) = unknowns_[i].row.dot(inverse_mass_.cwiseProduct(unknowns_[j].force)) + coupling(i, j);
+        A(i, j) = unknowns_[i].row.dot(pushed[j]) + coupling(i, j);
       size_ = std::max(size_, abs(q[i]));
     }
     const LcpAnswer answer = solve_lcp_by_lemke(A, q);
     if (answer.status != LcpAnswer::Status::solved || !answer.z.allFinite()) return false;
     z_ = answer.z;
     acceleration_ = free_;
-    for (Eigen::Index j = 0; j < n; ++j)
-      acceleration_ += answer.z[j] * inverse_mass_.cwiseProduct(unknowns_[j].force);
+    for (Eigen::Index j = 0; j < n; ++j) acceleration_ += answer.z[j] * pushed[j];
     return true;
   }
 

@@ -61,8 +61,11 @@ class Watch {
   }
 
  private:
+  /// Its gap is that to where it closes.
   ContactRates at(double t) const {
-    return rates_of(contact_.shape, state(contact_.sample_owner, t), state(contact_.site_owner, t));
+    ContactRates r = rates_of(contact_.shape, state(contact_.sample_owner, t), state(contact_.site_owner, t));
+    r.gap -= contact_.closes_at;
+    return r;
   }
   /// A body's on the pieces of this step, a support's on its own motion.
   BodyState state(int owner, double t) const {
@@ -139,7 +142,8 @@ class Watch {
     // Inside a circle the gap bends down by v^2 / distance, too. The sample comes no nearer to the centre
     // in the window than `least`; right at the centre the bound says nothing, and a thousandth stands for
     // it.
-    const double distance = c.radius - c.sample_radius - r.gap, least = distance - p.speed * (to - from);
+    const double distance = c.radius - c.sample_radius - r.gap - contact_.closes_at,
+                 least = distance - p.speed * (to - from);
     b.of_gap += p.speed * p.speed / std::max(least, kNearCentre * distance);
     return b;
   }

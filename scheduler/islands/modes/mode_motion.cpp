@@ -189,7 +189,8 @@ double ModeMotion::arrive(double h, int contact) const {
   for (int n = 0; n < kApproaches; ++n) {
     // A step taken anew to h ends beside what the dense output of the longer one says, so Newton goes over
     // steps themselves.
-    const ContactRates r = rates_at(problem_, t_ + h, after(h), problem_.contacts[contact]);
+    ContactRates r = rates_at(problem_, t_ + h, after(h), problem_.contacts[contact]);
+    r.gap -= problem_.contacts[contact].closes_at;
     if (r.gap >= 0.0) reached = h;
     if (r.gap >= 0.0 && r.gap <= limits_.touch) break;
     if (!(r.normal_velocity < 0.0)) break;

@@ -27,6 +27,8 @@ struct ModeContact {
   int sample_owner = 0, site_owner = 0;
   double friction = 0.0;  ///< Coulomb, >= 0
   double kept = 0.0;      ///< the gap that it keeps while it is closed [m]
+  double closes_at =
+      0.0;  ///< the gap at which an open one closes [m]: at a wire, which has no inside, a touch
   /// What its gap may be off inside a step [m].
   double off = std::numeric_limits<double>::infinity();
   bool passes =

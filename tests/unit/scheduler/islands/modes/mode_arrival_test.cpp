@@ -52,6 +52,18 @@ TEST(FirstArrival, PlacesBesideTheSegmentAreNoContact) {
   EXPECT_NEAR(arrival_of(s, piece(3.0, {{0.5, 1, 0}, {0, -1, 0}})).time, 0.9, 1e-12);
 }
 
+// A wire has no inside that would tell on which side a point is that has come to it to the last bit.
+TEST(FirstArrival, AWireIsMetBeforeItsGapIsNone) {
+  ModeScene s;
+  s.add_body(1, 1, {});
+  s.add(point_on_line({0, 0}, {0, 0}, {0, 1}), 0, s.add_still(), 0.0);
+  s.problem.contacts[0].closes_at = 1e-3;
+  const Arrival a = arrival_of(s, piece(2.0, {{0, 1, 0}, {0, -1, 0}}));
+  ASSERT_TRUE(a.found);
+  EXPECT_NEAR(a.time, 1.0 - 1e-3, 1e-12);
+  EXPECT_GE(1.0 - a.time, 1e-3 - 1e-15);
+}
+
 TEST(FirstArrival, WhatLiftsFromRestIsNoArrival) {
   ModeScene s;
   s.add_body(1, 1, {});
