@@ -88,7 +88,8 @@ bool IslandModes::is_shadow(const ContactSearch& search, const HeldContact& c,
   const Sample& sample = carrier.samples[c.feature.sample];
   const bool sharp = sample.radius + other.sites[c.feature.site].radius == 0.0;
   const double tolerance = search.limits().tolerance;
-  if (c.feature.at_end && sharp && c.feature.gap <= tolerance) return true;  // it has no direction
+  // it has no direction, but in a corner in which it cannot pass by
+  if (c.feature.at_end && sharp && c.feature.gap <= tolerance) return !c.feature.no_way_by;
   const bool corner = is_corner(carrier, sample);
   // a corner over the inside of a site: nothing says it better
   if (corner && !c.feature.at_end) return false;

@@ -185,7 +185,14 @@ std::vector<SmoothContact> smooth_contacts(const NearFeature& f, const Outline& 
   c.sample = sample.p;
   c.sample_radius = sample.radius;
   if (sample.arc_site >= 0) c.sector = sector_of(carrier.sites[sample.arc_site], Vec2::Zero());
-  std::vector<SmoothContact> shapes = shapes_of(c, other.sites[f.site], q, out);
+  const Site& site = other.sites[f.site];
+  std::vector<SmoothContact> shapes = shapes_of(c, site, q, out);
+  // beside an end where there is no way by, the side's line goes on
+  if (f.no_way_by && site.kind == SiteKind::segment) {
+    const bool at_start = (q - site.a).squaredNorm() < (q - site.b).squaredNorm();
+    shapes = {interior_of(c, site, q, out)};
+    shapes.front().range[at_start ? 0 : 1] = {};
+  }
   const SmoothContact& first = shapes.front();
   const double size = carrier.bounding_radius + other.bounding_radius;
   const bool round = first.kind == SmoothContact::Kind::circle;
