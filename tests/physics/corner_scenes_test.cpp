@@ -47,7 +47,9 @@ velocity = [)" + speed + ", 0.0]\n",
         double x = 0.0;
         watched(scene, 4.0, 0.002, &x);
         EXPECT_LE(x, 3.5 + 1e-9);
-        if (std::string(restitution) == "0.0" && std::string(friction) == "0.0") EXPECT_NEAR(x, 3.5, 1e-9);
+        if (std::string(restitution) == "0.0" && std::string(friction) == "0.0") {
+          EXPECT_NEAR(x, 3.5, 1e-9);
+        }
       }
 }
 
