@@ -21,6 +21,13 @@ struct End {
   bool starts;  ///< the side begins here
 };
 
+/// A straight side where it stands.
+Site in_world(Site side, const Frame& frame) {
+  side.a = frame.to_world(side.a);
+  side.b = frame.to_world(side.b);
+  return side;
+}
+
 /// Ends that are near each other, pair by pair, of different sites.
 template <class Visit>
 void each_pair(std::vector<End>& ends, double tolerance, Visit&& visit) {
@@ -93,17 +100,16 @@ void each_covered(std::span<Side> line, double tolerance, Visit&& visit) {
 
 std::vector<std::shared_ptr<const Outline>> with_straight_joints(const World& world, double tolerance) {
   std::vector<std::shared_ptr<const Outline>> outlines;
-  std::vector<Outline> placed(world.sites.size());
   std::vector<End> ends;
   std::vector<Side> sides;
   for (int s = 0; s < static_cast<int>(world.sites.size()); ++s) {
     const FixedSite& site = world.sites[s];
     outlines.push_back(site.outline);
     if (!std::holds_alternative<std::monostate>(site.motion)) continue;
-    placed[s] = transformed(*site.outline, site.pose);
-    for (int k = 0; k < static_cast<int>(placed[s].sites.size()); ++k) {
-      const Site& side = placed[s].sites[k];
-      if (side.kind != SiteKind::segment) continue;
+    const Frame frame(site.pose);
+    for (int k = 0; k < static_cast<int>(site.outline->sites.size()); ++k) {
+      if (site.outline->sites[k].kind != SiteKind::segment) continue;
+      const Site side = in_world(site.outline->sites[k], frame);
       ends.push_back({side.a, s, k, true});
       ends.push_back({side.b, s, k, false});
       if (side.solid && side.radius == 0.0) sides.push_back(on_its_line(side, s, k));
@@ -120,12 +126,15 @@ std::vector<std::shared_ptr<const Outline>> with_straight_joints(const World& wo
     for (Sample& sample : outline.samples)
       if (sample.arc_site < 0 && sample.p == (end.starts ? side.a : side.b)) sample.hollow = true;
   };
+  const auto side_of = [&](const End& end) {
+    const FixedSite& site = world.sites[end.site];
+    return in_world(site.outline->sites[end.side], Frame(site.pose));
+  };
   each_pair(ends, tolerance, [&](const End& a, const End& b) {
-    const Outline &of_a = placed[a.site], &of_b = placed[b.site];
-    if (of_a.solid != of_b.solid) return;
-    Site in = of_a.sites[a.side], out = of_b.sites[b.side];
+    Site in = side_of(a), out = side_of(b);
+    if (in.solid != out.solid) return;
     // Sides of solids have their inside to the left, so the one goes on where the other ends. Of a wire they may run either way.
-    if (of_a.solid && a.starts == b.starts) return;
+    if (in.solid && a.starts == b.starts) return;
     if (a.starts) std::swap(in.a, in.b);
     if (!b.starts) std::swap(out.a, out.b);
     if (!go_on_straight(in, out)) return;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brink/core/base/limits.h"
 #include "brink/scheduler/broad_phase/broad_phase.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/policies/order.h"
@@ -12,21 +13,25 @@ namespace brink {
 
 namespace {
 
-/// About the time in which a first body crosses itself, as fast as it is and as it is pulled.
-double first_length(Kernel& kernel, double until) {
-  double horizon = until;
-  const double shortest = kShortestHorizon * std::max(1.0, until);
-  // an integrator has told no acceleration before its first step
-  kernel.follow_motions(kernel.time() + shortest);
+/// About the time in which a first body crosses itself, as fast as it is and as it is pulled [s]; infinity: none moves.
+double crossing_time(const KernelView& kernel) {
+  double first = kForever;
   for (int k = 0; k < kernel.body_count(); ++k) {
     const double speed = kernel.state(k, kernel.time()).twist.velocity.norm(),
                  pull = kernel.body(k).motion.rate(kernel.time()).linear.norm();
     const double size = 2.0 * kernel.world().bodies[k].outline->bounding_radius;
     // size = speed t + pull t^2 / 2
     const double crossing = 2.0 * size / (speed + std::sqrt(speed * speed + 2.0 * pull * size));
-    if (crossing > 0.0) horizon = std::min(horizon, crossing);
+    if (crossing > 0.0) first = std::min(first, crossing);
   }
-  return std::max(horizon, shortest);
+  return first;
+}
+
+double first_length(Kernel& kernel, double until) {
+  const double shortest = kShortestHorizon * std::max(1.0, until);
+  // an integrator has told no acceleration before its first step
+  kernel.follow_motions(kernel.time() + shortest);
+  return std::max(std::min(until, crossing_time(kernel)), shortest);
 }
 
 /// The end of the next horizon from the present time [s].
@@ -41,8 +46,11 @@ void adapt(Kernel& kernel, const HorizonTally& had) {
       kernel.options().broad_phase ? had.pairs : 0;  // else every pair is met at any horizon
   // Halved, grown by half, or, between two bounds that lie well apart, kept: so it does not swing. Each body
   // counts for a few neighbours; the constants are for worlds of few bodies.
-  if (pairs > 6 * n + 16 || had.restarts > 4 * n + 32)
-    kernel.choose_horizon(std::max(0.5 * kernel.horizon(), kShortestHorizon));
+  const double half = std::max(0.5 * kernel.horizon(), kShortestHorizon);
+  if (had.restarts > 4 * n + 32)
+    kernel.choose_horizon(half);
+  else if (pairs > 6 * n + 16 && half >= kOfCrossing * crossing_time(kernel))
+    kernel.choose_horizon(half);  // who is near in next to no time is near at any horizon
   else if (pairs < 3 * n + 8 && had.restarts < n + 8)
     kernel.choose_horizon(1.5 * kernel.horizon());
 }

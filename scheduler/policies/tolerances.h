@@ -8,6 +8,9 @@ namespace brink {
 /// no run could do a billion of them.
 inline constexpr double kShortestHorizon = 1e-9;
 
+/// No horizon is made shorter than this part of the time in which a body crosses itself for the sake of pairs that are near.
+inline constexpr double kOfCrossing = 1.0 / 64.0;
+
 /// How far a body may go in a horizon, its own size with it, where the plane repeats [periods].
 inline constexpr double kMostPeriods = 6.0;
 
