@@ -4,8 +4,11 @@
 
 #include <algorithm>
 
+#include "brink/core/base/limits.h"
+#include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/kernel/snapshot.h"
 #include "brink/scheduler/kernel/stage_clock.h"
+#include "brink/scheduler/kernel/tolerances.h"
 
 namespace brink {
 
