@@ -113,19 +113,28 @@ bool is_notch(const Site& before, const Site& after) {
   return cross(direction_at_end(before), direction_at_start(after)) < -kStraight;
 }
 
-/// Notes straight joints, at sites and samples. Not where more than two sites of a wire meet.
+/// Notes straight joints, at sites and samples. Not where more than two sites meet.
 void note_straight_joints(Outline& outline) {
-  std::map<std::pair<double, double>, int> ends;
+  std::map<std::pair<double, double>, int> ends;  // at each straight joint; most outlines have none
+  const auto each_joint = [&](auto&& visit) {
+    for (const Loop& loop : outline.loops)
+      for (int k = 0; k + (loop.closed ? 0 : 1) < loop.count; ++k)
+        if (Site& in = outline.sites[loop.first + k], &out = outline.sites[loop.first + (k + 1) % loop.count];
+            &in != &out && go_on_straight(in, out))
+          visit(in, out);
+  };
+  each_joint([&](const Site&, const Site& out) { ends[{out.a.x(), out.a.y()}] = 0; });
+  if (ends.empty()) return;
   for (const Site& s : outline.sites)
-    for (const Vec2& end : {s.a, s.b}) ++ends[{end.x(), end.y()}];
-  for (const Loop& loop : outline.loops)
-    for (int k = 0; k + (loop.closed ? 0 : 1) < loop.count; ++k) {
-      Site &in = outline.sites[loop.first + k], &out = outline.sites[loop.first + (k + 1) % loop.count];
-      if (&in == &out || ends[{out.a.x(), out.a.y()}] != 2 || !go_on_straight(in, out)) continue;
-      in.straight_b = out.straight_a = true;
-      for (Sample& s : outline.samples)
-        if (s.arc_site < 0 && s.p == out.a) s.hollow = true;
-    }
+    for (const Vec2& end : {s.a, s.b})
+      if (const auto joint = ends.find({end.x(), end.y()}); joint != ends.end()) ++joint->second;
+  const auto is_joint = [&](const Vec2& p) {
+    const auto joint = ends.find({p.x(), p.y()});
+    return joint != ends.end() && joint->second == 2;
+  };
+  each_joint([&](Site& in, Site& out) { in.straight_b = out.straight_a = is_joint(out.a); });
+  for (Sample& s : outline.samples)
+    if (s.arc_site < 0 && is_joint(s.p)) s.hollow = true;
 }
 
 /// One sample a corner: where a union pinches, each of the corners that meet there has its own.

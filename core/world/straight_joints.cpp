@@ -13,7 +13,7 @@ namespace brink {
 
 namespace {
 
-/// An end of a straight side, in the world.
+/// An end of a straight side, in the world; where the plane repeats, in the first period.
 struct End {
   Vec2 place;
   int site;     ///< of the world
@@ -28,7 +28,29 @@ Site in_world(Site side, const Frame& frame) {
   return side;
 }
 
-/// Ends that are near each other, pair by pair, of different sites.
+/// The way from a place to the first period [m].
+Vec2 to_first_period(const Vec2& p, const Periods& periods) {
+  Vec2 by = Vec2::Zero();
+  for (int axis = 0; axis < 2; ++axis)
+    if (const double size = periods.size[axis]; size > 0.0) by[axis] = -size * std::floor(p[axis] / size);
+  return by;
+}
+
+/// Adds an end to the others; where the plane repeats, once more past the far edge if it lies at the near one.
+void add_end(End end, const Periods& periods, double tolerance, std::vector<End>& ends) {
+  end.place += to_first_period(end.place, periods);
+  const std::size_t first = ends.size();
+  ends.push_back(end);
+  for (int axis = 0; axis < 2; ++axis)
+    if (periods.size[axis] > 0.0 && end.place[axis] <= tolerance)
+      for (std::size_t k = first, count = ends.size(); k < count; ++k) {
+        End image = ends[k];
+        image.place[axis] += periods.size[axis];
+        ends.push_back(image);
+      }
+}
+
+/// Ends that are near each other, pair by pair, of different sides.
 template <class Visit>
 void each_pair(std::vector<End>& ends, double tolerance, Visit&& visit) {
   // along a slanting line, on which the ends of rows and columns have places of their own
@@ -36,7 +58,8 @@ void each_pair(std::vector<End>& ends, double tolerance, Visit&& visit) {
   std::sort(ends.begin(), ends.end(), [&](const End& a, const End& b) { return along(a) < along(b); });
   for (std::size_t k = 0; k < ends.size(); ++k)
     for (std::size_t m = k + 1; m < ends.size() && along(ends[m]) - along(ends[k]) <= tolerance; ++m)
-      if (ends[m].site != ends[k].site && (ends[m].place - ends[k].place).norm() <= tolerance)
+      if ((ends[m].site != ends[k].site || ends[m].starts != ends[k].starts) &&
+          (ends[m].place - ends[k].place).norm() <= tolerance)
         visit(ends[k], ends[m]);
 }
 
@@ -45,12 +68,16 @@ struct Side {
   double angle, offset;  ///< of the line [rad], [m]
   double from, to;       ///< along it [m]
   bool forwards;
-  int site, side;
+  int site, side;  ///< site < 0: an image of one, where the plane repeats
 };
 
-Side on_its_line(const Site& s, int site, int side) {
+/// `origin`: near all sides, so that offsets of short ones are not rounded more than places are.
+Side on_its_line(Site s, const Vec2& origin, int site, int side) {
+  s.a -= origin;
+  s.b -= origin;
   Vec2 along = (s.b - s.a).normalized();
-  const bool forwards = along.x() > 0.0 || (along.x() == 0.0 && along.y() > 0.0);
+  constexpr double kUpright = 1e-9;  // by roundings either way
+  const bool forwards = along.x() > kUpright || (along.x() >= -kUpright && along.y() > 0.0);
   if (!forwards) along = -along;
   const double from = along.dot(s.a), to = along.dot(s.b);
   return {std::atan2(along.y(), along.x()),
@@ -72,6 +99,15 @@ void each_run(std::span<Side> sides, double most, Value&& value, Visit&& visit) 
   }
 }
 
+/// Adds a side to the others, and where the plane repeats its images beside it.
+void add_side(const Site& side, const Vec2& origin, const Periods& periods, int s, int k,
+              std::vector<Side>& sides) {
+  sides.push_back(on_its_line(side, origin, s, k));
+  for (int axis = 0; axis < 2; ++axis)
+    for (const double by : {-periods.size[axis], periods.size[axis]})
+      if (by != 0.0) sides.push_back(on_its_line(side, origin - by * Vec2::Unit(axis), -1, -1));
+}
+
 /// Sides of one line along all of which sides lie that run the other way.
 template <class Visit>
 void each_covered(std::span<Side> line, double tolerance, Visit&& visit) {
@@ -88,7 +124,7 @@ void each_covered(std::span<Side> line, double tolerance, Visit&& visit) {
       else
         covers.emplace_back(s->from, s->to);
     for (const Side& s : line) {
-      if (s.forwards != forwards) continue;
+      if (s.forwards != forwards || s.site < 0) continue;
       auto after = std::upper_bound(covers.begin(), covers.end(), s.from + tolerance,
                                     [](double at, const auto& c) { return at < c.first; });
       if (after != covers.begin() && s.to <= std::prev(after)->second + tolerance) visit(s);
@@ -110,9 +146,10 @@ std::vector<std::shared_ptr<const Outline>> with_straight_joints(const World& wo
     for (int k = 0; k < static_cast<int>(site.outline->sites.size()); ++k) {
       if (site.outline->sites[k].kind != SiteKind::segment) continue;
       const Site side = in_world(site.outline->sites[k], frame);
-      ends.push_back({side.a, s, k, true});
-      ends.push_back({side.b, s, k, false});
-      if (side.solid && side.radius == 0.0) sides.push_back(on_its_line(side, s, k));
+      add_end({side.a, s, k, true}, world.periods, tolerance, ends);
+      add_end({side.b, s, k, false}, world.periods, tolerance, ends);
+      if (side.solid && side.radius == 0.0)
+        add_side(side, world.sites[0].pose.position, world.periods, s, k, sides);
     }
   }
   std::map<int, Outline> joined;
@@ -131,6 +168,7 @@ std::vector<std::shared_ptr<const Outline>> with_straight_joints(const World& wo
     return in_world(site.outline->sites[end.side], Frame(site.pose));
   };
   each_pair(ends, tolerance, [&](const End& a, const End& b) {
+    if (a.site == b.site && !world.periods.any()) return;  // the outline knows its own joints
     Site in = side_of(a), out = side_of(b);
     if (in.solid != out.solid) return;
     // Sides of solids have their inside to the left, so the one goes on where the other ends. Of a wire they may run either way.
@@ -141,7 +179,7 @@ std::vector<std::shared_ptr<const Outline>> with_straight_joints(const World& wo
     note(a);
     note(b);
   });
-  constexpr double kOneDirection = 1e-12;
+  constexpr double kOneDirection = 1e-10;
   each_run(
       sides, kOneDirection, [](const Side& s) { return s.angle; },
       [&](std::span<Side> parallel) {

@@ -27,6 +27,7 @@ double crossing_time(const KernelView& kernel) {
   return first;
 }
 
+/// Of the first horizon of a run to `until` [s].
 double first_length(Kernel& kernel, double until) {
   const double shortest = kShortestHorizon * std::max(1.0, until);
   // an integrator has told no acceleration before its first step
@@ -40,6 +41,7 @@ double next_end(Kernel& kernel, double until) {
   return std::min(until, kernel.time() + kernel.horizon());
 }
 
+/// Learns from a horizon.
 void adapt(Kernel& kernel, const HorizonTally& had) {
   const auto n = static_cast<std::size_t>(kernel.body_count());
   const std::size_t pairs =

@@ -13,8 +13,8 @@ namespace brink {
 /// What a horizon had.
 struct HorizonTally {
   std::size_t pairs = 0;  ///< that could meet in it
-  std::size_t restarts =
-      0;  ///< bodies whose motion began anew, each time: what they had ahead was for nothing
+  /// Bodies whose motion began anew, counted each time: what they had ahead was for nothing.
+  std::size_t restarts = 0;
 };
 
 /// Horizon after horizon to `until`, longer while little happens, shorter while much does: that changes what
