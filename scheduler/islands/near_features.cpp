@@ -117,13 +117,14 @@ void see_wire(const Half& half, const Site& edge, const Site& site, const Vec2& 
   }
 }
 
-/// True if the carrier lies on the side of a wire's site to which `out` points, as told from its vertex at q, `height` on
+/// How far the carrier lies on the side of a wire's site to which `out` points, as told from its vertex at q, `height` on
 /// that side of a place of the site: by whichever of the vertex and its edges, as far as they are abreast of the site, is
 /// farthest from there, as no edge crosses a wire. A rod that comes to lie flat leads from its upper end down to the wire;
 /// round the end of the site an edge may lead anywhere. Where its edges lie along the wire, the wire tells, by where it leads
-/// from the site's ends; and where nothing does, or edges lead to both sides, the carrier's centre.
-bool lies_before(const Half& half, const Sample& sample, const Site& site, const Vec2& q, const Vec2& out,
-                 double height) {
+/// from the site's ends; and where nothing does, or edges lead to both sides, the carrier's centre. Only the sign counts, and
+/// that only beyond kAlongLine of the carrier's radius: a rod that lies along a straight wire may lie on either side [m].
+double height_before(const Half& half, const Sample& sample, const Site& site, const Vec2& q, const Vec2& out,
+                     double height) {
   const double told = kAlongLine * half.carrier.bounding_radius;
   const auto to_other = [&](const Vec2& p) {
     return half.other_frame.to_local(half.carrier_frame.to_world(p));
@@ -139,9 +140,9 @@ bool lies_before(const Half& half, const Sample& sample, const Site& site, const
   const bool both_sides = of_edges.most > told && -of_edges.least > told;
   const bool flush = of_edges.least <= of_edges.most && !both_sides;
   of_edges.see(height);
-  if (!both_sides && of_edges.tells(told)) return of_edges.most > -of_edges.least;
-  if (flush && of_wire.tells(told)) return of_wire.most < -of_wire.least;
-  return out.dot(centre(half) - q) + height >= 0.0;
+  if (!both_sides && of_edges.tells(told)) return of_edges.most + of_edges.least;
+  if (flush && of_wire.tells(told)) return -(of_wire.most + of_wire.least);
+  return out.dot(centre(half) - q) + height;
 }
 
 /// True of q, abreast of the site, on the other side of it than that to which `out` points from `at`, about there on the
@@ -263,7 +264,10 @@ void put_on_line(const Half& half, const Sample& sample, const Site& site, const
   const double upon = kOneCorner * (half.carrier.bounding_radius + half.other.bounding_radius);
   Vec2 n = outward(site);
   double height = n.dot(q - site.a);
-  const bool behind = std::abs(height) <= upon ? n.dot(centre(half) - site.a) < 0.0 : height < 0.0;
+  const double centred = n.dot(centre(half) - site.a);
+  const bool behind = std::abs(height) <= upon ? centred < 0.0 : height < 0.0;
+  f.either_side =
+      f.thin && std::max(std::abs(height), std::abs(centred)) <= kAlongLine * half.carrier.bounding_radius;
   if (!site.solid && behind) {
     n = -n;
     height = -height;
@@ -294,12 +298,15 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
     distance = out.dot(q - nearest.point);
   }
   // abreast of the wire by the body's size; at an end only where the way has no direction
+  bool either_side = false;
   const double no_side =
       nearest.foot == Foot::interior ? kSunkOfRadius * half.carrier.bounding_radius : least;
   if (thin && site.kind != SiteKind::point && nearest.distance < no_side) {
     // a wire has no inside that would tell: what has sunk by a rounding, or is right on its end, is on the side of its
     // own edges
-    if (!lies_before(half, sample, site, q, out, out.dot(q - nearest.point))) out = -out;
+    const double before = height_before(half, sample, site, q, out, out.dot(q - nearest.point));
+    either_side = std::abs(before) <= kAlongLine * half.carrier.bounding_radius;
+    if (before < 0.0) out = -out;
     distance = out.dot(q - nearest.point);
   }
   const Vec2 outward = half.other_frame.direction_to_world(out);
@@ -325,6 +332,7 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   f.point = half.other_frame.to_world(nearest.point + site.radius * out);
   f.normal = half.on_a ? outward : Vec2(-outward);
   f.thin = thin;
+  f.either_side = either_side;
   // right on the joint of two wires it may be at the ends of both, and passes by neither
   const bool on_end = thin && site.kind == SiteKind::segment && beyond_ends(site, q) <= least;
   f.at_end = site.kind != SiteKind::point && nearest.foot != Foot::interior && !on_end;
@@ -333,14 +341,16 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   return f;
 }
 
-/// True if the nearest point of site j is an end of it, and another site that has that end, too, is nearer: a
-/// joint of two straight pieces is no corner. A site that rises from there to q's side is a wall ahead.
+/// True if the nearest point of site j is an end of it, and another site that has that end, too, is nearer: the two
+/// make no corner there. A site that rises from there to q's side is a wall ahead, and one that goes on straight may be come to
+/// within a step.
 bool goes_on_nearer(const Half& half, const Sample& sample, std::size_t j,
                     const std::vector<Nearest>& nearest, const Vec2& q, double tie) {
   const Outline& outline = half.other;
   const Site& site = outline.sites[j];
   if (site.kind == SiteKind::point || nearest[j].foot == Foot::interior) return false;
   const bool at_start = nearest[j].foot == Foot::start;
+  if (at_start ? site.straight_a : site.straight_b) return false;
   const Vec2 &end = at_start ? site.a : site.b, on = at_start ? Vec2(site.b - site.a) : Vec2(site.a - site.b);
   const auto rises = [&](std::size_t k) {
     const Site& other = outline.sites[k];
@@ -389,7 +399,7 @@ std::optional<Vec2> normal_over_joint(const Half& half, const Sample& sample, st
     if (site.solid) {
       above *= side_of(other, nearest[k], q);
     } else if (above < sunk) {
-      if (!lies_before(half, sample, other, q, n, n.dot(q - end))) n = -n;
+      if (height_before(half, sample, other, q, n, n.dot(q - end)) < 0.0) n = -n;
       above = n.dot(q - nearest[k].point);
     } else if (n.dot(direction(other, nearest[k], q, tie)) < 0.0) {
       n = -n;

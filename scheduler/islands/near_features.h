@@ -18,6 +18,7 @@ struct NearFeature {
   Vec2 normal = Vec2::Zero();  ///< world, unit, from b into a
   double gap = 0.0;            ///< [m]
   bool thin = false;           ///< a sharp sample and a wire without thickness
+  bool either_side = false;    ///< thin, and nothing tells on which side: the normal is one of two
   bool at_end = false;         ///< of a site that goes on from there: the sample may pass by
   /// Of an arc's sample whose sector the site lies beside, by what a body may turn in a step: the gap is that of the arc's
   /// end, and of the arc once it has rolled there.

@@ -70,6 +70,8 @@ constexpr double kAtOnce = 1.0 / 32.0;
 constexpr int kLooksBack = 6;
 /// A speed below this part of what the smallest member gains as it falls by its size is none.
 constexpr double kNoSpeed = 1e-7;
+/// Two normals whose cosine is off one by no more are one, and a pull along a normal below this part of the largest is none.
+constexpr double kOneLine = 1e-9;
 
 }  // namespace
 
@@ -123,11 +125,47 @@ void IslandMotion::remember_side(HeldContact& c) const {
   const Outline& carrier =
       search_->outline_of(c.feature.sample_on_a ? c.pair.body : search_->other_owner(c.pair));
   NearFeature& f = c.feature;
-  if (!f.thin || f.at_end || !(std::abs(f.gap) < kSunkOfRadius * carrier.bounding_radius)) return;
-  const HeldContact* known = warm_.find(c);
-  if (known == nullptr || known->feature.at_end || known->feature.normal.dot(f.normal) >= 0.0) return;
+  if (!f.thin || (f.at_end && !f.goes_on) || !(std::abs(f.gap) < kSunkOfRadius * carrier.bounding_radius))
+    return;
+  const HeldContact* known = f.at_end ? nullptr : warm_.find(c);
+  const bool turn = known != nullptr ? !known->feature.at_end && known->feature.normal.dot(f.normal) < 0.0
+                                     : f.either_side && is_elsewhere(c);
+  if (!turn) return;
   f.normal = -f.normal;
   f.gap = -f.gap;
+}
+
+/// Of a wire upon which nothing of their places tells on which side the other is: true if that is the other one. Who was on
+/// one side with another contact along that line has not changed it, nor who has just met it. Where a run begins it is the side
+/// to which forces press.
+bool IslandMotion::is_elsewhere(const HeldContact& c) const {
+  const Vec2& n = c.feature.normal;
+  const int member = members_.place_of(c.pair.body);
+  for (const HeldContact& w : warm_)
+    if (w.pair == c.pair && w.feature.thin && !w.feature.at_end &&
+        is_on_line(c, w.feature.point, w.feature.normal))
+      return w.feature.normal.dot(n) < 0.0;
+  if (run_begins_) {
+    Vec2 pull = members_.acceleration(member).linear;
+    if (!c.pair.with_site()) pull -= members_.acceleration(members_.place_of(c.pair.other_body)).linear;
+    if (std::abs(n.dot(pull)) > kOneLine * members_.pull()) return n.dot(pull) > 0.0;
+  }
+  if (!met_ || !(met_->first == c.pair)) return false;
+  const FeatureContact& met = met_->second;
+  const RealVec from = members_.other_state(c.pair).position;
+  return is_on_line(c, (met.point.cast<Real>() - from).cast<double>(), met.normal) && met.normal.dot(n) < 0.0;
+}
+
+void IslandMotion::expect_sides(const StepCause& cause) {
+  run_begins_ = cause.run_begins;
+  if (cause.pair) met_.emplace(*cause.pair, *cause.met);
+}
+
+/// True if another contact of the pair, at a point seen from the other's position, has the same tangent line.
+bool IslandMotion::is_on_line(const HeldContact& c, const Vec2& point, const Vec2& normal) const {
+  const double size = members_.bounding_radius(members_.place_of(c.pair.body));
+  return std::abs(normal.dot(c.feature.normal)) >= 1.0 - kOneLine &&
+         std::abs(normal.dot(point - c.feature.point)) <= kSunkOfRadius * size;
 }
 
 /// Those who come farther with these velocities than features are listed: theirs, as far as they come several times. Not of

@@ -3,6 +3,8 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "brink/core/base/go_on.h"
@@ -14,6 +16,14 @@
 #include "brink/scheduler/kernel/island_modes.h"
 
 namespace brink {
+
+/// Why an island begins a step.
+struct StepCause {
+  bool on_time = false;                 ///< the one before has come to its end: its modes may hold still
+  bool run_begins = false;              ///< what lies on each other is placed there
+  const PairKey* pair = nullptr;        ///< that has met, outlives the cause; null: none
+  const FeatureContact* met = nullptr;  ///< of that pair
+};
 
 class IslandMotion {
  public:
@@ -44,6 +54,8 @@ class IslandMotion {
   /// From now on impacts do not end steps: those that would come within a step are taken where it begins, as far apart
   /// as the two still are.
   void expect_agitation() { agitated_ = true; }
+  /// What the members' contacts are found on the side of, where nothing else tells: what has met, or how they are pulled.
+  void expect_sides(const StepCause& cause);
   /// Where forces change with place, velocity or time, a step of so long will do [s], about.
   void expect_step(double h) { expected_ = h; }
   /// What to expect for the next [s]; infinity: anything.
@@ -78,6 +90,8 @@ class IslandMotion {
   };
   void list(double reach);
   void remember_side(HeldContact& c) const;
+  bool is_elsewhere(const HeldContact& c) const;
+  bool is_on_line(const HeldContact& c, const Vec2& point, const Vec2& normal) const;
   void list_farther(const std::vector<Vec3>& velocity);
   bool touches(const HeldContact& c) const;
   double impact_of(const HeldContact& c, const std::vector<Vec3>& velocity) const;
@@ -121,6 +135,8 @@ class IslandMotion {
   double h_ = 0.0, absorbed_ = 0.0;
   double expected_ = std::numeric_limits<double>::infinity();
   double asked_ = 0.0;  ///< the length of the step, but for what impacts cut off it [s]
+  bool run_begins_ = false;
+  std::optional<std::pair<PairKey, FeatureContact>> met_;
   std::vector<HeldContact> contacts_;
   std::vector<double> gaps_at_end_;  ///< of each of them, of a step by modes [m]
   IslandStep problem_;

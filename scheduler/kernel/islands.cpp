@@ -256,17 +256,18 @@ double Islands::steady_for(const std::set<int>& members, double now) {
   return until - now;
 }
 
-/// `longest`: the step is no longer [s]. `on_time`: the one before has come to its end, so its modes may hold
-/// still. The last thing that its caller does: false where the run stops for now, too, which may go on later.
-bool Islands::begin_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time) {
-  return carry_out_step(std::move(members), longest, changed, on_time) && run_->poll();
+/// `longest`: the step is no longer [s]. The last thing that its caller does: false where the run stops for now, too, which may go on later.
+bool Islands::begin_step(std::set<int> members, double longest, std::vector<int>& changed,
+                         const StepCause& cause) {
+  return carry_out_step(std::move(members), longest, changed, cause) && run_->poll();
 }
 
 /// Members gather and are held; what closes fast meets; then they are at rest, or move on by modes, or at
 /// the level of velocities; and who pushes whom makes the islands from here on.
 /// Members are in no island from set_out() to part(): a failure between the two lets all of them go. `longest`
 /// bounds the step [s]; false where the run is not to go on.
-bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time) {
+bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<int>& changed,
+                             const StepCause& cause) {
   // Islands are out of their list while this goes on: a stop in between would leave their bodies held by
   // nobody. What is cut all the same is undone by whoever has made that possible.
   const RunControl::Indivisible whole(*run_);
@@ -281,6 +282,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   };
   const double now = run_->time();
   motion.expect_step(pace.step);
+  motion.expect_sides(cause);
   IslandModes modes(motion.members(), *trajectories_, *search_, *response_, by_modes_, motion.warm());
   // what buzzes is spared modes for some steps
   const bool may_have_modes = !buzzes(pace) && modes.suits();
@@ -298,7 +300,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   };
   pass_on_impacts();
   // an impact here is news: modes that the step before ended in do not hold
-  on_time = on_time && run_->work().collisions == collisions;
+  const bool on_time = cause.on_time && run_->work().collisions == collisions;
   if (run_->is_cut()) return give_up();
   const bool rests = motion.rests(limits_.rest_speed);
   // anew: impacts have changed speeds
@@ -398,7 +400,8 @@ bool Islands::capture(const PairKey& pair, const FeatureContact& contact, double
   // that is where the event is told.
   const bool later = left > same_instant(limit);
   if (!later) records_->ending(EventKind::zeno, pair, contact, records_->last_event());
-  if (!carry_out_step(members, later ? left : kForever, changed, false)) return false;
+  if (!carry_out_step(members, later ? left : kForever, changed, {.pair = &pair, .met = &contact}))
+    return false;
   if (later) tell_at(limit, pair, contact);
   return run_->poll();
 }
@@ -437,7 +440,8 @@ bool Islands::begin(const std::vector<std::pair<PairKey, FeatureContact>>& touch
     std::set<int> members;
     // with whom springs couple to them, as islands hold components whole
     for (const int k : joined.of(pair.body)) gather(k, members);
-    if (!carry_out_step(members, kForever, changed, false)) return false;
+    if (!carry_out_step(members, kForever, changed, {.run_begins = true, .pair = &pair, .met = &contact}))
+      return false;
   }
   return run_->poll();
 }
@@ -471,7 +475,8 @@ bool Islands::step(std::vector<int>& changed) {
   }
   // a copy: the island is taken out
   const std::vector<int> members = island.members;
-  return begin_step({members.begin(), members.end()}, std::numeric_limits<double>::infinity(), changed, true);
+  return begin_step({members.begin(), members.end()}, std::numeric_limits<double>::infinity(), changed,
+                    {.on_time = true});
 }
 
 /// How long the sample goes on before it comes to an end of the straight site, as the two move now [s].
@@ -501,7 +506,8 @@ bool Islands::collided(const PairKey& pair, const FeatureContact& found, bool pu
   gather(pair.body, members);
   if (!pair.with_site()) gather(pair.other_body, members);
   // what a picture shows names no features that could slide
-  return begin_step(members, pushed || found.seen ? kForever : slides_off_in(pair, found), changed);
+  return begin_step(members, pushed || found.seen ? kForever : slides_off_in(pair, found), changed,
+                    {.pair = &pair, .met = &found});
 }
 
 bool Islands::disturbed(int body, std::vector<int>& changed) {

@@ -84,8 +84,10 @@ class Islands {
   bool follow_sites(double now, double h);
   double steady_for(const std::set<int>& members, double now);
   void tell_at(double limit, const PairKey& pair, const FeatureContact& contact);
-  bool begin_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time = false);
-  bool carry_out_step(std::set<int> members, double longest, std::vector<int>& changed, bool on_time);
+  bool begin_step(std::set<int> members, double longest, std::vector<int>& changed,
+                  const StepCause& cause = {});
+  bool carry_out_step(std::set<int> members, double longest, std::vector<int>& changed,
+                      const StepCause& cause);
   void part(const IslandMotion& motion, bool rests, const IslandModes* modes, const IslandPace& pace,
             std::vector<int>& changed);
   void tell(const IslandModes& modes, const IslandMembers& members);

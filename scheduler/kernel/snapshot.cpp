@@ -12,7 +12,7 @@ namespace brink {
 namespace {
 
 /// With a newline and a zero in front of the letters: no text file begins so.
-constexpr std::uint64_t kMagic = 0x374b4e495242000aULL;  // "\12\0BRINK7"
+constexpr std::uint64_t kMagic = 0x374b4e495242000aULL;  // "\12\0BRINK8"
 
 /// Objects as they lie in memory: a snapshot is read by the program that wrote it.
 class Writer {

@@ -130,6 +130,31 @@ TEST(Corners, BoxesThatFallFlushUponEachOtherStayOneUponTheOther) {
   EXPECT_EQ(wrong, 0) << "of " << runs;
 }
 
+// A rod has no inside, and flat on a wire none of its corners tells on which side it is: it is where it came from, not where
+// its weight would hold it.
+TEST(Corners, ARodThatIsThrownFlatAgainstACeilingOfWireFallsOffIt) {
+  for (const int pieces : {1, 7})
+    for (const double restitution : {0.0, 0.5})
+      for (const double angle : {0.0, 0.4, -2.0}) {
+        World w;
+        const Frame turned(Pose{Vec2::Zero(), angle});
+        w.gravity = turned.direction_to_world({0.0, -kGravity});
+        w.materials[0].restitution = restitution;
+        Body b = body(make_segment({-0.4, 0.0}, {0.4, 0.0}), turned.to_world({0.0, 0.5}),
+                      turned.direction_to_world({0.3, 5.0}), 1.0, angle);
+        add(w, b);
+        std::vector<Vec2> ceiling;
+        for (int k = 0; k <= pieces; ++k) ceiling.push_back({-2.0 + 4.0 * k / pieces, 1.0});
+        FixedSite above = site(make_chain(ceiling, false));
+        above.pose.angle = angle;
+        add(w, above);
+        Simulator simulator(w, SolverOptions{});
+        EXPECT_EQ(simulator.run(until(0.6)).termination, Termination::reached_end);
+        EXPECT_LT(turned.to_local(simulator.state(0).pose.position).y(), 0.6)
+            << pieces << " pieces, e " << restitution << ", turned by " << angle;
+      }
+}
+
 // Right on a wire without thickness, at rest or not, above it or below: nobody has told on which side, but the body's
 // own place has.
 TEST(Corners, BodyThatStartsOnAWireStaysOnItsSide) {
