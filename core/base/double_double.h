@@ -203,8 +203,8 @@ class BasicDoubleDouble {
     return in_range(product.high) && finite(product.low);
   }
   BRINK_INLINE static bool in_range(double x) {
-    const double size = x < 0.0 ? -x : x;
-    return size >= kLeast && size <= kMost;
+    const double size = __builtin_fabs(x);  // a branch would be foreseen wrongly
+    return (size >= kLeast) & (size <= kMost);
   }
   /// The sum of the two; where its low part is no number, `else_high` alone. @pre |high| >= |low|, or high = 0.
   BRINK_INLINE static BasicDoubleDouble normalized(double high, double low, double else_high) {
