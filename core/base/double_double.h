@@ -194,9 +194,10 @@ class BasicDoubleDouble {
     return normalized(first, rest.high_ / (2.0 * first), first);
   }
 
- private:
+  /// The sizes of products whose low part is their error.
   static constexpr double kLeast = 0x1p-960, kMost = 0x1p995;
 
+ private:
   BRINK_INLINE static bool finite(double x) { return x - x == 0.0; }
   /// True where low is the error of a product, not where that is no double or halves() overflowed.
   BRINK_INLINE static bool exact(const error_free::Result& product) {

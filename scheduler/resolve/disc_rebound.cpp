@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brink/core/base/double_double_pair.h"
 #include "brink/scheduler/resolve/tolerances.h"
 
 namespace brink {
@@ -14,22 +15,15 @@ namespace {
 // All of it in the caller, so that it is compiled for the caller's processor.
 #define BRINK_INLINE [[gnu::always_inline]] inline
 
+template <class Number>
+struct PairOf;
+template <class Product>
+struct PairOf<BasicDoubleDouble<Product>> {
+  using Type = DoubleDoublePair<Product>;
+};
 /// A plane's vector of two doubles a coordinate.
 template <class Number>
-struct Pair {
-  Number x, y;
-
-  BRINK_INLINE Pair(const Number& of_x, const Number& of_y) : x(of_x), y(of_y) {}
-  BRINK_INLINE friend Pair operator-(const Pair& a, const Pair& b) { return {a.x - b.x, a.y - b.y}; }
-  BRINK_INLINE friend Pair operator+(const Pair& a, const Pair& b) { return {a.x + b.x, a.y + b.y}; }
-  template <class Factor>
-  BRINK_INLINE friend Pair operator*(const Pair& a, const Factor& by) {
-    return {a.x * by, a.y * by};
-  }
-  BRINK_INLINE Number dot(const Pair& b) const { return x * b.x + y * b.y; }
-  /// Sizes of both coordinates.
-  BRINK_INLINE double size() const { return std::abs(x.high()) + std::abs(y.high()); }
-};
+using Pair = typename PairOf<Number>::Type;
 
 /// Where a disc is at one time, from its start and what rounding left over of it.
 template <class Number>
@@ -64,6 +58,12 @@ BRINK_INLINE void split(const Number& value, double& high, double& low) {
   low = value.low();
 }
 
+template <class Product>
+BRINK_INLINE void split(const DoubleDoublePair<Product>& value, Vec2& high, Vec2& low) {
+  split(value.x(), high.x(), low.x());
+  split(value.y(), high.y(), low.y());
+}
+
 /// The start at `time` of the parabola on which `disc` passes, with its velocity changed by `change`, through the place
 /// where it was `delay` from then.
 template <class Number>
@@ -73,10 +73,9 @@ BRINK_INLINE DiscRebound::Start start_after(const Motion& motion, double time, c
   // Both parabolas have the same acceleration. So they are at one place `delay` from now if their places
   // now differ by what their velocities make of it.
   BodyState &s = start.state, &low = start.low;
-  split(disc.place.x - change.x.high() * delay, s.pose.position.x(), low.pose.position.x());
-  split(disc.place.y - change.y.high() * delay, s.pose.position.y(), low.pose.position.y());
-  split(disc.velocity.x + change.x, s.twist.velocity.x(), low.twist.velocity.x());
-  split(disc.velocity.y + change.y, s.twist.velocity.y(), low.twist.velocity.y());
+  split(disc.place.plus(-(change.x().high() * delay), -(change.y().high() * delay)), s.pose.position,
+        low.pose.position);
+  split(disc.velocity + change, s.twist.velocity, low.twist.velocity);
   // Without friction nothing turns at the rim: angle and spin go on as they were.
   const BodyState &before = motion.start(), &before_low = motion.start_low();
   const double alpha = motion.acceleration().angular;
@@ -112,7 +111,7 @@ BRINK_INLINE std::optional<DiscRebound> rebound_of_discs(const DiscSide& a, cons
   const Moving<Number> disc_a(*a.motion, time), disc_b(*b.motion, time);
   Pair<Number> d = disc_a.place - disc_b.place;
   const Pair<Number> w = disc_a.velocity - disc_b.velocity;
-  if (shift.x() != 0.0 || shift.y() != 0.0) d = {d.x - shift.x(), d.y - shift.y()};
+  if (shift.x() != 0.0 || shift.y() != 0.0) d = d.plus(-shift.x(), -shift.y());
   const Number distance2 = d.dot(d), way = d.dot(w);
   const double distance = std::sqrt(distance2.high()), closing = -way.high() / distance;
   if (!(closing > 0) || !(a.inverse_mass + b.inverse_mass > 0.0)) return std::nullopt;
@@ -123,11 +122,11 @@ BRINK_INLINE std::optional<DiscRebound> rebound_of_discs(const DiscSide& a, cons
   const double delay = std::clamp(above / closing, -latest, latest);
   r.delay = delay;
   r.gap = level + (above - delay * closing);
-  const Pair<Number> c(d.x + w.x.high() * delay, d.y + w.y.high() * delay);
+  const Pair<Number> c = d.plus(w.x().high() * delay, w.y().high() * delay);
   const Vec2 pull = a.motion->acceleration().linear - b.motion->acceleration().linear;
-  const double speed2 = w.x.high() * w.x.high() + w.y.high() * w.y.high();
+  const double speed2 = w.x().high() * w.x().high() + w.y().high() * w.y().high();
   // c.w with the relative velocity of the moment of contact, and c.c
-  const Number rate = way + delay * (speed2 + (d.x.high() * pull.x() + d.y.high() * pull.y()));
+  const Number rate = way + delay * (speed2 + (d.x().high() * pull.x() + d.y().high() * pull.y()));
   // turned round within the delay: no impulse is due
   if (!(rate.high() < 0)) return std::nullopt;
   const Number square = distance2 + delay * (2.0 * way.high() + delay * speed2);
@@ -159,9 +158,9 @@ BRINK_INLINE std::optional<DiscRebound> rebound_of_wall(const DiscSide& disc, co
   // 0 and length^2 are the ends: beyond them an end is nearest
   if (!(along > 0.0) || !(along < length2)) return std::nullopt;
   // The wall's normal is (y, -x) of its way, or the opposite: the one that points to the disc.
-  Pair<Number> m(way.y, -way.x);
-  const double side = m.x.high() * wall.normal.x() + m.y.high() * wall.normal.y();
-  if (side < 0.0) m = {-m.x, -m.y};
+  Pair<Number> m(way.y(), -way.x());
+  const double side = m.x().high() * wall.normal.x() + m.y().high() * wall.normal.y();
+  if (side < 0.0) m = -m;
   const Number length = sqrt(length2);
   // Abreast, but met with a normal that is not the wall's: the contact is with an end, to rounding.
   if (std::abs(side) < kSameDirection * length.high()) return std::nullopt;
@@ -175,7 +174,7 @@ BRINK_INLINE std::optional<DiscRebound> rebound_of_wall(const DiscSide& disc, co
   r.delay = delay;
   r.gap = gap - delay * closing;
   const Vec2& pull = disc.motion->acceleration().linear;
-  const Number rate = rate_now + delay * (m.x.high() * pull.x() + m.y.high() * pull.y());
+  const Number rate = rate_now + delay * (m.x().high() * pull.x() + m.y().high() * pull.y());
   if (!(rate.high() < 0)) return std::nullopt;
   const Number change = -(Number::sum(1.0, restitution) * rate) / length2;
   r.impulse = change.high() * length.high() / disc.inverse_mass;

@@ -1,8 +1,11 @@
 // Beside binary numbers of 400 bits (Boost.Multiprecision), in which sums and products of these are exact.
 #include "brink/core/base/double_double.h"
 
+#include "brink/core/base/double_double_pair.h"
+
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <random>
 
@@ -37,6 +40,43 @@ double relative_error(const DoubleDouble& found, const Exact& wanted) {
 }
 
 void expect_normalized(const DoubleDouble& x) { EXPECT_EQ(x.high() + x.low(), x.high()); }
+
+/// To the bit, the sign of zero included.
+void expect_same(const DoubleDouble& found, const DoubleDouble& wanted) {
+  if (isnan(wanted)) {
+    EXPECT_TRUE(isnan(found));
+    return;
+  }
+  EXPECT_EQ(std::bit_cast<std::uint64_t>(found.high()), std::bit_cast<std::uint64_t>(wanted.high()));
+  EXPECT_EQ(std::bit_cast<std::uint64_t>(found.low()), std::bit_cast<std::uint64_t>(wanted.low()));
+}
+
+// Numbers of every size, and some that are none: two at once are as one by one.
+TEST(DoubleDoublePair, TellsTheBitsOfNumbersOneByOne) {
+  using Pair = DoubleDoublePair<error_free::Default>;
+  Numbers numbers;
+  std::mt19937_64 random(7);
+  const double special[] = {0.0,     -0.0,    0x1p-961,  0x1p-500,   0x1p-1070,    -0x1p1000,
+                            0x1p700, 0x1p994, kInfinity, -kInfinity, std::nan(""), 1e308};
+  const auto next = [&] {
+    return random() % 6 ? numbers.next() : DoubleDouble(special[random() % std::size(special)]);
+  };
+  const auto expect_both = [](const Pair& found, const DoubleDouble& x, const DoubleDouble& y) {
+    expect_same(found.x(), x);
+    expect_same(found.y(), y);
+  };
+  for (int i = 0; i < 100000 && !testing::Test::HasFailure(); ++i) {
+    const DoubleDouble ax = next(), ay = next(), bx = next(), by = next();
+    const Pair a(ax, ay), b(bx, by);
+    expect_both(a + b, ax + bx, ay + by);
+    expect_both(a - b, ax - bx, ay - by);
+    expect_both(-a, -ax, -ay);
+    expect_both(a * bx, ax * bx, ay * bx);
+    expect_both(a * bx.high(), ax * bx.high(), ay * bx.high());
+    expect_both(a.plus(bx.high(), by.high()), ax + bx.high(), ay + by.high());
+    expect_same(a.dot(b), ax * bx + ay * by);
+  }
+}
 
 TEST(DoubleDouble, OperationsAreRightToTheEpsilon) {
   Numbers numbers;
