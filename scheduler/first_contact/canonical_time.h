@@ -47,4 +47,23 @@ double last_clear_time(Gap&& gap, double low, double high) {
   }
 }
 
+/// The same of a gap that costs little: with every probe the two of which one comes next, so that a processor computes
+/// all three side by side.
+template <class Gap>
+double last_clear_time_by_threes(Gap&& gap, double low, double high) {
+  for (;;) {
+    const double probe = coarsest_between(low, high);
+    if (probe == low) return low;
+    const double before = coarsest_between(low, probe), after = coarsest_between(probe, high);
+    const bool clear = gap(probe) > 0.0, clear_before = gap(before) > 0.0, clear_after = gap(after) > 0.0;
+    low = clear ? probe : low;
+    high = clear ? high : probe;
+    const double next = clear ? after : before;
+    if (next == low) return low;
+    const bool next_clear = clear ? clear_after : clear_before;
+    low = next_clear ? next : low;
+    high = next_clear ? high : next;
+  }
+}
+
 }  // namespace brink

@@ -72,6 +72,21 @@ struct RelativeParabola {
   }
 };
 
+/// The same of two that are told by their centres alone.
+struct RelativePath {
+  double reference;
+  Vec2 place_a, place_b, offset, velocity;
+  double noise;
+
+  RelativePath(const Parabola& a, const Parabola& b, double velocity_rounding)
+      : reference(std::max(a.origin, b.origin)), place_a(a.at(reference)), place_b(b.at(reference)) {
+    const Vec2 velocity_a = a.velocity_at(reference), velocity_b = b.velocity_at(reference);
+    offset = place_a - place_b;
+    velocity = velocity_a - velocity_b;
+    noise = velocity_rounding + 16.0 * kEpsilon * (velocity_a.lpNorm<1>() + velocity_b.lpNorm<1>());
+  }
+};
+
 /// A rate so near to its rounding may be told as an approach here, and not by the general search.
 bool doubtful(double rate, double noise) { return std::abs(rate) <= 8.0 * noise; }
 
@@ -142,7 +157,7 @@ std::optional<double> canonical_root(Gap&& gap, double t, double begin, double r
   const double moment = rounding / speed + 4.0 * ulp(t), sure = 2.0 * rounding;
   for (const double reach : {2.0 * moment, 8.0 * moment, 64.0 * moment})
     if (t - reach > begin && gap(t - reach) > sure && gap(t + reach) < -sure)
-      return last_clear_time(gap, t - reach, t + reach);
+      return last_clear_time_by_threes(gap, t - reach, t + reach);
   if (gap(begin) > sure && gap(t + 8.0 * moment) < -sure)
     return last_clear_time(gap, begin, t + 8.0 * moment);
   return std::nullopt;
@@ -181,12 +196,14 @@ bool discs(const DiscMover& a, const DiscMover& b, double from, double to, const
   // a level of their own (nominal_level()).
   const double reach = b.radius + a.radius;
   if (!(reach > 0.0) || a.motion->acceleration().linear != b.motion->acceleration().linear) return false;
-  const RelativeParabola rel(a, b);
-  answer = {PairAnswer::Status::clear, to, {}};
+  const Parabola path_a(*a.motion), path_b(*b.motion);
+  const RelativePath rel(path_a, path_b, a.velocity_rounding + b.velocity_rounding);
+  answer.status = PairAnswer::Status::clear;
+  answer.until = to;
   const double speed2 = rel.velocity.squaredNorm(), way = rel.offset.dot(rel.velocity);
   const double distance0 = rel.offset.norm(), s_from = from - rel.reference;
   // of the rate at the beginning: of the velocities, and of the way they are seen along
-  const double places = rel.a.pose.position.lpNorm<1>() + rel.b.pose.position.lpNorm<1>();
+  const double places = rel.place_a.lpNorm<1>() + rel.place_b.lpNorm<1>();
   const double rate_noise = rel.noise + 4.0 * kRoundoff * places * rel.velocity.lpNorm<1>() / distance0;
   // Seen from each other they go straight on: who parts has parted for good.
   if (way > 8.0 * rate_noise * distance0 && distance0 >= 0.5 * reach) return true;  // they part
@@ -211,7 +228,6 @@ bool discs(const DiscMover& a, const DiscMover& b, double from, double to, const
     if (now.norm() <= met + limits.tolerance && doubtful(rate, rel.noise)) return false;
     s = rate < 0.0 ? s_from : kForever;
   }
-  const Parabola path_a(*a.motion), path_b(*b.motion);
   double t = std::max(rel.reference + s, from);
   // Here t is when they meet, or infinite.
   // The rounding of places matters where the two are nearest within the window.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <map>
 
 #include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/first_contact/closed_forms.h"
@@ -50,7 +52,24 @@ TEST(CanonicalTime, LastClearTimeDoesNotDependOnTheBracket) {
       EXPECT_EQ(last_clear_time(gap, std::max(0.0, root - width * (r.uniform() + 1e-3)),
                                 root + width * (r.uniform() + 1e-3)),
                 first);
+      EXPECT_EQ(last_clear_time_by_threes(gap, std::max(0.0, root - width * (r.uniform() + 1e-3)),
+                                          root + width * (r.uniform() + 1e-3)),
+                first);
     }
+  }
+}
+
+// Where roundings make a gap fall and rise, too: the same probes are believed.
+TEST(CanonicalTime, ProbesByThreesAreBelievedAsOneByOne) {
+  SeededRandom r(5);
+  for (int k = 0; k < 2000; ++k) {
+    const double low = r.uniform(0.0, 100.0);
+    double high = low;
+    for (std::uint64_t n = 1 + r.below(40); n > 0; --n) high = next_after(high);
+    std::map<double, double> gaps{{low, 1.0}, {high, -1.0}};
+    const auto gap = [&](double t) { return gaps.try_emplace(t, r.uniform(-1.0, 1.0)).first->second; };
+    const double by_threes = last_clear_time_by_threes(gap, low, high);
+    EXPECT_EQ(last_clear_time(gap, low, high), by_threes);
   }
 }
 
