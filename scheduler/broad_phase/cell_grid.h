@@ -25,7 +25,7 @@ struct Cell {
 struct CellBlock {
   Cell low, high;
   bool contains(const Cell& c) const {
-    return low.column <= c.column && c.column <= high.column && low.row <= c.row && c.row <= high.row;
+    return (low.column <= c.column) & (c.column <= high.column) & (low.row <= c.row) & (c.row <= high.row);
   }
 };
 
@@ -91,9 +91,18 @@ class CellGrid {
   bool has_around() const { return x_.count >= 4 && y_.count >= 4 && !x_.repeats && !y_.repeats; }
   static constexpr int kMostAround = 9 * CellBodies::kAtHand;
   /// Bodies of the cell and the eight about it, written to `bodies`, which has room for kMostAround and one:
-  /// how many; or -1 where a cell has more than are at hand. Without a branch: how many a cell has cannot be
-  /// foreseen. @pre has_around().
+  /// how many; or -1 where a cell has more than are at hand. With `except`, not those of that cell and the eight about
+  /// it. Without a branch: how many a cell has cannot be foreseen. @pre has_around().
   int around(const Cell& c, int* bodies) const {
+    return around(c, bodies, [](int, int) { return true; });
+  }
+  int around(const Cell& c, int* bodies, const Cell& except) const {
+    const CellBlock seen{{except.column - 1, except.row - 1}, {except.column + 1, except.row + 1}};
+    return around(c, bodies,
+                  [&](int row, int column) { return !seen.contains({c.column + column, c.row + row}); });
+  }
+  template <class Counts>
+  int around(const Cell& c, int* bodies, Counts&& counts) const {
     int count = 0, more = CellBodies::kNone;
     for (int r = -1; r <= 1; ++r) {
       const CellBodies* cells =
@@ -101,8 +110,9 @@ class CellGrid {
       for (int q = -1; q <= 1; ++q) {
         const CellBodies& cell = cells[(c.column + q) & (x_.count - 1)];
         std::memcpy(bodies + count, &cell, sizeof cell);
-        count += cell.count;
-        more = std::max<int>(more, cell.more);
+        const bool counted = counts(r, q);
+        count += counted ? static_cast<int>(cell.count) : 0;
+        more = std::max<int>(more, counted ? cell.more : CellBodies::kNone);
       }
     }
     return more == CellBodies::kNone ? count : -1;

@@ -22,8 +22,8 @@ struct alignas(64) Flight {
   int next = -1;              ///< in the list of its cell
   unsigned version : 29 = 0;  ///< raised when the motion changes
   unsigned free : 1 = 0;      ///< a parabola under the common gravity for ever
-  unsigned disc : 1 = 0;      ///< the bounding disc is the body
   unsigned plain : 1 = 0;     ///< a disc of which nothing is locked: collisions go the quick way
+  unsigned disc : 1 = 0;      ///< the bounding disc is the body; the line's last bit, for FlightBatch
 
   /// Size of the numbers from which the place after s is computed [m].
   double magnitude(double s) const {
@@ -114,8 +114,11 @@ inline double stay_in(const Box& box, const Course& c) {
   double stay = kForever;
   for (int axis = 0; axis < 2; ++axis) {
     if (c.gravity[axis] == 0.0) {  // straight on, to the edge ahead
-      const double v = c.velocity[axis];
-      if (v != 0.0) stay = std::min(stay, ((v > 0.0 ? box.high : box.low)[axis] - c.place[axis]) / v);
+      // Which way it goes cannot be foreseen: of both edges the later, which is the one ahead. At rest it is at none, or
+      // no number, which is no minimum.
+      const double v = c.velocity[axis] + 0.0;
+      stay =
+          std::min(stay, std::max((box.high[axis] - c.place[axis]) / v, (box.low[axis] - c.place[axis]) / v));
       continue;
     }
     for (const double edge : {box.low[axis], box.high[axis]}) {

@@ -48,10 +48,13 @@ class Neighbourhood {
     }
   }
 
-  /// What near(k) visits, body k itself included, at once: see CellGrid::around(), whose answer this is. -1, too,
-  /// where there is more than one level, or no place for it.
-  int around(int k, int* bodies) const {
-    return around_ ? levels_[0].grid.around(flights_[k].cell, bodies) : -1;
+  /// What near(k, ., except) visits, body k itself included, at once: see CellGrid::around(), whose answer this is. -1,
+  /// too, where there is more than one level, or no place for it.
+  int around(int k, int* bodies, const Cell* except = nullptr) const {
+    if (!around_) return -1;
+    const CellGrid& grid = levels_[0].grid;
+    const Cell& cell = flights_[k].cell;
+    return except ? grid.around(cell, bodies, *except) : grid.around(cell, bodies);
   }
 
   /// Starts to fetch the cells about body k, in which expect() finds whom to fetch. Slow if k's flight is not at hand.

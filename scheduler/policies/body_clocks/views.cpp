@@ -166,12 +166,10 @@ void Views::see_bodies(int k, const Course& here, double now, const Cell* former
   };
   // the quick way, where there is one (Neighbourhood::around()): several neighbours at once, by vector
   // instructions
-  int bodies[CellGrid::kMostAround + 1];
-  if (const int count = former ? -1 : near_->around(k, bodies); count >= 0) {
-    batch_.gather({bodies, bodies + count}, k, flights_);
-    batch_.meet(here, now);
+  if (const int count = near_->around(k, batch_.bodies(), former); count >= 0) {
+    batch_.meet(count, flights_.data(), here, now);
     std::array<int, FlightBatch::kMost> met;
-    const int hits = batch_.met_before(clocks_[k].horizon, met);
+    const int hits = batch_.met_before(clocks_[k].horizon, k, met);
     // the horizon may come nearer with each
     for (int i = 0; i < hits; ++i)
       if (const double begin = batch_.begin(met[i]); begin < clocks_[k].horizon)
@@ -202,8 +200,7 @@ void Views::note_look(int k) {
 }
 
 bool Views::has_looked(int k) const {
-  if (lookers_ <= 2)
-    return (lookers_ > 0 && k == first_lookers_[0]) || (lookers_ > 1 && k == first_lookers_[1]);
+  if (lookers_ <= 2) return (k == first_lookers_[0]) | (k == first_lookers_[1]);
   return looked_[k] == round_;
 }
 
@@ -216,8 +213,12 @@ void Views::look(int k, double now) {
   clock.forget_all();
   if (flights_[k].free) {
     const Course course(flights_[k], gravity_, now);
-    if (!near_->box_of(k).contains(course.place)) near_->put_into_cell(k, course.place);
-    clock.exit = now + stay_in(near_->box_of(k), course);
+    Box cell = near_->box_of(k);
+    if (!cell.contains(course.place)) {
+      near_->put_into_cell(k, course.place);
+      cell = near_->box_of(k);
+    }
+    clock.exit = now + stay_in(cell, course);
     if (kernel_->by_passes()) return see_by_pass(k, now);
     see_bodies(k, course, now);
   } else {

@@ -59,6 +59,7 @@ class Views {
   void begin_round() {
     ++round_;
     lookers_ = 0;
+    first_lookers_ = {-1, -1};
   }
   /// Fills body k's view with everything that it may meet from now on, but for bodies that have looked around
   /// in this round: they see it. May halt the kernel (an integrator that fails).
@@ -108,9 +109,9 @@ class Views {
   std::vector<std::uint64_t> looked_;  ///< the round in which each body looked around, if more than two did
   std::uint64_t round_ = 0;
   int lookers_ = 0;  ///< in this round: 0, 1, 2, or more
-  std::array<int, 2> first_lookers_{};
+  std::array<int, 2> first_lookers_{-1, -1};
   std::optional<Neighbourhood> near_;
-  FlightBatch batch_{};  ///< empty but while a body looks around
+  FlightBatch batch_;  ///< of the body that looks around
 };
 
 }  // namespace brink

@@ -1,6 +1,7 @@
 // Bounds of flights, and bodies by place, against brute force.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -61,10 +62,9 @@ TEST(Flight, MeetingHoldsEveryOverlapOfTheBoundingDiscs) {
 // However many the processor compares at once: bare discs and others, resting, touching, and not free.
 TEST(FlightBatch, TellsTheBitsOfMeetingsOneByOne) {
   SeededRandom random(16);
-  FlightBatch batch{};
+  FlightBatch batch;
   for (int trial = 0; trial < 3000; ++trial) {
     std::vector<Flight> flights;
-    std::vector<int> bodies;
     const int count = static_cast<int>(random.below(FlightBatch::kMost));
     for (int j = 0; j < count + 1; ++j) {
       flights.push_back(random_flight(random));
@@ -76,13 +76,20 @@ TEST(FlightBatch, TellsTheBitsOfMeetingsOneByOne) {
         f.free = 0;
         f.x = std::numeric_limits<double>::quiet_NaN();
       }
-      bodies.push_back(j);
+      batch.bodies()[j] = j;
     }
     const double now = random.uniform(0, 3);
     const Course course(random_flight(random), Vec2(0.0, trial % 3 ? 0.0 : -9.8), now);
-    batch.gather(bodies, count, flights);
-    batch.meet(course, now);
-    ASSERT_EQ(batch.size(), count);
+    batch.meet(count, flights.data(), course, now);
+    std::array<int, FlightBatch::kMost> met;
+    const int hits = batch.met_before(now + 1.0, 3, met);
+    int expected = 0;
+    for (int i = 0; i < count; ++i)
+      if (i != 3 && batch.begin(i) < now + 1.0) {
+        ASSERT_EQ(met[expected], i);
+        ++expected;
+      }
+    ASSERT_EQ(hits, expected);
     for (int i = 0; i < count; ++i) {
       const Flight& f = flights[i];
       ASSERT_EQ(batch.body(i), i);
@@ -171,7 +178,7 @@ TEST(Neighbourhood, BodiesAroundAreThoseNear) {
     Neighbourhood near(crowd.flights, crowd.clocks, crowd.places, {}, {}, true);
     for (int step = 0; step < 10; ++step)
       for (int k = 0; k < static_cast<int>(crowd.places.size()); ++k) {
-        int around[CellGrid::kMostAround + 1];
+        int around[CellGrid::kMostAround + 4];
         if (const int count = near.around(k, around); count >= 0) {
           ++asked;
           std::set<int> expected{k};
@@ -180,7 +187,16 @@ TEST(Neighbourhood, BodiesAroundAreThoseNear) {
           ASSERT_EQ(static_cast<int>(expected.size()), count) << "twice";
         }
         crowd.places[k] += Vec2(random.uniform(-2, 2), random.uniform(-2, 2));
+        const Cell former = crowd.flights[k].cell;
         near.put_into_cell(k, crowd.places[k]);
+        if (const int count = near.around(k, around, &former); count >= 0) {
+          std::set<int> came_near;
+          near.near(
+              k, [&](int j, const Image&) { came_near.insert(j); }, &former);
+          std::set<int> seen(around, around + count);
+          seen.erase(k);
+          ASSERT_EQ(seen, came_near);
+        }
       }
   }
   EXPECT_GT(asked, 5000);
