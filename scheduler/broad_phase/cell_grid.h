@@ -98,15 +98,15 @@ class CellGrid {
   }
   int around(const Cell& c, int* bodies, const Cell& except) const {
     const CellBlock seen{{except.column - 1, except.row - 1}, {except.column + 1, except.row + 1}};
-    return around(c, bodies,
-                  [&](int row, int column) { return !seen.contains({c.column + column, c.row + row}); });
+    return around(c, bodies, [&](int row, int column) {
+      return !seen.contains({c.column + column, c.row + row});
+    });
   }
   template <class Counts>
   int around(const Cell& c, int* bodies, Counts&& counts) const {
     int count = 0, more = CellBodies::kNone;
     for (int r = -1; r <= 1; ++r) {
-      const CellBodies* cells =
-          cells_.data() + static_cast<std::size_t>((c.row + r) & (y_.count - 1)) * x_.count;
+      const CellBodies* cells = row_of(c.row + r);
       for (int q = -1; q <= 1; ++q) {
         const CellBodies& cell = cells[(c.column + q) & (x_.count - 1)];
         std::memcpy(bodies + count, &cell, sizeof cell);
@@ -122,11 +122,15 @@ class CellGrid {
   void expect_around(const Cell& c) const {
     const int first = (c.column - 1) & (x_.count - 1), last = (c.column + 1) & (x_.count - 1);
     for (int r = -1; r <= 1; ++r) {
-      const CellBodies* cells =
-          cells_.data() + static_cast<std::size_t>((c.row + r) & (y_.count - 1)) * x_.count;
-      __builtin_prefetch(cells + first);  // three cells may lie in two lines
-      __builtin_prefetch(cells + last);
+      prefetch_line(row_of(c.row + r) + first);  // three cells may lie in two lines
+      prefetch_line(row_of(c.row + r) + last);
     }
+  }
+  /// Calls visit(body) for the first body of each cell that around() reads; kNone where there is none. @pre has_around().
+  template <class Visit>
+  void firsts_around(const Cell& c, Visit&& visit) const {
+    for (int r = -1; r <= 1; ++r)
+      for (int q = -1; q <= 1; ++q) visit(row_of(c.row + r)[(c.column + q) & (x_.count - 1)].first[0]);
   }
   /// True if the block is so wide that one list holds several of its cells, and is visited once.
   bool wraps(const CellBlock& b) const {
@@ -184,6 +188,11 @@ class CellGrid {
   };
   static constexpr double kFar = 1e9;     ///< cells from the origin; all beyond is one
   static constexpr double kMost = 16384;  ///< sets of bodies along an axis
+
+  /// Cells of a row. @pre has_around().
+  const CellBodies* row_of(int row) const {
+    return cells_.data() + static_cast<std::size_t>(row & (y_.count - 1)) * x_.count;
+  }
 
   Axis x_, y_;
   double slack_ = 0.0;

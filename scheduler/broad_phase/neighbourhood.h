@@ -1,6 +1,7 @@
 #pragma once
 /// Bodies and still sites by place: levels of cell grids, one a class of size.
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -63,6 +64,8 @@ class Neighbourhood {
   }
   /// Starts to fetch what near(k) will visit: at many bodies, waiting for their memory is what looking costs.
   void expect(int k) const {
+    const auto fetch = [&](int body) { prefetch_line(&flights_[std::max(body, 0)]); };
+    if (around_) return levels_[0].grid.firsts_around(flights_[k].cell, fetch);
     for (std::size_t m = 0; m < levels_.size(); ++m)
       levels_[m].grid.lists(block_of(k, flights_[k].cell, m), [&](const Cell&, const CellBodies& bodies) {
         if (bodies.first[0] != CellBodies::kNone) prefetch(&flights_[bodies.first[0]]);

@@ -51,6 +51,11 @@ class EventQueue {
       i /= 4;
     }
   }
+  /// Starts to fetch what an update of that body reads and is in no cache.
+  void expect(int body) const {
+    prefetch_line(&nodes_[leaf(body)]);
+    prefetch_line(&nodes_[leaf(body) / 4]);
+  }
 
  private:
   static constexpr std::uint64_t kNever =
@@ -75,7 +80,7 @@ class EventQueue {
     return earlier(earlier(key, nodes_[i ^ 1], i & 1), other, i >> 1 & 1);
   }
 
-  std::size_t leaves_ = 4;  ///< a power of four: bodies from node leaves_ on
+  std::size_t leaves_ = 4;                        ///< a power of four: bodies from node leaves_ on
   LargeVector<Key> nodes_ = LargeVector<Key>(8);  ///< of node i: 4 i to 4 i + 3; the root is 1
 };
 

@@ -168,7 +168,11 @@ class BodyClocks final : public Policy {
 
   /// Waiting for the memory of bodies that are met in no order is much of what an event costs.
   void expect(int k, int next) const {
-    if (next < kernel_->body_count()) views_->expect(next);
+    if (!views_->are_many()) return;
+    if (next < kernel_->body_count()) {
+      queue_.expect(next);
+      views_->expect(next);
+    }
     const BodyClock& clock = views_->clock(k);
     if (quick_ || clock.candidates.empty()) return;  // quickly: expect_quickly() has been asked before
     kernel_->expect(k);
@@ -267,12 +271,13 @@ class BodyClocks final : public Policy {
 
   /// Starts to fetch what meet_quickly() will read for that body, whose own clock and flight are at hand.
   void expect_quickly(int next) const {
-    if (next >= kernel_->body_count()) return;
+    if (!views_->are_many() || next >= kernel_->body_count()) return;
     const BodyClock& clock = views_->clock(next);
     kernel_->expect_disc(next);
     views_->expect_cells(next);
     const int other = clock.candidates.empty() ? next : clock.candidates.front().other;
     if (other >= kernel_->body_count()) return;
+    queue_.expect(other);
     kernel_->expect_disc(other);
     views_->expect(other);
   }

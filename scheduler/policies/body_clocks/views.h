@@ -26,15 +26,21 @@ class Views {
   bool plain_pair(int k, const Candidate& c) const {
     return c.other < body_count() && flights_[k].plain && flights_[c.other].plain;
   }
+  /// True if waiting for the memory of bodies that are met in no order costs more than to fetch it before it is needed.
+  bool are_many() const { return body_count() > kInCaches; }
   /// Starts to fetch body k's clock and flight.
   void expect(int k) const {
     prefetch(&clocks_[k]);
     prefetch(&flights_[k]);
   }
   /// Starts to fetch where expect_look(k) looks. Slow if k's own flight is not at hand.
-  void expect_cells(int k) const { near_->expect_cells(k); }
+  void expect_cells(int k) const {
+    if (are_many()) near_->expect_cells(k);
+  }
   /// Starts to fetch what looking around body k reads. Slow if its own flight is not at hand.
-  void expect_look(int k) const { near_->expect(k); }
+  void expect_look(int k) const {
+    if (are_many()) near_->expect(k);
+  }
   /// Until when a search of body k's candidate must go: they cannot meet later, or k's view of it ends. Still
   /// sites are looked at again as k leaves its cell; whatever moves is not.
   double end_of(int k, const Candidate& c) const {
@@ -71,6 +77,8 @@ class Views {
   void look_ahead(int k, double now);
 
  private:
+  static constexpr int kInCaches = 2000;  ///< bodies that a processor has near at hand
+
   int body_count() const { return static_cast<int>(clocks_.size()); }
   unsigned version_of(int owner) const { return owner < body_count() ? flights_[owner].version : 0; }
   void start_anew(int k, const Motion& motion);
