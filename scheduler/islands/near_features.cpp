@@ -117,14 +117,19 @@ void see_wire(const Half& half, const Site& edge, const Site& site, const Vec2& 
   }
 }
 
-/// How far the carrier lies on the side of a wire's site to which `out` points, as told from its vertex at q, `height` on
+/// On which side of a wire's site a carrier lies.
+struct SideOfWire {
+  bool before = true;  ///< on that to which a normal points
+  SideTold told = SideTold::by_place;
+};
+
+/// Whether the carrier lies on the side of a wire's site to which `out` points, as told from its vertex at q, `height` on
 /// that side of a place of the site: by whichever of the vertex and its edges, as far as they are abreast of the site, is
 /// farthest from there, as no edge crosses a wire. A rod that comes to lie flat leads from its upper end down to the wire;
 /// round the end of the site an edge may lead anywhere. Where its edges lie along the wire, the wire tells, by where it leads
-/// from the site's ends; and where nothing does, or edges lead to both sides, the carrier's centre. Only the sign counts, and
-/// that only beyond kAlongLine of the carrier's radius: a rod that lies along a straight wire may lie on either side [m].
-double height_before(const Half& half, const Sample& sample, const Site& site, const Vec2& q, const Vec2& out,
-                     double height) {
+/// from the site's ends; and where nothing does, or edges lead to both sides, the carrier's centre.
+SideOfWire side_of_wire(const Half& half, const Sample& sample, const Site& site, const Vec2& q,
+                        const Vec2& out, double height) {
   const double told = kAlongLine * half.carrier.bounding_radius;
   const auto to_other = [&](const Vec2& p) {
     return half.other_frame.to_local(half.carrier_frame.to_world(p));
@@ -140,9 +145,10 @@ double height_before(const Half& half, const Sample& sample, const Site& site, c
   const bool both_sides = of_edges.most > told && -of_edges.least > told;
   const bool flush = of_edges.least <= of_edges.most && !both_sides;
   of_edges.see(height);
-  if (!both_sides && of_edges.tells(told)) return of_edges.most + of_edges.least;
-  if (flush && of_wire.tells(told)) return -(of_wire.most + of_wire.least);
-  return out.dot(centre(half) - q) + height;
+  if (!both_sides && of_edges.tells(told)) return {of_edges.most > -of_edges.least};
+  if (flush && of_wire.tells(told)) return {of_wire.most < -of_wire.least};
+  const double of_centre = out.dot(centre(half) - q) + height;
+  return {of_centre >= 0.0, std::abs(of_centre) > told ? SideTold::by_centre : SideTold::by_nothing};
 }
 
 /// True of q, abreast of the site, on the other side of it than that to which `out` points from `at`, about there on the
@@ -266,8 +272,8 @@ void put_on_line(const Half& half, const Sample& sample, const Site& site, const
   double height = n.dot(q - site.a);
   const double centred = n.dot(centre(half) - site.a);
   const bool behind = std::abs(height) <= upon ? centred < 0.0 : height < 0.0;
-  f.either_side =
-      f.thin && std::max(std::abs(height), std::abs(centred)) <= kAlongLine * half.carrier.bounding_radius;
+  if (f.thin && std::max(std::abs(height), std::abs(centred)) <= kAlongLine * half.carrier.bounding_radius)
+    f.side_told = SideTold::by_nothing;
   if (!site.solid && behind) {
     n = -n;
     height = -height;
@@ -298,15 +304,15 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
     distance = out.dot(q - nearest.point);
   }
   // abreast of the wire by the body's size; at an end only where the way has no direction
-  bool either_side = false;
+  SideTold told = SideTold::by_place;
   const double no_side =
       nearest.foot == Foot::interior ? kSunkOfRadius * half.carrier.bounding_radius : least;
   if (thin && site.kind != SiteKind::point && nearest.distance < no_side) {
     // a wire has no inside that would tell: what has sunk by a rounding, or is right on its end, is on the side of its
     // own edges
-    const double before = height_before(half, sample, site, q, out, out.dot(q - nearest.point));
-    either_side = std::abs(before) <= kAlongLine * half.carrier.bounding_radius;
-    if (before < 0.0) out = -out;
+    const SideOfWire side_of_it = side_of_wire(half, sample, site, q, out, out.dot(q - nearest.point));
+    told = side_of_it.told;
+    if (!side_of_it.before) out = -out;
     distance = out.dot(q - nearest.point);
   }
   const Vec2 outward = half.other_frame.direction_to_world(out);
@@ -332,7 +338,7 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   f.point = half.other_frame.to_world(nearest.point + site.radius * out);
   f.normal = half.on_a ? outward : Vec2(-outward);
   f.thin = thin;
-  f.either_side = either_side;
+  f.side_told = told;
   // right on the joint of two wires it may be at the ends of both, and passes by neither
   const bool on_end = thin && site.kind == SiteKind::segment && beyond_ends(site, q) <= least;
   f.at_end = site.kind != SiteKind::point && nearest.foot != Foot::interior && !on_end;
@@ -399,7 +405,7 @@ std::optional<Vec2> normal_over_joint(const Half& half, const Sample& sample, st
     if (site.solid) {
       above *= side_of(other, nearest[k], q);
     } else if (above < sunk) {
-      if (height_before(half, sample, other, q, n, n.dot(q - end)) < 0.0) n = -n;
+      if (!side_of_wire(half, sample, other, q, n, n.dot(q - end)).before) n = -n;
       above = n.dot(q - nearest[k].point);
     } else if (n.dot(direction(other, nearest[k], q, tie)) < 0.0) {
       n = -n;

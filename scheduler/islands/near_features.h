@@ -8,6 +8,10 @@
 
 namespace brink {
 
+/// What tells on which side of a wire a contact is: its place, or that of the edges beside it; where these lie along the wire
+/// the middle of their outline, which need not be right; where that does, too, nothing: the normal is one of two.
+enum class SideTold : unsigned char { by_place, by_centre, by_nothing };
+
 /// A sample of one outline and a site of the other. Unlike what a search for first contact lists, every site
 /// that faces a sample counts, not the nearest alone: a body in a groove touches both sides.
 struct NearFeature {
@@ -18,8 +22,8 @@ struct NearFeature {
   Vec2 normal = Vec2::Zero();  ///< world, unit, from b into a
   double gap = 0.0;            ///< [m]
   bool thin = false;           ///< a sharp sample and a wire without thickness
-  bool either_side = false;    ///< thin, and nothing tells on which side: the normal is one of two
-  bool at_end = false;         ///< of a site that goes on from there: the sample may pass by
+  SideTold side_told = SideTold::by_place;
+  bool at_end = false;  ///< of a site that goes on from there: the sample may pass by
   /// Of an arc's sample whose sector the site lies beside, by what a body may turn in a step: the gap is that of the arc's
   /// end, and of the arc once it has rolled there.
   bool beside_arc = false;

@@ -128,16 +128,17 @@ void IslandMotion::remember_side(HeldContact& c) const {
   if (!f.thin || (f.at_end && !f.goes_on) || !(std::abs(f.gap) < kSunkOfRadius * carrier.bounding_radius))
     return;
   const HeldContact* known = f.at_end ? nullptr : warm_.find(c);
-  const bool turn = known != nullptr ? !known->feature.at_end && known->feature.normal.dot(f.normal) < 0.0
-                                     : f.either_side && is_elsewhere(c);
+  const bool turn = known != nullptr && !known->feature.at_end
+                        ? known->feature.normal.dot(f.normal) < 0.0
+                        : f.side_told != SideTold::by_place && is_elsewhere(c);
   if (!turn) return;
   f.normal = -f.normal;
   f.gap = -f.gap;
 }
 
-/// Of a wire upon which nothing of their places tells on which side the other is: true if that is the other one. Who was on
-/// one side with another contact along that line has not changed it, nor who has just met it. Where a run begins it is the side
-/// to which forces press.
+/// Of a wire of which no place of the other tells on which side it is: true if that is the other one. Who was on one side with
+/// another contact along that line has not changed it, nor who has just met it. Where a run begins it is that of the other's
+/// centre, or the side to which forces press.
 bool IslandMotion::is_elsewhere(const HeldContact& c) const {
   const Vec2& n = c.feature.normal;
   const int member = members_.place_of(c.pair.body);
@@ -145,6 +146,7 @@ bool IslandMotion::is_elsewhere(const HeldContact& c) const {
     if (w.pair == c.pair && w.feature.thin && !w.feature.at_end &&
         is_on_line(c, w.feature.point, w.feature.normal))
       return w.feature.normal.dot(n) < 0.0;
+  if (run_begins_ && c.feature.side_told == SideTold::by_centre) return false;
   if (run_begins_) {
     Vec2 pull = members_.acceleration(member).linear;
     if (!c.pair.with_site()) pull -= members_.acceleration(members_.place_of(c.pair.other_body)).linear;

@@ -273,5 +273,31 @@ TEST(CornerScenes, StepsOfWhatHardlyMovesAreNotEndless) {
   EXPECT_LT(summary.work.pair_searches, 1000000U);
 }
 
+// A rod slides down a slope of wire into its hollow corner. The vertex there was taken to be on the other side of the rod,
+// whose edge lies along the slope: on that of the walls' middle.
+TEST(CornerScenes, ARodComesToTheHollowCornerOfASlopeOfWire) {
+  const Scene scene = parse_scene(R"scene(
+[world]
+duration = 3.0
+gravity = [0.0, -9.8125]
+[materials.default]
+restitution = 0.5
+friction = 0.0
+[[sites]]
+polyline = [[-4.0, 1.5], [-2.0, 0.25], [-1.0, 0.5], [0.0, 0.0], [1.0, 0.5], [2.0, 0.0], [4.0, 1.0], [4.0, 6.0], [-4.0, 6.0], [-4.0, 1.5]]
+[[bodies]]
+chain = { vertices = [[0.0, 0.0], [0.23570823669433594, -0.11293220520019531], [0.1658344268798828, -0.36478519439697266], [-0.09104537963867188, -0.31656932830810547]] }
+position = [0.19448566436767578, 4.518935203552246]
+mass = 1.0
+velocity = [-1.1390771865844727, 1.8957061767578125]
+[[bodies]]
+chain = { vertices = [[0.0, 0.0], [-0.5164690017700195, 0.2387237548828125]] }
+position = [-1.5174198150634766, 4.39116096496582]
+mass = 1.0
+)scene",
+                                  "slope.toml");
+  watched(scene, 3.0, 0.001953125);
+}
+
 }  // namespace
 }  // namespace brink::corner_scenes_test
