@@ -200,7 +200,8 @@ void Views::note_look(int k) {
 }
 
 bool Views::has_looked(int k) const {
-  if (lookers_ <= 2) return (k == first_lookers_[0]) | (k == first_lookers_[1]);
+  const int first = k == first_lookers_[0], second = k == first_lookers_[1];
+  if (lookers_ <= 2) return (first | second) != 0;  // without a branch
   return looked_[k] == round_;
 }
 
