@@ -120,14 +120,15 @@ void see_wire(const Half& half, const Site& edge, const Site& site, const Vec2& 
 /// On which side of a wire's site a carrier lies.
 struct SideOfWire {
   bool before = true;  ///< on that to which a normal points
-  SideTold told = SideTold::by_place;
+  SideTold told = SideTold::surely;
 };
 
 /// Whether the carrier lies on the side of a wire's site to which `out` points, as told from its vertex at q, `height` on
 /// that side of a place of the site: by whichever of the vertex and its edges, as far as they are abreast of the site, is
 /// farthest from there, as no edge crosses a wire. A rod that comes to lie flat leads from its upper end down to the wire;
 /// round the end of the site an edge may lead anywhere. Where its edges lie along the wire, the wire tells, by where it leads
-/// from the site's ends; and where nothing does, or edges lead to both sides, the carrier's centre.
+/// from the site's ends; where nothing does the little that edges lead away; and where they do not, or lead to both sides, the
+/// carrier's centre.
 SideOfWire side_of_wire(const Half& half, const Sample& sample, const Site& site, const Vec2& q,
                         const Vec2& out, double height) {
   const double told = kAlongLine * half.carrier.bounding_radius;
@@ -145,10 +146,13 @@ SideOfWire side_of_wire(const Half& half, const Sample& sample, const Site& site
   const bool both_sides = of_edges.most > told && -of_edges.least > told;
   const bool flush = of_edges.least <= of_edges.most && !both_sides;
   of_edges.see(height);
-  if (!both_sides && of_edges.tells(told)) return {of_edges.most > -of_edges.least};
+  const auto by_edges = [&] { return of_edges.most > -of_edges.least; };
+  if (!both_sides && of_edges.tells(told)) return {by_edges()};
   if (flush && of_wire.tells(told)) return {of_wire.most < -of_wire.least};
+  if (flush && of_edges.tells(kOneCorner * half.carrier.bounding_radius))
+    return {by_edges(), SideTold::hardly};
   const double of_centre = out.dot(centre(half) - q) + height;
-  return {of_centre >= 0.0, std::abs(of_centre) > told ? SideTold::by_centre : SideTold::by_nothing};
+  return {of_centre >= 0.0, std::abs(of_centre) > told ? SideTold::hardly : SideTold::not_at_all};
 }
 
 /// True of q, abreast of the site, on the other side of it than that to which `out` points from `at`, about there on the
@@ -272,8 +276,9 @@ void put_on_line(const Half& half, const Sample& sample, const Site& site, const
   double height = n.dot(q - site.a);
   const double centred = n.dot(centre(half) - site.a);
   const bool behind = std::abs(height) <= upon ? centred < 0.0 : height < 0.0;
-  if (f.thin && std::max(std::abs(height), std::abs(centred)) <= kAlongLine * half.carrier.bounding_radius)
-    f.side_told = SideTold::by_nothing;
+  if (f.thin && std::abs(height) <= upon)
+    f.side_told = std::abs(centred) <= kAlongLine * half.carrier.bounding_radius ? SideTold::not_at_all
+                                                                                 : SideTold::hardly;
   if (!site.solid && behind) {
     n = -n;
     height = -height;
@@ -304,7 +309,7 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
     distance = out.dot(q - nearest.point);
   }
   // abreast of the wire by the body's size; at an end only where the way has no direction
-  SideTold told = SideTold::by_place;
+  SideTold told = SideTold::surely;
   const double no_side =
       nearest.foot == Foot::interior ? kSunkOfRadius * half.carrier.bounding_radius : least;
   if (thin && site.kind != SiteKind::point && nearest.distance < no_side) {

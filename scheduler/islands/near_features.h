@@ -8,9 +8,9 @@
 
 namespace brink {
 
-/// What tells on which side of a wire a contact is: its place, or that of the edges beside it; where these lie along the wire
-/// the middle of their outline, which need not be right; where that does, too, nothing: the normal is one of two.
-enum class SideTold : unsigned char { by_place, by_centre, by_nothing };
+/// How surely it is known on which side of a wire a contact is. Hardly: where edges lie along the wire, by less than roundings of
+/// a long way may make, or by the middle of their outline, which need not be right. Not at all: the normal is one of two.
+enum class SideTold : unsigned char { surely, hardly, not_at_all };
 
 /// A sample of one outline and a site of the other. Unlike what a search for first contact lists, every site
 /// that faces a sample counts, not the nearest alone: a body in a groove touches both sides.
@@ -22,7 +22,7 @@ struct NearFeature {
   Vec2 normal = Vec2::Zero();  ///< world, unit, from b into a
   double gap = 0.0;            ///< [m]
   bool thin = false;           ///< a sharp sample and a wire without thickness
-  SideTold side_told = SideTold::by_place;
+  SideTold side_told = SideTold::surely;
   bool at_end = false;  ///< of a site that goes on from there: the sample may pass by
   /// Of an arc's sample whose sector the site lies beside, by what a body may turn in a step: the gap is that of the arc's
   /// end, and of the arc once it has rolled there.

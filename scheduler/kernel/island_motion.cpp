@@ -130,32 +130,41 @@ void IslandMotion::remember_side(HeldContact& c) const {
   const HeldContact* known = f.at_end ? nullptr : warm_.find(c);
   const bool turn = known != nullptr && !known->feature.at_end
                         ? known->feature.normal.dot(f.normal) < 0.0
-                        : f.side_told != SideTold::by_place && is_elsewhere(c);
+                        : f.side_told != SideTold::surely && is_elsewhere(c);
   if (!turn) return;
   f.normal = -f.normal;
   f.gap = -f.gap;
 }
 
-/// Of a wire of which no place of the other tells on which side it is: true if that is the other one. Who was on one side with
-/// another contact along that line has not changed it, nor who has just met it. Where a run begins it is that of the other's
-/// centre, or the side to which forces press.
+/// Of a wire of which no place of the other surely tells on which side it is: true if that is the other one. Where a run begins it is
+/// what is told at all, or the side to which forces press. Later, who was on one side with another contact along that line
+/// has not changed it, nor who has just met it: of the same pair, or else with a site that may go on from this one.
 bool IslandMotion::is_elsewhere(const HeldContact& c) const {
   const Vec2& n = c.feature.normal;
-  const int member = members_.place_of(c.pair.body);
-  for (const HeldContact& w : warm_)
-    if (w.pair == c.pair && w.feature.thin && !w.feature.at_end &&
-        is_on_line(c, w.feature.point, w.feature.normal))
-      return w.feature.normal.dot(n) < 0.0;
-  if (run_begins_ && c.feature.side_told == SideTold::by_centre) return false;
+  if (run_begins_ && c.feature.side_told == SideTold::hardly) return false;
   if (run_begins_) {
-    Vec2 pull = members_.acceleration(member).linear;
+    Vec2 pull = members_.acceleration(members_.place_of(c.pair.body)).linear;
     if (!c.pair.with_site()) pull -= members_.acceleration(members_.place_of(c.pair.other_body)).linear;
     if (std::abs(n.dot(pull)) > kOneLine * members_.pull()) return n.dot(pull) > 0.0;
   }
-  if (!met_ || !(met_->first == c.pair)) return false;
-  const FeatureContact& met = met_->second;
   const RealVec from = members_.other_state(c.pair).position;
-  return is_on_line(c, (met.point.cast<Real>() - from).cast<double>(), met.normal) && met.normal.dot(n) < 0.0;
+  for (const bool of_pair : {true, false}) {
+    const auto is_asked = [&](const PairKey& pair) {
+      return of_pair ? pair == c.pair : pair.body == c.pair.body && pair.with_site() && c.pair.with_site();
+    };
+    for (const HeldContact& w : warm_)
+      if (is_asked(w.pair) && w.feature.thin && !w.feature.at_end) {
+        const RealVec to_its = members_.other_state(w.pair).position - from;
+        if (is_on_line(c, w.feature.point + to_its.cast<double>(), w.feature.normal))
+          return w.feature.normal.dot(n) < 0.0;
+      }
+    if (met_ && is_asked(met_->first)) {
+      const FeatureContact& met = met_->second;
+      if (is_on_line(c, (met.point.cast<Real>() - from).cast<double>(), met.normal))
+        return met.normal.dot(n) < 0.0;
+    }
+  }
+  return false;
 }
 
 void IslandMotion::expect_sides(const StepCause& cause) {

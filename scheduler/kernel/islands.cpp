@@ -256,7 +256,8 @@ double Islands::steady_for(const std::set<int>& members, double now) {
   return until - now;
 }
 
-/// `longest`: the step is no longer [s]. The last thing that its caller does: false where the run stops for now, too, which may go on later.
+/// `longest`: the step is no longer [s]. The last thing that its caller does: false where the run stops for now, too,
+/// which may go on later.
 bool Islands::begin_step(std::set<int> members, double longest, std::vector<int>& changed,
                          const StepCause& cause) {
   return carry_out_step(std::move(members), longest, changed, cause) && run_->poll();

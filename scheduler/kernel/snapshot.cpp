@@ -1,5 +1,6 @@
 #include "brink/scheduler/kernel/snapshot.h"
 
+#include <array>
 #include <cstring>
 #include <type_traits>
 
@@ -11,8 +12,8 @@ namespace brink {
 
 namespace {
 
-/// With a newline and a zero in front of the letters: no text file begins so.
-constexpr std::uint64_t kMagic = 0x374b4e495242000aULL;  // "\12\0BRINK8"
+/// With a newline and a zero in front of the letters: no text file begins so. The digit grows with every change of what is written.
+constexpr std::array<char, 8> kMagic{'\n', '\0', 'B', 'R', 'I', 'N', 'K', '8'};
 
 /// Objects as they lie in memory: a snapshot is read by the program that wrote it.
 class Writer {
@@ -373,7 +374,8 @@ std::vector<std::byte> encode(const SavedRun& saved, std::uint64_t fingerprint) 
 /// The world is only looked at: whoever asks puts the answer back when all of it has been read.
 SavedRun decode(std::span<const std::byte> bytes, const World& world, std::uint64_t fingerprint) {
   Reader in(bytes);
-  std::uint64_t magic = 0, print = 0;
+  std::array<char, 8> magic{};
+  std::uint64_t print = 0;
   in(magic);
   in(print);
   // first: of bytes that are no snapshot nothing else means anything

@@ -166,6 +166,7 @@ void Views::see_bodies(int k, const Course& here, double now, const Cell* former
   };
   // the quick way, where there is one (Neighbourhood::around()): several neighbours at once, by vector
   // instructions
+  static_assert(FlightBatch::kMost > CellGrid::kMostAround);
   if (const int count = near_->around(k, batch_.bodies(), former); count >= 0) {
     batch_.meet(count, flights_.data(), here, now);
     std::array<int, FlightBatch::kMost> met;
