@@ -24,6 +24,13 @@ struct Half {
   bool on_a;
 };
 
+/// The sample's corner as it lies in the other's frame.
+Wedge wedge_of(const Half& half, const Sample& sample) {
+  return turned(wedge_at(half.carrier, sample.p), [&](const Vec2& d) {
+    return half.other_frame.direction_to_local(half.carrier_frame.direction_to_world(d));
+  });
+}
+
 /// The middle of what carries the samples, in the other's frame: a site's own frame may be anywhere.
 Vec2 centre(const Half& half) {
   return half.other_frame.to_local(half.carrier_frame.to_world(half.carrier.bounds.center()));
@@ -465,9 +472,7 @@ bool has_hollow_corner(const Outline& outline, std::size_t j, const Vec2& end) {
 bool has_no_way_by(const Half& half, int i, std::size_t j, const Vec2& q) {
   const Site& site = half.other.sites[j];
   const Vec2& corner = nearer_end(site, q);
-  const Wedge of_sample = turned(wedge_at(half.carrier, half.carrier.samples[i].p), [&](const Vec2& d) {
-    return half.other_frame.direction_to_local(half.carrier_frame.direction_to_world(d));
-  });
+  const Wedge of_sample = wedge_of(half, half.carrier.samples[i]);
   const Wedge of_corner = wedge_at(half.other, corner);
   // a wire has sides, but no inside that would overlap: in a hollow corner what is beyond the end is in the other side
   if (!half.carrier.solid) return has_hollow_corner(half.other, j, corner);
@@ -523,9 +528,7 @@ OnWire on_wire(const Half& half, const Sample& sample, std::size_t j, const Vec2
   if (half.other.solid || site.kind == SiteKind::point || site.radius + sample.radius > 0.0) return {};
   const Vec2& end = nearer_end(site, q);
   if (!((q - end).norm() <= tie)) return {};
-  const Wedge of_sample = turned(wedge_at(half.carrier, sample.p), [&](const Vec2& d) {
-    return half.other_frame.direction_to_local(half.carrier_frame.direction_to_world(d));
-  });
+  const Wedge of_sample = wedge_of(half, sample);
   if (of_sample.edges.empty()) return {};
   const Wedge of_wire = wedge_at(half.other, end);
   // edges that all lie along the line tell no side
@@ -652,15 +655,27 @@ bool is_smooth_joint(const Outline& outline, const Sample& sample) {
   return false;
 }
 
-/// How far q is before the other side at the nearer end of site j, a straight side of a solid, where the two have a convex
-/// corner [m]; <= 0: it is not. At an acute corner what is beside the one is abreast of the other, and behind its line.
-double before_next_side(const Outline& outline, const Site& site, const Vec2& q) {
+/// How far q is before the other side at the nearer end of a straight side of a solid, where the two have a convex corner [m];
+/// below 0: it is not. At an acute corner what is beside the one is abreast of the other, and behind its line. Upon the other's
+/// line, to `upon` [m], roundings say nothing: it is before it if the sample's edges are, or else the two are in each other.
+double before_next_side(const Half& half, const Sample& sample, const Site& site, const Vec2& q,
+                        double upon) {
   const Vec2& end = nearer_end(site, q);
-  double before = 0.0;
-  for (const Site& next : outline.sites) {
+  double before = -std::numeric_limits<double>::infinity();
+  for (const Site& next : half.other.sites) {
     if (&next == &site || next.kind != SiteKind::segment || (next.a != end && next.b != end)) continue;
-    const Vec2 on = next.a == end ? Vec2(next.b - next.a) : Vec2(next.a - next.b);
-    if (outward(site).dot(on) < 0.0) before = std::max(before, outward(next).dot(q - end));
+    const Vec2 on = next.a == end ? Vec2(next.b - next.a) : Vec2(next.a - next.b), out = outward(next);
+    if (outward(site).dot(on) >= 0.0) continue;
+    const double height = out.dot(q - end);
+    const bool told = std::abs(height) > upon || !half.carrier.solid || sample.radius > 0.0;
+    if (told) {
+      before = std::max(before, height);
+    } else {
+      const Wedge corner = wedge_of(half, sample);
+      if (std::all_of(corner.edges.begin(), corner.edges.end(),
+                      [&](const Vec2& e) { return out.dot(e) > -kAlongLine; }))
+        before = std::max({before, height, 0.0});
+    }
   }
   return before;
 }
@@ -671,12 +686,11 @@ bool cross_each_other(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d
 }
 
 /// How deep two convex corners are in each other of which neither vertex is in the other solid [m]: their sides cross
-/// beside both. 0: they do not. `nearest`: an end of the site, to which the sample at q is nearest.
-double through_corner(const Half& half, const Sample& sample, const Site& site, const Nearest& nearest,
-                      const Vec2& q) {
+/// beside both. 0: they do not. The site's corner is the one at the end that is nearer to the sample at q.
+double through_corner(const Half& half, const Sample& sample, const Site& site, const Vec2& q) {
   const bool straight = site.solid && site.kind == SiteKind::segment && sample.radius + site.radius == 0.0;
   if (!straight || !half.carrier.solid || sample.arc_site >= 0) return 0.0;
-  const Vec2& corner = nearest.foot == Foot::start ? site.a : site.b;
+  const Vec2& corner = nearer_end(site, q);
   const auto to_other = [&](const Vec2& p) {
     return half.other_frame.to_local(half.carrier_frame.to_world(p));
   };
@@ -692,9 +706,7 @@ double through_corner(const Half& half, const Sample& sample, const Site& site, 
   }
   if (!through) return 0.0;
   // By the side that leaves the least to go back, of those that could part the two.
-  const Wedge of_sample = turned(wedge_at(half.carrier, sample.p), [&](const Vec2& d) {
-    return half.other_frame.direction_to_local(half.carrier_frame.direction_to_world(d));
-  });
+  const Wedge of_sample = wedge_of(half, sample);
   const Wedge of_corner = wedge_at(half.other, corner);
   double depth = std::numeric_limits<double>::infinity();
   const auto try_side = [&](const Vec2& n) {
@@ -758,9 +770,11 @@ double gap_of(const NearFeature& f, const OutlineAt& a, const OutlineAt& b) {
   const bool crossed = abreast ? is_behind(site, nearest, q, out, nearest.point)
                                : f.thin && is_through_joint(half.other, site, nearest, q, out);
   if (!side_is_known && abreast && crossed)
-    if (const double before = before_next_side(half.other, site, q);
-        before > (f.no_way_by ? kOneCorner * size : 0.0))
-      return std::min(before, nearest.distance) - site.radius - sample.radius;
+    if (const double before = before_next_side(half, sample, site, q, kOneCorner * size);
+        before >= (f.no_way_by ? kOneCorner * size : 0.0)) {
+      const double through = through_corner(half, sample, site, q);
+      return through > 0.0 ? -through : std::min(before, nearest.distance) - site.radius - sample.radius;
+    }
   // past the hollow corner at an end, behind the side, is the solid, too
   if (!abreast && site.solid && site.kind == SiteKind::segment &&
       has_hollow_corner(half.other, static_cast<std::size_t>(f.site),
@@ -768,7 +782,7 @@ double gap_of(const NearFeature& f, const OutlineAt& a, const OutlineAt& b) {
     if (const double behind_line = outward(site).dot(q - site.a); behind_line < 0.0)
       return behind_line - site.radius - sample.radius;
   if (!abreast && !crossed)
-    if (const double through = through_corner(half, sample, site, nearest, q); through > 0.0) return -through;
+    if (const double through = through_corner(half, sample, site, q); through > 0.0) return -through;
   // beside an end, where there is no way by, it is as deep as it is behind the side, however far along that the end is
   const bool beside = abreast && nearest.foot != Foot::interior && site.kind == SiteKind::segment;
   const double deep = beside ? -out.dot(q - nearest.point) : nearest.distance;

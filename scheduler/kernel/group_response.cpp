@@ -190,7 +190,8 @@ class GroupResponse::Group {
         if (k >= 0) bodies.insert(k);
     bodies_.assign(bodies.begin(), bodies.end());
     // all of the group are taken to the moment of the contact that was found: one moment for one instant
-    delay_ = parts_.response_.delay_to_contact(found_.contact, geometry(found_));
+    const Touch& first = told_by();
+    delay_ = parts_.response_.delay_to_contact(first.contact, geometry(first));
     for (const int k : bodies_) {
       const Body& b = parts_.world_.bodies[k];
       members_.push_back({state(k).twist, b.inverse_mass_x(), b.inverse_mass_y(), b.inverse_inertia()});
@@ -253,13 +254,27 @@ class GroupResponse::Group {
   /// True if velocities' rounding may have made the approach that was found.
   bool found_is_rounding() const { return found_.contact.closing_speed <= kPartsOfSpeed * top_speed(); }
 
+  /// True of the contact that was found, where it is one of the group.
+  bool is_found(const Touch& t) const {
+    return t.pair == found_.pair && t.order() == found_.order() &&
+           t.contact.normal.dot(found_.contact.normal) >= 1.0 - kSameNormal;
+  }
+
+  /// Whose gap tells the moment of contact. Two corners that meet have no normal but that of their way; the contacts
+  /// that they make have, and of those the first, since several corners may meet in one instant and any may be found.
+  const Touch& told_by() const {
+    const auto found = [&](const Touch& t) { return is_found(t); };
+    if (std::any_of(group_.begin(), group_.end(), found)) return found_;
+    const auto approaches = [&](const Touch& t) {
+      return t.pair == found_.pair && t.contact.closing_speed > 0.0;
+    };
+    const auto first = std::find_if(group_.begin(), group_.end(), approaches);
+    return first == group_.end() ? found_ : *first;
+  }
+
   /// Adds the contact as it was found; false if it is there.
   bool add_as_found() {
-    const auto same = [&](const Touch& t) {
-      return t.pair == found_.pair && t.order() == found_.order() &&
-             t.contact.normal.dot(found_.contact.normal) >= 1.0 - kSameNormal;
-    };
-    if (std::any_of(group_.begin(), group_.end(), same)) return false;
+    if (std::any_of(group_.begin(), group_.end(), [&](const Touch& t) { return is_found(t); })) return false;
     group_.push_back(found_);
     contacts_.push_back(contact(found_));
     return true;

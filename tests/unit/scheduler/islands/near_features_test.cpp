@@ -50,6 +50,36 @@ TEST(NearFeatures, ATipThatLeavesAHollowThroughAJointOfWiresHasCrossed) {
   }
 }
 
+/// The least gap, with a body moved by `way`, of all features with b that are seen up to `reach` from where it was [m].
+double least_gap_after(const Outline& body, const Vec2& at, const Vec2& way, const Outline& other,
+                       double reach) {
+  double least = 1.0;
+  for (const NearFeature& f : near_features(body, BodyState{{at, 0.0}, {}}, other, BodyState{}, reach))
+    least = std::min(least, gap_of(f, body, BodyState{{at + way, 0.0}, {}}, other, BodyState{}));
+  return least;
+}
+
+// Two tables that stand on pointed feet and slide into each other, foot to foot: wherever roundings put the one foot above or
+// below the other, and though neither comes to be in the other's solid, they are in each other.
+TEST(NearFeatures, FeetThatMeetTipToTipAreInEachOther) {
+  const Outline slim = make_polygon({{-1, 0}, {-0.5, 0.6}, {0, 0}, {-0.5, 1.5}}).outline,
+                flat = make_polygon({{0, 0}, {0.5, 0.1}, {1, 0}, {0.5, 0.5}}).outline,
+                wedge = make_polygon({{0, 0}, {1, 0}, {0.5, 0.5}}).outline;
+  for (const Outline& other : {flat, wedge})
+    for (const double up : {-1e-12, -1e-16, 0.0, 1e-16, 1e-12})
+      for (const double beyond : {1e-6, 1e-3, 1e-2})
+        EXPECT_LT(least_gap_after(slim, {-0.01, up}, {0.01 + beyond, 0}, other, 0.1), -0.1 * beyond) << up;
+}
+
+// A box that comes over the edge of a table as high as its bottom, or lower by a rounding, lies on it.
+TEST(NearFeatures, ABoxThatComesOverAnEdgeIsNotThroughIt) {
+  const Outline box = make_box(1, 1).outline,
+                table = make_polygon({{0.5, 0}, {3, 0}, {2, -1}, {1.5, -1}}).outline;  // overhanging, acute
+  for (const double up : {0.0, 1e-16, 1e-12})
+    for (const double beyond : {1e-6, 1e-3, 1e-2})
+      EXPECT_GT(least_gap_after(box, {-0.01, 0.5 + up}, {0.01 + beyond, 0}, table, 0.1), -2e-12) << up;
+}
+
 // A box against a wall of wire that ends on the floor, right at its corner, wherever roundings put the one beside the other:
 // all of the wall holds its side, and the wall's end is on the box's side, not on its bottom.
 TEST(NearFeatures, AWireThatEndsAtACornerIsBesideIt) {
