@@ -428,12 +428,49 @@ std::optional<Vec2> normal_over_joint(const Half& half, const Sample& sample, st
   return std::nullopt;
 }
 
-/// Where a sample lies that is upon a corner of a solid.
-enum class OnCorner { nowhere, this_side, other_side };
+/// How far q is before the other side at the nearer end of a straight side of a solid, where the two have a convex corner [m];
+/// below 0: it is not. At an acute corner what is beside the one is abreast of the other, and behind its line. Upon the other's
+/// line, to `upon` [m], roundings say nothing: it is before it if the sample's edges are, or else the two are in each other.
+double before_next_side(const Half& half, const Sample& sample, const Site& site, const Vec2& q,
+                        double upon) {
+  const Vec2& end = nearer_end(site, q);
+  double before = -std::numeric_limits<double>::infinity();
+  for (const Site& next : half.other.sites) {
+    if (&next == &site || next.kind != SiteKind::segment || (next.a != end && next.b != end)) continue;
+    const Vec2 on = next.a == end ? Vec2(next.b - next.a) : Vec2(next.a - next.b), out = outward(next);
+    if (outward(site).dot(on) >= 0.0) continue;
+    const double height = out.dot(q - end);
+    const bool told = std::abs(height) > upon || !half.carrier.solid || sample.radius > 0.0;
+    if (told) {
+      before = std::max(before, height);
+    } else {
+      const Wedge corner = wedge_of(half, sample);
+      if (std::all_of(corner.edges.begin(), corner.edges.end(),
+                      [&](const Vec2& e) { return out.dot(e) > -kAlongLine; }))
+        before = std::max({before, height, 0.0});
+    }
+  }
+  return before;
+}
+
+/// True of a corner before a straight side of a solid, right at the end of that, to `upon` [m], if it lies upon the next side from
+/// there on: whichever of the two roundings have put above the other, it goes over the end.
+bool goes_over(const Half& half, const Sample& sample, const Site& site, const Nearest& nearest,
+               const Vec2& q, double upon) {
+  if (!site.solid || site.kind != SiteKind::segment || !half.carrier.solid || nearest.foot != Foot::interior)
+    return false;
+  const Vec2& end = nearer_end(site, q);
+  return sample.radius + site.radius == 0.0 && (nearest.point - end).norm() <= upon &&
+         before_next_side(half, sample, site, q, upon) >= 0.0;
+}
+
+/// Where a sample lies that is upon a corner of a solid; either_side: it may go on along this one as well as along the other.
+enum class OnCorner { nowhere, this_side, other_side, either_side };
 
 /// Of a sample upon an end of site j, a straight side of a solid, where it has a convex corner with another: on that of
-/// the two that faces the sample's owner more. Corner on corner, each lies on the face below it.
-OnCorner on_corner(const Half& half, std::size_t j, const Vec2& q, double tie) {
+/// the two that parts it from the corner; if neither does, on that which faces the sample's owner more. Corner on corner, each
+/// lies on the face below it.
+OnCorner on_corner(const Half& half, const Sample& sample, std::size_t j, const Vec2& q, double tie) {
   const Outline& outline = half.other;
   const Site& site = outline.sites[j];
   if (!site.solid || site.kind != SiteKind::segment) return OnCorner::nowhere;
@@ -442,6 +479,11 @@ OnCorner on_corner(const Half& half, std::size_t j, const Vec2& q, double tie) {
   // Both sides are equally near there, and roundings alone would choose between them, in every step anew.
   // Where the owner's centre lies is no matter of roundings.
   const Vec2 to_centre = centre(half) - q;
+  const Wedge of_sample = wedge_of(half, sample), of_corner = wedge_at(outline, end);
+  const auto parts_them = [&](const Site& side) {
+    return !of_sample.edges.empty() && half.carrier.solid && parts(outward(side), of_sample, of_corner);
+  };
+  const bool by_this = parts_them(site);
   OnCorner where = OnCorner::nowhere;
   for (std::size_t k = 0; k < outline.sites.size(); ++k) {
     const Site& next = outline.sites[k];
@@ -449,7 +491,10 @@ OnCorner on_corner(const Half& half, std::size_t j, const Vec2& q, double tie) {
       continue;
     const Vec2 on = next.a == end ? Vec2(next.b - next.a) : Vec2(next.a - next.b);
     if (outward(site).dot(on) > kStraightJoint * on.norm()) continue;  // a hollow corner has both its sides
-    const double more = outward(next).dot(to_centre) - outward(site).dot(to_centre);
+    const bool by_next = parts_them(next);
+    const double more = by_next != by_this ? (by_next ? 1.0 : -1.0)
+                                           : outward(next).dot(to_centre) - outward(site).dot(to_centre);
+    if (by_this && by_next) return OnCorner::either_side;
     // a tie goes to the site that comes first, so that exactly one of the two has the sample
     if (more > 0.0 || (more == 0.0 && k < j)) return OnCorner::other_side;
     where = OnCorner::this_side;
@@ -500,7 +545,6 @@ void turn_outward(const Half& half, const Vec2& q, double side, NearFeature& f) 
   const Vec2 out = outward(site), world = half.other_frame.direction_to_world(out);
   if (side < 0.0) f.gap = out.dot(q - site.a) - site.radius - half.carrier.samples[f.sample].radius;
   f.normal = half.on_a ? world : Vec2(-world);
-  f.upon_corner = true;
 }
 
 /// Where a sample lies that is upon an end of a wire's site, or upon its corner with others.
@@ -559,10 +603,10 @@ void turn_to_side(const Half& half, const Vec2& q, const Vec2& normal, NearFeatu
 /// Per site, in this order: upon a corner only the side that faces the owner counts, whatever the distances
 /// say; then what is merely behind is left out; then an end at which a joined site is nearer. The corner
 /// comes first: there the two sides differ in distance by next to nothing.
-void add_features(const Half& half, int i, double reach, std::vector<NearFeature>& found) {
+void add_features(const Half& half, int i, double reach, double tolerance, std::vector<NearFeature>& found) {
   const Vec2 q = half.other_frame.to_local(half.carrier_frame.to_world(half.carrier.samples[i].p));
   const double size = half.carrier.bounding_radius + half.other.bounding_radius;
-  const double tie = kOnePoint * size, corner = kOneCorner * size;
+  const double tie = kOnePoint * size, corner = std::max(kOneCorner * size, kCornerOfTolerance * tolerance);
   std::vector<Nearest> nearest;
   double least = std::numeric_limits<double>::infinity();
   for (const Site& site : half.other.sites) {
@@ -579,8 +623,8 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
   for (std::size_t j = 0; j < nearest.size(); ++j) {
     if (half.other.sites[j].covered) continue;
     const double side = side_of(half.other.sites[j], nearest[j], q);
-    const OnCorner where = bare ? on_corner(half, j, q, corner) : OnCorner::nowhere;
-    const OnWire upon = bare ? on_wire(half, half.carrier.samples[i], j, q, corner) : OnWire{};
+    const OnCorner where = bare ? on_corner(half, half.carrier.samples[i], j, q, corner) : OnCorner::nowhere;
+    const OnWire upon = bare ? on_wire(half, half.carrier.samples[i], j, q, kOneCorner * size) : OnWire{};
     if (where == OnCorner::other_side || upon.where == OnCorner::other_side) continue;
     const auto over =
         bare ? normal_over_joint(half, half.carrier.samples[i], j, nearest, q, tie) : std::nullopt;
@@ -591,7 +635,11 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
       if (goes_on_nearer(half, half.carrier.samples[i], j, nearest, q, tie)) continue;
     }
     auto f = feature(half, i, static_cast<int>(j), nearest[j], side, q);
-    if (f && where == OnCorner::this_side) turn_outward(half, q, side, *f);
+    if (f && where != OnCorner::nowhere) {
+      turn_outward(half, q, side, *f);
+      f->upon_corner = where == OnCorner::this_side;
+      f->at_end = f->at_end || where == OnCorner::either_side;
+    }
     if (f && over)
       put_on_tangent(half, q, *over, *f);
     else if (f && upon.where == OnCorner::this_side)
@@ -599,12 +647,15 @@ void add_features(const Half& half, int i, double reach, std::vector<NearFeature
     // also of one that is still on its way there
     const Site& site = half.other.sites[j];
     const bool flush = bare && site.solid && site.kind == SiteKind::segment &&
-                       (where == OnCorner::this_side || nearest[j].foot != Foot::interior) &&
+                       (where != OnCorner::nowhere || nearest[j].foot != Foot::interior) &&
                        beyond_ends(site, q) <= corner;
     if (f && flush) f->no_way_by = has_no_way_by(half, i, j, q);
+    if (f && bare && goes_over(half, half.carrier.samples[i], site, nearest[j], q, corner)) f->at_end = true;
     const bool far =
         f && f->goes_on && nearest[j].distance - site.radius - half.carrier.samples[i].radius > reach;
-    if (f && f->gap <= reach && !far) found.push_back(*f);
+    if (!f || f->gap > reach || far) continue;
+    f->one_corner = corner;
+    found.push_back(*f);
   }
 }
 
@@ -655,31 +706,6 @@ bool is_smooth_joint(const Outline& outline, const Sample& sample) {
   return false;
 }
 
-/// How far q is before the other side at the nearer end of a straight side of a solid, where the two have a convex corner [m];
-/// below 0: it is not. At an acute corner what is beside the one is abreast of the other, and behind its line. Upon the other's
-/// line, to `upon` [m], roundings say nothing: it is before it if the sample's edges are, or else the two are in each other.
-double before_next_side(const Half& half, const Sample& sample, const Site& site, const Vec2& q,
-                        double upon) {
-  const Vec2& end = nearer_end(site, q);
-  double before = -std::numeric_limits<double>::infinity();
-  for (const Site& next : half.other.sites) {
-    if (&next == &site || next.kind != SiteKind::segment || (next.a != end && next.b != end)) continue;
-    const Vec2 on = next.a == end ? Vec2(next.b - next.a) : Vec2(next.a - next.b), out = outward(next);
-    if (outward(site).dot(on) >= 0.0) continue;
-    const double height = out.dot(q - end);
-    const bool told = std::abs(height) > upon || !half.carrier.solid || sample.radius > 0.0;
-    if (told) {
-      before = std::max(before, height);
-    } else {
-      const Wedge corner = wedge_of(half, sample);
-      if (std::all_of(corner.edges.begin(), corner.edges.end(),
-                      [&](const Vec2& e) { return out.dot(e) > -kAlongLine; }))
-        before = std::max({before, height, 0.0});
-    }
-  }
-  return before;
-}
-
 /// True if the two segments have a point in common that is inside both.
 bool cross_each_other(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   return cross(b - a, c - a) * cross(b - a, d - a) < 0.0 && cross(d - c, a - c) * cross(d - c, b - c) < 0.0;
@@ -725,7 +751,7 @@ OutlineAt::OutlineAt(const Outline& of, const ExtendedState& state)
       of_angle(sine_cosine(state.seen_from(Vec2::Zero()).pose.angle)) {}
 
 std::vector<NearFeature> near_features(const Outline& a, const ExtendedState& state_a, const Outline& b,
-                                       const ExtendedState& state_b, double reach) {
+                                       const ExtendedState& state_b, double reach, double tolerance) {
   std::vector<NearFeature> found;
   for (const Half& half : halves({a, state_a}, {b, state_b})) {
     // a disc's centre sees all that its surface meets: what the other's samples see is the same once more
@@ -734,7 +760,7 @@ std::vector<NearFeature> near_features(const Outline& a, const ExtendedState& st
     for (int i = 0; i < static_cast<int>(half.carrier.samples.size()); ++i)
       if (const Sample& s = half.carrier.samples[i];
           !s.hollow && !out_of_reach(half, s, reach) && !is_smooth_joint(half.carrier, s))
-        add_features(half, i, reach, found);
+        add_features(half, i, reach, tolerance, found);
   }
   return found;
 }
@@ -764,14 +790,13 @@ double gap_of(const NearFeature& f, const OutlineAt& a, const OutlineAt& b) {
           .gap;
   }
   // Beyond a free end nothing is crossed. Where there is no way by, roundings do not make one.
-  const double size = half.carrier.bounding_radius + half.other.bounding_radius;
   const bool abreast =
-      nearest.foot == Foot::interior || (f.no_way_by && beyond_ends(site, q) <= kOneCorner * size);
+      nearest.foot == Foot::interior || (f.no_way_by && beyond_ends(site, q) <= f.one_corner);
   const bool crossed = abreast ? is_behind(site, nearest, q, out, nearest.point)
                                : f.thin && is_through_joint(half.other, site, nearest, q, out);
   if (!side_is_known && abreast && crossed)
-    if (const double before = before_next_side(half, sample, site, q, kOneCorner * size);
-        before >= (f.no_way_by ? kOneCorner * size : 0.0)) {
+    if (const double before = before_next_side(half, sample, site, q, f.one_corner);
+        before >= (f.no_way_by ? f.one_corner : 0.0)) {
       const double through = through_corner(half, sample, site, q);
       return through > 0.0 ? -through : std::min(before, nearest.distance) - site.radius - sample.radius;
     }

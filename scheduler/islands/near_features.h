@@ -37,14 +37,16 @@ struct NearFeature {
   /// A corner upon a corner of which no other side parts the two: along this side's end there is no way by, even
   /// where both are flush to the last bit.
   bool no_way_by = false;
+  double one_corner = 0.0;  ///< corners no farther apart than this lie on each other [m]
 };
 
 /// Features of a and b with a gap up to `reach` [m], in the order of samples of a, then of b, and of sites.
 /// Everything is taken from b's position: far from the origin nothing is lost. Each gap, seen as a function
 /// of where the sample's point is in the site's frame, is convex wherever the site is a point, a segment, or
-/// an arc seen from outside: its tangent never lies above it. Cost: samples times sites.
+/// an arc seen from outside: its tangent never lies above it. `tolerance`: to what contacts keep their gaps [m]; what has sunk
+/// by that beside a sharp corner may be beyond it, so corners as near lie on each other. Cost: samples times sites.
 std::vector<NearFeature> near_features(const Outline& a, const ExtendedState& state_a, const Outline& b,
-                                       const ExtendedState& state_b, double reach);
+                                       const ExtendedState& state_b, double reach, double tolerance = 0.0);
 
 /// An outline where it is, with the sine and cosine of its angle, which all its features ask for.
 struct OutlineAt {

@@ -15,6 +15,9 @@ inline constexpr double kOnePoint = 1e-12;
 /// Corners of solids that are so near, of their sizes, lie on each other: contacts keep their gaps no better than to
 /// the contact tolerance, 1e-10 of the scene's length by default.
 inline constexpr double kOneCorner = 1e-10;
+/// And corners that are so near, of the contact tolerance where that is known: sunk by it from two sides of a tip of 60 degrees,
+/// a place is two of it off the tip.
+inline constexpr double kCornerOfTolerance = 2.0;
 /// What lies nearer to a wire than this part of its own radius may be on either side by roundings of all that has
 /// moved it, and what is nearer by it to the centre of a solid's arc than the arc is has sunk into it: ten thousand contact
 /// tolerances, as an overlap at the start may be.

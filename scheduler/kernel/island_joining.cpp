@@ -66,7 +66,8 @@ class Outsider {
     const double most = most_absorbed(*pair);
     const double far = search_.limits().tolerance + reach_ + members_.reach_of(member);
     for (const NearFeature& f :
-         near_features(search_.outline_of(pair->body), a, search_.outline_of(pair->other_body), b, far)) {
+         near_features(search_.outline_of(pair->body), a, search_.outline_of(pair->other_body), b, far,
+                       search_.limits().tolerance)) {
       const RealVec arm = f.point.cast<Real>() + (b.position - a.position);
       const RealVec normal = f.normal.cast<Real>(), other_arm = f.point.cast<Real>();
       const double closing = static_cast<double>(normal.dot(b.twist.at(other_arm) - a.twist.at(arm)));

@@ -113,7 +113,7 @@ std::vector<HeldContact> IslandMembers::features(const std::vector<PairKey>& pai
     const Outline &outline = search_->outline_of(pair.body),
                   &other = search_->outline_of(search_->other_owner(pair));
     for (const NearFeature& f : near_features(outline, states_[place_of(pair.body)], other, other_state(pair),
-                                              reach_of(pair, reach)))
+                                              reach_of(pair, reach), search_->limits().tolerance))
       all.push_back({pair, f, 0.0, 0.0, 0.0});
   }
   // in an order of their own, whatever the boxes: the solver's rounding depends on it

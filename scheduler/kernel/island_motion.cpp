@@ -497,7 +497,9 @@ IslandMotion::Arrival IslandMotion::arrival(const HeldContact& c, const std::vec
 bool IslandMotion::passes_by(const HeldContact& c, double then, double closing) const {
   const double tolerance = search_->limits().tolerance;
   if (!c.feature.at_end || !(closing > 0.0)) return false;
-  return members_.gap(c, then + 4.0 * tolerance / closing, velocities()) - kept(c.feature) > 0.0;
+  const double further = members_.gap(c, then + 4.0 * tolerance / closing, velocities()) - kept(c.feature);
+  // some roundings in it where it runs along the next side from there on
+  return further > 0.0 || (further > -search_->limits().touch && !c.feature.no_way_by);
 }
 
 /// An approach as slow as this rebounds with e v <= a h: it has turned back by the end of the step [m/s].
