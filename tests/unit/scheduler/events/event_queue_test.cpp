@@ -37,5 +37,30 @@ TEST(EventQueue, KnowsTheFirstAndTheSecond) {
   }
 }
 
+// As collisions do: the first is given a later time when the second is known, before another or after it.
+TEST(EventQueue, TheFirstIsServedByWhomItHasMet) {
+  SeededRandom random(12);
+  for (const std::size_t n : {1, 5, 64, 300}) {
+    EventQueue queue;
+    queue.reset(n, 0.0);
+    std::vector<double> times(n, 0.0);
+    const auto update = [&](int k) {
+      times[k] += static_cast<double>(random.below(5));
+      queue.update(k, times[k]);
+    };
+    for (int step = 0; step < 3000; ++step) {
+      const int first = queue.body(), other = static_cast<int>(random.below(n));
+      const bool asks = random.below(3) > 0, first_comes_first = random.below(2) > 0;
+      if (asks) queue.second();
+      if (first_comes_first) update(first);
+      update(other);
+      if (!first_comes_first) update(first);
+      const auto least = std::min_element(times.begin(), times.end());
+      ASSERT_EQ(queue.time(), *least);
+      ASSERT_EQ(queue.body(), least - times.begin());
+    }
+  }
+}
+
 }  // namespace
 }  // namespace brink::event_queue_test
