@@ -28,7 +28,7 @@ class DoubleDoublePair {
     const Result highs = sum(a.high_, b.high_), lows = sum(a.low_, b.low_);
     const Result r = quick_sum(highs.high, highs.low + lows.high);
     const DoubleDoublePair both = quick_sum(r.high, lows.low + r.low);
-    if (!all(finite(both.low_))) [[unlikely]]
+    if (Number::kLooks && !all(finite(both.low_))) [[unlikely]]
       return one_by_one(a, b, [](const Number& u, const Number& v) { return u + v; });
     return both;
   }
@@ -36,7 +36,7 @@ class DoubleDoublePair {
   BRINK_INLINE DoubleDoublePair plus(double of_x, double of_y) const {
     const Result r = sum(high_, Two{of_x, of_y});
     const DoubleDoublePair both = quick_sum(r.high, low_ + r.low);
-    if (!all(finite(both.low_))) [[unlikely]]
+    if (Number::kLooks && !all(finite(both.low_))) [[unlikely]]
       return one_by_one(*this, {of_x, of_y}, [](const Number& u, const Number& v) { return u + v.high(); });
     return both;
   }
@@ -44,7 +44,7 @@ class DoubleDoublePair {
     const Two factor{by, by};
     const Result p = product(a.high_, factor);
     const DoubleDoublePair both = quick_sum(p.high, p.low + a.low_ * factor);
-    if (!all(in_range(p.high) & finite(both.low_))) [[unlikely]]
+    if (Number::kLooks && !all(in_range(p.high) & finite(both.low_))) [[unlikely]]
       return one_by_one(a, {by, by}, [](const Number& u, const Number& v) { return u * v.high(); });
     return both;
   }
@@ -54,6 +54,11 @@ class DoubleDoublePair {
   BRINK_INLINE Number dot(const DoubleDoublePair& b) const {
     const DoubleDoublePair both = times(b);
     return both.x() + both.y();
+  }
+  /// True if both coordinates' sizes lie between these two.
+  BRINK_INLINE bool lies_between(double least, double most) const {
+    const Two size = sizes(high_);
+    return all((size >= Two{least, least}) & (size <= Two{most, most}));
   }
   /// Sizes of both coordinates.
   BRINK_INLINE double size() const { return std::abs(high_[0]) + std::abs(high_[1]); }
@@ -72,7 +77,7 @@ class DoubleDoublePair {
   BRINK_INLINE DoubleDoublePair times(const DoubleDoublePair& b) const {
     const Result p = product(high_, b.high_);
     const DoubleDoublePair both = quick_sum(p.high, p.low + (high_ * b.low_ + low_ * b.high_));
-    if (!all(in_range(p.high) & finite(both.low_))) [[unlikely]]
+    if (Number::kLooks && !all(in_range(p.high) & finite(both.low_))) [[unlikely]]
       return one_by_one(*this, b, [](const Number& u, const Number& v) { return u * v; });
     return both;
   }
@@ -97,9 +102,10 @@ class DoubleDoublePair {
     const error_free::Result x = Product::product(a[0], b[0]), y = Product::product(a[1], b[1]);
     return {Two{x.high, y.high}, Two{x.low, y.low}};
   }
+  BRINK_INLINE static Two sizes(Two x) { return Two{__builtin_fabs(x[0]), __builtin_fabs(x[1])}; }
   BRINK_INLINE static Mask finite(Two x) { return x - x == Two{}; }
   BRINK_INLINE static Mask in_range(Two x) {
-    const Two size{__builtin_fabs(x[0]), __builtin_fabs(x[1])};
+    const Two size = sizes(x);
     return (size >= Number::kLeast) & (size <= Number::kMost);
   }
   BRINK_INLINE static bool all(Mask m) { return (m[0] & m[1]) != 0; }

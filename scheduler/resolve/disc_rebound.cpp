@@ -25,6 +25,37 @@ struct PairOf<BasicDoubleDouble<Product>> {
 template <class Number>
 using Pair = typename PairOf<Number>::Type;
 
+/// The same kind of number, of which every operation looks whether its range is left.
+template <class Number>
+struct LookingOf;
+template <class Product>
+struct LookingOf<BasicDoubleDouble<Product>> {
+  using Type = BasicDoubleDouble<Product>;
+};
+template <class Product>
+struct LookingOf<BasicDoubleDouble<error_free::InRange<Product>>> {
+  using Type = BasicDoubleDouble<Product>;
+};
+template <class Number>
+using Looking = typename LookingOf<Number>::Type;
+
+/// What is asked of a pair.
+enum class Told { rebound, none, not_here };
+
+/// Sizes that are neither 0 nor far from any that occur. Of ways, times, velocities, masses and rates of such sizes no
+/// product and no quotient below leaves the range of two doubles: 2^955 at most.
+constexpr double kLeastPlain = 0x1p-150, kMostPlain = 0x1p150;
+
+BRINK_INLINE bool is_plain(double x) {
+  const double size = __builtin_fabs(x);
+  const bool least = size >= kLeastPlain, most = size <= kMostPlain;
+  return least & most;
+}
+template <class Product>
+BRINK_INLINE bool is_plain(const DoubleDoublePair<Product>& x) {
+  return x.lies_between(kLeastPlain, kMostPlain);
+}
+
 /// Where a disc is at one time, from its start and what rounding left over of it.
 template <class Number>
 struct Moving {
@@ -51,6 +82,15 @@ struct Moving {
   }
 };
 
+/// True of a motion without forces whose numbers make Moving no product out of range.
+BRINK_INLINE bool is_plain(const Motion& m, double time) {
+  const Vec2 &at = m.start().pose.position, &velocity = m.start().twist.velocity;
+  const bool near = std::max(std::abs(at.x()), std::abs(at.y())) <= kMostPlain,
+             free = m.acceleration().linear.isZero(0.0);
+  const bool x = is_plain(velocity.x()), y = is_plain(velocity.y()), since = is_plain(time - m.origin());
+  return near & free & x & y & since;
+}
+
 /// A value as a double and what that leaves over.
 template <class Number>
 BRINK_INLINE void split(const Number& value, double& high, double& low) {
@@ -67,9 +107,8 @@ BRINK_INLINE void split(const DoubleDoublePair<Product>& value, Vec2& high, Vec2
 /// The start at `time` of the parabola on which `disc` passes, with its velocity changed by `change`, through the place
 /// where it was `delay` from then.
 template <class Number>
-BRINK_INLINE DiscRebound::Start start_after(const Motion& motion, double time, const Moving<Number>& disc,
-                                            const Pair<Number>& change, double delay) {
-  DiscRebound::Start start;
+BRINK_INLINE void start_after(const Motion& motion, double time, const Moving<Number>& disc,
+                              const Pair<Number>& change, double delay, DiscRebound::Start& start) {
   // Both parabolas have the same acceleration. So they are at one place `delay` from now if their places
   // now differ by what their velocities make of it.
   BodyState &s = start.state, &low = start.low;
@@ -79,16 +118,17 @@ BRINK_INLINE DiscRebound::Start start_after(const Motion& motion, double time, c
   // Without friction nothing turns at the rim: angle and spin go on as they were.
   const BodyState &before = motion.start(), &before_low = motion.start_low();
   const double alpha = motion.acceleration().angular;
-  const Number angle(before.pose.angle, before_low.pose.angle),
+  using Angle = Looking<Number>;  // what turns without acceleration makes products that are 0
+  const Angle angle(before.pose.angle, before_low.pose.angle),
       omega(before.twist.omega, before_low.twist.omega);
   if (omega == 0.0 && alpha == 0.0) {
     split(angle, s.pose.angle, low.pose.angle);
-    return start;
+    s.twist.omega = low.twist.omega = 0.0;
+    return;
   }
-  const Number since = Number::sum(time, -motion.origin()), gained = since * alpha;
+  const Angle since = Angle::sum(time, -motion.origin()), gained = since * alpha;
   split(angle + since * (omega + gained * 0.5), s.pose.angle, low.pose.angle);
   split(omega + gained, s.twist.omega, low.twist.omega);
-  return start;
 }
 
 /// Sum of the speeds at a disc's edge.
@@ -105,20 +145,21 @@ BRINK_INLINE double speed_of(const DiscRebound::Start& s, double speed, double r
 /// moment of contact. The delay is a few ticks of the clock: a double tells it, and what it adds to d, to more than
 /// all digits of d; what an acceleration adds to the way goes with its square.
 template <class Number>
-BRINK_INLINE std::optional<DiscRebound> rebound_of_discs(const DiscSide& a, const DiscSide& b,
-                                                         const Vec2& shift, double time, double latest,
-                                                         double level, double restitution) {
+BRINK_INLINE Told rebound_of_discs(const DiscSide& a, const DiscSide& b, const Vec2& shift, double time,
+                                   double latest, double level, double restitution, DiscRebound& r) {
+  if (!Number::kLooks && !(is_plain(*a.motion, time) && is_plain(*b.motion, time))) return Told::not_here;
   const Moving<Number> disc_a(*a.motion, time), disc_b(*b.motion, time);
   Pair<Number> d = disc_a.place - disc_b.place;
   const Pair<Number> w = disc_a.velocity - disc_b.velocity;
   if (shift.x() != 0.0 || shift.y() != 0.0) d = d.plus(-shift.x(), -shift.y());
+  if (!Number::kLooks && !(is_plain(d) && is_plain(w))) return Told::not_here;
   const Number distance2 = d.dot(d), way = d.dot(w);
   const double distance = std::sqrt(distance2.high()), closing = -way.high() / distance;
-  if (!(closing > 0) || !(a.inverse_mass + b.inverse_mass > 0.0)) return std::nullopt;
+  if (!(closing > 0) || !(a.inverse_mass + b.inverse_mass > 0.0)) return Told::none;
   const Number reach = Number::sum(a.radius, b.radius) + level;
+  const Number masses = Number::sum(a.inverse_mass, b.inverse_mass);
   // a difference of squares, so that nothing cancels in double
   const double above = (distance2 - reach * reach).high() / (distance + reach.high());
-  DiscRebound r;
   const double delay = std::clamp(above / closing, -latest, latest);
   r.delay = delay;
   r.gap = level + (above - delay * closing);
@@ -128,26 +169,27 @@ BRINK_INLINE std::optional<DiscRebound> rebound_of_discs(const DiscSide& a, cons
   // c.w with the relative velocity of the moment of contact, and c.c
   const Number rate = way + delay * (speed2 + (d.x().high() * pull.x() + d.y().high() * pull.y()));
   // turned round within the delay: no impulse is due
-  if (!(rate.high() < 0)) return std::nullopt;
+  if (!(rate.high() < 0)) return Told::none;
+  if (!Number::kLooks && !(is_plain(c) && is_plain(reach.high()) && is_plain(rate.high()) &&
+                           is_plain(a.inverse_mass) && is_plain(b.inverse_mass)))
+    return Told::not_here;
   const Number square = distance2 + delay * (2.0 * way.high() + delay * speed2);
   // The rate is that of the moment of contact, and -restitution times it the one after.
-  const Number force =
-      -(Number::sum(1.0, restitution) * rate) / (square * Number::sum(a.inverse_mass, b.inverse_mass));
+  const Number force = -(Number::sum(1.0, restitution) * rate) / (square * masses);
   r.impulse = force.high() * std::sqrt(square.high());
   const Pair<Number> push = c * force;
-  r.a = start_after(*a.motion, time, disc_a, push * a.inverse_mass, delay);
-  r.b = start_after(*b.motion, time, disc_b, push * -b.inverse_mass, delay);
+  start_after(*a.motion, time, disc_a, push * a.inverse_mass, delay, r.a);
+  start_after(*b.motion, time, disc_b, push * -b.inverse_mass, delay, r.b);
   r.magnitude = std::max(speed_of(r.a, disc_a.velocity.size(), a.radius),
                          speed_of(r.b, disc_b.velocity.size(), b.radius));
-  return r;
+  return Told::rebound;
 }
 
 /// As above with 1 / m_b = 0 and v_b = 0; the gap is the distance from the wall's middle line, less half its
 /// thickness and the disc's radius. m: across the wall, to the disc, as long as the wall; after: v - (1 + e) m.v / m.m m.
 template <class Number>
-BRINK_INLINE std::optional<DiscRebound> rebound_of_wall(const DiscSide& disc, const WallSide& wall,
-                                                        double time, double latest, double level,
-                                                        double restitution) {
+BRINK_INLINE Told rebound_of_wall(const DiscSide& disc, const WallSide& wall, double time, double latest,
+                                  double level, double restitution, DiscRebound& r) {
   const auto number = [](const Real& of) __attribute__((always_inline)) {
     return Number(of.high(), of.low());
   };
@@ -156,17 +198,16 @@ BRINK_INLINE std::optional<DiscRebound> rebound_of_wall(const DiscSide& disc, co
       way = Pair<Number>(number(wall.end.x()), number(wall.end.y())) - begin, d = at.place - begin;
   const Number length2 = way.dot(way), along = d.dot(way);
   // 0 and length^2 are the ends: beyond them an end is nearest
-  if (!(along > 0.0) || !(along < length2)) return std::nullopt;
+  if (!(along > 0.0) || !(along < length2)) return Told::none;
   // The wall's normal is (y, -x) of its way, or the opposite: the one that points to the disc.
   Pair<Number> m(way.y(), -way.x());
   const double side = m.x().high() * wall.normal.x() + m.y().high() * wall.normal.y();
   if (side < 0.0) m = -m;
   const Number length = sqrt(length2);
   // Abreast, but met with a normal that is not the wall's: the contact is with an end, to rounding.
-  if (std::abs(side) < kSameDirection * length.high()) return std::nullopt;
+  if (std::abs(side) < kSameDirection * length.high()) return Told::none;
   const Number rate_now = m.dot(at.velocity);
-  if (!(rate_now.high() < 0)) return std::nullopt;
-  DiscRebound r;
+  if (!(rate_now.high() < 0)) return Told::none;
   // its normal is the same wherever the disc is abreast of it: nothing is looked at again after the delay
   const double gap = ((m.dot(d) - length * wall.radius - length * disc.radius) / length).high();
   const double closing = -rate_now.high() / length.high();
@@ -175,12 +216,12 @@ BRINK_INLINE std::optional<DiscRebound> rebound_of_wall(const DiscSide& disc, co
   r.gap = gap - delay * closing;
   const Vec2& pull = disc.motion->acceleration().linear;
   const Number rate = rate_now + delay * (m.x().high() * pull.x() + m.y().high() * pull.y());
-  if (!(rate.high() < 0)) return std::nullopt;
+  if (!(rate.high() < 0)) return Told::none;
   const Number change = -(Number::sum(1.0, restitution) * rate) / length2;
   r.impulse = change.high() * length.high() / disc.inverse_mass;
-  r.a = start_after(*disc.motion, time, at, m * change, delay);
+  start_after(*disc.motion, time, at, m * change, delay, r.a);
   r.magnitude = speed_of(r.a, at.velocity.size(), disc.radius);
-  return r;
+  return Told::rebound;
 }
 
 #undef BRINK_INLINE
@@ -188,37 +229,67 @@ BRINK_INLINE std::optional<DiscRebound> rebound_of_wall(const DiscSide& disc, co
 #if defined(__x86_64__) && !defined(__FP_FAST_FMA)
 
 using FusedNumber = BasicDoubleDouble<error_free::Fused>;
+using FusedInRange = BasicDoubleDouble<error_free::InRange<error_free::Fused>>;
 
-[[gnu::target("fma")]] std::optional<DiscRebound> fused_rebound(const DiscSide& a, const DiscSide& b,
-                                                                const Vec2& shift, double time, double latest,
-                                                                double level, double restitution) {
-  return rebound_of_discs<FusedNumber>(a, b, shift, time, latest, level, restitution);
+[[gnu::target("fma")]] Told fused_in_range(const DiscSide& a, const DiscSide& b, const Vec2& shift,
+                                           double time, double latest, double level, double restitution,
+                                           DiscRebound& r) {
+  return rebound_of_discs<FusedInRange>(a, b, shift, time, latest, level, restitution, r);
 }
 
-[[gnu::target("fma")]] std::optional<DiscRebound> fused_rebound(const DiscSide& disc, const WallSide& wall,
-                                                                double time, double latest, double level,
-                                                                double restitution) {
-  return rebound_of_wall<FusedNumber>(disc, wall, time, latest, level, restitution);
+[[gnu::target("fma")]] Told fused_rebound(const DiscSide& a, const DiscSide& b, const Vec2& shift,
+                                          double time, double latest, double level, double restitution,
+                                          DiscRebound& r) {
+  return rebound_of_discs<FusedNumber>(a, b, shift, time, latest, level, restitution, r);
+}
+
+[[gnu::target("fma")]] Told fused_rebound(const DiscSide& disc, const WallSide& wall, double time,
+                                          double latest, double level, double restitution, DiscRebound& r) {
+  return rebound_of_wall<FusedNumber>(disc, wall, time, latest, level, restitution, r);
 }
 
 #endif
+
+/// First as if nothing could leave its range; where something may, once more.
+Told rebound_of(const DiscSide& a, const DiscSide& b, const Vec2& shift, double time, double latest,
+                double level, double restitution, DiscRebound& r) {
+#if defined(__x86_64__) && !defined(__FP_FAST_FMA)
+  if (error_free::has_fused_products) {
+    const Told told = fused_in_range(a, b, shift, time, latest, level, restitution, r);
+    if (told != Told::not_here) return told;
+    return fused_rebound(a, b, shift, time, latest, level, restitution, r);
+  }
+#endif
+  return rebound_of_discs<Real>(a, b, shift, time, latest, level, restitution, r);
+}
+
+Told rebound_of(const DiscSide& disc, const WallSide& wall, double time, double latest, double level,
+                double restitution, DiscRebound& r) {
+#if defined(__x86_64__) && !defined(__FP_FAST_FMA)
+  if (error_free::has_fused_products) return fused_rebound(disc, wall, time, latest, level, restitution, r);
+#endif
+  return rebound_of_wall<Real>(disc, wall, time, latest, level, restitution, r);
+}
 
 }  // namespace
 
+bool rebound(const DiscSide& a, const DiscSide& b, const Vec2& shift, double time, double latest,
+             double level, double restitution, DiscRebound& result) {
+  return rebound_of(a, b, shift, time, latest, level, restitution, result) == Told::rebound;
+}
+
 std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const Vec2& shift, double time,
                                    double latest, double level, double restitution) {
-#if defined(__x86_64__) && !defined(__FP_FAST_FMA)
-  if (error_free::has_fused_products) return fused_rebound(a, b, shift, time, latest, level, restitution);
-#endif
-  return rebound_of_discs<Real>(a, b, shift, time, latest, level, restitution);
+  std::optional<DiscRebound> r(std::in_place);  // written where it is returned
+  if (!rebound(a, b, shift, time, latest, level, restitution, *r)) r.reset();
+  return r;
 }
 
 std::optional<DiscRebound> rebound(const DiscSide& disc, const WallSide& wall, double time, double latest,
                                    double level, double restitution) {
-#if defined(__x86_64__) && !defined(__FP_FAST_FMA)
-  if (error_free::has_fused_products) return fused_rebound(disc, wall, time, latest, level, restitution);
-#endif
-  return rebound_of_wall<Real>(disc, wall, time, latest, level, restitution);
+  std::optional<DiscRebound> r(std::in_place);
+  if (rebound_of(disc, wall, time, latest, level, restitution, *r) != Told::rebound) r.reset();
+  return r;
 }
 
 }  // namespace brink

@@ -42,6 +42,10 @@ struct DiscRebound {
 std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const Vec2& shift, double time,
                                    double latest, double level, double restitution);
 
+/// The same, written where there is room already; false: nothing, and what is there counts no more.
+bool rebound(const DiscSide& a, const DiscSide& b, const Vec2& shift, double time, double latest,
+             double level, double restitution, DiscRebound& result);
+
 /// The same of disc and wall. Nothing where the disc's centre is not abreast of the wall either, or the wall's
 /// normal is not the one that is given: an end is met. Cost: one square root and two divisions of two doubles.
 std::optional<DiscRebound> rebound(const DiscSide& disc, const WallSide& wall, double time, double latest,

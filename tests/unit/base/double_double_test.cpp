@@ -78,6 +78,44 @@ TEST(DoubleDoublePair, TellsTheBitsOfNumbersOneByOne) {
   }
 }
 
+// Of sizes that occur, where no product leaves its range, nobody need look whether one has.
+TEST(DoubleDoublePair, InRangeIsTheSameWithoutALook) {
+  using Looking = BasicDoubleDouble<error_free::Default>;
+  using InRange = BasicDoubleDouble<error_free::InRange<error_free::Default>>;
+  using LookingPair = DoubleDoublePair<error_free::Default>;
+  using InRangePair = DoubleDoublePair<error_free::InRange<error_free::Default>>;
+  std::mt19937_64 random(8);
+  const auto part = [&] {
+    const double size = std::ldexp(1.0 + 0x1p-53 * static_cast<double>(random() >> 11),
+                                   static_cast<int>(random() % 200) - 100);
+    return random() % 2 ? size : -size;
+  };
+  const auto next = [&] {
+    const double high = part();
+    return Looking::sum(high, high * 0x1p-54 * (1.0 - 0x1p-52 * static_cast<double>(random() >> 11)));
+  };
+  const auto expect_alike = [](const InRange& found, const Looking& wanted) {
+    expect_same(Looking(found.high(), found.low()), wanted);
+  };
+  const auto in_range = [](const Looking& x) { return InRange(x.high(), x.low()); };
+  for (int i = 0; i < 100000 && !testing::Test::HasFailure(); ++i) {
+    const Looking a = next(), b = next(), c = next();
+    const InRange x = in_range(a), y = in_range(b), z = in_range(c);
+    expect_alike(x + y, a + b);
+    expect_alike(x * y, a * b);
+    expect_alike(x * y.high(), a * b.high());
+    expect_alike(x / y, a / b);
+    const LookingPair p(a, b), q(b, c);
+    const InRangePair r(x, y), s(y, z);
+    expect_alike(r.dot(s), p.dot(q));
+    expect_alike((r + s).x(), (p + q).x());
+    expect_alike((r * z).y(), (p * c).y());
+    EXPECT_EQ(r.lies_between(0x1p-20, 0x1p20),
+              std::abs(a.high()) >= 0x1p-20 && std::abs(a.high()) <= 0x1p20 &&
+                  std::abs(b.high()) >= 0x1p-20 && std::abs(b.high()) <= 0x1p20);
+  }
+}
+
 TEST(DoubleDouble, OperationsAreRightToTheEpsilon) {
   Numbers numbers;
   for (int i = 0; i < 100000; ++i) {
