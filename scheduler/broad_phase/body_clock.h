@@ -34,14 +34,14 @@ class CandidateList {
   const Candidate& operator[](std::size_t k) const { return k < kInPlace ? first_[k] : more_[k - kInPlace]; }
   const Candidate& front() const { return first_[0]; }
   const Candidate& back() const { return (*this)[count_ - 1]; }
-  bool has_exact() const {
-    bool exact = false;
-    for (std::size_t k = 0; k < count_; ++k) exact |= (*this)[k].exact != 0;
-    return exact;
-  }
+  /// Times of the first two; infinite where there are fewer. Kept so without a branch: how many there are cannot be
+  /// foreseen.
+  double first_time() const { return first_[0].time; }
+  double second_time() const { return first_[1].time; }
   void clear() {
     count_ = 0;
-    more_.clear();
+    for (Candidate& c : first_) c.time = kNever;
+    if (!more_.empty()) more_.clear();
   }
   void insert(const Candidate& c) {
     if (count_ >= kInPlace) more_.emplace_back();
@@ -49,15 +49,29 @@ class CandidateList {
     for (; k > 0 && before(c, (*this)[k - 1]); --k) (*this)[k] = (*this)[k - 1];
     (*this)[k] = c;
   }
+  /// The same of one that is not exact, where fewer than kInPlace are: whom it comes before cannot be foreseen, so all
+  /// that there may be are moved, to where they are or one further on.
+  void insert_in_place(const Candidate& c) {
+    std::uint64_t place = 0;
+    for (const Candidate& e : first_) place += e.time <= c.time ? 1 : 0;  // what is not there is at no time
+    for (std::size_t k = kInPlace - 1; k-- > 0;)
+      first_[k + ((place - k - 1) >> 63)] = first_[k];  // k >= place
+    first_[place] = c;
+    ++count_;
+  }
   void pop_front() {
     for (std::size_t k = 1; k < count_; ++k) (*this)[k - 1] = (*this)[k];
     pop_back();
   }
   void pop_back() {
-    if (count_-- > kInPlace) more_.pop_back();
+    if (count_-- > kInPlace)
+      more_.pop_back();
+    else
+      first_[count_].time = kNever;
   }
 
  private:
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
   static bool before(const Candidate& a, const Candidate& b) {
     return a.time < b.time || (a.time == b.time && a.exact && !b.exact);
   }
@@ -75,12 +89,10 @@ struct alignas(64) BodyClock {
   CandidateList candidates;
   const std::vector<SiteImage>* sites = nullptr;  ///< of its cell, in the first period
   int level = 0;                                  ///< of cells
-  unsigned undecided = 0;                         ///< searches in a row that met their cap
+  unsigned undecided : 31 = 0;                    ///< searches in a row that met their cap
+  unsigned has_found : 1 = 0;                     ///< a contact may have been found since the view began
 
-  double expiry() const {
-    const double t = std::min(exit, horizon);
-    return candidates.empty() ? t : std::min(t, candidates.front().time);
-  }
+  double expiry() const { return std::min(std::min(exit, horizon), candidates.first_time()); }
   /// Takes a candidate into view. Where there is no room the latest falls out, and the view ends where a
   /// search for it must begin; but what must be searched within the instant `now` stays, so that a view does
   /// not end in the instant in which it begins.
@@ -93,8 +105,18 @@ struct alignas(64) BodyClock {
     horizon = std::min(horizon, candidates.back().clear);  // it may lie beyond an end that was set since
     candidates.pop_back();
   }
+  /// The same of a body in free flight, where it is, from that time on.
+  void see(double begin, int other, unsigned version, double now) {
+    if (!(begin < horizon)) return;
+    const Candidate c{begin, begin, other, {}, version, 0};
+    if (candidates.size() < CandidateList::kInPlace)
+      candidates.insert_in_place(c);
+    else
+      see(c, now);
+  }
   void forget_all() {
     candidates.clear();
+    has_found = 0;
     horizon = std::numeric_limits<double>::infinity();
   }
 };

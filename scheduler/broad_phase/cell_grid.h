@@ -59,6 +59,9 @@ class CellGrid {
   Cell cell_of(const Vec2& p) const { return {x_.index(p.x()), y_.index(p.y())}; }
   /// The box in which a body of that cell has its centre.
   Box box_of(const Cell& c) const {
+    if (x_.ends(c.column) && y_.ends(c.row))  // nearly always
+      return {{c.column * x_.size - slack_, c.row * y_.size - slack_},
+              {(c.column + 1) * x_.size + slack_, (c.row + 1) * y_.size + slack_}};
     return Box{{x_.edge(c.column), y_.edge(c.row)}, {x_.edge(c.column + 1), y_.edge(c.row + 1)}}.grown(
         slack_);
   }
@@ -104,17 +107,19 @@ class CellGrid {
   }
   template <class Counts>
   int around(const Cell& c, int* bodies, Counts&& counts) const {
+    // all that is read of the grid itself, before anything is written
+    const CellBodies* const rows[] = {row_of(c.row - 1), row_of(c.row), row_of(c.row + 1)};
+    const int last = x_.count - 1;
+    const int columns[] = {(c.column - 1) & last, c.column & last, (c.column + 1) & last};
     int count = 0, more = CellBodies::kNone;
-    for (int r = -1; r <= 1; ++r) {
-      const CellBodies* cells = row_of(c.row + r);
-      for (int q = -1; q <= 1; ++q) {
-        const CellBodies& cell = cells[(c.column + q) & (x_.count - 1)];
+    for (int r = 0; r < 3; ++r)
+      for (int q = 0; q < 3; ++q) {
+        const CellBodies cell = rows[r][columns[q]];
         std::memcpy(bodies + count, &cell, sizeof cell);
-        const bool counted = counts(r, q);
+        const bool counted = counts(r - 1, q - 1);
         count += counted ? static_cast<int>(cell.count) : 0;
-        more = std::max<int>(more, counted ? cell.more : CellBodies::kNone);
+        more &= counted ? cell.more : CellBodies::kNone;  // all bits are set where there is none
       }
-    }
     return more == CellBodies::kNone ? count : -1;
   }
 
@@ -167,6 +172,11 @@ class CellGrid {
     }
     int index(double x) const {
       return per_metre == 0.0 ? 0 : static_cast<int>(std::clamp(std::floor(x * per_metre), -kFar, kFar));
+    }
+    /// True of a cell that has two ends, edge(c) and edge(c + 1): neither the only nor an outermost one.
+    bool ends(int c) const {
+      const bool low = c > -kFar, high = c < kFar, some = per_metre != 0.0;
+      return low & high & some;
     }
     /// Where cell c begins; the outermost cells have no end, an only cell has neither end.
     double edge(int c) const {

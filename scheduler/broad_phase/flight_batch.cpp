@@ -1,8 +1,10 @@
 #include "brink/scheduler/broad_phase/flight_batch.h"
 
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 namespace brink {
 
@@ -13,46 +15,103 @@ static_assert(sizeof(Flight) == 2 * sizeof(Four) && offsetof(Flight, x) == 0 && 
               offsetof(Flight, vx) == 16 && offsetof(Flight, vy) == 24 && offsetof(Flight, start) == 32 &&
               offsetof(Flight, radius) == 40 && std::endian::native == std::endian::little);
 
-/// Rows as columns, four by four: from memory to memory, in registers.
-[[gnu::always_inline]] inline void transpose(const double* const (&rows)[4], double (&columns)[4][4]) {
-  const auto row = [&](int k) __attribute__((always_inline))->const Four& {
-    return *reinterpret_cast<const Four*>(rows[k]);
-  };
-  const Four even01 = __builtin_shufflevector(row(0), row(1), 0, 4, 2, 6),
-             odd01 = __builtin_shufflevector(row(0), row(1), 1, 5, 3, 7),
-             even23 = __builtin_shufflevector(row(2), row(3), 0, 4, 2, 6),
-             odd23 = __builtin_shufflevector(row(2), row(3), 1, 5, 3, 7);
-  four(columns[0]) = __builtin_shufflevector(even01, even23, 0, 1, 4, 5);
-  four(columns[1]) = __builtin_shufflevector(odd01, odd23, 0, 1, 4, 5);
-  four(columns[2]) = __builtin_shufflevector(even01, even23, 2, 3, 6, 7);
-  four(columns[3]) = __builtin_shufflevector(odd01, odd23, 2, 3, 6, 7);
+using FourBits = std::int64_t __attribute__((vector_size(32)));
+
+#define BRINK_INLINE [[gnu::always_inline]] inline
+
+BRINK_INLINE void all_alike(double of, Four& to) { to = Four{of, of, of, of}; }
+BRINK_INLINE void size_of(const Four& of, Four& to) {
+  constexpr std::int64_t rest = std::numeric_limits<std::int64_t>::max();  // all but the sign
+  to = reinterpret_cast<Four>(reinterpret_cast<FourBits>(of) & FourBits{rest, rest, rest, rest});
 }
+BRINK_INLINE void root_of(const Four& of, Four& to) {
+  to = Four{std::sqrt(of[0]), std::sqrt(of[1]), std::sqrt(of[2]), std::sqrt(of[3])};
+}
+
+/// Four flights side by side.
+struct FourFlights {
+  Four x, y, vx, vy, start, radius;
+  FourBits last;  ///< of each line: below 0 of a disc
+
+  BRINK_INLINE FourFlights(const Flight& a, const Flight& b, const Flight& c, const Flight& d) {
+    const auto row = [](const double& first) __attribute__((always_inline))->const Four& {
+      return reinterpret_cast<const Four&>(first);
+    };
+    // rows become columns, in registers
+    const Four even_ab = __builtin_shufflevector(row(a.x), row(b.x), 0, 4, 2, 6),
+               odd_ab = __builtin_shufflevector(row(a.x), row(b.x), 1, 5, 3, 7),
+               even_cd = __builtin_shufflevector(row(c.x), row(d.x), 0, 4, 2, 6),
+               odd_cd = __builtin_shufflevector(row(c.x), row(d.x), 1, 5, 3, 7);
+    x = __builtin_shufflevector(even_ab, even_cd, 0, 1, 4, 5);
+    y = __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 4, 5);
+    vx = __builtin_shufflevector(even_ab, even_cd, 2, 3, 6, 7);
+    vy = __builtin_shufflevector(odd_ab, odd_cd, 2, 3, 6, 7);
+    const Four starts_ab = __builtin_shufflevector(row(a.start), row(b.start), 0, 4, 2, 6),
+               rests_ab = __builtin_shufflevector(row(a.start), row(b.start), 1, 5, 3, 7),
+               starts_cd = __builtin_shufflevector(row(c.start), row(d.start), 0, 4, 2, 6),
+               rests_cd = __builtin_shufflevector(row(c.start), row(d.start), 1, 5, 3, 7);
+    start = __builtin_shufflevector(starts_ab, starts_cd, 0, 1, 4, 5);
+    radius = __builtin_shufflevector(rests_ab, rests_cd, 0, 1, 4, 5);
+    last = reinterpret_cast<FourBits>(__builtin_shufflevector(rests_ab, rests_cd, 2, 3, 6, 7));
+  }
+};
+
+/// meeting<false>(), four times: the same operations in the same order.
+BRINK_INLINE void begin_of(const Course& a, double now, const FourFlights& b, Four& begin) {
+  const Four s = now - b.start, gx = s * a.gravity.x(), gy = s * a.gravity.y();
+  const Four dx = a.place.x() - (b.x + s * (b.vx + 0.5 * gx)),
+             dy = a.place.y() - (b.y + s * (b.vy + 0.5 * gy));
+  const Four wx = a.velocity.x() - (b.vx + gx), wy = a.velocity.y() - (b.vy + gy);
+  const Four approach = dx * wx + dy * wy;
+  Four since, speed_x, speed_y, far_x, far_y, pull_x, pull_y, root;
+  size_of(s, since);
+  size_of(b.vx, speed_x);
+  size_of(b.vy, speed_y);
+  size_of(b.x, far_x);
+  size_of(b.y, far_y);
+  size_of(gx, pull_x);
+  size_of(gy, pull_y);
+  const Four magnitude = far_x + far_y + since * (speed_x + speed_y);
+  const Four reach =
+      a.radius + b.radius * (1.0 + kFlightMargin) + kFlightRounding * (magnitude + since * (pull_x + pull_y));
+  const Four beyond = dx * dx + dy * dy - reach * reach;
+  const Four speed2 = wx * wx + wy * wy, offset = dx * wy - dy * wx;
+  const Four square = speed2 * reach * reach - offset * offset;
+  constexpr Four none{};
+  const std::int64_t all = a.disc ? -1 : 0;
+  const FourBits misses = square < none, disc{all, all, all, all};
+  const FourBits parts = (approach >= none) & ((disc & (b.last < FourBits{})) | (beyond > none));
+  root_of(misses ? none : square, root);
+  const Four wait = beyond <= none ? none : beyond / (root - approach);
+  const Four earliest = now + wait - kFlightRounding * (now + wait);
+  Four never, at_once;
+  all_alike(kForever, never);
+  all_alike(now, at_once);
+  begin = (parts | misses) ? never : (at_once < earliest ? earliest : at_once);
+}
+
+#undef BRINK_INLINE
 
 }  // namespace
 
-BRINK_WIDE void FlightBatch::meet(int count, const Flight* flights, const Course& a, double now) {
+BRINK_WIDE unsigned FlightBatch::meet(int count, const Flight* flights, const Course& a, double now,
+                                      double before) {
   const Course course = a;  // nothing that is written below is read by it
-  count_ = count;
+  Four end;
+  all_alike(before, end);
   // the last four are whole: somebody in the place of who is not there
   for (int i = 0; i < 3; ++i) bodies_[count + i] = bodies_[0];
+  unsigned met = 0;
   for (int i = 0; i < count; i += 4) {
-    const double* ways[4];
-    const double* rests[4];
-    for (int k = 0; k < 4; ++k) {
-      const Flight& f = flights[bodies_[i + k]];
-      ways[k] = &f.x;
-      rests[k] = &f.start;
-    }
-    alignas(sizeof(Four)) double way[4][4], rest[4][4];
-    transpose(ways, way);
-    transpose(rests, rest);
-    for (int k = 0; k < 4; ++k) {
-      const bool disc = std::bit_cast<std::int64_t>(rest[3][k]) < 0;
-      begin_[i + k] = meeting<false>(course, way[0][k], way[1][k], way[2][k], way[3][k], rest[0][k],
-                                     rest[1][k], disc, 0.0, 0.0, now)
-                          .begin;
-    }
+    const int* const of = bodies_ + i;
+    const FourFlights b(flights[of[0]], flights[of[1]], flights[of[2]], flights[of[3]]);
+    Four begin;
+    begin_of(course, now, b, begin);
+    reinterpret_cast<Four&>(begin_[i]) = begin;
+    const FourBits bits = (begin < end) & FourBits{1, 2, 4, 8};
+    met |= static_cast<unsigned>((bits[0] | bits[1]) | (bits[2] | bits[3])) << i;
   }
+  return met & ((1U << count) - 1U);
 }
 
 }  // namespace brink

@@ -1,8 +1,6 @@
 #pragma once
 /// Flights side by side, so that a processor compares several of them with one at a time.
 
-#include <array>
-
 #include "brink/core/base/wide.h"
 #include "brink/scheduler/broad_phase/flight.h"
 
@@ -21,24 +19,12 @@ class FlightBatch {
   double begin(int i) const { return begin_[i]; }
 
   /// Compares the first `count` of bodies() with `a` from `now` on: meeting()'s own bits, whatever the processor can
-  /// do at once.
-  void meet(int count, const Flight* flights, const Course& a, double now);
-  /// Those that `a` may meet before that time, by the last meet(), but for body `except`: their numbers in the batch,
-  /// written to `met`; how many.
-  int met_before(double time, int except, std::array<int, kMost>& met) const {
-    int hits = 0;
-    for (int i = 0; i < count_; ++i) {
-      met[hits] = i;
-      // without a branch: which they are cannot be foreseen
-      hits += (begin_[i] < time) & (bodies_[i] != except);
-    }
-    return hits;
-  }
+  /// do at once. Bit i of the answer: the i-th may be met before that time.
+  unsigned meet(int count, const Flight* flights, const Course& a, double now, double before);
 
  private:
   static constexpr int kRoom = kMost + 4;
 
-  int count_ = 0;
   int bodies_[kRoom] = {};
   alignas(sizeof(Four)) double begin_[kRoom];
 };

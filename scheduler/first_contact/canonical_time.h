@@ -48,22 +48,31 @@ double last_clear_time(Gap&& gap, double low, double high) {
 }
 
 /// The same of a gap that costs little: with every probe the two of which one comes next, so that a processor computes
-/// all three side by side.
+/// all three side by side. The one branch is whether there is another round: where nothing lies between, a probe is the
+/// lower end, which is clear.
 template <class Gap>
 double last_clear_time_by_threes(Gap&& gap, double low, double high) {
-  for (;;) {
-    const double probe = coarsest_between(low, high);
-    if (probe == low) return low;
-    const double before = coarsest_between(low, probe), after = coarsest_between(probe, high);
-    const bool clear = gap(probe) > 0.0, clear_before = gap(before) > 0.0, clear_after = gap(after) > 0.0;
-    low = clear ? probe : low;
-    high = clear ? high : probe;
-    const double next = clear ? after : before;
-    if (next == low) return low;
-    const bool next_clear = clear ? clear_after : clear_before;
-    low = next_clear ? next : low;
-    high = next_clear ? high : next;
+  using Bits = std::uint64_t;
+  const auto between = [](Bits l, Bits h) {  // coarsest_between(), and l where nothing lies between
+    const int k = 63 - std::countl_zero((l ^ (h - 1)) | 1U);
+    return (h - 1) >> k << k;
+  };
+  // as masks, all bits or none: of a choice between two a compiler makes a branch, and computes the one alone
+  const auto is_clear = [&](Bits probe) {
+    return -static_cast<Bits>(gap(std::bit_cast<double>(probe)) > 0.0);
+  };
+  const auto chosen = [](Bits first, Bits a, Bits b) { return b ^ ((a ^ b) & first); };
+  Bits l = std::bit_cast<Bits>(low + 0.0), h = std::bit_cast<Bits>(high);
+  while (h - l > 1) {
+    const Bits probe = between(l, h), before = between(l, probe), after = between(probe, h);
+    const Bits clear = is_clear(probe), clear_before = is_clear(before), clear_after = is_clear(after);
+    l = chosen(clear, probe, l);
+    h = chosen(clear, h, probe);
+    const Bits next = chosen(clear, after, before), next_clear = chosen(clear, clear_after, clear_before);
+    l = chosen(next_clear, next, l);
+    h = chosen(next_clear, h, next);
   }
+  return std::bit_cast<double>(l);
 }
 
 }  // namespace brink

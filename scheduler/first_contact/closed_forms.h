@@ -25,11 +25,21 @@ struct DiscMover {
   double velocity_rounding = 0.0;
 };
 
-/// Two discs' contact in [from, to] in closed form, as first_contact() tells it. False: there is none that is told
+/// A contact of two discs at a level of 0, without its place.
+struct DiscContact {
+  double time = 0.0;           ///< [s]
+  double gap = 0.0;            ///< [m]
+  double closing_speed = 0.0;  ///< [m/s], to roundings
+};
+
+/// Two discs' contact in [from, to] in closed form, when first_contact() tells it. False: there is none that is told
 /// here, be it that they are clear, that they begin where they touch or that the general search must tell; ask
-/// first_contact() then. @pre both motions are parabolas that cover [from, to].
+/// first_contact() then. @pre both motions are parabolas that cover [from, to]. Cost: where neither is accelerated and
+/// nothing is near a rounding half of that of first_contact_in_closed_form().
 bool discs_meet(const DiscMover& a, const DiscMover& b, double from, double to, const SearchLimits& limits,
-                FeatureContact& contact);
+                DiscContact& contact);
+/// All of that contact.
+FeatureContact contact_of_discs(const DiscMover& a, const DiscMover& b, double time);
 
 /// True if the pair has a closed form and `answer` was filled; false: ask the general search.
 /// Cases: discs under equal acceleration; a disc against an outline of segments that does not turn, while the

@@ -34,6 +34,17 @@ class CertificateWatch {
 
   /// Before body k is resolved, or shown, at time `to`: did its centre fly through a wire?
   bool flight(int k, double to);
+  /// False unless such a flight from `from` to `to` [m] is sure to have met no wire: else flight() must look.
+  bool is_clear_flight(int k, const Vec2& from, const Vec2& to) const {
+    if (!on_ || walls_.empty()) return true;
+    // without a branch: all of it is as good as always true
+    const Box& box = clear_[k];
+    const double left = std::min(from.x(), to.x()), right = std::max(from.x(), to.x());
+    const double bottom = std::min(from.y(), to.y()), top = std::max(from.y(), to.y());
+    const bool is_left = left >= box.low.x(), is_right = right <= box.high.x();
+    const bool is_low = bottom >= box.low.y(), is_high = top <= box.high.y();
+    return is_left & is_right & is_low & is_high;
+  }
   /// That of all bodies. Nobody will be asked for a time before `to` by the watch any more.
   void flights(double to);
   /// Starts to fetch what that reads of the body.

@@ -15,6 +15,9 @@ namespace brink {
 
 namespace {
 
+/// Times a speed that is known to roundings: no more than that speed.
+constexpr double kLessByRoundings = 1.0 - 1e-9;
+
 /// It gives way by its mass and inertia, but for its locks. `point`: of the contact, in the world [m].
 ImpulseSide body_side(const Body& body, const ExtendedState& state, const RealVec& point) {
   return {state.twist, point - state.position, body.inverse_mass_x(), body.inverse_mass_y(),
@@ -348,7 +351,7 @@ std::optional<Outcome> CollisionResponse::part(const PairKey& pair, const Featur
 }
 
 /// Whatever may yet say no comes before the first change.
-bool CollisionResponse::collide_discs(const PairKey& pair, const FeatureContact& found) {
+bool CollisionResponse::collide_discs(const PairKey& pair, const DiscContact& found) {
   const PlainDisc &a = plain_[pair.body], &b = plain_[pair.other_body];
   const Material& material = materials_.of(*world_, a.material, b.material);
   if (material.friction != 0.0) return false;
@@ -358,19 +361,22 @@ bool CollisionResponse::collide_discs(const PairKey& pair, const FeatureContact&
   const double since_last = last < 0.0 ? std::numeric_limits<double>::infinity() : now - last;
   // low flights are remembered: they may be a series that has an end
   if (material.restitution < 1.0 &&
-      !ZenoWatch::is_high(found.closing_speed, since_last, search_->limits().tolerance))
+      !ZenoWatch::is_high(found.closing_speed * kLessByRoundings, since_last, search_->limits().tolerance))
     return false;
-  const auto after =
-      rebound({&track_a.motion, a.radius, a.inverse_mass}, {&track_b.motion, b.radius, b.inverse_mass},
-              search_->shift_of(pair), now, 4.0 * ulp(now), found.level, material.restitution);
-  if (!after) return false;
+  if (!rebound({&track_a.motion, a.radius, a.inverse_mass}, {&track_b.motion, b.radius, b.inverse_mass},
+               search_->shift_of(pair), now, 4.0 * ulp(now), 0.0, material.restitution, after_))
+    return false;
   // the flights that end here
-  if (!watch_->flight(pair.body, now) || !watch_->flight(pair.other_body, now)) return true;
-  note_resolve(pair.body, pair.other_body, after->magnitude);
-  trajectories_->restart_free(pair.body, after->a.state, after->a.low);
-  note_resolve(pair.other_body, pair.body, after->magnitude);
-  trajectories_->restart_free(pair.other_body, after->b.state, after->b.low);
-  watch_->discs_resolved(pair, after->gap);
+  const auto flew = [&](int k, const Motion& motion) {
+    return watch_->is_clear_flight(k, motion.start().pose.position, motion.place(now)) ||
+           watch_->flight(k, now);
+  };
+  if (!flew(pair.body, track_a.motion) || !flew(pair.other_body, track_b.motion)) return true;
+  note_resolve(pair.body, pair.other_body, after_.magnitude);
+  trajectories_->restart_free(pair.body, after_.a.state, after_.a.low);
+  note_resolve(pair.other_body, pair.body, after_.magnitude);
+  trajectories_->restart_free(pair.other_body, after_.b.state, after_.b.low);
+  watch_->discs_resolved(pair, after_.gap);
   return true;
 }
 

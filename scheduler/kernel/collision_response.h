@@ -33,7 +33,7 @@ class CollisionResponse {
   double radius_of_plain_disc(int body) const { return plain_[body].radius; }
   /// collide() of two plain discs in free flight that started clear of each other, to the bit, where nobody is to be
   /// told what comes of it. False, and nothing has changed, where that is not sure: ask collide(). May halt.
-  bool collide_discs(const PairKey& pair, const FeatureContact& found);
+  bool collide_discs(const PairKey& pair, const DiscContact& found);
   /// Starts to fetch what that reads of a body beside its motion.
   void expect(int body) const { prefetch(&plain_[body]); }
 
@@ -82,6 +82,7 @@ class CollisionResponse {
   bool reflects_;  ///< response "reflection"
   PairMaterials materials_;
   LargeVector<PlainDisc> plain_;  ///< of every body
+  DiscRebound after_;             ///< of the last two plain discs
   std::vector<int> wires_;        ///< fixed sites that have a wire without thickness
 };
 

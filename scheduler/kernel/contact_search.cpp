@@ -8,7 +8,6 @@
 #include "brink/core/query/outline_gap.h"
 #include "brink/core/shapes/outline_crossing.h"
 #include "brink/core/world/straight_joints.h"
-#include "brink/scheduler/first_contact/closed_forms.h"
 #include "brink/scheduler/first_contact/tolerances.h"
 #include "brink/scheduler/kernel/tolerances.h"
 
@@ -182,23 +181,30 @@ std::optional<Certificate> ContactSearch::search(const PairKey& pair, const Body
 
 /// Counted if it is told: else search() is asked, and counts.
 bool ContactSearch::search_discs(const PairKey& pair, double radius, double other_radius, double from,
-                                 double to, FeatureContact& contact) {
+                                 double to, DiscContact& contact) {
   WorkCounters& work = run_->work();
   const StageTimer::Sampled timed(run_->timer(), work.seconds_search, timed_);
   const BodyTrack &a = trajectories_->body(pair.body), &b = trajectories_->body(pair.other_body);
   // of simultaneous resolves one may be a rounding ahead
-  from = std::max({from, a.motion.origin(), b.motion.origin()});
+  from = std::max(from, std::max(a.motion.origin(), b.motion.origin()));
   if (from > to) return false;
-  std::optional<Motion> image;  // of the other, where it is one
-  if (pair.image != Image{}) image = b.motion.displaced(shift_of(pair));
-  if (!discs_meet({&a.motion, radius, a.velocity_rounding},
-                  {image ? &*image : &b.motion, other_radius, b.velocity_rounding}, from, to, limits_,
-                  contact))
-    return false;
+  const auto meet = [&](const Motion& other) {
+    return discs_meet({&a.motion, radius, a.velocity_rounding}, {&other, other_radius, b.velocity_rounding},
+                      from, to, limits_, contact);
+  };
+  if (!(pair.image == Image{} ? meet(b.motion) : meet(b.motion.displaced(shift_of(pair))))) return false;
   ++work.pair_searches;
   ++work.closed_forms;
   ++work.certificates_issued;
   return true;
+}
+
+FeatureContact ContactSearch::contact_of_discs(const PairKey& pair, double radius, double other_radius,
+                                               double time) const {
+  const BodyTrack &a = trajectories_->body(pair.body), &b = trajectories_->body(pair.other_body);
+  const Motion other = pair.image == Image{} ? b.motion : b.motion.displaced(shift_of(pair));
+  return brink::contact_of_discs({&a.motion, radius, a.velocity_rounding},
+                                 {&other, other_radius, b.velocity_rounding}, time);
 }
 
 std::vector<Certificate> ContactSearch::simultaneous(const Certificate& c, const BodyTrack& body,

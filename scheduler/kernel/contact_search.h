@@ -10,6 +10,7 @@
 
 #include "brink/core/contacts/contact.h"
 #include "brink/scheduler/events/agenda.h"
+#include "brink/scheduler/first_contact/closed_forms.h"
 #include "brink/scheduler/first_contact/first_contact.h"
 #include "brink/scheduler/kernel/stage_clock.h"
 #include "brink/scheduler/kernel/trajectories.h"
@@ -77,7 +78,9 @@ class ContactSearch {
   /// The contact of two plain discs on their newest motions, as search() tells it; false: none that is told here,
   /// ask search(). @pre in free flight, and not left_out().
   bool search_discs(const PairKey& pair, double radius, double other_radius, double from, double to,
-                    FeatureContact& contact);
+                    DiscContact& contact);
+  /// All of that contact.
+  FeatureContact contact_of_discs(const PairKey& pair, double radius, double other_radius, double time) const;
   /// True if everybody may meet everybody.
   bool is_unfiltered() const { return !filter_; }
   /// Other features of that pair that touch and approach at the certificate's time, each as one of its own.

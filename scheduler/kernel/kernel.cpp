@@ -200,7 +200,7 @@ bool Kernel::has_quick_way() const {
 }
 
 /// respond() and tell(), of all that a collision may be the end of only what this one may be.
-bool Kernel::resolve_discs(const PairKey& pair, const FeatureContact& found) {
+bool Kernel::resolve_discs(const PairKey& pair, const DiscContact& found) {
   if (!parts_.endings.is_plain(time())) return false;
   {
     const StageTimer::Sampled timed(parts_.run.timer(), parts_.run.work().seconds_response, responses_timed_);

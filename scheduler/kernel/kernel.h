@@ -98,13 +98,19 @@ class Kernel : public KernelView {
   /// True of a body that may be one of the two, while it is in free flight.
   bool is_plain_disc(int k) const { return parts_.response.is_plain_disc(k); }
   /// The contact; false: ask search().
-  bool search_discs(const PairKey& pair, double from, double to, FeatureContact& contact) {
+  bool search_discs(const PairKey& pair, double from, double to, DiscContact& contact) {
     return parts_.search.search_discs(pair, parts_.response.radius_of_plain_disc(pair.body),
                                       parts_.response.radius_of_plain_disc(pair.other_body), from, to,
                                       contact);
   }
   /// Resolves it, alone in its instant, at the present time. False, and nothing has changed: ask resolve().
-  bool resolve_discs(const PairKey& pair, const FeatureContact& contact);
+  bool resolve_discs(const PairKey& pair, const DiscContact& contact);
+  /// All of that contact, for resolve().
+  FeatureContact contact_of_discs(const PairKey& pair, const DiscContact& contact) const {
+    return parts_.search.contact_of_discs(pair, parts_.response.radius_of_plain_disc(pair.body),
+                                          parts_.response.radius_of_plain_disc(pair.other_body),
+                                          contact.time);
+  }
 
   // -- resolving ahead of time: what is done may be undone --
   /// Resolves a contact of two newest motions, whatever the present time, and takes the bodies that it

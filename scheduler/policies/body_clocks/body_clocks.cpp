@@ -229,6 +229,7 @@ class BodyClocks final : public Policy {
       // still where its search must begin.
       for (std::size_t i = 0; i < clock.candidates.size(); ++i) clock.candidates[i].exact = 0;
       found_->set(k, *found);
+      clock.has_found = true;
     }
     clock.see(c, now);
   }
@@ -240,8 +241,12 @@ class BodyClocks final : public Policy {
     const BodyClock& clock = views_->clock(k);
     const Candidate& c = clock.candidates.front();
     if (!views_->plain_pair(k, c) || views_->stale(c)) return false;
-    const PairKey pair{std::min(k, c.other), std::max(k, c.other), -1, k < c.other ? c.image : -c.image};
-    FeatureContact contact;
+    const int other = c.other;
+    // hardly ever an image; and which of the two has the lower number cannot be foreseen
+    const int above = other - k, to_lower = above & (above >> 31);
+    const PairKey pair{k + to_lower, other - to_lower, -1,
+                       c.image != Image{} && above < 0 ? -c.image : c.image};
+    DiscContact contact;
     views_->expect_cells(c.other);
     views_->expect_look(k);
     if (!kernel_->search_discs(pair, c.clear, std::max(c.time, seen_end()), contact)) return false;
@@ -249,7 +254,7 @@ class BodyClocks final : public Policy {
     views_->expect_look(c.other);
     const double now = contact.time, instant = now + same_instant(now);
     if (clock.exit <= instant || clock.horizon <= instant || now > std::min(end(), kernel_->next_step()) ||
-        (clock.candidates.size() > 1 && clock.candidates[1].time <= instant))
+        clock.candidates.second_time() <= instant)
       return false;
     if (second.time <= instant && second.body == c.other && drops_copy(c, k)) second = queue_.second();
     if (second.time <= instant) return false;
@@ -257,15 +262,15 @@ class BodyClocks final : public Policy {
     kernel_->advance_pair(pair, now);
     if (!kernel_->resolve_discs(pair, contact)) {
       changed_.clear();
-      if (kernel_->resolve(pair, contact, changed_)) look_around_changed();
+      if (kernel_->resolve(pair, kernel_->contact_of_discs(pair, contact), changed_)) look_around_changed();
       return true;
     }
     if (kernel_->halt()) return true;
     for (const int j : {pair.body, pair.other_body})
-      if (views_->clock(j).candidates.has_exact()) found_->forget(j);
+      if (views_->clock(j).has_found) found_->forget(j);
     views_->look_around_after(pair.body, pair.other_body, now);
-    wait_for(pair.body);
-    wait_for(pair.other_body);
+    wait_for(k);  // first: whom it meets on its way up the queue is known from second()
+    wait_for(other);
     return true;
   }
 
@@ -302,8 +307,7 @@ class BodyClocks final : public Policy {
     // Alone in its instant: nobody else is due in it, and nothing else of body k, so there is nothing to
     // choose from.
     const bool alone = !picks_among_all(kernel_->order()) && second > instant && clock.exit > instant &&
-                       clock.horizon > instant &&
-                       (clock.candidates.size() == 1 || clock.candidates[1].time > instant);
+                       clock.horizon > instant && clock.candidates.second_time() > instant;
     if (alone) return collide(Certificate(found_->of(k)));
     wait_for(k);  // a contact may be told for a little before the time that the queue knows
     const std::vector<Certificate> group = contacts_until(instant);

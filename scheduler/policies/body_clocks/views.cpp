@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
 
 #include "brink/core/base/limits.h"
@@ -157,29 +157,30 @@ void Views::see_bodies(int k, double now) {
 /// Bodies near body k in free flight; with `former`, its former cell, those alone that were not near it
 /// there.
 void Views::see_bodies(int k, const Course& here, double now, const Cell* former) {
-  const auto see = [&](int j, const Image& image, double begin) {
-    if (!sees(k, j, image)) return;
-    if (flights_[j].free)
-      clocks_[k].see({begin, begin, j, image, flights_[j].version, 0}, now);
-    else
-      see_bounded(k, j, image, now);
-  };
   // the quick way, where there is one (Neighbourhood::around()): several neighbours at once, by vector
   // instructions
   static_assert(FlightBatch::kMost > CellGrid::kMostAround);
   if (const int count = near_->around(k, batch_.bodies(), former); count >= 0) {
-    batch_.meet(count, flights_.data(), here, now);
-    std::array<int, FlightBatch::kMost> met;
-    const int hits = batch_.met_before(clocks_[k].horizon, k, met);
-    // the horizon may come nearer with each
-    for (int i = 0; i < hits; ++i)
-      if (const double begin = batch_.begin(met[i]); begin < clocks_[k].horizon)
-        see(batch_.body(met[i]), {}, begin);
+    BodyClock& clock = clocks_[k];
+    unsigned met = batch_.meet(count, flights_.data(), here, now, clock.horizon);
+    for (; met != 0; met &= met - 1) {
+      const int i = std::countr_zero(met), j = batch_.body(i);
+      // of who flies freely no island keeps a gap
+      if (j == k || has_looked(j) || !kernel_->may_meet(k, j)) continue;
+      if (flights_[j].free)
+        clock.see(batch_.begin(i), j, flights_[j].version, now);
+      else if (batch_.begin(i) < clock.horizon)  // it may have come nearer
+        see_bounded(k, j, {}, now);
+    }
     return;
   }
   const auto compare = [&](int j, const Image& image) {
     const double begin = meeting(here, flights_[j], periods_.shift(image), now).begin;
-    if (begin < clocks_[k].horizon) see(j, image, begin);
+    if (!(begin < clocks_[k].horizon) || !sees(k, j, image)) return;
+    if (flights_[j].free)
+      clocks_[k].see({begin, begin, j, image, flights_[j].version, 0}, now);
+    else
+      see_bounded(k, j, image, now);
   };
   near_->near(k, compare, former);
 }
@@ -198,12 +199,6 @@ void Views::note_look(int k) {
   for (const int first : first_lookers_) looked_[first] = round_;
   looked_[k] = round_;
   lookers_ = 3;
-}
-
-bool Views::has_looked(int k) const {
-  const int first = k == first_lookers_[0], second = k == first_lookers_[1];
-  if (lookers_ <= 2) return (first | second) != 0;  // without a branch
-  return looked_[k] == round_;
 }
 
 void Views::look(int k, double now) {

@@ -84,7 +84,10 @@ class Views {
   void start_anew(int k, const Motion& motion);
   void look(int k, double now);
   void note_look(int k);
-  bool has_looked(int k) const;
+  bool has_looked(int k) const {
+    const bool first = k == first_lookers_[0], second = k == first_lookers_[1];
+    return lookers_ <= 2 ? first | second : looked_[k] == round_;  // nearly always without a branch
+  }
   void see_bodies(int k, double now);
   void see_bodies(int k, const Course& here, double now, const Cell* former = nullptr);
   bool sees(int k, int other, const Image& image) const;

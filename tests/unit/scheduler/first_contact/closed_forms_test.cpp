@@ -4,6 +4,7 @@
 #include <iomanip>
 
 #include "brink/core/shapes/shapes.h"
+#include "brink/scheduler/first_contact/closed_forms.h"
 #include "brink/scheduler/first_contact/first_contact.h"
 #include "tests/support/seeded_random.h"
 
@@ -77,6 +78,36 @@ TEST(ClosedForms, TwoDiscsGiveEveryBitOfTheGeneralSearch) {
                                    << slow.until;
   }
   EXPECT_GT(contacts, 10000);
+}
+
+// Without its place, and whichever way it is found: with gravity, or close to a rounding, by the way of all.
+TEST(ClosedForms, ThatTwoDiscsMeetIsToldWithTheBitsOfTheGeneralSearch) {
+  SeededRandom r(13);
+  BothWays search;
+  const SearchLimits limits;
+  int told = 0, met = 0;
+  for (int k = 0; k < 50000; ++k) {
+    const Vec2 gravity = k % 4 ? Vec2(Vec2::Zero()) : Vec2(0.0, -9.81);
+    const Flier a = disc_towards_the_origin(r, 1.0, gravity), b = disc_towards_the_origin(r, -1.0, gravity);
+    const double from = std::max(a.motion.origin(), b.motion.origin()), to = from + r.uniform(0.0, 3.0);
+    const auto mover = [](const Flier& f) {
+      return DiscMover{&f.motion, f.mover().outline().bounding_radius, 0.0};
+    };
+    const PairAnswer slow = search.slow(a, b, from, to);
+    DiscContact contact;
+    met += slow.status == PairAnswer::Status::contact;
+    if (!discs_meet(mover(a), mover(b), from, to, limits, contact)) continue;
+    ++told;
+    const double speed = (a.motion.twist(from).velocity - b.motion.twist(from).velocity).norm();
+    if (contact.closing_speed < 1e-3 * speed) continue;  // grazing
+    ASSERT_EQ(slow.status, PairAnswer::Status::contact) << "case " << k;
+    ASSERT_EQ(contact.time, slow.contact.time) << "case " << k;
+    ASSERT_EQ(contact.gap, slow.contact.gap) << "case " << k;
+    ASSERT_NEAR(contact.closing_speed, slow.contact.closing_speed, 1e-9 * speed) << "case " << k;
+    ASSERT_EQ(contact_of_discs(mover(a), mover(b), contact.time).normal, slow.contact.normal);
+  }
+  EXPECT_GT(told, 5000);
+  EXPECT_GT(told, met * 99 / 100);
 }
 
 // The same for the time and site of a disc that falls into a chain of segments that does not turn. (Its gap
