@@ -88,6 +88,21 @@ struct StepResult {
   int factorisations = 0;
 };
 
+/// From where a step is searched for, and how far.
+struct StepSearch {
+  enum class From {
+    nothing,
+    /// where the last search was halfway: its problem was the same but for gaps and bounds, which have changed little, and
+    /// contacts that have been added behind the others
+    halfway,
+    end,  ///< where the last search ended, of this very problem
+  };
+  From from = From::nothing;
+  /// It ends where products of forces and the speeds of opening or slip that go with them, one of which should be 0, are so
+  /// small on the mean, in units of the step: velocities are off by some roots of that.
+  double product = 1e-16;
+};
+
 /// Keeps what it finds out about a graph of contacts for the next problem on the same graph: results do not
 /// depend on it. Cost: about 10 to 25 factorisations, each of about (bodies)^1.5 in the plane.
 class ConeQp {
@@ -114,9 +129,7 @@ class ConeQp {
   /// Known limit: where masses of one island are spread at random over 1e6 and more, some steps end `undecided`
   /// (2.6 % of random problems at 1e6).
   ///
-  /// `again`: the last problem was the same but for gaps and bounds, which have changed little. Then the search goes on from
-  /// where it was halfway there.
-  StepResult step(const StepProblem& problem, const GoOn& go_on = {}, bool again = false);
+  StepResult step(const StepProblem& problem, const GoOn& go_on = {}, StepSearch search = {});
 
  private:
   InteriorPoint solver_;

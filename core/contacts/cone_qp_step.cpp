@@ -13,11 +13,13 @@ namespace brink {
 namespace {
 
 constexpr int kMostSteps = 80;
+/// Of a contact, at most.
+constexpr int kRowsEach = 3;
 /// Bounds on friction below this part of the step's largest impulse are none.
 constexpr double kNoFriction = 1e-12;
-/// Of products, in units of the step (residuals: a hundredth of their roots): where the search ends; where it
-/// does if rounding hinders; and what will do.
-constexpr double kExact = 1e-16, kNearly = 1e-14, kEnough = 1e-10;
+/// Of products, in units of the step (residuals: a hundredth of their roots): where the search ends if rounding hinders, in what was
+/// asked for; and what will do.
+constexpr double kNearly = 100.0, kEnough = 1e-10;
 /// Nothing changes by so many units of the step's speed: what has more room, or slips faster, is taken to
 /// have no more. (A short step's unit is small beside what else moves, and roundings of that would be large
 /// beside it.)
@@ -94,6 +96,9 @@ class StepRows {
   void add_row(const Source& source, const Vec3& on_body, const Vec3& on_other, double speed, double bound) {
     const LastingContact& c = given_.contacts[source.contact].contact;
     QpRow row;
+    row.name = kRowsEach * source.contact + (source.load == &ContactLoad::normal       ? 0
+                                             : source.load == &ContactLoad::tangential ? 1
+                                                                                       : 2);
     row.body = c.body;
     row.on_body = units_.scaled_row(c.body, on_body);
     row.other = c.other;
@@ -135,22 +140,25 @@ bool solved(const InteriorPoint& solver, double part) {
 
 }  // namespace
 
-StepResult ConeQp::step(const StepProblem& problem, const GoOn& go_on, bool again) {
+StepResult ConeQp::step(const StepProblem& problem, const GoOn& go_on, StepSearch how) {
   const StepRows rows(problem);
+  const double enough = std::max(kEnough, kNearly * how.product);
   const auto sure = [&] {
-    return solved(solver_, kExact) || (solver_.hindered() && solved(solver_, kNearly));
+    return solved(solver_, how.product) || (solver_.hindered() && solved(solver_, kNearly * how.product));
   };
   int steps = 0;
   const auto search = [&] {
+    const int before = solver_.steps();
     while (!sure() && solver_.steps() < kMostSteps && solver_.step(go_on)) continue;
-    steps += solver_.steps();
+    steps += solver_.steps() - before;
   };
   const bool same_unit = rows.units().speed() == unit_;
   unit_ = rows.units().speed();
-  const bool goes_on = again && same_unit && solver_.begin_again(rows.problem());
+  bool goes_on = same_unit && how.from != StepSearch::From::nothing;
+  if (goes_on && how.from == StepSearch::From::halfway) goes_on = solver_.begin_again(rows.problem(), go_on);
   if (goes_on) search();
   // what has changed by too much for that is searched for from its beginning
-  if (!goes_on || (!solver_.stopped() && !solved(solver_, kEnough))) {
+  if (!goes_on || (!solver_.stopped() && !solved(solver_, enough))) {
     if (!solver_.begin(rows.problem(), go_on))
       return {StepResult::Status::stopped, problem.velocity,
               std::vector<ContactLoad>(problem.contacts.size())};
@@ -159,7 +167,7 @@ StepResult ConeQp::step(const StepProblem& problem, const GoOn& go_on, bool agai
 
   StepResult result;
   // Whether the search ended by itself or by rounding, what was found is judged by one measure.
-  if (solved(solver_, kEnough)) result.status = StepResult::Status::solved;
+  if (solved(solver_, enough)) result.status = StepResult::Status::solved;
   if (solver_.stopped()) result.status = StepResult::Status::stopped;
   for (int k = 0; k < static_cast<int>(problem.mass.size()); ++k)
     result.velocity.push_back(problem.velocity[k] + rows.units().speed_of(k, solver_.velocity(k)));

@@ -57,8 +57,12 @@ constexpr double kNear = 0.1;
 /// A force begins within this part of its bound.
 constexpr double kInside = 0.7;
 
-/// Where the mean product first is below this, the search is halfway to 0.
-constexpr double kHalfway = 1e-6;
+/// Places that a search came by are noted where the mean product is so many times smaller than at the one before.
+constexpr double kApart = 0.1;
+/// None are noted nearer to the solution: products there are not alike any more.
+constexpr double kNearest = 1e-11;
+/// Where another search goes on, products are at least so many times the square of what the equations miss there.
+constexpr double kRoom = 1e-3;
 
 /// Numbers that are gone through side by side.
 constexpr std::size_t kLanes = 8;
@@ -66,29 +70,36 @@ constexpr std::size_t kLanes = 8;
 }  // namespace
 
 bool InteriorPoint::begin(const QpProblem& problem, const GoOn& go_on) {
-  halfway_ = {};
-  const int n = static_cast<int>(problem.mass.size());
-  // J^T W J couples two bodies only where a row sees both.
-  std::vector<BlockLdl::Edge> edges;
-  for (const QpRow& row : problem.rows)
-    if (row.other >= 0) edges.emplace_back(row.body, row.other);
-  if (!factor_.analyse(n, std::move(edges), go_on)) return false;
-  u_.assign(n, Triple{});
-  rows_.clear();
-  int pairs = 0;
-  for (const QpRow& row : problem.rows) {
-    rows_.push_back(ordered(row));
-    rows_.back().pair = pairs;
-    pairs += rows_.back().pairs;
-  }
-  pairs_ = pairs;
-  s_.assign(pairs, 0.0);
-  z_.assign(pairs, 0.0);
+  places_.clear();
+  if (!take_graph(problem, go_on)) return false;
+  u_.assign(problem.mass.size(), Triple{});
+  take_rows(problem);
   const bool expects = std::any_of(problem.rows.begin(), problem.rows.end(),
                                    [](const QpRow& row) { return row.expected != 0.0; });
   expects ? start_near(problem) : start_pairs(problem);
   start(problem);
   return true;
+}
+
+bool InteriorPoint::take_graph(const QpProblem& problem, const GoOn& go_on) {
+  // J^T W J couples two bodies only where a row sees both.
+  std::vector<BlockLdl::Edge> edges;
+  for (const QpRow& row : problem.rows)
+    if (row.other >= 0) edges.emplace_back(row.body, row.other);
+  return factor_.analyse(static_cast<int>(problem.mass.size()), std::move(edges), go_on);
+}
+
+/// @pre the graph has been taken
+void InteriorPoint::take_rows(const QpProblem& problem) {
+  rows_.clear();
+  pairs_ = 0;
+  for (const QpRow& row : problem.rows) {
+    rows_.push_back(ordered(row));
+    rows_.back().pair = pairs_;
+    pairs_ += rows_.back().pairs;
+  }
+  s_.assign(pairs_, 0.0);
+  z_.assign(pairs_, 0.0);
 }
 
 /// From u, s and z as they are, which everything else follows from.
@@ -106,26 +117,32 @@ void InteriorPoint::start(const QpProblem& problem) {
   measure();
 }
 
-bool InteriorPoint::has_rows(const QpProblem& problem) const {
-  if (problem.mass.size() != u_.size() || problem.rows.size() != rows_.size()) return false;
-  const auto same = [](const Triple& a, const Triple& b) { return std::equal(a.at, a.at + 3, b.at); };
-  for (std::size_t r = 0; r < rows_.size(); ++r) {
-    const Row row = ordered(problem.rows[r]), &own = rows_[r];
-    if (row.first != own.first || row.last != own.last || row.pairs != own.pairs ||
-        !same(row.on_first, own.on_first) || !same(row.on_last, own.on_last))
-      return false;
+/// What another search may go on from.
+void InteriorPoint::note_place() {
+  const double product = mean_product();
+  if (product < kNearest || (!places_.empty() && product > kApart * places_.back().product)) return;
+  Place& place = places_.emplace_back(Place{{}, {}, s_, z_, product});
+  for (int k = 0; k < static_cast<int>(u_.size()); ++k) place.u.push_back(u_[factor_.place(k)]);
+  for (const Row& row : rows_) {
+    if (row.name < 0) continue;
+    if (row.name >= static_cast<int>(place.pair_of.size())) place.pair_of.resize(row.name + 1, -1);
+    place.pair_of[row.name] = row.pair;
   }
-  return true;
 }
 
-bool InteriorPoint::begin_again(const QpProblem& problem) {
-  if (halfway_.u.empty() || !has_rows(problem)) return false;
-  u_ = halfway_.u;
-  s_ = halfway_.s;
-  z_ = halfway_.z;
+/// Rows have been taken.
+void InteriorPoint::stand_at(const Place& place, const QpProblem& problem) {
+  for (int k = 0; k < static_cast<int>(u_.size()); ++k) u_[factor_.place(k)] = place.u[k];
+  const int known = static_cast<int>(place.pair_of.size());
   for (std::size_t r = 0; r < rows_.size(); ++r) {
-    Row& row = rows_[r];
-    row.offset = problem.rows[r].offset;
+    const Row& row = rows_[r];
+    const int from = row.name >= 0 && row.name < known ? place.pair_of[row.name] : -1;
+    if (from < 0) {
+      start_where(row, problem.rows[r].bound, place.product);
+      continue;
+    }
+    std::copy_n(&place.s[from], row.pairs, &s_[row.pair]);
+    std::copy_n(&place.z[from], row.pairs, &z_[row.pair]);
     if (row.pairs == 1) continue;
     // the same part of another bound
     double* s = &s_[row.pair];
@@ -134,7 +151,42 @@ bool InteriorPoint::begin_again(const QpProblem& problem) {
     s[1] *= grows;
   }
   start(problem);
+}
+
+bool InteriorPoint::begin_again(const QpProblem& problem, const GoOn& go_on) {
+  if (places_.empty() || places_.back().u.size() != problem.mass.size() || !take_graph(problem, go_on))
+    return false;
+  u_.resize(problem.mass.size());
+  take_rows(problem);
+  stand_at(places_.back(), problem);
+  // What the equations miss there is what has changed. Products must leave room for it.
+  const double changed = std::max(row_residual(), body_residual()), least = kRoom * changed * changed;
+  auto from = places_.end() - 1;
+  while (from != places_.begin() && from->product < least) --from;
+  if (from + 1 != places_.end()) stand_at(*from, problem);
+  // nearer ones are of another problem
+  places_.erase(from + 1, places_.end());
   return true;
+}
+
+/// A row's pairs as the velocities have them, with products of that size.
+void InteriorPoint::start_where(const Row& row, double bound, double product) {
+  double y = row.offset + row.on_last.dot(u_[row.last]);
+  if (row.first >= 0) y += row.on_first.dot(u_[row.first]);
+  double *s = &s_[row.pair], *z = &z_[row.pair];
+  if (row.pairs == 1) {
+    z[0] = std::max(y, std::sqrt(product));
+    s[0] = product / z[0];
+    return;
+  }
+  // y = product / (bound + x) - product / (bound - x)
+  const double root = std::sqrt(product * product + y * y * bound * bound);
+  const double x = bound * std::abs(y) * bound / (product + root);  // against y
+  const double near =
+      bound * (product + root - std::abs(y) * bound) / (product + root);  // bound - x, of x near to it, too
+  s[0] = y < 0.0 ? near : bound + x;
+  s[1] = y < 0.0 ? bound + x : near;
+  for (int p = 0; p < 2; ++p) z[p] = product / s[p];
 }
 
 InteriorPoint::Row InteriorPoint::ordered(const QpRow& given) const {
@@ -145,6 +197,7 @@ InteriorPoint::Row InteriorPoint::ordered(const QpRow& given) const {
   row.offset = given.offset;
   row.pairs = std::isinf(given.bound) ? 1 : 2;
   row.expected = given.expected;
+  row.name = given.name;
   if (given.other < 0) return row;
   row.first = factor_.place(given.other);
   row.on_first = Triple::of(given.on_other);
@@ -246,7 +299,7 @@ bool InteriorPoint::step(const GoOn& go_on) {
   last_length_ = std::min(1.0, part_of_way(gap_ / std::max(1, pairs_)) * longest_step());
   take(last_length_);
   measure();
-  if (halfway_.u.empty() && mean_product() <= kHalfway) halfway_ = {u_, s_, z_};
+  if (!hindered()) note_place();
   return last_length_ > kNoStep;
 }
 

@@ -18,6 +18,8 @@ struct QpRow {
   /// infinity: 0 <= x _|_ y >= 0. Else > 0: |x| <= bound, and x is -bound * sign(y) where y is not 0.
   double bound = std::numeric_limits<double>::infinity();
   double expected = 0.0;  ///< force that the search begins near; 0 in all rows: nothing is known
+  /// By which it is known again in the next problem (begin_again), one of its own in each; -1: by nothing.
+  int name = -1;
 };
 
 /// minimise u.M u / 2 - f.u + (sum of bound |y| over the rows that have one), subject to y >= 0 at the others.
@@ -37,9 +39,10 @@ class InteriorPoint {
   /// Before the first step. What is known of the graph is kept from the problem before. False: it was stopped, and there
   /// is nothing to ask.
   bool begin(const QpProblem& problem, const GoOn& go_on = {});
-  /// From where the last search was halfway, for the same rows with other offsets and bounds: a few steps do where these have
-  /// changed little. False: it never was there, or the rows are others; then begin() is to be asked.
-  bool begin_again(const QpProblem& problem);
+  /// From where the searches since begin() came by, for the same bodies, and rows of the same names with other offsets and
+  /// bounds: the less these have changed, the fewer steps are left. Rows may have come and gone; those that are new begin as the
+  /// velocities of then have them. False: there is no such place, or it was stopped; then begin() is to be asked.
+  bool begin_again(const QpProblem& problem, const GoOn& go_on = {});
   /// One factorisation, one step. False: no step of any length is left to rounding, or it was stopped.
   bool step(const GoOn& go_on = {});
   bool stopped() const { return stopped_; }
@@ -74,17 +77,27 @@ class InteriorPoint {
     double residual;      ///< y of the velocities less y of the pairs
     double weight, push;  ///< dx = push - weight dy
     double expected;
+    int name;
   };
   /// One number of each pair, in the order of rows.
   using OfPairs = std::vector<double>;
+  /// Where a search came by.
+  struct Place {
+    std::vector<Triple> u;     ///< of each body
+    std::vector<int> pair_of;  ///< by name of the row; -1: there was none
+    OfPairs s, z;
+    double product;
+  };
 
   double force_of(const Row& row) const {
     return row.pairs == 1 ? s_[row.pair] : (s_[row.pair + 1] - s_[row.pair]) / 2;
   }
   Row ordered(const QpRow& row) const;
+  bool take_graph(const QpProblem& problem, const GoOn& go_on);
+  void take_rows(const QpProblem& problem);
   void start_pairs(const QpProblem& problem);
   void start_near(const QpProblem& problem);
-  bool has_rows(const QpProblem& problem) const;
+  void start_where(const Row& row, double bound, double product);
   void start(const QpProblem& problem);
   void measure();
   bool factor(const GoOn& go_on);
@@ -94,6 +107,8 @@ class InteriorPoint {
   double longest_step() const;
   double gap_after(double length) const;
   void take(double length);
+  void note_place();
+  void stand_at(const Place& place, const QpProblem& problem);
 
   BlockLdl factor_;
   std::vector<Triple> mass_, f_, u_, du_, imbalance_;  ///< in the order of elimination
@@ -104,11 +119,8 @@ class InteriorPoint {
   struct {
     std::vector<Triple> du;
     OfPairs ds, dz;
-  } kept_;  ///< a direction, while another one is tried
-  struct {
-    std::vector<Triple> u;
-    OfPairs s, z;
-  } halfway_;  ///< where products first were small, all alike still; empty: not yet
+  } kept_;                     ///< a direction, while another one is tried
+  std::vector<Place> places_;  ///< from the farthest to the nearest to the solution
   int pairs_ = 0, steps_ = 0;
   bool stopped_ = false;
   double gap_ = 0.0, last_length_ = 1.0;

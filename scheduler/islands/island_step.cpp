@@ -17,6 +17,7 @@ namespace {
 constexpr int kLooks = 8;         ///< along a step
 constexpr int kBetween = 4;       ///< parts of what lies between two looks, where a corner may be
 constexpr int kSections = 24;     ///< golden sections until a corner is found there: to 1e-5 of a part
+constexpr double kSags = 0.125;   ///< of its bend what is smooth sags between two looks at most
 constexpr int kCorrections = 12;  ///< of gaps that were missed
 /// What is left of a miss is not taken to be more than this part of it the next time.
 constexpr double kFallsAtMost = 0.5;
@@ -24,6 +25,10 @@ constexpr double kFallsAtMost = 0.5;
 /// a few where that is little beside the way that forces make of rest in the step, so that what the last lifts push is so, too.
 constexpr int kFrictionAnew = 1, kFrictionAtMost = 6;
 constexpr double kLittleLeft = 1e-2;
+/// Where so many times as much is missed, or is sure to be, the search for the step ends early: with products of forces and speeds
+/// (StepSearch) that leave velocities off by less than that. What is kept goes to `kFinest`, so that heaps come to rest; those on
+/// a site that moves do not.
+constexpr double kFarMissed = 100.0, kCoarse = 1e-8, kFine = 1e-12, kFinest = 1e-16;
 /// In an island of few members so many solves more take friction bounds from the forces of the one before.
 constexpr int kFrictionPasses = 2;
 /// In any other friction comes of sweeps: a hundred go on well enough from the step before, an impact takes more.
@@ -138,6 +143,12 @@ double falling_speed(const std::vector<Vec3>& force, const std::vector<Vec3>& ma
   return h * most;
 }
 
+/// True if a site that moves pushes: an island on one does not come to rest.
+bool is_driven(const IslandStep& step) {
+  return std::any_of(step.contacts.begin(), step.contacts.end(),
+                     [](const IslandContact& c) { return c.driven && c.normal_force > 0.0; });
+}
+
 /// Of many: friction as sweeps find it, gaps as the convex problem with that friction keeps them. Every contact is held
 /// within the bounds of its normal force from the sweeps; what slips has its friction at the bound. Which of the normal
 /// forces of a heap carry it is not unique, so those of the sweeps are told, which obey Coulomb's law.
@@ -160,10 +171,11 @@ class SweptFriction {
       problem_.contacts[k].gap = other.contacts[k].gap;
   }
 
-  /// `again`: the solver's last problem was this one with other gaps, and friction that was swept for them.
-  Solved solve(ConeQp& solver, bool again, int& factorisations, const GoOn& go_on) const {
+  /// See StepSearch: the solver's last problem was this one with other gaps, friction that was swept for them, and perhaps without
+  /// the last contacts.
+  Solved solve(ConeQp& solver, const StepSearch& search, int& factorisations, const GoOn& go_on) const {
     Solved solved;
-    solved.result = solver.step(problem_, go_on, again);
+    solved.result = solver.step(problem_, go_on, search);
     factorisations += solved.result.factorisations;
     if (solved.result.status == StepResult::Status::stopped || !(solved.result.residual <= kResidual))
       return solved;
@@ -178,9 +190,9 @@ class SweptFriction {
 };
 
 /// `swept`: the friction of many, kept where `keep` says so, of the solve before this one. Of few that go without it nothing
-/// is kept: contacts may have joined since.
+/// is kept: contacts may have joined since. `product`: of many, how far the search is to go (StepSearch).
 Solved solve(ConeQp& solver, const StepProblem& p, std::optional<SweptFriction>& swept, bool keep,
-             int& factorisations, const GoOn& go_on) {
+             double product, int& factorisations, const GoOn& go_on) {
   const bool few = p.mass.size() <= kFewMembers;
   if (few) {
     Solved solved = solve_few(solver, p, factorisations, go_on);
@@ -198,7 +210,8 @@ Solved solve(ConeQp& solver, const StepProblem& p, std::optional<SweptFriction>&
   else
     swept.emplace(p, go_on);
   // the solver's last problem is that of the few, where they are
-  return swept->solve(solver, again && !few, factorisations, go_on);
+  const auto from = again && !few ? StepSearch::From::halfway : StepSearch::From::nothing;
+  return swept->solve(solver, {from, product}, factorisations, go_on);
 }
 
 /// How a gap is missed along the step [m]; 0: not at all.
@@ -249,17 +262,30 @@ void look_for_corner(double from, double first, double last, Look&& look) {
   }
 }
 
+/// A corner by which the slope changes by s a look, a part x of the way from one look to the next, adds s (1 - x) to the bend (the
+/// second difference) at the first of the two and s x at the second, and goes below the line between them by s x (1 - x). What
+/// has no corner bends at either of the two as it has begun to on that side of them, but for a fourth difference. So: how the gap
+/// bends there without a corner, and what there is more, which is no less than a corner between looks i and i + 1 goes
+/// below. @pre at least seven looks
+std::pair<double, double> corner_after(const std::array<double, kLooks + 1>& bends, int i) {
+  // bends are known of all looks but the first and the last
+  const bool behind = i < kLooks / 2;
+  const int at = behind ? i + 1 : i, on = behind ? 1 : -1;
+  const double goes_on = 2.0 * bends[at + on] - bends[at + 2 * on];
+  return {goes_on, std::abs(bends[at] - goes_on)};
+}
+
 /// How far a convex gap comes to lie below its tangent within the step, at most [m].
 ///
 /// In the frame of the site's owner, which turns by w_s, the sample is at p = R_s^T q, with q = x - x_s + R r, and
 /// |p''| <= w^2 |r| + 2 |w_s| |q'| + w_s^2 |q|. A distance changes by no more than the place, so a convex one has a second
-/// derivative of at least -|p''|.
+/// derivative of at least -|p''|. About a site that is round w_s counts as 0, in a frame that does not turn.
 double falls_below_tangent(const IslandContact& c, double h, const std::vector<Vec3>& velocity) {
   const Vec3 of_body = velocity[c.rows.body],
              of_other = c.rows.other < 0 ? Vec3(Vec3::Zero()) : velocity[c.rows.other];
   const Vec3 &of_sample = c.sample_on_body ? of_body : of_other,
              &of_site = c.sample_on_body ? of_other : of_body;
-  const double turns = std::abs(of_sample[2]), site_turns = std::abs(of_site[2]);
+  const double turns = std::abs(of_sample[2]), site_turns = c.round_site ? 0.0 : std::abs(of_site[2]);
   const double speed = (of_sample - of_site).head<2>().norm() + turns * c.arm;
   const double bends =
       turns * turns * c.arm + 2.0 * site_turns * speed + site_turns * site_turns * (c.apart + h * speed);
@@ -274,6 +300,13 @@ bool stays_open(const IslandContact& c, double h, const std::vector<Vec3>& veloc
   // beside an end the tangent itself leads behind the site: nothing below it counts as open there
   const double low = c.at_end ? c.tolerance : -kMissCounts * c.tolerance;
   return c.gap >= low && c.gap + h * opens - falls_below_tangent(c, h, velocity) >= low;
+}
+
+/// True if a contact that has pressed turns by so much within the step that its gap may be missed by more than so much [m].
+bool turns(const IslandStep& step, double h, double much) {
+  return std::any_of(step.contacts.begin(), step.contacts.end(), [&](const IslandContact& c) {
+    return c.normal_force > 0.0 && falls_below_tangent(c, h, step.velocity) > much;
+  });
 }
 
 /// By looks along the step, and where parabolas through them dip in between. A miss that does not count may be told as
@@ -311,12 +344,15 @@ Miss missed(const IslandStep& step, std::size_t k, double h, const std::vector<V
   for (int i = 1; i < kLooks; ++i)
     if (bend(i) > std::max(seen[i], kNoDip * tolerance))
       if (const double at = lowest(seen[i - 1], seen[i], seen[i + 1]); at != 0.0) look(i + at);
-  // What bends by more between looks than it is high, and by more than counts, may have a corner there that goes
-  // below.
-  for (int i = 0; i < kLooks; ++i)
-    if (const double most = std::max(std::abs(bend(i)), std::abs(bend(i + 1)));
-        most > kMissCounts * tolerance && std::min(seen[i], seen[i + 1]) < most)
+  // Between two looks there may be a corner that goes below by more than counts.
+  std::array<double, kLooks + 1> bends;
+  for (int i = 0; i <= kLooks; ++i) bends[i] = bend(i);
+  for (int i = 0; i < kLooks; ++i) {
+    const auto [goes_on, corner] = corner_after(bends, i);
+    if (corner > kMissCounts * tolerance &&
+        std::min(seen[i], seen[i + 1]) < corner + kSags * std::abs(goes_on))
       look_for_corner(i, seen[i], seen[i + 1], look);
+  }
   miss.counts = miss.most > kMissCounts * tolerance;
   miss.too_much = miss.most > tolerance;
   return miss;
@@ -419,12 +455,21 @@ StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, b
   // the way that the forces alone make of rest in the step [m]
   const double cheap = h * falling_speed(step.force, step.mass, h);
   std::optional<SweptFriction> swept;
-  bool joined = false;
+  const bool many = step.mass.size() > kFewMembers;
+  const double little = kLittleLeft * cheap;
+  const double finest = many && is_driven(step) ? kFine : kFinest;
+  bool joined = false, finish = false;
+  bool coarse = many && turns(step, h, kFarMissed * little);
   double left = std::numeric_limits<double>::infinity();  // to correct [m]
   // Contacts that wait join once each and are not counted as corrections, so that the loop ends.
   for (int again = 0; again < kCorrections && !outcome.solved;) {
-    const bool keep = !joined && again > (left <= kLittleLeft * cheap ? kFrictionAnew : kFrictionAtMost);
-    Solved solved = solve(solver, problem_of(step, h, parts), swept, keep, outcome.factorisations, go_on);
+    const bool keep = !joined && again > (left <= little ? kFrictionAnew : kFrictionAtMost);
+    const double product = coarse ? kCoarse : finest;
+    Solved solved =
+        finish
+            ? swept->solve(solver, {StepSearch::From::end, product}, outcome.factorisations, go_on)
+            : solve(solver, problem_of(step, h, parts), swept, keep, product, outcome.factorisations, go_on);
+    finish = false;
     StepResult& result = solved.result;
     if (result.status == StepResult::Status::stopped) return outcome;
     outcome.no_room = !(result.residual <= kResidual);
@@ -436,7 +481,9 @@ StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, b
     const GapAlong gap = gaps(result.velocity);
     // those that are missed take part from now on: each comes once
     const auto met = std::stable_partition(waiting.begin(), waiting.end(), [&](std::size_t k) {
-      return stops(go_on) || !missed(step, k, h, result.velocity, cheap, rise, gap).counts;
+      if (stops(go_on)) return true;
+      const Miss miss = missed(step, k, h, result.velocity, cheap, rise, gap);
+      return !miss.counts || (coarse && miss.most <= little);
     });
     // solved again with them before any lift is asked for: without them the motion is another
     if (met != waiting.end()) {
@@ -457,6 +504,11 @@ StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, b
       // From a tenth of the tolerance on, though only a miss beyond the tolerance asks for that solve, which then
       // makes up for all of them.
       more.push_back(miss.counts ? kAimHigher * miss.lift : 0.0);
+    }
+    if (coarse && worst <= kFarMissed * little) {
+      coarse = false;
+      // what coarse velocities say of it is no more than that
+      if (finish = worst <= little; finish) continue;
     }
     ++again;
     left = worst;

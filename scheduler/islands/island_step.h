@@ -40,6 +40,7 @@ struct IslandContact {
   /// The gap is a convex function of where the sample is in the frame of the site's owner: its tangent at the start is
   /// left only by what turns, see falls_below_tangent().
   bool convex = false;
+  bool round_site = false;     ///< of a disc about its centre of mass: it looks the same however that turns
   bool sample_on_body = true;  ///< the sample is the body's, the site the other's; or the reverse
   double arm = 0.0;            ///< of the sample from its owner's centre of mass [m]
   double apart = 0.0;          ///< of the sample from the centre of mass of the site's owner [m]

@@ -624,6 +624,8 @@ void IslandMotion::note_shape(const HeldContact& c, IslandContact& made) const {
   const SiteKind kind = of_site->sites[f.site].kind;
   made.convex = !made.driven && !f.thin && !f.beside_arc && !f.no_way_by && !of_site->container &&
                 kind != SiteKind::arc;
+  const Site& site = of_site->sites[f.site];
+  made.round_site = site.kind == SiteKind::point && site.a == Vec2(Vec2::Zero());
   made.sample_on_body = f.sample_on_a;
   made.arm = sample.p.norm();
   // from the centre of mass to the point on the site's surface, and on along the normal to the sample

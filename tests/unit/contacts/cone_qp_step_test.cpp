@@ -366,13 +366,19 @@ TEST(Step, GoingOnFromTheLastSearchChangesNoAnswer) {
     Random random(seed);
     StepProblem problem = answerable_problem(random);
     ConeQp solver;
-    solver.step(problem);
+    StepProblem first = problem;
+    // some contacts come later, and some have had no friction
+    first.contacts.resize(
+        static_cast<std::size_t>(random.uniform(0.0, static_cast<double>(problem.contacts.size()) + 1.0)));
+    for (StepContact& s : first.contacts)
+      if (random.uniform(0, 1) < 0.1) s.friction_bound = 0.0;
+    solver.step(first);
     const double part = std::exp2(random.uniform(-40, 0));
     for (StepContact& s : problem.contacts) {
       s.gap += part * problem.duration * random.uniform(-1, 1);
       s.friction_bound *= 1.0 + part * random.uniform(-1, 1);
     }
-    const StepResult on = solver.step(problem, {}, true), own = ConeQp().step(problem);
+    const StepResult on = solver.step(problem, {}, {StepSearch::From::halfway}), own = ConeQp().step(problem);
     expect_proved(problem, on);
     for (std::size_t k = 0; k < problem.mass.size(); ++k)
       EXPECT_LE((on.velocity[k] - own.velocity[k]).cwiseAbs().maxCoeff(), 1e-6) << "body " << k;
@@ -383,18 +389,34 @@ TEST(Step, GoingOnFromTheLastSearchChangesNoAnswer) {
   EXPECT_LT(went_on, afresh);
 }
 
-// Of a heap it takes half as many factors, as little as a lift changes; and what is another heap is searched for afresh.
+// Of a heap it takes half as many factors, as little as a lift changes; of one without its last contact it ends with what a search of
+// its own finds.
 TEST(Step, GoingOnTakesFewFactors) {
   StepProblem problem = testing::heap_step(12, 12, 1e-6, 0.5, 1.0 / 120);
   ConeQp solver;
   const int first = solver.step(problem).factorisations;
   for (StepContact& s : problem.contacts) s.gap -= 1e-9;
-  const StepResult next = solver.step(problem, {}, true);
+  const StepResult next = solver.step(problem, {}, {StepSearch::From::halfway});
   expect_proved(problem, next);
   EXPECT_LE(2 * next.factorisations, first + 2);
   problem.contacts.pop_back();
-  const StepResult other = solver.step(problem, {}, true), own = ConeQp().step(problem);
-  EXPECT_EQ(other.velocity, own.velocity);
+  const StepResult other = solver.step(problem, {}, {StepSearch::From::halfway}),
+                   own = ConeQp().step(problem);
+  for (std::size_t k = 0; k < problem.mass.size(); ++k)
+    EXPECT_LE((other.velocity[k] - own.velocity[k]).cwiseAbs().maxCoeff(), 1e-6) << "body " << k;
+}
+
+// A search that ended early is taken to the end as if it had not: same bits, and no factor twice.
+TEST(Step, ASearchThatEndedEarlyGoesOnToTheEnd) {
+  const StepProblem problem = testing::heap_step(12, 12, 1e-6, 0.5, 1.0 / 120);
+  ConeQp solver;
+  const StepResult coarse = solver.step(problem, {}, {StepSearch::From::nothing, 1e-8});
+  const StepResult end = solver.step(problem, {}, {StepSearch::From::end});
+  const StepResult own = ConeQp().step(problem);
+  EXPECT_EQ(coarse.status, StepResult::Status::solved);
+  EXPECT_LT(coarse.factorisations, own.factorisations);
+  EXPECT_EQ(coarse.factorisations + end.factorisations, own.factorisations);
+  EXPECT_EQ(end.velocity, own.velocity);
 }
 
 /// Without friction: normal impulses as a linear complementarity problem in the contacts.
