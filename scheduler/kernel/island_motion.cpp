@@ -499,7 +499,7 @@ bool IslandMotion::passes_by(const HeldContact& c, double then, double closing) 
   if (!c.feature.at_end || !(closing > 0.0)) return false;
   const double further = members_.gap(c, then + 4.0 * tolerance / closing, velocities()) - kept(c.feature);
   // some roundings in it where it runs along the next side from there on
-  return further > 0.0 || (further > -search_->limits().touch && !c.feature.no_way_by);
+  return further > 0.0 || (further > -kMissCounts * tolerance && !c.feature.no_way_by);
 }
 
 /// An approach as slow as this rebounds with e v <= a h: it has turned back by the end of the step [m/s].
