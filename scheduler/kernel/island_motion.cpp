@@ -641,7 +641,8 @@ double IslandMotion::way_in_step(int member, const std::vector<Vec3>& velocity) 
 /// True if nobody moves farther than features were listed for.
 bool IslandMotion::stays_within_reach() const {
   for (int i = 0; i < static_cast<int>(members_.count()); ++i)
-    if (way_in_step(i, problem_.velocity) > members_.reach_of(i)) return false;
+    if (!(way_in_step(i, problem_.velocity) <= members_.reach_of(i)))
+      return false;  // no number is not within
   return true;
 }
 

@@ -299,5 +299,145 @@ mass = 1.0
   watched(scene, 3.0, 0.001953125);
 }
 
+const char* const kALightTriangleUnderAHeavyBox = R"scene([world]
+duration = 2.0
+gravity = [0, -9.81]
+[materials.m]
+restitution = 0
+friction = 0
+[[sites]]
+segment = [[-2, 0], [2, 0]]
+material = "m"
+[[bodies]]
+name = "light"
+polygon = { vertices = [[0, 0], [0.55, 0], [0.35, 0.4]] }
+position = [0, 0.5]
+mass = 1.0
+material = "m"
+[[bodies]]
+name = "heavy"
+box = { width = 0.4, height = 0.3 }
+position = [0, 1.5]
+mass = 100000.0
+velocity = [0, -2]
+material = "m"
+[[bodies]]
+name = "side"
+disc = { radius = 0.1 }
+position = [1, 0.3]
+mass = 100000.0
+velocity = [-1.5, 0]
+material = "m"
+)scene";
+
+const char* const kALightBoxUnderAHeavyDisc = R"scene([world]
+duration = 2.0
+gravity = [0, -9.81]
+[materials.m]
+restitution = 0
+friction = 0.5
+[[sites]]
+segment = [[-2, 0], [2, 0]]
+material = "m"
+[[bodies]]
+name = "light"
+box = { width = 0.4, height = 0.3 }
+position = [0, 0.5]
+mass = 1e-06
+material = "m"
+[[bodies]]
+name = "heavy"
+disc = { radius = 0.2 }
+position = [0.2, 1.5]
+mass = 1000.0
+material = "m"
+[[bodies]]
+name = "side"
+disc = { radius = 0.1 }
+position = [1, 0.12]
+mass = 1000000.0
+velocity = [-1.5, 0]
+material = "m"
+)scene";
+
+// The forces of a step were no numbers there, and neither was then the state.
+TEST(CornerScenes, ALightBodyBetweenHeavyOnesHasAState) {
+  for (const char* text : {kALightTriangleUnderAHeavyBox, kALightBoxUnderAHeavyDisc})
+    watched(parse_scene(text, "light.toml"), 2.0, 0.01);
+}
+
+const char* const kAFastDrum = R"scene([world]
+duration = 3.0
+gravity = [0.0, -9.8125]
+restitution_rule = "geometric_mean"
+friction_rule = "mean"
+[output]
+frame_interval = 0.015625
+[materials.m]
+restitution = 0.5
+friction = 0.25
+[materials.n]
+restitution = 0.13337993621826172
+friction = 0.4746675491333008
+[[sites]]
+name = "f"
+disc = { radius = 1.5 }
+inside_of = true
+position = [0.0, 1.5]
+motion = { angular_velocity = 4.736555099487305 }
+material = "m"
+[[bodies]]
+name = "b0"
+polygon = { vertices = [[0.0, 0.0], [0.31661415100097656, 0.0], [0.1289987564086914, 0.15578651428222656]] }
+position = [-0.1282825469970703, 1.4394874572753906]
+angle = 0.0
+mass = 1.0
+material = "n"
+angular_velocity = 2.10811710357666
+[[bodies]]
+name = "b1"
+polygon = { vertices = [[0.1530590057373047, 0.0], [0.07652950286865234, 0.1325531005859375], [-0.07652950286865234, 0.1325531005859375], [-0.1530590057373047, 0.0], [-0.07652950286865234, -0.1325531005859375], [0.07652950286865234, -0.1325531005859375]] }
+position = [-0.6453275680541992, 1.3079090118408203]
+angle = 0.0
+mass = 1.0
+material = "m"
+[[bodies]]
+name = "b2"
+box = { width = 0.3207664489746094, height = 0.20254135131835938 }
+position = [0.40953922271728516, 2.040302276611328]
+angle = 0.0
+mass = 1.0
+material = "m"
+angular_velocity = 3.373600959777832
+[[bodies]]
+name = "b3"
+capsule = { length = 0.1906108856201172, radius = 0.04084491729736328 }
+position = [-0.19757747650146484, 2.0838871002197266]
+angle = 1.729466438293457
+mass = 1.721510887145996
+material = "n"
+velocity = [-0.8208951950073242, -1.9248476028442383]
+[[bodies]]
+name = "b4"
+box = { width = 0.33956241607666016, height = 0.3451824188232422 }
+position = [0.50360107421875, 1.115443229675293]
+angle = 0.0
+mass = 1.0
+material = "m"
+velocity = [-0.4866819381713867, 0.7779407501220703]
+angular_velocity = -3.2100439071655273
+)scene";
+
+// The corner of a box, sunk beside the tip of a triangle by less than the contact tolerance, came out on the tip's other side,
+// and the two went into each other by 5e-7 m, between the frames of 1/64 s.
+TEST(CornerScenes, ACornerThatHasSunkBesideATipStaysOnItsSide) {
+  const Scene scene = parse_scene(kAFastDrum, "drum.toml");
+  Simulator simulator(scene.world, scene.solver);
+  RunOptions options = testing::until(3.0);
+  options.frame_interval = 0.0005;
+  const RunSummary summary = simulator.run(options);
+  EXPECT_EQ(summary.termination, Termination::reached_end) << summary.why;
+}
+
 }  // namespace
 }  // namespace brink::corner_scenes_test
