@@ -440,11 +440,10 @@ double before_next_side(const Half& half, const Sample& sample, const Site& site
     const Vec2 on = next.a == end ? Vec2(next.b - next.a) : Vec2(next.a - next.b), out = outward(next);
     if (outward(site).dot(on) >= 0.0) continue;
     const double height = out.dot(q - end);
-    const bool told = std::abs(height) > upon || !half.carrier.solid || sample.radius > 0.0;
-    if (told) {
+    const Wedge corner = std::abs(height) > upon || sample.radius > 0.0 ? Wedge() : wedge_of(half, sample);
+    if (corner.edges.empty()) {
       before = std::max(before, height);
     } else {
-      const Wedge corner = wedge_of(half, sample);
       if (std::all_of(corner.edges.begin(), corner.edges.end(),
                       [&](const Vec2& e) { return out.dot(e) > -kAlongLine; }))
         before = std::max({before, height, 0.0});
@@ -630,8 +629,13 @@ void add_features(const Half& half, int i, double reach, double tolerance, std::
         bare ? normal_over_joint(half, half.carrier.samples[i], j, nearest, q, tie) : std::nullopt;
     if (where == OnCorner::nowhere && !over) {
       // Behind a site and not on it: a feature only if the sample is inside the solid, and then of the
-      // sites that are nearest, as those are what it sank through.
-      if (side < 0.0 && nearest[j].distance > tie && (outside || nearest[j].distance > least + tie)) continue;
+      // sites that are nearest, as those are what it sank through; in a hollow corner through both its sides, and
+      // not through both as far.
+      const bool sunk_here =
+          nearest[j].distance <= least + tie ||
+          (nearest[j].distance <= corner && half.other.sites[j].kind == SiteKind::segment &&
+           has_hollow_corner(half.other, j, nearer_end(half.other.sites[j], q)));
+      if (side < 0.0 && nearest[j].distance > tie && (outside || !sunk_here)) continue;
       if (goes_on_nearer(half, half.carrier.samples[i], j, nearest, q, tie)) continue;
     }
     auto f = feature(half, i, static_cast<int>(j), nearest[j], side, q);

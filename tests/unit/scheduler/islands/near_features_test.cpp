@@ -80,6 +80,23 @@ TEST(NearFeatures, ABoxThatComesOverAnEdgeIsNotThroughIt) {
       EXPECT_GT(least_gap_after(box, {-0.01, 0.5 + up}, {0.01 + beyond, 0}, table, 0.1), -2e-12) << up;
 }
 
+// The end of a wire in the notch of a star, sunk into its two sides by less than the contact tolerance, and not by as much.
+TEST(NearFeatures, WhatHasSunkInANotchTouchesBothItsSides) {
+  const Outline star = make_polygon({{4, 0}, {1, 1}, {0, 4}, {-1, 1}, {-4, 0}, {-1, -1}, {0, -4}, {1, -1}})
+                           .outline,
+                rod = wire({0, 0}, {0, 1});
+  const Vec2 notch(-1, 1), out = notch.normalized(), along = perp(out);
+  for (const double away : {-1e-10, -2e-11, 0.0, 2e-11})
+    for (const double beside : {-1e-10, -2e-11, 0.0, 2e-11, 1e-10}) {
+      int sides = 0;
+      const BodyState at{{notch + away * out + beside * along, 0.785}, {}};
+      for (const NearFeature& f : near_features(rod, at, star, BodyState{}, 0.01, 1e-10))
+        sides += f.sample_on_a && rod.samples[f.sample].p.isZero(0.0) &&
+                 (star.sites[f.site].a == notch || star.sites[f.site].b == notch);
+      EXPECT_EQ(sides, 2) << away << " " << beside;
+    }
+}
+
 // A box against a wall of wire that ends on the floor, right at its corner, wherever roundings put the one beside the other:
 // all of the wall holds its side, and the wall's end is on the box's side, not on its bottom.
 TEST(NearFeatures, AWireThatEndsAtACornerIsBesideIt) {
