@@ -583,8 +583,9 @@ OnWire on_wire(const Half& half, const Sample& sample, std::size_t j, const Vec2
   for (const Vec2& n : {across, Vec2(-across)})
     if (has_before(n)) return {OnCorner::this_side, n};
   const bool by_another = std::any_of(of_wire.normals.begin(), of_wire.normals.end(), has_before);
-  // the corner of a solid fills the hollow that it is in
-  const bool elsewhere = by_another || (!half.carrier.solid && is_within(of_wire, of_sample));
+  // The corner of a solid fills the hollow that it is in. Of two corners of wire that are as wide, each in the other, either does.
+  const bool is_hollow = is_within(of_wire, of_sample) && !is_within(of_sample, of_wire);
+  const bool elsewhere = by_another || (!half.carrier.solid && is_hollow);
   return {elsewhere ? OnCorner::other_side : OnCorner::nowhere, Vec2::Zero()};
 }
 

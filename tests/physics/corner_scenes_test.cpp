@@ -53,6 +53,31 @@ velocity = [)" + speed + ", 0.0]\n",
       }
 }
 
+// A square of wire in a corner of wire that it fills: each of the two corners is in the other, and neither was held.
+TEST(CornerScenes, ASquareOfWireSlidesIntoTheCornerOfAPolyline) {
+  for (const char* friction : {"0.0", "0.05"})
+    for (const char* speed : {"0.5", "1.0", "3.0"}) {
+      const Scene scene = parse_scene(std::string(R"(
+[world]
+duration = 5.0
+gravity = [0.0, -10.0]
+[materials.default]
+restitution = 0.0
+friction = )") + friction + R"(
+[[sites]]
+polyline = [[-14.0, 0.0], [4.0, 0.0], [4.0, 6.0]]
+[[bodies]]
+chain = { vertices = [[-0.25, -0.25], [0.25, -0.25], [0.25, 0.25], [-0.25, 0.25]], closed = true }
+position = [2.0, 0.25]
+velocity = [)" + speed + ", 0.0]\n",
+                                      "square.toml");
+      SCOPED_TRACE(std::string(friction) + " " + speed);
+      double x = 0.0;
+      watched(scene, 5.0, 0.002, &x);
+      EXPECT_LE(x, 3.75 + 1e-9);
+    }
+}
+
 const char* const kAnLFallsWithItsNotchOnAPoint = R"scene(
 [world]
 duration = 3.0
