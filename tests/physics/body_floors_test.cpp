@@ -7,13 +7,11 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <string>
 
 #include "brink/core/base/random.h"
-#include "brink/scheduler/policies/policy.h"
 #include "tests/support/outside/frame_watch.h"
-#include "tests/support/worlds.h"
+#include "tests/support/seeded_worlds.h"
 
 namespace brink::body_floors_test {
 namespace {
@@ -118,25 +116,12 @@ std::string fault_of(std::uint64_t seed) {
   if (summary.termination == Termination::failed) return summary.why;
   if (!watch.sound()) return watch.report();
   if (watch.lost > kSpeedLost) return fmt::format("lost {:.3g} m/s of {:.3g}", watch.lost, made.speed);
-  solver.policy = exact_policies()[seed % exact_policies().size()];
-  Simulator other(made.world, solver);
-  RunSummary last;
-  for (int part = 1; part <= 4 && (part == 1 || last.termination == Termination::reached_end); ++part) {
-    options.until = kEnd * part / 4.0;
-    last = other.run(options);
-  }
-  const bool same = last.state_hash == summary.state_hash && last.termination == summary.termination;
-  return same ? "" : "other bits under " + solver.policy;
-}
-
-std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
-  const char* text = std::getenv(name);
-  return text ? std::strtoull(text, nullptr, 10) : otherwise;
+  return testing::stopped_under_another_policy(made.world, solver, options, 4, seed, summary);
 }
 
 TEST(BodyFloors, AreGoneOverAsFastAsTheyWereComeUpon) {
-  const std::uint64_t first = from_environment("BRINK_SEED", 1),
-                      worlds = from_environment("BRINK_WORLDS", 100);
+  const std::uint64_t first = testing::from_environment("BRINK_SEED", 1),
+                      worlds = testing::from_environment("BRINK_WORLDS", 100);
   for (std::uint64_t seed = first; seed < first + worlds; ++seed)
     EXPECT_EQ(fault_of(seed), "") << "seed " << seed;
 }

@@ -7,14 +7,12 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
 #include "brink/core/base/random.h"
-#include "brink/scheduler/policies/policy.h"
 #include "tests/support/outside/frame_watch.h"
-#include "tests/support/worlds.h"
+#include "tests/support/seeded_worlds.h"
 
 namespace brink::flat_rods_test {
 namespace {
@@ -111,25 +109,12 @@ std::string fault_of(std::uint64_t seed) {
   if (!watch.sound()) return watch.report();
   if (watch.out > 1e-9) return fmt::format("an end is {} m out of the room", watch.out);
   if (watch.longest_hung > 3) return fmt::format("one hangs for {} frames", watch.longest_hung);
-  solver.policy = exact_policies()[seed % exact_policies().size()];
-  Simulator other(made.world, solver);
-  RunSummary last;
-  for (int part = 1; part <= 8 && (part == 1 || last.termination == Termination::reached_end); ++part) {
-    options.until = kEnd * part / 8.0;
-    last = other.run(options);
-  }
-  const bool same = last.state_hash == summary.state_hash && last.termination == summary.termination;
-  return same ? "" : "other bits under " + solver.policy;
-}
-
-std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
-  const char* text = std::getenv(name);
-  return text ? std::strtoull(text, nullptr, 10) : otherwise;
+  return testing::stopped_under_another_policy(made.world, solver, options, 8, seed, summary);
 }
 
 TEST(FlatRods, StayOnTheirSideOfAWire) {
-  const std::uint64_t first = from_environment("BRINK_SEED", 1),
-                      worlds = from_environment("BRINK_WORLDS", 200);
+  const std::uint64_t first = testing::from_environment("BRINK_SEED", 1),
+                      worlds = testing::from_environment("BRINK_WORLDS", 200);
   for (std::uint64_t seed = first; seed < first + worlds; ++seed)
     EXPECT_EQ(fault_of(seed), "") << "seed " << seed;
 }

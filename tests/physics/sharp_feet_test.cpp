@@ -7,15 +7,13 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include "brink/core/base/random.h"
-#include "brink/scheduler/policies/policy.h"
 #include "tests/support/outside/frame_watch.h"
-#include "tests/support/worlds.h"
+#include "tests/support/seeded_worlds.h"
 
 namespace brink::sharp_feet_test {
 namespace {
@@ -114,25 +112,12 @@ std::string fault_of(std::uint64_t seed) {
   const Material& m = world.materials[0];
   if (m.restitution * m.friction == 0.0 && watch.gained > 1e-9L)
     return fmt::format("energy grew by {:.3g} of what there was", static_cast<double>(watch.gained));
-  solver.policy = exact_policies()[seed % exact_policies().size()];
-  Simulator other(world, solver);
-  RunSummary last;
-  for (int part = 1; part <= 4 && (part == 1 || last.termination == Termination::reached_end); ++part) {
-    options.until = kEnd * part / 4.0;
-    last = other.run(options);
-  }
-  const bool same = last.state_hash == summary.state_hash && last.termination == summary.termination;
-  return same ? "" : "other bits under " + solver.policy;
-}
-
-std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
-  const char* text = std::getenv(name);
-  return text ? std::strtoull(text, nullptr, 10) : otherwise;
+  return testing::stopped_under_another_policy(world, solver, options, 4, seed, summary);
 }
 
 TEST(SharpFeet, MeetTipToTipOnAFloor) {
-  const std::uint64_t first = from_environment("BRINK_SEED", 1),
-                      worlds = from_environment("BRINK_WORLDS", 200);
+  const std::uint64_t first = testing::from_environment("BRINK_SEED", 1),
+                      worlds = testing::from_environment("BRINK_WORLDS", 200);
   for (std::uint64_t seed = first; seed < first + worlds; ++seed)
     EXPECT_EQ(fault_of(seed), "") << "seed " << seed;
 }
