@@ -396,19 +396,73 @@ double won(const IslandStep& step, const StepResult& result, const std::vector<P
   return change;
 }
 
-/// The part of its velocities at which the step wins nothing: all of it goes the same way then, only not as far.
-double without_winning(const IslandStep& step, const std::vector<Vec3>& velocity, double h) {
-  double before = 0.0, after = 0.0, work = 0.0;  // twice the kinetic energies [J]
+/// What wires without thickness have given [J], where contacts that began nearer than they keep rose to that: a thousandth of
+/// the contact tolerance, which is how wires are told apart and nothing that anybody has to pay for.
+double rise_of_thin(const IslandStep& step, const StepResult& result, const std::vector<Part>& parts,
+                    double h) {
+  double rise = 0.0;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const IslandContact& c = step.contacts[parts[k].contact];
+    if (c.thin && parts[k].lift > 0.0)
+      rise += result.loads[k].normal / h * std::min(parts[k].lift, c.tolerance - std::min(c.gap, 0.0));
+  }
+  return rise;
+}
+
+/// The velocity that all bodies have in common and no contact changes [m/s]: of their centre of mass, across what sites push
+/// along; 0 where these push along more than one line, or hold somebody.
+Vec2 common_velocity(const IslandStep& step, const StepResult& result, const std::vector<Part>& parts) {
+  Vec2 momentum = Vec2::Zero(), along = Vec2::Zero();  // `along`: a line that sites push along, unit
+  double mass = 0.0;
+  for (std::size_t i = 0; i < step.mass.size(); ++i) {
+    if (std::isinf(step.mass[i].x()) || std::isinf(step.mass[i].y())) return Vec2::Zero();
+    mass += step.mass[i].x();
+    momentum += step.mass[i].x() * result.velocity[i].head<2>();
+  }
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const LastingContact& rows = step.contacts[parts[k].contact].rows;
+    if (rows.other >= 0) continue;
+    const Vec2 push =
+        (result.loads[k].normal * rows.normal_on_body + result.loads[k].tangential * rows.tangent_on_body)
+            .head<2>();
+    if (push.isZero(0.0)) continue;
+    if (along.isZero(0.0)) along = push.normalized();
+    if (std::abs(cross(along, push)) > kOnePush * push.norm()) return Vec2::Zero();
+  }
+  const Vec2 velocity = momentum / mass;
+  return velocity - along.dot(velocity) * along;
+}
+
+/// Makes the step win nothing [J], but for `free`: all go the same way, relative to what they have in common, only not as far. So
+/// no momentum is lost that no site takes, and bodies come by the same places of each other.
+void win_nothing(const IslandStep& step, const Vec2& common, double free, double h,
+                 std::vector<Vec3>& velocity) {
+  const Vec3 together(common.x(), common.y(), 0.0);
+  double before = 2.0 * free, after = 0.0, work = 0.0;  // twice the kinetic energies [J]
   for (std::size_t i = 0; i < step.mass.size(); ++i)
     for (int k = 0; k < 3; ++k) {
       if (std::isinf(step.mass[i][k])) continue;
-      before += step.mass[i][k] * step.velocity[i][k] * step.velocity[i][k];
-      after += step.mass[i][k] * velocity[i][k] * velocity[i][k];
-      work += h * step.force[i][k] * velocity[i][k];
+      const double apart = velocity[i][k] - together[k];
+      before += step.mass[i][k] * (step.velocity[i][k] + together[k]) * (step.velocity[i][k] - together[k]) +
+                2.0 * h * step.force[i][k] * together[k];
+      after += step.mass[i][k] * apart * apart;
+      work += h * step.force[i][k] * apart;
     }
-  // At s times the velocities the kinetic energy less the work, which has s times the way, is what it was:
+  // At s times these velocities the kinetic energy less the work, which has s times the way, is what it was:
   // after s^2 / 2 - work s - before / 2 = 0
-  return after > 0.0 ? std::min(1.0, (work + std::sqrt(work * work + after * before)) / after) : 1.0;
+  const double root = work * work + after * before;
+  if (!(after > 0.0) || !(root >= 0.0)) return;
+  const double slower = std::min(1.0, (work + std::sqrt(root)) / after);
+  for (Vec3& v : velocity) v = together + slower * (v - together);
+}
+
+/// True if a contact with a site is missed by more than its tolerance.
+bool misses_site(const IslandStep& step, double h, const std::vector<Vec3>& velocity, const GapsAlong& gaps) {
+  const GapAlong gap = gaps(velocity);
+  for (std::size_t k = 0; k < step.contacts.size(); ++k)
+    if (step.contacts[k].rows.other < 0 && missed(step, k, h, velocity, 0.0, false, gap).too_much)
+      return true;
+  return false;
 }
 
 /// What is left of Coulomb's law, as a part of the largest normal or other force.
@@ -531,12 +585,18 @@ StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, b
     // Slower by one factor, constant twists lead through the same poses, only not as far: no gap is missed
     // that was not before. A site that moves by the clock would be elsewhere at those poses, so its steps
     // keep what they won, and tell it.
-    if (won_here > 0.0 && !driven) {
-      const double slower = without_winning(step, result.velocity, h);
-      for (Vec3& v : result.velocity) v *= slower;
-    } else {
-      outcome.won = std::max(0.0, won_here);
+    const double free = rise_of_thin(step, result, parts, h);
+    if (won_here > free && !driven) {
+      const std::vector<Vec3> velocity = result.velocity;
+      const Vec2 common = common_velocity(step, result, parts);
+      win_nothing(step, common, free, h, result.velocity);
+      // what all have in common leads past sites as before, but where one of them ends or another begins
+      if (!common.isZero(0.0) && misses_site(step, h, result.velocity, gaps)) {
+        result.velocity = velocity;
+        win_nothing(step, Vec2::Zero(), free, h, result.velocity);
+      }
     }
+    outcome.won = std::max(0.0, driven ? won_here : std::min(won_here, free));
     outcome.solved = true;
     outcome.friction_residual = residual(step, solved, h);
     step.velocity = result.velocity;

@@ -243,6 +243,17 @@ Vec2 facing(const Half& half, const Site& site, const Nearest& nearest, const Ve
   return half.carrier_frame.direction_to_local(half.other_frame.direction_to_world(way)).normalized();
 }
 
+/// True if the site's curve leads so deep through the circle of a solid's arc, centred at q, that no turn of a step makes the
+/// arc's end, which it passes, a place where the arc lies on it from outside.
+bool cuts_circle(const Site& arc, const Site& site, const Vec2& q) {
+  if (!arc.solid || site.kind != SiteKind::arc) return false;
+  const double r = arc.arc_radius, to_centre = (q - site.center).norm(),
+               of_site = site.arc_radius + (to_centre > site.arc_radius ? site.radius : -site.radius),
+               turn = 2.0 * of_site * r * std::cos(kTurnedInStep), squares = of_site * of_site + r * r;
+  return to_centre > of_site ? to_centre < std::sqrt(squares + turn)
+                             : to_centre > std::sqrt(std::max(0.0, squares - turn));
+}
+
 /// The feature of an arc's sample i that looks past site j, if by no more than may be turned in a step: the end of it there, which
 /// has a feature of its own, and stands here for the arc that may come to lie on the site. Not of what is behind the site; nor of
 /// a wire's arc whose hollow holds the end of one.
@@ -252,10 +263,13 @@ std::optional<NearFeature> beside_arc(const Half& half, int i, int j, const Vec2
   const Vec2 middle = 0.5 * (arc.a + arc.b) - arc.center, towards = facing(half, site, nearest, q, way);
   const double off =
       std::abs(std::atan2(cross(middle, towards), middle.dot(towards))) - 0.5 * std::abs(arc.sweep);
-  const bool within = ends_at(half.other, site, nearest) && lies_within(half, arc, site, nearest);
-  if (side < 0.0 || off > kTurnedInStep || (!arc.solid && within)) return std::nullopt;
+  if (side < 0.0 || off > kTurnedInStep || cuts_circle(arc, site, q)) return std::nullopt;
   const Vec2 out = half.other_frame.direction_to_local(half.carrier_frame.direction_to_world(-towards));
   const ArcEnd end = end_beside(half, arc, towards, site, out, nearest.point);
+  // an end that is abreast of the site has the arc before that, wherever the site ends
+  const bool within = !arc.solid && end.nearest.foot != Foot::interior &&
+                      ends_at(half.other, site, nearest) && lies_within(half, arc, site, nearest);
+  if (within) return std::nullopt;
   // who is sunk into a wire's arc from its hollow is on that side of it
   const bool sunk_from_within = end.gap < 0.0 && !arc.solid && leads_within(half, arc, site);
   if (end.gap < -kSunkOfRadius * half.carrier.bounding_radius || sunk_from_within) return std::nullopt;
@@ -596,6 +610,7 @@ void turn_to_side(const Half& half, const Vec2& q, const Vec2& normal, NearFeatu
   const Vec2 world = half.other_frame.direction_to_world(normal);
   f.gap = normal.dot(q - end);
   f.normal = half.on_a ? world : Vec2(-world);
+  f.upon_corner = true;
 }
 
 /// Adds the features of sample i: sites that face it; and where it lies inside by roundings, those that are

@@ -58,6 +58,8 @@ inline constexpr double kResidual = 1e-6;
 /// rounding, and what faces that turn push into what lies on them, which the true motion takes from their
 /// turning.
 inline constexpr double kWonOf = 1e-3;
+/// Sites push along one line if sines of angles between their pushes are below this.
+inline constexpr double kOnePush = 1e-9;
 /// Friction bounds are exact that are wrong by no more than this part of the largest force: the solver's own digits.
 inline constexpr double kFrictionExact = 1e-9;
 /// And good enough: the order of what a step of order 1 is off anyway (kWonOf).

@@ -82,13 +82,26 @@ class Outsider {
           std::max(towards(state_.twist, arm_of_outsider), towards(going_, arm_of_outsider));
       const double of_the_member = std::min(0.0, towards(of_member.twist, member_first ? arm : other_arm));
       const double may_close = of_outsider - of_the_member;
-      // What closes faster is an impact and meets the island by itself. What parts now may still be caught
-      // up with.
+      // What closes faster is an impact and meets the island by itself, but where it would graze a corner: that it goes over
+      // is told by the contacts of the island. What parts now may still be caught up with.
       // The gap that is left is that of the step's end, closing by as much as the two may.
-      if (closing <= most && f.gap - h_ * (may_close + member_gains_) <= search_.limits().tolerance)
-        return true;
+      if (f.gap - h_ * (may_close + member_gains_) > search_.limits().tolerance) continue;
+      if (closing <= most || grazes(f, *pair, a, b)) return true;
     }
     return false;
+  }
+
+  /// True if the feature touches a side within the contact tolerance of its end.
+  bool grazes(const NearFeature& f, const PairKey& pair, const ExtendedState& a,
+              const ExtendedState& b) const {
+    const Site& site = search_.outline_of(f.sample_on_a ? pair.other_body : pair.body).sites[f.site];
+    if (site.kind != SiteKind::segment) return false;
+    const ExtendedState& owner = f.sample_on_a ? b : a;
+    const Vec2 point = Frame(Pose{{0.0, 0.0}, static_cast<double>(owner.angle)})
+                           .direction_to_local(f.point - (owner.position - b.position).cast<double>());
+    const double along = (site.b - site.a).normalized().dot(point - site.a),
+                 length = (site.b - site.a).norm();
+    return std::min(along, length - along) <= search_.limits().tolerance;
   }
 
   const World& world_;

@@ -168,18 +168,24 @@ void IslandModes::add_contact(const HeldContact& c) {
   const bool shadow = !c.feature.beside_arc && is_shadow(*search_, c, contacts_),
              touching = !shadow && !c.feature.beside_arc && touches(c);
   const Vec2 shift = search_->shift_of(c.pair);
-  place_.push_back(problem_.contacts.size());
+  // what a shadow touches now is looked at already, what it may come to is not: a corner that slides on an arc may lie down
+  const bool told = c.feature.goes_on || (shadow && c.feature.gap <= search_->limits().tolerance);
+  place_.push_back(told ? std::numeric_limits<std::size_t>::max() : problem_.contacts.size());
   bool present = true;
-  if (shadow && c.feature.gap <= search_->limits().tolerance) {  // what is there is looked at already
-    place_.back() = std::numeric_limits<std::size_t>::max();
-    return;
-  }
   // each shape has the friction of the contact, and keeps its gap while it is closed
   for (SmoothContact& shape :
        smooth_contacts(c.feature, of_a, members_->state(a), of_b, members_->other_state(c.pair))) {
     // of the sample's owner against the site's: the image is the other owner's, whichever of the two that
     // is
     shape.offset = c.feature.sample_on_a ? Vec2(-shift) : shift;
+    // two points meet nobody: a side is met before
+    const bool points =
+        shape.kind == SmoothContact::Kind::circle && shape.radius + shape.sample_radius == 0.0;
+    if ((present && told) || points) {
+      if (present) place_.back() = std::numeric_limits<std::size_t>::max();
+      present = false;
+      continue;
+    }
     ModeContact made;
     made.shape = shape;
     made.sample_owner = c.feature.sample_on_a ? a : b;
@@ -365,8 +371,11 @@ bool IslandModes::move_on(ModeMotion& motion, double until) {
     if (lost || arrives) c.by_modes = false;
     if (place_[k] >= motion.modes().size()) continue;
     c.next_motion = motion.modes()[place_[k]];
-    // of begin and end the larger: what presses at either belongs to the island (IslandMotion::pushes)
-    c.normal_force = std::max(c.normal_force, motion.forces().normal[place_[k]]);
+    // those that it began with, in the mode that it had; what presses at the end alone belongs to the island, too
+    // (IslandMotion::pushes)
+    if (c.normal_force > 0.0) continue;
+    c.normal_force = motion.forces().normal[place_[k]];
+    c.tangential_force = motion.forces().tangential[place_[k]];
   }
   for (std::size_t i = 0; i < tracks_.size(); ++i)
     // a held motion has no end (Trajectories::follow_own)

@@ -115,7 +115,7 @@ void IslandMotion::list(double reach) {
   for (HeldContact& c : contacts_) remember_side(c);
   // what an arc may roll to counts along a step alone: until then its end tells all
   std::erase_if(contacts_, [&](const HeldContact& c) {
-    return (c.feature.beside_arc && reach >= 0.0) || (c.feature.goes_on && (reach >= 0.0 || by_modes_));
+    return (c.feature.beside_arc && reach >= 0.0) || (c.feature.goes_on && reach >= 0.0);
   });
   absorbed_ = 0.0;
 }
@@ -125,7 +125,9 @@ void IslandMotion::remember_side(HeldContact& c) const {
   const Outline& carrier =
       search_->outline_of(c.feature.sample_on_a ? c.pair.body : search_->other_owner(c.pair));
   NearFeature& f = c.feature;
-  if (!f.thin || (f.at_end && !f.goes_on) || !(std::abs(f.gap) < kSunkOfRadius * carrier.bounding_radius))
+  // upon a corner edges tell it, whichever side of the line of a piece it was on before it came there
+  if (!f.thin || f.upon_corner || (f.at_end && !f.goes_on) ||
+      !(std::abs(f.gap) < kSunkOfRadius * carrier.bounding_radius))
     return;
   const HeldContact* known = f.at_end ? nullptr : warm_.find(c);
   const bool turn = known != nullptr && !known->feature.at_end

@@ -36,7 +36,7 @@ struct SolverOptions {
   bool persistent = true;
   /// Islands of few bodies with at most so many contacts move by modes, to `tolerance`; others in steps. Where
   /// forces change with place, velocity or time, 16 at least.
-  std::uint64_t modes_contacts = 0;
+  std::uint64_t modes_contacts = 16;
   /// Steps of islands are so short that nobody's place is off by more in one of them [m]: half of what its change of
   /// velocity moves it. Impacts in a step do not count. 0: steps are as long as the smallest member's fall allows.
   double island_tolerance = 0.0;

@@ -96,7 +96,7 @@ velocity = [3, 0]
   const double down = std::sqrt(2.0 * g * 0.01), begin = down / g, v = 3.0 - 0.5 * down;
   for (const LastedContact& c : slid) {
     EXPECT_NEAR(c.from, begin, 1e-6);
-    EXPECT_NEAR(c.to, begin + v / (0.5 * g), 0.03);  // steps are of first order
+    EXPECT_NEAR(c.to, begin + v / (0.5 * g), 1e-4);
     EXPECT_EQ(c.other_site, 0);
     EXPECT_NEAR(c.tangential_force, 0.5 * c.normal_force, 1e-6);
   }
