@@ -253,6 +253,11 @@ RunReport run_scene(const Scene& scene, const RunRequest& request) {
     close_as_failed(recorder, simulator, e.what());
     throw;
   }
+  // The end of a run that failed is none of the frame clock's: one that fails there again has it still.
+  const double end = report.summary.end_time;
+  if (report.summary.termination == Termination::failed && report.resumed_from == end &&
+      !recorder.has_frame_of(end))
+    recorder.frame(end, simulator.states());
   report.summary.wall_seconds -= pause.seconds();
   // The simulator has counted from the checkpoint on.
   if (recorder.resume_point()) report.summary.wall_seconds += recorder.resume_point()->wall_seconds;

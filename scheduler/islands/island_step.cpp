@@ -409,28 +409,50 @@ double rise_of_thin(const IslandStep& step, const StepResult& result, const std:
   return rise;
 }
 
-/// The velocity that all bodies have in common and no contact changes [m/s]: of their centre of mass, across what sites push
-/// along; 0 where these push along more than one line, or hold somebody.
-Vec2 common_velocity(const IslandStep& step, const StepResult& result, const std::vector<Part>& parts) {
-  Vec2 momentum = Vec2::Zero(), along = Vec2::Zero();  // `along`: a line that sites push along, unit
-  double mass = 0.0;
-  for (std::size_t i = 0; i < step.mass.size(); ++i) {
-    if (std::isinf(step.mass[i].x()) || std::isinf(step.mass[i].y())) return Vec2::Zero();
-    mass += step.mass[i].x();
-    momentum += step.mass[i].x() * result.velocity[i].head<2>();
-  }
+/// The direction in which sites push (unit), by all but roundings of the largest push; 0: none does. Nothing where they push along
+/// more than one line, or hold somebody.
+std::optional<Vec2> line_of_pushes(const IslandStep& step, const StepResult& result,
+                                   const std::vector<Part>& parts) {
+  if (std::any_of(step.mass.begin(), step.mass.end(),
+                  [](const Vec3& m) { return std::isinf(m.x()) || std::isinf(m.y()); }))
+    return std::nullopt;
+  std::vector<Vec2> pushes;
+  Vec2 largest = Vec2::Zero();
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const LastingContact& rows = step.contacts[parts[k].contact].rows;
-    if (rows.other >= 0) continue;
-    const Vec2 push =
-        (result.loads[k].normal * rows.normal_on_body + result.loads[k].tangential * rows.tangent_on_body)
-            .head<2>();
-    if (push.isZero(0.0)) continue;
-    if (along.isZero(0.0)) along = push.normalized();
-    if (std::abs(cross(along, push)) > kOnePush * push.norm()) return Vec2::Zero();
+    const Vec3 push =
+        result.loads[k].normal * rows.normal_on_body + result.loads[k].tangential * rows.tangent_on_body;
+    if (rows.other < 0) pushes.emplace_back(push.head<2>());
+    if (rows.other < 0 && pushes.back().norm() > largest.norm()) largest = pushes.back();
   }
-  const Vec2 velocity = momentum / mass;
-  return velocity - along.dot(velocity) * along;
+  if (largest.isZero(0.0)) return Vec2(Vec2::Zero());
+  const Vec2 along = largest.normalized();
+  const bool one = std::all_of(pushes.begin(), pushes.end(), [&](const Vec2& push) {
+    return std::abs(cross(along, push)) <= kOnePush * largest.norm();
+  });
+  return one ? std::optional<Vec2>(along) : std::nullopt;
+}
+
+/// The velocity that all bodies have in common across that line: no contact changes it [m/s].
+Vec2 common_velocity(const IslandStep& step, const std::vector<Vec3>& velocity, const Vec2& line) {
+  Vec2 momentum = Vec2::Zero();
+  double mass = 0.0;
+  for (std::size_t i = 0; i < step.mass.size(); ++i) {
+    mass += step.mass[i].x();
+    momentum += step.mass[i].x() * velocity[i].head<2>();
+  }
+  const Vec2 common = momentum / mass;
+  return common - line.dot(common) * line;
+}
+
+/// What the solver's digits have changed of the momentum that no site takes is given back to all alike: among the bodies it
+/// changes no gap, and none with a site across that line.
+void keep_momentum(const IslandStep& step, double h, const Vec2& line, std::vector<Vec3>& velocity) {
+  std::vector<Vec3> without = step.velocity;
+  for (std::size_t i = 0; i < without.size(); ++i)
+    without[i] += h * step.force[i].cwiseQuotient(step.mass[i]);
+  const Vec2 lost = common_velocity(step, without, line) - common_velocity(step, velocity, line);
+  for (Vec3& v : velocity) v.head<2>() += lost;
 }
 
 /// Makes the step win nothing [J], but for `free`: all go the same way, relative to what they have in common, only not as far. So
@@ -574,6 +596,8 @@ StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, b
       }
       continue;
     }
+    const std::optional<Vec2> line = line_of_pushes(step, result, parts);
+    if (line) keep_momentum(step, h, *line, result.velocity);
     double of = 0.0;
     const double won_here = won(step, result, parts, h, tolerance, of);
     // The caller tries a shorter step: by what faces that turn are missed is of second order in h.
@@ -588,7 +612,7 @@ StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, b
     const double free = rise_of_thin(step, result, parts, h);
     if (won_here > free && !driven) {
       const std::vector<Vec3> velocity = result.velocity;
-      const Vec2 common = common_velocity(step, result, parts);
+      const Vec2 common = line ? common_velocity(step, velocity, *line) : Vec2(Vec2::Zero());
       win_nothing(step, common, free, h, result.velocity);
       // what all have in common leads past sites as before, but where one of them ends or another begins
       if (!common.isZero(0.0) && misses_site(step, h, result.velocity, gaps)) {

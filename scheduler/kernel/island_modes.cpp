@@ -326,9 +326,17 @@ IslandModes::Outcome IslandModes::take(double now, double h, std::vector<HeldCon
   // after an impact velocities are others, and with them modes
   const auto former = on_time && how == Approach::none ? former_modes() : std::nullopt;
   if (!(former ? motion.begin_in(*former) : motion.begin(closed_now(states, how)))) return Outcome::none;
+  begun_ = motion.states();
   if (!move_on(motion, until)) return Outcome::none;
   if (!within_reach()) return Outcome::wider;
   return keeps_apart() ? Outcome::moved : Outcome::none;
+}
+
+ExtendedState IslandModes::let_go(int member) const {
+  ExtendedState s = members_->state(member);
+  const Twist before = s.twist.rounded(), &after = begun_[member].twist;
+  if (after.velocity != before.velocity || after.omega != before.omega) s.twist = ExtendedTwist(after);
+  return s;
 }
 
 /// Modes and forces from the present time on.

@@ -59,6 +59,8 @@ class IslandModes {
     EventKind kind;
   };
   std::vector<Change> changes() const;
+  /// The state of a member that stays in no island: as it was, but for what met at the beginning.
+  ExtendedState let_go(int member) const;
   /// What met without a rebound, faster than the slowest bounce, at the beginning.
   struct Impact {
     HeldContact contact;
@@ -107,6 +109,7 @@ class IslandModes {
   double now_ = 0.0, end_ = 0.0;
   std::vector<HeldContact> contacts_;
   std::vector<Impact> impacts_;
+  std::vector<BodyState> begun_;    ///< with what these have made of the members' twists
   std::vector<bool> touching_;      ///< of each contact of the problem
   std::vector<std::size_t> of_;     ///< contact that it is a shape of, of each contact of the problem
   std::vector<std::size_t> place_;  ///< of each contact's present shape in the problem

@@ -316,6 +316,7 @@ bool IslandMotion::rests(double rest_speed) {
     if (members_.on_moving_site(c)) return false;
   if (!go_on_()) return false;
   make_problem();
+  if (fades && !can_stop(tolerance)) return false;
   if (!stays_at_rest(*solver_, problem_, go_on_)) {
     // A step has held many still by the friction that sweeps found, which is off by some hundredths of the largest force: it
     // would hold them for ever.
@@ -338,6 +339,19 @@ bool IslandMotion::rests(double rest_speed) {
   // to the bit: what is still has no search and no step (Motion::is_still)
   for (int i = 0; i < count; ++i) members_.set_twist(i, ExtendedTwist());
   return true;
+}
+
+/// True if contacts can take what is left of the members' speed within `way` [m]: where nothing holds it, as on ice, it does not
+/// fade, however slow. What forces would hide in a rounding of them is nothing.
+bool IslandMotion::can_stop(double way) {
+  const double speed = members_.speed(), pull = members_.pull();
+  if (speed * speed <= kNoForce * pull * way) return true;
+  IslandStep stopping = problem_;
+  for (std::size_t i = 0; i < members_.count(); ++i)
+    for (int k = 0; k < 3; ++k)
+      if (!std::isinf(stopping.mass[i][k]))
+        stopping.force[i][k] += stopping.mass[i][k] * problem_.velocity[i][k] * speed / way;
+  return stays_at_rest(*solver_, stopping, go_on_);
 }
 
 /// Of all members [J].
@@ -410,10 +424,7 @@ bool IslandMotion::take(double h, double tolerance) {
       };
     };
     const StepOutcome outcome = take_under_forces(gaps);
-    closes_in_ = -1;
-    if (outcome.no_room)
-      for (const HeldContact& c : contacts_)
-        if (members_.on_moving_site(c)) closes_in_ = c.pair.other_site;
+    closes_in_ = outcome.no_room ? site_that_closes_in() : -1;
     // work is counted of every try, all else of the step that is taken
     tally_->factorisations += outcome.factorisations;
     // looked at after the solver: contacts may hand on more speed than anybody had
@@ -439,6 +450,19 @@ bool IslandMotion::take(double h, double tolerance) {
     h *= 0.5;
   }
   return false;
+}
+
+/// Of the sites that move the one that comes deepest into where somebody is in the step, or -1.
+int IslandMotion::site_that_closes_in() const {
+  int site = -1;
+  double deepest = -kForever;
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    if (!members_.on_moving_site(contacts_[k])) continue;
+    const IslandContact& c = problem_.contacts[k];
+    const double deep = h_ * c.normal_support - std::max(c.gap, 0.0);
+    if (deep > deepest) site = contacts_[k].pair.other_site, deepest = deep;
+  }
+  return site;
 }
 
 /// When the first feature comes that closes too fast to be taken as plastic [s]; infinity: none. What touches

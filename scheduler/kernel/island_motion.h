@@ -97,6 +97,7 @@ class IslandMotion {
   double impact_of(const HeldContact& c, const std::vector<Vec3>& velocity) const;
   void collide(const HeldContact& c, double closing, const Impact& told);
   ImpulseSide side_of(int member, const RealVec& arm) const;
+  int site_that_closes_in() const;
   double next_arrival();
   Arrival arrival(const HeldContact& c, const std::vector<Vec3>& velocity) const;
   double fastest_approach(const HeldContact& c, const std::vector<Vec3>& velocity) const;
@@ -115,6 +116,7 @@ class IslandMotion {
   bool stays_within_reach() const;
   double change_of_speed() const;
   void take_forces();
+  bool can_stop(double way);
   double kinetic_energy() const;
   bool pushes(const HeldContact& c) const;
   bool stays_near(std::size_t contact, bool both_pushed, std::vector<Vec3>& velocity) const;

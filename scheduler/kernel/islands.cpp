@@ -369,7 +369,7 @@ void Islands::part(const IslandMotion& motion, bool rests, const IslandModes* mo
   }
   for (const int i : parts.free) {
     free.push_back(members.bodies()[i]);
-    as_they_are.push_back({members.bodies()[i], members.state(i)});
+    as_they_are.push_back({members.bodies()[i], modes ? modes->let_go(i) : members.state(i)});
   }
   trajectories_->hold(held, changed);
   // Those that are let go as well: their impacts of this instant are in their states, and release() goes

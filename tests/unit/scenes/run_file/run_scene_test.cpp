@@ -152,5 +152,21 @@ TEST_F(RunSceneTest, SitesKeepTheirPosesThoughTheyAreNotAsManyAsTheFrames) {
   EXPECT_EQ(count(), before);
 }
 
+// It fails there again at once, and its file has its last state still.
+TEST_F(RunSceneTest, OneThatFailedHasTheFrameOfItsEndWhenItGoesOn) {
+  std::string text = kBall;
+  text += "[[forces]]\nkind = \"formula\"\nbodies = [\"body0\"]\nfx = \"sqrt(0.3 - t)\"\n";
+  const Scene scene = parse_scene(text, "ball.toml");
+  std::vector<double> times;
+  for (const bool resume : {false, true, true}) {
+    const RunReport report = run(scene, "out", 0.75, resume);
+    EXPECT_EQ(report.summary.termination, Termination::failed);
+    SQLite::Database db(report.file.string());
+    times.push_back(db.execAndGet("SELECT max(t) FROM frame").getDouble());
+    EXPECT_EQ(times.back(), report.summary.end_time) << resume;
+  }
+  EXPECT_NEAR(times.front(), 0.3, 1e-3);
+}
+
 }  // namespace
 }  // namespace brink::run_scene_test

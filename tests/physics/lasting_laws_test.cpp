@@ -1,0 +1,149 @@
+// What contacts that last must keep: momentum where no site takes any, and energy that never grows where nothing gives any. Clouds of
+// bodies that meet in free space and bodies on ice, of all shapes and of masses a million times apart; looked at from outside at every
+// frame. BRINK_SEED moves the seeds, BRINK_WORLDS their number.
+#include <gtest/gtest.h>
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "brink/core/base/random.h"
+#include "tests/support/outside/frame_watch.h"
+#include "tests/support/seeded_worlds.h"
+
+namespace brink::lasting_laws_test {
+namespace {
+
+constexpr double kEnd = 3.0, kFrames = 1.0 / 128.0;
+/// Of the largest momentum, and of the kinetic energy that there was.
+constexpr double kMomentumLost = 1e-11, kEnergyWon = 1e-10;
+
+Shape shape_of(Random& random) {
+  const double size = random.uniform(0.3, 0.8);
+  switch (random.below(6)) {
+    case 0:
+      return make_disc(0.5 * size);
+    case 1:
+      return make_box(size, size * random.uniform(0.3, 1.0));
+    case 2:
+      return make_polygon({{-0.5 * size, -0.3 * size}, {0.5 * size, -0.3 * size}, {0.0, 0.6 * size}});
+    case 3:
+      return make_box(size, 0.5 * size, 0.1 * size);
+    case 4:
+      return make_chain({{-0.5 * size, 0.0}, {0.5 * size, 0.0}}, false, 0.1 * size);
+    default:
+      return make_polygon(
+          {{0, 0}, {size, 0}, {size, 0.3 * size}, {0.3 * size, 0.3 * size}, {0.3 * size, size}, {0, size}});
+  }
+}
+
+struct Made {
+  World world;
+  bool on_ice = false;
+};
+
+Made make(Random& random) {
+  const auto pick = [&](std::initializer_list<double> of) { return *(of.begin() + random.below(of.size())); };
+  Made made;
+  made.on_ice = random.below(2) == 0;
+  World& w = made.world;
+  w.materials[0].restitution = pick({0.0, 0.0, 0.3});
+  w.materials[0].friction = made.on_ice ? 0.0 : pick({0.0, 0.3, 2.0});
+  if (made.on_ice) w.gravity = {0.0, -9.81};
+  if (made.on_ice) {
+    if (random.below(2) == 0)
+      testing::add(w, testing::site(make_segment({-300.0, 0.0}, {300.0, 0.0})));
+    else
+      testing::add(w, testing::site(make_box(600.0, 1.0), {0.0, -0.5}));
+  }
+  const int bodies = 2 + static_cast<int>(random.below(random.below(3) == 0 ? 12 : 4));
+  const double drift = pick({0.0, 1.0, 10.0}), light = pick({1.0, 1.0, 1e-3, 1e-6});
+  for (int k = 0; k < bodies; ++k) {
+    // on a grid, so that nobody begins in anybody
+    const Vec2 at(1.3 * (k % 4), 0.9 + 1.3 * (k / 4));
+    testing::add(w, testing::body(shape_of(random), at,
+                                  Vec2(drift - 0.5 * at.x() + random.uniform(-0.3, 0.3),
+                                       made.on_ice ? 0.0 : -0.5 * at.y() + random.uniform(-0.3, 0.3)),
+                                  random.below(3) == 0 ? light : random.uniform(0.5, 2.0),
+                                  random.uniform(-3.0, 3.0), random.uniform(-2.0, 2.0)));
+  }
+  return made;
+}
+
+/// Sees by how much momentum has changed that nothing takes, and how far energy has risen above the least it was.
+class LawWatch final : public outside::FrameWatch {
+ public:
+  explicit LawWatch(const Made& made) : FrameWatch(made.world, kEnd, 1e-9), made_(made) {}
+  void frame(double t, std::span<const BodyState> states) override {
+    FrameWatch::frame(t, states);
+    Vec2 momentum = Vec2::Zero();
+    double largest = 0.0, energy = 0.0, kinetic = 0.0;
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      const Body& b = made_.world.bodies[k];
+      const Vec2 p = b.mass * states[k].twist.velocity;
+      momentum += p;
+      largest = std::max(largest, p.norm());
+      kinetic +=
+          0.5 * (p.dot(states[k].twist.velocity) + b.inertia * states[k].twist.omega * states[k].twist.omega);
+      energy -= b.mass * made_.world.gravity.dot(states[k].pose.position);
+    }
+    energy += kinetic;
+    if (frames_++ == 0) {
+      first_ = momentum;
+      least_ = energy;
+      of_ = std::max(kinetic, std::abs(energy));
+    }
+    const Vec2 change = momentum - first_;
+    scale_ = std::max(scale_, largest);
+    lost = std::max(lost, made_.on_ice ? std::abs(change.x()) : change.norm());
+    // in the middle of a step of first order under gravity states are none that energy is known of
+    if (!made_.on_ice) won = std::max(won, (energy - least_) / of_);
+    least_ = std::min(least_, energy);
+  }
+  double lost_part() const { return lost / std::max(scale_, 1e-9); }
+  double lost = 0.0, won = 0.0;
+
+ private:
+  const Made& made_;
+  Vec2 first_ = Vec2::Zero();
+  double least_ = 0.0, of_ = 0.0, scale_ = 0.0;
+  int frames_ = 0;
+};
+
+/// "" where it is sound, else what is wrong.
+std::string fault_of(std::uint64_t seed) {
+  Random random(seed);
+  const Made made = make(random);
+  SolverOptions solver;
+  solver.max_collisions = 20000;
+  if (random.below(3) == 0) solver.modes_contacts = 0;
+  Simulator simulator(made.world, solver);
+  if (!simulator.start_fault().empty()) return "";
+  LawWatch watch(made);
+  RunOptions options = testing::until(kEnd);
+  options.frame_interval = kFrames;
+  const RunSummary summary = simulator.run(options, &watch);
+  const std::string what =
+      fmt::format("{} {} bodies{}: ", made.on_ice ? "on ice" : "free", made.world.bodies.size(),
+                  solver.modes_contacts == 0 ? " by steps" : "");
+  if (summary.termination == Termination::failed) return what + summary.why;
+  if (!watch.sound()) return what + watch.report();
+  if (watch.lost_part() > kMomentumLost)
+    return fmt::format("{}{:.3g} of the momentum lost", what, watch.lost_part());
+  if (watch.won > kEnergyWon) return fmt::format("{}{:.3g} of the energy won", what, watch.won);
+  const std::string other =
+      testing::stopped_under_another_policy(made.world, solver, options, 4, seed, summary);
+  return other.empty() ? "" : what + other;
+}
+
+TEST(LastingLaws, MomentumIsKeptAndEnergyNeverGrows) {
+  const std::uint64_t first = testing::from_environment("BRINK_SEED", 1),
+                      worlds = testing::from_environment("BRINK_WORLDS", 120);
+  for (std::uint64_t seed = first; seed < first + worlds; ++seed)
+    EXPECT_EQ(fault_of(seed), "") << "seed " << seed;
+}
+
+}  // namespace
+}  // namespace brink::lasting_laws_test
