@@ -11,6 +11,7 @@
 #include "brink/core/shapes/distance.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/first_contact/pair_kinematics.h"
+#include "brink/scheduler/first_contact/straight_discs.h"
 #include "brink/scheduler/first_contact/tolerances.h"
 
 namespace brink {
@@ -255,62 +256,6 @@ bool discs(const DiscMover& a, const DiscMover& b, double from, double to, const
   if (t > to) return true;
   answer = {PairAnswer::Status::contact, t, disc_contact(a, path_a, b, path_b, t)};
   answer.contact.level = answer.contact.sink = level;
-  return true;
-}
-
-/// A disc's way without acceleration: places with Motion::place's own bits.
-struct StraightWay {
-  double origin, x, y, vx, vy;
-
-  explicit StraightWay(const Motion& m)
-      : origin(m.origin()),
-        x(m.start().pose.position.x()),
-        y(m.start().pose.position.y()),
-        vx(m.start().twist.velocity.x()),
-        vy(m.start().twist.velocity.y()) {}
-  double x_at(double t) const { return x + (t - origin) * vx; }
-  double y_at(double t) const { return y + (t - origin) * vy; }
-  double speed() const { return std::abs(vx) + std::abs(vy); }  ///< of both coordinates [m/s]
-  /// Rounding of its place at time t, or more [m]: MotionRounding.
-  double noise(double t) const {
-    return kRoundoff * (4.0 * std::abs(t - origin) * speed() + std::abs(x_at(t)) + std::abs(y_at(t)));
-  }
-};
-
-/// What discs() comes to where it is far from every case that is none of two discs that go straight to each other and
-/// meet, at a level of 0: they begin apart, and neither their rates nor their places are near a rounding. False: ask
-/// discs(). Its bounds are the same or narrower ones, without roots.
-bool straight_discs_meet(const DiscMover& a, const DiscMover& b, double from, double to,
-                         const SearchLimits& limits, DiscContact& contact) {
-  if (!a.motion->acceleration().linear.isZero(0.0) || !b.motion->acceleration().linear.isZero(0.0))
-    return false;
-  const StraightWay way_a(*a.motion), way_b(*b.motion);
-  // by an instruction of its own: of std::max() a branch is made here, and which of the two it is cannot be foreseen
-  const double reference = Vec2(way_a.origin, way_b.origin).maxCoeff(), reach = b.radius + a.radius;
-  const double dx = way_a.x_at(reference) - way_b.x_at(reference),
-               dy = way_a.y_at(reference) - way_b.y_at(reference);
-  const double wx = way_a.vx - way_b.vx, wy = way_a.vy - way_b.vy;
-  const double approach = -(dx * wx + dy * wy), speed2 = wx * wx + wy * wy, offset = dx * wy - dy * wx;
-  const double distance = std::sqrt(dx * dx + dy * dy), square = speed2 * reach * reach - offset * offset;
-  const double apart = distance - reach;
-  if (!((reach > 0.0) & (approach > 0.0) & (square > 0.0) & (apart >= limits.tolerance))) return false;
-  const double root = std::sqrt(square), s = apart * (distance + reach) / (approach + root);
-  const double t = reference + s, closing = root / reach;
-  const double noise =
-      a.velocity_rounding + b.velocity_rounding + 16.0 * kEpsilon * (way_a.speed() + way_b.speed());
-  const double place_noise = way_a.noise(t) + way_b.noise(t);
-  const double instant = same_instant(t), slow = 0.5 * kSlowOfSize * smallest_radius(a.radius, b.radius);
-  const bool in_time = (t >= from) & (t <= to), is_slow = speed2 * instant * instant <= slow * slow;
-  if (!(in_time & is_slow & (closing > 16.0 * noise) & near_enough(place_noise, limits))) return false;
-  const auto distance_at = [&](double time) {
-    const double x = way_a.x_at(time) - way_b.x_at(time), y = way_a.y_at(time) - way_b.y_at(time);
-    return std::sqrt(x * x + y * y);
-  };
-  const auto gap = [&](double time) { return distance_at(time) - reach; };
-  const double rounding = place_noise + 8.0 * kRoundoff * (std::abs(dx + s * wx) + std::abs(dy + s * wy));
-  const auto met = canonical_root(gap, t, std::max(reference, 0.0), rounding, closing);
-  if (!met || *met > to) return false;
-  contact = {*met, distance_at(*met) - b.radius - a.radius, closing};
   return true;
 }
 

@@ -1,0 +1,58 @@
+// Two discs that go straight at each other: the general search's contact, bit for bit, however many doubles its rounding
+// spans.
+#include "brink/scheduler/first_contact/straight_discs.h"
+
+#include <gtest/gtest.h>
+
+#include "brink/core/shapes/shapes.h"
+#include "tests/support/seeded_random.h"
+
+namespace brink::straight_discs_test {
+namespace {
+
+struct Flier {
+  std::unique_ptr<SiteIndex> index;
+  Motion motion;
+
+  Flier(double radius, double origin, const Vec2& place, const Vec2& velocity)
+      : index(make_brute_force_index(std::make_shared<const Outline>(make_disc(radius).outline))),
+        motion(Motion::ballistic(origin, {{place, 0.0}, {velocity, 0.0}}, {})) {}
+  DiscMover disc() const { return {&motion, index->outline().bounding_radius, 0.0}; }
+  Mover mover() const { return {index.get(), &motion, 0.0}; }
+};
+
+// Late on the clock a double of time is more than a gap's rounding, early and far from the origin a small part of it.
+TEST(StraightDiscs, MeetAtTheGeneralSearchsTimeEarlyAndLateNearAndFar) {
+  SeededRandom r(21);
+  SearchLimits limits;
+  limits.closed_forms = false;
+  SearchScratch scratch;
+  WorkCounters work;
+  int met = 0, told = 0;
+  for (int k = 0; k < 40000; ++k) {
+    const double late = std::pow(10.0, r.uniform(-3.0, 5.0)), far = std::pow(10.0, r.uniform(-1.0, 3.0)),
+                 speed = std::pow(10.0, r.uniform(-1.0, 1.0));
+    const auto flier = [&](double side) {
+      const Vec2 velocity(-side * speed * r.uniform(0.2, 1.0), speed * r.uniform(-0.3, 0.3));
+      const double since = r.uniform(0.0, std::min(late, 1.0));
+      const Vec2 place = Vec2(far + 2.0 * side, far * r.uniform(-1e-3, 1e-3) + r.uniform(-0.5, 0.5));
+      return Flier(r.uniform(0.2, 0.8), late - since, place - since * velocity, velocity);
+    };
+    const Flier a = flier(1.0), b = flier(-1.0);
+    const double from = std::max(a.motion.origin(), b.motion.origin()), to = from + 20.0 / speed;
+    DiscContact contact;
+    const bool straight = straight_discs_meet(a.disc(), b.disc(), from, to, limits, contact);
+    const PairAnswer slow = first_contact(a.mover(), b.mover(), from, to, limits, scratch, work);
+    met += slow.status == PairAnswer::Status::contact;
+    told += straight;
+    if (!straight || contact.closing_speed < 1e-2 * speed) continue;  // grazing
+    ASSERT_EQ(slow.status, PairAnswer::Status::contact) << "case " << k;
+    ASSERT_EQ(contact.time, slow.contact.time) << "case " << k << " late " << late << " far " << far;
+    ASSERT_EQ(contact.gap, slow.contact.gap) << "case " << k;
+  }
+  EXPECT_GT(met, 10000);
+  EXPECT_GT(told, met * 9 / 10);
+}
+
+}  // namespace
+}  // namespace brink::straight_discs_test
