@@ -36,7 +36,7 @@ struct WorkCounters {
   std::uint64_t collisions = 0;
   std::uint64_t collisions_body_body = 0;
   std::uint64_t collisions_body_site = 0;
-  std::uint64_t collisions_quick = 0;  ///< of two plain discs alone in their instant, resolved in one go
+  std::uint64_t collisions_quick = 0;  ///< of plain discs alone in their instant, resolved in one go
   std::uint64_t let_go = 0;            ///< overlapping but receding contacts let go (Bannerman et al. 2012)
   // wall-clock seconds of the stages, each without those within it; what is left is the policy's own
   double seconds_look = 0.0;      ///< who is near whom: broad phase, views, passes

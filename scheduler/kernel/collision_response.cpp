@@ -93,6 +93,7 @@ CollisionResponse::CollisionResponse(const World& world, const SolverOptions& op
       run_(&run),
       reflects_(options.response == "reflection") {
   for (int k = 0; k < static_cast<int>(world.bodies.size()); ++k) plain_.push_back(plain_disc(k));
+  for (int s = 0; s < static_cast<int>(world.sites.size()); ++s) plain_walls_.push_back(plain_wall(s));
   if (!search.points_meet_wires()) return;
   const auto thin = [](const Site& site) {
     return !site.solid && site.radius == 0.0 && site.kind != SiteKind::point;
@@ -111,6 +112,17 @@ CollisionResponse::PlainDisc CollisionResponse::plain_disc(int k) const {
                      outline.bounding_radius > 0.0 && !body.lock_x && !body.lock_y && body.mass > 0.0 &&
                      !reflects_ && !search_->points_meet_wires();
   return plain ? PlainDisc{1.0 / body.mass, outline.bounding_radius, body.material} : PlainDisc{};
+}
+
+/// What wall_rebound() asks before it knows the disc.
+CollisionResponse::PlainWall CollisionResponse::plain_wall(int s) const {
+  if (reflects_ || search_->points_meet_wires() || !search_->is_straight_wall(s)) return {};
+  const int owner = trajectories_->body_count() + s;
+  const Motion& motion = trajectories_->motion_of(owner);
+  const Site& site = search_->outline_of(owner).sites[0];
+  const ExtendedState stands = motion.extended_state(motion.origin());
+  return {
+      true, {stands.to_world(site.a), stands.to_world(site.b), site.radius, {}}, world_->sites[s].material};
 }
 
 /// Combined when the pair's two materials first meet, and kept.
@@ -350,32 +362,55 @@ std::optional<Outcome> CollisionResponse::part(const PairKey& pair, const Featur
   return outcome;
 }
 
+/// Without friction; and low flights are remembered, as they may be a series that has an end. `last`: when one of the two was
+/// last resolved [s], below 0: never.
+bool CollisionResponse::may_rebound_plainly(const Material& material, const DiscContact& found,
+                                            double last) const {
+  const double since_last = last < 0.0 ? std::numeric_limits<double>::infinity() : run_->time() - last;
+  return material.friction == 0.0 &&
+         (!(material.restitution < 1.0) || ZenoWatch::is_high(found.closing_speed * kLessByRoundings,
+                                                              since_last, search_->limits().tolerance));
+}
+
+/// Of the flight that ends now: false if it was seen to lead through a wire, which ends the run.
+bool CollisionResponse::has_flown(int k, const Motion& motion) {
+  return watch_->is_clear_flight(k, motion.start().pose.position, motion.place(run_->time())) ||
+         watch_->flight(k, run_->time());
+}
+
 /// Whatever may yet say no comes before the first change.
 bool CollisionResponse::collide_discs(const PairKey& pair, const DiscContact& found) {
   const PlainDisc &a = plain_[pair.body], &b = plain_[pair.other_body];
   const Material& material = materials_.of(*world_, a.material, b.material);
-  if (material.friction != 0.0) return false;
   const double now = run_->time();
   const BodyTrack &track_a = trajectories_->body(pair.body), &track_b = trajectories_->body(pair.other_body);
-  const double last = std::max(track_a.resolved_at, track_b.resolved_at);
-  const double since_last = last < 0.0 ? std::numeric_limits<double>::infinity() : now - last;
-  // low flights are remembered: they may be a series that has an end
-  if (material.restitution < 1.0 &&
-      !ZenoWatch::is_high(found.closing_speed * kLessByRoundings, since_last, search_->limits().tolerance))
-    return false;
+  if (!may_rebound_plainly(material, found, std::max(track_a.resolved_at, track_b.resolved_at))) return false;
   if (!rebound({&track_a.motion, a.radius, a.inverse_mass}, {&track_b.motion, b.radius, b.inverse_mass},
                search_->shift_of(pair), now, 4.0 * ulp(now), 0.0, material.restitution, after_))
     return false;
-  // the flights that end here
-  const auto flew = [&](int k, const Motion& motion) {
-    return watch_->is_clear_flight(k, motion.start().pose.position, motion.place(now)) ||
-           watch_->flight(k, now);
-  };
-  if (!flew(pair.body, track_a.motion) || !flew(pair.other_body, track_b.motion)) return true;
+  if (!has_flown(pair.body, track_a.motion) || !has_flown(pair.other_body, track_b.motion)) return true;
   note_resolve(pair.body, pair.other_body, after_.magnitude);
   trajectories_->restart_free(pair.body, after_.a.state, after_.a.low);
   note_resolve(pair.other_body, pair.body, after_.magnitude);
   trajectories_->restart_free(pair.other_body, after_.b.state, after_.b.low);
+  watch_->discs_resolved(pair, after_.gap);
+  return true;
+}
+
+bool CollisionResponse::collide_with_wall(const PairKey& pair, const WallContact& found) {
+  const PlainDisc& disc = plain_[pair.body];
+  PlainWall& wall = plain_walls_[pair.other_site];
+  const Material& material = materials_.of(*world_, disc.material, wall.material);
+  const double now = run_->time();
+  const BodyTrack& track = trajectories_->body(pair.body);
+  if (!may_rebound_plainly(material, found, track.resolved_at)) return false;
+  wall.side.normal = found.normal;
+  if (!rebound({&track.motion, disc.radius, disc.inverse_mass}, wall.side, now, 4.0 * ulp(now), 0.0,
+               material.restitution, after_))
+    return false;
+  if (!has_flown(pair.body, track.motion)) return true;
+  note_resolve(pair.body, search_->other_owner(pair), after_.magnitude);
+  trajectories_->restart_free(pair.body, after_.a.state, after_.a.low);
   watch_->discs_resolved(pair, after_.gap);
   return true;
 }

@@ -34,6 +34,10 @@ class CollisionResponse {
   /// collide() of two plain discs in free flight that started clear of each other, to the bit, where nobody is to be
   /// told what comes of it. False, and nothing has changed, where that is not sure: ask collide(). May halt.
   bool collide_discs(const PairKey& pair, const DiscContact& found);
+  /// A straight wall that stands still, where discs are plain.
+  bool is_plain_wall(int site) const { return !plain_walls_.empty() && plain_walls_[site].is_plain; }
+  /// The same of a plain disc and such a wall.
+  bool collide_with_wall(const PairKey& pair, const WallContact& found);
   /// Starts to fetch what that reads of a body beside its motion.
   void expect(int body) const { prefetch(&plain_[body]); }
 
@@ -60,8 +64,16 @@ class CollisionResponse {
     double radius = 0.0;        ///< [m]
     int material = -1;
   };
+  struct PlainWall {
+    bool is_plain = false;
+    WallSide side;  ///< its normal is the last disc's
+    int material = -1;
+  };
   Change change(const PairKey& pair, const FeatureContact& found, const Material& material);
   PlainDisc plain_disc(int body) const;
+  PlainWall plain_wall(int site) const;
+  bool may_rebound_plainly(const Material& material, const DiscContact& found, double last) const;
+  bool has_flown(int body, const Motion& motion);
   DiscSide free_disc(int body) const;
   std::optional<DiscRebound> disc_rebound(const PairKey& pair, const FeatureContact& found,
                                           const Material& material);
@@ -81,9 +93,10 @@ class CollisionResponse {
   RunControl* run_;
   bool reflects_;  ///< response "reflection"
   PairMaterials materials_;
-  LargeVector<PlainDisc> plain_;  ///< of every body
-  DiscRebound after_;             ///< of the last two plain discs
-  std::vector<int> wires_;        ///< fixed sites that have a wire without thickness
+  LargeVector<PlainDisc> plain_;        ///< of every body
+  std::vector<PlainWall> plain_walls_;  ///< of every site; empty: nobody asks
+  DiscRebound after_;                   ///< of the last plain discs
+  std::vector<int> wires_;              ///< fixed sites that have a wire without thickness
 };
 
 }  // namespace brink

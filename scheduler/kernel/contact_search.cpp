@@ -108,6 +108,9 @@ void ContactSearch::take_outlines(const std::vector<std::shared_ptr<const Outlin
   for (const Body& b : world_->bodies) add(b.outline);
   for (const std::shared_ptr<const Outline>& outline : of_sites_) add(outline);
   points_meet_wires_ = points_may_meet_wires(outlines_, world_->bodies.size());
+  walls_.clear();
+  for (int owner = trajectories_->body_count(); owner < trajectories_->owner_count(); ++owner)
+    walls_.push_back(StraightWall::of(outline_of(owner), trajectories_->motion_of(owner)));
 }
 
 /// Bodies come first among owners, so of two owners that may meet the lower one is a body.
@@ -205,6 +208,29 @@ FeatureContact ContactSearch::contact_of_discs(const PairKey& pair, double radiu
   const Motion other = pair.image == Image{} ? b.motion : b.motion.displaced(shift_of(pair));
   return brink::contact_of_discs({&a.motion, radius, a.velocity_rounding},
                                  {&other, other_radius, b.velocity_rounding}, time);
+}
+
+bool ContactSearch::search_wall(const PairKey& pair, double radius, double from, double to,
+                                WallContact& contact) {
+  WorkCounters& work = run_->work();
+  const StageTimer::Sampled timed(run_->timer(), work.seconds_search, timed_);
+  const BodyTrack& disc = trajectories_->body(pair.body);
+  from = std::max(from, disc.motion.origin());
+  if (from > to || !straight_wall_met({&disc.motion, radius, disc.velocity_rounding},
+                                      *walls_[pair.other_site], from, to, limits_, contact))
+    return false;
+  ++work.pair_searches;
+  ++work.closed_forms;
+  ++work.certificates_issued;
+  return true;
+}
+
+FeatureContact ContactSearch::contact_with_wall(const PairKey& pair, const WallContact& contact) {
+  FeatureContact like;
+  like.time = contact.time;
+  like.sample = like.site = 0;
+  like.normal = contact.normal;
+  return contact_at(mover(pair.body), mover(other_owner(pair)), contact.time, like, limits_, scratch_);
 }
 
 std::vector<Certificate> ContactSearch::simultaneous(const Certificate& c, const BodyTrack& body,

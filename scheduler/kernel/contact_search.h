@@ -12,6 +12,7 @@
 #include "brink/scheduler/events/agenda.h"
 #include "brink/scheduler/first_contact/closed_forms.h"
 #include "brink/scheduler/first_contact/first_contact.h"
+#include "brink/scheduler/first_contact/straight_wall.h"
 #include "brink/scheduler/kernel/stage_clock.h"
 #include "brink/scheduler/kernel/trajectories.h"
 
@@ -81,6 +82,15 @@ class ContactSearch {
                     DiscContact& contact);
   /// All of that contact.
   FeatureContact contact_of_discs(const PairKey& pair, double radius, double other_radius, double time) const;
+  /// The same of a plain disc and a site. @pre where it is, not an image.
+  bool search_wall(const PairKey& pair, double radius, double from, double to, WallContact& contact);
+  FeatureContact contact_with_wall(const PairKey& pair, const WallContact& contact);
+  bool is_straight_wall(int site) const { return walls_[site].has_value(); }
+  /// When such a disc can touch the wall at the soonest, or sooner [s]; infinity: never.
+  double soonest_at_wall(int body, double radius, int site) const {
+    const BodyTrack& disc = trajectories_->body(body);
+    return brink::soonest_at_wall({&disc.motion, radius, disc.velocity_rounding}, *walls_[site], limits_);
+  }
   /// True if everybody may meet everybody.
   bool is_unfiltered() const { return !filter_; }
   /// Other features of that pair that touch and approach at the certificate's time, each as one of its own.
@@ -107,6 +117,7 @@ class ContactSearch {
   bool points_meet_wires_ = false;
   std::vector<const Outline*> outlines_;  ///< of every owner
   std::vector<const SiteIndex*> indices_of_;
+  std::vector<std::optional<StraightWall>> walls_;  ///< of every site
   std::vector<std::unique_ptr<SiteIndex>> indices_;
   std::vector<std::shared_ptr<const Outline>> of_sites_;
   FieldOptions field_;

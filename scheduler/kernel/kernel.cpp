@@ -199,15 +199,17 @@ bool Kernel::has_quick_way() const {
          !parts_.grouping && !parts_.policy_watch.is_on() && parts_.speculation.empty();
 }
 
-/// respond() and tell(), of all that a collision may be the end of only what this one may be.
-bool Kernel::resolve_discs(const PairKey& pair, const DiscContact& found) {
+/// respond() and tell(), of all that a collision may be the end of only what this one may be. `collide`: false where it
+/// is not plain.
+template <class Collide>
+bool Kernel::resolve_plainly(const PairKey& pair, double gap, Collide&& collide) {
   if (!parts_.endings.is_plain(time())) return false;
   {
     const StageTimer::Sampled timed(parts_.run.timer(), parts_.run.work().seconds_response, responses_timed_);
-    if (!parts_.response.collide_discs(pair, found)) return false;
+    if (!collide()) return false;
   }
   if (halt()) return true;
-  parts_.watch.note_overlap(found.gap);
+  parts_.watch.note_overlap(gap);
   count(pair);
   ++parts_.run.work().collisions_quick;
   parts_.records.event_untold();
@@ -215,6 +217,14 @@ bool Kernel::resolve_discs(const PairKey& pair, const DiscContact& found) {
   poll();
   stop_at_limit(collisions());
   return true;
+}
+
+bool Kernel::resolve_discs(const PairKey& pair, const DiscContact& found) {
+  return resolve_plainly(pair, found.gap, [&] { return parts_.response.collide_discs(pair, found); });
+}
+
+bool Kernel::resolve_at_wall(const PairKey& pair, const WallContact& found) {
+  return resolve_plainly(pair, found.gap, [&] { return parts_.response.collide_with_wall(pair, found); });
 }
 
 /// In an instant that has had too many collisions the law is `collapsed`, whatever the order.

@@ -92,7 +92,7 @@ class Kernel : public KernelView {
   /// Records that a pair's search cannot tell, and ends the run.
   void give_up(const Certificate& c);
 
-  // -- two plain discs, by the quick way: the same bits, events and counts as by search() and resolve() --
+  // -- plain discs, by the quick way: the same bits, events and counts as by search() and resolve() --
   /// True while nobody looks on: no trace, no events, no filter, no grouping, no policy that is held to contacts.
   bool has_quick_way() const;
   /// True of a body that may be one of the two, while it is in free flight.
@@ -105,6 +105,21 @@ class Kernel : public KernelView {
   }
   /// Resolves it, alone in its instant, at the present time. False, and nothing has changed: ask resolve().
   bool resolve_discs(const PairKey& pair, const DiscContact& contact);
+  /// True of a site that such a disc meets by the quick way.
+  bool is_plain_wall(int site) const { return parts_.response.is_plain_wall(site); }
+  /// The same of a disc and a wall.
+  bool search_wall(const PairKey& pair, double from, double to, WallContact& contact) {
+    return parts_.search.search_wall(pair, parts_.response.radius_of_plain_disc(pair.body), from, to,
+                                     contact);
+  }
+  /// When such a disc can touch such a wall at the soonest, or sooner [s]; infinity: not before it is resolved.
+  double soonest_at_wall(int k, int site) const {
+    return parts_.search.soonest_at_wall(k, parts_.response.radius_of_plain_disc(k), site);
+  }
+  bool resolve_at_wall(const PairKey& pair, const WallContact& contact);
+  FeatureContact contact_with_wall(const PairKey& pair, const WallContact& contact) {
+    return parts_.search.contact_with_wall(pair, contact);
+  }
   /// All of that contact, for resolve().
   FeatureContact contact_of_discs(const PairKey& pair, const DiscContact& contact) const {
     return parts_.search.contact_of_discs(pair, parts_.response.radius_of_plain_disc(pair.body),
@@ -159,6 +174,8 @@ class Kernel : public KernelView {
   std::optional<Outcome> respond(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed);
   bool regroup_after(const PairKey& pair, std::vector<int>& changed);
   bool resolve_group(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed);
+  template <class Collide>
+  bool resolve_plainly(const PairKey& pair, double gap, Collide&& collide);
   bool tell(const Outcome& outcome, std::vector<int>& changed);
   void count(const PairKey& pair);
   bool may_step_long(const PairKey& pair) const;

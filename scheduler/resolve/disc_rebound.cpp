@@ -288,8 +288,13 @@ std::optional<DiscRebound> rebound(const DiscSide& a, const DiscSide& b, const V
 std::optional<DiscRebound> rebound(const DiscSide& disc, const WallSide& wall, double time, double latest,
                                    double level, double restitution) {
   std::optional<DiscRebound> r(std::in_place);
-  if (rebound_of(disc, wall, time, latest, level, restitution, *r) != Told::rebound) r.reset();
+  if (!rebound(disc, wall, time, latest, level, restitution, *r)) r.reset();
   return r;
+}
+
+bool rebound(const DiscSide& disc, const WallSide& wall, double time, double latest, double level,
+             double restitution, DiscRebound& result) {
+  return rebound_of(disc, wall, time, latest, level, restitution, result) == Told::rebound;
 }
 
 }  // namespace brink

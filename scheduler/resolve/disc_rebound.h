@@ -50,5 +50,7 @@ bool rebound(const DiscSide& a, const DiscSide& b, const Vec2& shift, double tim
 /// normal is not the one that is given: an end is met. Cost: one square root and two divisions of two doubles.
 std::optional<DiscRebound> rebound(const DiscSide& disc, const WallSide& wall, double time, double latest,
                                    double level, double restitution);
+bool rebound(const DiscSide& disc, const WallSide& wall, double time, double latest, double level,
+             double restitution, DiscRebound& result);
 
 }  // namespace brink

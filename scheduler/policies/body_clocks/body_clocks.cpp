@@ -128,7 +128,7 @@ class BodyClocks final : public Policy {
         look_alone(k, due.time);
         break;
       case Due::Kind::may_meet:
-        if (quick_ && meet_quickly(k, second)) return;
+        if (quick_ && (meet_quickly(k, second) || meet_wall_quickly(k, second))) return;
         sharpen(k, second.time);
         // what was just found may be next in any case: that saves a turn in the queue
         if (is_next(k, second.time)) return meet(k, second.time);
@@ -271,6 +271,34 @@ class BodyClocks final : public Policy {
     views_->look_around_after(pair.body, pair.other_body, now);
     wait_for(k);  // first: whom it meets on its way up the queue is known from second()
     wait_for(other);
+    return true;
+  }
+
+  /// The same where that candidate is a wall.
+  bool meet_wall_quickly(int k, EventQueue::Entry second) {
+    const BodyClock& clock = views_->clock(k);
+    const Candidate& c = clock.candidates.front();
+    const int site = c.other - kernel_->body_count();
+    if (site < 0 || !views_->plain_at_wall(k, site, c.image)) return false;
+    const PairKey pair{k, -1, site, {}};
+    WallContact contact;
+    const double until = std::min(clock.exit, clock.horizon);
+    if (!kernel_->search_wall(pair, c.clear, until, contact)) return false;
+    const double now = contact.time, instant = now + same_instant(now);
+    if (until <= instant || now > std::min(end(), kernel_->next_step()) ||
+        clock.candidates.second_time() <= instant || second.time <= instant)
+      return false;
+    if (!kernel_->record_frames(now)) return true;
+    kernel_->advance_pair(pair, now);
+    if (!kernel_->resolve_at_wall(pair, contact)) {
+      changed_.clear();
+      if (kernel_->resolve(pair, kernel_->contact_with_wall(pair, contact), changed_)) look_around_changed();
+      return true;
+    }
+    if (kernel_->halt()) return true;
+    if (clock.has_found) found_->forget(k);
+    views_->look_around_after(k, now);
+    wait_for(k);
     return true;
   }
 
@@ -425,7 +453,7 @@ class BodyClocks final : public Policy {
   double until_ = 0.0;
   std::uint64_t revision_ = 0;
   std::uint64_t served_ = 0;
-  bool quick_ = false;  ///< two plain discs go the quick way
+  bool quick_ = false;  ///< plain discs go the quick way
   std::optional<Views> views_;
   EventQueue queue_;
   std::optional<FoundContacts> found_;  ///< of each body's exact candidate

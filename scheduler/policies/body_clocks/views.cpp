@@ -230,13 +230,24 @@ void Views::look(int k, double now) {
 /// Each is as free as it was. The first sees the second, if it may meet it, and not the reverse.
 void Views::look_around_after(int a, int b, double now) {
   const auto timed = kernel_->looking();
-  for (const int k : {a, b}) {
-    flights_[k].version = flights_[k].version + 1U;
-    start_anew(k, kernel_->body(k).motion);
-  }
+  start_anew(a);
+  start_anew(b);
   begin_round();
   look(a, now);
   look(b, now);
+}
+
+void Views::look_around_after(int k, double now) {
+  const auto timed = kernel_->looking();
+  start_anew(k);
+  begin_round();
+  look(k, now);
+}
+
+/// On its newest motion, as free as it was; candidates that others have of it are stale.
+void Views::start_anew(int k) {
+  flights_[k].version = flights_[k].version + 1U;
+  start_anew(k, kernel_->body(k).motion);
 }
 
 void Views::look_ahead(int k, double now) {
@@ -256,6 +267,8 @@ void Views::look_ahead(int k, double now) {
 /// Still sites are in view until body k leaves its cell.
 void Views::see_site(int k, int s, const Image& image, double now) {
   if (!sees(k, body_count() + s, image)) return;
+  const double soonest = plain_at_wall(k, s, image) ? kernel_->soonest_at_wall(k, s) : now;
+  if (soonest == kForever) return;  // as of half of them
   BodyClock& clock = clocks_[k];
   const double end = std::min(clock.exit, clock.horizon);
   double wait = flights_[k].free && !site_boxes_[s].empty() ? kForever : 0.0;
@@ -268,7 +281,8 @@ void Views::see_site(int k, int s, const Image& image, double now) {
     if (wait == kForever) return;                                 // what it leaves behind, or goes by
     wait = std::max(0.0, wait - kFlightRounding * (now + wait));  // never later than it is
   }
-  if (now + wait <= end) clock.see({now + wait, now + wait, body_count() + s, image, 0, 0}, now);
+  const double begin = std::max(soonest, now + wait);
+  if (begin <= end) clock.see({begin, begin, body_count() + s, image, 0, 0}, now);
 }
 
 /// Sites that move are in no cell: each is bounded by its speed, wherever body k is.

@@ -26,6 +26,10 @@ class Views {
   bool plain_pair(int k, const Candidate& c) const {
     return c.other < body_count() && flights_[k].plain && flights_[c.other].plain;
   }
+  /// True if body k is such a disc and the site is a plain wall.
+  bool plain_at_wall(int k, int site, const Image& image) const {
+    return flights_[k].plain && image == Image{} && kernel_->is_plain_wall(site);
+  }
   /// True if waiting for the memory of bodies that are met in no order costs more than to fetch it before it is needed.
   bool are_many() const { return body_count() > kInCaches; }
   /// Starts to fetch body k's clock and flight.
@@ -61,6 +65,8 @@ class Views {
   void take_up(int k);
   /// The same of two plain discs that have met, and both look around in a round of their own.
   void look_around_after(int a, int b, double now);
+  /// Of one that has met a wall.
+  void look_around_after(int k, double now);
   /// Bodies that look around from now on see none of those that have done so before them since.
   void begin_round() {
     ++round_;
@@ -82,6 +88,7 @@ class Views {
   int body_count() const { return static_cast<int>(clocks_.size()); }
   unsigned version_of(int owner) const { return owner < body_count() ? flights_[owner].version : 0; }
   void start_anew(int k, const Motion& motion);
+  void start_anew(int k);
   void look(int k, double now);
   void note_look(int k);
   bool has_looked(int k) const {
