@@ -114,11 +114,12 @@ class CellGrid {
     int count = 0, more = CellBodies::kNone;
     for (int r = 0; r < 3; ++r)
       for (int q = 0; q < 3; ++q) {
-        const CellBodies cell = rows[r][columns[q]];
-        std::memcpy(bodies + count, &cell, sizeof cell);
+        const CellBodies& cell = rows[r][columns[q]];
         const bool counted = counts(r - 1, q - 1);
+        const int room = count;
         count += counted ? static_cast<int>(cell.count) : 0;
         more &= counted ? cell.more : CellBodies::kNone;  // all bits are set where there is none
+        std::memcpy(bodies + room, &cell, sizeof cell);
       }
     return more == CellBodies::kNone ? count : -1;
   }

@@ -56,12 +56,19 @@ struct FourFlights {
   }
 };
 
-/// meeting<false>(), four times: the same operations in the same order.
+/// meeting<false>(), four times: the same operations in the same order. Without gravity nothing is added where that adds 0.
+template <bool kFall>
 BRINK_INLINE void begin_of(const Course& a, double now, const FourFlights& b, Four& begin) {
-  const Four s = now - b.start, gx = s * a.gravity.x(), gy = s * a.gravity.y();
-  const Four dx = a.place.x() - (b.x + s * (b.vx + 0.5 * gx)),
-             dy = a.place.y() - (b.y + s * (b.vy + 0.5 * gy));
-  const Four wx = a.velocity.x() - (b.vx + gx), wy = a.velocity.y() - (b.vy + gy);
+  const Four s = now - b.start;
+  Four gx{}, gy{};
+  if constexpr (kFall) {
+    gx = s * a.gravity.x();
+    gy = s * a.gravity.y();
+  }
+  const Four dx = a.place.x() - (b.x + s * (kFall ? b.vx + 0.5 * gx : b.vx)),
+             dy = a.place.y() - (b.y + s * (kFall ? b.vy + 0.5 * gy : b.vy));
+  const Four wx = a.velocity.x() - (kFall ? b.vx + gx : b.vx),
+             wy = a.velocity.y() - (kFall ? b.vy + gy : b.vy);
   const Four approach = dx * wx + dy * wy;
   Four since, speed_x, speed_y, far_x, far_y, pull_x, pull_y, root;
   size_of(s, since);
@@ -72,8 +79,8 @@ BRINK_INLINE void begin_of(const Course& a, double now, const FourFlights& b, Fo
   size_of(gx, pull_x);
   size_of(gy, pull_y);
   const Four magnitude = far_x + far_y + since * (speed_x + speed_y);
-  const Four reach =
-      a.radius + b.radius * (1.0 + kFlightMargin) + kFlightRounding * (magnitude + since * (pull_x + pull_y));
+  const Four reach = a.radius + b.radius * (1.0 + kFlightMargin) +
+                     kFlightRounding * (kFall ? magnitude + since * (pull_x + pull_y) : magnitude);
   const Four beyond = dx * dx + dy * dy - reach * reach;
   const Four speed2 = wx * wx + wy * wy, offset = dx * wy - dy * wx;
   const Four square = speed2 * reach * reach - offset * offset;
@@ -90,27 +97,36 @@ BRINK_INLINE void begin_of(const Course& a, double now, const FourFlights& b, Fo
   begin = (parts | misses) ? never : (at_once < earliest ? earliest : at_once);
 }
 
+/// Bit i: the i-th of `bodies` may be met before `end`; `begins`: when at the soonest.
+template <bool kFall>
+BRINK_INLINE unsigned met_of(const int* bodies, int count, const Flight* flights, const Course& course,
+                             double now, double before, double* begins) {
+  const Course a = course;  // nothing that is written below is read by it
+  Four end;
+  all_alike(before, end);
+  FourBits met{};
+  for (int i = 0; i < count; i += 4) {
+    const int* const of = bodies + i;
+    const FourFlights b(flights[of[0]], flights[of[1]], flights[of[2]], flights[of[3]]);
+    Four begin;
+    begin_of<kFall>(a, now, b, begin);
+    reinterpret_cast<Four&>(begins[i]) = begin;
+    met |= ((begin < end) & FourBits{1, 2, 4, 8}) << i;
+  }
+  return static_cast<unsigned>((met[0] | met[1]) | (met[2] | met[3]));
+}
+
 #undef BRINK_INLINE
 
 }  // namespace
 
 BRINK_WIDE unsigned FlightBatch::meet(int count, const Flight* flights, const Course& a, double now,
                                       double before) {
-  const Course course = a;  // nothing that is written below is read by it
-  Four end;
-  all_alike(before, end);
   // the last four are whole: somebody in the place of who is not there
   for (int i = 0; i < 3; ++i) bodies_[count + i] = bodies_[0];
-  unsigned met = 0;
-  for (int i = 0; i < count; i += 4) {
-    const int* const of = bodies_ + i;
-    const FourFlights b(flights[of[0]], flights[of[1]], flights[of[2]], flights[of[3]]);
-    Four begin;
-    begin_of(course, now, b, begin);
-    reinterpret_cast<Four&>(begin_[i]) = begin;
-    const FourBits bits = (begin < end) & FourBits{1, 2, 4, 8};
-    met |= static_cast<unsigned>((bits[0] | bits[1]) | (bits[2] | bits[3])) << i;
-  }
+  const bool fall = a.gravity.x() != 0.0 || a.gravity.y() != 0.0;
+  const unsigned met = fall ? met_of<true>(bodies_, count, flights, a, now, before, begin_)
+                            : met_of<false>(bodies_, count, flights, a, now, before, begin_);
   return met & ((1U << count) - 1U);
 }
 
