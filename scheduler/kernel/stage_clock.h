@@ -45,11 +45,11 @@ class StageTimer {
     Scope* outer_ = nullptr;
   };
 
-  /// Of a stage so short that reading the clock would be a part of it one in sixteen is timed, and counts for
+  /// Of a stage so short that reading the clock would be a part of it one in sixty-four is timed, and counts for
   /// all. Each place has a counter of its own.
   class Sampled : public Scope {
    public:
-    static constexpr unsigned kEvery = 16;
+    static constexpr unsigned kEvery = 64;
     Sampled(StageTimer& timer, double& seconds, unsigned& count)
         : Scope(timer, seconds, count++ % kEvery == 0 ? kEvery : 0.0) {}
   };

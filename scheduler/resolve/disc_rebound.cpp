@@ -56,6 +56,10 @@ BRINK_INLINE bool is_plain(const DoubleDoublePair<Product>& x) {
   return x.lies_between(kLeastPlain, kMostPlain);
 }
 
+/// A wall's way along one axis: 0 of a wall along the other. A product with 0 leaves no range either: it is 0, and so
+/// is its error, and what it is added to is none.
+BRINK_INLINE bool is_plain_or_zero(double x) { return x == 0.0 || is_plain(x); }
+
 /// Where a disc is at one time, from its start and what rounding left over of it.
 template <class Number>
 struct Moving {
@@ -193,9 +197,14 @@ BRINK_INLINE Told rebound_of_wall(const DiscSide& disc, const WallSide& wall, do
   const auto number = [](const Real& of) __attribute__((always_inline)) {
     return Number(of.high(), of.low());
   };
+  if (!Number::kLooks && !is_plain(*disc.motion, time)) return Told::not_here;
   const Moving<Number> at(*disc.motion, time);
   const Pair<Number> begin(number(wall.begin.x()), number(wall.begin.y())),
       way = Pair<Number>(number(wall.end.x()), number(wall.end.y())) - begin, d = at.place - begin;
+  if (!Number::kLooks &&
+      !(is_plain_or_zero(way.x().high()) && is_plain_or_zero(way.y().high()) && is_plain(at.place) &&
+        is_plain(d) && is_plain_or_zero(wall.radius) && is_plain(disc.radius)))
+    return Told::not_here;
   const Number length2 = way.dot(way), along = d.dot(way);
   // 0 and length^2 are the ends: beyond them an end is nearest
   if (!(along > 0.0) || !(along < length2)) return Told::none;
@@ -208,6 +217,7 @@ BRINK_INLINE Told rebound_of_wall(const DiscSide& disc, const WallSide& wall, do
   if (std::abs(side) < kSameDirection * length.high()) return Told::none;
   const Number rate_now = m.dot(at.velocity);
   if (!(rate_now.high() < 0)) return Told::none;
+  if (!Number::kLooks && !is_plain(rate_now.high())) return Told::not_here;
   // its normal is the same wherever the disc is abreast of it: nothing is looked at again after the delay
   const double gap = ((m.dot(d) - length * wall.radius - length * disc.radius) / length).high();
   const double closing = -rate_now.high() / length.high();
@@ -217,6 +227,7 @@ BRINK_INLINE Told rebound_of_wall(const DiscSide& disc, const WallSide& wall, do
   const Vec2& pull = disc.motion->acceleration().linear;
   const Number rate = rate_now + delay * (m.x().high() * pull.x() + m.y().high() * pull.y());
   if (!(rate.high() < 0)) return Told::none;
+  if (!Number::kLooks && !is_plain(rate.high())) return Told::not_here;
   const Number change = -(Number::sum(1.0, restitution) * rate) / length2;
   r.impulse = change.high() * length.high() / disc.inverse_mass;
   start_after(*disc.motion, time, at, m * change, delay, r.a);
@@ -243,6 +254,11 @@ using FusedInRange = BasicDoubleDouble<error_free::InRange<error_free::Fused>>;
   return rebound_of_discs<FusedNumber>(a, b, shift, time, latest, level, restitution, r);
 }
 
+[[gnu::target("fma")]] Told fused_in_range(const DiscSide& disc, const WallSide& wall, double time,
+                                           double latest, double level, double restitution, DiscRebound& r) {
+  return rebound_of_wall<FusedInRange>(disc, wall, time, latest, level, restitution, r);
+}
+
 [[gnu::target("fma")]] Told fused_rebound(const DiscSide& disc, const WallSide& wall, double time,
                                           double latest, double level, double restitution, DiscRebound& r) {
   return rebound_of_wall<FusedNumber>(disc, wall, time, latest, level, restitution, r);
@@ -266,7 +282,11 @@ Told rebound_of(const DiscSide& a, const DiscSide& b, const Vec2& shift, double 
 Told rebound_of(const DiscSide& disc, const WallSide& wall, double time, double latest, double level,
                 double restitution, DiscRebound& r) {
 #if defined(__x86_64__) && !defined(__FP_FAST_FMA)
-  if (error_free::has_fused_products) return fused_rebound(disc, wall, time, latest, level, restitution, r);
+  if (error_free::has_fused_products) {
+    const Told told = fused_in_range(disc, wall, time, latest, level, restitution, r);
+    if (told != Told::not_here) return told;
+    return fused_rebound(disc, wall, time, latest, level, restitution, r);
+  }
 #endif
   return rebound_of_wall<Real>(disc, wall, time, latest, level, restitution, r);
 }

@@ -33,7 +33,8 @@ TEST(StageTimer, AStageIsWithoutThoseWithinIt) {
   EXPECT_LE(outer + inner + innermost, all * (1.0 + 1e-9));
 }
 
-TEST(StageTimer, OneInSixteenCountsForAll) {
+TEST(StageTimer, OneInSoManyCountsForAll) {
+  constexpr int every = StageTimer::Sampled::kEvery;
   StageTimer timer;
   double outer = 0.0, sampled = 0.0;
   unsigned count = 0;
@@ -42,15 +43,15 @@ TEST(StageTimer, OneInSixteenCountsForAll) {
     const StageTimer::Sampled b(timer, sampled, count);
     wait();
   }
-  EXPECT_GE(sampled, 16 * 0.003);
+  EXPECT_GE(sampled, every * 0.003);
   const double once = sampled, before = outer;
-  for (int k = 1; k < 16; ++k) {
+  for (int k = 1; k < every; ++k) {
     const StageTimer::Sampled b(timer, sampled, count);
     const StageTimer::Scope a(timer, outer);  // of its own all the same
     wait();
   }
   EXPECT_EQ(sampled, once);
-  EXPECT_GE(outer - before, 15 * 0.003);
+  EXPECT_GE(outer - before, (every - 1) * 0.003);
   { const StageTimer::Sampled b(timer, sampled, count); }
   EXPECT_GT(sampled, once);
 }

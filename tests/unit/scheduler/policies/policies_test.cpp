@@ -15,7 +15,7 @@ namespace {
 /// Boxes, whose searches have no closed form.
 World gas() { return testing::boxed(testing::lattice_gas(36, make_box(0.9, 0.7), 0.3)); }
 
-// One search in sixteen is timed and counts for all, so that there must be many.
+// One search of many is timed and counts for all.
 TEST(Policies, TimeTheirSearches) {
   for (const std::string& policy : exact_policies()) {
     const RunSummary s = testing::run_under(gas(), {}, policy, 3.0).summary;

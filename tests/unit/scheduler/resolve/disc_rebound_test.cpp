@@ -240,6 +240,49 @@ TEST(DiscRebound, OfAWallIsTheGeneralResponseToRoundingsOfExtendedPrecision) {
   }
 }
 
+// As of two discs; walls along an axis, too.
+TEST(DiscRebound, OfAWallIsTheSameWhetherItsRangeIsLookedAtOrNot) {
+  DiscRebound result;
+  int rebounds = 0;
+  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+    SCOPED_TRACE(seed);
+    const Landing m(seed);
+    const WallSide along{{-3.0, 0.0}, {4.0, 0.0}, 0.0, {0.0, 1.0}},
+        across{{0.0, 5.0}, {0.0, -5.0}, 0.1, {1.0, 0.0}};
+    for (const WallSide& wall : {m.side(), along, across}) {
+      const Vec2 out = wall.normal;
+      const Vec2 begin(wall.begin.cast<double>()), end(wall.end.cast<double>());
+      BodyState s = m.motion.state(m.time);
+      if (seed % 2) s.twist.omega = 0.0;
+      s.pose.position = begin + 0.4 * (end - begin) + (m.disc.bounding_radius + wall.radius) * out;
+      s.twist.velocity = Vec2(1.3, -0.7) - (1.5 + s.twist.velocity.norm()) * out;
+      const double since = 0.5;
+      s.pose.position -= since * s.twist.velocity;
+      BodyState low;
+      low.pose.position = 1e-17 * s.pose.position;  // less than half a rounding
+      low.twist.velocity = 1e-17 * s.twist.velocity;
+      const auto after = [&](double pull) {
+        const Motion motion = Motion::ballistic(m.time - since, s, {{pull, pull}, 0.0},
+                                                std::numeric_limits<double>::infinity(), low);
+        return rebound({&motion, m.disc.bounding_radius, 1.0 / m.mass}, wall, m.time, 4.0 * ulp(m.time), 0.0,
+                       m.restitution, result);
+      };
+      const bool quick = after(0.0);
+      const DiscRebound unlooked = result;
+      ASSERT_EQ(after(1e-300), quick);
+      if (!quick) continue;
+      ++rebounds;
+      EXPECT_EQ(unlooked.impulse, result.impulse);
+      EXPECT_EQ(unlooked.delay, result.delay);
+      EXPECT_EQ(unlooked.gap, result.gap);
+      EXPECT_EQ(unlooked.magnitude, result.magnitude);
+      expect_alike(unlooked.a.state, result.a.state);
+      expect_alike(unlooked.a.low, result.a.low);
+    }
+  }
+  EXPECT_GT(rebounds, 2500);
+}
+
 TEST(DiscRebound, SaysNothingOfWhatIsNotAbreastOfAWallOrParts) {
   const Landing m(3);
   const DiscSide disc{&m.motion, m.disc.bounding_radius, 1.0 / m.mass};
