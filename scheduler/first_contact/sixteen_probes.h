@@ -62,11 +62,15 @@ template <class Take>
 [[gnu::always_inline]] inline bool last_clear_time_by_sixteens(Take&& take, double reach, double t,
                                                                double begin, double rounding, double closing,
                                                                ClearTime& found) {
-  // The ends are three places from t, or more: so far that the gap is more than twice its rounding there.
-  const double ticks = 2.0 + 3.0 * rounding / (closing * ulp(t));
-  if (!(ticks < 1e6)) return false;
+  // The ends are three places from t, or more: so far that the gap is more than twice its rounding there. Late on the clock
+  // these are three doubles, and nothing waits for a division.
   SixteenProbes probes;
-  probes.spacing = static_cast<unsigned>(std::bit_width(static_cast<unsigned>(ticks / 3.0)));
+  const double by_a_double = closing * ulp(t);  // so far it closes [m]
+  if (!(3.0 * rounding < by_a_double)) {
+    const double doubles = 2.0 + 3.0 * rounding / by_a_double;
+    if (!(doubles < 1e6)) return false;
+    probes.spacing = static_cast<unsigned>(std::bit_width(static_cast<unsigned>(doubles / 3.0)));
+  }
   const std::uint64_t eight = std::uint64_t{8} << probes.spacing;
   probes.first = (std::bit_cast<std::uint64_t>(t) - eight / 2) & -eight;
   if (!(probes.time(0) > begin)) return false;
