@@ -66,8 +66,8 @@ template <class Take>
   // these are three doubles, and nothing waits for a division.
   SixteenProbes probes;
   const double by_a_double = closing * ulp(t);  // so far it closes [m]
-  if (!(3.0 * rounding < by_a_double)) {
-    const double doubles = 2.0 + 3.0 * rounding / by_a_double;
+  if (!(2.25 * rounding < by_a_double)) {
+    const double doubles = 2.0 + 2.25 * rounding / by_a_double;
     if (!(doubles < 1e6)) return false;
     probes.spacing = static_cast<unsigned>(std::bit_width(static_cast<unsigned>(doubles / 3.0)));
   }
