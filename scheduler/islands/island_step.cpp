@@ -367,14 +367,31 @@ std::vector<ContactLoad> of_all(const std::vector<ContactLoad>& loads, const std
   return all;
 }
 
-/// What the bodies won in the step beyond what forces and moving supports gave them [J]; `of`: the energies
+/// Those whom contacts push, by more than roundings of the largest push: all others go as forces alone lead them.
+std::vector<bool> pushed_of(const IslandStep& step, const std::vector<Vec3>& velocity, double h) {
+  std::vector<double> push;  // [N s]
+  for (std::size_t i = 0; i < step.mass.size(); ++i) {
+    double square = 0.0;
+    for (int k = 0; k < 2; ++k)
+      if (!std::isinf(step.mass[i][k]))
+        square +=
+            std::pow(step.mass[i][k] * (velocity[i][k] - step.velocity[i][k]) - h * step.force[i][k], 2);
+    push.push_back(std::sqrt(square));
+  }
+  const double largest = push.empty() ? 0.0 : *std::max_element(push.begin(), push.end());
+  std::vector<bool> pushed;
+  for (const double p : push) pushed.push_back(p > kOnePush * largest);
+  return pushed;
+}
+
+/// What the bodies that are pushed won in the step beyond what forces and moving supports gave them [J]; `of`: the energies
 /// that it turned over, and the work of the forces along the contact tolerance.
-double won(const IslandStep& step, const StepResult& result, const std::vector<Part>& parts, double h,
-           double tolerance, double& of) {
+double won(const IslandStep& step, const StepResult& result, const std::vector<Part>& parts,
+           const std::vector<bool>& pushed, double h, double tolerance, double& of) {
   double change = 0.0;
   for (std::size_t i = 0; i < step.mass.size(); ++i)
     for (int k = 0; k < 3; ++k) {
-      if (std::isinf(step.mass[i][k])) continue;
+      if (!pushed[i] || std::isinf(step.mass[i][k])) continue;
       // Kinetic energy as m (after - before) (after + before) / 2, without the cancellation of two
       // squares. The work of a force is h f . after, as the step goes with the twist of its end.
       const double before = step.velocity[i][k], after = result.velocity[i][k];
@@ -433,37 +450,42 @@ std::optional<Vec2> line_of_pushes(const IslandStep& step, const StepResult& res
   return one ? std::optional<Vec2>(along) : std::nullopt;
 }
 
-/// The velocity that all bodies have in common across that line: no contact changes it [m/s].
-Vec2 common_velocity(const IslandStep& step, const std::vector<Vec3>& velocity, const Vec2& line) {
+/// The velocity that all bodies that are pushed have in common across that line: no contact changes it [m/s].
+Vec2 common_velocity(const IslandStep& step, const std::vector<Vec3>& velocity,
+                     const std::vector<bool>& pushed, const Vec2& line) {
   Vec2 momentum = Vec2::Zero();
   double mass = 0.0;
   for (std::size_t i = 0; i < step.mass.size(); ++i) {
+    if (!pushed[i]) continue;
     mass += step.mass[i].x();
     momentum += step.mass[i].x() * velocity[i].head<2>();
   }
-  const Vec2 common = momentum / mass;
+  const Vec2 common = mass > 0.0 ? Vec2(momentum / mass) : Vec2(Vec2::Zero());
   return common - line.dot(common) * line;
 }
 
-/// What the solver's digits have changed of the momentum that no site takes is given back to all alike: among the bodies it
+/// What the solver's digits have changed of the momentum that no site takes is given back to all who are pushed alike: among them it
 /// changes no gap, and none with a site across that line.
-void keep_momentum(const IslandStep& step, double h, const Vec2& line, std::vector<Vec3>& velocity) {
+void keep_momentum(const IslandStep& step, double h, const std::vector<bool>& pushed, const Vec2& line,
+                   std::vector<Vec3>& velocity) {
   std::vector<Vec3> without = step.velocity;
   for (std::size_t i = 0; i < without.size(); ++i)
     without[i] += h * step.force[i].cwiseQuotient(step.mass[i]);
-  const Vec2 lost = common_velocity(step, without, line) - common_velocity(step, velocity, line);
-  for (Vec3& v : velocity) v.head<2>() += lost;
+  const Vec2 lost =
+      common_velocity(step, without, pushed, line) - common_velocity(step, velocity, pushed, line);
+  for (std::size_t i = 0; i < velocity.size(); ++i)
+    if (pushed[i]) velocity[i].head<2>() += lost;
 }
 
-/// Makes the step win nothing [J], but for `free`: all go the same way, relative to what they have in common, only not as far. So
+/// Makes the step win nothing [J], but for `free`: all who are pushed go the same way, relative to what they have in common, only not as far. So
 /// no momentum is lost that no site takes, and bodies come by the same places of each other.
-void win_nothing(const IslandStep& step, const Vec2& common, double free, double h,
-                 std::vector<Vec3>& velocity) {
+void win_nothing(const IslandStep& step, const std::vector<bool>& pushed, const Vec2& common, double free,
+                 double h, std::vector<Vec3>& velocity) {
   const Vec3 together(common.x(), common.y(), 0.0);
   double before = 2.0 * free, after = 0.0, work = 0.0;  // twice the kinetic energies [J]
   for (std::size_t i = 0; i < step.mass.size(); ++i)
     for (int k = 0; k < 3; ++k) {
-      if (std::isinf(step.mass[i][k])) continue;
+      if (!pushed[i] || std::isinf(step.mass[i][k])) continue;
       const double apart = velocity[i][k] - together[k];
       before += step.mass[i][k] * (step.velocity[i][k] + together[k]) * (step.velocity[i][k] - together[k]) +
                 2.0 * h * step.force[i][k] * together[k];
@@ -475,15 +497,21 @@ void win_nothing(const IslandStep& step, const Vec2& common, double free, double
   const double root = work * work + after * before;
   if (!(after > 0.0) || !(root >= 0.0)) return;
   const double slower = std::min(1.0, (work + std::sqrt(root)) / after);
-  for (Vec3& v : velocity) v = together + slower * (v - together);
+  for (std::size_t i = 0; i < velocity.size(); ++i)
+    if (pushed[i]) velocity[i] = together + slower * (velocity[i] - together);
 }
 
-/// True if a contact with a site is missed by more than its tolerance.
-bool misses_site(const IslandStep& step, double h, const std::vector<Vec3>& velocity, const GapsAlong& gaps) {
+/// True if a contact of two that were not slowed alike is missed by more than its tolerance: of one who was pushed with one who was
+/// not, or with a site where they had something in common.
+bool misses_others(const IslandStep& step, double h, const std::vector<Vec3>& velocity,
+                   const std::vector<bool>& pushed, const Vec2& common, const GapsAlong& gaps) {
   const GapAlong gap = gaps(velocity);
-  for (std::size_t k = 0; k < step.contacts.size(); ++k)
-    if (step.contacts[k].rows.other < 0 && missed(step, k, h, velocity, 0.0, false, gap).too_much)
-      return true;
+  for (std::size_t k = 0; k < step.contacts.size(); ++k) {
+    const LastingContact& rows = step.contacts[k].rows;
+    const bool alike =
+        rows.other < 0 ? !pushed[rows.body] || common.isZero(0.0) : pushed[rows.body] == pushed[rows.other];
+    if (!alike && missed(step, k, h, velocity, 0.0, false, gap).too_much) return true;
+  }
   return false;
 }
 
@@ -597,9 +625,10 @@ StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, b
       continue;
     }
     const std::optional<Vec2> line = line_of_pushes(step, result, parts);
-    if (line) keep_momentum(step, h, *line, result.velocity);
+    std::vector<bool> pushed = pushed_of(step, result.velocity, h);
+    if (line) keep_momentum(step, h, pushed, *line, result.velocity);
     double of = 0.0;
-    const double won_here = won(step, result, parts, h, tolerance, of);
+    const double won_here = won(step, result, parts, pushed, h, tolerance, of);
     // The caller tries a shorter step: by what faces that turn are missed is of second order in h.
     if (won_here > kWonOf * of) return without_loads(step, h, gaps, go_on, farther, outcome);
     // from here on loads stand at their contacts' places; won() took them at their parts'
@@ -612,12 +641,13 @@ StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, b
     const double free = rise_of_thin(step, result, parts, h);
     if (won_here > free && !driven) {
       const std::vector<Vec3> velocity = result.velocity;
-      const Vec2 common = line ? common_velocity(step, velocity, *line) : Vec2(Vec2::Zero());
-      win_nothing(step, common, free, h, result.velocity);
-      // what all have in common leads past sites as before, but where one of them ends or another begins
-      if (!common.isZero(0.0) && misses_site(step, h, result.velocity, gaps)) {
+      const Vec2 common = line ? common_velocity(step, velocity, pushed, *line) : Vec2(Vec2::Zero());
+      win_nothing(step, pushed, common, free, h, result.velocity);
+      // the others do not go the same way, and what those have in common leads past sites but where one ends or begins
+      if (misses_others(step, h, result.velocity, pushed, common, gaps)) {
         result.velocity = velocity;
-        win_nothing(step, Vec2::Zero(), free, h, result.velocity);
+        pushed.assign(pushed.size(), true);
+        win_nothing(step, pushed, Vec2::Zero(), free, h, result.velocity);
       }
     }
     outcome.won = std::max(0.0, driven ? won_here : std::min(won_here, free));

@@ -702,8 +702,21 @@ ExtendedState IslandMotion::after(int member) const {
 /// A force that is more than a rounding of the heaviest member's weight; also one of friction alone, of which bounds that
 /// lag may leave some where nothing presses any more: who is let go must have been moved by nobody.
 bool IslandMotion::pushes(const HeldContact& c) const {
-  return std::max(c.normal_force, std::abs(c.tangential_force)) >
-         kNoForce * members_.heaviest() * members_.pull();
+  return std::max(c.normal_force, std::abs(c.tangential_force)) > no_force();
+}
+
+double IslandMotion::no_force() const { return kNoForce * members_.heaviest() * members_.pull(); }
+
+/// Of all contacts together, by what the step has made of the member's velocity [N].
+double IslandMotion::contact_force_on(int member) const {
+  const Vec3& mass = problem_.mass[member];
+  const Vec3 before = as_vector(members_.state(member).twist.rounded());
+  double square = 0.0;
+  for (int k = 0; k < 2; ++k)
+    if (!std::isinf(mass[k]))
+      square +=
+          std::pow(mass[k] * (problem_.velocity[member][k] - before[k]) / h_ - problem_.force[member][k], 2);
+  return std::sqrt(square);
 }
 
 /// True if the two, which touch, would meet again at once if both were let go, in a small part of the step, though a step of
@@ -800,6 +813,9 @@ IslandMotion::Parts IslandMotion::parts(bool rests) const {
     pushed[a] = pushed[b] = true;
     joined.unite(a, b);
   }
+  // whatever pushed it, as forces that are told are not those that move it (StepOutcome::friction_residual)
+  for (int i = 0; i < count && !rests && !by_modes_ && !contacts_.empty(); ++i)
+    pushed[i] = pushed[i] || contact_force_on(i) > 1e3 * no_force();
   const std::vector<bool> by_others = pushed;
   std::vector<Vec3> velocity = velocities();
   for (std::size_t k = 0; k < contacts_.size(); ++k) {

@@ -119,6 +119,8 @@ class IslandMotion {
   bool can_stop(double way);
   double kinetic_energy() const;
   bool pushes(const HeldContact& c) const;
+  double no_force() const;
+  double contact_force_on(int member) const;
   bool stays_near(std::size_t contact, bool both_pushed, std::vector<Vec3>& velocity) const;
   bool falls_back(const HeldContact& c, std::vector<Vec3>& velocity) const;
   std::vector<std::pair<int, int>> neighbours() const;
