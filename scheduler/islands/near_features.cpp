@@ -191,6 +191,8 @@ bool ends_at(const Outline& outline, const Site& site, const Nearest& nearest) {
   });
 }
 
+double before_next_side(const Half& half, const Sample& sample, const Site& site, const Vec2& q, double upon);
+
 /// Where an end of an arc lies beside a site of the other.
 struct ArcEnd {
   Vec2 q;  ///< in the other's frame
@@ -208,7 +210,17 @@ ArcEnd end_beside(const Half& half, const Site& arc, const Vec2& towards, const 
   const Nearest nearest = nearest_on(site, q);
   const bool behind =
       site.kind != SiteKind::point && nearest.foot == Foot::interior && is_behind(site, nearest, q, out, at);
-  return {q, nearest, (behind ? -nearest.distance : nearest.distance) - site.radius - arc.radius};
+  if (!behind) return {q, nearest, nearest.distance - site.radius - arc.radius};
+  // behind this side it may be before the next one, as a tip is that comes round a corner
+  Sample tip;
+  tip.p = end;
+  tip.radius = arc.radius;
+  const double before = site.solid && site.kind == SiteKind::segment
+                            ? before_next_side(half, tip, site, q, 0.0)
+                            : -std::numeric_limits<double>::infinity();
+  return {
+      q, nearest,
+      (before >= 0.0 ? std::min(before, nearest.distance) : -nearest.distance) - site.radius - arc.radius};
 }
 
 /// True if the site's end that is nearest to an arc's centre lies in the arc's hollow; of one on the arc, if the site leads

@@ -148,7 +148,7 @@ TEST(SeenInIslands, OfTooManyKnotsThereAreTheFirst) {
   for (std::size_t k = 0; k < times.size(); ++k) {
     const auto seen = run.states_at(times[k]).states;
     for (std::size_t b = 0; b < seen.size(); ++b)
-      EXPECT_LT(off(scene.world.bodies[b], seen[b].pose, states[k][b].pose), 1e-9);
+      EXPECT_LT(off(scene.world.bodies[b], seen[b].pose, states[k][b].pose), 1e-9 * length_of(run));
   }
   const auto notice = [&](const ReplayLimits& limits) -> std::string {
     return json::parse(replay_page_data(folder.path() / "run.db", limits, false))["about"]["notice"];

@@ -195,7 +195,8 @@ std::vector<SmoothContact> smooth_contacts(const NearFeature& f, const Outline& 
   }
   const SmoothContact& first = shapes.front();
   const double size = carrier.bounding_radius + other.bounding_radius;
-  const bool round = first.kind == SmoothContact::Kind::circle;
+  // of two points it is not asked for: nobody meets them
+  const bool round = first.kind == SmoothContact::Kind::circle && first.radius + first.sample_radius > 0.0;
   // right at the centre the normal has no direction, and the gap's bend no bound
   if (round && !((q - first.place).norm() > kAtCentre * size)) shapes.clear();
   return shapes;
