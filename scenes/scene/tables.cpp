@@ -268,8 +268,7 @@ const Schema<SolverOptions>& solver_schema() {
           .key("detector", &S::detector, choice(names_of(detectors())), "how contacts are found")
           .key("contact_tolerance", &S::contact_tolerance, number({1e-14, 1e-2, false, ""}),
                "gap that counts as contact, of the scene's length")
-          .key("persistent", &S::persistent, flag(),
-               "contacts may last; false: a Zeno point ends the run")
+          .key("persistent", &S::persistent, flag(), "contacts may last; false: a Zeno point ends the run")
           .count("modes_contacts", &S::modes_contacts, whole(),
                  "few bodies with at most so many contacts that last move to `tolerance`, others to first "
                  "order; "
