@@ -426,13 +426,15 @@ double rise_of_thin(const IslandStep& step, const StepResult& result, const std:
   return rise;
 }
 
-/// The direction in which sites push (unit), by all but roundings of the largest push; 0: none does. Nothing where they push along
-/// more than one line, or hold somebody.
+/// The direction in which sites push (unit), by all but roundings of the momentum that there is; 0: none does. Nothing where they push
+/// along more than one line, or hold somebody. What is squeezed between sites is pushed much harder than anything moves it.
 std::optional<Vec2> line_of_pushes(const IslandStep& step, const StepResult& result,
-                                   const std::vector<Part>& parts) {
-  if (std::any_of(step.mass.begin(), step.mass.end(),
-                  [](const Vec3& m) { return std::isinf(m.x()) || std::isinf(m.y()); }))
-    return std::nullopt;
+                                   const std::vector<Part>& parts, double h) {
+  double momentum = 0.0;
+  for (std::size_t i = 0; i < step.mass.size(); ++i) {
+    if (std::isinf(step.mass[i].x()) || std::isinf(step.mass[i].y())) return std::nullopt;
+    momentum += step.mass[i].x() * result.velocity[i].head<2>().norm() + h * step.force[i].head<2>().norm();
+  }
   std::vector<Vec2> pushes;
   Vec2 largest = Vec2::Zero();
   for (std::size_t k = 0; k < parts.size(); ++k) {
@@ -445,7 +447,7 @@ std::optional<Vec2> line_of_pushes(const IslandStep& step, const StepResult& res
   if (largest.isZero(0.0)) return Vec2(Vec2::Zero());
   const Vec2 along = largest.normalized();
   const bool one = std::all_of(pushes.begin(), pushes.end(), [&](const Vec2& push) {
-    return std::abs(cross(along, push)) <= kOnePush * largest.norm();
+    return std::abs(cross(along, push)) <= kOnePush * std::min(momentum, largest.norm());
   });
   return one ? std::optional<Vec2>(along) : std::nullopt;
 }
@@ -466,19 +468,25 @@ Vec2 common_velocity(const IslandStep& step, const std::vector<Vec3>& velocity,
 
 /// What the solver's digits have changed of the momentum that no site takes is given back to all who are pushed alike: among them it
 /// changes no gap, and none with a site across that line.
-void keep_momentum(const IslandStep& step, double h, const std::vector<bool>& pushed, const Vec2& line,
-                   std::vector<Vec3>& velocity) {
+void keep_momentum(const IslandStep& step, double h, double tolerance, const std::vector<bool>& pushed,
+                   const Vec2& line, std::vector<Vec3>& velocity) {
   std::vector<Vec3> without = step.velocity;
   for (std::size_t i = 0; i < without.size(); ++i)
     without[i] += h * step.force[i].cwiseQuotient(step.mass[i]);
   const Vec2 lost =
       common_velocity(step, without, pushed, line) - common_velocity(step, velocity, pushed, line);
+  double speed = 0.0;
+  for (const Vec3& v : velocity) speed = std::max(speed, v.head<2>().norm());
+  const bool sites_near = std::any_of(step.contacts.begin(), step.contacts.end(),
+                                      [](const IslandContact& c) { return c.rows.other < 0; });
+  // more is none of the solver's digits, and gaps with sites have been looked at
+  if (lost.norm() > (sites_near ? kMissCounts * tolerance / h : kResidual * speed)) return;
   for (std::size_t i = 0; i < velocity.size(); ++i)
     if (pushed[i]) velocity[i].head<2>() += lost;
 }
 
-/// Makes the step win nothing [J], but for `free`: all who are pushed go the same way, relative to what they have in common, only not as far. So
-/// no momentum is lost that no site takes, and bodies come by the same places of each other.
+/// Makes the step win nothing [J], but for `free`: all who are pushed go the same way, relative to what they have in common, only
+/// not as far. So no momentum is lost that no site takes, and bodies come by the same places of each other.
 void win_nothing(const IslandStep& step, const std::vector<bool>& pushed, const Vec2& common, double free,
                  double h, std::vector<Vec3>& velocity) {
   const Vec3 together(common.x(), common.y(), 0.0);
@@ -624,9 +632,9 @@ StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, b
       }
       continue;
     }
-    const std::optional<Vec2> line = line_of_pushes(step, result, parts);
+    const std::optional<Vec2> line = line_of_pushes(step, result, parts, h);
     std::vector<bool> pushed = pushed_of(step, result.velocity, h);
-    if (line) keep_momentum(step, h, pushed, *line, result.velocity);
+    if (line) keep_momentum(step, h, tolerance, pushed, *line, result.velocity);
     double of = 0.0;
     const double won_here = won(step, result, parts, pushed, h, tolerance, of);
     // The caller tries a shorter step: by what faces that turn are missed is of second order in h.

@@ -26,7 +26,7 @@ TEST(AlignedWorlds, ThatOnceFailedAreSound) {
       107,       771,       1371,      100109,    100645,
       101105,  // a corner that passes another, along it or pressed over it
       409,     // the same, held by an island and hit where its step begins
-      471,       703,       808,       1189,      100053,  // in a slot of its own width
+      471,       703,       808,       1189,      100053, 990000680,  // in a slot of its own width
       100606,    101446,                        // a search that is broken off within the touching distance
       101411,                                   // many collisions in one horizon of timewarp
       200405,    201903,    300023,    301063,  // stopped right after a contact, where corners come upon each other
