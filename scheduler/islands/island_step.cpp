@@ -369,18 +369,14 @@ std::vector<ContactLoad> of_all(const std::vector<ContactLoad>& loads, const std
 
 /// Those whom contacts push, by more than roundings of the largest push: all others go as forces alone lead them.
 std::vector<bool> pushed_of(const IslandStep& step, const std::vector<Vec3>& velocity, double h) {
-  std::vector<double> push;  // [N s]
+  std::vector<double> impulse;
+  double largest = 0.0;
   for (std::size_t i = 0; i < step.mass.size(); ++i) {
-    double square = 0.0;
-    for (int k = 0; k < 2; ++k)
-      if (!std::isinf(step.mass[i][k]))
-        square +=
-            std::pow(step.mass[i][k] * (velocity[i][k] - step.velocity[i][k]) - h * step.force[i][k], 2);
-    push.push_back(std::sqrt(square));
+    impulse.push_back(contact_impulse(step.mass[i], step.force[i], step.velocity[i], velocity[i], h));
+    largest = std::max(largest, impulse.back());
   }
-  const double largest = push.empty() ? 0.0 : *std::max_element(push.begin(), push.end());
   std::vector<bool> pushed;
-  for (const double p : push) pushed.push_back(p > kOnePush * largest);
+  for (const double p : impulse) pushed.push_back(p > kOnePush * largest);
   return pushed;
 }
 
@@ -477,10 +473,11 @@ void keep_momentum(const IslandStep& step, double h, double tolerance, const std
       common_velocity(step, without, pushed, line) - common_velocity(step, velocity, pushed, line);
   double speed = 0.0;
   for (const Vec3& v : velocity) speed = std::max(speed, v.head<2>().norm());
-  const bool sites_near = std::any_of(step.contacts.begin(), step.contacts.end(),
-                                      [](const IslandContact& c) { return c.rows.other < 0; });
-  // more is none of the solver's digits, and gaps with sites have been looked at
-  if (lost.norm() > (sites_near ? kMissCounts * tolerance / h : kResidual * speed)) return;
+  const bool alone = std::all_of(step.contacts.begin(), step.contacts.end(), [&](const IslandContact& c) {
+    return c.rows.other >= 0 && pushed[c.rows.body] == pushed[c.rows.other];
+  });
+  // more is none of the solver's digits, and gaps with others have been looked at
+  if (lost.norm() > (alone ? kResidual * speed : kMissCounts * tolerance / h)) return;
   for (std::size_t i = 0; i < velocity.size(); ++i)
     if (pushed[i]) velocity[i].head<2>() += lost;
 }
@@ -672,6 +669,18 @@ StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, b
 }
 
 }  // namespace
+
+double contact_impulse(const Vec3& mass, const Vec3& force, const Vec3& before, const Vec3& after, double h) {
+  const double gyration = std::isinf(mass[2]) || std::isinf(mass[0]) ? 0.0 : std::sqrt(mass[2] / mass[0]);
+  double square = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    if (std::isinf(mass[k])) continue;
+    const double given = mass[k] * (after[k] - before[k]) - h * force[k];
+    if (k < 2) square += given * given;
+    if (k == 2 && gyration > 0.0) square += given * given / (gyration * gyration);
+  }
+  return std::sqrt(square);
+}
 
 StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapsAlong& gaps,
                       const GoOn& go_on, const ListFarther& farther) {

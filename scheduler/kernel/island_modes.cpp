@@ -170,7 +170,7 @@ void IslandModes::add_contact(const HeldContact& c) {
   const Vec2 shift = search_->shift_of(c.pair);
   // what a shadow touches now is looked at already, what it may come to is not: a corner that slides on an arc may lie down
   const bool told = c.feature.goes_on || (shadow && c.feature.gap <= search_->limits().tolerance);
-  place_.push_back(told ? std::numeric_limits<std::size_t>::max() : problem_.contacts.size());
+  place_.push_back(problem_.contacts.size());
   bool present = true;
   // each shape has the friction of the contact, and keeps its gap while it is closed
   for (SmoothContact& shape :

@@ -55,6 +55,8 @@ constexpr double kThinMiss = 0.125;
 constexpr double kFalls = 0.75;
 /// A force below this part of the weight of the heaviest member is none.
 constexpr double kNoForce = 1e-9;
+/// So many of these together have moved a member: the digits of a coarse solve are some hundreds.
+constexpr double kMoved = 1e3;
 /// A step that an impact cuts to less than this part is cut short.
 constexpr double kWorthwhile = 0.25;
 /// Members of an agitated island that are closer than this part of the smallest member's size stay together.
@@ -709,14 +711,9 @@ double IslandMotion::no_force() const { return kNoForce * members_.heaviest() * 
 
 /// Of all contacts together, by what the step has made of the member's velocity [N].
 double IslandMotion::contact_force_on(int member) const {
-  const Vec3& mass = problem_.mass[member];
-  const Vec3 before = as_vector(members_.state(member).twist.rounded());
-  double square = 0.0;
-  for (int k = 0; k < 2; ++k)
-    if (!std::isinf(mass[k]))
-      square +=
-          std::pow(mass[k] * (problem_.velocity[member][k] - before[k]) / h_ - problem_.force[member][k], 2);
-  return std::sqrt(square);
+  return contact_impulse(problem_.mass[member], problem_.force[member],
+                         as_vector(members_.state(member).twist.rounded()), problem_.velocity[member], h_) /
+         h_;
 }
 
 /// True if the two, which touch, would meet again at once if both were let go, in a small part of the step, though a step of
@@ -815,7 +812,7 @@ IslandMotion::Parts IslandMotion::parts(bool rests) const {
   }
   // whatever pushed it, as forces that are told are not those that move it (StepOutcome::friction_residual)
   for (int i = 0; i < count && !rests && !by_modes_ && !contacts_.empty(); ++i)
-    pushed[i] = pushed[i] || contact_force_on(i) > 1e3 * no_force();
+    pushed[i] = pushed[i] || contact_force_on(i) > kMoved * no_force();
   const std::vector<bool> by_others = pushed;
   std::vector<Vec3> velocity = velocities();
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
