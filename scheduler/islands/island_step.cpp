@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "brink/core/contacts/coulomb_sweeps.h"
+#include "brink/scheduler/islands/step_balance.h"
 #include "brink/scheduler/islands/tolerances.h"
 
 namespace brink {
@@ -367,143 +368,12 @@ std::vector<ContactLoad> of_all(const std::vector<ContactLoad>& loads, const std
   return all;
 }
 
-/// Those whom contacts push, by more than roundings of the largest push: all others go as forces alone lead them.
-std::vector<bool> pushed_of(const IslandStep& step, const std::vector<Vec3>& velocity, double h) {
-  std::vector<double> impulse;
-  double largest = 0.0;
-  for (std::size_t i = 0; i < step.mass.size(); ++i) {
-    impulse.push_back(contact_impulse(step.mass[i], step.force[i], step.velocity[i], velocity[i], h));
-    largest = std::max(largest, impulse.back());
-  }
-  std::vector<bool> pushed;
-  for (const double p : impulse) pushed.push_back(p > kOnePush * largest);
-  return pushed;
-}
-
-/// What the bodies that are pushed won in the step beyond what forces and moving supports gave them [J]; `of`: the energies
-/// that it turned over, and the work of the forces along the contact tolerance.
-double won(const IslandStep& step, const StepResult& result, const std::vector<Part>& parts,
-           const std::vector<bool>& pushed, double h, double tolerance, double& of) {
-  double change = 0.0;
-  for (std::size_t i = 0; i < step.mass.size(); ++i)
-    for (int k = 0; k < 3; ++k) {
-      if (!pushed[i] || std::isinf(step.mass[i][k])) continue;
-      // Kinetic energy as m (after - before) (after + before) / 2, without the cancellation of two
-      // squares. The work of a force is h f . after, as the step goes with the twist of its end.
-      const double before = step.velocity[i][k], after = result.velocity[i][k];
-      change += 0.5 * step.mass[i][k] * (after - before) * (after + before) - h * step.force[i][k] * after;
-      // The last term is what the force alone makes of a body at rest: a step from rest is measured by
-      // that. The tolerance stands for the way by which gaps may be off.
-      of += 0.5 * step.mass[i][k] * (before * before + after * after) +
-            std::abs(step.force[i][k]) * (std::abs(h * after) + (k < 2 ? tolerance : 0.0)) +
-            h * h * step.force[i][k] * step.force[i][k] / step.mass[i][k];
-    }
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    const IslandContact& c = step.contacts[parts[k].contact];
-    // A contact that pushes has J_n w = support + (lift - gap) / h. The support's part and the lift are
-    // work of the site; the gap's part is a loss of the bodies and stays in the sum.
-    if (c.driven)
-      change -= result.loads[k].normal * (c.normal_support + parts[k].lift / h) +
-                result.loads[k].tangential * c.tangential_support;
-  }
-  return change;
-}
-
-/// What wires without thickness have given [J], where contacts that began nearer than they keep rose to that: a thousandth of
-/// the contact tolerance, which is how wires are told apart and nothing that anybody has to pay for.
-double rise_of_thin(const IslandStep& step, const StepResult& result, const std::vector<Part>& parts,
-                    double h) {
-  double rise = 0.0;
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    const IslandContact& c = step.contacts[parts[k].contact];
-    if (c.thin && parts[k].lift > 0.0)
-      rise += result.loads[k].normal / h * std::min(parts[k].lift, c.tolerance - std::min(c.gap, 0.0));
-  }
-  return rise;
-}
-
-/// The direction in which sites push (unit), by all but roundings of the momentum that there is; 0: none does. Nothing where they push
-/// along more than one line, or hold somebody. What is squeezed between sites is pushed much harder than anything moves it.
-std::optional<Vec2> line_of_pushes(const IslandStep& step, const StepResult& result,
-                                   const std::vector<Part>& parts, double h) {
-  double momentum = 0.0;
-  for (std::size_t i = 0; i < step.mass.size(); ++i) {
-    if (std::isinf(step.mass[i].x()) || std::isinf(step.mass[i].y())) return std::nullopt;
-    momentum += step.mass[i].x() * result.velocity[i].head<2>().norm() + h * step.force[i].head<2>().norm();
-  }
-  std::vector<Vec2> pushes;
-  Vec2 largest = Vec2::Zero();
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    const LastingContact& rows = step.contacts[parts[k].contact].rows;
-    const Vec3 push =
-        result.loads[k].normal * rows.normal_on_body + result.loads[k].tangential * rows.tangent_on_body;
-    if (rows.other < 0) pushes.emplace_back(push.head<2>());
-    if (rows.other < 0 && pushes.back().norm() > largest.norm()) largest = pushes.back();
-  }
-  if (largest.isZero(0.0)) return Vec2(Vec2::Zero());
-  const Vec2 along = largest.normalized();
-  const bool one = std::all_of(pushes.begin(), pushes.end(), [&](const Vec2& push) {
-    return std::abs(cross(along, push)) <= kOnePush * std::min(momentum, largest.norm());
-  });
-  return one ? std::optional<Vec2>(along) : std::nullopt;
-}
-
-/// The velocity that all bodies that are pushed have in common across that line: no contact changes it [m/s].
-Vec2 common_velocity(const IslandStep& step, const std::vector<Vec3>& velocity,
-                     const std::vector<bool>& pushed, const Vec2& line) {
-  Vec2 momentum = Vec2::Zero();
-  double mass = 0.0;
-  for (std::size_t i = 0; i < step.mass.size(); ++i) {
-    if (!pushed[i]) continue;
-    mass += step.mass[i].x();
-    momentum += step.mass[i].x() * velocity[i].head<2>();
-  }
-  const Vec2 common = mass > 0.0 ? Vec2(momentum / mass) : Vec2(Vec2::Zero());
-  return common - line.dot(common) * line;
-}
-
-/// What the solver's digits have changed of the momentum that no site takes is given back to all who are pushed alike: among them it
-/// changes no gap, and none with a site across that line.
-void keep_momentum(const IslandStep& step, double h, double tolerance, const std::vector<bool>& pushed,
-                   const Vec2& line, std::vector<Vec3>& velocity) {
-  std::vector<Vec3> without = step.velocity;
-  for (std::size_t i = 0; i < without.size(); ++i)
-    without[i] += h * step.force[i].cwiseQuotient(step.mass[i]);
-  const Vec2 lost =
-      common_velocity(step, without, pushed, line) - common_velocity(step, velocity, pushed, line);
-  double speed = 0.0;
-  for (const Vec3& v : velocity) speed = std::max(speed, v.head<2>().norm());
-  const bool alone = std::all_of(step.contacts.begin(), step.contacts.end(), [&](const IslandContact& c) {
-    return c.rows.other >= 0 && pushed[c.rows.body] == pushed[c.rows.other];
-  });
-  // more is none of the solver's digits, and gaps with others have been looked at
-  if (lost.norm() > (alone ? kResidual * speed : kMissCounts * tolerance / h)) return;
-  for (std::size_t i = 0; i < velocity.size(); ++i)
-    if (pushed[i]) velocity[i].head<2>() += lost;
-}
-
-/// Makes the step win nothing [J], but for `free`: all who are pushed go the same way, relative to what they have in common, only
-/// not as far. So no momentum is lost that no site takes, and bodies come by the same places of each other.
-void win_nothing(const IslandStep& step, const std::vector<bool>& pushed, const Vec2& common, double free,
-                 double h, std::vector<Vec3>& velocity) {
-  const Vec3 together(common.x(), common.y(), 0.0);
-  double before = 2.0 * free, after = 0.0, work = 0.0;  // twice the kinetic energies [J]
-  for (std::size_t i = 0; i < step.mass.size(); ++i)
-    for (int k = 0; k < 3; ++k) {
-      if (!pushed[i] || std::isinf(step.mass[i][k])) continue;
-      const double apart = velocity[i][k] - together[k];
-      before += step.mass[i][k] * (step.velocity[i][k] + together[k]) * (step.velocity[i][k] - together[k]) +
-                2.0 * h * step.force[i][k] * together[k];
-      after += step.mass[i][k] * apart * apart;
-      work += h * step.force[i][k] * apart;
-    }
-  // At s times these velocities the kinetic energy less the work, which has s times the way, is what it was:
-  // after s^2 / 2 - work s - before / 2 = 0
-  const double root = work * work + after * before;
-  if (!(after > 0.0) || !(root >= 0.0)) return;
-  const double slower = std::min(1.0, (work + std::sqrt(root)) / after);
-  for (std::size_t i = 0; i < velocity.size(); ++i)
-    if (pushed[i]) velocity[i] = together + slower * (velocity[i] - together);
+/// The contacts that take part, with what they give.
+std::vector<PushingContact> pushing(const std::vector<Part>& parts, const StepResult& result) {
+  std::vector<PushingContact> all;
+  for (std::size_t k = 0; k < parts.size(); ++k)
+    all.push_back({parts[k].contact, parts[k].lift, result.loads[k]});
+  return all;
 }
 
 /// True if a contact of two that were not slowed alike is missed by more than its tolerance: of one who was pushed with one who was
@@ -629,11 +499,10 @@ StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, b
       }
       continue;
     }
-    const std::optional<Vec2> line = line_of_pushes(step, result, parts, h);
-    std::vector<bool> pushed = pushed_of(step, result.velocity, h);
-    if (line) keep_momentum(step, h, tolerance, pushed, *line, result.velocity);
+    StepBalance balance(step, h, pushing(parts, result), result.velocity);
+    balance.keep_momentum(tolerance, result.velocity);
     double of = 0.0;
-    const double won_here = won(step, result, parts, pushed, h, tolerance, of);
+    const double won_here = balance.won(result.velocity, tolerance, of);
     // The caller tries a shorter step: by what faces that turn are missed is of second order in h.
     if (won_here > kWonOf * of) return without_loads(step, h, gaps, go_on, farther, outcome);
     // from here on loads stand at their contacts' places; won() took them at their parts'
@@ -643,16 +512,16 @@ StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, b
     // Slower by one factor, constant twists lead through the same poses, only not as far: no gap is missed
     // that was not before. A site that moves by the clock would be elsewhere at those poses, so its steps
     // keep what they won, and tell it.
-    const double free = rise_of_thin(step, result, parts, h);
+    const double free = balance.rise_of_thin();
     if (won_here > free && !driven) {
       const std::vector<Vec3> velocity = result.velocity;
-      const Vec2 common = line ? common_velocity(step, velocity, pushed, *line) : Vec2(Vec2::Zero());
-      win_nothing(step, pushed, common, free, h, result.velocity);
+      const Vec2 common = balance.common_velocity(velocity);
+      balance.win_nothing(common, result.velocity);
       // the others do not go the same way, and what those have in common leads past sites but where one ends or begins
-      if (misses_others(step, h, result.velocity, pushed, common, gaps)) {
+      if (misses_others(step, h, result.velocity, balance.pushed(), common, gaps)) {
         result.velocity = velocity;
-        pushed.assign(pushed.size(), true);
-        win_nothing(step, pushed, Vec2::Zero(), free, h, result.velocity);
+        balance.push_all();
+        balance.win_nothing(Vec2::Zero(), result.velocity);
       }
     }
     outcome.won = std::max(0.0, driven ? won_here : std::min(won_here, free));
@@ -669,18 +538,6 @@ StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, b
 }
 
 }  // namespace
-
-double contact_impulse(const Vec3& mass, const Vec3& force, const Vec3& before, const Vec3& after, double h) {
-  const double gyration = std::isinf(mass[2]) || std::isinf(mass[0]) ? 0.0 : std::sqrt(mass[2] / mass[0]);
-  double square = 0.0;
-  for (int k = 0; k < 3; ++k) {
-    if (std::isinf(mass[k])) continue;
-    const double given = mass[k] * (after[k] - before[k]) - h * force[k];
-    if (k < 2) square += given * given;
-    if (k == 2 && gyration > 0.0) square += given * given / (gyration * gyration);
-  }
-  return std::sqrt(square);
-}
 
 StepOutcome take_step(ConeQp& solver, IslandStep& step, double h, double tolerance, const GapsAlong& gaps,
                       const GoOn& go_on, const ListFarther& farther) {

@@ -79,10 +79,6 @@ struct StepOutcome {
 /// round in a circle, to what sweeps leave (StepOutcome::friction_residual).
 inline constexpr std::size_t kFewMembers = 8;
 
-/// What all contacts together have given a body [N s], by its velocities before and after h [s] under that force; a turning counts as
-/// at the radius of gyration. What is held has an infinite mass, and nothing is told of it.
-double contact_impulse(const Vec3& mass, const Vec3& force, const Vec3& before, const Vec3& after, double h);
-
 /// Takes a step of h > 0 [s]. What is not solved is to be tried again with a shorter one. `farther` is asked after every
 /// solve; what it adds takes part once it is missed. `tolerance`: the way by which places may be off in
 /// its energy [m]; a thin contact's, too, where no step keeps its own (its `tolerance` says so then).

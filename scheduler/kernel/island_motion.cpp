@@ -8,6 +8,7 @@
 
 #include "brink/core/base/disjoint_sets.h"
 #include "brink/core/base/limits.h"
+#include "brink/scheduler/islands/step_balance.h"
 #include "brink/scheduler/islands/tolerances.h"
 #include "brink/scheduler/kernel/island_joining.h"
 #include "brink/scheduler/kernel/step_places.h"
