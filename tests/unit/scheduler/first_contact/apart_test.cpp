@@ -5,21 +5,13 @@
 #include <gtest/gtest.h>
 
 #include "brink/core/shapes/shapes.h"
+#include "tests/support/flier.h"
 #include "tests/support/seeded_random.h"
 
 namespace brink::apart_test {
 namespace {
 
-struct Flier {
-  std::unique_ptr<SiteIndex> index;
-  Motion motion;
-
-  Mover mover() const { return {index.get(), &motion, 0.0}; }
-};
-
-Flier flier(const Shape& shape, const Motion& motion) {
-  return {make_brute_force_index(std::make_shared<const Outline>(shape.outline)), motion};
-}
+using testing::Flier;
 
 Shape any_body(Random& r) {
   switch (r.below(8)) {
@@ -75,10 +67,10 @@ TEST(Apart, IsNeverToldForLongerThanUntilTheFirstContact) {
     const Shape of_body = any_body(r), of_wall = r.below(2) ? any_wall(r) : any_body(r);
     const Vec2 offset(r.uniform(-4.0, 4.0), r.uniform(-4.0, 4.0));
     const Vec2 way = -r.uniform(0.0, 5.0) * offset + Vec2(r.uniform(-3.0, 3.0), r.uniform(-3.0, 3.0));
-    const Flier body = flier(
+    const Flier body = Flier(
         of_body, Motion::ballistic(0.0, {{base + offset, r.uniform(-3.2, 3.2)}, {way, r.uniform(-9.0, 9.0)}},
                                    {{0.0, -9.81}, 0.0}));
-    const Flier wall = flier(of_wall, of_a_wall(r, base));
+    const Flier wall = Flier(of_wall, of_a_wall(r, base));
     const bool first = r.below(2) != 0;
     const Mover a = (first ? body : wall).mover(), b = (first ? wall : body).mover();
     SearchLimits limits;
@@ -103,9 +95,9 @@ TEST(Apart, IsNeverToldForLongerThanUntilTheFirstContact) {
 
 // Two bars that pass each other by a hand's breadth: no disc tells that, a line between them does, all the way.
 TEST(Apart, OfBarsThatPassALineTellsToTheEnd) {
-  const Flier still = flier(make_box(2.0, 0.2), Motion::still({}));
+  const Flier still = Flier(make_box(2.0, 0.2), Motion::still({}));
   const Flier bar =
-      flier(make_box(2.0, 0.2), Motion::ballistic(0.0, {{{-5.0, 0.3}, 0.0}, {{5.0, 0.0}, 0.0}}, {}));
+      Flier(make_box(2.0, 0.2), Motion::ballistic(0.0, {{{-5.0, 0.3}, 0.0}, {{5.0, 0.0}, 0.0}}, {}));
   EXPECT_EQ(detail::apart_until(bar.mover(), still.mover(), 0.0, 2.0, SearchLimits()).until, 2.0);
 }
 
@@ -115,11 +107,11 @@ TEST(Apart, InInstalmentsComesToTheSameContact) {
   SearchScratch scratch;
   int contacts = 0;
   for (int k = 0; k < 500; ++k) {
-    const Flier a = flier(any_body(r), Motion::ballistic(0.0,
+    const Flier a = Flier(any_body(r), Motion::ballistic(0.0,
                                                          {{{2.0, r.uniform(-0.3, 0.3)}, r.uniform(-3.0, 3.0)},
                                                           {{-3.0, 0.0}, r.uniform(-20.0, 20.0)}},
                                                          {}));
-    const Flier b = flier(any_body(r), Motion::ballistic(0.0, {{}, {{}, r.uniform(-20.0, 20.0)}}, {}));
+    const Flier b = Flier(any_body(r), Motion::ballistic(0.0, {{}, {{}, r.uniform(-20.0, 20.0)}}, {}));
     WorkCounters work;
     const PairAnswer whole = first_contact(a.mover(), b.mover(), 0.0, 1.5, SearchLimits(), scratch, work);
     SearchLimits few;
@@ -135,8 +127,8 @@ TEST(Apart, InInstalmentsComesToTheSameContact) {
 }
 
 TEST(Apart, OfAContainerNothingIsTold) {
-  const Flier room = flier(make_disc_container(4.0), Motion::still({}));
-  const Flier disc = flier(make_disc(0.1), Motion::ballistic(0.0, {{}, {{1.0, 0.0}, 0.0}}, {}));
+  const Flier room = Flier(make_disc_container(4.0), Motion::still({}));
+  const Flier disc = Flier(make_disc(0.1), Motion::ballistic(0.0, {{}, {{1.0, 0.0}, 0.0}}, {}));
   EXPECT_EQ(detail::apart_until(disc.mover(), room.mover(), 0.25, 1.0, SearchLimits()).until, 0.25);
 }
 

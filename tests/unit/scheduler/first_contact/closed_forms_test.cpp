@@ -6,20 +6,13 @@
 #include "brink/core/shapes/shapes.h"
 #include "brink/scheduler/first_contact/closed_forms.h"
 #include "brink/scheduler/first_contact/first_contact.h"
+#include "tests/support/flier.h"
 #include "tests/support/seeded_random.h"
 
 namespace brink::closed_forms_test {
 namespace {
 
-struct Flier {
-  std::unique_ptr<SiteIndex> index;
-  Motion motion;
-
-  Flier(const Shape& shape, Motion flight)
-      : index(make_brute_force_index(std::make_shared<const Outline>(shape.outline))),
-        motion(std::move(flight)) {}
-  Mover mover() const { return {index.get(), &motion, 0.0}; }
-};
+using testing::Flier;
 
 Flier disc_towards_the_origin(Random& r, double side, const Vec2& gravity) {
   const double radius = r.uniform(0.1, 1.0), speed = std::pow(10.0, r.uniform(-2.0, 3.0));

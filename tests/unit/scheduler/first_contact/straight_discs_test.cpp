@@ -5,21 +5,19 @@
 #include <gtest/gtest.h>
 
 #include "brink/core/shapes/shapes.h"
+#include "tests/support/flier.h"
 #include "tests/support/seeded_random.h"
 
 namespace brink::straight_discs_test {
 namespace {
 
-struct Flier {
-  std::unique_ptr<SiteIndex> index;
-  Motion motion;
+using testing::Flier;
 
-  Flier(double radius, double origin, const Vec2& place, const Vec2& velocity)
-      : index(make_brute_force_index(std::make_shared<const Outline>(make_disc(radius).outline))),
-        motion(Motion::ballistic(origin, {{place, 0.0}, {velocity, 0.0}}, {})) {}
-  DiscMover disc() const { return {&motion, index->outline().bounding_radius, 0.0}; }
-  Mover mover() const { return {index.get(), &motion, 0.0}; }
-};
+Flier disc_of(double radius, double origin, const Vec2& place, const Vec2& velocity) {
+  return {make_disc(radius), Motion::ballistic(origin, {{place, 0.0}, {velocity, 0.0}}, {})};
+}
+
+DiscMover disc(const Flier& flier) { return {&flier.motion, flier.index->outline().bounding_radius, 0.0}; }
 
 // Late on the clock a double of time is more than a gap's rounding, early and far from the origin a small part of it.
 TEST(StraightDiscs, MeetAtTheGeneralSearchsTimeEarlyAndLateNearAndFar) {
@@ -36,12 +34,12 @@ TEST(StraightDiscs, MeetAtTheGeneralSearchsTimeEarlyAndLateNearAndFar) {
       const Vec2 velocity(-side * speed * r.uniform(0.2, 1.0), speed * r.uniform(-0.3, 0.3));
       const double since = r.uniform(0.0, std::min(late, 1.0));
       const Vec2 place = Vec2(far + 2.0 * side, far * r.uniform(-1e-3, 1e-3) + r.uniform(-0.5, 0.5));
-      return Flier(r.uniform(0.2, 0.8), late - since, place - since * velocity, velocity);
+      return disc_of(r.uniform(0.2, 0.8), late - since, place - since * velocity, velocity);
     };
     const Flier a = flier(1.0), b = flier(-1.0);
     const double from = std::max(a.motion.origin(), b.motion.origin()), to = from + 20.0 / speed;
     DiscContact contact;
-    const bool straight = straight_discs_meet(a.disc(), b.disc(), from, to, limits, contact);
+    const bool straight = straight_discs_meet(disc(a), disc(b), from, to, limits, contact);
     const PairAnswer slow = first_contact(a.mover(), b.mover(), from, to, limits, scratch, work);
     met += slow.status == PairAnswer::Status::contact;
     told += straight;

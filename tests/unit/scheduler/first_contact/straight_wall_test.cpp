@@ -5,19 +5,13 @@
 
 #include "brink/core/base/limits.h"
 #include "brink/core/shapes/shapes.h"
+#include "tests/support/flier.h"
 #include "tests/support/seeded_random.h"
 
 namespace brink::straight_wall_test {
 namespace {
 
-struct Mobile {
-  std::unique_ptr<SiteIndex> index;
-  Motion motion;
-
-  Mobile(const Shape& shape, Motion m)
-      : index(make_brute_force_index(std::make_shared<const Outline>(shape.outline))), motion(std::move(m)) {}
-  Mover mover() const { return {index.get(), &motion, 0.0}; }
-};
+using testing::Flier;
 
 // Walls of any direction, turned and moved, thin and thick; discs that come from either side, early and late.
 TEST(StraightWall, IsMetAtTheGeneralSearchsTime) {
@@ -33,8 +27,8 @@ TEST(StraightWall, IsMetAtTheGeneralSearchsTime) {
     const double direction = k % 2 ? 0.0 : r.uniform(-3.0, 3.0);
     const Vec2 tangent(std::cos(direction), std::sin(direction));
     const Vec2 centre(r.uniform(-20.0, 20.0), r.uniform(-20.0, 20.0));
-    const Mobile wall(make_segment(centre - half * tangent, centre + half * tangent, k % 5 ? 0.0 : 0.1),
-                      Motion::still({{r.uniform(-3.0, 3.0), r.uniform(-3.0, 3.0)}, angle}));
+    const Flier wall(make_segment(centre - half * tangent, centre + half * tangent, k % 5 ? 0.0 : 0.1),
+                     Motion::still({{r.uniform(-3.0, 3.0), r.uniform(-3.0, 3.0)}, angle}));
     const Frame frame(wall.motion.start().pose);
     const Vec2 along = frame.direction_to_world(tangent), across = (k % 7 ? 1.0 : -1.0) * perp(along);
     const double since = r.uniform(0.0, std::min(late, 1.0));
@@ -42,8 +36,8 @@ TEST(StraightWall, IsMetAtTheGeneralSearchsTime) {
         (k % 11 ? speed : -speed) * (r.uniform(-1.0, 1.0) * along - r.uniform(0.05, 1.0) * across);
     const Vec2 place =
         frame.to_world(centre) + half * r.uniform(-1.1, 1.1) * along + r.uniform(1.0, 4.0) * across;
-    const Mobile disc(make_disc(r.uniform(0.2, 0.8)),
-                      Motion::ballistic(late - since, {{place, 0.0}, {velocity, r.uniform(-1.0, 1.0)}}, {}));
+    const Flier disc(make_disc(r.uniform(0.2, 0.8)),
+                     Motion::ballistic(late - since, {{place, 0.0}, {velocity, r.uniform(-1.0, 1.0)}}, {}));
     const double from = disc.motion.origin(), to = from + 40.0 / speed;
     const auto straight = StraightWall::of(wall.mover().outline(), wall.motion);
     ASSERT_TRUE(straight);
