@@ -278,9 +278,10 @@ std::optional<NearFeature> beside_arc(const Half& half, int i, int j, const Vec2
   if (side < 0.0 || off > kTurnedInStep || cuts_circle(arc, site, q)) return std::nullopt;
   const Vec2 out = half.other_frame.direction_to_local(half.carrier_frame.direction_to_world(-towards));
   const ArcEnd end = end_beside(half, arc, towards, site, out, nearest.point);
-  // an end that is abreast of the site has the arc before that, wherever the site ends
-  const bool within = !arc.solid && end.nearest.foot != Foot::interior &&
-                      ends_at(half.other, site, nearest) && lies_within(half, arc, site, nearest);
+  // of a straight site the arc is before what its end is abreast of, wherever that ends
+  const bool before = site.kind == SiteKind::segment && end.nearest.foot == Foot::interior;
+  const bool within =
+      !arc.solid && !before && ends_at(half.other, site, nearest) && lies_within(half, arc, site, nearest);
   if (within) return std::nullopt;
   // who is sunk into a wire's arc from its hollow is on that side of it
   const bool sunk_from_within = end.gap < 0.0 && !arc.solid && leads_within(half, arc, site);
