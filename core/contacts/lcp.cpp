@@ -47,8 +47,15 @@ class Tableau {
   /// Exchanges; returns the variable that left.
   int pivot(int row, int entering) {
     rows_.row(row) /= rows_(row, entering);
-    for (int k = 0; k < n_; ++k)
-      if (k != row && rows_(k, entering) != 0) rows_.row(k) -= rows_(k, entering) * rows_.row(row);
+    // about half of a row is 0: of the columns that have left the basis, and of bodies far away
+    filled_.clear();
+    for (Eigen::Index c = 0; c < rows_.cols(); ++c)
+      if (rows_(row, c) != 0) filled_.push_back(c);
+    for (int k = 0; k < n_; ++k) {
+      const Real part = rows_(k, entering);
+      if (k == row || part == 0) continue;
+      for (const Eigen::Index c : filled_) rows_(k, c) -= part * rows_(row, c);
+    }
     std::swap(basic_[row], entering);
     return entering;
   }
@@ -95,8 +102,9 @@ class Tableau {
   }
 
   int n_;
-  RealMatrix rows_;
-  std::vector<int> basic_;  ///< variable of each row
+  Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows_;
+  std::vector<int> basic_;            ///< variable of each row
+  std::vector<Eigen::Index> filled_;  ///< columns of the pivot's row that are not 0
 };
 
 /// z0 below this is 0, where |q| <= 1.

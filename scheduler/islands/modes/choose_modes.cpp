@@ -1,6 +1,7 @@
 #include "brink/scheduler/islands/modes/choose_modes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "brink/core/contacts/lcp.h"
@@ -36,7 +37,7 @@ class Complementarity {
       q[i] = unknowns_[i].row.dot(free_) + unknowns_[i].bend;
       for (Eigen::Index j = 0; j < n; ++j)
         // w = A z + q: what each unit of force adds to the acceleration along a row
-        A(i, j) = unknowns_[i].row.dot(pushed[j]) + coupling(i, j);
+        A(i, j) = unknowns_[i].along(pushed[j]) + coupling(i, j);
       size_ = std::max(size_, abs(q[i]));
     }
     const LcpAnswer answer = solve_lcp_by_lemke(A, q);
@@ -85,6 +86,15 @@ class Complementarity {
     enum class Kind : unsigned char { normal, plus, minus, slack } kind = Kind::normal;
     std::size_t of = 0;
     Real friction = 0, by = 1;
+    std::array<Eigen::Index, 2> bodies = {-1,
+                                          -1};  ///< first columns of those that the row has; -1: of a support
+
+    Real along(const RealVector& v) const {
+      Real sum = 0;
+      for (const Eigen::Index first : bodies)
+        if (first >= 0) sum += row.segment<3>(first).dot(v.segment<3>(first));
+      return sum;
+    }
   };
   /// Of one contact that may be closed, scaled as its unknowns are: what mode_of() looks at.
   struct Rows {
@@ -106,14 +116,19 @@ class Complementarity {
     // of what slides already the friction is at its bound: the normal force's column carries it
     const Real sign = known == ContactKnown::slides_plus ? -1 : known == ContactKnown::slides_minus ? 1 : 0;
     const Real normal_bend = by * Real(r.normal_bend), tangential_bend = by * Real(r.tangential_bend);
+    const auto columns = [&](int owner) { return Eigen::Index{owner < problem.bodies() ? 3 * owner : -1}; };
+    // a body that touches its own image has one place in the row
+    const std::array<Eigen::Index, 2> of = {columns(c.sample_owner),
+                                            c.site_owner == c.sample_owner ? -1 : columns(c.site_owner)};
     contacts_.push_back({k, by * n, by * t, normal_bend, tangential_bend});
-    unknowns_.push_back({by * n, by * (n + sign * mu * t), normal_bend, Unknown::Kind::normal, k, mu, by});
+    unknowns_.push_back(
+        {by * n, by * (n + sign * mu * t), normal_bend, Unknown::Kind::normal, k, mu, by, of});
     if (!still) return;
     const RealVector none = RealVector::Zero(n.size());
-    unknowns_.push_back({by * t, by * t, tangential_bend, Unknown::Kind::plus, k, mu, by});
-    unknowns_.push_back({-by * t, -by * t, -tangential_bend, Unknown::Kind::minus, k, mu, by});
+    unknowns_.push_back({by * t, by * t, tangential_bend, Unknown::Kind::plus, k, mu, by, of});
+    unknowns_.push_back({-by * t, -by * t, -tangential_bend, Unknown::Kind::minus, k, mu, by, of});
     // g, the tangential acceleration beyond friction: it pushes nobody, and is coupled to f+, f- alone
-    unknowns_.push_back({none, none, 0, Unknown::Kind::slack, k, mu, 1});
+    unknowns_.push_back({none, none, 0, Unknown::Kind::slack, k, mu, 1, of});
   }
 
   /// Between unknowns of one contact, beside what accelerations couple.
