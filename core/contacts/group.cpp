@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "brink/core/contacts/lcp.h"
 
@@ -36,6 +37,8 @@ class Group {
 
   int size() const { return static_cast<int>(contacts_.size()); }
   const std::vector<ExtendedTwist>& twists() const { return twists_; }
+  /// The largest [m/s].
+  Real speed() const { return speed_; }
   /// What rounding alone may make of a velocity at a contact [m/s].
   Real rounding() const { return kRoundingOfSpeed * speed_; }
 
@@ -293,7 +296,94 @@ GroupResult without_end(const Group& group, const std::vector<GroupBody>& bodies
   return result;
 }
 
+/// Coulomb's law at all contacts at once, without a rebound, as a complementarity problem: of every contact its normal impulse p,
+/// its friction along the tangent f+ and against it f-, and the slip g that is left:
+///
+///   0 <= p  _|_  v_n' >= 0,   0 <= f+  _|_  v_t' + g >= 0,   0 <= f-  _|_  -v_t' + g >= 0,   0 <= g  _|_  mu p - f+ - f- >= 0
+///
+/// Impulses are scaled so that 1 changes v_n at its own contact by as much, with light bodies and heavy ones.
+class PlasticProblem {
+ public:
+  PlasticProblem(const Group& group, const std::vector<GroupContact>& contacts, const std::vector<int>& set)
+      : set_(set), scale_(static_cast<Eigen::Index>(set.size())) {
+    const auto n = static_cast<Eigen::Index>(set.size());
+    A_ = RealMatrix::Zero(4 * n, 4 * n);
+    q_ = RealVector::Zero(4 * n);
+    const auto normal = [&](Eigen::Index i) { return contacts[set[i]].normal; };
+    const auto tangent = [&](Eigen::Index i) { return extended::perp(contacts[set[i]].normal); };
+    const auto rounded = [&](Real v) { return abs(v) <= group.rounding() ? Real(0) : v; };
+    for (Eigen::Index i = 0; i < n; ++i) scale_[i] = 1 / group.mobility(set[i], normal(i), set[i], normal(i));
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const RealVec v = group.velocity(set[i]);
+      q_[i] = rounded(v.dot(normal(i)));
+      q_[n + i] = rounded(v.dot(tangent(i)));
+      q_[2 * n + i] = -q_[n + i];
+      for (Eigen::Index j = 0; j < n; ++j) {
+        const auto yields = [&](const RealVec& a, const RealVec& b) {
+          return scale_[j] * group.mobility(set[i], a, set[j], b);
+        };
+        A_(i, j) = yields(normal(i), normal(j));
+        A_(i, n + j) = yields(normal(i), tangent(j));
+        A_(n + i, j) = yields(tangent(i), normal(j));
+        A_(n + i, n + j) = yields(tangent(i), tangent(j));
+      }
+      A_(n + i, 3 * n + i) = A_(2 * n + i, 3 * n + i) = 1;
+      A_(3 * n + i, i) = static_cast<Real>(contacts[set[i]].material.friction);
+      A_(3 * n + i, n + i) = A_(3 * n + i, 2 * n + i) = -1;
+    }
+    // f- is f+ the other way round
+    A_.block(0, 2 * n, 2 * n, n) = -A_.block(0, n, 2 * n, n);
+    A_.block(2 * n, 0, n, 3 * n) = -A_.block(n, 0, n, 3 * n);
+  }
+
+  /// Impulses along the normal and the tangent of each contact of the set. False: none were found.
+  bool solve(const GoOn& go_on, RealVector& normal, RealVector& tangential) const {
+    const LcpAnswer found = solve_lcp_by_lemke(A_, q_, go_on);
+    if (found.status != LcpAnswer::Status::solved) return false;
+    const Eigen::Index n = scale_.size();
+    normal = scale_.cwiseProduct(found.z.head(n));
+    tangential = scale_.cwiseProduct(found.z.segment(n, n) - found.z.segment(2 * n, n));
+    return true;
+  }
+
+ private:
+  std::vector<int> set_;
+  RealVector scale_;  ///< impulse of one unit
+  RealMatrix A_;
+  RealVector q_;
+};
+
+/// What approaches no faster than this part of the group's largest speed has been stopped, but for roundings.
+constexpr Real kNoneLeft = 1e-15;
+/// A dense problem of more contacts takes too long.
+constexpr std::size_t kMostPlastic = 48;
+
 }  // namespace
+
+std::optional<GroupResult> resolve_plastic(const std::vector<GroupBody>& bodies,
+                                           const std::vector<GroupContact>& contacts, const GoOn& go_on) {
+  Group group(bodies, contacts);
+  const std::vector<int> set = movable(group, contacts);
+  if (set.size() > kMostPlastic || has_jam(group, set)) return std::nullopt;
+  RealVector normal, tangential;
+  if (!PlasticProblem(group, contacts, set).solve(go_on, normal, tangential)) return std::nullopt;
+  GroupResult result;
+  result.normal.assign(contacts.size(), 0);
+  result.tangential.assign(contacts.size(), 0);
+  const Group before = group;
+  for (std::size_t k = 0; k < set.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    result.normal[set[k]] = normal[i];
+    result.tangential[set[k]] = tangential[i];
+    const RealVec& n = contacts[set[k]].normal;
+    group.push(set[k], normal[i] * n + tangential[i] * extended::perp(n));
+  }
+  const auto stops = [&](int k) { return group.normal_velocity(k) >= -kNoneLeft * group.speed(); };
+  if (!std::all_of(set.begin(), set.end(), stops)) return std::nullopt;
+  result.lost = -work_of(before, group, set, normal);
+  result.twists = group.twists();
+  return result;
+}
 
 GroupResult resolve_together(const std::vector<GroupBody>& bodies, const std::vector<GroupContact>& contacts,
                              const GoOn& go_on) {

@@ -8,6 +8,7 @@
 /// to part (a cradle of equal discs spreads out); `reflections` breaks away (the last disc of the cradle
 /// leaves alone) and is symmetric too.
 
+#include <optional>
 #include <vector>
 
 #include "brink/core/base/extended.h"
@@ -70,5 +71,13 @@ GroupResult resolve_together(const std::vector<GroupBody>& bodies, const std::ve
 /// taken, if nothing approaches after it; else the inelastic one, and the result says `endless`.
 GroupResult resolve_reflections(const std::vector<GroupBody>& bodies,
                                 const std::vector<GroupContact>& contacts, const GoOn& go_on = {});
+
+/// Without a rebound, and friction of all contacts coupled with their normal impulses: nothing approaches afterwards,
+/// whatever friction does, so that the instant ends. It never gains energy, of each impulse p.v' <= 0. Restitution and
+/// tangential restitution are not looked at. Nothing: no solution was found, or there are too many contacts for it.
+/// Sources: Stewart & Trinkle 1996, "An implicit time-stepping scheme for rigid body dynamics with inelastic collisions and
+/// Coulomb friction"; Anitescu & Potra 1997. Cost: about (4 k)^3 for k contacts, in extended precision.
+std::optional<GroupResult> resolve_plastic(const std::vector<GroupBody>& bodies,
+                                           const std::vector<GroupContact>& contacts, const GoOn& go_on = {});
 
 }  // namespace brink

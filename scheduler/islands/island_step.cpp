@@ -376,18 +376,41 @@ std::vector<PushingContact> pushing(const std::vector<Part>& parts, const StepRe
   return all;
 }
 
-/// True if a contact of two that were not slowed alike is missed by more than its tolerance: of one who was pushed with one who was
-/// not, or with a site where they had something in common.
-bool misses_others(const IslandStep& step, double h, const std::vector<Vec3>& velocity,
-                   const std::vector<bool>& pushed, const Vec2& common, const GapsAlong& gaps) {
+/// The first contact of two that were not slowed alike, and that is missed by more than its tolerance: of one who was with one who was
+/// not, or who was in another group, or with a site where a group had something in common.
+std::optional<std::size_t> missed_by_slowing(const IslandStep& step, double h,
+                                             const std::vector<Vec3>& velocity,
+                                             const std::vector<int>& groups,
+                                             const StepBalance::Slowed& slowed, const GapsAlong& gaps) {
   const GapAlong gap = gaps(velocity);
+  const auto was_slowed = [&](int body) { return groups[body] >= 0 && slowed.groups[groups[body]]; };
   for (std::size_t k = 0; k < step.contacts.size(); ++k) {
     const LastingContact& rows = step.contacts[k].rows;
-    const bool alike =
-        rows.other < 0 ? !pushed[rows.body] || common.isZero(0.0) : pushed[rows.body] == pushed[rows.other];
-    if (!alike && missed(step, k, h, velocity, 0.0, false, gap).too_much) return true;
+    const bool of_body = was_slowed(rows.body);
+    const bool alike = rows.other < 0
+                           ? !of_body || slowed.common[groups[rows.body]].isZero(0.0)
+                           : groups[rows.body] == groups[rows.other] || (!of_body && !was_slowed(rows.other));
+    if (!alike && missed(step, k, h, velocity, 0.0, false, gap).too_much) return k;
   }
-  return false;
+  return std::nullopt;
+}
+
+/// What a step won is taken from its velocities again. Who does not go the same way, and is met by that, shares it; and where a site
+/// is, which what bodies have in common leads past but where one ends or begins, all go slower as one.
+void win_nothing(const IslandStep& step, double h, const GapsAlong& gaps, StepBalance& balance,
+                 std::vector<Vec3>& velocity) {
+  const std::vector<Vec3> as_solved = velocity;
+  for (;;) {
+    velocity = as_solved;
+    const StepBalance::Slowed slowed = balance.win_nothing(velocity);
+    const auto k = missed_by_slowing(step, h, velocity, balance.groups(), slowed, gaps);
+    if (!k) return;
+    const LastingContact& rows = step.contacts[*k].rows;
+    if (rows.other < 0) break;
+    balance.unite(rows.body, rows.other, as_solved);
+  }
+  velocity = as_solved;
+  balance.win_nothing_together(velocity);
 }
 
 /// What is left of Coulomb's law, as a part of the largest normal or other force.
@@ -512,19 +535,8 @@ StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, b
     // Slower by one factor, constant twists lead through the same poses, only not as far: no gap is missed
     // that was not before. A site that moves by the clock would be elsewhere at those poses, so its steps
     // keep what they won, and tell it.
-    const double free = balance.rise_of_thin();
-    if (won_here > free && !driven) {
-      const std::vector<Vec3> velocity = result.velocity;
-      const Vec2 common = balance.common_velocity(velocity);
-      balance.win_nothing(common, result.velocity);
-      // the others do not go the same way, and what those have in common leads past sites but where one ends or begins
-      if (misses_others(step, h, result.velocity, balance.pushed(), common, gaps)) {
-        result.velocity = velocity;
-        balance.push_all();
-        balance.win_nothing(Vec2::Zero(), result.velocity);
-      }
-    }
-    outcome.won = std::max(0.0, driven ? won_here : std::min(won_here, free));
+    if (!driven) win_nothing(step, h, gaps, balance, result.velocity);
+    outcome.won = std::max(0.0, driven ? won_here : std::min(won_here, balance.rise_of_thin()));
     outcome.solved = true;
     outcome.friction_residual = residual(step, solved, h);
     step.velocity = result.velocity;

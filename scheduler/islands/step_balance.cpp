@@ -4,9 +4,17 @@
 #include <cmath>
 #include <utility>
 
+#include "brink/core/base/disjoint_sets.h"
 #include "brink/scheduler/islands/tolerances.h"
 
 namespace brink {
+
+namespace {
+
+/// A gap that stays larger than so many times the way that is added to it is not missed by that.
+constexpr double kFarOff = 100.0;
+
+}  // namespace
 
 double contact_impulse(const Vec3& mass, const Vec3& force, const Vec3& before, const Vec3& after, double h) {
   const double gyration = std::isinf(mass[2]) || std::isinf(mass[0]) ? 0.0 : std::sqrt(mass[2] / mass[0]);
@@ -22,21 +30,54 @@ double contact_impulse(const Vec3& mass, const Vec3& force, const Vec3& before, 
 
 StepBalance::StepBalance(const IslandStep& step, double h, std::vector<PushingContact> contacts,
                          const std::vector<Vec3>& velocity)
-    : step_(&step), h_(h), contacts_(std::move(contacts)), line_(line_of_pushes(velocity)) {
-  std::vector<double> impulse;
-  double largest = 0.0;
-  for (std::size_t i = 0; i < step.mass.size(); ++i) {
-    impulse.push_back(contact_impulse(step.mass[i], step.force[i], step.velocity[i], velocity[i], h));
-    largest = std::max(largest, impulse.back());
-  }
-  for (const double p : impulse) pushed_.push_back(p > kOnePush * largest);
+    : step_(&step), h_(h), contacts_(std::move(contacts)) {
+  find_groups(velocity);
+  int groups = 0;
+  for (const int g : group_) groups = std::max(groups, g + 1);
+  for (int g = 0; g < groups; ++g) lines_.push_back(line_of_pushes(g, velocity));
 }
 
-/// The direction in which sites push (unit), by all but roundings of the momentum that there is; 0: none does. Nothing where they push
-/// along more than one line, or hold somebody. What is squeezed between sites is pushed much harder than anything moves it.
-std::optional<Vec2> StepBalance::line_of_pushes(const std::vector<Vec3>& velocity) const {
+/// Two who are pushed are of one group where a contact between them pushes; what lies on one site is not, for that.
+void StepBalance::find_groups(const std::vector<Vec3>& velocity) {
+  const std::size_t bodies = step_->mass.size();
+  std::vector<double> impulse;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < bodies; ++i) {
+    impulse.push_back(contact_impulse(step_->mass[i], step_->force[i], step_->velocity[i], velocity[i], h_));
+    largest = std::max(largest, impulse.back());
+  }
+  const auto is_pushed = [&](int k) { return impulse[k] > kOnePush * largest; };
+  DisjointSets together;
+  together.reset(static_cast<int>(bodies));
+  for (const PushingContact& c : contacts_) {
+    const LastingContact& rows = step_->contacts[c.contact].rows;
+    const double push = std::max(c.load.normal, std::abs(c.load.tangential));
+    if (rows.other >= 0 && push > kOnePush * largest && is_pushed(rows.body) && is_pushed(rows.other))
+      together.unite(rows.body, rows.other);
+  }
+  group_.assign(bodies, -1);
+  int groups = 0;
+  for (int i = 0; i < static_cast<int>(bodies); ++i) {
+    if (!is_pushed(i) || group_[i] >= 0) continue;
+    for (const int k : together.of(i)) group_[k] = groups;
+    ++groups;
+  }
+}
+
+/// The greater number is left without members.
+void StepBalance::unite(int body, int other, const std::vector<Vec3>& velocity) {
+  const int a = group_[body], b = group_[other], to = a < 0 || (b >= 0 && b < a) ? b : a;
+  for (int k = 0; k < static_cast<int>(group_.size()); ++k)
+    if (k == body || k == other || (group_[k] >= 0 && (group_[k] == a || group_[k] == b))) group_[k] = to;
+  lines_[to] = line_of_pushes(to, velocity);
+}
+
+/// The direction in which sites push the group (unit), by all but roundings of the momentum that there is; 0: none does. Nothing where
+/// they push along more than one line, or hold somebody. What is squeezed between sites is pushed much harder than anything moves it.
+std::optional<Vec2> StepBalance::line_of_pushes(int group, const std::vector<Vec3>& velocity) const {
   double momentum = 0.0;
   for (std::size_t i = 0; i < step_->mass.size(); ++i) {
+    if (group_[i] != group) continue;
     const Vec3& mass = step_->mass[i];
     if (std::isinf(mass.x()) || std::isinf(mass.y())) return std::nullopt;
     momentum += mass.x() * velocity[i].head<2>().norm() + h_ * step_->force[i].head<2>().norm();
@@ -45,7 +86,7 @@ std::optional<Vec2> StepBalance::line_of_pushes(const std::vector<Vec3>& velocit
   Vec2 largest = Vec2::Zero();
   for (const PushingContact& c : contacts_) {
     const LastingContact& rows = step_->contacts[c.contact].rows;
-    if (rows.other >= 0) continue;
+    if (rows.other >= 0 || group_[rows.body] != group) continue;
     const Vec3 push = c.load.normal * rows.normal_on_body + c.load.tangential * rows.tangent_on_body;
     pushes.emplace_back(push.head<2>());
     if (pushes.back().norm() > largest.norm()) largest = pushes.back();
@@ -58,15 +99,15 @@ std::optional<Vec2> StepBalance::line_of_pushes(const std::vector<Vec3>& velocit
   return one ? std::optional<Vec2>(along) : std::nullopt;
 }
 
-Vec2 StepBalance::common_velocity(const std::vector<Vec3>& velocity) const {
-  return line_ ? common_across(velocity, *line_) : Vec2(Vec2::Zero());
+Vec2 StepBalance::common_velocity(int group, const std::vector<Vec3>& velocity) const {
+  return lines_[group] ? common_across(group, velocity, *lines_[group]) : Vec2(Vec2::Zero());
 }
 
-Vec2 StepBalance::common_across(const std::vector<Vec3>& velocity, const Vec2& line) const {
+Vec2 StepBalance::common_across(int group, const std::vector<Vec3>& velocity, const Vec2& line) const {
   Vec2 momentum = Vec2::Zero();
   double mass = 0.0;
   for (std::size_t i = 0; i < velocity.size(); ++i) {
-    if (!pushed_[i]) continue;
+    if (group_[i] != group) continue;
     mass += step_->mass[i].x();
     momentum += step_->mass[i].x() * velocity[i].head<2>();
   }
@@ -74,29 +115,67 @@ Vec2 StepBalance::common_across(const std::vector<Vec3>& velocity, const Vec2& l
   return common - line.dot(common) * line;
 }
 
-void StepBalance::keep_momentum(double tolerance, std::vector<Vec3>& velocity) const {
-  if (!line_) return;
+/// True if the contact's gap may be missed by more than counts where all of the group go faster by so much [m/s].
+bool StepBalance::misses(const IslandContact& c, int group, const Vec2& faster, double tolerance,
+                         const std::vector<Vec3>& velocity) const {
+  const LastingContact& rows = c.rows;
+  const bool body = group_[rows.body] == group, other = rows.other >= 0 && group_[rows.other] == group;
+  if (rows.other >= 0 ? body == other : !body) return false;
+  // beside an end, and where a site bends, the way along the tangent may change the gap by all of it
+  const bool straight = c.convex && !c.at_end;
+  const double way = h_ * (straight ? std::abs(faster.dot(rows.normal_on_body.head<2>())) : faster.norm());
+  if (way <= kMissCounts * tolerance) return false;
+  double opens = rows.normal_on_body.dot(velocity[rows.body]) - c.normal_support;
+  if (rows.other >= 0) opens += rows.normal_on_other.dot(velocity[rows.other]);
+  return std::min(c.gap, c.gap + h_ * opens) < kFarOff * way;
+}
+
+/// What a push too small to make a group has changed is shared by the two.
+void StepBalance::keep_momentum(double tolerance, std::vector<Vec3>& velocity) {
+  const std::vector<Vec3> as_solved = velocity;
+  while (const LastingContact* between = give_back(tolerance, velocity)) {
+    unite(between->body, between->other, as_solved);
+    velocity = as_solved;
+  }
+}
+
+/// To each group what it lost. If one would meet another by that: the contact of the two.
+const LastingContact* StepBalance::give_back(double tolerance, std::vector<Vec3>& velocity) const {
   std::vector<Vec3> without = step_->velocity;
   for (std::size_t i = 0; i < without.size(); ++i)
     without[i] += h_ * step_->force[i].cwiseQuotient(step_->mass[i]);
-  const Vec2 lost = common_across(without, *line_) - common_across(velocity, *line_);
   double speed = 0.0;
   for (const Vec3& v : velocity) speed = std::max(speed, v.head<2>().norm());
-  const bool alone = std::all_of(step_->contacts.begin(), step_->contacts.end(), [&](const IslandContact& c) {
-    return c.rows.other >= 0 && pushed_[c.rows.body] == pushed_[c.rows.other];
-  });
-  // more is none of the solver's digits, and gaps with others have been looked at
-  if (lost.norm() > (alone ? kResidual * speed : kMissCounts * tolerance / h_)) return;
-  for (std::size_t i = 0; i < velocity.size(); ++i)
-    if (pushed_[i]) velocity[i].head<2>() += lost;
+  for (int g = 0; g < static_cast<int>(lines_.size()); ++g) {
+    if (!lines_[g]) continue;
+    const Vec2 lost = common_across(g, without, *lines_[g]) - common_across(g, velocity, *lines_[g]);
+    // more is none of the solver's digits
+    if (lost.norm() > std::max(kResidual * speed, kMissCounts * tolerance / h_)) continue;
+    const auto missed =
+        std::find_if(step_->contacts.begin(), step_->contacts.end(),
+                     [&](const IslandContact& c) { return misses(c, g, lost, tolerance, velocity); });
+    if (missed == step_->contacts.end()) {
+      for (std::size_t i = 0; i < velocity.size(); ++i)
+        if (group_[i] == g) velocity[i].head<2>() += lost;
+    } else if (missed->rows.other >= 0 && group_[missed->rows.body] >= 0 && group_[missed->rows.other] >= 0) {
+      return &missed->rows;
+    }
+  }
+  return nullptr;
 }
 
 double StepBalance::won(const std::vector<Vec3>& velocity, double tolerance, double& of) const {
+  double sum = 0.0;
+  for (int g = 0; g < static_cast<int>(lines_.size()); ++g) sum += won_by(g, velocity, tolerance, of);
+  return sum;
+}
+
+double StepBalance::won_by(int group, const std::vector<Vec3>& velocity, double tolerance, double& of) const {
   double change = 0.0;
   for (std::size_t i = 0; i < velocity.size(); ++i)
     for (int k = 0; k < 3; ++k) {
       const double mass = step_->mass[i][k], force = step_->force[i][k];
-      if (!pushed_[i] || std::isinf(mass)) continue;
+      if (group_[i] != group || std::isinf(mass)) continue;
       // Kinetic energy as m (after - before) (after + before) / 2, without the cancellation of two
       // squares. The work of a force is h f . after, as the step goes with the twist of its end.
       const double before = step_->velocity[i][k], after = velocity[i][k];
@@ -111,7 +190,7 @@ double StepBalance::won(const std::vector<Vec3>& velocity, double tolerance, dou
     const IslandContact& c = step_->contacts[pushing.contact];
     // A contact that pushes has J_n w = support + (lift - gap) / h. The support's part and the lift are
     // work of the site; the gap's part is a loss of the bodies and stays in the sum.
-    if (c.driven)
+    if (c.driven && group_[c.rows.body] == group)
       change -= pushing.load.normal * (c.normal_support + pushing.lift / h_) +
                 pushing.load.tangential * c.tangential_support;
   }
@@ -120,21 +199,49 @@ double StepBalance::won(const std::vector<Vec3>& velocity, double tolerance, dou
 
 double StepBalance::rise_of_thin() const {
   double rise = 0.0;
+  for (int g = 0; g < static_cast<int>(lines_.size()); ++g) rise += rise_of_thin(g);
+  return rise;
+}
+
+double StepBalance::rise_of_thin(int group) const {
+  double rise = 0.0;
   for (const PushingContact& pushing : contacts_) {
     const IslandContact& c = step_->contacts[pushing.contact];
-    if (c.thin && pushing.lift > 0.0)
+    if (c.thin && pushing.lift > 0.0 && group_[c.rows.body] == group)
       rise += pushing.load.normal / h_ * std::min(pushing.lift, c.tolerance - std::min(c.gap, 0.0));
   }
   return rise;
 }
 
-void StepBalance::win_nothing(const Vec2& common, std::vector<Vec3>& velocity) const {
+StepBalance::Slowed StepBalance::win_nothing(std::vector<Vec3>& velocity) const {
+  Slowed slowed;
+  for (int g = 0; g < static_cast<int>(lines_.size()); ++g) {
+    double of = 0.0;
+    const double free = rise_of_thin(g);
+    slowed.groups.push_back(won_by(g, velocity, 0.0, of) > free);
+    slowed.common.push_back(common_velocity(g, velocity));
+    if (slowed.groups.back())
+      slow_down(
+          slowed.common.back(), free, [&](std::size_t i) { return group_[i] == g; }, velocity);
+  }
+  return slowed;
+}
+
+void StepBalance::win_nothing_together(std::vector<Vec3>& velocity) const {
+  slow_down(
+      Vec2::Zero(), rise_of_thin(), [](std::size_t) { return true; }, velocity);
+}
+
+/// Of some bodies, relative to what they have in `common` [m/s]; `given` is theirs to keep [J].
+template <class IsOne>
+void StepBalance::slow_down(const Vec2& common, double given, IsOne&& is_one,
+                            std::vector<Vec3>& velocity) const {
   const Vec3 together(common.x(), common.y(), 0.0);
-  double before = 2.0 * rise_of_thin(), after = 0.0, work = 0.0;  // twice the kinetic energies [J]
+  double before = 2.0 * given, after = 0.0, work = 0.0;  // twice the kinetic energies [J]
   for (std::size_t i = 0; i < velocity.size(); ++i)
     for (int k = 0; k < 3; ++k) {
       const double mass = step_->mass[i][k], force = step_->force[i][k], was = step_->velocity[i][k];
-      if (!pushed_[i] || std::isinf(mass)) continue;
+      if (!is_one(i) || std::isinf(mass)) continue;
       const double apart = velocity[i][k] - together[k];
       before += mass * (was + together[k]) * (was - together[k]) + 2.0 * h_ * force * together[k];
       after += mass * apart * apart;
@@ -144,9 +251,10 @@ void StepBalance::win_nothing(const Vec2& common, std::vector<Vec3>& velocity) c
   // after s^2 / 2 - work s - before / 2 = 0
   const double root = work * work + after * before;
   if (!(after > 0.0) || !(root >= 0.0)) return;
-  const double slower = std::min(1.0, (work + std::sqrt(root)) / after);
+  // where all have the same velocity `before` and `after` are roundings
+  const double slower = std::clamp((work + std::sqrt(root)) / after, 0.0, 1.0);
   for (std::size_t i = 0; i < velocity.size(); ++i)
-    if (pushed_[i]) velocity[i] = together + slower * (velocity[i] - together);
+    if (is_one(i)) velocity[i] = together + slower * (velocity[i] - together);
 }
 
 }  // namespace brink

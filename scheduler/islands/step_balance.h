@@ -20,42 +20,62 @@ struct PushingContact {
 };
 
 /// Of one step that has been solved. Costs go with bodies and contacts.
+///
+/// Those who push each other are a group: what a group wins is taken from its members, and momentum that the solver's digits have
+/// changed is given back to them. Bodies that are not pushed, by more than roundings of the largest push, are in none: they go as
+/// forces alone lead them.
 class StepBalance {
  public:
   /// `step` as it begins, which outlives this; `velocity`: of all bodies, as the contacts made it.
   StepBalance(const IslandStep& step, double h, std::vector<PushingContact> contacts,
               const std::vector<Vec3>& velocity);
 
-  /// Those whom contacts push, by more than roundings of the largest push: all others go as forces alone lead them.
-  const std::vector<bool>& pushed() const { return pushed_; }
-  /// From now on all count as pushed.
-  void push_all() { pushed_.assign(pushed_.size(), true); }
-  /// What the solver's digits have changed of the momentum that no site takes is given back to all who are pushed alike: among them
-  /// it changes no gap, and none with a site across line_of_pushes(); where others are near, only what changes no gap by more than
-  /// a miss that does not count. `tolerance`: what contacts keep their gaps to [m].
-  void keep_momentum(double tolerance, std::vector<Vec3>& velocity) const;
-  /// What the bodies that are pushed won in the step beyond what forces and moving supports gave them [J]; `of`: the energies
-  /// that it turned over, and the work of the forces along the contact tolerance.
+  /// Of each body; -1: it is not pushed.
+  const std::vector<int>& groups() const { return group_; }
+  /// From now on the two are of one group, with all who are of theirs; one of none joins. `velocity`: see the constructor.
+  void unite(int body, int other, const std::vector<Vec3>& velocity);
+  /// Of each group what the solver's digits have changed of the momentum that no site takes is given back to its members alike: among
+  /// them it changes no gap, and none with a straight site across the line along which sites push. It is not given back where any
+  /// other gap may be missed by that. `tolerance`: what contacts keep their gaps to [m].
+  void keep_momentum(double tolerance, std::vector<Vec3>& velocity);
+  /// What all groups won in the step beyond what forces and moving supports gave them [J]; `of`: the energies that they turned over,
+  /// and the work of the forces along the contact tolerance.
   double won(const std::vector<Vec3>& velocity, double tolerance, double& of) const;
   /// What wires without thickness have given [J], where contacts that began nearer than they keep rose to that: a thousandth of
   /// the contact tolerance, which is how wires are told apart and nothing that anybody has to pay for.
   double rise_of_thin() const;
-  /// The velocity that all bodies that are pushed have in common and no contact changes [m/s]: across the line along which sites
-  /// push; 0 where there are more lines than one.
-  Vec2 common_velocity(const std::vector<Vec3>& velocity) const;
-  /// Makes the step win nothing, but for rise_of_thin(): all who are pushed go the same way, relative to what they have in `common`,
+  /// The velocity that all of a group have in common and no contact changes [m/s]: across the line along which sites push them; 0
+  /// where there are more lines than one.
+  Vec2 common_velocity(int group, const std::vector<Vec3>& velocity) const;
+
+  /// A group that has been slowed, and what its members have in common.
+  struct Slowed {
+    std::vector<bool> groups;  ///< of each whether it was
+    std::vector<Vec2> common;  ///< [m/s]
+  };
+  /// Makes each group that won, beyond what wires gave it, win nothing: its members go the same way, relative to what they have in common,
   /// only not as far. So no momentum is lost that no site takes, and bodies come by the same places of each other.
-  void win_nothing(const Vec2& common, std::vector<Vec3>& velocity) const;
+  Slowed win_nothing(std::vector<Vec3>& velocity) const;
+  /// The same of all bodies as one, relative to nothing: then all come by the same places of everything.
+  void win_nothing_together(std::vector<Vec3>& velocity) const;
 
  private:
-  std::optional<Vec2> line_of_pushes(const std::vector<Vec3>& velocity) const;
-  Vec2 common_across(const std::vector<Vec3>& velocity, const Vec2& line) const;
+  void find_groups(const std::vector<Vec3>& velocity);
+  std::optional<Vec2> line_of_pushes(int group, const std::vector<Vec3>& velocity) const;
+  const LastingContact* give_back(double tolerance, std::vector<Vec3>& velocity) const;
+  bool misses(const IslandContact& c, int group, const Vec2& faster, double tolerance,
+              const std::vector<Vec3>& velocity) const;
+  Vec2 common_across(int group, const std::vector<Vec3>& velocity, const Vec2& line) const;
+  double won_by(int group, const std::vector<Vec3>& velocity, double tolerance, double& of) const;
+  double rise_of_thin(int group) const;
+  template <class IsOne>
+  void slow_down(const Vec2& common, double given, IsOne&& is_one, std::vector<Vec3>& velocity) const;
 
   const IslandStep* step_;
   double h_;
   std::vector<PushingContact> contacts_;
-  std::vector<bool> pushed_;
-  std::optional<Vec2> line_;  ///< line_of_pushes()
+  std::vector<int> group_;                  ///< of each body, or -1
+  std::vector<std::optional<Vec2>> lines_;  ///< line_of_pushes() of each group
 };
 
 }  // namespace brink

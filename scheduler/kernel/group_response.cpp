@@ -62,16 +62,28 @@ class GroupResponse::Group {
   /// nothing.
   GroupResult ask(GroupLaw law) {
     const GoOn go_on = [this] { return parts_.run_.poll(); };
-    // An elastic contact that lost its rebound would lose energy that its material keeps: then all
-    // reflect.
-    const auto loses = [](const GroupContact& c) { return c.material.restitution < 1.0; };
-    if (law == GroupLaw::collapsed && std::all_of(contacts_.begin(), contacts_.end(), loses))
-      for (GroupContact& c : contacts_) c.material.restitution = 0.0;
+    if (law == GroupLaw::collapsed)
+      if (auto plastic = collapse(go_on)) return *std::move(plastic);
     if (law != GroupLaw::complementarity) return resolve_reflections(members_, contacts_, go_on);
     GroupResult together = resolve_together(members_, contacts_, go_on);
     // what bounces between two that stand can rebound from either, not from both at once
     return together.status == GroupResult::Status::jam ? resolve_reflections(members_, contacts_, go_on)
                                                        : together;
+  }
+
+  /// Without a rebound, friction coupled: nothing approaches afterwards. What a rebound would have kept is lost, and told.
+  std::optional<GroupResult> collapse(const GoOn& go_on) {
+    const auto rebounds = [](const GroupContact& c) { return c.material.restitution > 0.0; };
+    // An elastic contact that lost its rebound would lose energy that its material keeps: then all
+    // reflect.
+    if (std::any_of(contacts_.begin(), contacts_.end(),
+                    [](const GroupContact& c) { return c.material.restitution >= 1.0; }))
+      return std::nullopt;
+    const bool loses = std::any_of(contacts_.begin(), contacts_.end(), rebounds);
+    for (GroupContact& c : contacts_) c.material.restitution = 0.0;
+    auto plastic = resolve_plastic(members_, contacts_, go_on);
+    if (plastic && loses) plastic->status = GroupResult::Status::endless;
+    return plastic;
   }
 
   /// From body to body: whoever touches one of the group is of it. False on a halt.

@@ -21,7 +21,7 @@ struct GroupOutcome {
 enum class GroupLaw {
   complementarity,  ///< Newton's law at every contact at once
   reflections,      ///< reflections until none approaches (Smith et al. 2012)
-  collapsed,        ///< of a group without end: where every contact loses no rebound at all, else reflections
+  collapsed,  ///< of a group without end: where every contact loses, no rebound, and friction of all at once; else reflections
 };
 
 /// One group, from the contact that was found to its outcome:

@@ -37,7 +37,7 @@ constexpr int kHalvings = 16;
 /// Contact tolerances that a contact is open before its bodies are let go from modes.
 constexpr double kClear = 100.0;
 /// Looks along a contact's tangents until it arrives, or passes by.
-constexpr int kTangents = 32;
+constexpr int kTangents = 32, kHalvingsOfWay = 60;
 /// Impacts of one instant inside an island, at most; what closes then is taken as plastic.
 constexpr std::size_t kFirstImpacts = 100, kImpactsEach = 20;
 /// No tolerance makes a step shorter than this part of what it would be.
@@ -500,25 +500,52 @@ double IslandMotion::fastest_approach(const HeldContact& c, const std::vector<Ve
          std::abs(of_other[2]) * (c.feature.point.norm() + radius);
 }
 
-/// When the two features meet if the members go on as they do now, by its tangents: those of a convex gap lead
-/// to before its root, and so do its secants.
+/// When the two features meet if the members go on as they do now. By tangents and secants, which lead to before the root of a
+/// convex gap; of one that is not, as of a corner that turns towards a side, they lead past it, and halving leads back.
 IslandMotion::Arrival IslandMotion::arrival(const HeldContact& c, const std::vector<Vec3>& velocity) const {
+  const double tolerance = search_->limits().tolerance, fastest = fastest_approach(c, velocity);
+  const auto gap_at = [&](double t) { return members_.gap(c, t, velocity) - kept(c.feature); };
   double closing = members_.closing_speed(c), gap = c.feature.gap - kept(c.feature), t = 0.0;
-  const double fastest = fastest_approach(c, velocity);
   for (int k = 0; k < kTangents; ++k) {
-    // where the line through the gap reaches 0
-    const double way = gap / closing;
-    // it opens, or the step ends before it comes
-    if (!(closing > 0.0 && t + way <= h_)) return {};
-    const double next = members_.gap(c, t + way, velocity) - kept(c.feature);
-    // the secant's slope: no derivative of the gap is at hand there. What comes past an end is behind a site at once: the gap
-    // jumps, and no slope is as steep.
+    if (gap > fastest * (h_ - t)) return {};
+    // where the line through the gap reaches 0; where it opens, or the step ends before, it may bend down on the way
+    double way = gap / closing;
+    const bool within = closing > 0.0 && t + way <= h_;
+    if (!within) way = h_ - t;
+    if (!(way > 0.0)) return {};
+    const double next = gap_at(t + way);
+    if (next < -tolerance) {
+      if (const double root = root_between(gap_at, t, gap, t + way); root > t) {
+        closing = std::min((gap - next) / way, fastest);
+        t = root;
+        break;
+      }
+    }
+    if (!within) return {};
+    // the secant's slope: no derivative of the gap is at hand there. What comes past an end is behind a site at once: the
+    // gap jumps, and no slope is as steep.
     closing = std::min((gap - next) / way, fastest);
     t += way;
     gap = next;
-    if (gap <= search_->limits().tolerance) break;
+    if (gap <= tolerance) break;
   }
   return passes_by(c, t, closing) ? Arrival{} : Arrival{t, closing};
+}
+
+/// The time after `open`, where the gap is still open, at which it closes, to the contact tolerance; `open` where it jumps.
+template <class Gap>
+double IslandMotion::root_between(Gap&& gap_at, double open, double gap, double past) const {
+  const double tolerance = search_->limits().tolerance, from = open;
+  for (int k = 0; k < kHalvingsOfWay && gap > tolerance; ++k) {
+    const double middle = 0.5 * (open + past), there = gap_at(middle);
+    if (there < -tolerance) {
+      past = middle;
+    } else {
+      open = middle;
+      gap = there;
+    }
+  }
+  return gap > tolerance ? from : open;
 }
 
 /// True if what comes to the end of a site does not meet it, but goes by: some tolerances further on it is clear

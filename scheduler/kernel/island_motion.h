@@ -100,6 +100,8 @@ class IslandMotion {
   int site_that_closes_in() const;
   double next_arrival();
   Arrival arrival(const HeldContact& c, const std::vector<Vec3>& velocity) const;
+  template <class Gap>
+  double root_between(Gap&& gap_at, double open, double gap, double past) const;
   double fastest_approach(const HeldContact& c, const std::vector<Vec3>& velocity) const;
   bool passes_by(const HeldContact& c, double then, double closing) const;
   double most_absorbed(const PairKey& pair) const;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <string>
 
 #include "brink/core/base/random.h"
@@ -17,6 +18,8 @@ namespace brink::lasting_laws_test {
 namespace {
 
 constexpr double kEnd = 3.0, kFrames = 1.0 / 128.0;
+/// A step of first order is shorter than so many frames, as bodies move here.
+constexpr std::size_t kStepFrames = 20;
 /// Of the largest momentum, and of the kinetic energy that there was.
 constexpr double kMomentumLost = 1e-11, kEnergyWon = 1e-10;
 
@@ -75,7 +78,9 @@ Made make(Random& random) {
 /// Sees by how much momentum has changed that nothing takes, and how far energy has risen above the least it was.
 class LawWatch final : public outside::FrameWatch {
  public:
-  explicit LawWatch(const Made& made) : FrameWatch(made.world, kEnd, 1e-9), made_(made) {}
+  /// `by_steps`: islands may take steps of first order.
+  LawWatch(const Made& made, bool by_steps)
+      : FrameWatch(made.world, kEnd, 1e-9), made_(made), by_steps_(by_steps) {}
   void frame(double t, std::span<const BodyState> states) override {
     FrameWatch::frame(t, states);
     Vec2 momentum = Vec2::Zero();
@@ -98,15 +103,23 @@ class LawWatch final : public outside::FrameWatch {
     const Vec2 change = momentum - first_;
     scale_ = std::max(scale_, largest);
     lost = std::max(lost, made_.on_ice ? std::abs(change.x()) : change.norm());
-    // in the middle of a step of first order under gravity states are none that energy is known of
+    // In the middle of a step of first order bodies have the velocity of its end already: gravity has done its work on that
+    // before it does it on places, and what contacts take in the step is taken from its beginning on, but given back where an
+    // impact cuts it short. So energy there is held against what it was a longest step before.
+    while (seen_.size() >= (by_steps_ ? kStepFrames : 1)) {
+      least_ = std::min(least_, seen_.front());
+      seen_.pop_front();
+    }
+    seen_.push_back(energy);
     if (!made_.on_ice) won = std::max(won, (energy - least_) / of_);
-    least_ = std::min(least_, energy);
   }
   double lost_part() const { return lost / std::max(scale_, 1e-9); }
   double lost = 0.0, won = 0.0;
 
  private:
   const Made& made_;
+  bool by_steps_;
+  std::deque<double> seen_;
   Vec2 first_ = Vec2::Zero();
   double least_ = 0.0, of_ = 0.0, scale_ = 0.0;
   int frames_ = 0;
@@ -121,7 +134,7 @@ std::string fault_of(std::uint64_t seed) {
   if (random.below(3) == 0) solver.modes_contacts = 0;
   Simulator simulator(made.world, solver);
   if (!simulator.start_fault().empty()) return "";
-  LawWatch watch(made);
+  LawWatch watch(made, solver.modes_contacts == 0 || made.world.bodies.size() > 8);
   RunOptions options = testing::until(kEnd);
   options.frame_interval = kFrames;
   const RunSummary summary = simulator.run(options, &watch);
@@ -143,6 +156,13 @@ TEST(LastingLaws, MomentumIsKeptAndEnergyNeverGrows) {
   const std::uint64_t first = testing::from_environment("BRINK_SEED", 1),
                       worlds = testing::from_environment("BRINK_WORLDS", 65);
   for (std::uint64_t seed = first; seed < first + worlds; ++seed)
+    EXPECT_EQ(fault_of(seed), "") << "seed " << seed;
+}
+
+// A step that solved for roundings alone made speeds up (51, 603), one met plastically what turned towards it (66, 189, 412, 799),
+// and a light body between heavy ones was pushed to and fro without end (76, 212, 527, 597, 724, 794).
+TEST(LastingLaws, ThatOnceFailed) {
+  for (const std::uint64_t seed : {66, 76, 189, 212, 412, 515, 527, 597, 603, 724, 794, 799, 964})
     EXPECT_EQ(fault_of(seed), "") << "seed " << seed;
 }
 

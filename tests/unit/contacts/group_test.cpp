@@ -252,6 +252,56 @@ TEST(GroupLaws, RandomLossyGroupsNeverGainEnergy) {
   }
 }
 
+// Against Coulomb's law without a rebound, asked of every contact by itself: nothing approaches, what parts is not pushed, what
+// slips is dragged against its slip with all its friction. Masses are up to 1e6 apart. Of a few Lemke's method finds none, and it says so.
+TEST(GroupLaws, PlasticObeysCoulombAtAllContactsAtOnce) {
+  Random r(16);
+  int slip = 0, stick = 0, open = 0, none = 0;
+  for (int i = 0; i < 1000; ++i) {
+    RandomGroup g(r, 0.0, 0.9, r.uniform(0.0, 2.0), i % 3 == 0);
+    for (GroupBody& b : g.bodies) {
+      const double lighter = r.below(3) == 0 ? std::pow(10.0, r.uniform(0.0, 6.0)) : 1.0;
+      b.inverse_mass_x *= lighter;
+      b.inverse_mass_y *= lighter;
+      b.inverse_inertia *= lighter;
+    }
+    const Sums before(g.bodies, twists_of(g.bodies));
+    const auto found = resolve_plastic(g.bodies, g.contacts);
+    if (!found) {
+      ++none;
+      continue;
+    }
+    const Sums after(g.bodies, found->twists);
+    ASSERT_LE((after.momentum - before.momentum).norm(), 1e-15) << i;
+    ASSERT_LE(after.energy, before.energy + 1e-15) << i;
+    for (std::size_t k = 0; k < g.contacts.size(); ++k) {
+      const GroupContact& c = g.contacts[k];
+      const Real p = found->normal[k], q = found->tangential[k], v = normal_velocity(c, found->twists);
+      const RealVec along(-c.normal.y(), c.normal.x());
+      RealVec point = found->twists[c.body].at(c.arm);
+      if (c.other >= 0) point -= found->twists[c.other].at(c.other_arm);
+      const Real slips = point.dot(along), room = c.material.friction * p - abs(q);
+      ASSERT_GE(v, -1e-12) << i;
+      ASSERT_GE(p, 0) << i;
+      ASSERT_GE(room, -1e-12) << i;
+      if (v > 1e-9) {
+        ASSERT_LE(p, 1e-12) << i;
+        ++open;
+      } else if (abs(slips) > 1e-9 && p > 0) {
+        ASSERT_LE(room, 1e-12) << i;
+        ASSERT_LE(slips * q, 1e-15) << i;
+        ++slip;
+      } else {
+        ++stick;
+      }
+    }
+  }
+  EXPECT_GT(slip, 500);
+  EXPECT_GT(stick, 500);
+  EXPECT_GT(open, 500);
+  EXPECT_LE(none, 5);
+}
+
 // The order in which contacts are listed is no matter (without friction).
 TEST(GroupLaws, NumberingIsNoMatter) {
   Random r(7);

@@ -51,22 +51,41 @@ TEST(StepBalance, WhatIsWonIsTakenFromThoseWhomContactsPush) {
   // more than an elastic impact gives back, which is 2 * 2 / (1 + 1 / 2)
   std::vector<Vec3> v = after(step, 2.8);
   ASSERT_GT(kinetic(step, v), kinetic(step, step.velocity));
-  const StepBalance balance(step, kStep, {{0, 0.0, {2.8, 0.0, 0.0}}}, v);
-  EXPECT_EQ(balance.pushed(), (std::vector<bool>{true, true, false}));
+  StepBalance balance(step, kStep, {{0, 0.0, {2.8, 0.0, 0.0}}}, v);
+  EXPECT_EQ(balance.groups(), (std::vector<int>{0, 0, -1}));
   double of = 0.0;
   EXPECT_NEAR(balance.won(v, kTolerance, of), kinetic(step, v) - kinetic(step, step.velocity), 1e-14);
   EXPECT_GT(of, 0.0);
-  balance.win_nothing(balance.common_velocity(v), v);
+  balance.win_nothing(v);
   EXPECT_NEAR(kinetic(step, v), kinetic(step, step.velocity), 1e-13);
   EXPECT_NEAR((momentum(step, v) - momentum(step, step.velocity)).norm(), 0.0, 1e-14);
   EXPECT_EQ(v[2], step.velocity[2]);
+}
+
+// What bodies of one velocity have relative to each other are roundings, and so is what they won: nothing may come of it.
+TEST(StepBalance, RoundingsOfOneVelocityStayRoundings) {
+  IslandStep step;
+  step.mass.emplace_back(1.748, 1.748, 0.1);
+  step.force.emplace_back(0.0, -1.748 * 9.81, 0.0);
+  step.velocity = {{0.785203778064, -4e-16, -1.4e-15}};
+  IslandContact floor;
+  floor.rows = contact_at(0, -1, {0.0, 1.0}, {0.1, -0.5}, {0.0, 0.0});
+  floor.convex = true;
+  step.contacts.push_back(floor);
+  for (int k = -8; k <= 8; ++k) {
+    const std::vector<Vec3> solved = {{step.velocity[0].x() + k * 1e-16, 1.4e-23, 2e-31}};
+    std::vector<Vec3> v = solved;
+    StepBalance balance(step, kStep, {{0, 0.0, {1.748 * 9.81 * kStep, 0.0, 0.0}}}, v);
+    balance.win_nothing(v);
+    EXPECT_NEAR((v[0] - solved[0]).norm(), 0.0, 1e-15) << k;
+  }
 }
 
 TEST(StepBalance, MomentumThatTheSolverLostIsGivenBack) {
   IslandStep step = three_bodies();
   std::vector<Vec3> v = after(step, 1.0);
   v[0].x() += 1e-9;
-  const StepBalance balance(step, kStep, {{0, 0.0, {1.0, 0.0, 0.0}}}, v);
+  StepBalance balance(step, kStep, {{0, 0.0, {1.0, 0.0, 0.0}}}, v);
   balance.keep_momentum(kTolerance, v);
   EXPECT_NEAR((momentum(step, v) - momentum(step, step.velocity)).norm(), 0.0, 1e-15);
 }
@@ -76,8 +95,8 @@ TEST(StepBalance, AFloorTakesMomentumAcrossAndNoneAlong) {
   step.contacts[0].rows = contact_at(0, -1, {0.0, 1.0}, {0.0, -0.5}, {0.0, 0.0});
   std::vector<Vec3> v = step.velocity;
   v[0].y() = 0.0;
-  const StepBalance balance(step, kStep, {{0, 0.0, {-0.5, 0.0, 0.0}}}, v);
-  EXPECT_EQ(balance.common_velocity(v), Vec2(1.0, 0.0));
+  StepBalance balance(step, kStep, {{0, 0.0, {-0.5, 0.0, 0.0}}}, v);
+  EXPECT_EQ(balance.common_velocity(0, v), Vec2(1.0, 0.0));
 }
 
 // What two walls squeeze, by far more than what the floor under it takes, has nothing in common that no site takes.
@@ -92,11 +111,33 @@ TEST(StepBalance, WhatIsSqueezedBetweenWallsFeelsTheFloorStill) {
   step.velocity[0] = Vec3(0.0, -3.0, 0.0);
   std::vector<Vec3> v = step.velocity;
   v[0].y() = 0.0;
-  const StepBalance balance(
-      step, kStep, {{0, 0.0, {1e12, 0.0, 0.0}}, {1, 0.0, {1e12, 0.0, 0.0}}, {2, 0.0, {3.0, 0.0, 0.0}}}, v);
-  EXPECT_EQ(balance.common_velocity(v), Vec2(0.0, 0.0));
+  StepBalance balance(step, kStep,
+                      {{0, 0.0, {1e12, 0.0, 0.0}}, {1, 0.0, {1e12, 0.0, 0.0}}, {2, 0.0, {3.0, 0.0, 0.0}}}, v);
+  EXPECT_EQ(balance.common_velocity(0, v), Vec2(0.0, 0.0));
   balance.keep_momentum(kTolerance, v);
   EXPECT_EQ(v[0], Vec3(0.0, 0.0, 0.0));
+}
+
+// Who is pushed by nobody but a floor pays nothing of what others win, and takes nothing of what they lose.
+TEST(StepBalance, GroupsThatDoNotPushEachOtherAreBalancedApart) {
+  IslandStep step = three_bodies();
+  IslandContact floor;
+  floor.rows = contact_at(2, -1, {0.0, 1.0}, {0.0, -0.5}, {0.0, 0.0});
+  floor.convex = true;
+  step.contacts.push_back(floor);
+  step.force[2].y() = -40.0;
+  std::vector<Vec3> v = after(step, 2.8);
+  const Vec3 third = v[2];
+  const std::vector<PushingContact> contacts = {{0, 0.0, {2.8, 0.0, 0.0}},
+                                                {1, 0.0, {40.0 * kStep, 0.0, 0.0}}};
+  StepBalance balance(step, kStep, contacts, v);
+  EXPECT_EQ(balance.groups(), (std::vector<int>{0, 0, 1}));
+  v[0].x() += 1e-9;
+  balance.keep_momentum(kTolerance, v);
+  const StepBalance::Slowed slowed = balance.win_nothing(v);
+  EXPECT_EQ(slowed.groups[0], true);
+  EXPECT_NEAR((momentum(step, v) - momentum(step, step.velocity)).norm(), 0.0, 1e-14);
+  EXPECT_NEAR((v[2] - third).norm(), 0.0, 1e-15);
 }
 
 // Turned by a couple, without a push.
@@ -104,7 +145,7 @@ TEST(StepBalance, WhatIsTurnedIsPushed) {
   IslandStep step = three_bodies();
   std::vector<Vec3> v = step.velocity;
   v[0][2] += 1.0;
-  EXPECT_EQ(StepBalance(step, kStep, {}, v).pushed(), (std::vector<bool>{true, false, false}));
+  EXPECT_EQ(StepBalance(step, kStep, {}, v).groups(), (std::vector<int>{0, -1, -1}));
 }
 
 // What rises to a wire's level by less than a thousandth of the tolerance is not paid for by who goes along.
@@ -119,7 +160,7 @@ TEST(StepBalance, TheRiseOfAWireIsFree) {
   c.gap = -1e-13;
   c.tolerance = 1e-14;
   std::vector<Vec3> v = {Vec3(1e-5, 1e-13 / kStep, 0.0)};
-  const StepBalance balance(step, kStep, {{0, 1e-13, {10.0 * kStep, 0.0, 0.0}}}, v);
+  StepBalance balance(step, kStep, {{0, 1e-13, {10.0 * kStep, 0.0, 0.0}}}, v);
   double of = 0.0;
   EXPECT_LE(balance.won(v, kTolerance, of), balance.rise_of_thin() * (1.0 + 1e-9));
   EXPECT_GT(balance.rise_of_thin(), 0.0);
