@@ -371,8 +371,10 @@ bool Kernel::step_island(std::vector<int>& changed) {
   parts_.policy_watch.going_to(time());
   const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_islands);
   roll_back_all();
-  return do_or_cut(parts_.islands.takes_long(parts_.islands.next_island()),
-                   [&] { return parts_.islands.step(changed); });
+  const bool goes_on = do_or_cut(parts_.islands.takes_long(parts_.islands.next_island()),
+                                 [&] { return parts_.islands.step(changed); });
+  // impacts within islands are collisions, too
+  return goes_on && !stop_at_limit(collisions());
 }
 
 /// Begins a motion at another place with the same twist; nothing is told.
