@@ -263,6 +263,13 @@ bool IslandModes::meet(States& states) {
   return true;
 }
 
+/// True of what was apart where the step before began, and has come to touch without an approach: over a smooth joint, say.
+bool IslandModes::has_come(const HeldContact& c) const {
+  const HeldContact* warm = warm_->find(c);
+  return warm && warm->by_modes && !is_closed(warm->next_motion) &&
+         warm->feature.gap > search_->limits().tolerance;
+}
+
 /// Those that the step before ended in, if they speak of all that touches.
 /// They are void where a contact that touches is new, or where one that was closed does not touch any more.
 std::optional<std::vector<MotionMode>> IslandModes::former_modes() const {
@@ -272,7 +279,7 @@ std::optional<std::vector<MotionMode>> IslandModes::former_modes() const {
     if (place_[k] >= modes.size() || !touching_[place_[k]]) continue;
     const HeldContact* warm = warm_->find(contacts_[k]);
     // new, or not from a step by modes: what it does is to be chosen
-    if (!warm || !warm->by_modes) return std::nullopt;
+    if (!warm || !warm->by_modes || has_come(contacts_[k])) return std::nullopt;
     modes[place_[k]] = warm->next_motion;
     closed += is_closed(warm->next_motion);
   }
@@ -294,7 +301,8 @@ std::vector<bool> IslandModes::closed_now(const States& states, Approach how) co
     const std::size_t at = place_[k];
     if (at >= closed.size() || !touching_[at]) continue;
     const HeldContact* warm = warm_->find(contacts_[k]);
-    const bool known = warm && warm->by_modes, was_open = known && !is_closed(warm->motion);
+    const bool known = warm && warm->by_modes && !has_come(contacts_[k]),
+               was_open = known && !is_closed(warm->motion);
     const bool slowly = how == Approach::slow || (how == Approach::none && !known);
     // open in the step before and touching still: it has just been let go, and only an approach closes it
     if (how == Approach::none && was_open) continue;

@@ -91,6 +91,7 @@ class IslandModes {
   };
   Approach approach(const States& states) const;
   bool meet(States& states);
+  bool has_come(const HeldContact& c) const;
   std::optional<std::vector<MotionMode>> former_modes() const;
   std::vector<bool> closed_now(const States& states, Approach how) const;
   bool move_on(ModeMotion& motion, double until);

@@ -226,13 +226,19 @@ void ModeMotion::accept(double end, States states) {
 std::vector<ContactKnown> ModeMotion::known_now(const Look& failed) const {
   const std::vector<ContactRates> rates = rates_at(problem_, t_, states_, modes_);
   std::vector<ContactKnown> known(modes_.size(), ContactKnown::open);
+  // Where one stops slipping its slip is 0 to the error of a step, and so is that of another contact of the same bodies.
+  const double stopped =
+      failed.what == Look::What::slip && failed.contact >= 0
+          ? std::max(limits_.tolerance * speed_, 2.0 * std::abs(rates[failed.contact].tangential_velocity))
+          : 0.0;
+  const double no_slip = std::max(kNoSlip * speed_, stopped);
   for (std::size_t k = 0; k < modes_.size(); ++k) {
     if (!is_closed(modes_[k])) continue;
     // What stops slipping may stick or turn round, so its sign is open; what slips on keeps its sign. A
     // contact that is open stays open: it closes by an arrival.
     const bool ends = failed.what == Look::What::slip && failed.contact == static_cast<int>(k);
     known[k] = ContactKnown::still;
-    if (is_slip(modes_[k]) && !ends && std::abs(rates[k].tangential_velocity) > kNoSlip * speed_)
+    if (is_slip(modes_[k]) && !ends && std::abs(rates[k].tangential_velocity) > no_slip)
       known[k] = slip_sign(modes_[k]) > 0.0 ? ContactKnown::slides_plus : ContactKnown::slides_minus;
   }
   return known;
