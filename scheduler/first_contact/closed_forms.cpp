@@ -518,7 +518,14 @@ bool first_contact_in_closed_form(const Mover& a, const Mover& b, double from, d
   const bool disc_a = is_centred_disc(a.outline()), disc_b = is_centred_disc(b.outline());
   if (disc_a && disc_b) {
     const auto level = [&] { return std::optional(sink_at_start(a, b, limits, scratch)); };
-    return discs(disc_mover(a), disc_mover(b), from, to, limits, level, answer);
+    const DiscMover disc = disc_mover(a), other = disc_mover(b);
+    if (discs(disc, other, from, to, limits, level, answer)) return true;
+    // too far from the origin, perhaps: then the pair is looked at from its own place, too
+    DiscContact far;
+    if (!straight_discs_meet(disc, other, from, to, limits, far)) return false;
+    const FeatureContact like = contact_of_discs(disc, other, far.time);
+    answer = {PairAnswer::Status::contact, far.time, contact_at(a, b, far.time, like, limits, scratch)};
+    return true;
   }
   return disc_a ? disc_and_segments(a, b, true, from, to, limits, scratch, answer)
                 : disc_and_segments(b, a, false, from, to, limits, scratch, answer);

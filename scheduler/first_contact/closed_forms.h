@@ -38,7 +38,7 @@ struct DiscContact {
 /// nothing is near a rounding half of that of first_contact_in_closed_form().
 bool discs_meet(const DiscMover& a, const DiscMover& b, double from, double to, const SearchLimits& limits,
                 DiscContact& contact);
-/// All of that contact.
+/// All of that contact, as it is seen from the world's origin.
 FeatureContact contact_of_discs(const DiscMover& a, const DiscMover& b, double time);
 
 /// True if the pair has a closed form and `answer` was filled; false: ask the general search.

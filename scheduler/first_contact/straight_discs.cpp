@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "brink/core/base/limits.h"
+#include "brink/scheduler/first_contact/far_way.h"
 #include "brink/scheduler/first_contact/pair_kinematics.h"
 #include "brink/scheduler/first_contact/sixteen_probes.h"
 #include "brink/scheduler/first_contact/straight_way.h"
@@ -23,6 +24,61 @@ BRINK_WIDE void take(const StraightWay& way_a, const StraightWay& way_b, double 
     distance = Four{std::sqrt(square[0]), std::sqrt(square[1]), std::sqrt(square[2]), std::sqrt(square[3])};
   };
   probes.take(distance_at, reach);
+}
+
+BRINK_WIDE void take(const FarWay& way_a, const FarWay& way_b, double reach, SixteenProbes& probes) {
+  const FarWay a = way_a, b = way_b;
+  const auto distance_at = [&](const Four& t, Four& distance) __attribute__((always_inline)) {
+    Four x, y;
+    a.apart(b, t, x, y);
+    const Four square = x * x + y * y;
+    distance = Four{std::sqrt(square[0]), std::sqrt(square[1]), std::sqrt(square[2]), std::sqrt(square[3])};
+  };
+  probes.take(distance_at, reach);
+}
+
+/// The way from b to a at that time [m].
+BRINK_WIDE void apart(const FarWay& a, const FarWay& b, double t, Vec2& way) {
+  Four x, y;
+  a.apart(b, Four{} + t, x, y);
+  way = {x[0], y[0]};
+}
+
+/// Where places in doubles do not tell gaps to the contact tolerance by far, all searches see the pair from its own place, in
+/// extended precision (PairView::put): so does this. What of straight_discs_meet() does not depend on places has been asked.
+/// `noise`: of rates [m/s]. Cost: twice straight_discs_meet().
+[[gnu::noinline]] bool far_discs_meet(const DiscMover& a, const DiscMover& b, double from, double to,
+                                      const SearchLimits& limits, double noise, DiscContact& contact) {
+  const FarWay far_a(*a.motion), far_b(*b.motion);
+  const StraightWay way_a(*a.motion), way_b(*b.motion);
+  const double reference = std::max(way_a.origin, way_b.origin), reach = b.radius + a.radius;
+  if (!far_a.is_plain() || !far_b.is_plain()) return false;
+  Vec2 d;
+  apart(far_a, far_b, reference, d);
+  const Vec2 w(way_a.vx - way_b.vx, way_a.vy - way_b.vy);
+  const double approach = -d.dot(w), speed2 = w.squaredNorm(), offset = cross(d, w);
+  const double distance = d.norm(), square = speed2 * reach * reach - offset * offset,
+               clear = distance - reach;
+  // what begins nearer may sink, be it seen from near or far
+  if (!(approach > 0.0 && square > 0.0 && clear >= 4.0 * limits.tolerance)) return false;
+  const double root = std::sqrt(square), s = clear * (distance + reach) / (approach + root);
+  const double t = reference + s, closing = root / reach, speeds = way_a.speed() + way_b.speed();
+  if (!(t >= from && t <= to && t >= 0x1p-90 && t <= 0x1p90 && closing > 16.0 * noise)) return false;
+  const double place_noise = way_a.noise(t) + way_b.noise(t);
+  const double rounding =
+      place_noise * (kRealRoundoff / kRoundoff) + 8.0 * kRoundoff * ((d + s * w).lpNorm<1>() + s * speeds);
+  if (!(rounding <= kFarOfTolerance * limits.tolerance)) return false;
+  // at every probe the pair is as far: each lies within thirty-two times what the gap's rounding and the clock's are worth
+  const double probed = 32.0 * (3.0 * rounding / closing + 8.0 * ulp(t));
+  const double least = place_noise - 8.0 * kRoundoff * probed * speeds;
+  if (!(least > (1.0 + 1e-9) * kFarOfTolerance * limits.tolerance)) return false;
+  ClearTime met;
+  const auto take_both = [&](SixteenProbes& probes) { take(far_a, far_b, reach, probes); };
+  if (!last_clear_time_by_sixteens(take_both, reach, t, std::max(reference, 0.0), rounding, closing, met) ||
+      met.time > to)
+    return false;
+  contact = {met.time, met.distance - b.radius - a.radius, closing};
+  return true;
 }
 
 }  // namespace
@@ -49,7 +105,8 @@ bool straight_discs_meet(const DiscMover& a, const DiscMover& b, double from, do
   const double instant = same_instant(t), slow = 0.5 * kSlowOfSize * smallest_radius(a.radius, b.radius);
   const bool in_time = (t >= from) & (t <= to), is_slow = speed2 * instant * instant <= slow * slow,
              is_near = place_noise <= kFarOfTolerance * limits.tolerance;
-  if (!(in_time & is_slow & (closing > 16.0 * noise) & is_near)) return false;
+  if (!(in_time & is_slow & (closing > 16.0 * noise))) return false;
+  if (!is_near) return far_discs_meet(a, b, from, to, limits, noise, contact);
   const double rounding = place_noise + 8.0 * kRoundoff * (std::abs(dx + s * wx) + std::abs(dy + s * wy));
   ClearTime met;
   const auto take_both = [&](SixteenProbes& probes) { take(way_a, way_b, reach, probes); };

@@ -6,9 +6,10 @@
 
 namespace brink {
 
-/// What discs_meet() tells, where neither disc is accelerated, they begin apart, and neither their rate nor their places are
-/// near a rounding. False: not here, ask discs_meet(). Its bounds are the same or narrower ones. Cost: three roots, two
-/// divisions, and sixteen gaps side by side, once or twice.
+/// What first_contact() tells, where neither disc is accelerated, they begin apart, and their rate is not near a rounding; so
+/// far from the origin, too, that a pair is seen from its own place, in extended precision. False: not here, ask discs_meet(),
+/// whose bounds are the same or wider ones. Cost: three roots, two divisions, and sixteen gaps side by side, once or twice;
+/// far from the origin twice that.
 bool straight_discs_meet(const DiscMover& a, const DiscMover& b, double from, double to,
                          const SearchLimits& limits, DiscContact& contact);
 

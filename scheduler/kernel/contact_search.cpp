@@ -202,12 +202,15 @@ bool ContactSearch::search_discs(const PairKey& pair, double radius, double othe
   return true;
 }
 
+/// Looked at again as the search sees the pair, which may be from its own place: the closed form tells about where the normal is.
 FeatureContact ContactSearch::contact_of_discs(const PairKey& pair, double radius, double other_radius,
-                                               double time) const {
+                                               double time) {
   const BodyTrack &a = trajectories_->body(pair.body), &b = trajectories_->body(pair.other_body);
-  const Motion other = pair.image == Image{} ? b.motion : b.motion.displaced(shift_of(pair));
-  return brink::contact_of_discs({&a.motion, radius, a.velocity_rounding},
-                                 {&other, other_radius, b.velocity_rounding}, time);
+  const Sides sides(*this, pair, a, &b);
+  const FeatureContact like =
+      brink::contact_of_discs({sides.a.motion, radius, a.velocity_rounding},
+                              {sides.b.motion, other_radius, b.velocity_rounding}, time);
+  return contact_at(sides.a, sides.b, time, like, limits_, scratch_);
 }
 
 bool ContactSearch::search_wall(const PairKey& pair, double radius, double from, double to,

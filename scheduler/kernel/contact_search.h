@@ -81,7 +81,7 @@ class ContactSearch {
   bool search_discs(const PairKey& pair, double radius, double other_radius, double from, double to,
                     DiscContact& contact);
   /// All of that contact.
-  FeatureContact contact_of_discs(const PairKey& pair, double radius, double other_radius, double time) const;
+  FeatureContact contact_of_discs(const PairKey& pair, double radius, double other_radius, double time);
   /// The same of a plain disc and a site. @pre where it is, not an image.
   bool search_wall(const PairKey& pair, double radius, double from, double to, WallContact& contact);
   FeatureContact contact_with_wall(const PairKey& pair, const WallContact& contact);

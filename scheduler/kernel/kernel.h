@@ -121,7 +121,7 @@ class Kernel : public KernelView {
     return parts_.search.contact_with_wall(pair, contact);
   }
   /// All of that contact, for resolve().
-  FeatureContact contact_of_discs(const PairKey& pair, const DiscContact& contact) const {
+  FeatureContact contact_of_discs(const PairKey& pair, const DiscContact& contact) {
     return parts_.search.contact_of_discs(pair, parts_.response.radius_of_plain_disc(pair.body),
                                           parts_.response.radius_of_plain_disc(pair.other_body),
                                           contact.time);

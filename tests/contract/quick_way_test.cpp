@@ -83,6 +83,21 @@ TEST(QuickWay, InAPlaneThatRepeatsGivesTheBitsOfTheCommonWay) {
   expect_same_ends(testing::lattice_gas(150, make_disc(0.5), 0.5, 1.0), 4.0, 0.6);
 }
 
+/// The same world elsewhere.
+World displaced(World world, const Vec2& by) {
+  for (Body& b : world.bodies) b.initial.pose.position += by;
+  for (FixedSite& s : world.sites) s.pose.position += by;
+  return world;
+}
+
+// There searches see a pair from its own place, in extended precision; at 435 m a part of the pairs, as they move.
+TEST(QuickWay, FarFromTheOriginGivesTheBitsOfTheCommonWay) {
+  expect_same_ends(displaced(gas(150), {2000.0, -900.0}), 4.0, 0.85);
+  expect_same_ends(displaced(uneven(gas(150), 0.9), {-3e4, 1e5}), 4.0, 0.85);
+  expect_same_ends(displaced(gas(150), {435.0, 5.0}), 4.0, 0.85);
+  expect_same_ends(displaced(testing::lattice_gas(150, make_disc(0.5), 0.5, 1.0), {3000.0, 0.0}), 4.0, 0.5);
+}
+
 /// Few discs between walls of any direction, thick and thin, that meet at sharp corners: most collisions are with these.
 World in_a_triangle(double restitution) {
   World world = testing::lattice_gas(9, make_disc(0.5), 0.2, 1.0);

@@ -52,5 +52,58 @@ TEST(StraightDiscs, MeetAtTheGeneralSearchsTimeEarlyAndLateNearAndFar) {
   EXPECT_GT(told, met * 9 / 10);
 }
 
+/// Of a rounding of that size.
+Vec2 left_over(SeededRandom& r, const Vec2& of) {
+  const auto low = [&](double x) { return r.uniform(-0.5, 0.5) * ulp(x); };
+  return {low(of.x()), low(of.y())};
+}
+
+// So far that all searches see the pair from its own place, in extended precision, and starts have a low-order part.
+TEST(StraightDiscs, MeetAtTheGeneralSearchsTimeWherePlacesInDoublesDoNotTellGaps) {
+  SeededRandom r(22);
+  SearchLimits limits;
+  limits.closed_forms = false;
+  SearchScratch scratch;
+  WorkCounters work;
+  int met = 0, told = 0;
+  for (int k = 0; k < 40000; ++k) {
+    const double late = std::pow(10.0, r.uniform(-3.0, 4.0)), far = std::pow(10.0, r.uniform(2.3, 7.0)),
+                 speed = std::pow(10.0, r.uniform(-1.0, 1.0));
+    const auto flier = [&](double side) {
+      Vec2 velocity(-side * speed * r.uniform(0.2, 1.0), speed * r.uniform(-0.3, 0.3));
+      if (k % 16 == 0) velocity.y() = 0.0;
+      const double since = r.uniform(0.0, std::min(late, 1.0));
+      const Vec2 place = Vec2(far + 2.0 * side, -0.5 * far + r.uniform(-0.5, 0.5));
+      const Vec2 start = place - since * velocity;
+      const BodyState low{{left_over(r, start), 0.0}, {left_over(r, velocity), 0.0}};
+      return Flier{make_disc(r.uniform(0.2, 0.8)),
+                   Motion::ballistic(late - since, {{start, 0.3}, {velocity, 0.7}}, {},
+                                     std::numeric_limits<double>::infinity(), low)};
+    };
+    const Flier a = flier(1.0), b = flier(-1.0);
+    const double from = std::max(a.motion.origin(), b.motion.origin()), to = from + 20.0 / speed;
+    DiscContact contact;
+    const bool straight = straight_discs_meet(disc(a), disc(b), from, to, limits, contact);
+    const PairAnswer slow = first_contact(a.mover(), b.mover(), from, to, limits, scratch, work);
+    met += slow.status == PairAnswer::Status::contact;
+    told += straight;
+    if (!straight || contact.closing_speed < 1e-2 * speed) continue;  // grazing
+    ASSERT_EQ(slow.status, PairAnswer::Status::contact) << "case " << k;
+    ASSERT_EQ(contact.time, slow.contact.time) << "case " << k << " late " << late << " far " << far;
+    ASSERT_EQ(contact.gap, slow.contact.gap) << "case " << k;
+    ASSERT_NEAR(contact.closing_speed, slow.contact.closing_speed, 1e-9 * speed) << "case " << k;
+    const PairAnswer quick = first_contact(a.mover(), b.mover(), from, to, SearchLimits(), scratch, work);
+    ASSERT_EQ(quick.contact.time, slow.contact.time) << "case " << k;
+    ASSERT_EQ(quick.contact.gap, slow.contact.gap) << "case " << k;
+    ASSERT_EQ(quick.contact.level, slow.contact.level) << "case " << k;
+    ASSERT_EQ(quick.contact.closing_speed, slow.contact.closing_speed) << "case " << k;
+    ASSERT_EQ(quick.contact.normal, slow.contact.normal) << "case " << k;
+    ASSERT_EQ(quick.contact.point, slow.contact.point) << "case " << k;
+  }
+  EXPECT_GT(work.closed_forms, 10000U);
+  EXPECT_GT(met, 10000);
+  EXPECT_GT(told, met * 9 / 10);
+}
+
 }  // namespace
 }  // namespace brink::straight_discs_test
