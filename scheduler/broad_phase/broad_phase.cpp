@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 
 #include "brink/scheduler/broad_phase/tolerances.h"
 
@@ -14,6 +15,7 @@ constexpr double kCellsPerBox = 2.0;                        ///< a cell is this 
 constexpr int kMostCellsAcross = 4;                         ///< boxes wider than this many cells are large
 constexpr std::size_t kFewBoxes = 512;                      ///< boxes that need no cells
 constexpr std::int64_t kMostCells = std::int64_t{1} << 60;  ///< only those that hold a box take room
+constexpr std::size_t kCellsPerEntry = 4;                   ///< of more cells entries are sorted, not counted
 
 /// Cells of a window, counted row by row.
 struct Grid {
@@ -96,13 +98,27 @@ struct Sorted {
         is_large[i] = 1;
       }
     }
-    // By box within a cell, so that pairs come with i < j.
-    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-      return std::pair(a.cell, a.box) < std::pair(b.cell, b.box);
-    });
+    sort(grid);
   }
 
  private:
+  /// By box within a cell, so that pairs come with i < j. They were added in the order of boxes, so where cells are not many
+  /// more than entries these are put behind each other by cell, in that order.
+  void sort(const Grid& grid) {
+    const auto cells = static_cast<std::size_t>(grid.columns * grid.rows);
+    if (cells > kCellsPerEntry * entries.size()) {
+      std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+        return std::pair(a.cell, a.box) < std::pair(b.cell, b.box);
+      });
+      return;
+    }
+    std::vector<std::size_t> begins(cells + 1, 0);
+    for (const Entry& e : entries) ++begins[e.cell + 1];
+    std::partial_sum(begins.begin(), begins.end(), begins.begin());
+    std::vector<Entry> sorted(entries.size());
+    for (const Entry& e : entries) sorted[begins[e.cell]++] = e;
+    entries = std::move(sorted);
+  }
   /// At most (kMostCellsAcross + 1)^2 entries; a box over the window's edge is in the outermost cells.
   void add(int i, const Box& box, const Grid& grid) {
     for (auto r = grid.row(box.low.y()); r <= grid.row(box.high.y()); ++r)

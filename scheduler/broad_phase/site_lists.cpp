@@ -31,21 +31,22 @@ void SiteLists::find(const Placed& placed, const Box& box, std::vector<SiteImage
   });
 }
 
+/// Of most cells of a large world nothing but a bit is kept.
 const std::vector<SiteImage>& SiteLists::of(const Cell& cell) {
   const Cell home = grid_->home(cell);
+  if (is_known_empty(home)) return none_;
   const auto key = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(home.column)) << 32) |
                    static_cast<std::uint32_t>(home.row);
   // the map never moves its lists: clocks of bodies keep pointers to them (BodyClock::sites)
-  const auto [it, is_new] = lists_.try_emplace(key);
-  if (is_new) {
-    const Box box = grid_->box_of(home);
-    for (const Placed& p : *sites_) find(p, box, it->second);
-    if (const std::size_t place = place_of(home); it->second.empty() && place != ~std::size_t{0}) {
-      if (place >= empty_.size()) empty_.resize(place + 1);
-      empty_[place] = true;
-    }
-  }
-  return it->second;
+  if (const auto known = lists_.find(key); known != lists_.end()) return known->second;
+  const Box box = grid_->box_of(home);
+  std::vector<SiteImage> found;
+  for (const Placed& p : *sites_) find(p, box, found);
+  const std::size_t place = place_of(home);
+  if (!found.empty() || place == ~std::size_t{0}) return lists_.emplace(key, std::move(found)).first->second;
+  if (place >= empty_.size()) empty_.resize(place + 1);
+  empty_[place] = true;
+  return none_;
 }
 
 }  // namespace brink

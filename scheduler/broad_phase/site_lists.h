@@ -29,7 +29,7 @@ class SiteLists {
   SiteLists(const std::vector<Placed>& sites, const CellGrid& grid, const Periods& periods, double reach)
       : sites_(&sites), grid_(&grid), periods_(periods), reach_(reach) {}
 
-  /// Sites of the cell's image in the first period, ascending. Cost: all sites when first asked, then a
+  /// Sites of the cell's image in the first period, ascending. Cost: all sites when first asked, then a bit or a
   /// look-up.
   const std::vector<SiteImage>& of(const Cell& cell);
   /// True if of() has found nothing for that cell before; it may have, too, where this is false. Cost: a bit.
@@ -58,7 +58,9 @@ class SiteLists {
   const CellGrid* grid_;
   Periods periods_;
   double reach_;
-  std::unordered_map<std::uint64_t, std::vector<SiteImage>> lists_;
+  const std::vector<SiteImage> none_;
+  std::unordered_map<std::uint64_t, std::vector<SiteImage>>
+      lists_;                ///< of cells that empty_ does not tell of
   std::vector<bool> empty_;  ///< cells for which nothing was found, by place_of(), as far as there are any
 };
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "brink/core/base/large_vector.h"
 #include "brink/scheduler/kernel/frame_pairs.h"
 #include "brink/scheduler/kernel/thin_walls.h"
 
@@ -96,7 +97,7 @@ class CertificateWatch {
   bool walls_made_ = false;
   ThinWalls walls_;                    ///< of still sites
   std::vector<bool> material_centre_;  ///< of bodies whose centre of mass is in them
-  std::vector<Box> clear_;             ///< about each body, of walls
+  LargeVector<Box> clear_;             ///< about each body, of walls
   double flown_until_ = 0.0;           ///< flights before were looked at, at the last frame [s]
   double start_overlap_ = 0.0;         ///< deepest overlap that the world started with [m]
   double max_overlap_ = 0.0;

@@ -67,7 +67,14 @@ KernelParts::KernelParts(World given, SolverOptions chosen)
 
 RunKernel::RunKernel(World world, SolverOptions options) : Kernel(std::move(world), std::move(options)) {}
 
+const std::string& RunKernel::start_fault() {
+  if (!start_fault_ || start_fault_->revision != revision())
+    start_fault_ = {revision(), parts_.watch.start_fault()};
+  return start_fault_->why;
+}
+
 void RunKernel::begin(const RunOptions& options, Recorder* recorder) {
+  start_fault_.reset();  // from here on the policy may change what it was found in
   parts_.run.begin(options);
   parts_.records.begin(recorder);
   tell_knots();

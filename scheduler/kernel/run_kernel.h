@@ -2,6 +2,8 @@
 /// The kernel as the simulator has it: begun and ended, saved and restored, and changed from outside.
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -54,8 +56,9 @@ class RunKernel final : public Kernel {
   // -- checks --
   /// See Simulator.
   std::vector<Contact> overlaps(std::size_t most) { return parts_.watch.overlaps(most); }
-  /// Empty, or the deepest of the first overlaps, if pairs overlap by more than rounding of a file.
-  std::string start_fault() { return parts_.watch.start_fault(); }
+  /// Empty, or the deepest of the first overlaps, if pairs overlap by more than rounding of a file. Cost: a look at all near
+  /// pairs; asked again before the run has begun, where nothing was changed, none.
+  const std::string& start_fault();
   /// At the start: bodies that stand a hair across a wire are moved to just before it (shifts_out_of_wires()).
   void move_out_of_wires();
   /// How many were, and by how much at most [m].
@@ -84,6 +87,11 @@ class RunKernel final : public Kernel {
   void go_on_from(int k, const ExtendedState& state);
 
   MovedAtStart moved_at_start_;
+  struct StartFault {
+    std::uint64_t revision = 0;  ///< of the state that was looked at
+    std::string why;
+  };
+  std::optional<StartFault> start_fault_;
 };
 
 }  // namespace brink
