@@ -15,7 +15,7 @@ struct RunRequest {
   std::filesystem::path dir;        ///< DIR/run.db is written; made if need be
   std::optional<double> until;      ///< [s]; else the scene's duration
   bool resume = false;              ///< go on with DIR/run.db from its last checkpoint
-  double checkpoint_seconds = 1.0;  ///< wall-clock seconds between checkpoints
+  double checkpoint_seconds = 1.0;  ///< as RunOptions has it
   std::filesystem::path trace;      ///< write the scheduler's timeline there; empty: none
   double load_seconds = 0.0;  ///< spent on reading the scene; what run_scene itself takes to plan is added
   /// Called when the run file is open and the simulation begins: from now on what is done is worth keeping.

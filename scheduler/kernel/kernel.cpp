@@ -501,7 +501,7 @@ bool Kernel::pause_point() {
   // not where the run has just been stopped: its last checkpoint is written at its end
   if (parts_.records.checkpoint_due()) {
     const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_record);
-    parts_.records.checkpoint(snapshot());
+    parts_.records.checkpoint([this] { return snapshot(); });
   }
   return true;
 }

@@ -10,6 +10,9 @@ namespace brink {
 
 namespace {
 
+/// Time to the next checkpoint, as a multiple of what the last one took: a million bodies take seconds.
+constexpr double kRestAfterCheckpoint = 19.0;
+
 /// Of a clock that never goes back [s]. Its zero means nothing: only differences do.
 double wall_clock() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -151,9 +154,12 @@ bool Records::checkpoint_due() const {
   return recorder_ && run_->options().checkpoint_seconds >= 0.0 && wall_clock() >= next_checkpoint_;
 }
 
-void Records::checkpoint(const std::vector<std::byte>& state) {
-  recorder_->checkpoint(run_->time(), state);
-  next_checkpoint_ = wall_clock() + run_->options().checkpoint_seconds;
+void Records::checkpoint(const std::function<std::vector<std::byte>()>& snapshot) {
+  const double begin = wall_clock();
+  recorder_->checkpoint(run_->time(), snapshot());
+  const double end = wall_clock(), wish = run_->options().checkpoint_seconds;
+  // 0 is at every chance, whatever that takes
+  next_checkpoint_ = end + (wish > 0.0 ? std::max(wish, kRestAfterCheckpoint * (end - begin)) : 0.0);
 }
 
 }  // namespace brink

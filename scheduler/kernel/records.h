@@ -3,6 +3,8 @@
 /// the run fails instead, and names the body and the time.
 
 #include <algorithm>
+#include <cstddef>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -72,7 +74,9 @@ class Records {
 
   // -- checkpoints --
   bool checkpoint_due() const;
-  void checkpoint(const std::vector<std::byte>& state);
+  /// Writes what `snapshot` gives. The next one is due after RunOptions::checkpoint_seconds, and no sooner than after so many
+  /// times what this one took that all take a twentieth of the time.
+  void checkpoint(const std::function<std::vector<std::byte>()>& snapshot);
 
   struct Saved {
     std::uint64_t seq = 0, frame = 0;

@@ -10,10 +10,12 @@ namespace brink {
 
 /// When frames, checkpoints and progress reports are due.
 struct RunOptions {
-  double until = 1.0;               ///< [s]
-  double frame_interval = 0.0;      ///< [s]; 0: only at the start and the end
-  double checkpoint_seconds = 1.0;  ///< wall-clock seconds between checkpoints; < 0: none, 0: at every chance
-  bool first_frame = true;          ///< record the frame at the starting time (false when resuming)
+  double until = 1.0;           ///< [s]
+  double frame_interval = 0.0;  ///< [s]; 0: only at the start and the end
+  /// Wall-clock seconds between checkpoints, or more where each takes more than a twentieth of that; < 0: none, 0: at every
+  /// chance.
+  double checkpoint_seconds = 1.0;
+  bool first_frame = true;  ///< record the frame at the starting time (false when resuming)
   bool record_events = true;
   TraceSink* trace = nullptr;  ///< told what the scheduler does; may be null
   /// Called now and then with the time reached; return false to stop the run. May be empty.

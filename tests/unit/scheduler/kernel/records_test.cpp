@@ -3,8 +3,10 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <cmath>
 #include <limits>
+#include <thread>
 
 #include "tests/unit/scheduler/kernel/parts.h"
 
@@ -80,11 +82,34 @@ TEST(Records, ARecorderThatOverridesNothingIsAsked) {
   parts.run.begin(options);
   parts.records.begin(&nobody);
   EXPECT_TRUE(parts.records.checkpoint_due());
-  parts.records.checkpoint({});
+  parts.records.checkpoint([] { return std::vector<std::byte>(); });
   parts.records.frame(0.0);
   options.checkpoint_seconds = -1.0;
   parts.run.begin(options);
   EXPECT_FALSE(parts.records.checkpoint_due());
+}
+
+// Of a million bodies each takes seconds: once a second would be all that the run does.
+TEST(Records, CheckpointsThatTakeLongAreDueMoreSeldom) {
+  for (const double seconds : {1e-3, 0.0}) {
+    KernelParts parts(two_discs(), {});
+    Recorder nobody;
+    RunOptions options;
+    options.checkpoint_seconds = seconds;
+    parts.run.begin(options);
+    parts.records.begin(&nobody);
+    const auto sleep = [](int milliseconds) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    };
+    sleep(2);
+    EXPECT_TRUE(parts.records.checkpoint_due());
+    parts.records.checkpoint([&] {
+      sleep(100);
+      return std::vector<std::byte>();
+    });
+    sleep(2);
+    EXPECT_EQ(parts.records.checkpoint_due(), seconds == 0.0);  // at every chance
+  }
 }
 
 // Whatever led there, and whichever number of the state it is.
