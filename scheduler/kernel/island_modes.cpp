@@ -195,7 +195,9 @@ void IslandModes::add_contact(const HeldContact& c) {
     const bool deep = c.feature.gap < -search_->limits().tolerance;  // as the scene has it
     made.kept =
         deep ? c.feature.gap : std::max(c.feature.gap, c.feature.thin ? search_->limits().touch : 0.0);
-    if (c.feature.thin) made.off = kOff * made.kept, made.closes_at = search_->limits().touch;
+    // what begins nearer than a touch, and opens, has not closed by that
+    if (c.feature.thin)
+      made.off = kOff * made.kept, made.closes_at = std::clamp(c.feature.gap, 0.0, search_->limits().touch);
     // what a sample is not abreast of now it may go by
     made.passes = c.feature.at_end || !present;
     problem_.contacts.push_back(made);
@@ -329,15 +331,23 @@ IslandModes::Outcome IslandModes::take(double now, double h, std::vector<HeldCon
   if (!(until > now)) return Outcome::none;
   const Approach how = approach(states);
   if (how != Approach::none && !meet(states)) return Outcome::none;
-  const SearchLimits& of = search_->limits();
-  ModeMotion motion(problem_, {limits_.tolerance, kOff * of.tolerance, of.touch, until - now}, now, states);
-  // after an impact velocities are others, and with them modes
-  const auto former = on_time && how == Approach::none ? former_modes() : std::nullopt;
-  if (!(former ? motion.begin_in(*former) : motion.begin(closed_now(states, how)))) return Outcome::none;
-  begun_ = motion.states();
-  if (!move_on(motion, until)) return Outcome::none;
+  // Where what meets slowly does not stay, as a corner that comes down beside an arc that rolls into it, it parts by that impact.
+  if (!go_on_from(states, how, until, on_time) &&
+      !(how == Approach::slow && go_on_from(states, Approach::fast, until, on_time)))
+    return Outcome::none;
   if (!within_reach()) return Outcome::wider;
   return keeps_apart() ? Outcome::moved : Outcome::none;
+}
+
+/// From after the impact, if there was one. False: it leads nowhere.
+bool IslandModes::go_on_from(const States& states, Approach how, double until, bool on_time) {
+  const SearchLimits& of = search_->limits();
+  ModeMotion motion(problem_, {limits_.tolerance, kOff * of.tolerance, of.touch, until - now_}, now_, states);
+  // after an impact velocities are others, and with them modes
+  const auto former = on_time && how == Approach::none ? former_modes() : std::nullopt;
+  if (!(former ? motion.begin_in(*former) : motion.begin(closed_now(states, how)))) return false;
+  begun_ = motion.states();
+  return move_on(motion, until);
 }
 
 ExtendedState IslandModes::let_go(int member) const {

@@ -94,6 +94,7 @@ class IslandModes {
   bool has_come(const HeldContact& c) const;
   std::optional<std::vector<MotionMode>> former_modes() const;
   std::vector<bool> closed_now(const States& states, Approach how) const;
+  bool go_on_from(const States& states, Approach how, double until, bool on_time);
   bool move_on(ModeMotion& motion, double until);
   void note(const ModeMotion& motion);
   bool within_reach() const;
