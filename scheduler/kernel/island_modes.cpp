@@ -20,8 +20,8 @@ constexpr int kMostPieces = 256;
 constexpr int kLooks = 8;
 /// A closed contact's gap may be off by this part of the contact tolerance inside a step, or of what it keeps.
 constexpr double kOff = 0.25;
-/// Where places are rounded to more than this part of a touch, gaps cannot be kept in double precision.
-constexpr double kRounding = 0.1;
+/// Places are rounded to this part of what counts as a touch, at most; and that is no more than so much of the contact tolerance.
+constexpr double kRounding = 0.1, kMostTouch = 0.05;
 /// An approach slower than this part of the speeds that take part is rounding.
 constexpr double kNoApproach = 1e-11;
 /// A parting, after an impact.
@@ -51,6 +51,13 @@ bool is_corner(const Outline& outline, const Sample& sample) {
   // an end, a bend to either side, or a tip at which the wire turns back
   return !in || !out || std::abs(cross(direction_at_end(*in), direction_at_start(*out))) > kTurns ||
          direction_at_end(*in).dot(direction_at_start(*out)) < 0.0;
+}
+
+/// True of an arc's sample, if the arc ends at that place.
+bool ends_at(const Outline& outline, const Sample& sample, const Vec2& place) {
+  if (sample.arc_site < 0) return false;
+  const Site& arc = outline.sites[sample.arc_site];
+  return arc.a == place || arc.b == place;
 }
 
 /// The polynomial that goes on from a state with its twist, for ever.
@@ -96,9 +103,11 @@ bool IslandModes::is_shadow(const ContactSearch& search, const HeldContact& c,
   const double place = kOnePlace * std::min(a.bounding_radius, b.bounding_radius);
   return std::any_of(all.begin(), all.end(), [&](const HeldContact& o) {
     if (o.feature.at_end || o.feature.gap > tolerance || !(o.pair == c.pair)) return false;
-    // the same corner over the inside of another site; or, with the roles exchanged, the other's corner
-    // there
-    if (o.feature.sample_on_a == c.feature.sample_on_a) return o.feature.sample == c.feature.sample && corner;
+    // The same corner over the inside of another site; of a joint that is none, an arc that ends there; or, with the roles
+    // exchanged, the other's corner there.
+    if (o.feature.sample_on_a == c.feature.sample_on_a)
+      return corner ? o.feature.sample == c.feature.sample
+                    : !o.feature.beside_arc && ends_at(carrier, carrier.samples[o.feature.sample], sample.p);
     return (o.feature.point - c.feature.point).norm() <= place &&
            is_corner(other, other.samples[o.feature.sample]);
   });
@@ -113,15 +122,21 @@ bool IslandModes::suits() const {
   const std::size_t most =
       members_->are_constant() ? limits_.contacts : std::max(limits_.contacts, kContactsOfChanging);
   if (most == 0 || members_->count() > kModeBodies) return false;
-  // places are doubles in modes: far from the origin a touch is lost in their rounding
-  for (int i = 0; i < static_cast<int>(members_->count()); ++i)
-    if (kEpsilon * members_->state(i).position.cast<double>().norm() > kRounding * search_->limits().touch)
-      return false;
+  // far from the origin gaps cannot be kept any more
+  if (least_touch() > kMostTouch * search_->limits().tolerance) return false;
   const std::vector<HeldContact> near = members_->contacts(search_->limits().tolerance);
   // rolling resistance has no mode here, and between corners roundings choose the side
   return near.size() <= most && std::none_of(near.begin(), near.end(), [this](const HeldContact& c) {
            return is_corner_on_corner(c) || response_->material_of(c.pair).rolling_resistance > 0.0;
          });
+}
+
+/// Places are doubles in modes: what touches is told from what does not by some of their roundings at least [m].
+double IslandModes::least_touch() const {
+  double farthest = 0.0;
+  for (int i = 0; i < static_cast<int>(members_->count()); ++i)
+    farthest = std::max(farthest, members_->state(i).position.cast<double>().norm());
+  return std::max(search_->limits().touch, kEpsilon * farthest / kRounding);
 }
 
 /// A sharp corner at another: which side meets which is told in their place by roundings alone.
@@ -193,11 +208,9 @@ void IslandModes::add_contact(const HeldContact& c) {
     made.friction = response_->material_of(c.pair).friction;
     // a closed contact keeps the gap that it has; at a wire, which has no inside, never less than a touch
     const bool deep = c.feature.gap < -search_->limits().tolerance;  // as the scene has it
-    made.kept =
-        deep ? c.feature.gap : std::max(c.feature.gap, c.feature.thin ? search_->limits().touch : 0.0);
+    made.kept = deep ? c.feature.gap : std::max(c.feature.gap, c.feature.thin ? touch_ : 0.0);
     // what begins nearer than a touch, and opens, has not closed by that
-    if (c.feature.thin)
-      made.off = kOff * made.kept, made.closes_at = std::clamp(c.feature.gap, 0.0, search_->limits().touch);
+    if (c.feature.thin) made.off = kOff * made.kept, made.closes_at = std::clamp(c.feature.gap, 0.0, touch_);
     // what a sample is not abreast of now it may go by
     made.passes = c.feature.at_end || !present;
     problem_.contacts.push_back(made);
@@ -214,6 +227,7 @@ void IslandModes::add_contact(const HeldContact& c) {
 void IslandModes::make_problem(std::vector<HeldContact> contacts) {
   contacts_ = std::move(contacts);
   problem_ = {};
+  touch_ = least_touch();
   impacts_.clear();
   of_.clear();
   place_.clear();
@@ -269,7 +283,7 @@ bool IslandModes::meet(States& states) {
 bool IslandModes::has_come(const HeldContact& c) const {
   const HeldContact* warm = warm_->find(c);
   return warm && warm->by_modes && !is_closed(warm->next_motion) &&
-         warm->feature.gap > search_->limits().tolerance;
+         (warm->feature.beside_arc || warm->feature.gap > search_->limits().tolerance);
 }
 
 /// Those that the step before ended in, if they speak of all that touches.
@@ -341,8 +355,8 @@ IslandModes::Outcome IslandModes::take(double now, double h, std::vector<HeldCon
 
 /// From after the impact, if there was one. False: it leads nowhere.
 bool IslandModes::go_on_from(const States& states, Approach how, double until, bool on_time) {
-  const SearchLimits& of = search_->limits();
-  ModeMotion motion(problem_, {limits_.tolerance, kOff * of.tolerance, of.touch, until - now_}, now_, states);
+  ModeMotion motion(problem_, {limits_.tolerance, kOff * search_->limits().tolerance, touch_, until - now_},
+                    now_, states);
   // after an impact velocities are others, and with them modes
   const auto former = on_time && how == Approach::none ? former_modes() : std::nullopt;
   if (!(former ? motion.begin_in(*former) : motion.begin(closed_now(states, how)))) return false;

@@ -91,6 +91,7 @@ class IslandModes {
   };
   Approach approach(const States& states) const;
   bool meet(States& states);
+  double least_touch() const;
   bool has_come(const HeldContact& c) const;
   std::optional<std::vector<MotionMode>> former_modes() const;
   std::vector<bool> closed_now(const States& states, Approach how) const;
@@ -109,6 +110,7 @@ class IslandModes {
   Limits limits_;
   const WarmContacts* warm_;
   double now_ = 0.0, end_ = 0.0;
+  double touch_ = 0.0;  ///< least_touch()
   std::vector<HeldContact> contacts_;
   std::vector<Impact> impacts_;
   std::vector<BodyState> begun_;    ///< with what these have made of the members' twists

@@ -91,6 +91,9 @@ double range_of(const SmoothContact& c, const Placing& at, const Vec2& normal) {
   return within;
 }
 
+/// A sample that is no farther than this part of an arc's radius from it is upon it.
+constexpr double kUponArc = 1e-9;
+
 /// What lies from the place on in that direction (unit).
 HalfPlane beyond(const Vec2& place, const Vec2& direction) { return {direction, direction.dot(place)}; }
 
@@ -117,8 +120,11 @@ SmoothContact interior_of(SmoothContact c, const Site& site, const Vec2& q, cons
   c.kind = SmoothContact::Kind::circle;
   c.place = site.center;
   // A solid lies to the left, so an arc that turns clockwise has its free side towards the centre. A wire
-  // is free on both: the side is the one on which the sample is.
-  c.hollow = site.solid ? site.sweep < 0.0 : (q - site.center).norm() < site.arc_radius;
+  // is free on both: the side is the one on which the sample is, and right upon it the one to which the normal points.
+  const Vec2 way = q - site.center;
+  const double inside = site.arc_radius - way.norm();
+  const bool upon = std::abs(inside) <= kUponArc * site.arc_radius;
+  c.hollow = site.solid ? site.sweep < 0.0 : upon ? way.dot(out) < 0.0 : inside > 0.0;
   // the thickness lies on both sides of the core
   c.radius = site.arc_radius + (c.hollow ? -site.radius : site.radius);
   c.range = sector_of(site, site.center);

@@ -1,0 +1,230 @@
+// Motions of single bodies on sites of all kinds that are smooth from the begin to the end: over joints of straight sites and arcs, on arcs
+// of their own, about a corner, to and fro with friction. Modes must follow all of them to the tolerance: no step of first order, no
+// impact that is none, and the answer of a closed form or of a fourth-order integration of one angle, which share no code with the
+// core. BRINK_SEED moves the seeds, BRINK_WORLDS their number.
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "brink/core/base/random.h"
+#include "brink/scenes/scene/scene.h"
+#include "tests/support/seeded_worlds.h"
+
+namespace brink::smooth_motions_test {
+namespace {
+
+constexpr double kGravity = 9.81;
+/// Of places [m], angles [rad], and of the energy that there was: solver.tolerance is 1e-10 for each of some hundred steps.
+constexpr double kNear = 1e-7;
+
+struct Ran {
+  RunSummary summary;
+  BodyState last;
+};
+
+Ran run(const std::string& text) {
+  const Scene scene = parse_scene(text, "smooth");
+  Simulator simulator(scene.world, scene.solver);
+  Ran ran;
+  ran.summary = simulator.run(testing::until(scene.duration));
+  ran.last = simulator.state(0);
+  return ran;
+}
+
+/// "" where it came to the end by modes alone and without a collision.
+std::string not_smooth(const Ran& ran) {
+  const RunSummary& s = ran.summary;
+  if (s.termination != Termination::reached_end) return s.why;
+  if (s.steps_by_modes != s.island_steps)
+    return fmt::format("{} of {} steps are of first order", s.island_steps - s.steps_by_modes,
+                       s.island_steps);
+  return s.work.collisions == 0 ? "" : fmt::format("{} collisions", s.work.collisions);
+}
+
+std::string loses_energy(const Ran& ran) {
+  const double lost = (ran.summary.energy_initial - ran.summary.energy_final) /
+                      std::max(1.0, std::abs(ran.summary.energy_initial));
+  return std::abs(lost) <= kNear ? "" : fmt::format("{:.3g} of the energy lost", lost);
+}
+
+std::string misses(const std::string& what, double got, double wanted) {
+  return std::abs(got - wanted) <= kNear ? "" : fmt::format("{}: {:.10g} for {:.10g}", what, got, wanted);
+}
+
+std::string first_of(std::initializer_list<std::string> faults) {
+  for (const std::string& f : faults)
+    if (!f.empty()) return f;
+  return "";
+}
+
+std::string world(double duration, double friction, double gx = 0.0, double gy = -kGravity) {
+  return fmt::format(
+      "[world]\nduration = {:.17g}\ngravity = [{:.17g}, {:.17g}]\n[output]\nframe_interval = "
+      "0\n[materials.m]\n"
+      "restitution = 0\nfriction = {:.17g}\n",
+      duration, gx, gy, friction);
+}
+
+/// A level floor: a wire, a solid, or a wire with thickness.
+std::string floor_of(Random& random, double around = 0.0) {
+  switch (random.below(3)) {
+    case 0:
+      return fmt::format("[[sites]]\nname = 'f'\nmaterial = 'm'\nsegment = [[{0:.17g}, 0], [{1:.17g}, 0]]\n",
+                         around - 40.0, around + 40.0);
+    case 1:
+      return fmt::format(
+          "[[sites]]\nname = 'f'\nmaterial = 'm'\nbox = {{ width = 80, height = 2 }}\nposition = [{:.17g}, "
+          "-1]\n",
+          around);
+    default:
+      return fmt::format(
+          "[[sites]]\nname = 'f'\nmaterial = 'm'\nradius = 0.5\nsegment = [[{0:.17g}, -0.5], [{1:.17g}, "
+          "-0.5]]\n",
+          around - 40.0, around + 40.0);
+  }
+}
+
+/// Fourth order, by steps of a hundred thousandth of the time.
+double integrated(double angle, double until, const std::function<double(double, double)>& acceleration) {
+  constexpr int kSteps = 100000;
+  const double h = until / kSteps;
+  double a = angle, w = 0.0;
+  for (int k = 0; k < kSteps; ++k) {
+    const double k1 = w, l1 = acceleration(a, w), k2 = w + 0.5 * h * l1,
+                 l2 = acceleration(a + 0.5 * h * k1, w + 0.5 * h * l1), k3 = w + 0.5 * h * l2,
+                 l3 = acceleration(a + 0.5 * h * k2, w + 0.5 * h * l2), k4 = w + h * l3,
+                 l4 = acceleration(a + h * k3, w + h * l3);
+    a += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+    w += h / 6.0 * (l1 + 2.0 * l2 + 2.0 * l3 + l4);
+  }
+  return a;
+}
+
+/// An ellipse rocks without friction: it loses nothing. (Its arcs are near an ellipse, so its angle is not looked at.)
+std::string ellipse(Random& random) {
+  const double a = random.uniform(0.3, 0.8), b = a * random.uniform(0.4, 0.9);
+  const Ran ran =
+      run(world(random.uniform(1.0, 3.0), random.below(2) == 0 ? 0.0 : 5.0) + floor_of(random) +
+          fmt::format("[[bodies]]\nname = 'b'\nmaterial = 'm'\npath = {{ d = 'M {2:.17g} 0 A {0:.17g} "
+                      "{1:.17g} 0 0 0 {0:.17g} 0 A {0:.17g} {1:.17g} 0 0 0 {2:.17g} 0 Z' }}\nangle = "
+                      "{3:.17g}\nposition = [0, 3]\ntouching = 'f'\n",
+                      a, b, -a, random.uniform(0.1, 1.2)));
+  return first_of({not_smooth(ran), loses_energy(ran)});
+}
+
+/// A disc slides, or rolls, from a level floor up a quarter of a circle, and comes back as fast.
+std::string ramp(Random& random) {
+  const double radius = random.uniform(0.5, 3.0), r = radius * random.uniform(0.1, 0.4),
+               v = random.uniform(0.3, 0.6) * std::sqrt(kGravity * radius);
+  const bool rolls = random.below(2) == 0;
+  const std::string arc = fmt::format(
+      "[[sites]]\nname = 'a'\nmaterial = 'm'\narc = {{ center = [0, {0:.17g}], radius = {0:.17g}, "
+      "from_deg = 270, to_deg = 360 }}\n",
+      radius);
+  const Ran ran = run(
+      world(4.0, rolls ? 5.0 : 0.0) +
+      "[[sites]]\nname = 'f'\nmaterial = 'm'\nsegment = [[-40, 0], [0, 0]]\n" + arc +
+      fmt::format("[[bodies]]\nname = 'b'\nmaterial = 'm'\ndisc = {{ radius = {0:.17g} }}\nposition = [-1, "
+                  "{0:.17g}]\nvelocity = [{1:.17g}, 0]\nangular_velocity = {2:.17g}\n",
+                  r, v, rolls ? -v / r : 0.0));
+  return first_of({not_smooth(ran), loses_energy(ran), misses("speed", ran.last.twist.velocity.x(), -v)});
+}
+
+/// A disc in a bowl of arcs that are near a Bezier curve.
+std::string bowl(Random& random) {
+  const double low = random.uniform(-1.0, 0.5);
+  const Ran ran =
+      run(world(3.0, random.below(2) == 0 ? 0.0 : 5.0) +
+          fmt::format("[[sites]]\nname = 'f'\nmaterial = 'm'\nbezier = [[-2, 2], [-1, {0:.17g}], [1, "
+                      "{0:.17g}], [2, 2]]\n",
+                      low) +
+          fmt::format(
+              "[[bodies]]\nname = 'b'\nmaterial = 'm'\ndisc = {{ radius = {:.17g} }}\nposition = [{:.17g}, "
+              "4]\ntouching = 'f'\n",
+              random.uniform(0.05, 0.2), random.uniform(0.2, 1.2)));
+  return first_of({not_smooth(ran), loses_energy(ran)});
+}
+
+/// A box topples about its corner, which sticks: a pendulum that stands on its head.
+std::string topples(Random& random) {
+  const double w = random.uniform(0.3, 0.6), h = random.uniform(0.8, 1.5),
+               tilt = std::atan(w / h) + random.uniform(0.05, 0.2), far = std::atan2(w, h);
+  const double end = 0.6, arm = 0.5 * std::hypot(w, h), moment = (w * w + h * h) / 12.0 + arm * arm;
+  const double turned = integrated(
+      0.0, end, [&](double a, double) { return kGravity * arm * std::sin(a + tilt - far) / moment; });
+  const Ran ran = run(
+      world(end, 3.0, kGravity * std::sin(tilt), -kGravity * std::cos(tilt)) + floor_of(random) +
+      fmt::format("[[bodies]]\nname = 'b'\nmaterial = 'm'\nbox = {{ width = {:.17g}, height = {:.17g} }}\n"
+                  "position = [0, {:.17g}]\n",
+                  w, h, 0.5 * h));
+  return first_of({not_smooth(ran), misses("angle", ran.last.pose.angle, -turned)});
+}
+
+/// To and fro on a spring with friction: of each swing the middle lies off by mu g / w^2.
+std::string oscillates(Random& random) {
+  const double mu = random.uniform(0.02, 0.2), k = random.uniform(20.0, 100.0),
+               from = random.uniform(0.2, 0.6), end = random.uniform(0.5, 3.0), half = M_PI / std::sqrt(k),
+               off = mu * kGravity / k;
+  double side = from, t = 0.0;
+  while (t + half <= end && std::abs(side) > off) {
+    side = side > 0.0 ? -(side - 2.0 * off) : -(side + 2.0 * off);
+    t += half;
+  }
+  const double middle = side > 0.0 ? off : -off;
+  const double wanted =
+      std::abs(side) <= off ? side : middle + (side - middle) * std::cos(std::sqrt(k) * (end - t));
+  const Ran ran = run(
+      world(end, mu) + floor_of(random) +
+      fmt::format("[[bodies]]\nname = 'b'\nmaterial = 'm'\nmass = 1\nbox = {{ width = 0.5, height = 0.2 }}\n"
+                  "position = [{:.17g}, 0.1]\n[[forces]]\nkind = 'spring'\nbody = 'b'\nanchor = [0, 0.1]\n"
+                  "stiffness = {:.17g}\nrest_length = 0\n",
+                  from, k));
+  return first_of({not_smooth(ran), misses("place", ran.last.pose.position.x(), wanted)});
+}
+
+/// A block slides to its stop, up to some kilometres from the origin.
+std::string far_away(Random& random) {
+  const double x = std::pow(10.0, random.uniform(0.0, 3.3)), mu = random.uniform(0.05, 0.3),
+               v = random.uniform(1.0, 5.0), end = random.uniform(0.2, 2.0), stop = v / (mu * kGravity),
+               t = std::min(end, stop);
+  const Ran ran = run(
+      world(end, mu) + floor_of(random, x) +
+      fmt::format("[[bodies]]\nname = 'b'\nmaterial = 'm'\nbox = {{ width = 1, height = 0.5 }}\nposition = "
+                  "[{:.17g}, 0.25]\nvelocity = [{:.17g}, 0]\n",
+                  x, v));
+  return first_of({not_smooth(ran),
+                   misses("place", ran.last.pose.position.x() - x, v * t - 0.5 * mu * kGravity * t * t)});
+}
+
+std::string fault_of(std::uint64_t seed) {
+  Random random(seed);
+  switch (seed % 6) {
+    case 0:
+      return "ellipse: " + ellipse(random);
+    case 1:
+      return "ramp: " + ramp(random);
+    case 2:
+      return "bowl: " + bowl(random);
+    case 3:
+      return "topples: " + topples(random);
+    case 4:
+      return "oscillates: " + oscillates(random);
+    default:
+      return "far away: " + far_away(random);
+  }
+}
+
+TEST(SmoothMotions, AreFollowedByModesAlone) {
+  const std::uint64_t first = testing::from_environment("BRINK_SEED", 1),
+                      worlds = testing::from_environment("BRINK_WORLDS", 60);
+  for (std::uint64_t seed = first; seed < first + worlds; ++seed) {
+    const std::string fault = fault_of(seed);
+    EXPECT_TRUE(fault.ends_with(": ")) << fault << ", seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace brink::smooth_motions_test
