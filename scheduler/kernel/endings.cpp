@@ -1,6 +1,7 @@
 #include "brink/scheduler/kernel/endings.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "brink/scheduler/first_contact/canonical_time.h"
 
@@ -12,6 +13,9 @@ namespace {
 constexpr std::uint64_t kLongestInstant = 200000;
 /// So many collisions in an instant are nothing unusual.
 constexpr std::uint64_t kPlainInstant = 2000;
+/// Of bodies that collide again within this part of the time that it is, so many collisions in a row come to no end.
+constexpr double kHardlyLater = 1e-11;
+constexpr std::uint64_t kMostCrawling = 20000;
 
 }  // namespace
 
@@ -43,6 +47,14 @@ void Endings::count_in_instant(const PairKey& pair, double now) {
   bodies_.add(pair);
 }
 
+/// Instants that follow each other as closely as the clock can tell, and never stop: neither is a series of bounces
+/// that has a limit, nor are they of one instant.
+bool Endings::crawls(const Outcome& o, double now) {
+  if (o.since_last > kHardlyLater * std::abs(now)) crawling_ = 0;
+  if (o.since_last > 2.0 * same_instant(now)) ++crawling_;
+  return crawling_ > kMostCrawling;
+}
+
 /// The series of bounces first: what comes to its limit is taken over by an island, or ends the run.
 std::optional<Ending> Endings::collided(const Outcome& o, double now, BounceLoss loss) {
   // a bounce that ends its series is not counted: what comes of it is no collision of this instant
@@ -51,6 +63,7 @@ std::optional<Ending> Endings::collided(const Outcome& o, double now, BounceLoss
                                          o.since_last, o.contact.sink < 0.0, o.limit))
       return Ending{Ending::Kind::zeno, zeno->limit_time, zeno->bounces};
   count_in_instant(o.pair, now);
+  if (crawls(o, now)) return Ending{Ending::Kind::endless_group, now, crawling_};
   if (in_instant_ <= kPlainInstant) return std::nullopt;
   // as many again may be taken together
   if (in_instant_ > 2 * endless()) return Ending{Ending::Kind::endless_group, now, in_instant_};
@@ -62,6 +75,7 @@ std::optional<Ending> Endings::collided(const Outcome& o, double now, BounceLoss
 void Endings::restore(Saved saved) {
   instant_ = saved.instant;
   in_instant_ = saved.in_instant;
+  crawling_ = saved.crawling;
   bodies_.restore(saved.bodies, saved.often);
   zeno_.restore(std::move(saved.bounces));
 }

@@ -16,7 +16,7 @@ struct Ending {
   enum class Kind {
     zeno,           ///< of bounces: `time` is their limit
     group,          ///< the next collisions of this instant are to be taken together
-    endless_group,  ///< taken together, they go on all the same
+    endless_group,  ///< taken together, they go on all the same; or time hardly goes on between them
   };
   Kind kind = Kind::zeno;
   double time = 0.0;        ///< [s]
@@ -46,24 +46,28 @@ class Endings {
 
   struct Saved {
     double instant = -1.0;
-    std::uint64_t in_instant = 0;
+    std::uint64_t in_instant = 0, crawling = 0;
     std::vector<int> bodies;
     bool often = false;
     ZenoWatch::Bounces bounces;
   };
-  Saved saved() const { return {instant_, in_instant_, bodies_.list(), bodies_.often(), zeno_.bounces()}; }
+  Saved saved() const {
+    return {instant_, in_instant_, crawling_, bodies_.list(), bodies_.often(), zeno_.bounces()};
+  }
   void restore(Saved saved);
 
  private:
   /// Collisions of one instant that are taken to be without end: a row of n touching bodies can need n^2 / 2.
   std::uint64_t endless() const;
   void count_in_instant(const PairKey& pair, double now);
+  bool crawls(const Outcome& o, double now);
 
   ZenoWatch zeno_;
   std::uint64_t max_collisions_;
   double instant_ = -1.0;  ///< time of the present group of collisions [s]
   std::uint64_t in_instant_ = 0;
   InstantBodies bodies_;  ///< that have collided in it
+  std::uint64_t crawling_ = 0;
 };
 
 }  // namespace brink

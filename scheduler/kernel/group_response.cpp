@@ -71,19 +71,14 @@ class GroupResponse::Group {
                                                        : together;
   }
 
-  /// Without a rebound, friction coupled: nothing approaches afterwards. What a rebound would have kept is lost, and told.
+  /// Without a rebound, which is what losses without end come to, and friction coupled: nothing approaches afterwards.
   std::optional<GroupResult> collapse(const GoOn& go_on) {
-    const auto rebounds = [](const GroupContact& c) { return c.material.restitution > 0.0; };
     // An elastic contact that lost its rebound would lose energy that its material keeps: then all
     // reflect.
-    if (std::any_of(contacts_.begin(), contacts_.end(),
-                    [](const GroupContact& c) { return c.material.restitution >= 1.0; }))
-      return std::nullopt;
-    const bool loses = std::any_of(contacts_.begin(), contacts_.end(), rebounds);
+    const auto loses = [](const GroupContact& c) { return c.material.restitution < 1.0; };
+    if (!std::all_of(contacts_.begin(), contacts_.end(), loses)) return std::nullopt;
     for (GroupContact& c : contacts_) c.material.restitution = 0.0;
-    auto plastic = resolve_plastic(members_, contacts_, go_on);
-    if (plastic && loses) plastic->status = GroupResult::Status::endless;
-    return plastic;
+    return resolve_plastic(members_, contacts_, go_on);
   }
 
   /// From body to body: whoever touches one of the group is of it. False on a halt.

@@ -13,7 +13,7 @@ namespace brink {
 namespace {
 
 /// With a newline and a zero in front of the letters: no text file begins so. The digit grows with every change of what is written.
-constexpr std::array<char, 8> kMagic{'\n', '\0', 'B', 'R', 'I', 'N', 'K', '8'};
+constexpr std::array<char, 8> kMagic{'\n', '\0', 'B', 'R', 'I', 'N', 'K', '9'};
 
 /// Objects as they lie in memory: a snapshot is read by the program that wrote it.
 class Writer {
@@ -79,6 +79,7 @@ void scalars(Each&& each, Run& run) {
   each(run.records.last_event);
   each(run.endings.instant);
   each(run.endings.in_instant);
+  each(run.endings.crawling);
   each(run.taken);
   each(run.random);
   WorkCounters::for_each(run.work, [&](auto, auto& value, auto) { each(value); });

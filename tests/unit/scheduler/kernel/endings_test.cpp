@@ -24,6 +24,29 @@ TEST(Endings, TheLimitIsTold) {
   EXPECT_FALSE(endings.at_limit(1000000));
 }
 
+// Between the collisions time goes on by no more than the clock can just tell, for ever. What comes after a flight begins a new
+// count, and so do bounces that come apart again.
+TEST(Endings, CollisionsBetweenWhichTimeHardlyGoesOnAreEndless) {
+  for (const bool with_flights : {false, true}) {
+    Endings endings(1e-10, 0);
+    std::optional<Ending> ending;
+    double now = 5.0;
+    int n = 0;
+    for (; !ending && n < 50000; ++n) {
+      now += 1e-13;
+      Outcome o = collision(0, 1);
+      o.since_last = with_flights && n % 1000 == 0 ? 1e-3 : 1e-13;
+      ending = endings.collided(o, now, BounceLoss::none);
+      // a run that is gone on with counts on
+      Endings other(1e-10, 0);
+      other.restore(endings.saved());
+      endings = other;
+    }
+    EXPECT_EQ(ending.has_value(), !with_flights) << n;
+    EXPECT_TRUE(with_flights || ending->kind == Ending::Kind::endless_group);
+  }
+}
+
 // Collisions of one instant without end: first they are to be taken together, and if that does not help the
 // group is endless. A later instant begins anew.
 TEST(Endings, AGroupCollapsesAndThenIsEndless) {
