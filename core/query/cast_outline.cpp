@@ -199,6 +199,8 @@ OutlineHit cast_outline(const Outline& a, const Pose& pose_a, const Vec2& direct
   // outline_gap(), the slow part, is asked in order and no farther than that
   for (std::size_t k = 0; k < at.size(); ++k) {
     if (k > 0 && at[k] - at[k - 1] < trial.noise) continue;  // looked at
+    // of flat arcs the end of a sector is told to the root of a rounding: the next arc's circle may be there before it
+    if (trial.gap_after(at[k]) > trial.deep) continue;
     if (trial.enters_at(at[k])) return {OutlineHit::Status::touches, trial.last_clear(at, k)};
   }
   return {};

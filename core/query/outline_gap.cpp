@@ -44,6 +44,19 @@ void look_at_vertex(const Side& side, int i, OutlineGap& least) {
   keep_least(side, i, on.site, on.gap - sample.radius, on.point, on.normal, least);
 }
 
+/// What is no farther out than this part of the outline's size is upon it, but for roundings.
+constexpr double kUpon = 1e-14;
+
+/// True of an arc that a solid bulges out in: it lies to the left, so the arc turns to the left.
+bool bulges(const Site& arc) { return arc.solid && arc.sweep > 0.0; }
+
+/// True of a place of the sites' outline that is in the solid of the samples as deep as an arc of it says, or upon it.
+bool is_inside(const Side& side, const Vec2& place, double gap) {
+  const double depth =
+      closest_point(side.samples_of, side.samples_at, Frame(side.sites_at).to_world(place)).gap;
+  return depth <= 0.5 * gap + kUpon * side.samples_of.bounding_radius;
+}
+
 /// An arc counts for the nearest point of every site that its sector sees beyond its circle.
 void look_at_arc(const Side& side, int i, OutlineGap& least) {
   const Sample& sample = side.samples_of.samples[static_cast<std::size_t>(i)];
@@ -53,12 +66,16 @@ void look_at_arc(const Side& side, int i, OutlineGap& least) {
   for (std::size_t k = 0; k < side.sites_of.sites.size(); ++k) {
     const Site& site = side.sites_of.sites[k];
     const Nearest nearest = nearest_on(site, center);
-    // nearer the centre it is on the arc's concave side, where samples of the site's outline come nearest
-    if (nearest.distance < arc.arc_radius) continue;
+    // nearer the centre it is on the arc's concave side, where samples of the site's outline come nearest, or in a solid that
+    // bulges there
+    if (nearest.distance < arc.arc_radius && !bulges(arc)) continue;
     const Vec2 toward = (center - nearest.point) / nearest.distance;
     if (!in_sector(arc, from.direction_to_local(to.direction_to_world(-toward)))) continue;
-    keep_least(side, i, static_cast<int>(k), nearest.distance - site.radius - sample.radius,
-               to.to_world(nearest.point + site.radius * toward), to.direction_to_world(toward), least);
+    const double gap = nearest.distance - site.radius - sample.radius;
+    if (nearest.distance < arc.arc_radius && !(nearest.distance > 0.0 && is_inside(side, nearest.point, gap)))
+      continue;
+    keep_least(side, i, static_cast<int>(k), gap, to.to_world(nearest.point + site.radius * toward),
+               to.direction_to_world(toward), least);
   }
 }
 

@@ -4,10 +4,16 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "brink/core/base/error.h"
+#include "brink/core/base/random.h"
+#include "brink/core/query/outline_gap.h"
+#include "brink/core/shapes/shapes.h"
 #include "tests/unit/query/query_shapes.h"
 
 namespace brink::cast_outline_test {
@@ -78,6 +84,23 @@ TEST(CastOutline, AnArcIsThereInItsSectorAlone) {
 }
 
 // 1 / sqrt(2) written with nine digits is 2.6e-10 short.
+// Of an ellipse's flat arcs the lowest place is near the end of one: the next one's circle would come down before it.
+TEST(CastOutline, FlatArcsComeDownToWhereTheyTouch) {
+  Random random(3);
+  const Outline floor = make_box(80.0, 2.0).outline;
+  for (int k = 0; k < 300; ++k) {
+    const double a = random.uniform(0.3, 0.8), b = a * random.uniform(0.4, 0.9);
+    const std::string arc = fmt::format("A {:.17g} {:.17g} 0 0 0 ", a, b);
+    const Outline ellipse =
+        make_path(fmt::format("M {0:.17g} 0 {1} {2:.17g} 0 {1} {0:.17g} 0 Z", -a, arc, a), 1.0, 1e-4).outline;
+    const Pose pose{{0.0, 3.0}, random.uniform(0.0, 6.0)};
+    const double down = way(ellipse, pose, {0, -1}, floor, {{0.0, -1.0}, 0.0});
+    const double gap =
+        outline_gap(ellipse, {pose.position - Vec2(0.0, down), pose.angle}, floor, {{0.0, -1.0}, 0.0}).gap;
+    EXPECT_NEAR(gap, 0.0, 1e-10) << k;
+  }
+}
+
 TEST(CastOutline, ADirectionOfNearlyUnitLengthCountsAsUnit) {
   const Outline ball = make_disc(1.0).outline;
   EXPECT_NEAR(way(ball, {{-7, -7}, 0.0}, {0.707106781, 0.707106781}, ball), 7 * std::sqrt(2.0) - 2, 1e-14);

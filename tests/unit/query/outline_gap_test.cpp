@@ -48,6 +48,27 @@ TEST(OutlineGap, AnArcIsMetInItsSector) {
   EXPECT_GE(g.sample, 0);
 }
 
+// A solid half disc that bulges down through a floor, by a rounding and by more: how far its lowest point is above it.
+TEST(OutlineGap, ABulgeIsAsDeepAsItHasSunk) {
+  const Outline half = make_path("M -1 0 A 1 1 0 0 0 1 0 Z", 1.0, 1e-4).outline;
+  const Outline floor = make_box(20.0, 4.0).outline;
+  const double low = half.bounds.low.y();
+  for (const double height : {0.5, 1e-6, 1e-12, 0.0, -1e-15, -1e-12, -1e-9, -1e-6, -1e-3, -0.02})
+    for (const double x : {0.0, 0.3, -2.7}) {
+      const Pose pose{{x, 2.0 - low + height}, 0.0};
+      EXPECT_NEAR(outline_gap(half, pose, floor, {}).gap, height, 2e-15) << height;
+      EXPECT_NEAR(outline_gap(floor, {}, half, pose).gap, height, 2e-15) << height;
+    }
+}
+
+// The hollow side of a solid's arc is no bulge: what lies in the bowl touches nothing.
+TEST(OutlineGap, WhatIsInTheHollowOfASolidIsNotInIt) {
+  const Outline bowl = make_path("M -2 0 L -1 0 A 1 1 0 0 0 1 0 L 2 0 L 2 2 L -2 2 Z", 1.0, 1e-4).outline;
+  const Outline ball = make_disc(0.25).outline;
+  const OutlineGap g = outline_gap(ball, {{0.0, 0.0}, 0.0}, bowl, {});
+  EXPECT_GE(g.gap, 0.0);
+}
+
 // No vertex of either is in the other: a plus of two boxes; two wires; a bow through a wire.
 TEST(OutlineGap, WhatCrossesWithoutAVertexInsideIsAnOverlap) {
   const Outline bar = make_box(4.0, 1.0).outline, wire = make_segment({-1, 0}, {1, 0}).outline;
