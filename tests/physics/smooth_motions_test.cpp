@@ -23,6 +23,7 @@ constexpr double kNear = 1e-7;
 struct Ran {
   RunSummary summary;
   BodyState last;
+  std::string other;  ///< "" where another policy, stopped and gone on with, came to the same bits
 };
 
 Ran run(const std::string& text) {
@@ -31,6 +32,8 @@ Ran run(const std::string& text) {
   Ran ran;
   ran.summary = simulator.run(testing::until(scene.duration));
   ran.last = simulator.state(0);
+  ran.other = testing::stopped_under_another_policy(scene.world, scene.solver, testing::until(scene.duration),
+                                                    4, text.size(), ran.summary);
   return ran;
 }
 
@@ -38,6 +41,7 @@ Ran run(const std::string& text) {
 std::string not_smooth(const Ran& ran) {
   const RunSummary& s = ran.summary;
   if (s.termination != Termination::reached_end) return s.why;
+  if (!ran.other.empty()) return ran.other;
   if (s.steps_by_modes != s.island_steps)
     return fmt::format("{} of {} steps are of first order", s.island_steps - s.steps_by_modes,
                        s.island_steps);
