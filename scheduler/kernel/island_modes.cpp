@@ -125,10 +125,27 @@ bool IslandModes::suits() const {
   // far from the origin gaps cannot be kept any more
   if (least_touch() > kMostTouch * search_->limits().tolerance) return false;
   const std::vector<HeldContact> near = members_->contacts(search_->limits().tolerance);
+  const auto counts = [&](const HeldContact& c) {
+    return !is_shadow(*search_, c, near) && !is_told_by_other_corner(c, near);
+  };
+  if (near.size() > most && static_cast<std::size_t>(std::count_if(near.begin(), near.end(), counts)) > most)
+    return false;
   // rolling resistance has no mode here, and between corners roundings choose the side
-  return near.size() <= most && std::none_of(near.begin(), near.end(), [this](const HeldContact& c) {
-           return is_corner_on_corner(c) || response_->material_of(c.pair).rolling_resistance > 0.0;
-         });
+  return std::none_of(near.begin(), near.end(), [this](const HeldContact& c) {
+    return is_corner_on_corner(c) || response_->material_of(c.pair).rolling_resistance > 0.0;
+  });
+}
+
+/// True of one of two flush corners, each of which lies on the other's side: they are one contact.
+bool IslandModes::is_told_by_other_corner(const HeldContact& c, const std::vector<HeldContact>& all) const {
+  if (!c.feature.no_way_by || c.feature.sample_on_a) return false;
+  const double place =
+      kOnePlace * std::min(search_->outline_of(c.pair.body).bounding_radius,
+                           search_->outline_of(search_->other_owner(c.pair)).bounding_radius);
+  return std::any_of(all.begin(), all.end(), [&](const HeldContact& o) {
+    return o.feature.no_way_by && o.feature.sample_on_a && o.pair == c.pair &&
+           (o.feature.point - c.feature.point).norm() <= place;
+  });
 }
 
 /// Places are doubles in modes: what touches is told from what does not by some of their roundings at least [m].
@@ -141,7 +158,7 @@ double IslandModes::least_touch() const {
 
 /// A sharp corner at another: which side meets which is told in their place by roundings alone.
 bool IslandModes::is_corner_on_corner(const HeldContact& c) const {
-  if (!c.feature.at_end) return false;
+  if (!c.feature.at_end || c.feature.no_way_by) return false;
   const Outline &a = search_->outline_of(c.pair.body), &b = search_->outline_of(search_->other_owner(c.pair));
   const Outline &carrier = c.feature.sample_on_a ? a : b, &other = c.feature.sample_on_a ? b : a;
   const Sample& sample = carrier.samples[c.feature.sample];
@@ -279,11 +296,13 @@ bool IslandModes::meet(States& states) {
   return true;
 }
 
-/// True of what was apart where the step before began, and has come to touch without an approach: over a smooth joint, say.
+/// True of what was apart where the step before began, or beyond an end, and has come to touch without an approach: over a smooth
+/// joint, say.
 bool IslandModes::has_come(const HeldContact& c) const {
   const HeldContact* warm = warm_->find(c);
   return warm && warm->by_modes && !is_closed(warm->next_motion) &&
-         (warm->feature.beside_arc || warm->feature.gap > search_->limits().tolerance);
+         (warm->feature.beside_arc || warm->feature.goes_on ||
+          warm->feature.gap > search_->limits().tolerance);
 }
 
 /// Those that the step before ended in, if they speak of all that touches.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "brink/scheduler/first_contact/pair_kinematics.h"
 #include "brink/scheduler/first_contact/safe_step.h"
@@ -14,15 +15,22 @@ namespace {
 constexpr int kMostSteps = 1000;
 /// Where no bound helps (an arc's sector), so many looks along the whole.
 constexpr int kLooksOfArrival = 64;
+/// Velocities against each other are rounded to so many parts of the faster one's.
+constexpr double kSpeedRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 /// One open contact on its owners' motions.
 class Watch {
  public:
-  /// `slack` [m]: as of first_arrival(); `sector_window` [s]: how long to wait where the sample's own sector
-  /// alone does not hold the touching direction: of that there is no bound.
+  /// `slack` [m]: as of first_arrival(), and the step that the motions are of.
   Watch(const ModeProblem& problem, const ModeContact& contact, const std::vector<PolynomialPiece>& bodies,
-        double slack, double sector_window)
-      : problem_(problem), contact_(contact), bodies_(bodies), slack_(slack), sector_window_(sector_window) {}
+        double slack, double from, double to)
+      : problem_(problem),
+        contact_(contact),
+        bodies_(bodies),
+        slack_(slack),
+        sector_window_((to - from) / kLooksOfArrival),
+        no_speed_(kSpeedRounding * std::max(bounds(contact.sample_owner, from, to).speed(),
+                                            bounds(contact.site_owner, from, to).speed())) {}
 
   enum class Fate {
     stays_open,
@@ -79,11 +87,11 @@ class Watch {
   }
 
   /// Below zero by less than half the slack it comes only if it closes: what has just been let go, or
-  /// passes by the end of a site, starts there by roundings.
+  /// passes by the end of a site, starts there by roundings: of places, and of velocities that are nearly the same.
   bool comes(const ContactRates& r) const {
     const double speed = std::abs(r.tangential_velocity) + std::abs(r.normal_velocity);
     return r.gap < -0.5 * slack_ ||
-           (!contact_.passes && r.gap < 0.0 && r.normal_velocity < -kNoClosing * speed);
+           (!contact_.passes && r.gap < 0.0 && r.normal_velocity < -std::max(kNoClosing * speed, no_speed_));
   }
 
   /// The last double at which the gap is not below zero, by halving.
@@ -164,7 +172,9 @@ class Watch {
   const ModeContact& contact_;
   const std::vector<PolynomialPiece>& bodies_;
   double slack_;
-  double sector_window_;
+  double
+      sector_window_;  ///< how long to wait where the sample's own sector alone is left: of that there is no bound [s]
+  double no_speed_;  ///< closing speeds below it are roundings [m/s]
 };
 
 }  // namespace
@@ -175,7 +185,7 @@ Arrival first_arrival(const ModeProblem& problem, const std::vector<MotionMode>&
   first.time = to;
   for (std::size_t k = 0; k < modes.size(); ++k) {
     if (is_closed(modes[k])) continue;
-    const Watch watch(problem, problem.contacts[k], bodies, slack, (to - from) / kLooksOfArrival);
+    const Watch watch(problem, problem.contacts[k], bodies, slack, from, to);
     double when = 0.0;
     // nobody is followed past the first that was found; of two at one time the earlier in order stays
     const Watch::Fate fate = watch.look(from, first.time, when);
