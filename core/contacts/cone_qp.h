@@ -126,9 +126,8 @@ class ConeQp {
   /// b = mu p of a step before it is Coulomb's law to first order. Sources: Moreau 1988, "Unilateral contact and
   /// dry friction in finite freedom dynamics"; Acary & Brogliato 2008.
   ///
-  /// Known limit: where masses of one island are spread at random over 1e6 and more, some steps end `undecided`
-  /// (2.6 % of random problems at 1e6).
-  ///
+  /// Where masses of one island are spread over 1e6 and more, rounding ends some searches (2.6 % of random problems at 1e6); up
+  /// to some dozen contacts are solved by pivots then (solve_by_pivots).
   StepResult step(const StepProblem& problem, const GoOn& go_on = {}, StepSearch search = {});
 
  private:

@@ -7,6 +7,7 @@
 
 #include "brink/core/contacts/cone_qp.h"
 #include "brink/core/contacts/island_units.h"
+#include "brink/core/contacts/qp_pivots.h"
 
 namespace brink {
 
@@ -45,12 +46,13 @@ class StepRows {
   const QpProblem& problem() const { return problem_; }
   const IslandUnits& units() const { return units_; }
 
-  /// Impulses of the step. Rows that were left out have none.
-  std::vector<ContactLoad> loads(const InteriorPoint& solver) const {
+  /// Impulses of the step, from the force of each row. Rows that were left out have none.
+  template <class Force>
+  std::vector<ContactLoad> loads(Force&& force) const {
     std::vector<ContactLoad> loads(given_.contacts.size());
     for (std::size_t r = 0; r < sources_.size(); ++r)
       loads[sources_[r].contact].*sources_[r].load =
-          solver.force(static_cast<int>(r)) * units_.force() * sources_[r].unit;
+          force(static_cast<int>(r)) * units_.force() * sources_[r].unit;
     return loads;
   }
 
@@ -169,11 +171,21 @@ StepResult ConeQp::step(const StepProblem& problem, const GoOn& go_on, StepSearc
   // Whether the search ended by itself or by rounding, what was found is judged by one measure.
   if (solved(solver_, enough)) result.status = StepResult::Status::solved;
   if (solver_.stopped()) result.status = StepResult::Status::stopped;
-  for (int k = 0; k < static_cast<int>(problem.mass.size()); ++k)
-    result.velocity.push_back(problem.velocity[k] + rows.units().speed_of(k, solver_.velocity(k)));
-  result.loads = rows.loads(solver_);
-  result.residual = residual(solver_);
   result.factorisations = steps;
+  const auto tell = [&](auto&& velocity, auto&& force) {
+    for (int k = 0; k < static_cast<int>(problem.mass.size()); ++k)
+      result.velocity.push_back(problem.velocity[k] + rows.units().speed_of(k, velocity(k)));
+    result.loads = rows.loads(force);
+  };
+  if (result.status == StepResult::Status::undecided)
+    if (const auto exact = solve_by_pivots(rows.problem(), go_on)) {
+      tell([&](int k) { return exact->velocity[k]; }, [&](int r) { return exact->force[r]; });
+      result.status = StepResult::Status::solved;
+      result.residual = exact->residual;
+      return result;
+    }
+  tell([&](int k) { return solver_.velocity(k); }, [&](int r) { return solver_.force(r); });
+  result.residual = residual(solver_);
   return result;
 }
 

@@ -62,6 +62,9 @@ class ContactSearch {
   int other_owner(const PairKey& pair) const {
     return pair.with_site() ? trajectories_->body_count() + pair.other_site : pair.other_body;
   }
+  bool is_on_fixed_site(const PairKey& pair) const {
+    return pair.with_site() && !trajectories_->site(pair.other_site).moves();
+  }
   /// From the other owner to its image [m].
   Vec2 shift_of(const PairKey& pair) const { return world_->periods.shift(pair.image); }
   /// The state at t of the pair's other owner, where its image is.

@@ -100,16 +100,28 @@ bool IslandModes::is_shadow(const ContactSearch& search, const HeldContact& c,
   const bool corner = is_corner(carrier, sample);
   // a corner over the inside of a site: nothing says it better
   if (corner && !c.feature.at_end) return false;
-  const double place = kOnePlace * std::min(a.bounding_radius, b.bounding_radius);
+  // two places of a round sample that both touch, to the tolerance, where the normal is one
+  const double place = std::max(kOnePlace * std::min(a.bounding_radius, b.bounding_radius),
+                                corner ? std::sqrt(8.0 * sample.radius * tolerance) : 0.0);
+  const auto is_near = [&](const HeldContact& o) {
+    Vec2 apart = o.feature.point - c.feature.point;
+    if (!(o.pair == c.pair))  // of fixed sites, which are the same at all times
+      apart += (search.other_state(o.pair, 0.0).position - search.other_state(c.pair, 0.0).position)
+                   .cast<double>();
+    return apart.norm() <= place;
+  };
   return std::any_of(all.begin(), all.end(), [&](const HeldContact& o) {
-    if (o.feature.at_end || o.feature.gap > tolerance || !(o.pair == c.pair)) return false;
+    if (o.feature.at_end || o.feature.gap > tolerance) return false;
+    // a floor may be made of several sites
+    const bool of_floor = corner && o.pair.body == c.pair.body && search.is_on_fixed_site(o.pair) &&
+                          search.is_on_fixed_site(c.pair);
+    if (!(o.pair == c.pair) && !of_floor) return false;
     // The same corner over the inside of another site; of a joint that is none, an arc that ends there; or, with the roles
     // exchanged, the other's corner there.
     if (o.feature.sample_on_a == c.feature.sample_on_a)
-      return corner ? o.feature.sample == c.feature.sample
+      return corner ? o.feature.sample == c.feature.sample && is_near(o)
                     : !o.feature.beside_arc && ends_at(carrier, carrier.samples[o.feature.sample], sample.p);
-    return (o.feature.point - c.feature.point).norm() <= place &&
-           is_corner(other, other.samples[o.feature.sample]);
+    return o.pair == c.pair && is_near(o) && is_corner(other, other.samples[o.feature.sample]);
   });
 }
 
@@ -300,9 +312,10 @@ bool IslandModes::meet(States& states) {
 /// joint, say.
 bool IslandModes::has_come(const HeldContact& c) const {
   const HeldContact* warm = warm_->find(c);
-  return warm && warm->by_modes && !is_closed(warm->next_motion) &&
-         (warm->feature.beside_arc || warm->feature.goes_on ||
-          warm->feature.gap > search_->limits().tolerance);
+  if (!warm || !warm->by_modes || is_closed(warm->next_motion)) return false;
+  const NearFeature& before = warm->feature;
+  return before.beside_arc || before.goes_on || (before.at_end && !c.feature.at_end) ||
+         before.gap > search_->limits().tolerance;
 }
 
 /// Those that the step before ended in, if they speak of all that touches.

@@ -309,5 +309,39 @@ TEST(SmoothMotions, AreFollowedByModesAlone) {
   }
 }
 
+/// A disc rolls along a floor, drawn by gravity, until it meets the nose of a step, or the tip of a wire, of the same site.
+TEST(SmoothMotions, OfADiscEndWhereItMeetsANoseOfItsFloor) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    Random random(seed);
+    const double r = random.uniform(0.1, 0.5), high = r * random.uniform(0.1, 1.5),
+                 pull = random.uniform(0.5, 2.0);
+    const bool step = high < 0.95 * r && random.below(2) == 0;
+    // svg paths count y downwards
+    const std::string site =
+        step ? fmt::format(
+                   "polygon = {{ vertices = [[-9, 0], [2, 0], [2, {0:.17g}], [9, {0:.17g}], [9, -1], [-9, "
+                   "-1]] }}",
+                   high)
+             : fmt::format("path = {{ d = 'M -9 0 L 9 0 M 2 {0:.17g} L 6 {0:.17g}' }}", -high);
+    const double way = 2.0 - std::sqrt(r * r - (r - high) * (r - high)), met = std::sqrt(3.0 * way / pull);
+    const std::string text = world(met + 0.5, 0.3, pull) + "[[sites]]\nname = 'f'\nmaterial = 'm'\n" + site +
+                             fmt::format(
+                                 "\n[[bodies]]\nname = 'b'\nmaterial = 'm'\ndisc = {{ radius = {0:.17g} "
+                                 "}}\nposition = [0, {0:.17g}]\n",
+                                 r);
+    const Scene scene = parse_scene(text, "nose");
+    Simulator simulator(scene.world, scene.solver);
+    testing::Events events;
+    const RunSummary s = simulator.run(testing::until(scene.duration), &events);
+    ASSERT_EQ(s.termination, Termination::reached_end) << s.why << ", seed " << seed;
+    EXPECT_EQ(s.steps_by_modes, s.island_steps) << "seed " << seed;
+    ASSERT_FALSE(events.collisions().empty()) << "seed " << seed;
+    const Contact first = events.collisions().front().contact;
+    EXPECT_NEAR(first.time, met, 1e-9) << "seed " << seed;
+    EXPECT_NEAR(first.closing_speed, pull / 1.5 * met * std::sqrt(r * r - (r - high) * (r - high)) / r, 1e-8)
+        << "seed " << seed;
+  }
+}
+
 }  // namespace
 }  // namespace brink::smooth_motions_test

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "brink/scheduler/first_contact/pair_kinematics.h"
 #include "brink/scheduler/first_contact/safe_step.h"
@@ -15,8 +14,6 @@ namespace {
 constexpr int kMostSteps = 1000;
 /// Where no bound helps (an arc's sector), so many looks along the whole.
 constexpr int kLooksOfArrival = 64;
-/// Velocities against each other are rounded to so many parts of the faster one's.
-constexpr double kSpeedRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 /// One open contact on its owners' motions.
 class Watch {
@@ -29,8 +26,8 @@ class Watch {
         bodies_(bodies),
         slack_(slack),
         sector_window_((to - from) / kLooksOfArrival),
-        no_speed_(kSpeedRounding * std::max(bounds(contact.sample_owner, from, to).speed(),
-                                            bounds(contact.site_owner, from, to).speed())) {}
+        fastest_(std::max(bounds(contact.sample_owner, from, to).speed(),
+                          bounds(contact.site_owner, from, to).speed())) {}
 
   enum class Fate {
     stays_open,
@@ -89,9 +86,9 @@ class Watch {
   /// Below zero by less than half the slack it comes only if it closes: what has just been let go, or
   /// passes by the end of a site, starts there by roundings: of places, and of velocities that are nearly the same.
   bool comes(const ContactRates& r) const {
-    const double speed = std::abs(r.tangential_velocity) + std::abs(r.normal_velocity);
+    const double speed = std::max(std::abs(r.tangential_velocity) + std::abs(r.normal_velocity), fastest_);
     return r.gap < -0.5 * slack_ ||
-           (!contact_.passes && r.gap < 0.0 && r.normal_velocity < -std::max(kNoClosing * speed, no_speed_));
+           (!contact_.passes && r.gap < 0.0 && r.normal_velocity < -kNoClosing * speed);
   }
 
   /// The last double at which the gap is not below zero, by halving.
@@ -174,7 +171,7 @@ class Watch {
   double slack_;
   double
       sector_window_;  ///< how long to wait where the sample's own sector alone is left: of that there is no bound [s]
-  double no_speed_;  ///< closing speeds below it are roundings [m/s]
+  double fastest_;  ///< of the two owners [m/s]
 };
 
 }  // namespace

@@ -337,6 +337,58 @@ TEST(Step, RandomProblemsAreProved) {
   }
 }
 
+// Masses a million and more times apart: rounding ends the search of one in some dozens, and the problem is solved by pivots then.
+TEST(Step, OfMassesFarApartIsProved) {
+  for (const double spread : {1e3, 1e6, 1e9})
+    for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+      SCOPED_TRACE(::testing::Message() << "spread " << spread << ", seed " << seed);
+      Random random(seed);
+      StepProblem problem = answerable_problem(random);
+      for (std::size_t k = 0; k < problem.mass.size(); ++k) {
+        const double by = std::pow(spread, random.uniform(-0.5, 0.5));
+        problem.mass[k] *= by;
+        problem.force[k] *= by;
+      }
+      for (StepContact& s : problem.contacts) {
+        const double by = problem.mass[s.contact.body].x();
+        s.friction_bound *= by;
+        s.rolling_bound *= by;
+      }
+      const StepResult result = ConeQp().step(problem);
+      ASSERT_EQ(result.status, Status::solved);
+      double speed = 0.0;
+      for (std::size_t k = 0; k < problem.mass.size(); ++k)
+        for (const Vec3& v : {problem.velocity[k], result.velocity[k]})
+          speed = std::max(speed, v.cwiseAbs().maxCoeff());
+      for (std::size_t k = 0; k < problem.contacts.size(); ++k)
+        EXPECT_GE(
+            problem.contacts[k].gap / problem.duration + relative(problem.contacts[k], result.velocity)[0],
+            -1e-6 * speed)
+            << "contact " << k;
+      // each body by what presses on it
+      std::vector<Vec3> pushed(problem.mass.size(), Vec3::Zero());
+      std::vector<double> size(problem.mass.size(), 0.0);
+      for (std::size_t k = 0; k < result.loads.size(); ++k) {
+        const LastingContact& c = problem.contacts[k].contact;
+        const ContactLoad& load = result.loads[k];
+        apply(c, load, pushed);
+        for (const int body : {c.body, c.other})
+          if (body >= 0)
+            size[body] += 2.0 * (load.normal + std::abs(load.tangential) + std::abs(load.rolling));
+      }
+      for (std::size_t k = 0; k < problem.mass.size(); ++k)
+        for (int c = 0; c < 3; ++c) {
+          if (std::isinf(problem.mass[k][c])) continue;
+          const double gained = problem.mass[k][c] * (result.velocity[k][c] - problem.velocity[k][c]),
+                       given = problem.duration * problem.force[k][c];
+          EXPECT_NEAR(gained, given + pushed[k][c],
+                      1e-6 * (size[k] + std::abs(given) + problem.mass[k][c] * speed))
+              << "body " << k;
+        }
+      if (HasFailure()) return;
+    }
+}
+
 // The search may begin near what is expected, rightly or wrongly: it ends with the same answer.
 TEST(Step, WhatIsExpectedChangesNoAnswer) {
   for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
