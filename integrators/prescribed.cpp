@@ -29,6 +29,7 @@ constexpr double kCellWidth = 0.0625;     // 2^-4 s
 constexpr double kFitTolerance = 1e-13;   // of the cell's largest value
 constexpr double kNothing = 1e-18;        // [m or rad]: smaller is not followed
 constexpr double kNoiseTolerance = 1e-9;  // the same, of a range of values that cannot be halved
+constexpr double kStrip = 0.25;           // of a corner's cell
 constexpr double kPi = 3.14159265358979323846;
 
 using Matrix = Eigen::Matrix<double, kDegree + 1, kDegree + 1>;
@@ -102,10 +103,20 @@ struct PrescribedMotion::Fitted {
   Vector3d rate_begin = Vector3d::Zero(), rate_end = Vector3d::Zero();
   Vector3d tolerance = Vector3d::Zero();  ///< of the fit
   Vector3d scale = Vector3d::Zero();      ///< largest value
+  double cell_width = 0.0;                ///< of the cell that it has been fitted to [s]
+  std::vector<std::pair<double, Vector3d>>
+      told;  ///< the function at the nodes of all cells that it stands for
 
   double width() const { return piece.end - piece.begin; }
   /// What the end rates may be off by: n^2 times the fit over the half width (Markov's inequality).
-  Vector3d rate_tolerance() const { return (2.0 * kDegree * kDegree / width()) * tolerance; }
+  Vector3d rate_tolerance() const { return (2.0 * kDegree * kDegree / cell_width) * tolerance; }
+  /// True if another's polynomial, continued, is as near to the function here as its own.
+  bool continues(const PolynomialPiece& other) const {
+    return std::all_of(told.begin(), told.end(), [&](const auto& node) {
+      return ((values(other.state(node.first).pose) - node.second).cwiseAbs().array() <= tolerance.array())
+          .all();
+    });
+  }
 };
 
 PrescribedMotion::PrescribedMotion(const Vector3d& base, Function pose, Bound bound, std::string name)
@@ -168,8 +179,14 @@ bool PrescribedMotion::interpolate(const Cell& at, Fitted& cell) {
   const double half = 0.5 * at.width, middle = at.begin + half;
   Columns y;
   // Cells share their ends to the bit, and so the values there: pieces meet without a jump.
-  for (int j = 0; j <= kDegree; ++j) y.row(j) = pose_(middle + half * n.at[j]).transpose();
+  for (int j = 0; j <= kDegree; ++j) {
+    const double t = middle + half * n.at[j];
+    const Vector3d value = pose_(t);
+    y.row(j) = value.transpose();
+    cell.told.emplace_back(t, value);
+  }
   if (!y.allFinite()) return false;
+  cell.cell_width = at.width;
   const Columns monomials = n.monomials(y);
   cell.piece.begin = at.begin;
   cell.piece.end = at.begin + at.width;
@@ -234,59 +251,137 @@ void PrescribedMotion::take_corner(Fitted cell, const Certainty& known) {
   join_next(cell);
 }
 
+/// Beside a corner cells are halved and halved, and in narrow ones roundings of the values would be accelerations. There the wider
+/// one's polynomial is taken for both, where it is as near to the function. A corner at an end of its cell is seen from the other side, too:
+/// two cells are one then.
+bool PrescribedMotion::is_merged(Fitted& next) {
+  Fitted& last = *last_;
+  if (last.corner && next.corner && last.piece.end - last.piece.begin < 1.5 * next.cell_width) {
+    last.piece.end = next.piece.end;
+    last.value_end = next.value_end;
+    last.rate_begin = last.rate_end = (last.value_end - last.value_begin) / last.width();
+    return true;
+  }
+  if (last.corner || next.corner || std::min(last.cell_width, next.cell_width) == kCellWidth) return false;
+  const bool grows = next.cell_width > last.cell_width;
+  if (!(grows ? last.continues(next.piece) : next.continues(last.piece))) return false;
+  if (grows) {
+    next.piece.begin = last.piece.begin;
+    next.value_begin = last.value_begin;
+    std::swap(last, next);
+  } else {
+    last.piece.end = next.piece.end;
+    last.value_end = next.value_end;
+    last.rate_end = rates(last.piece.state(last.piece.end).twist);
+  }
+  last.told.insert(last.told.end(), next.told.begin(), next.told.end());
+  return true;
+}
+
+/// Where two cells meet is moved to t, on the one of them that is no corner.
+void PrescribedMotion::move_join(Fitted& left, Fitted& right, double t) {
+  const BodyState at = (left.corner ? right : left).piece.state(t);
+  left.piece.end = right.piece.begin = t;
+  left.value_end = right.value_begin = values(at.pose);
+  (left.corner ? right.rate_begin : left.rate_end) = rates(at.twist);
+}
+
 /// Decides the twist at the join of last_ and `next`, and closes last_ with it.
-void PrescribedMotion::join_next(const Fitted& next) {
+void PrescribedMotion::join_next(Fitted next) {
   // The first cell: nothing came before, and its own rate is where the motion begins.
   if (!last_) {
     rate_begin_ = next.rate_begin;
-    last_ = std::make_unique<Fitted>(next);
+    last_ = std::make_unique<Fitted>(std::move(next));
     return;
   }
-  Fitted& last = *last_;
+  if (is_merged(next)) return;
+  // A corner takes a strip from either side, so that it does not lie at an end of its cell.
+  const double corner_width = std::ldexp(kCellWidth, 1 - kDepths), strip = kStrip * corner_width;
+  if (last_->corner != next.corner)
+    move_join(*last_, next, last_->piece.end + (next.corner ? -strip : strip));
   // Both rates are right to their fits; the wider cell's is the better, as rate errors go by 1 / width.
-  Vector3d rate =
-      (last.width() * last.rate_end + next.width() * next.rate_begin) / (last.width() + next.width());
+  Vector3d rate = (last_->cell_width * last_->rate_end + next.cell_width * next.rate_begin) /
+                  (last_->cell_width + next.cell_width);
   // a corner's own rate is a chord's: the smooth neighbour's is right
-  if (last.corner != next.corner) rate = last.corner ? next.rate_begin : last.rate_end;
-  const Vector3d jump = (next.rate_begin - last.rate_end).cwiseAbs();
-  const bool smooth = (jump.array() <= (last.rate_tolerance() + next.rate_tolerance()).array()).all();
-  const double corner_width = std::ldexp(kCellWidth, 1 - kDepths);
-  if (!smooth && !last.corner && !next.corner && last.width() > 2.0 * corner_width) {
-    // a corner on the grid itself: a corner cell of its own, taken from the end of the left piece
-    const double cut = last.piece.end - corner_width;
-    const BodyState at_cut = last.piece.state(cut);
-    Fitted corner = last;
-    last.piece.end = corner.piece.begin = cut;
-    last.value_end = corner.value_begin = values(at_cut.pose);
-    last.rate_end = rates(at_cut.twist);
-    corner.corner = true;
-    close(last, last.rate_end);
-    rate_begin_ = last.rate_end;
-    *last_ = corner;
+  if (last_->corner != next.corner) rate = last_->corner ? next.rate_begin : last_->rate_end;
+  const Vector3d jump = (next.rate_begin - last_->rate_end).cwiseAbs();
+  const bool smooth = (jump.array() <= (last_->rate_tolerance() + next.rate_tolerance()).array()).all();
+  if (!smooth && !last_->corner && !next.corner &&
+      std::min(last_->width(), next.width()) > 2.0 * corner_width) {
+    // a corner on the grid itself: a corner cell of its own, half of it from either side
+    const double at = last_->piece.end;
+    Fitted turn = *last_;
+    turn.corner = true;
+    move_join(*last_, turn, at - 0.5 * corner_width);
+    close(*last_, last_->rate_end);
+    rate_begin_ = last_->rate_end;
+    *last_ = std::move(turn);
+    move_join(*last_, next, at + 0.5 * corner_width);
     // The corner cell turns from the left piece's rate to the right one's.
     rate = next.rate_begin;
   }
   close(*last_, rate);
   rate_begin_ = rate;
-  *last_ = next;
+  *last_ = std::move(next);
 }
 
 /// Appends a piece that begins with rate_begin_ and ends with rate_end, its end values the function's but for
 /// the rounding of the base.
 void PrescribedMotion::close(const Fitted& fitted, const Vector3d& rate_end) {
+  if (fitted.corner) return close_corner(fitted, rate_end);
   PolynomialPiece piece = fitted.piece;
-  // Hermite's cubic of end values and rates: what is between is not followed
-  if (fitted.corner) {
-    piece.origin = piece.begin;
-    piece.degree = 0;
-    piece.c[0].setZero();
-  }
   const BodyState begin = piece.state(piece.begin), end = piece.state(piece.end);
   add_cubic(piece, fitted.value_begin - values(begin.pose), rate_begin_ - rates(begin.twist),
             fitted.value_end - values(end.pose), rate_end - rates(end.twist));
   // last: beside a base far away the fit would have lost its digits
   piece.c[0] += base_;
   track_->pieces.push_back(piece);
+}
+
+/// Where the corner is, is known from the end values: the rate goes straight from the one to the other about there, and is
+/// never beyond them. (A cubic over the whole cell would be a third faster for a moment, and throw what lies on the site.)
+void PrescribedMotion::close_corner(const Fitted& cell, const Vector3d& rate_end) {
+  const double width = cell.width();
+  const Vector3d rise = cell.value_end - cell.value_begin;
+  int sharpest = 0;
+  (rate_end - rate_begin_).cwiseAbs().maxCoeff(&sharpest);
+  const double part =
+      (rise[sharpest] / width - rate_end[sharpest]) / (rate_begin_[sharpest] - rate_end[sharpest]);
+  double low = 0.0, high = width;
+  // no corner between the two rates (a square root's foot): one cubic
+  if (part > 0.0 && part < 1.0) {
+    const double half = std::min(part, 1.0 - part) * width;
+    low = std::max(0.0, part * width - half);
+    high = std::min(width, part * width + half);
+  }
+  const Vector3d at_low = cell.value_begin + low * rate_begin_,
+                 at_high = cell.value_end - (width - high) * rate_end;
+  const double begin = cell.piece.begin, from = begin + low,
+               to = high < width ? begin + high : cell.piece.end;
+  const auto add = [&](double t0, double t1, int degree, auto&& fill) {
+    if (!(t1 > t0)) return;
+    PolynomialPiece piece;
+    piece.begin = piece.origin = t0;
+    piece.end = t1;
+    piece.degree = degree;
+    fill(piece);
+    piece.c[0] += base_;
+    track_->pieces.push_back(piece);
+  };
+  // straight to the bit: roundings of a cubic would be accelerations here
+  const auto line = [&](double t0, double t1, const Vector3d& value, const Vector3d& rate) {
+    add(t0, t1, 1, [&](PolynomialPiece& p) { p.c[0] = value, p.c[1] = rate; });
+  };
+  line(begin, from, cell.value_begin, rate_begin_);
+  const double turns = to - from;
+  const Vector3d off = at_high - at_low - 0.5 * turns * (rate_begin_ + rate_end);
+  if ((off.cwiseAbs().array() <= 4.0 * cell.tolerance.array()).all())
+    add(from, to, 2, [&](PolynomialPiece& p) {
+      p.c[0] = at_low, p.c[1] = rate_begin_, p.c[2] = (rate_end - rate_begin_) / (2.0 * turns);
+    });
+  else
+    add(from, to, 0, [&](PolynomialPiece& p) { add_cubic(p, at_low, rate_begin_, at_high, rate_end); });
+  line(to, cell.piece.end, at_high, rate_end);
 }
 
 /// Lasting. The motion ends with what has been fitted before; extend() closes it.

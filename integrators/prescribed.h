@@ -20,7 +20,7 @@ namespace brink {
 /// than 1e-13 of the cell's largest value, or than the roundings of the function itself: so nothing is too
 /// short to be seen. Then a cubic makes neighbouring pieces meet with one twist. A piece depends on the
 /// function near it alone, never on how far was asked. A corner of the function (a jump of its rate) is
-/// rounded off within 2^-30 s; a jump of its value, an infinite rate, a value that is not finite, or bounds
+/// rounded off within 2^-30 s, by rates between those before and after it; a jump of its value, an infinite rate, a value that is not finite, or bounds
 /// that say nothing end the motion there.
 ///
 /// Cost: some 25 evaluations and four bounds a cell and halving. Sources: Trefethen 2013, Approximation
@@ -69,8 +69,11 @@ class PrescribedMotion {
   Eigen::Vector3d noise(const Cell& at) const;
   Certainty bound(const Cell& at) const;
   void take_corner(Fitted cell, const Certainty& known);
-  void join_next(const Fitted& next);
+  bool is_merged(Fitted& next);
+  static void move_join(Fitted& left, Fitted& right, double t);
+  void join_next(Fitted next);
   void close(const Fitted& piece, const Eigen::Vector3d& rate_end);
+  void close_corner(const Fitted& cell, const Eigen::Vector3d& rate_end);
   void fail(double t, const std::string& what);
 
   static constexpr int kMostCornersInARow = 4096;  ///< of 2^-30 s each

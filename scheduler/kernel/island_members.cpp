@@ -95,6 +95,16 @@ std::vector<HeldContact> IslandMembers::contacts(double reach, const GoOn& go_on
   return features(near_pairs(reach, go_on), reach, go_on);
 }
 
+double IslandMembers::even_for(double h) const {
+  bool any = false;
+  for (int s = 0; s < trajectories_->site_count(); ++s) any = any || trajectories_->site(s).is_prescribed();
+  if (!any) return h;
+  double until = now_ + h;
+  for (const PairKey& pair : near_pairs(-1.0))
+    if (pair.with_site()) until = trajectories_->site(pair.other_site).even_until(now_, until);
+  return until < now_ + h ? until - now_ : h;
+}
+
 std::vector<HeldContact> IslandMembers::contacts_of(const std::vector<char>& whose, const GoOn& go_on) const {
   std::vector<PairKey> pairs = near_pairs(-1.0, go_on);
   const auto others = [&](const PairKey& pair) {

@@ -96,6 +96,8 @@ class IslandMembers {
   /// When forces on the member next jump [s]; whether until then all members' depend on nothing; who is coupled to it.
   double next_break(int member) const { return trajectories_->next_break(bodies_[member]); }
   bool are_constant() const { return constant_; }
+  /// How long a step of h [s] may be for the motions of near sites, see SiteMotion::even_until. @pre sites are covered as far.
+  double even_for(double h) const;
   /// What forces make of the members' motion in the middle of a step of h [s] that they take with these twists.
   std::vector<Acceleration> accelerations_along(double h, const std::vector<Vec3>& velocity) const;
   std::vector<int> coupled_to(int member) const;

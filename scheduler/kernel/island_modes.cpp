@@ -253,7 +253,7 @@ void IslandModes::add_contact(const HeldContact& c) {
 }
 
 /// It holds no states: these change at one time, as what meets meets, and are given with each question.
-void IslandModes::make_problem(std::vector<HeldContact> contacts) {
+void IslandModes::make_problem(std::vector<HeldContact> contacts, double h) {
   contacts_ = std::move(contacts);
   problem_ = {};
   touch_ = least_touch();
@@ -267,12 +267,15 @@ void IslandModes::make_problem(std::vector<HeldContact> contacts) {
   }
   // of the smallest member: what errors are parts of
   problem_.size = members_->size();
-  double jump = std::numeric_limits<double>::infinity();
   for (int i = 0; i < static_cast<int>(members_->count()); ++i)
-    jump = std::min(jump, members_->next_break(i));
-  problem_.free = [this, jump](double t, std::span<const BodyState> states, std::span<Acceleration> out) {
-    // a step that ends where forces jump has the force before it up to its end
-    trajectories_->accelerations(members_->bodies(), t < jump ? t : std::nextafter(jump, now_), states, out);
+    problem_.jump = std::min(problem_.jump, members_->next_break(i));
+  for (const HeldContact& c : contacts_)
+    if (c.pair.with_site())
+      problem_.jump =
+          trajectories_->site(c.pair.other_site).even_until(now_, std::min(problem_.jump, now_ + h));
+  problem_.before_jump = std::nextafter(problem_.jump, now_);
+  problem_.free = [this](double t, std::span<const BodyState> states, std::span<Acceleration> out) {
+    trajectories_->accelerations(members_->bodies(), problem_.before(t), states, out);
   };
   for (const HeldContact& c : contacts_) add_contact(c);
 }
@@ -369,10 +372,11 @@ IslandModes::Outcome IslandModes::take(double now, double h, std::vector<HeldCon
   States states;
   for (int i = 0; i < static_cast<int>(members_->count()); ++i) {
     states.push_back(members_->state(i).rounded());
-    // no integration step may lead over a jump of a force, or over a change too short for it to see
-    until = std::min({until, members_->next_break(i), trajectories_->steady_until(members_->bodies()[i])});
+    // no integration step may lead over a change too short for it to see
+    until = std::min(until, trajectories_->steady_until(members_->bodies()[i]));
   }
-  make_problem(std::move(contacts));
+  make_problem(std::move(contacts), h);
+  until = std::min(until, problem_.jump);
   // such a step is lost in the rounding of the clock
   if (!(until > now)) return Outcome::none;
   const Approach how = approach(states);

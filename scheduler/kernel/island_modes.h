@@ -79,7 +79,7 @@ class IslandModes {
 
  private:
   using States = std::vector<BodyState>;
-  void make_problem(std::vector<HeldContact> contacts);
+  void make_problem(std::vector<HeldContact> contacts, double h);
   void add_contact(const HeldContact& contact);
   bool is_corner_on_corner(const HeldContact& c) const;
   bool is_told_by_other_corner(const HeldContact& c, const std::vector<HeldContact>& all) const;

@@ -100,6 +100,11 @@ double IslandMotion::longest() const {
   return std::min(fall, way);
 }
 
+double IslandMotion::even_for(double h) {
+  members_.look_ahead(h, kReach);
+  return members_.even_for(h);
+}
+
 std::vector<int> IslandMotion::joining(const World& world, Trajectories& trajectories, double now) {
   h_ = longest();
   // no step will be taken, so nobody is met in one

@@ -41,6 +41,8 @@ class IslandMotion {
   std::vector<int> joining(const World& world, Trajectories& trajectories, double now);
   /// How long a step may be [s]; infinity: nothing moves or pulls.
   double longest() const;
+  /// How long a step of h may be for the motions of near sites [s].
+  double even_for(double h);
   /// A collision goes on through contacts of this instant: the one that closes fastest first, each by its own
   /// law, until none closes faster than what a step takes as plastic.
   void pass_on_impacts(const Impact& told);

@@ -308,7 +308,10 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   double h = 0.0;
   const auto set_length = [&] {
     h = std::min({longest, motion.longest(), steady_for(members, now)});
-    return rests || !std::isfinite(h) || follow_sites(now, h);
+    if (rests || !std::isfinite(h)) return true;
+    if (!follow_sites(now, h)) return false;
+    h = motion.even_for(h);
+    return true;
   };
   if (!set_length()) return give_up();
   // rest first: it is exact and free; modes next, as they keep to a tolerance; steps of first order last

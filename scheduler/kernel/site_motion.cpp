@@ -1,5 +1,9 @@
 #include "brink/scheduler/kernel/site_motion.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include <fmt/core.h>
 
 #include "brink/core/base/error.h"
@@ -8,6 +12,11 @@
 namespace brink {
 
 namespace {
+
+/// Stages of an integration step see what takes this part of it.
+constexpr double kOfStep = 0.125;
+/// Parts of the clock's time.
+constexpr double kRoundings = 8.0 * std::numeric_limits<double>::epsilon();
 
 /// A coordinate without a formula stays as it is in the site's pose.
 double value(const std::optional<Formula>& formula, double t) {
@@ -80,6 +89,18 @@ Extent SiteMotion::extend(double t, std::uint64_t most_cells) {
   // a motion needs a piece to be of; from then on it grows with the track
   if (prescribed_->begun()) motion_ = prescribed_->motion();
   return extent;
+}
+
+double SiteMotion::even_until(double t, double until) const {
+  const Track* track = motion_.track();
+  if (!track) return until;
+  const auto is_narrow = [&](const PolynomialPiece& p) { return p.end - p.begin < kOfStep * (until - t); };
+  // what ends within some roundings of t has ended
+  auto piece = std::upper_bound(track->pieces.begin(), track->pieces.end(), t + kRoundings * std::abs(t),
+                                [](double time, const PolynomialPiece& p) { return time < p.end; });
+  if (piece != track->pieces.end() && is_narrow(*piece)) return std::min(until, piece->end);
+  while (piece != track->pieces.end() && piece->begin < until && !is_narrow(*piece)) ++piece;
+  return piece != track->pieces.end() ? std::min(until, piece->begin) : until;
 }
 
 bool SiteMotion::lacks_bounds() const { return prescribed_ && prescribed_->lacks_bounds(); }

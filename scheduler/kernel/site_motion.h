@@ -26,6 +26,9 @@ class SiteMotion {
   bool is_prescribed() const { return prescribed_ != nullptr; }
   /// Goes on towards t by `most_cells` cells of the fit at most.
   Extent extend(double t, std::uint64_t most_cells = std::numeric_limits<std::uint64_t>::max());
+  /// When a step from t to `until` at most must end, so that it is not much longer than the pieces of the motion that it leads
+  /// over [s]: a corner of a formula is a piece of next to no width, and what is as quick as a step takes is several narrow ones.
+  double even_until(double t, double until) const;
   /// True if its motion has failed because nothing bounds a formula, which may be continuous.
   bool lacks_bounds() const;
   /// Nobody will ask for a time before t any more.

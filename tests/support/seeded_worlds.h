@@ -25,7 +25,7 @@ inline std::string stopped_under_another_policy(const World& world, SolverOption
   const double end = options.until;
   RunSummary last;
   for (int part = 1; part <= parts && (part == 1 || last.termination == Termination::reached_end); ++part) {
-    options.until = end * part / parts;
+    options.until = part == parts ? end : end * part / parts;  // the last to the bit
     last = other.run(options);
   }
   const bool same = last.state_hash == first.state_hash && last.termination == first.termination;

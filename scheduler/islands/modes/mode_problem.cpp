@@ -12,7 +12,7 @@ Vec3 as_vector(const Acceleration& a) { return {a.linear.x(), a.linear.y(), a.an
 void add_support(const ModeProblem& problem, int owner, double t, const Vec3& normal, const Vec3& tangent,
                  ContactRates& r) {
   if (owner < problem.bodies()) return;
-  const Vec3 a = as_vector(problem.supports[owner - problem.bodies()].rate(t));
+  const Vec3 a = as_vector(problem.supports[owner - problem.bodies()].rate(problem.before(t)));
   r.normal_bend += normal.dot(a);
   r.tangential_bend += tangent.dot(a);
 }

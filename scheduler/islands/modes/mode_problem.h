@@ -45,6 +45,9 @@ struct ModeProblem {
   std::vector<ModeContact> contacts;
   FreeAccelerations free;
   double size = 1.0;  ///< of the smallest body [m]: what tolerances are parts of
+  /// Where forces or the supports' accelerations jump, at which steps end: up to there they are those of `before_jump` [s].
+  double jump = std::numeric_limits<double>::infinity(), before_jump = jump;
+  double before(double t) const { return t < jump ? t : before_jump; }
 
   int bodies() const { return static_cast<int>(inverse_mass.size()); }
 };
