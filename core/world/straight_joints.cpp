@@ -1,9 +1,13 @@
 #include "brink/core/world/straight_joints.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <variant>
 
@@ -132,16 +136,42 @@ void each_covered(std::span<Side> line, double tolerance, Visit&& visit) {
   }
 }
 
-}  // namespace
+/// How a site moves, in words that are the same for all that move as one; those that turn do so about the same place. Nothing: of
+/// what turns where the plane repeats, for its images turn about other places.
+std::optional<std::string> motion_of(const FixedSite& site, const Periods& periods) {
+  std::string how;
+  bool turns = false;
+  if (const auto* constant = std::get_if<ConstantMotion>(&site.motion)) {
+    const Twist& t = constant->twist;
+    how = fmt::format("{} {} {}", t.velocity.x(), t.velocity.y(), t.omega);
+    turns = t.omega != 0.0;
+  } else if (const auto* formulas = std::get_if<FormulaMotion>(&site.motion)) {
+    for (const std::optional<Formula>* f : {&formulas->x, &formulas->y, &formulas->angle})
+      how += (*f ? (*f)->text() : "") + "|";
+    turns = formulas->angle.has_value();
+  }
+  if (!turns) return how;
+  if (periods.any()) return std::nullopt;
+  return how + fmt::format(" about {} {}", site.pose.position.x(), site.pose.position.y());
+}
 
-std::vector<std::shared_ptr<const Outline>> with_straight_joints(const World& world, double tolerance) {
-  std::vector<std::shared_ptr<const Outline>> outlines;
+/// Sites that keep their places against each other.
+std::vector<std::vector<int>> that_move_as_one(const World& world) {
+  std::map<std::string, std::vector<int>> groups;
+  for (int s = 0; s < static_cast<int>(world.sites.size()); ++s)
+    if (const auto how = motion_of(world.sites[s], world.periods)) groups[*how].push_back(s);
+  std::vector<std::vector<int>> all;
+  for (auto& [how, sites] : groups) all.push_back(std::move(sites));
+  return all;
+}
+
+/// Notes joints and covered sides among some of the sites, in outlines of their own.
+void note_joints(const World& world, const std::vector<int>& among, double tolerance,
+                 std::map<int, Outline>& joined) {
   std::vector<End> ends;
   std::vector<Side> sides;
-  for (int s = 0; s < static_cast<int>(world.sites.size()); ++s) {
+  for (const int s : among) {
     const FixedSite& site = world.sites[s];
-    outlines.push_back(site.outline);
-    if (!std::holds_alternative<std::monostate>(site.motion)) continue;
     const Frame frame(site.pose);
     for (int k = 0; k < static_cast<int>(site.outline->sites.size()); ++k) {
       if (site.outline->sites[k].kind != SiteKind::segment) continue;
@@ -149,10 +179,9 @@ std::vector<std::shared_ptr<const Outline>> with_straight_joints(const World& wo
       add_end({side.a, s, k, true}, world.periods, tolerance, ends);
       add_end({side.b, s, k, false}, world.periods, tolerance, ends);
       if (side.solid && side.radius == 0.0)
-        add_side(side, world.sites[0].pose.position, world.periods, s, k, sides);
+        add_side(side, world.sites[among.front()].pose.position, world.periods, s, k, sides);
     }
   }
-  std::map<int, Outline> joined;
   const auto outline_of = [&](int site) -> Outline& {
     return joined.try_emplace(site, *world.sites[site].outline).first->second;
   };
@@ -190,6 +219,15 @@ std::vector<std::shared_ptr<const Outline>> with_straight_joints(const World& wo
                            [&](const Side& s) { outline_of(s.site).sites[s.side].covered = true; });
             });
       });
+}
+
+}  // namespace
+
+std::vector<std::shared_ptr<const Outline>> with_straight_joints(const World& world, double tolerance) {
+  std::map<int, Outline> joined;
+  for (const std::vector<int>& sites : that_move_as_one(world)) note_joints(world, sites, tolerance, joined);
+  std::vector<std::shared_ptr<const Outline>> outlines;
+  for (const FixedSite& site : world.sites) outlines.push_back(site.outline);
   for (auto& [site, outline] : joined) outlines[site] = std::make_shared<const Outline>(std::move(outline));
   return outlines;
 }

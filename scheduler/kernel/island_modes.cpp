@@ -35,6 +35,8 @@ constexpr double kTurns = 1e-6;
 
 /// False for a joint of two pieces that hardly turns, or turns away from what may touch it.
 bool is_corner(const Outline& outline, const Sample& sample) {
+  // a straight joint, or the bottom of a notch
+  if (sample.hollow) return false;
   // an arc's sample is no joint
   if (sample.arc_site >= 0) return true;
   // a solid lies on the left of its outline: only a turn to the left sticks out of it
@@ -176,9 +178,15 @@ bool IslandModes::is_corner_on_corner(const HeldContact& c) const {
   const Sample& sample = carrier.samples[c.feature.sample];
   const Site& site = other.sites[c.feature.site];
   if (sample.radius + site.radius > 0.0 || !is_corner(carrier, sample)) return false;
-  return std::any_of(other.samples.begin(), other.samples.end(), [&](const Sample& end) {
-    return end.arc_site < 0 && (end.p == site.a || end.p == site.b) && is_corner(other, end);
-  });
+  // where the two are, in the frame of the site's owner
+  const ExtendedState of_b = members_->other_state(c.pair),
+                      owner = c.feature.sample_on_a ? of_b : members_->state(members_->place_of(c.pair.body));
+  const Vec2 place =
+      Frame(Pose{{0.0, 0.0}, owner.seen_from(Vec2::Zero()).pose.angle})
+          .direction_to_local(c.feature.point + (of_b.position - owner.position).cast<double>());
+  const Vec2& end = (place - site.a).squaredNorm() < (place - site.b).squaredNorm() ? site.a : site.b;
+  return std::any_of(other.samples.begin(), other.samples.end(),
+                     [&](const Sample& s) { return s.arc_site < 0 && s.p == end && is_corner(other, s); });
 }
 
 // ---- the problem
@@ -382,8 +390,10 @@ IslandModes::Outcome IslandModes::take(double now, double h, std::vector<HeldCon
   const Approach how = approach(states);
   if (how != Approach::none && !meet(states)) return Outcome::none;
   // Where what meets slowly does not stay, as a corner that comes down beside an arc that rolls into it, it parts by that impact.
+  arrived_ = -1;
   if (!go_on_from(states, how, until, on_time) &&
-      !(how == Approach::slow && go_on_from(states, Approach::fast, until, on_time)))
+      !(how == Approach::slow && go_on_from(states, Approach::fast, until, on_time)) &&
+      !go_on_with_arrived(states, how, until))
     return Outcome::none;
   if (!within_reach()) return Outcome::wider;
   return keeps_apart() ? Outcome::moved : Outcome::none;
@@ -398,6 +408,14 @@ bool IslandModes::go_on_from(const States& states, Approach how, double until, b
   if (!(former ? motion.begin_in(*former) : motion.begin(closed_now(states, how)))) return false;
   begun_ = motion.states();
   return move_on(motion, until);
+}
+
+/// What arrives right where the step begins touches by then: at a joint that is met to the bit the next arc does not face the site
+/// yet, but for a rounding.
+bool IslandModes::go_on_with_arrived(const States& states, Approach how, double until) {
+  if (arrived_ < 0 || touching_[arrived_]) return false;
+  touching_[arrived_] = true;
+  return go_on_from(states, how, until, false);
 }
 
 ExtendedState IslandModes::let_go(int member) const {
@@ -431,13 +449,15 @@ bool IslandModes::move_on(ModeMotion& motion, double until) {
     step = motion.step(until);
     for (std::size_t i = 0; i < step.pieces.size(); ++i) tracks_[i]->pieces.push_back(step.pieces[i]);
     // A change ends the island's step: it is an event, from which the next step begins. So does what takes long: in between a
-    // signal is heard.
-    if (step.end != ModeEnd::step && motion.time() > now_) break;
-    // before time goes on modes may be chosen again; any other end leads nowhere
-    if (step.end != ModeEnd::step && step.end != ModeEnd::change) return false;
+    // signal is heard. Before time goes on modes may be chosen again; any other end leads nowhere.
+    const bool chosen_again = step.end == ModeEnd::change && !(motion.time() > now_);
+    if (step.end != ModeEnd::step && !chosen_again) break;
   }
   end_ = motion.time();
-  if (!(end_ > now_)) return false;
+  if (!(end_ > now_)) {
+    if (step.end == ModeEnd::arrival) arrived_ = step.contact;
+    return false;
+  }
   const bool lost = step.end == ModeEnd::no_modes || step.end == ModeEnd::lost;
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     HeldContact& c = contacts_[k];

@@ -97,6 +97,7 @@ class IslandModes {
   std::optional<std::vector<MotionMode>> former_modes() const;
   std::vector<bool> closed_now(const States& states, Approach how) const;
   bool go_on_from(const States& states, Approach how, double until, bool on_time);
+  bool go_on_with_arrived(const States& states, Approach how, double until);
   bool move_on(ModeMotion& motion, double until);
   void note(const ModeMotion& motion);
   bool within_reach() const;
@@ -112,6 +113,7 @@ class IslandModes {
   const WarmContacts* warm_;
   double now_ = 0.0, end_ = 0.0;
   double touch_ = 0.0;  ///< least_touch()
+  int arrived_ = -1;    ///< contact of the problem that arrives where the step begins
   std::vector<HeldContact> contacts_;
   std::vector<Impact> impacts_;
   std::vector<BodyState> begun_;    ///< with what these have made of the members' twists

@@ -280,9 +280,41 @@ std::string over_joints(Random& random) {
   return first_of({not_smooth(ran), misses("place", along.dot(ran.last.pose.position - shift), wanted)});
 }
 
+/// A box slides over pieces that lie end to end, blocks or segments, as they stand or move up and down as one: what presses it follows
+/// them.
+std::string over_moving_joints(Random& random) {
+  const double pace = random.uniform(2.0, 8.0),
+               high = random.below(3) == 0 ? 0.0 : random.uniform(0.1, 0.8) * kGravity / (pace * pace),
+               mu = random.below(3) == 0 ? 0.0 : random.uniform(0.02, 0.1), end = random.uniform(0.5, 1.5),
+               v = random.uniform(3.5, 6.0), width = random.uniform(0.2, 1.0);
+  std::string text = world(end, mu);
+  const bool blocks = random.below(2) == 0;
+  for (double x = -3.0; x < 12.0;) {
+    const double to = x + random.uniform(0.4, 3.0);
+    text += "[[sites]]\nmaterial = 'm'\n";
+    text += blocks ? fmt::format(
+                         "polygon = {{ vertices = [[{0:.17g}, -1], [{1:.17g}, -1], [{1:.17g}, 0], [{0:.17g}, "
+                         "0]] }}\n",
+                         x, to)
+                   : fmt::format("segment = [[{:.17g}, 0], [{:.17g}, 0]]\n", x, to);
+    if (high > 0.0) text += fmt::format("motion = {{ y = \"{:.17g}*sin({:.17g}*t)\" }}\n", high, pace);
+    x = to;
+  }
+  text += fmt::format(
+      "[[bodies]]\nname = 'b'\nmaterial = 'm'\nbox = {{ width = {:.17g}, height = 0.1 }}\nposition = [0, "
+      "0.05]\nvelocity = "
+      "[{:.17g}, {:.17g}]\n{}",
+      width, v, high * pace, random.below(3) == 0 ? "lock = ['angle']\n" : "");
+  const Ran ran = run(text);
+  const double y = high * std::sin(pace * end);
+  return first_of({not_smooth(ran), misses("height", ran.last.pose.position.y(), 0.05 + y),
+                   misses("place", ran.last.pose.position.x(),
+                          v * end - mu * (0.5 * kGravity * end * end + y - high * pace * end))});
+}
+
 std::string fault_of(std::uint64_t seed) {
   Random random(seed);
-  switch (seed % 7) {
+  switch (seed % 8) {
     case 0:
       return "ellipse: " + ellipse(random);
     case 1:
@@ -295,6 +327,8 @@ std::string fault_of(std::uint64_t seed) {
       return "oscillates: " + oscillates(random);
     case 5:
       return "over joints: " + over_joints(random);
+    case 6:
+      return "over moving joints: " + over_moving_joints(random);
     default:
       return "far away: " + far_away(random);
   }
