@@ -154,27 +154,32 @@ void Views::see_bodies(int k, double now) {
   });
 }
 
-/// Bodies near body k in free flight; with `former`, its former cell, those alone that were not near it
-/// there.
-void Views::see_bodies(int k, const Course& here, double now, const Cell* former) {
-  // the quick way, where there is one (Neighbourhood::around()): several neighbours at once, by vector
-  // instructions
+/// Compares body k in free flight with all near it at once, by vector instructions, where that can be done
+/// (Neighbourhood::around()); with `former`, its former cell, with those alone that were not near it there.
+void Views::compare(int k, const Course& here, double now, Sight& sight, const Cell* former) {
   static_assert(FlightBatch::kMost > CellGrid::kMostAround);
-  if (const int count = near_->around(k, batch_.bodies(), former); count >= 0) {
-    BodyClock& clock = clocks_[k];
-    unsigned met = batch_.meet(count, flights_.data(), here, now, clock.horizon);
-    for (; met != 0; met &= met - 1) {
-      const int i = std::countr_zero(met), j = batch_.body(i);
-      // of who flies freely no island keeps a gap
-      if (j == k || has_looked(j) || !kernel_->may_meet(k, j)) continue;
-      if (flights_[j].free)
-        clock.see(batch_.begin(i), j, flights_[j].version, now);
-      else if (batch_.begin(i) < clock.horizon)  // it may have come nearer
-        see_bounded(k, j, {}, now);
-    }
-    return;
+  const int count = near_->around(k, sight.near.bodies(), former);
+  sight.is_whole = count >= 0;
+  if (sight.is_whole) sight.met = sight.near.meet(count, flights_.data(), here, now, clocks_[k].horizon);
+}
+
+/// Bodies near body k in free flight, as compare() was asked for them.
+void Views::see_bodies(int k, const Course& here, double now, const Sight& sight, const Cell* former) {
+  if (!sight.is_whole) return see_one_by_one(k, here, now, former);
+  BodyClock& clock = clocks_[k];
+  for (unsigned met = sight.met; met != 0; met &= met - 1) {
+    const int i = std::countr_zero(met), j = sight.near.body(i);
+    // of who flies freely no island keeps a gap
+    if (j == k || has_looked(j) || !kernel_->may_meet(k, j)) continue;
+    if (flights_[j].free)
+      clock.see(sight.near.begin(i), j, flights_[j].version, now);
+    else if (sight.near.begin(i) < clock.horizon)  // it may have come nearer
+      see_bounded(k, j, {}, now);
   }
-  const auto compare = [&](int j, const Image& image) {
+}
+
+void Views::see_one_by_one(int k, const Course& here, double now, const Cell* former) {
+  const auto compare_with = [&](int j, const Image& image) {
     const double begin = meeting(here, flights_[j], periods_.shift(image), now).begin;
     if (!(begin < clocks_[k].horizon) || !sees(k, j, image)) return;
     if (flights_[j].free)
@@ -182,7 +187,7 @@ void Views::see_bodies(int k, const Course& here, double now, const Cell* former
     else
       see_bounded(k, j, image, now);
   };
-  near_->near(k, compare, former);
+  near_->near(k, compare_with, former);
 }
 
 void Views::look_around(int k, double now) {
@@ -201,40 +206,63 @@ void Views::note_look(int k) {
   lookers_ = 3;
 }
 
-void Views::look(int k, double now) {
-  BodyClock& clock = clocks_[k];
+/// An empty view, without a horizon. Who is not in free flight gets one before anybody is put into view: see() compares with
+/// it.
+void Views::begin_view(int k, double now) {
   kernel_->note_pass(k, now);
+  clocks_[k].forget_all();
+}
+
+void Views::look(int k, double now) {
   note_look(k);
-  // No horizon yet. Who is not in free flight gets one below, before anybody is put into view: see()
-  // compares with it.
-  clock.forget_all();
+  begin_view(k, now);
   if (flights_[k].free) {
-    const Course course(flights_[k], gravity_, now);
-    Box cell = near_->box_of(k);
-    if (!cell.contains(course.place)) {
-      near_->put_into_cell(k, course.place);
-      cell = near_->box_of(k);
-    }
-    clock.exit = now + stay_in(cell, course);
-    if (kernel_->by_passes()) return see_by_pass(k, now);
-    see_bodies(k, course, now);
+    const Course course = place(k, now);
+    compare(k, course, now, sights_[0]);
+    see_bodies(k, course, now, sights_[0]);
   } else {
     if (!begin_window(k, now)) return;
     if (kernel_->by_passes()) return see_by_pass(k, now);
     see_bodies(k, now);
   }
+  see_sites(k, now);
+}
+
+/// Puts body k in free flight into the cell where it is, which it leaves when its clock says; returns how it goes on.
+Course Views::place(int k, double now) {
+  const Course course(flights_[k], gravity_, now);
+  Box cell = near_->box_of(k);
+  if (!cell.contains(course.place)) {
+    near_->put_into_cell(k, course.place);
+    cell = near_->box_of(k);
+  }
+  clocks_[k].exit = now + stay_in(cell, course);
+  return course;
+}
+
+void Views::see_sites(int k, double now) {
   near_->sites_near(k, [&](int s, const Image& image) { see_site(k, s, image, now); });
   for (const int s : moving_) see_moving_site(k, s, now);
 }
 
-/// Each is as free as it was. The first sees the second, if it may meet it, and not the reverse.
+/// Each is as free as it was. The first sees the second, if it may meet it, and not the reverse. Both are compared with all
+/// near them before either sees anybody: what one of the two waits for the other is done in.
 void Views::look_around_after(int a, int b, double now) {
   const auto timed = kernel_->looking();
   start_anew(a);
   start_anew(b);
   begin_round();
-  look(a, now);
-  look(b, now);
+  begin_view(a, now);
+  begin_view(b, now);
+  const Course course_a = place(a, now), course_b = place(b, now);
+  compare(a, course_a, now, sights_[0]);
+  compare(b, course_b, now, sights_[1]);
+  note_look(a);
+  see_bodies(a, course_a, now, sights_[0]);
+  see_sites(a, now);
+  note_look(b);
+  see_bodies(b, course_b, now, sights_[1]);
+  see_sites(b, now);
 }
 
 void Views::look_around_after(int k, double now) {
@@ -260,7 +288,10 @@ void Views::look_ahead(int k, double now) {
   clock.exit = now + stay_in(near_->box_of(k), course);
   // Nobody has looked around in this round: all that comes near is to be in k's view.
   begin_round();
-  if (moved) see_bodies(k, course, now, &former);
+  if (moved) {
+    compare(k, course, now, sights_[0], &former);
+    see_bodies(k, course, now, sights_[0], &former);
+  }
   near_->sites_near(k, [&](int s, const Image& image) { see_site(k, s, image, now); });
 }
 

@@ -95,8 +95,19 @@ class Views {
     const bool first = k == first_lookers_[0], second = k == first_lookers_[1];
     return lookers_ <= 2 ? first | second : looked_[k] == round_;  // nearly always without a branch
   }
+  /// Who is near a body in free flight, and who of them can be met.
+  struct Sight {
+    FlightBatch near;
+    unsigned met = 0;       ///< bit i: the i-th of them
+    bool is_whole = false;  ///< all near are there; else they are to be seen one by one
+  };
+  void begin_view(int k, double now);
+  Course place(int k, double now);
+  void compare(int k, const Course& here, double now, Sight& sight, const Cell* former = nullptr);
   void see_bodies(int k, double now);
-  void see_bodies(int k, const Course& here, double now, const Cell* former = nullptr);
+  void see_bodies(int k, const Course& here, double now, const Sight& sight, const Cell* former = nullptr);
+  void see_one_by_one(int k, const Course& here, double now, const Cell* former);
+  void see_sites(int k, double now);
   bool sees(int k, int other, const Image& image) const;
   void see_bounded(int k, int j, const Image& image, double now);
   void see_site(int k, int site, const Image& image, double now);
@@ -129,7 +140,7 @@ class Views {
   int lookers_ = 0;  ///< in this round: 0, 1, 2, or more
   std::array<int, 2> first_lookers_{-1, -1};
   std::optional<Neighbourhood> near_;
-  FlightBatch batch_;  ///< of the body that looks around
+  std::array<Sight, 2> sights_;  ///< of those who look around
 };
 
 }  // namespace brink
