@@ -6,7 +6,9 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <ctime>
 
 #include "tests/bench/single_purpose.h"
 #include "tests/support/gases.h"
@@ -17,20 +19,30 @@ namespace {
 /// Bytes that are allocated now.
 double heap() { return static_cast<double>(mallinfo2().uordblks) + static_cast<double>(mallinfo2().hblkhd); }
 
+SolverOptions options_of(const char* policy, std::uint64_t collisions) {
+  SolverOptions options;
+  options.policy = policy;
+  options.max_collisions = collisions;
+  return options;
+}
+
+/// Begins where so many collisions have made it forget its lattice.
+World later(World world, const SolverOptions& options) {
+  Simulator warm(world, options);
+  warm.run(testing::until(1e9));
+  for (std::size_t k = 0; k < world.bodies.size(); ++k)
+    world.bodies[k].initial = warm.state(static_cast<int>(k));
+  return world;
+}
+
 /// Rate over `collisions`, after as many again to forget the lattice.
 void run_for(benchmark::State& state, const World& world, const char* policy, std::uint64_t collisions) {
   for (auto _ : state) {
     state.PauseTiming();
-    SolverOptions options;
-    options.policy = policy;
-    options.max_collisions = collisions;
-    Simulator warm(world, options);
-    warm.run(testing::until(1e9));
-    World later = world;
-    for (std::size_t k = 0; k < later.bodies.size(); ++k)
-      later.bodies[k].initial = warm.state(static_cast<int>(k));
+    const SolverOptions options = options_of(policy, collisions);
+    const World begin = later(world, options);
     const double held = heap();
-    Simulator simulator(later, options);
+    Simulator simulator(begin, options);
     state.ResumeTiming();
     const RunSummary summary = simulator.run(testing::until(1e9));
     state.PauseTiming();
@@ -107,6 +119,61 @@ void stars(benchmark::State& state) {
           "body_clocks", 20000);
 }
 BENCHMARK(stars)->Unit(benchmark::kMillisecond)->Iterations(1);
+
+/// A thousand discs in a box, spinning: none of them, every second or each of them has twelve teeth instead.
+World discs_and_gears(int gears_of_two) {
+  World world = testing::boxed(testing::lattice_gas(1024, make_disc(0.5), 0.5, 1.0));
+  const Body gear = testing::body(testing::gear(12, 0.5, 0.4), {0.0, 0.0}, {0.0, 0.0});
+  for (int k = 0; k < static_cast<int>(world.bodies.size()); ++k) {
+    if ((k / 32 + k) % 2 >= gears_of_two) continue;
+    Body& b = world.bodies[k];
+    b.outline = gear.outline;
+    b.inertia = gear.inertia;
+  }
+  return world;
+}
+
+/// Counts bodies that take part in collisions, by their kind.
+struct TakingPart : Recorder {
+  explicit TakingPart(const World& world) : of(world) {}
+  void event(const Event& e) override {
+    for (const int k : {e.contact.body, e.contact.other_body})
+      if (k >= 0) (of.bodies[k].outline->sites.size() == 1 ? discs : gears) += 1.0;
+  }
+  const World& of;
+  double discs = 0.0, gears = 0.0;
+};
+
+/// CPU time of a collision [s].
+double time_of_a_collision(const World& world, const SolverOptions& options) {
+  Simulator simulator(world, options);
+  const std::clock_t begin = std::clock();
+  simulator.run(testing::until(1e9));
+  return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC /
+         static_cast<double>(options.max_collisions);
+}
+
+/// Half discs, half gears. `keeps`: the rate, of that if a collision took as long as among discs alone and gears alone, by
+/// how many of each take part. The least time of several of each kind, taken in turn.
+void discs_and_gears(benchmark::State& state) {
+  const SolverOptions options = options_of("body_clocks", 50000);
+  const std::array<World, 3> worlds = {later(discs_and_gears(0), options), later(discs_and_gears(1), options),
+                                       later(discs_and_gears(2), options)};
+  TakingPart part(worlds[1]);
+  Simulator(worlds[1], options).run(testing::until(1e9), &part);
+  for (auto _ : state) {
+    std::array<double, 3> times = {1.0, 1.0, 1.0};
+    for (int round = 0; round < 3; ++round)
+      for (int k = 0; k < 3; ++k) times[k] = std::min(times[k], time_of_a_collision(worlds[k], options));
+    const double sum = (part.discs * times[0] + part.gears * times[2]) / (part.discs + part.gears);
+    state.counters["rate"] = 1.0 / times[1];
+    state.counters["rate_discs"] = 1.0 / times[0];
+    state.counters["rate_gears"] = 1.0 / times[2];
+    state.counters["discs_take_part"] = part.discs / (part.discs + part.gears);
+    state.counters["keeps"] = sum / times[1];
+  }
+}
+BENCHMARK(discs_and_gears)->Unit(benchmark::kMillisecond)->Iterations(1);
 
 /// A thousand slow discs, and beside them a closed box in which eight are a thousand times as fast.
 World two_speeds() {

@@ -54,4 +54,15 @@ inline Shape star(int points, double radius, double inner = 0.5) {
   return make_polygon(vertices);
 }
 
+/// A wheel with that many teeth, between those radii.
+inline Shape gear(int teeth, double tip, double root) {
+  std::vector<Vec2> vertices;
+  for (int k = 0; k < 4 * teeth; ++k) {
+    // of each quarter of a tooth's part: up its side, along its tip, down, along the root
+    const double angle = 0.5 * std::numbers::pi * k / teeth, r = k % 4 < 2 ? tip : root;
+    vertices.push_back({r * std::cos(angle), r * std::sin(angle)});
+  }
+  return make_polygon(vertices);
+}
+
 }  // namespace brink::testing
