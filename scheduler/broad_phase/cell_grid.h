@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <vector>
@@ -94,39 +95,32 @@ class CellGrid {
   bool has_around() const { return x_.count >= 4 && y_.count >= 4 && !x_.repeats && !y_.repeats; }
   static constexpr int kMostAround = 9 * CellBodies::kAtHand;
   /// Bodies of the cell and the eight about it, written to `bodies`, which has room for kMostAround and one:
-  /// how many; or -1 where a cell has more than are at hand. With `except`, not those of that cell and the eight about
-  /// it. Without a branch: how many a cell has cannot be foreseen. @pre has_around().
+  /// how many; or -1 where a cell has more than are at hand. Without a branch: how many a cell has cannot be foreseen.
+  /// @pre has_around().
   int around(const Cell& c, int* bodies) const {
-    return around(c, bodies, [](int, int) { return true; });
-  }
-  int around(const Cell& c, int* bodies, const Cell& except) const {
-    const CellBlock seen{{except.column - 1, except.row - 1}, {except.column + 1, except.row + 1}};
-    return around(c, bodies, [&](int row, int column) {
-      return !seen.contains({c.column + column, c.row + row});
-    });
-  }
-  template <class Counts>
-  int around(const Cell& c, int* bodies, Counts&& counts) const {
     // all that is read of the grid itself, before anything is written
     const CellBodies* const rows[] = {row_of(c.row - 1), row_of(c.row), row_of(c.row + 1)};
-    const int last = x_.count - 1;
-    const int columns[] = {(c.column - 1) & last, c.column & last, (c.column + 1) & last};
-    int count = 0, more = CellBodies::kNone;
-    for (int r = 0; r < 3; ++r)
-      for (int q = 0; q < 3; ++q) {
-        const CellBodies& cell = rows[r][columns[q]];
-        const bool counted = counts(r - 1, q - 1);
-        const int room = count;
-        count += counted ? static_cast<int>(cell.count) : 0;
-        more &= counted ? cell.more : CellBodies::kNone;  // all bits are set where there is none
-        std::memcpy(bodies + room, &cell, sizeof cell);
-      }
-    return more == CellBodies::kNone ? count : -1;
+    const int columns[] = {column_of(c.column - 1), column_of(c.column), column_of(c.column + 1)};
+    BodiesAtHand all(bodies);
+    for (const CellBodies* row : rows)
+      for (const int column : columns) all.add(row[column]);
+    return all.count();
+  }
+  /// The same without those of the cell `former` and the eight about it.
+  int around(const Cell& c, int* bodies, const Cell& former) const {
+    const Cell step{c.column - former.column, c.row - former.row};
+    if (std::abs(step.column) + std::abs(step.row) == 1) return ahead(c, step, bodies);
+    const CellBlock seen{{former.column - 1, former.row - 1}, {former.column + 1, former.row + 1}};
+    BodiesAtHand all(bodies);
+    for (int r = c.row - 1; r <= c.row + 1; ++r)
+      for (int q = c.column - 1; q <= c.column + 1; ++q)
+        if (!seen.contains({q, r})) all.add(row_of(r)[column_of(q)]);
+    return all.count();
   }
 
   /// Starts to fetch the cells that around() reads. @pre has_around().
   void expect_around(const Cell& c) const {
-    const int first = (c.column - 1) & (x_.count - 1), last = (c.column + 1) & (x_.count - 1);
+    const int first = column_of(c.column - 1), last = column_of(c.column + 1);
     for (int r = -1; r <= 1; ++r) {
       prefetch_line(row_of(c.row + r) + first);  // three cells may lie in two lines
       prefetch_line(row_of(c.row + r) + last);
@@ -136,7 +130,7 @@ class CellGrid {
   template <class Visit>
   void firsts_around(const Cell& c, Visit&& visit) const {
     for (int r = -1; r <= 1; ++r)
-      for (int q = -1; q <= 1; ++q) visit(row_of(c.row + r)[(c.column + q) & (x_.count - 1)].first[0]);
+      for (int q = -1; q <= 1; ++q) visit(row_of(c.row + r)[column_of(c.column + q)].first[0]);
   }
   /// True if the block is so wide that one list holds several of its cells, and is visited once.
   bool wraps(const CellBlock& b) const {
@@ -200,6 +194,37 @@ class CellGrid {
   static constexpr double kFar = 1e9;     ///< cells from the origin; all beyond is one
   static constexpr double kMost = 16384;  ///< sets of bodies along an axis
 
+  /// Bodies at hand of several cells, one cell after another.
+  class BodiesAtHand {
+   public:
+    explicit BodiesAtHand(int* bodies) : bodies_(bodies) {}
+    void add(const CellBodies& cell) {
+      std::memcpy(bodies_ + count_, &cell, sizeof cell);  // what is none of them, the next ones overwrite
+      count_ += static_cast<int>(cell.count);
+      more_ &= cell.more;  // all bits are set where there is none
+    }
+    /// -1 where a cell has more.
+    int count() const { return more_ == CellBodies::kNone ? count_ : -1; }
+
+   private:
+    int* bodies_;
+    int count_ = 0, more_ = CellBodies::kNone;
+  };
+
+  /// Those of the three cells that a step along one axis, into cell c, has come next to. @pre has_around().
+  int ahead(const Cell& c, const Cell& step, int* bodies) const {
+    const Cell middle{c.column + step.column, c.row + step.row};
+    const int columns = std::abs(step.row), rows = std::abs(step.column);  // they lie across the step
+    const CellBodies* cells[3];
+    for (const int k : {-1, 0, 1})
+      cells[k + 1] = row_of(middle.row + k * rows) + column_of(middle.column + k * columns);
+    BodiesAtHand all(bodies);
+    for (const CellBodies* cell : cells) all.add(*cell);
+    return all.count();
+  }
+
+  /// Where a column is in each row. @pre has_around().
+  int column_of(int column) const { return column & (x_.count - 1); }
   /// Cells of a row. @pre has_around().
   const CellBodies* row_of(int row) const {
     return cells_.data() + static_cast<std::size_t>(row & (y_.count - 1)) * x_.count;
