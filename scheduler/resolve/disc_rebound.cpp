@@ -20,10 +20,14 @@ struct PairOf;
 template <class Product>
 struct PairOf<BasicDoubleDouble<Product>> {
   using Type = DoubleDoublePair<Product>;
+  using OfTwo = DoubleDoublePairs<Product>;
 };
 /// A plane's vector of two doubles a coordinate.
 template <class Number>
 using Pair = typename PairOf<Number>::Type;
+/// One of each of two discs.
+template <class Number>
+using Pairs = typename PairOf<Number>::OfTwo;
 
 /// The same kind of number, of which every operation looks whether its range is left.
 template <class Number>
@@ -65,9 +69,12 @@ template <class Number>
 struct Moving {
   Pair<Number> place, velocity;
 
-  BRINK_INLINE Moving(const Motion& m, double t)
+  BRINK_INLINE Moving(const Pair<Number>& at, const Pair<Number>& by) : place(at), velocity(by) {}
+  /// Where it starts.
+  BRINK_INLINE explicit Moving(const Motion& m)
       : place(from(m.start().pose.position, m.start_low().pose.position)),
-        velocity(from(m.start().twist.velocity, m.start_low().twist.velocity)) {
+        velocity(from(m.start().twist.velocity, m.start_low().twist.velocity)) {}
+  BRINK_INLINE Moving(const Motion& m, double t) : Moving(m) {
     const Number since = Number::sum(t, -m.origin());
     const double ax = m.acceleration().linear.x(), ay = m.acceleration().linear.y();
     // without forces the velocity stays, and half of the products are saved
@@ -86,6 +93,22 @@ struct Moving {
   }
 };
 
+/// Where two discs are, side by side.
+template <class Number>
+struct MovingDiscs {
+  Pairs<Number> places, velocities;
+
+  BRINK_INLINE MovingDiscs(const Moving<Number>& a, const Moving<Number>& b)
+      : places(a.place, b.place), velocities(a.velocity, b.velocity) {}
+  /// Without forces.
+  BRINK_INLINE static MovingDiscs straight(const Motion& a, const Motion& b, double t) {
+    MovingDiscs both{Moving<Number>(a), Moving<Number>(b)};
+    both.places =
+        both.places + both.velocities.times(Number::sum(t, -a.origin()), Number::sum(t, -b.origin()));
+    return both;
+  }
+};
+
 /// True of a motion without forces whose numbers make Moving no product out of range.
 BRINK_INLINE bool is_plain(const Motion& m, double time) {
   const Vec2 &at = m.start().pose.position, &velocity = m.start().twist.velocity;
@@ -93,6 +116,13 @@ BRINK_INLINE bool is_plain(const Motion& m, double time) {
              free = m.acceleration().linear.isZero(0.0);
   const bool x = is_plain(velocity.x()), y = is_plain(velocity.y()), since = is_plain(time - m.origin());
   return near & free & x & y & since;
+}
+
+/// @pre without looks at ranges: is_plain() of both.
+template <class Number>
+BRINK_INLINE MovingDiscs<Number> moving_discs(const Motion& a, const Motion& b, double t) {
+  if constexpr (Number::kLooks) return {Moving<Number>(a, t), Moving<Number>(b, t)};
+  return MovingDiscs<Number>::straight(a, b, t);
 }
 
 /// A value as a double and what that leaves over.
@@ -108,6 +138,28 @@ BRINK_INLINE void split(const DoubleDoublePair<Product>& value, Vec2& high, Vec2
   split(value.y(), high.y(), low.y());
 }
 
+/// The start at `time` of the parabola that goes through that place with that velocity.
+template <class Number>
+BRINK_INLINE void start_at(const Motion& before, double time, const Pair<Number>& place,
+                           const Pair<Number>& velocity, DiscRebound::Start& start) {
+  BodyState &s = start.state, &low = start.low;
+  split(place, s.pose.position, low.pose.position);
+  split(velocity, s.twist.velocity, low.twist.velocity);
+  // Without friction nothing turns at the rim: angle and spin go on as they were.
+  const BodyState &high = before.start(), &rest = before.start_low();
+  const double alpha = before.acceleration().angular;
+  using Angle = Looking<Number>;  // what turns without acceleration makes products that are 0
+  const Angle angle(high.pose.angle, rest.pose.angle), omega(high.twist.omega, rest.twist.omega);
+  if (omega == 0.0 && alpha == 0.0) {
+    split(angle, s.pose.angle, low.pose.angle);
+    s.twist.omega = low.twist.omega = 0.0;
+    return;
+  }
+  const Angle since = Angle::sum(time, -before.origin()), gained = since * alpha;
+  split(angle + since * (omega + gained * 0.5), s.pose.angle, low.pose.angle);
+  split(omega + gained, s.twist.omega, low.twist.omega);
+}
+
 /// The start at `time` of the parabola on which `disc` passes, with its velocity changed by `change`, through the place
 /// where it was `delay` from then.
 template <class Number>
@@ -115,24 +167,21 @@ BRINK_INLINE void start_after(const Motion& motion, double time, const Moving<Nu
                               const Pair<Number>& change, double delay, DiscRebound::Start& start) {
   // Both parabolas have the same acceleration. So they are at one place `delay` from now if their places
   // now differ by what their velocities make of it.
-  BodyState &s = start.state, &low = start.low;
-  split(disc.place.plus(-(change.x().high() * delay), -(change.y().high() * delay)), s.pose.position,
-        low.pose.position);
-  split(disc.velocity + change, s.twist.velocity, low.twist.velocity);
-  // Without friction nothing turns at the rim: angle and spin go on as they were.
-  const BodyState &before = motion.start(), &before_low = motion.start_low();
-  const double alpha = motion.acceleration().angular;
-  using Angle = Looking<Number>;  // what turns without acceleration makes products that are 0
-  const Angle angle(before.pose.angle, before_low.pose.angle),
-      omega(before.twist.omega, before_low.twist.omega);
-  if (omega == 0.0 && alpha == 0.0) {
-    split(angle, s.pose.angle, low.pose.angle);
-    s.twist.omega = low.twist.omega = 0.0;
-    return;
-  }
-  const Angle since = Angle::sum(time, -motion.origin()), gained = since * alpha;
-  split(angle + since * (omega + gained * 0.5), s.pose.angle, low.pose.angle);
-  split(omega + gained, s.twist.omega, low.twist.omega);
+  start_at<Number>(motion, time, disc.place.plus(-(change.x().high() * delay), -(change.y().high() * delay)),
+                   disc.velocity + change, start);
+}
+
+/// The same of two at once.
+template <class Number>
+BRINK_INLINE void start_after(const DiscSide& a, const DiscSide& b, double time,
+                              const MovingDiscs<Number>& discs, const Pairs<Number>& changes, double delay,
+                              DiscRebound& r) {
+  const Pair<Number> of_a = changes.first(), of_b = changes.second();
+  const Pairs<Number> places = discs.places.plus(-(of_a.x().high() * delay), -(of_a.y().high() * delay),
+                                                 -(of_b.x().high() * delay), -(of_b.y().high() * delay));
+  const Pairs<Number> velocities = discs.velocities + changes;
+  start_at<Number>(*a.motion, time, places.first(), velocities.first(), r.a);
+  start_at<Number>(*b.motion, time, places.second(), velocities.second(), r.b);
 }
 
 /// Sum of the speeds at a disc's edge.
@@ -152,9 +201,9 @@ template <class Number>
 BRINK_INLINE Told rebound_of_discs(const DiscSide& a, const DiscSide& b, const Vec2& shift, double time,
                                    double latest, double level, double restitution, DiscRebound& r) {
   if (!Number::kLooks && !(is_plain(*a.motion, time) && is_plain(*b.motion, time))) return Told::not_here;
-  const Moving<Number> disc_a(*a.motion, time), disc_b(*b.motion, time);
-  Pair<Number> d = disc_a.place - disc_b.place;
-  const Pair<Number> w = disc_a.velocity - disc_b.velocity;
+  const auto discs = moving_discs<Number>(*a.motion, *b.motion, time);
+  Pair<Number> d = discs.places.first() - discs.places.second();
+  const Pair<Number> w = discs.velocities.first() - discs.velocities.second();
   if (shift.x() != 0.0 || shift.y() != 0.0) d = d.plus(-shift.x(), -shift.y());
   if (!Number::kLooks && !(is_plain(d) && is_plain(w))) return Told::not_here;
   const Number distance2 = d.dot(d), way = d.dot(w);
@@ -182,10 +231,10 @@ BRINK_INLINE Told rebound_of_discs(const DiscSide& a, const DiscSide& b, const V
   const Number force = -(Number::sum(1.0, restitution) * rate) / (square * masses);
   r.impulse = force.high() * std::sqrt(square.high());
   const Pair<Number> push = c * force;
-  start_after(*a.motion, time, disc_a, push * a.inverse_mass, delay, r.a);
-  start_after(*b.motion, time, disc_b, push * -b.inverse_mass, delay, r.b);
-  r.magnitude = std::max(speed_of(r.a, disc_a.velocity.size(), a.radius),
-                         speed_of(r.b, disc_b.velocity.size(), b.radius));
+  start_after<Number>(a, b, time, discs, Pairs<Number>(push, push).times(a.inverse_mass, -b.inverse_mass),
+                      delay, r);
+  r.magnitude = std::max(speed_of(r.a, discs.velocities.first().size(), a.radius),
+                         speed_of(r.b, discs.velocities.second().size(), b.radius));
   return Told::rebound;
 }
 

@@ -116,6 +116,42 @@ TEST(DoubleDoublePair, InRangeIsTheSameWithoutALook) {
   }
 }
 
+// Two vectors at once are as one after the other, whether ranges are looked at or not.
+template <class Product>
+class DoubleDoublePairsOf : public testing::Test {};
+using Products = testing::Types<error_free::Default, error_free::InRange<error_free::Default>>;
+TYPED_TEST_SUITE(DoubleDoublePairsOf, Products);
+
+TYPED_TEST(DoubleDoublePairsOf, TellTheBitsOfVectorsOneByOne) {
+  using Pair = DoubleDoublePair<TypeParam>;
+  using Pairs = DoubleDoublePairs<TypeParam>;
+  using Number = typename Pair::Number;
+  Numbers numbers;
+  const auto next = [&] {
+    const DoubleDouble x = numbers.next();
+    return Number(x.high(), x.low());
+  };
+  const auto expect_alike = [](const Number& found, const Number& wanted) {
+    expect_same({found.high(), found.low()}, {wanted.high(), wanted.low()});
+  };
+  const auto expect_both = [&](const Pairs& found, const Pair& first, const Pair& second) {
+    expect_alike(found.first().x(), first.x());
+    expect_alike(found.first().y(), first.y());
+    expect_alike(found.second().x(), second.x());
+    expect_alike(found.second().y(), second.y());
+  };
+  for (int i = 0; i < 100000 && !testing::Test::HasFailure(); ++i) {
+    const Pair a(next(), next()), b(next(), next()), c(next(), next()), d(next(), next());
+    const Number s = next(), t = next();
+    const Pairs both(a, b);
+    expect_both(both + Pairs(c, d), a + c, b + d);
+    expect_both(both.times(s, t), a * s, b * t);
+    expect_both(both.times(s.high(), t.high()), a * s.high(), b * t.high());
+    expect_both(both.plus(c.x().high(), c.y().high(), d.x().high(), d.y().high()),
+                a.plus(c.x().high(), c.y().high()), b.plus(d.x().high(), d.y().high()));
+  }
+}
+
 TEST(DoubleDouble, OperationsAreRightToTheEpsilon) {
   Numbers numbers;
   for (int i = 0; i < 100000; ++i) {
