@@ -14,6 +14,9 @@ inline double next_after(double t) {
   return std::bit_cast<double>(std::bit_cast<std::uint64_t>(t + 0.0) + 1);
 }
 
+/// The last double below t. @pre 0 < t.
+inline double last_before(double t) { return std::bit_cast<double>(std::bit_cast<std::uint64_t>(t) - 1); }
+
 /// Distance to the next double above |t|. @pre finite.
 inline double ulp(double t) { return next_after(std::abs(t)) - std::abs(t); }
 

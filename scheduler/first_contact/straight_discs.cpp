@@ -14,27 +14,37 @@ namespace brink {
 
 namespace {
 
-BRINK_WIDE void take(const StraightWay& way_a, const StraightWay& way_b, double reach,
+// Of distances the squares are compared: nothing waits for their roots.
+
+BRINK_WIDE void take(const StraightWay& way_a, const StraightWay& way_b, double limit,
                      SixteenProbes& probes) {
   const StraightWay a = way_a, b = way_b;  // nothing that is written is read by them
-  const auto distance_at = [&](const Four& t, Four& distance) __attribute__((always_inline)) {
+  const auto square_at = [&](const Four& t, Four& square) __attribute__((always_inline)) {
     const Four s_a = t - a.origin, s_b = t - b.origin;
     const Four x = (a.x + s_a * a.vx) - (b.x + s_b * b.vx), y = (a.y + s_a * a.vy) - (b.y + s_b * b.vy);
-    const Four square = x * x + y * y;
-    distance = Four{std::sqrt(square[0]), std::sqrt(square[1]), std::sqrt(square[2]), std::sqrt(square[3])};
+    square = x * x + y * y;
   };
-  probes.take(distance_at, reach);
+  probes.take(square_at, limit);
 }
 
-BRINK_WIDE void take(const FarWay& way_a, const FarWay& way_b, double reach, SixteenProbes& probes) {
+BRINK_WIDE void take(const FarWay& way_a, const FarWay& way_b, double limit, SixteenProbes& probes) {
   const FarWay a = way_a, b = way_b;
-  const auto distance_at = [&](const Four& t, Four& distance) __attribute__((always_inline)) {
+  const auto square_at = [&](const Four& t, Four& square) __attribute__((always_inline)) {
     Four x, y;
     a.apart(b, t, x, y);
-    const Four square = x * x + y * y;
-    distance = Four{std::sqrt(square[0]), std::sqrt(square[1]), std::sqrt(square[2]), std::sqrt(square[3])};
+    square = x * x + y * y;
   };
-  probes.take(distance_at, reach);
+  probes.take(square_at, limit);
+}
+
+/// The last time at which two ways are more than `reach` apart, as last_clear_time_by_sixteens() tells it.
+template <class Way>
+bool last_time_apart(const Way& a, const Way& b, double reach, double t, double begin, double rounding,
+                     double closing, ClearTime& found) {
+  const double limit = greatest_square_within(reach);
+  const auto take_both = [&](SixteenProbes& probes) { take(a, b, limit, probes); };
+  const auto root = [](double square) { return std::sqrt(square); };
+  return last_clear_time_by_sixteens(take_both, root, reach, t, begin, rounding, closing, found);
 }
 
 /// The way from b to a at that time [m].
@@ -73,8 +83,7 @@ BRINK_WIDE void apart(const FarWay& a, const FarWay& b, double t, Vec2& way) {
   const double least = place_noise - 8.0 * kRoundoff * probed * speeds;
   if (!(least > (1.0 + 1e-9) * kFarOfTolerance * limits.tolerance)) return false;
   ClearTime met;
-  const auto take_both = [&](SixteenProbes& probes) { take(far_a, far_b, reach, probes); };
-  if (!last_clear_time_by_sixteens(take_both, reach, t, std::max(reference, 0.0), rounding, closing, met) ||
+  if (!last_time_apart(far_a, far_b, reach, t, std::max(reference, 0.0), rounding, closing, met) ||
       met.time > to)
     return false;
   contact = {met.time, met.distance - b.radius - a.radius, closing};
@@ -109,8 +118,7 @@ bool straight_discs_meet(const DiscMover& a, const DiscMover& b, double from, do
   if (!is_near) return far_discs_meet(a, b, from, to, limits, noise, contact);
   const double rounding = place_noise + 8.0 * kRoundoff * (std::abs(dx + s * wx) + std::abs(dy + s * wy));
   ClearTime met;
-  const auto take_both = [&](SixteenProbes& probes) { take(way_a, way_b, reach, probes); };
-  if (!last_clear_time_by_sixteens(take_both, reach, t, std::max(reference, 0.0), rounding, closing, met) ||
+  if (!last_time_apart(way_a, way_b, reach, t, std::max(reference, 0.0), rounding, closing, met) ||
       met.time > to)
     return false;
   contact = {met.time, met.distance - b.radius - a.radius, closing};

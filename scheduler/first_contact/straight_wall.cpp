@@ -99,7 +99,9 @@ bool straight_wall_met(const DiscMover& disc, const StraightWall& wall, double f
   if (!(is_abreast & in_time & is_slow & is_near)) return false;
   ClearTime met;
   const auto take_both = [&](SixteenProbes& probes) { take(way, wall, above.side, reach, probes); };
-  if (!last_clear_time_by_sixteens(take_both, reach, t, std::max(way.origin, 0.0), rounding, closing, met) ||
+  const auto itself = [](double distance) { return distance; };
+  if (!last_clear_time_by_sixteens(take_both, itself, reach, t, std::max(way.origin, 0.0), rounding, closing,
+                                   met) ||
       met.time > to)
     return false;
   contact = {{met.time, met.distance - wall.radius - disc.radius, closing},

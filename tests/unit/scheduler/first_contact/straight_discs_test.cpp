@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "brink/core/base/random.h"
 #include "brink/core/shapes/shapes.h"
+#include "brink/scheduler/first_contact/sixteen_probes.h"
 #include "tests/support/flier.h"
 #include "tests/support/seeded_random.h"
 
@@ -18,6 +20,17 @@ Flier disc_of(double radius, double origin, const Vec2& place, const Vec2& veloc
 }
 
 DiscMover disc(const Flier& flier) { return {&flier.motion, flier.index->outline().bounding_radius, 0.0}; }
+
+// A distance is the rounded root of a square: what is more than the root must be told by the square, at roots of every size.
+TEST(StraightDiscs, SquaresTellWhatRootsTell) {
+  Random random(3);
+  for (int k = 0; k < 100000; ++k) {
+    const double root = std::ldexp(1.0 + random.uniform(), static_cast<int>(random.below(1900)) - 950);
+    const double square = greatest_square_within(root);
+    ASSERT_LE(std::sqrt(square), root) << std::hexfloat << root;
+    ASSERT_GT(std::sqrt(next_after(square)), root) << std::hexfloat << root;
+  }
+}
 
 // Late on the clock a double of time is more than a gap's rounding, early and far from the origin a small part of it.
 TEST(StraightDiscs, MeetAtTheGeneralSearchsTimeEarlyAndLateNearAndFar) {
