@@ -1,6 +1,7 @@
 #include "brink/scheduler/first_contact/apart.h"
 
 #include "brink/core/base/limits.h"
+#include "brink/core/base/wide.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/first_contact/pair_kinematics.h"
 #include "brink/scheduler/first_contact/site_step.h"
@@ -74,62 +75,85 @@ bool has_few_corners(const Outline& o) {
   return !o.hull.corners.empty() && o.hull.corners.size() <= kMostCorners;
 }
 
+/// Corners by their coordinates, four side by side; behind the last stand others of them.
+struct Corners {
+  std::size_t count = 0;
+  alignas(sizeof(Four)) double x[kMostCorners], y[kMostCorners];
+
+  void add(const Vec2& p) {
+    x[count] = p.x();
+    y[count++] = p.y();
+  }
+  void fill() {
+    for (std::size_t i = count; i % 4 != 0; ++i) {
+      x[i] = x[0];
+      y[i] = y[0];
+    }
+  }
+};
+
+/// Of a hull's sides that beyond which corners lie farthest.
+struct Side {
+  std::size_t number = 0;
+  double gap = -kForever;  ///< to the nearest of them [m]
+};
+
+BRINK_WIDE void find_side(const Hull& hull, const Corners& corners, Side& found) {
+  Side widest;
+  for (std::size_t k = 0; k < hull.normals.size(); ++k) {
+    const double nx = hull.normals[k].x(), ny = hull.normals[k].y();
+    Four nearest = Four{} + kForever;
+    for (std::size_t i = 0; i < corners.count; i += 4) {
+      const Four along =
+          nx * reinterpret_cast<const Four&>(corners.x[i]) + ny * reinterpret_cast<const Four&>(corners.y[i]);
+      nearest = along < nearest ? along : nearest;
+    }
+    const double gap = std::min(std::min(nearest[0], nearest[1]), std::min(nearest[2], nearest[3])) -
+                       (nx * hull.corners[k].x() + ny * hull.corners[k].y());
+    widest = gap > widest.gap ? Side{k, gap} : widest;
+  }
+  found = widest;
+}
+
 /// Corners of S's hull in the frame of T, and the line of that side of T's hull from which they are farthest.
 class Beside {
  public:
   Beside(const Outline& s, const Placed& placed_s, const Outline& t, const Placed& placed_t)
       : t_(t.hull),
-        count_(s.hull.corners.size()),
         thickness_(s.hull.thickness + t.hull.thickness),
         spin_(placed_s.twist.omega - placed_t.twist.omega) {
     const Frame& frame = placed_t.frame;
     const Vec2 origin = frame.to_local(placed_s.frame.origin);
     const Vec2 x = frame.direction_to_local(placed_s.frame.direction_to_world(Vec2::UnitX())), y = perp(x);
-    for (std::size_t i = 0; i < count_; ++i) {
-      const Vec2& p = s.hull.corners[i];
-      corners_[i] = origin + p.x() * x + p.y() * y;
-    }
+    for (const Vec2& p : s.hull.corners) corners_.add(origin + p.x() * x + p.y() * y);
+    corners_.fill();
     drift_ = frame.direction_to_local(placed_s.twist.velocity - placed_t.twist.velocity) -
              placed_s.twist.omega * perp(origin);
-    double widest = -kForever;
-    for (std::size_t k = 0; k < t_.normals.size(); ++k) {
-      const double nearest = beyond(k);
-      side_ = nearest > widest ? k : side_;
-      widest = nearest > widest ? nearest : widest;
-    }
-    gap_ = widest - thickness_;
+    find_side(t_, corners_, side_);
   }
 
   /// From that line to the nearest corner, less the thickness of both [m]; far below 0 where T has no side.
-  double gap() const { return gap_; }
+  double gap() const { return side_.gap - thickness_; }
   /// How long all corners are sure to stay beyond the line by more than `rest` [s], if none bends by more than
   /// `acceleration` [m/s^2].
   double step(double rest, double acceleration) const {
-    const Vec2& n = t_.normals[side_];
-    const double from = n.dot(t_.corners[side_]) + thickness_ + rest, falls = n.dot(drift_);
+    const Vec2& n = t_.normals[side_.number];
+    const double from = n.dot(t_.corners[side_.number]) + thickness_ + rest, falls = n.dot(drift_);
     double least = kForever;
-    for (std::size_t i = 0; i < count_; ++i) {
-      const Vec2& q = corners_[i];
+    for (std::size_t i = 0; i < corners_.count; ++i) {
+      const Vec2 q(corners_.x[i], corners_.y[i]);
       least = std::min(least, safe_step(n.dot(q) - from, falls + spin_ * n.dot(perp(q)), acceleration));
     }
     return least;
   }
 
  private:
-  /// Of all corners, from side k [m].
-  double beyond(std::size_t k) const {
-    const Vec2& n = t_.normals[k];
-    double nearest = n.dot(corners_[0]);
-    for (std::size_t i = 1; i < count_; ++i) nearest = std::min(nearest, n.dot(corners_[i]));
-    return nearest - n.dot(t_.corners[k]);
-  }
-
   const Hull& t_;
-  std::size_t count_, side_ = 0;
-  double thickness_, gap_;
+  double thickness_;
   double spin_;  ///< of S against T [rad/s]
   Vec2 drift_;   ///< of a corner at T's origin that turns with S, against T [m/s]
-  Vec2 corners_[kMostCorners];
+  Corners corners_;
+  Side side_;
 };
 
 /// By a line between the two hulls, that of a side of either: a step that is safe for all corners of the one beyond a side
