@@ -98,19 +98,19 @@ struct Side {
   double gap = -kForever;  ///< to the nearest of them [m]
 };
 
-BRINK_WIDE void find_side(const Hull& hull, const Corners& corners, Side& found) {
+void find_side(const Hull& hull, const Corners& corners, Side& found) {
   Side widest;
-  for (std::size_t k = 0; k < hull.normals.size(); ++k) {
-    const double nx = hull.normals[k].x(), ny = hull.normals[k].y();
+  for (std::size_t side = 0; side < hull.normals.size(); ++side) {
+    const double nx = hull.normals[side].x(), ny = hull.normals[side].y();
     Four nearest = Four{} + kForever;
     for (std::size_t i = 0; i < corners.count; i += 4) {
       const Four along =
           nx * reinterpret_cast<const Four&>(corners.x[i]) + ny * reinterpret_cast<const Four&>(corners.y[i]);
-      nearest = along < nearest ? along : nearest;
+      for (int k = 0; k < 4; ++k) nearest[k] = std::min(nearest[k], along[k]);
     }
     const double gap = std::min(std::min(nearest[0], nearest[1]), std::min(nearest[2], nearest[3])) -
-                       (nx * hull.corners[k].x() + ny * hull.corners[k].y());
-    widest = gap > widest.gap ? Side{k, gap} : widest;
+                       (nx * hull.corners[side].x() + ny * hull.corners[side].y());
+    widest = gap > widest.gap ? Side{side, gap} : widest;
   }
   found = widest;
 }
