@@ -132,6 +132,19 @@ double IslandModes::speed() const {
   return std::max(members_->speed(), std::sqrt(members_->pull() * members_->size()));
 }
 
+/// True if it is so of a contact at the place of this one that has the roles of the two corners exchanged.
+template <class Is>
+bool IslandModes::any_of_other_corner(const HeldContact& c, const std::vector<HeldContact>& all,
+                                      Is&& is) const {
+  const double place =
+      kOnePlace * std::min(search_->outline_of(c.pair.body).bounding_radius,
+                           search_->outline_of(search_->other_owner(c.pair)).bounding_radius);
+  return std::any_of(all.begin(), all.end(), [&](const HeldContact& o) {
+    return o.pair == c.pair && o.feature.sample_on_a != c.feature.sample_on_a &&
+           (o.feature.point - c.feature.point).norm() <= place && is(o.feature);
+  });
+}
+
 bool IslandModes::suits() const {
   const std::size_t most =
       members_->are_constant() ? limits_.contacts : std::max(limits_.contacts, kContactsOfChanging);
@@ -145,21 +158,17 @@ bool IslandModes::suits() const {
   if (near.size() > most && static_cast<std::size_t>(std::count_if(near.begin(), near.end(), counts)) > most)
     return false;
   // rolling resistance has no mode here, and between corners roundings choose the side
-  return std::none_of(near.begin(), near.end(), [this](const HeldContact& c) {
-    return is_corner_on_corner(c) || response_->material_of(c.pair).rolling_resistance > 0.0;
+  return std::none_of(near.begin(), near.end(), [&](const HeldContact& c) {
+    return (is_corner_on_corner(c) &&
+            !any_of_other_corner(c, near, [](const NearFeature& f) { return !f.at_end; })) ||
+           response_->material_of(c.pair).rolling_resistance > 0.0;
   });
 }
 
 /// True of one of two flush corners, each of which lies on the other's side: they are one contact.
 bool IslandModes::is_told_by_other_corner(const HeldContact& c, const std::vector<HeldContact>& all) const {
-  if (!c.feature.no_way_by || c.feature.sample_on_a) return false;
-  const double place =
-      kOnePlace * std::min(search_->outline_of(c.pair.body).bounding_radius,
-                           search_->outline_of(search_->other_owner(c.pair)).bounding_radius);
-  return std::any_of(all.begin(), all.end(), [&](const HeldContact& o) {
-    return o.feature.no_way_by && o.feature.sample_on_a && o.pair == c.pair &&
-           (o.feature.point - c.feature.point).norm() <= place;
-  });
+  return c.feature.no_way_by && !c.feature.sample_on_a &&
+         any_of_other_corner(c, all, [](const NearFeature& f) { return f.no_way_by; });
 }
 
 /// Places are doubles in modes: what touches is told from what does not by some of their roundings at least [m].

@@ -82,6 +82,8 @@ class IslandModes {
   void make_problem(std::vector<HeldContact> contacts, double h);
   void add_contact(const HeldContact& contact);
   bool is_corner_on_corner(const HeldContact& c) const;
+  template <class Is>
+  bool any_of_other_corner(const HeldContact& c, const std::vector<HeldContact>& all, Is&& is) const;
   bool is_told_by_other_corner(const HeldContact& c, const std::vector<HeldContact>& all) const;
   bool touches(const HeldContact& c) const;
   /// How what touches approaches now.

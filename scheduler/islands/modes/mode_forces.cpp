@@ -62,7 +62,13 @@ System system_of(const ModeProblem& problem, const ModeMoment& moment, const std
     const PlainDouble length = r.norm(), by = length > 0.0 ? 1.0 / length : 0.0;
     rows.push_back(by * r);
     columns.push_back(by * column.cwiseProduct(root));
-    right.push_back(-by * (bend + row.dot(moment.free.cast<PlainDouble>())));
+    // bodies that fall side by side ask for no force, not for one of roundings, of which redundant contacts would contradict
+    // each other
+    const PlainVector free = moment.free.cast<PlainDouble>();
+    const PlainDouble asked = bend + row.dot(free),
+                      parts = std::abs(bend) + row.cwiseAbs().dot(free.cwiseAbs());
+    const bool is_none = double(asked < 0.0 ? -asked : asked) <= double(kNoAcceleration) * double(parts);
+    right.push_back(is_none ? PlainDouble(0.0) : -by * asked);
     scale.push_back(by);
     s.of.push_back(static_cast<int>(k));
     s.along.push_back(along);
