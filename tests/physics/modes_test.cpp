@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "brink/scenes/scene/scene.h"
 #include "tests/support/lasting_worlds.h"
 #include "tests/support/settling.h"
 
@@ -114,6 +115,29 @@ TEST(Modes, BlockOnAnInclineSlidesBesideItsFrictionAngle) {
   const Vec2 down(-std::cos(angle), -std::sin(angle));
   const double a = kEarth * (std::sin(angle) - mu * std::cos(angle));
   EXPECT_NEAR(simulator.state(0).pose.position.dot(down), 0.5 * a * 4, 1e-6);
+}
+
+// A disc on a slope that is shaken slips, and its slip grazes 0 between two looks of a step: it sticks for a ten-thousandth of a second.
+TEST(Modes, ASlipThatGrazesZeroIsSeen) {
+  const std::string text =
+      "[world]\nduration = 2.0\ngravity = [0.0, -9.81]\n[output]\nframe_interval = "
+      "0\n[materials.m]\nrestitution = 0\n"
+      "friction = 0.05\n[[sites]]\nname = 'line'\nsegment = [[-30, -0.125], [30, -0.125]]\nradius = "
+      "0.125\nposition = [3.67, "
+      "-0.28]\nangle = -0.148\nmaterial = 'm'\nmotion = { x = \"0.0001*(sin(190.519*t + 6.214) - "
+      "sin(6.214))\", angle = "
+      "\"-0.002*t*t\" }\n[[bodies]]\nname = 'b'\ndisc = { radius = 0.131 }\nmass = 7.966\nmaterial = "
+      "'m'\nposition = "
+      "[2.804101459419633, -0.01845513306357724]\nvelocity = [-1.573393120892367, 0.237411071343476]\n";
+  double angle[2];
+  for (const bool fine : {false, true}) {
+    Scene scene = parse_scene(text, "graze");
+    scene.solver.tolerance = fine ? 1e-13 : 1e-10;
+    Simulator simulator(scene.world, scene.solver);
+    EXPECT_EQ(simulator.run(testing::until(scene.duration)).termination, Termination::reached_end);
+    angle[fine] = simulator.state(0).pose.angle;
+  }
+  EXPECT_NEAR(angle[0], angle[1], 1e-8);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "brink/scheduler/islands/modes/mode_motion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -134,19 +135,33 @@ bool ModeMotion::gaps_hold(const std::vector<PolynomialPiece>& pieces, double h)
 /// True if something fails in the step of h; `clear` is how far it holds, to rounding.
 bool ModeMotion::fails_within(double h, const std::vector<PolynomialPiece>& pieces, double& clear,
                               Look& failed) const {
-  clear = 0.0;
-  double room = 0.0;  // of the start nothing is asked: it was chosen so
-  for (int i = 1; i <= kLooksAStep; ++i) {
-    const double ahead = i == kLooksAStep ? h : h * i / kLooksAStep;
-    // what fails and holds again between two looks is not seen
+  std::array<double, kLooksAStep + 1> at{}, rooms{};  // of the start nothing is asked: it was chosen so
+  const auto fails_at = [&](double ahead) {
     failed = look_at(t_ + ahead, states_of(pieces, t_ + ahead));
-    if (failed.room < 0.0) {
-      close_in(pieces, clear, ahead, room, failed);
+    return failed.room < 0.0;
+  };
+  for (int i = 1; i <= kLooksAStep; ++i) {
+    at[i] = i == kLooksAStep ? h : h * i / kLooksAStep;
+    clear = at[i - 1];
+    if (fails_at(at[i])) {
+      close_in(pieces, clear, at[i], rooms[i - 1], failed);
       return true;
     }
-    clear = ahead;
-    room = failed.room;
+    rooms[i] = failed.room;
   }
+  // what fails and holds again between two looks, as a slip that grazes 0, is looked for where a parabola has its lowest place
+  if (rooms[1] < rooms[2]) rooms[0] = look_at(t_, states_).room;
+  for (int i = 1; i < kLooksAStep; ++i) {
+    const double fall = rooms[i - 1] - rooms[i], rise = rooms[i + 1] - rooms[i];
+    if (!(fall > 0.0 && rise > 0.0)) continue;
+    const double lowest = at[i] + 0.5 * (fall - rise) / (fall + rise) * (h / kLooksAStep);
+    if (!fails_at(lowest)) continue;
+    const int before = lowest < at[i] ? i - 1 : i;
+    clear = at[before];
+    close_in(pieces, clear, lowest, rooms[before], failed);
+    return true;
+  }
+  clear = h;
   return false;
 }
 
