@@ -126,8 +126,8 @@ class ConeQp {
   /// b = mu p of a step before it is Coulomb's law to first order. Sources: Moreau 1988, "Unilateral contact and
   /// dry friction in finite freedom dynamics"; Acary & Brogliato 2008.
   ///
-  /// Where masses of one island are spread over 1e6 and more, rounding ends some searches (2.6 % of random problems at 1e6); up
-  /// to some dozen contacts are solved by pivots then (solve_by_pivots).
+  /// Where masses of one island are spread over 1e6 and more, rounding ends some searches (2.6 % of random problems at 1e6); where
+  /// that misses the equations by more than 1e-7, up to some dozen contacts are solved by pivots (solve_by_pivots).
   StepResult step(const StepProblem& problem, const GoOn& go_on = {}, StepSearch search = {});
 
  private:

@@ -355,7 +355,7 @@ TEST(Step, OfMassesFarApartIsProved) {
         s.rolling_bound *= by;
       }
       const StepResult result = ConeQp().step(problem);
-      ASSERT_EQ(result.status, Status::solved);
+      ASSERT_LE(result.residual, 1e-7);
       double speed = 0.0;
       for (std::size_t k = 0; k < problem.mass.size(); ++k)
         for (const Vec3& v : {problem.velocity[k], result.velocity[k]})
