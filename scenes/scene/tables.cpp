@@ -348,7 +348,8 @@ const Schema<Material>& material_schema() {
           .key("tangential_restitution", &Material::tangential_restitution, number(between(-1.0, 1.0)),
                "with friction; 0: plain Coulomb, 1: the elastic rough superball")
           .key("rolling_resistance", &Material::rolling_resistance, number(between(0.0, 1e6, "m")),
-               "contacts that last: the largest torque against rolling, for a normal force of 1 N")
+               "contacts that last: the largest torque against rolling, for a normal force of 1 N; of two "
+               "materials the larger")
           .key("slip", &Material::slip, number(between(0.0, 10.0)),
                "reflection only: scales the tangential rebound")
           .key("spin", &Material::spin, number(between(0.0, 10.0)),
