@@ -20,6 +20,7 @@ constexpr int kNewtonSteps = 4;
 struct System {
   PlainMatrix rows, columns;
   PlainVector right;        ///< of rows . x = right, x = M^1/2 (a - f)
+  double rounding = 0.0;    ///< of all of it
   std::vector<int> of;      ///< contact of each row
   std::vector<bool> along;  ///< true: its tangential row
   PlainVector scale;        ///< rows were multiplied by; columns too
@@ -67,8 +68,9 @@ System system_of(const ModeProblem& problem, const ModeMoment& moment, const std
     const PlainVector free = moment.free.cast<PlainDouble>();
     const PlainDouble asked = bend + row.dot(free),
                       parts = std::abs(bend) + row.cwiseAbs().dot(free.cwiseAbs());
-    const bool is_none = double(asked < 0.0 ? -asked : asked) <= double(kNoAcceleration) * double(parts);
-    right.push_back(is_none ? PlainDouble(0.0) : -by * asked);
+    const double none = double(kNoAcceleration) * double(parts);
+    right.push_back(std::abs(double(asked)) <= none ? PlainDouble(0.0) : -by * asked);
+    s.rounding += double(by) * none;
     scale.push_back(by);
     s.of.push_back(static_cast<int>(k));
     s.along.push_back(along);
@@ -231,7 +233,7 @@ ModeForces forces_in(const ModeProblem& problem, const ModeMoment& moment,
   const PlainVector loads = solver.solve(s.right);
   const PlainDouble missed = (matrix * loads - s.right).norm();
   // a singular system may have no solution: contacts that contradict each other, or slip that jams
-  f.consistent = loads.allFinite() && missed <= kConsistent * s.right.norm();
+  f.consistent = loads.allFinite() && missed <= kConsistent * s.right.norm() + s.rounding;
   // unique, though the loads need not be: M^1/2 times what contacts add to the accelerations
   const PlainVector pushed = s.columns * loads;
   f.acceleration += pushed.cwiseProduct(root_of(problem)).cast<double>();
