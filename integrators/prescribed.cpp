@@ -1,8 +1,8 @@
 /// How cells become pieces:
 ///
 ///   fit_next   takes the next cell, interpolates it, and asks for the bound; halves it where that is not met
-///   join_next  a fitted cell waits in last_ until the one after it is fitted: the twist at which the two meet
-///              needs both
+///   join_next  a fitted cell waits in last_ until the one after it is fitted: it may stand for that as well, or else
+///              the twist at which the two meet needs both
 ///   close      appends the waiting cell, with its end values and the twists at both of its ends
 ///
 /// So the track is one cell behind what has been fitted, and nothing in it is changed later.
@@ -104,8 +104,8 @@ struct PrescribedMotion::Fitted {
   Vector3d tolerance = Vector3d::Zero();  ///< of the fit
   Vector3d scale = Vector3d::Zero();      ///< largest value
   double cell_width = 0.0;                ///< of the cell that it has been fitted to [s]
-  std::vector<std::pair<double, Vector3d>>
-      told;  ///< the function at the nodes of all cells that it stands for
+  /// The function at the nodes of all cells that it stands for.
+  std::vector<std::pair<double, Vector3d>> told;
 
   double width() const { return piece.end - piece.begin; }
   /// What the end rates may be off by: n^2 times the fit over the half width (Markov's inequality).
@@ -252,8 +252,8 @@ void PrescribedMotion::take_corner(Fitted cell, const Certainty& known) {
 }
 
 /// Beside a corner cells are halved and halved, and in narrow ones roundings of the values would be accelerations. There the wider
-/// one's polynomial is taken for both, where it is as near to the function. A corner at an end of its cell is seen from the other side, too:
-/// two cells are one then.
+/// one's polynomial is taken for both, where it is as near to the function. A corner at an end of its cell is seen from the other
+/// side, too: two cells are one then. False: `next` is a piece of its own.
 bool PrescribedMotion::is_merged(Fitted& next) {
   Fitted& last = *last_;
   if (last.corner && next.corner && last.piece.end - last.piece.begin < 1.5 * next.cell_width) {

@@ -20,7 +20,8 @@ namespace brink {
 /// than 1e-13 of the cell's largest value, or than the roundings of the function itself: so nothing is too
 /// short to be seen. Then a cubic makes neighbouring pieces meet with one twist. A piece depends on the
 /// function near it alone, never on how far was asked. A corner of the function (a jump of its rate) is
-/// rounded off within 2^-30 s, by rates between those before and after it; a jump of its value, an infinite rate, a value that is not finite, or bounds
+/// rounded off within 2^-30 s, by rates between those before and after it; narrow cells beside it are one piece with the wider
+/// one that comes before or after. A jump of its value, an infinite rate, a value that is not finite, or bounds
 /// that say nothing end the motion there.
 ///
 /// Cost: some 25 evaluations and four bounds a cell and halving. Sources: Trefethen 2013, Approximation

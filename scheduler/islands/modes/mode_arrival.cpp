@@ -169,8 +169,8 @@ class Watch {
   const ModeContact& contact_;
   const std::vector<PolynomialPiece>& bodies_;
   double slack_;
-  double
-      sector_window_;  ///< how long to wait where the sample's own sector alone is left: of that there is no bound [s]
+  /// How long to wait where only the sample's own sector does not hold the touching direction: of that there is no bound [s].
+  double sector_window_;
   double fastest_;  ///< of the two owners [m/s]
 };
 
