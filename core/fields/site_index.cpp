@@ -36,50 +36,86 @@ bool can_be_drawn(const Outline& outline) {
   return size > 1e-100 && size > 1e-9 * farthest && farthest < 1e100;
 }
 
+/// The nearest of what was added, and how far the second nearest is: by masks, as the order is as good as random.
+struct NearestTwo {
+  using Two = double __attribute__((vector_size(16)));
+  Two least = {std::numeric_limits<double>::infinity(), 0.0},
+      second = least;  ///< [m], the first of each counts
+  int site = -1;
+  /// Of equally near ones the first stays. What is not a number is nowhere.
+  void add(std::uint32_t index, double at) {
+    const Two distance = {at, 0.0};
+    const auto nearer = distance < least;
+    const Two farther = nearer ? least : distance;
+    site ^= (site ^ static_cast<int>(index)) & static_cast<int>(nearer[0]);
+    second = farther < second ? farther : second;
+    least = nearer ? distance : least;
+  }
+};
+
 }  // namespace
 
+/// Which end of a segment is nearest, or its inside, is as good as random among candidates, so that a processor would guess
+/// wrong: all three are computed, side by side for the two, and selected from by masks.
+inline SiteIndex::Two SiteIndex::distances(std::uint32_t i, std::uint32_t j, const Vec2& q) const {
+  const Site &s = outline_->sites[i], &t = outline_->sites[j];
+  const Two radius = {s.radius, t.radius};
+  if (s.kind != SiteKind::segment || t.kind != SiteKind::segment)
+    return Two{nearest_on(s, q).distance, nearest_on(t, q).distance} - radius;
+  const Two ax = {s.a.x(), t.a.x()}, ay = {s.a.y(), t.a.y()}, bx = {s.b.x(), t.b.x()},
+            by = {s.b.y(), t.b.y()};
+  const Two dx = bx - ax, dy = by - ay, wx = q.x() - ax, wy = q.y() - ay, vx = q.x() - bx, vy = q.y() - by;
+  const Two along = wx * dx + wy * dy, length2 = dx * dx + dy * dy, cross = dx * wy - dy * wx;
+  const auto at_start = along <= 0.0, inside = ~at_start & ~(along >= length2);
+  const Two to_end2 = at_start ? wx * wx + wy * wy : vx * vx + vy * vy;
+  const Two offset = cross / Two{lines_[i].length, lines_[j].length};
+  return (inside ? (offset < 0.0 ? -offset : offset) : Two{std::sqrt(to_end2[0]), std::sqrt(to_end2[1])}) -
+         radius;
+}
+
 SiteIndex::SiteIndex(std::shared_ptr<const Outline> outline) : outline_(std::move(outline)) {
-  right_.reserve(outline_->sites.size());
+  lines_.reserve(outline_->sites.size());
   for (const Site& site : outline_->sites) {
-    // normal_at() normalises the segment at every query; of a solid one the answer is the
-    // same everywhere on it.
-    const bool known = site.solid && site.kind == SiteKind::segment;
-    right_.push_back(known ? Vec2(-perp((site.b - site.a).normalized())) : Vec2(Vec2::Zero()));
+    const Vec2 along = site.b - site.a;
+    lines_.push_back(site.kind == SiteKind::segment ? Line{-perp(along.normalized()), along.norm()} : Line{});
   }
+}
+
+[[gnu::always_inline]] inline FieldAnswer SiteIndex::answer_by(int index, const Vec2& q,
+                                                               double runner_up) const {
+  const Site& site = outline_->sites[static_cast<std::size_t>(index)];
+  const Line& line = lines_[static_cast<std::size_t>(index)];
+  if (site.kind == SiteKind::segment && site.solid) {
+    // Abreast of a solid's segment, as most places near an outline are: what follows, without asking for the side.
+    const Vec2 d = site.b - site.a, w = q - site.a;
+    const double along = w.dot(d), length2 = d.squaredNorm(), inwards = cross(d, w) / line.length;
+    if (along > 0.0 && along < length2 && !is_beyond(*outline_, std::abs(inwards)))
+      return {0.0 - inwards - site.radius, index, site.a + d * (along / length2), line.right, runner_up};
+  }
+  const Nearest nearest = nearest_on(site, q);
+  // too far for its square
+  if (!(nearest.distance < std::numeric_limits<double>::infinity())) return FieldAnswer();
+  // unsigned distances chose the site; the sign is that site's alone
+  return {side_of_outline(*outline_, site, nearest, q) * nearest.distance - site.radius, index, nearest.point,
+          normal_at(site, nearest, q), runner_up};
 }
 
 /// The reach is infinite, so that candidates() never answers "farther than that".
 FieldAnswer SiteIndex::query(const Vec2& q, Scratch& scratch) const {
   if (!q.allFinite()) return FieldAnswer();
   const Candidates found = candidates(q, std::numeric_limits<double>::infinity(), scratch);
-  FieldAnswer answer;
-  double best = std::numeric_limits<double>::infinity(), second = best;
-  Nearest nearest;
-  for (const std::uint32_t i : found.sites) {
-    const Site& site = outline_->sites[i];
-    // Lists ascend (the tree's: nearest first, then by index), so that with < the lowest index wins ties.
-    const Nearest n = nearest_on(site, q);
-    const double distance = n.distance - site.radius;
-    if (distance < best) {
-      second = best;
-      best = distance;
-      nearest = n;
-      answer.site = static_cast<int>(i);
-    } else if (distance < second) {
-      second = distance;
-    }
+  const std::size_t count = found.sites.size();
+  NearestTwo seen;
+  if (count == 1) seen.site = static_cast<int>(found.sites[0]);  // about every second time near an outline
+  // Lists ascend (the tree's: nearest first, then by index), so that of equally near ones the lowest index wins.
+  for (std::size_t k = 0; count > 1 && k < count; k += 2) {
+    const std::uint32_t i = found.sites[k], j = found.sites[std::min(k + 1, count - 1)];
+    const Two distance = distances(i, j, q);
+    seen.add(i, distance[0]);
+    if (i != j) seen.add(j, distance[1]);
   }
-  if (answer.site < 0) return answer;
-  const Site& site = outline_->sites[static_cast<std::size_t>(answer.site)];
-  // unsigned distances chose the site; the sign is that site's alone
-  answer.gap = side_of_outline(*outline_, site, nearest, q) * nearest.distance - site.radius;
-  answer.closest = nearest.point;
-  answer.normal = nearest.foot == Foot::interior && site.solid && site.kind == SiteKind::segment
-                      ? right_[static_cast<std::size_t>(answer.site)]
-                      : normal_at(site, nearest, q);
-  // The second nearest may be a site that is not listed.
-  answer.runner_up = std::min(second, found.others_at_least);
-  return answer;
+  return seen.site < 0 ? FieldAnswer()
+                       : answer_by(seen.site, q, std::min(seen.second[0], found.others_at_least));
 }
 
 std::unique_ptr<SiteIndex> make_brute_force_index(std::shared_ptr<const Outline> outline) {

@@ -61,7 +61,21 @@ class SiteIndex {
   std::shared_ptr<const Outline> outline_;
 
  private:
-  std::vector<Vec2> right_;  ///< of every solid segment: its outward unit normal, as normal_at() gives it
+  using Two = double __attribute__((vector_size(16)));
+
+  /// Of a segment, what every query would compute anew.
+  struct Line {
+    Vec2 right = Vec2::Zero();  ///< unit normal, of a solid's segment outward, as normal_at() gives it
+    double length = 0.0;        ///< [m]
+  };
+
+  /// Distances of nearest_on() to two sites, bit for bit, less their radii.
+  Two distances(std::uint32_t i, std::uint32_t j, const Vec2& q) const;
+
+  /// query() where that site is nearest.
+  FieldAnswer answer_by(int site, const Vec2& q, double runner_up) const;
+
+  std::vector<Line> lines_;  ///< a site
 };
 
 /// Every site, always: for outlines of few sites, and the reference for the others.

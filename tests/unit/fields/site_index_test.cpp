@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
 #include <cstdio>
+#include <limits>
 
 #include "brink/core/fields/body_field.h"
 #include "brink/core/shapes/distance.h"
@@ -54,6 +57,62 @@ TEST_P(SiteIndexOnShapes, RandomQueriesGiveTheBruteForceAnswer) {
   EXPECT_EQ(largest, 0.0) << "the same bits as brute force are promised";
   EXPECT_EQ(wrong_sign, 0);
   EXPECT_EQ(wrong_site, 0);
+}
+
+/// query() as it is defined: one candidate after the other, by the functions of distance.h.
+FieldAnswer one_by_one(const SiteIndex& index, const Vec2& q, SiteIndex::Scratch& scratch) {
+  const double never = std::numeric_limits<double>::infinity();
+  const Candidates found = index.candidates(q, never, scratch);
+  FieldAnswer answer;
+  Nearest nearest;
+  double least = never, second = never;
+  for (const std::uint32_t i : found.sites) {
+    const Site& site = index.outline().sites[i];
+    const Nearest n = nearest_on(site, q);
+    const double distance = n.distance - site.radius;
+    if (distance < least) {
+      second = least;
+      least = distance;
+      nearest = n;
+      answer.site = static_cast<int>(i);
+    } else if (distance < second) {
+      second = distance;
+    }
+  }
+  if (answer.site < 0) return answer;
+  const Site& site = index.outline().sites[static_cast<std::size_t>(answer.site)];
+  answer.gap = side_of_outline(index.outline(), site, nearest, q) * nearest.distance - site.radius;
+  answer.closest = nearest.point;
+  answer.normal = normal_at(site, nearest, q);
+  answer.runner_up = std::min(second, found.others_at_least);
+  return answer;
+}
+
+std::array<std::uint64_t, 7> bits(const FieldAnswer& answer) {
+  const auto of = [](double x) { return std::bit_cast<std::uint64_t>(x); };
+  return {of(answer.gap),         static_cast<std::uint64_t>(answer.site),
+          of(answer.closest.x()), of(answer.closest.y()),
+          of(answer.normal.x()),  of(answer.normal.y()),
+          of(answer.runner_up)};
+}
+
+// Candidates are compared two at a time, by masks, and places abreast of a segment are answered in short.
+TEST_P(SiteIndexOnShapes, AnswersHaveTheBitsOfLookingAtOneSiteAfterTheOther) {
+  const auto field = make_site_index(shape_.outline, always_a_field());
+  const auto brute_force = make_brute_force_index(shape_.outline);
+  SeededRandom random(78);
+  SiteIndex::Scratch scratch;
+  const auto compare = [&](const Vec2& q) {
+    for (const SiteIndex* index : {field.get(), brute_force.get()})
+      ASSERT_EQ(bits(index->query(q, scratch)), bits(one_by_one(*index, q, scratch)))
+          << shape_.name << " at " << q.transpose();
+  };
+  for (int i = 0; i < 8000; ++i) compare(field_test::query_point(*shape_.outline, random));
+  // right on the outline, on its lines, and where squares overflow
+  for (const Site& site : shape_.outline->sites) {
+    for (const double share : {-0.5, 0.0, 0.25, 0.5, 1.0, 1.5}) compare(site.a + share * (site.b - site.a));
+    for (const double far : {1e100, 1e160, 1e300}) compare(far * (site.a + Vec2(0.5, 0.25)));
+  }
 }
 
 // Where all sites are equally near by rounding, the side of one of them says nothing.
