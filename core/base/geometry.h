@@ -14,14 +14,23 @@ using Vec2 = Eigen::Vector2d;
 
 inline constexpr double kQuarterTurn = std::numbers::pi / 2;  ///< [rad]
 
+/// Of two coordinates, both written at once. Vec2(x, y) writes one after the other: what reads both at once, as sums of vectors
+/// do, waits until they are in memory.
+inline Vec2 vector_of(double x, double y) {
+  using Two = double __attribute__((vector_size(16), aligned(alignof(Vec2)), may_alias));
+  Vec2 v;
+  *reinterpret_cast<Two*>(v.data()) = Two{x, y};
+  return v;
+}
+
 /// z component of a x b.
 inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// v turned by +90 degrees.
-inline Vec2 perp(const Vec2& v) { return {-v.y(), v.x()}; }
+inline Vec2 perp(const Vec2& v) { return vector_of(-v.y(), v.x()); }
 
 /// omega z x r: the velocity [m/s] of a point at r [m] on a body that turns at omega [rad/s].
-inline Vec2 cross(double omega, const Vec2& r) { return {-omega * r.y(), omega * r.x()}; }
+inline Vec2 cross(double omega, const Vec2& r) { return vector_of(-omega * r.y(), omega * r.x()); }
 
 /// Where a body is: position of its origin in the world [m] and its angle [rad].
 struct Pose {
@@ -70,10 +79,10 @@ struct Frame {
       : origin(position), cosine(of_angle.cosine), sine(of_angle.sine) {}
 
   Vec2 direction_to_world(const Vec2& d) const {
-    return {cosine * d.x() - sine * d.y(), sine * d.x() + cosine * d.y()};
+    return vector_of(cosine * d.x() - sine * d.y(), sine * d.x() + cosine * d.y());
   }
   Vec2 direction_to_local(const Vec2& d) const {
-    return {cosine * d.x() + sine * d.y(), -sine * d.x() + cosine * d.y()};
+    return vector_of(cosine * d.x() + sine * d.y(), -sine * d.x() + cosine * d.y());
   }
   Vec2 to_world(const Vec2& p) const { return origin + direction_to_world(p); }
   Vec2 to_local(const Vec2& p) const { return direction_to_local(p - origin); }
