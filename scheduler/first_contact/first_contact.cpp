@@ -95,11 +95,16 @@ class PairSearch {
         limits_(limits),
         scratch_(scratch),
         work_(work) {
-    const auto count_a = static_cast<std::size_t>(view_.half(true).count);
     scratch.sinking.clear();
-    scratch.safe_until.assign(count_a + static_cast<std::size_t>(view_.half(false).count), from_);
+    scratch.safe_until.clear();
+    for (const bool on_a : {true, false}) {
+      const Half& half = view_.half(on_a);
+      // The vertex of a notch is never due: what comes from outside meets one of its sides before.
+      for (int i = 0; i < half.count; ++i)
+        scratch.safe_until.push_back(half.sample(i).hollow ? kForever : from_);
+    }
     safe_until_[0] = scratch.safe_until.data();
-    safe_until_[1] = scratch.safe_until.data() + count_a;
+    safe_until_[1] = safe_until_[0] + view_.half(true).count;
   }
 
   /// Clear, the earliest contact, or undecided from where the search stopped.
@@ -234,9 +239,8 @@ class PairSearch {
   /// the last step may lead below its level.
   void advance_sample(const Half& half, int i) {
     sinks_ = false;
-    // The vertex of a notch is never due: what comes from outside meets one of its sides before.
     // never less than the next double, or the search would stand still
-    safe_until(half, i) = half.sample(i).hollow ? kForever : std::max(t_ + step(half, i), next_);
+    safe_until(half, i) = std::max(t_ + step(half, i), next_);
     least_ = std::min(least_, safe_until(half, i));
     std::vector<std::pair<bool, int>>& sinking = scratch_.sinking;
     if (!sinks_ && sinking.empty()) return;
