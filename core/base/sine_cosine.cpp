@@ -5,6 +5,9 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
+
+#include "brink/core/base/sine_cosine_pair.h"
 
 namespace brink {
 
@@ -78,9 +81,10 @@ struct Entry {
   const SineCosine<DoubleDouble>& at;
   double angle;
 };
+std::size_t place_in_table(double k) { return static_cast<std::size_t>(static_cast<int>(k) + kLast); }
 Entry entry_of(double angle) {
   const double k = nearest_integer(angle * kSteps);
-  return {kTable[static_cast<std::size_t>(static_cast<int>(k) + kLast)], k / kSteps};
+  return {kTable[place_in_table(k)], k / kSteps};
 }
 
 /// Of the angle so many quarters of a turn further on. Without a branch: of what turns, nobody can tell which it is.
@@ -102,6 +106,37 @@ SineCosine<double> in_double(const DoubleDouble& angle) {
   const DoubleDouble &s = entry.at.sine, &c = entry.at.cosine;
   return {s.high() + (s.low() + (s.high() * less + c.high() * sine)),
           c.high() + (c.low() + (c.high() * less - s.high() * sine))};
+}
+
+using Two = double __attribute__((vector_size(16), aligned(alignof(double)), may_alias));
+using TwoBits = std::int64_t __attribute__((vector_size(16)));
+
+/// reduced(), in_double() and turned() of two angles: the same operations in the same order.
+void turned_in_double(Two angle, SineCosinePair& found) {
+  constexpr double bias = 0x1.8p52;
+  const Two n = (angle * kQuartersOfOne + bias) - bias;
+  const Two first = angle - n * kShortQuarter[0], second = -n * kShortQuarter[1];
+  const Two sum = first + second, of_second = sum - first;
+  const Two third = ((first - (sum - of_second)) + (second - of_second)) - n * kShortQuarter[2];
+  const Two high = sum + third, low = third - (high - sum);
+  const Two k = (high * kSteps + bias) - bias;
+  const SineCosine<DoubleDouble>&a = kTable[place_in_table(k[0])], &b = kTable[place_in_table(k[1])];
+  const Two s = {a.sine.high(), b.sine.high()}, s_low = {a.sine.low(), b.sine.low()},
+            c = {a.cosine.high(), b.cosine.high()}, c_low = {a.cosine.low(), b.cosine.low()};
+  const Two d = (high - k / kSteps) + low, d2 = d * d;
+  const Two sine = d + d * d2 * (-1.0 / 6 + d2 * (1.0 / 120 - d2 / 5040));
+  const Two less = d2 * (-0.5 + d2 * (1.0 / 24 - d2 / 720));
+  const Two of_rest = s + (s_low + (s * less + c * sine)), across_rest = c + (c_low + (c * less - s * sine));
+  const TwoBits quadrant = {static_cast<std::int64_t>(n[0]), static_cast<std::int64_t>(n[1])};
+  const TwoBits across = -(quadrant & 1);
+  const Two plain_sine = across ? across_rest : of_rest, plain_cosine = across ? of_rest : across_rest;
+  // the sign is the highest bit
+  const Two sines = reinterpret_cast<Two>(reinterpret_cast<TwoBits>(plain_sine) ^ (quadrant & 2) << 62),
+            cosines =
+                reinterpret_cast<Two>(reinterpret_cast<TwoBits>(plain_cosine) ^ ((quadrant + 1) & 2) << 62);
+  // each at once: who reads both, as a frame does, need not wait
+  reinterpret_cast<Two&>(found.of_a) = Two{sines[0], cosines[0]};
+  reinterpret_cast<Two&>(found.of_b) = Two{sines[1], cosines[1]};
 }
 
 /// Terms of which 53 bits are enough are doubles.
@@ -128,6 +163,14 @@ SineCosine<double> sine_cosine(double angle) {
   if (!(size < kMostRadians)) return {std::sin(angle), std::cos(angle)};
   const Reduced r = reduced(DoubleDouble(angle));
   return turned(in_double(r.rest), r.quarters);
+}
+
+SineCosinePair sine_cosine(double a, double b) {
+  const auto turns_little = [](double x) { return x != 0.0 && std::abs(x) < kFewQuarters; };
+  if (!turns_little(a) || !turns_little(b)) return {sine_cosine(a), sine_cosine(b)};
+  SineCosinePair found;
+  turned_in_double(Two{a, b}, found);
+  return found;
 }
 
 SineCosine<DoubleDouble> sine_cosine(const DoubleDouble& angle) {

@@ -174,8 +174,7 @@ Apart clear_between(const Mover& a, const Mover& b, double from, double to, cons
         (sa.pose.position.lpNorm<1>() + sb.pose.position.lpNorm<1>() +
          std::abs(sa.pose.angle) * oa.bounding_radius + std::abs(sb.pose.angle) * ob.bounding_radius);
     if (rounding > 0.25 * near) break;
-    pa.move(oa, sa);
-    pb.move(ob, sb);
+    Placed::move_both(pa, oa, sa, pb, ob, sb);
     const Beside a_beside(oa, pa, ob, pb), b_beside(ob, pb, oa, pa);
     const bool of_b = a_beside.gap() >= b_beside.gap();  // the line
     const Beside& beside = of_b ? a_beside : b_beside;

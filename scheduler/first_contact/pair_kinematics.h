@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "brink/core/base/geometry.h"
+#include "brink/core/base/sine_cosine_pair.h"
 #include "brink/core/shapes/outline.h"
 #include "brink/integrators/motion.h"
 
@@ -29,13 +30,32 @@ struct Placed {
 
   /// To another moment. Sine and cosine are taken only if the angle has changed.
   void move(const Outline& outline, const BodyState& s) {
-    const double now = is_centred_disc(outline) ? 0.0 : s.pose.angle;
+    const double now = angle_of(outline, s);
     if (now == angle)
       frame.origin = s.pose.position;
     else
       frame = Frame(Pose{s.pose.position, now});
     angle = now;
     twist = s.twist;
+  }
+  /// The same of two, side by side where both turn.
+  static void move_both(Placed& a, const Outline& outline_a, const BodyState& state_a, Placed& b,
+                        const Outline& outline_b, const BodyState& state_b) {
+    const double now_a = angle_of(outline_a, state_a), now_b = angle_of(outline_b, state_b);
+    if (now_a != a.angle && now_b != b.angle) {
+      const SineCosinePair both = sine_cosine(now_a, now_b);
+      a = Placed(Frame(state_a.pose.position, both.of_a), state_a.twist, now_a);
+      b = Placed(Frame(state_b.pose.position, both.of_b), state_b.twist, now_b);
+      return;
+    }
+    a.move(outline_a, state_a);
+    b.move(outline_b, state_b);
+  }
+
+ private:
+  Placed(const Frame& of, const Twist& by, double turned) : frame(of), twist(by), angle(turned) {}
+  static double angle_of(const Outline& outline, const BodyState& s) {
+    return is_centred_disc(outline) ? 0.0 : s.pose.angle;
   }
 };
 

@@ -347,8 +347,7 @@ void PairView::put(Placing& p, double t) const {
   if (noise > kFarOfTolerance * limits_.tolerance) return put_relative(p, t);
   p.in_double = 0.0;
   p.base.setZero();
-  p.a.move(a_.outline(), sa);
-  p.b.move(b_.outline(), sb);
+  Placed::move_both(p.a, a_.outline(), sa, p.b, b_.outline(), sb);
   p.note_turning();
 }
 

@@ -3,9 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <numbers>
 #include <random>
+#include <utility>
+
+#include "brink/core/base/sine_cosine_pair.h"
 
 namespace brink::sine_cosine_test {
 namespace {
@@ -43,6 +47,34 @@ TEST(SineCosine, IsRightAtAnyAngle) {
   for (int i = 0; i < 20000; ++i) {
     const double angle = std::copysign(std::pow(10.0, magnitude(random)), part(random));
     expect_told(angle, angle * 0x1p-54 * part(random));
+  }
+}
+
+// Of two side by side: small and large ones, at and near quarters of a turn, and none at all.
+TEST(SineCosine, OfTwoHasTheBitsOfEach) {
+  std::mt19937_64 random(20261129);
+  std::uniform_real_distribution<double> magnitude(-12.0, 15.0), part(-1.0, 1.0);
+  const double infinity = std::numeric_limits<double>::infinity();
+  const auto any = [&]() -> double {
+    switch (random() % 8) {
+      case 0:
+        return std::copysign(0.0, part(random));
+      case 1:
+        return static_cast<double>(random() % 4000) * (std::numbers::pi / 4) - 1500.0;
+      case 2:
+        return random() % 16 == 0 ? infinity : 0x1p20 * part(random);
+      default:
+        return std::copysign(std::pow(10.0, magnitude(random)), part(random));
+    }
+  };
+  const auto bits = [](const SineCosine<double>& of) {
+    return std::pair(std::bit_cast<std::uint64_t>(of.sine), std::bit_cast<std::uint64_t>(of.cosine));
+  };
+  for (int i = 0; i < 200000; ++i) {
+    const double a = any(), b = any();
+    const SineCosinePair both = sine_cosine(a, b);
+    ASSERT_EQ(bits(both.of_a), bits(sine_cosine(a))) << a << " beside " << b;
+    ASSERT_EQ(bits(both.of_b), bits(sine_cosine(b))) << b << " beside " << a;
   }
 }
 
