@@ -16,11 +16,7 @@ namespace brink {
 namespace fs = std::filesystem;
 namespace {
 
-/// A run may come from anywhere: a name that a spreadsheet would run as a formula gets an apostrophe before it.
-std::string cell(const std::string& text) {
-  const bool runs = !text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos;
-  return csv_cell(runs ? '\'' + text : text);
-}
+std::string cell(const std::string& text) { return csv_text(text); }
 // NaN and ids that are not there are empty cells.
 std::string cell(double x) { return std::isnan(x) ? std::string() : fmt::format("{}", x); }
 std::string cell(int id) { return id < 0 ? std::string() : std::to_string(id); }

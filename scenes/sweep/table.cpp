@@ -186,12 +186,12 @@ std::string policy_agreement(const Experiment& experiment, const SweepResults& r
 void write_sweep_csv(const std::filesystem::path& file, const Experiment& experiment,
                      const SweepResults& results) {
   std::ofstream out(file);
-  for (const SweepAxis& axis : experiment.axes) out << csv_cell(axis.name) << ',';
+  for (const SweepAxis& axis : experiment.axes) out << csv_text(axis.name) << ',';
   out << "termination,state_hash";
   for (const std::string& name : sweep_columns()) out << ',' << name;
   out << '\n';
   for (std::size_t k = 0; k < experiment.runs.size(); ++k) {
-    for (const std::string& value : experiment.runs[k].values) out << csv_cell(value) << ',';
+    for (const std::string& value : experiment.runs[k].values) out << csv_text(value) << ',';
     // Two cells: of a run that waits the hash is empty, so that every line has the same number.
     out << (results[k] ? csv_cell(results[k]->termination) + ',' + csv_cell(results[k]->state_hash)
                        : "waiting,");

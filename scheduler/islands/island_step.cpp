@@ -437,7 +437,10 @@ StepOutcome without_loads(IslandStep& step, double h, const GapsAlong& gaps, con
   for (std::size_t k = 0; k < step.contacts.size(); ++k)
     if (stops(go_on) || missed(step, k, h, velocity, 0.0, false, gap).counts) return outcome;
   step.velocity = std::move(velocity);
-  for (IslandContact& c : step.contacts) c.normal_force = c.tangential_force = 0.0;
+  for (IslandContact& c : step.contacts) {
+    c.normal_force = c.tangential_force = 0.0;
+    c.gives = {};
+  }
   outcome.solved = true;
   return outcome;
 }
@@ -545,6 +548,11 @@ StepOutcome take(ConeQp& solver, IslandStep& step, double h, double tolerance, b
       step.contacts[k].normal_force = loads[k].normal / h;
       step.contacts[k].tangential_force = loads[k].tangential / h;
     }
+    for (IslandContact& c : step.contacts) c.gives = {};
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      const ContactLoad& load = result.loads[k];
+      step.contacts[parts[k].contact].gives = {load.normal / h, load.tangential / h, load.rolling / h};
+    }
   }
   return outcome;
 }
@@ -592,6 +600,7 @@ bool stays_at_rest(ConeQp& solver, IslandStep& step, const GoOn& go_on) {
   for (std::size_t k = 0; k < step.contacts.size(); ++k) {
     step.contacts[k].normal_force = result.loads[k].normal;
     step.contacts[k].tangential_force = result.loads[k].tangential;
+    step.contacts[k].gives = result.loads[k];
   }
   return true;
 }

@@ -35,7 +35,10 @@ struct IslandContact {
   bool at_end = false;  ///< of a site: its tangent bars the way to what passes by, so that is asked for last
   double normal_force = 0.0;      ///< in: of the step before; 0: new. Out: mean over this one [N]
   double tangential_force = 0.0;  ///< likewise
-  double force_lasted = 0.0;      ///< how long the step before was [s]
+  /// Out: what has moved the bodies, as means over the step [N], [N m]. Those above obey Coulomb's law, as of many this does to
+  /// what sweeps leave (StepOutcome::friction_residual).
+  ContactLoad gives;
+  double force_lasted = 0.0;                              ///< how long the step before was [s]
   double normal_support = 0.0, tangential_support = 0.0;  ///< mean velocity of a site's point [m/s]
   /// The gap is a convex function of where the sample is in the frame of the site's owner: its tangent at the start is
   /// left only by what turns, see falls_below_tangent().

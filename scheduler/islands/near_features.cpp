@@ -744,11 +744,14 @@ bool cross_each_other(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d
   return cross(b - a, c - a) * cross(b - a, d - a) < 0.0 && cross(d - c, a - c) * cross(d - c, b - c) < 0.0;
 }
 
+double distance_to(const Site& segment, const Vec2& q) { return nearest_on(segment, q).distance; }
+
 /// How deep two convex corners are in each other of which neither vertex is in the other solid [m]: their sides cross
-/// beside both. 0: they do not. The site's corner is the one at the end that is nearer to the sample at q.
+/// beside both. Or two corners of wires, or of a wire and a solid, one vertex of which has gone through a side of the other at its
+/// corner. 0: they are not. The site's corner is the one at the end that is nearer to the sample at q.
 double through_corner(const Half& half, const Sample& sample, const Site& site, const Vec2& q) {
-  const bool straight = site.solid && site.kind == SiteKind::segment && sample.radius + site.radius == 0.0;
-  if (!straight || !half.carrier.solid || sample.arc_site >= 0) return 0.0;
+  const bool straight = site.kind == SiteKind::segment && sample.radius + site.radius == 0.0;
+  if (!straight || sample.arc_site >= 0) return 0.0;
   const Vec2& corner = nearer_end(site, q);
   const auto to_other = [&](const Vec2& p) {
     return half.other_frame.to_local(half.carrier_frame.to_world(p));
@@ -757,13 +760,22 @@ double through_corner(const Half& half, const Sample& sample, const Site& site, 
     return s.kind == SiteKind::segment && (s.a == p || s.b == p);
   };
   bool through = false;
+  double back = std::numeric_limits<double>::infinity();
   for (const Site& s : half.carrier.sites) {
-    if (!ends_at(s, sample.p)) continue;
+    if (!ends_at(s, sample.p) || s.radius > 0.0) continue;
     const Vec2 from = to_other(s.a), to = to_other(s.b);
-    for (const Site& o : half.other.sites)
-      through = through || (ends_at(o, corner) && cross_each_other(from, to, o.a, o.b));
+    for (const Site& o : half.other.sites) {
+      if (!ends_at(o, corner) || o.radius > 0.0 || !cross_each_other(from, to, o.a, o.b)) continue;
+      through = true;
+      Site there = s;
+      there.a = from;
+      there.b = to;
+      back = std::min({back, distance_to(o, q), distance_to(there, corner)});
+    }
   }
   if (!through) return 0.0;
+  // a wire has no side on which it must not be: the vertex that is through goes back
+  if (!site.solid || !half.carrier.solid) return back;
   // By the side that leaves the least to go back, of those that could part the two.
   const Wedge of_sample = wedge_of(half, sample);
   const Wedge of_corner = wedge_at(half.other, corner);

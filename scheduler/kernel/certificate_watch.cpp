@@ -15,6 +15,8 @@ namespace {
 
 /// More pairs of sites than this are not looked at for a crossing at every frame.
 constexpr std::size_t kMostCrossings = 4096;
+/// Nor than this at every step or collision.
+constexpr std::size_t kMostAtOnce = 1024;
 /// What is deeper in each other by less than this part of the contact tolerance at a frame is not looked at again.
 constexpr double kLittleOfTolerance = 1e-2;
 /// The search for overlaps at the start ends after so many: all bodies may be in one place.
@@ -40,7 +42,8 @@ double rounding(const ExtendedState& s, double radius) {
 
 }  // namespace
 
-/// Three looks. After each collision: its two features, as the collision left them (resolved). At each frame: every
+/// Four looks. After each collision: its two features, as the collision left them (resolved). Where an island begins a step, and
+/// at a body's next collision after one of a wire: whether the boundaries of those who had met cross. At each frame: every
 /// pair that may have come to overlap since the last, its gap and whether boundaries cross (frame). Between two looks at a
 /// body: the flight of its centre, by walls (flight). From begin() on what any of them sees ends the run (report).
 CertificateWatch::CertificateWatch(const World& world, const Trajectories& trajectories,
@@ -169,6 +172,49 @@ bool CertificateWatch::resolved(const PairKey& pair, const FeatureContact& found
 
 bool CertificateWatch::discs_resolved(const PairKey& pair, double gap) {
   return !on_ || -gap <= allowed() || report(pair, -gap, run_->time(), "overlaps");
+}
+
+/// Of two who have met, or are near: where one has gone through the other it is on its way still. Not where it would take long.
+bool CertificateWatch::do_not_cross(const PairKey& pair) {
+  const Motion& body = trajectories_->body(pair.body).motion;
+  const Motion& other = trajectories_->motion_of(search_->other_owner(pair));
+  const double t = run_->time();
+  // who is ahead of the present time, or has not been followed up to it, is looked at another time
+  if (body.begin() > t || body.end() < t || other.begin() > t || other.end() < t) return true;
+  const std::size_t sites = search_->outline_of(pair.body).sites.size() *
+                            search_->outline_of(search_->other_owner(pair)).sites.size();
+  if (sites > kMostAtOnce || !search_->may_meet(pair.body, search_->other_owner(pair))) return true;
+  const auto crossing = search_->crossing(pair, t, 0.0);
+  if (!crossing || -crossing->gap <= allowed()) return true;
+  note_overlap(crossing->gap);
+  return report(pair, -crossing->gap, t, "crosses");
+}
+
+bool CertificateWatch::collided(const PairKey& pair) {
+  if (!on_) return true;
+  const auto is_wire = [&](int owner) {
+    const Outline& o = search_->outline_of(owner);
+    return !o.solid && !o.is_point();
+  };
+  if (!is_wire(pair.body) && !is_wire(search_->other_owner(pair))) return true;
+  if (met_last_.empty()) met_last_.resize(world_->bodies.size());
+  for (const int k : {pair.body, pair.other_body}) {
+    if (k < 0) continue;
+    if (met_last_[k] && *met_last_[k] != pair && !do_not_cross(*met_last_[k])) return false;
+    met_last_[k] = pair;
+  }
+  return true;
+}
+
+bool CertificateWatch::step_begins(const std::vector<HeldContact>& contacts) {
+  if (!on_) return true;
+  const PairKey* last = nullptr;
+  for (const HeldContact& c : contacts) {  // by pairs
+    if (last && *last == c.pair) continue;
+    last = &c.pair;
+    if (!do_not_cross(c.pair)) return false;
+  }
+  return true;
 }
 
 /// Pairs that may have come to overlap since the last frame; then every centre's flight up to t. Whatever is seen halts

@@ -4,11 +4,13 @@
 /// owner and a look at who is near another (FramePairs).
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "brink/core/base/large_vector.h"
 #include "brink/scheduler/kernel/frame_pairs.h"
+#include "brink/scheduler/kernel/island.h"
 #include "brink/scheduler/kernel/thin_walls.h"
 
 namespace brink {
@@ -64,6 +66,11 @@ class CertificateWatch {
   bool resolved(const PairKey& pair, const FeatureContact& found, Real delay, const Moment* moment = nullptr);
   /// The same of two discs, whose gap is known.
   bool discs_resolved(const PairKey& pair, double gap);
+  /// At a collision of a pair of which one has wires without thickness: the pair that each of the two met before is looked at,
+  /// whether they cross by now, and this one will be when one of the two meets somebody else. No frame need see it.
+  bool collided(const PairKey& pair);
+  /// Where an island begins a step: whether two of its contacts' owners cross by now, as a wire that has gone through another does.
+  bool step_begins(const std::vector<HeldContact>& contacts);
   /// Every pair at a frame; not those that cannot have come to overlap since the last.
   void frame(double t);
 
@@ -76,6 +83,7 @@ class CertificateWatch {
     max_overlap_ = saved.max_overlap;
     start_overlap_ = saved.start_overlap;
     pairs_.clear();
+    met_last_.clear();
     flown_until_ = saved.flown_until;
   }
 
@@ -85,6 +93,7 @@ class CertificateWatch {
   double allowed() const { return search_->limits().tolerance + start_overlap_; }
   bool is_nothing_new(double at_least) const;
   double pair_at_frame(const PairKey& pair, double t, double at_most);
+  bool do_not_cross(const PairKey& pair);
   bool report(const PairKey& pair, double depth, double t, const char* what);
 
   const World* world_;
@@ -95,11 +104,12 @@ class CertificateWatch {
   FramePairs pairs_;
   bool on_ = false;
   bool walls_made_ = false;
-  ThinWalls walls_;                    ///< of still sites
-  std::vector<bool> material_centre_;  ///< of bodies whose centre of mass is in them
-  LargeVector<Box> clear_;             ///< about each body, of walls
-  double flown_until_ = 0.0;           ///< flights before were looked at, at the last frame [s]
-  double start_overlap_ = 0.0;         ///< deepest overlap that the world started with [m]
+  ThinWalls walls_;                               ///< of still sites
+  std::vector<bool> material_centre_;             ///< of bodies whose centre of mass is in them
+  LargeVector<Box> clear_;                        ///< about each body, of walls
+  std::vector<std::optional<PairKey>> met_last_;  ///< by body, see collided()
+  double flown_until_ = 0.0;                      ///< flights before were looked at, at the last frame [s]
+  double start_overlap_ = 0.0;                    ///< deepest overlap that the world started with [m]
   double max_overlap_ = 0.0;
 };
 

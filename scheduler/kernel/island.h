@@ -2,6 +2,7 @@
 /// What an island is made of: bodies joined by contacts that last.
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <tuple>
 #include <vector>
@@ -21,6 +22,7 @@ struct HeldContact {
   PairKey pair;
   NearFeature feature;
   double normal_force = 0.0, tangential_force = 0.0;  ///< [N]
+  double rolling_torque = 0.0;                        ///< on the body [N m]
   double lasted = 0.0;                                ///< the step over which they are means [s]
   ContactMode mode = ContactMode::none;
   double since = 0.0;         ///< in this mode without a break [s]
@@ -68,12 +70,16 @@ struct IslandPace {
   int agitation = 0;  ///< raised by a step that an impact cuts short, lowered by one in which there is none
   double step =
       std::numeric_limits<double>::infinity();  ///< the last, where forces that change bounded it [s]
+  int waits = 0;                                ///< steps until it is asked again who of it stands
+  int in_vain = 0;                              ///< how often nobody did, in a row
 
   /// Of islands that go on as one.
   void join(const IslandPace& other) {
     hasty = std::max(hasty, other.hasty);
     agitation = std::max(agitation, other.agitation);
     step = std::min(step, other.step);
+    waits = std::max(waits, other.waits);
+    in_vain = std::max(in_vain, other.in_vain);
   }
 };
 
@@ -81,6 +87,8 @@ struct Island {
   std::vector<int> members;           ///< ascending
   std::vector<HeldContact> contacts;  ///< in order
   bool rests = false;
+  /// Of one at rest: the contacts in which bodies that move lean on it, or are near it, in order. Their islands have them, too.
+  std::vector<HeldContact> leaning;
   IslandPace pace;
   double due = std::numeric_limits<double>::infinity();  ///< when its step ends [s]
   /// The contact whose bounces come to their limit where the step ends; body < 0: none.
@@ -88,6 +96,23 @@ struct Island {
   PairKey series;
   FeatureContact series_contact;
 };
+
+/// Of these those that press.
+inline std::vector<HeldContact> pressing(const std::vector<HeldContact>& contacts) {
+  std::vector<HeldContact> pressed;
+  std::copy_if(contacts.begin(), contacts.end(), std::back_inserter(pressed),
+               [](const HeldContact& c) { return c.mode != ContactMode::none; });
+  return pressed;
+}
+
+inline bool has(const Island& island, int body) {
+  return std::binary_search(island.members.begin(), island.members.end(), body);
+}
+
+/// Of the two of a contact that leans on the island the one who is not of it.
+inline int who_leans(const Island& island, const HeldContact& c) {
+  return has(island, c.pair.body) ? c.pair.other_body : c.pair.body;
+}
 
 /// What islands came to.
 struct IslandTally {

@@ -7,17 +7,25 @@
 namespace brink {
 
 IslandMembers::IslandMembers(const World& world, const Trajectories& trajectories,
-                             const ContactSearch& search, double now, const std::set<int>& members)
+                             const ContactSearch& search, double now, const std::set<int>& members,
+                             const std::set<int>& supports)
     : world_(&world),
       trajectories_(&trajectories),
       search_(&search),
       now_(now),
-      bodies_(members.begin(), members.end()),
-      places_(bodies_.empty() ? 0 : bodies_.back() - bodies_.front() + 1) {
+      count_(members.size()),
+      bodies_(members.begin(), members.end()) {
+  bodies_.insert(bodies_.end(), supports.begin(), supports.end());
+  if (const auto [least, last] = std::minmax_element(bodies_.begin(), bodies_.end());
+      least != bodies_.end()) {
+    first_ = *least;
+    places_.assign(*last - *least + 1, -1);
+  }
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const int k = bodies_[i];
-    places_[k - bodies_.front()] = static_cast<int>(i);
+    places_[k - first_] = static_cast<int>(i);
     states_.push_back(trajectories.state_now(k));
+    if (i >= count_) continue;
     accelerations_.push_back(trajectories.acceleration(k));
     constant_ = constant_ && trajectories.is_constant(k);
     const double radius = search.outline_of(k).bounding_radius;
@@ -36,7 +44,7 @@ IslandMembers::IslandMembers(const World& world, const Trajectories& trajectorie
 void IslandMembers::find_speeds() {
   speeds_.clear();
   speed_ = 0.0;
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+  for (std::size_t i = 0; i < count_; ++i) {
     speeds_.push_back(speed_within(states_[i].twist.rounded(), bounding_radius(static_cast<int>(i))));
     speed_ = std::max(speed_, speeds_.back());
   }
@@ -62,7 +70,7 @@ double IslandMembers::guess_of(int member) const {
 
 // ---- who is near
 
-/// Members are swept along x by the left edges of their boxes; sites are held against every member.
+/// Members and supports are swept along x by the left edges of their boxes; sites are held against every member.
 std::vector<PairKey> IslandMembers::near_pairs(double reach, const GoOn& go_on) const {
   std::vector<PairKey> to;
   std::vector<Box> boxes;
@@ -79,14 +87,14 @@ std::vector<PairKey> IslandMembers::near_pairs(double reach, const GoOn& go_on) 
       const auto [a, b] = std::minmax(by_left[x], by_left[y]);
       // sorted along x: none that follows begins before this one's right edge, either. Images may.
       if (!repeats && boxes[by_left[y]].low.x() > boxes[by_left[x]].high.x()) break;
+      if (is_support(a)) continue;  // and so is b
       add_images(to, bodies_[a], boxes[a], bodies_[b], boxes[b]);
     }
   // a site that moves may come towards members, so its box is grown by its own way
   for (int s = 0; s < trajectories_->site_count(); ++s) {
     const int owner = trajectories_->body_count() + s;
     const Box box = box_of(owner, site_way(s));
-    for (std::size_t i = 0; i < bodies_.size() && !stops(); ++i)
-      add_images(to, bodies_[i], boxes[i], owner, box);
+    for (std::size_t i = 0; i < count_ && !stops(); ++i) add_images(to, bodies_[i], boxes[i], owner, box);
   }
   return to;
 }
@@ -108,7 +116,8 @@ double IslandMembers::even_for(double h) const {
 std::vector<HeldContact> IslandMembers::contacts_of(const std::vector<char>& whose, const GoOn& go_on) const {
   std::vector<PairKey> pairs = near_pairs(-1.0, go_on);
   const auto others = [&](const PairKey& pair) {
-    return whose[place_of(pair.body)] == 0 && (pair.with_site() || whose[place_of(pair.other_body)] == 0);
+    const auto [a, b] = members_of(pair);
+    return whose[a] == 0 && whose[b] == 0;
   };
   pairs.erase(std::remove_if(pairs.begin(), pairs.end(), others), pairs.end());
   return features(pairs, -1.0, go_on);
@@ -189,6 +198,7 @@ std::vector<int> IslandMembers::coupled_to(int member) const {
 /// A step's motion: constant twists. The member's own forces are in `velocity` already.
 ExtendedState IslandMembers::moved(int member, double later, const std::vector<Vec3>& velocity) const {
   ExtendedState s = states_[member];
+  if (is_support(member)) return s;
   s.twist = ExtendedTwist(as_twist(velocity[member]));
   return s.moved(later);
 }

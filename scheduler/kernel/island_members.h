@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "brink/core/base/go_on.h"
@@ -25,19 +26,29 @@ inline double speed_within(const Twist& v, double radius) {
 inline Vec3 as_vector(const Twist& v) { return {v.velocity.x(), v.velocity.y(), v.omega}; }
 inline Twist as_twist(const Vec3& v) { return {{v.x(), v.y()}, v.z()}; }
 
-/// The members' states now and what pulls at them. Members are named by their place in bodies().
+/// The members' states now and what pulls at them. Members are named by their place in bodies(). Supports are bodies at rest that
+/// members may lean on in a step: they are met as sites are that do not move, and have the places behind the members.
 class IslandMembers {
  public:
   /// What is given must outlive it. @pre all are held (Trajectories::hold).
   IslandMembers(const World& world, const Trajectories& trajectories, const ContactSearch& search, double now,
-                const std::set<int>& members);
+                const std::set<int>& members, const std::set<int>& supports = {});
 
-  std::size_t count() const { return bodies_.size(); }
-  const std::vector<int>& bodies() const { return bodies_; }  ///< ascending
+  std::size_t count() const { return count_; }                ///< of members
+  const std::vector<int>& bodies() const { return bodies_; }  ///< members ascending, then supports
+  bool is_support(int place) const { return place >= static_cast<int>(count_); }
+  /// Places of the members that the pair has; with a site or a support one of them twice.
+  std::pair<int, int> members_of(const PairKey& pair) const {
+    const int a = place_of(pair.body), b = pair.with_site() ? a : place_of(pair.other_body);
+    return {is_support(a) ? b : a, is_support(b) ? a : b};
+  }
   const Body& body(int member) const { return world_->bodies[bodies_[member]]; }
   /// @pre it is one of them
-  int place_of(int body) const { return places_[body - bodies_.front()]; }
-  bool has(int body) const { return std::binary_search(bodies_.begin(), bodies_.end(), body); }
+  int place_of(int body) const { return places_[body - first_]; }
+  bool has(int body) const {
+    const int last = first_ + static_cast<int>(places_.size());
+    return body >= first_ && body < last && place_of(body) >= 0;
+  }
   const ExtendedState& state(int member) const { return states_[member]; }
   const Acceleration& acceleration(int member) const { return accelerations_[member]; }
   const std::vector<Acceleration>& accelerations() const { return accelerations_; }
@@ -45,8 +56,9 @@ class IslandMembers {
   void set_twist(int member, const ExtendedTwist& twist) { states_[member].twist = twist; }
   void find_speeds();
 
-  double size() const { return size_; }          ///< of the smallest [m]
-  double speed() const { return speed_; }        ///< of the fastest point [m/s]
+  double size() const { return size_; }    ///< of the smallest [m]
+  double speed() const { return speed_; }  ///< of the fastest point [m/s]
+  double speed_of(int member) const { return speeds_[member]; }
   double pull() const { return pull_; }          ///< the largest acceleration of a point by forces [m/s^2]
   double heaviest() const { return heaviest_; }  ///< [kg]
   double bounding_radius(int member) const { return search_->outline_of(bodies_[member]).bounding_radius; }
@@ -58,7 +70,9 @@ class IslandMembers {
   /// Until then this one may come so far [m].
   void look_farther(int member, double way) { farther_[member] = std::max(farther_[member], way); }
   /// How far a member may come in a step [m]: a guess, and no less than look_farther() was told.
-  double reach_of(int member) const { return std::max(guess_of(member), farther_[member]); }
+  double reach_of(int member) const {
+    return is_support(member) ? 0.0 : std::max(guess_of(member), farther_[member]);
+  }
   double guess_of(int member) const;
   /// Where it may come in a step.
   Box box(int member) const { return box_of(bodies_[member], reach_of(member)); }
@@ -114,8 +128,10 @@ class IslandMembers {
   const ContactSearch* search_;
   double now_;
   double h_ = 0.0, reach_ = 0.0;
+  std::size_t count_ = 0;
+  int first_ = 0;  ///< the least of them
   std::vector<int> bodies_;
-  std::vector<int> places_;  ///< of every body from the first to the last of them
+  std::vector<int> places_;  ///< of every body from the first to the last of them; -1: it is none
   std::vector<ExtendedState> states_;
   std::vector<Acceleration> accelerations_;
   std::vector<double> speeds_, pulls_;  ///< [m/s], [m/s^2], of any point of each

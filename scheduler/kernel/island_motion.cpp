@@ -11,6 +11,7 @@
 #include "brink/scheduler/islands/step_balance.h"
 #include "brink/scheduler/islands/tolerances.h"
 #include "brink/scheduler/kernel/island_joining.h"
+#include "brink/scheduler/kernel/rest_check.h"
 #include "brink/scheduler/kernel/step_places.h"
 
 namespace brink {
@@ -46,8 +47,8 @@ constexpr double kShortest = 1e-4;
 /// hundredths of what a step of first order leaves places off by.
 constexpr double kHolds = 1e-4;
 /// A step has held still what is slower than this part of the speed that falling for as long gives; its friction is then within
-/// cones so much wider.
-constexpr double kHeld = 1e-11, kWidened = 1.03;
+/// cones a little wider (kWidened).
+constexpr double kHeld = 1e-11;
 /// By how much a step may miss the gap to a wire without thickness, in touching distances: from half of one, at which a sharp
 /// sample meets it, a few such misses do not lead through it.
 constexpr double kThinMiss = 0.125;
@@ -88,6 +89,7 @@ IslandMotion::IslandMotion(IslandMembers members, const ContactSearch& search, C
       response_(&response),
       solver_(&solver),
       tally_(&tally),
+      at_rest_(members_.count(), 0),
       warm_(std::move(warm)),
       go_on_(go_on ? std::move(go_on) : GoOn([] { return true; })) {}
 
@@ -153,8 +155,12 @@ bool IslandMotion::is_elsewhere(const HeldContact& c) const {
   const Vec2& n = c.feature.normal;
   if (run_begins_ && c.feature.side_told == SideTold::hardly) return false;
   if (run_begins_) {
-    Vec2 pull = members_.acceleration(members_.place_of(c.pair.body)).linear;
-    if (!c.pair.with_site()) pull -= members_.acceleration(members_.place_of(c.pair.other_body)).linear;
+    const auto pull_on = [this](int body) {
+      const int place = members_.place_of(body);
+      return members_.is_support(place) ? Vec2(Vec2::Zero()) : members_.acceleration(place).linear;
+    };
+    Vec2 pull = pull_on(c.pair.body);
+    if (!c.pair.with_site()) pull -= pull_on(c.pair.other_body);
     if (std::abs(n.dot(pull)) > kOneLine * members_.pull()) return n.dot(pull) > 0.0;
   }
   const RealVec from = members_.other_state(c.pair).position;
@@ -233,8 +239,9 @@ void IslandMotion::pass_on_impacts(const Impact& told) {
   // after an impact only contacts of its two bodies close differently: the others are not asked again
   std::vector<std::vector<std::size_t>> contacts_of(members_.count());
   const auto each_member = [&](const HeldContact& c, auto&& visit) {
-    visit(members_.place_of(c.pair.body));
-    if (!c.pair.with_site()) visit(members_.place_of(c.pair.other_body));
+    const auto [a, b] = members_.members_of(c.pair);
+    visit(a);
+    if (b != a) visit(b);
   };
   std::vector<Vec3> velocity = velocities();
   std::vector<double> impact;  // how fast each contact closes that is an impact now
@@ -283,6 +290,15 @@ double IslandMotion::impact_of(const HeldContact& c, const std::vector<Vec3>& ve
 ImpulseSide IslandMotion::side_of(int member, const RealVec& arm) const {
   const Body& b = members_.body(member);
   return {members_.state(member).twist, arm, b.inverse_mass_x(), b.inverse_mass_y(), b.inverse_inertia()};
+}
+
+bool IslandMotion::any_impacts() {
+  h_ = longest();
+  members_.look_ahead(0.0, kReach);
+  list(search_->limits().tolerance);
+  const std::vector<Vec3> velocity = velocities();
+  return std::any_of(contacts_.begin(), contacts_.end(),
+                     [&](const HeldContact& c) { return impact_of(c, velocity) > 0.0; });
 }
 
 /// One impact in extended precision. Twists change, places do not. A site yields to nothing: its inverse masses are
@@ -451,7 +467,6 @@ bool IslandMotion::take(double h, double tolerance) {
       tally_->energy_won += outcome.won;
       tally_->absorbed = std::max(tally_->absorbed, absorbed_);
       take_forces();
-      std::sort(contacts_.begin(), contacts_.end(), in_order);
       return true;
     }
     ++halving;
@@ -497,18 +512,24 @@ double IslandMotion::next_arrival() {
 /// as a member reaches.
 double IslandMotion::fastest_approach(const HeldContact& c, const std::vector<Vec3>& velocity) const {
   const int member = members_.place_of(c.pair.body);
-  const Vec3 of_body = velocity[member],
+  const Vec3 of_body = velocity_of(member, velocity),
              of_other = c.pair.with_site() ? as_vector(members_.other_state(c.pair).twist.rounded())
-                                           : velocity[members_.place_of(c.pair.other_body)];
+                                           : velocity_of(members_.place_of(c.pair.other_body), velocity);
   const double radius = members_.bounding_radius(member);
   return (of_body - of_other).head<2>().norm() + std::abs(of_body[2]) * radius +
          std::abs(of_other[2]) * (c.feature.point.norm() + radius);
+}
+
+/// By how much its gap may be missed [m]: through a wire without thickness nothing comes.
+double IslandMotion::most_missed(const NearFeature& f) const {
+  return f.thin ? kThinMiss * search_->limits().touch : search_->limits().tolerance;
 }
 
 /// When the two features meet if the members go on as they do now. By tangents and secants, which lead to before the root of a
 /// convex gap; of one that is not, as of a corner that turns towards a side, they lead past it, and halving leads back.
 IslandMotion::Arrival IslandMotion::arrival(const HeldContact& c, const std::vector<Vec3>& velocity) const {
   const double tolerance = search_->limits().tolerance, fastest = fastest_approach(c, velocity);
+  const double most = most_missed(c.feature);
   const auto gap_at = [&](double t) { return members_.gap(c, t, velocity) - kept(c.feature); };
   double closing = members_.closing_speed(c), gap = c.feature.gap - kept(c.feature), t = 0.0;
   for (int k = 0; k < kTangents; ++k) {
@@ -519,8 +540,8 @@ IslandMotion::Arrival IslandMotion::arrival(const HeldContact& c, const std::vec
     if (!within) way = h_ - t;
     if (!(way > 0.0)) return {};
     const double next = gap_at(t + way);
-    if (next < -tolerance) {
-      if (const double root = root_between(gap_at, t, gap, t + way); root > t) {
+    if (next < -most) {
+      if (const double root = root_between(gap_at, t, gap, t + way, most); root > t) {
         closing = std::min((gap - next) / way, fastest);
         t = root;
         break;
@@ -537,13 +558,14 @@ IslandMotion::Arrival IslandMotion::arrival(const HeldContact& c, const std::vec
   return passes_by(c, t, closing) ? Arrival{} : Arrival{t, closing};
 }
 
-/// The time after `open`, where the gap is still open, at which it closes, to the contact tolerance; `open` where it jumps.
+/// The time after `open`, where the gap is still open, at which it closes: to the contact tolerance before that, and no more than
+/// `most` behind it; `open` where it jumps.
 template <class Gap>
-double IslandMotion::root_between(Gap&& gap_at, double open, double gap, double past) const {
+double IslandMotion::root_between(Gap&& gap_at, double open, double gap, double past, double most) const {
   const double tolerance = search_->limits().tolerance, from = open;
   for (int k = 0; k < kHalvingsOfWay && gap > tolerance; ++k) {
     const double middle = 0.5 * (open + past), there = gap_at(middle);
-    if (there < -tolerance) {
+    if (there < -most) {
       past = middle;
     } else {
       open = middle;
@@ -643,13 +665,11 @@ StepOutcome IslandMotion::take_under_forces(const GapsAlong& gaps) {
 /// Geometry at the start of the step; forces of the step before, from which friction bounds come.
 IslandContact IslandMotion::island_contact(const HeldContact& c) const {
   IslandContact made;
-  const int a = members_.place_of(c.pair.body);
-  const int b = c.pair.with_site() ? -1 : members_.place_of(c.pair.other_body);
-  made.rows = contact_at(a, b, c.feature.normal, members_.arm(c).cast<double>(), c.feature.point);
+  made.rows = rows_of(c);
   made.gap = c.feature.gap - kept(c.feature);
   made.thin = c.feature.thin;
   // a wire has no inside: what is through it, by however little, is on its other side
-  made.tolerance = made.thin ? kThinMiss * search_->limits().touch : search_->limits().tolerance;
+  made.tolerance = most_missed(c.feature);
   const Material& material = response_->material_of(c.pair);
   made.friction = material.friction;
   made.rolling_resistance = material.rolling_resistance;
@@ -674,6 +694,20 @@ IslandContact IslandMotion::island_contact(const HeldContact& c) const {
   return made;
 }
 
+/// What stands is as a site is, whichever of the two it is: the normal points into what moves then, or away from it.
+LastingContact IslandMotion::rows_of(const HeldContact& c) const {
+  const int a = members_.place_of(c.pair.body);
+  const int b = c.pair.with_site() ? -1 : members_.place_of(c.pair.other_body);
+  LastingContact rows = contact_at(a, b, c.feature.normal, members_.arm(c).cast<double>(), c.feature.point);
+  if (b >= 0 && members_.is_support(b)) rows.other = -1;
+  if (!members_.is_support(a)) return rows;
+  rows.body = b;
+  rows.normal_on_body = rows.normal_on_other;
+  rows.tangent_on_body = rows.tangent_on_other;
+  rows.other = -1;
+  return rows;
+}
+
 /// How the gap behaves along a step. Of a segment it is convex in front of it, so of a wire it is not, nor where there is no
 /// way by an end: there what is beside the segment counts as behind it, too. Of an arc it depends on the side.
 void IslandMotion::note_shape(const HeldContact& c, IslandContact& made) const {
@@ -687,7 +721,8 @@ void IslandMotion::note_shape(const HeldContact& c, IslandContact& made) const {
                 kind != SiteKind::arc;
   const Site& site = of_site->sites[f.site];
   made.round_site = site.kind == SiteKind::point && site.a == Vec2(Vec2::Zero());
-  made.sample_on_body = f.sample_on_a;
+  // the row's body is the one who moves (rows_of)
+  made.sample_on_body = f.sample_on_a != members_.is_support(members_.place_of(c.pair.body));
   made.arm = sample.p.norm();
   // from the centre of mass to the point on the site's surface, and on along the normal to the sample
   const Vec2 to_point = f.sample_on_a ? f.point : Vec2(members_.arm(c).cast<double>());
@@ -717,19 +752,87 @@ double IslandMotion::change_of_speed() const {
   return most;
 }
 
-/// From the problem back to the contacts: means over the step, with which the next one starts.
+/// From the problem back to the contacts, which come into order: means over the step, with which the next one starts.
 void IslandMotion::take_forces() {
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     contacts_[k].normal_force = problem_.contacts[k].normal_force;
     contacts_[k].tangential_force = problem_.contacts[k].tangential_force;
     contacts_[k].lasted = h_;
   }
+  std::vector<std::size_t> by_order(contacts_.size());
+  std::iota(by_order.begin(), by_order.end(), 0);
+  std::sort(by_order.begin(), by_order.end(),
+            [&](std::size_t a, std::size_t b) { return in_order(contacts_[a], contacts_[b]); });
+  std::vector<HeldContact> ordered;
+  gives_.clear();
+  for (const std::size_t k : by_order) {
+    ordered.push_back(contacts_[k]);
+    gives_.push_back(problem_.contacts[k].gives);
+  }
+  contacts_ = std::move(ordered);
 }
 
 ExtendedState IslandMotion::after(int member) const {
   ExtendedState s = members_.state(member);
   s.twist = ExtendedTwist(as_twist(problem_.velocity[member]));
   return s;
+}
+
+// ---- who stands
+
+/// Of whom the step has begun and ends with no speed but what a solver leaves, and nothing that moves by itself carries or pulls.
+std::vector<int> IslandMotion::still() const {
+  const double slow = kHeld * members_.pull() * h_;
+  std::vector<char> stands(members_.count(), 0);
+  for (int i = 0; i < static_cast<int>(members_.count()); ++i) {
+    const double radius = members_.bounding_radius(i);
+    stands[i] = members_.coupled_to(i).size() == 1 && members_.speed_of(i) <= slow &&
+                speed_within(as_twist(problem_.velocity[i]), radius) <= slow;
+  }
+  for (const HeldContact& c : contacts_)
+    if (members_.on_moving_site(c) && touches(c)) stands[members_.place_of(c.pair.body)] = 0;
+  std::vector<int> found;
+  for (int i = 0; i < static_cast<int>(members_.count()); ++i)
+    if (stands[i]) found.push_back(i);
+  return found;
+}
+
+void IslandMotion::put_to_rest(const std::vector<int>& members) {
+  wake_again();
+  for (const int i : members) at_rest_[i] = 1;
+}
+
+bool IslandMotion::stands(int body) const {
+  const int place = members_.place_of(body);
+  return members_.is_support(place) || at_rest_[place];
+}
+
+/// Contacts hold at rest that are as near as rests() has them.
+std::vector<HeldContact> IslandMotion::that_hold() const {
+  const double near = std::max(search_->limits().tolerance, kHolds * members_.size());
+  std::vector<HeldContact> found;
+  for (const HeldContact& c : contacts_) {
+    const bool among = stands(c.pair.body) && (c.pair.with_site() || stands(c.pair.other_body));
+    if (among && !c.feature.beside_arc && !c.feature.goes_on && c.feature.gap - kept(c.feature) <= near)
+      found.push_back(as_held(c, ContactMode::rest));
+  }
+  return found;
+}
+
+/// With what they give: of many, what is told of them balances no more than it has to.
+std::vector<HeldContact> IslandMotion::that_lean() const {
+  std::vector<HeldContact> found;
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const HeldContact& c = contacts_[k];
+    if (c.pair.with_site() || stands(c.pair.body) == stands(c.pair.other_body)) continue;
+    HeldContact& lean = found.emplace_back(as_held(c, ContactMode::none));
+    lean.normal_force = gives_[k].normal;
+    lean.tangential_force = gives_[k].tangential;
+    // of a support the problem has what is given to the other: the opposite of what the pair's body has
+    const bool of_other = members_.is_support(members_.place_of(c.pair.body));
+    lean.rolling_torque = of_other ? -gives_[k].rolling : gives_[k].rolling;
+  }
+  return found;
 }
 
 // ---- who stays together
@@ -754,8 +857,7 @@ double IslandMotion::contact_force_on(int member) const {
 /// `velocity`: that of all members now; it is the same afterwards.
 bool IslandMotion::falls_back(const HeldContact& c, std::vector<Vec3>& velocity) const {
   if (!touches(c) || c.feature.goes_on) return false;
-  const int a = members_.place_of(c.pair.body),
-            b = c.pair.with_site() ? a : members_.place_of(c.pair.other_body);
+  const auto [a, b] = members_.members_of(c.pair);
   const Vec3 of_a = velocity[a], of_b = velocity[b];
   // the way of a time with the mean velocity of a fall is that of the fall
   const auto mean = [&](int member, const Vec3& before, double time) {
@@ -794,8 +896,8 @@ bool IslandMotion::stays_near(std::size_t contact, bool both_pushed, std::vector
                                    gaps_at_end_[contact] <= kClear * tolerance);
   }
   if (falls_back(c, velocity)) return true;
-  // a site takes no step: whoever is let go meets it by the ordinary search
-  if (c.pair.with_site()) return false;
+  // a site takes no step, nor does what is at rest: whoever is let go meets it by the ordinary search
+  if (c.pair.with_site() || stands(c.pair.body) || stands(c.pair.other_body)) return false;
   const double closing = members_.closing_speed(c, after(members_.place_of(c.pair.body)).twist,
                                                 after(members_.place_of(c.pair.other_body)).twist);
   return c.feature.gap - h_ * (closing + behind) <= tolerance;
@@ -831,9 +933,11 @@ IslandMotion::Parts IslandMotion::parts(bool rests) const {
   joined.reset(count);
   std::vector<bool> pushed(members_.count(), false), seen(members_.count(), false);
   const auto places = [this](const HeldContact& c) {
-    const int a = members_.place_of(c.pair.body);
-    // a site keeps its body in an island, but joins nobody to it
-    return std::pair(a, c.pair.with_site() ? a : members_.place_of(c.pair.other_body));
+    // a site keeps its body in an island, but joins nobody to it; nor does what is at rest
+    auto [a, b] = members_.members_of(c.pair);
+    if (at_rest_[a]) a = b;
+    if (at_rest_[b]) b = a;
+    return std::pair(a, b);
   };
   for (const HeldContact& c : contacts_) {
     // at rest all that touch stay together: forces of redundant contacts are one choice of many, and 0 for
@@ -854,6 +958,15 @@ IslandMotion::Parts IslandMotion::parts(bool rests) const {
     pushed[a] = pushed[b] = true;
     joined.unite(a, b);
   }
+  // who leans on those at rest goes on together: what these carry is asked once
+  int leans = -1;
+  for (const HeldContact& c : contacts_) {
+    if (c.pair.with_site() || stands(c.pair.body) == stands(c.pair.other_body)) continue;
+    const int a = places(c).first;
+    if (!pushed[a]) continue;
+    if (leans >= 0) joined.unite(leans, a);
+    leans = a;
+  }
   if (agitated_ && !rests)
     for (const auto& [a, b] : neighbours()) {
       pushed[a] = pushed[b] = true;
@@ -865,7 +978,7 @@ IslandMotion::Parts IslandMotion::parts(bool rests) const {
   Parts parts;
   // Sets come in the order of their least member. One without a push anywhere is let go, body by body.
   for (int i = 0; i < count; ++i) {
-    if (seen[i]) continue;
+    if (seen[i] || at_rest_[i]) continue;
     std::vector<int> set(joined.of(i).begin(), joined.of(i).end());
     std::sort(set.begin(), set.end());
     for (const int j : set) seen[j] = true;
@@ -884,7 +997,8 @@ ContactMode IslandMotion::mode_of(const HeldContact& c, bool rests) const {
   if (rests) return ContactMode::rest;
   const auto twist = [this](int body) {
     const int member = members_.place_of(body);
-    return by_modes_ ? members_.state(member).twist.rounded() : as_twist(problem_.velocity[member]);
+    return by_modes_ ? members_.state(member).twist.rounded()
+                     : as_twist(velocity_of(member, problem_.velocity));
   };
   const Twist a = twist(c.pair.body);
   const Twist b =
@@ -896,19 +1010,25 @@ ContactMode IslandMotion::mode_of(const HeldContact& c, bool rests) const {
   return std::abs(a.omega - b.omega) * members_.size() > slow ? ContactMode::roll : ContactMode::stick;
 }
 
+HeldContact IslandMotion::as_held(const HeldContact& c, ContactMode mode) const {
+  HeldContact held = c;
+  held.mode = mode;
+  held.place = members_.other_state(c.pair).position.cast<double>() + c.feature.point;
+  return held;
+}
+
 Island IslandMotion::island_of(const std::vector<int>& together, bool rests, double end) const {
   Island island;
-  const auto has = [&](int body) {
-    return std::binary_search(together.begin(), together.end(), members_.place_of(body));
-  };
+  std::vector<char> is_in(members_.count(), 0);
+  for (const int i : together) is_in[i] = 1;
   for (const int i : together) island.members.push_back(members_.bodies()[i]);
-  // Contacts among these alone: what leads to a member that leaves is searched again.
-  for (const HeldContact& c : contacts_)
-    if (has(c.pair.body) && (c.pair.with_site() || has(c.pair.other_body))) {
-      HeldContact& held = island.contacts.emplace_back(c);
-      held.mode = mode_of(c, rests);
-      held.place = members_.other_state(c.pair).position.cast<double>() + c.feature.point;
-    }
+  // Contacts among these alone, and with what stands: what leads to a member that leaves is searched again.
+  const auto has = [&](int body) { return stands(body) || is_in[members_.place_of(body)] != 0; };
+  for (const HeldContact& c : contacts_) {
+    const auto [a, b] = members_.members_of(c.pair);
+    if ((is_in[a] || is_in[b]) && has(c.pair.body) && (c.pair.with_site() || has(c.pair.other_body)))
+      island.contacts.push_back(as_held(c, mode_of(c, rests)));
+  }
   // A step has its end; what rests has none, but where forces on a member jump.
   island.rests = rests;
   if (!rests) island.due = end;

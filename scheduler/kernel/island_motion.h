@@ -1,6 +1,7 @@
 #pragma once
 /// How an island goes on from one instant: impacts at once, then rest, or a step of constant twists.
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -65,6 +66,23 @@ class IslandMotion {
   /// True if impacts cut the step short, or were taken before they came.
   bool impacts_in_step() const { return impacts_in_step_; }
   const WarmContacts& warm() const { return warm_; }
+  /// True if an impact is due now: what members lean on cannot stand by then.
+  bool any_impacts();
+
+  /// Members of a step that have stood still in it: their places.
+  std::vector<int> still() const;
+  /// From now on these, by their places, are at rest, and others may lean on them.
+  void put_to_rest(const std::vector<int>& members);
+  void wake_again() { std::fill(at_rest_.begin(), at_rest_.end(), 0); }
+  bool is_at_rest(int member) const { return at_rest_[member] != 0; }
+  /// A force no larger than that is none [N].
+  double no_force() const;
+  /// True of supports, and of who has been put to rest.
+  bool stands(int body) const;
+  /// Contacts by which those who stand may hold each other, with sites, but for those of supports alone; and those in which
+  /// others lean on them, or are near.
+  std::vector<HeldContact> that_hold() const;
+  std::vector<HeldContact> that_lean() const;
   /// Takes a step of `h` [s] at most by modes; false: not that way. @pre sites are covered as far.
   bool take(IslandModes& modes, double now, double h, bool on_time);
   /// Takes a step of `h` [s] at most, and less where that does not do. False: not even the shortest does.
@@ -103,7 +121,8 @@ class IslandMotion {
   double next_arrival();
   Arrival arrival(const HeldContact& c, const std::vector<Vec3>& velocity) const;
   template <class Gap>
-  double root_between(Gap&& gap_at, double open, double gap, double past) const;
+  double root_between(Gap&& gap_at, double open, double gap, double past, double most) const;
+  double most_missed(const NearFeature& f) const;
   double fastest_approach(const HeldContact& c, const std::vector<Vec3>& velocity) const;
   bool passes_by(const HeldContact& c, double then, double closing) const;
   double most_absorbed(const PairKey& pair) const;
@@ -115,6 +134,12 @@ class IslandMotion {
   double largest_change(const std::vector<Vec3>& forces, const std::vector<Vec3>& others) const;
   StepOutcome take_under_forces(const GapsAlong& gaps);
   IslandContact island_contact(const HeldContact& c) const;
+  LastingContact rows_of(const HeldContact& c) const;
+  HeldContact as_held(const HeldContact& c, ContactMode mode) const;
+  /// What stands has none.
+  Vec3 velocity_of(int place, const std::vector<Vec3>& velocity) const {
+    return members_.is_support(place) ? Vec3(Vec3::Zero()) : velocity[place];
+  }
   void note_shape(const HeldContact& c, IslandContact& made) const;
   double way_in_step(int member, const std::vector<Vec3>& velocity) const;
   bool stays_within_reach() const;
@@ -123,7 +148,6 @@ class IslandMotion {
   bool can_stop(double way);
   double kinetic_energy() const;
   bool pushes(const HeldContact& c) const;
-  double no_force() const;
   double contact_force_on(int member) const;
   bool stays_near(std::size_t contact, bool both_pushed, std::vector<Vec3>& velocity) const;
   bool falls_back(const HeldContact& c, std::vector<Vec3>& velocity) const;
@@ -136,6 +160,7 @@ class IslandMotion {
   CollisionResponse* response_;
   ConeQp* solver_;
   IslandTally* tally_;
+  std::vector<char> at_rest_;  ///< of each member
   WarmContacts warm_;
   GoOn go_on_;
   bool by_modes_ = false, agitated_ = false, impacts_in_step_ = false;
@@ -146,6 +171,8 @@ class IslandMotion {
   bool run_begins_ = false;
   std::optional<std::pair<PairKey, FeatureContact>> met_;
   std::vector<HeldContact> contacts_;
+  std::vector<ContactLoad>
+      gives_;  ///< what each of them has moved its bodies by, of a step of twists or at rest [N], [N m]
   std::vector<double> gaps_at_end_;  ///< of each of them, of a step by modes [m]
   IslandStep problem_;
 };

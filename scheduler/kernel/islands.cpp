@@ -29,11 +29,12 @@ constexpr int kAgitated = 8, kMostAgitation = 32;
 /// A step of so many members takes hundredths of a second, and a snapshot of so many bodies for each of them a tenth of that.
 constexpr std::size_t kMany = 256, kBodiesEach = 64;
 
-/// True if one of them bounces on another, or on a site.
-bool any_bounces(const World& world, const std::set<int>& members) {
+/// True if one of them bounces on another, on one of the others, or on a site.
+bool any_bounces(const World& world, const std::set<int>& members, const std::set<int>& others = {}) {
   std::set<int> among, met;  // materials
   for (const int k : members) among.insert(world.bodies[k].material);
   met = among;
+  for (const int k : others) met.insert(world.bodies[k].material);
   for (const FixedSite& site : world.sites) met.insert(site.material);
   return std::any_of(among.begin(), among.end(), [&](int a) {
     return std::any_of(met.begin(), met.end(),
@@ -61,12 +62,10 @@ int next_hasty(int hasty, bool tried, bool led_on) {
 /// True if the last steps by modes led on by too little for more of them.
 bool buzzes(const IslandPace& pace) { return pace.hasty >= kMostHasty * kCostOfHasty; }
 
-/// Of these those that press.
-std::vector<HeldContact> pressing(const std::vector<HeldContact>& contacts) {
-  std::vector<HeldContact> pressed;
-  for (const HeldContact& c : contacts)
-    if (c.mode != ContactMode::none) pressed.push_back(c);
-  return pressed;
+/// Where it is, without speed.
+ExtendedState at_rest(ExtendedState state) {
+  state.twist = ExtendedTwist();
+  return state;
 }
 
 }  // namespace
@@ -82,17 +81,27 @@ Islands::Islands(const World& world, Trajectories& trajectories, ContactSearch& 
       limits_(limits) {}
 
 /// The body, the island that it is in, and what springs couple to any of those, over and over: an island
-/// holds components whole (Trajectories::hold).
+/// holds components whole (Trajectories::hold). And who leans on it: their step has taken it to stand still.
 void Islands::gather(int body, std::set<int>& members) const {
   // here already, and so are all who come with it
   if (members.count(body)) return;
   const auto lead = lead_of_.find(body);
-  const std::vector<int> with =
-      lead != lead_of_.end() ? islands_.at(lead->second).members : std::vector{body};
+  const Island* island = lead != lead_of_.end() ? &islands_.at(lead->second) : nullptr;
+  const std::vector<int> with = island ? island->members : std::vector{body};
   members.insert(with.begin(), with.end());
   // springs couple each of these to others, and those bring their islands along
   for (const int k : with)
     for (const int j : trajectories_->coupled_to(k)) gather(j, members);
+  if (!island) return;
+  for (const HeldContact& c : island->leaning) gather(who_leans(*island, c), members);
+}
+
+/// Of many at rest the body alone.
+void Islands::gather_or_rouse(int body, Attempt& attempt) const {
+  if (stands_among_many(body))
+    attempt.roused.insert(body);
+  else
+    gather(body, attempt.members);
 }
 
 /// Takes the islands of these members out of the list; their pairs are searched again. What is known of their contacts, to
@@ -213,12 +222,13 @@ double Islands::larger_step_end(int body, std::size_t than) const {
 /// Members are held from now on, also those that join; what they push each other with is taken out. Those of a larger
 /// island in the middle of its step do not: the two meet where that step ends, and `longest` is no later. Else what
 /// falls onto a heap would begin the heap's step anew, and the heap's own look about takes it in in time.
-IslandMotion Islands::set_out(std::set<int>& members, IslandPace& pace, double& longest) {
-  WarmContacts warm;
-  pace = {};
+/// Of many at rest nobody joins for being near: they are leant on.
+IslandMotion Islands::set_out(Attempt& attempt) {
+  rouse(attempt);
+  std::set<int>& members = attempt.members;
   // who joins brings an island of its own along, and may be near to others in turn
   for (;;) {
-    take_out(members, pace, warm);
+    take_out(members, attempt.pace, attempt.warm);
     std::vector<Restart> as_they_are;
     for (const int k : members)
       if (!trajectories_->is_held(k))
@@ -226,17 +236,26 @@ IslandMotion Islands::set_out(std::set<int>& members, IslandPace& pace, double& 
     // told to nobody: part() and give_up() change the motion of every member once more
     std::vector<int> held;
     trajectories_->hold(as_they_are, held);
-    IslandMotion motion(IslandMembers(*world_, *trajectories_, *search_, run_->time(), members), *search_,
-                        *response_, solver_, tally_, warm, [this] { return !run_->is_cut(); });
+    const auto motion_on = [&](const std::set<int>& supports) {
+      return IslandMotion(IslandMembers(*world_, *trajectories_, *search_, run_->time(), members, supports),
+                          *search_, *response_, solver_, tally_, attempt.warm,
+                          [this] { return !run_->is_cut(); });
+    };
+    IslandMotion motion = motion_on({});
     // who asked for a tolerance has exact impacts
-    if (limits_.tolerance == 0.0 && is_agitated(*world_, pace, members)) motion.expect_agitation();
+    const bool agitated = limits_.tolerance == 0.0 && is_agitated(*world_, attempt.pace, members);
+    if (agitated) motion.expect_agitation();
+    attempt.leans = attempt.leans && !agitated && motion.members().are_constant();
+    attempt.supports.clear();
     std::vector<int> more = motion.joining(*world_, *trajectories_, run_->time());
     std::erase_if(more, [&](int k) {
       const double other_ends = larger_step_end(k, members.size());
-      longest = std::min(longest, other_ends - run_->time());
-      return other_ends < kForever;
+      attempt.longest = std::min(attempt.longest, other_ends - run_->time());
+      const bool stands = attempt.leans && stands_among_many(k);
+      if (stands) attempt.supports.insert(k);
+      return stands || other_ends < kForever;
     });
-    if (more.empty()) return motion;
+    if (more.empty()) return attempt.supports.empty() ? std::move(motion) : motion_on(attempt.supports);
     for (const int k : more) gather(k, members);
   }
 }
@@ -258,22 +277,28 @@ double Islands::steady_for(const std::set<int>& members, double now) {
 
 /// `longest`: the step is no longer [s]. The last thing that its caller does: false where the run stops for now, too,
 /// which may go on later.
-bool Islands::begin_step(std::set<int> members, double longest, std::vector<int>& changed,
-                         const StepCause& cause) {
-  return carry_out_step(std::move(members), longest, changed, cause) && run_->poll();
+bool Islands::begin_step(Attempt attempt, std::vector<int>& changed, const StepCause& cause) {
+  return carry_out_step(std::move(attempt), changed, cause) && run_->poll();
 }
 
 /// Members gather and are held; what closes fast meets; then they are at rest, or move on by modes, or at
 /// the level of velocities; and who pushes whom makes the islands from here on.
 /// Members are in no island from set_out() to part(): a failure between the two lets all of them go. `longest`
 /// bounds the step [s]; false where the run is not to go on.
-bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<int>& changed,
-                             const StepCause& cause) {
+bool Islands::carry_out_step(Attempt attempt, std::vector<int>& changed, const StepCause& cause) {
   // Islands are out of their list while this goes on: a stop in between would leave their bodies held by
   // nobody. What is cut all the same is undone by whoever has made that possible.
   const RunControl::Indivisible whole(*run_);
-  IslandPace pace;
-  IslandMotion motion = set_out(members, pace, longest);
+  for (;;)
+    if (const std::optional<bool> done = attempt_step(attempt, changed, cause)) return *done;
+}
+
+/// Nothing: more wake, who join.
+std::optional<bool> Islands::attempt_step(Attempt& attempt, std::vector<int>& changed,
+                                          const StepCause& cause) {
+  IslandMotion motion = set_out(attempt);
+  const std::set<int>& members = attempt.members;
+  IslandPace& pace = attempt.pace;
   // Members are in no island by now: all are let go to what moved them before.
   const auto give_up = [&] {
     trajectories_->release(std::vector<int>(members.begin(), members.end()), changed);
@@ -282,18 +307,32 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
     return false;
   };
   const double now = run_->time();
+  const bool leans = !attempt.supports.empty();
+  const auto again = [&, before = tally_] {
+    const int factorisations = static_cast<int>(tally_.factorisations - before.factorisations);
+    tally_ = before;
+    tally_.factorisations += factorisations;
+    return std::nullopt;
+  };
+  const auto wake_all = [&] {
+    for (const int k : attempt.supports) gather(k, attempt.members);
+    attempt.leans = false;
+    return again();
+  };
+  // what stands takes no part in impacts
+  if (leans && any_bounces(*world_, members, attempt.supports) && motion.any_impacts()) return wake_all();
   motion.expect_step(pace.step);
   motion.expect_sides(cause);
   IslandModes modes(motion.members(), *trajectories_, *search_, *response_, by_modes_, motion.warm());
   // what buzzes is spared modes for some steps
-  const bool may_have_modes = !buzzes(pace) && modes.suits();
+  const bool may_have_modes = !leans && !buzzes(pace) && modes.suits();
   if (may_have_modes) motion.expect_modes();
   const std::uint64_t collisions = run_->work().collisions;
   // before impacts: those of an agitated island are looked for along the step
   if (const double ahead = motion.longest(); std::isfinite(ahead) && !follow_sites(now, ahead))
     return give_up();
   const auto pass_on_impacts = [&] {
-    if (!any_bounces(*world_, members)) return;
+    if (leans || !any_bounces(*world_, members)) return;
     motion.pass_on_impacts(
         [this](const HeldContact& c, const RealVec& from, double closing, const ImpulseResult& r) {
           note_impact(c, from, closing, r.normal, r.tangential);
@@ -307,7 +346,7 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
   // anew: impacts have changed speeds
   double h = 0.0;
   const auto set_length = [&] {
-    h = std::min({longest, motion.longest(), steady_for(members, now)});
+    h = std::min({attempt.longest, motion.longest(), steady_for(members, now)});
     if (rests || !std::isfinite(h)) return true;
     if (!follow_sites(now, h)) return false;
     h = motion.even_for(h);
@@ -334,12 +373,21 @@ bool Islands::carry_out_step(std::set<int> members, double longest, std::vector<
                                                          world_->sites[motion.closes_in()].name)));
     return give_up();
   }
+  if (!carries(motion, attempt)) return run_->is_cut() ? std::optional(give_up()) : again();
+  // at rest they are laid beside those whom they touch
+  const bool laid = attempt.leans && !by_modes && (leans || !rests) && lay_to_rest(motion, rests, attempt);
+  if (run_->is_cut()) return give_up();
+  if (rests && leans && !laid) return wake_all();
   ++tally_.steps;
   if (by_modes) tell(modes, motion.members());
   pace.hasty = next_hasty(pace.hasty, may_have_modes && !rests, by_modes && modes.end() - now >= kHasty * h);
   pace.agitation = next_agitation(pace.agitation, motion.impacts_in_step());
   pace.step = rests || by_modes ? kForever : motion.next_step();
-  if (rests) note_change(EventKind::sleep, *members.begin()), ++tally_.slept;
+  if (rests) ++tally_.slept;
+  if (rests && !laid) note_change(EventKind::sleep, *members.begin());
+  // of those who have joined for this step and stand after all nothing is told
+  if (!attempt.were_at_rest.empty())
+    note_change(EventKind::wake, *attempt.were_at_rest.begin()), ++tally_.woken;
   // only for a step that has been found: it puts members into islands again
   part(motion, rests, by_modes ? &modes : nullptr, pace, changed);
   if (run_->is_cut()) return false;
@@ -374,11 +422,14 @@ void Islands::part(const IslandMotion& motion, bool rests, const IslandModes* mo
     free.push_back(members.bodies()[i]);
     as_they_are.push_back({members.bodies()[i], modes ? modes->let_go(i) : members.state(i)});
   }
+  for (int i = 0; i < static_cast<int>(members.count()); ++i)
+    if (motion.is_at_rest(i)) held.push_back({members.bodies()[i], at_rest(members.state(i))});
   trajectories_->hold(held, changed);
   // Those that are let go as well: their impacts of this instant are in their states, and release() goes
   // on from what is held.
   trajectories_->hold(as_they_are, changed);
   trajectories_->release(free, changed);
+  lean_no_more(free);
   if (rests) return;
   for (const std::vector<int>& together : parts.together)
     // a step by modes is a motion of its own; one of constant twists notes what it began with, for
@@ -404,7 +455,8 @@ bool Islands::capture(const PairKey& pair, const FeatureContact& contact, double
   // that is where the event is told.
   const bool later = left > same_instant(limit);
   if (!later) records_->ending(EventKind::zeno, pair, contact, records_->last_event());
-  if (!carry_out_step(members, later ? left : kForever, changed, {.pair = &pair, .met = &contact}))
+  if (!carry_out_step({.members = members, .longest = later ? left : kForever}, changed,
+                      {.pair = &pair, .met = &contact}))
     return false;
   if (later) tell_at(limit, pair, contact);
   return run_->poll();
@@ -444,7 +496,7 @@ bool Islands::begin(const std::vector<std::pair<PairKey, FeatureContact>>& touch
     std::set<int> members;
     // with whom springs couple to them, as islands hold components whole
     for (const int k : joined.of(pair.body)) gather(k, members);
-    if (!carry_out_step(members, kForever, changed, {.run_begins = true, .pair = &pair, .met = &contact}))
+    if (!carry_out_step({.members = members}, changed, {.run_begins = true, .pair = &pair, .met = &contact}))
       return false;
   }
   return run_->poll();
@@ -477,10 +529,9 @@ bool Islands::step(std::vector<int>& changed) {
     find_next();
     return run_->poll();
   }
-  // a copy: the island is taken out
-  const std::vector<int> members = island.members;
-  return begin_step({members.begin(), members.end()}, std::numeric_limits<double>::infinity(), changed,
-                    {.on_time = true});
+  std::set<int> members;
+  gather(island.members.front(), members);
+  return begin_step({.members = members}, changed, {.on_time = true});
 }
 
 /// How long the sample goes on before it comes to an end of the straight site, as the two move now [s].
@@ -506,18 +557,18 @@ double Islands::slides_off_in(const PairKey& pair, const FeatureContact& f) cons
 
 bool Islands::collided(const PairKey& pair, const FeatureContact& found, bool pushed,
                        std::vector<int>& changed) {
-  std::set<int> members;
-  gather(pair.body, members);
-  if (!pair.with_site()) gather(pair.other_body, members);
+  Attempt attempt;
+  gather_or_rouse(pair.body, attempt);
+  if (!pair.with_site()) gather_or_rouse(pair.other_body, attempt);
   // what a picture shows names no features that could slide
-  return begin_step(members, pushed || found.seen ? kForever : slides_off_in(pair, found), changed,
-                    {.pair = &pair, .met = &found});
+  if (!pushed && !found.seen) attempt.longest = slides_off_in(pair, found);
+  return begin_step(std::move(attempt), changed, {.pair = &pair, .met = &found});
 }
 
 bool Islands::disturbed(int body, std::vector<int>& changed) {
   std::set<int> members;
   gather(body, members);
-  return begin_step(members, std::numeric_limits<double>::infinity(), changed);
+  return begin_step({.members = members}, changed);
 }
 
 Islands::Saved Islands::saved() const {

@@ -7,11 +7,15 @@
 ///              the level of velocities (island_step.h), or come to rest
 ///   collided   a member was hit: what it hit may join, and the island begins a step at once
 ///
+/// Of many at rest only those wake who are moved (islands_at_rest.cpp): a step leans on the others as on sites, and it is taken
+/// only where they stay under what it puts on them. Who stands while others go on comes to rest alike.
+///
 /// Steps begin at events and see the states of their members alone, so they are the same whoever schedules.
 /// Pairs of an island are not searched for contacts while it takes a step: the step keeps their gaps.
 
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -19,6 +23,7 @@
 #include "brink/scheduler/kernel/island_motion.h"
 #include "brink/scheduler/kernel/near_pairs.h"
 #include "brink/scheduler/kernel/records.h"
+#include "brink/scheduler/kernel/rest_check.h"
 
 namespace brink {
 
@@ -77,19 +82,44 @@ class Islands {
   void restore(const Saved& saved);
 
  private:
+  /// A step that is looked for.
+  struct Attempt {
+    std::set<int> members = {};
+    double longest = std::numeric_limits<double>::infinity();  ///< [s]
+    std::set<int> roused = {};        ///< of many at rest: these join, and no others for them
+    std::set<int> were_at_rest = {};  ///< all of those so far
+    bool leans = true;                ///< false: whoever is near joins
+    std::set<int> supports = {};      ///< at rest, and near
+    IslandPace pace = {};
+    WarmContacts warm = {};  ///< of all who were taken out of islands for it
+  };
+
   void gather(int body, std::set<int>& members) const;
+  void gather_or_rouse(int body, Attempt& attempt) const;
   double slides_off_in(const PairKey& pair, const FeatureContact& f) const;
   double larger_step_end(int body, std::size_t than) const;
-  IslandMotion set_out(std::set<int>& members, IslandPace& pace, double& longest);
+  IslandMotion set_out(Attempt& attempt);
   bool follow_sites(double now, double h);
   double steady_for(const std::set<int>& members, double now);
   void tell_at(double limit, const PairKey& pair, const FeatureContact& contact);
-  bool begin_step(std::set<int> members, double longest, std::vector<int>& changed,
-                  const StepCause& cause = {});
-  bool carry_out_step(std::set<int> members, double longest, std::vector<int>& changed,
-                      const StepCause& cause);
+  bool begin_step(Attempt attempt, std::vector<int>& changed, const StepCause& cause = {});
+  bool carry_out_step(Attempt attempt, std::vector<int>& changed, const StepCause& cause);
+  std::optional<bool> attempt_step(Attempt& attempt, std::vector<int>& changed, const StepCause& cause);
   void part(const IslandMotion& motion, bool rests, const IslandModes* modes, const IslandPace& pace,
             std::vector<int>& changed);
+
+  // -- islands at rest, and who leans on them (islands_at_rest.cpp)
+  bool stands_among_many(int body) const;
+  void rouse(Attempt& attempt);
+  void rouse(Island island, const std::set<int>& roused, Attempt& attempt);
+  bool carries(const IslandMotion& motion, Attempt& attempt);
+  bool lay_to_rest(IslandMotion& motion, bool all, Attempt& attempt);
+  Island at_rest_with(const IslandMotion& motion, const std::vector<int>& still, const Attempt& attempt,
+                      std::set<int>& with) const;
+  void enter_at_rest(Island island, const std::set<int>& with, const std::vector<int>& laid, double no_force,
+                     Attempt& attempt);
+  void lean_no_more(const std::vector<int>& bodies);
+  RestCheck rest_check();
   void tell(const IslandModes& modes, const IslandMembers& members);
   FeatureContact as_told(const HeldContact& c, const RealVec& from) const;
   void note_mode(const HeldContact& c, const RealVec& from, EventKind kind);

@@ -251,6 +251,7 @@ bool Kernel::resolve_group(const PairKey& pair, const FeatureContact& found, std
     parts_.records.event(EventKind::collision, o.pair, o.contact, o.impulse_n, o.impulse_t, o.delay, o.body,
                          o.other);
   }
+  for (const Outcome& o : group->collisions) parts_.watch.collided(o.pair);
   bool goes_on = true;  // where the run stops for now, all of them have happened
   for (const Outcome& o : group->collisions) {
     goes_on = judge(o, changed) && goes_on;
@@ -283,6 +284,7 @@ bool Kernel::tell(const Outcome& o, std::vector<int>& changed) {
     parts_.records.event(EventKind::collision, o.pair, o.contact, o.impulse_n, o.impulse_t, o.delay, o.body,
                          o.other);
   }
+  parts_.watch.collided(o.pair);
   return judge(o, changed);
 }
 
@@ -371,6 +373,7 @@ bool Kernel::step_island(std::vector<int>& changed) {
   parts_.policy_watch.going_to(time());
   const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_islands);
   roll_back_all();
+  if (!parts_.watch.step_begins(parts_.islands.all().at(parts_.islands.next_island()).contacts)) return false;
   const bool goes_on = do_or_cut(parts_.islands.takes_long(parts_.islands.next_island()),
                                  [&] { return parts_.islands.step(changed); });
   // impacts within islands are collisions, too

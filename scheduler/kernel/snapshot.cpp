@@ -13,7 +13,7 @@ namespace brink {
 namespace {
 
 /// With a newline and a zero in front of the letters: no text file begins so. The digit grows with every change of what is written.
-constexpr std::array<char, 8> kMagic{'\n', '\0', 'B', 'R', 'I', 'N', 'K', '9'};
+constexpr std::array<char, 8> kMagic{'\n', '\0', 'B', 'R', 'I', 'N', 'K', 'A'};
 
 /// Objects as they lie in memory: a snapshot is read by the program that wrote it.
 class Writer {
@@ -108,8 +108,10 @@ void write_islands(Writer& out, const Islands::Saved& islands) {
     out(i.series_contact);
     out(static_cast<std::uint64_t>(i.members.size()));
     for (const int k : i.members) out(k);
-    out(static_cast<std::uint64_t>(i.contacts.size()));
-    for (const HeldContact& c : i.contacts) out(c);
+    for (const auto* contacts : {&i.contacts, &i.leaning}) {
+      out(static_cast<std::uint64_t>(contacts->size()));
+      for (const HeldContact& c : *contacts) out(c);
+    }
   }
 }
 
@@ -158,10 +160,12 @@ void read_islands(Reader& in, const Trajectories::Saved& bodies, const World& wo
       if (!held) throw BadInput("snapshot: an island has no such body");
     }
     if (i.members.empty()) throw BadInput("snapshot: an island has no body");
-    i.contacts.resize(in.count(sizeof(HeldContact)));
-    for (HeldContact& c : i.contacts) {
-      in(c);
-      check(c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site, world);
+    for (auto* contacts : {&i.contacts, &i.leaning}) {
+      contacts->resize(in.count(sizeof(HeldContact)));
+      for (HeldContact& c : *contacts) {
+        in(c);
+        check(c.pair, c.feature.sample_on_a, c.feature.sample, c.feature.site, world);
+      }
     }
     if (i.series.body >= 0) check(i.series, world);
     islands.islands.push_back(std::move(i));

@@ -16,7 +16,7 @@ class StepPlaces {
  public:
   /// `velocity`: x, y [m/s], angle [rad/s] of each member. Both outlive it.
   StepPlaces(const IslandMembers& members, const std::vector<Vec3>& velocity)
-      : members_(&members), velocity_(&velocity), of_members_(members.count()) {}
+      : members_(&members), velocity_(&velocity), of_members_(members.bodies().size()) {}
 
   /// The gap of the contact's features so long [s] into the step [m]: IslandMembers::gap(), to the bit.
   double gap(const HeldContact& contact, double later);
@@ -31,7 +31,7 @@ class StepPlaces {
 
   const IslandMembers* members_;
   const std::vector<Vec3>* velocity_;
-  std::vector<AtMoments> of_members_;
+  std::vector<AtMoments> of_members_;            ///< and of supports
   std::unordered_map<int, AtMoments> of_sites_;  ///< by site
 };
 

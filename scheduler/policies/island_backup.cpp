@@ -84,8 +84,11 @@ class IslandBackup final : public Policy {
       if (component >= static_cast<int>(first.size())) first.resize(component + 1, k);
       islands_.unite(first[component], k);
     }
-    for (const auto& [lead, island] : kernel.islands())
+    for (const auto& [lead, island] : kernel.islands()) {
       for (const int k : island.members) islands_.unite(lead, k);
+      // who leans on one at rest may wake it
+      for (const HeldContact& c : island.leaning) islands_.unite(lead, who_leans(island, c));
+    }
   }
 
   /// Bodies of the pairs that the last pass looked at. Sites join nobody: they are not backed up.

@@ -375,6 +375,17 @@ TEST(Faults, AFailureKeepsWhatCameBeforeUnderEveryPolicy) {
   }
 }
 
+// Wires without thickness that hook into each other, whatever the frames: no frame sees two cross, and none is needed to.
+TEST(Faults, WiresInAHeapDoNotCross) {
+  for (const char* name : {"wires_hook_U", "rings_hook_corners", "wires_small_far", "rings_of_wire_settle"})
+    for (const char* interval : {"output.frame_interval=0", "output.frame_interval=0.01"}) {
+      const Watched run = watched_lasting(load_scene(fault(name), {interval}));
+      EXPECT_EQ(run.told.summary.termination, Termination::reached_end)
+          << name << ": " << run.told.summary.why;
+      for (const std::string& f : run.faults) ADD_FAILURE() << name << ": " << f;
+    }
+}
+
 // Bodies fall into an attractor until its steps are too small: all up to there is told, and told alike. (By
 // rendered passes, or with every pair, these take minutes.) At a tolerance of 1e-3 the last bits of a start decide
 // whether a step leads over the attractor of the second.

@@ -241,6 +241,20 @@ TEST_F(SweepTest, RunThatCannotStartIsARowThatSaysWhy) {
   EXPECT_THAT(second, ::testing::StartsWith("two,\"[1, 0]\",\"failed: "));
 }
 
+// A name that a spreadsheet would run is none in the table; a number below 0 is one still.
+TEST_F(SweepTest, TableHoldsNoFormulas) {
+  write("=1+2.toml", "[world]\nduration = 0.1\n[[bodies]]\ndisc = {radius = 1}\n");
+  const Experiment e = experiment("scenes = \"=1+2.toml\"\n[axes]\nbodies.0.angle = [-0.5]\n");
+  SweepStore store(dir_ / "out", e);
+  run_sweep(e, store, {});
+  write_sweep_csv(dir_ / "t.csv", e, store.results(e));
+  std::ifstream in(dir_ / "t.csv");
+  std::string line;
+  std::getline(in, line);
+  std::getline(in, line);
+  EXPECT_THAT(line, ::testing::StartsWith("'=1+2,-0.5,reached_end,"));
+}
+
 // Results made up: median and range over seeds 1, 2, 3 of the values 10, 30, 20.
 TEST_F(SweepTest, PlotShowsMedianAndRangeOverSeeds) {
   const Experiment e = experiment(

@@ -1,0 +1,59 @@
+#pragma once
+/// Whether an island at rest stays so where what leans on it changes.
+///
+/// Bodies about the change are asked, with the forces at the rim of that part held: those within a few contacts, and where
+/// these do not stay, within some more. What an island of many stands on far from the change is not asked again.
+
+#include <set>
+#include <vector>
+
+#include "brink/core/base/go_on.h"
+#include "brink/core/contacts/cone_qp.h"
+#include "brink/scheduler/kernel/collision_response.h"
+#include "brink/scheduler/kernel/contact_search.h"
+#include "brink/scheduler/kernel/island.h"
+#include "brink/scheduler/kernel/trajectories.h"
+
+namespace brink {
+
+/// Forces that contacts of islands at rest may miss Coulomb's cones by, where the friction that they had in a step was found by
+/// sweeps, which leave some hundredths of the largest force: a part of each cone.
+inline constexpr double kWidened = 1.03;
+
+class RestCheck {
+ public:
+  /// What is given must outlive it. `now`: the present time [s].
+  RestCheck(const World& world, const Trajectories& trajectories, const ContactSearch& search,
+            CollisionResponse& response, ConeQp& solver, double now, GoOn go_on);
+
+  struct Answer {
+    bool stays = false;
+    std::vector<int> near;   ///< those who are changed, and who is within a few contacts of them
+    std::vector<int> moved;  ///< where it does not: those whom the forces move most
+    double beyond = 0.0;  ///< by how much friction is beyond its cone, of the largest force, where it stays
+  };
+  /// Those bodies of the island feel other forces than its contacts balance now. Where it stays, its contacts have the forces that
+  /// hold it, as means over `h` [s]; else they are as before. Cost: a problem of rest of some hundred bodies at most, unless
+  /// as many are changed.
+  Answer ask(Island& island, const std::vector<int>& changed, double h) const;
+
+  /// Bodies of the island on which what leans on it presses otherwise in `leaning` than in island.leaning, by more than nothing
+  /// beside what forces pull them by.
+  std::vector<int> differs(const Island& island, const std::vector<HeldContact>& leaning) const;
+
+ private:
+  struct Part;
+  Part part_of(const Island& island, const std::vector<int>& changed, bool all) const;
+  LastingContact rows_of(const HeldContact& c) const;
+  void press(const HeldContact& c, int body, Vec3& force) const;
+
+  const World* world_;
+  const Trajectories* trajectories_;
+  const ContactSearch* search_;
+  CollisionResponse* response_;
+  ConeQp* solver_;
+  double now_;
+  GoOn go_on_;
+};
+
+}  // namespace brink
