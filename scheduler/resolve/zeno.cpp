@@ -10,6 +10,9 @@ namespace brink {
 
 namespace {
 
+/// Of a series that shrinks the speeds shrink by this part of what the flights do, at least.
+constexpr double kSlower = 0.1;
+
 /// A flight that rose above the tolerance: the run is over.
 void end_run(ZenoWatch::Bounce& b) {
   b.low_flights = 0;
@@ -43,16 +46,19 @@ std::optional<ZenoEnding> ZenoWatch::collided(const Feature& feature, double tim
   // of the first interval nothing is known: as if it were of one length
   const double ratio = b.last_interval > 0.0 ? interval / b.last_interval : 1.0;
   b.last_interval = interval;
+  // of a series both go alike; between two that close in only the way does
+  const bool slower = closing_speed <= b.last_closing * (1.0 - kSlower * (1.0 - std::min(ratio, 1.0)));
+  b.last_closing = closing_speed;
   if (0.25 * closing_speed * interval >= tolerance_) {
     end_run(b);
     return std::nullopt;
   }
   // the flights to come last interval (r + r^2 + ...) = interval r / (1 - r)
-  if (b.limit_time == 0.0 && loss != BounceLoss::all && ratio < 1.0 - kAlike)
+  if (b.limit_time == 0.0 && loss != BounceLoss::all && ratio < 1.0 - kAlike && slower)
     b.limit_time = time + interval * ratio / (1.0 - ratio);
   const bool pressed = sunk || loss == BounceLoss::all || (since_last >= interval && ratio <= 1.0 + kAlike);
   // others are low, but say nothing: they neither count nor end the run
-  if (interval < b.shortest || pressed) ++b.low_flights;
+  if ((interval < b.shortest && slower) || pressed) ++b.low_flights;
   b.shortest = std::min(b.shortest, interval);
   // a series that shrinks ends where its flights come down to roundings: what bounces on after is pressed
   const bool run_out = b.limit_time > 0.0 && b.low_flights >= kShortSeries &&

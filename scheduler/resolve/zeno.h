@@ -29,8 +29,9 @@ enum class BounceLoss { none, some, all };
 /// Watches the collisions of every pair of features. Two features are at their Zeno ending after ten low
 /// flights, of which each counts that is longer than no time at all, rose less than the contact tolerance
 /// (closing speed * duration / 4 on a parabola), and either
-///   - was shorter than all of the run before it: a series that shrinks. (In a slot hardly wider than the
-///     body flights are as low, but they grow as the speed goes), or
+///   - was shorter than all of the run before it, and ended slower as it was shorter: a series that shrinks. (In a slot hardly
+///     wider than the body flights are as low, but they grow as the speed goes; and between two that close in on it they
+///     shrink, but as fast as ever), or
 ///   - follows a collision that left nothing of the approach, or came back though neither body met anything
 ///     else, in no longer time than the last, or met below its level: the two are pressed together.
 /// A flight that is not low begins the run anew.
@@ -51,6 +52,7 @@ class ZenoWatch {
   struct Bounce {
     double last_time = 0.0;
     double last_interval = 0.0;
+    double last_closing = 0.0;                                  ///< [m/s]
     double shortest = std::numeric_limits<double>::infinity();  ///< of this run of low flights [s]
     /// Foreseen by the first of the run that shrank, where intervals are still far above rounding; 0: none.
     double limit_time = 0.0;

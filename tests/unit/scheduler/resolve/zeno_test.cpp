@@ -56,6 +56,17 @@ TEST(ZenoWatch, RattlingIsNoSeries) {
   }
 }
 
+// A light body between two heavy ones that close in on it: each way is shorter than the last, and as fast. Nothing there comes to rest.
+TEST(ZenoWatch, WhatIsClosedInOnIsNoSeries) {
+  ZenoWatch watch(1e-10);
+  double v = 19.0, t = 0.0, flight = 1e-13;
+  for (int i = 0; i < 40; ++i) {
+    ASSERT_FALSE(watch.collided(feature(i % 2, 0), t, v, BounceLoss::some, flight)) << i;
+    v *= 1.0 - 1e-6;
+    t += flight *= 0.8;
+  }
+}
+
 // Flights of one pair, by ten features in turn: each feature has had one.
 TEST(ZenoWatch, CountsByFeature) {
   ZenoWatch watch(1e-10);
