@@ -37,6 +37,12 @@ inline constexpr double kStraightJoint = 1e-9;
 /// one.
 inline constexpr double kOneSide = 1e-9;
 
+// -- rest --
+
+/// Cones of friction are so many times as wide where a step has held bodies still: the friction that it had was found by sweeps,
+/// which leave some hundredths of the largest force.
+inline constexpr double kWidened = 1.03;
+
 // -- steps at the level of velocities (island_step.h) --
 
 /// A gap that is missed by less than this part of the tolerance is not made up for: ten such misses in a row keep the

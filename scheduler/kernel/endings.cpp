@@ -51,10 +51,10 @@ void Endings::count_in_instant(const PairKey& pair, double now) {
 /// that has a limit, nor are they of one instant.
 bool Endings::crawls(const Outcome& o, double now) {
   if (o.since_last > kHardlyLater * std::abs(now)) crawling_ = 0;
-  return crawls(o.since_last > 2.0 * same_instant(now));
+  return crawls_on(o.since_last > 2.0 * same_instant(now));
 }
 
-bool Endings::crawls(bool once_more) {
+bool Endings::crawls_on(bool once_more) {
   crawling_ += once_more;
   return crawling_ > kMostCrawling;
 }
@@ -62,16 +62,16 @@ bool Endings::crawls(bool once_more) {
 /// The series of bounces first: what comes to its limit is taken over by an island, or ends the run. But where one crawls that
 /// comes to a limit over and over, islands do not pass it.
 std::optional<Ending> Endings::collided(const Outcome& o, double now, BounceLoss loss) {
-  bool crawls_on = crawls(o, now);
+  bool is_endless = crawls(o, now);
   // a bounce that ends its series is not counted: what comes of it is no collision of this instant
-  if (!o.contact.seen && !crawls_on)
+  if (!o.contact.seen && !is_endless)
     if (const auto zeno = zeno_.collided({o.pair, o.contact}, now, o.contact.closing_speed, loss,
                                          o.since_last, o.contact.sink < 0.0, o.limit)) {
-      crawls_on = crawls(o.since_last <= kHardlyLater * std::abs(now));
-      if (!crawls_on) return Ending{Ending::Kind::zeno, zeno->limit_time, zeno->bounces};
+      is_endless = crawls_on(o.since_last <= kHardlyLater * std::abs(now));
+      if (!is_endless) return Ending{Ending::Kind::zeno, zeno->limit_time, zeno->bounces};
     }
   count_in_instant(o.pair, now);
-  if (crawls_on) return Ending{Ending::Kind::endless_group, now, crawling_};
+  if (is_endless) return Ending{Ending::Kind::endless_group, now, crawling_};
   if (in_instant_ <= kPlainInstant) return std::nullopt;
   // as many again may be taken together
   if (in_instant_ > 2 * endless()) return Ending{Ending::Kind::endless_group, now, in_instant_};

@@ -61,7 +61,8 @@ class Endings {
   std::uint64_t endless() const;
   void count_in_instant(const PairKey& pair, double now);
   bool crawls(const Outcome& o, double now);
-  bool crawls(bool once_more);  ///< one more collision that comes hardly later, or not
+  /// One more collision that comes hardly later, or not.
+  bool crawls_on(bool once_more);
 
   ZenoWatch zeno_;
   std::uint64_t max_collisions_;

@@ -11,7 +11,6 @@
 #include "brink/scheduler/islands/step_balance.h"
 #include "brink/scheduler/islands/tolerances.h"
 #include "brink/scheduler/kernel/island_joining.h"
-#include "brink/scheduler/kernel/rest_check.h"
 #include "brink/scheduler/kernel/step_places.h"
 
 namespace brink {

@@ -375,7 +375,8 @@ std::optional<bool> Islands::attempt_step(Attempt& attempt, std::vector<int>& ch
   }
   if (!carries(motion, attempt)) return run_->is_cut() ? std::optional(give_up()) : again();
   // at rest they are laid beside those whom they touch
-  const bool laid = attempt.leans && !by_modes && (leans || !rests) && lay_to_rest(motion, rests, attempt);
+  const bool laid = attempt.leans && !by_modes && (leans || !rests) && std::isfinite(h) &&
+                    lay_to_rest(motion, rests, attempt);
   if (run_->is_cut()) return give_up();
   if (rests && leans && !laid) return wake_all();
   ++tally_.steps;

@@ -235,6 +235,7 @@ void Islands::enter_at_rest(Island island, const std::set<int>& with, const std:
 
 /// Who is let go leans on nobody.
 void Islands::lean_no_more(const std::vector<int>& bodies) {
+  if (bodies.empty()) return;
   const std::set<int> free(bodies.begin(), bodies.end());
   for (auto& [lead, island] : islands_)
     std::erase_if(island.leaning,

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "brink/core/base/limits.h"
+#include "brink/scheduler/islands/tolerances.h"
 
 namespace brink {
 

@@ -1,10 +1,9 @@
 #pragma once
 /// Whether an island at rest stays so where what leans on it changes.
 ///
-/// Bodies about the change are asked, with the forces at the rim of that part held: those within a few contacts, and where
-/// these do not stay, within some more. What an island of many stands on far from the change is not asked again.
+/// A part of it is asked first, with the forces at its rim held: who is within a few contacts of the change, and what these stand
+/// on, down to sites. Where that does not stay, all are.
 
-#include <set>
 #include <vector>
 
 #include "brink/core/base/go_on.h"
@@ -15,10 +14,6 @@
 #include "brink/scheduler/kernel/trajectories.h"
 
 namespace brink {
-
-/// Forces that contacts of islands at rest may miss Coulomb's cones by, where the friction that they had in a step was found by
-/// sweeps, which leave some hundredths of the largest force: a part of each cone.
-inline constexpr double kWidened = 1.03;
 
 class RestCheck {
  public:
@@ -33,8 +28,8 @@ class RestCheck {
     double beyond = 0.0;  ///< by how much friction is beyond its cone, of the largest force, where it stays
   };
   /// Those bodies of the island feel other forces than its contacts balance now. Where it stays, its contacts have the forces that
-  /// hold it, as means over `h` [s]; else they are as before. Cost: a problem of rest of some hundred bodies at most, unless
-  /// as many are changed.
+  /// hold it, as means over `h` [s]; else they are as before. Cost: a problem of rest of that part, which a step of as many
+  /// costs some times, and where it does not stay one of all; each twice where friction does not do.
   Answer ask(Island& island, const std::vector<int>& changed, double h) const;
 
   /// Bodies of the island on which what leans on it presses otherwise in `leaning` than in island.leaning, by more than nothing
