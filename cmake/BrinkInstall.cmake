@@ -5,10 +5,10 @@ get_property(rooms GLOBAL PROPERTY BRINK_ROOMS)
 install(TARGETS ${rooms} EXPORT brinkTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 # What a program may include: these, and what they include in turn. No other header is installed.
-set(pending core/base/error.h core/base/random.h core/query/cast_ray.h core/query/closest_point.h
+set(pending core/base/error.h core/base/random.h core/query/cast_outline.h core/query/cast_ray.h core/query/closest_point.h
   core/query/outline_gap.h core/shapes/shapes.h core/shapes/svg_path.h core/world/forces.h
   core/world/make_body.h scheduler/policies/order.h scheduler/policies/policy.h scheduler/simulator/simulator.h
-  scenes/draw/draw.h scenes/run_file/run_scene.h scenes/scene/scene.h scenes/view/replay_page.h)
+  scenes/draw/draw.h scenes/run_file/run_file.h scenes/run_file/run_scene.h scenes/scene/scene.h scenes/view/replay_page.h)
 set(headers)
 while(pending)
   list(POP_FRONT pending header)

@@ -29,8 +29,9 @@ struct FieldAnswer {
   int site = -1;                ///< nearest site (lowest index on ties)
   Vec2 closest = Vec2::Zero();  ///< nearest point of the core
   Vec2 normal = Vec2::Zero();   ///< unit, out of the outline
-  double runner_up =
-      0.0;  ///< unsigned distance, radius subtracted, of the second nearest site (infinite if none)
+  /// No other site is nearer [m]: the unsigned distance, radius subtracted, of the second nearest, or less where that is
+  /// beyond what the field has looked at. Infinite if there is none.
+  double runner_up = 0.0;
 };
 
 /// Finds candidates in one outline. Immutable after construction, so any number of threads may ask; each

@@ -115,11 +115,13 @@ double soonest_at_wall(const DiscMover& disc, const StraightWall& wall, const Se
   const StraightWay way(*disc.motion);
   const Above above(way, disc.velocity_rounding, wall);
   const double reach = wall.radius + disc.radius;
-  // deep in the wall nobody knows on which side it is
-  if (!(above.height > 0.5 * reach)) return begin;
-  if (above.closing < -16.0 * above.noise) return kForever;
   const double far = std::abs(way.x) + std::abs(way.y) + 2.0 * wall.size;
-  const double apart = above.height - reach - limits.tolerance - wall.place_noise - 64.0 * kRoundoff * far;
+  const double near = limits.tolerance + wall.place_noise + 64.0 * kRoundoff * far;
+  // Who is over the line by less than it reaches is in the wall, or beyond an end, to which it may come though it goes away from
+  // the line. What touches may have sunk by as much as nothing tells.
+  if (!(above.height - reach > -near)) return begin;
+  if (above.closing < -16.0 * above.noise) return kForever;
+  const double apart = above.height - reach - near;
   return apart > 0.0 && above.closing > 16.0 * above.noise ? begin + apart / above.closing * kLessByRoundings
                                                            : begin;
 }

@@ -770,7 +770,9 @@ double through_corner(const Half& half, const Sample& sample, const Site& site, 
       Site there = s;
       there.a = from;
       there.b = to;
-      back = std::min({back, distance_to(o, q), distance_to(there, corner)});
+      // by whichever end: two that lie along each other may cross at the far ones, by a rounding
+      back = std::min(
+          {back, distance_to(o, from), distance_to(o, to), distance_to(there, o.a), distance_to(there, o.b)});
     }
   }
   if (!through) return 0.0;

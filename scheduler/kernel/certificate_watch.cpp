@@ -107,9 +107,10 @@ std::vector<Contact> CertificateWatch::overlaps(std::size_t most) {
 std::string CertificateWatch::start_fault() {
   const double allowed = kStartOverlap * world_->length();
   const std::vector<Contact> found = overlaps(kOverlapsCounted);
-  // what the run starts with it may keep (allowed())
-  if (!found.empty()) start_overlap_ = -found.front().gap;
-  if (found.empty() || found.front().gap >= -allowed) return {};
+  const bool can_start = found.empty() || found.front().gap >= -allowed;
+  // what the run starts with it may keep (allowed()); what somebody has put in somebody since it may not
+  if (run_->time() == 0.0) start_overlap_ = !found.empty() && can_start ? -found.front().gap : 0.0;
+  if (can_start) return {};
   const Contact& c = found.front();
   const std::string& other =
       c.other_body >= 0 ? world_->bodies[c.other_body].name : world_->sites[c.other_site].name;

@@ -73,6 +73,8 @@ constexpr double kAtOnce = 1.0 / 32.0;
 constexpr int kLooksBack = 6;
 /// A speed below this part of what the smallest member gains as it falls by its size is none.
 constexpr double kNoSpeed = 1e-7;
+/// Contact tolerances that a sharp sample may be beyond a wire while a run goes on, unless it was so from its start.
+constexpr double kSunkInRun = 4.0;
 /// Two normals whose cosine is off one by no more are one, and a pull along a normal below this part of the largest is none.
 constexpr double kOneLine = 1e-9;
 
@@ -121,7 +123,7 @@ std::vector<int> IslandMotion::joining(const World& world, Trajectories& traject
 /// What a step absorbs is found anew with them.
 void IslandMotion::list(double reach) {
   contacts_ = members_.contacts(reach, go_on_);
-  for (HeldContact& c : contacts_) remember_side(c);
+  remember_sides(0);
   // what an arc may roll to counts along a step alone: until then its end tells all
   std::erase_if(contacts_, [&](const HeldContact& c) {
     return (c.feature.beside_arc && reach >= 0.0) || (c.feature.goes_on && reach >= 0.0);
@@ -129,28 +131,72 @@ void IslandMotion::list(double reach) {
   absorbed_ = 0.0;
 }
 
-/// Where roundings could tell either side of a wire, it is the one on which the step before had the contact.
-void IslandMotion::remember_side(HeldContact& c) const {
+/// Of contacts from that place on. What nothing tells of one is as with the pair's other contacts whose lines are parallel to its own:
+/// two that come to lie flush along some lines are on one side of each other. (Who fits between two lines to a rounding has
+/// contacts to either side.) Where nothing tells any of them, places do, by however little: so that they do not contradict
+/// each other, as tips that slide against each other on one floor would.
+void IslandMotion::remember_sides(std::size_t first) {
+  std::vector<char> told(contacts_.size(), 1);
+  for (std::size_t k = first; k < contacts_.size(); ++k) told[k] = remember_side(contacts_[k]);
+  for (std::size_t k = first; k < contacts_.size(); ++k) {
+    if (told[k]) continue;
+    const Parallel known = parallel_to(contacts_[k], told, true);
+    const Parallel others = parallel_to(contacts_[k], told, false);
+    const bool any = known.alike + known.opposite > 0;
+    if (any ? known.alike == 0 : others.opposite > 0 && others.gaps < 0.0) turn_over(contacts_[k].feature);
+    told[k] = 1;
+  }
+}
+
+/// Those of the pair that are as near to a wire, along lines parallel to that of c, and of which it is told, or not. Cost: a look at
+/// all contacts.
+IslandMotion::Parallel IslandMotion::parallel_to(const HeldContact& c, const std::vector<char>& told,
+                                                 bool known) const {
+  const double near = kSunkOfRadius * members_.bounding_radius(members_.place_of(c.pair.body));
+  Parallel found;
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const NearFeature& f = contacts_[k].feature;
+    const bool is_asked = (told[k] != 0) == known && contacts_[k].pair == c.pair && f.thin && !f.at_end;
+    if (!is_asked || !(std::abs(f.gap) < near)) continue;
+    const double along = f.normal.dot(c.feature.normal);
+    if (std::abs(along) < 1.0 - kOneLine) continue;
+    ++(along > 0.0 ? found.alike : found.opposite);
+    found.gaps += along > 0.0 ? f.gap : -f.gap;
+  }
+  return found;
+}
+
+void IslandMotion::turn_over(NearFeature& f) {
+  f.normal = -f.normal;
+  f.gap = -f.gap;
+}
+
+/// Where roundings could tell either side of a wire, it is the one on which the step before had the contact. False: nothing tells
+/// surely which it is.
+bool IslandMotion::remember_side(HeldContact& c) const {
   const Outline& carrier =
       search_->outline_of(c.feature.sample_on_a ? c.pair.body : search_->other_owner(c.pair));
   NearFeature& f = c.feature;
   // upon a corner edges tell it, whichever side of the line of a piece it was on before it came there
   if (!f.thin || f.upon_corner || (f.at_end && !f.goes_on) ||
       !(std::abs(f.gap) < kSunkOfRadius * carrier.bounding_radius))
-    return;
+    return true;
   const HeldContact* known = f.at_end ? nullptr : warm_.find(c);
-  const bool turn = known != nullptr && !known->feature.at_end
-                        ? known->feature.normal.dot(f.normal) < 0.0
-                        : f.side_told != SideTold::surely && is_elsewhere(c);
-  if (!turn) return;
-  f.normal = -f.normal;
-  f.gap = -f.gap;
+  std::optional<bool> turn;
+  if (known != nullptr && !known->feature.at_end)
+    turn = known->feature.normal.dot(f.normal) < 0.0;
+  else
+    turn = f.side_told == SideTold::surely ? false : is_elsewhere(c);
+  // no step leaves anybody so deep: it is where it is
+  if (!turn && std::abs(f.gap) > kSunkInRun * search_->limits().tolerance) turn = f.gap < 0.0;
+  if (turn.value_or(false)) turn_over(f);
+  return turn.has_value();
 }
 
 /// Of a wire of which no place of the other surely tells on which side it is: true if that is the other one. Where a run begins it is
 /// what is told at all, or the side to which forces press. Later, who was on one side with another contact along that line
 /// has not changed it, nor who has just met it: of the same pair, or else with a site that may go on from this one.
-bool IslandMotion::is_elsewhere(const HeldContact& c) const {
+std::optional<bool> IslandMotion::is_elsewhere(const HeldContact& c) const {
   const Vec2& n = c.feature.normal;
   if (run_begins_ && c.feature.side_told == SideTold::hardly) return false;
   if (run_begins_) {
@@ -179,7 +225,7 @@ bool IslandMotion::is_elsewhere(const HeldContact& c) const {
         return met.normal.dot(n) < 0.0;
     }
   }
-  return false;
+  return std::nullopt;
 }
 
 void IslandMotion::expect_sides(const StepCause& cause) {
@@ -208,12 +254,12 @@ void IslandMotion::list_farther(const std::vector<Vec3>& velocity) {
   if (std::find(far.begin(), far.end(), 1) == far.end()) return;
   std::set<ContactKey> listed;
   for (const HeldContact& c : contacts_) listed.insert(c.key());
-  for (HeldContact c : members_.contacts_of(far, go_on_)) {
-    if (!listed.insert(c.key()).second) continue;
-    remember_side(c);
-    contacts_.push_back(c);
-    problem_.contacts.push_back(island_contact(c));
-  }
+  const std::size_t known = contacts_.size();
+  for (const HeldContact& c : members_.contacts_of(far, go_on_))
+    if (listed.insert(c.key()).second) contacts_.push_back(c);
+  remember_sides(known);
+  for (std::size_t k = known; k < contacts_.size(); ++k)
+    problem_.contacts.push_back(island_contact(contacts_[k]));
 }
 
 /// Of each member now, as the step's problem has them: x, y [m/s], angle [rad/s].

@@ -108,9 +108,17 @@ class IslandMotion {
     double time = std::numeric_limits<double>::infinity();  ///< from now [s]
     double closing = 0.0;                                   ///< then, or a little before [m/s]
   };
+  /// Contacts of a pair whose lines are parallel to that of one of them.
+  struct Parallel {
+    int alike = 0, opposite = 0;  ///< by their normals
+    double gaps = 0.0;            ///< the sum, to its side [m]
+  };
   void list(double reach);
-  void remember_side(HeldContact& c) const;
-  bool is_elsewhere(const HeldContact& c) const;
+  void remember_sides(std::size_t first);
+  bool remember_side(HeldContact& c) const;
+  Parallel parallel_to(const HeldContact& c, const std::vector<char>& told, bool known) const;
+  static void turn_over(NearFeature& f);
+  std::optional<bool> is_elsewhere(const HeldContact& c) const;
   bool is_on_line(const HeldContact& c, const Vec2& point, const Vec2& normal) const;
   void list_farther(const std::vector<Vec3>& velocity);
   bool touches(const HeldContact& c) const;

@@ -157,9 +157,11 @@ bool Islands::lay_to_rest(IslandMotion& motion, bool all, Attempt& attempt) {
   std::size_t at_rest = 0;
   for (const auto& [lead, other] : islands_)
     if (other.rests && any_of(attempt.supports, other)) at_rest += other.members.size();
+  bool asked = false;
   for (int tries = 0; tries < kTries && !run_->is_cut(); ++tries) {
     const std::size_t move = members.count() - still.size(), stand = at_rest + still.size();
     if (still.empty() || stand <= kFewMembers || stand < kOneOf * move) break;
+    asked = true;
     motion.put_to_rest(still);
     std::set<int> with;
     Island island = at_rest_with(motion, still, attempt, with);
@@ -179,7 +181,7 @@ bool Islands::lay_to_rest(IslandMotion& motion, bool all, Attempt& attempt) {
     });
   }
   motion.wake_again();
-  if (!still.empty()) pace.waits = 1 << std::min(pace.in_vain++, kMostWaits);
+  if (asked) pace.waits = 1 << std::min(pace.in_vain++, kMostWaits);
   return false;
 }
 

@@ -210,6 +210,8 @@ void RunKernel::apply_impulse(int k, const Vec2& impulse, const Vec2& point) {
   const RealVec p = impulse.cast<Real>(), arm = point.cast<Real>() - s.position;
   s.twist.velocity += RealVec(b.inverse_mass_x() * p.x(), b.inverse_mass_y() * p.y());
   s.twist.omega += b.inverse_inertia() * extended::cross(arm, p);
+  if (const Twist v = s.twist.rounded(); !v.velocity.allFinite() || !std::isfinite(v.omega))
+    throw BadInput(fmt::format("apply_impulse to '{}': it would be too fast for a number", b.name));
   go_on_from(k, s);
 }
 

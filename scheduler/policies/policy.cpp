@@ -105,7 +105,9 @@ std::unique_ptr<Policy> make_policy(std::string_view name, std::string_view dete
   if (!make) throw BadInput(fmt::format("policy \"{}\" is not known; see policies()", name));
   // the name was looked up all the same: one that is unknown fails with any detector
   if (detector == "depth") return name == "fixed_step" ? make_classic_fixed_step() : make_classic_backup();
-  return make();
+  std::unique_ptr<Policy> policy = make();
+  if (!policy) throw BadInput(fmt::format("policy \"{}\": its maker made none", name));
+  return policy;
 }
 
 }  // namespace brink

@@ -16,6 +16,22 @@
 
 namespace brink {
 
+namespace {
+
+/// Raises a flag for as long as it lives.
+class Raised {
+ public:
+  explicit Raised(bool& flag) : flag_(flag) { flag_ = true; }
+  ~Raised() { flag_ = false; }
+  Raised(const Raised&) = delete;
+  Raised& operator=(const Raised&) = delete;
+
+ private:
+  bool& flag_;
+};
+
+}  // namespace
+
 /// A policy is made for the kernel that it drives, and prepared before contacts may last: it says whether it takes
 /// the steps of islands.
 struct Simulator::Impl {
@@ -31,9 +47,21 @@ struct Simulator::Impl {
     kernel.hold_to_certificates();
     if (is_added_policy(options.policy)) kernel.hold_to_known_contacts();
   }
+  /// @throws BadInput if there is no such body, or site.
+  void require(const char* what, int k, std::size_t count) const {
+    if (k < 0 || static_cast<std::size_t>(k) >= count)
+      throw BadInput(fmt::format("there is no {} {}: the world has {}", what, k, count));
+  }
+  void require_body(int k) const { require("body", k, kernel.world().bodies.size()); }
+  /// @throws BadInput while a run is going on, as where a recorder asks.
+  void require_between_runs(const char* what) const {
+    if (runs) throw BadInput(fmt::format("{}: a run of this simulator is going on", what));
+  }
+
   RunKernel kernel;
   std::unique_ptr<Policy> policy;
   double energy_initial = 0.0;
+  bool runs = false;  ///< a run is going on
 };
 
 Simulator::Simulator(World world, SolverOptions options)
@@ -53,6 +81,8 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
         fmt::format("until = {} must be finite and >= the present time {}", options.until, time()));
   if (!(options.frame_interval >= 0.0))
     throw BadInput(fmt::format("frame_interval = {} must be >= 0", options.frame_interval));
+  impl_->require_between_runs("run");
+  const Raised going_on(impl_->runs);
   RunKernel& kernel = impl_->kernel;
   // At the start alone: a policy that may miss contacts can stand in overlaps later on.
   if (time() == 0.0)
@@ -118,9 +148,15 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
 
 double Simulator::time() const { return impl_->kernel.time(); }
 const World& Simulator::world() const { return impl_->kernel.world(); }
-BodyState Simulator::state(int k) const { return impl_->kernel.state(k, time()); }
+BodyState Simulator::state(int k) const {
+  impl_->require_body(k);
+  return impl_->kernel.state(k, time());
+}
 std::vector<BodyState> Simulator::states() const { return impl_->kernel.states(time()); }
-Pose Simulator::site_pose(int k) const { return impl_->kernel.site_pose(k, time()); }
+Pose Simulator::site_pose(int k) const {
+  impl_->require("site", k, world().sites.size());
+  return impl_->kernel.site_pose(k, time());
+}
 
 /// Over bits: two runs with one hash have come to the same states, to the last digit.
 std::uint64_t Simulator::state_hash() const {
@@ -133,10 +169,17 @@ std::uint64_t Simulator::state_hash() const {
 std::string Simulator::start_fault() const { return impl_->kernel.start_fault(); }
 
 void Simulator::set_pair_filter(std::function<bool(int a, int b)> filter) {
+  impl_->require_between_runs("set_pair_filter");
   impl_->kernel.set_pair_filter(std::move(filter));
 }
-void Simulator::set_state(int k, const BodyState& state) { impl_->kernel.set_state(k, state); }
+void Simulator::set_state(int k, const BodyState& state) {
+  impl_->require_between_runs("set_state");
+  impl_->require_body(k);
+  impl_->kernel.set_state(k, state);
+}
 void Simulator::apply_impulse(int k, const Vec2& impulse, const Vec2& point) {
+  impl_->require_between_runs("apply_impulse");
+  impl_->require_body(k);
   impl_->kernel.apply_impulse(k, impulse, point);
 }
 
@@ -156,6 +199,9 @@ RunSummary Simulator::step_to_next_event(RunOptions options, Recorder* recorder)
 std::vector<Contact> Simulator::overlaps(std::size_t most) const { return impl_->kernel.overlaps(most); }
 Plan Simulator::plan() const { return make_plan(impl_->kernel, impl_->policy->plan()); }
 std::vector<std::byte> Simulator::snapshot() const { return impl_->kernel.snapshot(); }
-void Simulator::restore(std::span<const std::byte> snapshot) { impl_->kernel.restore(snapshot); }
+void Simulator::restore(std::span<const std::byte> snapshot) {
+  impl_->require_between_runs("restore");
+  impl_->kernel.restore(snapshot);
+}
 
 }  // namespace brink

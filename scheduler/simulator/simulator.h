@@ -24,13 +24,14 @@ class Simulator {
   Simulator& operator=(Simulator&&) noexcept;
 
   /// Runs on to options.until, telling `recorder` (may be null). May be called again to go further.
-  /// @throws BadInput if `until` lies in the past, or if at t = 0 bodies overlap by more than 1e-6 of the
-  /// scene's length (naming the deepest pair).
+  /// @throws BadInput (brink/core/base/error.h) if `until` lies in the past, if at t = 0 bodies overlap by more than 1e-6 of
+  /// the scene's length (naming the deepest pair), or if a run is going on already. What a recorder or a policy throws
+  /// comes out of it: after that restore() is the only way to go on.
   RunSummary run(const RunOptions& options, Recorder* recorder = nullptr);
 
   double time() const;
   const World& world() const;
-  /// State of body k at the present time.
+  /// State of body k at the present time. @throws BadInput if there is no such body; so do those below that name one.
   BodyState state(int k) const;
   std::vector<BodyState> states() const;
   /// Pose of fixed site k at the present time (constant unless the site moves).
@@ -51,12 +52,12 @@ class Simulator {
   /// @throws BadInput with detector "depth", which sees everybody.
   void set_pair_filter(std::function<bool(int a, int b)> filter);
 
-  // -- at the present time, between runs --
+  // -- at the present time, between runs: @throws BadInput from within one --
   /// Body k goes on from this state. @throws BadInput if a number of it is not finite, or it moves along what
   /// is locked.
   void set_state(int k, const BodyState& state);
   /// Gives body k an impulse [N s] at a point of the world [m]; what is locked stays. @throws BadInput if a
-  /// number is not finite.
+  /// number is not finite, or what it moves would not be.
   void apply_impulse(int k, const Vec2& impulse, const Vec2& point);
   /// Runs to the next collision, or to options.until if there is none before; the summary's `stopped` says
   /// that one was met. The present time is then that of the collision, which has been resolved.
@@ -64,7 +65,8 @@ class Simulator {
 
   /// Everything needed to go on with the same bits.
   std::vector<std::byte> snapshot() const;
-  /// @throws BadInput if the bytes are not a snapshot of this world and options.
+  /// @throws BadInput if the bytes are not a snapshot of this world and options. Bytes that were damaged are not always told:
+  /// a run file seals them with a checksum.
   void restore(std::span<const std::byte> snapshot);
 
  private:

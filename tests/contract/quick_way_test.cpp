@@ -3,6 +3,9 @@
 // another policy asks for.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "brink/core/base/random.h"
 #include "brink/scheduler/simulator/simulator.h"
 #include "tests/support/gases.h"
@@ -106,6 +109,26 @@ World in_a_triangle(double restitution) {
   for (int k = 0; k < 3; ++k)
     testing::add(world, testing::site(make_segment(corners[k], corners[(k + 1) % 3], 0.1 * k)));
   return uneven(world, restitution);
+}
+
+/// With fins among them, whose tips discs come to beside the fins' lines.
+World among_fins(double restitution) {
+  World world = in_a_triangle(restitution);
+  Random random(23);
+  for (int k = 0; k < 12; ++k) {
+    const Vec2 at(random.uniform(-5.0, 5.0), -4.0 + random.uniform(0.0, 5.0));
+    const double turn = random.uniform(0.0, 7.0);
+    const Vec2 way = 0.15 * Vec2(std::cos(turn), std::sin(turn));
+    if (std::none_of(world.bodies.begin(), world.bodies.end(),
+                     [&](const Body& b) { return (b.initial.pose.position - at).norm() < 0.7; }))
+      testing::add(world, testing::site(make_segment(at - way, at + way, 0.02 * (k % 2))));
+  }
+  return world;
+}
+
+TEST(QuickWay, AmongFinsGivesTheBitsOfTheCommonWay) {
+  expect_same_ends(among_fins(1.0), 120.0, 0.3);
+  expect_same_ends(among_fins(0.99), 200.0, 0.3);
 }
 
 TEST(QuickWay, AtWallsGivesTheBitsOfTheCommonWay) {

@@ -64,6 +64,36 @@ TEST(StraightWall, IsMetAtTheGeneralSearchsTime) {
   EXPECT_GT(told, met * 8 / 10);
 }
 
+// Discs beside the wall's line, spanning it beyond an end, that go along it or away from it: where the end lies ahead it is met.
+TEST(StraightWall, IsNotMetBeforeTheSoonest) {
+  SeededRandom r(32);
+  SearchLimits limits;
+  SearchScratch scratch;
+  WorkCounters work;
+  int met = 0, never = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const double turn = r.uniform(0.0, 7.0), radius = r.uniform(0.2, 0.8), half = r.uniform(0.1, 2.0);
+    const Vec2 along(std::cos(turn), std::sin(turn));
+    const Flier wall(make_segment(-half * along, half * along, k % 3 ? 0.0 : 0.1),
+                     Motion::still({{r.uniform(-3.0, 3.0), r.uniform(-3.0, 3.0)}, 0.0}));
+    const double reach = radius + (k % 3 ? 0.0 : 0.1);
+    const Vec2 place = wall.motion.start().pose.position + (half + reach * r.uniform(1.0, 3.0)) * along +
+                       reach * r.uniform(-1.2, 1.2) * perp(along);
+    const Vec2 velocity = r.uniform(0.1, 5.0) * (r.uniform(-0.4, 0.4) * perp(along) - along);
+    const Flier disc(make_disc(radius), Motion::ballistic(0.0, {{place, 0.0}, {velocity, 0.0}}, {}));
+    const auto straight = StraightWall::of(wall.mover().outline(), wall.motion);
+    ASSERT_TRUE(straight);
+    const double soonest = soonest_at_wall({&disc.motion, radius, 0.0}, *straight, limits);
+    never += soonest == kForever;
+    const PairAnswer slow = first_contact(disc.mover(), wall.mover(), 0.0, 20.0, limits, scratch, work);
+    if (slow.status != PairAnswer::Status::contact) continue;
+    ++met;
+    ASSERT_LE(soonest, slow.contact.time) << "case " << k;
+  }
+  EXPECT_GT(met, 8000);
+  EXPECT_GT(never, 500);
+}
+
 TEST(StraightWall, IsOneSegmentThatStandsStill) {
   const Motion still = Motion::still({});
   EXPECT_TRUE(StraightWall::of(make_segment({0.0, 0.0}, {1.0, 0.0}).outline, still));

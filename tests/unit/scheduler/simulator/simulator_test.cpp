@@ -108,6 +108,74 @@ TEST(Simulator, OverlapAtTheStartIsRefusedByName) {
   EXPECT_THROW(simulator.run(testing::until(1.0)), BadInput);
 }
 
+// A question changes nothing: what somebody has put into somebody else in the middle of a run is told, asked for before or not.
+TEST(Simulator, OverlapThatIsAskedForInTheMiddleIsToldAllTheSame) {
+  for (const int asked : {0, 1, 2, 3}) {
+    World world;
+    add(world, body(make_disc(0.5), {0.0, 0.0}, {0.1, 0.0}));
+    add(world, body(make_disc(0.5), {3.0, 0.0}, {-0.1, 0.0}));
+    Simulator simulator(world, {});
+    simulator.run(until(0.1));
+    simulator.set_state(0, {{{2.3, 0.0}, 0.0}, {}});
+    if (asked == 1) {
+      EXPECT_NE(simulator.start_fault(), "");
+    }
+    if (asked == 2) {
+      EXPECT_EQ(simulator.overlaps().size(), 1U);
+    }
+    if (asked == 3) simulator.plan();
+    const RunSummary s = simulator.run(until(1.0));
+    EXPECT_EQ(s.termination, Termination::failed) << asked;
+    EXPECT_NE(s.why.find("overlaps"), std::string::npos) << asked << ": " << s.why;
+    EXPECT_GT(s.max_overlap, 0.2) << asked;
+  }
+}
+
+TEST(Simulator, BodiesAndSitesThatThereAreNotAreRefused) {
+  World world;
+  add(world, body(make_disc(0.5), {0.0, 0.0}, {0.1, 0.0}));
+  Simulator simulator(world, {});
+  for (const int k : {-1, 1, 99}) {
+    EXPECT_THROW(simulator.state(k), BadInput) << k;
+    EXPECT_THROW(simulator.set_state(k, {}), BadInput) << k;
+    EXPECT_THROW(simulator.apply_impulse(k, {1.0, 0.0}, {0.0, 0.0}), BadInput) << k;
+    EXPECT_THROW(simulator.site_pose(k), BadInput) << k;
+  }
+  EXPECT_THROW(simulator.site_pose(0), BadInput);
+  const std::uint64_t before = simulator.state_hash();
+  EXPECT_THROW(simulator.apply_impulse(0, {1e308, 1e308}, {1e308, 0.0}), BadInput);
+  EXPECT_EQ(simulator.state_hash(), before);
+  EXPECT_EQ(simulator.run(until(1.0)).termination, Termination::reached_end);
+}
+
+/// Asks the simulator for what only goes between runs, at the first collision.
+class Meddler : public Recorder {
+ public:
+  explicit Meddler(Simulator& simulator) : simulator_(&simulator) {}
+  void event(const Event&) override {
+    EXPECT_THROW(simulator_->run(until(9.0)), BadInput);
+    EXPECT_THROW(simulator_->set_state(0, simulator_->state(0)), BadInput);
+    EXPECT_THROW(simulator_->apply_impulse(0, {1.0, 0.0}, {0.0, 0.0}), BadInput);
+    EXPECT_THROW(simulator_->restore(simulator_->snapshot()), BadInput);
+    EXPECT_THROW(simulator_->set_pair_filter({}), BadInput);
+    ++events;
+  }
+  int events = 0;
+
+ private:
+  Simulator* simulator_;
+};
+
+TEST(Simulator, WhatGoesBetweenRunsIsRefusedWithinOne) {
+  Simulator plain(crowd(3), {}), meddled(crowd(3), {});
+  Meddler meddler(meddled);
+  plain.run(until(2.0));
+  meddled.run(until(2.0), &meddler);
+  EXPECT_GT(meddler.events, 3);
+  EXPECT_EQ(meddled.state_hash(), plain.state_hash());
+  meddled.set_state(0, meddled.state(0));  // and afterwards it goes again
+}
+
 TEST(Simulator, WorldWithoutBodiesReachesItsEnd) {
   World world;
   add(world, site(make_segment({0, 0}, {1, 0})));
