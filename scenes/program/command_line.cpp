@@ -36,6 +36,10 @@ void add_run(CLI::App& program, int& status) {
       ->allow_extra_args(false);
   command->add_option("--until", arguments->until, "Run up to this time [s] instead of the scene's duration")
       ->type_name("T");
+  command
+      ->add_option("--threads", arguments->threads,
+                   "Threads that work for the run, with the same bits whatever their number (1)")
+      ->type_name("N");
   command->add_flag(
       "--resume", arguments->resume,
       "Go on with the run file that is there, with the same bits; needs the same scene and options");

@@ -20,6 +20,7 @@ struct RunArguments {
   std::string scene, out, trace;
   std::vector<std::string> overrides;
   std::optional<double> until;
+  int threads = 1;
   bool resume = false, quiet = false, json = false, watch = false, profile = false;
 };
 

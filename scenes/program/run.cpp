@@ -151,6 +151,7 @@ int run_command(const RunArguments& arguments) {
   request.until = arguments.until;
   request.trace = arguments.trace;
   request.resume = arguments.resume;
+  request.threads = arguments.threads;
   request.begins = stop_on_signals;  // a signal before that ends the program at once: nothing is lost
   request.load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   // Before the run: the address can be opened from its first moment.

@@ -34,8 +34,11 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// The limits of `duration`, and those of the frames, for a time given on the command line.
+/// The limits of `duration`, and those of the frames, for a time given on the command line; and those of the threads.
 double end_of(const Scene& scene, const RunRequest& request) {
+  if (request.threads < 1 || request.threads > RunOptions::kMostThreads)
+    throw BadInput(fmt::format("--threads {}: out of range; allowed: 1 to {}", request.threads,
+                               RunOptions::kMostThreads));
   if (!request.until) return scene.duration;
   const auto refuse = [&](const std::string& why) {
     throw SceneFaults(scene.path, {{0, 0, "--until: " + why, {}}});
@@ -114,6 +117,7 @@ RunOptions run_options(const Scene& scene, const RunRequest& request, double unt
   options.until = until;
   options.frame_interval = scene.output.frame_interval;
   options.checkpoint_seconds = request.checkpoint_seconds;
+  options.threads = request.threads;
   // A run that goes on has the frame of the checkpoint's time if the clock has one there; else that is none of its frames,
   // but where it ends there (killed after its last checkpoint).
   const std::optional<ResumePoint>& point = recorder.resume_point();

@@ -15,6 +15,7 @@ struct RunRequest {
   std::filesystem::path dir;        ///< DIR/run.db is written; made if need be
   std::optional<double> until;      ///< [s]; else the scene's duration
   bool resume = false;              ///< go on with DIR/run.db from its last checkpoint
+  int threads = 1;                  ///< as RunOptions has it; a resume may have others
   double checkpoint_seconds = 1.0;  ///< as RunOptions has it
   std::filesystem::path trace;      ///< write the scheduler's timeline there; empty: none
   double load_seconds = 0.0;  ///< spent on reading the scene; what run_scene itself takes to plan is added

@@ -48,6 +48,11 @@ class EventQueue {
     for (const Key* rival = rivals_.data(); rival != end; ++rival) take_earlier(second, *rival);
     return {std::bit_cast<double>(std::min(second.time, kNever)), static_cast<int>(second.body)};
   }
+  /// Calls visit(entry) of every body that is due by that time, in no order. Cost: O(log N) each.
+  template <class Visit>
+  void visit_until(double time, Visit&& visit) const {
+    visit_until(1, bits(time), visit);
+  }
   /// Changes a body's time. @pre time >= 0.
   void update(int body, double time) {
     Key first{bits(time), static_cast<std::uint64_t>(body)};
@@ -84,6 +89,14 @@ class EventQueue {
   static std::uint64_t bits(double time) { return std::bit_cast<std::uint64_t>(time + 0.0); }
   std::size_t leaf(int body) const { return leaves_ + static_cast<std::size_t>(body); }
 
+  template <class Visit>
+  void visit_until(std::size_t node, std::uint64_t time, Visit& visit) const {
+    if (nodes_[node].time > time) return;
+    if (node >= leaves_)
+      return visit(Entry{std::bit_cast<double>(nodes_[node].time), static_cast<int>(nodes_[node].body)});
+    for (std::size_t i = 4 * node; i < std::min(4 * node + 4, nodes_.size()); ++i)
+      visit_until(i, time, visit);
+  }
   /// `a` becomes b if b's time is below `limit`. Which of two is the first cannot be foreseen, and of a choice in C++
   /// compilers make a branch, or need twice the instructions.
   static void take_below(Key& a, const Key& b, std::uint64_t limit) {

@@ -161,7 +161,12 @@ std::optional<Certificate> ContactSearch::search(const PairKey& pair, const Body
   }
   WorkCounters& work = run_->work();
   const StageTimer::Sampled timed(run_->timer(), work.seconds_search, timed_);
-  PairAnswer answer = first_contact(sides.a, sides.b, from, end, limits, scratch_, work);
+  const PairAnswer* const ahead =
+      ahead_
+          ? ahead_->answer({pair, body.version, other ? other->version : 0, from, end, instalment.most_steps},
+                           instalment.needed_until, work)
+          : nullptr;
+  PairAnswer answer = ahead ? *ahead : first_contact(sides.a, sides.b, from, end, limits, scratch_, work);
   if (answer.status == PairAnswer::Status::clear) {
     if (end == to) return std::nullopt;
     answer = {PairAnswer::Status::undecided, end, {}};
@@ -180,6 +185,25 @@ std::optional<Certificate> ContactSearch::search(const PairKey& pair, const Body
     ++work.certificates_undecided;
   }
   return c;
+}
+
+void ContactSearch::let_help(Helpers* helpers) {
+  ahead_ = helpers ? std::make_unique<SearchAhead>(*helpers, limits_) : nullptr;
+}
+
+/// Not of two discs, whose closed form is found sooner than handed over, nor of motions that may grow meanwhile, or that
+/// an island's step ends.
+bool ContactSearch::expect_search(const PairKey& pair, double from, double to, int most_steps) {
+  if (!ahead_ || (outline_of(pair.body).is_point() && outline_of(other_owner(pair)).is_point())) return false;
+  const BodyTrack& body = trajectories_->body(pair.body);
+  const BodyTrack* const other = pair.with_site() ? nullptr : &trajectories_->body(pair.other_body);
+  const auto lasts = [](const BodyTrack& b) { return b.component == BodyTrack::kFree; };
+  if (!lasts(body) || (other ? !lasts(*other) : !is_on_fixed_site(pair))) return false;
+  const Sides sides(*this, pair, body, other);
+  from = std::max({from, sides.a.motion->begin(), sides.b.motion->begin()});
+  if (from > to) return false;
+  return ahead_->expect({pair, body.version, other ? other->version : 0, from, to, most_steps}, sides.a,
+                        sides.b);
 }
 
 /// Counted if it is told: else search() is asked, and counts.

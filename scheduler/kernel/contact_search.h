@@ -13,6 +13,7 @@
 #include "brink/scheduler/first_contact/closed_forms.h"
 #include "brink/scheduler/first_contact/first_contact.h"
 #include "brink/scheduler/first_contact/straight_wall.h"
+#include "brink/scheduler/kernel/search_ahead.h"
 #include "brink/scheduler/kernel/stage_clock.h"
 #include "brink/scheduler/kernel/trajectories.h"
 
@@ -79,6 +80,10 @@ class ContactSearch {
   /// `body` and `other` (null: a site).
   std::optional<Certificate> search(const PairKey& pair, const BodyTrack& body, const BodyTrack* other,
                                     double from, double to, const Instalment& instalment = {});
+  /// From now on searches that are expected may be made by these, who must end before this does; null: by nobody.
+  void let_help(Helpers* helpers);
+  /// That search will be asked for soon, of the newest motions. True if somebody may begin it meanwhile.
+  bool expect_search(const PairKey& pair, double from, double to, int most_steps);
   /// The contact of two plain discs on their newest motions, as search() tells it; false: none that is told here,
   /// ask search(). @pre in free flight, and not left_out().
   bool search_discs(const PairKey& pair, double radius, double other_radius, double from, double to,
@@ -126,6 +131,7 @@ class ContactSearch {
   FieldOptions field_;
   bool share_fields_;
   SearchScratch scratch_;
+  std::unique_ptr<SearchAhead> ahead_;  ///< null: nobody helps
   PairFilter filter_;
   std::set<PairKey> left_out_;
   unsigned timed_ = 0;  ///< searches, for one in some of them

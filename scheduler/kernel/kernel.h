@@ -62,6 +62,16 @@ class Kernel : public KernelView {
   /// Of two that an island holds until the end of its step, undecided from there on: they move otherwise then.
   std::optional<Certificate> search(const PairKey& pair, double from, double to,
                                     const Instalment& instalment = {});
+  /// True if more than one thread works for this run: then it is worth telling what will be asked for.
+  bool has_helpers() const { return parts_.helpers != nullptr; }
+  /// That search will be asked for soon, if neither motion changes before. Helpers may begin it, and search() asks them
+  /// first: the answer is the same. True if they may; tell them by wake_helpers().
+  bool expect_search(const PairKey& pair, double from, double to, int most_steps) {
+    return parts_.search.expect_search(pair, from, to, most_steps);
+  }
+  /// The same of a body's motion, until t.
+  bool expect_motion(int body, double t) { return parts_.trajectories.expect(body, t); }
+  void wake_helpers() { parts_.helpers->wake(); }
   /// The same with motions of those versions. @pre among versions() of the two.
   std::optional<Certificate> search(const PairKey& pair, std::uint64_t version, std::uint64_t other_version,
                                     double from, double to, const Instalment& instalment = {});

@@ -56,6 +56,7 @@ struct KernelParts {
   double horizon = 0.0;
   std::uint64_t revision = 0;
   std::vector<std::byte> before_cut;  ///< snapshot of before the verb that was cut; empty: none was
+  std::unique_ptr<Helpers> helpers;   ///< of a run of more threads than one; last: they end first
 };
 
 }  // namespace brink

@@ -77,11 +77,20 @@ void RunKernel::begin(const RunOptions& options, Recorder* recorder) {
   start_fault_.reset();  // from here on the policy may change what it was found in
   parts_.run.begin(options);
   parts_.records.begin(recorder);
+  let_help(options.threads - 1);
   tell_knots();
   // the watch looks at all pairs there, before the first collision
   if (options.first_frame) show_frame();
   // a run that goes on from where it met the limit has met it
   stop_at_limit(collisions());
+}
+
+/// So many threads beside this one.
+void RunKernel::let_help(int count) {
+  parts_.helpers.reset();  // before what they work on
+  if (count > 0) parts_.helpers = std::make_unique<Helpers>(count);
+  parts_.search.let_help(parts_.helpers.get());
+  parts_.trajectories.let_help(parts_.helpers.get());
 }
 
 /// What is told of motions, by whichever trajectories there are now.
@@ -120,6 +129,7 @@ void RunKernel::let_touching_last() {
 }
 
 void RunKernel::end() {
+  let_help(0);
   // what was done ahead of the end is not to be seen
   roll_back_all();
   if (!parts_.before_cut.empty()) undo_cut();

@@ -82,6 +82,7 @@ class RunKernel final : public Kernel {
   void restore(std::span<const std::byte> bytes);
 
  private:
+  void let_help(int count);
   void tell_knots();
   void undo_cut();
   void go_on_from(int k, const ExtendedState& state);

@@ -17,6 +17,10 @@ struct RunOptions {
   double checkpoint_seconds = 1.0;
   bool first_frame = true;  ///< record the frame at the starting time (false when resuming)
   bool record_events = true;
+  /// That may work for the run, this one included. Whatever their number, what happens is the same, to the bit
+  /// (docs/scheduling.md).
+  static constexpr int kMostThreads = 64;
+  int threads = 1;
   TraceSink* trace = nullptr;  ///< told what the scheduler does; may be null
   /// Called now and then with the time reached; return false to stop the run. May be empty.
   std::function<bool(double t, std::uint64_t collisions)> progress;

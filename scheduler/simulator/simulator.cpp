@@ -81,6 +81,9 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
         fmt::format("until = {} must be finite and >= the present time {}", options.until, time()));
   if (!(options.frame_interval >= 0.0))
     throw BadInput(fmt::format("frame_interval = {} must be >= 0", options.frame_interval));
+  if (options.threads < 1 || options.threads > RunOptions::kMostThreads)
+    throw BadInput(
+        fmt::format("threads = {} must be from 1 to {}", options.threads, RunOptions::kMostThreads));
   impl_->require_between_runs("run");
   const Raised going_on(impl_->runs);
   RunKernel& kernel = impl_->kernel;

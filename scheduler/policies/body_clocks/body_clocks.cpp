@@ -19,8 +19,10 @@
 #include "brink/core/base/limits.h"
 #include "brink/scheduler/events/event_queue.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
+#include "brink/scheduler/policies/body_clocks/due_soon.h"
 #include "brink/scheduler/policies/body_clocks/found_contacts.h"
 #include "brink/scheduler/policies/body_clocks/views.h"
+#include "brink/scheduler/policies/body_clocks/worth_telling.h"
 #include "brink/scheduler/policies/horizon.h"
 #include "brink/scheduler/policies/order.h"
 #include "brink/scheduler/policies/policy.h"
@@ -31,6 +33,7 @@ namespace {
 
 constexpr std::uint64_t kBetweenPauses = 2048;  ///< servings between places where a run may be resumed from
 constexpr std::uint64_t kBetweenPolls = 64;
+constexpr int kAhead = 32;          ///< bodies that helpers may be ahead of the first look
 constexpr int kInstalment = 3;      ///< search steps at a time: most contacts ahead are overtaken by others
 constexpr unsigned kPlain = 16;     ///< of instalments in a row of one search; then they double:
 constexpr unsigned kDoublings = 8;  ///< so often, if it comes to no end
@@ -51,10 +54,12 @@ class BodyClocks final : public Policy {
     until_ = until;
     if (!views_ || revision_ != kernel.revision()) look_around_all();
     views_->set_end(seen_end());
+    tells_ = false;
     quick_ = kernel.has_quick_way() && !picks_among_all(kernel.order());
     while (!kernel.halt() && std::min(queue_.time(), kernel.next_step()) <= end()) {
       if (++served_ % kBetweenPauses == 0 || kernel.much_to_forget()) pause();
       if (served_ % kBetweenPolls == 0 && !kernel.poll()) break;
+      if (kernel.has_helpers() && (tells_ = worth_.asked()) && soon_.is_time(queue_.time())) tell_helpers();
       // A contact at the very end of a step comes before the step, as in take_earliest().
       if (kernel.next_step() < queue_.time())
         step_island();
@@ -79,15 +84,19 @@ class BodyClocks final : public Policy {
     queue_.reset(kernel_->body_count(), kernel_->time());
     views_->begin_round();
     for (int k = 0; k < kernel_->body_count() && kernel_->poll(); ++k) {
+      if (kernel_->has_helpers() && is_driven(k + kAhead) && expect_look(k + kAhead, kernel_->time()))
+        kernel_->wake_helpers();
       look_around(k, kernel_->time());
       wait_for(k);
     }
+    soon_ = DueSoon();
   }
 
   /// Puts body k where its clock says. To be called whenever its view has changed.
   void wait_for(int k) {
     kernel_->note_queue_operations(1);
     queue_.update(k, views_->clock(k).expiry());
+    if (tells_ && views_->clock(k).expiry() < soon_.end() && tell_of(k)) kernel_->wake_helpers();
   }
 
   /// Of the run, as far as is known: a motion that fails may be started afresh before.
@@ -113,6 +122,44 @@ class BodyClocks final : public Policy {
   /// A little later: a search that ends on a contact's instant may miss it by the rounding of its first
   /// guess.
   static double beyond(double t) { return t + 64.0 * same_instant(t); }
+
+  /// Of what is due soon, so that they may do it meanwhile.
+  void tell_helpers() {
+    soon_.look(queue_, [this](const EventQueue::Entry& e) { return tell_of(e.body); });
+    kernel_->wake_helpers();
+  }
+
+  /// Of what body k comes to within what is soon; true if that is of use.
+  bool tell_of(int k) {
+    const BodyClock& clock = views_->clock(k);
+    if (is_driven(k)) return clock.horizon <= soon_.end() && expect_look(k, clock.horizon);
+    bool any = false;
+    for (std::size_t i = 0; i < clock.candidates.size() && clock.candidates[i].time <= soon_.end(); ++i)
+      any = expect_search(k, clock.candidates[i]) || any;
+    return any;
+  }
+  /// By an integrator.
+  bool is_driven(int k) const {
+    return k < kernel_->body_count() && !kernel_->is_free(k) && !kernel_->is_held(k);
+  }
+
+  /// Of body k, which an integrator drives: its motion will be followed.
+  bool expect_look(int k, double time) {
+    return kernel_->body(k).motion.end() >= time && kernel_->expect_motion(k, views_->will_follow(k, time));
+  }
+
+  /// As sharpen() will ask, if nobody it is about is resolved before.
+  bool expect_search(int k, const Candidate& c) {
+    if (c.exact || views_->stale(c) || (quick_ && views_->plain_pair(k, c))) return false;
+    const auto pair = kernel_->pair_of(k, c.other, c.image);
+    return pair && kernel_->expect_search(*pair, c.clear, search_end(c, views_->end_of(k, c)),
+                                          instalment(views_->clock(k).undecided));
+  }
+
+  /// How far a candidate is searched of which the end in its view is known.
+  double search_end(const Candidate& c, double end) const {
+    return std::min(beyond(end), std::max(c.time, seen_end()));
+  }
 
   /// Does what is due first for body k, which is the first of all.
   void serve(int k) {
@@ -204,8 +251,7 @@ class BodyClocks final : public Policy {
       kernel_->note_stale();
       return;
     }
-    const double now = c.time, end = views_->end_of(k, c),
-                 to = std::min(beyond(end), std::max(now, seen_end()));
+    const double now = c.time, end = views_->end_of(k, c), to = search_end(c, end);
     const auto found = kernel_->search(*kernel_->pair_of(k, c.other, c.image), c.clear, to,
                                        {instalment(clock.undecided), next});
     const bool undecided = found && found->kind == Certificate::Kind::undecided;
@@ -426,6 +472,16 @@ class BodyClocks final : public Policy {
     if (kernel_->resolve(c.pair, c.contact, changed_)) look_around_changed();
   }
 
+  /// Of all but the first of those whose motions have changed, which is looked at at once.
+  void expect_looks() {
+    const int first = changed_.empty() ? BodyTrack::kFree : kernel_->body(changed_.front()).component;
+    bool any = false;
+    for (std::size_t i = 1; i < changed_.size(); ++i)
+      if (const int k = changed_[i]; is_driven(k) && kernel_->body(k).component != first)
+        any = expect_look(k, kernel_->time()) || any;
+    if (any) kernel_->wake_helpers();
+  }
+
   /// An island's step ends, and nothing comes before.
   void step_island() {
     if (!kernel_->record_frames(kernel_->next_step())) return;
@@ -442,6 +498,7 @@ class BodyClocks final : public Policy {
     }
     // all flights before the first look: nobody must see another's former motion
     for (const int k : changed_) views_->take_up(k);
+    if (tells_) expect_looks();
     views_->begin_round();
     for (std::size_t i = 0; i < changed_.size() && !kernel_->halt(); ++i) {
       look_around(changed_[i], kernel_->time());
@@ -454,6 +511,9 @@ class BodyClocks final : public Policy {
   std::uint64_t revision_ = 0;
   std::uint64_t served_ = 0;
   bool quick_ = false;  ///< plain discs go the quick way
+  bool tells_ = false;  ///< helpers are told
+  WorthTelling worth_;
+  DueSoon soon_;
   std::optional<Views> views_;
   EventQueue queue_;
   std::optional<FoundContacts> found_;  ///< of each body's exact candidate

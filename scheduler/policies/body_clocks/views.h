@@ -58,6 +58,11 @@ class Views {
           .end;
     return clock.horizon;
   }
+  /// How far body k's motion will be followed by its next look, if it looks then [s]. @pre an integrator drives it, and
+  /// its motion is known until then.
+  double will_follow(int k, double then) const {
+    return std::max(then, std::min(window_end(k, then, speed(k, then), stride(k, then), 0.0), until_));
+  }
   /// The end of the present run: views of bodies that are not in free flight end just after it at the latest.
   void set_end(double until) { until_ = until; }
 
@@ -117,6 +122,7 @@ class Views {
   double follow(int k, int owner, double end);
   double end_view(int k, double followed);
   double speed(int k, double now) const;
+  double window_end(int k, double now, double closing, double stride, double gap) const;
   void limit_view(int k, double now, double closing, double stride, double gap);
   void note_start(int k, double start);
   double stride(int k, double now) const;

@@ -37,6 +37,31 @@ TEST(EventQueue, KnowsTheFirstAndTheSecond) {
   }
 }
 
+TEST(EventQueue, VisitsThoseThatAreDueByATime) {
+  SeededRandom random(12);
+  for (const std::size_t n : {1, 5, 16, 333}) {
+    EventQueue queue;
+    queue.reset(n, 0.0);
+    std::vector<double> times(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      times[k] = static_cast<double>(random.below(20));
+      queue.update(static_cast<int>(k), times[k]);
+    }
+    for (const double until : {0.0, 7.0, 20.0}) {
+      std::vector<int> seen;
+      queue.visit_until(until, [&](const EventQueue::Entry& e) {
+        EXPECT_EQ(e.time, times[e.body]);
+        seen.push_back(e.body);
+      });
+      std::sort(seen.begin(), seen.end());
+      std::vector<int> due;
+      for (std::size_t k = 0; k < n; ++k)
+        if (times[k] <= until) due.push_back(static_cast<int>(k));
+      EXPECT_EQ(seen, due);
+    }
+  }
+}
+
 // As collisions do: the first is given a later time when the second is known, before another or after it.
 TEST(EventQueue, TheFirstIsServedByWhomItHasMet) {
   SeededRandom random(12);
