@@ -1,13 +1,19 @@
 // What a second thread gives one run: discs, boxes, stars, and discs that springs join two and two. Wall-clock time of the
-// same collisions with one thread and with two, in turn; of each part of them the least of several (BRINK_ROUNDS, 5). A run
-// whose bits differ from the first one's ends its benchmark with an error.
+// same collisions with one thread and with two, in turn; of each part of them the least of several (BRINK_ROUNDS, 5). Where
+// others use the machine, `ratio_undisturbed` is of those parts alone in which both threads had their processors, 0 and 1.
+// A run whose bits differ from the first one's ends its benchmark with an error.
 #include <benchmark/benchmark.h>
+
+#include <pthread.h>
+#include <sched.h>
+#include <time.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <numeric>
 #include <thread>
 #include <vector>
@@ -48,30 +54,58 @@ World later(World world, std::uint64_t collisions) {
   return world;
 }
 
-/// Seconds of each part of so many collisions. Between parts it sleeps a little: others who use the machine have their turn
-/// then, and not so often in the midst of a part.
+/// A moment by three clocks [s].
+struct Clocks {
+  double wall = 0.0;
+  double own = 0.0;  ///< CPU time of this thread
+  double all = 0.0;  ///< CPU time of the program
+
+  static Clocks now() {
+    return {read(CLOCK_MONOTONIC), read(CLOCK_THREAD_CPUTIME_ID), read(CLOCK_PROCESS_CPUTIME_ID)};
+  }
+  Clocks since(const Clocks& begin) const { return {wall - begin.wall, own - begin.own, all - begin.all}; }
+  /// True if nobody else had the processor of this thread, nor, where somebody helps, of the helper.
+  bool undisturbed(bool helped) const { return own > 0.97 * wall && (!helped || all - own > 0.8 * wall); }
+
+ private:
+  static double read(clockid_t clock) {
+    timespec t{};
+    clock_gettime(clock, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  }
+};
+
+/// The thread runs there, and those that it begins.
+void stay_on(int processor) {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  CPU_SET(processor, &set);
+  pthread_setaffinity_np(pthread_self(), sizeof set, &set);
+}
+
+/// Of each part of so many collisions. Between parts it sleeps a little: others who use the machine have their turn then,
+/// and not so often in the midst of a part.
 struct Timed {
-  std::vector<double> seconds;
+  std::vector<Clocks> parts;
   std::uint64_t hash = 0;
 };
 Timed timed(const World& world, const SolverOptions& solver, std::uint64_t part, int threads) {
-  using Clock = std::chrono::steady_clock;
   Timed result;
   Simulator simulator(world, solver);
   RunOptions options = testing::until(1e9);
   options.threads = threads;
-  Clock::time_point begin = Clock::now();
-  const auto end_part = [&] {
-    result.seconds.push_back(std::chrono::duration<double>(Clock::now() - begin).count());
-    std::this_thread::sleep_for(std::chrono::milliseconds(3));
-    begin = Clock::now();
-  };
+  stay_on(1);
+  Clocks begin = Clocks::now();
   options.progress = [&](double, std::uint64_t collisions) {
-    if (collisions >= part * (result.seconds.size() + 1)) end_part();
+    if (collisions < part * (result.parts.size() + 1)) return true;
+    result.parts.push_back(Clocks::now().since(begin));
+    stay_on(0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(3));
+    begin = Clocks::now();
     return true;
   };
   result.hash = simulator.run(options).state_hash;
-  result.seconds.resize(solver.max_collisions / part - 1);  // the last ends with a frame
+  result.parts.resize(solver.max_collisions / part - 1);  // the last ends with a frame
   return result;
 }
 
@@ -81,26 +115,38 @@ void compare(benchmark::State& state, const World& begin, std::uint64_t collisio
   SolverOptions solver;
   solver.max_collisions = collisions;
   const World world = later(begin, collisions);
-  const std::uint64_t part = collisions / 100;
+  const std::uint64_t part = std::max<std::uint64_t>(collisions / 100, 1);
   for (auto _ : state) {
-    std::array<Timed, 2> least;
+    constexpr double never = std::numeric_limits<double>::infinity();
+    std::array<std::vector<double>, 2> least, undisturbed;
+    std::uint64_t hash = 0;
     for (int round = 0; round < rounds; ++round)
       for (int more = 0; more < 2; ++more) {
         const Timed t = timed(world, solver, part, 1 + more);
-        if (round == 0) least[more] = t;
-        if (t.hash != least[0].hash) state.SkipWithError("the bits differ");
-        for (std::size_t k = 0; k < t.seconds.size(); ++k)
-          least[more].seconds[k] = std::min(least[more].seconds[k], t.seconds[k]);
+        if (hash == 0) hash = t.hash;
+        if (t.hash != hash) state.SkipWithError("the bits differ");
+        least[more].resize(t.parts.size(), never);
+        undisturbed[more].resize(t.parts.size(), never);
+        for (std::size_t k = 0; k < t.parts.size(); ++k) {
+          least[more][k] = std::min(least[more][k], t.parts[k].wall);
+          if (t.parts[k].undisturbed(more == 1))
+            undisturbed[more][k] = std::min(undisturbed[more][k], t.parts[k].wall);
+        }
       }
     // the first part looks at everybody
-    const auto sum = [](const Timed& t) {
-      return std::accumulate(t.seconds.begin() + 1, t.seconds.end(), 0.0);
-    };
-    const double counted = static_cast<double>(part * (least[0].seconds.size() - 1));
-    state.counters["us_1"] = 1e6 * sum(least[0]) / counted;
-    state.counters["us_2"] = 1e6 * sum(least[1]) / counted;
-    state.counters["ratio"] = sum(least[0]) / sum(least[1]);
-    state.counters["first_ratio"] = least[0].seconds[0] / least[1].seconds[0];
+    std::array<double, 2> all = {0.0, 0.0}, some = {0.0, 0.0};
+    double parts = 0.0;
+    for (std::size_t k = 1; k < least[0].size(); ++k) {
+      for (int more = 0; more < 2; ++more) all[more] += least[more][k];
+      if (undisturbed[0][k] == never || undisturbed[1][k] == never) continue;
+      parts += 1.0;
+      for (int more = 0; more < 2; ++more) some[more] += undisturbed[more][k];
+    }
+    state.counters["us_1"] = 1e6 * all[0] / static_cast<double>(part * (least[0].size() - 1));
+    state.counters["ratio"] = all[0] / all[1];
+    state.counters["ratio_undisturbed"] = some[0] / some[1];
+    state.counters["us_1_undisturbed"] = 1e6 * some[0] / (parts * static_cast<double>(part));
+    state.counters["parts_undisturbed"] = parts;
   }
 }
 
