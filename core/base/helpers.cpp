@@ -12,7 +12,7 @@ namespace brink {
 
 namespace {
 
-constexpr int kLooks = 1500;      ///< in vain, before a helper sleeps
+constexpr int kLooks = 20000;     ///< in vain, before a helper sleeps
 constexpr int kPatient = 250;     ///< looks, if a little
 constexpr int kBeforeYield = 64;  ///< looks, before others may have the processor
 
@@ -57,21 +57,24 @@ void Helpers::post(Job& job) {
   while (place - taken_.load(std::memory_order_acquire) >= kPlaces) take();
   job.state_.store(Job::State::waiting, std::memory_order_release);
   jobs_[place % kPlaces].store(&job, std::memory_order_relaxed);
-  posted_.store(place + 1);  // in one order with asleep_: who goes to sleep sees it, or is seen
+  posted_.store(place + 1, std::memory_order_release);
 }
 
+/// Who goes to sleep right now may be missed: the job is done by the owner then, or by the next to wake.
 void Helpers::wake() {
-  if (asleep_.load() == 0) return;
+  if (asleep_.load(std::memory_order_relaxed) == 0) return;
   ++woken_;
   woken_.notify_all();
 }
 
 Helpers::Settled Helpers::settle(Job& job, Patience patience) {
   using State = Job::State;
-  State state = State::waiting;
-  if (job.state_.compare_exchange_strong(state, State::idle, std::memory_order_acquire) ||
-      state == State::idle)
+  // what nobody else can have is looked at without a lock: that would wait until all that was written is seen
+  State state = job.state_.load(std::memory_order_acquire);
+  if (state == State::waiting &&
+      job.state_.compare_exchange_strong(state, State::idle, std::memory_order_acquire))
     return Settled::undone;
+  if (state == State::idle) return Settled::undone;
   for (int looks = 0; job.state_.load(std::memory_order_acquire) != State::done; ++looks) {
     if (patience == Patience::none || (patience == Patience::little && looks > kPatient))
       return Settled::late;

@@ -12,7 +12,7 @@ namespace brink {
 /// All jobs are optional. Their owner, one thread, posts what it expects to need; when it needs it, it takes back what
 /// nobody has begun and does that itself, or waits for who has. So whether, when and by whom a job is done changes how
 /// long things take, and nothing else. A job is handed over in about a hundred nanoseconds while helpers look for work,
-/// which they do for some fifty microseconds; then they sleep.
+/// which they do for some tenths of a millisecond; then they sleep.
 class Helpers {
  public:
   /// Once posted it must outlive the helpers.

@@ -4,7 +4,8 @@
 /// order with any of them, and so are the bits. Not with clang, whose version 14 gives the clones a name that other
 /// sources do not find.
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)  // its clones are chosen before that is there
 #define BRINK_WIDE __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define BRINK_WIDE

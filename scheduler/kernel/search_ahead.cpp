@@ -18,8 +18,9 @@ SearchAhead::Search& SearchAhead::place_of(const PairKey& pair) {
 
 bool SearchAhead::expect(const Question& question, const Mover& a, const Mover& b) {
   Search& s = place_of(question.pair);
-  if (s.question == question) return true;  // as for the body whose view the pair is in still
+  if (s.is_expected && s.question == question) return true;  // as for the body whose view the pair is in still
   if (helpers_->settle(s, Helpers::Patience::none) == Helpers::Settled::late) return false;
+  s.is_expected = true;
   s.question = question;
   s.a = a;
   s.b = b;
@@ -59,9 +60,9 @@ void SearchAhead::Search::run(int helper) noexcept {
 
 const PairAnswer* SearchAhead::answer(const Question& question, double needed_until, WorkCounters& work) {
   Search& s = place_of(question.pair);
-  if (!(s.question == question)) return nullptr;
+  if (!s.is_expected || !(s.question == question)) return nullptr;
   const Helpers::Settled settled = helpers_->settle(s, Helpers::Patience::little);
-  s.question = {};  // told once: a search is work that is counted as often as it is asked for
+  s.is_expected = false;  // told once: a search is work that is counted as often as it is asked for
   if (settled != Helpers::Settled::done) return nullptr;
   if (s.thrown) std::rethrow_exception(s.thrown);
   if (s.found.status == PairAnswer::Status::undecided && s.found.until < needed_until) return nullptr;

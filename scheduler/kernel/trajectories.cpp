@@ -177,8 +177,9 @@ bool Trajectories::expect(int k, double t) {
     c.going = goings_.emplace_back(std::make_unique<Going>()).get();
     c.going->integrator = c.integrator.get();
   }
-  if (helpers_->settle(*c.going, Helpers::Patience::none) == Helpers::Settled::late) return true;
-  c.going->to = t;
+  const Helpers::Settled settled = helpers_->settle(*c.going, Helpers::Patience::none);
+  if (settled == Helpers::Settled::late) return true;
+  c.going->to = settled == Helpers::Settled::undone ? std::max(c.going->to, t) : t;
   c.going->most_steps = instalment();
   helpers_->post(*c.going);
   return true;

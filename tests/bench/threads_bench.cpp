@@ -115,7 +115,7 @@ void compare(benchmark::State& state, const World& begin, std::uint64_t collisio
   SolverOptions solver;
   solver.max_collisions = collisions;
   const World world = later(begin, collisions);
-  const std::uint64_t part = std::max<std::uint64_t>(collisions / 100, 1);
+  const std::uint64_t part = std::max<std::uint64_t>(collisions / 400, 1);
   for (auto _ : state) {
     constexpr double never = std::numeric_limits<double>::infinity();
     std::array<std::vector<double>, 2> least, undisturbed;

@@ -143,9 +143,12 @@ class BodyClocks final : public Policy {
     return k < kernel_->body_count() && !kernel_->is_free(k) && !kernel_->is_held(k);
   }
 
-  /// Of body k, which an integrator drives: its motion will be followed.
+  /// Of body k, which an integrator drives: its motion will be followed, and those near it.
   bool expect_look(int k, double time) {
-    return kernel_->body(k).motion.end() >= time && kernel_->expect_motion(k, views_->will_follow(k, time));
+    if (kernel_->body(k).motion.end() < time) return false;
+    bool any = false;
+    views_->each_followed(k, time, [&](int j, double t) { any = kernel_->expect_motion(j, t) || any; });
+    return any;
   }
 
   /// As sharpen() will ask, if nobody it is about is resolved before.
