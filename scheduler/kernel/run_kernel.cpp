@@ -228,6 +228,7 @@ void RunKernel::apply_impulse(int k, const Vec2& impulse, const Vec2& point) {
 /// In this order: the bytes are read and held against the world, motions are made again beside the present ones,
 /// and only then anything is put back.
 void RunKernel::restore(std::span<const std::byte> bytes) {
+  let_help(0);  // there are some still where a run has ended by an exception
   SavedRun saved = decode(bytes, world(), parts_.fingerprint);
   const WorkCounters before = work();
   try {
