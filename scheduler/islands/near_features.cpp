@@ -760,19 +760,19 @@ double through_corner(const Half& half, const Sample& sample, const Site& site, 
     return s.kind == SiteKind::segment && (s.a == p || s.b == p);
   };
   bool through = false;
-  double back = std::numeric_limits<double>::infinity();
+  double back = 0.0;
   for (const Site& s : half.carrier.sites) {
     if (!ends_at(s, sample.p) || s.radius > 0.0) continue;
     const Vec2 from = to_other(s.a), to = to_other(s.b);
     for (const Site& o : half.other.sites) {
       if (!ends_at(o, corner) || o.radius > 0.0 || !cross_each_other(from, to, o.a, o.b)) continue;
-      through = true;
       Site there = s;
       there.a = from;
       there.b = to;
-      // by whichever end: two that lie along each other may cross at the far ones, by a rounding
-      back = std::min(
-          {back, distance_to(o, from), distance_to(o, to), distance_to(there, o.a), distance_to(there, o.b)});
+      through = true;
+      // each two by whichever end: those that lie along each other may cross at their other ones, by a rounding
+      back = std::max(back, std::min({distance_to(o, from), distance_to(o, to), distance_to(there, o.a),
+                                      distance_to(there, o.b)}));
     }
   }
   if (!through) return 0.0;
