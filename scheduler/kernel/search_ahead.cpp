@@ -18,7 +18,8 @@ SearchAhead::Search& SearchAhead::place_of(const PairKey& pair) {
 
 bool SearchAhead::expect(const Question& question, const Mover& a, const Mover& b) {
   Search& s = place_of(question.pair);
-  if (s.is_expected && s.question == question) return true;  // as for the body whose view the pair is in still
+  if (s.is_expected && s.question == question)
+    return true;  // as for the body whose view the pair is in still
   if (helpers_->settle(s, Helpers::Patience::none) == Helpers::Settled::late) return false;
   s.is_expected = true;
   s.question = question;

@@ -52,7 +52,8 @@ class SearchAhead {
     void run(int helper) noexcept override;
 
     SearchAhead* ahead = nullptr;
-    bool is_expected = false;  ///< the owner's, as nothing else while it is posted: the answer may be asked for
+    bool is_expected =
+        false;  ///< the owner's, as nothing else while it is posted: the answer may be asked for
     Question question;
     Mover a, b;
     Motion motion_a, motion_b;
