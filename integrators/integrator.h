@@ -52,14 +52,6 @@ class Integrator {
   /// The same without a limit.
   Extent extend(double t) { return extend(t, std::numeric_limits<std::uint64_t>::max()); }
 
-  /// Makes up to so many of the next steps towards t, which nobody sees before extend() comes to them: that then takes them
-  /// as they are. For another thread, while no one else asks for start() or extend(), or has to do with the dynamics.
-  /// Never throws. Integrators whose steps cost next to nothing make none.
-  virtual void extend_ahead(double t, std::uint64_t most_steps) noexcept {
-    (void)t;
-    (void)most_steps;
-  }
-
   /// Nobody will ask the motions for a time before t any more: memory may be given back.
   virtual void forget_before(double t) = 0;
 

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <sstream>
-#include <utility>
 
 #include "brink/core/base/error.h"
 #include "brink/integrators/dense_output.h"
@@ -57,10 +56,8 @@ void check_finite_time(double t) {
 
 void SteppingIntegrator::start(double t, std::span<const BodyState> states) {
   check_start(*dynamics_, t, states);
-  time_ = told_until_ = t;
+  time_ = t;
   states_.assign(states.begin(), states.end());
-  begun_.assign(states.begin(), states.end());
-  made_ = told_ = 0;
   tracks_.clear();
   // New tracks: motions made before keep theirs.
   for (int k = 0; k < size(); ++k) tracks_.push_back(std::make_shared<Track>());
@@ -72,52 +69,13 @@ void SteppingIntegrator::start(double t, std::span<const BodyState> states) {
 /// At most so many steps, then "unfinished": the caller may look at its clock, or at a signal, and ask again.
 Extent SteppingIntegrator::extend(double t, std::uint64_t most_steps) {
   check_finite_time(t);
-  for (std::uint64_t n = 0; told_until_ < t && failure_.empty() && n < most_steps; ++n) {
+  for (std::uint64_t n = 0; time_ < t && failure_.empty() && n < most_steps; ++n) {
+    why_.clear();
     // One step at a time until t is covered; t itself is not told to the method, so that
     // steps cannot depend on it.
-    if (told_ == made_) make_step();
-    tell_step();
-  }
-  return extent_at(told_until_, t, failure_);
-}
-
-void SteppingIntegrator::extend_ahead(double t, std::uint64_t most_steps) noexcept {
-  for (std::uint64_t n = 0; time_ < t && may_make() && n < most_steps; ++n) make_step();
-}
-
-/// Whatever comes of it is the last of the steps that are made. @pre may_make().
-void SteppingIntegrator::make_step() {
-  if (made_ == steps_.size()) steps_.emplace_back().pieces.resize(size());
-  ++made_;
-  Step& made = making();
-  made.right_hand_sides = 0;
-  made.failure.clear();
-  made.thrown = nullptr;
-  why_.clear();
-  try {
     if (in_segment_ || next_segment()) step();
-  } catch (...) {
-    made.thrown = std::current_exception();
   }
-  made.end = time_;
-}
-
-/// The first that is not told yet.
-void SteppingIntegrator::tell_step() {
-  Step& s = steps_[told_++];
-  if (work_) work_->right_hand_sides += s.right_hand_sides;
-  const std::exception_ptr thrown = std::exchange(s.thrown, nullptr);
-  failure_ = s.failure;
-  if (!thrown && failure_.empty()) {
-    for (int k = 0; k < size(); ++k) tracks_[k]->pieces.push_back(s.pieces[k]);
-    told_until_ = s.end;
-    if (work_) ++work_->solver_steps;
-  }
-  if (told_ == made_) {
-    told_ = made_ = 0;
-    steps_.resize(1);
-  }
-  if (thrown) std::rethrow_exception(thrown);
+  return extent_at(time_, t, failure_);
 }
 
 // A motion that somebody holds shares its track: it forgets with it (Motion::remembers()).
@@ -127,7 +85,7 @@ void SteppingIntegrator::forget_before(double t) {
 
 Motion SteppingIntegrator::motion(int k) const {
   // before the first step: the starting time alone
-  if (tracks_.at(k)->pieces.empty()) return Motion::ballistic(told_until_, begun_[k], {}, told_until_);
+  if (tracks_.at(k)->pieces.empty()) return Motion::ballistic(time_, states_[k], {}, time_);
   return Motion::dense(tracks_[k]);
 }
 
@@ -142,7 +100,7 @@ bool SteppingIntegrator::next_segment() {
 /// What every method asks for its right-hand sides; counts them. False where one is not finite: why() says whose.
 bool SteppingIntegrator::accelerations(double t, std::span<const BodyState> states,
                                        std::span<Acceleration> out) {
-  ++making().right_hand_sides;
+  if (work_) ++work_->right_hand_sides;
   // A stage at the segment's end belongs to it: the forces after the jump would be those
   // of the next segment.
   const double inside = t < segment_end_ ? t : std::nextafter(segment_end_, time_);
@@ -165,13 +123,14 @@ bool SteppingIntegrator::accelerations(double t, std::span<const BodyState> stat
 bool SteppingIntegrator::accept(double t, std::span<const BodyState> states) {
   states_.assign(states.begin(), states.end());
   for (int k = 0; k < size(); ++k) {
-    const Pose met = making().pieces[k].state(t).pose;
+    const Pose met = tracks_[k]->pieces.back().state(t).pose;
     Pose& pose = states_[k].pose;
     for (int i = 0; i < 2; ++i)
       if (!is_rounding_of(met.position[i], pose.position[i])) pose.position[i] = met.position[i];
     if (!is_rounding_of(met.angle, pose.angle)) pose.angle = met.angle;
   }
   time_ = t;
+  if (work_) ++work_->solver_steps;
   // at a break the method starts afresh with the next step
   if (time_ >= segment_end_) in_segment_ = false;
   return true;
@@ -179,7 +138,7 @@ bool SteppingIntegrator::accept(double t, std::span<const BodyState> states) {
 
 /// Lasting until start(). False, for callers to return.
 bool SteppingIntegrator::fail(std::string why) {
-  making().failure = "integration stopped at t = " + time_text(time_) + ": " + std::move(why);
+  failure_ = "integration stopped at t = " + time_text(time_) + ": " + std::move(why);
   return false;
 }
 

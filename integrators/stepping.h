@@ -1,9 +1,6 @@
 #pragma once
 /// The frame of every integrator that goes step by step: segments between breaks, tracks, counting, failures.
 
-#include <cstddef>
-#include <cstdint>
-#include <exception>
 #include <memory>
 #include <string>
 #include <vector>
@@ -32,15 +29,11 @@ std::string time_text(double t);
 ///     take one step of the method's own length, never past the segment's end
 ///     append one piece a body
 /// A failure ends the tracks at the last accepted step and stays until start().
-///
-/// A step is *made*, and then *told*: its pieces become a part of the tracks, and its work is counted. extend_ahead() makes
-/// steps and leaves them to be told.
 class SteppingIntegrator : public Integrator {
  public:
   void start(double t, std::span<const BodyState> states) final;
   using Integrator::extend;
   Extent extend(double t, std::uint64_t most_steps) final;
-  void extend_ahead(double t, std::uint64_t most_steps) noexcept final;
   void forget_before(double t) final;
   Motion motion(int k) const final;
 
@@ -66,42 +59,22 @@ class SteppingIntegrator : public Integrator {
   /// Of the last accelerations() in this step that were not finite; empty if all were.
   const std::string& why() const { return why_; }
 
-  void append(int k, const PolynomialPiece& piece) { making().pieces[k] = piece; }
+  void append(int k, const PolynomialPiece& piece) { tracks_[k]->pieces.push_back(piece); }
   bool accept(double t, std::span<const BodyState> states);
   bool fail(std::string why);
 
  private:
-  struct Step {
-    std::vector<PolynomialPiece> pieces;  ///< one a body
-    double end = 0.0;                     ///< [s]
-    std::uint64_t right_hand_sides = 0;
-    std::string failure;        ///< why there is no such step; empty: there is
-    std::exception_ptr thrown;  ///< by what was asked on the way
-
-    bool is_last() const { return !failure.empty() || thrown; }
-  };
-
   bool next_segment();
-  void make_step();
-  void tell_step();
-  Step& making() { return steps_[made_ - 1]; }
-  bool may_make() const { return failure_.empty() && (made_ == 0 || !steps_[made_ - 1].is_last()); }
 
   std::shared_ptr<Dynamics> dynamics_;
   WorkCounters* work_;
-  // as told
   std::vector<std::shared_ptr<Track>> tracks_;
-  std::vector<BodyState> begun_;  ///< states at the start
-  double told_until_ = 0.0;       ///< [s]
-  std::string failure_;           ///< empty: none since start()
-  // as made
   std::vector<BodyState> states_;
   double time_ = 0.0;
   double segment_end_ = 0.0;
   bool in_segment_ = false;
   std::string why_;
-  std::vector<Step> steps_;          ///< made since all were told last; there is memory for one at least
-  std::size_t made_ = 0, told_ = 0;  ///< of those
+  std::string failure_;  ///< empty: none since start()
 };
 
 }  // namespace brink

@@ -73,10 +73,6 @@ constexpr double kAtOnce = 1.0 / 32.0;
 constexpr int kLooksBack = 6;
 /// A speed below this part of what the smallest member gains as it falls by its size is none.
 constexpr double kNoSpeed = 1e-7;
-/// Contact tolerances that a sharp sample may be beyond a wire while a run goes on, unless it was so from its start.
-constexpr double kSunkInRun = 4.0;
-/// Two normals whose cosine is off one by no more are one, and a pull along a normal below this part of the largest is none.
-constexpr double kOneLine = 1e-9;
 
 }  // namespace
 
@@ -129,115 +125,6 @@ void IslandMotion::list(double reach) {
     return (c.feature.beside_arc && reach >= 0.0) || (c.feature.goes_on && reach >= 0.0);
   });
   absorbed_ = 0.0;
-}
-
-/// Of contacts from that place on. What nothing tells of one is as with the pair's other contacts whose lines are parallel to its own:
-/// two that come to lie flush along some lines are on one side of each other. (Who fits between two lines to a rounding has
-/// contacts to either side.) Where nothing tells any of them, places do, by however little: so that they do not contradict
-/// each other, as tips that slide against each other on one floor would.
-void IslandMotion::remember_sides(std::size_t first) {
-  std::vector<char> told(contacts_.size(), 1);
-  for (std::size_t k = first; k < contacts_.size(); ++k) told[k] = remember_side(contacts_[k]);
-  for (std::size_t k = first; k < contacts_.size(); ++k) {
-    if (told[k]) continue;
-    const Parallel known = parallel_to(contacts_[k], told, true);
-    const Parallel others = parallel_to(contacts_[k], told, false);
-    const bool any = known.alike + known.opposite > 0;
-    if (any ? known.alike == 0 : others.opposite > 0 && others.gaps < 0.0) turn_over(contacts_[k].feature);
-    told[k] = 1;
-  }
-}
-
-/// Those of the pair that are as near to a wire, along lines parallel to that of c, and of which it is told, or not. Cost: a look at
-/// all contacts.
-IslandMotion::Parallel IslandMotion::parallel_to(const HeldContact& c, const std::vector<char>& told,
-                                                 bool known) const {
-  const double near = kSunkOfRadius * members_.bounding_radius(members_.place_of(c.pair.body));
-  Parallel found;
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    const NearFeature& f = contacts_[k].feature;
-    const bool is_asked = (told[k] != 0) == known && contacts_[k].pair == c.pair && f.thin && !f.at_end;
-    if (!is_asked || !(std::abs(f.gap) < near)) continue;
-    const double along = f.normal.dot(c.feature.normal);
-    if (std::abs(along) < 1.0 - kOneLine) continue;
-    ++(along > 0.0 ? found.alike : found.opposite);
-    found.gaps += along > 0.0 ? f.gap : -f.gap;
-  }
-  return found;
-}
-
-void IslandMotion::turn_over(NearFeature& f) {
-  f.normal = -f.normal;
-  f.gap = -f.gap;
-}
-
-/// Where roundings could tell either side of a wire, it is the one on which the step before had the contact. False: nothing tells
-/// surely which it is.
-bool IslandMotion::remember_side(HeldContact& c) const {
-  const Outline& carrier =
-      search_->outline_of(c.feature.sample_on_a ? c.pair.body : search_->other_owner(c.pair));
-  NearFeature& f = c.feature;
-  // upon a corner edges tell it, whichever side of the line of a piece it was on before it came there
-  if (!f.thin || f.upon_corner || (f.at_end && !f.goes_on) ||
-      !(std::abs(f.gap) < kSunkOfRadius * carrier.bounding_radius))
-    return true;
-  const HeldContact* known = f.at_end ? nullptr : warm_.find(c);
-  std::optional<bool> turn;
-  if (known != nullptr && !known->feature.at_end)
-    turn = known->feature.normal.dot(f.normal) < 0.0;
-  else
-    turn = f.side_told == SideTold::surely ? false : is_elsewhere(c);
-  // no step leaves anybody so deep: it is where it is
-  if (!turn && std::abs(f.gap) > kSunkInRun * search_->limits().tolerance) turn = f.gap < 0.0;
-  if (turn.value_or(false)) turn_over(f);
-  return turn.has_value();
-}
-
-/// Of a wire of which no place of the other surely tells on which side it is: true if that is the other one. Where a run begins it is
-/// what is told at all, or the side to which forces press. Later, who was on one side with another contact along that line
-/// has not changed it, nor who has just met it: of the same pair, or else with a site that may go on from this one.
-std::optional<bool> IslandMotion::is_elsewhere(const HeldContact& c) const {
-  const Vec2& n = c.feature.normal;
-  if (run_begins_ && c.feature.side_told == SideTold::hardly) return false;
-  if (run_begins_) {
-    const auto pull_on = [this](int body) {
-      const int place = members_.place_of(body);
-      return members_.is_support(place) ? Vec2(Vec2::Zero()) : members_.acceleration(place).linear;
-    };
-    Vec2 pull = pull_on(c.pair.body);
-    if (!c.pair.with_site()) pull -= pull_on(c.pair.other_body);
-    if (std::abs(n.dot(pull)) > kOneLine * members_.pull()) return n.dot(pull) > 0.0;
-  }
-  const RealVec from = members_.other_state(c.pair).position;
-  for (const bool of_pair : {true, false}) {
-    const auto is_asked = [&](const PairKey& pair) {
-      return of_pair ? pair == c.pair : pair.body == c.pair.body && pair.with_site() && c.pair.with_site();
-    };
-    for (const HeldContact& w : warm_)
-      if (is_asked(w.pair) && w.feature.thin && !w.feature.at_end) {
-        const RealVec to_its = members_.other_state(w.pair).position - from;
-        if (is_on_line(c, w.feature.point + to_its.cast<double>(), w.feature.normal))
-          return w.feature.normal.dot(n) < 0.0;
-      }
-    if (met_ && is_asked(met_->first)) {
-      const FeatureContact& met = met_->second;
-      if (is_on_line(c, (met.point.cast<Real>() - from).cast<double>(), met.normal))
-        return met.normal.dot(n) < 0.0;
-    }
-  }
-  return std::nullopt;
-}
-
-void IslandMotion::expect_sides(const StepCause& cause) {
-  run_begins_ = cause.run_begins;
-  if (cause.pair) met_.emplace(*cause.pair, *cause.met);
-}
-
-/// True if another contact of the pair, at a point seen from the other's position, has the same tangent line.
-bool IslandMotion::is_on_line(const HeldContact& c, const Vec2& point, const Vec2& normal) const {
-  const double size = members_.bounding_radius(members_.place_of(c.pair.body));
-  return std::abs(normal.dot(c.feature.normal)) >= 1.0 - kOneLine &&
-         std::abs(normal.dot(point - c.feature.point)) <= kSunkOfRadius * size;
 }
 
 /// Those who come farther with these velocities than features are listed: theirs, as far as they come several times. Not of

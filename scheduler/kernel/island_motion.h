@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -15,16 +14,9 @@
 #include "brink/scheduler/kernel/collision_response.h"
 #include "brink/scheduler/kernel/island_members.h"
 #include "brink/scheduler/kernel/island_modes.h"
+#include "brink/scheduler/kernel/wire_sides.h"
 
 namespace brink {
-
-/// Why an island begins a step.
-struct StepCause {
-  bool on_time = false;                 ///< the one before has come to its end: its modes may hold still
-  bool run_begins = false;              ///< what lies on each other is placed there
-  const PairKey* pair = nullptr;        ///< that has met, outlives the cause; null: none
-  const FeatureContact* met = nullptr;  ///< of that pair
-};
 
 class IslandMotion {
  public:
@@ -58,7 +50,7 @@ class IslandMotion {
   /// as the two still are.
   void expect_agitation() { agitated_ = true; }
   /// What the members' contacts are found on the side of, where nothing else tells: what has met, or how they are pulled.
-  void expect_sides(const StepCause& cause);
+  void expect_sides(const StepCause& cause) { sides_.expect(cause); }
   /// Where forces change with place, velocity or time, a step of so long will do [s], about.
   void expect_step(double h) { expected_ = h; }
   /// What to expect for the next [s]; infinity: anything.
@@ -108,18 +100,9 @@ class IslandMotion {
     double time = std::numeric_limits<double>::infinity();  ///< from now [s]
     double closing = 0.0;                                   ///< then, or a little before [m/s]
   };
-  /// Contacts of a pair whose lines are parallel to that of one of them.
-  struct Parallel {
-    int alike = 0, opposite = 0;  ///< by their normals
-    double gaps = 0.0;            ///< the sum, to its side [m]
-  };
   void list(double reach);
-  void remember_sides(std::size_t first);
-  bool remember_side(HeldContact& c) const;
-  Parallel parallel_to(const HeldContact& c, const std::vector<char>& told, bool known) const;
-  static void turn_over(NearFeature& f);
-  std::optional<bool> is_elsewhere(const HeldContact& c) const;
-  bool is_on_line(const HeldContact& c, const Vec2& point, const Vec2& normal) const;
+  /// Of contacts from that place on.
+  void remember_sides(std::size_t first) { sides_.remember(contacts_, first, {members_, *search_, warm_}); }
   void list_farther(const std::vector<Vec3>& velocity);
   bool touches(const HeldContact& c) const;
   double impact_of(const HeldContact& c, const std::vector<Vec3>& velocity) const;
@@ -176,8 +159,7 @@ class IslandMotion {
   double h_ = 0.0, absorbed_ = 0.0;
   double expected_ = std::numeric_limits<double>::infinity();
   double asked_ = 0.0;  ///< the length of the step, but for what impacts cut off it [s]
-  bool run_begins_ = false;
-  std::optional<std::pair<PairKey, FeatureContact>> met_;
+  WireSides sides_;
   std::vector<HeldContact> contacts_;
   std::vector<ContactLoad>
       gives_;  ///< what each of them has moved its bodies by, of a step of twists or at rest [N], [N m]

@@ -69,8 +69,6 @@ class Kernel : public KernelView {
   bool expect_search(const PairKey& pair, double from, double to, int most_steps) {
     return parts_.search.expect_search(pair, from, to, most_steps);
   }
-  /// The same of a body's motion, until t.
-  bool expect_motion(int body, double t) { return parts_.trajectories.expect(body, t); }
   void wake_helpers() { parts_.helpers->wake(); }
   /// The same with motions of those versions. @pre among versions() of the two.
   std::optional<Certificate> search(const PairKey& pair, std::uint64_t version, std::uint64_t other_version,

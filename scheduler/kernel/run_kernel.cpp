@@ -90,7 +90,6 @@ void RunKernel::let_help(int count) {
   parts_.helpers.reset();  // before what they work on
   if (count > 0) parts_.helpers = std::make_unique<Helpers>(count);
   parts_.search.let_help(parts_.helpers.get());
-  parts_.trajectories.let_help(parts_.helpers.get());
 }
 
 /// What is told of motions, by whichever trajectories there are now.

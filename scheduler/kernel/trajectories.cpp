@@ -151,7 +151,6 @@ double Trajectories::follow(Coupled& c, double t) {
   if (covered >= t) return t;
   // a failure is lasting: the integrator would only say so again
   if (covered >= c.failure.time) return covered;
-  take_back(c);
   const std::uint64_t before = run_->work().solver_steps;
   const Extent extent = c.integrator->extend(t, instalment());
   // a step makes one piece for each body
@@ -160,34 +159,6 @@ double Trajectories::follow(Coupled& c, double t) {
   if (extent.status == Extent::Status::failed)
     note_failure(c.failure, extent.end, "'" + world_->bodies[first].name + "'", extent.why);
   return std::min(extent.end, t);
-}
-
-void Trajectories::let_help(Helpers* helpers) {
-  helpers_ = helpers;
-  for (Coupled& c : components_) c.going = nullptr;
-  goings_.clear();
-}
-
-/// As follow() will go.
-bool Trajectories::expect(int k, double t) {
-  if (!helpers_ || bodies_[k].component < 0 || bodies_[k].motion.end() >= t) return false;
-  Coupled& c = components_[bodies_[k].component];
-  if (c.dormant || std::isfinite(c.failure.time)) return false;
-  if (!c.going) {
-    c.going = goings_.emplace_back(std::make_unique<Going>()).get();
-    c.going->integrator = c.integrator.get();
-  }
-  const Helpers::Settled settled = helpers_->settle(*c.going, Helpers::Patience::none);
-  if (settled == Helpers::Settled::late) return true;
-  c.going->to = settled == Helpers::Settled::undone ? std::max(c.going->to, t) : t;
-  c.going->most_steps = instalment();
-  helpers_->post(*c.going);
-  return true;
-}
-
-/// Before its integrator or its dynamics are asked by this thread.
-void Trajectories::take_back(const Coupled& c) const {
-  if (c.going) helpers_->settle(*c.going, Helpers::Patience::endless);
 }
 
 /// One instalment of a site that moves by formulas; all others are known for ever.
@@ -302,7 +273,6 @@ void Trajectories::forget_before(double t) {
 
 /// The component begins there, at the present time or, where it is put back, before. All its motions are new.
 void Trajectories::start(Coupled& c, ComponentStart from) {
-  take_back(c);
   c.begun = std::move(from);
   c.integrator->start(c.begun.time, c.begun.states);
   fetch(c);
@@ -411,7 +381,6 @@ ExtendedTwist Trajectories::twist_now(int k) const {
 
 /// Its integrator is not asked any more. A failure goes with the motion that would have come to it.
 void Trajectories::put_to_sleep(Coupled& c) {
-  take_back(c);
   c.dormant = true;
   c.failure = {};
   find_reach();
@@ -535,7 +504,6 @@ void Trajectories::begin_anew(Component component, double t, std::vector<int>& c
 bool Trajectories::regroup(Sets together, std::vector<int>& changed) {
   const double now = run_->time();
   std::vector<Component> after = make_components(*world_, together);
-  for (const Coupled& c : components_) take_back(c);
   // In two rounds: what may fail comes first, while nothing has changed yet.
   std::vector<bool> stay;
   for (const Component& c : after) {
@@ -604,7 +572,6 @@ void Trajectories::restore(const Saved& saved, double t) {
     b.last_partner = as.last_partner;
     b.streak = as.streak;
   }
-  for (const Coupled& c : components_) take_back(c);
   components_.clear();
   find_reach();
   for (Component& c : make_components(*world_, together_)) {

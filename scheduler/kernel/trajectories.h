@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "brink/core/base/helpers.h"
 #include "brink/core/base/large_vector.h"
 #include "brink/core/world/forces.h"
 #include "brink/integrators/integrator.h"
@@ -65,11 +64,6 @@ class Trajectories {
   bool cover(double t);
   bool cover_body(int k, double t);
   bool cover_sites(double t);
-  /// From now on what is expected may be done by these, who must have ended before it is said anew; null: by nobody.
-  void let_help(Helpers* helpers);
-  /// The body's motion will be asked for until t [s] soon, if it is not started afresh before. True if somebody may begin
-  /// to make it meanwhile; nobody sees it before it is asked for.
-  bool expect(int k, double t);
   /// Where the first of the motions ends that cannot go on [s]; infinity: none that is known.
   double reach() const { return reach_; }
   /// Halts for the motion that ends at reach().
@@ -155,19 +149,12 @@ class Trajectories {
     double time = std::numeric_limits<double>::infinity();
     std::string why;
   };
-  struct Going final : Helpers::Job {  ///< on, ahead of what is asked for
-    void run(int) noexcept override { integrator->extend_ahead(to, most_steps); }
-    Integrator* integrator = nullptr;
-    double to = 0.0;  ///< [s]
-    std::uint64_t most_steps = 0;
-  };
   struct Coupled {  ///< a component and its integrator
     Component component;
     std::unique_ptr<Integrator> integrator;
     ComponentStart begun;
     Failure failure;
-    bool dormant = false;    ///< an island holds its bodies
-    Going* going = nullptr;  ///< null: was never expected
+    bool dormant = false;  ///< an island holds its bodies
   };
 
   void add_component(Component component, ComponentStart start);
@@ -186,7 +173,6 @@ class Trajectories {
   }
   void hold_again(std::span<const int> members, const Saved& saved);
   void fetch(const Coupled& c);
-  void take_back(const Coupled& c) const;
   double follow(Coupled& c, double t);
   double follow_site(int site, double t);
   bool cover(Coupled& c, double t);
@@ -209,8 +195,6 @@ class Trajectories {
   KnotTeller knots_;
   double reach_ = std::numeric_limits<double>::infinity();
   std::uint64_t forgotten_ = 0;  ///< pieces made when forget_before() was last called
-  Helpers* helpers_ = nullptr;
-  std::vector<std::unique_ptr<Going>> goings_;  ///< of components that there are, and were, since let_help()
 };
 
 }  // namespace brink

@@ -33,7 +33,6 @@ namespace {
 
 constexpr std::uint64_t kBetweenPauses = 2048;  ///< servings between places where a run may be resumed from
 constexpr std::uint64_t kBetweenPolls = 64;
-constexpr int kAhead = 32;          ///< bodies that helpers may be ahead of the first look
 constexpr int kInstalment = 3;      ///< search steps at a time: most contacts ahead are overtaken by others
 constexpr unsigned kPlain = 16;     ///< of instalments in a row of one search; then they double:
 constexpr unsigned kDoublings = 8;  ///< so often, if it comes to no end
@@ -56,10 +55,11 @@ class BodyClocks final : public Policy {
     views_->set_end(seen_end());
     tells_ = false;
     quick_ = kernel.has_quick_way() && !picks_among_all(kernel.order());
+    const bool is_helped = kernel.has_helpers();
     while (!kernel.halt() && std::min(queue_.time(), kernel.next_step()) <= end()) {
       if (++served_ % kBetweenPauses == 0 || kernel.much_to_forget()) pause();
       if (served_ % kBetweenPolls == 0 && !kernel.poll()) break;
-      if (kernel.has_helpers() && (tells_ = worth_.asked()) && soon_.is_time(queue_.time())) tell_helpers();
+      if (is_helped && (tells_ = worth_.asked()) && soon_.is_time(queue_.time())) tell_helpers();
       // A contact at the very end of a step comes before the step, as in take_earliest().
       if (kernel.next_step() < queue_.time())
         step_island();
@@ -84,8 +84,6 @@ class BodyClocks final : public Policy {
     queue_.reset(kernel_->body_count(), kernel_->time());
     views_->begin_round();
     for (int k = 0; k < kernel_->body_count() && kernel_->poll(); ++k) {
-      if (kernel_->has_helpers() && is_driven(k + kAhead) && expect_look(k + kAhead, kernel_->time()))
-        kernel_->wake_helpers();
       look_around(k, kernel_->time());
       wait_for(k);
     }
@@ -132,22 +130,9 @@ class BodyClocks final : public Policy {
   /// Of what body k comes to within what is soon; true if that is of use.
   bool tell_of(int k) {
     const BodyClock& clock = views_->clock(k);
-    if (is_driven(k)) return clock.horizon <= soon_.end() && expect_look(k, clock.horizon);
     bool any = false;
     for (std::size_t i = 0; i < clock.candidates.size() && clock.candidates[i].time <= soon_.end(); ++i)
       any = expect_search(k, clock.candidates[i]) || any;
-    return any;
-  }
-  /// By an integrator.
-  bool is_driven(int k) const {
-    return k < kernel_->body_count() && !kernel_->is_free(k) && !kernel_->is_held(k);
-  }
-
-  /// Of body k, which an integrator drives: its motion will be followed, and those near it.
-  bool expect_look(int k, double time) {
-    if (kernel_->body(k).motion.end() < time) return false;
-    bool any = false;
-    views_->each_followed(k, time, [&](int j, double t) { any = kernel_->expect_motion(j, t) || any; });
     return any;
   }
 
@@ -475,16 +460,6 @@ class BodyClocks final : public Policy {
     if (kernel_->resolve(c.pair, c.contact, changed_)) look_around_changed();
   }
 
-  /// Of all but the first of those whose motions have changed, which is looked at at once.
-  void expect_looks() {
-    const int first = changed_.empty() ? BodyTrack::kFree : kernel_->body(changed_.front()).component;
-    bool any = false;
-    for (std::size_t i = 1; i < changed_.size(); ++i)
-      if (const int k = changed_[i]; is_driven(k) && kernel_->body(k).component != first)
-        any = expect_look(k, kernel_->time()) || any;
-    if (any) kernel_->wake_helpers();
-  }
-
   /// An island's step ends, and nothing comes before.
   void step_island() {
     if (!kernel_->record_frames(kernel_->next_step())) return;
@@ -501,7 +476,6 @@ class BodyClocks final : public Policy {
     }
     // all flights before the first look: nobody must see another's former motion
     for (const int k : changed_) views_->take_up(k);
-    if (tells_) expect_looks();
     views_->begin_round();
     for (std::size_t i = 0; i < changed_.size() && !kernel_->halt(); ++i) {
       look_around(changed_[i], kernel_->time());

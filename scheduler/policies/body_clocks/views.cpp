@@ -396,10 +396,10 @@ double Views::stride(int k, double now) const {
   return std::max(now - pace.start, 0.25 * pace.typical);
 }
 
-/// About when something that closes in at that speed could have crossed a cell, or the gap to it
+/// Ends body k's view about when something that closes in at that speed could have crossed a cell, or the gap to it
 /// where that is wide, or after the stride, if that is not next to nothing, beside a cell's time or what the motion has
 /// behind it.
-double Views::window_end(int k, double now, double closing, double stride, double gap) const {
+void Views::limit_view(int k, double now, double closing, double stride, double gap) {
   const double cell = near_->cell_size(k),
                near = std::isfinite(cell) ? cell : 4.0 * kernel_->world().length();
   // what flies away fast is looked at less and less often
@@ -408,13 +408,8 @@ double Views::window_end(int k, double now, double closing, double stride, doubl
   const double window = length / (closing + 1e-2 * length);
   const double age = kernel_->is_free(k) ? 0.0 : now - paces_[k].start;
   // after `now` at least: what is faster than the clock can tell is for the search to refuse
-  return std::max(now + std::max({std::min(window, stride), 1e-3 * window, 1e-3 * age}),
-                  std::nextafter(now, kForever));
-}
-
-/// Ends body k's view at window_end().
-void Views::limit_view(int k, double now, double closing, double stride, double gap) {
-  const double end = window_end(k, now, closing, stride, gap);
+  const double end = std::max(now + std::max({std::min(window, stride), 1e-3 * window, 1e-3 * age}),
+                              std::nextafter(now, kForever));
   // a view that holds to the end of the run ends just after it
   clocks_[k].horizon = std::min(clocks_[k].horizon, end >= until_ ? std::nextafter(until_, kForever) : end);
   // a view that holds to the end of an island's step ends just after it: the step comes first

@@ -58,22 +58,6 @@ class Views {
           .end;
     return clock.horizon;
   }
-  /// Calls tell(j, t) of motions that will be followed until t by body k's next look, if it looks then [s]: of its own, and
-  /// of those near it. @pre an integrator drives it, and its motion is known until then.
-  template <class Tell>
-  void each_followed(int k, double then, Tell&& tell) const {
-    const auto until = [&](double closing, double stride) {
-      return std::max(then, std::min(window_end(k, then, closing, stride, 0.0), until_));
-    };
-    const double own = speed(k, then), end = until(own, stride(k, then));
-    tell(k, end);
-    near_->near(k, [&](int j, const Image&) {
-      const bool is_driven = !kernel_->is_free(j) && !kernel_->is_held(j);
-      if (j == k || !is_driven) return;
-      const bool is_known = kernel_->body(j).motion.end() >= then;
-      tell(j, is_known ? std::min(end, until(own + speed(j, then), stride(j, then))) : end);
-    });
-  }
   /// The end of the present run: views of bodies that are not in free flight end just after it at the latest.
   void set_end(double until) { until_ = until; }
 
@@ -133,7 +117,6 @@ class Views {
   double follow(int k, int owner, double end);
   double end_view(int k, double followed);
   double speed(int k, double now) const;
-  double window_end(int k, double now, double closing, double stride, double gap) const;
   void limit_view(int k, double now, double closing, double stride, double gap);
   void note_start(int k, double start);
   double stride(int k, double now) const;

@@ -1,0 +1,136 @@
+#include "brink/scheduler/kernel/wire_sides.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brink/scheduler/islands/tolerances.h"
+
+namespace brink {
+
+namespace {
+
+/// Contact tolerances that a sharp sample may be beyond a wire while a run goes on, unless it was so from its start.
+constexpr double kSunkInRun = 4.0;
+/// Two normals whose cosine is off one by no more are one, and a pull along a normal below this part of the largest is none.
+constexpr double kOneLine = 1e-9;
+
+void turn_over(NearFeature& f) {
+  f.normal = -f.normal;
+  f.gap = -f.gap;
+}
+
+/// As near to a wire as roundings may leave what is upon it [m].
+double near_a_wire(const HeldContact& c, const IslandMembers& members) {
+  return kSunkOfRadius * members.bounding_radius(members.place_of(c.pair.body));
+}
+
+/// True if another contact of the pair, at a point seen from the other's position, has the same tangent line.
+bool is_on_line(const HeldContact& c, const Vec2& point, const Vec2& normal, double near) {
+  return std::abs(normal.dot(c.feature.normal)) >= 1.0 - kOneLine &&
+         std::abs(normal.dot(point - c.feature.point)) <= near;
+}
+
+/// Contacts of a pair as near to a wire, along lines that are parallel to that of one of them.
+struct Parallel {
+  int alike = 0, opposite = 0;  ///< by their normals
+  double gaps = 0.0;            ///< the sum, to its side [m]
+
+  void add(const NearFeature& f, double along) {
+    ++(along > 0.0 ? alike : opposite);
+    gaps += along > 0.0 ? f.gap : -f.gap;
+  }
+};
+
+/// True if c is on the other side, as its pair's parallel contacts say of which the side is `told`. Who fits between two lines to a
+/// rounding has contacts to either side. Where nothing tells any of them, places do, by however little: so that they do
+/// not contradict each other, as those of tips that slide against each other on one floor would.
+bool is_opposite(const HeldContact& c, const std::vector<HeldContact>& contacts,
+                 const std::vector<char>& told, double near) {
+  Parallel known, others;
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const NearFeature& f = contacts[k].feature;
+    if (!(contacts[k].pair == c.pair) || !f.thin || f.at_end || !(std::abs(f.gap) < near)) continue;
+    const double along = f.normal.dot(c.feature.normal);
+    if (std::abs(along) >= 1.0 - kOneLine) (told[k] ? known : others).add(f, along);
+  }
+  if (known.alike + known.opposite > 0) return known.alike == 0;
+  return others.opposite > 0 && others.gaps < 0.0;
+}
+
+}  // namespace
+
+void WireSides::expect(const StepCause& cause) {
+  run_begins_ = cause.run_begins;
+  if (cause.pair) met_.emplace(*cause.pair, *cause.met);
+}
+
+void WireSides::remember(std::vector<HeldContact>& contacts, std::size_t first, const Known& known) const {
+  std::vector<char> told(contacts.size(), 1);
+  for (std::size_t k = first; k < contacts.size(); ++k) told[k] = remember(contacts[k], known);
+  for (std::size_t k = first; k < contacts.size(); ++k) {
+    if (told[k]) continue;
+    HeldContact& c = contacts[k];
+    if (is_opposite(c, contacts, told, near_a_wire(c, known.members))) turn_over(c.feature);
+    told[k] = 1;
+  }
+}
+
+/// False: nothing tells surely which side it is.
+bool WireSides::remember(HeldContact& c, const Known& known) const {
+  const Outline& carrier =
+      known.search.outline_of(c.feature.sample_on_a ? c.pair.body : known.search.other_owner(c.pair));
+  NearFeature& f = c.feature;
+  // upon a corner edges tell it, whichever side of the line of a piece it was on before it came there
+  if (!f.thin || f.upon_corner || (f.at_end && !f.goes_on) ||
+      !(std::abs(f.gap) < kSunkOfRadius * carrier.bounding_radius))
+    return true;
+  const HeldContact* before = f.at_end ? nullptr : known.before.find(c);
+  std::optional<bool> turn;
+  if (before != nullptr && !before->feature.at_end)
+    turn = before->feature.normal.dot(f.normal) < 0.0;
+  else
+    turn = f.side_told == SideTold::surely ? false : is_elsewhere(c, known);
+  // no step leaves anybody so deep: it is where it is
+  if (!turn && std::abs(f.gap) > kSunkInRun * known.search.limits().tolerance) turn = f.gap < 0.0;
+  if (turn.value_or(false)) turn_over(f);
+  return turn.has_value();
+}
+
+/// Of a wire of which no place of the other surely tells on which side it is: true if that is the other one. Where a run begins it is
+/// what is told at all, or the side to which forces press. Later, who was on one side with another contact along that line
+/// has not changed it, nor who has just met it: of the same pair, or else with a site that may go on from this one.
+std::optional<bool> WireSides::is_elsewhere(const HeldContact& c, const Known& known) const {
+  const IslandMembers& members = known.members;
+  const Vec2& n = c.feature.normal;
+  if (run_begins_ && c.feature.side_told == SideTold::hardly) return false;
+  if (run_begins_) {
+    const auto pull_on = [&](int body) {
+      const int place = members.place_of(body);
+      return members.is_support(place) ? Vec2(Vec2::Zero()) : members.acceleration(place).linear;
+    };
+    Vec2 pull = pull_on(c.pair.body);
+    if (!c.pair.with_site()) pull -= pull_on(c.pair.other_body);
+    if (std::abs(n.dot(pull)) > kOneLine * members.pull()) return n.dot(pull) > 0.0;
+  }
+  const RealVec from = members.other_state(c.pair).position;
+  const double near = near_a_wire(c, members);
+  for (const bool of_pair : {true, false}) {
+    const auto is_asked = [&](const PairKey& pair) {
+      return of_pair ? pair == c.pair : pair.body == c.pair.body && pair.with_site() && c.pair.with_site();
+    };
+    for (const HeldContact& w : known.before)
+      if (is_asked(w.pair) && w.feature.thin && !w.feature.at_end) {
+        const RealVec to_its = members.other_state(w.pair).position - from;
+        if (is_on_line(c, w.feature.point + to_its.cast<double>(), w.feature.normal, near))
+          return w.feature.normal.dot(n) < 0.0;
+      }
+    if (met_ && is_asked(met_->first)) {
+      const FeatureContact& met = met_->second;
+      if (is_on_line(c, (met.point.cast<Real>() - from).cast<double>(), met.normal, near))
+        return met.normal.dot(n) < 0.0;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace brink
