@@ -127,7 +127,7 @@ class MeshMaker {
     }
   }
 
-  /// Chords, each a tent, and between two of them a sector on the convex side, where their tents leave a wedge.
+  /// Chords, each a tent, and after each a sector on the convex side, where the next one's tent leaves a wedge.
   /// On the other side tents overlap, and the depth test takes the nearer. Chords and sectors have half the error each.
   void add_arc(const PixelSite& s) {
     const double half = half_angle(s.arc_radius, 0.5 * error_);
@@ -142,13 +142,15 @@ class MeshMaker {
              : k == chords ? s.b
                            : Vec2(s.center + s.arc_radius * Vec2(std::cos(angle), std::sin(angle)));
     };
+    // Each tent ends at its chord's normal, half a step off the arc's own. At the start there is a cone, from add(); the end
+    // may have none: where the window sees no more of the arc, no other site begins.
+    const double half_step = 0.5 * std::abs(step);
     for (int k = 0; k < chords; ++k) {
       add_tent(at(k), at(k + 1));
-      // At the chords' joints only: the arc's own ends have cones of their own from add().
-      if (k == 0) continue;
-      // each tent ends at its chord's normal, half a step off that of the joint
-      const double middle = start + k * step, wide = 0.5 * std::abs(step) + kOverlap / rim_about(at(k));
-      sector(at(k), turn * (at(k) - s.center).normalized(), middle - wide, middle + wide, 0.5 * error_);
+      const double middle = start + (k + 1) * step, over = kOverlap / rim_about(at(k + 1));
+      const double before = half_step + over, after = k + 1 < chords ? before : over;
+      sector(at(k + 1), turn * (at(k + 1) - s.center).normalized(), middle - (turn > 0.0 ? before : after),
+             middle + (turn > 0.0 ? after : before), 0.5 * error_);
     }
   }
 

@@ -6,7 +6,7 @@
 /// R / cos(delta) with depth R, so the facet's depth is q.m = d cos(angle to m): never more than the distance
 /// d, and less by d (1 - cos(delta)) <= R (1 - cos(delta)) at most. A segment is two rectangles, exact, and a
 /// cone at each end. An arc is cut into chords, each a tent, with a sector of a cone at each joint on the
-/// convex side: no farther off than the chord's sagitta and the sector's own error. Facets and chords are
+/// convex side, and half of one at its end: no farther off than the chord's sagitta and the sector's own error. Facets and chords are
 /// chosen so that the sum is `error` at most.
 
 #include "brink/core/fields/site_batch.h"

@@ -32,6 +32,39 @@ TEST(SiteMesh, ConesAndTentsNeverExceedTheTrueDistance) {
   }
 }
 
+// Windows that see a part of an arc alone: from next to it to some of its sizes away, large and small, on either side.
+TEST(SiteMesh, WindowsAnywhereAboutArcsAreWithinTheStatedBound) {
+  const Outline outlines[] = {
+      make_path("M 0 -20 A 20 20 0 1 1 0 20 A 26 26 0 0 0 0 -20 Z", 0.05, 1e-4).outline,
+      make_path("M -20 0 A 20 20 0 0 1 20 0 Z", 0.05, 1e-4).outline,
+      make_disc_container(1.0).outline,
+      make_arc({0, 0}, 1.0, 0.0, 7.0).outline,
+      make_arc({0, 0}, 1.0, 0.0, 2.5, 0.01).outline,
+      make_arc({0, 0}, 1.0, 2.0, -1.5).outline};
+  Random random(5);
+  for (const char* kind : {"exact", "mesh"}) {
+    PassRenderer renderer(drawn_as(kind, 0.1));
+    Errors errors;
+    for (int k = 0; k < 1800; ++k) {
+      const Outline& outline = outlines[k % std::size(outlines)];
+      const Pose pose(Vec2::Zero(), random.uniform(-4.0, 4.0));
+      const double away = std::pow(10.0, random.uniform(-2.0, 0.5)),
+                   half = away * std::pow(10.0, random.uniform(-2.5, 0.0));
+      const bool inside = random.uniform(0.0, 1.0) < 0.3;
+      const Vec2 center =
+          field_test::polar(inside ? 1.0 - std::min(away, 0.9) : 1.0 + away, random.uniform(0.0, 6.3));
+      Box window;
+      window.add(center - Vec2(half, half));
+      window.add(center + Vec2(half, half));
+      const PlacedOutline placed[] = {{&outline, pose, 0}};
+      compare(outline, renderer.render(window, 40, 40, placed, FieldImage::kNone, kInfinite), kInfinite, pose,
+              errors);
+    }
+    EXPECT_LT(errors.worst_above, 1.0) << kind;
+    EXPECT_LT(errors.worst_below, 1.0) << kind;
+  }
+}
+
 /// True if sites that say "inside" and sites that say "outside" are within `bound` of each other in distance:
 /// where the outline is thinner than that, a picture cannot tell.
 bool undecided(const Outline& outline, const Vec2& p, double bound) {
