@@ -2,7 +2,10 @@
 /// The state hash: 64-bit FNV-1a over the bits of doubles and integers, in a fixed order.
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <span>
 #include <string>
 
 #include "brink/core/base/geometry.h"
@@ -28,6 +31,18 @@ class StateHash {
     add(s.pose.angle);
     add(s.twist.velocity);
     add(s.twist.omega);
+  }
+  /// Eight at a time, in the machine's order; the last word is filled with zeros. Hash the length before, or zeros at the
+  /// end of one text are taken for those.
+  void add_bytes(std::span<const std::byte> bytes) {
+    for (; bytes.size() >= 8; bytes = bytes.subspan(8)) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, bytes.data(), 8);
+      add(word);
+    }
+    std::uint64_t last = 0;
+    if (!bytes.empty()) std::memcpy(&last, bytes.data(), bytes.size());
+    add(last);
   }
   std::uint64_t value() const { return value_; }
   /// 16 hexadecimal digits.

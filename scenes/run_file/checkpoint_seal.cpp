@@ -18,20 +18,6 @@ struct Header {
 };
 static_assert(sizeof(Header) == 32);
 
-// The last word is filled with zeros. Lengths are hashed before, so that zeros at the end of one text
-// are not taken for padding.
-// Eight bytes at a time, in the machine's order: StateHash takes words.
-void add_bytes(StateHash& hash, std::span<const std::byte> bytes) {
-  for (; bytes.size() >= 8; bytes = bytes.subspan(8)) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, bytes.data(), 8);
-    hash.add(word);
-  }
-  std::uint64_t last = 0;
-  std::memcpy(&last, bytes.data(), bytes.size());
-  hash.add(last);
-}
-
 /// Over everything that a resume goes by, in a fixed order: another order would be another layout, and
 /// needs another version in the header. Cost: proportional to the snapshot.
 std::uint64_t checksum(const ResumePoint& row, std::span<const std::byte> snapshot, std::uint64_t identity) {
@@ -44,7 +30,7 @@ std::uint64_t checksum(const ResumePoint& row, std::span<const std::byte> snapsh
   hash.add(static_cast<std::uint64_t>(row.contacts));
   hash.add(static_cast<std::uint64_t>(row.knots));
   hash.add(static_cast<std::uint64_t>(snapshot.size()));
-  add_bytes(hash, snapshot);
+  hash.add_bytes(snapshot);
   return hash.value();
 }
 
@@ -55,7 +41,7 @@ std::uint64_t run_identity(const std::string& version, const std::string& option
   StateHash hash;
   for (const std::string* text : {&version, &options, &world}) {
     hash.add(static_cast<std::uint64_t>(text->size()));
-    add_bytes(hash, std::as_bytes(std::span(*text)));
+    hash.add_bytes(std::as_bytes(std::span(*text)));
   }
   return hash.value();
 }

@@ -319,15 +319,18 @@ class PairSearch {
     return safe_step(f, path.q.dot(path.rate) / path.distance, bounds.inertial_acceleration);
   }
 
-  /// How long a sample is sure not to meet the other outline however fast the two turn: it stays on its circle about its
-  /// owner's origin, and the other between two circles about its own. 0 if that says nothing.
+  /// How long a sample is sure not to meet the other outline however fast the two turn: it stays between two circles about
+  /// its owner's origin (a vertex on one), and the other between two about its own. 0 if that says nothing.
   double clear_however_turned(const Half& half, int i, const SamplePath& path, double band, double speed) {
     const Outline& outline = half.sites_of();
+    const Sample& sample = half.sample(i);
+    const double circle = sample.arc_site >= 0 ? half.samples_of().sites[sample.arc_site].arc_radius : 0.0;
+    const double thickness = sample.radius - circle;
+    const double inner = std::abs(path.arm - circle), outer = path.arm + circle;
     const double apart = (view_.placed(half.s).frame.origin - view_.placed(half.t).frame.origin).norm();
-    const double within =
-        free_radius(half) - apart - path.arm;  // the circle is in what the other leaves free
-    const double around = std::abs(apart - path.arm) - outline.bounding_radius;
-    const double gap = (outline.container ? within : std::max(within, around)) - half.sample(i).radius - band;
+    const double within = free_radius(half) - apart - outer;  // it is in what the other leaves free
+    const double around = std::max(apart - outer, inner - apart) - outline.bounding_radius;
+    const double gap = (outline.container ? within : std::max(within, around)) - thickness - band;
     return gap > 0.0 ? gap / speed : 0.0;
   }
 

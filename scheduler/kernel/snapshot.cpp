@@ -13,7 +13,7 @@ namespace brink {
 namespace {
 
 /// With a newline and a zero in front of the letters: no text file begins so. The digit grows with every change of what is written.
-constexpr std::array<char, 8> kMagic{'\n', '\0', 'B', 'R', 'I', 'N', 'K', 'A'};
+constexpr std::array<char, 8> kMagic{'\n', '\0', 'B', 'R', 'I', 'N', 'K', 'B'};
 
 /// Objects as they lie in memory: a snapshot is read by the program that wrote it.
 class Writer {
@@ -25,6 +25,7 @@ class Writer {
     end_ += sizeof(T);
   }
   void expect(std::size_t bytes) { bytes_.resize(bytes); }
+  std::span<const std::byte> written() const { return {bytes_.data(), end_}; }
   std::vector<std::byte> take() {
     bytes_.resize(end_);
     return std::move(bytes_);
@@ -64,6 +65,24 @@ class Reader {
  private:
   std::span<const std::byte> bytes_;
 };
+
+/// FNV-1a over all bytes before the checksum: it tells any single change of a byte for certain, others but for one in 2^64.
+std::uint64_t checksum(std::span<const std::byte> bytes) {
+  StateHash hash;
+  hash.add(static_cast<std::uint64_t>(bytes.size()));
+  hash.add_bytes(bytes);
+  return hash.value();
+}
+
+/// Without the checksum at the end. @throws BadInput if it does not hold.
+std::span<const std::byte> checked(std::span<const std::byte> bytes) {
+  if (bytes.size() < sizeof(std::uint64_t)) throw BadInput("snapshot: it ends early");
+  const auto content = bytes.first(bytes.size() - sizeof(std::uint64_t));
+  std::uint64_t told = 0;
+  std::memcpy(&told, bytes.data() + content.size(), sizeof told);
+  if (told != checksum(content)) throw BadInput("snapshot: the checksum is wrong: it was damaged or cut");
+  return content;
+}
 
 /// Reads or writes numbers of fixed size, in one order.
 template <class Each, class Run>
@@ -353,6 +372,7 @@ std::uint64_t snapshot_fingerprint(const World& world, const SolverOptions& opti
 ///   islands
 ///   the present instant        whose bodies have collided in it
 ///   bounces                    of every series that is watched
+///   checksum                   of all that
 /// Where a number of things can vary it stands before them, but for bodies and starts, which the world tells.
 std::vector<std::byte> encode(const SavedRun& saved, std::uint64_t fingerprint) {
   Writer out;
@@ -373,6 +393,7 @@ std::vector<std::byte> encode(const SavedRun& saved, std::uint64_t fingerprint) 
     out(feature);
     out(bounce);
   }
+  out(checksum(out.written()));
   return out.take();
 }
 
@@ -386,6 +407,7 @@ SavedRun decode(std::span<const std::byte> bytes, const World& world, std::uint6
   // first: of bytes that are no snapshot nothing else means anything
   if (magic != kMagic) throw BadInput("snapshot: these bytes are not a snapshot of this version");
   if (print != fingerprint) throw BadInput("snapshot: it was taken of another world or with other options");
+  in = Reader(checked(bytes).subspan(magic.size() + sizeof print));
   SavedRun saved;
   scalars(in, saved);
   saved.failure.resize(in.count(sizeof(char)));

@@ -65,8 +65,8 @@ class Simulator {
 
   /// Everything needed to go on with the same bits.
   std::vector<std::byte> snapshot() const;
-  /// @throws BadInput if the bytes are not a snapshot of this world and options. Bytes that were damaged are not always told:
-  /// a run file seals them with a checksum.
+  /// @throws BadInput if the bytes are not a snapshot of this world and options, or have been damaged (any change of one
+  /// byte is told, others but for one in 2^64); nothing has changed then.
   void restore(std::span<const std::byte> snapshot);
 
  private:

@@ -147,5 +147,52 @@ TEST(FastTurning, BarsSweepWhatIsWithinTheirReachAndNothingElse) {
   }
 }
 
+/// A body that spins within a circle of wire, whole or in part, or a round container, or between two: it meets that between
+/// the moment when the circle of its corners comes to it and half a turn later. So does one that stands for one that spins.
+TEST(FastTurning, WhatSpinsWithinAnArcMeetsItWhenItsCornersReachIt) {
+  SeededRandom random(20261129);
+  for (int k = 0; k < 120; ++k) {
+    const double radius = random.uniform(0.5, 3.0);
+    const double size = radius * std::pow(10.0, random.uniform(-2.5, -0.3));
+    const double reach = 0.5 * std::hypot(size, 0.6 * size), spin = spin_of(random);
+    const double turned = random.uniform(0.0, 2.0 * M_PI), speed = random.uniform(0.05, 5.0);
+    const double off = random.uniform(0.0, 0.9) * (radius - reach);
+    const Vec2 from = off * Vec2(std::cos(turned), std::sin(turned)),
+               velocity = speed * Vec2(std::cos(turned + 0.7), std::sin(turned + 0.7));
+    const double way = from.dot(velocity), room = radius - reach;
+    const double time =
+        (-way + std::sqrt(way * way + speed * speed * (room * room - off * off))) / (speed * speed);
+    const Vec2 met = from + time * velocity;
+    const double middle = std::atan2(met.y(), met.x());
+    const Shape shapes[] = {make_arc(Vec2::Zero(), radius, 0.0, 7.0), make_disc_container(radius),
+                            // about where it is met; the rest of the circle is open
+                            make_arc(Vec2::Zero(), radius, middle - 0.5, middle + 0.5)};
+    World world;
+    const bool spinning_wall = k % 4 == 3;
+    Body body = testing::body(make_box(size, 0.6 * size), from, velocity);
+    if (!spinning_wall) {
+      body.initial.twist.omega = spin;
+      testing::add(world, testing::site(shapes[k % 3]));
+    } else {
+      Body wall = testing::body(shapes[0], Vec2::Zero(), Vec2::Zero());
+      wall.initial.twist.omega = spin;
+      testing::add(world, wall);
+      body = testing::body(make_disc(reach), from, velocity);
+    }
+    testing::add(world, body);
+    for (const std::string& policy : exact_policies()) {
+      const Ran ran = run(world, policy, 1.5 * time + 0.1);
+      SCOPED_TRACE(
+          fmt::format("{} {}: size {} in {}, spin {}, {}", k, policy, size, radius, spin, ran.summary.why));
+      ASSERT_EQ(ran.events.collisions().size(), 1U);
+      const double at = ran.events.collisions()[0].contact.time;
+      EXPECT_GE(at, time - 1e-9 * (1.0 + time));
+      // in half a turn it goes on by so much
+      EXPECT_LE(at, time + M_PI / std::abs(spin) * (1.0 + speed * size / (room * room)) + 1e-2 * time);
+      EXPECT_LT(ran.summary.work.distance_queries, 20000U);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace brink::fast_turning_test
