@@ -54,7 +54,12 @@ fs::path made_folder(const fs::path& dir) {
 
 void throw_not_written(const fs::path& file) {
   // Callers come here right after the write that failed, while errno is still its own.
-  const std::string why = errno == ENOSPC ? "disk full" : std::strerror(errno);
+  const int cause = errno;
+  const std::string why = cause == ENOSPC ? "disk full" : std::strerror(cause);
+  // What has no room is half a file. Where it could not be opened it is somebody's whole one.
+  std::error_code error;
+  if ((cause == ENOSPC || cause == EDQUOT || cause == EFBIG) && fs::is_regular_file(file, error))
+    fs::remove(file, error);
   throw IoError(fmt::format("{}: could not be written: {}", file.string(), why));
 }
 

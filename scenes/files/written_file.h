@@ -17,7 +17,7 @@ void refuse_overwriting(const std::filesystem::path& file, const std::string& op
 std::filesystem::path made_folder(const std::filesystem::path& dir);
 
 /// After a write that went wrong: @throws IoError naming the file and what the system says of it ("disk
-/// full").
+/// full"). Where there was no room for all of it, the file is removed.
 [[noreturn]] void throw_not_written(const std::filesystem::path& file);
 
 }  // namespace brink

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <string_view>
 #include <tuple>
@@ -30,11 +31,13 @@ constexpr std::string_view kColumns =
     "changed";
 constexpr std::size_t kCells = 7;
 
+/// All of the text, as a number that is not infinite and no NaN.
 template <class Number>
 bool reads_as(const std::string& text) {
   Number number;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && stop == text.data() + text.size();
+  return error == std::errc() && stop == text.data() + text.size() &&
+         std::isfinite(static_cast<double>(number));
 }
 
 bool is_hash(std::string_view text) {

@@ -141,7 +141,9 @@ TEST_F(Regress, BadInputIsToldAllAtOnceWithItsPlaces) {
   const std::string good = table();
   write("scenes/bad.toml", ball("colour = 1\n"));
   write("scenes/worse.toml", ball("mass = 0\n"));
-  write("scenes/answers.csv", good + "x,reached_end,1\ny,reached_end,now,-1,3,ff,why\n");
+  write("scenes/answers.csv", good +
+                                  "x,reached_end,1\ny,reached_end,now,-1,3,ff,why\n"
+                                  "z,reached_end,nan,1,inf,0123456789abcdef,why\n");
   for (const char* arguments : {"scenes", "scenes --update", "scenes --quiet", "scenes --json"}) {
     const Outcome bad = regress(arguments);
     EXPECT_EQ(bad.status, 2) << arguments;
@@ -150,7 +152,9 @@ TEST_F(Regress, BadInputIsToldAllAtOnceWithItsPlaces) {
                               "scenes/answers.csv:5:1: a row of 3 cells, allowed: 7",
                               "scenes/answers.csv:6:15: end time: given \"now\", allowed: a number",
                               "scenes/answers.csv:6:19: collisions: given \"-1\"",
-                              "scenes/answers.csv:6:24: hash: given \"ff\", allowed: 16 hexadecimal digits"})
+                              "scenes/answers.csv:6:24: hash: given \"ff\", allowed: 16 hexadecimal digits",
+                              "scenes/answers.csv:7:15: end time: given \"nan\", allowed: a number",
+                              "scenes/answers.csv:7:21: energy: given \"inf\", allowed: a number"})
       EXPECT_THAT(bad.error, HasSubstr(place)) << arguments;
   }
   fs::remove(dir_ / "scenes/bad.toml");

@@ -541,6 +541,19 @@ TEST_F(FullDisk, AWriteThatFailsIsStatusThreeAndTheRunGoesOnAfterwards) {
   expect_whole("small");
 }
 
+// Half a picture, page or table is of no use to anybody; whole ones stay.
+TEST_F(FullDisk, NoHalfOfAFileIsLeft) {
+  const std::string told = printed(
+      "b='" BRINK_BINARY_DIR
+      "/bin/brink'\n"
+      "(trap '' XFSZ; ulimit -f 4; $b draw whole -o a.png; echo $?; $b view whole -o a.html; echo $?\n"
+      "$b export whole --csv tables; echo $?) 2>&1\n"
+      "ls a.png a.html tables 2>/dev/null || true\n");
+  const std::string cause = "could not be written: File too large\n3\n";
+  EXPECT_EQ(told, "brink: a.png: " + cause + "brink: a.html: " + cause +
+                      "brink: tables/frames.csv: " + cause + "tables:\nbodies.csv\nsites.csv\n");
+}
+
 TEST_F(ProgramTest, WhatCannotBeReadOrWrittenIsStatusThree) {
   EXPECT_EQ(brink("run absent.toml").status, 3);
   EXPECT_EQ(brink("run ball.toml --out ball.toml/x").status, 3);
