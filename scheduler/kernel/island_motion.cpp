@@ -205,12 +205,28 @@ bool IslandMotion::touches(const HeldContact& c) const {
   return c.feature.gap - kept(c.feature) <= search_->limits().tolerance;
 }
 
+/// True if the site ends at a corner that touches one of the sample's edges: the sample is far from that corner, and through it as
+/// soon as it sinks into the edge by a rounding, which its own contact sees to.
+bool IslandMotion::is_kept_by_corner(const HeldContact& c) const {
+  if (!c.feature.at_end || touches(c)) return false;
+  const Outline &a = search_->outline_of(c.pair.body), &b = search_->outline_of(search_->other_owner(c.pair));
+  const auto ends = [](const Sample& corner, int site) {
+    return corner.before == site || corner.after == site;
+  };
+  const Sample& sample = (c.feature.sample_on_a ? a : b).samples[c.feature.sample];
+  return std::any_of(contacts_.begin(), contacts_.end(), [&](const HeldContact& o) {
+    return o.pair == c.pair && o.feature.sample_on_a != c.feature.sample_on_a &&
+           ends(sample, o.feature.site) &&
+           ends((o.feature.sample_on_a ? a : b).samples[o.feature.sample], c.feature.site) && touches(o);
+  });
+}
+
 /// How fast the two close if that is an impact now [m/s], else 0: they touch, or are to meet within the step of an
 /// agitated island, and faster than a step takes as plastic.
 double IslandMotion::impact_of(const HeldContact& c, const std::vector<Vec3>& velocity) const {
   const double closing = members_.closing_speed(c);
   if (closing <= most_absorbed(c.pair) || c.feature.beside_arc || c.feature.goes_on) return 0.0;
-  if (!touches(c)) return arrival(c, velocity).time < h_ ? closing : 0.0;
+  if (!touches(c)) return !is_kept_by_corner(c) && arrival(c, velocity).time < h_ ? closing : 0.0;
   // at a joint of two floors the tangent at an end bars the way to what slides over it
   if (passes_by(c, 0.0, closing)) return 0.0;
   // by modes another contact says better what a shadow says: one impact for one place
@@ -430,7 +446,7 @@ double IslandMotion::next_arrival() {
     if (c.feature.beside_arc || c.feature.goes_on) continue;
     const Arrival come = touches(c) ? Arrival{0.0, members_.closing_speed(c)} : arrival(c, velocity);
     if (!(come.time <= h_)) continue;
-    if (!touches(c) && come.closing > most_absorbed(c.pair))
+    if (!touches(c) && come.closing > most_absorbed(c.pair) && !is_kept_by_corner(c))
       // too fast to be taken as plastic: an impact within the step
       first = std::min(first, come.time);
     else

@@ -105,6 +105,7 @@ class IslandMotion {
   void remember_sides(std::size_t first) { sides_.remember(contacts_, first, {members_, *search_, warm_}); }
   void list_farther(const std::vector<Vec3>& velocity);
   bool touches(const HeldContact& c) const;
+  bool is_kept_by_corner(const HeldContact& c) const;
   double impact_of(const HeldContact& c, const std::vector<Vec3>& velocity) const;
   void collide(const HeldContact& c, double closing, const Impact& told);
   ImpulseSide side_of(int member, const RealVec& arm) const;

@@ -386,6 +386,13 @@ TEST(Faults, WiresInAHeapDoNotCross) {
     }
 }
 
+// A corner that sank into a side by a rounding was an impact of a vertex far along that side, over and over, each time deeper.
+TEST(Faults, ACornerOnASideIsNoImpactOfTheSidesFarEnd) {
+  const Watched run = watched_lasting(load_scene(fault("rolling_quads_in_a_bin"), {}));
+  EXPECT_EQ(run.told.summary.termination, Termination::reached_end) << run.told.summary.why;
+  for (const std::string& f : run.faults) ADD_FAILURE() << f;
+}
+
 // Bodies fall into an attractor until its steps are too small: all up to there is told, and told alike. (By
 // rendered passes, or with every pair, these take minutes.) At a tolerance of 1e-3 the last bits of a start decide
 // whether a step leads over the attractor of the second.
