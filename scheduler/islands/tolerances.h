@@ -112,6 +112,10 @@ inline constexpr double kNearCentre = 1e-3;
 /// Rows that depend on each other to this part are redundant: rows of length one are rounded to 1e-16, and a
 /// million times that is no force of the world's.
 inline constexpr double kRedundant = 1e-10;
+/// A contact that is closed is off its gap by no more than this part of the size: steps are shortened until that holds.
+inline constexpr double kOnContact = 1e-6;
+/// Of rows by which places and velocities are put onto contacts: what these are off by moves nobody by more than 1 / this of it.
+inline constexpr double kNearlyRedundant = 1e-4;
 /// What accelerations may miss of closed contacts, of the largest that takes part: what rows as near to redundant as kRedundant
 /// lets them be lose, and a hundred times more.
 inline constexpr double kConsistent = 1e-8;

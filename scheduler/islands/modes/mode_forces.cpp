@@ -207,9 +207,10 @@ PlainVector least_change(const ModeProblem& problem, const std::vector<PlainVect
     system.row(i) = by * row.transpose();
     right[i] = -by * off[i];
   }
-  // rows may be redundant: of all changes that miss least the shortest
+  // Rows may be redundant: of all changes that miss least the shortest. Two that are nearly so, as where two arcs join, and
+  // differ by a rounding would have their one place far away.
   Eigen::CompleteOrthogonalDecomposition<PlainMatrix> solver;
-  solver.setThreshold(kRedundant);
+  solver.setThreshold(kNearlyRedundant);
   solver.compute(system);
   return solver.solve(right).cwiseProduct(root);
 }
@@ -245,8 +246,9 @@ ModeForces forces_in(const ModeProblem& problem, const ModeMoment& moment,
   return f;
 }
 
-std::vector<BodyState> projected(const ModeProblem& problem, double t, std::vector<BodyState> states,
-                                 const std::vector<MotionMode>& modes) {
+std::optional<std::vector<BodyState>> projected(const ModeProblem& problem, double t,
+                                                std::vector<BodyState> states,
+                                                const std::vector<MotionMode>& modes) {
   std::vector<double> off;
   const auto move = [&](bool velocities) {
     const std::vector<PlainVector> rows =
@@ -264,6 +266,10 @@ std::vector<BodyState> projected(const ModeProblem& problem, double t, std::vect
   // enough
   for (int i = 0; i < kNewtonSteps; ++i) {
     move(false);
+    // what is so far off its contacts was never on them
+    if (std::any_of(off.begin(), off.end(),
+                    [&](double x) { return !(std::abs(x) <= kOnContact * problem.size); }))
+      return std::nullopt;
     if (std::all_of(off.begin(), off.end(),
                     [&](double x) { return std::abs(x) <= kGapIsZero * problem.size; }))
       break;

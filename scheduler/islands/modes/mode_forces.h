@@ -26,8 +26,10 @@ ModeForces forces_in(const ModeProblem& problem, const ModeMoment& moment,
                      const std::vector<MotionMode>& modes, bool with_margin = true);
 
 /// The states with positions moved onto gap = kept of all closed contacts, and then velocities onto v_n = 0, and
-/// v_t = 0 where it sticks: by least change in the mass metric. Supports move as they do at t.
-std::vector<BodyState> projected(const ModeProblem& problem, double t, std::vector<BodyState> states,
-                                 const std::vector<MotionMode>& modes);
+/// v_t = 0 where it sticks: by least change in the mass metric. Supports move as they do at t. None where a closed contact is off
+/// by more than kOnContact of the size: nobody is moved that far.
+std::optional<std::vector<BodyState>> projected(const ModeProblem& problem, double t,
+                                                std::vector<BodyState> states,
+                                                const std::vector<MotionMode>& modes);
 
 }  // namespace brink

@@ -78,10 +78,16 @@ bool ModeMotion::begin(const std::vector<bool>& closed) {
   return choice.found && begin_in(choice.modes);
 }
 
+bool ModeMotion::put_on_contacts() {
+  auto on = projected(problem_, t_, states_, modes_);
+  if (on) states_ = std::move(*on);
+  return on.has_value();
+}
+
 /// The states are put onto the modes first: forces are those of the projected states.
 bool ModeMotion::begin_in(const std::vector<MotionMode>& modes) {
   modes_ = modes;
-  states_ = projected(problem_, t_, std::move(states_), modes_);
+  if (!put_on_contacts()) return false;
   forces_ = forces_in(problem_, moment_at(problem_, t_, states_, modes_), modes_);
   return forces_.consistent;
 }
@@ -204,7 +210,9 @@ double ModeMotion::arrive(double h, int contact) const {
   for (int n = 0; n < kApproaches; ++n) {
     // A step taken anew to h ends beside what the dense output of the longer one says, so Newton goes over
     // steps themselves.
-    ContactRates r = rates_at(problem_, t_ + h, after(h), problem_.contacts[contact]);
+    const auto there = after(h);
+    if (!there) break;
+    ContactRates r = rates_at(problem_, t_ + h, *there, problem_.contacts[contact]);
     r.gap -= problem_.contacts[contact].closes_at;
     if (r.gap >= 0.0) reached = h;
     if (r.gap >= 0.0 && r.gap <= limits_.touch) break;
@@ -278,7 +286,7 @@ bool ModeMotion::change(const Look& failed) {
   }
   if (!choice.found || choice.modes == modes_) return false;
   modes_ = choice.modes;
-  states_ = projected(problem_, t_, std::move(states_), modes_);
+  if (!put_on_contacts()) return false;
   forces_ = forces_in(problem_, moment_at(problem_, t_, states_, modes_), modes_);
   return forces_.consistent;
 }
@@ -297,9 +305,9 @@ double ModeMotion::find_step(double until, States& end, std::vector<PolynomialPi
       h_ = h * (std::isfinite(error) ? std::clamp(0.9 * power(error, -0.2), 0.1, 0.8) : 0.1);
       continue;
     }
-    end = projected(problem_, t_ + h, trial.states, modes_);
-    pieces = pieces_to(last ? until : t_ + h, end);
-    if (!gaps_hold(pieces, h)) {
+    const auto on = projected(problem_, t_ + h, trial.states, modes_);
+    if (on) pieces = pieces_to(last ? until : t_ + h, end = *on);
+    if (!on || !gaps_hold(pieces, h)) {
       h_ = 0.5 * h;
       continue;
     }
@@ -328,20 +336,29 @@ ModeStep ModeMotion::step(double until) {
   if (fails && failed.what == Look::What::range) at = std::min(until, at + kBeyondEnd * size_ / speed_);
   // A step of its own to there, not the first part of the longer one: states and forces at its end are
   // those of the method, and its motion ends in them.
-  if (fails && at > t_) done.pieces = pieces_to(at, end = after(at - t_));
+  bool lost = false;
+  const auto end_at = [&](double time) {
+    const auto there = after(time - t_);
+    if (there)
+      done.pieces = pieces_to(time, end = *there);
+    else
+      lost = true;
+  };
+  if (fails && at > t_) end_at(at);
   Arrival arrival;
   // on the motion that is taken; where something fails before, an arrival after it does not come to be
   if (at > t_) arrival = first_arrival(problem_, modes_, done.pieces, t_, at, limits_.touch);
   if (arrival.found) {
     at = std::min(at, t_ + arrive(arrival.time - t_, arrival.contact));
-    if (at > t_) done.pieces = pieces_to(at, end = after(at - t_));
+    if (at > t_) end_at(at);
   } else if (at > t_ && arrival.time < at) {
     // nobody knows what is open beyond: a step to there, and the next looks on
     fails = false;
     at = arrival.time;
     done.end = ModeEnd::hovers;
-    if (at > t_) done.pieces = pieces_to(at, end = after(at - t_));
+    if (at > t_) end_at(at);
   }
+  if (lost) return {ModeEnd::lost, -1, {}};
   if (at > t_)
     accept(at, std::move(end));
   else

@@ -70,9 +70,11 @@ class ModeMotion {
   };
   using States = std::vector<BodyState>;
 
+  bool put_on_contacts();
   double find_step(double until, States& end, std::vector<PolynomialPiece>& pieces);
   double error_of(const ModeTrial& trial) const;
-  States after(double h) const {
+  /// None where that is off its contacts (projected()).
+  std::optional<States> after(double h) const {
     return projected(problem_, t_ + h, try_step(problem_, modes_, t_, states_, h).states, modes_);
   }
   Look look_at(double t, const States& states) const;
