@@ -207,14 +207,17 @@ void finish_outline(Outline& outline) {
   check(outline);
   outline.samples.clear();
   outline.bounds = Box();
-  outline.bounding_radius = 0.0;
+  outline.bounding_radius = outline.magnitude = 0.0;
   for (Site& s : outline.sites) {
     s.solid = outline.solid;
     s.pseudo_a = s.pseudo_b = Vec2::Zero();
     s.straight_a = s.straight_b = s.covered = false;
     outline.bounds.add(core_bounds(s).grown(s.radius));
     outline.bounding_radius = std::max(outline.bounding_radius, farthest_from_origin(s) + s.radius);
+    if (s.kind == SiteKind::arc)
+      outline.magnitude = std::max(outline.magnitude, s.center.norm() + s.arc_radius);
   }
+  outline.magnitude = std::max(outline.magnitude, outline.bounding_radius);
   if (outline.solid) set_pseudo_normals(outline);
   for (const Loop& loop : outline.loops) {
     if (outline.solid)

@@ -49,8 +49,11 @@ struct Outline {
   bool solid = false;        ///< has an inside (every loop closed); distance is signed
   bool container = false;    ///< solid outside: the loops bound a hole in an infinite solid
   double bounding_radius =
-      0.0;     ///< of a disc about the frame's origin that holds every site with its radius [m]
-  Box bounds;  ///< of every site with its radius
+      0.0;  ///< of a disc about the frame's origin that holds every site with its radius [m]
+  /// Of the numbers that distances are computed from: the same, or how far the circle of an arc leads, which may be much
+  /// farther [m].
+  double magnitude = 0.0;
+  Box bounds;                    ///< of every site with its radius
   double curve_deviation = 0.0;  ///< largest distance between a fitted curve and its arcs [m]
 
   /// A disc, or anything whose core is one point.

@@ -453,8 +453,7 @@ bool disc_and_segments(const Mover& disc, const Mover& other, bool disc_is_a, do
   // the one that is nearest at the canonical time, which need not be the one with the least root
   const auto [above, met] = nearest_at(t);
   const Vec2 q = frame.direction_to_local(parabola.at(t) - parabola_of_other.at(t));
-  if (!can_hold(kRoundoff * (6.0 * q.lpNorm<1>() + 2.0 * other.outline().bounding_radius),
-                limits.tolerance) ||
+  if (!can_hold(kRoundoff * (6.0 * q.lpNorm<1>() + 2.0 * other.outline().magnitude), limits.tolerance) ||
       too_fast(path.velocity + (t - rel.reference) * path.acceleration, t,
                smallest_radius(disc.outline(), other.outline())))
     return false;

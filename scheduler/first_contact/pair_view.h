@@ -209,7 +209,7 @@ class PairView {
       const double of_t = half.s_is_a ? turn_noise_b : turn_noise_a;
       // the distance to a site as far off comes last
       return place_noise + of_s * arm + (of_t + 2.0 * kRoundoff) * distance +
-             2.0 * kRoundoff * half.sites_of().bounding_radius;
+             2.0 * kRoundoff * half.sites_of().magnitude;
     }
   };
 
