@@ -6,7 +6,7 @@ namespace brink {
 
 /// One that is hit halfway has had half of the step's change by then.
 ExtendedTwist HeldBodies::come_to(int k, double now, ExtendedTwist at_end) const {
-  const HeldStep& step = held_.at(k).step;
+  const HeldStep& step = at(k).step;
   if (!(now < step.end)) return at_end;
   const Real left = (step.end - std::max(now, step.start)) / (step.end - step.start);
   const ExtendedTwist before(step.before);

@@ -1,7 +1,8 @@
 #pragma once
 /// What is kept of bodies that islands hold, beside their motions: what they go back to, and the step that they are in.
 
-#include <map>
+#include <optional>
+#include <vector>
 
 #include "brink/core/base/extended.h"
 #include "brink/core/base/geometry.h"
@@ -22,21 +23,30 @@ struct HeldBody {
   HeldStep step;
 };
 
-/// The held bodies, by id. Cost of a look: O(log n).
+/// The held bodies, by id.
 class HeldBodies {
  public:
-  void add(int k, const HeldBody& body) { held_[k] = body; }
+  void add(int k, const HeldBody& body) {
+    if (k >= static_cast<int>(held_.size())) held_.resize(k + 1);
+    held_[k] = body;
+  }
   /// Lets it go. @pre held
   HeldBody take(int k) {
-    const HeldBody body = held_.at(k);
-    held_.erase(k);
+    const HeldBody body = at(k);
+    held_[k].reset();
     return body;
   }
   /// @pre held
-  const HeldBody& at(int k) const { return held_.at(k); }
-  const std::map<int, HeldBody>& all() const { return held_; }
+  const HeldBody& at(int k) const { return held_[k].value(); }
+  /// Tells of each of them, ascending: visit(id, body).
+  template <class Visit>
+  void each(Visit&& visit) const {
+    for (int k = 0; k < static_cast<int>(held_.size()); ++k)
+      if (held_[k]) visit(k, *held_[k]);
+  }
 
-  void note_step(int k, const HeldStep& step) { held_.at(k).step = step; }
+  /// @pre held
+  void note_step(int k, const HeldStep& step) { held_[k].value().step = step; }
   /// Its twist is the one that it was given from here on.
   void forget_step(int k) { note_step(k, {}); }
   /// The twist that a body has come to by now, of which the motion has the twist of the step's end from the start on:
@@ -44,7 +54,7 @@ class HeldBodies {
   ExtendedTwist come_to(int k, double now, ExtendedTwist at_end) const;
 
  private:
-  std::map<int, HeldBody> held_;
+  std::vector<std::optional<HeldBody>> held_;  ///< by id; of bodies that are not held nothing
 };
 
 }  // namespace brink

@@ -116,6 +116,21 @@ class Outsider {
   Box box_;
 };
 
+/// True of what stands still, so far away that nobody comes to it in the step: as most of the world does where a heap is at rest.
+/// It may be given a speed by members, as any outsider. `all`: where these come in the step.
+bool stands_far_off(const World& world, const Trajectories& trajectories, const ContactSearch& search,
+                    const IslandMembers& members, int body, double h, const Box& all) {
+  const Motion& motion = trajectories.body(body).motion;
+  if (world.periods.any() || !motion.is_still()) return false;
+  const ExtendedTwist twist = trajectories.twist_now(body);
+  if (!twist.velocity.isZero(0.0) || twist.omega != 0.0) return false;
+  const double gains = members.pull() * h + kPassedOn * members.speed();
+  Box box;
+  box.add(motion.start().pose.position);
+  return !all.overlaps(
+      box.grown(search.outline_of(body).bounding_radius + h * gains + search.limits().tolerance));
+}
+
 }  // namespace
 
 /// Each outsider is asked by itself: one that touches another outsider alone comes with the next call, when that
@@ -134,6 +149,7 @@ std::vector<int> joining(const World& world, Trajectories& trajectories, const C
     if (members.has(k)) continue;
     // bodies with clocks of their own may not have been followed so far
     if (!trajectories.cover_body(k, now) || (go_on && !go_on())) return {};
+    if (stands_far_off(world, trajectories, search, members, k, h, all)) continue;
     const Outsider outsider(world, trajectories, search, members, k, now, h);
     bool near = false;
     // first against the whole island: nearly all of the world is far from it

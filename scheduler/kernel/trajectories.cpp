@@ -550,10 +550,10 @@ void Trajectories::go_back_to(const ComponentStart& s) {
 /// integrator that sleeps.
 Trajectories::Saved Trajectories::saved() const {
   Saved all{together_, {bodies_.begin(), bodies_.end()}, {}, {}, {}};
-  for (const auto& [k, former] : held_.all()) {
+  held_.each([&](int k, const HeldBody& former) {
     all.steps[k] = former.step;
     if (former.component >= 0) all.asleep.push_back(k);
-  }
+  });
   for (int c = 0; c < static_cast<int>(components_.size()); ++c) all.starts.push_back(start_of(c));
   return all;
 }

@@ -10,10 +10,12 @@ TEST(HeldBodies, AreLetGoToWhatTheyWere) {
   HeldBodies held;
   held.add(3, {2, {}, {}});
   held.add(1, {BodyTrack::kFree, {{0.0, -10.0}, 0.0}, {}});
-  EXPECT_EQ(held.all().size(), 2U);
+  std::vector<int> ids;
+  held.each([&](int k, const HeldBody&) { ids.push_back(k); });
+  EXPECT_EQ(ids, (std::vector{1, 3}));
   EXPECT_EQ(held.take(3).component, 2);
   EXPECT_EQ(held.take(1).acceleration.linear.y(), -10.0);
-  EXPECT_TRUE(held.all().empty());
+  held.each([](int k, const HeldBody&) { ADD_FAILURE() << k << " is held still"; });
 }
 
 // From 2 m/s to 6 m/s in the step from 1 s to 3 s: the motion has 6 m/s all along.
