@@ -18,8 +18,18 @@ namespace brink {
 
 namespace {
 
+/// Each entry of a block in all places of a register: read once for many products with it.
+struct Spread {
+  Four at[3][3];
+
+  explicit Spread(const Block& B) {
+    for (int c = 0; c < 3; ++c)
+      for (int r = 0; r < 3; ++r) at[c][r] = Four{} + B.at[c][r];
+  }
+};
+
 /// C -= A B^T
-inline void subtract_product(Block& C, const Block& A, const Block& B) {
+inline void subtract_product(Block& C, const Block& A, const Spread& B) {
   const Four a0 = four(A.at[0]), a1 = four(A.at[1]), a2 = four(A.at[2]);
   const Four c0 = four(C.at[0]) - (a0 * B.at[0][0] + a1 * B.at[1][0] + a2 * B.at[2][0]);
   const Four c1 = four(C.at[1]) - (a0 * B.at[0][1] + a1 * B.at[1][1] + a2 * B.at[2][1]);
@@ -34,10 +44,15 @@ inline void subtract_product(Triple& x, const Block& A, const Triple& y) {
   four(x.at) = four(x.at) - (four(A.at[0]) * y.at[0] + four(A.at[1]) * y.at[1] + four(A.at[2]) * y.at[2]);
 }
 
-/// x -= A^T y
-inline void subtract_transposed(Triple& x, const Block& A, const Triple& y) {
-  for (int c = 0; c < 3; ++c) x.at[c] -= A.at[c][0] * y.at[0] + A.at[c][1] * y.at[1] + A.at[c][2] * y.at[2];
-}
+/// What products A^T y of a column of blocks add up to, whose parts are summed at the end.
+struct TransposedProducts {
+  Four parts[3] = {};
+
+  void add(const Block& A, const Triple& y) {
+    for (int c = 0; c < 3; ++c) parts[c] = parts[c] + four(A.at[c]) * four(y.at);
+  }
+  double sum(int c) const { return parts[c][0] + parts[c][1] + parts[c][2]; }
+};
 
 }  // namespace
 
@@ -56,6 +71,7 @@ bool BlockLdl::analyse(int n, std::vector<Edge> edges, const GoOn& go_on) {
     return false;
   }
   diagonal_.resize(n);
+  per_pivot_.resize(n);
   below_.resize(rows_.size());
   int longest = 0;
   for (int k = 0; k < n; ++k) longest = std::max(longest, begins_[k + 1] - begins_[k]);
@@ -163,9 +179,11 @@ BRINK_WIDE bool BlockLdl::factor(const GoOn& go_on) {
     a[1][2] = a21 / a[1][1];
     a[2][2] = std::max(a[2][2] - a[0][2] * a20 - a[1][2] * a21, least.at[2]);
     const int begin = begins_[k], end = begins_[k + 1];
-    const double l10 = a[0][1], l20 = a[0][2], l21 = a[1][2], d0 = a[0][0], d1 = a[1][1], d2 = a[2][2];
+    const double l10 = a[0][1], l20 = a[0][2], l21 = a[1][2];
+    Triple& per_pivot = per_pivot_[k];
+    per_pivot = {{1.0 / a[0][0], 1.0 / a[1][1], 1.0 / a[2][2], 0.0}};
     // With A = L D L^T: each row of undivided_ becomes a row of L D by forward substitution with the unit
-    // triangle of the diagonal block, and of L by division.
+    // triangle of the diagonal block, and of L by division by the pivots.
     for (int p = begin; p < end; ++p) {
       Block &u = undivided_[p - begin], &L = below_[p];
       for (int r = 0; r < 4; ++r) {
@@ -173,14 +191,14 @@ BRINK_WIDE bool BlockLdl::factor(const GoOn& go_on) {
         u.at[0][r] = u0;
         u.at[1][r] = u1;
         u.at[2][r] = u2;
-        L.at[0][r] = u0 / d0;
-        L.at[1][r] = u1 / d1;
-        L.at[2][r] = u2 / d2;
+        L.at[0][r] = u0 * per_pivot.at[0];
+        L.at[1][r] = u1 * per_pivot.at[1];
+        L.at[2][r] = u2 * per_pivot.at[2];
       }
     }
     // What column k takes from the rest: L_p D L_p^T from diagonals, L_q D L_p^T below them.
     for (int p = begin; p < end; ++p) {
-      const Block& column = undivided_[p - begin];
+      const Spread column(undivided_[p - begin]);
       subtract_product(diagonal_[rows_[p]], below_[p], column);
       for (int q = p + 1; q < end; ++q) subtract_product(below_[*target++], below_[q], column);
     }
@@ -201,8 +219,10 @@ BRINK_WIDE void BlockLdl::solve(std::vector<Triple>& b) const {
   for (int k = size() - 1; k >= 0; --k) {
     const double(&d)[3][4] = diagonal_[k].at;
     double(&x)[4] = b[k].at;
-    for (int c = 0; c < 3; ++c) x[c] /= d[c][c];
-    for (int p = begins_[k]; p < begins_[k + 1]; ++p) subtract_transposed(b[k], below_[p], b[rows_[p]]);
+    four(x) = four(x) * four(per_pivot_[k].at);
+    TransposedProducts later;
+    for (int p = begins_[k]; p < begins_[k + 1]; ++p) later.add(below_[p], b[rows_[p]]);
+    for (int c = 0; c < 3; ++c) x[c] -= later.sum(c);
     x[1] -= d[1][2] * x[2];
     x[0] -= d[0][1] * x[1] + d[0][2] * x[2];
   }

@@ -81,6 +81,7 @@ class BlockLdl {
   std::vector<int> begins_, rows_;  ///< of column k the rows below the diagonal: rows_[begins_[k] ...]
   std::vector<int> targets_;        ///< slots that a column's pairs of blocks change, as factor() meets them
   std::vector<Triple> least_;       ///< pivots
+  std::vector<Triple> per_pivot_;   ///< 1 / D
   std::vector<Block> diagonal_, below_;
   std::vector<Block> undivided_;  ///< a column of L D
 };

@@ -38,6 +38,9 @@ struct RestProblem {
   std::vector<Vec3> mass;   ///< of each body: mass, mass [kg], inertia [kg m^2], > 0; infinity: held
   std::vector<Vec3> force;  ///< on each body, of all but contacts [N], [N m]
   std::vector<LastingContact> contacts;
+  /// Of each contact, as far as they are known: makes the search shorter. Empty: nothing is.
+  std::vector<ContactLoad> expected;
+  double near = 0.01;  ///< to which part of the largest force they may be known, about
 };
 
 struct RestResult {
@@ -115,8 +118,9 @@ class ConeQp {
   /// "Numerical methods for nonsmooth dynamical systems".
   ///
   /// Where forces are not unique (four legs), some well inside their cones are told. Rest is accepted when w is
-  /// below 1e-8 in the unit of `residual`.
-  RestResult rest_forces(const RestProblem& problem, const GoOn& go_on = {});
+  /// below 1e-8 in the unit of `residual`. Where it is not 0, the search ends once it is known to the root of `proved`, relative to
+  /// itself and by the kinetic energy of what is off; so coarse an answer is a proof still.
+  RestResult rest_forces(const RestProblem& problem, const GoOn& go_on = {}, double proved = 1e-18);
 
   /// One step with friction bounds that are given (Tresca):
   ///

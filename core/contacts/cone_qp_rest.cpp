@@ -20,9 +20,9 @@ constexpr int kMostRestSteps = 80;
 constexpr double kRest = 1e-8, kSure = 1e-10;
 /// Rounding of what loads add up to, as a part of them.
 constexpr double kRoundingOfLoads = 1e-13;
-/// Of w.M w: the gap at which w is known to the square root of this; where that does if rounding hinders; and
-/// at which w is known not to be 0.
-constexpr double kRestExact = 1e-18, kRestNearly = 1e-14, kProof = 1e-8;
+/// Of w.M w: the gap at which w is known to the square root of this, if rounding hinders that it is known better; and at which w
+/// is known not to be 0.
+constexpr double kRestNearly = 1e-14, kProof = 1e-8;
 
 /// The problem's rows: the edges of each contact's cone of forces.
 class Cones {
@@ -34,6 +34,9 @@ class Cones {
       problem_.mass.push_back(units_.scaled_mass(k));
       problem_.force.push_back(units_.scaled_force(k, given.force[k]));
     }
+    problem_.near = given.near;
+    problem_.rows.reserve(2 * given.contacts.size());
+    edges_.reserve(2 * given.contacts.size());
     for (int k = 0; k < static_cast<int>(given.contacts.size()); ++k) add_contact(k);
   }
 
@@ -64,8 +67,20 @@ class Cones {
   /// friction is spanned by two edges exactly; it is no approximation as a pyramid in space would be.
   void add_contact(int k) {
     const LastingContact& c = given_.contacts[k];
-    for (const double q : signs(c.friction))
-      for (const double m : signs(c.rolling_resistance)) add_edge({k, q, m});
+    const std::vector<double> drags = signs(c.friction), turns = signs(c.rolling_resistance);
+    for (const double q : drags)
+      for (const double m : turns) add_edge({k, q, m}, static_cast<double>(drags.size() * turns.size()));
+  }
+
+  /// The edge's weight in the load that is expected of its contact, which has so many edges: their normal parts add up to the
+  /// load's, and so do the others.
+  double expected(const Edge& edge, double edges) const {
+    if (given_.expected.empty()) return 0.0;
+    const ContactLoad& load = given_.expected[edge.contact];
+    const auto part = [](double of, double edge_has) { return edge_has != 0.0 ? of / edge_has : 0.0; };
+    const double sum =
+        load.normal + part(load.tangential, edge.tangential) + part(load.rolling, edge.rolling);
+    return std::max(0.0, sum / (edges * units_.force()));
   }
 
   /// Both ends of -bound .. bound, which are one where it is 0.
@@ -73,7 +88,7 @@ class Cones {
     return bound > 0.0 ? std::vector{bound, -bound} : std::vector{0.0};
   }
 
-  void add_edge(const Edge& edge) {
+  void add_edge(const Edge& edge, double edges) {
     const LastingContact& c = given_.contacts[edge.contact];
     // A rolling torque turns the body one way and the other one the opposite way.
     const Vec3 turn(0.0, 0.0, edge.rolling);
@@ -86,6 +101,7 @@ class Cones {
       row.on_other =
           units_.scaled_row(c.other, c.normal_on_other + edge.tangential * c.tangent_on_other - turn);
     if (row.on_body.isZero(0.0) && row.on_other.isZero(0.0)) return;  // between what is held
+    row.expected = expected(edge, edges);
     edges_.push_back(edge);
     problem_.rows.push_back(row);
   }
@@ -150,7 +166,7 @@ class Verdict {
 
 }  // namespace
 
-RestResult ConeQp::rest_forces(const RestProblem& problem, const GoOn& go_on) {
+RestResult ConeQp::rest_forces(const RestProblem& problem, const GoOn& go_on, double proved) {
   const Cones cones(problem);
   if (!solver_.begin(cones.problem(), go_on))
     return {RestResult::Status::stopped, std::vector<Vec3>(problem.mass.size(), Vec3::Zero()),
@@ -159,7 +175,7 @@ RestResult ConeQp::rest_forces(const RestProblem& problem, const GoOn& go_on) {
   // are taken; else the last steps would be spent on nothing.
   const auto sure = [&] {
     const Verdict verdict(cones.problem(), solver_);
-    if (verdict.rests(kSure) || verdict.moves(kRestExact)) return true;
+    if (verdict.rests(kSure) || verdict.moves(proved)) return true;
     return solver_.hindered() && (verdict.rests(kRest) || verdict.moves(kRestNearly));
   };
   while (!sure() && solver_.steps() < kMostRestSteps && solver_.step(go_on)) continue;
@@ -168,7 +184,7 @@ RestResult ConeQp::rest_forces(const RestProblem& problem, const GoOn& go_on) {
   const Verdict verdict(cones.problem(), solver_);
   // Not both: moves() asks for an acceleration above kRest, rests() for one up to it.
   if (verdict.rests(kRest)) result.status = RestResult::Status::rests;
-  if (verdict.moves(kProof)) result.status = RestResult::Status::moves;
+  if (verdict.moves(std::max(proved, kProof))) result.status = RestResult::Status::moves;
   if (solver_.stopped()) result.status = RestResult::Status::stopped;
   const bool rests = result.status == RestResult::Status::rests;
   for (int k = 0; k < static_cast<int>(problem.mass.size()); ++k)
@@ -179,6 +195,13 @@ RestResult ConeQp::rest_forces(const RestProblem& problem, const GoOn& go_on) {
   result.residual = verdict.acceleration();
   result.imbalance = verdict.imbalance();
   result.factorisations = solver_.steps();
+  if (result.status != RestResult::Status::undecided || problem.expected.empty()) return result;
+  // what is expected may be far off the answer
+  RestProblem afresh = problem;
+  afresh.expected.clear();
+  const int before = result.factorisations;
+  result = rest_forces(afresh, go_on, proved);
+  result.factorisations += before;
   return result;
 }
 

@@ -43,6 +43,8 @@ class StepRows {
       // with u = w - v: M u = h f + J^T x, and a row's y = J u + (J v + gap / h - that of the support)
       problem_.force.push_back(units_.scaled_force(k, given.duration * given.force[k]));
     }
+    problem_.rows.reserve(kRowsEach * given.contacts.size());
+    sources_.reserve(kRowsEach * given.contacts.size());
     for (int k = 0; k < static_cast<int>(given.contacts.size()); ++k) add_contact(k);
   }
 

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "brink/core/base/elementary.h"
 #include "brink/core/base/wide.h"
@@ -49,10 +50,6 @@ constexpr int kCorrections = 2;
 constexpr double kLonger = 0.6, kAllTheWay = 0.95, kWorthIt = 0.01;
 /// Products are well where they are within this part of what they are to be, and its inverse.
 constexpr double kAlike = 0.1;
-
-/// Where forces are expected, neither they nor speeds begin below this: nearer to 0 what is expected wrongly takes longer
-/// to be made up for than what is expected rightly saves.
-constexpr double kNear = 0.1;
 
 /// A force begins within this part of its bound.
 constexpr double kInside = 0.7;
@@ -93,11 +90,15 @@ bool InteriorPoint::take_graph(const QpProblem& problem, const GoOn& go_on) {
 void InteriorPoint::take_rows(const QpProblem& problem) {
   rows_.clear();
   pairs_ = 0;
+  PairsByName pair_of;
   for (const QpRow& row : problem.rows) {
     rows_.push_back(ordered(row));
     rows_.back().pair = pairs_;
+    if (row.name >= static_cast<int>(pair_of.size())) pair_of.resize(row.name + 1, -1);
+    if (row.name >= 0) pair_of[row.name] = pairs_;
     pairs_ += rows_.back().pairs;
   }
+  pair_of_ = std::make_shared<const PairsByName>(std::move(pair_of));
   s_.assign(pairs_, 0.0);
   z_.assign(pairs_, 0.0);
 }
@@ -110,7 +111,7 @@ void InteriorPoint::start(const QpProblem& problem) {
     mass_[factor_.place(k)] = Triple::of(problem.mass[k]);
     f_[factor_.place(k)] = Triple::of(problem.force[k]);
   }
-  for (OfPairs* of : {&ds_, &dz_, &aim_, &per_s_, &per_z_}) of->assign(pairs_, 0.0);
+  for (OfPairs* of : {&ds_, &dz_, &other_.ds, &other_.dz, &aim_, &per_s_, &per_z_}) of->assign(pairs_, 0.0);
   steps_ = 0;
   stopped_ = false;
   last_length_ = 1.0;
@@ -121,22 +122,19 @@ void InteriorPoint::start(const QpProblem& problem) {
 void InteriorPoint::note_place() {
   const double product = mean_product();
   if (product < kNearest || (!places_.empty() && product > kApart * places_.back().product)) return;
-  Place& place = places_.emplace_back(Place{{}, {}, s_, z_, product});
+  Place& place = places_.emplace_back(Place{{}, pair_of_, s_, z_, product});
+  place.u.reserve(u_.size());
   for (int k = 0; k < static_cast<int>(u_.size()); ++k) place.u.push_back(u_[factor_.place(k)]);
-  for (const Row& row : rows_) {
-    if (row.name < 0) continue;
-    if (row.name >= static_cast<int>(place.pair_of.size())) place.pair_of.resize(row.name + 1, -1);
-    place.pair_of[row.name] = row.pair;
-  }
 }
 
 /// Rows have been taken.
 void InteriorPoint::stand_at(const Place& place, const QpProblem& problem) {
   for (int k = 0; k < static_cast<int>(u_.size()); ++k) u_[factor_.place(k)] = place.u[k];
-  const int known = static_cast<int>(place.pair_of.size());
+  const PairsByName& pair_of = *place.pair_of;
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     const Row& row = rows_[r];
-    const int from = row.name >= 0 && row.name < known ? place.pair_of[row.name] : -1;
+    const int name = problem.rows[r].name;
+    const int from = name >= 0 && name < static_cast<int>(pair_of.size()) ? pair_of[name] : -1;
     if (from < 0) {
       start_where(row, problem.rows[r].bound, place.product);
       continue;
@@ -171,8 +169,7 @@ bool InteriorPoint::begin_again(const QpProblem& problem, const GoOn& go_on) {
 
 /// A row's pairs as the velocities have them, with products of that size.
 void InteriorPoint::start_where(const Row& row, double bound, double product) {
-  double y = row.offset + row.on_last.dot(u_[row.last]);
-  if (row.first >= 0) y += row.on_first.dot(u_[row.first]);
+  const double y = speed_of(row);
   double *s = &s_[row.pair], *z = &z_[row.pair];
   if (row.pairs == 1) {
     z[0] = std::max(y, std::sqrt(product));
@@ -196,8 +193,6 @@ InteriorPoint::Row InteriorPoint::ordered(const QpRow& given) const {
   row.on_last = Triple::of(given.on_body);
   row.offset = given.offset;
   row.pairs = std::isinf(given.bound) ? 1 : 2;
-  row.expected = given.expected;
-  row.name = given.name;
   if (given.other < 0) return row;
   row.first = factor_.place(given.other);
   row.on_first = Triple::of(given.on_other);
@@ -233,19 +228,21 @@ void InteriorPoint::start_pairs(const QpProblem& problem) {
 
 /// Forces and speeds as they are expected, and none of them near 0.
 void InteriorPoint::start_near(const QpProblem& problem) {
+  const double near = problem.near, product = near * near;
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     const Row& row = rows_[r];
+    const double expected = problem.rows[r].expected;
     double *s = &s_[row.pair], *z = &z_[row.pair];
     if (row.pairs == 1) {
-      s[0] = std::max(row.expected, kNear);
-      z[0] = std::max(row.offset, kNear);
+      s[0] = std::max(expected, near);
+      z[0] = std::max(row.offset, near);
     } else {
       const double bound = problem.rows[r].bound;
-      // what slips has its force close to the bound against it, the closer the faster: at products of kNear^2
-      const double slips = std::abs(row.offset), product = kNear * kNear;
-      const double most = std::max(kInside * bound, bound - product / std::max(slips, kNear));
-      const double x = slips > kNear ? std::copysign(most, -row.offset)
-                                     : std::clamp(row.expected, -kInside * bound, kInside * bound);
+      // what slips has its force close to the bound against it, the closer the faster
+      const double slips = std::abs(row.offset);
+      const double most = std::max(kInside * bound, bound - product / std::max(slips, near));
+      const double x = slips > near ? std::copysign(most, -row.offset)
+                                    : std::clamp(expected, -kInside * bound, kInside * bound);
       s[0] = bound - x;
       s[1] = bound + x;
       for (int p = 0; p < 2; ++p) z[p] = product / s[p];
@@ -347,25 +344,27 @@ BRINK_WIDE void InteriorPoint::correct_outliers(double centre) {
   double reach = std::min(1.0, longest_step());
   for (int k = 0; k < kCorrections && reach < kAllTheWay; ++k) {
     const double tried = std::min(1.0, reach + kLonger);
-    kept_ = {du_, ds_, dz_};
     for (std::size_t p = 0; p < s_.size(); ++p) {
       const double there = (s_[p] + tried * ds_[p]) * (z_[p] + tried * dz_[p]);
       // what is far too large is asked to fall by no more than the range is wide
       aim_[p] += std::max(std::clamp(there, kAlike * product, high) - there, -high);
     }
+    swap_direction();
     solve_for_aim();
     const double farther = std::min(1.0, longest_step());
-    if (farther < reach) {
-      du_ = kept_.du;
-      ds_ = kept_.ds;
-      dz_ = kept_.dz;
-    }
+    if (farther < reach) swap_direction();
     if (farther < reach + kWorthIt) return;
     reach = farther;
   }
 }
 
-/// Newton's direction towards products that change by what is aimed for.
+void InteriorPoint::swap_direction() {
+  du_.swap(other_.du);
+  ds_.swap(other_.ds);
+  dz_.swap(other_.dz);
+}
+
+/// Newton's direction towards products that change by what is aimed for. All of it is made anew.
 BRINK_WIDE void InteriorPoint::solve_for_aim() {
   const std::size_t count = s_.size();
   du_ = imbalance_;

@@ -3,6 +3,7 @@
 /// rows that each see one body or two.
 
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "brink/core/contacts/block_ldl.h"
@@ -28,6 +29,9 @@ struct QpProblem {
   std::vector<Vec3> mass;   ///< M, the diagonal: x, y, angle of each body
   std::vector<Vec3> force;  ///< f
   std::vector<QpRow> rows;
+  /// Where forces are expected, neither they nor speeds begin below this: nearer to 0 what is expected wrongly takes longer
+  /// to be made up for than what is expected rightly saves.
+  double near = 0.1;
 };
 
 /// Steps towards the solution: primal-dual, predictor and correctors, with one factor of M + J^T W J a step
@@ -76,21 +80,26 @@ class InteriorPoint {
     double offset;
     double residual;      ///< y of the velocities less y of the pairs
     double weight, push;  ///< dx = push - weight dy
-    double expected;
-    int name;
   };
   /// One number of each pair, in the order of rows.
   using OfPairs = std::vector<double>;
+  /// First pairs of rows, by names of these; -1: there is none.
+  using PairsByName = std::vector<int>;
   /// Where a search came by.
   struct Place {
-    std::vector<Triple> u;     ///< of each body
-    std::vector<int> pair_of;  ///< by name of the row; -1: there was none
+    std::vector<Triple> u;  ///< of each body
+    std::shared_ptr<const PairsByName> pair_of;
     OfPairs s, z;
     double product;
   };
 
   double force_of(const Row& row) const {
     return row.pairs == 1 ? s_[row.pair] : (s_[row.pair + 1] - s_[row.pair]) / 2;
+  }
+  /// y of the velocities, as they are.
+  double speed_of(const Row& row) const {
+    const double own = row.offset + row.on_last.dot(u_[row.last]);
+    return row.first >= 0 ? own + row.on_first.dot(u_[row.first]) : own;
   }
   Row ordered(const QpRow& row) const;
   bool take_graph(const QpProblem& problem, const GoOn& go_on);
@@ -103,6 +112,7 @@ class InteriorPoint {
   bool factor(const GoOn& go_on);
   void find_direction(double centre, bool corrected);
   void correct_outliers(double centre);
+  void swap_direction();
   void solve_for_aim();
   double longest_step() const;
   double gap_after(double length) const;
@@ -113,13 +123,14 @@ class InteriorPoint {
   BlockLdl factor_;
   std::vector<Triple> mass_, f_, u_, du_, imbalance_;  ///< in the order of elimination
   std::vector<Row> rows_;
+  std::shared_ptr<const PairsByName> pair_of_;
   OfPairs s_, z_, ds_, dz_;
   OfPairs aim_;            ///< what s dz + z ds is to be
   OfPairs per_s_, per_z_;  ///< 1 / s, 1 / z where the factor was made
   struct {
     std::vector<Triple> du;
     OfPairs ds, dz;
-  } kept_;                     ///< a direction, while another one is tried
+  } other_;                    ///< a direction, while another one is tried
   std::vector<Place> places_;  ///< from the farthest to the nearest to the solution
   int pairs_ = 0, steps_ = 0;
   bool stopped_ = false;

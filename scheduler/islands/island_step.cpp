@@ -73,6 +73,7 @@ StepProblem problem_of(const IslandStep& step, double h, const std::vector<Part>
   p.mass = step.mass;
   p.velocity = step.velocity;
   p.force = step.force;
+  p.contacts.reserve(parts.size());
   for (const Part& part : parts) {
     const IslandContact& c = step.contacts[part.contact];
     StepContact s;

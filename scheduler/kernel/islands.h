@@ -88,8 +88,9 @@ class Islands {
     double longest = std::numeric_limits<double>::infinity();  ///< [s]
     std::set<int> roused = {};        ///< of many at rest: these join, and no others for them
     std::set<int> were_at_rest = {};  ///< all of those so far
-    bool leans = true;                ///< false: whoever is near joins
-    std::set<int> supports = {};      ///< at rest, and near
+    double moved = 0.0;           ///< what the last who were roused for that would have moved by (RestCheck)
+    bool leans = true;            ///< false: whoever is near joins
+    std::set<int> supports = {};  ///< at rest, and near
     IslandPace pace = {};
     WarmContacts warm = {};  ///< of all who were taken out of islands for it
   };

@@ -118,6 +118,7 @@ void Islands::rouse(Island island, const std::set<int>& roused, Attempt& attempt
 bool Islands::carries(const IslandMotion& motion, Attempt& attempt) {
   const std::vector<HeldContact> lean = motion.that_lean();
   const RestCheck check = rest_check();
+  double moved = 0.0;
   for (auto& [lead, island] : islands_) {
     if (!island.rests || (lean.empty() && island.leaning.empty())) continue;
     std::vector<HeldContact> leaning;
@@ -134,11 +135,15 @@ bool Islands::carries(const IslandMotion& motion, Attempt& attempt) {
     if (run_->is_cut()) return false;
     tally_.friction_residual = std::max(tally_.friction_residual, answer.beyond);
     if (answer.stays) continue;
-    // What leans may find another way to press if those near it yield. What so many lean on is no saving.
-    const bool many = kMostRoused * (attempt.members.size() + answer.near.size()) > island.members.size();
+    moved = std::max(moved, answer.moves_by);
+    // What leans may find another way to press if those near it yield. What so many lean on is no saving, and where they have
+    // yielded and it is no better than it was, it will not be after more of them.
+    const bool many = kMostRoused * (attempt.members.size() + answer.near.size()) > island.members.size() ||
+                      (attempt.moved > 0.0 && answer.moves_by >= attempt.moved);
     const std::vector<int>& yield = many ? island.members : answer.near;
     attempt.roused.insert(yield.begin(), yield.end());
   }
+  attempt.moved = moved;
   return attempt.roused.empty();
 }
 

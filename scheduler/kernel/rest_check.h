@@ -25,11 +25,12 @@ class RestCheck {
     bool stays = false;
     std::vector<int> near;   ///< those who are changed, and who is within a few contacts of them
     std::vector<int> moved;  ///< where it does not: those whom the forces move most
+    double moves_by = 0.0;   ///< where it does not: the largest of their accelerations (RestResult::residual)
     double beyond = 0.0;  ///< by how much friction is beyond its cone, of the largest force, where it stays
   };
   /// Those bodies of the island feel other forces than its contacts balance now. Where it stays, its contacts have the forces that
-  /// hold it, as means over `h` [s]; else they are as before. Cost: a problem of rest of that part, which a step of as many
-  /// costs some times, and where it does not stay one of all; each twice where friction does not do.
+  /// hold it, as means over `h` [s]; else they are as before. Cost: a problem of rest of that part, which takes about as long as a
+  /// step of as many; where that does not stay by little, one of all, and where friction does not do by little, one more.
   Answer ask(Island& island, const std::vector<int>& changed, double h) const;
 
   /// Bodies of the island on which what leans on it presses otherwise in `leaning` than in island.leaning, by more than nothing
@@ -37,8 +38,14 @@ class RestCheck {
   std::vector<int> differs(const Island& island, const std::vector<HeldContact>& leaning) const;
 
  private:
+  class Graph;
   struct Part;
-  Part part_of(const Island& island, const std::vector<int>& changed, bool all) const;
+  Part near_part(const Graph& graph, const std::vector<int>& changed) const;
+  Part whole(const Graph& graph, Part part) const;
+  struct Question;
+  Question question_of(const Graph& graph, const Part& part) const;
+  bool settles(Island& island, const Graph& graph, const Part& part, double widened, double h,
+               Answer& answer) const;
   LastingContact rows_of(const HeldContact& c) const;
   void press(const HeldContact& c, int body, Vec3& force) const;
 

@@ -386,6 +386,15 @@ TEST(Faults, WiresInAHeapDoNotCross) {
     }
 }
 
+// Modes closed a contact that was 15 mm off its gap, and moved two bodies onto it by 8 mm at once.
+TEST(Faults, NobodyIsMovedOntoAContactFromAfar) {
+  for (const char* interval : {"output.frame_interval=0", "output.frame_interval=0.01"}) {
+    const Watched run = watched_lasting(load_scene(fault("periodic_ellipses_jump"), {interval}));
+    EXPECT_EQ(run.told.summary.termination, Termination::reached_end) << run.told.summary.why;
+    for (const std::string& f : run.faults) ADD_FAILURE() << f;
+  }
+}
+
 // A corner that sank into a side by a rounding was an impact of a vertex far along that side, over and over, each time deeper.
 TEST(Faults, ACornerOnASideIsNoImpactOfTheSidesFarEnd) {
   const Watched run = watched_lasting(load_scene(fault("rolling_quads_in_a_bin"), {}));

@@ -338,6 +338,72 @@ TEST(RestForces, RandomProblemsAreProved) {
   EXPECT_GT(rests, 50);
 }
 
+/// Forces that one may expect: those of the answer, off by a part of the largest, where that is large such as mean nothing.
+std::vector<ContactLoad> random_loads(Random& random, const RestResult& answer, double part) {
+  std::vector<ContactLoad> loads = answer.loads;
+  double most = 0.0;
+  for (const ContactLoad& load : loads) most = std::max(most, load.normal);
+  const auto off = [&] { return part * most * random.uniform(-1, 1); };
+  for (ContactLoad& load : loads)
+    load = {std::max(0.0, load.normal + off()), load.tangential + off(), load.rolling + off()};
+  return loads;
+}
+
+/// By what two accelerations differ, as the root of the kinetic energy, and the root of that of the first.
+std::pair<double, double> differ(const RestProblem& problem, const std::vector<Vec3>& a,
+                                 const std::vector<Vec3>& b) {
+  double of = 0.0, all = 0.0;
+  for (std::size_t k = 0; k < problem.mass.size(); ++k)
+    for (int c = 0; c < 3; ++c)
+      if (!std::isinf(problem.mass[k][c])) {
+        of += problem.mass[k][c] * (a[k][c] - b[k][c]) * (a[k][c] - b[k][c]);
+        all += problem.mass[k][c] * a[k][c] * a[k][c];
+      }
+  return {std::sqrt(of), std::sqrt(all)};
+}
+
+// Whatever forces are expected, and however near to them the search begins: the answer is that of a search which knows nothing.
+// Ended early it says the same of rest, and accelerations to as many digits. With masses spread over 1e6, and contacts given twice.
+TEST(RestForces, AnswersDoNotDependOnWhatIsExpected) {
+  int decided = 0;
+  for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    Random random(seed);
+    RestProblem problem = random_problem(random);
+    if (random.below(3) == 0)
+      for (std::size_t k = 0; k < problem.mass.size(); ++k) {
+        const double times = std::exp2(random.uniform(-10, 10));
+        problem.mass[k] *= times;
+        problem.force[k] *= times;
+      }
+    for (LastingContact& c : problem.contacts)
+      if (random.below(3) == 0) c.friction = random.uniform(0.0, 2.0);
+    if (!problem.contacts.empty() && random.below(3) == 0)
+      problem.contacts.push_back(problem.contacts.front());
+    const RestResult plain = ConeQp().rest_forces(problem);
+    // rounding, where masses are spread that far
+    if (plain.status == Status::undecided) continue;
+    ++decided;
+    for (const double part : {0.0, 1e-3, 0.1, 1.0, 100.0})
+      for (const double near : {1e-1, 1e-2, 1e-3}) {
+        SCOPED_TRACE(::testing::Message() << "off by " << part << ", near to " << near);
+        problem.expected = random_loads(random, plain, part);
+        problem.near = near;
+        const RestResult exact = ConeQp().rest_forces(problem),
+                         early = ConeQp().rest_forces(problem, {}, 1e-4);
+        EXPECT_EQ(exact.status, plain.status);
+        EXPECT_EQ(early.status, plain.status);
+        const auto [of_exact, all] = differ(problem, plain.acceleration, exact.acceleration);
+        const auto [of_early, same] = differ(problem, plain.acceleration, early.acceleration);
+        EXPECT_LE(of_exact, 1e-6 * all);
+        EXPECT_LE(of_early, 2e-2 * same);
+        if (exact.status == Status::rests) expect_proved(problem, early);
+        if (HasFailure()) return;
+      }
+  }
+  EXPECT_GT(decided, 1950);
+}
+
 TEST(RestForces, SameBitsWhateverWasSolvedBefore) {
   ConeQp used;
   used.rest_forces(testing::pyramid(5).problem);
