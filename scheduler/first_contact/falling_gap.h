@@ -66,20 +66,20 @@ class FallingGap {
   /// The upper end, beyond the surface; `low` where no place beyond it was found.
   struct Beyond {
     double end;
-    bool surely;  ///< by more than rounding
-    bool deep;    ///< by twice that, so whoever looks finds it surely there; not where the motion ends or it rises before
+    /// By more than rounding; by twice that, where it goes so deep before the motion ends or it rises.
+    bool surely;
   };
   /// No probe lies beyond `last`, where a motion ends.
   template <class Gap>
   Beyond beyond_end(Gap&& gap, double low, double last) const {
-    Beyond found{low, false, false};
+    Beyond found{low, false};
     bool done = false;
     const auto look = [&](double t) {
       const double then = std::min(t, last), by = then > low ? -gap(then) : -1.0;
       done = found.surely && then > found.end && by <= rounding_;  // it has risen since
       if (done || !(by >= 0.0) || (found.end > low && by <= rounding_)) return;
-      found = {then, by > rounding_, by > sure_};
-      done = found.deep;
+      found = {then, by > rounding_};
+      done = by > sure_;
     };
     // Where it may turn, Newton's step says nothing: from the earliest time on, or the window would hold what is met
     // later, too.

@@ -542,21 +542,19 @@ class PairSearch {
     // none there: what it comes to after that, half a turn later, say, is another one.
     const bool may_rise = falling.may_rise_first(beyond.end, limits_.touch);
     const double dip = may_rise ? deepest_after(half, f, falling, last) : 0.0;
-    if (dip > 0.0 && dip < beyond.end) beyond = {dip, dip > low && gap(dip) < -rounding, false};
+    if (dip > 0.0 && dip < beyond.end) beyond = {dip, dip > low && gap(dip) < -rounding};
     double high = beyond.end;
-    // Where no probe found it so deep that every other search would, the bottom of the dip decides.
+    // If no probe found where the gap is surely gone, the bottom of the dip decides.
     // A dip of less than a rounding is none, whoever looked where; what falls on is looked at again from nearer. But
     // behind a sharp tip there may be no more room than that: what comes upon it meets it.
     const bool sharp = site.radius + half.sample(f.sample).radius == 0.0;
-    bool tip = !beyond.deep && sharp && nearest_on(site, path.q).foot != Foot::interior;
-    if (!beyond.deep) {
+    const bool tip = !beyond.surely && sharp && nearest_on(site, path.q).foot != Foot::interior;
+    if (!beyond.surely) {
       const double deepest = dip > 0.0 ? dip : deepest_after(half, f, falling, last);
-      const double bottom = deepest > low ? gap(deepest) : kForever;
-      tip = tip && !(bottom < -rounding) && !(beyond.surely && !(deepest > low));
-      if (deepest > low)
-        high = bottom < -rounding || (tip && bottom <= 0.0) ? deepest : low;
-      else if (!beyond.surely && !tip)
-        high = low;
+      if (!tip)
+        high = deepest > low && gap(deepest) < -rounding ? deepest : low;
+      else if (deepest > low)
+        high = gap(deepest) <= 0.0 ? deepest : low;
     }
     if (high <= low) return false;  // passes by
     double clear_gap = 0.0;         // where it was last clear
