@@ -144,6 +144,12 @@ BounceLoss CollisionResponse::loss_of(const PairKey& pair) {
   return m.restitution < 1.0 || rubs ? BounceLoss::some : BounceLoss::none;
 }
 
+double CollisionResponse::gap_rounding(const PairKey& pair) const {
+  return 2.0 * kEpsilon *
+         (search_->outline_of(pair.body).magnitude +
+          search_->outline_of(search_->other_owner(pair)).magnitude);
+}
+
 double CollisionResponse::note_resolve(int k, int partner, double magnitude) {
   BodyTrack& b = trajectories_->body(k);
   const double now = run_->time();

@@ -45,6 +45,8 @@ class CollisionResponse {
   const Material& material_of(const PairKey& pair);
   /// What a collision of the pair takes of the approach.
   BounceLoss loss_of(const PairKey& pair);
+  /// What gaps of the pair are rounded by where they touch, by the numbers that their outlines are made of [m].
+  double gap_rounding(const PairKey& pair) const;
   /// From the clock's present double to the exact moment of contact: a fraction of a rounding [s]. The
   /// collision is resolved there, and the new motion is the one that passes through that moment, so that long
   /// runs do not drift by roundings of time. None where sharp points may meet wires without thickness: there

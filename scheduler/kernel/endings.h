@@ -30,7 +30,7 @@ class Endings {
 
   /// To be told of every collision at the present time, in order. One that a picture shows is in no
   /// series of bounces: flights lower than a pixel say nothing about a limit.
-  std::optional<Ending> collided(const Outcome& outcome, double now, BounceLoss loss);
+  std::optional<Ending> collided(const Outcome& outcome, double now, BounceLoss loss, double rounding = 0.0);
   /// True of an instant in which another collision is nothing unusual.
   bool is_plain(double now) const;
   /// collided() of one that is in no series of bounces (ZenoWatch), in such an instant: nothing ends.

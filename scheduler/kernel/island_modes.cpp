@@ -233,15 +233,17 @@ void IslandModes::add_contact(const HeldContact& c) {
   const bool told = c.feature.goes_on || (shadow && c.feature.gap <= search_->limits().tolerance);
   place_.push_back(problem_.contacts.size());
   bool present = true;
+  const Outline& carrier = c.feature.sample_on_a ? of_a : of_b;
+  const bool of_wire = !carrier.solid && carrier.samples[c.feature.sample].arc_site >= 0;
   // each shape has the friction of the contact, and keeps its gap while it is closed
   for (SmoothContact& shape :
        smooth_contacts(c.feature, of_a, members_->state(a), of_b, members_->other_state(c.pair))) {
     // of the sample's owner against the site's: the image is the other owner's, whichever of the two that
     // is
     shape.offset = c.feature.sample_on_a ? Vec2(-shift) : shift;
-    // two points meet nobody: a side is met before
-    const bool points =
-        shape.kind == SmoothContact::Kind::circle && shape.radius + shape.sample_radius == 0.0;
+    // Two points meet nobody: a side is met before. Nor does a wire's arc meet a corner, which meets the arc, on its own side.
+    const bool points = shape.kind == SmoothContact::Kind::circle &&
+                        shape.radius + (of_wire ? 0.0 : shape.sample_radius) == 0.0;
     if ((present && told) || points) {
       if (present) place_.back() = std::numeric_limits<std::size_t>::max();
       present = false;
@@ -416,7 +418,18 @@ bool IslandModes::go_on_from(const States& states, Approach how, double until, b
   const auto former = on_time && how == Approach::none ? former_modes() : std::nullopt;
   if (!(former ? motion.begin_in(*former) : motion.begin(closed_now(states, how)))) return false;
   begun_ = motion.states();
-  return move_on(motion, until);
+  return move_on(motion, until) && begins_at(states);
+}
+
+/// True if the motion begins where the members are, to the contact tolerance: nobody is moved onto contacts.
+bool IslandModes::begins_at(const States& states) const {
+  for (int i = 0; i < static_cast<int>(members_->count()); ++i) {
+    const Pose begun = motion(i).pose(now_), &pose = states[i].pose;
+    const double jump = (begun.position - pose.position).norm() +
+                        members_->bounding_radius(i) * std::abs(begun.angle - pose.angle);
+    if (!(jump <= search_->limits().tolerance)) return false;
+  }
+  return true;
 }
 
 /// What arrives right where the step begins touches by then: at a joint that is met to the bit the next arc does not face the site

@@ -318,7 +318,8 @@ bool Kernel::stop_at_limit(std::uint64_t count) {
 
 /// What it may be the end of.
 bool Kernel::judge_ending(const Outcome& o, std::vector<int>& changed) {
-  const auto ending = parts_.endings.collided(o, time(), parts_.response.loss_of(o.pair));
+  const auto ending = parts_.endings.collided(o, time(), parts_.response.loss_of(o.pair),
+                                              parts_.response.gap_rounding(o.pair));
   if (!ending) return go_on_in_islands(o, changed) && poll();
   switch (ending->kind) {
     case Ending::Kind::zeno:

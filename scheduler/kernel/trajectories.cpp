@@ -61,6 +61,7 @@ Trajectories::Trajectories(const World& world, const SolverOptions& options, Run
     : world_(&world),
       options_(&options),
       closed_forms_(options.integrator == "auto" || options.integrator == "ballistic"),
+      most_jump_(options.contact_tolerance * world.length()),
       run_(&run) {
   bodies_.resize(world.bodies.size());
   std::vector<BodyState> initial;
@@ -328,6 +329,7 @@ void Trajectories::restart(std::span<const Restart> touched, std::vector<int>& c
 void Trajectories::hold(std::span<const Restart> bodies, std::vector<int>& changed) {
   for (const Restart& r : bodies) {
     BodyTrack& b = bodies_[r.body];
+    watch_start(r.body, r.state);
     tell_knot(r.body, r.state.rounded());
     // One that is held already keeps what it was before its island: it is let go to that.
     if (b.component != BodyTrack::kHeld) {
@@ -343,6 +345,22 @@ void Trajectories::hold(std::span<const Restart> bodies, std::vector<int>& chang
     raise_version(b);
     changed.push_back(r.body);
   }
+}
+
+/// Ends the run where a motion does not begin where the body is: nobody jumps, whatever an island makes of its contacts.
+void Trajectories::watch_start(int k, const ExtendedState& start) {
+  const ExtendedState now = bodies_[k].motion.extended_state(run_->time());
+  const RealVec way = start.position - now.position;
+  const double turn = std::abs((start.angle - now.angle).high());
+  const double jump =
+      std::hypot(way.x().high(), way.y().high()) + world_->bodies[k].outline->bounding_radius * turn;
+  if (jump <= most_jump_) return;
+  run_->stop(
+      Termination::failed,
+      fmt::format(
+          "'{}' jumps by {:.3g} m at t = {:.17g}, where a contact that lasts begins or goes on (at most "
+          "{:.3g} m is allowed): this must not be",
+          world_->bodies[k].name, jump, run_->time(), most_jump_));
 }
 
 /// Called before the motion is another, also one that begins with the same twist: it may bend from here on.
@@ -364,6 +382,7 @@ void Trajectories::tell_lasting_knots() const {
 
 /// What met without a rebound is in the motion, and not in the state that was held.
 void Trajectories::follow_own(int k, Motion motion) {
+  watch_start(k, motion.extended_state(run_->time()));
   if (knots_) tell_knot(k, motion.state(run_->time()));
   bodies_[k].motion = std::move(motion);
 }

@@ -93,9 +93,11 @@ class Trajectories {
   void restart_free(int k, const BodyState& start, const BodyState& low);
   // -- islands --
   /// From now on the bodies move with constant twists from these states, or as follow_own() says, whatever
-  /// forces there are, until they are restarted or released. @pre all bodies of a component, or none.
+  /// forces there are, until they are restarted or released. @pre all bodies of a component, or none, and where they have
+  /// come to: one that is not there to the contact tolerance ends the run, as a pose jumps nowhere.
   void hold(std::span<const Restart> bodies, std::vector<int>& changed);
-  /// The last hold() of the body begins a motion of its own, from the state that it was given. @pre it has no end.
+  /// The last hold() of the body begins a motion of its own, from the state that it was given (as hold() asks for it). @pre it
+  /// has no end.
   void follow_own(int k, Motion motion);
   /// The last hold() of the body begins such a step.
   void note_step(int k, const HeldStep& step) { held_.note_step(k, step); }
@@ -180,10 +182,12 @@ class Trajectories {
   void note_failure(Failure& of, double end, const std::string& name, const std::string& why);
   void find_reach();
   bool stop_at(const Failure& failure);
+  void watch_start(int k, const ExtendedState& start);
 
   const World* world_;
   const SolverOptions* options_;
   bool closed_forms_;  ///< are asked for: another integrator that is named drives even what has one
+  double most_jump_;   ///< of where a motion of an island begins [m]
   RunControl* run_;
   LargeVector<BodyTrack> bodies_;
   std::vector<Coupled> components_;

@@ -23,6 +23,8 @@ inline constexpr double kParallelEdges = 1e-6;
 inline constexpr std::uint64_t kLowFlights = 10;
 /// After so many where flights have come down to the touching distance: below that bounces are roundings.
 inline constexpr std::uint64_t kShortSeries = 2;
+/// Nor are flights told that rise to less than so many roundings of their gap.
+inline constexpr double kLeastRise = 8.0;
 /// Flights that rise so many contact tolerances are not remembered: at a restitution of 0.5 ten bounces later
 /// one is a low flight, and is remembered then.
 inline constexpr double kHighFlight = 1e6;

@@ -29,7 +29,7 @@ bool ZenoWatch::is_high(double closing_speed, double since_last, double contact_
 
 std::optional<ZenoEnding> ZenoWatch::collided(const Feature& feature, double time, double closing_speed,
                                               BounceLoss loss, double since_last, bool sunk,
-                                              const ForeseenLimit& foreseen) {
+                                              const ForeseenLimit& foreseen, double rounding) {
   if (loss == BounceLoss::none || is_high(closing_speed, since_last, tolerance_)) return std::nullopt;
   // remembered from here on: high flights have not come so far (kHighFlight)
   Bounce& b = bounces_[feature];
@@ -61,8 +61,10 @@ std::optional<ZenoEnding> ZenoWatch::collided(const Feature& feature, double tim
   if ((interval < b.shortest && slower) || pressed) ++b.low_flights;
   b.shortest = std::min(b.shortest, interval);
   // a series that shrinks ends where its flights come down to roundings: what bounces on after is pressed
-  const bool run_out = b.limit_time > 0.0 && b.low_flights >= kShortSeries &&
-                       0.25 * closing_speed * interval < kTouchOfTolerance * tolerance_;
+  const double rose = 0.25 * closing_speed * interval, will_rise = rose * ratio * ratio;
+  const bool run_out =
+      b.limit_time > 0.0 && ((b.low_flights >= kShortSeries && rose < kTouchOfTolerance * tolerance_) ||
+                             (b.low_flights > 0 && will_rise < kLeastRise * rounding));
   if (b.low_flights < kLowFlights && !run_out) return std::nullopt;
   // a limit foreseen in closed form is the finer one, if these flights follow that form at all
   const double seen = std::max(b.limit_time, time);

@@ -71,9 +71,11 @@ class ZenoWatch {
   /// `sunk`: the features met below their level, so are pressed together (FeatureContact::sunk).
   /// `foreseen`: high flights foresee the limit best, since it takes a low one long to fall by a rounding of
   /// the gap.
+  /// `rounding`: of the pair's gaps [m]. A series that shrinks is at its end before a flight that rises to no more than some of it:
+  /// when that ends is told by roundings.
   std::optional<ZenoEnding> collided(const Feature& feature, double time, double closing_speed,
                                      BounceLoss loss, double since_last = 0.0, bool sunk = false,
-                                     const ForeseenLimit& foreseen = {});
+                                     const ForeseenLimit& foreseen = {}, double rounding = 0.0);
 
   /// True of a flight that rises so high that collided() does not remember it.
   static bool is_high(double closing_speed, double since_last, double contact_tolerance);

@@ -1,6 +1,7 @@
 // Bodies on arcs whose circles are far larger than they are: gaps to these are computed from large numbers, and rounded as
 // such. (Circles thousands of times as large, on which the last bounces are lower than their rounding, are beyond what
-// docs/first-contact.md promises.) The same bits under every policy, and from a snapshot taken anywhere. BRINK_SEED moves the seeds, BRINK_WORLDS their number.
+// docs/first-contact.md promises.) The same bits under every policy, and from a snapshot taken anywhere. BRINK_SEED moves the
+// seeds, BRINK_WORLDS their number; BRINK_KEEP names a folder for the scenes that fail.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
@@ -64,6 +65,7 @@ TEST(FlatArcs, GiveTheSameBitsUnderEveryPolicyAndFromAnySnapshot) {
       EXPECT_EQ(s.collisions, told.collisions) << policy << ", stopped at " << part.until;
       EXPECT_EQ(s.state_hash, told.state_hash) << policy << ", stopped at " << part.until;
     }
+    if (HasFailure()) testing::keep(fmt::format("seed_{}.toml", seed), world_of(seed));
   }
 }
 

@@ -128,7 +128,7 @@ void examine(std::uint64_t seed, Count& count) {
   ++count.endings[worlds::kind_of(told.summary.termination_text())];
   const auto blame = [&](const std::string& what) {
     ++count.wrong;
-    worlds::keep(name, text);
+    testing::keep(name, text);
     ADD_FAILURE() << "seed " << seed << " (" << told.summary.termination_text() << "): " << what;
   };
   if (worlds::ended_by_watch(told.summary.why)) blame("ended by the watch");

@@ -138,7 +138,7 @@ inline bool fall(std::uint64_t seed, Tally& tally) {
   try {
     told = worlds::run(scene, &watch);
   } catch (const BadInput& e) {
-    worlds::keep(name, text);
+    testing::keep(name, text);
     std::cout << "drop " << seed << " is refused: " << e.what() << "\n";
     ++tally.wrong;
     return false;
@@ -151,7 +151,7 @@ inline bool fall(std::uint64_t seed, Tally& tally) {
   std::cout << "drop " << seed << (told.too_long ? ": broken off, too long" : "") << " ("
             << told.summary.collisions << " hits, " << told.summary.termination_text() << ")\n"
             << watch.report() << std::flush;
-  worlds::keep(name, text);
+  testing::keep(name, text);
   return false;
 }
 

@@ -2,12 +2,11 @@
 /// Many random worlds, and the tally of them.
 
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <map>
 
 #include "random_worlds.h"
+#include "tests/support/seeded_worlds.h"
 #include "world_runs.h"
 
 namespace brink::worlds {
@@ -43,15 +42,7 @@ inline std::string kind_of(const std::string& ending) {
 
 /// True if the run was ended by the framework's own watch: honest, and a fault of its search all the same.
 inline bool ended_by_watch(const std::string& ending) {
-  return ending.find("what a search certified does not hold") != std::string::npos;
-}
-
-/// Writes a scene that failed to the folder `BRINK_KEEP`, if that is set.
-inline void keep(const std::string& name, const std::string& text) {
-  const char* folder = std::getenv("BRINK_KEEP");
-  if (!folder) return;
-  std::filesystem::create_directories(folder);
-  std::ofstream(std::filesystem::path(folder) / name) << text;
+  return ending.find("this must not be") != std::string::npos;
 }
 
 /// Adds what `examine` finds in the world of a seed to the tally; on a fault its scene is kept.
@@ -78,7 +69,7 @@ bool count(std::uint64_t seed, const std::string& text, Tally& tally, const Exam
   std::cout << "seed " << seed << " (" << verdict.collisions << " collisions, " << verdict.ending << ")\n";
   for (const std::string& f : verdict.faults) std::cout << "  " << f << "\n";
   std::cout << std::flush;
-  keep(name, text);
+  testing::keep(name, text);
   return false;
 }
 

@@ -395,6 +395,17 @@ TEST(Faults, NobodyIsMovedOntoAContactFromAfar) {
   }
 }
 
+// An arc that faced away from a side whose end it passed was taken to arrive there: contacts closed by millimetres, steps without
+// end, and no step at all.
+TEST(Faults, AnArcThatFacesAwayDoesNotArrive) {
+  for (const char* scene : {"ellipses_on_a_shaken_floor", "lenses_over_the_border", "lens_in_a_bowl"}) {
+    const Watched run = watched_lasting(load_scene(fault(scene), {}));
+    EXPECT_EQ(run.told.summary.termination, Termination::reached_end)
+        << scene << ": " << run.told.summary.why;
+    for (const std::string& f : run.faults) ADD_FAILURE() << scene << ": " << f;
+  }
+}
+
 // A corner that sank into a side by a rounding was an impact of a vertex far along that side, over and over, each time deeper.
 TEST(Faults, ACornerOnASideIsNoImpactOfTheSidesFarEnd) {
   const Watched run = watched_lasting(load_scene(fault("rolling_quads_in_a_bin"), {}));

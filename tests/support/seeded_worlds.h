@@ -1,8 +1,10 @@
 #pragma once
-/// Random worlds by their seeds: which of them a test looks at, and once more under another policy.
+/// Random worlds by their seeds: which of them a test looks at, once more under another policy, and kept where they fail.
 
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "brink/scheduler/policies/policy.h"
@@ -14,6 +16,14 @@ namespace brink::testing {
 inline std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
   const char* text = std::getenv(name);
   return text ? std::strtoull(text, nullptr, 10) : otherwise;
+}
+
+/// Writes a scene that failed to the folder `BRINK_KEEP`, if that is set.
+inline void keep(const std::string& name, const std::string& text) {
+  const char* folder = std::getenv("BRINK_KEEP");
+  if (!folder) return;
+  std::filesystem::create_directories(folder);
+  std::ofstream(std::filesystem::path(folder) / name) << text;
 }
 
 /// The same world under the exact policy that the seed names, stopped after every part of the way: "" if it ends as `first`

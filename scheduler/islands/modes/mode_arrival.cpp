@@ -153,23 +153,32 @@ class Watch {
     return b;
   }
 
-  /// How long the sample stays out of the feature's range.
+  /// How long the sample stays out of the feature's range, or of its own sector.
   /// For every edge that it is beyond: its distance from the edge over the largest speed.
   double until_in_range(const ContactRates& r, double t, const Bent& b) const {
     const Frame frame(Pose{{0.0, 0.0}, state(contact_.site_owner, t).pose.angle});
     // all edges must be met: it is out for as long as the one that takes longest
     const Vec2 q = frame.direction_to_local(r.site_arm + contact_.shape.sample_radius * r.normal);
-    double s = -1.0;
+    double s = is_in_sector(r, t) ? 0.0 : sector_window_;
     for (const HalfPlane& edge : contact_.shape.range)
       if (const double out = -edge.within(q); out > 0.0) s = std::max(s, safe_step(out, -b.speed, 0.0));
-    return s < 0.0 ? sector_window_ : s;
+    return s;
+  }
+
+  /// Of the sample's own: what it would touch with is a part of it.
+  bool is_in_sector(const ContactRates& r, double t) const {
+    const Frame frame(Pose{{0.0, 0.0}, state(contact_.sample_owner, t).pose.angle});
+    const Vec2 to_site = frame.direction_to_local(-r.normal);
+    return std::all_of(
+        contact_.shape.sector.begin(), contact_.shape.sector.end(),
+        [&](const HalfPlane& edge) { return edge.inward.isZero(0.0) || edge.within(to_site) >= 0.0; });
   }
 
   const ModeProblem& problem_;
   const ModeContact& contact_;
   const std::vector<PolynomialPiece>& bodies_;
   double slack_;
-  /// How long to wait where only the sample's own sector does not hold the touching direction: of that there is no bound [s].
+  /// How long to wait where the sample's own sector does not hold the touching direction: of that there is no bound [s].
   double sector_window_;
   double fastest_;  ///< of the two owners [m/s]
 };

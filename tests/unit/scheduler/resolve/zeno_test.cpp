@@ -35,6 +35,25 @@ TEST(ZenoWatch, NamesTheLimitOfAGeometricSeriesOfLowBounces) {
   }
 }
 
+// On an arc of 20 m a gap is rounded to 2e-14 m: a flight of that height ends anywhere.
+TEST(ZenoWatch, NoFlightOfASeriesIsAsLowAsItsRounding) {
+  const double rounding = 2e-14, g = 10.0, limit = 1.0;
+  for (const double e : {0.03, 0.1, 0.2, 0.5, 0.9}) {
+    ZenoWatch watch(4e-10);
+    double v = 0.02 * (1.0 - e), t = limit - 2.0 * e * v / g / (1.0 - e), rise = 1.0;
+    std::optional<ZenoEnding> ending;
+    for (int i = 0; i < 1000 && !ending; ++i) {
+      ending = watch.collided(feature(0, 0), t, v, BounceLoss::some, 2.0 * v / g, false, {}, rounding);
+      rise = 0.5 * v * v / g;
+      EXPECT_GT(rise, 4.0 * rounding) << e;
+      t += 2.0 * e * v / g;
+      v *= e;
+    }
+    ASSERT_TRUE(ending) << e;
+    EXPECT_NEAR(ending->limit_time, limit, 1e-12) << e;
+  }
+}
+
 TEST(ZenoWatch, SmallButElasticBouncesAboveTheToleranceGoOn) {
   ZenoWatch watch(1e-10);
   for (int i = 0; i < 1000; ++i)

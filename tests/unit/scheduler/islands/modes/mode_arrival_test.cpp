@@ -52,6 +52,21 @@ TEST(FirstArrival, PlacesBesideTheSegmentAreNoContact) {
   EXPECT_NEAR(arrival_of(s, piece(3.0, {{0.5, 1, 0}, {0, -1, 0}})).time, 0.9, 1e-12);
 }
 
+// An arc whose back is towards the side comes under its end to the last bit of the clock: that is no arrival.
+TEST(FirstArrival, WhatFacesAwayDoesNotArriveAtTheEndOfTheRange) {
+  ModeScene s;
+  s.add_body(1, 1, {});
+  SmoothContact c = point_on_line({0, 0}, {0, 0}, {0, 1}, 0.1);
+  c.range = {HalfPlane{{1, 0}, 0.0}, HalfPlane{{-1, 0}, -1.0}};     // from 0 to 1
+  c.sector = {HalfPlane{{0, 1}, 0.0}, HalfPlane{{0.6, 0.8}, 0.0}};  // upwards
+  s.add(c, 0, s.add_still(), 0.0);
+  EXPECT_FALSE(arrival_of(s, piece(3.0, {{1.5, 0.05, 0}, {-0.5, 0, 0}})).found);
+  // half a turn later it faces the side
+  const Arrival a = arrival_of(s, piece(3.0, {{0.5, 0.05, 0}, {0, 0, 1}}));
+  ASSERT_TRUE(a.found);
+  EXPECT_NEAR(a.time, 0.5 * std::numbers::pi + std::asin(0.6), 1e-12);
+}
+
 // A wire has no inside that would tell on which side a point is that has come to it to the last bit.
 TEST(FirstArrival, AWireIsMetBeforeItsGapIsNone) {
   ModeScene s;
