@@ -167,12 +167,21 @@ void Track::forget_before(double t) {
   // A piece that ends at t itself stays, as t may still be asked for; and the last one, from which the motion goes on.
   const auto kept = std::partition_point(pieces.begin(), std::prev(pieces.end()),
                                          [&](const PolynomialPiece& p) { return p.end < t; });
-  const std::ptrdiff_t gone = kept - pieces.begin();
+  const std::ptrdiff_t gone = kept - pieces.begin() - kRemembered;
   // Erasing moves all that is kept. Done when half is gone, its cost a piece does not depend on the length.
   if (gone < fewest || 2 * gone < std::ssize(pieces)) return;
   // Before the erasing: begin() asks the first piece, or what was kept of an earlier one.
   begun_ = begin();
-  pieces.erase(pieces.begin(), kept);
+  pieces.erase(pieces.begin(), pieces.begin() + gone);
+}
+
+double Track::remembered_until(double begin) const {
+  // the piece that at() answers with
+  const auto after = std::upper_bound(pieces.begin(), pieces.end(), begin,
+                                      [](double time, const PolynomialPiece& p) { return time < p.begin; });
+  if (after == pieces.begin() && begun_) return -std::numeric_limits<double>::infinity();  // given up
+  const std::ptrdiff_t next = std::max<std::ptrdiff_t>(after - pieces.begin(), 1) + kRemembered;
+  return next < std::ssize(pieces) ? pieces[next].begin : std::numeric_limits<double>::infinity();
 }
 
 Motion Motion::still(const Pose& pose, double t0) { return ballistic(t0, {pose, {}}, {}); }
@@ -216,9 +225,9 @@ double Motion::end() const {
   return kind_ == Kind::chain ? other_->chain->back().t1_ : t1_;
 }
 
-bool Motion::remembers(double t) const {
-  // begin() of a track may be earlier than its first piece: see Track::forget_before
-  return kind_ != Kind::dense || t >= other_->track->pieces.front().begin;
+double Motion::remembered_until(double begin) const {
+  return kind_ == Kind::dense ? other_->track->remembered_until(begin)
+                              : std::numeric_limits<double>::infinity();
 }
 
 const Motion& Motion::link(double t) const {

@@ -59,9 +59,14 @@ struct Track {
   double end() const { return pieces.back().end; }
   /// @throws std::logic_error where the piece has been forgotten: no answer is better than a wrong one.
   const PolynomialPiece& at(double t) const;
-  /// Gives up pieces that end before t, if that is half of all: nobody will ask for them any more. begin()
-  /// stays.
+  /// Gives up pieces that end before t, but for the last kRemembered of them, if that is half of all: nobody will ask for them
+  /// any more. begin() stays.
   void forget_before(double t);
+  /// Up to when a piece is at most kRemembered after that of `begin`; infinity: so far all are.
+  double remembered_until(double begin) const;
+
+  /// Pieces that lie so few before a time that may be asked for are there, whenever others were given up.
+  static constexpr std::ptrdiff_t kRemembered = 512;
 
  private:
   std::optional<double> begun_;  ///< where the first piece began that is gone [s]
@@ -104,8 +109,11 @@ class Motion {
 
   double begin() const { return kind_ <= Kind::drag ? t0_ : begin_of_pieces(); }
   double end() const;
-  /// False for a time of dense output whose pieces are gone (Track::forget_before).
-  bool remembers(double t) const;
+  /// Up to when `begin` can be asked for as well, however long the motion was followed, and whatever of it was given up
+  /// (Track::forget_before): a function of the motion alone [s].
+  double remembered_until(double begin) const;
+  /// False for a time that cannot be asked for any more.
+  bool remembers(double t) const { return remembered_until(t) >= t; }
 
   /// @pre begin() <= t <= end(). Cost: a few flops (ballistic), an exponential or two (drag), a binary search
   /// and Horner (dense).

@@ -78,7 +78,7 @@ Extent SteppingIntegrator::extend(double t, std::uint64_t most_steps) {
   return extent_at(time_, t, failure_);
 }
 
-// A motion that somebody holds shares its track: it forgets with it (Motion::remembers()).
+// A motion that somebody holds shares its track: it forgets with it (Motion::remembered_until()).
 void SteppingIntegrator::forget_before(double t) {
   for (const auto& track : tracks_) track->forget_before(t);
 }

@@ -40,6 +40,7 @@ constexpr double kMuchFaster = 16.0;
 
 /// True if no point of the pair has moved against the other by more than the touching distance since the motions
 /// began. Then all is looked at from there: features that are so near are told apart by how they began.
+/// @pre the beginning is remembered at t.
 bool has_hardly_moved(const Mover& a, const Mover& b, double start, double t, const SearchLimits& limits) {
   const Twist &of_a = a.motion->start().twist, &of_b = b.motion->start().twist;
   const double reach_a = a.outline().bounding_radius, reach_b = b.outline().bounding_radius;
@@ -47,8 +48,6 @@ bool has_hardly_moved(const Mover& a, const Mover& b, double start, double t, co
                           std::abs(of_b.omega) * reach_b;
   const auto is_little = [&](double speed) { return (t - start) * speed <= limits.touch; };
   if (!(t > start && is_little(at_first))) return false;  // a first look
-  // dense output whose first pieces were dropped cannot be looked at from its beginning
-  if (!a.motion->remembers(start) || !b.motion->remembers(start)) return false;
   // the first look took the speeds of the beginning; what counts is the fastest on the way
   const RelativeBounds since = RelativeBounds::over(a.outline(), *a.motion, b.outline(), *b.motion, start, t);
   return is_little(since.speed + since.spin_s * reach_a + since.spin_t * reach_b);
@@ -82,8 +81,9 @@ class KeptNeighbours {
 /// earliest so far; best_ is that contact; and while samples are looked at, the pair is placed at t_.
 class PairSearch {
  public:
-  /// From `from` on; what lies before `asked_from` is looked at for the sake of the answer's bits alone.
-  PairSearch(const Mover& a, const Mover& b, double from, double asked_from, double to,
+  /// From `from` on; what lies before `asked_from` is looked at for the sake of the answer's bits alone. `remembers_start`: the
+  /// beginning of the two motions can be asked for, and has a part in the answer.
+  PairSearch(const Mover& a, const Mover& b, double from, double asked_from, double to, bool remembers_start,
              const SearchLimits& limits, SearchScratch& scratch, WorkCounters& work)
       : view_(a, b, limits, scratch),
         a_(a),
@@ -92,6 +92,7 @@ class PairSearch {
         to_(to),
         asked_from_(asked_from),
         window_end_(to),
+        remembers_start_(remembers_start),
         limits_(limits),
         scratch_(scratch),
         work_(work) {
@@ -210,7 +211,7 @@ class PairSearch {
   /// Features have come close: from now on levels count.
   void look_closely() {
     // Before neighbours are looked for: it uses the same memory of the scratch.
-    if (!sink_known_) view_.set_sink(view_.sink_at_start());
+    if (!sink_known_ && remembers_start_) view_.set_sink(view_.sink_at_start());
     sink_known_ = true;
   }
 
@@ -596,7 +597,7 @@ class PairSearch {
                           !there.hidden_behind_others(half, then, path);
       return counts ? -1.0 : 1.0;
     };
-    const double begin = view_.start();
+    const double begin = remembers_start_ ? view_.start() : from_;
     if (!(begin < t_ && hidden(begin) > 0.0) || parting || hidden(t_) > 0.0) return t_;
     return std::max(asked_from_, last_clear_time(hidden, begin, t_));
   }
@@ -706,8 +707,7 @@ class PairSearch {
     // they met, a sink step less than then.
     double before = std::max(0.5 * limits_.touch, 8.0 * rounding);
     const double begin = view_.start(), step = sink_step(limits_.touch, rounding);
-    if (a_.motion->remembers(begin) && b_.motion->remembers(begin))
-      before = std::min(before, std::max(to_tip(begin).q.norm() - step, -limits_.touch));
+    if (remembers_start_) before = std::min(before, std::max(to_tip(begin).q.norm() - step, -limits_.touch));
     const auto clear = [&](double t) {
       const SamplePath there_then = to_tip(t);
       return -there_then.q.dot(there_then.rate) / there_then.rate.norm() - before;
@@ -810,6 +810,7 @@ class PairSearch {
   const Mover &a_, &b_;
   double from_, to_;
   double asked_from_, window_end_;  ///< from_ and to_ as they were given
+  bool remembers_start_;
   const SearchLimits& limits_;
   SearchScratch& scratch_;
   WorkCounters& work_;
@@ -825,8 +826,22 @@ class PairSearch {
   bool capped_ = false;
 };
 
+/// first_contact() of two of which `start` is remembered all through [from, to], or has no part in the answer.
+PairAnswer first_contact_within(const Mover& a, const Mover& b, double from, double to,
+                                std::optional<double> start, const SearchLimits& limits,
+                                SearchScratch& scratch, WorkCounters& work) {
+  const double first = start && has_hardly_moved(a, b, *start, from, limits) ? *start : from;
+  const detail::Apart apart = detail::apart_until(a, b, first, to, limits);
+  if (apart.until >= to) return {PairAnswer::Status::clear, to, {}};
+  if (apart.stopped && apart.until > std::max(from, limits.needed_until))
+    return {PairAnswer::Status::undecided, apart.until, {}};
+  return PairSearch(a, b, apart.until, from, to, start.has_value(), limits, scratch, work).run();
+}
+
 }  // namespace
 
+/// What was pressed at the beginning has met since: of hundreds of an integrator's steps ago nothing is told any more. From when on
+/// depends on the two motions alone, not on how much of them has been given up.
 PairAnswer first_contact(const Mover& a, const Mover& b, double from, double to, const SearchLimits& limits,
                          SearchScratch& scratch, WorkCounters& work) {
   ++work.pair_searches;
@@ -844,12 +859,12 @@ PairAnswer first_contact(const Mover& a, const Mover& b, double from, double to,
     }
   }
   const double start = std::max(a.motion->begin(), b.motion->begin());
-  const double first = has_hardly_moved(a, b, start, from, limits) ? start : from;
-  const detail::Apart apart = detail::apart_until(a, b, first, to, limits);
-  if (apart.until >= to) return {PairAnswer::Status::clear, to, {}};
-  if (apart.stopped && apart.until > std::max(from, limits.needed_until))
-    return {PairAnswer::Status::undecided, apart.until, {}};
-  return PairSearch(a, b, apart.until, from, to, limits, scratch, work).run();
+  const double remembered = std::min(a.motion->remembered_until(start), b.motion->remembered_until(start));
+  if (from >= remembered) return first_contact_within(a, b, from, to, {}, limits, scratch, work);
+  const PairAnswer answer =
+      first_contact_within(a, b, from, std::min(to, remembered), start, limits, scratch, work);
+  if (to <= remembered || answer.status != PairAnswer::Status::clear) return answer;
+  return first_contact_within(a, b, remembered, to, {}, limits, scratch, work);
 }
 
 std::vector<FeatureContact> touching_features(const Mover& a, const Mover& b, double t, double tolerance,

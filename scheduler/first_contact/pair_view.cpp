@@ -456,8 +456,6 @@ bool PairView::discs_were_apart() const {
 }
 
 double PairView::sink_at_start() const {
-  // what was pressed then has met since; of thousands of steps ago nothing is left to tell
-  if (!a_.motion->remembers(start()) || !b_.motion->remembers(start())) return 0.0;
   if (discs_were_apart()) return 0.0;
   // The copy has the scratch in common: neighbours that were found before are lost.
   PairView then = *this;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 namespace brink {
 
@@ -138,6 +139,32 @@ std::vector<HeldContact> IslandMembers::features(const std::vector<PairKey>& pai
   // in an order of their own, whatever the boxes: the solver's rounding depends on it
   std::sort(all.begin(), all.end(), in_order);
   return all;
+}
+
+std::vector<NearFeature> IslandMembers::features_ahead(const PairKey& pair, double later) const {
+  return near_features(search_->outline_of(pair.body), states_[place_of(pair.body)],
+                       search_->outline_of(search_->other_owner(pair)), other_state(pair, later, {}),
+                       reach_of(pair, -1.0), search_->limits().tolerance);
+}
+
+void IslandMembers::add_brought_by_sites(std::vector<HeldContact>& contacts) const {
+  std::set<ContactKey> listed;
+  for (const HeldContact& c : contacts) listed.insert(c.key());
+  const std::size_t before = contacts.size();
+  for (const PairKey& pair : near_pairs(-1.0)) {
+    if (!pair.with_site() || !trajectories_->site(pair.other_site).moves()) continue;
+    const RealVec way = other_state(pair, h_, {}).position - other_state(pair).position;
+    for (const NearFeature& f : features_ahead(pair, h_)) {
+      HeldContact c{pair, f, 0.0, 0.0, 0.0};
+      if (listed.count(c.key())) continue;
+      c.feature.gap = gap(c, 0.0, std::vector<Vec3>(count(), Vec3::Zero()));
+      c.feature.point += way.cast<double>();
+      c.feature.at_end = true;
+      // what touches now is told by what is listed
+      if (c.feature.gap > search_->limits().tolerance) contacts.push_back(c);
+    }
+  }
+  if (contacts.size() > before) std::sort(contacts.begin(), contacts.end(), in_order);
 }
 
 /// Up to which gap the pair's features are listed [m].

@@ -83,6 +83,11 @@ class IslandMembers {
   std::vector<HeldContact> contacts(double reach, const GoOn& go_on = {}) const;
   /// As far as a step may lead, of those in which one takes part of whom `whose` is not 0.
   std::vector<HeldContact> contacts_of(const std::vector<char>& whose, const GoOn& go_on = {}) const;
+  /// Those of one pair where its site has come to `later` [s] into the step, and its body has stayed; points are seen from there.
+  std::vector<NearFeature> features_ahead(const PairKey& pair, double later) const;
+  /// Adds what sites bring with them within the look-ahead, and is not among those yet: as such a contact is now, at the end of its
+  /// site.
+  void add_brought_by_sites(std::vector<HeldContact>& contacts) const;
   /// Pairs of members, and with sites, that may come nearer to each other than that: all of which features are listed.
   std::vector<PairKey> near_pairs(double reach, const GoOn& go_on = {}) const;
 

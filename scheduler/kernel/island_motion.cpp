@@ -4,10 +4,12 @@
 #include <cmath>
 #include <numeric>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "brink/core/base/disjoint_sets.h"
 #include "brink/core/base/limits.h"
+#include "brink/scheduler/islands/driven_surface.h"
 #include "brink/scheduler/islands/step_balance.h"
 #include "brink/scheduler/islands/tolerances.h"
 #include "brink/scheduler/kernel/island_joining.h"
@@ -119,6 +121,7 @@ std::vector<int> IslandMotion::joining(const World& world, Trajectories& traject
 /// What a step absorbs is found anew with them.
 void IslandMotion::list(double reach) {
   contacts_ = members_.contacts(reach, go_on_);
+  if (reach < 0.0 && !by_modes_) members_.add_brought_by_sites(contacts_);
   remember_sides(0);
   // what an arc may roll to counts along a step alone: until then its end tells all
   std::erase_if(contacts_, [&](const HeldContact& c) {
@@ -145,8 +148,7 @@ void IslandMotion::list_farther(const std::vector<Vec3>& velocity) {
   for (const HeldContact& c : members_.contacts_of(far, go_on_))
     if (listed.insert(c.key()).second) contacts_.push_back(c);
   remember_sides(known);
-  for (std::size_t k = known; k < contacts_.size(); ++k)
-    problem_.contacts.push_back(island_contact(contacts_[k]));
+  add_to_problem(known);
 }
 
 /// Of each member now, as the step's problem has them: x, y [m/s], angle [rad/s].
@@ -552,7 +554,21 @@ void IslandMotion::make_problem() {
   }
   problem_.force = forces(members_.accelerations());
   // in the order of contacts_: take_forces() leads back by place
-  for (const HeldContact& c : contacts_) problem_.contacts.push_back(island_contact(c));
+  add_to_problem(0);
+}
+
+/// Contacts from that place on, pair after pair.
+void IslandMotion::add_to_problem(std::size_t first) {
+  const PairKey* looked_at = nullptr;
+  std::vector<NearFeature> ahead;  // of that pair
+  for (std::size_t k = first; k < contacts_.size(); ++k) {
+    const HeldContact& c = contacts_[k];
+    if (members_.on_moving_site(c) && (!looked_at || *looked_at != c.pair)) {
+      ahead = members_.features_ahead(c.pair, h_);
+      looked_at = &c.pair;
+    }
+    problem_.contacts.push_back(island_contact(c, ahead));
+  }
 }
 
 /// On each member [N], [N m].
@@ -610,8 +626,10 @@ StepOutcome IslandMotion::take_under_forces(const GapsAlong& gaps) {
   return outcome;
 }
 
-/// Geometry at the start of the step; forces of the step before, from which friction bounds come.
-IslandContact IslandMotion::island_contact(const HeldContact& c) const {
+/// Geometry at the start of the step; forces of the step before, from which friction bounds come. Of a site that moves geometry is
+/// that where it comes to, of `ahead` (features_ahead()): the end of an arc may have gone by.
+IslandContact IslandMotion::island_contact(const HeldContact& c,
+                                           const std::vector<NearFeature>& ahead) const {
   IslandContact made;
   made.rows = rows_of(c);
   made.gap = c.feature.gap - kept(c.feature);
@@ -630,16 +648,44 @@ IslandContact IslandMotion::island_contact(const HeldContact& c) const {
   made.driven = members_.on_moving_site(c);
   // a body that is a member moves by the unknown twists; a site by what it is told
   note_shape(c, made);
-  if (made.driven) {  // the mean velocity of its point
-    const ExtendedState from = members_.other_state(c.pair), to = members_.other_state(c.pair, h_, {});
-    // the site's own motion over the step, as one turn and shift of the point that touches
-    const Frame step(
-        {(to.position - from.position).cast<double>(), static_cast<double>(to.angle - from.angle)});
-    const Vec2 v = (step.to_world(c.feature.point) - c.feature.point) / h_;
-    made.normal_support = v.dot(c.feature.normal);
-    made.tangential_support = v.dot(perp(c.feature.normal));
-  }
+  if (made.driven) drive(c, ahead, made);
   return made;
+}
+
+/// The mean velocity of its surface along the normal, by what the gap loses where the body stays, and that of its point along the
+/// tangent. A point's own along the normal would be no surface's: those of a round drum leave it along chords. What is under the
+/// body now counts as the line or the circle that it is, until the step ends; what is beside it, as where it comes to.
+void IslandMotion::drive(const HeldContact& c, const std::vector<NearFeature>& ahead,
+                         IslandContact& made) const {
+  const ExtendedState from = members_.other_state(c.pair), to = members_.other_state(c.pair, h_, {});
+  // the site's own motion over the step, as one turn and shift of the point that touches
+  const Frame step(
+      {(to.position - from.position).cast<double>(), static_cast<double>(to.angle - from.angle)});
+  const Vec2 way = step.to_world(c.feature.point) - c.feature.point;
+  made.tangential_support = way.dot(perp(c.feature.normal)) / h_;
+  if (!c.feature.at_end && !c.feature.beside_arc) {
+    made.normal_support = advance_of_surface(c.feature, search_->outline_of(search_->other_owner(c.pair)),
+                                             static_cast<double>(from.angle), step) /
+                          h_;
+    return;
+  }
+  const std::vector<Vec3> stays(members_.count(), Vec3::Zero());
+  const double gap = members_.gap(c, h_, stays);
+  const auto found = std::find_if(ahead.begin(), ahead.end(), [&](const NearFeature& f) {
+    return std::tuple(f.sample_on_a, f.sample, f.site) ==
+           std::tuple(c.feature.sample_on_a, c.feature.sample, c.feature.site);
+  });
+  // not where the site has come over the body, which is on another side of it there
+  const bool there = found != ahead.end() && found->normal.dot(c.feature.normal) > 0.0 &&
+                     (found->over_joint || std::abs(found->gap - gap) <= search_->limits().tolerance);
+  made.normal_support = (there ? c.feature.gap - found->gap : members_.gap(c, 0.0, stays) - gap) / h_;
+  if (!there) return;
+  HeldContact then = c;
+  then.feature = *found;
+  then.feature.point += step.origin;  // from where the site is now
+  made.rows = rows_of(then);
+  const Vec2& point = then.feature.point;
+  made.tangential_support = (point - step.to_local(point)).dot(perp(then.feature.normal)) / h_;
 }
 
 /// What stands is as a site is, whichever of the two it is: the normal points into what moves then, or away from it.
@@ -843,7 +889,7 @@ bool IslandMotion::stays_near(std::size_t contact, bool both_pushed, std::vector
     return !c.pair.with_site() && (c.feature.gap - h_ * (closing + behind) <= tolerance ||
                                    gaps_at_end_[contact] <= kClear * tolerance);
   }
-  if (falls_back(c, velocity)) return true;
+  if (falls_back(c, velocity) || (captured_ == c.pair && touches(c))) return true;
   // a site takes no step, nor does what is at rest: whoever is let go meets it by the ordinary search
   if (c.pair.with_site() || stands(c.pair.body) || stands(c.pair.other_body)) return false;
   const double closing = members_.closing_speed(c, after(members_.place_of(c.pair.body)).twist,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -51,6 +52,8 @@ class IslandMotion {
   void expect_agitation() { agitated_ = true; }
   /// What the members' contacts are found on the side of, where nothing else tells: what has met, or how they are pulled.
   void expect_sides(const StepCause& cause) { sides_.expect(cause); }
+  /// The pair's bounces have their limit within the step: what touches of it stays together until then, though nothing presses yet.
+  void expect_captured(const PairKey& pair) { captured_ = pair; }
   /// Where forces change with place, velocity or time, a step of so long will do [s], about.
   void expect_step(double h) { expected_ = h; }
   /// What to expect for the next [s]; infinity: anything.
@@ -122,10 +125,12 @@ class IslandMotion {
     return f.thin ? thin_level_at_most(search_->limits().touch, search_->limits().tolerance) : 0.0;
   }
   void make_problem();
+  void add_to_problem(std::size_t first);
   std::vector<Vec3> forces(const std::vector<Acceleration>& accelerations) const;
   double largest_change(const std::vector<Vec3>& forces, const std::vector<Vec3>& others) const;
   StepOutcome take_under_forces(const GapsAlong& gaps);
-  IslandContact island_contact(const HeldContact& c) const;
+  IslandContact island_contact(const HeldContact& c, const std::vector<NearFeature>& ahead) const;
+  void drive(const HeldContact& c, const std::vector<NearFeature>& ahead, IslandContact& made) const;
   LastingContact rows_of(const HeldContact& c) const;
   HeldContact as_held(const HeldContact& c, ContactMode mode) const;
   /// What stands has none.
@@ -161,6 +166,7 @@ class IslandMotion {
   double expected_ = std::numeric_limits<double>::infinity();
   double asked_ = 0.0;  ///< the length of the step, but for what impacts cut off it [s]
   WireSides sides_;
+  std::optional<PairKey> captured_;
   std::vector<HeldContact> contacts_;
   std::vector<ContactLoad>
       gives_;  ///< what each of them has moved its bodies by, of a step of twists or at rest [N], [N m]

@@ -323,6 +323,7 @@ std::optional<bool> Islands::attempt_step(Attempt& attempt, std::vector<int>& ch
   if (leans && any_bounces(*world_, members, attempt.supports) && motion.any_impacts()) return wake_all();
   motion.expect_step(pace.step);
   motion.expect_sides(cause);
+  if (cause.captured) motion.expect_captured(*cause.pair);
   IslandModes modes(motion.members(), *trajectories_, *search_, *response_, by_modes_, motion.warm());
   // what buzzes is spared modes for some steps
   const bool may_have_modes = !leans && !buzzes(pace) && modes.suits();
@@ -457,7 +458,7 @@ bool Islands::capture(const PairKey& pair, const FeatureContact& contact, double
   const bool later = left > same_instant(limit);
   if (!later) records_->ending(EventKind::zeno, pair, contact, records_->last_event());
   if (!carry_out_step({.members = members, .longest = later ? left : kForever}, changed,
-                      {.pair = &pair, .met = &contact}))
+                      {.pair = &pair, .met = &contact, .captured = later}))
     return false;
   if (later) tell_at(limit, pair, contact);
   return run_->poll();

@@ -103,6 +103,8 @@ class KernelView {
   /// Motions that body k certainly has now, and after collisions ahead of time, in order; the last is the
   /// newest.
   std::vector<std::uint64_t> versions(int k) const { return parts_.speculation.versions(k); }
+  /// How many of them it has come to ahead of time.
+  std::size_t motions_ahead(int k) const { return parts_.speculation.of(k).size(); }
   /// When that motion ends in a collision ahead of time; infinity: it is the newest. Nothing if it was
   /// undone, or has ended for certain.
   std::optional<double> end_of_version(int k, std::uint64_t version) const {

@@ -19,6 +19,7 @@ struct StepCause {
   bool run_begins = false;              ///< what lies on each other is placed there
   const PairKey* pair = nullptr;        ///< that has met, outlives the cause; null: none
   const FeatureContact* met = nullptr;  ///< of that pair
+  bool captured = false;                ///< its bounces have their limit where the step ends, if not before
 };
 
 /// What an island's step knows of sides beside its geometry: a contact tells its own surely by where the sample's edges lead,

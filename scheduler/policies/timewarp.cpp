@@ -39,6 +39,10 @@ constexpr std::uint64_t kManyCollisions = 512;
 /// should be more.
 constexpr std::size_t kLeastRoom = 4, kLookBack = 32;
 
+/// Nobody goes further ahead by itself than so many collisions: a series of bounces that comes to its end ahead of time has no
+/// last one, and each is looked for among all that there are.
+constexpr std::size_t kMostAhead = 64;
+
 /// Steps of a search whose answer may never be asked for: most take ten, and who creeps along another for thousands has
 /// often been thrown off its way by then.
 constexpr int kStepsAhead = 256;
@@ -298,6 +302,7 @@ class Timewarp final : public Policy {
         ++concerned;
         // A motion that has begun in this instant: both collisions belong to one group.
         if (kernel_->body(k).motion.begin() + too_close(c.time) >= c.time) return false;
+        if (kernel_->motions_ahead(k) >= kMostAhead) return false;
         if (!is_clear_of_others(k, c)) return false;
       }
     }

@@ -1,7 +1,6 @@
 // Bodies on arcs whose circles are far larger than they are: gaps to these are computed from large numbers, and rounded as
-// such. (Circles thousands of times as large, on which the last bounces are lower than their rounding, are beyond what
-// docs/first-contact.md promises.) The same bits under every policy, and from a snapshot taken anywhere. BRINK_SEED moves the
-// seeds, BRINK_WORLDS their number; BRINK_KEEP names a folder for the scenes that fail.
+// such; a series of bounces ends before one is lower than that. The same bits under every policy, and from a snapshot taken
+// anywhere. BRINK_SEED moves the seeds, BRINK_WORLDS their number; BRINK_KEEP names a folder for the scenes that fail.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +18,7 @@ constexpr double kDuration = 1.0;
 
 std::string world_of(std::uint64_t seed) {
   Random random(seed);
-  const double radius = std::pow(10.0, random.uniform(0.5, 1.5)), size = random.uniform(0.1, 0.2);
+  const double radius = std::pow(10.0, random.uniform(0.5, 2.5)), size = random.uniform(0.1, 0.2);
   std::string text = fmt::format(
       "[world]\nduration = {}\ngravity = [0, -9.81]\n[solver]\nrest_speed = 0\n[materials.default]\n"
       "restitution = {}\nfriction = {}\nrolling_resistance = {}\n"
@@ -52,6 +51,7 @@ TEST(FlatArcs, GiveTheSameBitsUnderEveryPolicyAndFromAnySnapshot) {
     EXPECT_EQ(told.termination, Termination::reached_end) << told.why;
     EXPECT_GT(told.collisions, 0U);
     Random random(seed);
+    bool same = told.termination == Termination::reached_end;
     for (const std::string& policy : exact_policies()) {
       SolverOptions solver = scene.solver;
       solver.policy = policy;
@@ -64,8 +64,9 @@ TEST(FlatArcs, GiveTheSameBitsUnderEveryPolicyAndFromAnySnapshot) {
       const RunSummary s = goes_on.run(whole, nullptr);
       EXPECT_EQ(s.collisions, told.collisions) << policy << ", stopped at " << part.until;
       EXPECT_EQ(s.state_hash, told.state_hash) << policy << ", stopped at " << part.until;
+      same = same && s.state_hash == told.state_hash;
     }
-    if (HasFailure()) testing::keep(fmt::format("seed_{}.toml", seed), world_of(seed));
+    if (!same) testing::keep(fmt::format("seed_{}.toml", seed), world_of(seed));
   }
 }
 

@@ -1,12 +1,17 @@
-// Motions of so many pieces that the first are forgotten: nobody asks for them, and a run goes on from a snapshot.
+// Motions of so many pieces that the first are forgotten: nobody asks for them, and a run goes on from a snapshot. BRINK_SEED moves
+// the seeds of the random worlds, BRINK_WORLDS their number; BRINK_KEEP names a folder for the scenes that fail.
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdint>
 #include <set>
 
+#include "brink/core/base/random.h"
 #include "brink/scenes/scene/scene.h"
 #include "brink/scheduler/policies/policy.h"
 #include "brink/scheduler/simulator/simulator.h"
+#include "tests/support/seeded_worlds.h"
 #include "tests/support/worlds.h"
 
 namespace brink::long_motions_test {
@@ -116,6 +121,76 @@ TEST(LongMotions, ASnapshotGoesOnWhereSpringsAreStiff) {
     first.run(testing::until(1.4));
     second.restore(first.snapshot());
     EXPECT_EQ(second.run(testing::until(2.0)).state_hash, expected.state_hash) << policy;
+  }
+}
+
+/// A light body on a stiff spring, shaken, in a room whose floor may move: thousands of steps between two walls, which it may
+/// leave and come back to, or start at.
+std::string shaken(std::uint64_t seed) {
+  Random random(seed);
+  const double size = random.uniform(0.02, 0.05), room = random.uniform(0.25, 0.5);
+  const char* const shapes[] = {"disc = {{ radius = {0} }}", "capsule = {{ length = {1}, radius = {0} }}",
+                                "box = {{ width = {1}, height = {0} }}",
+                                "polygon = {{ vertices = [[{0}, 0], [-{2}, {0}], [0, 0], [-{2}, -{0}]] }}"};
+  std::string text = fmt::format(
+      "[world]\nduration = 1.5\n[solver]\npersistent = {}\n[materials.default]\nrestitution = {}\nfriction = "
+      "{}\n",
+      random.below(2) ? "true" : "false", std::array{0.0, 0.5, 0.9, 1.0}[random.below(4)],
+      random.below(2) ? 0.2 : 0.0);
+  if (random.below(2))
+    text += fmt::format("[[sites]]\nbox = {{ width = {0}, height = {0} }}\ninside_of = true\n", 2.0 * room);
+  else
+    text += fmt::format(
+        "[[sites]]\nchain = {{ vertices = [[{0}, {1}], [{1}, {1}], [{1}, {0}], [{0}, {0}]], closed = true "
+        "}}\n",
+        -room, room);
+  if (random.below(2))
+    text += fmt::format(
+        "[[sites]]\nsegment = [[{}, 0], [{}, 0]]\nmotion = {{ y = \"{:.17g} + 0.02*sin({:.17g}*t)\" }}\n",
+        -0.9 * room, 0.9 * room, -0.9 * room, random.uniform(2.0, 30.0));
+  const std::uint64_t shape = random.below(4);
+  const double to_right = std::array{1.0, 1.75, 0.75, 1.0}[shape] * size;
+  // some begin at a wall
+  const double x = random.below(2) ? room - to_right : random.uniform(-0.5, 0.5) * room;
+  text += fmt::format(
+      "[[bodies]]\nname = \"b\"\ndensity = 1.0\n{}\nposition = [{:.17g}, {:.17g}]\n"
+      "velocity = [{:.17g}, {:.17g}]\n",
+      fmt::format(fmt::runtime(shapes[shape]), size, 1.5 * size, 0.5 * size), x,
+      random.uniform(-0.4, 0.4) * room, random.uniform(-0.5, 0.5), random.uniform(-1.0, 1.0));
+  text += fmt::format(
+      "[[forces]]\nkind = \"spring\"\nbody = \"b\"\nanchor = [{:.17g}, {:.17g}]\nstiffness = 100.0\n"
+      "rest_length = {}\nat = [{:.17g}, 0.0]\n",
+      random.uniform(-1.0, 1.0) * room, random.uniform(-1.0, 1.0) * room, random.below(2) ? 0.1 : 0.0,
+      random.uniform(0.0, 0.8) * size);
+  return text +
+         fmt::format(
+             "[[forces]]\nkind = \"formula\"\nfx = \"m*{:.17g}*sin({:.17g}*t)\"\nfy = \"m*{:.17g}*cos(t)\"\n",
+             random.uniform(0.0, 5.0), random.uniform(1.0, 20.0), random.uniform(0.0, 5.0));
+}
+
+TEST(LongMotions, GoOnWithTheSameBitsFromAnyTime) {
+  const std::uint64_t first = testing::from_environment("BRINK_SEED", 1),
+                      worlds = testing::from_environment("BRINK_WORLDS", 8);
+  for (std::uint64_t seed = first; seed < first + worlds; ++seed) {
+    SCOPED_TRACE(fmt::format("BRINK_SEED={} BRINK_WORLDS=1", seed));
+    const Scene scene = parse_scene(shaken(seed), "shaken");
+    const RunSummary told = Simulator(scene.world, scene.solver).run(testing::until(scene.duration));
+    Random random(seed);
+    bool same = true;
+    for (const std::string& policy : exact_policies()) {
+      SolverOptions solver = scene.solver;
+      solver.policy = policy;
+      const double stop = random.uniform(0.0, scene.duration);
+      Simulator stopped(scene.world, solver), goes_on(scene.world, solver);
+      if (stopped.run(testing::until(stop)).termination == Termination::reached_end)
+        goes_on.restore(stopped.snapshot());
+      const RunSummary s = goes_on.run(testing::until(scene.duration));
+      EXPECT_EQ(s.why, told.why) << policy << ", stopped at " << stop;
+      EXPECT_EQ(s.collisions, told.collisions) << policy << ", stopped at " << stop;
+      EXPECT_EQ(s.state_hash, told.state_hash) << policy << ", stopped at " << stop;
+      same = same && s.state_hash == told.state_hash;
+    }
+    if (!same) testing::keep(fmt::format("seed_{}.toml", seed), shaken(seed));
   }
 }
 
