@@ -25,13 +25,19 @@ std::uint64_t Endings::endless() const {
   return kPlainInstant + std::min(10 * bodies * bodies, kLongestInstant);
 }
 
-/// From the collision on with which the instant has passed its bound, until the clock leaves it.
+bool Endings::is_crawling() const { return crawling_ > kMostCrawling; }
+
+/// From the collision on with which the instant has passed its bound, until the clock leaves it; where instants follow each other
+/// without end, until one comes later.
 bool Endings::collapsed(double now) const {
-  return in_instant_ > endless() && now - instant_ <= 2.0 * same_instant(now);
+  const double since = now - instant_;
+  return (in_instant_ > endless() && since <= 2.0 * same_instant(now)) ||
+         (is_crawling() && since <= kHardlyLater * std::abs(now));
 }
 
 /// As collided() has it, before that counts.
 bool Endings::is_plain(double now) const {
+  if (is_crawling()) return false;
   return in_instant_ < kPlainInstant || now - instant_ > 2.0 * same_instant(now);
 }
 
@@ -56,12 +62,13 @@ bool Endings::crawls(const Outcome& o, double now) {
 
 bool Endings::crawls_on(bool once_more) {
   crawling_ += once_more;
-  return crawling_ > kMostCrawling;
+  return crawling_ > 2 * kMostCrawling;
 }
 
 /// The series of bounces first: what comes to its limit is taken over by an island, or ends the run. But where one crawls that
 /// comes to a limit over and over, islands do not pass it.
 std::optional<Ending> Endings::collided(const Outcome& o, double now, BounceLoss loss, double rounding) {
+  const bool crawled = is_crawling();
   bool is_endless = crawls(o, now);
   // a bounce that ends its series is not counted: what comes of it is no collision of this instant
   if (!o.contact.seen && !is_endless)
@@ -72,6 +79,8 @@ std::optional<Ending> Endings::collided(const Outcome& o, double now, BounceLoss
     }
   count_in_instant(o.pair, now);
   if (is_endless) return Ending{Ending::Kind::endless_group, now, crawling_};
+  // likewise, of instants that hardly follow each other
+  if (!crawled && is_crawling()) return Ending{Ending::Kind::group, now, crawling_};
   if (in_instant_ <= kPlainInstant) return std::nullopt;
   // as many again may be taken together
   if (in_instant_ > 2 * endless()) return Ending{Ending::Kind::endless_group, now, in_instant_};

@@ -41,8 +41,11 @@ class Endings {
   }
   /// 0: never.
   void set_limit(std::uint64_t collisions) { max_collisions_ = collisions; }
-  /// True if the present instant has had so many collisions that they are to be taken together.
+  /// True if the present instant has had so many collisions that they are to be taken together, or instants have hardly followed each
+  /// other so often.
   bool collapsed(double now) const;
+  /// True while instants hardly follow each other: any collision may be one of those that are taken together.
+  bool is_crawling() const;
 
   struct Saved {
     double instant = -1.0;

@@ -336,7 +336,8 @@ bool Kernel::judge_ending(const Outcome& o, std::vector<int>& changed) {
                                     : "solver.persistent = false"));
       return false;
     case Ending::Kind::group:
-      // told once; from the next collision of this instant on resolve() takes contacts together
+      // told once; from the next collision of this instant on resolve() takes contacts together, of which nobody is ahead
+      roll_back_all();
       parts_.records.ending(EventKind::group, o.pair, o.contact, parts_.records.last_event());
       return go_on_in_islands(o, changed) && poll();
     case Ending::Kind::endless_group:
@@ -433,6 +434,8 @@ void Kernel::give_up(const Certificate& c) {
 bool Kernel::resolve_ahead(const Certificate& c, double end, std::vector<int>& changed) {
   // an island's step is taken when it is certain, so its members are never ahead
   if (is_held(c.pair.body) || (!c.pair.with_site() && is_held(c.pair.other_body))) return false;
+  // contacts that are taken together are so when they are certain
+  if (parts_.endings.is_crawling()) return false;
   const double present = time();
   advance_pair(c.pair, c.time);
   // before anything is resolved: it keeps what this collision is about to change

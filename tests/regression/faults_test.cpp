@@ -406,6 +406,13 @@ TEST(Faults, AnArcThatFacesAwayDoesNotArrive) {
   }
 }
 
+// A disc of a gramme between ellipses of tons, which close in on it: ever shorter flights, without end.
+TEST(Faults, WhatIsSqueezedByFarHeavierBodiesComesOutOfIt) {
+  const Watched run = watched_lasting(load_scene(fault("a_gramme_between_tons"), {}));
+  EXPECT_EQ(run.told.summary.termination, Termination::reached_end) << run.told.summary.why;
+  for (const std::string& f : run.faults) ADD_FAILURE() << f;
+}
+
 // A corner that sank into a side by a rounding was an impact of a vertex far along that side, over and over, each time deeper.
 TEST(Faults, ACornerOnASideIsNoImpactOfTheSidesFarEnd) {
   const Watched run = watched_lasting(load_scene(fault("rolling_quads_in_a_bin"), {}));

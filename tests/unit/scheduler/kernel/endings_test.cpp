@@ -24,14 +24,15 @@ TEST(Endings, TheLimitIsTold) {
   EXPECT_FALSE(endings.at_limit(1000000));
 }
 
-// Between the collisions time goes on by no more than the clock can just tell, for ever. What comes after a flight begins a new
-// count, and so do bounces that come apart again.
+// Between the collisions time goes on by no more than the clock can just tell, for ever: they are to be taken together, and if that
+// does not help they are endless. What comes after a flight begins a new count, and so do bounces that come apart again.
 TEST(Endings, CollisionsBetweenWhichTimeHardlyGoesOnAreEndless) {
   for (const bool with_flights : {false, true}) {
     Endings endings(1e-10, 0);
     std::optional<Ending> ending;
     double now = 5.0;
     int n = 0;
+    bool together = false;
     for (; !ending && n < 50000; ++n) {
       now += 1e-13;
       Outcome o = collision(0, 1);
@@ -41,8 +42,11 @@ TEST(Endings, CollisionsBetweenWhichTimeHardlyGoesOnAreEndless) {
       Endings other(1e-10, 0);
       other.restore(endings.saved());
       endings = other;
+      if (ending && ending->kind == Ending::Kind::group && !together) together = true, ending.reset();
+      EXPECT_EQ(endings.collapsed(now), together);
     }
     EXPECT_EQ(ending.has_value(), !with_flights) << n;
+    EXPECT_EQ(together, !with_flights);
     EXPECT_TRUE(with_flights || ending->kind == Ending::Kind::endless_group);
   }
 }
