@@ -148,8 +148,13 @@ std::vector<NearFeature> IslandMembers::features_ahead(const PairKey& pair, doub
 }
 
 void IslandMembers::add_brought_by_sites(std::vector<HeldContact>& contacts) const {
+  bool any_moves = false;
+  for (int s = 0; s < trajectories_->site_count(); ++s)
+    any_moves = any_moves || trajectories_->site(s).moves();
+  if (!any_moves) return;
   std::set<ContactKey> listed;
-  for (const HeldContact& c : contacts) listed.insert(c.key());
+  for (const HeldContact& c : contacts)
+    if (on_moving_site(c)) listed.insert(c.key());
   const std::size_t before = contacts.size();
   for (const PairKey& pair : near_pairs(-1.0)) {
     if (!pair.with_site() || !trajectories_->site(pair.other_site).moves()) continue;
