@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "brink/core/shapes/distance.h"
-
 namespace brink {
 
 namespace {

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "brink/core/shapes/distance.h"
+#include "brink/scheduler/kernel/states_apart.h"
 #include "brink/scheduler/kernel/tolerances.h"
 #include "brink/scheduler/resolve/extended_contact.h"
 
@@ -28,13 +29,7 @@ bool thin(const Outline& samples, const Outline& sites, const FeatureContact& f)
   return !sites.sites[f.site].solid && sites.sites[f.site].radius + samples.samples[f.sample].radius == 0.0;
 }
 
-/// How far a point of a body of that radius is at most in one state from where it is in the other [m].
-double apart(const ExtendedState& s, const ExtendedState& t, double radius) {
-  const RealVec d = s.position - t.position;
-  return std::abs(d.x().high()) + std::abs(d.y().high()) + radius * std::abs((s.angle - t.angle).high());
-}
-
-/// Of apart(), and of the gap of two that are there [m].
+/// Of states_apart(), and of the gap of two that are there [m].
 double rounding(const ExtendedState& s, double radius) {
   return kSameInTwoDoubles * (std::abs(s.position.x().high()) + std::abs(s.position.y().high()) +
                               radius * (1.0 + std::abs(s.angle.high())));
@@ -156,7 +151,8 @@ bool CertificateWatch::resolved(const PairKey& pair, const FeatureContact& found
   const bool on_wire = found.sample_on_a ? thin(a, b, found) : thin(b, a, found);
   if (moment) {
     const double ra = a.bounding_radius, rb = b.bounding_radius;
-    const double least = moment->gap.high() - apart(body, moment->body, ra) - apart(other, moment->other, rb);
+    const double least =
+        moment->gap.high() - states_apart(body, moment->body, ra) - states_apart(other, moment->other, rb);
     const double none = rounding(body, ra) + rounding(other, rb);
     // no deeper than what was seen before, whatever a closer look would give
     if (on_wire ? least > none : -least <= std::min(allowed(), std::max(max_overlap_, none))) return true;

@@ -68,19 +68,20 @@ bool Endings::crawls_on(bool once_more) {
 /// The series of bounces first: what comes to its limit is taken over by an island, or ends the run. But where one crawls that
 /// comes to a limit over and over, islands do not pass it.
 std::optional<Ending> Endings::collided(const Outcome& o, double now, BounceLoss loss, double rounding) {
-  const bool crawled = is_crawling();
+  const auto begins_together = [this, crawled = is_crawling()] { return !crawled && is_crawling(); };
   bool is_endless = crawls(o, now);
   // a bounce that ends its series is not counted: what comes of it is no collision of this instant
   if (!o.contact.seen && !is_endless)
     if (const auto zeno = zeno_.collided({o.pair, o.contact}, now, o.contact.closing_speed, loss,
                                          o.since_last, o.contact.sink < 0.0, o.limit, rounding)) {
       is_endless = crawls_on(o.since_last <= kHardlyLater * std::abs(now));
-      if (!is_endless) return Ending{Ending::Kind::zeno, zeno->limit_time, zeno->bounces};
+      if (!is_endless && !begins_together())
+        return Ending{Ending::Kind::zeno, zeno->limit_time, zeno->bounces};
     }
   count_in_instant(o.pair, now);
   if (is_endless) return Ending{Ending::Kind::endless_group, now, crawling_};
   // likewise, of instants that hardly follow each other
-  if (!crawled && is_crawling()) return Ending{Ending::Kind::group, now, crawling_};
+  if (begins_together()) return Ending{Ending::Kind::group, now, crawling_};
   if (in_instant_ <= kPlainInstant) return std::nullopt;
   // as many again may be taken together
   if (in_instant_ > 2 * endless()) return Ending{Ending::Kind::endless_group, now, in_instant_};

@@ -147,16 +147,14 @@ std::vector<NearFeature> IslandMembers::features_ahead(const PairKey& pair, doub
                        reach_of(pair, -1.0), search_->limits().tolerance);
 }
 
-void IslandMembers::add_brought_by_sites(std::vector<HeldContact>& contacts) const {
-  bool any_moves = false;
-  for (int s = 0; s < trajectories_->site_count(); ++s)
-    any_moves = any_moves || trajectories_->site(s).moves();
-  if (!any_moves) return;
+std::vector<HeldContact> IslandMembers::contacts_and_brought(const GoOn& go_on) const {
+  const std::vector<PairKey> pairs = near_pairs(-1.0, go_on);
+  std::vector<HeldContact> all = features(pairs, -1.0, go_on);
   std::set<ContactKey> listed;
-  for (const HeldContact& c : contacts)
+  for (const HeldContact& c : all)
     if (on_moving_site(c)) listed.insert(c.key());
-  const std::size_t before = contacts.size();
-  for (const PairKey& pair : near_pairs(-1.0)) {
+  const std::size_t before = all.size();
+  for (const PairKey& pair : pairs) {
     if (!pair.with_site() || !trajectories_->site(pair.other_site).moves()) continue;
     const RealVec way = other_state(pair, h_, {}).position - other_state(pair).position;
     for (const NearFeature& f : features_ahead(pair, h_)) {
@@ -166,10 +164,11 @@ void IslandMembers::add_brought_by_sites(std::vector<HeldContact>& contacts) con
       c.feature.point += way.cast<double>();
       c.feature.at_end = true;
       // what touches now is told by what is listed
-      if (c.feature.gap > search_->limits().tolerance) contacts.push_back(c);
+      if (c.feature.gap > search_->limits().tolerance) all.push_back(c);
     }
   }
-  if (contacts.size() > before) std::sort(contacts.begin(), contacts.end(), in_order);
+  if (all.size() > before) std::sort(all.begin(), all.end(), in_order);
+  return all;
 }
 
 /// Up to which gap the pair's features are listed [m].

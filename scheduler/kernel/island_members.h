@@ -85,9 +85,9 @@ class IslandMembers {
   std::vector<HeldContact> contacts_of(const std::vector<char>& whose, const GoOn& go_on = {}) const;
   /// Those of one pair where its site has come to `later` [s] into the step, and its body has stayed; points are seen from there.
   std::vector<NearFeature> features_ahead(const PairKey& pair, double later) const;
-  /// Adds what sites bring with them within the look-ahead, and is not among those yet: as such a contact is now, at the end of its
+  /// As far as a step may lead, and with them what sites bring within the look-ahead: as such a contact is now, at the end of its
   /// site.
-  void add_brought_by_sites(std::vector<HeldContact>& contacts) const;
+  std::vector<HeldContact> contacts_and_brought(const GoOn& go_on = {}) const;
   /// Pairs of members, and with sites, that may come nearer to each other than that: all of which features are listed.
   std::vector<PairKey> near_pairs(double reach, const GoOn& go_on = {}) const;
 

@@ -8,6 +8,7 @@
 #include "brink/core/query/gap_bound.h"
 #include "brink/core/query/outline_gap.h"
 #include "brink/core/shapes/curve_site.h"
+#include "brink/scheduler/kernel/states_apart.h"
 #include "brink/scheduler/kernel/tolerances.h"
 
 namespace brink {
@@ -418,17 +419,15 @@ bool IslandModes::go_on_from(const States& states, Approach how, double until, b
   const auto former = on_time && how == Approach::none ? former_modes() : std::nullopt;
   if (!(former ? motion.begin_in(*former) : motion.begin(closed_now(states, how)))) return false;
   begun_ = motion.states();
-  return move_on(motion, until) && begins_at(states);
+  return move_on(motion, until) && begins_where_members_are();
 }
 
 /// True if the motion begins where the members are, to the contact tolerance: nobody is moved onto contacts.
-bool IslandModes::begins_at(const States& states) const {
-  for (int i = 0; i < static_cast<int>(members_->count()); ++i) {
-    const Pose begun = motion(i).pose(now_), &pose = states[i].pose;
-    const double jump = (begun.position - pose.position).norm() +
-                        members_->bounding_radius(i) * std::abs(begun.angle - pose.angle);
-    if (!(jump <= search_->limits().tolerance)) return false;
-  }
+bool IslandModes::begins_where_members_are() const {
+  for (int i = 0; i < static_cast<int>(members_->count()); ++i)
+    if (!(states_apart(motion(i).extended_state(now_), members_->state(i), members_->bounding_radius(i)) <=
+          search_->limits().tolerance))
+      return false;
   return true;
 }
 

@@ -101,7 +101,7 @@ class IslandModes {
   bool go_on_from(const States& states, Approach how, double until, bool on_time);
   bool go_on_with_arrived(const States& states, Approach how, double until);
   bool move_on(ModeMotion& motion, double until);
-  bool begins_at(const States& states) const;
+  bool begins_where_members_are() const;
   void note(const ModeMotion& motion);
   bool within_reach() const;
   bool keeps_apart() const;

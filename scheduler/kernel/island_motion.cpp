@@ -120,8 +120,8 @@ std::vector<int> IslandMotion::joining(const World& world, Trajectories& traject
 /// Lists features anew, up to a gap of `reach` [m]; < 0: as far as the step may lead (IslandMembers::contacts).
 /// What a step absorbs is found anew with them.
 void IslandMotion::list(double reach) {
-  contacts_ = members_.contacts(reach, go_on_);
-  if (reach < 0.0 && !by_modes_) members_.add_brought_by_sites(contacts_);
+  const bool along_step = reach < 0.0 && !by_modes_;
+  contacts_ = along_step ? members_.contacts_and_brought(go_on_) : members_.contacts(reach, go_on_);
   remember_sides(0);
   // what an arc may roll to counts along a step alone: until then its end tells all
   std::erase_if(contacts_, [&](const HeldContact& c) {
@@ -557,13 +557,18 @@ void IslandMotion::make_problem() {
   add_to_problem(0);
 }
 
+/// Of a site that moves: the body is not abreast of it yet, and may be where it comes to.
+bool IslandMotion::is_beside_driven(const HeldContact& c) const {
+  return members_.on_moving_site(c) && (c.feature.at_end || c.feature.beside_arc);
+}
+
 /// Contacts from that place on, pair after pair.
 void IslandMotion::add_to_problem(std::size_t first) {
   const PairKey* looked_at = nullptr;
   std::vector<NearFeature> ahead;  // of that pair
   for (std::size_t k = first; k < contacts_.size(); ++k) {
     const HeldContact& c = contacts_[k];
-    if (members_.on_moving_site(c) && (!looked_at || *looked_at != c.pair)) {
+    if (is_beside_driven(c) && (!looked_at || *looked_at != c.pair)) {
       ahead = members_.features_ahead(c.pair, h_);
       looked_at = &c.pair;
     }
@@ -663,7 +668,7 @@ void IslandMotion::drive(const HeldContact& c, const std::vector<NearFeature>& a
       {(to.position - from.position).cast<double>(), static_cast<double>(to.angle - from.angle)});
   const Vec2 way = step.to_world(c.feature.point) - c.feature.point;
   made.tangential_support = way.dot(perp(c.feature.normal)) / h_;
-  if (!c.feature.at_end && !c.feature.beside_arc) {
+  if (!is_beside_driven(c)) {
     made.normal_support = advance_of_surface(c.feature, search_->outline_of(search_->other_owner(c.pair)),
                                              static_cast<double>(from.angle), step) /
                           h_;

@@ -126,6 +126,7 @@ class IslandMotion {
   }
   void make_problem();
   void add_to_problem(std::size_t first);
+  bool is_beside_driven(const HeldContact& c) const;
   std::vector<Vec3> forces(const std::vector<Acceleration>& accelerations) const;
   double largest_change(const std::vector<Vec3>& forces, const std::vector<Vec3>& others) const;
   StepOutcome take_under_forces(const GapsAlong& gaps);

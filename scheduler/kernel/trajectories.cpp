@@ -9,6 +9,7 @@
 #include "brink/core/base/error.h"
 #include "brink/core/base/limits.h"
 #include "brink/scheduler/kernel/stage_clock.h"
+#include "brink/scheduler/kernel/states_apart.h"
 
 namespace brink {
 
@@ -349,11 +350,8 @@ void Trajectories::hold(std::span<const Restart> bodies, std::vector<int>& chang
 
 /// Ends the run where a motion does not begin where the body is: nobody jumps, whatever an island makes of its contacts.
 void Trajectories::watch_start(int k, const ExtendedState& start) {
-  const ExtendedState now = bodies_[k].motion.extended_state(run_->time());
-  const RealVec way = start.position - now.position;
-  const double turn = std::abs((start.angle - now.angle).high());
-  const double jump =
-      std::hypot(way.x().high(), way.y().high()) + world_->bodies[k].outline->bounding_radius * turn;
+  const double jump = states_apart(start, bodies_[k].motion.extended_state(run_->time()),
+                                   world_->bodies[k].outline->bounding_radius);
   if (jump <= most_jump_) return;
   run_->stop(
       Termination::failed,

@@ -11,10 +11,7 @@
 
 namespace brink::worlds {
 
-inline std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
-  const char* text = std::getenv(name);
-  return text ? std::strtoull(text, nullptr, 10) : otherwise;
-}
+using testing::from_environment;
 
 struct Tally {
   long worlds = 0, runs = 0, looks = 0, reached_end = 0, wrong = 0, refused = 0;

@@ -30,6 +30,22 @@ TEST(Trajectories, InstalmentsMakeTheSameMotionAsOneGo) {
   EXPECT_TRUE(at_once.trajectories.is_free(2));
 }
 
+// A motion of an island begins where its body is, or ends the run.
+TEST(Trajectories, NobodyIsHeldElsewhereThanHeIs) {
+  for (const double off : {0.0, 1e-12, 1e-8}) {
+    KernelParts parts(on_a_spring(), {});
+    std::vector<int> changed;
+    std::vector<Restart> held;
+    for (int k = 0; k < 3; ++k) held.push_back({k, parts.trajectories.state_now(k)});
+    held[1].state.position.x() += off;
+    parts.trajectories.hold(held, changed);
+    ASSERT_EQ(parts.run.halt().has_value(), off > 1e-10) << off;
+    if (!parts.run.halt()) continue;
+    EXPECT_EQ(parts.run.halt()->termination, Termination::failed);
+    EXPECT_NE(parts.run.halt()->why.find("jumps by 1e-08 m"), std::string::npos) << parts.run.halt()->why;
+  }
+}
+
 TEST(Trajectories, ARestartChangesItsComponentAlone) {
   KernelParts parts(on_a_spring(), {});
   parts.trajectories.cover(2.0);
