@@ -40,7 +40,9 @@ struct MeetingTimes {
 /// A flight seen from the present: where its centre is now.
 struct Course {
   Vec2 place, velocity, gravity;
-  double radius;  ///< with the rounding of the place
+  double rounding;        ///< of the place [m]
+  double speed_rounding;  ///< of the velocity [m/s]
+  double radius;          ///< with that of the place
   bool disc;
 
   Course(const Flight& f, const Vec2& g, double now) : gravity(g), disc(f.disc) {
@@ -48,15 +50,22 @@ struct Course {
     place = Vec2(f.x + s * (f.vx + 0.5 * s * g.x()), f.y + s * (f.vy + 0.5 * s * g.y()));
     velocity = Vec2(f.vx + s * g.x(), f.vy + s * g.y());
     const double ways = s * s * g.lpNorm<1>();
-    radius = f.radius * (1.0 + kFlightMargin) + kFlightRounding * (f.magnitude(s) + ways);
+    rounding = kFlightRounding * (f.magnitude(s) + ways);
+    speed_rounding = velocity_rounding(f.vx, f.vy, s * g.x(), s * g.y());
+    radius = f.radius * (1.0 + kFlightMargin) + rounding;
+  }
+  /// Of the sum of a velocity and of what gravity adds to it [m/s]: none where it adds nothing.
+  static double velocity_rounding(double vx, double vy, double gx, double gy) {
+    const double pull = std::abs(gx) + std::abs(gy);
+    return pull == 0.0 ? 0.0 : kFlightRounding * (std::abs(vx) + std::abs(vy) + pull);
   }
   void displace(const Vec2& by) { place += by; }
   Vec2 after(double s) const { return place + s * (velocity + 0.5 * s * gravity); }
 };
 
 /// When the discs of two flights overlap, from `now` on: of a, seen from now, and of b moved by `shift`. Two
-/// bare discs that recede never meet. About 40 flops, two divisions and a root; `early`: most that never meet
-/// cost 15 flops, else all the same, without a branch, so that several are compared at once (FlightBatch).
+/// bare discs that recede never meet, where rounding cannot be all of it. About 50 flops, two divisions and a root; `early`:
+/// most that never meet cost half, else all the same, without a branch, so that several are compared at once (FlightBatch).
 template <bool early>
 inline MeetingTimes meeting(const Course& a, double bx, double by, double bvx, double bvy, double b_start,
                             double b_radius, bool b_disc, double shift_x, double shift_y, double now) {
@@ -65,15 +74,19 @@ inline MeetingTimes meeting(const Course& a, double bx, double by, double bvx, d
   const double dy = a.place.y() - shift_y - (by + s * (bvy + 0.5 * gy));
   const double wx = a.velocity.x() - (bvx + gx), wy = a.velocity.y() - (bvy + gy);
   const double approach = dx * wx + dy * wy;  // half the rate of the squared distance
-  if (early && approach >= 0.0 && a.disc && b_disc) return {};
   const double way = std::abs(s) * (std::abs(bvx) + std::abs(bvy));
   const double magnitude = std::abs(bx) + std::abs(by) + way;
-  const double reach = a.radius + b_radius * (1.0 + kFlightMargin) +
-                       kFlightRounding * (magnitude + std::abs(s) * (std::abs(gx) + std::abs(gy)));
+  const double rounding = kFlightRounding * (magnitude + std::abs(s) * (std::abs(gx) + std::abs(gy)));
+  const double approach_rounding =
+      (a.rounding + rounding) * (std::abs(wx) + std::abs(wy)) +
+      (a.speed_rounding + Course::velocity_rounding(bvx, bvy, gx, gy)) * (std::abs(dx) + std::abs(dy));
+  const bool recedes = (approach >= approach_rounding) & a.disc & b_disc;
+  if (early && recedes) return {};
+  const double reach = a.radius + b_radius * (1.0 + kFlightMargin) + rounding;
   const double distance2 = dx * dx + dy * dy, beyond = distance2 - reach * reach;
   const double speed2 = wx * wx + wy * wy, offset = dx * wy - dy * wx;
   const double square = speed2 * reach * reach - offset * offset;  // free of cancellation
-  const bool parts = (approach >= 0.0) & ((a.disc & b_disc) | (beyond > 0.0)), misses = square < 0.0;
+  const bool parts = recedes | ((approach >= 0.0) & (beyond > 0.0)), misses = square < 0.0;
   if (early && (parts || misses)) return {};
   const double root = std::sqrt(misses ? 0.0 : square);
   const double wait = beyond <= 0.0 ? 0.0 : beyond / (root - approach);

@@ -70,7 +70,7 @@ BRINK_INLINE void begin_of(const Course& a, double now, const FourFlights& b, Fo
   const Four wx = a.velocity.x() - (kFall ? b.vx + gx : b.vx),
              wy = a.velocity.y() - (kFall ? b.vy + gy : b.vy);
   const Four approach = dx * wx + dy * wy;
-  Four since, speed_x, speed_y, far_x, far_y, pull_x, pull_y, root;
+  Four since, speed_x, speed_y, far_x, far_y, pull_x, pull_y, across_x, across_y, apart_x, apart_y, root;
   size_of(s, since);
   size_of(b.vx, speed_x);
   size_of(b.vy, speed_y);
@@ -78,16 +78,27 @@ BRINK_INLINE void begin_of(const Course& a, double now, const FourFlights& b, Fo
   size_of(b.y, far_y);
   size_of(gx, pull_x);
   size_of(gy, pull_y);
+  size_of(wx, across_x);
+  size_of(wy, across_y);
+  size_of(dx, apart_x);
+  size_of(dy, apart_y);
   const Four magnitude = far_x + far_y + since * (speed_x + speed_y);
-  const Four reach = a.radius + b.radius * (1.0 + kFlightMargin) +
-                     kFlightRounding * (kFall ? magnitude + since * (pull_x + pull_y) : magnitude);
+  const Four rounding = kFlightRounding * (kFall ? magnitude + since * (pull_x + pull_y) : magnitude);
+  Four approach_rounding = (a.rounding + rounding) * (across_x + across_y);
+  if constexpr (kFall) {
+    const Four pull = pull_x + pull_y;
+    const Four of_speed = pull == Four{} ? Four{} : kFlightRounding * (speed_x + speed_y + pull);
+    approach_rounding += (a.speed_rounding + of_speed) * (apart_x + apart_y);
+  }
+  const Four reach = a.radius + b.radius * (1.0 + kFlightMargin) + rounding;
   const Four beyond = dx * dx + dy * dy - reach * reach;
   const Four speed2 = wx * wx + wy * wy, offset = dx * wy - dy * wx;
   const Four square = speed2 * reach * reach - offset * offset;
   constexpr Four none{};
   const std::int64_t all = a.disc ? -1 : 0;
   const FourBits misses = square < none, disc{all, all, all, all};
-  const FourBits parts = (approach >= none) & ((disc & (b.last < FourBits{})) | (beyond > none));
+  const FourBits parts = ((approach >= approach_rounding) & disc & (b.last < FourBits{})) |
+                         ((approach >= none) & (beyond > none));
   root_of(misses ? none : square, root);
   const Four wait = beyond <= none ? none : beyond / (root - approach);
   const Four earliest = now + wait - kFlightRounding * (now + wait);

@@ -533,8 +533,10 @@ class PairSearch {
     // A canonical time needs an interval that holds this crossing alone, with a gap beyond rounding at both ends. It was
     // clear until the search began.
     const auto clear = falling.clear_end(gap, std::max(begin, from_ - 1024.0 * falling.moment()));
-    if (!clear && gap(t_) <= 0.0)
-      return remember(half, f, uncovered_since(half, f));  // in each other from the start
+    if (!clear && gap(t_) <= 0.0) {
+      const std::optional<double> since = in_each_other_since(half, f);
+      return since && remember(half, f, *since);
+    }
     const double low = clear.value_or(t_);
     // no probe may lie beyond a motion
     const double last = std::min(a_.motion->end(), b_.motion->end());
@@ -580,26 +582,56 @@ class PairSearch {
     return nearest_on(half.site(f.site), there.path(half, f.sample).q).foot;
   }
 
-  /// Since when another site no longer hides this one from a vertex, if they have been in each other and approaching since
-  /// the motions began; else t_.
-  double uncovered_since(const Half& half, const Feature& f) {
+  /// Since when they meet that have been in each other since the motions began, and approach now; none: they do not yet. Who
+  /// parted then (off a wire, when an island let go of them below any level) meets when they have turned and fallen a little;
+  /// whom another site hid, when it no longer does; else t_.
+  std::optional<double> in_each_other_since(const Half& half, const Feature& f) {
     if (half.sample(f.sample).arc_site >= 0) return t_;
     const KeptNeighbours kept(scratch_);
-    bool parting = false;
-    const auto hidden = [&](double t) {
-      PairView there = view_;
+    PairView there = view_;
+    const Site& site = half.site(f.site);
+    SamplePath path;
+    const auto feature_at = [&](double t) {
       there.place(t);
-      const SamplePath path = there.path(half, f.sample);
-      const Site& site = half.site(f.site);
-      const Feature then = there.vertex_feature(half, f.sample, f.site, nearest_on(site, path.q), path);
-      parting = !there.approaching(then, path);
+      path = there.path(half, f.sample);
+      return there.vertex_feature(half, f.sample, f.site, nearest_on(site, path.q), path);
+    };
+    const auto hidden = [&](double t) {
+      const Feature then = feature_at(t);
       const bool counts = then.gap <= there.level(half, f.sample, site, path.q) &&
                           !there.hidden_behind_others(half, then, path);
       return counts ? -1.0 : 1.0;
     };
     const double begin = remembers_start_ ? view_.start() : from_;
-    if (!(begin < t_ && hidden(begin) > 0.0) || parting || hidden(t_) > 0.0) return t_;
-    return std::max(asked_from_, last_clear_time(hidden, begin, t_));
+    if (!(begin < t_)) return t_;
+    const auto parts = [&](double t) {
+      const Feature then = feature_at(t);
+      return !there.approaching(then, path);
+    };
+    if (!parts(begin)) {
+      const bool uncovered = hidden(begin) > 0.0 && !(hidden(t_) > 0.0);
+      return uncovered ? std::max(asked_from_, last_clear_time(hidden, begin, t_)) : t_;
+    }
+    const double turn = last_before(begin, t_, parts);
+    // from their rate, as the way is too short to be told from two gaps
+    const auto higher = [&](double t) {
+      return -0.5 * feature_at(t).rate * (t - turn) < 0.25 * sink_step(limits_.touch, 0.0);
+    };
+    if (higher(t_)) return std::nullopt;
+    const double fallen = last_before(turn, t_, higher);
+    return hidden(fallen) > 0.0 ? t_ : std::max(asked_from_, fallen);
+  }
+
+  /// The last time at which it is so that is so at `low` and not at `high`, on a grid of 1024 ticks of the clock: wider than
+  /// what the rounding of a rate makes of it.
+  template <class IsSo>
+  static double last_before(double low, double high, IsSo&& is_so) {
+    const double begin = low, end = high, grid = 1024.0 * ulp(high);
+    while (high - low > 0.25 * grid) {
+      const double middle = low + 0.5 * (high - low);
+      (is_so(middle) ? low : high) = middle;
+    }
+    return std::clamp(std::round(high / grid) * grid, begin, end);
   }
 
   /// True if f's two features meet by t_ although they passed each other's tips at `passed`, where the gap was last clear:

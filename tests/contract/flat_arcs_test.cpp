@@ -4,11 +4,12 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include "brink/core/base/random.h"
-#include "brink/scenes/scene/scene.h"
 #include "tests/support/seeded_worlds.h"
 
 namespace brink::flat_arcs_test {
@@ -40,34 +41,11 @@ std::string world_of(std::uint64_t seed) {
 }
 
 TEST(FlatArcs, GiveTheSameBitsUnderEveryPolicyAndFromAnySnapshot) {
-  const std::uint64_t first = testing::from_environment("BRINK_SEED", 1),
-                      worlds = testing::from_environment("BRINK_WORLDS", 16);
-  for (std::uint64_t seed = first; seed < first + worlds; ++seed) {
-    SCOPED_TRACE(fmt::format("BRINK_SEED={} BRINK_WORLDS=1", seed));
-    const Scene scene = parse_scene(world_of(seed), "arcs");
-    RunOptions whole;
-    whole.until = kDuration;
-    const RunSummary told = Simulator(scene.world, scene.solver).run(whole, nullptr);
+  testing::for_each_world(16, world_of, [](std::uint64_t seed) {
+    const RunSummary told = testing::expect_same_bits(world_of(seed), seed);
     EXPECT_EQ(told.termination, Termination::reached_end) << told.why;
     EXPECT_GT(told.collisions, 0U);
-    Random random(seed);
-    bool same = told.termination == Termination::reached_end;
-    for (const std::string& policy : exact_policies()) {
-      SolverOptions solver = scene.solver;
-      solver.policy = policy;
-      // stopped, and gone on with by another simulator
-      RunOptions part;
-      part.until = random.uniform(0.0, kDuration);
-      Simulator stopped(scene.world, solver), goes_on(scene.world, solver);
-      stopped.run(part, nullptr);
-      goes_on.restore(stopped.snapshot());
-      const RunSummary s = goes_on.run(whole, nullptr);
-      EXPECT_EQ(s.collisions, told.collisions) << policy << ", stopped at " << part.until;
-      EXPECT_EQ(s.state_hash, told.state_hash) << policy << ", stopped at " << part.until;
-      same = same && s.state_hash == told.state_hash;
-    }
-    if (!same) testing::keep(fmt::format("seed_{}.toml", seed), world_of(seed));
-  }
+  });
 }
 
 }  // namespace

@@ -169,29 +169,8 @@ std::string shaken(std::uint64_t seed) {
 }
 
 TEST(LongMotions, GoOnWithTheSameBitsFromAnyTime) {
-  const std::uint64_t first = testing::from_environment("BRINK_SEED", 1),
-                      worlds = testing::from_environment("BRINK_WORLDS", 8);
-  for (std::uint64_t seed = first; seed < first + worlds; ++seed) {
-    SCOPED_TRACE(fmt::format("BRINK_SEED={} BRINK_WORLDS=1", seed));
-    const Scene scene = parse_scene(shaken(seed), "shaken");
-    const RunSummary told = Simulator(scene.world, scene.solver).run(testing::until(scene.duration));
-    Random random(seed);
-    bool same = true;
-    for (const std::string& policy : exact_policies()) {
-      SolverOptions solver = scene.solver;
-      solver.policy = policy;
-      const double stop = random.uniform(0.0, scene.duration);
-      Simulator stopped(scene.world, solver), goes_on(scene.world, solver);
-      if (stopped.run(testing::until(stop)).termination == Termination::reached_end)
-        goes_on.restore(stopped.snapshot());
-      const RunSummary s = goes_on.run(testing::until(scene.duration));
-      EXPECT_EQ(s.why, told.why) << policy << ", stopped at " << stop;
-      EXPECT_EQ(s.collisions, told.collisions) << policy << ", stopped at " << stop;
-      EXPECT_EQ(s.state_hash, told.state_hash) << policy << ", stopped at " << stop;
-      same = same && s.state_hash == told.state_hash;
-    }
-    if (!same) testing::keep(fmt::format("seed_{}.toml", seed), shaken(seed));
-  }
+  testing::for_each_world(8, shaken,
+                          [](std::uint64_t seed) { testing::expect_same_bits(shaken(seed), seed); });
 }
 
 }  // namespace
