@@ -89,7 +89,7 @@ struct alignas(64) BodyClock {
   CandidateList candidates;
   const std::vector<SiteImage>* sites = nullptr;  ///< of its cell, in the first period
   int level = 0;                                  ///< of cells
-  unsigned undecided : 31 = 0;                    ///< searches in a row that met their cap
+  unsigned undecided : 31 = 0;                    ///< searches of one view in a row that met their cap
   unsigned has_found : 1 = 0;                     ///< a contact may have been found since the view began
 
   double expiry() const { return std::min(std::min(exit, horizon), candidates.first_time()); }
@@ -116,6 +116,7 @@ struct alignas(64) BodyClock {
   }
   void forget_all() {
     candidates.clear();
+    undecided = 0;
     has_found = 0;
     horizon = std::numeric_limits<double>::infinity();
   }

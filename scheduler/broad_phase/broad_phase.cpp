@@ -192,9 +192,9 @@ Box swept_box(const Outline& outline, const Motion& motion, double from, double 
   box.add(motion.pose(to).position);
   const MotionBounds b = motion.bounds(from, to);
   // A path leaves its chord by e(t) with e = 0 at both ends and |e''| <= a, so |e| <= a t (T - t) / 2,
-  // which is a T^2 / 8 at most.
-  const double bulge = (b.acceleration.norm() + b.acceleration_radius) * (to - from) * (to - from) / 8.0;
-  return with_outline(box, outline, bulge);
+  // which is a T^2 / 8 at most. Nor does it leave the chord's ends by more than half of its way, however bent it is in a corner.
+  const double span = to - from, acceleration = b.acceleration.norm() + b.acceleration_radius;
+  return with_outline(box, outline, std::min(acceleration * span / 4.0, b.speed()) * span / 2.0);
 }
 
 Box standing_box(const Outline& outline, const Vec2& place) {

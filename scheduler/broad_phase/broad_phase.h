@@ -11,8 +11,8 @@
 
 namespace brink {
 
-/// The box that holds an outline during [from, to]: its path's chord, bulged by acceleration, grown by its
-/// bounding radius; containers hold everything. @pre the motion covers [from, to].
+/// The box that holds an outline during [from, to]: its path's chord, bulged by acceleration or by speed, whichever is less, grown
+/// by its bounding radius; containers hold everything. @pre the motion covers [from, to].
 Box swept_box(const Outline& outline, const Motion& motion, double from, double to);
 
 /// The box that holds an outline about a place of its origin, however it has turned.

@@ -381,6 +381,7 @@ class PairSearch {
     bool neighbours_known = false;
     for (const std::uint32_t j : near.sites) {
       const Site& site = sites.sites[j];
+      if (view_.is_covered_at(site, path.q)) continue;
       const Nearest nearest = nearest_on(site, path.q);
       const double radius = site.radius + sample.radius;
       const double gap = nearest.distance - radius;
@@ -686,6 +687,7 @@ class PairSearch {
     const bool at_a = (path.q - site.a).squaredNorm() < (path.q - site.b).squaredNorm();
     const Vec2 tip = at_a ? site.a : site.b, way = path.q - tip;
     const double noise = view_.gap_rounding(half, f.sample, path.q);
+    if (view_.is_at_joint(half, f.sample, site, path.q, noise)) return false;
     if (meets_arc_before(site, tip, way, 8.0 * noise)) return false;
     // the gap approaches, so the rate is not 0
     const double slow = path.rate.norm(), off = way.norm() / slow;
@@ -706,6 +708,20 @@ class PairSearch {
     return half_chord > 0.0 && half_chord * half_chord > 2.0 * site.arc_radius * depth;
   }
 
+  /// What is so many roundings off a tip is upon it.
+  static constexpr double kUponTip = 4.0;
+
+  /// True of a sample that goes straight for the tip, `way` from it, where another sink step would lead upon it: it has come there.
+  bool is_upon_tip(const Half& half, const Feature& f, const SamplePath& way, bool at_a,
+                   const PairView& there) const {
+    const Vec2& tip = at_a ? half.site(f.site).a : half.site(f.site).b;
+    const double rounding = there.gap_rounding(half, f.sample, way.q + tip), upon = kUponTip * rounding;
+    const double speed = way.rate.norm(), room = way.q.norm() - sink_step(limits_.touch, rounding);
+    return room < upon && speed > there.rate_noise(way) && way.q.dot(way.rate) < upon * speed &&
+           std::abs(cross(way.rate, way.q)) <= upon * speed &&
+           corners_cross(half, f, at_a, way.rate, there) && !lies_flush(half, f, at_a, there);
+  }
+
   /// The same of a sample that goes straight for the tip.
   bool comes_upon_tip(const Half& half, const Feature& f, const SamplePath& path, bool at_a) {
     const Site& site = half.site(f.site);
@@ -717,6 +733,11 @@ class PairSearch {
       then.q -= tip;
       return then;
     };
+    const double begin = view_.start();
+    if (remembers_start_) {
+      const SamplePath first = to_tip(begin);
+      if (is_upon_tip(half, f, first, at_a, there)) return asked_from_ <= begin && remember(half, f, begin);
+    }
     // They are nearest to each other where way . rate = 0: found by Newton's steps, from here and twice
     // from there.
     double nearest = t_ - (path.q - tip).dot(path.rate) / path.rate.squaredNorm();
@@ -735,10 +756,11 @@ class PairSearch {
     // beside each other: along the way they may be as far apart as one goes within a tick of the clock
     const double speed = then.rate.norm(), beside = std::abs(cross(then.rate, then.q)) / speed;
     if (!(beside <= 4.0 * rounding)) return false;
-    // The gap at which a sharp sample meets a wire (nominal_level()); where they have been nearer from the start, as after
-    // they met, a sink step less than then.
+    // The gap at which a sharp sample meets a wire (nominal_level()). Where they have been nearer from the start, as after they
+    // met: as near as then, if they part first; if not, a sink step nearer, but not upon the tip, as beyond it the way is no
+    // approach.
     double before = std::max(0.5 * limits_.touch, 8.0 * rounding);
-    const double begin = view_.start(), step = sink_step(limits_.touch, rounding);
+    const double step = sink_step(limits_.touch, rounding);
     if (remembers_start_) before = std::min(before, std::max(to_tip(begin).q.norm() - step, -limits_.touch));
     const auto clear = [&](double t) {
       const SamplePath there_then = to_tip(t);

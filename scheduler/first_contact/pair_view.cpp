@@ -191,7 +191,7 @@ void PairView::find_neighbours(const Half& half, int i, std::span<const std::uin
   for (const std::uint32_t k : sites) {
     const Site& site = half.sites_of().sites[k];
     const Nearest nearest = nearest_on(site, path.q);
-    if (nearest.distance - site.radius - radius > reach) continue;
+    if (nearest.distance - site.radius - radius > reach || is_covered_at(site, path.q)) continue;
     const Feature f = vertex_feature(half, i, static_cast<int>(k), nearest, path);
     // a face through which the corner's own edge leads does not count for it
     if (pokes_through(half, i, site, nearest, f)) continue;
@@ -212,6 +212,7 @@ bool PairView::is_flush_on(const Placing& p, const Half& half, int i, const Site
                            double rounding) const {
   const Sample& sample = half.sample(i);
   const Outline &carrier = half.samples_of(), &other = half.sites_of();
+  if (is_at_joint(half, i, site, q, rounding)) return true;
   // a corner of a solid on a side of a solid or on a wire, or a wire's end on a side of a solid
   const bool end = sample.before < 0;
   if (end && (carrier.solid || !site.solid || sample.arc_site >= 0)) return false;
@@ -228,6 +229,18 @@ bool PairView::is_flush_on(const Placing& p, const Half& half, int i, const Site
                               of_site = site.solid ? corner_at(site, at_a)
                                                    : end_of_wire(other, at_a ? site.a : site.b);
   return of_sample && of_site && parts_alone(normal, seen_from(*of_sample, s, t), *of_site);
+}
+
+bool PairView::is_at_joint(const Half& half, int i, const Site& site, const Vec2& q, double rounding) const {
+  const Sample& sample = half.sample(i);
+  if (!site.solid || site.kind != SiteKind::segment || site.radius + sample.radius > 0.0 || sample.hollow ||
+      sample.arc_site >= 0)
+    return false;
+  const bool at_a = (q - site.a).squaredNorm() < (q - site.b).squaredNorm();
+  if (!(at_a ? site.straight_a : site.straight_b)) return false;
+  const Vec2 way = q - (at_a ? site.a : site.b);
+  return way.squaredNorm() <= limits_.tolerance * limits_.tolerance &&
+         std::abs(cross(face_at_end(site, at_a), way)) <= 4.0 * rounding;
 }
 
 Vec2 PairView::face_for(const Placing& p, const Half& half, int i, const Site& site, bool at_a,
@@ -260,6 +273,7 @@ bool PairView::passes_tip(const Half& half, const Feature& f) const {
   const bool at_a = (path.q - site.a).squaredNorm() < (path.q - site.b).squaredNorm();
   const Vec2 way = path.q - (at_a ? site.a : site.b);
   if (!(way.squaredNorm() <= limits_.tolerance * limits_.tolerance)) return false;
+  if (is_at_joint(half, f.sample, site, path.q, gap_rounding(half, f.sample, path.q))) return false;
   const Frame &s = placed(half.s).frame, &t = placed(half.t).frame;
   const Corner of_sample = corner_seen(half.samples_of(), sample, s, t), of_site = corner_at(site, at_a);
   if (!of_sample.convex() || !of_site.convex() || of_sample.needle() || of_site.needle()) return false;

@@ -96,6 +96,15 @@ class PairView {
   bool is_flush_on(const Half& half, int i, const Site& site, const Vec2& q, double rounding) const {
     return is_flush_on(now_, half, i, site, q, rounding);
   }
+  /// True if sample i is abreast, to rounding, of an end at which site j, of a solid, goes on straight into another outline's: no tip
+  /// is there, but a face.
+  bool is_at_joint(const Half& half, int i, const Site& site, const Vec2& q, double rounding) const;
+  /// True if q is by an end of a side that others lie against: what comes there meets the faces that join there, not what is
+  /// between them.
+  bool is_covered_at(const Site& site, const Vec2& q) const {
+    const double near2 = limits_.tolerance * limits_.tolerance;
+    return site.covered && ((q - site.a).squaredNorm() <= near2 || (q - site.b).squaredNorm() <= near2);
+  }
   /// True if f's sample, a sharp corner of a solid, is by such a corner in which f's site ends, and a line parts the
   /// two, to the touching distance, as they go on, whatever becomes of the gap to f's site.
   bool passes_tip(const Half& half, const Feature& f) const;

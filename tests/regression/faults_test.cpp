@@ -9,11 +9,13 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 
 #include "brink/scheduler/policies/policy.h"
 #include "children.h"
 #include "tests/fuzz/world_runs.h"
 #include "tests/support/outside/frame_watch.h"
+#include "tests/support/seeded_worlds.h"
 
 namespace brink::faults_test {
 namespace {
@@ -403,6 +405,28 @@ TEST(Faults, AnArcThatFacesAwayDoesNotArrive) {
     EXPECT_EQ(run.told.summary.termination, Termination::reached_end)
         << scene << ": " << run.told.summary.why;
     for (const std::string& f : run.faults) ADD_FAILURE() << scene << ": " << f;
+  }
+}
+
+// A sharp tip that came upon the joint of two solids passed between them, sank in and came out again, with no frame to see it: each
+// solid's corner was a tip that it passes.
+TEST(Faults, NoTipPassesBetweenTwoSolids) {
+  for (const char* scene : {"triangle_on_a_seam", "triangle_between_triangles"}) {
+    const Watched run = watched(load_scene(fault(scene), {"output.frame_interval=0.01"}));
+    EXPECT_EQ(run.told.summary.termination, Termination::reached_end)
+        << scene << ": " << run.told.summary.why;
+    for (const std::string& f : run.faults) ADD_FAILURE() << scene << ": " << f;
+  }
+}
+
+// Tips that begin upon tips met or passed by where a search ended; and searches of a pair that were cut short by other steps, a
+// thousand times, counted as one that makes no headway, under body_clocks alone.
+TEST(Faults, TipsUponTipsAndSlowRoomsEndAlikeUnderEveryPolicy) {
+  for (const char* scene : {"star_in_a_notch", "three_stars", "two_in_a_slow_room"}) {
+    SCOPED_TRACE(scene);
+    std::ifstream file(fault(scene));
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    EXPECT_EQ(testing::expect_same_bits(text, 1).termination, Termination::reached_end);
   }
 }
 

@@ -331,7 +331,7 @@ void Views::see_moving_site(int k, int s, double now) {
   const Box here = swept_box(kernel_->outline_of(k), kernel_->body(k).motion, now, end);
   const Box there = swept_box(kernel_->outline_of(body_count() + s), kernel_->site_motion(s), now, end);
   periods_.overlaps(here, there, [&](const Image& image) {
-    if (image != Image{}) see(image);
+    if (image != Image{} && kernel_->poll()) see(image);
   });
 }
 
