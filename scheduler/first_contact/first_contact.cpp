@@ -756,9 +756,8 @@ class PairSearch {
     // beside each other: along the way they may be as far apart as one goes within a tick of the clock
     const double speed = then.rate.norm(), beside = std::abs(cross(then.rate, then.q)) / speed;
     if (!(beside <= 4.0 * rounding)) return false;
-    // The gap at which a sharp sample meets a wire (nominal_level()). Where they have been nearer from the start, as after they
-    // met: as near as then, if they part first; if not, a sink step nearer, but not upon the tip, as beyond it the way is no
-    // approach.
+    // The gap at which a sharp sample meets a wire (nominal_level()); where they have been nearer from the start, as after
+    // they met, a sink step less than then.
     double before = std::max(0.5 * limits_.touch, 8.0 * rounding);
     const double step = sink_step(limits_.touch, rounding);
     if (remembers_start_) before = std::min(before, std::max(to_tip(begin).q.norm() - step, -limits_.touch));
