@@ -613,26 +613,27 @@ class PairSearch {
       const bool uncovered = hidden(begin) > 0.0 && !(hidden(t_) > 0.0);
       return uncovered ? std::max(asked_from_, last_clear_time(hidden, begin, t_)) : t_;
     }
-    const double turn = last_before(begin, t_, parts);
+    const double turn = std::clamp(change_between(begin, t_, parts), begin, t_);
     // from their rate, as the way is too short to be told from two gaps
     const auto higher = [&](double t) {
       return -0.5 * feature_at(t).rate * (t - turn) < 0.25 * sink_step(limits_.touch, 0.0);
     };
     if (higher(t_)) return std::nullopt;
-    const double fallen = last_before(turn, t_, higher);
+    const double fallen = std::clamp(change_between(turn, t_, higher), turn, t_);
     return hidden(fallen) > 0.0 ? t_ : std::max(asked_from_, fallen);
   }
 
-  /// The last time at which it is so that is so at `low` and not at `high`, on a grid of 1024 ticks of the clock: wider than
-  /// what the rounding of a rate makes of it.
+  /// When what is so at `low`, and not at `high`, changes, on a grid of 1024 ticks of the clock: wider than what the rounding of a
+  /// rate makes of it. Halved to a quarter of the grid, then rounded to it, which may lead beyond either: searches that begin
+  /// elsewhere all but always come to the same double.
   template <class IsSo>
-  static double last_before(double low, double high, IsSo&& is_so) {
-    const double begin = low, end = high, grid = 1024.0 * ulp(high);
+  static double change_between(double low, double high, IsSo&& is_so) {
+    const double grid = 1024.0 * ulp(high);
     while (high - low > 0.25 * grid) {
       const double middle = low + 0.5 * (high - low);
       (is_so(middle) ? low : high) = middle;
     }
-    return std::clamp(std::round(high / grid) * grid, begin, end);
+    return std::round(high / grid) * grid;
   }
 
   /// True if f's two features meet by t_ although they passed each other's tips at `passed`, where the gap was last clear:
@@ -649,8 +650,8 @@ class PairSearch {
 
   /// Where the gap, which falls now, is smallest, if it rises again within eight times what is left until it has met for
   /// sure, and not after `last`; 0 if it does not. What turns may rise and fall again before that: it is asked from the
-  /// soonest on at which it can rise, so that the first dip is found. On a grid of 1024 ticks of the clock, which is wider
-  /// than what roundings of the rate make of it, and much narrower than the dip.
+  /// soonest on at which it can rise, so that the first dip is found. The grid of change_between() is much narrower than
+  /// the dip.
   double deepest_after(const Half& half, const Feature& f, const FallingGap& gap, double last) const {
     // a copy is placed elsewhere: this search goes on at t_
     PairView there = view_;
@@ -666,14 +667,7 @@ class PairSearch {
       rising = t_ + 2.0 * (rising - t_);
     }
     rising = std::min(rising, last);
-    const double grid = 1024.0 * ulp(rising);
-    // Halved to a quarter of the grid, then rounded to it: searches that begin elsewhere all but always come
-    // to the same double.
-    while (rising - falling > 0.25 * grid) {
-      const double middle = falling + 0.5 * (rising - falling);
-      (rises(middle) ? rising : falling) = middle;
-    }
-    return std::clamp(std::round(rising / grid) * grid, t_, last);
+    return std::clamp(change_between(falling, rising, [&](double t) { return !rises(t); }), t_, last);
   }
 
   /// Two sharp corners of solids that come upon each other, to rounding: what lies beyond is for roundings to
