@@ -116,6 +116,7 @@ RunOptions run_options(const Scene& scene, const RunRequest& request, double unt
   RunOptions options;
   options.until = until;
   options.frame_interval = scene.output.frame_interval;
+  options.look_interval = scene.duration / RunOptions::kLooks;  // wherever this run is to end
   options.checkpoint_seconds = request.checkpoint_seconds;
   options.threads = request.threads;
   // A run that goes on has the frame of the checkpoint's time if the clock has one there; else that is none of its frames,

@@ -1,6 +1,6 @@
 #pragma once
 /// The watch over what searches have certified: overlaps and sides of the pairs just resolved, all pairs at
-/// frames, ways through wires. What it sees ends the run. Cost: below 1 % for collisions; for frames a pose of every
+/// frames and looks between them (LookClock), ways through wires. What it sees ends the run. Cost: below 1 % for collisions; for frames a pose of every
 /// owner and a look at who is near another (FramePairs).
 
 #include <cstdint>

@@ -481,17 +481,19 @@ bool Kernel::record_frames(double t) {
   parts_.policy_watch.going_to(t);
   // one frame after another: a fault that the watch sees at one ends the run there
   while (!halt()) {
-    const auto due = parts_.records.frame_due(t);
-    if (!due) break;
+    const auto frame = parts_.records.frame_due(t);
+    const auto look = parts_.looks.due(frame.value_or(t), collisions());
+    if (!frame && !look) break;
+    const double due = look.value_or(*frame);
     const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_record);
     // a run that goes on has this frame before it still
-    if (!parts_.records.get_ready(*due)) break;
+    if (!look && !parts_.records.get_ready(due)) break;
     // shown and watched are the motions that are certain; the newest may have begun after the frame
     parts_.speculation.swap_with_certain();
-    parts_.records.frame_of_clock(*due);
-    parts_.watch.frame(*due);
+    if (!look) parts_.records.frame_of_clock(due);
+    parts_.watch.frame(due);
     parts_.speculation.swap_with_certain();
-    if (!poll()) parts_.run.set_time(*due);  // all is clear up to t, and so up to here
+    if (!poll()) parts_.run.set_time(due);  // all is clear up to t, and so up to here
   }
   return !halt();
 }

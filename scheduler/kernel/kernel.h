@@ -151,8 +151,8 @@ class Kernel : public KernelView {
   void roll_back_all() { parts_.speculation.roll_back_all(); }
 
   // -- the run --
-  /// Records frames due up to and including t; checks them for overlaps. On a halt the clock is at the last
-  /// of them.
+  /// Records frames due up to and including t; checks them, and looks that are due between them, for overlaps. On a halt
+  /// the clock is at the last of them.
   bool record_frames(double t);
   /// Asks whether to go on. Cheap: to be called in every loop that may take long.
   bool poll() { return parts_.run.poll(); }

@@ -9,6 +9,7 @@
 #include "brink/scheduler/kernel/group_response.h"
 #include "brink/scheduler/kernel/grouping.h"
 #include "brink/scheduler/kernel/islands.h"
+#include "brink/scheduler/kernel/look_clock.h"
 #include "brink/scheduler/kernel/near_pairs.h"
 #include "brink/scheduler/kernel/policy_watch.h"
 #include "brink/scheduler/kernel/records.h"
@@ -42,6 +43,7 @@ struct KernelParts {
   ContactSearch search;
   NearPairs near;
   CertificateWatch watch;
+  LookClock looks;  ///< of the watch, beside frames
   CollisionResponse response;
   GroupResponse groups;
   Speculation speculation;

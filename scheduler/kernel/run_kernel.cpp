@@ -77,6 +77,7 @@ void RunKernel::begin(const RunOptions& options, Recorder* recorder) {
   start_fault_.reset();  // from here on the policy may change what it was found in
   parts_.run.begin(options);
   parts_.records.begin(recorder);
+  parts_.looks.begin(options, parts_.trajectories.owner_count(), time());
   let_help(options.threads - 1);
   tell_knots();
   // the watch looks at all pairs there, before the first collision

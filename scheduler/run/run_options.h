@@ -12,6 +12,10 @@ namespace brink {
 struct RunOptions {
   double until = 1.0;           ///< [s]
   double frame_interval = 0.0;  ///< [s]; 0: only at the start and the end
+  /// All pairs are looked at about so often for overlaps, at multiples of this, where frames are rarer [s]; 0: of `until` by
+  /// kLooks. In large worlds fewer times, so that all looks cost about a hundredth of the collisions.
+  static constexpr double kLooks = 64.0;
+  double look_interval = 0.0;
   /// Wall-clock seconds between checkpoints, or more where each takes more than a twentieth of that; < 0: none, 0: at every
   /// chance.
   double checkpoint_seconds = 1.0;

@@ -81,6 +81,8 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
         fmt::format("until = {} must be finite and >= the present time {}", options.until, time()));
   if (!(options.frame_interval >= 0.0))
     throw BadInput(fmt::format("frame_interval = {} must be >= 0", options.frame_interval));
+  if (!(options.look_interval >= 0.0))
+    throw BadInput(fmt::format("look_interval = {} must be >= 0", options.look_interval));
   if (options.threads < 1 || options.threads > RunOptions::kMostThreads)
     throw BadInput(
         fmt::format("threads = {} must be from 1 to {}", options.threads, RunOptions::kMostThreads));

@@ -54,6 +54,15 @@ class Lazy final : public Policy {
   void run(Kernel&, double) override {}
 };
 
+/// Looks at nobody.
+class Blind final : public Policy {
+ public:
+  void run(Kernel& kernel, double until) override {
+    if (!kernel.extend_motions(until) || !kernel.record_frames(until)) return;
+    kernel.advance_all(until);
+  }
+};
+
 template <class P>
 void add(const std::string& name) {
   register_policy(name, "of a test", [] { return std::make_unique<P>(); });
@@ -102,6 +111,32 @@ TEST(OwnPolicy, ThatIsApproximateMaySkip) {
 TEST(OwnPolicy, ThatComesBackTooEarlyIsCaught) {
   add<Lazy>("lazy");
   EXPECT_THAT(fault_of("lazy"), HasSubstr("policy \"lazy\" returned at t = 0"));
+}
+
+// One disc goes through another, of 1 m, between t = 9 s and t = 11 s: no frame is near.
+TEST(OwnPolicy, ThatSeesNobodyIsCaughtBetweenFrames) {
+  add<Blind>("blind");
+  World world;
+  world.bodies = {testing::body(make_disc(0.5), {0.0, 0.0}, {0.0, 0.0}),
+                  testing::body(make_disc(0.5), {-10.0, 0.1}, {1.0, 0.0})};
+  world.bodies[0].name = "still";
+  world.bodies[1].name = "thrown";
+  SolverOptions solver;
+  solver.policy = "blind";
+  RunOptions options;
+  for (const double interval : {0.0, 30.0}) {
+    options.frame_interval = interval;
+    for (const double stop : {0.0, 4.0, 8.9}) {
+      Simulator simulator(world, solver);
+      options.until = stop;
+      simulator.run(options);
+      options.until = 32.0;
+      const RunSummary summary = simulator.run(options);
+      EXPECT_EQ(summary.termination, Termination::failed);
+      EXPECT_THAT(summary.why, HasSubstr("'still' overlaps 'thrown' at t = 9.5 "));
+      EXPECT_NEAR(summary.max_overlap, 1.0 - std::hypot(0.5, 0.1), 1e-12);
+    }
+  }
 }
 
 TEST(OwnPolicy, NamesThatAreTakenOrMissingAreRefused) {
