@@ -446,10 +446,20 @@ class PairSearch {
       // A convex distance never lies below its support line at the present foot. So of the path's
       // acceleration only the part along the present normal bends the gap towards zero, though the
       // normal may turn.
-      const Vec2 out = view_.placed(half.t).frame.direction_to_world(f.normal);
+      Vec2 normal = f.normal;
+      double rate = f.rate;
+      const bool to_an_end = site.solid && site.kind == SiteKind::segment && nearest.foot != Foot::interior;
+      if (to_an_end && normal.dot(path.q - nearest.point) < 0.0) {
+        // Right in a hollow corner of a solid, behind the other side that ends there, the way to the end is not the way out:
+        // what comes out may fall on this side, and would cross its line first.
+        normal = detail::right_of(direction_at_start(site));
+        above += normal.dot(path.q - nearest.point) + nearest.distance;
+        rate = normal.dot(path.rate);
+      }
+      const Vec2 out = view_.placed(half.t).frame.direction_to_world(normal);
       const double bend = acceleration_against(out, relative, bounds, window);
-      sinks_ = sinks_ || may_sink(above, f.rate, bend, band, allowed);
-      return band_step(above, f.rate, bend, band, allowed);
+      sinks_ = sinks_ || may_sink(above, rate, bend, band, allowed);
+      return band_step(above, rate, bend, band, allowed);
     }
     sinks_ = sinks_ || above <= 2.0 * allowed;
     const Vec2 out = path.q - site.center;

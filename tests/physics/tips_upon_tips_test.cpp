@@ -5,39 +5,21 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include "brink/core/base/random.h"
-#include "tests/support/seeded_worlds.h"
+#include "tests/support/polygons_world.h"
 
 namespace brink::tips_upon_tips_test {
 namespace {
 
-using Polygon = std::vector<Vec2>;
+using testing::Polygon;
+using testing::vertices;
 
-struct Tips {
-  Polygon body;
-  std::vector<Polygon> sites;
-  Vec2 place;
-  std::string text;
-};
-
-std::string vertices(const Polygon& polygon) {
-  std::string text;
-  for (const Vec2& p : polygon)
-    text += fmt::format("{}[{:.17g}, {:.17g}]", text.empty() ? "" : ", ", p.x(), p.y());
-  return "polygon = { vertices = [" + text + "] }\n";
-}
-
-Tips tips(std::uint64_t seed) {
+testing::PolygonsWorld tips(std::uint64_t seed) {
   Random random(seed);
-  Tips made;
+  testing::PolygonsWorld made;
   const double wide = random.uniform(0.1, 0.5), high = random.uniform(0.2, 1.2);
   made.body = {{-wide, high / 3.0}, {0.0, -2.0 * high / 3.0}, {wide, high / 3.0}};
   const double deep = random.uniform(0.2, 1.5);
@@ -74,57 +56,7 @@ Tips tips(std::uint64_t seed) {
   return made;
 }
 
-/// By how much two convex polygons overlap along the axis along which that is least [m]; below 0: apart.
-double overlap(const Polygon& a, const Polygon& b) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Polygon* of : {&a, &b})
-    for (std::size_t k = 0; k < of->size(); ++k) {
-      const Vec2 side = (*of)[(k + 1) % of->size()] - (*of)[k], axis = Vec2(side.y(), -side.x()).normalized();
-      const auto reach = [&](const Polygon& p, double sign) {
-        double most = -std::numeric_limits<double>::infinity();
-        for (const Vec2& v : p) most = std::max(most, sign * axis.dot(v));
-        return most;
-      };
-      least = std::min({least, reach(a, 1.0) + reach(b, -1.0), reach(b, 1.0) + reach(a, -1.0)});
-    }
-  return least;
-}
-
-/// The deepest overlap at frames.
-class Depth : public Recorder {
- public:
-  explicit Depth(const Tips& tips) : tips_(&tips) {}
-  void frame(double, std::span<const BodyState> states) override {
-    const Pose& pose = states[0].pose;
-    Polygon body;
-    for (const Vec2& v : tips_->body)
-      body.push_back(pose.position - tips_->place + Eigen::Rotation2Dd(pose.angle) * v);
-    for (const Polygon& site : tips_->sites) deepest = std::max(deepest, overlap(body, site));
-    ++frames;
-  }
-
-  double deepest = 0.0;
-  int frames = 0;
-
- private:
-  const Tips* tips_;
-};
-
-TEST(TipsUponTips, DoNotSinkInUnderAnyPolicy) {
-  const auto text_of = [](std::uint64_t seed) { return tips(seed).text; };
-  testing::for_each_world(50, text_of, [](std::uint64_t seed) {
-    const Tips world = tips(seed);
-    const Scene scene = parse_scene(world.text, "tips");
-    Depth depth(world);
-    RunOptions options = testing::until(scene.duration);
-    options.frame_interval = scene.duration / 64.0;
-    const RunSummary told = Simulator(scene.world, scene.solver).run(options, &depth);
-    EXPECT_EQ(told.termination, Termination::reached_end) << told.why;
-    EXPECT_GT(depth.frames, 60);
-    EXPECT_LE(depth.deepest, 1e-9);
-    testing::expect_same_bits(world.text, seed);
-  });
-}
+TEST(TipsUponTips, DoNotSinkInUnderAnyPolicy) { testing::expect_no_overlaps(50, tips); }
 
 }  // namespace
 }  // namespace brink::tips_upon_tips_test
