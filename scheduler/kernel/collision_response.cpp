@@ -84,11 +84,12 @@ struct CollisionResponse::Change {
 };
 
 CollisionResponse::CollisionResponse(const World& world, const SolverOptions& options,
-                                     Trajectories& trajectories, ContactSearch& search,
+                                     Trajectories& trajectories, ContactSearch& search, const NearPairs& near,
                                      CertificateWatch& watch, RunControl& run)
     : world_(&world),
       trajectories_(&trajectories),
       search_(&search),
+      near_(&near),
       watch_(&watch),
       run_(&run),
       reflects_(options.response == "reflection") {
@@ -98,9 +99,9 @@ CollisionResponse::CollisionResponse(const World& world, const SolverOptions& op
   const auto thin = [](const Site& site) {
     return !site.solid && site.radius == 0.0 && site.kind != SiteKind::point;
   };
-  for (int s = 0; s < static_cast<int>(world.sites.size()); ++s) {
-    const std::vector<Site>& sites = world.sites[s].outline->sites;
-    if (std::any_of(sites.begin(), sites.end(), thin)) wires_.push_back(s);
+  for (int owner = 0; owner < trajectories.owner_count(); ++owner) {
+    const std::vector<Site>& sites = search.outline_of(owner).sites;
+    if (std::any_of(sites.begin(), sites.end(), thin)) wires_.push_back(owner);
   }
 }
 
@@ -246,24 +247,40 @@ std::pair<RealVec, RealVec> CollisionResponse::push_apart(const PairKey& pair, c
   return {of_body * (by / sum), -of_other * (by / sum)};
 }
 
-/// True if a fixed wire without thickness is in that way, and touched already: what two solids are pushed apart by may
-/// be more than the level that is left before it.
+/// True if a wire without thickness is in that way, and touched already, be it the body's own or another's: what two solids are
+/// pushed apart by may be more than the level that is left before it.
 bool CollisionResponse::leads_to_wire(int body, const RealVec& way) {
   if (wires_.empty() || way.isZero(0)) return false;
-  const double now = run_->time();
-  const Vec2 place = trajectories_->motion_of(body).place(now), along = way.cast<double>();
-  return std::any_of(wires_.begin(), wires_.end(), [&](int s) {
-    const PairKey pair{body, -1, s, {}};
-    const int wire = search_->other_owner(pair);
-    const double reach =
-        search_->outline_of(body).bounding_radius + search_->outline_of(wire).bounding_radius;
-    if ((trajectories_->motion_of(wire).place(now) - place).norm() > reach * (1.0 + 1e-9)) return false;
-    if (!search_->may_meet(body, wire)) return false;
-    const std::vector<FeatureContact> touched = search_->touching(pair, search_->limits().touch, now);
+  const double now = run_->time(), touch = search_->limits().touch;
+  const Vec2 along = way.cast<double>();
+  const auto leads = [&](const PairKey& pair) {
+    const double sign = pair.body == body ? 1.0 : -1.0;  // normals point into the pair's first
+    const std::vector<FeatureContact> touched = search_->touching(pair, touch, now);
     return std::any_of(touched.begin(), touched.end(), [&](const FeatureContact& f) {
-      return f.nominal() > 0.0 && f.normal.dot(along) < 0.0;
+      return f.nominal() > 0.0 && sign * f.normal.dot(along) < 0.0;
     });
-  });
+  };
+  const Box box = near_->box_at(body, now).grown(touch);
+  const auto is_in_the_way = [&](int owner) {
+    if (owner == body || !search_->may_meet(body, owner)) return false;
+    if (owner < trajectories_->body_count() && !trajectories_->cover_body(owner, now)) return false;
+    bool found = false;
+    const auto look = [&](const Image& image) {
+      const auto pair = found ? std::nullopt : search_->pair_of(body, owner, image);
+      found = found || (pair && leads(*pair));
+    };
+    // its solid part is everywhere outside: no box tells that it is not near
+    if (search_->outline_of(owner).container)
+      look({});
+    else
+      world_->periods.overlaps(box, near_->box_at(owner, now), look);
+    return found;
+  };
+  if (!std::binary_search(wires_.begin(), wires_.end(), body))
+    return std::any_of(wires_.begin(), wires_.end(), is_in_the_way);
+  for (int owner = 0; owner < trajectories_->owner_count(); ++owner)
+    if (is_in_the_way(owner)) return true;
+  return false;
 }
 
 /// Begins the motions that lead through the moment of contact with the twists that the law gave.

@@ -8,6 +8,7 @@
 #include "brink/core/contacts/impulse.h"
 #include "brink/scheduler/kernel/certificate_watch.h"
 #include "brink/scheduler/kernel/contact_search.h"
+#include "brink/scheduler/kernel/near_pairs.h"
 #include "brink/scheduler/kernel/speculation.h"
 #include "brink/scheduler/resolve/disc_rebound.h"
 #include "brink/scheduler/resolve/extended_contact.h"
@@ -20,7 +21,7 @@ class CollisionResponse {
  public:
   /// What is given must outlive it.
   CollisionResponse(const World& world, const SolverOptions& options, Trajectories& trajectories,
-                    ContactSearch& search, CertificateWatch& watch, RunControl& run);
+                    ContactSearch& search, const NearPairs& near, CertificateWatch& watch, RunControl& run);
 
   /// One collision at the present time: the law's impulse, and motions that begin anew with it. Bodies whose
   /// motion changed are appended to `changed`. Nothing on a halt: neither side can move, or the watch has
@@ -91,6 +92,7 @@ class CollisionResponse {
   const World* world_;
   Trajectories* trajectories_;
   ContactSearch* search_;
+  const NearPairs* near_;
   CertificateWatch* watch_;
   RunControl* run_;
   bool reflects_;  ///< response "reflection"
@@ -98,7 +100,7 @@ class CollisionResponse {
   LargeVector<PlainDisc> plain_;        ///< of every body
   std::vector<PlainWall> plain_walls_;  ///< of every site; empty: nobody asks
   DiscRebound after_;                   ///< of the last plain discs
-  std::vector<int> wires_;              ///< fixed sites that have a wire without thickness
+  std::vector<int> wires_;              ///< owners that have a wire without thickness
 };
 
 }  // namespace brink

@@ -55,7 +55,7 @@ KernelParts::KernelParts(World given, SolverOptions chosen)
       search(world, options, trajectories, run),
       near(world, options, trajectories, search, run),
       watch(world, trajectories, search, near, run),
-      response(world, options, trajectories, search, watch, run),
+      response(world, options, trajectories, search, near, watch, run),
       groups(world, trajectories, search, near, response, watch, run),
       speculation(trajectories, run),
       endings(search.limits().tolerance, options.max_collisions),

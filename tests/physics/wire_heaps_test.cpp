@@ -62,7 +62,10 @@ struct Heap {
   double duration = 1.0;
 };
 
-Heap heap_of(std::uint64_t seed, double restitution, double friction, double rolling) {
+/// A bin of wire, or a solid drum that turns, between whose wall and a wire others are jammed.
+enum class Around { bin, drum };
+
+Heap heap_of(std::uint64_t seed, Around around, double restitution, double friction, double rolling) {
   Random random(seed);
   Heap heap;
   const double size = 0.15;
@@ -78,16 +81,22 @@ Heap heap_of(std::uint64_t seed, double restitution, double friction, double rol
   if (kind == 1) kinds = {cup};
   if (kind == 2) kinds = {ring};
   if (kind == 3) kinds = {vee, cup, ring};
-  const int count = 10 + static_cast<int>(random.below(8));
+  const bool in_drum = around == Around::drum;
+  const int count = 10 + (in_drum ? -1 : static_cast<int>(random.below(8)));
   heap.text = fmt::format(
       "[world]\nduration = {}\ngravity = [0, -9.81]\n[materials.default]\nrestitution = {}\nfriction = {}\n"
-      "rolling_resistance = {}\n[[sites]]\nname = 'bin'\npolyline = [[-2, 8], [-2, 2], [0, 0], [2, 2], [2, "
-      "8]]\n",
+      "rolling_resistance = {}\n",
       heap.duration, restitution, friction, rolling);
+  heap.text += in_drum ? fmt::format(
+                             "[[sites]]\nname = 'drum'\nregular_polygon = {{ sides = 10, radius = 0.95 }}\n"
+                             "inside_of = true\nmotion = {{ angular_velocity = {} }}\n",
+                             random.uniform(-4.0, 4.0))
+                       : "[[sites]]\nname = 'bin'\npolyline = [[-2, 8], [-2, 2], [0, 0], [2, 2], [2, 8]]\n";
   for (int k = 0; k < count; ++k) {
     heap.wires.push_back(kinds[random.below(kinds.size())]);
     // far enough apart at first, whatever their angles
-    const double x = 0.42 * (k % 3 - 1) + random.uniform(-0.03, 0.03), y = 0.9 + 0.42 * (k / 3);
+    const double x = 0.42 * (k % 3 - 1) + random.uniform(-0.03, 0.03),
+                 y = (in_drum ? -0.42 : 0.9) + 0.42 * (k / 3);
     heap.text += fmt::format(
         "[[bodies]]\n{}\nmass = 0.4\ninertia = 0.002\nposition = [{}, {}]\nangle = {}\nvelocity = [{}, {}]\n"
         "angular_velocity = {}\n",
@@ -146,11 +155,11 @@ class Crossings : public Recorder {
 };
 
 /// Each in its own materials: restitution 0 or not, with friction or without, hard to roll or not.
-void pile_up(std::uint64_t seed) {
+void pile_up(std::uint64_t seed, Around around) {
   Random random(seed + 77777);
   const double restitution = random.below(2) ? 0.3 : 0.0, friction = random.below(2) ? 0.3 : 0.0,
                rolling = random.below(2) ? 0.02 : 0.0;
-  const Heap heap = heap_of(seed, restitution, friction, rolling);
+  const Heap heap = heap_of(seed, around, restitution, friction, rolling);
   const Scene scene = parse_scene(heap.text, "wires");
   for (std::size_t k = 0; k < heap.wires.size(); ++k)
     // else the outline is not where its points are said to be
@@ -172,11 +181,15 @@ void pile_up(std::uint64_t seed) {
   if (summary.termination == Termination::failed) fmt::print("ended early: {}\n", of);
 }
 
-TEST(WireHeaps, NoTwoCross) {
-  const std::uint64_t first = testing::from_environment("BRINK_SEED", 1),
-                      worlds = testing::from_environment("BRINK_WORLDS", 6);
-  for (std::uint64_t seed = first; seed < first + worlds; ++seed) pile_up(seed);
+void pile_up_all(std::uint64_t worlds, Around around) {
+  const std::uint64_t first = testing::from_environment("BRINK_SEED", 1);
+  worlds = testing::from_environment("BRINK_WORLDS", worlds);
+  for (std::uint64_t seed = first; seed < first + worlds; ++seed) pile_up(seed, around);
 }
+
+TEST(WireHeaps, NoTwoCross) { pile_up_all(6, Around::bin); }
+
+TEST(WireHeaps, NoTwoCrossInADrum) { pile_up_all(4, Around::drum); }
 
 }  // namespace
 }  // namespace brink::wire_heaps_test
