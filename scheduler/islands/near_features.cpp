@@ -378,8 +378,11 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   f.normal = half.on_a ? outward : Vec2(-outward);
   f.thin = thin;
   f.side_told = told;
-  // right on the joint of two wires it may be at the ends of both, and passes by neither
-  const bool on_end = thin && site.kind == SiteKind::segment && beyond_ends(site, q) <= least;
+  // right on the joint of two wires it may be at the ends of both, and passes by neither; not so who is farther off, beyond
+  // an end as much as beside it
+  const double beyond =
+      thin && site.kind == SiteKind::segment ? beyond_ends(site, q) : std::numeric_limits<double>::infinity();
+  const bool on_end = beyond <= least && (nearest.distance <= least || beyond <= kBeside * nearest.distance);
   f.at_end = site.kind != SiteKind::point && nearest.foot != Foot::interior && !on_end;
   f.goes_on = nearest.foot == Foot::start ? site.straight_a : nearest.foot == Foot::end && site.straight_b;
   if (f.goes_on) put_on_line(half, sample, site, q, f);
@@ -507,7 +510,7 @@ OnCorner on_corner(const Half& half, const Sample& sample, std::size_t j, const 
   const Vec2 to_centre = centre(half) - q;
   const Wedge of_sample = wedge_of(half, sample), of_corner = wedge_at(outline, end);
   const auto parts_them = [&](const Site& side) {
-    return !of_sample.edges.empty() && half.carrier.solid && parts(outward(side), of_sample, of_corner);
+    return !of_sample.edges.empty() && parts(outward(side), of_sample, of_corner);
   };
   const bool by_this = parts_them(site);
   OnCorner where = OnCorner::nowhere;

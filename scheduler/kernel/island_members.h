@@ -102,6 +102,7 @@ class IslandMembers {
   Vec2 shift_of(const PairKey& pair) const { return search_->shift_of(pair); }
   /// The gap of the contact's features then [m].
   double gap(const HeldContact& contact, double later, const std::vector<Vec3>& velocity) const;
+  double now() const { return now_; }
   /// How fast the two features approach now [m/s].
   double closing_speed(const HeldContact& contact) const;
   /// The same if they had these twists.

@@ -23,6 +23,8 @@ namespace {
 constexpr double kOfFall = 0.05;
 /// ... and moves nobody by more than this part of it.
 constexpr double kOfSize = 0.1;
+/// A corner so far off another, in units of how far off it lies on it, is beside it; but steps are so many ticks at least.
+constexpr double kBesideCorner = 4.0, kTicksOfCorner = 1024.0;
 /// However slow all are, a step is no longer [s]: what sites do in it is followed beforehand.
 constexpr double kLongestStep = 100.0;
 /// Features are listed as far as bodies come in so many steps; where impulses take one farther, so many times as far as that.
@@ -386,6 +388,7 @@ bool IslandMotion::take(double h, double tolerance) {
   // the others.
   for (int halving = 0; halving <= kHalvings && go_on_();) {
     look(asked_ = h);
+    if (const double off = corners_part_in(); off < h) look(h = off);
     if (const double first = next_arrival(); first < h) {  // an impact ends the step
       impacts_in_step_ = impacts_in_step_ || first < worthwhile;
       // up to the impact, with which the next step begins; features are listed for the shorter way
@@ -456,6 +459,27 @@ double IslandMotion::next_arrival() {
       absorbed_ = std::max(absorbed_, come.closing);
   }
   return first;
+}
+
+/// When the first corner that lies on another is beside it [s], if the members go on as they do now: which of their sides meet
+/// is another thing then. Infinity: none moves.
+double IslandMotion::corners_part_in() {
+  const std::vector<Vec3> velocity = velocities();
+  double first = kForever;
+  for (const HeldContact& c : contacts_) {
+    const NearFeature& f = c.feature;
+    if (!f.at_end || !(std::abs(f.gap) <= f.one_corner)) continue;
+    const int member = members_.place_of(c.pair.body);
+    const Vec3 of_body = velocity_of(member, velocity),
+               of_other = c.pair.with_site() ? as_vector(members_.other_state(c.pair).twist.rounded())
+                                             : velocity_of(members_.place_of(c.pair.other_body), velocity);
+    const Vec2 arm = members_.arm(c).cast<double>();
+    const Vec2 apart =
+        of_body.head<2>() + cross(of_body[2], arm) - of_other.head<2>() - cross(of_other[2], f.point);
+    first = std::min(first, kBesideCorner * f.one_corner / apart.norm());
+  }
+  // not so soon that the clock cannot tell
+  return std::max(first, kTicksOfCorner * std::numeric_limits<double>::epsilon() * std::abs(members_.now()));
 }
 
 /// No gap of the two closes faster if the members go on as they do now [m/s]: both centres, and both arms as far from them
