@@ -461,14 +461,16 @@ double IslandMotion::next_arrival() {
   return first;
 }
 
-/// When the first corner that lies on another is beside it [s], if the members go on as they do now: which of their sides meet
-/// is another thing then. Infinity: none moves.
+/// When the first corner that has come to lie on another is beside it [s], if the members go on as they do now: which of their
+/// sides meet is another thing then. Infinity: none moves. Those that lay there in the step before stay.
 double IslandMotion::corners_part_in() {
   const std::vector<Vec3> velocity = velocities();
   double first = kForever;
   for (const HeldContact& c : contacts_) {
     const NearFeature& f = c.feature;
-    if (!f.at_end || !(std::abs(f.gap) <= f.one_corner)) continue;
+    const auto lies_there = [&](const NearFeature& g) { return g.at_end && std::abs(g.gap) <= f.one_corner; };
+    const HeldContact* before = warm_.find(c);
+    if (!lies_there(f) || (before && lies_there(before->feature))) continue;
     const int member = members_.place_of(c.pair.body);
     const Vec3 of_body = velocity_of(member, velocity),
                of_other = c.pair.with_site() ? as_vector(members_.other_state(c.pair).twist.rounded())
