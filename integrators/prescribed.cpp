@@ -156,8 +156,6 @@ void PrescribedMotion::fit_next() {
       !std::isfinite((cell.scale + cell.rate_begin.cwiseAbs() + cell.rate_end.cwiseAbs()).squaredNorm()))
     return fail(at.begin, "is too fast, or goes too far,");
   const Certainty known = bound(at);
-  // Cells are taken depth first, so that at each lesser depth there stands the cell that holds this one.
-  spreads_[at.depth] = known.spread;
   if (finite && (known.remainder.array() <= cell.tolerance.array()).all()) {
     corners_in_a_row_ = 0;
     return join_next(cell);
@@ -240,10 +238,13 @@ void PrescribedMotion::take_corner(Fitted cell, const Certainty& known) {
     return fail(cell.piece.begin,
                 "cannot be bounded by interval arithmetic (it may have corners everywhere)");
   for (int i = 0; i < 3; ++i) {
-    // The cell eight halvings above was 256 times as wide. Over a corner the range has shrunk to 1/256,
-    // over a square root's foot to 1/16, over a jump not at all: 0.03 lies between the first two.
+    // With 128 of its widths on both sides, so that the range is that of the corner's steeper side wherever in the cell that is, a
+    // corner's is at least 128 times as large, over a square root's foot 11 times, over a jump the same: 0.03 lies between
+    // the first two.
     const bool small = known.spread[i] <= kNoiseTolerance * cell.scale[i] + 8.0 * cell.tolerance[i];
-    const bool shrinks = known.spread[i] < 0.03 * spreads_[kDepths - 9][i];
+    const double around = 128.0 * cell.cell_width, from = std::max(0.0, cell.piece.begin - around);
+    const double wide = bound_(i, from, cell.piece.end + around, BoundOf::value).spread();
+    const bool shrinks = std::isfinite(wide) && known.spread[i] < 0.03 * wide;
     if (!small && !shrinks) return fail(cell.piece.begin, "jumps, or is infinitely fast,");
   }
   cell.corner = true;

@@ -89,7 +89,6 @@ class PrescribedMotion {
   std::unique_ptr<Fitted> last_;  ///< fitted, not yet joined to what follows
   Eigen::Vector3d rate_begin_;    ///< the twist at which last_ begins, once joined to what came before
   std::vector<Cell> cells_;       ///< of the present grid cell that are to be fitted, the next last
-  std::array<Eigen::Vector3d, kDepths> spreads_{};  ///< of the cells that hold the present one
   int corners_in_a_row_ = 0;
   std::string failure_;
 };

@@ -378,8 +378,8 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
   f.normal = half.on_a ? outward : Vec2(-outward);
   f.thin = thin;
   f.side_told = told;
-  // right on the joint of two wires it may be at the ends of both, and passes by neither; not so who is farther off, beyond
-  // an end as much as beside it
+  // right on the joint of two wires it may be at the ends of both, and passes by neither; not so who is farther off, and
+  // that beyond the end
   const double beyond =
       thin && site.kind == SiteKind::segment ? beyond_ends(site, q) : std::numeric_limits<double>::infinity();
   const bool on_end = beyond <= least && (nearest.distance <= least || beyond <= kBeside * nearest.distance);

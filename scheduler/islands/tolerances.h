@@ -12,8 +12,8 @@ namespace brink {
 /// Below this part of the size two points are one, and their difference has no direction: places seen from the pair
 /// are rounded to 1e-16 of the size, a few thousand times less.
 inline constexpr double kOnePoint = 1e-12;
-/// What is so much farther beside an end than beyond it is beside it.
-inline constexpr double kBeside = 1e-3;
+/// What is no farther beyond an end than this part of how far off it is is beside it.
+inline constexpr double kBeside = 0.5;
 /// Corners of solids that are so near, of their sizes, lie on each other: contacts keep their gaps no better than to
 /// the contact tolerance, 1e-10 of the scene's length by default.
 inline constexpr double kOneCorner = 1e-10;

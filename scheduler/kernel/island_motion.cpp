@@ -461,16 +461,15 @@ double IslandMotion::next_arrival() {
   return first;
 }
 
-/// When the first corner that has come to lie on another is beside it [s], if the members go on as they do now: which of their
-/// sides meet is another thing then. Infinity: none moves. Those that lay there in the step before stay.
+/// When the first corner that lies on another is beside it [s], if the members go on as they do now: which of their sides meet is
+/// another thing then. Infinity: none moves, or the step before was as short.
 double IslandMotion::corners_part_in() {
+  if (members_.count() > kModeBodies) return kForever;  // steps follow
   const std::vector<Vec3> velocity = velocities();
   double first = kForever;
   for (const HeldContact& c : contacts_) {
     const NearFeature& f = c.feature;
-    const auto lies_there = [&](const NearFeature& g) { return g.at_end && std::abs(g.gap) <= f.one_corner; };
-    const HeldContact* before = warm_.find(c);
-    if (!lies_there(f) || (before && lies_there(before->feature))) continue;
+    if (!f.at_end || !(std::abs(f.gap) <= f.one_corner)) continue;
     const int member = members_.place_of(c.pair.body);
     const Vec3 of_body = velocity_of(member, velocity),
                of_other = c.pair.with_site() ? as_vector(members_.other_state(c.pair).twist.rounded())
@@ -480,6 +479,9 @@ double IslandMotion::corners_part_in() {
         of_body.head<2>() + cross(of_body[2], arm) - of_other.head<2>() - cross(of_other[2], f.point);
     first = std::min(first, kBesideCorner * f.one_corner / apart.norm());
   }
+  double lasted = 0.0;
+  for (const HeldContact& c : warm_) lasted = std::max(lasted, c.lasted);
+  if (!warm_.empty() && lasted < kShortest * h_) return kForever;
   // not so soon that the clock cannot tell
   return std::max(first, kTicksOfCorner * std::numeric_limits<double>::epsilon() * std::abs(members_.now()));
 }
