@@ -462,7 +462,7 @@ double IslandMotion::next_arrival() {
 }
 
 /// When the first corner that lies on another is beside it [s], if the members go on as they do now: which of their sides meet is
-/// another thing then. Infinity: none moves, or the step before was as short.
+/// another thing then. Infinity: none moves, or there was no step before that was longer.
 double IslandMotion::corners_part_in() {
   if (members_.count() > kModeBodies) return kForever;  // steps follow
   const std::vector<Vec3> velocity = velocities();
@@ -481,7 +481,7 @@ double IslandMotion::corners_part_in() {
   }
   double lasted = 0.0;
   for (const HeldContact& c : warm_) lasted = std::max(lasted, c.lasted);
-  if (!warm_.empty() && lasted < kShortest * h_) return kForever;
+  if (lasted < kShortest * h_) return kForever;
   // not so soon that the clock cannot tell
   return std::max(first, kTicksOfCorner * std::numeric_limits<double>::epsilon() * std::abs(members_.now()));
 }

@@ -1,6 +1,7 @@
 /// Prescribed motion against the functions it stands for.
 #include "brink/integrators/prescribed.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -235,6 +236,22 @@ TEST(Prescribed, TrianglesAndOtherCornersAreFollowed) {
                               "abs(t - rint(t))", "min(t, 1)", "sqrt((t - 0.4)^2)", "acos(cos(7 * t))"}) {
     const Extent extent = prescribed(corners).extend(2.0);
     EXPECT_EQ(extent.status, Extent::Status::reached) << corners << ": " << extent.why;
+  }
+}
+
+// A corner anywhere in the narrowest cell, level on one side, beside jumps in the same places.
+TEST(Prescribed, CornersOfMaximaAreFollowedWhereverTheyLie) {
+  SeededRandom random(11);
+  for (int k = 0; k < 100; ++k) {
+    const double place = random.uniform(0.1, 1.9), slope = random.uniform(0.05, 5.0);
+    for (const char* corner : {"{:.17g} * max(0, t - {:.17g})", "{:.17g} * min(0, t - {:.17g})",
+                               "{:.17g} * max(0, sin(t - {:.17g}))"}) {
+      const std::string text = fmt::format(fmt::runtime(corner), slope, place);
+      const Extent extent = prescribed(text.c_str()).extend(2.0);
+      EXPECT_EQ(extent.status, Extent::Status::reached) << text << ": " << extent.why;
+    }
+    const std::string jump = fmt::format("{:.17g} * (t > {:.17g})", slope, place);
+    EXPECT_EQ(prescribed(jump.c_str()).extend(2.0).status, Extent::Status::failed) << jump;
   }
 }
 
