@@ -484,7 +484,7 @@ bool Kernel::record_frames(double t) {
     const auto frame = parts_.records.frame_due(t);
     const auto look = parts_.looks.due(frame.value_or(t), collisions());
     if (!frame && !look) break;
-    const double due = look.value_or(*frame);
+    const double due = look ? *look : *frame;
     const StageTimer::Scope timed(parts_.run.timer(), parts_.run.work().seconds_record);
     // a run that goes on has this frame before it still
     if (!look && !parts_.records.get_ready(due)) break;

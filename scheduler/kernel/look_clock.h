@@ -34,12 +34,11 @@ class LookClock {
   std::optional<double> due(double t, std::uint64_t collisions) {
     while (next_ <= t) {
       const double at = next_;
-      const double worth_while =
-          (kOwnersAtLeast + kOwnersOfCollision * static_cast<double>(collisions)) / owners_;
-      const double every = std::ceil(static_cast<double>(look_) / worth_while);
-      const bool looks = every < 0x1p62 && look_ % std::bit_ceil(static_cast<std::uint64_t>(every)) == 0;
+      const std::uint64_t look = look_, every = every_so_many(look, collisions);
+      // those in between are left out; later ones may be worth while after more collisions
+      look_ = look % every == 0 ? look : std::min((look / every + 1) * every - 1, multiple_at(t));
       wind();
-      if (looks) return at;
+      if (look % every == 0) return at;
     }
     return std::nullopt;
   }
@@ -48,6 +47,15 @@ class LookClock {
   /// Looks at one owner: in any run, and for each collision.
   static constexpr double kOwnersAtLeast = 4096.0, kOwnersOfCollision = 1.0 / 64.0;
 
+  /// A power of two, so that those of fewer looks are among those of more.
+  std::uint64_t every_so_many(std::uint64_t look, std::uint64_t collisions) const {
+    const double looks = (kOwnersAtLeast + kOwnersOfCollision * static_cast<double>(collisions)) / owners_;
+    return std::bit_ceil(static_cast<std::uint64_t>(std::ceil(static_cast<double>(look) / looks)));
+  }
+  /// The number of the last multiple up to t, or about there.
+  std::uint64_t multiple_at(double t) const {
+    return std::max(look_, static_cast<std::uint64_t>(std::min(t / interval_, 0x1p53)));
+  }
   void wind() { next_ = static_cast<double>(++look_) * interval_; }
 
   double interval_ = 0.0, owners_ = 1.0;
