@@ -50,7 +50,8 @@ class LookClock {
   /// A power of two, so that those of fewer looks are among those of more.
   std::uint64_t every_so_many(std::uint64_t look, std::uint64_t collisions) const {
     const double looks = (kOwnersAtLeast + kOwnersOfCollision * static_cast<double>(collisions)) / owners_;
-    return std::bit_ceil(static_cast<std::uint64_t>(std::ceil(static_cast<double>(look) / looks)));
+    return std::bit_ceil(
+        static_cast<std::uint64_t>(std::min(std::ceil(static_cast<double>(look) / looks), 0x1p62)));
   }
   /// The number of the last multiple up to t, or about there.
   std::uint64_t multiple_at(double t) const {

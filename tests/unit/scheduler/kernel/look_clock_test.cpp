@@ -62,6 +62,26 @@ TEST(LookClock, LeavesItToFramesThatComeAsOften) {
   EXPECT_EQ(looks(seldom, 64.0, 0.0).size(), 64U);
 }
 
+// A run far beyond the duration that its interval is of: as many looks as it doubles times, and at once.
+TEST(LookClock, LeavesOutManyAtOnce) {
+  RunOptions options;
+  options.look_interval = 1e-6;
+  options.until = 1e9;
+  for (const int owners : {1, 1000, 10000000}) {
+    LookClock clock;
+    clock.begin(options, owners, 0.0);
+    double last = 0.0;
+    int looks = 0;
+    while (const auto due = clock.due(options.until, 0)) {
+      EXPECT_GT(*due, last);
+      last = *due;
+      ++looks;
+    }
+    EXPECT_LE(looks, 4096.0 / owners * 64.0);
+    EXPECT_TRUE(owners > 4096 || last > 0.1 * options.until);
+  }
+}
+
 TEST(LookClock, TellsALookOnce) {
   LookClock clock = clock_of(10);
   EXPECT_EQ(clock.due(0.99, 0), std::nullopt);
