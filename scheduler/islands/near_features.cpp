@@ -568,12 +568,19 @@ void put_on_tangent(const Half& half, const Vec2& q, const Vec2& normal, NearFea
   f.over_joint = true;
 }
 
-/// The feature of a sample upon the corner is that of the side on which it lies.
-void turn_outward(const Half& half, const Vec2& q, double side, NearFeature& f) {
+/// Of a sample beside an end of a straight side of a solid: its feature is that of the side's line.
+void put_before_line(const Half& half, const Vec2& q, NearFeature& f) {
   const Site& site = half.other.sites[f.site];
   const Vec2 out = outward(site), world = half.other_frame.direction_to_world(out);
-  if (side < 0.0) f.gap = out.dot(q - site.a) - site.radius - half.carrier.samples[f.sample].radius;
+  f.gap = out.dot(q - nearer_end(site, q)) - site.radius - half.carrier.samples[f.sample].radius;
   f.normal = half.on_a ? world : Vec2(-world);
+}
+
+/// The feature of a sample upon the corner is that of the side on which it lies.
+void turn_outward(const Half& half, const Vec2& q, double side, NearFeature& f) {
+  const double gap = f.gap;
+  put_before_line(half, q, f);
+  if (side >= 0.0) f.gap = gap;
 }
 
 /// Where a sample lies that is upon an end of a wire's site, or upon its corner with others.
@@ -685,7 +692,11 @@ void add_features(const Half& half, int i, double reach, double tolerance, std::
     const bool flush = bare && site.solid && site.kind == SiteKind::segment &&
                        (where != OnCorner::nowhere || nearest[j].foot != Foot::interior) &&
                        beyond_ends(site, q) <= corner;
-    if (f && flush) f->no_way_by = has_no_way_by(half, i, j, q);
+    if (f && flush && has_no_way_by(half, i, j, q)) {
+      f->no_way_by = true;
+      // as deep as it is behind the side's line, or before it, however far along that the end is
+      put_before_line(half, q, *f);
+    }
     if (f && bare && goes_over(half, half.carrier.samples[i], site, nearest[j], q, corner)) f->at_end = true;
     const bool far =
         f && f->goes_on && nearest[j].distance - site.radius - half.carrier.samples[i].radius > reach;
@@ -858,10 +869,10 @@ double gap_of(const NearFeature& f, const OutlineAt& a, const OutlineAt& b) {
       return behind_line - site.radius - sample.radius;
   if (!abreast && !crossed)
     if (const double through = through_corner(half, sample, site, q); through > 0.0) return -through;
-  // beside an end, where there is no way by, it is as deep as it is behind the side, however far along that the end is
+  // beside an end, where there is no way by, the side's line is what counts, however far along that the end is
   const bool beside = abreast && nearest.foot != Foot::interior && site.kind == SiteKind::segment;
-  const double deep = beside ? -out.dot(q - nearest.point) : nearest.distance;
-  return (crossed ? -deep : nearest.distance) - site.radius - sample.radius;
+  const double before = beside ? out.dot(q - nearest.point) : crossed ? -nearest.distance : nearest.distance;
+  return before - site.radius - sample.radius;
 }
 
 double gap_of(const NearFeature& f, const Outline& a, const ExtendedState& state_a, const Outline& b,

@@ -265,15 +265,10 @@ bool CollisionResponse::leads_to_wire(int body, const RealVec& way) {
     if (owner == body || !search_->may_meet(body, owner)) return false;
     if (owner < trajectories_->body_count() && !trajectories_->cover_body(owner, now)) return false;
     bool found = false;
-    const auto look = [&](const Image& image) {
+    near_->each_image_near(box, owner, near_->box_at(owner, now), [&](const Image& image) {
       const auto pair = found ? std::nullopt : search_->pair_of(body, owner, image);
       found = found || (pair && leads(*pair));
-    };
-    // its solid part is everywhere outside: no box tells that it is not near
-    if (search_->outline_of(owner).container)
-      look({});
-    else
-      world_->periods.overlaps(box, near_->box_at(owner, now), look);
+    });
     return found;
   };
   if (!std::binary_search(wires_.begin(), wires_.end(), body))

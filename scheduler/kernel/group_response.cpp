@@ -101,10 +101,12 @@ class GroupResponse::Group {
     for (std::size_t i = 0; i < reached.size(); ++i) {
       if (!parts_.run_.poll()) return false;
       for (int owner = 0; owner < parts_.trajectories_.owner_count(); ++owner)
-        each_image_near(reached[i], owner, [&](const Image& image) {
-          const auto pair = parts_.search_.pair_of(reached[i], owner, image);
-          if (pair && seen.insert(*pair).second && add_touching(*pair)) reach(*pair);
-        });
+        parts_.near_.each_image_near(boxes_[reached[i]].grown(parts_.search_.limits().tolerance), owner,
+                                     boxes_[owner], [&](const Image& image) {
+                                       const auto pair = parts_.search_.pair_of(reached[i], owner, image);
+                                       if (pair && seen.insert(*pair).second && add_touching(*pair))
+                                         reach(*pair);
+                                     });
     }
     add_found_corner();
     // one order, whichever contact was found first
@@ -122,15 +124,6 @@ class GroupResponse::Group {
       boxes_.push_back(parts_.near_.box_at(owner, now()));
     }
     return true;
-  }
-
-  /// Calls visit for every image of owner b that may touch a now: by their boxes, which lie no more than the
-  /// contact tolerance apart.
-  template <class Visit>
-  void each_image_near(int a, int b, Visit&& visit) const {
-    // its solid part is everywhere outside: no box tells that it is not near
-    if (parts_.search_.outline_of(b).container) return visit(Image{});
-    parts_.world_.periods.overlaps(boxes_[a].grown(parts_.search_.limits().tolerance), boxes_[b], visit);
   }
 
   /// Adds the pair's contacts; true if it has any.

@@ -461,19 +461,24 @@ double IslandMotion::next_arrival() {
   return first;
 }
 
+/// Of the contact's body, and of its other owner.
+std::pair<Vec3, Vec3> IslandMotion::velocities_of(const HeldContact& c,
+                                                  const std::vector<Vec3>& velocity) const {
+  return {velocity_of(members_.place_of(c.pair.body), velocity),
+          c.pair.with_site() ? as_vector(members_.other_state(c.pair).twist.rounded())
+                             : velocity_of(members_.place_of(c.pair.other_body), velocity)};
+}
+
 /// When the first corner that lies on another is beside it [s], if the members go on as they do now: which of their sides meet is
 /// another thing then. Infinity: none moves, or there was no step before that was longer.
-double IslandMotion::corners_part_in() {
-  if (members_.count() > kModeBodies) return kForever;  // steps follow
+double IslandMotion::corners_part_in() const {
+  if (members_.count() > kModeBodies) return kForever;  // all its steps are of first order
   const std::vector<Vec3> velocity = velocities();
   double first = kForever;
   for (const HeldContact& c : contacts_) {
     const NearFeature& f = c.feature;
     if (!f.at_end || !(std::abs(f.gap) <= f.one_corner)) continue;
-    const int member = members_.place_of(c.pair.body);
-    const Vec3 of_body = velocity_of(member, velocity),
-               of_other = c.pair.with_site() ? as_vector(members_.other_state(c.pair).twist.rounded())
-                                             : velocity_of(members_.place_of(c.pair.other_body), velocity);
+    const auto [of_body, of_other] = velocities_of(c, velocity);
     const Vec2 arm = members_.arm(c).cast<double>();
     const Vec2 apart =
         of_body.head<2>() + cross(of_body[2], arm) - of_other.head<2>() - cross(of_other[2], f.point);
@@ -489,11 +494,8 @@ double IslandMotion::corners_part_in() {
 /// No gap of the two closes faster if the members go on as they do now [m/s]: both centres, and both arms as far from them
 /// as a member reaches.
 double IslandMotion::fastest_approach(const HeldContact& c, const std::vector<Vec3>& velocity) const {
-  const int member = members_.place_of(c.pair.body);
-  const Vec3 of_body = velocity_of(member, velocity),
-             of_other = c.pair.with_site() ? as_vector(members_.other_state(c.pair).twist.rounded())
-                                           : velocity_of(members_.place_of(c.pair.other_body), velocity);
-  const double radius = members_.bounding_radius(member);
+  const auto [of_body, of_other] = velocities_of(c, velocity);
+  const double radius = members_.bounding_radius(members_.place_of(c.pair.body));
   return (of_body - of_other).head<2>().norm() + std::abs(of_body[2]) * radius +
          std::abs(of_other[2]) * (c.feature.point.norm() + radius);
 }

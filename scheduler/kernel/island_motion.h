@@ -118,7 +118,8 @@ class IslandMotion {
   template <class Gap>
   double root_between(Gap&& gap_at, double open, double gap, double past, double most) const;
   double most_missed(const NearFeature& f) const;
-  double corners_part_in();
+  std::pair<Vec3, Vec3> velocities_of(const HeldContact& c, const std::vector<Vec3>& velocity) const;
+  double corners_part_in() const;
   double fastest_approach(const HeldContact& c, const std::vector<Vec3>& velocity) const;
   bool passes_by(const HeldContact& c, double then, double closing) const;
   double most_absorbed(const PairKey& pair) const;

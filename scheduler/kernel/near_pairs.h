@@ -33,6 +33,13 @@ class NearPairs {
                   double grown = 0.0) const;
   /// What holds an owner at t; a still site's own box, not a disc's: it may lie far from its frame's origin.
   Box box_at(int owner, double t) const;
+  /// Calls visit for each image of an owner, in that box, that may touch what is in the other box.
+  template <class Visit>
+  void each_image_near(const Box& other, int owner, const Box& box, Visit&& visit) const {
+    // its solid part is everywhere outside: no box tells that it is not near
+    if (search_->outline_of(owner).container) return visit(Image{});
+    world_->periods.overlaps(other, box, visit);
+  }
 
  private:
   void box_all(double from, double to);

@@ -20,8 +20,8 @@ namespace brink::sliding_off_edges_test {
 namespace {
 
 constexpr double kGravity = 9.81;
-/// What is farther off than this touches nobody [m]: contacts end within 1e-6 of the sizes beyond an edge.
-constexpr double kOff = 1e-5;
+/// What is farther off than this touches nobody [m]: contacts end within some 1e-10 of the sizes beyond an edge.
+constexpr double kOff = 1e-8;
 constexpr double kFrame = 2e-3;  ///< [s]
 
 using Points = std::vector<Vec2>;
@@ -160,7 +160,7 @@ TEST(SlidingOffEdges, NothingPushesWhatIsOff) {
     const RunSummary told = Simulator(scene.world, scene.solver).run(options, &off);
     EXPECT_EQ(told.termination, Termination::reached_end) << told.why;
     EXPECT_LE(off.worst, 1e-9);
-    EXPECT_LE(off.farthest_lift, 1e-5);
+    EXPECT_LE(off.farthest_lift, 1e-8);
     intervals += off.intervals;
     lifts += off.lifts;
     testing::expect_same_bits(world.text, seed);

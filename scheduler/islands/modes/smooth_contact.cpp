@@ -91,8 +91,6 @@ double range_of(const SmoothContact& c, const Placing& at, const Vec2& normal) {
   return within;
 }
 
-/// By this part of the sizes.
-constexpr double kGoesOn = 1e-6;
 /// A sample that is no farther than this part of an arc's radius from it is upon it.
 constexpr double kUponArc = 1e-9;
 
@@ -195,12 +193,11 @@ std::vector<SmoothContact> smooth_contacts(const NearFeature& f, const Outline& 
   if (sample.arc_site >= 0) c.sector = sector_of(carrier.sites[sample.arc_site], Vec2::Zero());
   const Site& site = other.sites[f.site];
   std::vector<SmoothContact> shapes = shapes_of(c, site, q, out);
-  // beside an end where there is no way by, the side's line goes on a little: modes look ahead farther than corners lie on each other
+  // beside an end where there is no way by, the side's line goes on, as far as the two corners lie on each other
   if (f.no_way_by && site.kind == SiteKind::segment) {
     const bool at_start = (q - site.a).squaredNorm() < (q - site.b).squaredNorm();
     shapes = {interior_of(c, site, q, out)};
-    shapes.front().range[at_start ? 0 : 1].least -=
-        std::max(2.0 * f.one_corner, kGoesOn * (carrier.bounding_radius + other.bounding_radius));
+    shapes.front().range[at_start ? 0 : 1].least -= 2.0 * f.one_corner;
   }
   const SmoothContact& first = shapes.front();
   const double size = carrier.bounding_radius + other.bounding_radius;
