@@ -204,6 +204,14 @@ void IslandMotion::pass_on_impacts(const Impact& told) {
   members_.find_speeds();
 }
 
+/// True of a sharp corner upon a sharp one: what is round goes over an end in one piece.
+bool IslandMotion::is_sharp(const HeldContact& c) const {
+  const Outline *carrier = &search_->outline_of(c.pair.body),
+                *other = &search_->outline_of(search_->other_owner(c.pair));
+  if (!c.feature.sample_on_a) std::swap(carrier, other);
+  return carrier->samples[c.feature.sample].radius + other->sites[c.feature.site].radius == 0.0;
+}
+
 /// Within a contact tolerance of what its features keep: at a wire without thickness a touch, else 0.
 bool IslandMotion::touches(const HeldContact& c) const {
   return c.feature.gap - kept(c.feature) <= search_->limits().tolerance;
@@ -388,7 +396,7 @@ bool IslandMotion::take(double h, double tolerance) {
   // the others.
   for (int halving = 0; halving <= kHalvings && go_on_();) {
     look(asked_ = h);
-    if (const double off = corners_part_in(); off < h) look(h = off);
+    if (const double off = corners_part_in(shortest); off < h) look(h = off);
     if (const double first = next_arrival(); first < h) {  // an impact ends the step
       impacts_in_step_ = impacts_in_step_ || first < worthwhile;
       // up to the impact, with which the next step begins; features are listed for the shorter way
@@ -470,23 +478,23 @@ std::pair<Vec3, Vec3> IslandMotion::velocities_of(const HeldContact& c,
 }
 
 /// When the first corner that lies on another is beside it [s], if the members go on as they do now: which of their sides meet is
-/// another thing then. Infinity: none moves, or there was no step before that was longer.
-double IslandMotion::corners_part_in() const {
+/// another thing then. Infinity: none moves, or none took part in a step before that was
+/// not as short.
+double IslandMotion::corners_part_in(double shortest) const {
   if (members_.count() > kModeBodies) return kForever;  // all its steps are of first order
   const std::vector<Vec3> velocity = velocities();
   double first = kForever;
   for (const HeldContact& c : contacts_) {
     const NearFeature& f = c.feature;
-    if (!f.at_end || !(std::abs(f.gap) <= f.one_corner)) continue;
+    if (!f.at_end || !is_sharp(c) || !(std::abs(f.gap) <= f.one_corner)) continue;
+    const HeldContact* before = warm_.find(c);
+    if (!before || before->lasted < shortest) continue;  // once
     const auto [of_body, of_other] = velocities_of(c, velocity);
     const Vec2 arm = members_.arm(c).cast<double>();
     const Vec2 apart =
         of_body.head<2>() + cross(of_body[2], arm) - of_other.head<2>() - cross(of_other[2], f.point);
     first = std::min(first, kBesideCorner * f.one_corner / apart.norm());
   }
-  double lasted = 0.0;
-  for (const HeldContact& c : warm_) lasted = std::max(lasted, c.lasted);
-  if (lasted < kShortest * h_) return kForever;
   // not so soon that the clock cannot tell
   return std::max(first, kTicksOfCorner * std::numeric_limits<double>::epsilon() * std::abs(members_.now()));
 }

@@ -107,6 +107,7 @@ class IslandMotion {
   /// Of contacts from that place on.
   void remember_sides(std::size_t first) { sides_.remember(contacts_, first, {members_, *search_, warm_}); }
   void list_farther(const std::vector<Vec3>& velocity);
+  bool is_sharp(const HeldContact& c) const;
   bool touches(const HeldContact& c) const;
   bool is_kept_by_corner(const HeldContact& c) const;
   double impact_of(const HeldContact& c, const std::vector<Vec3>& velocity) const;
@@ -119,7 +120,7 @@ class IslandMotion {
   double root_between(Gap&& gap_at, double open, double gap, double past, double most) const;
   double most_missed(const NearFeature& f) const;
   std::pair<Vec3, Vec3> velocities_of(const HeldContact& c, const std::vector<Vec3>& velocity) const;
-  double corners_part_in() const;
+  double corners_part_in(double shortest) const;
   double fastest_approach(const HeldContact& c, const std::vector<Vec3>& velocity) const;
   bool passes_by(const HeldContact& c, double then, double closing) const;
   double most_absorbed(const PairKey& pair) const;
