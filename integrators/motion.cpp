@@ -225,6 +225,15 @@ double Motion::end() const {
   return kind_ == Kind::chain ? other_->chain->back().t1_ : t1_;
 }
 
+std::pair<double, double> Motion::piece_at(double t) const {
+  if (kind_ == Kind::dense) {
+    const PolynomialPiece& piece = other_->track->at(t);
+    return {piece.begin, piece.end};
+  }
+  if (kind_ == Kind::chain) return {link(t).t0_, link(t).t1_};
+  return {begin(), end()};
+}
+
 double Motion::remembered_until(double begin) const {
   return kind_ == Kind::dense ? other_->track->remembered_until(begin)
                               : std::numeric_limits<double>::infinity();

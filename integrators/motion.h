@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "brink/core/base/extended.h"
@@ -146,6 +147,8 @@ class Motion {
   bool is_still() const {
     return is_ballistic() && start_.twist.velocity.isZero(0.0) && start_.twist.omega == 0.0 && !has_drive();
   }
+  /// [begin, end] of the one formula that answers at t: of the later one, where two meet. @pre begin() <= t <= end()
+  std::pair<double, double> piece_at(double t) const;
   /// The pieces of dense output; null: a closed form.
   const Track* track() const { return kind_ == Kind::dense ? other_->track.get() : nullptr; }
   double origin() const { return begin(); }

@@ -12,6 +12,7 @@
 #include "brink/scheduler/first_contact/apart.h"
 #include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/first_contact/closed_forms.h"
+#include "brink/scheduler/first_contact/common_piece.h"
 #include "brink/scheduler/first_contact/corners.h"
 #include "brink/scheduler/first_contact/falling_gap.h"
 #include "brink/scheduler/first_contact/pair_view.h"
@@ -37,6 +38,8 @@ constexpr int kMostAfterContact = 1000;
 /// Where two outlines turn by each other so many times as fast as their origins move, it is worth a look at what they
 /// cannot meet however they turn.
 constexpr double kMuchFaster = 16.0;
+/// Who comes nearer by no more than so many touching distances in a piece of dense output may come and go with its errors.
+constexpr double kComesAndGoes = 1024.0;
 
 /// True if no point of the pair has moved against the other by more than the touching distance since the motions
 /// began. Then all is looked at from there: features that are so near are told apart by how they began.
@@ -96,16 +99,7 @@ class PairSearch {
         limits_(limits),
         scratch_(scratch),
         work_(work) {
-    scratch.sinking.clear();
-    scratch.safe_until.clear();
-    for (const bool on_a : {true, false}) {
-      const Half& half = view_.half(on_a);
-      // The vertex of a notch is never due: what comes from outside meets one of its sides before.
-      for (int i = 0; i < half.count; ++i)
-        scratch.safe_until.push_back(half.sample(i).hollow ? kForever : from_);
-    }
-    safe_until_[0] = scratch.safe_until.data();
-    safe_until_[1] = safe_until_[0] + view_.half(true).count;
+    begin_anew();
   }
 
   /// Clear, the earliest contact, or undecided from where the search stopped.
@@ -139,21 +133,24 @@ class PairSearch {
 
   /// From one least safe time to the next, until that is the end. Sets capped_ where it stops before.
   void advance() {
-    // Over all that is left. A contact that is found brings to_ nearer; the bounds hold for that, too.
-    long_bounds_ = BothWays(bounds_over(from_, to_));
-    short_window_ = to_ - from_;
-    reached_ = from_;
+    begin_window();
     for (int iterations = 0;;) {
       const double t = least_safe_time();
-      if (t >= to_) return look_back(to_);
-      reached_ = t;
+      if (t >= to_) {
+        look_back(to_);
+        if (!goes_back_from(to_) && !leave_part()) return;
+        continue;
+      }
+      reached_ = std::max(t, asked_from_);
       // Steps before the time that was asked from are not counted. A search that began earlier for the sake
       // of its bits would with a cap of a few steps never come as far as that time, and so never on.
-      // with a contact in hand little is left to look at
-      if (t >= asked_from_ && ++iterations > most_iterations(t) &&
+      // with a contact in hand little is left to look at; in a part one that is found later may be earlier
+      if (t >= asked_from_ && ++iterations > most_iterations(t) && !in_part_ &&
           (best_.sample < 0 || iterations > kMostAfterContact)) {
-        capped_ = true;
-        return look_back(t);
+        look_back(t);
+        capped_ = !goes_back_from(t);
+        if (capped_) return;
+        continue;
       }
       ++work_.search_iterations;
       t_ = t;
@@ -161,8 +158,7 @@ class PairSearch {
       view_.place(t);
       short_end_ = std::min(to_, t + short_window_);
       // at first both windows are one
-      short_bounds_ =
-          t == from_ && short_end_ == window_end_ ? long_bounds_ : BothWays(bounds_over(t, short_end_));
+      short_bounds_ = t == from_ && short_end_ == to_ ? long_bounds_ : BothWays(bounds_over(t, short_end_));
       // Who is due soon is looked at now: the outlines are placed once for all of these.
       // What is looked at early loses no more of its step than this quarter of the short window.
       const double due = t + 0.25 * std::min(short_window_, to_ - t);
@@ -174,10 +170,86 @@ class PairSearch {
       if (first_b >= 0) advance_sample(of_b, first_b);
       advance_due(of_a, due, first_a);
       advance_due(of_b, due, first_b);
+      if (comes_and_goes_) {
+        enter_part(t);
+        continue;
+      }
       // A step by the short bounds is no longer than their window: fourfold lets steps grow where there
       // is room, and bounds stay tight where there is none.
       short_window_ = std::max(4.0 * (least_ - t), 64.0 * ulp(t));
     }
+  }
+
+  /// No sample has been looked at.
+  void begin_anew() {
+    scratch_.sinking.clear();
+    scratch_.safe_until.clear();
+    for (const bool on_a : {true, false}) {
+      const Half& half = view_.half(on_a);
+      // The vertex of a notch is never due: what comes from outside meets one of its sides before.
+      for (int i = 0; i < half.count; ++i)
+        scratch_.safe_until.push_back(half.sample(i).hollow ? kForever : from_);
+    }
+    safe_until_[0] = scratch_.safe_until.data();
+    safe_until_[1] = safe_until_[0] + view_.half(true).count;
+  }
+
+  /// Bounds over all that is left. A contact that is found brings to_ nearer; they hold for that, too.
+  void begin_window() {
+    long_bounds_ = BothWays(bounds_over(from_, to_));
+    short_window_ = to_ - from_;
+    reached_ = std::max(from_, asked_from_);
+  }
+
+  /// The errors of dense output alone decide when and whether those meet who go side by side: each of its wiggles may be a
+  /// crossing, and which of them a search comes upon depends on its steps. So a part of that piece is searched from its
+  /// beginning to its end, whatever was asked for: all searches take the same steps there.
+  void enter_part(double t) {
+    const auto [begin, end] = detail::part_of_piece(*a_.motion, *b_.motion, t);
+    comes_and_goes_ = false;
+    in_part_ = true;
+    if (best_.time >= begin) best_ = {};
+    from_ = begin;
+    to_ = part_end_ = end;
+    begin_anew();
+    begin_window();
+  }
+
+  /// If one that comes and goes was seen as a search is to end at t: enters the part in the middle of which that is, and is true.
+  bool goes_back_from(double t) {
+    const bool back = comes_and_goes_ && detail::part_of_piece(*a_.motion, *b_.motion, t).begin < t;
+    comes_and_goes_ = false;
+    if (back) enter_part(t);
+    return back;
+  }
+
+  /// From its end on as before. False if there is nothing left to search.
+  bool leave_part() {
+    if (!in_part_) return false;
+    if (best_.time > window_end_) best_ = {};
+    if (best_.sample >= 0) return false;
+    in_part_ = false;
+    from_ = to_;
+    to_ = window_end_;
+    if (from_ >= to_) return false;
+    begin_anew();
+    begin_window();
+    return true;
+  }
+
+  /// Nothing before it counts ...
+  double soonest() const { return in_part_ ? from_ : asked_from_; }
+  /// ... and nothing after it.
+  double window_end() const { return in_part_ ? part_end_ : window_end_; }
+  /// No probe may lie beyond it.
+  double motions_end() const { return in_part_ ? part_end_ : std::min(a_.motion->end(), b_.motion->end()); }
+
+  /// Notes it if a feature that is close comes nearer so slowly that errors may do it. True if so: the step is of no use.
+  bool comes_and_goes(double rate) {
+    if (in_part_ || comes_and_goes_ || !(a_.motion->track() || b_.motion->track())) return comes_and_goes_;
+    const auto [begin, end] = detail::common_piece(*a_.motion, *b_.motion, t_);
+    comes_and_goes_ = std::abs(rate) * (end - begin) <= kComesAndGoes * limits_.touch;
+    return comes_and_goes_;
   }
 
   /// How many steps have led to time t at most.
@@ -391,6 +463,7 @@ class PairSearch {
         if (!neighbours_known) view_.find_neighbours(half, i, near.sites, path, 4.0 * band);
         neighbours_known = true;
         const Feature f = view_.vertex_feature(half, i, static_cast<int>(j), nearest, path);
+        if (comes_and_goes(f.rate)) return {0.0, 0.0};
         const bool hidden = view_.belongs_to_a_neighbour(half, i, static_cast<int>(j), nearest, path.q);
         // A contact asks for no step: the search ends there, or at an earlier one.
         if (!hidden && polish(half, f, path, over_all)) continue;
@@ -504,6 +577,7 @@ class PairSearch {
       const ArcStep step = arc_step(arc, sites.sites[j], path, view_.placed(half.s), view_.placed(half.t),
                                     band, relative, bounds);
       if (step.active && step.gap <= band) {
+        if (comes_and_goes(step.rate)) return 0.0;
         look_closely();
         const Feature f{i, static_cast<int>(j), step.gap, step.rate, step.normal, step.point};
         if (polish(half, f, path, bounds)) continue;
@@ -543,14 +617,15 @@ class PairSearch {
     const FallingGap falling(t_, now, speed, bounds.acceleration, rounding);
     // A canonical time needs an interval that holds this crossing alone, with a gap beyond rounding at both ends. It was
     // clear until the search began.
-    const auto clear = falling.clear_end(gap, std::max(begin, from_ - 1024.0 * falling.moment()));
+    const auto clear =
+        falling.clear_end(gap, in_part_ ? from_ : std::max(begin, from_ - 1024.0 * falling.moment()));
     if (!clear && gap(t_) <= 0.0) {
       const std::optional<double> since = in_each_other_since(half, f);
       return since && remember(half, f, *since);
     }
     const double low = clear.value_or(t_);
     // no probe may lie beyond a motion
-    const double last = std::min(a_.motion->end(), b_.motion->end());
+    const double last = motions_end();
     FallingGap::Beyond beyond = falling.beyond_end(gap, low, last);
     // What may have risen by more than the touching distance in between has its crossing on the way down to its first dip, or
     // none there: what it comes to after that, half a turn later, say, is another one.
@@ -621,7 +696,7 @@ class PairSearch {
     };
     if (!parts(begin)) {
       const bool uncovered = hidden(begin) > 0.0 && !(hidden(t_) > 0.0);
-      return uncovered ? std::max(asked_from_, last_clear_time(hidden, begin, t_)) : t_;
+      return uncovered ? std::max(soonest(), last_clear_time(hidden, begin, t_)) : t_;
     }
     const double turn = std::clamp(change_between(begin, t_, parts), begin, t_);
     // from their rate, as the way is too short to be told from two gaps
@@ -630,7 +705,7 @@ class PairSearch {
     };
     if (higher(t_)) return std::nullopt;
     const double fallen = std::clamp(change_between(turn, t_, higher), turn, t_);
-    return hidden(fallen) > 0.0 ? t_ : std::max(asked_from_, fallen);
+    return hidden(fallen) > 0.0 ? t_ : std::max(soonest(), fallen);
   }
 
   /// When what is so at `low`, and not at `high`, changes, on a grid of 1024 ticks of the clock: wider than what the rounding of a
@@ -747,12 +822,12 @@ class PairSearch {
     double nearest = t_ - (path.q - tip).dot(path.rate) / path.rate.squaredNorm();
     SamplePath then;
     for (int i = 0; i < 2; ++i) {
-      if (!(nearest >= view_.start() && nearest <= window_end_)) return false;
+      if (!(nearest >= view_.start() && nearest <= window_end())) return false;
       then = to_tip(nearest);
       nearest -= then.q.dot(then.rate) / then.rate.squaredNorm();
     }
     // what is nearest before its motions begin has gone by, or turns: it does not go straight for the tip
-    if (!(nearest >= view_.start() && nearest <= window_end_)) return false;
+    if (!(nearest >= view_.start() && nearest <= window_end())) return false;
     then = to_tip(nearest);
     if (!corners_cross(half, f, at_a, then.rate, there)) return false;
     if (lies_flush(half, f, at_a, there)) return false;  // it meets a face, not a tip
@@ -771,8 +846,7 @@ class PairSearch {
     };
     // where they are nearest is known to the rounding of their places: the moment lies in what is surely wider
     const double ticks = 4.0 * (ulp(nearest) + rounding / speed);
-    const double last = std::min(a_.motion->end(), b_.motion->end());
-    const double high = std::min(nearest + ticks, last);
+    const double high = std::min(nearest + ticks, motions_end());
     double low = std::max(nearest - std::max(2.0 * before / speed, ticks), begin);
     // they may have parted first, and not far
     for (double back = nearest - low; !(clear(low) > 0.0) && back > ticks; back *= 0.5) low = nearest - back;
@@ -826,7 +900,8 @@ class PairSearch {
   /// corners pass each other. The search goes on for `noise` longer: another feature may seem to touch later only
   /// by the rounding of its steps.
   bool remember(const Half& half, const Feature& f, double t, double noise = 0.0) {
-    if (t > window_end_) return true;
+    if (t > window_end()) return true;
+    if (in_part_ && t < asked_from_) return false;  // who asks has looked there
     const std::optional<FeatureContact> contact = contact_then(half, f, t);
     if (!contact) return false;
     // Crossed over, as the lesser comes first: a's samples before b's, then the lower sample, then the lower
@@ -881,6 +956,9 @@ class PairSearch {
   bool sink_known_ = false;
   bool sinks_ = false;  ///< the step of the sample that is looked at may lead below a level
   bool capped_ = false;
+  bool comes_and_goes_ = false;  ///< something that is close at t_ does
+  bool in_part_ = false;         ///< from_ and to_ are those of a part of a piece
+  double part_end_ = 0.0;
 };
 
 /// first_contact() of two of which `start` is remembered all through [from, to], or has no part in the answer.
