@@ -398,7 +398,9 @@ std::string reason(PairAnswer::Why why, const std::string& pair, double length) 
     case PairAnswer::Why::place:
       return fmt::format(
           "{} are close, but too far from the origin, or turned too often, for their gap to be told "
-          "to solver.contact_tolerance of the scene's length, {:.3g} m",
+          "to solver.contact_tolerance of the scene's length, {:.3g} m (under springs and other forces that "
+          "change, and of sites that formulas move, from some thousand lengths on; the scene may be moved to "
+          "the origin)",
           pair, length);
     case PairAnswer::Why::speed:
       return fmt::format(

@@ -8,6 +8,7 @@
 
 #include "brink/core/base/error.h"
 #include "brink/core/base/limits.h"
+#include "brink/core/base/log.h"
 #include "brink/scheduler/kernel/stage_clock.h"
 #include "brink/scheduler/kernel/states_apart.h"
 
@@ -18,6 +19,9 @@ namespace {
 /// Pieces of motion that one round of instalments makes at most, of all bodies together: some 50 MB.
 constexpr std::uint64_t kMostPieces = 1U << 17;
 constexpr std::uint64_t kShortest = 16, kLongest = 4096;  ///< instalments [steps]
+/// Who is warned of: whose integrator has taken so many steps in a row of which more than kEndless are left to the end.
+constexpr std::uint64_t kCrawls = 1U << 17;
+constexpr double kEndless = 1e10;
 
 /// A locked coordinate has no velocity: nothing would ever take it away.
 BodyState held(const Body& body, BodyState s) {
@@ -157,10 +161,26 @@ double Trajectories::follow(Coupled& c, double t) {
   const Extent extent = c.integrator->extend(t, instalment());
   // a step makes one piece for each body
   run_->count_pieces((run_->work().solver_steps - before) * c.component.bodies.size());
+  if (run_->work().solver_steps > before)
+    note_pace(c, covered, extent.end, run_->work().solver_steps - before);
   fetch(c);
   if (extent.status == Extent::Status::failed)
     note_failure(c.failure, extent.end, "'" + world_->bodies[first].name + "'", extent.why);
   return std::min(extent.end, t);
+}
+
+/// Says so, once, where steps have become so short that the run would not end in hours: a force that is not continuous, say, is
+/// followed in ever shorter ones.
+void Trajectories::note_pace(Coupled& c, double from, double to, std::uint64_t steps) {
+  const double left = run_->options().until - to, step = (to - from) / static_cast<double>(steps);
+  const std::uint64_t before = c.crawled;
+  c.crawled = std::isfinite(left) && left > kEndless * step ? before + steps : 0;
+  if (before >= kCrawls || c.crawled < kCrawls) return;
+  log().warn(
+      "the motion of '{}' is followed in steps of {:.1e} s at t = {:.9g} s, and {:.0e} of them are left: its "
+      "force jumps "
+      "there, or changes too fast",
+      world_->bodies[c.component.bodies.front()].name, step, to, left / step);
 }
 
 /// One instalment of a site that moves by formulas; all others are known for ever.

@@ -156,7 +156,8 @@ class Trajectories {
     std::unique_ptr<Integrator> integrator;
     ComponentStart begun;
     Failure failure;
-    bool dormant = false;  ///< an island holds its bodies
+    bool dormant = false;       ///< an island holds its bodies
+    std::uint64_t crawled = 0;  ///< steps in a row of which more than kEndless are left to the end
   };
 
   void add_component(Component component, ComponentStart start);
@@ -168,6 +169,7 @@ class Trajectories {
   void begin_anew(Component component, double t, std::vector<int>& changed);
   void start(Coupled& c, ComponentStart from);
   void put_to_sleep(Coupled& c);
+  void note_pace(Coupled& c, double from, double to, std::uint64_t steps);
   void tell_knot(int k, const BodyState& after) const;
   void tell_bends(int k) const;
   void note_twist_before(int k) {

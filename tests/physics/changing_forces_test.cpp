@@ -3,12 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <fmt/core.h>
+#include <spdlog/details/null_mutex.h>
+#include <spdlog/sinks/base_sink.h>
 
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
+#include <memory>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "brink/core/base/log.h"
 #include "brink/scenes/scene/scene.h"
 #include "brink/scheduler/policies/policy.h"
 #include "tests/support/worlds.h"
@@ -141,6 +147,35 @@ TEST(ChangingForces, StepsOfManyUnderDragComeToAStop) {
     EXPECT_LE(ran.energies[k], ran.energies[k - 1] + 1e-12);
   // 10 N/m against 1000 kg/s: the first comes back by 0.1 (1 - exp(-k t / c)), all alike
   EXPECT_NEAR(ran.first.pose.position.x(), 0.1 * std::exp(-0.005), 1e-5);
+}
+
+/// Ends the process as soon as something has been said.
+struct SaidSink final : spdlog::sinks::base_sink<spdlog::details::null_mutex> {
+  void sink_it_(const spdlog::details::log_msg&) override { std::_Exit(0); }
+  void flush_() override {}
+};
+
+/// Runs a disc under the force, until something is said or, for a minute at most, to the end, and ends the process.
+[[noreturn]] void run_and_exit(const std::string& force) {
+  const Scene scene = parse_scene(
+      "[world]\nduration = 1.0\n[[bodies]]\nname = 'ball'\ndisc = { radius = 0.5 }\nvelocity = [1, 0]\n"
+      "[[forces]]\nkind = 'formula'\nfx = '" +
+          force + "'\n",
+      "pace");
+  log().sinks().push_back(std::make_shared<SaidSink>());
+  RunOptions options = testing::until(scene.duration);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  options.progress = [end](double, std::uint64_t) { return std::chrono::steady_clock::now() < end; };
+  Simulator(scene.world, scene.solver).run(options);
+  std::_Exit(0);
+}
+
+// Dry friction as a formula: it jumps where the disc stands still, and is followed in steps of 1e-11 s for ever.
+TEST(ChangingForcesDeathTest, AForceThatJumpsIsWarnedOf) {
+  EXPECT_EXIT(
+      run_and_exit("vx > 0 ? -3*m : 3*m"), ::testing::ExitedWithCode(0),
+      "^warning: the motion of 'ball' is followed in steps of .*e-11 s at t = 0.33333.* its force jumps");
+  EXPECT_EXIT(run_and_exit("-1e6*m*x"), ::testing::ExitedWithCode(0), "^$");
 }
 
 }  // namespace
