@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdint>
 #include <functional>
