@@ -478,8 +478,7 @@ std::pair<Vec3, Vec3> IslandMotion::velocities_of(const HeldContact& c,
 }
 
 /// When the first corner that lies on another is beside it [s], if the members go on as they do now: which of their sides meet is
-/// another thing then. Infinity: none moves, or none took part in a step before that was
-/// not as short.
+/// another thing then. Infinity: none moves, or none was in a step before that was longer than `shortest`: each has one short step.
 double IslandMotion::corners_part_in(double shortest) const {
   if (members_.count() > kModeBodies) return kForever;  // all its steps are of first order
   const std::vector<Vec3> velocity = velocities();

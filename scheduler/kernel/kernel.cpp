@@ -399,8 +399,8 @@ std::string reason(PairAnswer::Why why, const std::string& pair, double length) 
       return fmt::format(
           "{} are close, but too far from the origin, or turned too often, for their gap to be told "
           "to solver.contact_tolerance of the scene's length, {:.3g} m (under springs and other forces that "
-          "change, and of sites that formulas move, from some thousand lengths on; the scene may be moved to "
-          "the origin)",
+          "change, and of sites that formulas move, from some thousand lengths on; move the scene to the "
+          "origin)",
           pair, length);
     case PairAnswer::Why::speed:
       return fmt::format(

@@ -177,9 +177,8 @@ void Trajectories::note_pace(Coupled& c, double from, double to, std::uint64_t s
   c.crawled = std::isfinite(left) && left > kEndless * step ? before + steps : 0;
   if (before >= kCrawls || c.crawled < kCrawls) return;
   log().warn(
-      "the motion of '{}' is followed in steps of {:.1e} s at t = {:.9g} s, and {:.0e} of them are left: its "
-      "force jumps "
-      "there, or changes too fast",
+      "the motion of '{}' is followed in steps of {:.1e} s at t = {:.9g} s, and {:.0e} of them are left: "
+      "its force jumps there, or changes too fast",
       world_->bodies[c.component.bodies.front()].name, step, to, left / step);
 }
 
