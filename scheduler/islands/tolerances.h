@@ -123,6 +123,11 @@ inline constexpr double kNearlyRedundant = 1e-4;
 inline constexpr double kConsistent = 1e-8;
 /// Forces of redundant contacts balance when they leave over this part: ten thousand roundings.
 inline constexpr double kBalances = 1e-12;
+/// A force below this part of the weight of the heaviest member is none.
+inline constexpr double kNoForce = 1e-9;
+/// Contacts hold an island of many bodies at rest that are open by no more than this part of the smallest member's size: some
+/// hundredths of what a step of first order leaves places off by.
+inline constexpr double kHolds = 1e-4;
 /// A column joins the least squares if it reduces what is left by more than this part of all: below it is rounding.
 inline constexpr double kJoins = 1e-14;
 

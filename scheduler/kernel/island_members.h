@@ -52,6 +52,17 @@ class IslandMembers {
   const ExtendedState& state(int member) const { return states_[member]; }
   const Acceleration& acceleration(int member) const { return accelerations_[member]; }
   const std::vector<Acceleration>& accelerations() const { return accelerations_; }
+  /// Of each member now: x, y [m/s], angle [rad/s].
+  std::vector<Vec3> velocities() const {
+    std::vector<Vec3> all;
+    for (const ExtendedState& s : states_) all.push_back(as_vector(s.twist.rounded()));
+    all.resize(count_);
+    return all;
+  }
+  /// Where members have these: what stands has none.
+  Vec3 velocity_of(int place, const std::vector<Vec3>& velocity) const {
+    return is_support(place) ? Vec3(Vec3::Zero()) : velocity[place];
+  }
   /// Gives a member another twist; find_speeds() is due then.
   void set_twist(int member, const ExtendedTwist& twist) { states_[member].twist = twist; }
   void find_speeds();

@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <set>
-#include <tuple>
 #include <utility>
 
-#include "brink/core/base/disjoint_sets.h"
 #include "brink/core/base/limits.h"
-#include "brink/scheduler/islands/driven_surface.h"
-#include "brink/scheduler/islands/step_balance.h"
 #include "brink/scheduler/islands/tolerances.h"
 #include "brink/scheduler/kernel/island_joining.h"
 #include "brink/scheduler/kernel/step_places.h"
+#include "brink/scheduler/kernel/step_rows.h"
 
 namespace brink {
 
@@ -23,8 +21,8 @@ namespace {
 constexpr double kOfFall = 0.05;
 /// ... and moves nobody by more than this part of it.
 constexpr double kOfSize = 0.1;
-/// A corner so far off another, in units of how far off it lies on it, is beside it; but steps are so many ticks at least.
-constexpr double kBesideCorner = 4.0, kTicksOfCorner = 1024.0;
+/// Steps until a corner is beside another are so many ticks at least.
+constexpr double kTicksOfCorner = 1024.0;
 /// However slow all are, a step is no longer [s]: what sites do in it is followed beforehand.
 constexpr double kLongestStep = 100.0;
 /// Features are listed as far as bodies come in so many steps; where impulses take one farther, so many times as far as that.
@@ -38,45 +36,24 @@ constexpr double kUnforeseen = 1e-3;
 /// A list reaches to 512 times the guess. Where that does not do, a step is halved, down to 2^-16 of its length.
 constexpr double kFarthest = 512.0;
 constexpr int kHalvings = 16;
-/// Contact tolerances that a contact is open before its bodies are let go from modes.
-constexpr double kClear = 100.0;
-/// Looks along a contact's tangents until it arrives, or passes by.
-constexpr int kTangents = 32, kHalvingsOfWay = 60;
 /// Impacts of one instant inside an island, at most; what closes then is taken as plastic.
 constexpr std::size_t kFirstImpacts = 100, kImpactsEach = 20;
 /// No tolerance makes a step shorter than this part of what it would be.
 constexpr double kShortest = 1e-4;
-/// Contacts hold an island of many bodies at rest that are open by no more than this part of the smallest member's size: some
-/// hundredths of what a step of first order leaves places off by.
-constexpr double kHolds = 1e-4;
 /// A step has held still what is slower than this part of the speed that falling for as long gives; its friction is then within
 /// cones a little wider (kWidened).
 constexpr double kHeld = 1e-11;
-/// By how much a step may miss the gap to a wire without thickness, in touching distances: from half of one, at which a sharp
-/// sample meets it, a few such misses do not lead through it.
-constexpr double kThinMiss = 0.125;
 /// Halving a step makes its change of velocity fall to this part at most, if forces make it.
 /// What forces change goes with the step, so half is left at most; what an impact changes stays: 3/4 lies between.
 constexpr double kFalls = 0.75;
-/// A force below this part of the weight of the heaviest member is none.
-constexpr double kNoForce = 1e-9;
-/// So many of these together have moved a member: the digits of a coarse solve are some hundreds.
-constexpr double kMoved = 1e3;
 /// A step that an impact cuts to less than this part is cut short.
 constexpr double kWorthwhile = 0.25;
-/// Members of an agitated island that are closer than this part of the smallest member's size stay together.
-constexpr double kRattles = 0.25;
 /// Forces that change with place, velocity or time may change by this part of the largest pull that a step so long may have
 /// in half of it, and are asked for again until they do by a millionth of that; each time they come nearer by half at least.
 constexpr double kChanges = 0.1, kForcesAgree = 1e-6, kComesNearer = 0.5;
 constexpr int kForcePasses = 30;
 /// A step under such forces is no longer than so many times the one before.
 constexpr double kLonger = 2.0;
-/// What meets again within this part of a step has never been apart; so many halvings of that are looked at.
-constexpr double kAtOnce = 1.0 / 32.0;
-constexpr int kLooksBack = 6;
-/// A speed below this part of what the smallest member gains as it falls by its size is none.
-constexpr double kNoSpeed = 1e-7;
 
 }  // namespace
 
@@ -150,15 +127,7 @@ void IslandMotion::list_farther(const std::vector<Vec3>& velocity) {
   for (const HeldContact& c : members_.contacts_of(far, go_on_))
     if (listed.insert(c.key()).second) contacts_.push_back(c);
   remember_sides(known);
-  add_to_problem(known);
-}
-
-/// Of each member now, as the step's problem has them: x, y [m/s], angle [rad/s].
-std::vector<Vec3> IslandMotion::velocities() const {
-  std::vector<Vec3> all;
-  for (std::size_t i = 0; i < members_.count(); ++i)
-    all.push_back(as_vector(members_.state(static_cast<int>(i)).twist.rounded()));
-  return all;
+  rows().add(contacts_, problem_);
 }
 
 // ---- impacts of this instant
@@ -179,7 +148,7 @@ void IslandMotion::pass_on_impacts(const Impact& told) {
     visit(a);
     if (b != a) visit(b);
   };
-  std::vector<Vec3> velocity = velocities();
+  std::vector<Vec3> velocity = members_.velocities();
   std::vector<double> impact;  // how fast each contact closes that is an impact now
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     if (!go_on_()) return;
@@ -194,7 +163,7 @@ void IslandMotion::pass_on_impacts(const Impact& told) {
     const HeldContact& c = contacts_[static_cast<std::size_t>(fastest - impact.begin())];
     collide(c, *fastest, told);
     // taken before it came: it would have cut the step
-    impacts_in_step_ = impacts_in_step_ || !touches(c);
+    impacts_in_step_ = impacts_in_step_ || !approach().touches(c);
     each_member(c, [&](int member) { velocity[member] = as_vector(members_.state(member).twist.rounded()); });
     each_member(c, [&](int member) {
       for (const std::size_t k : contacts_of[member]) impact[k] = impact_of(contacts_[k], velocity);
@@ -204,43 +173,17 @@ void IslandMotion::pass_on_impacts(const Impact& told) {
   members_.find_speeds();
 }
 
-/// True of a sharp corner upon a sharp one: what is round goes over an end in one piece.
-bool IslandMotion::is_sharp(const HeldContact& c) const {
-  const Outline *carrier = &search_->outline_of(c.pair.body),
-                *other = &search_->outline_of(search_->other_owner(c.pair));
-  if (!c.feature.sample_on_a) std::swap(carrier, other);
-  return carrier->samples[c.feature.sample].radius + other->sites[c.feature.site].radius == 0.0;
-}
-
-/// Within a contact tolerance of what its features keep: at a wire without thickness a touch, else 0.
-bool IslandMotion::touches(const HeldContact& c) const {
-  return c.feature.gap - kept(c.feature) <= search_->limits().tolerance;
-}
-
-/// True if the site ends at a corner that touches one of the sample's edges: the sample is far from that corner, and through it as
-/// soon as it sinks into the edge by a rounding, which its own contact sees to.
-bool IslandMotion::is_kept_by_corner(const HeldContact& c) const {
-  if (!c.feature.at_end || touches(c)) return false;
-  const Outline &a = search_->outline_of(c.pair.body), &b = search_->outline_of(search_->other_owner(c.pair));
-  const auto ends = [](const Sample& corner, int site) {
-    return corner.before == site || corner.after == site;
-  };
-  const Sample& sample = (c.feature.sample_on_a ? a : b).samples[c.feature.sample];
-  return std::any_of(contacts_.begin(), contacts_.end(), [&](const HeldContact& o) {
-    return o.pair == c.pair && o.feature.sample_on_a != c.feature.sample_on_a &&
-           ends(sample, o.feature.site) &&
-           ends((o.feature.sample_on_a ? a : b).samples[o.feature.sample], c.feature.site) && touches(o);
-  });
-}
-
 /// How fast the two close if that is an impact now [m/s], else 0: they touch, or are to meet within the step of an
 /// agitated island, and faster than a step takes as plastic.
 double IslandMotion::impact_of(const HeldContact& c, const std::vector<Vec3>& velocity) const {
   const double closing = members_.closing_speed(c);
   if (closing <= most_absorbed(c.pair) || c.feature.beside_arc || c.feature.goes_on) return 0.0;
-  if (!touches(c)) return !is_kept_by_corner(c) && arrival(c, velocity).time < h_ ? closing : 0.0;
+  if (!approach().touches(c))
+    return !approach().is_kept_by_corner(c, contacts_) && approach().arrival(c, velocity, h_).time < h_
+               ? closing
+               : 0.0;
   // at a joint of two floors the tangent at an end bars the way to what slides over it
-  if (passes_by(c, 0.0, closing)) return 0.0;
+  if (approach().passes_by(c, velocity, 0.0, closing)) return 0.0;
   // by modes another contact says better what a shadow says: one impact for one place
   return by_modes_ && IslandModes::is_shadow(*search_, c, contacts_) ? 0.0 : closing;
 }
@@ -256,7 +199,7 @@ bool IslandMotion::any_impacts() {
   h_ = longest();
   members_.look_ahead(0.0, kReach);
   list(search_->limits().tolerance);
-  const std::vector<Vec3> velocity = velocities();
+  const std::vector<Vec3> velocity = members_.velocities();
   return std::any_of(contacts_.begin(), contacts_.end(),
                      [&](const HeldContact& c) { return impact_of(c, velocity) > 0.0; });
 }
@@ -405,7 +348,7 @@ bool IslandMotion::take(double h, double tolerance) {
     make_problem();
     const auto gaps = [this](const std::vector<Vec3>& velocity) -> GapAlong {
       return [this, places = StepPlaces(members_, velocity)](std::size_t k, double later) mutable {
-        return places.gap(contacts_[k], later) - kept(contacts_[k].feature);
+        return places.gap(contacts_[k], later) - approach().kept(contacts_[k].feature);
       };
     };
     const StepOutcome outcome = take_under_forces(gaps);
@@ -453,13 +396,15 @@ int IslandMotion::site_that_closes_in() const {
 /// has been dealt with.
 double IslandMotion::next_arrival() {
   double first = kForever;
-  const std::vector<Vec3> velocity = velocities();
+  const std::vector<Vec3> velocity = members_.velocities();
   for (const HeldContact& c : contacts_) {
     if (!go_on_()) break;
     if (c.feature.beside_arc || c.feature.goes_on) continue;
-    const Arrival come = touches(c) ? Arrival{0.0, members_.closing_speed(c)} : arrival(c, velocity);
+    const FeatureArrival come = approach().touches(c) ? FeatureArrival{0.0, members_.closing_speed(c)}
+                                                      : approach().arrival(c, velocity, h_);
     if (!(come.time <= h_)) continue;
-    if (!touches(c) && come.closing > most_absorbed(c.pair) && !is_kept_by_corner(c))
+    if (!approach().touches(c) && come.closing > most_absorbed(c.pair) &&
+        !approach().is_kept_by_corner(c, contacts_))
       // too fast to be taken as plastic: an impact within the step
       first = std::min(first, come.time);
     else
@@ -469,107 +414,25 @@ double IslandMotion::next_arrival() {
   return first;
 }
 
-/// Of the contact's body, and of its other owner.
-std::pair<Vec3, Vec3> IslandMotion::velocities_of(const HeldContact& c,
-                                                  const std::vector<Vec3>& velocity) const {
-  return {velocity_of(members_.place_of(c.pair.body), velocity),
-          c.pair.with_site() ? as_vector(members_.other_state(c.pair).twist.rounded())
-                             : velocity_of(members_.place_of(c.pair.other_body), velocity)};
-}
-
 /// When the first corner that lies on another is beside it [s], if the members go on as they do now: which of their sides meet is
 /// another thing then. Infinity: none moves, or none was in a step before that was longer than `shortest`: each has one short step.
 double IslandMotion::corners_part_in(double shortest) const {
   if (members_.count() > kModeBodies) return kForever;  // all its steps are of first order
-  const std::vector<Vec3> velocity = velocities();
+  const std::vector<Vec3> velocity = members_.velocities();
   double first = kForever;
   for (const HeldContact& c : contacts_) {
-    const NearFeature& f = c.feature;
-    if (!f.at_end || !is_sharp(c) || !(std::abs(f.gap) <= f.one_corner)) continue;
     const HeldContact* before = warm_.find(c);
     if (!before || before->lasted < shortest) continue;  // once
-    const auto [of_body, of_other] = velocities_of(c, velocity);
-    const Vec2 arm = members_.arm(c).cast<double>();
-    const Vec2 apart =
-        of_body.head<2>() + cross(of_body[2], arm) - of_other.head<2>() - cross(of_other[2], f.point);
-    first = std::min(first, kBesideCorner * f.one_corner / apart.norm());
+    first = std::min(first, approach().corner_parts_in(c, velocity));
   }
   // not so soon that the clock cannot tell
   return std::max(first, kTicksOfCorner * std::numeric_limits<double>::epsilon() * std::abs(members_.now()));
 }
 
-/// No gap of the two closes faster if the members go on as they do now [m/s]: both centres, and both arms as far from them
-/// as a member reaches.
-double IslandMotion::fastest_approach(const HeldContact& c, const std::vector<Vec3>& velocity) const {
-  const auto [of_body, of_other] = velocities_of(c, velocity);
-  const double radius = members_.bounding_radius(members_.place_of(c.pair.body));
-  return (of_body - of_other).head<2>().norm() + std::abs(of_body[2]) * radius +
-         std::abs(of_other[2]) * (c.feature.point.norm() + radius);
-}
-
-/// By how much its gap may be missed [m]: through a wire without thickness nothing comes.
-double IslandMotion::most_missed(const NearFeature& f) const {
-  return f.thin ? kThinMiss * search_->limits().touch : search_->limits().tolerance;
-}
-
-/// When the two features meet if the members go on as they do now. By tangents and secants, which lead to before the root of a
-/// convex gap; of one that is not, as of a corner that turns towards a side, they lead past it, and halving leads back.
-IslandMotion::Arrival IslandMotion::arrival(const HeldContact& c, const std::vector<Vec3>& velocity) const {
-  const double tolerance = search_->limits().tolerance, fastest = fastest_approach(c, velocity);
-  const double most = most_missed(c.feature);
-  const auto gap_at = [&](double t) { return members_.gap(c, t, velocity) - kept(c.feature); };
-  double closing = members_.closing_speed(c), gap = c.feature.gap - kept(c.feature), t = 0.0;
-  for (int k = 0; k < kTangents; ++k) {
-    if (gap > fastest * (h_ - t)) return {};
-    // where the line through the gap reaches 0; where it opens, or the step ends before, it may bend down on the way
-    double way = gap / closing;
-    const bool within = closing > 0.0 && t + way <= h_;
-    if (!within) way = h_ - t;
-    if (!(way > 0.0)) return {};
-    const double next = gap_at(t + way);
-    if (next < -most) {
-      if (const double root = root_between(gap_at, t, gap, t + way, most); root > t) {
-        closing = std::min((gap - next) / way, fastest);
-        t = root;
-        break;
-      }
-    }
-    if (!within) return {};
-    // the secant's slope: no derivative of the gap is at hand there. What comes past an end is behind a site at once: the
-    // gap jumps, and no slope is as steep.
-    closing = std::min((gap - next) / way, fastest);
-    t += way;
-    gap = next;
-    if (gap <= tolerance) break;
-  }
-  return passes_by(c, t, closing) ? Arrival{} : Arrival{t, closing};
-}
-
-/// The time after `open`, where the gap is still open, at which it closes: to the contact tolerance before that, and no more than
-/// `most` behind it; `open` where it jumps.
-template <class Gap>
-double IslandMotion::root_between(Gap&& gap_at, double open, double gap, double past, double most) const {
-  const double tolerance = search_->limits().tolerance, from = open;
-  for (int k = 0; k < kHalvingsOfWay && gap > tolerance; ++k) {
-    const double middle = 0.5 * (open + past), there = gap_at(middle);
-    if (there < -most) {
-      past = middle;
-    } else {
-      open = middle;
-      gap = there;
-    }
-  }
-  return gap > tolerance ? from : open;
-}
-
-/// True if what comes to the end of a site does not meet it, but goes by: some tolerances further on it is clear
-/// of it.
-bool IslandMotion::passes_by(const HeldContact& c, double then, double closing) const {
-  const double tolerance = search_->limits().tolerance;
-  if (!c.feature.at_end || !(closing > 0.0)) return false;
-  const double further = members_.gap(c, then + 4.0 * tolerance / closing, velocities()) - kept(c.feature);
-  // some roundings in it where it runs along the next side from there on
-  return further > 0.0 || (further > -kMissCounts * tolerance && !c.feature.no_way_by);
+/// With a row for each contact that is listed, in their order: take_forces() leads back by place.
+void IslandMotion::make_problem() {
+  problem_ = rows().members_alone();
+  rows().add(contacts_, problem_);
 }
 
 /// An approach as slow as this rebounds with e v <= a h: it has turned back by the end of the step [m/s].
@@ -577,64 +440,6 @@ double IslandMotion::most_absorbed(const PairKey& pair) const {
   const double e = response_->material_of(pair).restitution;
   if (!(e > 0.0)) return kForever;
   return by_modes_ ? IslandModes::slowest_bounce(members_, *search_) : members_.pull() * h_ / e;
-}
-
-/// The members with their masses, velocities and forces [N], [N m], and a row for each contact that is listed.
-void IslandMotion::make_problem() {
-  problem_ = {};
-  problem_.velocity = velocities();
-  for (std::size_t i = 0; i < members_.count(); ++i) {
-    const Body& b = members_.body(static_cast<int>(i));
-    // infinity: held (RestProblem)
-    problem_.mass.emplace_back(b.lock_x ? kForever : b.mass, b.lock_y ? kForever : b.mass,
-                               b.lock_angle ? kForever : b.inertia);
-  }
-  problem_.force = forces(members_.accelerations());
-  // in the order of contacts_: take_forces() leads back by place
-  add_to_problem(0);
-}
-
-/// Of a site that moves: the body is not abreast of it yet, and may be where it comes to.
-bool IslandMotion::is_beside_driven(const HeldContact& c) const {
-  return members_.on_moving_site(c) && (c.feature.at_end || c.feature.beside_arc);
-}
-
-/// Contacts from that place on, pair after pair.
-void IslandMotion::add_to_problem(std::size_t first) {
-  const PairKey* looked_at = nullptr;
-  std::vector<NearFeature> ahead;  // of that pair
-  for (std::size_t k = first; k < contacts_.size(); ++k) {
-    const HeldContact& c = contacts_[k];
-    if (is_beside_driven(c) && (!looked_at || *looked_at != c.pair)) {
-      ahead = members_.features_ahead(c.pair, h_);
-      looked_at = &c.pair;
-    }
-    problem_.contacts.push_back(island_contact(c, ahead));
-  }
-}
-
-/// On each member [N], [N m].
-std::vector<Vec3> IslandMotion::forces(const std::vector<Acceleration>& accelerations) const {
-  std::vector<Vec3> all;
-  for (std::size_t i = 0; i < accelerations.size(); ++i) {
-    const Body& b = members_.body(static_cast<int>(i));
-    const Acceleration& a = accelerations[i];
-    all.emplace_back(b.mass * a.linear.x(), b.mass * a.linear.y(), b.inertia * a.angular);
-  }
-  return all;
-}
-
-/// By how much the accelerations of any member's points differ at most [m/s^2].
-double IslandMotion::largest_change(const std::vector<Vec3>& forces, const std::vector<Vec3>& others) const {
-  double most = 0.0;
-  for (std::size_t i = 0; i < forces.size(); ++i) {
-    const Body& b = members_.body(static_cast<int>(i));
-    const Vec3 change = forces[i] - others[i];
-    most =
-        std::max(most, change.head<2>().norm() / b.mass +
-                           std::abs(change[2]) / b.inertia * members_.bounding_radius(static_cast<int>(i)));
-  }
-  return most;
 }
 
 /// A step of h_ under the forces that its members have halfway, with the twists of the step: these are found by asking for them
@@ -656,9 +461,9 @@ StepOutcome IslandMotion::take_under_forces(const GapsAlong& gaps) {
     outcome = solve();
     outcome.factorisations += so_far;
     if (!outcome.solved) return outcome;
-    std::vector<Vec3> along = forces(members_.accelerations_along(h_, problem_.velocity));
-    const double off = largest_change(along, problem_.force);
-    if (largest_change(along, at_start) > kChanges * most || off > kComesNearer * last) break;
+    std::vector<Vec3> along = forces_of(members_, members_.accelerations_along(h_, problem_.velocity));
+    const double off = largest_change(members_, along, problem_.force);
+    if (largest_change(members_, along, at_start) > kChanges * most || off > kComesNearer * last) break;
     if (off <= kForcesAgree * most) return outcome;
     last = off;
     problem_.velocity = before;
@@ -666,103 +471,6 @@ StepOutcome IslandMotion::take_under_forces(const GapsAlong& gaps) {
   }
   outcome.solved = false;
   return outcome;
-}
-
-/// Geometry at the start of the step; forces of the step before, from which friction bounds come. Of a site that moves geometry is
-/// that where it comes to, of `ahead` (features_ahead()): the end of an arc may have gone by.
-IslandContact IslandMotion::island_contact(const HeldContact& c,
-                                           const std::vector<NearFeature>& ahead) const {
-  IslandContact made;
-  made.rows = rows_of(c);
-  made.gap = c.feature.gap - kept(c.feature);
-  made.thin = c.feature.thin;
-  // a wire has no inside: what is through it, by however little, is on its other side
-  made.tolerance = most_missed(c.feature);
-  const Material& material = response_->material_of(c.pair);
-  made.friction = material.friction;
-  made.rolling_resistance = material.rolling_resistance;
-  if (const HeldContact* warm = warm_.find(c)) {
-    made.normal_force = warm->normal_force;
-    made.tangential_force = warm->tangential_force;
-    made.force_lasted = warm->lasted;
-  }
-  made.at_end = c.feature.at_end || c.feature.beside_arc;
-  made.driven = members_.on_moving_site(c);
-  // a body that is a member moves by the unknown twists; a site by what it is told
-  note_shape(c, made);
-  if (made.driven) drive(c, ahead, made);
-  return made;
-}
-
-/// The mean velocity of its surface along the normal, by what the gap loses where the body stays, and that of its point along the
-/// tangent. A point's own along the normal would be no surface's: those of a round drum leave it along chords. What is under the
-/// body now counts as the line or the circle that it is, until the step ends; what is beside it, as where it comes to.
-void IslandMotion::drive(const HeldContact& c, const std::vector<NearFeature>& ahead,
-                         IslandContact& made) const {
-  const ExtendedState from = members_.other_state(c.pair), to = members_.other_state(c.pair, h_, {});
-  // the site's own motion over the step, as one turn and shift of the point that touches
-  const Frame step(
-      {(to.position - from.position).cast<double>(), static_cast<double>(to.angle - from.angle)});
-  const Vec2 way = step.to_world(c.feature.point) - c.feature.point;
-  made.tangential_support = way.dot(perp(c.feature.normal)) / h_;
-  if (!is_beside_driven(c)) {
-    made.normal_support = advance_of_surface(c.feature, search_->outline_of(search_->other_owner(c.pair)),
-                                             static_cast<double>(from.angle), step) /
-                          h_;
-    return;
-  }
-  const std::vector<Vec3> stays(members_.count(), Vec3::Zero());
-  const double gap = members_.gap(c, h_, stays);
-  const auto found = std::find_if(ahead.begin(), ahead.end(), [&](const NearFeature& f) {
-    return std::tuple(f.sample_on_a, f.sample, f.site) ==
-           std::tuple(c.feature.sample_on_a, c.feature.sample, c.feature.site);
-  });
-  // not where the site has come over the body, which is on another side of it there
-  const bool there = found != ahead.end() && found->normal.dot(c.feature.normal) > 0.0 &&
-                     (found->over_joint || std::abs(found->gap - gap) <= search_->limits().tolerance);
-  made.normal_support = (there ? c.feature.gap - found->gap : members_.gap(c, 0.0, stays) - gap) / h_;
-  if (!there) return;
-  HeldContact then = c;
-  then.feature = *found;
-  then.feature.point += step.origin;  // from where the site is now
-  made.rows = rows_of(then);
-  const Vec2& point = then.feature.point;
-  made.tangential_support = (point - step.to_local(point)).dot(perp(then.feature.normal)) / h_;
-}
-
-/// What stands is as a site is, whichever of the two it is: the normal points into what moves then, or away from it.
-LastingContact IslandMotion::rows_of(const HeldContact& c) const {
-  const int a = members_.place_of(c.pair.body);
-  const int b = c.pair.with_site() ? -1 : members_.place_of(c.pair.other_body);
-  LastingContact rows = contact_at(a, b, c.feature.normal, members_.arm(c).cast<double>(), c.feature.point);
-  if (b >= 0 && members_.is_support(b)) rows.other = -1;
-  if (!members_.is_support(a)) return rows;
-  rows.body = b;
-  rows.normal_on_body = rows.normal_on_other;
-  rows.tangent_on_body = rows.tangent_on_other;
-  rows.other = -1;
-  return rows;
-}
-
-/// How the gap behaves along a step. Of a segment it is convex in front of it, so of a wire it is not, nor where there is no
-/// way by an end: there what is beside the segment counts as behind it, too. Of an arc it depends on the side.
-void IslandMotion::note_shape(const HeldContact& c, IslandContact& made) const {
-  const NearFeature& f = c.feature;
-  const Outline *of_sample = &search_->outline_of(c.pair.body),
-                *of_site = &search_->outline_of(search_->other_owner(c.pair));
-  if (!f.sample_on_a) std::swap(of_sample, of_site);
-  const Sample& sample = of_sample->samples[f.sample];
-  const SiteKind kind = of_site->sites[f.site].kind;
-  made.convex = !made.driven && !f.thin && !f.beside_arc && !f.no_way_by && !of_site->container &&
-                kind != SiteKind::arc;
-  const Site& site = of_site->sites[f.site];
-  made.round_site = site.kind == SiteKind::point && site.a == Vec2(Vec2::Zero());
-  // the row's body is the one who moves (rows_of)
-  made.sample_on_body = f.sample_on_a != members_.is_support(members_.place_of(c.pair.body));
-  made.arm = sample.p.norm();
-  // from the centre of mass to the point on the site's surface, and on along the normal to the sample
-  const Vec2 to_point = f.sample_on_a ? f.point : Vec2(members_.arm(c).cast<double>());
-  made.apart = to_point.norm() + std::abs(f.gap) + sample.radius;
 }
 
 /// The farthest that any point of it comes [m].
@@ -816,6 +524,11 @@ ExtendedState IslandMotion::after(int member) const {
 
 // ---- who stands
 
+IslandParting IslandMotion::parting() const {
+  return IslandParting({members_, *search_, at_rest_, contacts_, gives_, gaps_at_end_, problem_, h_,
+                        by_modes_, agitated_, captured_});
+}
+
 /// Of whom the step has begun and ends with no speed but what a solver leaves, and nothing that moves by itself carries or pulls.
 std::vector<int> IslandMotion::still() const {
   const double slow = kHeld * members_.pull() * h_;
@@ -826,7 +539,7 @@ std::vector<int> IslandMotion::still() const {
                 speed_within(as_twist(problem_.velocity[i]), radius) <= slow;
   }
   for (const HeldContact& c : contacts_)
-    if (members_.on_moving_site(c) && touches(c)) stands[members_.place_of(c.pair.body)] = 0;
+    if (members_.on_moving_site(c) && approach().touches(c)) stands[members_.place_of(c.pair.body)] = 0;
   std::vector<int> found;
   for (int i = 0; i < static_cast<int>(members_.count()); ++i)
     if (stands[i]) found.push_back(i);
@@ -836,241 +549,6 @@ std::vector<int> IslandMotion::still() const {
 void IslandMotion::put_to_rest(const std::vector<int>& members) {
   wake_again();
   for (const int i : members) at_rest_[i] = 1;
-}
-
-bool IslandMotion::stands(int body) const {
-  const int place = members_.place_of(body);
-  return members_.is_support(place) || at_rest_[place];
-}
-
-/// Contacts hold at rest that are as near as rests() has them.
-std::vector<HeldContact> IslandMotion::that_hold() const {
-  const double near = std::max(search_->limits().tolerance, kHolds * members_.size());
-  std::vector<HeldContact> found;
-  for (const HeldContact& c : contacts_) {
-    const bool among = stands(c.pair.body) && (c.pair.with_site() || stands(c.pair.other_body));
-    if (among && !c.feature.beside_arc && !c.feature.goes_on && c.feature.gap - kept(c.feature) <= near)
-      found.push_back(as_held(c, ContactMode::rest));
-  }
-  return found;
-}
-
-/// With what they give: of many, what is told of them balances no more than it has to.
-std::vector<HeldContact> IslandMotion::that_lean() const {
-  std::vector<HeldContact> found;
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    const HeldContact& c = contacts_[k];
-    if (c.pair.with_site() || stands(c.pair.body) == stands(c.pair.other_body)) continue;
-    HeldContact& lean = found.emplace_back(as_held(c, ContactMode::none));
-    lean.normal_force = gives_[k].normal;
-    lean.tangential_force = gives_[k].tangential;
-    // of a support the problem has what is given to the other: the opposite of what the pair's body has
-    const bool of_other = members_.is_support(members_.place_of(c.pair.body));
-    lean.rolling_torque = of_other ? -gives_[k].rolling : gives_[k].rolling;
-  }
-  return found;
-}
-
-// ---- who stays together
-
-/// A force that is more than a rounding of the heaviest member's weight; also one of friction alone, of which bounds that
-/// lag may leave some where nothing presses any more: who is let go must have been moved by nobody.
-bool IslandMotion::pushes(const HeldContact& c) const {
-  return std::max(c.normal_force, std::abs(c.tangential_force)) > no_force();
-}
-
-double IslandMotion::no_force() const { return kNoForce * members_.heaviest() * members_.pull(); }
-
-/// Of all contacts together, by what the step has made of the member's velocity [N].
-double IslandMotion::contact_force_on(int member) const {
-  return contact_impulse(problem_.mass[member], problem_.force[member],
-                         as_vector(members_.state(member).twist.rounded()), problem_.velocity[member], h_) /
-         h_;
-}
-
-/// True if the two, which touch, would meet again at once if both were let go, in a small part of the step, though a step of
-/// constant twists opens their gap: an arc that turns under a body which forces lift, but not as fast as it bends away.
-/// `velocity`: that of all members now; it is the same afterwards.
-bool IslandMotion::falls_back(const HeldContact& c, std::vector<Vec3>& velocity) const {
-  if (!touches(c) || c.feature.goes_on) return false;
-  const auto [a, b] = members_.members_of(c.pair);
-  const Vec3 of_a = velocity[a], of_b = velocity[b];
-  // the way of a time with the mean velocity of a fall is that of the fall
-  const auto mean = [&](int member, const Vec3& before, double time) {
-    const Acceleration& by = members_.acceleration(member);
-    return Vec3(before + 0.5 * time * Vec3(by.linear.x(), by.linear.y(), by.angular));
-  };
-  // what has sunk already is none that falls
-  const double deeper = std::min(c.feature.gap, kept(c.feature)) - search_->limits().touch;
-  bool meets = false;
-  for (int k = kLooksBack; k >= 0 && !meets; --k) {
-    const double time = std::ldexp(h_ * kAtOnce, -k);
-    velocity[a] = mean(a, of_a, time);
-    velocity[b] = mean(b, of_b, time);
-    meets = members_.gap(c, time, velocity) < deeper;
-  }
-  velocity[a] = of_a;
-  velocity[b] = of_b;
-  return meets;
-}
-
-/// Nothing pushes, but one of the two alone, left to its parabola, could run into the other's step: that has the
-/// twist of its end from the start on, which a parabola comes to by and by. Where others push both, each takes steps, and
-/// there is no parabola: what rolls along beside a heap, touching nobody, does not keep it awake. By modes, it has just been
-/// let go: an open contact is looked at from there on as well as any other, until it is clear of it. And who meets where the
-/// step ends: a search as far as that could tell either, by roundings.
-bool IslandMotion::stays_near(std::size_t contact, bool both_pushed, std::vector<Vec3>& velocity) const {
-  const HeldContact& c = contacts_[contact];
-  const double behind = both_pushed && !by_modes_ ? 0.0 : members_.pull() * h_;
-  const double tolerance = search_->limits().tolerance;
-  if (by_modes_) {
-    const double closing = members_.closing_speed(c);
-    // a parting of this speed rises kClear tolerances: v^2 / 2 a
-    const bool slow = closing >= -std::sqrt(kClear) * IslandModes::slowest_bounce(members_, *search_);
-    if (c.feature.gap <= kClear * tolerance && slow) return true;
-    return !c.pair.with_site() && (c.feature.gap - h_ * (closing + behind) <= tolerance ||
-                                   gaps_at_end_[contact] <= kClear * tolerance);
-  }
-  if (falls_back(c, velocity) || (captured_ == c.pair && touches(c))) return true;
-  // a site takes no step, nor does what is at rest: whoever is let go meets it by the ordinary search
-  if (c.pair.with_site() || stands(c.pair.body) || stands(c.pair.other_body)) return false;
-  const double closing = members_.closing_speed(c, after(members_.place_of(c.pair.body)).twist,
-                                                after(members_.place_of(c.pair.other_body)).twist);
-  return c.feature.gap - h_ * (closing + behind) <= tolerance;
-}
-
-/// Pairs of members whose bounding discs are so near that they stay together while the island is agitated: who
-/// rattles would be back at once.
-std::vector<std::pair<int, int>> IslandMotion::neighbours() const {
-  const double near = kRattles * members_.size();
-  const auto left = [&](int i) {
-    return static_cast<double>(members_.state(i).position.x()) - members_.bounding_radius(i);
-  };
-  std::vector<int> by_left(members_.count());
-  std::iota(by_left.begin(), by_left.end(), 0);
-  std::sort(by_left.begin(), by_left.end(),
-            [&](int a, int b) { return std::pair(left(a), a) < std::pair(left(b), b); });
-  std::vector<std::pair<int, int>> found;
-  for (std::size_t x = 0; x < by_left.size(); ++x)
-    for (std::size_t y = x + 1; y < by_left.size(); ++y) {
-      const int a = by_left[x], b = by_left[y];
-      const double reach = members_.bounding_radius(a) + members_.bounding_radius(b) + near;
-      // those that follow begin farther right still
-      if (left(b) > left(a) + 2.0 * members_.bounding_radius(a) + near) break;
-      const RealVec apart = members_.state(a).position - members_.state(b).position;
-      if (static_cast<double>(apart.norm()) <= reach) found.emplace_back(a, b);
-    }
-  return found;
-}
-
-IslandMotion::Parts IslandMotion::parts(bool rests) const {
-  const int count = static_cast<int>(members_.count());
-  DisjointSets joined;
-  joined.reset(count);
-  std::vector<bool> pushed(members_.count(), false), seen(members_.count(), false);
-  const auto places = [this](const HeldContact& c) {
-    // a site keeps its body in an island, but joins nobody to it; nor does what is at rest
-    auto [a, b] = members_.members_of(c.pair);
-    if (at_rest_[a]) a = b;
-    if (at_rest_[b]) b = a;
-    return std::pair(a, b);
-  };
-  for (const HeldContact& c : contacts_) {
-    // at rest all that touch stay together: forces of redundant contacts are one choice of many, and 0 for
-    // some
-    if (!rests && !pushes(c)) continue;
-    const auto [a, b] = places(c);
-    pushed[a] = pushed[b] = true;
-    joined.unite(a, b);
-  }
-  // whatever pushed it, as forces that are told are not those that move it (StepOutcome::friction_residual)
-  for (int i = 0; i < count && !rests && !by_modes_ && !contacts_.empty(); ++i)
-    pushed[i] = pushed[i] || contact_force_on(i) > kMoved * no_force();
-  const std::vector<bool> by_others = pushed;
-  std::vector<Vec3> velocity = velocities();
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    const auto [a, b] = places(contacts_[k]);
-    if (rests || pushes(contacts_[k]) || !stays_near(k, by_others[a] && by_others[b], velocity)) continue;
-    pushed[a] = pushed[b] = true;
-    joined.unite(a, b);
-  }
-  // who leans on those at rest goes on together: what these carry is asked once
-  int leans = -1;
-  for (const HeldContact& c : contacts_) {
-    if (c.pair.with_site() || stands(c.pair.body) == stands(c.pair.other_body)) continue;
-    const int a = places(c).first;
-    if (!pushed[a]) continue;
-    if (leans >= 0) joined.unite(leans, a);
-    leans = a;
-  }
-  if (agitated_ && !rests)
-    for (const auto& [a, b] : neighbours()) {
-      pushed[a] = pushed[b] = true;
-      joined.unite(a, b);
-    }
-  for (int i = 0; i < count; ++i)
-    // springs hold a component together, and an island holds it whole or not at all
-    for (const int j : members_.coupled_to(i)) joined.unite(i, j);
-  Parts parts;
-  // Sets come in the order of their least member. One without a push anywhere is let go, body by body.
-  for (int i = 0; i < count; ++i) {
-    if (seen[i] || at_rest_[i]) continue;
-    std::vector<int> set(joined.of(i).begin(), joined.of(i).end());
-    std::sort(set.begin(), set.end());
-    for (const int j : set) seen[j] = true;
-    if (std::any_of(set.begin(), set.end(), [&](int j) { return pushed[j]; }))
-      parts.together.push_back(std::move(set));
-    else
-      parts.free.insert(parts.free.end(), set.begin(), set.end());
-  }
-  return parts;
-}
-
-/// By the relative velocity of the two points that touch, along the tangent; where that is none, by the relative
-/// spin. Without a push it has no mode.
-ContactMode IslandMotion::mode_of(const HeldContact& c, bool rests) const {
-  if (!pushes(c)) return ContactMode::none;
-  if (rests) return ContactMode::rest;
-  const auto twist = [this](int body) {
-    const int member = members_.place_of(body);
-    return by_modes_ ? members_.state(member).twist.rounded()
-                     : as_twist(velocity_of(member, problem_.velocity));
-  };
-  const Twist a = twist(c.pair.body);
-  const Twist b =
-      c.pair.with_site() ? members_.other_state(c.pair).twist.rounded() : twist(c.pair.other_body);
-  // with the twists that the step has: those of its end, or of its beginning by modes
-  const Vec2 relative = a.at(members_.arm(c).cast<double>()) - b.at(c.feature.point);
-  const double slow = kNoSpeed * std::sqrt(members_.pull() * members_.size());
-  if (std::abs(cross(c.feature.normal, relative)) > slow) return ContactMode::slip;
-  return std::abs(a.omega - b.omega) * members_.size() > slow ? ContactMode::roll : ContactMode::stick;
-}
-
-HeldContact IslandMotion::as_held(const HeldContact& c, ContactMode mode) const {
-  HeldContact held = c;
-  held.mode = mode;
-  held.place = members_.other_state(c.pair).position.cast<double>() + c.feature.point;
-  return held;
-}
-
-Island IslandMotion::island_of(const std::vector<int>& together, bool rests, double end) const {
-  Island island;
-  std::vector<char> is_in(members_.count(), 0);
-  for (const int i : together) is_in[i] = 1;
-  for (const int i : together) island.members.push_back(members_.bodies()[i]);
-  // Contacts among these alone, and with what stands: what leads to a member that leaves is searched again.
-  const auto has = [&](int body) { return stands(body) || is_in[members_.place_of(body)] != 0; };
-  for (const HeldContact& c : contacts_) {
-    const auto [a, b] = members_.members_of(c.pair);
-    if ((is_in[a] || is_in[b]) && has(c.pair.body) && (c.pair.with_site() || has(c.pair.other_body)))
-      island.contacts.push_back(as_held(c, mode_of(c, rests)));
-  }
-  // A step has its end; what rests has none, but where forces on a member jump.
-  island.rests = rests;
-  if (!rests) island.due = end;
-  if (rests)  // until forces jump
-    for (const int i : together) island.due = std::min(island.due, members_.next_break(i));
-  return island;
 }
 
 }  // namespace brink

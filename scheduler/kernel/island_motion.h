@@ -3,18 +3,20 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "brink/core/base/go_on.h"
+#include "brink/core/base/limits.h"
 #include "brink/core/contacts/impulse.h"
-#include "brink/scheduler/first_contact/tolerances.h"
 #include "brink/scheduler/islands/island_step.h"
 #include "brink/scheduler/kernel/collision_response.h"
+#include "brink/scheduler/kernel/feature_approach.h"
 #include "brink/scheduler/kernel/island_members.h"
 #include "brink/scheduler/kernel/island_modes.h"
+#include "brink/scheduler/kernel/island_parting.h"
+#include "brink/scheduler/kernel/step_rows.h"
 #include "brink/scheduler/kernel/wire_sides.h"
 
 namespace brink {
@@ -70,14 +72,6 @@ class IslandMotion {
   void put_to_rest(const std::vector<int>& members);
   void wake_again() { std::fill(at_rest_.begin(), at_rest_.end(), 0); }
   bool is_at_rest(int member) const { return at_rest_[member] != 0; }
-  /// A force no larger than that is none [N].
-  double no_force() const;
-  /// True of supports, and of who has been put to rest.
-  bool stands(int body) const;
-  /// Contacts by which those who stand may hold each other, with sites, but for those of supports alone; and those in which
-  /// others lean on them, or are near.
-  std::vector<HeldContact> that_hold() const;
-  std::vector<HeldContact> that_lean() const;
   /// Takes a step of `h` [s] at most by modes; false: not that way. @pre sites are covered as far.
   bool take(IslandModes& modes, double now, double h, bool on_time);
   /// Takes a step of `h` [s] at most, and less where that does not do. False: not even the shortest does.
@@ -86,75 +80,34 @@ class IslandMotion {
   /// The site that moves and leaves the members no room, where that was so; else -1.
   int closes_in() const { return closes_in_; }
 
-  /// Members that push each other, or are coupled to such, together; and those that nothing pushes.
-  struct Parts {
-    std::vector<std::vector<int>> together;  ///< members, ascending
-    std::vector<int> free;
-  };
-  Parts parts(bool rests) const;
-  /// The island that these are from now on, at rest or until the step's `end` [s].
-  Island island_of(const std::vector<int>& together, bool rests, double end) const;
+  /// Who stays together, and who stands. It must not outlive this.
+  IslandParting parting() const;
   /// The state from which a member moves through the step.
   ExtendedState after(int member) const;
   double duration() const { return h_; }  ///< of the step [s]
 
  private:
-  struct Arrival {
-    double time = std::numeric_limits<double>::infinity();  ///< from now [s]
-    double closing = 0.0;                                   ///< then, or a little before [m/s]
-  };
   void list(double reach);
   /// Of contacts from that place on.
   void remember_sides(std::size_t first) { sides_.remember(contacts_, first, {members_, *search_, warm_}); }
   void list_farther(const std::vector<Vec3>& velocity);
-  bool is_sharp(const HeldContact& c) const;
-  bool touches(const HeldContact& c) const;
-  bool is_kept_by_corner(const HeldContact& c) const;
   double impact_of(const HeldContact& c, const std::vector<Vec3>& velocity) const;
   void collide(const HeldContact& c, double closing, const Impact& told);
   ImpulseSide side_of(int member, const RealVec& arm) const;
   int site_that_closes_in() const;
   double next_arrival();
-  Arrival arrival(const HeldContact& c, const std::vector<Vec3>& velocity) const;
-  template <class Gap>
-  double root_between(Gap&& gap_at, double open, double gap, double past, double most) const;
-  double most_missed(const NearFeature& f) const;
-  std::pair<Vec3, Vec3> velocities_of(const HeldContact& c, const std::vector<Vec3>& velocity) const;
   double corners_part_in(double shortest) const;
-  double fastest_approach(const HeldContact& c, const std::vector<Vec3>& velocity) const;
-  bool passes_by(const HeldContact& c, double then, double closing) const;
   double most_absorbed(const PairKey& pair) const;
-  double kept(const NearFeature& f) const {
-    return f.thin ? thin_level_at_most(search_->limits().touch, search_->limits().tolerance) : 0.0;
-  }
+  FeatureApproach approach() const { return {members_, *search_}; }
+  StepRows rows() const { return {members_, *search_, *response_, warm_, h_}; }
   void make_problem();
-  void add_to_problem(std::size_t first);
-  bool is_beside_driven(const HeldContact& c) const;
-  std::vector<Vec3> forces(const std::vector<Acceleration>& accelerations) const;
-  double largest_change(const std::vector<Vec3>& forces, const std::vector<Vec3>& others) const;
   StepOutcome take_under_forces(const GapsAlong& gaps);
-  IslandContact island_contact(const HeldContact& c, const std::vector<NearFeature>& ahead) const;
-  void drive(const HeldContact& c, const std::vector<NearFeature>& ahead, IslandContact& made) const;
-  LastingContact rows_of(const HeldContact& c) const;
-  HeldContact as_held(const HeldContact& c, ContactMode mode) const;
-  /// What stands has none.
-  Vec3 velocity_of(int place, const std::vector<Vec3>& velocity) const {
-    return members_.is_support(place) ? Vec3(Vec3::Zero()) : velocity[place];
-  }
-  void note_shape(const HeldContact& c, IslandContact& made) const;
   double way_in_step(int member, const std::vector<Vec3>& velocity) const;
   bool stays_within_reach() const;
   double change_of_speed() const;
   void take_forces();
   bool can_stop(double way);
   double kinetic_energy() const;
-  bool pushes(const HeldContact& c) const;
-  double contact_force_on(int member) const;
-  bool stays_near(std::size_t contact, bool both_pushed, std::vector<Vec3>& velocity) const;
-  bool falls_back(const HeldContact& c, std::vector<Vec3>& velocity) const;
-  std::vector<std::pair<int, int>> neighbours() const;
-  ContactMode mode_of(const HeldContact& c, bool rests) const;
-  std::vector<Vec3> velocities() const;
 
   IslandMembers members_;
   const ContactSearch* search_;
@@ -167,7 +120,7 @@ class IslandMotion {
   bool by_modes_ = false, agitated_ = false, impacts_in_step_ = false;
   int closes_in_ = -1;
   double h_ = 0.0, absorbed_ = 0.0;
-  double expected_ = std::numeric_limits<double>::infinity();
+  double expected_ = kForever;
   double asked_ = 0.0;  ///< the length of the step, but for what impacts cut off it [s]
   WireSides sides_;
   std::optional<PairKey> captured_;

@@ -405,7 +405,8 @@ std::optional<bool> Islands::attempt_step(Attempt& attempt, std::vector<int>& ch
 void Islands::part(const IslandMotion& motion, bool rests, const IslandModes* modes, const IslandPace& pace,
                    std::vector<int>& changed) {
   // who pushes whom is known from the step that has been found
-  const IslandMotion::Parts parts = motion.parts(rests);
+  const IslandParting parting = motion.parting();
+  const IslandParts parts = parting.parts(rests);
   const IslandMembers& members = motion.members();
   const double now = run_->time(), end = modes ? modes->end() : now + motion.duration();
   std::vector<Restart> held, as_they_are;
@@ -415,7 +416,7 @@ void Islands::part(const IslandMotion& motion, bool rests, const IslandModes* mo
     for (const int i : together)
       // a step of constant twists begins where the member is, with the twist that it comes to
       held.push_back({members.bodies()[i], rests || modes ? members.state(i) : motion.after(i)});
-    Island island = motion.island_of(together, rests, end);
+    Island island = parting.island_of(together, rests, end);
     island.pace = pace;
     put_in(std::move(island));
     if (run_->is_cut()) return;

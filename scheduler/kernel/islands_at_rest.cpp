@@ -116,7 +116,7 @@ void Islands::rouse(Island island, const std::set<int>& roused, Attempt& attempt
 
 /// False: some of them are moved, and wake; or the run is cut. What leans on an island at rest is noted as the step has it.
 bool Islands::carries(const IslandMotion& motion, Attempt& attempt) {
-  const std::vector<HeldContact> lean = motion.that_lean();
+  const std::vector<HeldContact> lean = motion.parting().that_lean();
   const RestCheck check = rest_check();
   double moved = 0.0;
   for (auto& [lead, island] : islands_) {
@@ -176,7 +176,7 @@ bool Islands::lay_to_rest(IslandMotion& motion, bool all, Attempt& attempt) {
     if (answer.stays) {
       pace.in_vain = 0;
       tally_.friction_residual = std::max(tally_.friction_residual, answer.beyond);
-      enter_at_rest(std::move(island), with, laid, motion.no_force(), attempt);
+      enter_at_rest(std::move(island), with, laid, motion.parting().no_force(), attempt);
       return true;
     }
     // what friction had held, by what sweeps left of it, goes on
@@ -201,7 +201,7 @@ Island Islands::at_rest_with(const IslandMotion& motion, const std::vector<int>&
     island.members.push_back(members.bodies()[i]);
     island.due = std::min(island.due, members.next_break(i));
   }
-  island.contacts = motion.that_hold();
+  island.contacts = motion.parting().that_hold();
   for (const HeldContact& c : island.contacts)
     if (!c.pair.with_site())
       for (const int k : {c.pair.body, c.pair.other_body})
@@ -216,7 +216,7 @@ Island Islands::at_rest_with(const IslandMotion& motion, const std::vector<int>&
   }
   std::sort(island.members.begin(), island.members.end());
   std::sort(island.contacts.begin(), island.contacts.end(), in_order);
-  for (const HeldContact& c : motion.that_lean())
+  for (const HeldContact& c : motion.parting().that_lean())
     if (has(island, c.pair.body) || has(island, c.pair.other_body)) island.leaning.push_back(c);
   std::sort(island.leaning.begin(), island.leaning.end(), in_order);
   return island;

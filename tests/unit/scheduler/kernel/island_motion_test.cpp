@@ -38,10 +38,10 @@ TEST(IslandMotion, WhatLiesAndIsHeldRests) {
   Alone box(on_floor(make_box(1.0, 1.0)));
   EXPECT_EQ(box.pass_on_impacts(), 0);
   ASSERT_TRUE(box.motion.rests(0.0));
-  const IslandMotion::Parts parts = box.motion.parts(true);
+  const IslandParts parts = box.motion.parting().parts(true);
   EXPECT_EQ(parts.together, std::vector<std::vector<int>>{{0}});
   EXPECT_TRUE(parts.free.empty());
-  const Island island = box.motion.island_of({0}, true, 0.0);
+  const Island island = box.motion.parting().island_of({0}, true, 0.0);
   EXPECT_TRUE(island.rests);
   EXPECT_NEAR(sum_of_forces(island), 10.0, 1e-9);
 }
@@ -51,7 +51,7 @@ TEST(IslandMotion, WhatNothingHoldsDoesNotRestAndIsLetGo) {
   box.pass_on_impacts();
   EXPECT_FALSE(box.motion.rests(0.0));
   ASSERT_TRUE(box.motion.take(box.motion.longest(), 0.0));
-  EXPECT_EQ(box.motion.parts(false).free, std::vector<int>{0});
+  EXPECT_EQ(box.motion.parting().parts(false).free, std::vector<int>{0});
   EXPECT_NEAR(box.motion.after(0).rounded().twist.velocity.y(), -10.0 * box.motion.duration(), 1e-12);
 }
 
@@ -67,8 +67,8 @@ TEST(IslandMotion, WhatSlidesIsSlowedByFriction) {
   EXPECT_NEAR(after.twist.velocity.x(), 1.0 - 5.0 * h, 1e-5);
   EXPECT_NEAR(after.twist.velocity.y(), 0.0, 1e-5);
   EXPECT_NEAR(after.twist.omega, 0.0, 1e-5);
-  EXPECT_EQ(box.motion.parts(false).together, std::vector<std::vector<int>>{{0}});
-  EXPECT_NEAR(sum_of_forces(box.motion.island_of({0}, false, h)), 10.0, 1e-4);
+  EXPECT_EQ(box.motion.parting().parts(false).together, std::vector<std::vector<int>>{{0}});
+  EXPECT_NEAR(sum_of_forces(box.motion.parting().island_of({0}, false, h)), 10.0, 1e-4);
 }
 
 // Restitution 0.5: down by 2 m/s, up by 1.

@@ -1,0 +1,164 @@
+#include "brink/scheduler/kernel/step_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "brink/core/base/limits.h"
+#include "brink/scheduler/islands/driven_surface.h"
+#include "brink/scheduler/kernel/feature_approach.h"
+
+namespace brink {
+
+std::vector<Vec3> forces_of(const IslandMembers& members, const std::vector<Acceleration>& accelerations) {
+  std::vector<Vec3> all;
+  for (std::size_t i = 0; i < accelerations.size(); ++i) {
+    const Body& b = members.body(static_cast<int>(i));
+    const Acceleration& a = accelerations[i];
+    all.emplace_back(b.mass * a.linear.x(), b.mass * a.linear.y(), b.inertia * a.angular);
+  }
+  return all;
+}
+
+double largest_change(const IslandMembers& members, const std::vector<Vec3>& forces,
+                      const std::vector<Vec3>& others) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    const Body& b = members.body(static_cast<int>(i));
+    const Vec3 change = forces[i] - others[i];
+    most = std::max(most, change.head<2>().norm() / b.mass +
+                              std::abs(change[2]) / b.inertia * members.bounding_radius(static_cast<int>(i)));
+  }
+  return most;
+}
+
+IslandStep StepRows::members_alone() const {
+  IslandStep problem;
+  for (std::size_t i = 0; i < members_->count(); ++i) {
+    const int member = static_cast<int>(i);
+    const Body& b = members_->body(member);
+    problem.velocity.push_back(as_vector(members_->state(member).twist.rounded()));
+    // infinity: held (RestProblem)
+    problem.mass.emplace_back(b.lock_x ? kForever : b.mass, b.lock_y ? kForever : b.mass,
+                              b.lock_angle ? kForever : b.inertia);
+  }
+  problem.force = forces_of(*members_, members_->accelerations());
+  return problem;
+}
+
+void StepRows::add(const std::vector<HeldContact>& contacts, IslandStep& problem) const {
+  const PairKey* looked_at = nullptr;
+  std::vector<NearFeature> ahead;  // of that pair
+  for (std::size_t k = problem.contacts.size(); k < contacts.size(); ++k) {
+    const HeldContact& c = contacts[k];
+    if (is_beside_driven(c) && (!looked_at || *looked_at != c.pair)) {
+      ahead = members_->features_ahead(c.pair, h_);
+      looked_at = &c.pair;
+    }
+    problem.contacts.push_back(island_contact(c, ahead));
+  }
+}
+
+/// Of a site that moves: the body is not abreast of it yet, and may be where it comes to.
+bool StepRows::is_beside_driven(const HeldContact& c) const {
+  return members_->on_moving_site(c) && (c.feature.at_end || c.feature.beside_arc);
+}
+
+/// Geometry at the start of the step; forces of the step before, from which friction bounds come. Of a site that moves geometry is
+/// that where it comes to, of `ahead` (features_ahead()): the end of an arc may have gone by.
+IslandContact StepRows::island_contact(const HeldContact& c, const std::vector<NearFeature>& ahead) const {
+  IslandContact made;
+  made.rows = rows_of(c);
+  const FeatureApproach approach(*members_, *search_);
+  made.gap = c.feature.gap - approach.kept(c.feature);
+  made.thin = c.feature.thin;
+  // a wire has no inside: what is through it, by however little, is on its other side
+  made.tolerance = approach.most_missed(c.feature);
+  const Material& material = response_->material_of(c.pair);
+  made.friction = material.friction;
+  made.rolling_resistance = material.rolling_resistance;
+  if (const HeldContact* warm = warm_->find(c)) {
+    made.normal_force = warm->normal_force;
+    made.tangential_force = warm->tangential_force;
+    made.force_lasted = warm->lasted;
+  }
+  made.at_end = c.feature.at_end || c.feature.beside_arc;
+  made.driven = members_->on_moving_site(c);
+  // a body that is a member moves by the unknown twists; a site by what it is told
+  note_shape(c, made);
+  if (made.driven) drive(c, ahead, made);
+  return made;
+}
+
+/// The mean velocity of its surface along the normal, by what the gap loses where the body stays, and that of its point along the
+/// tangent. A point's own along the normal would be no surface's: those of a round drum leave it along chords. What is under the
+/// body now counts as the line or the circle that it is, until the step ends; what is beside it, as where it comes to.
+void StepRows::drive(const HeldContact& c, const std::vector<NearFeature>& ahead, IslandContact& made) const {
+  const ExtendedState from = members_->other_state(c.pair), to = members_->other_state(c.pair, h_, {});
+  // the site's own motion over the step, as one turn and shift of the point that touches
+  const Frame step(
+      {(to.position - from.position).cast<double>(), static_cast<double>(to.angle - from.angle)});
+  const Vec2 way = step.to_world(c.feature.point) - c.feature.point;
+  made.tangential_support = way.dot(perp(c.feature.normal)) / h_;
+  if (!is_beside_driven(c)) {
+    made.normal_support = advance_of_surface(c.feature, search_->outline_of(search_->other_owner(c.pair)),
+                                             static_cast<double>(from.angle), step) /
+                          h_;
+    return;
+  }
+  const std::vector<Vec3> stays(members_->count(), Vec3::Zero());
+  const double gap = members_->gap(c, h_, stays);
+  const auto found = std::find_if(ahead.begin(), ahead.end(), [&](const NearFeature& f) {
+    return std::tuple(f.sample_on_a, f.sample, f.site) ==
+           std::tuple(c.feature.sample_on_a, c.feature.sample, c.feature.site);
+  });
+  // not where the site has come over the body, which is on another side of it there
+  const bool there = found != ahead.end() && found->normal.dot(c.feature.normal) > 0.0 &&
+                     (found->over_joint || std::abs(found->gap - gap) <= search_->limits().tolerance);
+  made.normal_support = (there ? c.feature.gap - found->gap : members_->gap(c, 0.0, stays) - gap) / h_;
+  if (!there) return;
+  HeldContact then = c;
+  then.feature = *found;
+  then.feature.point += step.origin;  // from where the site is now
+  made.rows = rows_of(then);
+  const Vec2& point = then.feature.point;
+  made.tangential_support = (point - step.to_local(point)).dot(perp(then.feature.normal)) / h_;
+}
+
+/// What stands is as a site is, whichever of the two it is: the normal points into what moves then, or away from it.
+LastingContact StepRows::rows_of(const HeldContact& c) const {
+  const int a = members_->place_of(c.pair.body);
+  const int b = c.pair.with_site() ? -1 : members_->place_of(c.pair.other_body);
+  LastingContact rows = contact_at(a, b, c.feature.normal, members_->arm(c).cast<double>(), c.feature.point);
+  if (b >= 0 && members_->is_support(b)) rows.other = -1;
+  if (!members_->is_support(a)) return rows;
+  rows.body = b;
+  rows.normal_on_body = rows.normal_on_other;
+  rows.tangent_on_body = rows.tangent_on_other;
+  rows.other = -1;
+  return rows;
+}
+
+/// How the gap behaves along a step. Of a segment it is convex in front of it, so of a wire it is not, nor where there is no
+/// way by an end: there what is beside the segment counts as behind it, too. Of an arc it depends on the side.
+void StepRows::note_shape(const HeldContact& c, IslandContact& made) const {
+  const NearFeature& f = c.feature;
+  const Outline *of_sample = &search_->outline_of(c.pair.body),
+                *of_site = &search_->outline_of(search_->other_owner(c.pair));
+  if (!f.sample_on_a) std::swap(of_sample, of_site);
+  const Sample& sample = of_sample->samples[f.sample];
+  const SiteKind kind = of_site->sites[f.site].kind;
+  made.convex = !made.driven && !f.thin && !f.beside_arc && !f.no_way_by && !of_site->container &&
+                kind != SiteKind::arc;
+  const Site& site = of_site->sites[f.site];
+  made.round_site = site.kind == SiteKind::point && site.a == Vec2(Vec2::Zero());
+  // the row's body is the one who moves (rows_of)
+  made.sample_on_body = f.sample_on_a != members_->is_support(members_->place_of(c.pair.body));
+  made.arm = sample.p.norm();
+  // from the centre of mass to the point on the site's surface, and on along the normal to the sample
+  const Vec2 to_point = f.sample_on_a ? f.point : Vec2(members_->arm(c).cast<double>());
+  made.apart = to_point.norm() + std::abs(f.gap) + sample.radius;
+}
+
+}  // namespace brink
