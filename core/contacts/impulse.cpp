@@ -58,6 +58,28 @@ ExtendedTwist pushed(const ImpulseSide& side, const RealVec& impulse) {
   return after;
 }
 
+/// What a collision gains, as a part of what its normal impulse turns over, that is a rounding of two doubles.
+constexpr double kNoGain = 1e-24;
+
+/// Less friction, where as much as is asked for would make the collision gain energy, which Newton's restitution with Coulomb's
+/// friction may (Kane & Levinson 1985). With v_n' = -e v_n met whatever friction does, the gain is
+///
+///   W(p_t) = -(1 - e^2) v_n^2 / (2 k_nn) + p_t (v_t - k_nt v_n / k_nn) + p_t^2 det / (2 k_nn),
+///
+/// none at p_t = 0, and so none up to its root on the side of `pt`. In between p_n stays large enough for the cone, as it is at
+/// both ends. Source: Brach 1989, "Rigid body collisions", J. Appl. Mech. 56. @pre determinant > 0, |et| <= 1
+Real without_gain(const ContactSpace& c, Real determinant, const Material& material, Real pt) {
+  const Real e = material.restitution;
+  const Real lost = (Real(1) - e * e) * c.vn * c.vn / (Real(2) * c.knn),
+             bends = determinant / (Real(2) * c.knn);
+  const Real side = pt < 0.0 ? -1.0 : 1.0, most = side * pt;
+  const Real slope = side * (c.vt - c.knt * c.vn / c.knn);
+  if (most * (slope + most * bends) - lost <= kNoGain * c.vn * c.vn / c.knn) return pt;
+  const Real root = sqrt(slope * slope + Real(4) * bends * lost);
+  // whichever of the two takes no difference
+  return side * (slope > 0.0 ? Real(2) * lost / (slope + root) : (root - slope) / (Real(2) * bends));
+}
+
 ImpulseResult apply(ImpulseKind kind, const ContactSpace& c, const ImpulseSide& body,
                     const ImpulseSide& other, Real pn, Real pt) {
   // Only what is told of the impulse is rounded to double; the twists, from which motions start, are not.
@@ -84,14 +106,18 @@ ImpulseResult resolve_impulse(const ImpulseSide& body, const ImpulseSide& other,
   // Sticking: both components are met at once; a 2x2 solve.
   const Real dt = -(Real(1) + material.tangential_restitution) * c.vt;
   const Real determinant = c.knn * c.ktt - c.knt * c.knt;
+  const auto rub = [&](ImpulseKind kind, Real pn, Real pt) {
+    const Real kept = without_gain(c, determinant, material, pt);
+    if (kept == pt) return apply(kind, c, body, other, pn, pt);
+    return apply(ImpulseKind::bounded, c, body, other, (dn - c.knt * kept) / c.knn, kept);
+  };
   // The determinant is >= 0 (Cauchy-Schwarz), and 0 where everything that yields does so along one
   // direction: a body that can only slide along x, hit on a slanted side. There v_n' = -e v_n alone
   // settles the motion, and friction could change nothing but p_n.
   if (determinant > 1e-14 * c.knn * c.ktt) {
     const Real pn = (c.ktt * dn - c.knt * dt) / determinant;
     const Real pt = (c.knn * dt - c.knt * dn) / determinant;
-    if (pn >= 0.0 && abs(pt) <= material.friction * pn)
-      return apply(ImpulseKind::stick, c, body, other, pn, pt);
+    if (pn >= 0.0 && abs(pt) <= material.friction * pn) return rub(ImpulseKind::stick, pn, pt);
   } else {  // no tangential freedom apart from the normal's: nothing to stick with
     return apply(ImpulseKind::slip, c, body, other, frictionless, 0);
   }
@@ -111,7 +137,7 @@ ImpulseResult resolve_impulse(const ImpulseSide& body, const ImpulseSide& other,
     const Real pn = dn / denominator, pt = s * material.friction * pn;
     const Real wanted = c.ktt * pt + c.knt * pn - dt;  // what is left of the wanted tangential change
     if (s * wanted <= 0.0 || s != opposing)
-      return apply(s == opposing ? ImpulseKind::slip : ImpulseKind::reverse, c, body, other, pn, pt);
+      return rub(s == opposing ? ImpulseKind::slip : ImpulseKind::reverse, pn, pt);
   }
   // Friction against the sliding overshoots, and the other sign lies in Painleve's wedge. Not both signs
   // do: the two denominators add up to 2 k_nn > 0.

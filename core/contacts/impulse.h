@@ -18,6 +18,7 @@ enum class ImpulseKind {
   stick,       ///< no sliding at the end (or full tangential restitution within the cone)
   slip,        ///< friction at its bound throughout
   reverse,     ///< sliding stopped and started the other way before the end
+  bounded,     ///< less friction than that: as much as gains no energy
   jam,         ///< no finite answer (both sides held)
 };
 
@@ -31,7 +32,7 @@ struct ImpulseResult {
 /// Resolves one collision at one point; `normal` points into `body`. Restitution is met exactly at every
 /// speed: v_n' = -e v_n. Without tangential restitution the tangential impulse is the one that ends sliding,
 /// bounded by friction * normal impulse; with it, the tangential velocity is reversed by that factor, within
-/// the same bound.
+/// the same bound. No collision gains energy: friction is less where it would.
 ImpulseResult resolve_impulse(const ImpulseSide& body, const ImpulseSide& other, const RealVec& normal,
                               const Material& material);
 

@@ -108,9 +108,7 @@ std::string fault_of(std::uint64_t seed) {
   const RunSummary summary = simulator.run(options, &watch);
   if (summary.termination == Termination::failed) return summary.why;
   if (!watch.sound()) return watch.report();
-  // Newton's restitution with friction may win energy (Kane and Levinson 1985)
-  const Material& m = world.materials[0];
-  if (m.restitution * m.friction == 0.0 && watch.gained > 1e-9L)
+  if (watch.gained > 1e-9L)
     return fmt::format("energy grew by {:.3g} of what there was", static_cast<double>(watch.gained));
   return testing::stopped_under_another_policy(world, solver, options, 4, seed, summary);
 }

@@ -20,7 +20,6 @@ struct LastingWorld {
   std::string order = "index";    ///< the option
   bool moves = false;             ///< a site gives or takes energy
   bool pulls = false;             ///< springs or drag
-  bool rebounds_rub = false;      ///< restitution with friction: Newton's law may win energy then (Kane 1984)
 };
 
 class LastingWorldMaker {
@@ -59,7 +58,6 @@ class LastingWorldMaker {
     const std::uint64_t kind = random_.below(3);
     for (Material& m : made_.world.materials)
       (kind == 0 ? m.friction : m.restitution) *= kind == 2 ? 1.0 : 0.0;
-    made_.rebounds_rub = kind == 2;
   }
 
   void wall(const Vec2& a, const Vec2& b, double radius = 0.0) { stand(site(make_segment(a, b, radius))); }

@@ -69,6 +69,42 @@ TEST(Impulse, RandomCollisionsMeetRestitutionMomentumAndCoulombsLaw) {
   EXPECT_GT(reverses, 10);
 }
 
+// The same with any friction, any tangential restitution and slender bodies, where Coulomb's friction and Newton's restitution
+// together would gain (Kane & Levinson 1985): there friction is as much as gains nothing, to the rounding of two doubles.
+TEST(Impulse, NoCollisionGainsEnergy) {
+  SeededRandom r(13);
+  int bounded = 0;
+  for (int i = 0; i < 100000; ++i) {
+    ImpulseSide a = random_side(r), b = random_side(r);
+    a.inverse_inertia = std::pow(10.0, r.uniform(-2.0, 3.0));
+    const double angle = r.uniform(0.0, 2.0 * M_PI);
+    const RealVec n(std::cos(angle), std::sin(angle)), t = extended::perp(n);
+    Material m;
+    m.restitution = i % 3 == 0 ? 1.0 : r.uniform();
+    m.friction = std::pow(10.0, r.uniform(-2.0, 1.0));
+    m.tangential_restitution = i % 2 == 0 ? 0.0 : r.uniform(-1.0, 1.0);
+    const ImpulseResult result = resolve_impulse(a, b, n, m);
+    if (result.kind == ImpulseKind::separating) continue;
+    const Real before = energy(a, a.twist) + energy(b, b.twist);
+    const Real after = energy(a, result.body) + energy(b, result.other);
+    // the normal is a unit vector to the rounding of one double
+    ASSERT_LE(static_cast<double>(after - before), 1e-15 * static_cast<double>(before)) << "case " << i;
+    const Real closing = relative_velocity(a, a.twist, b, b.twist).dot(n);
+    const RealVec parting = relative_velocity(a, result.body, b, result.other);
+    ASSERT_NEAR(static_cast<double>(parting.dot(n)), static_cast<double>(-m.restitution * closing),
+                1e-14 * (10.0 + std::abs(static_cast<double>(closing))))
+        << "case " << i;
+    ASSERT_GE(result.normal, 0.0);
+    ASSERT_LE(std::abs(result.tangential), m.friction * result.normal * (1.0 + 1e-14)) << "case " << i;
+    if (result.kind != ImpulseKind::bounded) continue;
+    ++bounded;
+    // it is the most that friction can do on that side: nothing of the energy is lost
+    ASSERT_NEAR(static_cast<double>(after / before), 1.0, 1e-15) << "case " << i;
+    ASSERT_TRUE(std::isfinite(static_cast<double>(parting.dot(t))));
+  }
+  EXPECT_GT(bounded, 1000);
+}
+
 TEST(Impulse, ElasticAndFrictionlessKeepsEnergy) {
   SeededRandom r(12);
   for (int i = 0; i < 20000; ++i) {
