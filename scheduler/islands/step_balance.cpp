@@ -16,8 +16,10 @@ constexpr double kFarOff = 100.0;
 
 }  // namespace
 
-double contact_impulse(const Vec3& mass, const Vec3& force, const Vec3& before, const Vec3& after, double h) {
-  const double gyration = std::isinf(mass[2]) || std::isinf(mass[0]) ? 0.0 : std::sqrt(mass[2] / mass[0]);
+double contact_impulse(const Vec3& mass, const Vec3& force, const Vec3& before, const Vec3& after, double h,
+                       double arm) {
+  const double moves = std::min(mass[0], mass[1]),
+               gyration = std::isinf(moves) ? arm : std::sqrt(mass[2] / moves);
   double square = 0.0;
   for (int k = 0; k < 3; ++k) {
     if (std::isinf(mass[k])) continue;
@@ -40,10 +42,18 @@ StepBalance::StepBalance(const IslandStep& step, double h, std::vector<PushingCo
 /// Two who are pushed are of one group where a contact between them pushes; what lies on one site is not, for that.
 void StepBalance::find_groups(const std::vector<Vec3>& velocity) {
   const std::size_t bodies = step_->mass.size();
-  std::vector<double> impulse;
+  std::vector<double> impulse, arm(bodies, 0.0);
   double largest = 0.0;
+  for (const PushingContact& c : contacts_) {
+    const LastingContact& rows = step_->contacts[c.contact].rows;
+    arm[rows.body] = std::max(arm[rows.body], std::hypot(rows.normal_on_body[2], rows.tangent_on_body[2]));
+    if (rows.other >= 0)
+      arm[rows.other] =
+          std::max(arm[rows.other], std::hypot(rows.normal_on_other[2], rows.tangent_on_other[2]));
+  }
   for (std::size_t i = 0; i < bodies; ++i) {
-    impulse.push_back(contact_impulse(step_->mass[i], step_->force[i], step_->velocity[i], velocity[i], h_));
+    impulse.push_back(
+        contact_impulse(step_->mass[i], step_->force[i], step_->velocity[i], velocity[i], h_, arm[i]));
     largest = std::max(largest, impulse.back());
   }
   const auto is_pushed = [&](int k) { return impulse[k] > kOnePush * largest; };

@@ -9,8 +9,9 @@
 namespace brink {
 
 /// What all contacts together have given a body [N s], by its velocities before and after h [s] under that force; a turning counts as
-/// at the radius of gyration. What is held has an infinite mass, and nothing is told of it.
-double contact_impulse(const Vec3& mass, const Vec3& force, const Vec3& before, const Vec3& after, double h);
+/// at the radius of gyration, of what turns on an axle at `arm` [m]. What is held has an infinite mass, and nothing is told of it.
+double contact_impulse(const Vec3& mass, const Vec3& force, const Vec3& before, const Vec3& after, double h,
+                       double arm);
 
 /// A contact that took part in a step.
 struct PushingContact {

@@ -73,7 +73,7 @@ double IslandParting::no_force() const { return kNoForce * step_.members.heavies
 double IslandParting::contact_force_on(int member) const {
   return contact_impulse(step_.problem.mass[member], step_.problem.force[member],
                          as_vector(step_.members.state(member).twist.rounded()),
-                         step_.problem.velocity[member], step_.h) /
+                         step_.problem.velocity[member], step_.h, step_.members.bounding_radius(member)) /
          step_.h;
 }
 

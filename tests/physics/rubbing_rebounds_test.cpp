@@ -1,5 +1,5 @@
-// Slender bodies with restitution and friction: gears on axles that rattle in each other, and rods, needles and stars in a room,
-// under every law of one contact (restitution and friction of any size, tangential restitution from -1 to 1, impact orders).
+// Slender bodies with restitution and friction: gears on axles that rattle in each other, planets that wedge between a sun on its
+// axle and a ring, and rods, needles and stars in a room, under every law of one contact (restitution and friction of any size, tangential restitution from -1 to 1, impact orders).
 // Newton's restitution and Coulomb's friction together would gain energy (Kane & Levinson 1985): at no frame may there be more
 // than before. BRINK_SEED moves the seeds, BRINK_WORLDS their number.
 #include <gtest/gtest.h>
@@ -73,6 +73,38 @@ std::string gears(Random& random) {
   return text;
 }
 
+/// How far from a whole number.
+double off_whole(double x) { return std::abs(x - std::round(x)); }
+
+/// A sun on its axle, and one to three planets that are free between it and a ring with teeth.
+std::string planets(Random& random) {
+  constexpr double kModule = 0.1, kHeight = 0.05;
+  const int of_sun = 10 + static_cast<int>(random.below(10)),
+            of_planet = 8 + static_cast<int>(random.below(7)), of_ring = of_sun + 2 * of_planet;
+  const double width = random.uniform(0.42, 0.48), slant = random.uniform(0.2, 0.45);
+  std::vector<Vec2> ring = gear(of_ring, 0.5 * kModule * of_ring, -kHeight, width, slant);
+  std::string text = fmt::format("[[sites]]\n{}\ninside_of = true\n", polygon(ring));
+  text += fmt::format("[[bodies]]\n{}\ndensity = 5\nlock = ['x', 'y']\nangular_velocity = {}\n",
+                      polygon(gear(of_sun, 0.5 * kModule * of_sun, kHeight, width, slant)),
+                      random.uniform(-8.0, 8.0));
+  const int count = 1 + static_cast<int>(random.below(3));
+  for (int k = 0; k < count; ++k) {
+    const double turn = 2.0 * std::numbers::pi, orbit = 0.5 * kModule * (of_sun + of_planet);
+    // about a third of the way round, where its teeth are in gaps of both
+    double best = 1.0, along = 0.0, angle = 0.0;
+    for (int n = -2000; n < 2000; ++n) {
+      const double there = turn * k / 3.0 + 4e-4 * n, tooth = there * of_sun / turn;
+      const double turned = there + std::numbers::pi - (0.5 - tooth) * turn / of_planet;
+      const double off = off_whole((there - turned) * of_planet / turn - there * of_ring / turn - 0.5);
+      if (off < best) best = off, along = there, angle = turned;
+    }
+    text += fmt::format("[[bodies]]\n{}\ndensity = 5\nposition = [{:.12g}, {:.12g}]\nangle = {:.12g}\n",
+                        polygon(gear(of_planet, 0.5 * kModule * of_planet, kHeight, width, slant)),
+                        orbit * std::cos(along), orbit * std::sin(along), angle);
+  }
+  return text;
+}
+
 std::string slender(Random& random) {
   const double length = random.uniform(0.3, 0.6), width = random.uniform(0.02, 0.1);
   switch (random.below(4)) {
@@ -109,13 +141,21 @@ std::string scene_of(std::uint64_t seed) {
   Random random(seed);
   // where contacts last a step has the velocity of its end all along: seen from frames, weights are then known to that
   std::string text = fmt::format(
-      "[world]\nduration = 2\ngravity = [0, {}]\n[solver]\norder = '{}'\n[materials.default]\nrestitution = "
+      "[world]\nduration = 2\ngravity = [0, {}]\n[solver]\norder = '{}'\nmodes_contacts = "
+      "{}\n[materials.default]\nrestitution = "
       "{}\nfriction = {}\ntangential_restitution = {}\n",
       pick(random, {-9.81, -1e-6}), pick(random, {"index", "closing_speed", "lcp", "reflections"}),
-      random.below(2) == 0 ? pick(random, {1.0, 0.9, 0.5}) : random.uniform(0.1, 1.0),
+      pick(random, {0, 16}), random.below(2) == 0 ? pick(random, {1.0, 0.9, 0.5}) : random.uniform(0.1, 1.0),
       random.below(2) == 0 ? pick(random, {0.3, 0.6, 1.0}) : random.uniform(0.05, 1.5),
       pick(random, {0.0, 0.0, 1.0, -1.0, 0.5, -0.3}));
-  return text + (random.below(2) == 0 ? gears(random) : in_a_room(random));
+  switch (random.below(3)) {
+    case 0:
+      return text + gears(random);
+    case 1:
+      return text + planets(random);
+    default:
+      return text + in_a_room(random);
+  }
 }
 
 void check(std::uint64_t seed) {

@@ -166,5 +166,33 @@ TEST(StepBalance, TheRiseOfAWireIsFree) {
   EXPECT_GT(balance.rise_of_thin(), 0.0);
 }
 
+// What one on an axle gives to another is not won: the two are a group though neither push moves the first.
+TEST(StepBalance, WhatTurnsOnAnAxleIsPushedToo) {
+  constexpr double kHeld = std::numeric_limits<double>::infinity();
+  IslandStep step;
+  step.mass = {{kHeld, kHeld, 0.5}, {1.0, 1.0, 0.1}};
+  step.force = {Vec3::Zero(), Vec3::Zero()};
+  step.velocity = {{0.0, 0.0, 2.0}, {0.0, 0.0, 0.0}};
+  IslandContact tooth;
+  // half a metre beside the axle, and under the middle of the other
+  tooth.rows = contact_at(1, 0, {0.0, 1.0}, {0.0, -0.2}, {0.5, 0.0});
+  step.contacts.push_back(tooth);
+  // v_n = -1 m/s comes to 0
+  const double impulse = 1.0 / (1.0 / 1.0 + 0.25 / 0.5);
+  std::vector<Vec3> v = step.velocity;
+  v[1] += impulse * tooth.rows.normal_on_body.cwiseQuotient(step.mass[1]);
+  v[0] += impulse * tooth.rows.normal_on_other.cwiseQuotient(step.mass[0]);
+  const StepBalance balance(step, kStep, {{0, 0.0, {impulse, 0.0, 0.0}}}, v);
+  EXPECT_EQ(balance.groups(), (std::vector<int>{0, 0}));
+  double of = 0.0;
+  EXPECT_NEAR(balance.won(v, kTolerance, of), -0.5 * impulse, 1e-15);
+  EXPECT_GT(of, 0.5);
+  // by itself it is pushed as well, by a site
+  step.contacts[0].rows = contact_at(0, -1, {0.0, 1.0}, {0.5, 0.0}, {0.0, 0.0});
+  v = step.velocity;
+  v[0][2] = 0.0;
+  EXPECT_EQ(StepBalance(step, kStep, {{0, 0.0, {2.0, 0.0, 0.0}}}, v).groups(), (std::vector<int>{0, -1}));
+}
+
 }  // namespace
 }  // namespace brink::step_balance_test
