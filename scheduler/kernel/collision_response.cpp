@@ -41,6 +41,18 @@ double change_of_speed(const ExtendedState& now, const ExtendedState& then, cons
   return speed_of({change, point - now.position, 0.0, 0.0, 0.0});
 }
 
+/// How fast a contact comes to open as its bodies turn, whatever forces do, where they go on with these twists [m/s^2]: as its normal
+/// turns, and its point goes on along them.
+double opens_by_turning(const ExtendedContact& c, const ImpulseSide& body, const ImpulseSide& other,
+                        const ImpulseResult& after) {
+  const Twist a = after.body.rounded(), b = after.other.rounded();
+  const Vec2 n = c.normal.cast<double>();
+  const Vec2 slides = a.at(body.arm.cast<double>()) - b.at(other.arm.cast<double>());
+  const Vec2 arms_turn =
+      cross(a.omega, Vec2(c.point_rate - a.velocity)) - cross(b.omega, Vec2(c.point_rate - b.velocity));
+  return c.turn_rate * perp(n).dot(slides) + n.dot(arms_turn);
+}
+
 /// The state `delay` later of what moves so. What forces do to it in so short a while counts on a parabola alone:
 /// elsewhere an integrator is off by far more.
 ExtendedState later(const ExtendedState& s, Real delay, const Motion& motion) {
@@ -140,9 +152,8 @@ BounceLoss CollisionResponse::loss_of(const PairKey& pair) {
   // slip or spin of another value take energy, or give it: a series of bounces may come to an end
   if (reflects_) return m.slip == 1.0 && m.spin == 1.0 ? BounceLoss::none : BounceLoss::some;
   if (m.restitution == 0.0) return BounceLoss::all;
-  // with e = 1 friction may still take energy from the sliding
-  const bool rubs = m.friction > 0.0 && m.tangential_restitution < 1.0;
-  return m.restitution < 1.0 || rubs ? BounceLoss::some : BounceLoss::none;
+  // with e = 1 friction may still take energy, from a sliding that it does not stop whatever the tangential restitution
+  return m.restitution < 1.0 || m.friction > 0.0 ? BounceLoss::some : BounceLoss::none;
 }
 
 double CollisionResponse::gap_rounding(const PairKey& pair) const {
@@ -203,10 +214,13 @@ CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const F
   const auto law = reflects_ ? resolve_reflection : resolve_impulse;
   r.impulse = law(side, other_side, c.normal, material);
   r.magnitude = std::max(speed_of(side), speed_of(other_side));
-  // where the moment of contact lies before the clock, what forces have added by now is no approach
-  if (r.delay < 0)
-    r.magnitude +=
-        (change_of_speed(r.body, body, c.point) + change_of_speed(r.other, other, c.point)) / kEpsilon;
+  // What forces change from now to the moment of contact, or the reverse, is no approach, nor is what turning does.
+  if (r.delay != 0) {
+    const double closes = 2.0 * r.delay.high() * opens_by_turning(at_present, side, other_side, r.impulse);
+    r.magnitude += (change_of_speed(r.body, body, c.point) + change_of_speed(r.other, other, c.point) +
+                    std::max(0.0, closes)) /
+                   kEpsilon;
+  }
   // an approach that the law does not see was rounding, all of it
   const bool held = trajectories_->is_held(pair.body) ||
                     (!pair.with_site() && trajectories_->is_held(pair.other_body));  // by state_now()

@@ -31,6 +31,14 @@ TEST(CollisionResponse, LossIsThatOfThePairsMaterial) {
                                               : e == 1.0 ? BounceLoss::none
                                                          : BounceLoss::some);
   }
+  // friction takes from what slides on, and with it from the approach
+  for (const double tangential : {0.0, 1.0}) {
+    World rough = two_discs(1.0);
+    rough.materials[0].friction = 0.25;
+    rough.materials[0].tangential_restitution = tangential;
+    KernelParts parts(rough, {});
+    EXPECT_EQ(parts.response.loss_of(kDiscs), BounceLoss::some);
+  }
 }
 
 // A wall that comes towards a body which is held: no finite impulse parts them.
