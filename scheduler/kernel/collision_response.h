@@ -28,6 +28,12 @@ class CollisionResponse {
   /// seen what must not be.
   std::optional<Outcome> collide(const PairKey& pair, const FeatureContact& found, std::vector<int>& changed);
 
+  /// True if what comes of it depends on where other bodies are now: a push out of each other must lead past no wire.
+  bool asks_others(const FeatureContact& found) const {
+    const bool any = !wires_.empty() && wires_.front() < trajectories_->body_count();
+    return any && !found.seen && found.sunk() > 0.0 && !(found.nominal() > 0.0);
+  }
+
   // -- two plain discs --
   /// A centred disc of which nothing is locked, where no law but that of impulses is asked for.
   bool is_plain_disc(int body) const { return plain_[body].inverse_mass > 0.0; }

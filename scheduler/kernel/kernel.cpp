@@ -180,6 +180,7 @@ bool Kernel::respond_and_tell(const PairKey& pair, const FeatureContact& found, 
     roll_back_all();
     return resolve_group(pair, found, changed);
   }
+  if (parts_.response.asks_others(found)) roll_back_all();
   const auto outcome = respond(pair, found, changed);
   if (!outcome) return false;
   const bool goes_on = tell(*outcome, changed);
@@ -436,6 +437,8 @@ void Kernel::give_up(const Certificate& c) {
 bool Kernel::resolve_ahead(const Certificate& c, double end, std::vector<int>& changed) {
   // an island's step is taken when it is certain, so its members are never ahead
   if (is_held(c.pair.body) || (!c.pair.with_site() && is_held(c.pair.other_body))) return false;
+  // nor what others have a part in: they may be ahead, or behind
+  if (parts_.response.asks_others(c.contact)) return false;
   // contacts that are taken together are so when they are certain
   if (parts_.endings.is_crawling()) return false;
   const double present = time();

@@ -420,9 +420,10 @@ TEST(Faults, NoTipPassesBetweenTwoSolids) {
 }
 
 // Tips that begin upon tips met or passed by where a search ended; and searches of a pair that were cut short by other steps, a
-// thousand times, counted as one that makes no headway, under body_clocks alone.
-TEST(Faults, TipsUponTipsAndSlowRoomsEndAlikeUnderEveryPolicy) {
-  for (const char* scene : {"star_in_a_notch", "three_stars", "two_in_a_slow_room"}) {
+// thousand times, counted as one that makes no headway, under body_clocks alone; and pushes that asked where wires are that timewarp
+// had ahead.
+TEST(Faults, TipsSlowRoomsAndLightWiresEndAlikeUnderEveryPolicy) {
+  for (const char* scene : {"star_in_a_notch", "three_stars", "two_in_a_slow_room", "light_wire_between"}) {
     SCOPED_TRACE(scene);
     std::ifstream file(fault(scene));
     const std::string text{std::istreambuf_iterator<char>(file), {}};

@@ -1,4 +1,4 @@
-// Light bodies that springs fling against heavy ones, without a rebound or with a small one: they turn so fast that within a rounding
+// Light bodies that springs or an attraction fling against heavy ones, among wires, without a rebound or with a small one: they turn so fast that within a rounding
 // of the clock the speed of a contact changes by far more than a rounding of speeds. Every world comes to its end, with the same bits
 // under every exact policy, each stopped at a random time. BRINK_SEED moves the seeds, BRINK_WORLDS their number; BRINK_KEEP names a
 // folder for the scenes that fail.
@@ -13,12 +13,12 @@
 #include "brink/core/base/random.h"
 #include "tests/support/seeded_worlds.h"
 
-namespace brink::flung_on_springs_test {
+namespace brink::flung_light_bodies_test {
 namespace {
 
 std::string shape(Random& random) {
   const double size = random.uniform(0.2, 0.5), thin = random.uniform(0.1, 0.3) * size;
-  switch (random.below(5)) {
+  switch (random.below(6)) {
     case 0:
       return fmt::format("disc = {{ radius = {} }}", size / 2);
     case 1:
@@ -36,6 +36,8 @@ std::string shape(Random& random) {
       }
       return "polygon = { vertices = [" + star + "] }";
     }
+    case 4:
+      return fmt::format("chain = {{ vertices = [[0, 0], [{0}, 0], [{1}, {0}]] }}", size, size + thin);
     default:
       return fmt::format("capsule = {{ length = {}, radius = {} }}", 2 * size, thin);
   }
@@ -53,6 +55,11 @@ std::string scene_of(std::uint64_t seed) {
         "1.5]], "
         "random_angle = true, speed = 1.0, angular_speed = 2.0 }}\n",
         k, shape(random), k == 2 ? std::pow(10.0, random.uniform(-4.0, -1.0)) : random.uniform(0.5, 3.0));
+  if (random.below(2) == 0)
+    return text + fmt::format(
+                      "[[sites]]\ndisc = {{ radius = 0.4 }}\n[[forces]]\nkind = 'attract'\n"
+                      "center = [0.01, 0]\nstrength = 8\npower = {}\n",
+                      -2 * static_cast<int>(random.below(2)));
   for (int k = 0; k < count; ++k) {
     const double stiffness = std::pow(10.0, random.uniform(0.0, 1.6));
     if (k == 0 || random.below(5) < 3)
@@ -68,7 +75,7 @@ std::string scene_of(std::uint64_t seed) {
   return text;
 }
 
-TEST(FlungOnSprings, ComeToTheEndWithTheSameBits) {
+TEST(FlungLightBodies, ComeToTheEndWithTheSameBits) {
   testing::for_each_world(60, scene_of, [](std::uint64_t seed) {
     const RunSummary s = testing::expect_same_bits(scene_of(seed), seed);
     EXPECT_EQ(s.termination, Termination::reached_end) << s.why;
@@ -77,4 +84,4 @@ TEST(FlungOnSprings, ComeToTheEndWithTheSameBits) {
 }
 
 }  // namespace
-}  // namespace brink::flung_on_springs_test
+}  // namespace brink::flung_light_bodies_test
