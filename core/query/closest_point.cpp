@@ -7,8 +7,11 @@
 namespace brink {
 
 SurfacePoint closest_point(const Outline& outline, const Pose& pose, const Vec2& q) {
+  return closest_point_at(Frame(pose), outline, q);
+}
+
+SurfacePoint closest_point_at(const Frame& frame, const Outline& outline, const Vec2& q) {
   if (!q.allFinite()) throw BadInput("closest point: the place is " + text(q) + "; it must be finite");
-  const Frame frame(pose);
   // In the outline's frame, where sites are: far from the world's origin their coordinates stay small.
   const Vec2 local = frame.to_local(q);
   if (!(local.lpNorm<Eigen::Infinity>() <= kFarthestQuery))

@@ -26,5 +26,7 @@ inline constexpr double kFarthestQuery = 1e150;
 /// Errors: a rounding of the distance between q and the outline, and of pose.position. Cost: all sites.
 /// @throws BadInput if q is not finite, or farther than kFarthestQuery from the outline's origin.
 SurfacePoint closest_point(const Outline& outline, const Pose& pose, const Vec2& q);
+/// The same of an outline that is asked often where it stands.
+SurfacePoint closest_point_at(const Frame& frame, const Outline& outline, const Vec2& q);
 
 }  // namespace brink

@@ -7,6 +7,9 @@
 #include "brink/core/query/outline_gap.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
 
 #include "brink/core/query/closest_point.h"
 #include "brink/core/query/site_crossing.h"
@@ -18,12 +21,17 @@ namespace brink {
 
 namespace {
 
+/// Of two outlines' sizes: what is farther off than another by that is so without roundings.
+constexpr double kRounding = 1e-9;
+
 /// One outline's samples against the other's sites, in a frame in which both stand near the origin.
 struct Side {
   const Outline& samples_of;
   const Outline& sites_of;
-  Pose samples_at, sites_at;
+  Frame samples_at, sites_at;
   bool samples_are_a;
+
+  double rounding() const { return kRounding * (samples_of.bounding_radius + sites_of.bounding_radius); }
 };
 
 /// Keeps the least gap. `on_sites` and `out` are the sites' surface point and its normal.
@@ -36,11 +44,39 @@ void keep_least(const Side& side, int sample, int site, double gap, const Vec2& 
                              : OutlineGap{gap, on_sites, on_sample, -out, sample, false, site};
 }
 
+/// Lower bounds of gaps, by what is known of other places: a place outside of an outline is not nearer to it than its box, nor than
+/// another place by more than the way from there. So most samples need no look at all sites, once one is near.
+class Outside {
+ public:
+  explicit Outside(const Side& side) : side_(side) {}
+
+  /// True of a place p whose gap from the sites, less `radius`, is above 0 and what is the least so far.
+  bool is_above(const OutlineGap& least, const Vec2& p, double radius) const {
+    const double above = std::max(0.0, least.gap) + radius + side_.rounding();
+    return gap_ - (p - place_).norm() > above || beyond_box(p) > above;
+  }
+  void note(const Vec2& p, double gap) { place_ = p, gap_ = gap; }
+
+ private:
+  double beyond_box(const Vec2& p) const {
+    if (side_.sites_of.container) return 0.0;
+    const Vec2 q = side_.sites_at.to_local(p);
+    const Box& box = side_.sites_of.bounds;
+    return (box.low - q).cwiseMax(q - box.high).cwiseMax(0.0).norm();
+  }
+
+  const Side& side_;
+  Vec2 place_ = Vec2::Zero();
+  double gap_ = -std::numeric_limits<double>::infinity();  ///< of the last place that was looked at [m]
+};
+
 /// A vertex counts in all directions: against the other's closest point, thickness taken off.
-void look_at_vertex(const Side& side, int i, OutlineGap& least) {
+void look_at_vertex(const Side& side, int i, Outside& outside, OutlineGap& least) {
   const Sample& sample = side.samples_of.samples[static_cast<std::size_t>(i)];
-  const Vec2 p = Frame(side.samples_at).to_world(sample.p);
-  const SurfacePoint on = closest_point(side.sites_of, side.sites_at, p);
+  const Vec2 p = side.samples_at.to_world(sample.p);
+  if (outside.is_above(least, p, sample.radius)) return;
+  const SurfacePoint on = closest_point_at(side.sites_at, side.sites_of, p);
+  outside.note(p, on.gap);
   keep_least(side, i, on.site, on.gap - sample.radius, on.point, on.normal, least);
 }
 
@@ -52,8 +88,7 @@ bool bulges(const Site& arc) { return arc.solid && arc.sweep > 0.0; }
 
 /// True of a place of the sites' outline that is in the solid of the samples as deep as an arc of it says, or upon it.
 bool is_inside(const Side& side, const Vec2& place, double gap) {
-  const double depth =
-      closest_point(side.samples_of, side.samples_at, Frame(side.sites_at).to_world(place)).gap;
+  const double depth = closest_point_at(side.samples_at, side.samples_of, side.sites_at.to_world(place)).gap;
   return depth <= 0.5 * gap + kUpon * side.samples_of.bounding_radius;
 }
 
@@ -61,7 +96,7 @@ bool is_inside(const Side& side, const Vec2& place, double gap) {
 void look_at_arc(const Side& side, int i, OutlineGap& least) {
   const Sample& sample = side.samples_of.samples[static_cast<std::size_t>(i)];
   const Site& arc = side.samples_of.sites[static_cast<std::size_t>(sample.arc_site)];
-  const Frame from(side.samples_at), to(side.sites_at);
+  const Frame &from = side.samples_at, &to = side.sites_at;
   const Vec2 center = to.to_local(from.to_world(sample.p));
   for (std::size_t k = 0; k < side.sites_of.sites.size(); ++k) {
     const Site& site = side.sites_of.sites[k];
@@ -79,11 +114,12 @@ void look_at_arc(const Side& side, int i, OutlineGap& least) {
   }
 }
 
-/// Every sample of the one side; cost: samples times sites.
+/// Every sample of the one side; cost: samples times sites at most.
 void look_at_samples(const Side& side, OutlineGap& least) {
+  Outside outside(side);
   for (int i = 0; i < static_cast<int>(side.samples_of.samples.size()); ++i)
     if (side.samples_of.samples[static_cast<std::size_t>(i)].arc_site < 0)
-      look_at_vertex(side, i, least);
+      look_at_vertex(side, i, outside, least);
     else
       look_at_arc(side, i, least);
 }
@@ -104,14 +140,33 @@ Site moved(Site site, const Frame& frame) {
   return site;
 }
 
-/// `b` stands at `pose`, seen from a.
-void look_at_crossings(const Outline& a, const Outline& b, const Pose& pose, OutlineGap& least) {
-  const Frame frame(pose);
+/// What holds the core, with a little room; an arc's circle as a whole.
+Box around(const Site& site, double room) {
+  Box box;
+  if (site.kind == SiteKind::arc) {
+    box.add(site.center);
+    return box.grown(site.arc_radius + room);
+  }
+  box.add(site.a);
+  box.add(site.b);
+  return box.grown(room);
+}
+
+/// `b` stands at `frame`, seen from a. Sites cross only where their boxes meet.
+void look_at_crossings(const Outline& a, const Outline& b, const Frame& frame, OutlineGap& least) {
+  const double room = kRounding * (a.bounding_radius + b.bounding_radius);
+  const Box all = a.bounds.grown(room);
+  std::vector<Box> boxes;  // of a's
   for (const Site& placed : b.sites) {
     if (placed.kind == SiteKind::point) continue;
     const Site t = moved(placed, frame);
-    for (const Site& s : a.sites) {
-      if (s.kind == SiteKind::point) continue;
+    const Box box = around(t, room);
+    if (!box.overlaps(all)) continue;
+    if (boxes.empty())
+      for (const Site& s : a.sites) boxes.push_back(around(s, 0.0));
+    for (std::size_t k = 0; k < a.sites.size(); ++k) {
+      const Site& s = a.sites[k];
+      if (s.kind == SiteKind::point || !box.overlaps(boxes[k])) continue;
       const SiteCrossing c = site_crossing(s, t);
       if (c.depth >= 0.0) keep_crossing(c.depth, c.point, c.normal, s.radius + t.radius, least);
     }
@@ -154,9 +209,10 @@ OutlineGap outline_gap(const Outline& a, const Pose& pose_a, const Outline& b, c
   OutlineGap least;
   least.gap = std::numeric_limits<double>::infinity();
   // samples first: where a crossing or a common edge is no deeper, the features are a sample's
-  look_at_samples({a, b, Pose(), from_a, true}, least);
-  look_at_samples({b, a, from_a, Pose(), false}, least);
-  look_at_crossings(a, b, from_a, least);
+  const Frame of_a{Pose()}, of_b(from_a);
+  look_at_samples({a, b, of_a, of_b, true}, least);
+  look_at_samples({b, a, of_b, of_a, false}, least);
+  look_at_crossings(a, b, of_b, least);
   look_below_common_edges(a, b, from_a, least);
   return to_world(least, Frame(pose_a));
 }

@@ -640,26 +640,38 @@ void turn_to_side(const Half& half, const Vec2& q, const Vec2& normal, NearFeatu
 /// nearest. What it is merely behind, beyond a tip, is none.
 /// Per site, in this order: upon a corner only the side that faces the owner counts, whatever the distances
 /// say; then what is merely behind is left out; then an end at which a joined site is nearer. The corner
-/// comes first: there the two sides differ in distance by next to nothing.
-void add_features(const Half& half, int i, double reach, double tolerance, std::vector<NearFeature>& found) {
+/// comes first: there the two sides differ in distance by next to nothing. `bends`: the other has an arc.
+void add_features(const Half& half, int i, double reach, double tolerance, bool bends,
+                  std::vector<NearFeature>& found) {
   const Vec2 q = half.other_frame.to_local(half.carrier_frame.to_world(half.carrier.samples[i].p));
   const double size = half.carrier.bounding_radius + half.other.bounding_radius;
   const double tie = kOnePoint * size, corner = std::max(kOneCorner * size, kCornerOfTolerance * tolerance);
   std::vector<Nearest> nearest;
-  double least = std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity(), least_clear = least;
+  nearest.reserve(half.other.sites.size());
+  const auto clear = [&](std::size_t j) {
+    return nearest[j].distance - half.other.sites[j].radius - half.carrier.samples[i].radius;
+  };
   for (const Site& site : half.other.sites) {
     nearest.push_back(nearest_on(site, q));
     least = std::min(least, nearest.back().distance);
+    least_clear = std::min(least_clear, clear(nearest.size() - 1));
   }
+  // So far off no gap is within reach, but for what is behind, and tangents over joints.
+  const double far_off = reach + corner + kSunkOfRadius * half.carrier.bounding_radius;
   bool outside = false;
   for (std::size_t j = 0; j < nearest.size(); ++j)
     // Outside if any of the nearest says so: at a convex corner a sample beside one face lies behind the
     // other.
     outside =
         outside || (nearest[j].distance <= least + tie && side_of(half.other.sites[j], nearest[j], q) > 0.0);
+  if (outside && least_clear > far_off) return;
   const bool bare = half.carrier.samples[i].arc_site < 0;
   for (std::size_t j = 0; j < nearest.size(); ++j) {
     if (half.other.sites[j].covered) continue;
+    const bool within = nearest[j].distance <= std::max(least + tie, corner),
+               over_joint = bends && nearest[j].foot != Foot::interior;
+    if (!within && !over_joint && clear(j) > far_off) continue;
     const double side = side_of(half.other.sites[j], nearest[j], q);
     const OnCorner where = bare ? on_corner(half, half.carrier.samples[i], j, q, corner) : OnCorner::nowhere;
     const OnWire upon = bare ? on_wire(half, half.carrier.samples[i], j, q, kOneCorner * size) : OnWire{};
@@ -818,10 +830,12 @@ std::vector<NearFeature> near_features(const Outline& a, const ExtendedState& st
     // a disc's centre sees all that its surface meets: what the other's samples see is the same once more
     const bool both = half.carrier.is_point() && half.other.is_point();
     if (half.other.is_point() && !(both && half.on_a)) continue;
+    const bool bends = std::any_of(half.other.sites.begin(), half.other.sites.end(),
+                                   [](const Site& s) { return s.kind == SiteKind::arc; });
     for (int i = 0; i < static_cast<int>(half.carrier.samples.size()); ++i)
       if (const Sample& s = half.carrier.samples[i];
           !s.hollow && !out_of_reach(half, s, reach) && !is_smooth_joint(half.carrier, s))
-        add_features(half, i, reach, tolerance, found);
+        add_features(half, i, reach, tolerance, bends, found);
   }
   return found;
 }

@@ -1,12 +1,15 @@
 /// Gaps of two outlines against known distances, and against pairs of pieces that share no code.
 #include "brink/core/query/outline_gap.h"
-#include "brink/core/query/gap_bound.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <vector>
 
+#include "brink/core/query/closest_point.h"
+#include "brink/core/query/gap_bound.h"
 #include "tests/unit/query/query_shapes.h"
 
 namespace brink::outline_gap_test {
@@ -137,6 +140,40 @@ TEST(OutlineGap, AgreesWithPairsOfPiecesThatShareNoCode) {
   EXPECT_GT(apart, 1000);
   EXPECT_GT(overlapping, 1000);
   EXPECT_GT(parted, 3 * apart / 4);
+}
+
+// Samples and pairs of sites that cannot be the nearest are not looked at: what is told is the least of all that are.
+TEST(OutlineGap, IsTheLeastOfAllSamples) {
+  Random random(405);
+  std::vector<Vec2> teeth;
+  for (int k = 0; k < 60; ++k)
+    teeth.push_back((k % 2 == 0 ? 1.0 : 0.8) * Vec2(std::cos(M_PI * k / 30), std::sin(M_PI * k / 30)));
+  const Outline gear = make_polygon(teeth).outline, thick = make_polygon(teeth, 0.05).outline,
+                wire = make_chain(teeth, true).outline, box = make_box(0.5, 0.2).outline;
+  int apart = 0, within = 0;
+  for (const Outline* a : {&gear, &thick, &wire, &box})
+    for (const Outline* b : {&gear, &thick, &wire, &box})
+      for (int k = 0; k < 200; ++k) {
+        const Pose at_a{anywhere(random, 1.5), random.uniform(-9, 9)},
+            at_b{anywhere(random, 1.5), random.uniform(-9, 9)};
+        double least = std::numeric_limits<double>::infinity();
+        const auto look = [&](const Outline& samples, const Pose& at, const Outline& sites,
+                              const Pose& of_sites) {
+          for (const Sample& s : samples.samples)
+            least = std::min(least, closest_point(sites, of_sites, Frame(at).to_world(s.p)).gap - s.radius);
+        };
+        look(*a, at_a, *b, at_b);
+        look(*b, at_b, *a, at_a);
+        const double gap = outline_gap(*a, at_a, *b, at_b).gap;
+        // sites that cross, and common edges, may be deeper than all samples
+        EXPECT_LE(gap, least + 1e-14);
+        if (gap > 0.0) {
+          EXPECT_NEAR(gap, least, 1e-14);
+        }
+        ++(gap > 0.0 ? apart : within);
+      }
+  EXPECT_GT(apart, 500);
+  EXPECT_GT(within, 500);
 }
 
 }  // namespace

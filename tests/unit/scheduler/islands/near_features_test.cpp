@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <tuple>
 
 #include "tests/support/seeded_random.h"
 #include "tests/unit/query/query_shapes.h"
@@ -277,6 +278,60 @@ TEST(NearFeatures, AreAllThatFaceEachOther) {
     }
   std::printf("%d pairs of points that face each other\n", met);
   EXPECT_GT(met, 300);
+}
+
+bool is_the_same(const NearFeature& f, const NearFeature& g) {
+  return std::tie(f.sample_on_a, f.sample, f.site, f.gap, f.at_end, f.beside_arc, f.over_joint,
+                  f.no_way_by) == std::tie(g.sample_on_a, g.sample, g.site, g.gap, g.at_end, g.beside_arc,
+                                           g.over_joint, g.no_way_by) &&
+         f.point == g.point && f.normal == g.normal;
+}
+
+/// A gear, and a ring that has room for it.
+std::vector<Vec2> teeth(int count, double inner, double outer) {
+  std::vector<Vec2> corners;
+  for (int k = 0; k < 4 * count; ++k) {
+    const double angle = 2.0 * M_PI *
+                         (k + (k % 4 == 1 || k % 4 == 2 ? 0.0
+                               : k % 4 == 0             ? -0.1
+                                                        : 0.1)) /
+                         (4 * count),
+                 radius = k % 4 == 1 || k % 4 == 2 ? outer : inner;
+    corners.push_back(radius * Vec2(std::cos(angle), std::sin(angle)));
+  }
+  return corners;
+}
+
+// What is far off is left out before it is looked at: of a list that goes far those that are as near are all the same, to the bit.
+TEST(NearFeatures, OfAShortListAreThoseOfALongOneThatAreAsNear) {
+  SeededRandom random(4);
+  std::vector<NamedOutline> all = outlines();
+  all.push_back({"gear", make_polygon(teeth(9, 0.8, 1.0)).outline});
+  all.push_back({"ring", as_container(make_polygon(teeth(24, 2.6, 2.3)).outline)});
+  int near = 0, far = 0;
+  for (const auto& [name_a, a] : all)
+    for (const auto& [name_b, b] : all)
+      for (int k = 0; k < 12; ++k) {
+        if (a.container) continue;
+        // apart, and a little in each other
+        const Pose at_b{anywhere(random, 3.0), random.uniform(-3.0, 3.0)},
+            at_a{at_b.position + anywhere(random, 2.0), random.uniform(-3.0, 3.0)};
+        const double reach = std::pow(10.0, random.uniform(-9.0, -0.5));
+        const auto is_far = [&](const NearFeature& f) { return f.gap > reach || f.goes_on; };
+        std::vector<NearFeature> short_list = between(a, at_a, b, at_b, reach),
+                                 long_list = between(a, at_a, b, at_b, 1e3);
+        far += static_cast<int>(long_list.size());
+        std::erase_if(short_list, is_far);
+        std::erase_if(long_list, is_far);
+        near += static_cast<int>(short_list.size());
+        EXPECT_TRUE(
+            std::equal(short_list.begin(), short_list.end(), long_list.begin(), long_list.end(), is_the_same))
+            << name_a << " and " << name_b << ", place " << k << ", reach " << reach << ": "
+            << short_list.size() << " of " << long_list.size();
+      }
+  std::printf("%d of %d features\n", near, far);
+  EXPECT_GT(near, 1000);
+  EXPECT_GT(far, 10 * near);
 }
 
 // ---- elsewhere
