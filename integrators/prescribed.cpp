@@ -30,6 +30,9 @@ constexpr double kFitTolerance = 1e-13;   // of the cell's largest value
 constexpr double kNothing = 1e-18;        // [m or rad]: smaller is not followed
 constexpr double kNoiseTolerance = 1e-9;  // the same, of a range of values that cannot be halved
 constexpr double kStrip = 0.25;           // of a corner's cell
+constexpr double kAlikeNoise = 64.0;      // roundings of values in one cell differ by less,
+constexpr double kRough = 1e-7;           // or are no more than some roots of a rounding
+constexpr double kMeets = 16.0;           // tolerances of the fit by which it may be off between its nodes
 constexpr double kPi = 3.14159265358979323846;
 
 using Matrix = Eigen::Matrix<double, kDegree + 1, kDegree + 1>;
@@ -99,11 +102,13 @@ Vector3d values(const Pose& pose) { return {pose.position.x(), pose.position.y()
 struct PrescribedMotion::Fitted {
   PolynomialPiece piece;
   bool corner = false;  ///< too small to halve: only its end values count
+  bool meets = false;   ///< the function between its nodes, too
   Vector3d value_begin = Vector3d::Zero(), value_end = Vector3d::Zero();
   Vector3d rate_begin = Vector3d::Zero(), rate_end = Vector3d::Zero();
-  Vector3d tolerance = Vector3d::Zero();  ///< of the fit
-  Vector3d scale = Vector3d::Zero();      ///< largest value
-  double cell_width = 0.0;                ///< of the cell that it has been fitted to [s]
+  Vector3d tolerance = Vector3d::Zero();      ///< of the fit
+  Vector3d noise_on_grid = Vector3d::Zero();  ///< see Noise
+  Vector3d scale = Vector3d::Zero();          ///< largest value
+  double cell_width = 0.0;                    ///< of the cell that it has been fitted to [s]
   /// The function at the nodes of all cells that it stands for.
   std::vector<std::pair<double, Vector3d>> told;
 
@@ -156,7 +161,7 @@ void PrescribedMotion::fit_next() {
       !std::isfinite((cell.scale + cell.rate_begin.cwiseAbs() + cell.rate_end.cwiseAbs()).squaredNorm()))
     return fail(at.begin, "is too fast, or goes too far,");
   const Certainty known = bound(at);
-  if (finite && (known.remainder.array() <= cell.tolerance.array()).all()) {
+  if (finite && cell.meets && (known.remainder.array() <= cell.tolerance.array()).all()) {
     corners_in_a_row_ = 0;
     return join_next(cell);
   }
@@ -200,20 +205,36 @@ bool PrescribedMotion::interpolate(const Cell& at, Fitted& cell) {
   cell.rate_end = rates(cell.piece.state(cell.piece.end).twist);
   cell.scale = y.cwiseAbs().colwise().maxCoeff().transpose();
   // The function's own roundings cannot be followed, and are allowed for: no halving would make them less.
-  cell.tolerance = kFitTolerance * cell.scale + noise(at) + Vector3d::Constant(kNothing);
-  return std::all_of(n.between.begin(), n.between.end(),
-                     [&](double u) { return pose_(middle + half * u).allFinite(); });
+  const Noise of_values = noise(at, cell.scale);
+  cell.noise_on_grid = of_values.on_grid;
+  cell.tolerance = kFitTolerance * cell.scale + of_values.roundings + Vector3d::Constant(kNothing);
+  // Bounds hold inside: a jump right at an end of the cell they may not see, but its node does.
+  const Vector3d most_off = kMeets * cell.tolerance + kRough * cell.scale.cwiseMax(1.0);
+  cell.meets = true;
+  for (const double u : n.between) {
+    const double t = middle + half * u;
+    const Vector3d value = pose_(t), off = values(cell.piece.state(t).pose) - value;
+    if (!value.allFinite()) return false;
+    cell.meets = cell.meets && (off.cwiseAbs().array() <= most_off.array()).all();
+  }
+  return true;
 }
 
-/// What roundings make of the function's value: its bounds at single times.
-Vector3d PrescribedMotion::noise(const Cell& at) const {
-  Vector3d most = Vector3d::Zero();
-  for (const double t : {at.begin, at.begin + 0.5 * at.width, at.begin + at.width})
-    for (int i = 0; i < 3; ++i) {
-      const double spread = bound_(i, t, t, BoundOf::value).spread();
-      if (std::isfinite(spread)) most[i] = std::max(most[i], spread);
-    }
-  return most;
+/// What roundings make of the function's value: its bounds at single times. Where it jumps right at a time of the grid, they are
+/// as far apart as it jumps: much more than at times that no jump lies at, and than roots and arc sines are rough, is no rounding.
+PrescribedMotion::Noise PrescribedMotion::noise(const Cell& at, const Vector3d& scale) const {
+  const auto most_of = [&](std::initializer_list<double> parts) {
+    Vector3d most = Vector3d::Zero();
+    for (const double part : parts)
+      for (int i = 0; i < 3; ++i) {
+        const double t = at.begin + part * at.width, spread = bound_(i, t, t, BoundOf::value).spread();
+        if (std::isfinite(spread)) most[i] = std::max(most[i], spread);
+      }
+    return most;
+  };
+  const Vector3d on_grid = most_of({0.0, 0.5, 1.0}), elsewhere = most_of({0.381966, 0.723607});
+  const Vector3d believed = (kAlikeNoise * elsewhere).cwiseMax(kRough * scale.cwiseMax(1.0));
+  return {(on_grid.array() <= believed.array()).select(on_grid, elsewhere), on_grid};
 }
 
 /// The interpolant in n + 1 nodes misses f by at most |f^(n+1)| / (n+1)! times the product of the distances
@@ -241,10 +262,13 @@ void PrescribedMotion::take_corner(Fitted cell, const Certainty& known) {
     // With 128 of its widths on both sides, so that the range is that of the corner's steeper side wherever in the cell that is, a
     // corner's is at least 128 times as large, over a square root's foot 11 times, over a jump the same: 0.03 lies between
     // the first two.
-    const bool small = known.spread[i] <= kNoiseTolerance * cell.scale[i] + 8.0 * cell.tolerance[i];
+    const double spread = std::max(known.spread[i], std::abs(cell.value_end[i] - cell.value_begin[i]));
+    // a jump in a part of the formula that others take back, as of t - rint(t) in its absolute value, is none if no value shows it
+    const bool taken_back = cell.meets && spread <= 8.0 * cell.noise_on_grid[i];
+    const bool small = taken_back || spread <= kNoiseTolerance * cell.scale[i] + 8.0 * cell.tolerance[i];
     const double around = 128.0 * cell.cell_width, from = std::max(0.0, cell.piece.begin - around);
     const double wide = bound_(i, from, cell.piece.end + around, BoundOf::value).spread();
-    const bool shrinks = std::isfinite(wide) && known.spread[i] < 0.03 * wide;
+    const bool shrinks = std::isfinite(wide) && spread < 0.03 * wide;
     if (!small && !shrinks) return fail(cell.piece.begin, "jumps, or is infinitely fast,");
   }
   cell.corner = true;

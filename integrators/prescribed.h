@@ -21,7 +21,7 @@ namespace brink {
 /// short to be seen. Then a cubic makes neighbouring pieces meet with one twist. A piece depends on the
 /// function near it alone, never on how far was asked. A corner of the function (a jump of its rate) is
 /// rounded off within 2^-30 s, by rates between those before and after it; narrow cells beside it are one piece with the wider
-/// one that comes before or after. A jump of its value, an infinite rate, a value that is not finite, or bounds
+/// one that comes before or after. A jump of its value (right at a time of the grid: by more than 1e-7, or than that part of it), an infinite rate, a value that is not finite, or bounds
 /// that say nothing end the motion there.
 ///
 /// Cost: some 25 evaluations and four bounds a cell and halving. Sources: Trefethen 2013, Approximation
@@ -67,7 +67,11 @@ class PrescribedMotion {
 
   void fit_next();
   bool interpolate(const Cell& at, Fitted& cell);
-  Eigen::Vector3d noise(const Cell& at) const;
+  struct Noise {                ///< of values
+    Eigen::Vector3d roundings;  ///< what they may be off by
+    Eigen::Vector3d on_grid;    ///< bounds at the cell's ends and middle, where there may be a jump
+  };
+  Noise noise(const Cell& at, const Eigen::Vector3d& scale) const;
   Certainty bound(const Cell& at) const;
   void take_corner(Fitted cell, const Certainty& known);
   bool is_merged(Fitted& next);

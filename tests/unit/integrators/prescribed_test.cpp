@@ -197,6 +197,28 @@ TEST(Prescribed, JumpOfTheValueFailsAndIsLocated) {
   }
 }
 
+// Whatever makes the jump, on the grid of cells, in the middle of one and at more of its places: bounds at that time alone are as wide
+// as it jumps, and inside of the cell nothing is to be seen of it.
+TEST(Prescribed, JumpsOnTheGridFailAndAreLocated) {
+  const std::pair<const char*, double> jumps[] = {{"0.5 * rint(t)", 0.5},
+                                                  {"-0.5 * rint(2 * t)", 0.25},
+                                                  {"0.1 * rint(64 * t)", 0.0078125},
+                                                  {"sign(t - 0.5)", 0.5},
+                                                  {"t * sign(t - 0.3125)", 0.3125},
+                                                  {"t - rint(2 * t) / 2", 0.25},
+                                                  {"atan(tan(4 * pi * t))", 0.125},
+                                                  {"atan2(sin(4 * pi * t), cos(4 * pi * t))", 0.25},
+                                                  {"atan(1 / (t - 0.5))", 0.5},
+                                                  {"t <= 0.75 ? sin(t) : 2", 0.75},
+                                                  {"1e6 * sin(t) + rint(t)", 0.5}};
+  for (const auto& [text, at] : jumps) {
+    const Extent extent = prescribed(text).extend(2.0);
+    EXPECT_EQ(extent.status, Extent::Status::failed) << text;
+    EXPECT_NEAR(extent.end, at, 1e-8) << text;
+    EXPECT_THAT(extent.why, ::testing::HasSubstr("jumps")) << text;
+  }
+}
+
 // sqrt|t - 0.3| is infinitely fast at 0.3: no motion. |t - 0.3|^1.5 is not: its rate is 0 there.
 TEST(Prescribed, InfiniteSpeedFailsAndSteepCurvatureDoesNot) {
   PrescribedMotion steep = prescribed("sqrt(abs(t - 0.3))");
