@@ -174,6 +174,22 @@ Shape make_disc_container(double radius) {
   return finish_shape(as_container(std::move(outline)));
 }
 
+Shape make_capsule_container(double length, double radius) {
+  require_positive("length", length);
+  require_positive("radius", radius);
+  Outline outline;
+  outline.solid = true;
+  std::vector<Site> sites;
+  const Vec2 right(length / 2, 0), left(-length / 2, 0), up(0, radius);
+  // counter-clockwise, as the disc's is, from the lower left
+  sites.push_back(segment_site(left - up, right - up, 0.0));
+  add_arc(sites, right - up, right + up, right, radius, whole_turn / 2, 0.0);
+  sites.push_back(segment_site(right + up, left + up, 0.0));
+  add_arc(sites, left + up, left - up, left, radius, whole_turn / 2, 0.0);
+  add_loop(outline, sites, true);
+  return finish_shape(as_container(std::move(outline)));
+}
+
 Shape centered(Shape shape) {
   Pose shift;
   shift.position = -shape.measure.centroid;

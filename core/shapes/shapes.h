@@ -60,6 +60,8 @@ Shape make_bezier(const std::array<Vec2, 4>& control, double curve_tolerance, do
 /// The circle as a container: free inside, solid outside; four clockwise quarter arcs. Measure: of the free
 /// disc.
 Shape make_disc_container(double radius);
+/// The capsule as a container: two straight sides and four quarter arcs. Measure: of the free inside.
+Shape make_capsule_container(double length, double radius);
 
 /// The shape shifted so that its centroid is the origin; its measure with it.
 Shape centered(Shape shape);

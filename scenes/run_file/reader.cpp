@@ -200,7 +200,7 @@ struct RunFile::Impl {
   /// The same, for who needs one. @throws BadInput where there is none.
   std::int64_t some_frames() const {
     const std::int64_t count = frames();
-    if (count == 0) throw BadInput("it holds no whole frame yet");
+    if (count == 0) throw BadInput(bodies > 0 ? "it holds no whole frame yet" : "its scene has no bodies");
     return count;
   }
   /// Time of frame `index` [s], from its first row. @throws BadInput where that row is missing.

@@ -91,7 +91,7 @@ std::optional<BuiltShape> ShapeBuilder::make(const ThingTable& thing, const Shap
       built.shift = shape.measure.centroid;
       shape = centered(std::move(shape));
     }
-    // A disc is made as a container at once (make_disc_container), of four arcs in place of a point.
+    // Discs and capsules are made as containers at once (make_disc_container), of arcs in place of points and thickness.
     if (thing.inside_of.value && !shape.outline.container)
       shape.outline = as_container(std::move(shape.outline));
     built.measure = shape.measure;

@@ -224,7 +224,10 @@ void add_body_shapes(Schema<ThingTable>& schema) {
       schema, shape_kind("polygons"), parts_codec(), "the union of simple polygons, one rigid body",
       [](const std::vector<VerticesTable>& parts, const ShapeContext&) { return build_polygons(parts); });
   add_shape(schema, shape_kind("capsule"), capsule_schema().codec(), "a thick segment",
-            [](const CapsuleTable& t, const ShapeContext&) { return make_capsule(t.length, t.radius); });
+            [](const CapsuleTable& t, const ShapeContext& c) {
+              return c.inside_of ? make_capsule_container(t.length, t.radius)
+                                 : make_capsule(t.length, t.radius);
+            });
   add_shape(schema, thick("chain"), chain_schema().codec(), "a wire",
             [](const VerticesTable& t, const ShapeContext& c) {
               return make_chain(t.vertices, t.closed, own_or(t.radius, c));

@@ -185,7 +185,8 @@ Schema<ThingTable> thing_schema(const std::string& table, bool site) {
       .optional("centered", &ThingTable::centered, flag(), site ? "false" : "true",
                 "true: position is of the centre of mass; false: of the origin of the shape's frame")
       .optional("radius", &ThingTable::radius, number(not_negative("m")), "0",
-                "thickness all round, for shapes that do not give their own")
+                site ? "thickness all round: of box, polygon, chain, point, segment, polyline, arc and bezier"
+                     : "thickness all round: of box, polygon and chain")
       .optional("curve_tolerance", &ThingTable::curve_tolerance, number(positive("m", 1e-9)),
                 "[field] curve_tolerance", "largest distance between a curve and the arcs that stand for it")
       .optional("grid", &ThingTable::grid, grid_schema().codec(), "none", "copies in rows, named NAME[k]")

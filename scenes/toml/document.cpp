@@ -168,6 +168,16 @@ std::size_t index_of_name(const toml::array& array, const std::string& name, con
   return array.size();
 }
 
+/// What the entries of an array are called, for who names one that there is not: "; the nearest is ...", or nothing.
+std::string nearest_entry(const toml::node& node, const std::string& part) {
+  std::vector<std::string> names;
+  if (const toml::array* array = node.as_array())
+    for (const toml::node& entry : *array)
+      if (const toml::table* table = entry.as_table())
+        if (const auto* name = table->get_as<std::string>("name")) names.push_back(name->get());
+  return names.empty() ? "" : "; the nearest is " + in_quotes(nearest_word(part, names));
+}
+
 }  // namespace
 
 TomlDocument::TomlDocument(std::string_view text, const std::vector<std::string>& overrides,
@@ -221,7 +231,7 @@ void TomlDocument::apply(const std::string& override_text, int index) {
     if (next == nullptr)
       return faults_.add(here, "nothing is called " + in_quotes(parts[i]) +
                                    " there; an array takes an index from 0, " +
-                                   "or the name of one of its entries");
+                                   "or the name of one of its entries" + nearest_entry(*node, parts[i]));
     node = next;
   }
   const toml::table parsed = as_value(std::string_view(override_text).substr(equals + 1));

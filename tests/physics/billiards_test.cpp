@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "tests/support/worlds.h"
 
@@ -46,6 +48,57 @@ TEST_P(CircularContainer, FeetOfTenThousandBouncesAreEquallySpaced) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Chords, CircularContainer, ::testing::Values(0.1, 0.3, 0.5, 0.7));
+
+/// When a point that goes straight in a stadium of that half length and radius meets it next, and where the wall's middle line or
+/// circle is nearest there.
+std::pair<long double, std::array<long double, 2>> next_in_stadium(long double a, long double r,
+                                                                   const std::array<long double, 2>& p,
+                                                                   const std::array<long double, 2>& v) {
+  long double first = std::numeric_limits<long double>::infinity();
+  std::array<long double, 2> middle{};
+  const auto take = [&](long double t, long double mx) {
+    if (t > 1e-9L && t < first) first = t, middle = {mx, 0.0L};
+  };
+  if (v[1] != 0) {
+    const long double t = ((v[1] > 0 ? r : -r) - p[1]) / v[1], x = p[0] + v[0] * t;
+    if (std::abs(x) <= a) take(t, x);
+  }
+  for (const long double end : {-a, a}) {
+    const long double x = p[0] - end, b = x * v[0] + p[1] * v[1], c = x * x + p[1] * p[1] - r * r,
+                      v2 = v[0] * v[0] + v[1] * v[1], d = b * b - v2 * c;
+    if (d < 0) continue;
+    for (const long double root : {-std::sqrt(d), std::sqrt(d)}) {
+      const long double t = (root - b) / v2, there = p[0] + v[0] * t;
+      if (end > 0 ? there >= a : there <= -a) take(t, end);
+    }
+  }
+  return {first, middle};
+}
+
+// A disc in a capsule turned inside out (Bunimovich's stadium): near paths part there by a factor at each end, so that the first
+// two dozen of hits are told.
+TEST(Stadium, HitsAreThoseOfALoopThatKnowsNothingElse) {
+  constexpr double kHalf = 1.0, kRadius = 1.2, kDisc = 0.1;
+  World world;
+  testing::add(world, testing::body(make_disc(kDisc), {0.3, -0.2}, {0.8, 0.6}));
+  testing::add(world, testing::site(make_capsule_container(2.0 * kHalf, kRadius)));
+  Simulator simulator(world, {});
+  Events events;
+  ASSERT_EQ(simulator.run(testing::until(100.0), &events).termination, Termination::reached_end);
+  const auto hits = events.collisions();
+  ASSERT_GE(hits.size(), 24U);
+  std::array<long double, 2> p{0.3L, -0.2L}, v{0.8L, 0.6L};
+  long double t = 0;
+  for (int n = 0; n < 24; ++n) {
+    const auto [after, middle] = next_in_stadium(kHalf, 1.2L - 0.1L, p, v);
+    t += after;
+    for (int k = 0; k < 2; ++k) p[k] += after * v[k];
+    const std::array<long double, 2> out{p[0] - middle[0], p[1] - middle[1]};
+    const long double along = (v[0] * out[0] + v[1] * out[1]) / (out[0] * out[0] + out[1] * out[1]);
+    for (int k = 0; k < 2; ++k) v[k] -= 2 * along * out[k];
+    EXPECT_NEAR(hits[n].contact.time, static_cast<double>(t), 1e-9) << "hit " << n;
+  }
+}
 
 // A disc in a rectangle: each coordinate is a triangular wave.
 long double triangular(double x0, double v, double low, double high, double t) {

@@ -91,6 +91,12 @@ TEST(Distance, ContainerIsSolidOutside) {
   EXPECT_EQ(gap(disc, 0, 0), 2);
   EXPECT_NEAR(gap(disc, 1.5, 0), 0.5, 1e-15);
   EXPECT_NEAR(gap(disc, 3, 4), -3, 1e-14);
+  const Shape stadium = make_capsule_container(2, 1.5);
+  EXPECT_NEAR(gap(stadium, 0.5, 0.25), 1.25, 1e-15);
+  EXPECT_NEAR(gap(stadium, 2.2, 0), 0.3, 1e-15);
+  EXPECT_NEAR(gap(stadium, 1.3, 0.4), 1.0, 1e-15);
+  EXPECT_NEAR(gap(stadium, 0, -2), -0.5, 1e-15);
+  EXPECT_NEAR(gap(stadium, -5, 3), -3.5, 1e-14);
   const Outline box = as_container(make_box(4, 2).outline);
   EXPECT_EQ(gap_by_brute_force(box, Vec2(0, 0)), 1);
   EXPECT_EQ(gap_by_brute_force(box, Vec2(3, 0)), -1);

@@ -24,6 +24,11 @@ TEST(Measure, DiscHasPiRSquaredAndHalfOfThatTimesRSquared) {
   expect_measure(make_disc_container(r).measure, pi * r * r, Vec2(0, 0), pi * r * r * r * r / 2);
 }
 
+TEST(Measure, ACapsuleTurnedInsideOutHasThatOfItsFreeInside) {
+  const Measure solid = make_capsule(2.0, 0.7).measure;
+  expect_measure(make_capsule_container(2.0, 0.7).measure, solid.size, Vec2(0, 0), solid.second_moment);
+}
+
 TEST(Measure, BoxHasWidthTimesHeightAndATwelfthOfTheSquares) {
   expect_measure(make_box(3, 2).measure, 6, Vec2(0, 0), 6 * (9 + 4) / 12.0);
 }
