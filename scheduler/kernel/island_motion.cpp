@@ -435,11 +435,11 @@ void IslandMotion::make_problem() {
   rows().add(contacts_, problem_);
 }
 
-/// An approach as slow as this rebounds with e v <= a h: it has turned back by the end of the step [m/s].
+/// Approaches as slow as this are taken without a rebound [m/s].
 double IslandMotion::most_absorbed(const PairKey& pair) const {
-  const double e = response_->material_of(pair).restitution;
-  if (!(e > 0.0)) return kForever;
-  return by_modes_ ? IslandModes::slowest_bounce(members_, *search_) : members_.pull() * h_ / e;
+  if (by_modes_ && response_->material_of(pair).restitution > 0.0)
+    return IslandModes::slowest_bounce(members_, *search_);
+  return rows().most_absorbed(pair);
 }
 
 /// A step of h_ under the forces that its members have halfway, with the twists of the step: these are found by asking for them

@@ -91,6 +91,11 @@ IslandContact StepRows::island_contact(const HeldContact& c, const std::vector<N
   return made;
 }
 
+double StepRows::most_absorbed(const PairKey& pair) const {
+  const double e = response_->material_of(pair).restitution;
+  return e > 0.0 ? members_->pull() * h_ / e : kForever;
+}
+
 /// The mean velocity of its surface along the normal, by what the gap loses where the body stays, and that of its point along the
 /// tangent. A point's own along the normal would be no surface's: those of a round drum leave it along chords. What is under the
 /// body now counts as the line or the circle that it is, until the step ends; what is beside it, as where it comes to.
@@ -105,6 +110,11 @@ void StepRows::drive(const HeldContact& c, const std::vector<NearFeature>& ahead
     made.normal_support = advance_of_surface(c.feature, search_->outline_of(search_->other_owner(c.pair)),
                                              static_cast<double>(from.angle), step) /
                           h_;
+    // What it has at the end it gives, where the rest would be an impact by the next step: a lift that starts at once takes along
+    // what lies on it.
+    const double at_end =
+        to.twist.rounded().at(step.to_world(c.feature.point) - step.origin).dot(c.feature.normal);
+    if (at_end - made.normal_support > most_absorbed(c.pair)) made.normal_support = at_end;
     return;
   }
   const std::vector<Vec3> stays(members_->count(), Vec3::Zero());

@@ -30,6 +30,8 @@ class StepRows {
            const WarmContacts& warm, double h)
       : members_(&members), search_(&search), response_(&response), warm_(&warm), h_(h) {}
 
+  /// An approach as slow as this rebounds with e v <= a h: it has turned back by the end of the step [m/s].
+  double most_absorbed(const PairKey& pair) const;
   /// Without contacts.
   IslandStep members_alone() const;
   /// Those that the problem does not have yet: rows come in the order of contacts, pair after pair.

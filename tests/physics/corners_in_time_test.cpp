@@ -1,5 +1,5 @@
 // Belts and lifts that change their speed at once, or within down to a billionth of a second, under who lies on them: friction gives
-// no more than Coulomb's law has, and what a lift stops under flies on. Against closed forms that share no code with the core,
+// no more than Coulomb's law has, what a lift stops under flies on, and what it starts under goes along, whatever the restitution. Against closed forms that share no code with the core,
 // and once more under another policy, stopped on the way. BRINK_SEED moves the seeds, BRINK_WORLDS their number.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
@@ -48,17 +48,21 @@ Change change_of_speed(Random& random) {
   return c;
 }
 
-std::string world(double until, double mu, const std::string& motion, bool disc, double angle_of_velocity,
-                  double speed) {
+std::string world(double until, double restitution, double mu, const std::string& motion, bool disc,
+                  double angle_of_velocity, double speed) {
   return fmt::format(
       "[world]\nduration = {:.17g}\ngravity = [0, -9.81]\n[output]\nframe_interval = "
       "0\n[materials.m]\nrestitution = "
-      "0\nfriction = {:.17g}\n[[sites]]\nname = 'f'\nmaterial = 'm'\nsegment = [[-40, 0], [40, 0]]\nmotion = "
+      "{:.17g}\nfriction = {:.17g}\n[[sites]]\nname = 'f'\nmaterial = 'm'\nsegment = [[-40, 0], [40, "
+      "0]]\nmotion = "
       "{{ {} }}\n"
       "[[bodies]]\nname = 'b'\nmaterial = 'm'\n{}\nposition = [0, 0.1]\nvelocity = [{:.17g}, {:.17g}]\n",
-      until, mu, motion, disc ? "disc = { radius = 0.1 }" : "box = { width = 0.8, height = 0.2 }",
+      until, restitution, mu, motion,
+      disc ? "disc = { radius = 0.1 }" : "box = { width = 0.8, height = 0.2 }",
       speed * std::cos(angle_of_velocity), speed * std::sin(angle_of_velocity));
 }
+
+double any_restitution(Random& random) { return random.below(2) == 0 ? 0.0 : random.uniform(0.1, 0.9); }
 
 std::string fault_of(const std::string& text, const Vec2& place, const Vec2& velocity, double near,
                      std::uint64_t seed) {
@@ -66,7 +70,9 @@ std::string fault_of(const std::string& text, const Vec2& place, const Vec2& vel
   Simulator simulator(scene.world, scene.solver);
   const RunSummary s = simulator.run(testing::until(scene.duration));
   if (s.termination != Termination::reached_end) return s.why;
-  if (s.steps_by_modes != s.island_steps) return "steps of first order";
+  // with a rebound one step leads over a corner
+  if (s.steps_by_modes != s.island_steps && scene.world.materials[1].restitution == 0.0)
+    return "steps of first order";
   const BodyState at = simulator.state(0);
   if (!((at.pose.position - place).norm() <= near))
     return fmt::format("at ({:.10g}, {:.10g}) for ({:.10g}, {:.10g})", at.pose.position.x(),
@@ -90,8 +96,8 @@ std::string belt(Random& random, std::uint64_t seed) {
                place = c.before * until + 0.5 * a * slides * slides + gained * (t - slides);
   // in the tails of a quick change the belt gains more than friction gives for some (within^2 by / mu g)^(1/3)
   const double near = kNear + 20.0 * std::cbrt(c.within * c.within);
-  return fault_of(world(until, mu, "x = \"" + c.place + "\"", disc, 0.0, c.before), {place, 0.1},
-                  {c.before + gained, 0.0}, near, seed);
+  return fault_of(world(until, any_restitution(random), mu, "x = \"" + c.place + "\"", disc, 0.0, c.before),
+                  {place, 0.1}, {c.before + gained, 0.0}, near, seed);
 }
 
 /// What a lift that slows down leaves flies on, and lands; what one that speeds up is under goes with it.
@@ -103,8 +109,10 @@ std::string lift(Random& random, std::uint64_t seed) {
   const bool lands = t > flies;
   const double y = c.before * c.at + (lands ? c.after * t : c.before * t - 0.5 * kGravity * t * t),
                v = lands ? c.after : c.before - kGravity * t;
-  return fault_of(world(until, random.uniform(0.0, 0.6), "y = \"" + c.place + "\"", random.below(2) == 0,
-                        0.5 * M_PI, c.before),
+  // what lands rebounds
+  const double restitution = by < 0.0 && lands ? 0.0 : any_restitution(random);
+  return fault_of(world(until, restitution, random.uniform(0.0, 0.6), "y = \"" + c.place + "\"",
+                        random.below(2) == 0, 0.5 * M_PI, c.before),
                   {0.0, 0.1 + y}, {0.0, v}, kNear + 20.0 * std::cbrt(c.within * c.within), seed);
 }
 
