@@ -60,7 +60,7 @@ bool is_through(double gap, const Site& arc, const Site& site, double band) {
 /// if that direction is in the arc's sector and the centre is abreast of the segment.
 ArcStep against_segment(const Site& arc, const Site& site, const SamplePath& path, const Placed& s,
                         const Placed& t, double band, const RelativeBounds& relative,
-                        const PathBounds& bounds) {
+                        const PathBounds& bounds, double window) {
   const Vec2 d = site.b - site.a, w = path.q - site.a;
   const double length = d.norm();
   const double offset = cross(d, w) / length;
@@ -76,7 +76,8 @@ ArcStep against_segment(const Site& arc, const Site& site, const SamplePath& pat
   const bool through = is_through(step.gap, arc, site, band);
   step.active = beyond == 0.0 && outside == 0.0 && !through;
   step.point = path.q - step.normal * (side * offset - site.radius);
-  step.curvature = bounds.acceleration;
+  // what pulls along the segment does not bend the gap: a wheel falls along a wall that it touches
+  step.curvature = acceleration_against(t.frame.direction_to_world(step.normal), relative, bounds, window);
   // While the whole circle is clear of the line, its sector does not matter. A distance from a line has
   // no curvature of its own: only the path's counts.
   if (step.active || step.gap > 0.0)
@@ -109,7 +110,8 @@ ArcStep against_segment(const Site& arc, const Site& site, const SamplePath& pat
 
 /// One of the two ways in which two arcs touch: outside against outside, or inside the other's hollow.
 ArcStep against_arc(const Site& arc, const Site& site, bool hollow, const SamplePath& path, const Placed& s,
-                    const Placed& t, double band, const RelativeBounds& relative, const PathBounds& bounds) {
+                    const Placed& t, double band, const RelativeBounds& relative, const PathBounds& bounds,
+                    double window) {
   const Vec2 w = path.q - site.center;
   const double distance = w.norm();
   const double thickness = arc.radius + site.radius;
@@ -130,8 +132,10 @@ ArcStep against_arc(const Site& arc, const Site& site, bool hollow, const Sample
   // by no more than its last term beyond |w + w' h|, and as sqrt(rho^2 + x) <= rho + x / (2 rho), that
   // is at most rho + rho' h + v^2 h^2 / (2 rho). So the present rho serves for the whole step, however
   // near to the centre the path leads.
+  // From outside the distance lies above that from the line across u: only what pulls against u bends it.
+  const double outer = acceleration_against(t.frame.direction_to_world(u), relative, bounds, window);
   step.curvature =
-      bounds.acceleration + (hollow && distance > 0.0 ? bounds.speed * bounds.speed / distance : 0.0);
+      !hollow ? outer : bounds.acceleration + (distance > 0.0 ? bounds.speed * bounds.speed / distance : 0.0);
   // At the very centre rho is 0 and there is no such bound: speed alone holds a hollow's gap there.
   if ((step.active || step.gap > 0.0) && (distance > 0.0 || !hollow))
     step.safe = safe_step(short_of(step.gap, band), step.rate, step.curvature);
@@ -151,17 +155,18 @@ ArcStep against_arc(const Site& arc, const Site& site, bool hollow, const Sample
 }  // namespace
 
 ArcStep arc_step(const Site& arc, const Site& site, const SamplePath& path, const Placed& s, const Placed& t,
-                 double band, const RelativeBounds& relative, const PathBounds& bounds) {
+                 double band, const RelativeBounds& relative, const PathBounds& bounds, double window) {
   ArcStep none;
   none.safe = kForever;
   if (!touches_convex(arc) || site.kind == SiteKind::point) return none;
-  if (site.kind == SiteKind::segment) return against_segment(arc, site, path, s, t, band, relative, bounds);
+  if (site.kind == SiteKind::segment)
+    return against_segment(arc, site, path, s, t, band, relative, bounds, window);
   // A wider arc in a hollow comes nearest at an end of one of the two, and ends are vertex samples: only
   // a tighter one touches it with its inside.
   ArcStep outer = none, inner = none;
-  if (touches_convex(site)) outer = against_arc(arc, site, false, path, s, t, band, relative, bounds);
+  if (touches_convex(site)) outer = against_arc(arc, site, false, path, s, t, band, relative, bounds, window);
   if (touches_concave(site) && arc.arc_radius < site.arc_radius)
-    inner = against_arc(arc, site, true, path, s, t, band, relative, bounds);
+    inner = against_arc(arc, site, true, path, s, t, band, relative, bounds, window);
   // What is told is the nearer of the two ways that count; the step must be safe for both.
   ArcStep& first = outer.active && (!inner.active || outer.gap <= inner.gap) ? outer
                    : inner.active                                            ? inner

@@ -27,9 +27,10 @@ inline bool touches_convex(const Site& arc) { return !arc.solid || arc.sweep > 0
 inline bool touches_concave(const Site& arc) { return !arc.solid || arc.sweep < 0.0; }
 
 /// `arc` is a site of S, placed; `path` is the path of its centre in T's frame; `site` is of T.
+/// `window`: of the bounds [s].
 /// A gap below minus both thicknesses and `band` [m] is no overlap:
 /// the arc's facing side lies beyond the site, as at the far side of a body; such a pair is not active.
 ArcStep arc_step(const Site& arc, const Site& site, const SamplePath& path, const Placed& s, const Placed& t,
-                 double band, const RelativeBounds& relative, const PathBounds& bounds);
+                 double band, const RelativeBounds& relative, const PathBounds& bounds, double window);
 
 }  // namespace brink

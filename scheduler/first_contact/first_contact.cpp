@@ -274,7 +274,7 @@ class PairSearch {
       const double band = view_.touching_band(half, i, path);
       const PathBounds bounds = path_bounds(path, now.of(half), 0.0);
       if (half.sample(i).arc_site >= 0)
-        arc_sample_step(half, i, path, band, now.of(half), bounds);
+        arc_sample_step(half, i, path, band, now.of(half), bounds, 0.0);
       else
         vertex_steps(half, i, path, band, bounds, bounds, 0.0, 0.0);
     }
@@ -373,8 +373,8 @@ class PairSearch {
       std::tie(safe, again) =
           vertex_steps(half, i, path, band, over_all, over_short, long_window, short_window);
     } else {
-      safe = arc_sample_step(half, i, path, band, relative, over_all);
-      if (safe < short_window) again = arc_sample_step(half, i, path, band, near, over_short);
+      safe = arc_sample_step(half, i, path, band, relative, over_all, long_window);
+      if (safe < short_window) again = arc_sample_step(half, i, path, band, near, over_short, short_window);
     }
     safe = std::max(safe, apart);
     // The short bounds say nothing of what lies beyond their window.
@@ -567,7 +567,7 @@ class PairSearch {
   /// looked at, as an index names the sites near a point, not near a circle. Follows to their contact those
   /// within the band that approach.
   double arc_sample_step(const Half& half, int i, const SamplePath& path, double band,
-                         const RelativeBounds& relative, const PathBounds& bounds) {
+                         const RelativeBounds& relative, const PathBounds& bounds, double window) {
     const Sample& sample = half.sample(i);
     const Site& arc = half.samples_of().sites[sample.arc_site];
     const Outline& sites = half.sites_of();
@@ -575,7 +575,7 @@ class PairSearch {
     for (std::size_t j = 0; j < sites.sites.size(); ++j) {
       ++work_.candidate_evaluations;
       const ArcStep step = arc_step(arc, sites.sites[j], path, view_.placed(half.s), view_.placed(half.t),
-                                    band, relative, bounds);
+                                    band, relative, bounds, window);
       if (step.active && step.gap <= band) {
         if (comes_and_goes(step.rate)) return 0.0;
         look_closely();

@@ -147,7 +147,7 @@ ArcStep PairView::arc_now(const Half& half, int i, int j) const {
   const Site& arc = half.samples_of().sites[static_cast<std::size_t>(half.sample(i).arc_site)];
   // With bounds of nothing: the gap, its rate and its place are used, how long they are safe is not.
   return arc_step(arc, half.site(j), path(half, i), placed(half.s), placed(half.t), limits_.tolerance, {},
-                  {0.0, 0.0});
+                  {0.0, 0.0}, 0.0);
 }
 
 FeatureContact PairView::look_again(const Half& half, const Feature& f, double time) const {

@@ -657,7 +657,7 @@ void add_features(const Half& half, int i, double reach, double tolerance, bool 
     least = std::min(least, nearest.back().distance);
     least_clear = std::min(least_clear, clear(nearest.size() - 1));
   }
-  // So far off no gap is within reach, but for what is behind, and tangents over joints.
+  // So far off no gap is within reach, but for what is behind, and tangents over joints with what is not so far.
   const double far_off = reach + corner + kSunkOfRadius * half.carrier.bounding_radius;
   bool outside = false;
   for (std::size_t j = 0; j < nearest.size(); ++j)
@@ -667,11 +667,21 @@ void add_features(const Half& half, int i, double reach, double tolerance, bool 
         outside || (nearest[j].distance <= least + tie && side_of(half.other.sites[j], nearest[j], q) > 0.0);
   if (outside && least_clear > far_off) return;
   const bool bare = half.carrier.samples[i].arc_site < 0;
+  const auto is_far = [&](std::size_t j) {
+    return nearest[j].distance > std::max(least + tie, corner) && clear(j) > far_off;
+  };
+  std::vector<std::size_t> near;
+  for (std::size_t j = 0; bends && j < nearest.size(); ++j)
+    if (!is_far(j)) near.push_back(j);
+  const auto joins_near = [&](std::size_t j) {
+    const Site& site = half.other.sites[j];
+    const Vec2& end = nearest[j].foot == Foot::start ? site.a : site.b;
+    return nearest[j].foot != Foot::interior && std::any_of(near.begin(), near.end(), [&](std::size_t k) {
+             return half.other.sites[k].a == end || half.other.sites[k].b == end;
+           });
+  };
   for (std::size_t j = 0; j < nearest.size(); ++j) {
-    if (half.other.sites[j].covered) continue;
-    const bool within = nearest[j].distance <= std::max(least + tie, corner),
-               over_joint = bends && nearest[j].foot != Foot::interior;
-    if (!within && !over_joint && clear(j) > far_off) continue;
+    if (half.other.sites[j].covered || (is_far(j) && !joins_near(j))) continue;
     const double side = side_of(half.other.sites[j], nearest[j], q);
     const OnCorner where = bare ? on_corner(half, half.carrier.samples[i], j, q, corner) : OnCorner::nowhere;
     const OnWire upon = bare ? on_wire(half, half.carrier.samples[i], j, q, kOneCorner * size) : OnWire{};
