@@ -22,6 +22,8 @@ constexpr double kEnd = 3.0, kFrames = 1.0 / 128.0;
 constexpr std::size_t kStepFrames = 20;
 /// Of the largest momentum, and of the kinetic energy that there was.
 constexpr double kMomentumLost = 1e-11, kEnergyWon = 1e-10;
+/// Of the sum of all angular momenta about the origin: steps turn bodies to first order.
+constexpr double kTurningLost = 1e-3;
 
 Shape shape_of(Random& random) {
   const double size = random.uniform(0.3, 0.8);
@@ -84,11 +86,15 @@ class LawWatch final : public outside::FrameWatch {
   void frame(double t, std::span<const BodyState> states) override {
     FrameWatch::frame(t, states);
     Vec2 momentum = Vec2::Zero();
+    double angular = 0.0, turning = 0.0;
     double largest = 0.0, energy = 0.0, kinetic = 0.0;
     for (std::size_t k = 0; k < states.size(); ++k) {
       const Body& b = made_.world.bodies[k];
       const Vec2 p = b.mass * states[k].twist.velocity;
       momentum += p;
+      const double orbit = cross(states[k].pose.position, p), spin = b.inertia * states[k].twist.omega;
+      angular += orbit + spin;
+      turning += std::abs(orbit) + std::abs(spin);
       largest = std::max(largest, p.norm());
       kinetic +=
           0.5 * (p.dot(states[k].twist.velocity) + b.inertia * states[k].twist.omega * states[k].twist.omega);
@@ -97,11 +103,15 @@ class LawWatch final : public outside::FrameWatch {
     energy += kinetic;
     if (frames_++ == 0) {
       first_ = momentum;
+      first_angular_ = angular;
       least_ = energy;
       of_ = std::max(kinetic, std::abs(energy));
     }
     const Vec2 change = momentum - first_;
     scale_ = std::max(scale_, largest);
+    turning_ = std::max(turning_, turning);
+    // of one that drifts the lever is long: what its momentum keeps it does not lose
+    if (!made_.on_ice) angular_lost = std::max(angular_lost, std::abs(angular - first_angular_));
     lost = std::max(lost, made_.on_ice ? std::abs(change.x()) : change.norm());
     // In the middle of a step of first order bodies have the velocity of its end already: gravity has done its work on that
     // before it does it on places, and what contacts take in the step is taken from its beginning on, but given back where an
@@ -114,14 +124,15 @@ class LawWatch final : public outside::FrameWatch {
     if (!made_.on_ice) won = std::max(won, (energy - least_) / of_);
   }
   double lost_part() const { return lost / std::max(scale_, 1e-9); }
-  double lost = 0.0, won = 0.0;
+  double angular_lost_part() const { return angular_lost / std::max(turning_, 1e-9); }
+  double lost = 0.0, won = 0.0, angular_lost = 0.0;
 
  private:
   const Made& made_;
   bool by_steps_;
   std::deque<double> seen_;
   Vec2 first_ = Vec2::Zero();
-  double least_ = 0.0, of_ = 0.0, scale_ = 0.0;
+  double least_ = 0.0, of_ = 0.0, scale_ = 0.0, first_angular_ = 0.0, turning_ = 0.0;
   int frames_ = 0;
 };
 
@@ -145,6 +156,8 @@ std::string fault_of(std::uint64_t seed) {
   if (!watch.sound()) return what + watch.report();
   if (watch.lost_part() > kMomentumLost)
     return fmt::format("{}{:.3g} of the momentum lost", what, watch.lost_part());
+  if (watch.angular_lost_part() > kTurningLost)
+    return fmt::format("{}{:.3g} of the angular momentum lost", what, watch.angular_lost_part());
   if (watch.won > kEnergyWon) return fmt::format("{}{:.3g} of the energy won", what, watch.won);
   if (summary.termination != Termination::reached_end) return "";  // more collisions than it may have
   const std::string other =

@@ -1,5 +1,5 @@
 #pragma once
-/// What one collision may do, by the laws of Newton and Coulomb, from the impulse that was recorded.
+/// What one collision may do, by the laws of Newton and Coulomb, and of energy (Brach 1989), from the impulse that was recorded.
 
 #include <string>
 
@@ -69,9 +69,17 @@ inline std::string wrong_with(const Impact& i) {
   if (i.push > 0 && std::abs(leaving - i.surface.restitution * closing) > small)
     return "parts at " + std::to_string(static_cast<double>(leaving)) + " m/s, came at " +
            std::to_string(static_cast<double>(closing)) + ": not as restitution says";
+  // What impulses do: each along the mean of its velocities. No collision gains, however friction and restitution go together.
+  const Real slid = dot(left_of(i.normal), i.before);
+  const Real by_push = i.push * (leaving - closing) / 2, by_rub = i.rub * (slid + slides) / 2,
+             noise = 1e-9L * (std::abs(by_push) + std::abs(by_rub)) + (i.push + std::abs(i.rub)) * small;
+  const Real gained = by_push + by_rub;
+  if (gained > noise) return "gains " + std::to_string(static_cast<double>(gained)) + " J";
   const bool sticks = std::abs(i.rub) < i.surface.friction * i.push * (1 - 1e-9L);
-  const Real would = -i.surface.tangential * dot(left_of(i.normal), i.before);
-  if (sticks && std::abs(slides - would) > small + 1e-6L * std::abs(would)) return "slides though it sticks";
+  const Real would = -i.surface.tangential * slid;
+  // less friction than that is right where more would gain: there the collision loses nothing
+  if (sticks && gained < -noise && std::abs(slides - would) > small + 1e-6L * std::abs(would))
+    return "slides though it sticks";
   return {};
 }
 
