@@ -21,7 +21,8 @@ namespace brink {
 /// short to be seen. Then a cubic makes neighbouring pieces meet with one twist. A piece depends on the
 /// function near it alone, never on how far was asked. A corner of the function (a jump of its rate) is
 /// rounded off within 2^-30 s, by rates between those before and after it; narrow cells beside it are one piece with the wider
-/// one that comes before or after. A jump of its value (right at a time of the grid: by more than 1e-7, or than that part of it), an infinite rate, a value that is not finite, or bounds
+/// one that comes before or after. A jump of its value (right at a time of the grid: of more than 1e-7, and than that part of it),
+/// an infinite rate, a value that is not finite, or bounds
 /// that say nothing end the motion there.
 ///
 /// Cost: some 25 evaluations and four bounds a cell and halving. Sources: Trefethen 2013, Approximation

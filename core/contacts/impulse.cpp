@@ -58,7 +58,7 @@ ExtendedTwist pushed(const ImpulseSide& side, const RealVec& impulse) {
   return after;
 }
 
-/// What a collision gains, as a part of what its normal impulse turns over, that is a rounding of two doubles.
+/// What a collision gains, as a part of what it turns over, that is a rounding of two doubles.
 constexpr double kNoGain = 1e-24;
 
 /// Less friction, where as much as is asked for would make the collision gain energy, which Newton's restitution with Coulomb's
@@ -74,7 +74,8 @@ Real without_gain(const ContactSpace& c, Real determinant, const Material& mater
              bends = determinant / (Real(2) * c.knn);
   const Real side = pt < 0.0 ? -1.0 : 1.0, most = side * pt;
   const Real slope = side * (c.vt - c.knt * c.vn / c.knn);
-  if (most * (slope + most * bends) - lost <= kNoGain * c.vn * c.vn / c.knn) return pt;
+  const Real turned_over = lost + most * (abs(slope) + most * bends);
+  if (most * (slope + most * bends) - lost <= kNoGain * turned_over) return pt;
   const Real root = sqrt(slope * slope + Real(4) * bends * lost);
   // whichever of the two takes no difference
   return side * (slope > 0.0 ? Real(2) * lost / (slope + root) : (root - slope) / (Real(2) * bends));

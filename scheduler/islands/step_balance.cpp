@@ -44,12 +44,13 @@ void StepBalance::find_groups(const std::vector<Vec3>& velocity) {
   const std::size_t bodies = step_->mass.size();
   std::vector<double> impulse, arm(bodies, 0.0);
   double largest = 0.0;
+  const auto reaches = [&](int body, const Vec3& normal, const Vec3& tangent) {
+    arm[body] = std::max(arm[body], Vec2(normal[2], tangent[2]).norm());
+  };
   for (const PushingContact& c : contacts_) {
     const LastingContact& rows = step_->contacts[c.contact].rows;
-    arm[rows.body] = std::max(arm[rows.body], std::hypot(rows.normal_on_body[2], rows.tangent_on_body[2]));
-    if (rows.other >= 0)
-      arm[rows.other] =
-          std::max(arm[rows.other], std::hypot(rows.normal_on_other[2], rows.tangent_on_other[2]));
+    reaches(rows.body, rows.normal_on_body, rows.tangent_on_body);
+    if (rows.other >= 0) reaches(rows.other, rows.normal_on_other, rows.tangent_on_other);
   }
   for (std::size_t i = 0; i < bodies; ++i) {
     impulse.push_back(
