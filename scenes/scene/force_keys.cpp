@@ -69,7 +69,8 @@ Schema<ForceTable> spring_schema() {
       .optional("body", &ForceTable::body, text("name of a body"), "none",
                 "the body that it holds to the anchor")
       .optional("anchor", &ForceTable::anchor, point(), "none", "a fixed point of the world")
-      .optional("at", &ForceTable::at, attachment(), "[0, 0]", "where it is attached, from the body's position, in its axes");
+      .optional("at", &ForceTable::at, attachment(), "[0, 0]",
+                "where it is attached, from the body's position, in its axes");
   part.key("stiffness", &SpringForce::stiffness, strength("N/m"), "force per length", true)
       .key("damping", &SpringForce::damping, strength("N s/m"), "along the spring")
       .key("rest_length", &SpringForce::rest_length, number(not_negative("m")), "length without force");
