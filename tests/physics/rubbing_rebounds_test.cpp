@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -88,6 +89,7 @@ std::string planets(Random& random) {
                       polygon(gear(of_sun, 0.5 * kModule * of_sun, kHeight, width, slant)),
                       random.uniform(-8.0, 8.0));
   const int count = 1 + static_cast<int>(random.below(3));
+  std::vector<Vec2> places;
   for (int k = 0; k < count; ++k) {
     const double turn = 2.0 * std::numbers::pi, orbit = 0.5 * kModule * (of_sun + of_planet);
     // about a third of the way round, where its teeth are in gaps of both
@@ -98,9 +100,15 @@ std::string planets(Random& random) {
       const double off = off_whole((there - turned) * of_planet / turn - there * of_ring / turn - 0.5);
       if (off < best) best = off, along = there, angle = turned;
     }
+    // not where it would be in one that is there
+    const Vec2 at = orbit * Vec2(std::cos(along), std::sin(along));
+    if (std::any_of(places.begin(), places.end(),
+                    [&](const Vec2& p) { return (p - at).norm() < kModule * of_planet + 2.0 * kHeight; }))
+      continue;
+    places.push_back(at);
     text += fmt::format("[[bodies]]\n{}\ndensity = 5\nposition = [{:.12g}, {:.12g}]\nangle = {:.12g}\n",
-                        polygon(gear(of_planet, 0.5 * kModule * of_planet, kHeight, width, slant)),
-                        orbit * std::cos(along), orbit * std::sin(along), angle);
+                        polygon(gear(of_planet, 0.5 * kModule * of_planet, kHeight, width, slant)), at.x(),
+                        at.y(), angle);
   }
   return text;
 }
