@@ -232,8 +232,10 @@ PrescribedMotion::Noise PrescribedMotion::noise(const Cell& at, const Vector3d& 
       }
     return most;
   };
-  const Vector3d on_grid = most_of({0.0, 0.5, 1.0}), elsewhere = most_of({0.381966, 0.723607});
-  const Vector3d believed = (kAlikeNoise * elsewhere).cwiseMax(kRough * scale.cwiseMax(1.0));
+  const Vector3d on_grid = most_of({0.0, 0.5, 1.0}), rough = kRough * scale.cwiseMax(1.0);
+  if ((on_grid.array() <= rough.array()).all()) return {on_grid, on_grid};
+  const Vector3d elsewhere = most_of({0.381966, 0.723607});
+  const Vector3d believed = (kAlikeNoise * elsewhere).cwiseMax(rough);
   return {(on_grid.array() <= believed.array()).select(on_grid, elsewhere), on_grid};
 }
 

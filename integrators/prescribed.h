@@ -25,7 +25,7 @@ namespace brink {
 /// an infinite rate, a value that is not finite, or bounds
 /// that say nothing end the motion there.
 ///
-/// Cost: some 25 evaluations and four bounds a cell and halving. Sources: Trefethen 2013, Approximation
+/// Cost: some 25 evaluations and four bounds a coordinate a cell and halving. Sources: Trefethen 2013, Approximation
 /// Theory and Practice, ch. 2-5; Moore 1966, Interval Analysis.
 class PrescribedMotion {
  public:
