@@ -184,6 +184,13 @@ double Track::remembered_until(double begin) const {
   return next < std::ssize(pieces) ? pieces[next].begin : std::numeric_limits<double>::infinity();
 }
 
+double Track::remembered_from(double t) const {
+  const auto after = std::upper_bound(pieces.begin(), pieces.end(), t,
+                                      [](double time, const PolynomialPiece& p) { return time < p.begin; });
+  const std::ptrdiff_t piece = after - pieces.begin() - 1 - kRemembered;
+  return pieces[std::max<std::ptrdiff_t>(piece, 0)].begin;
+}
+
 Motion Motion::still(const Pose& pose, double t0) { return ballistic(t0, {pose, {}}, {}); }
 
 Motion Motion::ballistic(double t0, const BodyState& start, const Acceleration& acceleration, double t1,
@@ -237,6 +244,10 @@ std::pair<double, double> Motion::piece_at(double t) const {
 double Motion::remembered_until(double begin) const {
   return kind_ == Kind::dense ? other_->track->remembered_until(begin)
                               : std::numeric_limits<double>::infinity();
+}
+
+double Motion::remembered_from(double t) const {
+  return kind_ == Kind::dense ? other_->track->remembered_from(t) : begin();
 }
 
 const Motion& Motion::link(double t) const {

@@ -65,6 +65,8 @@ struct Track {
   void forget_before(double t);
   /// Up to when a piece is at most kRemembered after that of `begin`; infinity: so far all are.
   double remembered_until(double begin) const;
+  /// When the piece begins that is kRemembered before that of t, or the first. @pre t has not been given up
+  double remembered_from(double t) const;
 
   /// Pieces that lie so few before a time that may be asked for are there, whenever others were given up.
   static constexpr std::ptrdiff_t kRemembered = 512;
@@ -113,6 +115,8 @@ class Motion {
   /// Up to when `begin` can be asked for as well, however long the motion was followed, and whatever of it was given up
   /// (Track::forget_before): a function of the motion alone [s].
   double remembered_until(double begin) const;
+  /// From when on it can be asked for as long as t may be, whatever of it was given up: a function of the motion alone [s].
+  double remembered_from(double t) const;
   /// False for a time that cannot be asked for any more.
   bool remembers(double t) const { return remembered_until(t) >= t; }
 

@@ -22,6 +22,14 @@ class Dynamics {
   virtual void accelerations(double t, std::span<const BodyState> states,
                              std::span<Acceleration> out) const = 0;
 
+  /// The same, but what two bodies do to each other acts along their line in the states `lines` (arms included), as large as it is at
+  /// `states`: so it takes no angular momentum from a step that begins at `lines`.
+  virtual void accelerations_along(double t, std::span<const BodyState> lines,
+                                   std::span<const BodyState> states, std::span<Acceleration> out) const {
+    (void)lines;
+    accelerations(t, states, out);
+  }
+
   /// Which of the accelerations' causes is not finite at time t, in words that name it; empty where all are, or where
   /// nothing is known of them.
   virtual std::string not_finite(double t, std::span<const BodyState> states) const {

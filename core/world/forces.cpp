@@ -31,6 +31,33 @@ FormulaValues formula_values(double t, const BodyState& state, const Body& body)
           twist.omega, body.mass};
 }
 
+/// Where a spring's ends are [m], and how fast they part [m/s].
+struct SpringLine {
+  SpringLine(const SpringForce& s, std::span<const BodyState> states) {
+    const BodyState& a = states[s.body_a];
+    arm_a = Frame(a.pose).direction_to_world(s.at_a);
+    // An anchor keeps arm and velocity 0, and end_b is its place in the world.
+    Vec2 end_b = s.at_b, velocity_b = Vec2::Zero();
+    if (s.body_b >= 0) {
+      const BodyState& b = states[s.body_b];
+      arm_b = Frame(b.pose).direction_to_world(s.at_b);
+      end_b = b.pose.position + arm_b;
+      velocity_b = b.twist.at(arm_b);
+    }
+    span = end_b - (a.pose.position + arm_a);
+    length = span.norm();
+    parts = velocity_b - a.twist.at(arm_a);
+  }
+
+  /// @pre length > 0
+  Vec2 along() const { return span / length; }
+
+  Vec2 arm_a, arm_b = Vec2::Zero();  ///< from the centres of mass, in world axes
+  Vec2 span;                         ///< from the end on a to that on b
+  double length = 0.0;
+  Vec2 parts;
+};
+
 /// The accelerations of one component. Forces on single bodies are pointers into the world; springs are kept
 /// with their bodies renumbered to places in the component.
 class ForceDynamics final : public Dynamics {
@@ -55,7 +82,12 @@ class ForceDynamics final : public Dynamics {
   }
 
   int size() const override { return static_cast<int>(bodies_.size()); }
-  void accelerations(double t, std::span<const BodyState> states, std::span<Acceleration> out) const override;
+  void accelerations(double t, std::span<const BodyState> states,
+                     std::span<Acceleration> out) const override {
+    accelerations_along(t, states, states, out);
+  }
+  void accelerations_along(double t, std::span<const BodyState> lines, std::span<const BodyState> states,
+                           std::span<Acceleration> out) const override;
   std::string not_finite(double t, std::span<const BodyState> states) const override;
   double next_break(double t) const override;
   double steady_until(double t) override;
@@ -77,7 +109,8 @@ class ForceDynamics final : public Dynamics {
   };
 
   /// Each adds what its forces give to `out`, in world axes.
-  void add_springs(std::span<const BodyState> states, std::span<Acceleration> out) const;
+  void add_springs(std::span<const BodyState> lines, std::span<const BodyState> states,
+                   std::span<Acceleration> out) const;
   void add_drags(std::span<const BodyState> states, std::span<Acceleration> out) const;
   void add_attractors(std::span<const BodyState> states, std::span<Acceleration> out) const;
   void add_thrusts(double t, std::span<Acceleration> out) const;
@@ -98,10 +131,11 @@ class ForceDynamics final : public Dynamics {
   std::vector<SteadyFormula> in_time_;  ///< every part of a formula that depends on time
 };
 
-void ForceDynamics::accelerations(double t, std::span<const BodyState> states,
-                                  std::span<Acceleration> out) const {
+void ForceDynamics::accelerations_along(double t, std::span<const BodyState> lines,
+                                        std::span<const BodyState> states,
+                                        std::span<Acceleration> out) const {
   for (Acceleration& a : out) a = {gravity_, 0.0};
-  add_springs(states, out);
+  add_springs(lines, states, out);
   add_drags(states, out);
   add_attractors(states, out);
   add_thrusts(t, out);
@@ -123,31 +157,22 @@ void ForceDynamics::hold_locked(std::span<Acceleration> out) const {
   }
 }
 
-void ForceDynamics::add_springs(std::span<const BodyState> states, std::span<Acceleration> out) const {
+void ForceDynamics::add_springs(std::span<const BodyState> lines, std::span<const BodyState> states,
+                                std::span<Acceleration> out) const {
+  const bool elsewhere = lines.data() != states.data();
   for (const SpringForce& s : springs_) {
-    const BodyState& a = states[s.body_a];
-    const Vec2 arm_a = Frame(a.pose).direction_to_world(s.at_a);
-    Vec2 arm_b = Vec2::Zero(), end_b = s.at_b, velocity_b = Vec2::Zero();
-    if (s.body_b >= 0) {
-      const BodyState& b = states[s.body_b];
-      arm_b = Frame(b.pose).direction_to_world(s.at_b);
-      end_b = b.pose.position + arm_b;
-      velocity_b = b.twist.at(arm_b);
-    }
-    // An anchor keeps arm and velocity 0, and end_b is its place in the world.
-    const Vec2 span = end_b - (a.pose.position + arm_a);
-    const double length = span.norm();
+    const SpringLine now(s, states);
+    // what an anchor gives of turning is its own
+    const SpringLine line = elsewhere && s.body_b >= 0 ? SpringLine(s, lines) : now;
     // no direction there; a division would make the accelerations NaN and end the integration
-    if (length == 0.0) continue;
-    const Vec2 along = span / length;
+    if (now.length == 0.0 || line.length == 0.0) continue;
     // The second term damps the rate at which the length changes, (v_b - v_a) . along, with v at the two
     // ends.
-    const double pull =
-        s.stiffness * (length - s.rest_length) + s.damping * along.dot(velocity_b - a.twist.at(arm_a));
+    const double pull = s.stiffness * (now.length - s.rest_length) + s.damping * now.along().dot(now.parts);
     // on a, towards b where the spring is stretched: `pull` > 0
-    const Vec2 force = pull * along;
-    add(s.body_a, {force, cross(arm_a, force)}, out);
-    if (s.body_b >= 0) add(s.body_b, {-force, -cross(arm_b, force)}, out);
+    const Vec2 force = pull * line.along();
+    add(s.body_a, {force, cross(line.arm_a, force)}, out);
+    if (s.body_b >= 0) add(s.body_b, {-force, -cross(line.arm_b, force)}, out);
   }
 }
 

@@ -96,6 +96,9 @@ class PairSearch {
         asked_from_(asked_from),
         window_end_(to),
         remembers_start_(remembers_start),
+        earliest_(remembers_start ? view_.start()
+                                  : std::max({view_.start(), a.motion->remembered_from(asked_from),
+                                              b.motion->remembered_from(asked_from)})),
         limits_(limits),
         scratch_(scratch),
         work_(work) {
@@ -610,15 +613,15 @@ class PairSearch {
     const Site& site = half.site(f.site);
     const double speed = -f.rate;
     const double now = f.gap - view_.level(half, f.sample, site, path.q);
-    const double begin = view_.start();
-    if (t_ <= begin && now <= 0.0) return remember(half, f, t_);  // touching from the start, and approaching
+    // touching from the start, and approaching
+    if (t_ <= view_.start() && now <= 0.0) return remember(half, f, t_);
     if (meets_tip(half, f, path, bounds)) return true;
     const double rounding = view_.gap_rounding(half, f.sample, path.q);
     const FallingGap falling(t_, now, speed, bounds.acceleration, rounding);
     // A canonical time needs an interval that holds this crossing alone, with a gap beyond rounding at both ends. It was
     // clear until the search began.
     const auto clear =
-        falling.clear_end(gap, in_part_ ? from_ : std::max(begin, from_ - 1024.0 * falling.moment()));
+        falling.clear_end(gap, in_part_ ? from_ : std::max(earliest_, from_ - 1024.0 * falling.moment()));
     if (!clear && gap(t_) <= 0.0) {
       const std::optional<double> since = in_each_other_since(half, f);
       return since && remember(half, f, *since);
@@ -812,7 +815,7 @@ class PairSearch {
       then.q -= tip;
       return then;
     };
-    const double begin = view_.start();
+    const double begin = earliest_;
     if (remembers_start_) {
       const SamplePath first = to_tip(begin);
       if (is_upon_tip(half, f, first, at_a, there)) return asked_from_ <= begin && remember(half, f, begin);
@@ -822,12 +825,12 @@ class PairSearch {
     double nearest = t_ - (path.q - tip).dot(path.rate) / path.rate.squaredNorm();
     SamplePath then;
     for (int i = 0; i < 2; ++i) {
-      if (!(nearest >= view_.start() && nearest <= window_end())) return false;
+      if (!(nearest >= begin && nearest <= window_end())) return false;
       then = to_tip(nearest);
       nearest -= then.q.dot(then.rate) / then.rate.squaredNorm();
     }
-    // what is nearest before its motions begin has gone by, or turns: it does not go straight for the tip
-    if (!(nearest >= view_.start() && nearest <= window_end())) return false;
+    // what is nearest before its motions begin, or long before, has gone by, or turns: it does not go straight for the tip
+    if (!(nearest >= begin && nearest <= window_end())) return false;
     then = to_tip(nearest);
     if (!corners_cross(half, f, at_a, then.rate, there)) return false;
     if (lies_flush(half, f, at_a, there)) return false;  // it meets a face, not a tip
@@ -943,6 +946,8 @@ class PairSearch {
   double from_, to_;
   double asked_from_, window_end_;  ///< from_ and to_ as they were given
   bool remembers_start_;
+  double
+      earliest_;  ///< when both motions can be asked for: where they begin, or so far back as neither is given up
   const SearchLimits& limits_;
   SearchScratch& scratch_;
   WorkCounters& work_;

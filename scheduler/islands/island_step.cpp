@@ -378,7 +378,8 @@ std::vector<PushingContact> pushing(const std::vector<Part>& parts, const StepRe
 }
 
 /// The first contact of two that were not slowed alike, and that is missed by more than its tolerance: of one who was with one who was
-/// not, or who was in another group, or with a site where a group had something in common.
+/// not, or who was in another group, or with a site where a group had something in common; or of two who turn about each other as
+/// before.
 std::optional<std::size_t> missed_by_slowing(const IslandStep& step, double h,
                                              const std::vector<Vec3>& velocity,
                                              const std::vector<int>& groups,
@@ -388,7 +389,9 @@ std::optional<std::size_t> missed_by_slowing(const IslandStep& step, double h,
   for (std::size_t k = 0; k < step.contacts.size(); ++k) {
     const LastingContact& rows = step.contacts[k].rows;
     const bool of_body = was_slowed(rows.body);
-    const bool alike = rows.other < 0
+    const bool turns = of_body && slowed.turns[groups[rows.body]];
+    const bool alike = turns ? false
+                       : rows.other < 0
                            ? !of_body || slowed.common[groups[rows.body]].isZero(0.0)
                            : groups[rows.body] == groups[rows.other] || (!of_body && !was_slowed(rows.other));
     if (!alike && missed(step, k, h, velocity, 0.0, false, gap).too_much) return k;
@@ -401,12 +404,17 @@ std::optional<std::size_t> missed_by_slowing(const IslandStep& step, double h,
 void win_nothing(const IslandStep& step, double h, const GapsAlong& gaps, StepBalance& balance,
                  std::vector<Vec3>& velocity) {
   const std::vector<Vec3> as_solved = velocity;
-  for (;;) {
+  for (bool keep_turning = true;;) {
     velocity = as_solved;
-    const StepBalance::Slowed slowed = balance.win_nothing(velocity);
+    const StepBalance::Slowed slowed = balance.win_nothing(velocity, keep_turning);
     const auto k = missed_by_slowing(step, h, velocity, balance.groups(), slowed, gaps);
     if (!k) return;
     const LastingContact& rows = step.contacts[*k].rows;
+    const bool in_one = rows.other >= 0 && balance.groups()[rows.body] == balance.groups()[rows.other];
+    if (in_one && keep_turning) {
+      keep_turning = false;
+      continue;
+    }
     if (rows.other < 0) break;
     balance.unite(rows.body, rows.other, as_solved);
   }
@@ -432,6 +440,10 @@ StepOutcome without_loads(IslandStep& step, double h, const GapsAlong& gaps, con
   for (std::size_t i = 0; i < step.mass.size(); ++i)
     // what is held has an infinite mass: nothing is added to it
     velocity[i] += h * step.force[i].cwiseQuotient(step.mass[i]);
+  if (!step.joined_to.empty()) {
+    StepBalance balance(step, h, {}, velocity);
+    win_nothing(step, h, gaps, balance, velocity);
+  }
   if (farther) farther(velocity);
   const GapAlong gap = gaps(velocity);
   // all contacts are asked, those that wait for their turn, too

@@ -50,9 +50,15 @@ struct IslandContact {
 };
 
 struct IslandStep {
+  std::vector<Vec2> place;     ///< of centres of mass [m], from anywhere; empty: in a plane that repeats
   std::vector<Vec3> mass;      ///< of each body, infinity: held (RestProblem)
   std::vector<Vec3> velocity;  ///< in: before; out: of the step
   std::vector<Vec3> force;     ///< of all but contacts [N], [N m]
+  /// Whose work is what forces give; empty: `force`. Springs act along their lines at the start, which takes no angular momentum, and
+  /// give what they have less halfway.
+  std::vector<Vec3> spending;
+  /// Of each body the first of those that springs join it to, or itself; empty: nobody is joined.
+  std::vector<int> joined_to;
   std::vector<IslandContact> contacts;
 };
 

@@ -39,7 +39,8 @@ StepBalance::StepBalance(const IslandStep& step, double h, std::vector<PushingCo
   for (int g = 0; g < groups; ++g) lines_.push_back(line_of_pushes(g, velocity));
 }
 
-/// Two who are pushed are of one group where a contact between them pushes; what lies on one site is not, for that.
+/// Two who are pushed are of one group where a contact between them pushes; what lies on one site is not, for that. Who are joined by
+/// springs are of one in any case: what they win they win together.
 void StepBalance::find_groups(const std::vector<Vec3>& velocity) {
   const std::size_t bodies = step_->mass.size();
   std::vector<double> impulse, arm(bodies, 0.0);
@@ -66,10 +67,17 @@ void StepBalance::find_groups(const std::vector<Vec3>& velocity) {
     if (rows.other >= 0 && push > kOnePush * largest && is_pushed(rows.body) && is_pushed(rows.other))
       together.unite(rows.body, rows.other);
   }
+  std::vector<bool> joined(bodies, false);
+  for (std::size_t i = 0; i < step_->joined_to.size(); ++i) {
+    const int first = step_->joined_to[i];
+    if (first == static_cast<int>(i)) continue;
+    together.unite(first, static_cast<int>(i));
+    joined[first] = joined[i] = true;
+  }
   group_.assign(bodies, -1);
   int groups = 0;
   for (int i = 0; i < static_cast<int>(bodies); ++i) {
-    if (!is_pushed(i) || group_[i] >= 0) continue;
+    if ((!is_pushed(i) && !joined[i]) || group_[i] >= 0) continue;
     for (const int k : together.of(i)) group_[k] = groups;
     ++groups;
   }
@@ -185,7 +193,7 @@ double StepBalance::won_by(int group, const std::vector<Vec3>& velocity, double 
   double change = 0.0;
   for (std::size_t i = 0; i < velocity.size(); ++i)
     for (int k = 0; k < 3; ++k) {
-      const double mass = step_->mass[i][k], force = step_->force[i][k];
+      const double mass = step_->mass[i][k], force = spending(i)[k];
       if (group_[i] != group || std::isinf(mass)) continue;
       // Kinetic energy as m (after - before) (after + before) / 2, without the cancellation of two
       // squares. The work of a force is h f . after, as the step goes with the twist of its end.
@@ -224,48 +232,89 @@ double StepBalance::rise_of_thin(int group) const {
   return rise;
 }
 
-StepBalance::Slowed StepBalance::win_nothing(std::vector<Vec3>& velocity) const {
+Vec3 StepBalance::Common::at(const Vec2& place) const {
+  const Vec2 there = velocity + cross(omega, Vec2(place - about));
+  return {there.x(), there.y(), omega};
+}
+
+/// With their turning, where places are known, no site pushes, and nobody is held.
+StepBalance::Common StepBalance::common_motion(int group, const std::vector<Vec3>& velocity) const {
+  Common common{common_velocity(group, velocity), 0.0, Vec2::Zero()};
+  if (step_->place.empty() || !lines_[group] || !lines_[group]->isZero(0.0)) return common;
+  double mass = 0.0, inertia = 0.0, angular = 0.0;
+  Vec2 moment = Vec2::Zero();
+  const auto each = [&](auto&& visit) {
+    for (std::size_t i = 0; i < velocity.size(); ++i)
+      if (group_[i] == group) visit(step_->mass[i], step_->place[i], velocity[i]);
+  };
+  each([&](const Vec3& m, const Vec2& at, const Vec3&) { mass += m.x(), moment += m.x() * at; });
+  common.about = moment / mass;
+  each([&](const Vec3& m, const Vec2& at, const Vec3& v) {
+    const Vec2 arm = at - common.about;
+    inertia += m.x() * arm.squaredNorm() + m.z();
+    angular += m.x() * cross(arm, Vec2(v.head<2>() - common.velocity)) + m.z() * v.z();
+  });
+  if (inertia > 0.0 && std::isfinite(inertia)) common.omega = angular / inertia;
+  return common;
+}
+
+StepBalance::Slowed StepBalance::win_nothing(std::vector<Vec3>& velocity, bool keep_turning) const {
   Slowed slowed;
   for (int g = 0; g < static_cast<int>(lines_.size()); ++g) {
     double of = 0.0;
     const double free = rise_of_thin(g);
-    slowed.groups.push_back(won_by(g, velocity, 0.0, of) > free);
-    slowed.common.push_back(common_velocity(g, velocity));
-    if (slowed.groups.back())
-      slow_down(
-          slowed.common.back(), free, [&](std::size_t i) { return group_[i] == g; }, velocity);
+    const bool won = won_by(g, velocity, 0.0, of) > free;
+    const auto is_one = [&](std::size_t i) { return group_[i] == g; };
+    Common common = keep_turning ? common_motion(g, velocity) : Common();
+    const bool turns = won && common.omega != 0.0 && slow_down(common, free, is_one, velocity);
+    common = {common_velocity(g, velocity), 0.0, Vec2::Zero()};
+    if (won && !turns) slow_down(common, free, is_one, velocity);
+    slowed.groups.push_back(won);
+    slowed.common.push_back(common.velocity);
+    slowed.turns.push_back(turns);
   }
   return slowed;
 }
 
 void StepBalance::win_nothing_together(std::vector<Vec3>& velocity) const {
   slow_down(
-      Vec2::Zero(), rise_of_thin(), [](std::size_t) { return true; }, velocity);
+      {}, rise_of_thin(), [](std::size_t) { return true; }, velocity);
 }
 
-/// Of some bodies, relative to what they have in `common` [m/s]; `given` is theirs to keep [J].
+/// Of some bodies, relative to what they have in common; `given` is theirs to keep [J]. False: that cannot be, as what they have in
+/// common is more than there was, and nothing has changed.
 template <class IsOne>
-void StepBalance::slow_down(const Vec2& common, double given, IsOne&& is_one,
+bool StepBalance::slow_down(const Common& common, double given, IsOne&& is_one,
                             std::vector<Vec3>& velocity) const {
-  const Vec3 together(common.x(), common.y(), 0.0);
+  const auto together = [&](std::size_t i) {
+    return common.at(step_->place.empty() ? Vec2(Vec2::Zero()) : step_->place[i]);
+  };
   double before = 2.0 * given, after = 0.0, work = 0.0;  // twice the kinetic energies [J]
-  for (std::size_t i = 0; i < velocity.size(); ++i)
+  for (std::size_t i = 0; i < velocity.size(); ++i) {
+    if (!is_one(i)) continue;
+    const Vec3 of_all = together(i);
     for (int k = 0; k < 3; ++k) {
-      const double mass = step_->mass[i][k], force = step_->force[i][k], was = step_->velocity[i][k];
-      if (!is_one(i) || std::isinf(mass)) continue;
-      const double apart = velocity[i][k] - together[k];
-      before += mass * (was + together[k]) * (was - together[k]) + 2.0 * h_ * force * together[k];
+      const double mass = step_->mass[i][k], force = spending(i)[k], was = step_->velocity[i][k];
+      if (std::isinf(mass)) continue;
+      const double apart = velocity[i][k] - of_all[k];
+      before += mass * (was + of_all[k]) * (was - of_all[k]) + 2.0 * h_ * force * of_all[k];
       after += mass * apart * apart;
       work += h_ * force * apart;
     }
+  }
   // At s times these velocities the kinetic energy less the work, which has s times the way, is what it was:
   // after s^2 / 2 - work s - before / 2 = 0
   const double root = work * work + after * before;
-  if (!(after > 0.0) || !(root >= 0.0)) return;
+  if (!(after > 0.0) || !(root >= 0.0)) return false;
   // where all have the same velocity `before` and `after` are roundings
-  const double slower = std::clamp((work + std::sqrt(root)) / after, 0.0, 1.0);
+  const double slower = (work + std::sqrt(root)) / after;
+  if (common.omega != 0.0 && !(slower >= 0.0 && slower <= 1.0)) return false;
   for (std::size_t i = 0; i < velocity.size(); ++i)
-    if (is_one(i)) velocity[i] = together + slower * (velocity[i] - together);
+    if (is_one(i)) {
+      const Vec3 of_all = together(i);
+      velocity[i] = of_all + std::clamp(slower, 0.0, 1.0) * (velocity[i] - of_all);
+    }
+  return true;
 }
 
 }  // namespace brink

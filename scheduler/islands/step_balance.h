@@ -23,8 +23,8 @@ struct PushingContact {
 /// Of one step that has been solved. Costs go with bodies and contacts.
 ///
 /// Those who push each other are a group: what a group wins is taken from its members, and momentum that the solver's digits have
-/// changed is given back to them. Bodies that are not pushed, by more than roundings of the largest push, are in none: they go as
-/// forces alone lead them.
+/// changed is given back to them. Who are joined by springs are of one group. Other bodies that are not pushed, by more than roundings
+/// of the largest push, are in none: they go as forces alone lead them.
 class StepBalance {
  public:
   /// `step` as it begins, which outlives this; `velocity`: of all bodies, as the contacts made it.
@@ -53,14 +53,20 @@ class StepBalance {
   struct Slowed {
     std::vector<bool> groups;  ///< of each whether it was
     std::vector<Vec2> common;  ///< [m/s]
+    std::vector<bool> turns;  ///< but for the turning of all, so that they come by other places of each other
   };
   /// Makes each group that won, beyond what wires gave it, win nothing: its members go the same way, relative to what they have in common,
-  /// only not as far. So no momentum is lost that no site takes, and bodies come by the same places of each other.
-  Slowed win_nothing(std::vector<Vec3>& velocity) const;
+  /// only not as far. So no momentum is lost that no site takes, and bodies come by the same places of each other. `keep_turning`:
+  /// of those whom no site pushes the turning of all about their centre of mass is in common as well, where that can be, and no
+  /// angular momentum is lost either.
+  Slowed win_nothing(std::vector<Vec3>& velocity, bool keep_turning) const;
   /// The same of all bodies as one, relative to nothing: then all come by the same places of everything.
   void win_nothing_together(std::vector<Vec3>& velocity) const;
 
  private:
+  const Vec3& spending(std::size_t i) const {
+    return step_->spending.empty() ? step_->force[i] : step_->spending[i];
+  }
   void find_groups(const std::vector<Vec3>& velocity);
   std::optional<Vec2> line_of_pushes(int group, const std::vector<Vec3>& velocity) const;
   const LastingContact* give_back(double tolerance, std::vector<Vec3>& velocity) const;
@@ -69,8 +75,16 @@ class StepBalance {
   Vec2 common_across(int group, const std::vector<Vec3>& velocity, const Vec2& line) const;
   double won_by(int group, const std::vector<Vec3>& velocity, double tolerance, double& of) const;
   double rise_of_thin(int group) const;
+  /// A motion as of one rigid body.
+  struct Common {
+    Vec2 velocity = Vec2::Zero();  ///< [m/s]
+    double omega = 0.0;            ///< [rad/s]
+    Vec2 about = Vec2::Zero();     ///< IslandStep::place
+    Vec3 at(const Vec2& place) const;
+  };
+  Common common_motion(int group, const std::vector<Vec3>& velocity) const;
   template <class IsOne>
-  void slow_down(const Vec2& common, double given, IsOne&& is_one, std::vector<Vec3>& velocity) const;
+  bool slow_down(const Common& common, double given, IsOne&& is_one, std::vector<Vec3>& velocity) const;
 
   const IslandStep* step_;
   double h_;

@@ -68,6 +68,8 @@ class ContactSearch {
   }
   /// From the other owner to its image [m].
   Vec2 shift_of(const PairKey& pair) const { return world_->periods.shift(pair.image); }
+  /// True of a plane that repeats.
+  bool repeats() const { return world_->periods.any(); }
   /// The state at t of the pair's other owner, where its image is.
   ExtendedState other_state(const PairKey& pair, double t) const;
   /// "'a' on 'b'".

@@ -51,16 +51,18 @@ void IslandMembers::find_speeds() {
   }
 }
 
-std::vector<Acceleration> IslandMembers::accelerations_along(double h,
-                                                             const std::vector<Vec3>& velocity) const {
-  std::vector<BodyState> halfway;
+IslandMembers::Halfway IslandMembers::accelerations_halfway(double h,
+                                                            const std::vector<Vec3>& velocity) const {
+  std::vector<BodyState> start, halfway;
   for (int i = 0; i < static_cast<int>(count()); ++i) {
+    start.push_back(state(i).rounded());
     halfway.push_back(moved(i, 0.5 * h, velocity).rounded());
     halfway.back().twist = as_twist(velocity[i]);
   }
-  std::vector<Acceleration> along(count());
-  trajectories_->accelerations(bodies_, now_ + 0.5 * h, halfway, along);
-  return along;
+  Halfway made{std::vector<Acceleration>(count()), std::vector<Acceleration>(count())};
+  trajectories_->accelerations(bodies_, now_ + 0.5 * h, halfway, made.there);
+  trajectories_->accelerations_along(bodies_, now_ + 0.5 * h, start, halfway, made.along);
+  return made;
 }
 
 double IslandMembers::guess_of(int member) const {

@@ -129,8 +129,12 @@ class IslandMembers {
   bool are_constant() const { return constant_; }
   /// How long a step of h [s] may be for the motions of near sites, see SiteMotion::even_until. @pre sites are covered as far.
   double even_for(double h) const;
-  /// What forces make of the members' motion in the middle of a step of h [s] that they take with these twists.
-  std::vector<Acceleration> accelerations_along(double h, const std::vector<Vec3>& velocity) const;
+  /// What forces make of the members' motion in the middle of a step of h [s] that they take with these twists: where they are
+  /// then, whose work is what is stored less; and along the lines of the step's start, which takes no angular momentum.
+  struct Halfway {
+    std::vector<Acceleration> there, along;
+  };
+  Halfway accelerations_halfway(double h, const std::vector<Vec3>& velocity) const;
   std::vector<int> coupled_to(int member) const;
 
  private:

@@ -461,13 +461,15 @@ StepOutcome IslandMotion::take_under_forces(const GapsAlong& gaps) {
     outcome = solve();
     outcome.factorisations += so_far;
     if (!outcome.solved) return outcome;
-    std::vector<Vec3> along = forces_of(members_, members_.accelerations_along(h_, problem_.velocity));
+    const IslandMembers::Halfway halfway = members_.accelerations_halfway(h_, problem_.velocity);
+    std::vector<Vec3> along = forces_of(members_, halfway.along);
     const double off = largest_change(members_, along, problem_.force);
     if (largest_change(members_, along, at_start) > kChanges * most || off > kComesNearer * last) break;
     if (off <= kForcesAgree * most) return outcome;
     last = off;
     problem_.velocity = before;
     problem_.force = std::move(along);
+    problem_.spending = forces_of(members_, halfway.there);
   }
   outcome.solved = false;
   return outcome;

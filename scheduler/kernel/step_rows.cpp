@@ -44,6 +44,13 @@ IslandStep StepRows::members_alone() const {
                               b.lock_angle ? kForever : b.inertia);
   }
   problem.force = forces_of(*members_, members_->accelerations());
+  if (!members_->are_constant())
+    for (std::size_t i = 0; i < members_->count(); ++i)
+      problem.joined_to.push_back(members_->coupled_to(static_cast<int>(i)).front());
+  if (search_->repeats()) return problem;
+  for (std::size_t i = 0; i < members_->count(); ++i)
+    problem.place.emplace_back(
+        (members_->state(static_cast<int>(i)).position - members_->state(0).position).cast<double>());
   return problem;
 }
 

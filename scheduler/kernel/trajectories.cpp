@@ -461,8 +461,9 @@ Acceleration Trajectories::acceleration(int k) const {
 }
 
 /// No motion is looked at: `states` stand for them. The dynamics of a component are asked once, for all its bodies.
-void Trajectories::accelerations(std::span<const int> bodies, double t, std::span<const BodyState> states,
-                                 std::span<Acceleration> out) const {
+void Trajectories::accelerations_along(std::span<const int> bodies, double t,
+                                       std::span<const BodyState> lines, std::span<const BodyState> states,
+                                       std::span<Acceleration> out) const {
   const auto place = [&](int k) {
     return std::lower_bound(bodies.begin(), bodies.end(), k) - bodies.begin();
   };
@@ -474,10 +475,16 @@ void Trajectories::accelerations(std::span<const int> bodies, double t, std::spa
     }
     const Component& c = components_[former.component].component;
     if (c.bodies.front() != bodies[i]) continue;  // all at once, with their first
-    std::vector<BodyState> of;
-    for (const int j : c.bodies) of.push_back(states[place(j)]);
+    std::vector<BodyState> of, along;
+    for (const int j : c.bodies) {
+      of.push_back(states[place(j)]);
+      along.push_back(lines[place(j)]);
+    }
     std::vector<Acceleration> all(of.size());
-    c.dynamics->accelerations(t, of, all);
+    if (lines.data() == states.data())
+      c.dynamics->accelerations(t, of, all);
+    else
+      c.dynamics->accelerations_along(t, along, of, all);
     for (std::size_t j = 0; j < all.size(); ++j) out[place(c.bodies[j])] = all[j];
   }
 }

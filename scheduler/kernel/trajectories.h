@@ -112,7 +112,12 @@ class Trajectories {
   Acceleration acceleration(int k) const;
   /// The same at another time, were those bodies in those states. @pre ascending; all of a component, or none.
   void accelerations(std::span<const int> bodies, double t, std::span<const BodyState> states,
-                     std::span<Acceleration> out) const;
+                     std::span<Acceleration> out) const {
+    accelerations_along(bodies, t, states, states, out);
+  }
+  /// The same along the lines of other states (Dynamics::accelerations_along).
+  void accelerations_along(std::span<const int> bodies, double t, std::span<const BodyState> lines,
+                           std::span<const BodyState> states, std::span<Acceleration> out) const;
   /// When that next jumps [s]; until when it changes evenly (Dynamics); and whether until then it depends on
   /// nothing.
   double next_break(int k) const;

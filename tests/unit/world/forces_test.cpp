@@ -95,6 +95,37 @@ TEST(Dynamics, SpringOffTheCentreTurnsTheBody) {
 
 // The damper feels the closing speed of its ends only: 1.5 m/s apart * 2 N s/m = 3 N inwards, nothing
 // sideways.
+// As large as it is halfway, along the line at the start: forces and torques there have no moment about anything.
+TEST(Dynamics, SpringAlongTheLineOfTheStartTakesNoAngularMomentum) {
+  World world = world_of(2);
+  world.forces.push_back(SpringForce{0, 1, {0.1, 0.2}, {-0.3, 0.0}, 10.0, 0.5, 0.7});
+  const std::vector<BodyState> start = {{{{0.0, 0.0}, 0.3}, {{1.0, 2.0}, 3.0}},
+                                        {{{2.0, 1.0}, -1.0}, {{-1.0, 0.5}, -2.0}}};
+  std::vector<BodyState> halfway = start;
+  for (BodyState& s : halfway) {
+    s.pose.position += 0.1 * s.twist.velocity;
+    s.pose.angle += 0.1 * s.twist.omega;
+  }
+  const auto dynamics = make_components(world)[0].dynamics;
+  std::vector<Acceleration> along(2);
+  dynamics->accelerations_along(0.0, start, halfway, along);
+  const std::vector<Acceleration> there = accelerations(*dynamics, 0.0, halfway);
+  double moment = 0.0, moment_there = 0.0;
+  for (int k = 0; k < 2; ++k) {
+    const Body& b = world.bodies[k];
+    moment += b.mass * cross(start[k].pose.position, along[k].linear) + b.inertia * along[k].angular;
+    moment_there += b.mass * cross(start[k].pose.position, there[k].linear) + b.inertia * there[k].angular;
+  }
+  EXPECT_NEAR(moment, 0.0, 1e-14);
+  EXPECT_GT(std::abs(moment_there), 0.1);
+  EXPECT_NEAR(along[0].linear.norm(), there[0].linear.norm(), 1e-14);
+  EXPECT_NEAR((world.bodies[0].mass * along[0].linear + world.bodies[1].mass * along[1].linear).norm(), 0.0,
+              1e-14);
+  // where both are the same it is the force there
+  dynamics->accelerations_along(0.0, halfway, halfway, along);
+  EXPECT_EQ(along[1].angular, there[1].angular);
+}
+
 TEST(Dynamics, DamperActsAlongTheSpring) {
   World world = world_of(1);
   world.forces.push_back(SpringForce{0, -1, kOrigin, kOrigin, 0.0, 2.0, 1.0});
