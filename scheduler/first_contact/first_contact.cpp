@@ -460,7 +460,8 @@ class PairSearch {
       const Nearest nearest = nearest_on(site, path.q);
       const double radius = site.radius + sample.radius;
       const double gap = nearest.distance - radius;
-      if (gap > band && is_in_solid(site, nearest, path.q, gap)) band = 2.0 * gap;
+      if (gap > band && is_deep_behind(site, nearest, path.q, gap) && is_inside(near.sites, sites, path.q))
+        band = 2.0 * gap;
       if (gap <= band) {
         look_closely();
         if (!neighbours_known) view_.find_neighbours(half, i, near.sites, path, 4.0 * band);
@@ -495,10 +496,23 @@ class PairSearch {
     return {safe, again};
   }
 
-  /// True of a vertex in a solid, deeper than any contact leads, but no deeper than a start may have it: it is looked
-  /// at as what touches.
-  bool is_in_solid(const Site& site, const Nearest& nearest, const Vec2& q, double gap) const {
+  /// True of a vertex behind a site of a solid, deeper than any contact leads, but no deeper than a start may have it: it is looked
+  /// at as what touches, if it is in the solid.
+  bool is_deep_behind(const Site& site, const Nearest& nearest, const Vec2& q, double gap) const {
     return site.solid && gap <= kOverlapAtStart * limits_.tolerance && side_of(site, nearest, q) < 0.0;
+  }
+
+  /// By the nearest of the sites that are named: what is before that is outside, whatever farther side it is behind.
+  static bool is_inside(std::span<const std::uint32_t> named, const Outline& outline, const Vec2& q) {
+    double least = kForever;
+    bool before = false;
+    for (const std::uint32_t k : named) {
+      const Nearest nearest = nearest_on(outline.sites[k], q);
+      if (nearest.distance > least) continue;
+      before = (before && nearest.distance == least) || side_of(outline.sites[k], nearest, q) > 0.0;
+      least = nearest.distance;
+    }
+    return !before;
   }
 
   /// Every site by name, in the memory of the index: what it named before is gone.

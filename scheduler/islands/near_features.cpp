@@ -418,9 +418,15 @@ bool goes_on_nearer(const Half& half, const Sample& sample, std::size_t j,
     return nearest[k].distance > arc.arc_radius - kSunkOfRadius * half.carrier.bounding_radius &&
            in_sector(arc, half.carrier_frame.direction_to_local(way));
   };
+  // nor does what rolls stay on the one where the two make a low hump
+  const auto rolls_over = [&](std::size_t k) {
+    return sample.arc_site >= 0 && site.solid && site.kind == SiteKind::segment &&
+           outward(site).dot(direction(outline.sites[k], nearest[k], q, tie)) > kOverHump;
+  };
   for (std::size_t k = 0; k < nearest.size(); ++k)
     if (k != j && nearest[k].distance < nearest[j].distance - tie &&
-        (outline.sites[k].a == end || outline.sites[k].b == end) && !bends(k) && !rises(k) && is_faced(k))
+        (outline.sites[k].a == end || outline.sites[k].b == end) && !bends(k) && !rises(k) && is_faced(k) &&
+        !rolls_over(k))
       return true;
   return false;
 }
@@ -636,6 +642,34 @@ void turn_to_side(const Half& half, const Vec2& q, const Vec2& normal, NearFeatu
   f.upon_corner = true;
 }
 
+/// Of a sample outside a solid, and behind the end of a piece that goes on smoothly from others: which way is out of that piece as the
+/// sample sees it, if it may come over the hump to it. `above`: the way from what is nearest. Not of what lies round the outline.
+std::optional<Vec2> out_over_hump(const Site& site, const Nearest& nearest, const Vec2& q,
+                                  const Vec2& above) {
+  if (!site.solid || site.kind == SiteKind::point || nearest.foot == Foot::interior) return std::nullopt;
+  if (site.kind == SiteKind::arc && site.sweep < 0.0) return std::nullopt;
+  const Vec2 out = site.kind == SiteKind::arc ? Vec2((q - site.center).normalized()) : outward(site);
+  return out.dot(above) > kOverHump ? std::optional<Vec2>(out) : std::nullopt;
+}
+
+/// The feature of a sample that may come over a hump to the site: that of the circle or line of which the site is a part. Nearer than
+/// that it is not, and what it meets until then is another piece.
+NearFeature feature_over_hump(const Half& half, int i, std::size_t j, const Vec2& q, const Vec2& out) {
+  const Site& site = half.other.sites[j];
+  const double height =
+      site.kind == SiteKind::arc ? (q - site.center).norm() - site.arc_radius : out.dot(q - site.a);
+  const Vec2 world = half.other_frame.direction_to_world(out);
+  NearFeature f;
+  f.sample = i;
+  f.site = static_cast<int>(j);
+  f.sample_on_a = half.on_a;
+  f.gap = height - site.radius - half.carrier.samples[i].radius;
+  f.point = half.other_frame.to_world(q - (height - site.radius) * out);
+  f.normal = half.on_a ? world : Vec2(-world);
+  f.at_end = f.goes_on = f.over_hump = true;
+  return f;
+}
+
 /// Adds the features of sample i: sites that face it; and where it lies inside by roundings, those that are
 /// nearest. What it is merely behind, beyond a tip, is none.
 /// Per site, in this order: upon a corner only the side that faces the owner counts, whatever the distances
@@ -648,12 +682,14 @@ void add_features(const Half& half, int i, double reach, double tolerance, bool 
   const double tie = kOnePoint * size, corner = std::max(kOneCorner * size, kCornerOfTolerance * tolerance);
   std::vector<Nearest> nearest;
   double least = std::numeric_limits<double>::infinity(), least_clear = least;
+  std::size_t first = 0;  // that is nearest
   nearest.reserve(half.other.sites.size());
   const auto clear = [&](std::size_t j) {
     return nearest[j].distance - half.other.sites[j].radius - half.carrier.samples[i].radius;
   };
   for (const Site& site : half.other.sites) {
     nearest.push_back(nearest_on(site, q));
+    if (nearest.back().distance < least) first = nearest.size() - 1;
     least = std::min(least, nearest.back().distance);
     least_clear = std::min(least_clear, clear(nearest.size() - 1));
   }
@@ -696,7 +732,14 @@ void add_features(const Half& half, int i, double reach, double tolerance, bool 
           nearest[j].distance <= least + tie ||
           (nearest[j].distance <= corner && half.other.sites[j].kind == SiteKind::segment &&
            has_hollow_corner(half.other, j, nearer_end(half.other.sites[j], q)));
-      if (side < 0.0 && nearest[j].distance > tie && (outside || !sunk_here)) continue;
+      if (side < 0.0 && nearest[j].distance > tie && (outside || !sunk_here)) {
+        if (bare && outside && clear(j) <= reach)
+          if (const auto out = out_over_hump(half.other.sites[j], nearest[j], q,
+                                             direction(half.other.sites[first], nearest[first], q, tie)))
+            if (const NearFeature f = feature_over_hump(half, i, j, q, *out); f.gap <= reach)
+              found.push_back(f);
+        continue;
+      }
       if (goes_on_nearer(half, half.carrier.samples[i], j, nearest, q, tie)) continue;
     }
     auto f = feature(half, i, static_cast<int>(j), nearest[j], side, q);

@@ -30,6 +30,8 @@ struct NearFeature {
   /// Beyond an end from which another side goes on straight: it meets that one, and this one only as it comes to be abreast of it
   /// within a step. Normal, point and gap are those of the line.
   bool goes_on = false;
+  /// Over a smooth joint on a hump, behind whose end the sample is: of the circle or line of which the site is a part. It `goes_on`, too.
+  bool over_hump = false;
   /// Over a smooth joint in a hollow: of the tangent at the site's end.
   bool over_joint = false;
   /// Upon a convex corner: of the side there that was chosen, with that side's own normal, and a gap from its line.

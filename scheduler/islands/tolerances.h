@@ -27,6 +27,8 @@ inline constexpr double kSunkOfRadius = 1e-6;
 /// An arc that looks past a site by no more than this may come to face it within a step [rad]: a step moves no point of a body
 /// by more than a tenth of the smallest member's size, if no impulse does.
 inline constexpr double kTurnedInStep = 0.5;
+/// What a sample may come to over a hump in a step looks away from what is nearest to it by 60 degrees at most (its cosine).
+inline constexpr double kOverHump = 0.5;
 /// Two sites go on into each other where their directions are opposite to this: within some 1e-5 rad.
 inline constexpr double kSmoothJoint = 1e-10;
 /// Sine of an angle between an edge and a wire that it lies along: far more than roundings of directions make of none, far

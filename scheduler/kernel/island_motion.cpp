@@ -104,7 +104,8 @@ void IslandMotion::list(double reach) {
   remember_sides(0);
   // what an arc may roll to counts along a step alone: until then its end tells all
   std::erase_if(contacts_, [&](const HeldContact& c) {
-    return (c.feature.beside_arc && reach >= 0.0) || (c.feature.goes_on && reach >= 0.0);
+    return (c.feature.beside_arc && reach >= 0.0) || (c.feature.goes_on && reach >= 0.0) ||
+           (c.feature.over_hump && by_modes_);
   });
   absorbed_ = 0.0;
 }

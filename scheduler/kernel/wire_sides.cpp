@@ -81,8 +81,8 @@ bool WireSides::remember(HeldContact& c, const Known& known) const {
       known.search.outline_of(c.feature.sample_on_a ? c.pair.body : known.search.other_owner(c.pair));
   NearFeature& f = c.feature;
   // upon a corner edges tell it, whichever side of the line of a piece it was on before it came there
-  if (!f.thin || f.upon_corner || (f.at_end && !f.goes_on) ||
-      !(std::abs(f.gap) < kSunkOfRadius * carrier.bounding_radius))
+  const bool told_by_way = f.at_end && !f.goes_on && f.side_told == SideTold::surely;
+  if (!f.thin || f.upon_corner || told_by_way || !(std::abs(f.gap) < kSunkOfRadius * carrier.bounding_radius))
     return true;
   const HeldContact* before = f.at_end ? nullptr : known.before.find(c);
   std::optional<bool> turn;

@@ -420,14 +420,26 @@ TEST(Faults, NoTipPassesBetweenTwoSolids) {
 }
 
 // Tips that begin upon tips met or passed by where a search ended; and searches of a pair that were cut short by other steps, a
-// thousand times, counted as one that makes no headway, under body_clocks alone; and pushes that asked where wires are that timewarp
-// had ahead.
+// thousand times, counted as one that makes no headway, under body_clocks alone; pushes that asked where wires are that timewarp
+// had ahead; and corners above a floor, thinner than an overlap that a start may have, that were in it from below.
 TEST(Faults, TipsSlowRoomsAndLightWiresEndAlikeUnderEveryPolicy) {
-  for (const char* scene : {"star_in_a_notch", "three_stars", "two_in_a_slow_room", "light_wire_between"}) {
+  for (const char* scene : {"star_in_a_notch", "three_stars", "two_in_a_slow_room", "light_wire_between",
+                            "tiny_hulls", "tiny_nest"}) {
     SCOPED_TRACE(scene);
     std::ifstream file(fault(scene));
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     EXPECT_EQ(testing::expect_same_bits(text, 1).termination, Termination::reached_end);
+  }
+}
+
+// A tip that slides over the smooth joint of two arcs within a step of first order: while it is behind the tangent at the joint, the
+// second arc was no contact of the step, and the tip sank into that by what the outline turned.
+TEST(Faults, TipsThatSlideOverJointsOfArcsStayOutside) {
+  for (const char* scene : {"star_over_a_hump", "star_on_a_blob"}) {
+    const Watched run = watched_lasting(load_scene(fault(scene), {"output.frame_interval=0.001"}));
+    EXPECT_EQ(run.told.summary.termination, Termination::reached_end)
+        << scene << ": " << run.told.summary.why;
+    for (const std::string& f : run.faults) ADD_FAILURE() << scene << ": " << f;
   }
 }
 
