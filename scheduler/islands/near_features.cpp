@@ -270,12 +270,14 @@ bool cuts_circle(const Site& arc, const Site& site, const Vec2& q) {
 /// has a feature of its own, and stands here for the arc that may come to lie on the site. Not of what is behind the site; nor of
 /// a wire's arc whose hollow holds the end of one.
 std::optional<NearFeature> beside_arc(const Half& half, int i, int j, const Vec2& q, const Vec2& way,
-                                      double side, const Nearest& nearest) {
+                                      double side, const Nearest& nearest, double reach) {
   const Site &arc = half.carrier.sites[half.carrier.samples[i].arc_site], &site = half.other.sites[j];
   const Vec2 middle = 0.5 * (arc.a + arc.b) - arc.center, towards = facing(half, site, nearest, q, way);
   const double off =
       std::abs(std::atan2(cross(middle, towards), middle.dot(towards))) - 0.5 * std::abs(arc.sweep);
-  if (side < 0.0 || off > kTurnedInStep || cuts_circle(arc, site, q)) return std::nullopt;
+  // where two arcs lie in each other the way from the one's centre to the other's turns by more than they do
+  const double swings = site.kind == SiteKind::arc ? reach / (q - site.center).norm() : 0.0;
+  if (side < 0.0 || off > kTurnedInStep + swings || cuts_circle(arc, site, q)) return std::nullopt;
   const Vec2 out = half.other_frame.direction_to_local(half.carrier_frame.direction_to_world(-towards));
   const ArcEnd end = end_beside(half, arc, towards, site, out, nearest.point);
   // of a straight site the arc is before what its end is abreast of, wherever that ends
@@ -327,7 +329,7 @@ void put_on_line(const Half& half, const Sample& sample, const Site& site, const
 /// Sample i of a half against site j, where it is nearest to it; side: see side_of(). Nothing of an arc that
 /// looks elsewhere.
 std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest& nearest, double side,
-                                   const Vec2& q) {
+                                   const Vec2& q, double reach) {
   const Sample& sample = half.carrier.samples[i];
   const Site& site = half.other.sites[j];
   // below this length the way from the core to q has no direction
@@ -366,7 +368,7 @@ std::optional<NearFeature> feature(const Half& half, int i, int j, const Nearest
     const double sunk =
         from_outside ? kSunkOfRadius * half.carrier.bounding_radius : kOnePoint * arc.arc_radius;
     if (nearest.distance < arc.arc_radius - sunk && in_sector(arc, towards)) return std::nullopt;
-    if (!in_sector(arc, towards)) return beside_arc(half, i, j, q, towards, side, nearest);
+    if (!in_sector(arc, towards)) return beside_arc(half, i, j, q, towards, side, nearest, reach);
   }
   NearFeature f;
   f.sample = i;
@@ -709,6 +711,13 @@ void add_features(const Half& half, int i, double reach, double tolerance, bool 
   std::vector<std::size_t> near;
   for (std::size_t j = 0; bends && j < nearest.size(); ++j)
     if (!is_far(j)) near.push_back(j);
+  // out of what is nearest
+  const auto above = [&] {
+    const Site& site = half.other.sites[first];
+    const Vec2 way = direction(site, nearest[first], q, tie);
+    const bool sunk = side_of(site, nearest[first], q) < 0.0 && has_direction(nearest[first], q, tie);
+    return sunk ? Vec2(-way) : way;
+  };
   const auto joins_near = [&](std::size_t j) {
     const Site& site = half.other.sites[j];
     const Vec2& end = nearest[j].foot == Foot::start ? site.a : site.b;
@@ -733,16 +742,16 @@ void add_features(const Half& half, int i, double reach, double tolerance, bool 
           (nearest[j].distance <= corner && half.other.sites[j].kind == SiteKind::segment &&
            has_hollow_corner(half.other, j, nearer_end(half.other.sites[j], q)));
       if (side < 0.0 && nearest[j].distance > tie && (outside || !sunk_here)) {
-        if (bare && outside && clear(j) <= reach)
-          if (const auto out = out_over_hump(half.other.sites[j], nearest[j], q,
-                                             direction(half.other.sites[first], nearest[first], q, tie)))
+        // also of one that has sunk by what contacts may
+        if (bare && (outside || least <= corner) && clear(j) <= reach)
+          if (const auto out = out_over_hump(half.other.sites[j], nearest[j], q, above()))
             if (const NearFeature f = feature_over_hump(half, i, j, q, *out); f.gap <= reach)
               found.push_back(f);
         continue;
       }
       if (goes_on_nearer(half, half.carrier.samples[i], j, nearest, q, tie)) continue;
     }
-    auto f = feature(half, i, static_cast<int>(j), nearest[j], side, q);
+    auto f = feature(half, i, static_cast<int>(j), nearest[j], side, q, reach);
     if (f && where != OnCorner::nowhere) {
       turn_outward(half, q, side, *f);
       f->upon_corner = where == OnCorner::this_side;

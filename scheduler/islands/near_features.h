@@ -24,8 +24,9 @@ struct NearFeature {
   bool thin = false;           ///< a sharp sample and a wire without thickness
   SideTold side_told = SideTold::surely;
   bool at_end = false;  ///< of a site that goes on from there: the sample may pass by
-  /// Of an arc's sample whose sector the site lies beside, by what a body may turn in a step: the gap is that of the arc's
-  /// end, and of the arc once it has rolled there.
+  /// Of an arc's sample whose sector the site lies beside, by what a body may turn in a step, or by what the way between the
+  /// centres of two arcs in each other may turn within the reach: the gap is that of the arc's end, and of the arc once it has rolled
+  /// there.
   bool beside_arc = false;
   /// Beyond an end from which another side goes on straight: it meets that one, and this one only as it comes to be abreast of it
   /// within a step. Normal, point and gap are those of the line.

@@ -57,6 +57,14 @@ bool is_opposite(const HeldContact& c, const std::vector<HeldContact>& contacts,
   return others.opposite > 0 && others.gaps < 0.0;
 }
 
+/// Contacts of a pair so near to each other, as parts of the size, are at one place, and those whose normals lie along one line to this
+/// cosine are on one side there; and of one sample at pieces that go on into each other, to that.
+constexpr double kOnePlace = 1e-3, kSmoothly = 0.99, kNextPiece = 0.9;
+
+bool share_an_end(const Site& a, const Site& b) {
+  return a.a == b.b || a.b == b.a || a.a == b.a || a.b == b.b;
+}
+
 }  // namespace
 
 void WireSides::expect(const StepCause& cause) {
@@ -73,6 +81,40 @@ void WireSides::remember(std::vector<HeldContact>& contacts, std::size_t first, 
     if (is_opposite(c, contacts, told, near_a_wire(c, known.members))) turn_over(c.feature);
     told[k] = 1;
   }
+  for (std::size_t k = first; k < contacts.size(); ++k)
+    if (contradicts(contacts[k], contacts, known)) turn_over(contacts[k].feature);
+}
+
+/// True of a contact that is new, or at an end, where one of its pair is that was on the other side in the step before: who comes over a
+/// smooth joint, or to the end of an arc that lies on another, does not change sides. Edges that lie along an arc tell none of the
+/// tangent at its end.
+bool WireSides::contradicts(const HeldContact& c, const std::vector<HeldContact>& contacts,
+                            const Known& known) const {
+  const NearFeature& f = c.feature;
+  const double near = near_a_wire(c, known.members);
+  if (!f.thin || f.upon_corner || !(std::abs(f.gap) < near)) return false;
+  // beyond an end and off it the normal is the way to that, which tells no side
+  const auto has_side = [&](const NearFeature& g) { return !g.at_end || std::abs(g.gap) < near; };
+  const auto was_beside = [&](const HeldContact& contact) {
+    const HeldContact* before = known.before.find(contact);
+    return before != nullptr && !before->feature.at_end;
+  };
+  if (!f.at_end && was_beside(c)) return false;
+  const std::vector<Site>& pieces =
+      known.search.outline_of(f.sample_on_a ? known.search.other_owner(c.pair) : c.pair.body).sites;
+  for (const HeldContact& w : known.before) {
+    const NearFeature& g = w.feature;
+    const bool of_sample = w.pair == c.pair && g.sample_on_a == f.sample_on_a && g.sample == f.sample;
+    if (of_sample && has_side(g) && (g.site == f.site || share_an_end(pieces[f.site], pieces[g.site])) &&
+        g.normal.dot(f.normal) < -kNextPiece)
+      return true;
+  }
+  const double one_place = kOnePlace * known.members.bounding_radius(known.members.place_of(c.pair.body));
+  return std::any_of(contacts.begin(), contacts.end(), [&](const HeldContact& o) {
+    const NearFeature& g = o.feature;
+    return o.pair == c.pair && !g.at_end && !g.beside_arc && std::abs(g.gap) < near &&
+           (g.point - f.point).norm() < one_place && g.normal.dot(f.normal) < -kSmoothly && was_beside(o);
+  });
 }
 
 /// False: nothing tells surely which side it is.

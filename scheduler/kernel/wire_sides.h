@@ -30,6 +30,8 @@ struct StepCause {
 ///   contacts on the line   of the step before, or what has just met: nobody changes sides along a line
 ///   the depth              no step leaves anybody beyond a wire by more than some contact tolerances
 ///   parallel contacts      two that come to lie flush, along more than one line, are on one side of each other
+///
+/// and over all of them: two contacts at one place do not contradict each other, and the older one is right.
 class WireSides {
  public:
   /// What the sides are looked up in. Outlives the call.
@@ -46,6 +48,7 @@ class WireSides {
 
  private:
   bool remember(HeldContact& c, const Known& known) const;
+  bool contradicts(const HeldContact& c, const std::vector<HeldContact>& contacts, const Known& known) const;
   std::optional<bool> is_elsewhere(const HeldContact& c, const Known& known) const;
 
   bool run_begins_ = false;

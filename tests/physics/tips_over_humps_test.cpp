@@ -51,7 +51,8 @@ std::string heap(std::uint64_t seed) {
   Random random(seed);
   const auto pick = [&](std::initializer_list<double> of) { return *(of.begin() + random.below(of.size())); };
   std::string text = fmt::format(
-      "[world]\nduration = 1.5\n[solver]\nmodes_contacts = {}\n[materials.default]\nrestitution = {}\n"
+      "[world]\nduration = 1.5\ngravity = [0, -9.81]\n[solver]\nmodes_contacts = "
+      "{}\n[materials.default]\nrestitution = {}\n"
       "friction = {}\n[[sites]]\n{}\ninside_of = true\n",
       random.below(2) ? 0 : 16, pick({0.0, 0.0, 0.3}), pick({0.0, 0.0, 0.2, 0.9}),
       random.below(2) ? "disc = { radius = 1.6 }\nmotion = { angular_velocity = -2 }"
@@ -87,7 +88,7 @@ TEST(TipsOverHumps, NobodyIsInAnybody) {
     const Scene scene = parse_scene(heap(seed), "heap");
     outside::FrameWatch watch(scene.world, scene.duration, 1e-9);
     RunOptions options = testing::until(scene.duration);
-    options.frame_interval = 0.01;
+    options.frame_interval = 0.02;
     const RunSummary summary = Simulator(scene.world, scene.solver).run(options, &watch);
     EXPECT_EQ(summary.termination, Termination::reached_end) << summary.why;
     EXPECT_TRUE(watch.sound()) << watch.report();

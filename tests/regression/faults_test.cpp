@@ -443,6 +443,18 @@ TEST(Faults, TipsThatSlideOverJointsOfArcsStayOutside) {
   }
 }
 
+// A sharp end of a wire that came over the smooth joint of another's arcs, or to the end of an arc that lay on the other, had a new
+// contact, whose side its own edges told, which lie along the arcs: the two contradicted each other, and the wires crossed.
+TEST(Faults, CurvedWiresKeepTheirSidesOverJoints) {
+  for (const char* scene : {"two_arcs_in_a_drum", "two_arcs_in_a_tray", "arc_and_wire_in_a_bowl",
+                            "ring_and_spline_in_a_tray", "crescents_on_a_wire", "arc_over_a_spline"}) {
+    const Watched run = watched_lasting(load_scene(fault(scene), {"output.frame_interval=0.002"}));
+    EXPECT_EQ(run.told.summary.termination, Termination::reached_end)
+        << scene << ": " << run.told.summary.why;
+    for (const std::string& f : run.faults) ADD_FAILURE() << scene << ": " << f;
+  }
+}
+
 // A disc of a gramme between ellipses of tons, which close in on it: ever shorter flights, without end.
 TEST(Faults, WhatIsSqueezedByFarHeavierBodiesComesOutOfIt) {
   const Watched run = watched_lasting(load_scene(fault("a_gramme_between_tons"), {}));
