@@ -282,8 +282,11 @@ std::optional<NearFeature> beside_arc(const Half& half, int i, int j, const Vec2
   const ArcEnd end = end_beside(half, arc, towards, site, out, nearest.point);
   // of a straight site the arc is before what its end is abreast of, wherever that ends
   const bool before = site.kind == SiteKind::segment && end.nearest.foot == Foot::interior;
-  const bool within =
-      !arc.solid && !before && ends_at(half.other, site, nearest) && lies_within(half, arc, site, nearest);
+  // an arc in the hollow of a wider one may come to lie on that, wherever the wider one's end is
+  const bool nests = site.kind == SiteKind::arc && (q - site.center).norm() < site.arc_radius &&
+                     arc.arc_radius < site.arc_radius;
+  const bool within = !arc.solid && !before && !nests && ends_at(half.other, site, nearest) &&
+                      lies_within(half, arc, site, nearest);
   if (within) return std::nullopt;
   // who is sunk into a wire's arc from its hollow is on that side of it
   const bool sunk_from_within = end.gap < 0.0 && !arc.solid && leads_within(half, arc, site);
