@@ -390,11 +390,10 @@ std::optional<std::size_t> missed_by_slowing(const IslandStep& step, double h,
     const LastingContact& rows = step.contacts[k].rows;
     const bool of_body = was_slowed(rows.body);
     const bool turns = of_body && slowed.turns[groups[rows.body]];
-    const bool alike = turns ? false
-                       : rows.other < 0
+    const bool alike = rows.other < 0
                            ? !of_body || slowed.common[groups[rows.body]].isZero(0.0)
                            : groups[rows.body] == groups[rows.other] || (!of_body && !was_slowed(rows.other));
-    if (!alike && missed(step, k, h, velocity, 0.0, false, gap).too_much) return k;
+    if ((turns || !alike) && missed(step, k, h, velocity, 0.0, false, gap).too_much) return k;
   }
   return std::nullopt;
 }

@@ -647,8 +647,8 @@ void turn_to_side(const Half& half, const Vec2& q, const Vec2& normal, NearFeatu
   f.upon_corner = true;
 }
 
-/// Of a sample outside a solid, and behind the end of a piece that goes on smoothly from others: which way is out of that piece as the
-/// sample sees it, if it may come over the hump to it. `above`: the way from what is nearest. Not of what lies round the outline.
+/// Of a sample outside a solid, and behind the end of a piece: which way is out of that piece as the sample sees it, if it may come over
+/// the hump to it, a smooth joint or a low corner. `above`: the way from what is nearest. Not of what lies round the outline.
 std::optional<Vec2> out_over_hump(const Site& site, const Nearest& nearest, const Vec2& q,
                                   const Vec2& above) {
   if (!site.solid || site.kind == SiteKind::point || nearest.foot == Foot::interior) return std::nullopt;
@@ -882,6 +882,12 @@ double through_corner(const Half& half, const Sample& sample, const Site& site, 
 }
 
 }  // namespace
+
+bool go_on_smoothly(const Site& one, const Site& other) {
+  const auto meet_at = [&](const Vec2& end) { return joins_smoothly(end, one, other); };
+  return ((one.a == other.a || one.a == other.b) && meet_at(one.a)) ||
+         ((one.b == other.a || one.b == other.b) && meet_at(one.b));
+}
 
 OutlineAt::OutlineAt(const Outline& of, const ExtendedState& state)
     : outline(&of),

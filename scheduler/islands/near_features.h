@@ -31,7 +31,8 @@ struct NearFeature {
   /// Beyond an end from which another side goes on straight: it meets that one, and this one only as it comes to be abreast of it
   /// within a step. Normal, point and gap are those of the line.
   bool goes_on = false;
-  /// Over a smooth joint on a hump, behind whose end the sample is: of the circle or line of which the site is a part. It `goes_on`, too.
+  /// Over a smooth joint or a low corner on a hump, behind whose end the sample is: of the circle or line of which the site is a part.
+  /// It `goes_on`, too.
   bool over_hump = false;
   /// Over a smooth joint in a hollow: of the tangent at the site's end.
   bool over_joint = false;
@@ -50,6 +51,9 @@ struct NearFeature {
 /// by that beside a sharp corner may be beyond it, so corners as near lie on each other. Cost: samples times sites.
 std::vector<NearFeature> near_features(const Outline& a, const ExtendedState& state_a, const Outline& b,
                                        const ExtendedState& state_b, double reach, double tolerance = 0.0);
+
+/// True of two sites that share an end and go on into each other there.
+bool go_on_smoothly(const Site& one, const Site& other);
 
 /// An outline where it is, with the sine and cosine of its angle, which all its features ask for.
 struct OutlineAt {

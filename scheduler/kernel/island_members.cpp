@@ -28,7 +28,9 @@ IslandMembers::IslandMembers(const World& world, const Trajectories& trajectorie
     states_.push_back(trajectories.state_now(k));
     if (i >= count_) continue;
     accelerations_.push_back(trajectories.acceleration(k));
-    constant_ = constant_ && trajectories.is_constant(k);
+    const bool constant = trajectories.is_constant(k);
+    constant_ = constant_ && constant;
+    joined_ = joined_ || (!constant && trajectories.coupled_to(k).size() > 1);
     const double radius = search.outline_of(k).bounding_radius;
     // a mere point has no size: the scene's
     size_ = std::min(size_, radius > 0.0 ? 2.0 * radius : world.length());
@@ -61,7 +63,8 @@ IslandMembers::Halfway IslandMembers::accelerations_halfway(double h,
   }
   Halfway made{std::vector<Acceleration>(count()), std::vector<Acceleration>(count())};
   trajectories_->accelerations(bodies_, now_ + 0.5 * h, halfway, made.there);
-  trajectories_->accelerations_along(bodies_, now_ + 0.5 * h, start, halfway, made.along);
+  made.along = made.there;
+  if (joined_) trajectories_->accelerations_along(bodies_, now_ + 0.5 * h, start, halfway, made.along);
   return made;
 }
 

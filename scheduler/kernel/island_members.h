@@ -158,6 +158,7 @@ class IslandMembers {
   std::vector<double> speeds_, pulls_;  ///< [m/s], [m/s^2], of any point of each
   std::vector<double> farther_;         ///< of each, what look_farther() was told [m]
   bool constant_ = true;
+  bool joined_ = false;  ///< some by springs
   double size_ = kForever, speed_ = 0.0, pull_ = 0.0, heaviest_ = 0.0;
 };
 

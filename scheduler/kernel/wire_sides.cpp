@@ -57,9 +57,8 @@ bool is_opposite(const HeldContact& c, const std::vector<HeldContact>& contacts,
   return others.opposite > 0 && others.gaps < 0.0;
 }
 
-/// Contacts of a pair so near to each other, as parts of the size, are at one place, and those whose normals lie along one line to this
-/// cosine are on one side there; and of one sample at pieces that go on into each other, to that.
-constexpr double kOnePlace = 1e-3, kSmoothly = 0.99, kNextPiece = 0.9;
+/// Normals that lie along one line to this cosine, the other way, are of two sides of one piece, or of two that go on into each other.
+constexpr double kOtherSide = -0.9;
 
 bool share_an_end(const Site& a, const Site& b) {
   return a.a == b.b || a.b == b.a || a.a == b.a || a.b == b.b;
@@ -100,21 +99,40 @@ bool WireSides::contradicts(const HeldContact& c, const std::vector<HeldContact>
     return before != nullptr && !before->feature.at_end;
   };
   if (!f.at_end && was_beside(c)) return false;
-  const std::vector<Site>& pieces =
-      known.search.outline_of(f.sample_on_a ? known.search.other_owner(c.pair) : c.pair.body).sites;
-  for (const HeldContact& w : known.before) {
+  const int other = known.search.other_owner(c.pair);
+  const Outline &carrier = known.search.outline_of(f.sample_on_a ? c.pair.body : other),
+                &wire = known.search.outline_of(f.sample_on_a ? other : c.pair.body);
+  const auto on_other_side = [&](const HeldContact& o) {
+    return o.pair == c.pair && o.feature.normal.dot(f.normal) < kOtherSide;
+  };
+  // what goes round a free end changes sides, and what is off the end of a piece by more than a contact
+  const bool at_joint = std::abs(f.gap) <= known.search.limits().tolerance &&
+                        std::any_of(wire.sites.begin(), wire.sites.end(), [&](const Site& s) {
+                          return &s != &wire.sites[f.site] && share_an_end(s, wire.sites[f.site]);
+                        });
+  if (f.at_end && !at_joint) return false;
+  const auto is_next = [&](int site) {
+    const Site &a = wire.sites[f.site], &b = wire.sites[site];
+    // the sides of a hairpin look at each other, but what is at its end has one place
+    return site == f.site || (f.at_end ? share_an_end(a, b) : go_on_smoothly(a, b));
+  };
+  // of the same sample, with this piece or with the next one
+  const auto of_sample = [&](const HeldContact& w) {
     const NearFeature& g = w.feature;
-    const bool of_sample = w.pair == c.pair && g.sample_on_a == f.sample_on_a && g.sample == f.sample;
-    if (of_sample && has_side(g) && (g.site == f.site || share_an_end(pieces[f.site], pieces[g.site])) &&
-        g.normal.dot(f.normal) < -kNextPiece)
-      return true;
-  }
-  const double one_place = kOnePlace * known.members.bounding_radius(known.members.place_of(c.pair.body));
-  return std::any_of(contacts.begin(), contacts.end(), [&](const HeldContact& o) {
+    return on_other_side(w) && g.sample_on_a == f.sample_on_a && g.sample == f.sample && has_side(g) &&
+           is_next(g.site);
+  };
+  // of this arc with the piece that ends with the sample
+  const Vec2& end = carrier.samples[f.sample].p;
+  const auto of_arc = [&](const HeldContact& o) {
     const NearFeature& g = o.feature;
-    return o.pair == c.pair && !g.at_end && !g.beside_arc && std::abs(g.gap) < near &&
-           (g.point - f.point).norm() < one_place && g.normal.dot(f.normal) < -kSmoothly && was_beside(o);
-  });
+    return on_other_side(o) && g.sample_on_a != f.sample_on_a && !g.at_end && !g.beside_arc &&
+           wire.samples[g.sample].arc_site == f.site &&
+           (carrier.sites[g.site].a == end || carrier.sites[g.site].b == end) && std::abs(g.gap) < near &&
+           was_beside(o);
+  };
+  return std::any_of(known.before.begin(), known.before.end(), of_sample) ||
+         std::any_of(contacts.begin(), contacts.end(), of_arc);
 }
 
 /// False: nothing tells surely which side it is.
@@ -123,8 +141,8 @@ bool WireSides::remember(HeldContact& c, const Known& known) const {
       known.search.outline_of(c.feature.sample_on_a ? c.pair.body : known.search.other_owner(c.pair));
   NearFeature& f = c.feature;
   // upon a corner edges tell it, whichever side of the line of a piece it was on before it came there
-  const bool told_by_way = f.at_end && !f.goes_on && f.side_told == SideTold::surely;
-  if (!f.thin || f.upon_corner || told_by_way || !(std::abs(f.gap) < kSunkOfRadius * carrier.bounding_radius))
+  if (!f.thin || f.upon_corner || (f.at_end && !f.goes_on) ||
+      !(std::abs(f.gap) < kSunkOfRadius * carrier.bounding_radius))
     return true;
   const HeldContact* before = f.at_end ? nullptr : known.before.find(c);
   std::optional<bool> turn;

@@ -31,7 +31,7 @@ struct StepCause {
 ///   the depth              no step leaves anybody beyond a wire by more than some contact tolerances
 ///   parallel contacts      two that come to lie flush, along more than one line, are on one side of each other
 ///
-/// and over all of them: two contacts at one place do not contradict each other, and the older one is right.
+/// and over all of them: contacts of pieces that go on into each other do not contradict each other, and the older one is right.
 class WireSides {
  public:
   /// What the sides are looked up in. Outlives the call.
