@@ -48,10 +48,68 @@ bool abreast(const Site& site, const Vec2& p) {
   return d.dot(p - site.a) >= 0.0 && d.dot(p - site.b) <= 0.0;
 }
 
-/// The least way over an end: the distance of an end of either from the other's core [m].
-double nearest_end(const Site& s, const Site& t) {
-  return std::min({nearest_on(s, t.a).distance, nearest_on(s, t.b).distance, nearest_on(t, s.a).distance,
-                   nearest_on(t, s.b).distance});
+/// The points in which two cores cross, two at most.
+struct Crossings {
+  std::array<Vec2, 2> points{Vec2::Zero(), Vec2::Zero()};
+  int count = 0;
+};
+
+/// Lines and circles go on beyond the ends: a crossing is where both sites themselves are.
+Crossings on_both(const Site& s, const Site& t, const CommonPoints& common) {
+  Crossings on;
+  if (common.bulge < 0.0) return on;
+  for (const Vec2& p : common.points)
+    if (abreast(s, p) && abreast(t, p)) on.points[static_cast<std::size_t>(on.count++)] = p;
+  return on;
+}
+
+/// How far along the site a place on its line or circle is: grows from a to b.
+double along(const Site& site, const Vec2& p) {
+  const Vec2 from = site.a - site.center, w = p - site.center;
+  if (site.kind == SiteKind::arc)
+    return (site.sweep > 0.0 ? 1.0 : -1.0) * std::atan2(cross(from, w), from.dot(w));
+  return (site.b - site.a).dot(p - site.a);
+}
+
+/// The places of s that may be farthest from t: its ends, and where its line or circle goes the way of t's.
+struct Turns {
+  std::array<Vec2, 4> places;
+  int count = 2;
+};
+
+Turns turns(const Site& s, const Site& t) {
+  Turns all{{s.a, s.b, s.a, s.a}};
+  const auto add = [&](const Vec2& p) {
+    if (abreast(s, p)) all.places[static_cast<std::size_t>(all.count++)] = p;
+  };
+  const Vec2 d = (t.b - t.a).normalized();
+  if (s.kind == SiteKind::arc) {
+    const Vec2 way = t.kind == SiteKind::arc ? t.center - s.center : perp(d);
+    const double far = way.norm();
+    for (const double r : {s.arc_radius, -s.arc_radius})
+      if (far > 0.0) add(s.center + r * (way / far));
+  } else if (t.kind == SiteKind::arc) {
+    const Vec2 e = (s.b - s.a).normalized();
+    add(s.a + e.dot(t.center - s.a) * e);
+  }
+  return all;
+}
+
+/// Each crossing takes s to the other side of t. How far it reaches there at least, of the two sides [m]: where t was on one
+/// before, all that is on the other has to come back.
+double reach_through(const Site& s, const Site& t, const Crossings& crossings) {
+  std::array<double, 2> reach{};
+  const Turns all = turns(s, t);
+  for (int k = 0; k < all.count; ++k) {
+    const Vec2& p = all.places[static_cast<std::size_t>(k)];
+    const auto passed = [&](int i) {
+      return along(s, crossings.points[static_cast<std::size_t>(i)]) < along(s, p);
+    };
+    const bool odd = (crossings.count > 0 && passed(0)) != (crossings.count > 1 && passed(1));
+    double& side = reach[odd ? 1 : 0];
+    side = std::max(side, nearest_on(t, p).distance);
+  }
+  return std::min(reach[0], reach[1]);
 }
 
 /// How far the nearest end of either reaches over the other's line.
@@ -72,13 +130,12 @@ SiteCrossing with_arc(const Site& s, const Site& t) {
   const bool s_is_arc = s.kind == SiteKind::arc, t_is_arc = t.kind == SiteKind::arc;
   const CommonPoints common =
       s_is_arc && t_is_arc ? two_circles(s, t) : line_and_circle(s_is_arc ? t : s, s_is_arc ? s : t);
-  if (common.bulge < 0.0) return {};
-  // depth and bulge belong to the pair: of two points on both cores the first tells as much
-  // Lines and circles go on beyond the ends: a crossing is where both sites themselves are.
-  for (const Vec2& p : common.points)
-    if (abreast(s, p) && abreast(t, p))
-      return {std::min(common.bulge, nearest_end(s, t)), p, right_normal(t, p)};
-  return {};
+  const Crossings crossings = on_both(s, t, common);
+  if (crossings.count == 0) return {};
+  // depth and bulge belong to the pair: of two crossings the first tells as much
+  const Vec2& p = crossings.points[0];
+  return {std::min({common.bulge, reach_through(s, t, crossings), reach_through(t, s, crossings)}), p,
+          right_normal(t, p)};
 }
 
 }  // namespace

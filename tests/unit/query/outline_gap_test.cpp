@@ -83,6 +83,30 @@ TEST(OutlineGap, WhatCrossesWithoutAVertexInsideIsAnOverlap) {
   EXPECT_LT(outline_gap(bow, {}, bow, {{0.5, 0.0}, 0.0}).gap, -0.05);
 }
 
+// An end that lies on the wire is not the whole: the arc rises over it, comes back and goes on below. It would have to go down
+// by its rise or up by what is below, whichever is less; and so for every angle at which the pair stands.
+TEST(OutlineGap, AnArcWithAnEndOnAWireReachesAsFarThroughAsItBulges) {
+  const Outline wire = make_segment({-1, 0}, {1, 0}).outline;
+  const double height = std::sin(pi / 3);
+  for (const double to : {40.0, 50.0, 58.0, 60.0}) {
+    const double angle = to * pi / 180;
+    // from (-.5, 0), rising by .134 over the wire, which it meets again at 60 degrees
+    const Outline bow = make_arc({0, -height}, 1.0, angle, 2 * pi / 3).outline;
+    const double depth = std::min(1.0 - height, height - std::sin(angle));
+    for (const double turn : {0.0, 1.0, 2.5, -0.7}) {
+      const Pose pose{{0.3, 0.2}, turn};
+      EXPECT_NEAR(outline_gap(bow, pose, wire, pose).gap, -depth, 1e-14) << to << " " << turn;
+      EXPECT_NEAR(outline_gap(wire, pose, bow, pose).gap, -depth, 1e-14) << to << " " << turn;
+    }
+  }
+  // two arcs that share a lens, an end of the one upon the other: least is what the other's end stands over it
+  const Outline cup = make_arc({0, height}, 1.0, -130 * pi / 180, -50 * pi / 180).outline;
+  const Outline bow = make_arc({0, -height}, 1.0, 40 * pi / 180, 120 * pi / 180).outline;
+  const Vec2 end = Vec2(0, height) + Vec2(std::cos(-50 * pi / 180), std::sin(-50 * pi / 180));
+  const double over = (end - Vec2(0, -height)).norm() - 1.0;
+  EXPECT_NEAR(outline_gap(bow, {}, cup, {}).gap, -over, 1e-14);
+}
+
 TEST(OutlineGap, EdgesThatCoincideShareAnInside) {
   const Outline box = make_box(1.0, 1.0).outline;
   EXPECT_LT(outline_gap(box, {}, box, {}).gap, -0.1);
