@@ -142,7 +142,14 @@ SideOfWire side_of_wire(const Half& half, const Sample& sample, const Site& site
   const auto to_other = [&](const Vec2& p) {
     return half.other_frame.to_local(half.carrier_frame.to_world(p));
   };
-  const auto above = [&](const Vec2& p) { return height + out.dot(to_other(p) - q); };
+  // of an arc's site the way to its circle: an edge that lies in its hollow, or has it in its own, is on one side of the
+  // circle, whichever side of the tangent it leads to
+  const auto above_at = [&](const Vec2& p) {
+    if (site.kind == SiteKind::segment) return height + out.dot(p - q);
+    const double beyond = beyond_circle(site, p, p - site.center);
+    return out.dot(q - site.center) > 0.0 ? beyond : -beyond;
+  };
+  const auto above = [&](const Vec2& p) { return above_at(to_other(p)); };
   Sides of_edges, of_wire;
   for (const Site& edge : half.carrier.sites) {
     if (edge.kind == SiteKind::point || (edge.a != sample.p && edge.b != sample.p)) continue;
@@ -158,7 +165,7 @@ SideOfWire side_of_wire(const Half& half, const Sample& sample, const Site& site
   if (flush && of_wire.tells(told)) return {of_wire.most < -of_wire.least};
   if (flush && of_edges.tells(kOneCorner * half.carrier.bounding_radius))
     return {by_edges(), SideTold::hardly};
-  const double of_centre = out.dot(centre(half) - q) + height;
+  const double of_centre = above_at(centre(half));
   return {of_centre >= 0.0, std::abs(of_centre) > told ? SideTold::hardly : SideTold::not_at_all};
 }
 
@@ -611,6 +618,18 @@ bool is_within(const Wedge& inner, const Wedge& outer) {
   });
 }
 
+/// True if one of the sample's edges leads to the side to which n points: edges that all lie along its line tell none, nor does an
+/// arc that bends back before it is farther there than roundings.
+bool leads_before(const Half& half, const Sample& sample, const Vec2& n, double rounding) {
+  const Vec2 to = half.carrier_frame.direction_to_local(half.other_frame.direction_to_world(n));
+  return std::any_of(half.carrier.sites.begin(), half.carrier.sites.end(), [&](const Site& edge) {
+    if (edge.kind == SiteKind::point || (edge.a != sample.p && edge.b != sample.p)) return false;
+    const double rise = to.dot(leads_from(sample.p, edge));
+    const bool bends_back = edge.kind == SiteKind::arc && to.dot(edge.center - sample.p) < 0.0;
+    return rise > kAlongLine && (!bends_back || 0.5 * rise * rise * edge.arc_radius > rounding);
+  });
+}
+
 /// Of a vertex upon an end of site j of a wire: on that of its sides that parts the two there, if one does. On another site's
 /// if one of those does, and none of this: round a corner the vertex meets it no more than a free end. In a hollow corner
 /// none parts the two, and each site counts as elsewhere; but the hollow itself meets no side of the corner that is in it.
@@ -622,10 +641,8 @@ OnWire on_wire(const Half& half, const Sample& sample, std::size_t j, const Vec2
   const Wedge of_sample = wedge_of(half, sample);
   if (of_sample.edges.empty()) return {};
   const Wedge of_wire = wedge_at(half.other, end);
-  // edges that all lie along the line tell no side
   const auto has_before = [&](const Vec2& n) {
-    return parts(n, of_sample, of_wire) && std::any_of(of_sample.edges.begin(), of_sample.edges.end(),
-                                                       [&](const Vec2& e) { return n.dot(e) > kAlongLine; });
+    return parts(n, of_sample, of_wire) && leads_before(half, sample, n, tie);
   };
   const Vec2 across = perp(leads_from(end, site));
   for (const Vec2& n : {across, Vec2(-across)})

@@ -81,14 +81,12 @@ void WireSides::remember(std::vector<HeldContact>& contacts, std::size_t first, 
     told[k] = 1;
   }
   for (std::size_t k = first; k < contacts.size(); ++k)
-    if (contradicts(contacts[k], contacts, known)) turn_over(contacts[k].feature);
+    if (contradicts(contacts[k], known)) turn_over(contacts[k].feature);
 }
 
 /// True of a contact that is new, or at an end, where one of its pair is that was on the other side in the step before: who comes over a
-/// smooth joint, or to the end of an arc that lies on another, does not change sides. Edges that lie along an arc tell none of the
-/// tangent at its end.
-bool WireSides::contradicts(const HeldContact& c, const std::vector<HeldContact>& contacts,
-                            const Known& known) const {
+/// smooth joint, or to the end of an arc, does not change sides.
+bool WireSides::contradicts(const HeldContact& c, const Known& known) const {
   const NearFeature& f = c.feature;
   const double near = near_a_wire(c, known.members);
   if (!f.thin || f.upon_corner || !(std::abs(f.gap) < near)) return false;
@@ -100,8 +98,7 @@ bool WireSides::contradicts(const HeldContact& c, const std::vector<HeldContact>
   };
   if (!f.at_end && was_beside(c)) return false;
   const int other = known.search.other_owner(c.pair);
-  const Outline &carrier = known.search.outline_of(f.sample_on_a ? c.pair.body : other),
-                &wire = known.search.outline_of(f.sample_on_a ? other : c.pair.body);
+  const Outline& wire = known.search.outline_of(f.sample_on_a ? other : c.pair.body);
   const auto on_other_side = [&](const HeldContact& o) {
     return o.pair == c.pair && o.feature.normal.dot(f.normal) < kOtherSide;
   };
@@ -122,17 +119,7 @@ bool WireSides::contradicts(const HeldContact& c, const std::vector<HeldContact>
     return on_other_side(w) && g.sample_on_a == f.sample_on_a && g.sample == f.sample && has_side(g) &&
            is_next(g.site);
   };
-  // of this arc with the piece that ends with the sample
-  const Vec2& end = carrier.samples[f.sample].p;
-  const auto of_arc = [&](const HeldContact& o) {
-    const NearFeature& g = o.feature;
-    return on_other_side(o) && g.sample_on_a != f.sample_on_a && !g.at_end && !g.beside_arc &&
-           wire.samples[g.sample].arc_site == f.site &&
-           (carrier.sites[g.site].a == end || carrier.sites[g.site].b == end) && std::abs(g.gap) < near &&
-           was_beside(o);
-  };
-  return std::any_of(known.before.begin(), known.before.end(), of_sample) ||
-         std::any_of(contacts.begin(), contacts.end(), of_arc);
+  return std::any_of(known.before.begin(), known.before.end(), of_sample);
 }
 
 /// False: nothing tells surely which side it is.

@@ -48,7 +48,7 @@ class WireSides {
 
  private:
   bool remember(HeldContact& c, const Known& known) const;
-  bool contradicts(const HeldContact& c, const std::vector<HeldContact>& contacts, const Known& known) const;
+  bool contradicts(const HeldContact& c, const Known& known) const;
   std::optional<bool> is_elsewhere(const HeldContact& c, const Known& known) const;
 
   bool run_begins_ = false;
