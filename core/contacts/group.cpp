@@ -14,6 +14,9 @@ namespace {
 /// Speeds below this part of the group's largest are rounding.
 constexpr Real kRoundingOfSpeed = 64 * std::numeric_limits<Real>::epsilon();
 
+/// Mobilities that are along one line to this part of them: as resolve_impulse() has it.
+constexpr Real kOneDirection = 1e-14L;
+
 /// Contacts without finite impulses are taken to yield by this part of what one alone would; if no more than that part of
 /// an approach is left after it, they have some.
 constexpr Real kGivesWay = 1e-9L, kStopped = 1e-6L;
@@ -208,6 +211,11 @@ void add_friction(Group& group, const std::vector<GroupContact>& contacts, Group
     const RealVec tangent = extended::perp(contacts[k].normal);
     const Real yield = group.mobility(k, tangent, k, tangent);
     if (!(bound > 0) || !(yield > 0)) continue;
+    // What can move in one direction alone has its velocity from the normal impulses: friction would change that, as it
+    // does in resolve_impulse() nothing but the impulse.
+    const RealVec& normal = contacts[k].normal;
+    const Real across = group.mobility(k, tangent, k, normal), along = group.mobility(k, normal, k, normal);
+    if (along * yield - across * across <= kOneDirection * along * yield) continue;
     // Of this contact alone, with the velocities that the contacts before it have left. The impulse lies
     // between 0 and the one that makes v_t into -e_t v_t, so that its work pt (v_t + v_t') / 2 is <= 0
     // for |e_t| <= 1.

@@ -177,6 +177,17 @@ void orient_even_odd(std::vector<std::vector<Site>>& loops) {
     if (hole[k]) loops[k] = reversed(loops[k]);
 }
 
+/// @throws BadInput if some are closed and some open: an outline has an inside, or is of wire.
+void require_one_kind(const std::vector<Subpath>& subpaths) {
+  const auto other = std::find_if(subpaths.begin(), subpaths.end(),
+                                  [&](const Subpath& s) { return s.closed != subpaths.front().closed; });
+  if (other == subpaths.end()) return;
+  const char *first = subpaths.front().closed ? "closed" : "open", *then = other->closed ? "closed" : "open";
+  throw BadInput("path: subpath 1 is " + std::string(first) + ", subpath " +
+                 std::to_string(other - subpaths.begin() + 1) + " is " + then +
+                 "; allowed: all closed (a solid), or all open (wires)");
+}
+
 }  // namespace
 
 Shape make_path(std::string_view d, double scale, double curve_tolerance) {
@@ -186,8 +197,6 @@ Shape make_path(std::string_view d, double scale, double curve_tolerance) {
   if (subpaths.empty()) throw BadInput("path: draws nothing; at least one line, curve or arc is needed");
   PathBuilder builder(scale, curve_tolerance);
   std::vector<std::vector<Site>> loops;
-  Outline outline;
-  outline.solid = true;
   for (Subpath& subpath : subpaths) {
     close_rounding_gap(subpath);
     loops.push_back(builder.sites_of(subpath));
@@ -196,8 +205,10 @@ Shape make_path(std::string_view d, double scale, double curve_tolerance) {
       throw BadInput("path: subpath " + std::to_string(loops.size()) +
                      " (from 1) is shorter than curve_tolerance, " + text(curve_tolerance) +
                      " m, and comes back to its start; allowed: subpaths that are longer");
-    outline.solid = outline.solid && subpath.closed;
   }
+  require_one_kind(subpaths);
+  Outline outline;
+  outline.solid = subpaths.front().closed;
   // wires keep the direction in which they were drawn
   if (outline.solid) orient_even_odd(loops);
   // a loop a subpath, in the order of the data: faults and site numbers go by it

@@ -43,10 +43,10 @@ Shape make_capsule(double length, double radius);
 /// of sites).
 Shape make_chain(const std::vector<Vec2>& vertices, bool closed = false, double radius = 0.0);
 /// SVG path data (M L H V C S Q T A Z, absolute and relative), y downward as in SVG turned upward, times
-/// `scale`. All subpaths closed (by Z, or by ending where they began): solid (even-odd), and subpaths must
-/// not cross or touch; else wires. Circular arcs stay exact; other curves become arcs within
+/// `scale`. Subpaths are all closed (by Z, or by ending where they began): solid (even-odd), and they must
+/// not cross or touch; or all open: wires. Circular arcs stay exact; other curves become arcs within
 /// `curve_tolerance` [m] (biarcs), at least 1e-10 of their size.
-/// @throws BadInput naming the character at which the data is wrong.
+/// @throws BadInput naming the character at which the data is wrong, or the subpaths of which one is closed and one open.
 Shape make_path(std::string_view d, double scale, double curve_tolerance);
 
 Shape make_point(const Vec2& p, double radius = 0.0);

@@ -79,6 +79,10 @@ class SceneBuilder {
     // After a fault in the keys some options are defaults; what they would be together is not known.
     if (is_sound("solver") && is_sound("field") && !scene_.solver.is_valid(&error))
       faults_.add(place_of_option(error), error);
+    if (world.periods.any() && scene_.solver.detector != "field")
+      faults_.add(file_.place_of("solver", "detector"),
+                  fault_text("detector", "does not see across the borders of a periodic world",
+                             scene_.solver.detector, "\"field\", or no world.periodic"));
     options_json();
   }
 

@@ -933,7 +933,8 @@ class PairSearch {
   }
 
   /// The contact's geometry is that of its own time, and its site the nearest then, unless it leaves that; or that of
-  /// the next double, where a corner has come to lie flush on a face. None of corners that pass each other.
+  /// the next double, where a corner has come to lie flush on a face. None of corners that pass each other, nor of what goes
+  /// round the free end of a wire.
   std::optional<FeatureContact> contact_then(const Half& half, const Feature& f, double t) const {
     PairView there = view_;
     there.place(t);
@@ -952,7 +953,12 @@ class PairSearch {
     there.place(after);
     met.site = nearest_there();
     const FeatureContact next = there.look_again(half, met, t);
-    return next.closing_speed > 0.0 ? next : contact;
+    if (next.closing_speed > 0.0) return next;
+    // round the free end of a wire it has come as near as touching, and is away from there
+    const double noise = there.rate_noise(there.path(half, f.sample));
+    const bool goes_by =
+        !half.site(met.site).solid && std::max(contact.closing_speed, next.closing_speed) < -noise;
+    return goes_by ? std::nullopt : std::optional(contact);
   }
 
   PairView view_;

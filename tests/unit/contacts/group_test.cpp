@@ -136,6 +136,30 @@ TEST(GroupLaws, OneContactIsTheImpulseLaw) {
   }
 }
 
+// A disc that can only move along y, hit by a slanted side that moves: it rebounds as restitution says, whatever the friction,
+// which can change the impulse alone. Here it would stop the slip, and with that turn the rebound into an approach.
+TEST(GroupLaws, WhatMovesInOneDirectionReboundsWithAnyFriction) {
+  const GroupBody body{{{0, -2}, 0}, 0.0, 1.0, 0.0};
+  GroupContact c;
+  c.body = 0;
+  c.normal = RealVec(0.6, 0.8);
+  c.arm = -0.3 * c.normal;
+  c.other_point_velocity = RealVec(-1, 0.5);
+  for (const double e : {1.0, 0.4})
+    for (const double mu : {0.0, 0.5, 5.0}) {
+      c.material.restitution = e;
+      c.material.friction = mu;
+      const Real before = (body.twist.velocity - c.other_point_velocity).dot(c.normal);
+      for (const Law law : {resolve_together, resolve_reflections}) {
+        const GroupResult result = law({body}, {c}, {});
+        ASSERT_EQ(result.status, GroupResult::Status::resolved);
+        const Real after = (result.twists[0].velocity - c.other_point_velocity).dot(c.normal);
+        EXPECT_NEAR(static_cast<double>(after), static_cast<double>(-e * before), 1e-14) << e << " " << mu;
+        EXPECT_EQ(result.twists[0].velocity.x(), Real(0));
+      }
+    }
+}
+
 TEST(GroupLaws, SqueezedBetweenWhatCannotMoveIsAJam) {
   GroupContact left, right;
   left.normal = {1, 0};

@@ -191,10 +191,24 @@ TEST(PathShape, NestedLoopsAlternate) {
   EXPECT_NEAR(rings.measure.size, 81 - 49 + 25, 1e-13);
 }
 
-TEST(PathShape, OpenSubpathMakesWires) {
-  const Shape wire = make_path("M0 0H1M0 1H1V2H0Z", 1, 1e-6);
+TEST(PathShape, OpenSubpathsMakeWires) {
+  const Shape wire = make_path("M0 0H1M0 1H1V2H0", 1, 1e-6);
   EXPECT_FALSE(wire.outline.solid);
-  EXPECT_NEAR(wire.measure.size, 5, 1e-15);
+  EXPECT_NEAR(wire.measure.size, 4, 1e-15);
+}
+
+// A plate and a line beside it: the plate would have no inside, and nobody would say so.
+TEST(PathShape, ClosedAndOpenSubpathsTogetherAreRefused) {
+  for (const auto& [d, what] : {std::pair{"M0 0H1V1H0ZM0 2H1", "subpath 1 is closed, subpath 2 is open"},
+                                {"M0 2H1M0 0H1V1H0Z", "subpath 1 is open, subpath 2 is closed"},
+                                {"m0 0h1v1h-1z l3 3", "subpath 1 is closed, subpath 2 is open"}}) {
+    try {
+      make_path(d, 1, 1e-6);
+      ADD_FAILURE() << "accepted: " << d;
+    } catch (const BadInput& e) {
+      EXPECT_THAT(e.what(), HasSubstr(what)) << d;
+    }
+  }
 }
 
 TEST(PathShape, RelativeRoundingAtTheEndStillCloses) {
