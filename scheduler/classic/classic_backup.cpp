@@ -33,7 +33,12 @@ class ClassicBackup final : public ClassicPolicy {
       kernel.advance_all(end);
       if (!any_approaches(sight().look(clear, end))) break;
       // With no backup left the touch is answered at the step's end, where overlaps are pushed apart too.
-      const double touch = backups > 0 ? first_touch(clear, end) : end;
+      const double touch = backups > 0 ? first_touch(kernel, clear, end) : end;
+      if (kernel.halt()) {
+        // as if this try had not been: who goes on from here goes on to the same end, with all backups
+        kernel.back_up_all(clear);
+        return false;
+      }
       // a frame at the touch itself shows what comes of it
       if (!kernel.record_frames(std::nextafter(touch, 0.0))) return false;
       kernel.back_up_all(touch);
@@ -41,18 +46,20 @@ class ClassicBackup final : public ClassicPolicy {
       if (!resolve_all(kernel, seen.contacts)) return false;
       if (backups <= 0) push_all_apart(kernel, seen.overlaps);
       clear = touch;
+      if (!kernel.poll()) return false;
     }
     return kernel.record_frames(end) && kernel.poll();
   }
 
-  /// The first time in (clear, touching] at which something touches and approaches, within kHalvings.
-  double first_touch(double clear, double touching) {
+  /// The first time in (clear, touching] at which something touches and approaches, within kHalvings. On a halt no answer:
+  /// pictures of many bodies take half a second each.
+  double first_touch(Kernel& kernel, double clear, double touching) {
     // Every try is seen against this one moment before, in which nothing approached: on which side of a
     // wire a particle was must not depend on the halving.
     const double from = clear;
     for (int k = 0; k < kHalvings; ++k) {
       const double middle = 0.5 * (clear + touching);
-      if (!(middle > clear && middle < touching)) break;
+      if (!(middle > clear && middle < touching) || !kernel.poll()) break;
       (any_approaches(sight().look(from, middle)) ? touching : clear) = middle;
     }
     return touching;
