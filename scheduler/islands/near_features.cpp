@@ -218,16 +218,15 @@ ArcEnd end_beside(const Half& half, const Site& arc, const Vec2& towards, const 
   const bool behind =
       site.kind != SiteKind::point && nearest.foot == Foot::interior && is_behind(site, nearest, q, out, at);
   if (!behind) return {q, nearest, nearest.distance - site.radius - arc.radius};
-  // behind this side it may be before the next one, as a tip is that comes round a corner
+  // behind this side it may be before the next one, as a tip is that comes round a corner: it is as far off as that corner
   Sample tip;
   tip.p = end;
   tip.radius = arc.radius;
   const double before = site.solid && site.kind == SiteKind::segment
                             ? before_next_side(half, tip, site, q, 0.0)
                             : -std::numeric_limits<double>::infinity();
-  return {
-      q, nearest,
-      (before >= 0.0 ? std::min(before, nearest.distance) : -nearest.distance) - site.radius - arc.radius};
+  const double off = before >= 0.0 ? (q - nearer_end(site, q)).norm() : -nearest.distance;
+  return {q, nearest, off - site.radius - arc.radius};
 }
 
 /// True if the site's end that is nearest to an arc's centre lies in the arc's hollow; of one on the arc, if the site leads

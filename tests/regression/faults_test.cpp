@@ -1,6 +1,7 @@
 // Scenes that once went wrong (faults/), each with what must be seen. What is in what is told by geometry
 // that shares no code with Brink's (support/outside); whatever may hang or fill the memory runs in a process
 // of its own.
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -448,11 +449,31 @@ TEST(Faults, TipsThatSlideOverJointsOfArcsStayOutside) {
 TEST(Faults, CurvedWiresKeepTheirSidesOverJoints) {
   for (const char* scene :
        {"two_arcs_in_a_drum", "two_arcs_in_a_tray", "arc_and_wire_in_a_bowl", "ring_and_spline_in_a_tray",
-        "crescents_on_a_wire", "arc_over_a_spline", "needle_in_a_hairpin", "arc_in_a_hairpin"}) {
+        "crescents_on_a_wire", "arc_over_a_spline", "needle_in_a_hairpin", "arc_in_a_hairpin",
+        "nested_arcs_in_a_hairpin", "arc_round_the_end_of_an_arc"}) {
     const Watched run = watched_lasting(load_scene(fault(scene), {"output.frame_interval=0.002"}));
     EXPECT_EQ(run.told.summary.termination, Termination::reached_end)
         << scene << ": " << run.told.summary.why;
     for (const std::string& f : run.faults) ADD_FAILURE() << scene << ": " << f;
+  }
+}
+
+// The end of an arc lay on one side of a star's tip, and came abreast of the tip's other side: from there it was as far off that
+// as off the first, a contact in the star's inside.
+TEST(Faults, AnArcsEndAtOneSideOfATipIsNotAtTheOther) {
+  const Watched run = watched_lasting(load_scene(fault("star_on_the_end_of_an_arc"), {}));
+  EXPECT_EQ(run.told.summary.termination, Termination::reached_end) << run.told.summary.why;
+  for (const std::string& f : run.faults) ADD_FAILURE() << f;
+}
+
+// Friction after all normal impulses turned the rebound of a disc that can move along y alone into an approach, over and over.
+TEST(Faults, WhatIsHeldButInOneDirectionLeavesUnderEveryOrder) {
+  for (const char* order : {"lcp", "reflections", "index"}) {
+    const Watched run = watched_lasting(
+        load_scene(fault("disc_on_a_rail_under_a_turning_box"), {fmt::format("solver.order=\"{}\"", order)}));
+    EXPECT_EQ(run.told.summary.termination, Termination::reached_end)
+        << order << ": " << run.told.summary.why;
+    for (const std::string& f : run.faults) ADD_FAILURE() << order << ": " << f;
   }
 }
 
