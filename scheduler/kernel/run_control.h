@@ -112,7 +112,9 @@ class RunControl {
  private:
   bool is_due() {
     constexpr std::uint64_t between = 4096;
-    const std::uint64_t done = work_.search_iterations + 4 * work_.collisions + 64 * work_.passes + pieces_;
+    // a large picture takes a second by itself
+    const std::uint64_t drawn = 64 * work_.passes + work_.pixels_drawn / 256;
+    const std::uint64_t done = work_.search_iterations + 4 * work_.collisions + drawn + pieces_;
     if (done - polled_ < between && !ask_.due()) return false;
     polled_ = done;
     return true;
