@@ -86,6 +86,26 @@ bool is_parted(const Corner& s, const Corner& t, const Vec2& way, double depth, 
   return false;
 }
 
+/// The same of a wire's end t, from where it leads away from a line of the corner's own sides: that side has it before it. Or one
+/// side until the end has passed the other, as s goes on at that rate: what slides on the one off its edge.
+template <class GoesBack>
+bool is_parted_from_wire(const Corner& s, const Corner& t, const Vec2& way, const Vec2& rate, double depth,
+                         GoesBack&& goes_back) {
+  constexpr double kLeadsAway = 1e-6;  // sine: what lies along the line may bend to either side
+  const Vec2 inwards = right_of(t.before), one = -s.before, other = -s.after;
+  const auto leads_away = [&](const Vec2& u) { return u.dot(inwards) <= -kLeadsAway; };
+  for (const Vec2& u : {one, other})
+    if (leads_away(u) && u.dot(way) >= -depth && !goes_back(u)) return true;
+  if (!leads_away(one) || !leads_away(other)) return false;
+  const auto passes = [&](const Vec2& on,
+                          const Vec2& off) {  // the end is before `on` until it has come before `off`
+    const double left = -off.dot(way), leaves = off.dot(rate);
+    return leaves > 0.0 && left >= 0.0 && on.dot(way) >= -depth &&
+           on.dot(way + left / leaves * rate) >= -depth;
+  };
+  return passes(one, other) || passes(other, one);
+}
+
 /// True if two convex corners that touch at their tips come to overlap as s moves along d. Grazing is passing by (a
 /// corner that slides over an edge), but of a needle, which has its thickness just behind its tip.
 inline bool come_to_overlap(const Corner& s, const Corner& t, const Vec2& d) {

@@ -268,15 +268,18 @@ Vec2 PairView::acceleration_now(const Half& half, int i, const SamplePath& path)
 bool PairView::passes_tip(const Half& half, const Feature& f) const {
   const Site& site = half.site(f.site);
   const Sample& sample = half.sample(f.sample);
-  if (sample.before < 0 || !site.solid || site.radius + sample.radius > 0.0) return false;
+  if (sample.before < 0 || site.kind == SiteKind::point || site.radius + sample.radius > 0.0) return false;
   const SamplePath path = this->path(half, f.sample);
   const bool at_a = (path.q - site.a).squaredNorm() < (path.q - site.b).squaredNorm();
   const Vec2 way = path.q - (at_a ? site.a : site.b);
   if (!(way.squaredNorm() <= limits_.tolerance * limits_.tolerance)) return false;
   if (is_at_joint(half, f.sample, site, path.q, gap_rounding(half, f.sample, path.q))) return false;
   const Frame &s = placed(half.s).frame, &t = placed(half.t).frame;
-  const Corner of_sample = corner_seen(half.samples_of(), sample, s, t), of_site = corner_at(site, at_a);
-  if (!of_sample.convex() || !of_site.convex() || of_sample.needle() || of_site.needle()) return false;
+  const Corner of_sample = corner_seen(half.samples_of(), sample, s, t);
+  const std::optional<Corner> of_site =
+      site.solid ? corner_at(site, at_a) : end_of_wire(half.sites_of(), at_a ? site.a : site.b);
+  if (!of_site || !of_sample.convex() || !of_site->convex() || of_sample.needle()) return false;
+  if (site.solid && of_site->needle()) return false;
   // A needle has its thickness just behind its tip: that a line parts the tips says nothing of it.
   const Vec2 pull = acceleration_now(half, f.sample, path);
   const double noise = rate_noise(path);
@@ -288,7 +291,9 @@ bool PairView::passes_tip(const Half& half, const Feature& f) const {
     const double rate = u.dot(path.rate);
     return rate < -noise || (rate <= noise && u.dot(pull) < -none);
   };
-  return is_parted(of_sample, of_site, way, passing_depth(half, f.sample, path.q), goes_back);
+  const double depth = passing_depth(half, f.sample, path.q);
+  return site.solid ? is_parted(of_sample, *of_site, way, depth, goes_back)
+                    : is_parted_from_wire(of_sample, *of_site, way, path.rate, depth, goes_back);
 }
 
 bool PairView::pokes_through(const Half& half, int i, const Site& site, const Nearest& nearest,

@@ -65,6 +65,8 @@ OnCorner on_corner(const Half& half, const Sample& sample, std::size_t j, const 
     return !of_sample.edges.empty() && parts(outward(side), of_sample, of_corner);
   };
   const bool by_this = parts_them(site);
+  const bool by_own = std::any_of(of_sample.normals.begin(), of_sample.normals.end(),
+                                  [&](const Vec2& n) { return parts(-n, of_sample, of_corner); });
   OnCorner where = OnCorner::nowhere;
   for (std::size_t k = 0; k < outline.sites.size(); ++k) {
     const Site& next = outline.sites[k];
@@ -76,6 +78,8 @@ OnCorner on_corner(const Half& half, const Sample& sample, std::size_t j, const 
     const double more = by_next != by_this ? (by_next ? 1.0 : -1.0)
                                            : outward(next).dot(to_centre) - outward(site).dot(to_centre);
     if (by_this && by_next) return OnCorner::either_side;
+    // what only a side of the sample's own corner parts lies on that: it has the contact
+    if (!by_this && !by_next && by_own) return OnCorner::other_side;
     // a tie goes to the site that comes first, so that exactly one of the two has the sample
     if (more > 0.0 || (more == 0.0 && k < j)) return OnCorner::other_side;
     where = OnCorner::this_side;

@@ -20,8 +20,8 @@ bool goes_over(const Half& half, const Sample& sample, const Site& site, const N
 enum class OnCorner { nowhere, this_side, other_side, either_side };
 
 /// Of a sample upon an end of site j, a straight side of a solid, where it has a convex corner with another: on that of
-/// the two that parts it from the corner; if neither does, on that which faces the sample's owner more. Corner on corner, each
-/// lies on the face below it.
+/// the two that parts it from the corner; if neither does, on none where a side of its own corner does, else on that which faces
+/// the sample's owner more. Corner on corner, each lies on the face below it.
 OnCorner on_corner(const Half& half, const Sample& sample, std::size_t j, const Vec2& q, double tie);
 
 /// True if the straight side j of a solid has a hollow corner with another at that end.

@@ -102,7 +102,10 @@ OnWire on_wire(const Half& half, const Sample& sample, std::size_t j, const Vec2
   const bool by_another = std::any_of(of_wire.normals.begin(), of_wire.normals.end(), has_before);
   // The corner of a solid fills the hollow that it is in. Of two corners of wire that are as wide, each in the other, either does.
   const bool is_hollow = is_within(of_wire, of_sample) && !is_within(of_sample, of_wire);
-  const bool elsewhere = by_another || (!half.carrier.solid && is_hollow);
+  // what only a side of the sample's own corner parts lies on that: it has the contact
+  const bool by_own = std::any_of(of_sample.normals.begin(), of_sample.normals.end(),
+                                  [&](const Vec2& n) { return parts(-n, of_sample, of_wire); });
+  const bool elsewhere = by_another || by_own || (!half.carrier.solid && is_hollow);
   return {elsewhere ? OnCorner::other_side : OnCorner::nowhere, Vec2::Zero()};
 }
 

@@ -169,5 +169,111 @@ TEST(SlidingOffEdges, NothingPushesWhatIsOff) {
   EXPECT_GT(lifts, 20);
 }
 
+/// What stands on a tip, or on the end of a wire, and slides over a level floor off its edge without friction; floor and all are
+/// moved by that velocity [m/s].
+std::string on_a_tip(std::uint64_t seed, const Vec2& moved) {
+  Random random(seed);
+  const double long_ = random.uniform(0.2, 0.6), thin = random.uniform(0.03, 1.0),
+               side = random.below(2) ? 1.0 : -1.0, leans = random.uniform(0.02, 0.6);
+  const auto at = [&](double radius, double angle) {
+    return fmt::format("[{:.17g}, {:.17g}]", side * radius * std::cos(angle), radius * std::sin(angle));
+  };
+  const double place = -random.uniform(0.02, 0.2), speed = random.uniform(1.0, 4.0);
+  const bool by_formula = random.below(2) == 0;
+  std::string shape, site;
+  switch (random.below(4)) {
+    case 0:  // a wedge, the tip at the origin, its lower side up by `leans`
+      shape = side > 0.0 ? at(long_, leans) + ", " + at(long_, leans + thin)
+                         : at(long_, leans + thin) + ", " + at(long_, leans);
+      shape = "polygon = { vertices = [[0, 0], " + shape + "] }\n";
+      break;
+    case 1:
+      shape = "chain = { vertices = [[0, 0], " + at(long_, leans) + "] }\nmass = 1\n";
+      break;
+    case 2:  // two rods that meet
+      shape = "chain = { vertices = [" + at(long_, leans) + ", [0, 0], " + at(long_, leans + thin) +
+              "] }\nmass = 1\n";
+      break;
+    default: {  // an arc that rises from its end, and bends to either side
+      const double radius = long_ * random.uniform(0.8, 3.0);
+      shape =
+          fmt::format("path = {{ d = 'M 0 0 A {} {} 0 0 {} {:.17g} {:.17g}' }}\nmass = 1\n", radius, radius,
+                      random.below(2), side * long_ * std::cos(leans + 0.7), -long_ * std::sin(leans + 0.7));
+    }
+  }
+  switch (random.below(3)) {
+    case 0:
+      site = "box = { width = 2, height = 0.5 }\nposition = [-1, -0.25]\n";
+      break;
+    case 1:
+      site = "polygon = { vertices = [[-2, 0], [-2, -0.02], [0, -0.02], [0, 0]] }\n";
+      break;
+    default:
+      site = "segment = [[-2, 0], [0, 0]]\n";
+  }
+  if (!moved.isZero(0.0))
+    site += !by_formula ? fmt::format("motion = {{ velocity = [{}, {}] }}\n", moved.x(), moved.y())
+                        : fmt::format("motion = {{ x = '{}*t', y = '{}*t' }}\n", moved.x(), moved.y());
+  return fmt::format(
+      "[world]\nduration = 0.2\ngravity = [0, -{}]\n[materials.default]\nrestitution = 0\nfriction = 0\n"
+      "[[sites]]\nname = 'edge'\n{}[[bodies]]\n{}centered = false\nposition = [{}, 0.05]\ntouching = 'edge'\n"
+      "velocity = [{}, {}]\n",
+      kGravity, site, shape, place, speed + moved.x(), moved.y());
+}
+
+/// States at frames, and how often something was hit.
+class Seen : public Recorder {
+ public:
+  void event(const Event& event) override { hits += event.kind == EventKind::collision; }
+  void frame(double, std::span<const BodyState> all) override {
+    states.push_back(all[0]);
+    hits_before.push_back(hits);
+  }
+  std::vector<BodyState> states;
+  std::vector<int> hits_before;
+  int hits = 0;
+};
+
+Seen seen_on_a_tip(const std::string& text) {
+  const Scene scene = parse_scene(text, "tip");
+  RunOptions options = testing::until(scene.duration);
+  options.frame_interval = kFrame;
+  Seen seen;
+  const RunSummary told = Simulator(scene.world, scene.solver).run(options, &seen);
+  EXPECT_EQ(told.termination, Termination::reached_end) << told.why;
+  return seen;
+}
+
+// The tip has no velocity into the floor where it leaves that, and what rises from it is clear of the edge: nothing pushes. Until
+// something is hit energy is kept, and all is the same where everything moves along: a push of an instant would show in both.
+TEST(SlidingOffEdges, WhatLeavesOnATipIsNotPushed) {
+  const auto still = [](std::uint64_t seed) { return on_a_tip(seed, Vec2::Zero()); };
+  int left = 0;
+  testing::for_each_world(60, still, [&](std::uint64_t seed) {
+    const Scene scene = parse_scene(still(seed), "tip");
+    const double inertia = scene.world.bodies[0].inertia / scene.world.bodies[0].mass;
+    const Seen at_rest = seen_on_a_tip(still(seed));
+    Random random(seed + 1);
+    const Vec2 moved(random.uniform(-3.0, 3.0), random.uniform(-2.0, 2.0));
+    const Seen along = seen_on_a_tip(on_a_tip(seed, moved));
+    ASSERT_EQ(at_rest.states.size(), along.states.size());
+    for (std::size_t k = 0; k < at_rest.states.size(); ++k) {
+      const auto energy = [&](const BodyState& s) {
+        return 0.5 * s.twist.velocity.squaredNorm() + 0.5 * inertia * s.twist.omega * s.twist.omega +
+               kGravity * s.pose.position.y();
+      };
+      const BodyState &a = at_rest.states[k], &b = along.states[k];
+      EXPECT_TRUE(at_rest.hits_before[k] > 0 || std::abs(energy(a) - energy(at_rest.states[0])) < 1e-8)
+          << k << ": " << energy(a) - energy(at_rest.states[0]);
+      const Vec2 off = b.pose.position - a.pose.position - moved * (kFrame * static_cast<double>(k));
+      EXPECT_LE(off.norm(), 1e-7) << k;
+      EXPECT_NEAR(a.pose.angle, b.pose.angle, 1e-6) << k;
+    }
+    EXPECT_EQ(at_rest.hits, along.hits);
+    left += at_rest.hits == 0;
+  });
+  EXPECT_GT(left, 20);
+}
+
 }  // namespace
 }  // namespace brink::sliding_off_edges_test

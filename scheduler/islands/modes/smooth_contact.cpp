@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "brink/core/shapes/distance.h"
+#include "brink/scheduler/islands/outline_half.h"
 #include "brink/scheduler/islands/tolerances.h"
 
 namespace brink {
@@ -150,6 +151,17 @@ SmoothContact end_of(SmoothContact c, const Site& site, bool start, const Vec2& 
   return c;
 }
 
+/// True of a sample beside an end of a straight site for which the side's line goes on there, as far as the two corners lie on each
+/// other: there is no way by; or it is right at the end, where the side of a wire has been told, or both are round, whichever side
+/// of the end itself roundings have put it.
+bool goes_on_beyond_end(const NearFeature& f, const Sample& sample, const Site& site, const Vec2& q) {
+  if (site.kind != SiteKind::segment) return false;
+  if (f.no_way_by) return true;
+  if (nearest_on(site, q).foot == Foot::interior) return false;
+  const bool is_round = sample.radius + site.radius > 0.0 && islands::beyond_ends(site, q) <= f.one_corner;
+  return (f.upon_corner && !f.at_end) || is_round;
+}
+
 /// The shapes of a site, the present one first.
 std::vector<SmoothContact> shapes_of(const SmoothContact& sample, const Site& site, const Vec2& q,
                                      const Vec2& out) {
@@ -193,11 +205,14 @@ std::vector<SmoothContact> smooth_contacts(const NearFeature& f, const Outline& 
   if (sample.arc_site >= 0) c.sector = sector_of(carrier.sites[sample.arc_site], Vec2::Zero());
   const Site& site = other.sites[f.site];
   std::vector<SmoothContact> shapes = shapes_of(c, site, q, out);
-  // beside an end where there is no way by, the side's line goes on, as far as the two corners lie on each other
-  if (f.no_way_by && site.kind == SiteKind::segment) {
+  if (goes_on_beyond_end(f, sample, site, q)) {
     const bool at_start = (q - site.a).squaredNorm() < (q - site.b).squaredNorm();
-    shapes = {interior_of(c, site, q, out)};
-    shapes.front().range[at_start ? 0 : 1].least -= 2.0 * f.one_corner;
+    SmoothContact line = interior_of(c, site, q, out);
+    line.range[at_start ? 0 : 1].least -= 2.0 * f.one_corner;
+    // what is round rolls over the end of its own accord
+    shapes = sample.radius + site.radius > 0.0 && !f.no_way_by
+                 ? std::vector{line, end_of(c, site, at_start, q)}
+                 : std::vector{line};
   }
   const SmoothContact& first = shapes.front();
   const double size = carrier.bounding_radius + other.bounding_radius;
