@@ -172,6 +172,34 @@ bool IslandModes::is_told_by_other_corner(const HeldContact& c, const std::vecto
          any_of_other_corner(c, all, [](const NearFeature& f) { return f.no_way_by; });
 }
 
+/// True of one of two corners at one place of which each lies on a side of the other, where that of the other counts: which it
+/// has lain on, or else to which forces press more.
+bool IslandModes::is_told_by_other_side(const HeldContact& c) const {
+  if (!c.feature.upon_corner || c.feature.at_end) return false;
+  const auto was_closed = [&](const HeldContact& contact) {
+    const HeldContact* warm = warm_->find(contact);
+    return warm && warm->by_modes && is_closed(warm->motion);
+  };
+  const auto pull_on = [&](int body) -> Vec2 {
+    const int place = members_->place_of(body);
+    return members_->is_support(place) ? Vec2(Vec2::Zero()) : members_->acceleration(place).linear;
+  };
+  Vec2 pull = pull_on(c.pair.body);
+  if (!c.pair.with_site()) pull -= pull_on(c.pair.other_body);
+  const double place =
+      kOnePlace * std::min(search_->outline_of(c.pair.body).bounding_radius,
+                           search_->outline_of(search_->other_owner(c.pair)).bounding_radius);
+  return std::any_of(contacts_.begin(), contacts_.end(), [&](const HeldContact& o) {
+    const NearFeature& f = o.feature;
+    if (!(o.pair == c.pair) || f.sample_on_a == c.feature.sample_on_a || !f.upon_corner || f.at_end ||
+        !((f.point - c.feature.point).norm() <= place))
+      return false;
+    if (was_closed(o) != was_closed(c)) return was_closed(o);
+    const double presses = pull.dot(c.feature.normal) - pull.dot(f.normal);
+    return presses > 0.0 || (presses == 0.0 && f.sample_on_a);
+  });
+}
+
 /// Places are doubles in modes: what touches is told from what does not by some of their roundings at least [m].
 double IslandModes::least_touch() const {
   double farthest = 0.0;
@@ -214,6 +242,11 @@ bool IslandModes::touches(const HeldContact& c) const {
 /// (smooth_contacts). Each is a contact of the problem. `place_` leads from a contact to its present shape, `of_`
 /// back from each shape; only the present one can be touching.
 void IslandModes::add_contact(const HeldContact& c) {
+  // two corners at one place lie on each other by one side
+  if (is_told_by_other_side(c)) {
+    place_.push_back(std::numeric_limits<std::size_t>::max());
+    return;
+  }
   const int a = members_->place_of(c.pair.body);
   const Outline &of_a = search_->outline_of(c.pair.body),
                 &of_b = search_->outline_of(search_->other_owner(c.pair));

@@ -85,6 +85,7 @@ class IslandModes {
   template <class Is>
   bool any_of_other_corner(const HeldContact& c, const std::vector<HeldContact>& all, Is&& is) const;
   bool is_told_by_other_corner(const HeldContact& c, const std::vector<HeldContact>& all) const;
+  bool is_told_by_other_side(const HeldContact& contact) const;
   bool touches(const HeldContact& c) const;
   /// How what touches approaches now.
   enum class Approach {

@@ -152,14 +152,14 @@ SmoothContact end_of(SmoothContact c, const Site& site, bool start, const Vec2& 
 }
 
 /// True of a sample beside an end of a straight site for which the side's line goes on there, as far as the two corners lie on each
-/// other: there is no way by; or it is right at the end, where the side of a wire has been told, or both are round, whichever side
-/// of the end itself roundings have put it.
+/// other: there is no way by; or it is right at the end, and the side has been told; or both are round there, whichever side of the end
+/// itself roundings have put it.
 bool goes_on_beyond_end(const NearFeature& f, const Sample& sample, const Site& site, const Vec2& q) {
   if (site.kind != SiteKind::segment) return false;
-  if (f.no_way_by) return true;
-  if (nearest_on(site, q).foot == Foot::interior) return false;
-  const bool is_round = sample.radius + site.radius > 0.0 && islands::beyond_ends(site, q) <= f.one_corner;
-  return (f.upon_corner && !f.at_end) || is_round;
+  if (f.no_way_by || (f.upon_corner && !f.at_end)) return true;
+  const bool is_round = sample.radius + site.radius > 0.0;
+  return is_round && nearest_on(site, q).foot != Foot::interior &&
+         islands::beyond_ends(site, q) <= f.one_corner;
 }
 
 /// The shapes of a site, the present one first.
