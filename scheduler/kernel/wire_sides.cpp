@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brink/core/shapes/curve_site.h"
 #include "brink/scheduler/islands/tolerances.h"
 
 namespace brink {
@@ -136,11 +137,40 @@ bool WireSides::remember(HeldContact& c, const Known& known) const {
   if (before != nullptr && !before->feature.at_end)
     turn = before->feature.normal.dot(f.normal) < 0.0;
   else
-    turn = f.side_told == SideTold::surely ? false : is_elsewhere(c, known);
+    turn = f.side_told == SideTold::surely ? false : is_round_a_corner(c, known);
+  if (!turn) turn = is_elsewhere(c, known);
   // no step leaves anybody so deep: it is where it is
   if (!turn && std::abs(f.gap) > kSunkInRun * known.search.limits().tolerance) turn = f.gap < 0.0;
   if (turn.value_or(false)) turn_over(f);
   return turn.has_value();
+}
+
+/// Of a sample that was upon the piece before this one, or after it: true if it is on the other side of this one than it was of that,
+/// seen along the wire. Who goes over a corner of a wire does not go through it.
+std::optional<bool> WireSides::is_round_a_corner(const HeldContact& c, const Known& known) const {
+  const NearFeature& f = c.feature;
+  const Outline& wire =
+      known.search.outline_of(f.sample_on_a ? known.search.other_owner(c.pair) : c.pair.body);
+  const ExtendedState owner = f.sample_on_a ? known.members.other_state(c.pair)
+                                            : known.members.state(known.members.place_of(c.pair.body));
+  const Frame frame(Pose{{0.0, 0.0}, owner.seen_from(Vec2::Zero()).pose.angle});
+  const Site& here = wire.sites[f.site];
+  const auto is_right = [&](const Site& site, const Vec2& end, const Vec2& normal) {
+    return frame.direction_to_world(right_normal(site, end)).dot(normal) > 0.0;
+  };
+  for (const HeldContact& w : known.before) {
+    const NearFeature& g = w.feature;
+    if (!(w.pair == c.pair) || g.sample_on_a != f.sample_on_a || g.sample != f.sample || g.site == f.site ||
+        !g.thin || g.at_end || !(std::abs(g.gap) < near_a_wire(c, known.members)))
+      continue;
+    const Site& there = wire.sites[g.site];
+    if (here.kind == SiteKind::point || there.kind == SiteKind::point || !share_an_end(here, there)) continue;
+    const bool onward = here.a == there.b || here.b == there.a;  // travelled alike
+    const Vec2& end = here.a == there.b || here.a == there.a ? here.a : here.b;
+    const bool alike = is_right(here, end, f.normal) == is_right(there, end, g.normal);
+    return alike != onward;
+  }
+  return std::nullopt;
 }
 
 /// Of a wire of which no place of the other surely tells on which side it is: true if that is the other one. Where a run begins it is

@@ -27,6 +27,7 @@ struct StepCause {
 ///
 ///   the step before        it had the contact, on that side
 ///   the edges, surely
+///   the piece next to it   it was upon that in the step before: nobody goes through a wire round its corner
 ///   contacts on the line   of the step before, or what has just met: nobody changes sides along a line
 ///   the depth              no step leaves anybody beyond a wire by more than some contact tolerances
 ///   parallel contacts      two that come to lie flush, along more than one line, are on one side of each other
@@ -50,6 +51,7 @@ class WireSides {
   bool remember(HeldContact& c, const Known& known) const;
   bool contradicts(const HeldContact& c, const Known& known) const;
   std::optional<bool> is_elsewhere(const HeldContact& c, const Known& known) const;
+  std::optional<bool> is_round_a_corner(const HeldContact& c, const Known& known) const;
 
   bool run_begins_ = false;
   std::optional<std::pair<PairKey, FeatureContact>> met_;
