@@ -57,8 +57,8 @@ struct OnWire {
 };
 
 /// Of a vertex upon an end of site j of a wire: on that of its sides that parts the two there, if one does. On another site's
-/// if one of those does, and none of this: round a corner the vertex meets it no more than a free end. On none if only a side of
-/// its own corner does. In a hollow corner
+/// if one of those does, and none of this: round a corner the vertex meets it no more than a free end. What only a side of
+/// the vertex parts lies on that, and has the contact. In a hollow corner
 /// none parts the two, and each site counts as elsewhere; but the hollow itself meets no side of the corner that is in it.
 OnWire on_wire(const Half& half, const Sample& sample, std::size_t j, const Vec2& q, double tie);
 
