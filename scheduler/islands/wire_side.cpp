@@ -38,18 +38,14 @@ bool is_within(const Wedge& inner, const Wedge& outer) {
   });
 }
 
-/// True of a sample that may be in the hollow corner of two pieces of a wire: its edges lead between the two. Of those that lead along
-/// one of them `way` tells, from the corner to the sample, on which side of that it is.
-bool is_in_hollow(const Wedge& of_sample, const Wedge& of_wire, const Vec2& way) {
+/// True of a sample that may be in the hollow corner of two pieces of a wire: its edges lead between the two, or along them.
+bool may_be_in_hollow(const Wedge& of_sample, const Wedge& of_wire) {
   if (of_wire.edges.size() != 2) return false;
   constexpr double kAlong = 1e-4;  // sine: an arc's end may lead across what the arc lies along
   const Vec2 &from = of_wire.edges[0], &to = of_wire.edges[1];
   const double turn = cross(from, to) > 0.0 ? 1.0 : -1.0;
   return std::all_of(of_sample.edges.begin(), of_sample.edges.end(), [&](const Vec2& e) {
-    const double after = turn * cross(from, e), before = turn * cross(e, to);
-    if (std::min(after, before) < -kAlong || e.dot(from + to) < 0.0) return false;
-    return (after > kAlong || turn * cross(from, way) >= 0.0) &&
-           (before > kAlong || turn * cross(way, to) >= 0.0);
+    return turn * cross(from, e) >= -kAlong && turn * cross(e, to) >= -kAlong && e.dot(from + to) > 0.0;
   });
 }
 
@@ -118,7 +114,7 @@ OnWire on_wire(const Half& half, const Sample& sample, std::size_t j, const Vec2
   // The corner of a solid fills the hollow that it is in. Of two corners of wire that are as wide, each in the other, either does.
   const bool is_hollow = is_within(of_wire, of_sample) && !is_within(of_sample, of_wire);
   // what only a side of the sample's own corner parts lies on that: it has the contact
-  const bool by_own = !is_in_hollow(of_sample, of_wire, q - end) &&
+  const bool by_own = !may_be_in_hollow(of_sample, of_wire) &&
                       std::any_of(of_sample.normals.begin(), of_sample.normals.end(),
                                   [&](const Vec2& n) { return parts(-n, of_sample, of_wire); });
   const bool elsewhere = by_another || by_own || (!half.carrier.solid && is_hollow);
