@@ -38,10 +38,12 @@ bool is_within(const Wedge& inner, const Wedge& outer) {
   });
 }
 
+/// Sine: an arc's end may lead across what the arc lies along.
+constexpr double kAlong = 1e-4;
+
 /// True of a sample that may be in the hollow corner of two pieces of a wire: its edges lead between the two, or along them.
 bool may_be_in_hollow(const Wedge& of_sample, const Wedge& of_wire) {
   if (of_wire.edges.size() != 2) return false;
-  constexpr double kAlong = 1e-4;  // sine: an arc's end may lead across what the arc lies along
   const Vec2 &from = of_wire.edges[0], &to = of_wire.edges[1];
   const double turn = cross(from, to) > 0.0 ? 1.0 : -1.0;
   return std::all_of(of_sample.edges.begin(), of_sample.edges.end(), [&](const Vec2& e) {
@@ -113,10 +115,13 @@ OnWire on_wire(const Half& half, const Sample& sample, std::size_t j, const Vec2
   const bool by_another = std::any_of(of_wire.normals.begin(), of_wire.normals.end(), has_before);
   // The corner of a solid fills the hollow that it is in. Of two corners of wire that are as wide, each in the other, either does.
   const bool is_hollow = is_within(of_wire, of_sample) && !is_within(of_sample, of_wire);
-  // what only a side of the sample's own corner parts lies on that: it has the contact
+  // what only a side of the sample's own corner parts lies on that: it has the contact, if the wire leads away from there
+  const auto lies_on = [&](const Vec2& n) {
+    return parts(-n, of_sample, of_wire) && std::any_of(of_wire.edges.begin(), of_wire.edges.end(),
+                                                        [&](const Vec2& e) { return n.dot(e) > kAlong; });
+  };
   const bool by_own = !may_be_in_hollow(of_sample, of_wire) &&
-                      std::any_of(of_sample.normals.begin(), of_sample.normals.end(),
-                                  [&](const Vec2& n) { return parts(-n, of_sample, of_wire); });
+                      std::any_of(of_sample.normals.begin(), of_sample.normals.end(), lies_on);
   const bool elsewhere = by_another || by_own || (!half.carrier.solid && is_hollow);
   return {elsewhere ? OnCorner::other_side : OnCorner::nowhere, Vec2::Zero()};
 }
