@@ -234,7 +234,9 @@ ContactMode IslandParting::mode_of(const HeldContact& c, bool rests) const {
   // with the twists that the step has: those of its end, or of its beginning by modes
   const Vec2 relative = a.at(step_.members.arm(c).cast<double>()) - b.at(c.feature.point);
   const double slow = kNoSpeed * std::sqrt(step_.members.pull() * step_.members.size());
-  if (std::abs(cross(c.feature.normal, relative)) > slow) return ContactMode::slip;
+  // what an impact at the beginning of a step by modes has stopped sticks from then on
+  const bool sticks = step_.by_modes && c.motion == MotionMode::stick;
+  if (!sticks && std::abs(cross(c.feature.normal, relative)) > slow) return ContactMode::slip;
   return std::abs(a.omega - b.omega) * step_.members.size() > slow ? ContactMode::roll : ContactMode::stick;
 }
 
