@@ -243,7 +243,8 @@ bool IslandModes::touches(const HeldContact& c) const {
 /// back from each shape; only the present one can be touching.
 void IslandModes::add_contact(const HeldContact& c) {
   // two corners at one place lie on each other by one side
-  if (is_told_by_other_side(c)) {
+  told_by_other_.push_back(is_told_by_other_side(c));
+  if (told_by_other_.back()) {
     place_.push_back(std::numeric_limits<std::size_t>::max());
     return;
   }
@@ -314,6 +315,7 @@ void IslandModes::make_problem(std::vector<HeldContact> contacts, double h) {
   of_.clear();
   place_.clear();
   touching_.clear();
+  told_by_other_.clear();
   for (int i = 0; i < static_cast<int>(members_->count()); ++i) {
     const Body& b = members_->body(i);
     problem_.inverse_mass.emplace_back(b.inverse_mass_x(), b.inverse_mass_y(), b.inverse_inertia());
@@ -483,7 +485,8 @@ ExtendedState IslandModes::let_go(int member) const {
 void IslandModes::note(const ModeMotion& motion) {
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     HeldContact& c = contacts_[k];
-    c.by_modes = true;
+    // what it does is to be chosen where it comes to count
+    c.by_modes = !told_by_other_[k];
     if (place_[k] >= motion.modes().size()) continue;
     c.motion = c.next_motion = motion.modes()[place_[k]];
     c.normal_force = motion.forces().normal[place_[k]];

@@ -120,10 +120,11 @@ class IslandModes {
   int arrived_ = -1;    ///< contact of the problem that arrives where the step begins
   std::vector<HeldContact> contacts_;
   std::vector<Impact> impacts_;
-  std::vector<BodyState> begun_;    ///< with what these have made of the members' twists
-  std::vector<bool> touching_;      ///< of each contact of the problem
-  std::vector<std::size_t> of_;     ///< contact that it is a shape of, of each contact of the problem
-  std::vector<std::size_t> place_;  ///< of each contact's present shape in the problem
+  std::vector<BodyState> begun_;     ///< with what these have made of the members' twists
+  std::vector<bool> touching_;       ///< of each contact of the problem
+  std::vector<bool> told_by_other_;  ///< contacts that are none of the problem, see is_told_by_other_side()
+  std::vector<std::size_t> of_;      ///< contact that it is a shape of, of each contact of the problem
+  std::vector<std::size_t> place_;   ///< of each contact's present shape in the problem
   ModeProblem problem_;
   std::vector<std::shared_ptr<Track>> tracks_;
 };
