@@ -173,7 +173,7 @@ bool IslandModes::is_told_by_other_corner(const HeldContact& c, const std::vecto
 }
 
 /// True of one of two corners at one place of which each lies on a side of the other, where that of the other counts: which it
-/// has lain on, or else to which forces press more.
+/// has lain on, or else to which forces press more. And of the one of two sides of a corner on which the other has not lain.
 bool IslandModes::is_told_by_other_side(const HeldContact& c) const {
   if (!c.feature.upon_corner || c.feature.at_end) return false;
   const auto was_closed = [&](const HeldContact& contact) {
@@ -191,12 +191,14 @@ bool IslandModes::is_told_by_other_side(const HeldContact& c) const {
                            search_->outline_of(search_->other_owner(c.pair)).bounding_radius);
   return std::any_of(contacts_.begin(), contacts_.end(), [&](const HeldContact& o) {
     const NearFeature& f = o.feature;
-    if (!(o.pair == c.pair) || f.sample_on_a == c.feature.sample_on_a || !f.upon_corner || f.at_end ||
-        !((f.point - c.feature.point).norm() <= place))
+    if (!(o.pair == c.pair) || !f.upon_corner || f.at_end || !((f.point - c.feature.point).norm() <= place))
       return false;
+    const bool exchanged = f.sample_on_a != c.feature.sample_on_a;
+    // the same corner over the other side of the one that it is upon
+    if (!exchanged && (f.sample != c.feature.sample || f.site == c.feature.site)) return false;
     if (was_closed(o) != was_closed(c)) return was_closed(o);
     const double presses = pull.dot(c.feature.normal) - pull.dot(f.normal);
-    return presses > 0.0 || (presses == 0.0 && f.sample_on_a);
+    return exchanged && (presses > 0.0 || (presses == 0.0 && f.sample_on_a));
   });
 }
 
