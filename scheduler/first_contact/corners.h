@@ -57,6 +57,29 @@ inline std::optional<Corner> end_of_wire(const Outline& outline, const Vec2& p) 
   return found;
 }
 
+/// A wire at a place where it ends, as above, or where two pieces meet: the convex corner with those two sides, whichever side of it is
+/// asked for. Nothing where pieces go on straight or back, or more than two meet.
+inline std::optional<Corner> corner_of_wire(const Outline& outline, const Vec2& p) {
+  if (outline.solid) return std::nullopt;
+  Vec2 inwards[2];
+  int count = 0;
+  for (const Site& site : outline.sites) {
+    if (site.kind == SiteKind::point) continue;
+    for (const bool at_a : {true, false}) {
+      if ((at_a ? site.a : site.b) != p) continue;
+      if (count == 2) return std::nullopt;
+      inwards[count++] = at_a ? direction_at_start(site) : Vec2(-direction_at_end(site));
+    }
+  }
+  if (count == 0) return std::nullopt;
+  if (count == 1) return Corner{perp(inwards[0]), -perp(inwards[0])};
+  const double turn = cross(inwards[0], inwards[1]);
+  if (std::abs(turn) <= Corner::kTurns) return std::nullopt;
+  // seen from outside the solid between them would have the first on its left, or on its right
+  const Vec2 &first = turn > 0.0 ? inwards[1] : inwards[0], &second = turn > 0.0 ? inwards[0] : inwards[1];
+  return Corner{perp(first), -perp(second)};
+}
+
 /// The same in the frame of another outline.
 inline Corner seen_from(const Corner& own, const Frame& from, const Frame& to) {
   const auto seen = [&](const Vec2& n) { return to.direction_to_local(from.direction_to_world(n)); };
@@ -86,24 +109,40 @@ bool is_parted(const Corner& s, const Corner& t, const Vec2& way, double depth, 
   return false;
 }
 
-/// The same of a wire's end t, from where it leads away from a line of the corner's own sides: that side has it before it. Or one
-/// side until the end has passed the other, as s goes on at that rate: what slides on the one off its edge.
+/// How two tips go on: the way between them [m], its rate [m/s], how much that may change [m/s^2], and how far one may be behind
+/// a line [m].
+struct Passing {
+  Vec2 way, rate;
+  double bend = 0.0, depth = 0.0;
+
+  /// Before the line `on` until it has come before `off`: what slides on one side of an edge off the other.
+  bool goes_from(const Vec2& on, const Vec2& off) const {
+    const double left = -off.dot(way), leaves = off.dot(rate);
+    if (!(leaves > 0.0 && left >= 0.0 && on.dot(way) >= -depth)) return false;
+    const double later = left / leaves;
+    return on.dot(way + later * rate) >= -depth && 0.5 * bend * later * later <= 0.25 * depth;
+  }
+};
+
+/// True if one line parts them as long as s is on it, and then another.
+inline bool is_passed(const Corner& s, const Corner& t, const Passing& how) {
+  const Vec2 lines[] = {t.before, t.after, -s.before, -s.after};
+  const auto parts = [&](const Vec2& u) { return t.faces(u) && s.faces(-u); };
+  for (const Vec2& on : lines)
+    for (const Vec2& off : lines)
+      if (&on != &off && parts(on) && parts(off) && how.goes_from(on, off)) return true;
+  return false;
+}
+
+/// The same of a wire's end t, from where it leads away from lines of the corner's own sides: those have it before them.
 template <class GoesBack>
-bool is_parted_from_wire(const Corner& s, const Corner& t, const Vec2& way, const Vec2& rate, double depth,
-                         GoesBack&& goes_back) {
+bool is_parted_from_wire(const Corner& s, const Corner& t, const Passing& how, GoesBack&& goes_back) {
   constexpr double kLeadsAway = 1e-6;  // sine: what lies along the line may bend to either side
   const Vec2 inwards = right_of(t.before), one = -s.before, other = -s.after;
   const auto leads_away = [&](const Vec2& u) { return u.dot(inwards) <= -kLeadsAway; };
   for (const Vec2& u : {one, other})
-    if (leads_away(u) && u.dot(way) >= -depth && !goes_back(u)) return true;
-  if (!leads_away(one) || !leads_away(other)) return false;
-  const auto passes = [&](const Vec2& on,
-                          const Vec2& off) {  // the end is before `on` until it has come before `off`
-    const double left = -off.dot(way), leaves = off.dot(rate);
-    return leaves > 0.0 && left >= 0.0 && on.dot(way) >= -depth &&
-           on.dot(way + left / leaves * rate) >= -depth;
-  };
-  return passes(one, other) || passes(other, one);
+    if (leads_away(u) && u.dot(how.way) >= -how.depth && !goes_back(u)) return true;
+  return leads_away(one) && leads_away(other) && (how.goes_from(one, other) || how.goes_from(other, one));
 }
 
 /// True if two convex corners that touch at their tips come to overlap as s moves along d. Grazing is passing by (a

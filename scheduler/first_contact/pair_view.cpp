@@ -268,19 +268,21 @@ Vec2 PairView::acceleration_now(const Half& half, int i, const SamplePath& path)
 bool PairView::passes_tip(const Half& half, const Feature& f) const {
   const Site& site = half.site(f.site);
   const Sample& sample = half.sample(f.sample);
-  if (sample.before < 0 || site.kind == SiteKind::point || site.radius + sample.radius > 0.0) return false;
+  if (sample.arc_site >= 0 || site.kind == SiteKind::point || site.radius + sample.radius > 0.0) return false;
   const SamplePath path = this->path(half, f.sample);
   const bool at_a = (path.q - site.a).squaredNorm() < (path.q - site.b).squaredNorm();
-  const Vec2 way = path.q - (at_a ? site.a : site.b);
+  const Vec2 tip = at_a ? site.a : site.b, way = path.q - tip;
   if (!(way.squaredNorm() <= limits_.tolerance * limits_.tolerance)) return false;
   if (is_at_joint(half, f.sample, site, path.q, gap_rounding(half, f.sample, path.q))) return false;
-  const Frame &s = placed(half.s).frame, &t = placed(half.t).frame;
-  const Corner of_sample = corner_seen(half.samples_of(), sample, s, t);
-  const std::optional<Corner> of_site =
-      site.solid ? corner_at(site, at_a) : end_of_wire(half.sites_of(), at_a ? site.a : site.b);
-  if (!of_site || !of_sample.convex() || !of_site->convex() || of_sample.needle()) return false;
-  if (site.solid && of_site->needle()) return false;
-  // A needle has its thickness just behind its tip: that a line parts the tips says nothing of it.
+  const Outline &carrier = half.samples_of(), &other = half.sites_of();
+  const std::optional<Corner> own = sample.before >= 0 ? corner_at(carrier, sample)
+                                                       : corner_of_wire(carrier, sample.p),
+                              of_site = site.solid ? corner_at(site, at_a) : corner_of_wire(other, tip);
+  if (!own || !of_site || !own->convex() || !of_site->convex()) return false;
+  const Corner of_sample = seen_from(*own, placed(half.s).frame, placed(half.t).frame);
+  // A needle has its thickness just behind its tip: that a line parts the tips says nothing of it. The end of a wire has none.
+  const bool ends = own->needle(), site_ends = of_site->needle();
+  if ((ends && sample.before >= 0) || (site_ends && site.solid) || (ends && site_ends)) return false;
   const Vec2 pull = acceleration_now(half, f.sample, path);
   const double noise = rate_noise(path);
   // a turning that is no more than a rounding bends the way by so much
@@ -291,9 +293,12 @@ bool PairView::passes_tip(const Half& half, const Feature& f) const {
     const double rate = u.dot(path.rate);
     return rate < -noise || (rate <= noise && u.dot(pull) < -none);
   };
-  const double depth = passing_depth(half, f.sample, path.q);
-  return site.solid ? is_parted(of_sample, *of_site, way, depth, goes_back)
-                    : is_parted_from_wire(of_sample, *of_site, way, path.rate, depth, goes_back);
+  const Passing how{way, path.rate, pull.norm(), passing_depth(half, f.sample, path.q)};
+  if (site_ends) return is_parted_from_wire(of_sample, *of_site, how, goes_back);
+  const auto site_goes_back = [&](const Vec2& u) { return goes_back(-u); };
+  if (ends)
+    return is_parted_from_wire(*of_site, of_sample, {-way, -path.rate, how.bend, how.depth}, site_goes_back);
+  return is_parted(of_sample, *of_site, way, how.depth, goes_back) || is_passed(of_sample, *of_site, how);
 }
 
 bool PairView::pokes_through(const Half& half, int i, const Site& site, const Nearest& nearest,

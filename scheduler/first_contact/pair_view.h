@@ -105,8 +105,9 @@ class PairView {
     const double near2 = limits_.tolerance * limits_.tolerance;
     return site.covered && ((q - site.a).squaredNorm() <= near2 || (q - site.b).squaredNorm() <= near2);
   }
-  /// True if f's sample, a sharp corner of a solid, is by such a corner in which f's site ends, and a line parts the
-  /// two, to the touching distance, as they go on, whatever becomes of the gap to f's site.
+  /// True if f's sample, a sharp corner of a solid or of a wire, or a wire's end, is by such a corner or end in which f's site ends,
+  /// and a line parts the two, to the touching distance, as they go on, or one after another, whatever becomes of the gap to f's
+  /// site.
   bool passes_tip(const Half& half, const Feature& f) const;
   /// How far a tip may be behind that line and still pass [m]: the touching distance, or, where islands or sites hold
   /// both, what their gaps are kept to.

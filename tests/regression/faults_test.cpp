@@ -477,6 +477,30 @@ TEST(Faults, WhatIsHeldButInOneDirectionLeavesUnderEveryOrder) {
   }
 }
 
+// Where a corner passed a corner it was a contact of a side that does not part the two: an impulse that no event told, or a
+// collision.
+TEST(Faults, NothingPushesACornerThatPassesACorner) {
+  for (const char* scene : {"box_over_a_brow", "needle_off_an_edge"}) {
+    const RunSummary told = watched_lasting(load_scene(fault(scene), {})).told.summary;
+    EXPECT_EQ(told.termination, Termination::reached_end) << scene << ": " << told.why;
+    EXPECT_EQ(told.work.collisions, 0U) << scene;
+    EXPECT_NEAR(told.energy_final, told.energy_initial, 1e-9) << scene;
+  }
+  // it lands within half a second, leaves the first box at .824 s, and hits the second at 1.147 s
+  const auto hits_until = [](const char* end) {
+    return watched_lasting(load_scene(fault("arc_off_a_moving_corner"), {end})).told.summary.work.collisions;
+  };
+  EXPECT_EQ(hits_until("world.duration=0.8"), hits_until("world.duration=1"));
+}
+
+// Corners of wire that are flush lay beside each other's sides by a rounding: steps of first order took them off the lift along
+// chords.
+TEST(Faults, FlushWiresGoAlongWithALift) {
+  const RunSummary told = watched_lasting(load_scene(fault("flush_wires_on_a_lift"), {})).told.summary;
+  EXPECT_EQ(told.termination, Termination::reached_end) << told.why;
+  EXPECT_EQ(told.work.collisions, 0U);
+}
+
 // A disc of a gramme between ellipses of tons, which close in on it: ever shorter flights, without end.
 TEST(Faults, WhatIsSqueezedByFarHeavierBodiesComesOutOfIt) {
   const Watched run = watched_lasting(load_scene(fault("a_gramme_between_tons"), {}));
