@@ -96,7 +96,7 @@ Turns turns(const Site& s, const Site& t) {
 }
 
 /// Each crossing takes s to the other side of t. How far it reaches there at least, of the two sides [m]: where t was on one
-/// before, all that is on the other has to come back.
+/// before, all that is on the other has to come back. @pre there is one.
 double reach_through(const Site& s, const Site& t, const Crossings& crossings) {
   std::array<double, 2> reach{};
   const Turns all = turns(s, t);
@@ -105,7 +105,7 @@ double reach_through(const Site& s, const Site& t, const Crossings& crossings) {
     const auto passed = [&](int i) {
       return along(s, crossings.points[static_cast<std::size_t>(i)]) < along(s, p);
     };
-    const bool odd = (crossings.count > 0 && passed(0)) != (crossings.count > 1 && passed(1));
+    const bool odd = passed(0) != (crossings.count > 1 && passed(1));
     double& side = reach[odd ? 1 : 0];
     side = std::max(side, nearest_on(t, p).distance);
   }

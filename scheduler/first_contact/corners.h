@@ -44,21 +44,8 @@ inline Corner corner_at(const Outline& outline, const Sample& sample) {
           right_of(direction_at_start(outline.sites[static_cast<std::size_t>(sample.after)]))};
 }
 
-/// A wire's end as a corner: a needle, all directions but those along which the wire lies. Nothing where it goes on, or does
-/// not end.
-inline std::optional<Corner> end_of_wire(const Outline& outline, const Vec2& p) {
-  std::optional<Corner> found;
-  for (const Site& site : outline.sites) {
-    if (site.kind == SiteKind::point || (site.a != p && site.b != p)) continue;
-    if (found) return std::nullopt;
-    const Vec2 inwards = site.a == p ? direction_at_start(site) : Vec2(-direction_at_end(site));
-    found = Corner{perp(inwards), -perp(inwards)};
-  }
-  return found;
-}
-
-/// A wire at a place where it ends, as above, or where two pieces meet: the convex corner with those two sides, whichever side of it is
-/// asked for. Nothing where pieces go on straight or back, or more than two meet.
+/// A wire at a place where it ends: a needle, all directions but those along which the wire lies. Or where two pieces meet: the convex
+/// corner with those two sides. Nothing where pieces go on straight or back, or more than two meet.
 inline std::optional<Corner> corner_of_wire(const Outline& outline, const Vec2& p) {
   if (outline.solid) return std::nullopt;
   Vec2 inwards[2];
@@ -75,9 +62,15 @@ inline std::optional<Corner> corner_of_wire(const Outline& outline, const Vec2& 
   if (count == 1) return Corner{perp(inwards[0]), -perp(inwards[0])};
   const double turn = cross(inwards[0], inwards[1]);
   if (std::abs(turn) <= Corner::kTurns) return std::nullopt;
-  // seen from outside the solid between them would have the first on its left, or on its right
+  // travelled with what is between the two on the left: in along `first`, out along `second`
   const Vec2 &first = turn > 0.0 ? inwards[1] : inwards[0], &second = turn > 0.0 ? inwards[0] : inwards[1];
   return Corner{perp(first), -perp(second)};
+}
+
+/// The first of these: nothing where a wire goes on, or does not end.
+inline std::optional<Corner> end_of_wire(const Outline& outline, const Vec2& p) {
+  const std::optional<Corner> found = corner_of_wire(outline, p);
+  return found && found->needle() ? found : std::nullopt;
 }
 
 /// The same in the frame of another outline.

@@ -27,29 +27,24 @@ void see_wire(const Half& half, const Site& edge, const Site& site, const Vec2& 
   }
 }
 
-/// True of two corners at one place if the edges of the one lie between those of the other.
-bool is_within(const Wedge& inner, const Wedge& outer) {
-  if (inner.edges.size() != 2 || outer.edges.size() != 2) return false;
+/// True of two corners at one place if all edges of the one lie between the two of the other, or beyond them by no more than
+/// `beyond` (sine).
+bool lie_between(const Wedge& inner, const Wedge& outer, double beyond) {
+  if (outer.edges.size() != 2) return false;
   const Vec2 &from = outer.edges[0], &to = outer.edges[1];
   const double turn = cross(from, to) > 0.0 ? 1.0 : -1.0;
   return std::all_of(inner.edges.begin(), inner.edges.end(), [&](const Vec2& e) {
-    return turn * cross(from, e) >= -kAlongLine && turn * cross(e, to) >= -kAlongLine &&
-           e.dot(from + to) > 0.0;
+    return turn * cross(from, e) >= -beyond && turn * cross(e, to) >= -beyond && e.dot(from + to) > 0.0;
   });
+}
+
+/// Of two corners, each of two edges.
+bool is_within(const Wedge& inner, const Wedge& outer) {
+  return inner.edges.size() == 2 && lie_between(inner, outer, kAlongLine);
 }
 
 /// Sine: an arc's end may lead across what the arc lies along.
 constexpr double kAlong = 1e-4;
-
-/// True of a sample that may be in the hollow corner of two pieces of a wire: its edges lead between the two, or along them.
-bool may_be_in_hollow(const Wedge& of_sample, const Wedge& of_wire) {
-  if (of_wire.edges.size() != 2) return false;
-  const Vec2 &from = of_wire.edges[0], &to = of_wire.edges[1];
-  const double turn = cross(from, to) > 0.0 ? 1.0 : -1.0;
-  return std::all_of(of_sample.edges.begin(), of_sample.edges.end(), [&](const Vec2& e) {
-    return turn * cross(from, e) >= -kAlong && turn * cross(e, to) >= -kAlong && e.dot(from + to) > 0.0;
-  });
-}
 
 /// True if one of the sample's edges leads to the side to which n points: edges that all lie along its line tell none, nor does an
 /// arc that bends back before it is farther there than roundings.
@@ -116,11 +111,12 @@ OnWire on_wire(const Half& half, const Sample& sample, std::size_t j, const Vec2
   // The corner of a solid fills the hollow that it is in. Of two corners of wire that are as wide, each in the other, either does.
   const bool is_hollow = is_within(of_wire, of_sample) && !is_within(of_sample, of_wire);
   // what only a side of the sample's own corner parts lies on that: it has the contact, if the wire leads away from there
+  // what leads between two pieces, or along one, may be in their hollow
   const auto lies_on = [&](const Vec2& n) {
     return parts(-n, of_sample, of_wire) && std::any_of(of_wire.edges.begin(), of_wire.edges.end(),
                                                         [&](const Vec2& e) { return n.dot(e) > kAlong; });
   };
-  const bool by_own = !may_be_in_hollow(of_sample, of_wire) &&
+  const bool by_own = !lie_between(of_sample, of_wire, kAlong) &&
                       std::any_of(of_sample.normals.begin(), of_sample.normals.end(), lies_on);
   const bool elsewhere = by_another || by_own || (!half.carrier.solid && is_hollow);
   return {elsewhere ? OnCorner::other_side : OnCorner::nowhere, Vec2::Zero()};
