@@ -111,6 +111,60 @@ class TouchCandidates {
   std::vector<double> distances_;
 };
 
+/// Where a vertex goes from one side of a site of no thickness to the other.
+struct Crossover {
+  double distance = 0.0;  ///< of the way [m]
+  Vec2 place = Vec2::Zero();
+};
+
+/// Sine of the angle at which a way meets a surface [rad]: below it what it does is grazing.
+constexpr double kGrazing = 1e-5;
+
+/// visit(distance) where the mover crosses the core itself, neither end of it.
+template <class Visit>
+void crossed_by(const Site& site, const Mover& mover, Visit&& visit) {
+  if (site.kind == SiteKind::point) return;
+  if (site.kind == SiteKind::segment) {
+    const Vec2 along = site.b - site.a, from = site.a - mover.from;
+    const double approach = cross(along, mover.direction);
+    if (std::abs(approach) <= kGrazing * along.norm()) return;
+    const double distance = cross(along, from) / approach;
+    const double at = along.dot(distance * mover.direction - from);
+    if (at > 0.0 && at < along.squaredNorm()) visit(distance);
+    return;
+  }
+  const Passage p = passage(site.center, site.arc_radius, mover);
+  if (p.leaves < p.enters) return;
+  for (const double distance : {p.enters, p.leaves}) {
+    const Vec2 out = mover.from + distance * mover.direction - site.center;
+    if (std::abs(out.dot(mover.direction)) > kGrazing * site.arc_radius && in_sector(site, out))
+      visit(distance);
+  }
+}
+
+/// All crossovers of `a`, moved aside first and then along `direction`, and wires of `b`: of the vertices of each over the
+/// other's sites. In a's frame, in no order. Places are where the vertex of `a`, or the vertex of `b`, is on its own outline.
+std::vector<Crossover> crossovers(const Outline& a, const Outline& b, const Frame& b_from_a,
+                                  const Vec2& direction, double aside) {
+  std::vector<Crossover> found;
+  const Vec2 shift = aside * perp(direction);
+  for (const Sample& sample : a.samples) {
+    if (sample.arc_site >= 0) continue;
+    const Mover mover{b_from_a.to_local(sample.p + shift), b_from_a.direction_to_local(direction)};
+    for (const Site& site : b.sites)
+      crossed_by(site, mover, [&](double distance) { found.push_back({distance, sample.p}); });
+  }
+  for (const Sample& sample : b.samples) {
+    if (sample.arc_site >= 0) continue;
+    const Vec2 from = b_from_a.to_world(sample.p) - shift;
+    for (const Site& site : a.sites)
+      crossed_by(site, {from, -direction}, [&](double distance) {
+        found.push_back({distance, from - distance * direction});
+      });
+  }
+  return found;
+}
+
 /// Radius of the largest circle [m]; 0 without arcs.
 double largest_arc(const Outline& outline) {
   double radius = 0.0;
@@ -160,10 +214,30 @@ struct Trial {
   bool enters_at(double distance) const {
     const double on = distance + further, beside = 0.5 * further;
     if (gap_after(on) < -deep) return true;
+    if (!is_thin(a) && !is_thin(b)) return false;
     // a wire that lies flush on a face of its own width has its ends on the sides of
     // it: no sample is inside and nothing crosses; moved aside by half as far as it
     // went in, one end is inside. To both sides: what grazes enters on one alone
-    return (is_thin(a) || is_thin(b)) && gap_after(on, beside) < -deep && gap_after(on, -beside) < -deep;
+    return (gap_after(on, beside) < -deep && gap_after(on, -beside) < -deep) || changes_sides_at(distance);
+  }
+  /// Wires of one form that lie one in the other are clear of each other before and after, on two sides. Moved aside by a
+  /// little, either way, a vertex of one goes over a line of the other about there.
+  bool changes_sides_at(double distance) const {
+    if (!is_thin(a) || !is_thin(b)) return false;
+    const double little = 0.01 * further;
+    const auto close = [&](const std::vector<Crossover>& all) {
+      std::vector<Crossover> out;
+      for (const Crossover& c : all)
+        if (std::abs(c.distance - distance) <= further) out.push_back(c);
+      return out;
+    };
+    const Frame at(b_from_a);
+    const std::vector<Crossover> left = close(crossovers(a, b, at, direction, little)),
+                                 right = close(crossovers(a, b, at, direction, -little));
+    return std::any_of(left.begin(), left.end(), [&](const Crossover& l) {
+      return std::any_of(right.begin(), right.end(),
+                         [&](const Crossover& r) { return (l.place - r.place).norm() <= further; });
+    });
   }
 };
 

@@ -83,6 +83,9 @@ void look_at_vertex(const Side& side, int i, Outside& outside, OutlineGap& least
 /// What is no farther out than this part of the outline's size is upon it, but for roundings.
 constexpr double kUpon = 1e-14;
 
+/// Of an arc's radius: what a distance from its centre is told to.
+constexpr double kRoundings = 4.0 * std::numeric_limits<double>::epsilon();
+
 /// True of an arc that a solid bulges out in: it lies to the left, so the arc turns to the left.
 bool bulges(const Site& arc) { return arc.solid && arc.sweep > 0.0; }
 
@@ -102,13 +105,13 @@ void look_at_arc(const Side& side, int i, OutlineGap& least) {
     const Site& site = side.sites_of.sites[k];
     const Nearest nearest = nearest_on(site, center);
     // nearer the centre it is on the arc's concave side, where samples of the site's outline come nearest, or in a solid that
-    // bulges there
-    if (nearest.distance < arc.arc_radius && !bulges(arc)) continue;
+    // bulges there; upon the arc it is on neither side
+    const bool nearer = nearest.distance < arc.arc_radius * (1.0 - kRoundings);
+    if (nearer && !bulges(arc)) continue;
     const Vec2 toward = (center - nearest.point) / nearest.distance;
     if (!in_sector(arc, from.direction_to_local(to.direction_to_world(-toward)))) continue;
     const double gap = nearest.distance - site.radius - sample.radius;
-    if (nearest.distance < arc.arc_radius && !(nearest.distance > 0.0 && is_inside(side, nearest.point, gap)))
-      continue;
+    if (nearer && !(nearest.distance > 0.0 && is_inside(side, nearest.point, gap))) continue;
     keep_least(side, i, static_cast<int>(k), gap, to.to_world(nearest.point + site.radius * toward),
                to.direction_to_world(toward), least);
   }

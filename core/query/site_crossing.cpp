@@ -30,6 +30,8 @@ CommonPoints line_and_circle(const Site& line, const Site& arc) {
 /// The bulge is the width of the lens that the discs share, or, where one is nearly within the other, how
 /// far it looks out. Circles about one centre do not cross.
 CommonPoints two_circles(const Site& s, const Site& t) {
+  // Seen from the lesser circle: along the greater one's radius the roundings of both ends would be as large as its own.
+  if (s.arc_radius > t.arc_radius) return two_circles(t, s);
   const Vec2 w = t.center - s.center;
   const double d = w.norm(), r = s.arc_radius, q = t.arc_radius;
   const double bulge = std::min(r + q - d, d - std::abs(r - q));

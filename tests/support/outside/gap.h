@@ -7,7 +7,8 @@
 namespace brink::outside {
 
 inline bool in_sector(const Piece& arc, const Vec& d) {
-  return dot(d, arc.middle) >= norm(d) * arc.half_cosine;
+  const Real length = norm(d);
+  return norm(d - arc.middle * length) <= length * arc.half_chord;
 }
 
 inline Real to_segment(const Vec& p, const Vec& a, const Vec& b) {

@@ -13,11 +13,12 @@ namespace brink::outside {
 struct Piece {
   enum class Kind { point, segment, arc };
   Kind kind = Kind::point;
-  Vec a, b;              ///< ends
-  Real thickness = 0;    ///< everything within it of the core belongs to the piece [m]
-  Vec center, middle;    ///< arcs: of the circle; unit direction from there to the middle of the arc
-  Real circle = 0;       ///< arcs: radius of the circle [m]
-  Real half_cosine = 1;  ///< arcs: cosine of half the sweep
+  Vec a, b;            ///< ends
+  Real thickness = 0;  ///< everything within it of the core belongs to the piece [m]
+  Vec center, middle;  ///< arcs: of the circle; unit direction from there to the middle of the arc
+  Real circle = 0;     ///< arcs: radius of the circle [m]
+  Real half_chord =
+      0;  ///< arcs: of the unit circle, from the middle to an end; of a flat arc exact, as its cosine is not
 };
 
 struct Shape {
@@ -50,7 +51,7 @@ inline Piece piece_of(const Site& site) {
   p.kind = Piece::Kind::arc;
   p.center = vec(site.center);
   p.circle = site.arc_radius;
-  p.half_cosine = std::cos(Real(0.5) * site.sweep);
+  p.half_chord = 2 * std::sin(std::abs(Real(0.25) * site.sweep));
   const Vec from = p.a - p.center;
   p.middle = Turn(Real(0.5) * site.sweep)(from) * (1 / norm(from));
   return p;

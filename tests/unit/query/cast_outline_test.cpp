@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "brink/core/base/error.h"
 #include "brink/core/base/random.h"
@@ -118,6 +119,70 @@ TEST(CastOutline, ADirectionThatIsNoUnitVectorIsRefused) {
   EXPECT_THROW(cast_outline(ball, {}, {NAN, 0}, ball, {}), BadInput);
 }
 
+// A wire that is the graph of a function comes down by its least height over another, also where it is the same graph: the
+// two are clear of each other before and after.
+struct Graph {
+  std::vector<Vec2> vertices;  // from left to right
+
+  double height(double x) const {
+    for (std::size_t k = 1; k < vertices.size(); ++k) {
+      const Vec2 &a = vertices[k - 1], &b = vertices[k];
+      if (x <= b.x()) return a.y() + (b.y() - a.y()) * (x - a.x()) / (b.x() - a.x());
+    }
+    return vertices.back().y();
+  }
+};
+
+double least_height(const Graph& over, const Graph& under) {
+  double least = INFINITY;
+  for (const Graph* of : {&over, &under})
+    for (const Vec2& p : of->vertices)
+      if (p.x() >= std::max(over.vertices.front().x(), under.vertices.front().x()) &&
+          p.x() <= std::min(over.vertices.back().x(), under.vertices.back().x()))
+        least = std::min(least, over.height(p.x()) - under.height(p.x()));
+  return least;
+}
+
+Graph random_graph(Random& random) {
+  Graph graph;
+  double x = random.uniform(-0.5, 0.0);
+  for (int k = 0, n = 2 + static_cast<int>(random.below(5)); k < n; ++k, x += random.uniform(0.05, 0.5))
+    graph.vertices.emplace_back(x, random.uniform(-0.4, 0.4));
+  return graph;
+}
+
+TEST(CastOutline, WiresComeDownByTheLeastHeightOfTheirGraphs) {
+  Random random(506);
+  for (int k = 0; k < 400; ++k) {
+    SCOPED_TRACE(k);
+    const Graph under = random_graph(random);
+    Graph over = k % 2 == 0 ? under : random_graph(random);
+    // Flat parts on flat parts, of one width or not.
+    if (k % 4 == 1)
+      for (Vec2& p : over.vertices) p.y() = 0.25;
+    const Outline a = make_chain(over.vertices).outline, b = make_chain(under.vertices).outline;
+    const double angle = random.uniform(-4.0, 4.0), up = random.uniform(1.0, 9.0);
+    const Frame turned({Vec2::Zero(), angle});
+    const Vec2 place = turned.to_world({0.0, up}), down = turned.direction_to_world({0.0, -1.0});
+    const double least = least_height(over, under);
+    EXPECT_NEAR(way(a, {place, angle}, down, b, {Vec2::Zero(), angle}), std::isinf(least) ? -1.0 : up + least,
+                1e-13);
+  }
+}
+
+TEST(CastOutline, ArcsOfOneFormLieInEachOther) {
+  Random random(507);
+  for (int k = 0; k < 100; ++k) {
+    SCOPED_TRACE(k);
+    const double middle = (k % 2 == 0 ? 0.5 : 1.5) * pi, half = random.uniform(0.1, 1.4),
+                 up = random.uniform(2, 9);
+    const Outline arc = make_arc({0, 0}, random.uniform(0.2, 1.5), middle - half, middle + half).outline;
+    EXPECT_NEAR(way(arc, {{0, up}, 0.0}, {0, -1}, arc), up, 1e-14);
+    EXPECT_NEAR(way(arc, {{0, -up}, 0.0}, {0, 1}, arc), up, 1e-14);
+    EXPECT_EQ(way(arc, {{0, up}, 0.0}, {0, 1}, arc), -1.0);
+  }
+}
+
 class AlongTheWay {
  public:
   AlongTheWay(const Outline& a, const Pose& pose_a, const Vec2& direction, const Outline& b,
@@ -167,6 +232,16 @@ TEST(CastOutline, GapsAlongTheWayAgree) {
         } else if (hit.status == Status::touches) {
           EXPECT_NEAR(reference.gap(hit.distance), 0.0, noise);
           EXPECT_GE(reference.least_before(hit.distance), -noise);
+          // Roundings before and after the touch as well: no closer place may be overlooked there.
+          for (const double before : {1e-9, 1e-12, 1e-14, 1e-15, 0.0, -1e-15}) {
+            const double way = hit.distance - before;
+            const Pose there{pose_a.position + way * d, pose_a.angle};
+            const double gap = outline_gap(a.outline, there, b.outline, pose_b).gap, is = reference.gap(way);
+            // How deep they overlap has several measures; that they do has one.
+            EXPECT_LE(gap, is + noise) << before << " before the touch";
+            EXPECT_TRUE(gap >= is - noise || is <= noise)
+                << gap << " is not " << is << ", " << before << " before";
+          }
           ++touching;
         } else {
           EXPECT_GE(reference.least_before(20.0), -noise);

@@ -65,6 +65,26 @@ TEST(OutlineGap, ABulgeIsAsDeepAsItHasSunk) {
 }
 
 // The hollow side of a solid's arc is no bulge: what lies in the bowl touches nothing.
+// One lies in the hollow of the other and touches it from within: its circle is nearer the greater one's centre by a rounding,
+// or farther.
+TEST(OutlineGap, NestedArcsThatTouchAreToldToRoundings) {
+  Random random(406);
+  for (int k = 0; k < 500; ++k) {
+    const double greater = random.uniform(0.2, 2.0), lesser = greater * random.uniform(0.2, 0.95);
+    const double toward = random.uniform(-3.0, 3.0), angle = random.uniform(-9.0, 9.0);
+    const Outline bowl = make_arc({0, 0}, greater, toward - 0.7, toward + 0.6).outline,
+                  arc = make_arc({0, 0}, lesser, toward - 0.5, toward + 0.8).outline;
+    for (const double gap :
+         {1e-3, 1e-9, 1e-13, 3e-16, 2e-16, 1e-16, 0.0, -1e-16, -2e-16, -3e-16, -1e-13, -1e-9}) {
+      const Vec2 shift = (greater - lesser - gap) * Vec2(std::cos(toward), std::sin(toward));
+      EXPECT_NEAR(
+          outline_gap(arc, {Frame({Vec2::Zero(), angle}).to_world(shift), angle}, bowl, {{0, 0}, angle}).gap,
+          gap, 8e-15)
+          << k;
+    }
+  }
+}
+
 TEST(OutlineGap, WhatIsInTheHollowOfASolidIsNotInIt) {
   const Outline bowl = make_path("M -2 0 L -1 0 A 1 1 0 0 0 1 0 L 2 0 L 2 2 L -2 2 Z", 1.0, 1e-4).outline;
   const Outline ball = make_disc(0.25).outline;

@@ -41,7 +41,8 @@ inline std::vector<NamedOutline> query_outlines() {
           {"washer", make_path(washer, 1.0, 1e-3).outline},
           {"round room", make_disc_container(1.5).outline},
           {"room", as_container(make_box(3.0, 2.0).outline)},
-          {"notched room", as_container(make_polygon(notched).outline)}};
+          {"notched room", as_container(make_polygon(notched).outline)},
+          {"lesser arc", make_arc({0, 0.1}, 0.55, 1.0, 5.0).outline}};
 }
 
 /// The outline itself is told to this [m]: the ends of its arcs lie a rounding of the radius off their circles.

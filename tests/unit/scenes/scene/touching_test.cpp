@@ -221,6 +221,21 @@ TEST(Rows, OfAnyShapeOverlapNowhere) {
       }
 }
 
+// Wires of one form come down until one lies in the other, and not on each other's bounds.
+TEST(Rows, WiresOfOneFormLieInEachOther) {
+  for (const char* shape : {"chain = { vertices = [[-0.2, 0.1], [0, 0], [0.2, 0.1]] }",
+                            "chain = { vertices = [[-0.3, 0.1], [-0.1, 0], [0.1, 0.2], [0.3, 0]] }",
+                            "path = { d = \"M 0.2 0 A 0.3 0.3 0 0 0 -0.2 0\" }",
+                            "path = { d = \"M -0.2 0 A 0.3 0.3 0 0 0 0.2 0\" }"})
+    for (const char* gravity : {kPlain, kTilted}) {
+      SCOPED_TRACE(std::string(shape) + gravity);
+      const World world =
+          read(std::string("[world]\ngravity = ") + gravity + "\n[[bodies]]\n" + shape + "\nstack = 5\n");
+      ASSERT_EQ(world.bodies.size(), 5U);
+      for (std::size_t k = 1; k < 5; ++k) EXPECT_LE((place(world, k) - place(world, k - 1)).norm(), 1e-9);
+    }
+}
+
 TEST(Rows, AHundredBoxesAreFiveLines) {
   const World world = read(R"(world = { gravity = [0, -10] }
 sites = [{ name = "floor", box = { width = 40, height = 2 }, position = [0, -1] }]
