@@ -53,11 +53,13 @@ std::string taken(const RunSummary& s) {
 /// What came of contacts that last. Where bodies slid or rolled on them, that is exact to first order alone.
 std::string lasting(const RunSummary& s) {
   return fmt::format(
-      "{} captured, {} island(s) at rest at the end; {} steps by modes; {} of order 1, which took approaches "
+      "{} captured, {} island(s) at rest at the end; {} steps by modes; {} of order 1{}, which took "
+      "approaches "
       "up to {:.3g} m/s as plastic, friction to {:.2g} of the largest force, and made {:.2g} J; rest_speed "
       "took {:.2g} J",
       s.contacts_lasting, s.islands_at_rest, s.steps_by_modes, s.island_steps - s.steps_by_modes,
-      s.approach_absorbed, s.friction_residual, s.island_energy, s.rest_energy);
+      s.small_by_steps > 0 ? fmt::format(" ({} of few contacts)", s.small_by_steps) : "", s.approach_absorbed,
+      s.friction_residual, s.island_energy, s.rest_energy);
 }
 
 /// What the policy did and what of it was in vain.

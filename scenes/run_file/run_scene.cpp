@@ -298,6 +298,7 @@ std::string summary_to_json(const RunSummary& summary, double load_seconds) {
                                     {"contacts_lasting", summary.contacts_lasting},
                                     {"island_steps", summary.island_steps},
                                     {"steps_by_modes", summary.steps_by_modes},
+                                    {"small_by_steps", summary.small_by_steps},
                                     {"islands_at_rest", summary.islands_at_rest},
                                     {"resting", summary.resting},
                                     {"approach_absorbed", summary.approach_absorbed},

@@ -49,8 +49,8 @@ RunReport run_scene(const Scene& scene, const RunRequest& request);
 
 /// The summary as one line of JSON: termination, end_time, collisions, wall_seconds, load_seconds,
 /// energy_initial, energy_final, momentum_x, momentum_y, angular_momentum, max_overlap, groups_taken,
-/// energy_taken, first_taken (text, empty where none was), moved_at_start, moved_by, contacts_lasting, island_steps, steps_by_modes, islands_at_rest, resting,
-/// approach_absorbed, friction_residual, island_energy, rest_energy, state_hash (16 hexadecimal digits), work{...}.
+/// energy_taken, first_taken (text, empty where none was), moved_at_start, moved_by, contacts_lasting, island_steps, steps_by_modes,
+/// small_by_steps, islands_at_rest, resting, approach_absorbed, friction_residual, island_energy, rest_energy, state_hash (16 hexadecimal digits), work{...}.
 /// Numbers read back to the same bits.
 std::string summary_to_json(const RunSummary& summary, double load_seconds);
 

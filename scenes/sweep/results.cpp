@@ -31,6 +31,7 @@ void for_each_number(const RunSummary& s, Visit&& visit) {
   visit("contacts_lasting", static_cast<double>(s.contacts_lasting), "1");
   visit("island_steps", static_cast<double>(s.island_steps), "1");
   visit("steps_by_modes", static_cast<double>(s.steps_by_modes), "1");
+  visit("small_by_steps", static_cast<double>(s.small_by_steps), "1");
   visit("islands_at_rest", static_cast<double>(s.islands_at_rest), "1");
   visit("resting", static_cast<double>(s.resting), "1");
   visit("approach_absorbed", s.approach_absorbed, "m/s");

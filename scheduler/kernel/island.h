@@ -117,10 +117,11 @@ inline int who_leans(const Island& island, const HeldContact& c) {
 /// What islands came to.
 struct IslandTally {
   std::uint64_t captured = 0, steps = 0, by_modes = 0, slept = 0, woken = 0, factorisations = 0;
-  double absorbed = 0.0;           ///< the largest approach that a step took without a rebound [m/s]
-  double energy_won = 0.0;         ///< that steps made, by rounding and by faces that turn [J]
-  double energy_of_rest = 0.0;     ///< that the option rest_speed took [J]
-  double friction_residual = 0.0;  ///< the largest, of the largest force of its island
+  std::uint64_t small_by_steps = 0;  ///< of order 1, though there were few enough contacts for modes
+  double absorbed = 0.0;             ///< the largest approach that a step took without a rebound [m/s]
+  double energy_won = 0.0;           ///< that steps made, by rounding and by faces that turn [J]
+  double energy_of_rest = 0.0;       ///< that the option rest_speed took [J]
+  double friction_residual = 0.0;    ///< the largest, of the largest force of its island
 };
 
 }  // namespace brink

@@ -146,24 +146,25 @@ bool IslandModes::any_of_other_corner(const HeldContact& c, const std::vector<He
   });
 }
 
-bool IslandModes::suits() const {
+IslandModes::Fit IslandModes::fit() const {
   const std::size_t most =
       members_->are_constant() ? limits_.contacts : std::max(limits_.contacts, kContactsOfChanging);
-  if (most == 0 || members_->count() > kModeBodies) return false;
+  if (most == 0 || members_->count() > kModeBodies) return Fit::too_large;
   // far from the origin gaps cannot be kept any more
-  if (least_touch() > kMostTouch * search_->limits().tolerance) return false;
+  if (least_touch() > kMostTouch * search_->limits().tolerance) return Fit::unsuited;
   const std::vector<HeldContact> near = members_->contacts(search_->limits().tolerance);
   const auto counts = [&](const HeldContact& c) {
     return !is_shadow(*search_, c, near) && !is_told_by_other_corner(c, near);
   };
   if (near.size() > most && static_cast<std::size_t>(std::count_if(near.begin(), near.end(), counts)) > most)
-    return false;
+    return Fit::too_large;
   // rolling resistance has no mode here, and between corners roundings choose the side
-  return std::none_of(near.begin(), near.end(), [&](const HeldContact& c) {
+  const bool any_unsuited = std::any_of(near.begin(), near.end(), [&](const HeldContact& c) {
     return (is_corner_on_corner(c) &&
             !any_of_other_corner(c, near, [](const NearFeature& f) { return !f.at_end; })) ||
            response_->material_of(c.pair).rolling_resistance > 0.0;
   });
+  return any_unsuited ? Fit::unsuited : Fit::suited;
 }
 
 /// True of one of two flush corners, each of which lies on the other's side: they are one contact.
@@ -421,7 +422,7 @@ std::vector<bool> IslandModes::closed_now(const States& states, Approach how) co
 
 // ---- the step
 
-/// States are rounded to double here: suits() has seen that gaps can be kept so.
+/// States are rounded to double here: fit() has seen that gaps can be kept so.
 IslandModes::Outcome IslandModes::take(double now, double h, std::vector<HeldContact> contacts,
                                        bool on_time) {
   now_ = end_ = now;

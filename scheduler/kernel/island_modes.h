@@ -40,8 +40,10 @@ class IslandModes {
   IslandModes(const IslandMembers& members, Trajectories& trajectories, const ContactSearch& search,
               CollisionResponse& response, const Limits& limits, const WarmContacts& warm);
 
-  /// False: not by modes, for there are too many, or they are too far away for gaps to be kept.
-  bool suits() const;
+  /// `too_large`: too many members, or contacts. `unsuited`: few, but not by modes (too far away for gaps to be kept, rolling
+  /// resistance, corner right on corner).
+  enum class Fit { suited, unsuited, too_large };
+  Fit fit() const;
   /// Goes on from `now` by h at most. `contacts`: everything that is near the members within h. `on_time`: the step
   /// before has come to its end, and nothing has happened since. @pre sites are covered as far.
   Outcome take(double now, double h, std::vector<HeldContact> contacts, bool on_time);

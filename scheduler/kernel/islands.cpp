@@ -326,7 +326,8 @@ std::optional<bool> Islands::attempt_step(Attempt& attempt, std::vector<int>& ch
   if (cause.captured) motion.expect_captured(*cause.pair);
   IslandModes modes(motion.members(), *trajectories_, *search_, *response_, by_modes_, motion.warm());
   // what buzzes is spared modes for some steps
-  const bool may_have_modes = !leans && !buzzes(pace) && modes.suits();
+  const IslandModes::Fit fit = modes.fit();
+  const bool may_have_modes = !leans && !buzzes(pace) && fit == IslandModes::Fit::suited;
   if (may_have_modes) motion.expect_modes();
   const std::uint64_t collisions = run_->work().collisions;
   // before impacts: those of an agitated island are looked for along the step
@@ -382,6 +383,7 @@ std::optional<bool> Islands::attempt_step(Attempt& attempt, std::vector<int>& ch
   if (rests && leans && !laid) return wake_all();
   ++tally_.steps;
   if (by_modes) tell(modes, motion.members());
+  if (!by_modes && !rests && fit != IslandModes::Fit::too_large) ++tally_.small_by_steps;
   pace.hasty = next_hasty(pace.hasty, may_have_modes && !rests, by_modes && modes.end() - now >= kHasty * h);
   pace.agitation = next_agitation(pace.agitation, motion.impacts_in_step());
   pace.step = rests || by_modes ? kForever : motion.next_step();

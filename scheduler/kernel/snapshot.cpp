@@ -13,7 +13,7 @@ namespace brink {
 namespace {
 
 /// With a newline and a zero in front of the letters: no text file begins so. The digit grows with every change of what is written.
-constexpr std::array<char, 8> kMagic{'\n', '\0', 'B', 'R', 'I', 'N', 'K', 'B'};
+constexpr std::array<char, 8> kMagic{'\n', '\0', 'B', 'R', 'I', 'N', 'K', 'C'};
 
 /// Objects as they lie in memory: a snapshot is read by the program that wrote it.
 class Writer {

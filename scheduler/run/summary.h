@@ -37,9 +37,10 @@ struct RunSummary {
   int moved_at_start = 0;
   double moved_by = 0.0;
   /// Contacts that lasted (Islands): captured at the end of their bounces; steps that islands took, and how many of them by
-  /// modes, others being of order 1; islands that are at rest at the end, and their bodies; the fastest approach that a step took without a rebound [m/s]; how
+  /// modes, others being of order 1, and how many of those were of islands that are small enough for modes; islands that are at rest at the end, and their bodies; the fastest approach that a step took without a rebound [m/s]; how
   /// far friction was from its cone at most, as a part of the largest force there.
-  std::uint64_t contacts_lasting = 0, island_steps = 0, steps_by_modes = 0, islands_at_rest = 0, resting = 0;
+  std::uint64_t contacts_lasting = 0, island_steps = 0, steps_by_modes = 0, small_by_steps = 0;
+  std::uint64_t islands_at_rest = 0, resting = 0;
   double approach_absorbed = 0.0, friction_residual = 0.0;
   double rest_energy = 0.0;    ///< that the option rest_speed took [J]
   double island_energy = 0.0;  ///< that steps made, in all [J]: by rounding, and by faces that turn

@@ -136,6 +136,7 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
   // those that came to rest moved nobody
   summary.island_steps = islands.steps - islands.slept;
   summary.steps_by_modes = islands.by_modes;
+  summary.small_by_steps = islands.small_by_steps;
   for (const auto& [lead, island] : kernel.islands()) {
     if (!island.rests) continue;
     ++summary.islands_at_rest;

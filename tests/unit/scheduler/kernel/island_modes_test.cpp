@@ -93,12 +93,13 @@ TEST(IslandModes, AreForFewContacts) {
   hold(parts, {0});
   const IslandMembers members = members_of(parts, {0});
   const WarmContacts warm;
-  const auto suits = [&](std::size_t contacts) {
+  const auto fit = [&](std::size_t contacts) {
     return IslandModes(members, parts.trajectories, parts.search, parts.response, {1e-10, contacts}, warm)
-        .suits();
+        .fit();
   };
-  EXPECT_TRUE(suits(16));
-  EXPECT_FALSE(suits(0));
+  EXPECT_EQ(fit(16), IslandModes::Fit::suited);
+  EXPECT_EQ(fit(1), IslandModes::Fit::too_large);
+  EXPECT_EQ(fit(0), IslandModes::Fit::too_large);
 }
 
 }  // namespace
