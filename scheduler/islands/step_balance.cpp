@@ -91,15 +91,19 @@ void StepBalance::unite(int body, int other, const std::vector<Vec3>& velocity) 
   lines_[to] = line_of_pushes(to, velocity);
 }
 
-/// The direction in which sites push the group (unit), by all but roundings of the momentum that there is; 0: none does. Nothing where
-/// they push along more than one line, or hold somebody. What is squeezed between sites is pushed much harder than anything moves it.
+/// The direction in which sites push the group, or hold somebody of it (unit), by all but roundings of the momentum that there is; 0:
+/// none does. Nothing where that is more than one line. What is squeezed between sites is pushed much harder than anything moves it.
 std::optional<Vec2> StepBalance::line_of_pushes(int group, const std::vector<Vec3>& velocity) const {
   double momentum = 0.0;
+  bool held_x = false, held_y = false;
   for (std::size_t i = 0; i < step_->mass.size(); ++i) {
     if (group_[i] != group) continue;
     const Vec3& mass = step_->mass[i];
-    if (std::isinf(mass.x()) || std::isinf(mass.y())) return std::nullopt;
-    momentum += mass.x() * velocity[i].head<2>().norm() + h_ * step_->force[i].head<2>().norm();
+    held_x = held_x || std::isinf(mass.x());
+    held_y = held_y || std::isinf(mass.y());
+    if (held_x && held_y) return std::nullopt;
+    momentum += std::min(mass.x(), mass.y()) * velocity[i].head<2>().norm() +
+                h_ * step_->force[i].head<2>().norm();
   }
   std::vector<Vec2> pushes;
   Vec2 largest = Vec2::Zero();
@@ -110,8 +114,9 @@ std::optional<Vec2> StepBalance::line_of_pushes(int group, const std::vector<Vec
     pushes.emplace_back(push.head<2>());
     if (pushes.back().norm() > largest.norm()) largest = pushes.back();
   }
-  if (largest.isZero(0.0)) return Vec2(Vec2::Zero());
-  const Vec2 along = largest.normalized();
+  const bool is_held = held_x || held_y;
+  if (largest.isZero(0.0) && !is_held) return Vec2(Vec2::Zero());
+  const Vec2 along = held_x ? Vec2(Vec2::UnitX()) : held_y ? Vec2(Vec2::UnitY()) : Vec2(largest.normalized());
   const bool one = std::all_of(pushes.begin(), pushes.end(), [&](const Vec2& push) {
     return std::abs(cross(along, push)) <= kOnePush * std::min(momentum, largest.norm());
   });
@@ -123,14 +128,17 @@ Vec2 StepBalance::common_velocity(int group, const std::vector<Vec3>& velocity) 
 }
 
 Vec2 StepBalance::common_across(int group, const std::vector<Vec3>& velocity, const Vec2& line) const {
-  Vec2 momentum = Vec2::Zero();
-  double mass = 0.0;
-  for (std::size_t i = 0; i < velocity.size(); ++i) {
-    if (group_[i] != group) continue;
-    mass += step_->mass[i].x();
-    momentum += step_->mass[i].x() * velocity[i].head<2>();
+  Vec2 common = Vec2::Zero();
+  for (int k = 0; k < 2; ++k) {
+    double mass = 0.0, momentum = 0.0;
+    for (std::size_t i = 0; i < velocity.size(); ++i) {
+      // what is held along one axis goes with the others along the other
+      if (group_[i] != group || std::isinf(step_->mass[i][k])) continue;
+      mass += step_->mass[i][k];
+      momentum += step_->mass[i][k] * velocity[i][k];
+    }
+    if (mass > 0.0) common[k] = momentum / mass;
   }
-  const Vec2 common = mass > 0.0 ? Vec2(momentum / mass) : Vec2(Vec2::Zero());
   return common - line.dot(common) * line;
 }
 
