@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "brink/core/contacts/impulse.h"
 #include "brink/core/contacts/lcp.h"
 
 namespace brink {
@@ -204,7 +205,6 @@ Real least_restitution(const std::vector<GroupContact>& contacts) {
 
 /// Coulomb's friction after the normal impulses of `result`, contact by contact.
 void add_friction(Group& group, const std::vector<GroupContact>& contacts, GroupResult& result) {
-  result.tangential.assign(contacts.size(), 0);
   for (int k = 0; k < group.size(); ++k) {
     const Material& m = contacts[k].material;
     const Real bound = m.friction * result.normal[k];
@@ -240,6 +240,16 @@ Group pushed(Group group, const std::vector<int>& set, const RealVector& normal)
   return group;
 }
 
+/// Approaches below this part of the group's largest speed have no friction: each may push a contact together again, and of what
+/// rounding makes of that nobody would see the end.
+constexpr Real kTooSlowToRub = 1e-13L;
+
+/// True if something approaches fast enough for friction.
+bool rubs(const Group& group, const std::vector<int>& set) {
+  return std::any_of(set.begin(), set.end(),
+                     [&](int k) { return group.normal_velocity(k) < -kTooSlowToRub * group.speed(); });
+}
+
 /// Gives the impulses of `set` to a fresh group, then friction.
 GroupResult given(const Group& group, const std::vector<GroupContact>& contacts, const std::vector<int>& set,
                   const RealVector& normal) {
@@ -248,7 +258,8 @@ GroupResult given(const Group& group, const std::vector<GroupContact>& contacts,
   for (std::size_t k = 0; k < set.size(); ++k) result.normal[set[k]] = normal[k];
   Group after = pushed(group, set, normal);
   result.lost = -work_of(group, after, set, normal);
-  add_friction(after, contacts, result);
+  result.tangential.assign(contacts.size(), 0);
+  if (rubs(group, set)) add_friction(after, contacts, result);
   result.twists = after.twists();
   return result;
 }
@@ -361,6 +372,33 @@ class PlasticProblem {
   RealVector q_;
 };
 
+ImpulseSide side(const GroupBody& body, const RealVec& arm) {
+  return {body.twist, arm, body.inverse_mass_x, body.inverse_mass_y, body.inverse_inertia};
+}
+
+/// A contact by itself is resolved as under every other order: its own friction does not push it together again.
+GroupResult resolve_alone(const Group& group, const std::vector<GroupBody>& bodies, const GroupContact& c) {
+  if (group.normal_velocity(0) >= -group.rounding()) return unresolved(group, GroupResult::Status::resolved);
+  ImpulseSide other;
+  if (c.other < 0)
+    other.twist.velocity = c.other_point_velocity;
+  else
+    other = side(bodies[c.other], c.other_arm);
+  const ImpulseResult found = resolve_impulse(side(bodies[c.body], c.arm), other, c.normal, c.material);
+  if (found.kind == ImpulseKind::jam) return unresolved(group, GroupResult::Status::jam);
+  GroupResult result;
+  result.twists = group.twists();
+  result.normal.assign(1, found.normal);
+  // told in doubles, whose roundings may be beyond the cone
+  const Real bound = c.material.friction * result.normal[0];
+  result.tangential.assign(1, std::clamp<Real>(found.tangential, -bound, bound));
+  result.twists[c.body] = found.body;
+  if (c.other >= 0) result.twists[c.other] = found.other;
+  const Real before = group.normal_velocity(0);
+  result.lost = -(1 - static_cast<Real>(c.material.restitution)) * result.normal[0] * before / 2;
+  return result;
+}
+
 /// What approaches no faster than this part of the group's largest speed has been stopped, but for roundings.
 constexpr Real kNoneLeft = 1e-15;
 /// A dense problem of more contacts takes too long.
@@ -395,8 +433,9 @@ std::optional<GroupResult> resolve_plastic(const std::vector<GroupBody>& bodies,
 
 GroupResult resolve_together(const std::vector<GroupBody>& bodies, const std::vector<GroupContact>& contacts,
                              const GoOn& go_on) {
-  // Contacts that nothing moves have no row: their mobility is 0, and if they approach no impulse helps.
   const Group group(bodies, contacts);
+  if (contacts.size() == 1) return resolve_alone(group, bodies, contacts[0]);
+  // Contacts that nothing moves have no row: their mobility is 0, and if they approach no impulse helps.
   const std::vector<int> set = movable(group, contacts);
   if (has_jam(group, set)) return unresolved(group, GroupResult::Status::jam);
   // 0 <= p _|_ v' + e v >= 0, with v the velocities before: the target of each contact is e v.
@@ -422,6 +461,11 @@ GroupResult resolve_together(const std::vector<GroupBody>& bodies, const std::ve
 GroupResult resolve_reflections(const std::vector<GroupBody>& bodies,
                                 const std::vector<GroupContact>& contacts, const GoOn& go_on) {
   const Group group(bodies, contacts);
+  if (contacts.size() == 1) {
+    GroupResult alone = resolve_alone(group, bodies, contacts[0]);
+    alone.reflections = alone.normal[0] > 0 && contacts[0].material.restitution > 0.0 ? 1 : 0;
+    return alone;
+  }
   const std::vector<int> set = movable(group, contacts);
   if (has_jam(group, set)) return unresolved(group, GroupResult::Status::jam);
   const auto n = static_cast<Eigen::Index>(set.size());

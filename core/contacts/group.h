@@ -53,7 +53,7 @@ struct GroupResult {
 ///
 /// Friction comes after the normal impulses, one contact at a time in the order given: the tangential impulse
 /// that ends sliding (or reverses it by the tangential restitution), bounded by friction * normal impulse.
-/// Each can only take energy; a contact that approaches again because of another's friction is left for the
+/// A contact by itself is resolved as by resolve_impulse(). Of several each can only take energy; a contact that approaches again because of another's friction is left for the
 /// next group of the same instant. (A law that couples friction with Newton's restitution for all contacts
 /// can gain energy.)
 ///

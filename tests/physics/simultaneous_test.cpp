@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brink/core/base/random.h"
 #include "brink/scheduler/policies/policy.h"
 #include "tests/support/worlds.h"
 
@@ -184,6 +185,77 @@ TEST(TogetherPolicies, GiveTheSameEvents) {
       for (const std::uint64_t hash : hashes)
         EXPECT_EQ(hash, hashes[0]) << order << ", friction " << friction;
     }
+}
+
+/// Triangles and boxes on a grid in a closed room, and nothing that would bring two contacts to one instant.
+World room(Random& random) {
+  World world;
+  world.materials[0].restitution = random.uniform(0.4, 1.0);
+  world.materials[0].friction = random.uniform(0.0, 1.0);
+  world.materials[0].tangential_restitution = random.uniform(-0.5, 0.5);
+  testing::add(world, testing::site(make_chain({{-2, -2}, {2, -2}, {2, 2}, {-2, 2}}, true)));
+  for (int k = 0; k < 4; ++k) {
+    const double size = random.uniform(0.4, 0.9);
+    const Shape shape =
+        k % 2 == 0 ? make_box(size, 0.6 * size) : make_polygon({{0, 0}, {size, 0}, {0, size}});
+    testing::add(world,
+                 testing::body(shape, Vec2(k % 2 - 0.5, k / 2 - 0.5) * 1.7,
+                               {random.uniform(-3, 3), random.uniform(-3, 3)}, random.uniform(0.1, 3.0),
+                               random.uniform(-3, 3), random.uniform(-4, 4)));
+  }
+  return world;
+}
+
+// Where contacts come one by one, there is no order.
+TEST(TogetherOrAlone, WithOneContactAnInstantIsTheSameUnderEveryOrder) {
+  Random random(31);
+  int collisions = 0;
+  for (int k = 0; k < 20; ++k) {
+    const World world = room(random);
+    std::vector<RunSummary> ran;
+    std::vector<std::vector<BodyState>> ended;
+    for (const char* order : {"index", "lcp", "reflections"}) {
+      SolverOptions options;
+      options.order = order;
+      Simulator simulator(world, options);
+      if (!simulator.start_fault().empty()) break;
+      ran.push_back(simulator.run(testing::until(0.7)));
+      ended.push_back(simulator.states());
+    }
+    for (std::size_t i = 1; i < ran.size(); ++i) {
+      EXPECT_EQ(ran[i].collisions, ran[0].collisions) << k;
+      for (std::size_t b = 0; b < world.bodies.size(); ++b)
+        EXPECT_LT((ended[i][b].pose.position - ended[0][b].pose.position).norm(), 1e-9) << k;
+      collisions += static_cast<int>(ran[i].collisions);
+    }
+  }
+  EXPECT_GT(collisions, 100);
+}
+
+// The friction of a corner that is hit beside the centre of mass pushes it together again, if that comes after the normal impulse.
+TEST(TogetherOrAlone, WhatIsPulledTogetherWithoutARebound) {
+  Random random(32);
+  for (int k = 0; k < 60; ++k) {
+    World world;
+    world.materials[0].restitution = 0.0;
+    world.materials[0].friction = random.uniform(0.2, 1.0);
+    for (const double x : {-2.0, 2.0})
+      testing::add(world, testing::body(make_box(random.uniform(0.3, 0.8), random.uniform(0.3, 0.8)),
+                                        {x + random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1)},
+                                        {random.uniform(-1, 1), random.uniform(-2, 2)}, random.uniform(1, 4),
+                                        random.uniform(-3, 3), random.uniform(-4, 4)));
+    AttractForce pull;
+    pull.bodies = {0, 1};
+    pull.strength = 40.0;
+    pull.power = 0.0;
+    world.forces.emplace_back(pull);
+    for (const char* order : {"lcp", "reflections"}) {
+      SolverOptions options;
+      options.order = order;
+      const RunSummary summary = Simulator(world, options).run(testing::until(1.5));
+      EXPECT_EQ(summary.termination, Termination::reached_end) << k << ", " << order << ": " << summary.why;
+    }
+  }
 }
 
 // The order takes impulses; the mirror response resolves one contact alone.
