@@ -50,6 +50,9 @@ std::vector<Problem> chosen(std::vector<Problem> all, const std::vector<std::str
 fs::path make_folder(const std::string& given) {
   const fs::path folder = given.empty() ? default_run_folder("bench", false) : fs::path(given);
   made_folder(folder);
+  for (const char* name :
+       {"bench.csv", "bench.png", "bench.svg", "rest.csv", "rest.png", "rest.svg", "settling.csv"})
+    refuse_overwriting(folder / name, "--out", {});
   return folder;
 }
 
@@ -75,7 +78,7 @@ int bench_command(const BenchArguments& arguments) {
   };
   // Each runs though one before has ended early: all results are written.
   bool good = !asked(kClassic) || bench::run_classic(folder);
-  if (asked(kRest)) good = bench::run_rest(folder) && good;
+  if (asked(kRest)) good = bench::run_rest(folder, arguments.repeats) && good;
   // Only sweeps were asked for.
   if (problems.empty()) return good ? kDone : kEndedEarly;
   std::vector<Row> rows;

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "brink/core/base/error.h"
+#include "brink/scenes/files/written_file.h"
 
 namespace brink::bench {
 
@@ -25,7 +25,7 @@ class Csv {
   /// @throws IoError if anything could not be written.
   void close() {
     out_.close();
-    if (!out_) throw IoError(fmt::format("{}: could not be written", file_.string()));
+    if (!out_) throw_not_written(file_);
   }
 
  private:

@@ -18,15 +18,14 @@ namespace {
 
 /// Error against run time of lasting_problems() under lasting_settings(). False if a run ended early or
 /// repeats differ.
-bool problems_with_answers(const std::filesystem::path& folder) {
+bool problems_with_answers(const std::filesystem::path& folder, int repeats) {
   const std::vector<Problem> problems = lasting_problems();
   std::vector<Row> rows;
   bool good = true;
   for (const Problem& problem : problems) {
     print_heading(problem);
     for (const Setting& setting : lasting_settings()) {
-      // Five repeats at most: the times of the shortest runs scatter.
-      rows.push_back(measure(problem, setting, 5));
+      rows.push_back(measure(problem, setting, repeats));
       print(rows.back());
       good = good && is_good(rows.back());
     }
@@ -81,9 +80,9 @@ bool heaps_that_settle(const std::filesystem::path& folder) {
 
 }  // namespace
 
-bool run_rest(const std::filesystem::path& folder) {
+bool run_rest(const std::filesystem::path& folder, int repeats) {
   // Both are run, whatever the first says.
-  const bool answers = problems_with_answers(folder);
+  const bool answers = problems_with_answers(folder, repeats);
   return heaps_that_settle(folder) && answers;
 }
 

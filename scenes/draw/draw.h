@@ -41,8 +41,9 @@ PictureSize parse_size(std::string_view text);
 /// What a contact that lasts presses with on one body.
 struct DrawnForce {
   int body = 0;
-  Vec2 arm = Vec2::Zero();  ///< from the centre of mass to the contact, world axes [m]
-  double newtons = 0.0;     ///< >= 0
+  Vec2 arm = Vec2::Zero();     ///< from the centre of mass to the contact, world axes [m]
+  double newtons = 0.0;        ///< >= 0
+  Vec2 normal = Vec2::Zero();  ///< unit, along which it presses; 0: not told
 };
 
 /// Where two touched, and the impulse there.

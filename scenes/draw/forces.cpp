@@ -11,19 +11,21 @@ namespace {
 constexpr double kWidestOfBody = 0.6;           // of a body of middle size, its bounding radius
 constexpr double kWidest = 14.0, kLeast = 3.0;  // [pixels], of the widest line
 constexpr double kThinnest = 0.12;              // [pixels]: thinner lines are not drawn
+constexpr double kOneLine = 0.05;               // between two unit normals
 constexpr double kOnePlace = 1e-6;              // of a body's size: two corners that meet there press as one
 
-/// Those of one body at one place as one.
+/// Those of one body at one place along one line as one.
 /// A box on a corner has a contact of each feature that meets there; two lines over each other would show
-/// the wider alone, and not their sum. Contacts of one body are few, so all of them are compared.
+/// the wider alone, and not their sum. What presses there along another line is a force of its own. Contacts of one body are few, so all of them are compared.
 std::vector<DrawnForce> merged(const Sheet& sheet) {
   std::vector<DrawnForce> out;
   std::vector<std::vector<std::size_t>> of_body(sheet.bodies.size());
   for (const DrawnForce& f : sheet.options.forces) {
     const double near = kOnePlace * sheet.world.bodies[f.body].outline->bounding_radius;
     auto& known = of_body[f.body];
-    const auto same = std::find_if(known.begin(), known.end(),
-                                   [&](std::size_t k) { return (out[k].arm - f.arm).norm() <= near; });
+    const auto same = std::find_if(known.begin(), known.end(), [&](std::size_t k) {
+      return (out[k].arm - f.arm).norm() <= near && (out[k].normal - f.normal).norm() <= kOneLine;
+    });
     if (same != known.end()) {
       out[*same].newtons += f.newtons;
       continue;

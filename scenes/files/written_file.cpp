@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 
@@ -50,6 +54,35 @@ fs::path made_folder(const fs::path& dir) {
   fs::create_directories(dir, error);
   if (error) throw IoError(fmt::format("{}: cannot make the folder: {}", dir.string(), error.message()));
   return dir;
+}
+
+void write_whole(const fs::path& file, std::string_view text) {
+  std::error_code missing;
+  const fs::path whole = fs::exists(file, missing) ? fs::canonical(file) : file;
+  std::string beside = whole.string() + ".XXXXXX";
+  const int out = ::mkstemp(beside.data());  // never through a link
+  if (out < 0) throw_not_written(whole);
+  const auto fail = [&] {
+    const int cause = errno;
+    ::close(out);
+    fs::remove(beside, missing);
+    errno = cause;
+    throw_not_written(whole);
+  };
+  for (std::size_t at = 0; at < text.size();) {
+    const ssize_t written = ::write(out, text.data() + at, text.size() - at);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) fail();
+    at += static_cast<std::size_t>(written);
+  }
+  // as other new files are, which mkstemp() keeps to their owner; of one that is there, as that is
+  struct stat before {};
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  const mode_t mode = ::stat(whole.c_str(), &before) == 0 ? before.st_mode & 07777 : 0666 & ~mask;
+  if (::fchmod(out, mode) != 0 || ::fsync(out) != 0) fail();
+  if (::rename(beside.c_str(), whole.c_str()) != 0) fail();
+  ::close(out);
 }
 
 void throw_not_written(const fs::path& file) {

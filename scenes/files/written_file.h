@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace brink {
@@ -15,6 +16,10 @@ void refuse_overwriting(const std::filesystem::path& file, const std::string& op
 
 /// The folder, made if need be. @throws IoError naming it and the cause.
 std::filesystem::path made_folder(const std::filesystem::path& dir);
+
+/// Writes `text` beside the file, under a name that nobody has, and puts it in its place at once: it is whole whatever happens. Of
+/// a link the file that it leads to. @throws IoError; the file of before is as it was.
+void write_whole(const std::filesystem::path& file, std::string_view text);
 
 /// After a write that went wrong: @throws IoError naming the file and what the system says of it ("disk
 /// full"). Where there was no room for all of it, the file is removed.

@@ -106,7 +106,15 @@ RunMoment moment_of(const DrawArguments& arguments, const fs::path& run, DrawOpt
   refuse_overwriting(arguments.out, "-o", scene.files);
   options.field = scene.solver.field;
   if (options.view) require_not_too_close(arguments.view, *options.view, extent_at_start(scene));
-  return moment_of_scene(arguments, scene);
+  RunMoment moment = moment_of_scene(arguments, scene);
+  if (!options.view && moment.t > 0.0 && options.layer.kind != DrawLayer::Kind::pass) {
+    // all that there is to see at the start, and where bodies are by then
+    options.view = automatic_view(moment.world, moment.bodies, moment.sites);
+    const Box at_start = extent_at_start(scene);
+    options.view->add(at_start.low);
+    options.view->add(at_start.high);
+  }
+  return moment;
 }
 
 /// "X0,Y0,X1,Y1" [m]. @throws BadInput.
@@ -158,6 +166,12 @@ int draw_command(const DrawArguments& arguments) {
   options.axes = arguments.axes;
   options.names = arguments.names;
   options.velocities = arguments.velocities;
+  if (options.layer.kind == DrawLayer::Kind::depth &&
+      (arguments.names || arguments.trails || arguments.velocities || arguments.contacts))
+    throw BadInput(
+        "--names, --trails, --velocities, --contacts: are drawn over layer scene, color, forces or pass; "
+        "given "
+        "--layer depth");
   const fs::path run = run_file_of(arguments.subject);
   // What a run was made of cannot be changed any more.
   if (!run.empty() && !arguments.overrides.empty())
@@ -170,6 +184,7 @@ int draw_command(const DrawArguments& arguments) {
   options.time = moment.t;
   if (options.layer.kind == DrawLayer::Kind::forces) options.forces = forces_of(moment);
   if (!run.empty()) add_history(arguments, run, moment, options);
+  if (!run.empty() && arguments.at) tell_unknown(RunFile(run));
   draw_file(arguments.out, moment.world, moment.bodies, moment.sites, options);
   return kDone;
 }

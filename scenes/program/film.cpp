@@ -9,8 +9,10 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <memory>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "brink/core/base/printable.h"
@@ -58,13 +60,18 @@ class Film {
 /// FILE-00001.png, FILE-00002.png ...: beside each other in the order of their names.
 class PictureSequence final : public Film {
  public:
-  explicit PictureSequence(const fs::path& out) : stem_(fs::path(out).replace_extension()) {}
+  /// `kept`: files that no picture is written over.
+  PictureSequence(const fs::path& out, std::vector<fs::path> kept)
+      : stem_(fs::path(out).replace_extension()), kept_(std::move(kept)) {}
   void add(const Picture& picture) override {
-    write_png(fmt::format("{}-{:05}.png", stem_.string(), ++count_), picture);
+    const std::string name = fmt::format("{}-{:05}.png", stem_.string(), ++count_);
+    refuse_overwriting(name, "-o", kept_);
+    write_png(name, picture);
   }
 
  private:
   fs::path stem_;
+  std::vector<fs::path> kept_;
   int count_ = 0;
 };
 
@@ -102,11 +109,39 @@ class FfmpegFilm final : public Film {
       failed();
   }
   void finish() override {
-    // ffmpeg's own exit status: it may fail after the last picture was taken.
-    if (::pclose(std::exchange(pipe_, nullptr)) != 0) failed();
+    // ffmpeg's own exit status: it may fail after the last picture was taken. On a full disk it is 0 all the same.
+    const int status = ::pclose(std::exchange(pipe_, nullptr));
+    std::error_code missing;
+    if (status != 0 || !is_whole() || fs::file_size(out_, missing) == 0 || missing) failed();
   }
 
  private:
+  /// As it ends: a GIF with its trailer, an MP4 (with its index in front) where its boxes say. What breaks off is shorter.
+  bool is_whole() const {
+    std::ifstream in(out_, std::ios::binary);
+    if (out_.extension() == ".gif") {
+      in.seekg(-1, std::ios::end);
+      return in.get() == 0x3b;
+    }
+    std::error_code missing;
+    const std::uintmax_t size = fs::file_size(out_, missing);
+    std::uintmax_t at = 0;
+    bool any_index = false;
+    for (unsigned char head[16]; !missing && at + 8 <= size;) {
+      in.seekg(static_cast<std::streamoff>(at));
+      if (!in.read(reinterpret_cast<char*>(head), at + 16 <= size ? 16 : 8)) return false;
+      const auto number = [&](int from, int bytes) {
+        std::uintmax_t n = 0;
+        for (int k = from; k < from + bytes; ++k) n = n << 8 | head[k];
+        return n;
+      };
+      any_index = any_index || std::string_view(reinterpret_cast<char*>(head) + 4, 4) == "moov";
+      const std::uintmax_t box = number(0, 4) == 1 ? number(8, 8) : number(0, 4);
+      if (box < 8) return false;
+      at += box;
+    }
+    return any_index && at == size;
+  }
   [[noreturn]] void failed() const {
     throw IoError(fmt::format("{}: ffmpeg could not write it (what it said is above)", out_.string()));
   }
@@ -115,16 +150,17 @@ class FfmpegFilm final : public Film {
 };
 
 /// By the extension of `out`; pictures, too, where there is no ffmpeg. @throws BadInput for another one.
-std::unique_ptr<Film> film_into(const fs::path& out, PictureSize size, double fps) {
+std::unique_ptr<Film> film_into(const fs::path& out, PictureSize size, double fps,
+                                const std::vector<fs::path>& kept) {
   const std::string kind = out.extension().string();
-  if (kind == ".png") return std::make_unique<PictureSequence>(out);
+  if (kind == ".png") return std::make_unique<PictureSequence>(out, kept);
   if (kind != ".mp4" && kind != ".gif")
     throw BadInput(fmt::format("-o: {} given; allowed: FILE.mp4, FILE.gif, FILE.png", out.string()));
   if (has_ffmpeg()) return std::make_unique<FfmpegFilm>(out, size, fps);
   fmt::print(stderr,
              "brink: ffmpeg is not here (apt-get install ffmpeg): pictures {}-00001.png ... instead\n",
              printable(fs::path(out).replace_extension().string()));
-  return std::make_unique<PictureSequence>(out);
+  return std::make_unique<PictureSequence>(out, kept);
 }
 
 /// Where fixed sites are told to be at time t, by id. A film needs no motion of them, so none is made.
@@ -158,9 +194,10 @@ int film_command(const FilmArguments& arguments) {
   // A run that has got no farther than its first frame is a film of one picture, but nobody asks for that.
   const bool whole = !arguments.from && !arguments.to;
   require((to > from || whole) && to <= last, "--to", to, range.c_str());
-  // As many as begin within the time, the first included.
+  // As many as begin within the time, the first included, and the last though roundings put it behind.
   // In double: what is refused below may be beyond any integer.
-  const double pictures = std::floor((to - from) / arguments.speed * arguments.fps) + 1.0;
+  const double intervals = (to - from) / arguments.speed * arguments.fps;
+  const double pictures = std::floor(intervals * (1.0 + 1e-12)) + 1.0;
   if (!(pictures <= kMostPictures))
     throw BadInput(fmt::format(
         "the film would have {:.3g} pictures; allowed: {:.0g}. A shorter time or a higher --speed", pictures,
@@ -169,14 +206,19 @@ int film_command(const FilmArguments& arguments) {
   DrawOptions options;
   // "plain" is a word of films alone: layer scene without its diagram, which is faster.
   options.diagram = arguments.layer != "plain";
-  options.layer = parse_layer(options.diagram ? arguments.layer : "scene");
+  try {
+    options.layer = parse_layer(options.diagram ? arguments.layer : "scene");
+  } catch (const BadInput& e) {
+    throw BadInput(std::string(e.what()) + ", plain");
+  }
   options.size = parse_size(arguments.size);
   options.field = run.field_options();
   const World world = run.world();
   // One camera for all pictures: the run's extent, not each picture's.
   options.view = extent_of(run, world);
+  tell_unknown(run);
   // Last of all checks: from here on there is a file, or a process that writes one.
-  const auto film = film_into(arguments.out, options.size, arguments.fps);
+  const auto film = film_into(arguments.out, options.size, arguments.fps, run.files());
   ProgressBar bar(from, to, on_terminal(stderr));
   const auto add_picture = [&](double t) {
     // Between frames bodies are on the cubic of their recorded states; fixed sites are where they are told to be.

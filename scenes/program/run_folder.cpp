@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "brink/core/base/error.h"
+#include "brink/scenes/run_file/run_file.h"
 
 namespace brink {
 namespace fs = std::filesystem;
@@ -53,6 +54,11 @@ fs::path required_run_file(const fs::path& subject) {
   if (!file.empty()) return file;
   if (!fs::exists(subject)) throw IoError(subject.string() + ": cannot be opened for reading");
   throw BadInput(subject.string() + ": not a run; allowed: a run folder or a run file");
+}
+
+void tell_unknown(const RunFile& run) {
+  if (const std::string unknown = run.unknown_between_frames(); !unknown.empty())
+    fmt::print(stderr, "brink: {}\n", unknown);
 }
 
 }  // namespace brink

@@ -9,7 +9,7 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
+#include <sstream>
 #include <string_view>
 #include <tuple>
 
@@ -54,7 +54,8 @@ void require(FaultList& faults, const CsvCell& cell, bool good, const char* what
 /// One row into the table, or its faults into the list.
 void read_row(const CsvRow& row, AnswerTable& table, FaultList& faults) {
   for (const CsvCell& cell : row)
-    if (!cell.closed)
+    // no cell that is written here has a line break: in one that has the rows after it are lost
+    if (!cell.closed || cell.text.find('\n') != std::string::npos)
       return faults.add({cell.line, cell.column},
                         "a quote that is not closed; allowed: \" at the end of the cell");
   if (row.size() != kCells)
@@ -62,7 +63,10 @@ void read_row(const CsvRow& row, AnswerTable& table, FaultList& faults) {
                       fmt::format("a row of {} cells, allowed: {} ({})", row.size(), kCells, kColumns));
   require(faults, row[0], !row[0].text.empty(), "scene", "the name of a scene");
   require(faults, row[0], !table.answers.contains(row[0].text), "scene", "each scene once");
-  require(faults, row[1], !row[1].text.empty(), "how it ended", "reached_end, stopped, failed: why");
+  const std::string& ended = row[1].text;
+  require(faults, row[1],
+          ended == "reached_end" || ended.starts_with("stopped") || ended.starts_with("failed: "),
+          "how it ended", "reached_end, stopped, failed: why");
   require(faults, row[2], reads_as<double>(row[2].text), "end time", "a number [s]");
   require(faults, row[3], reads_as<std::uint64_t>(row[3].text), "collisions", "a whole number, 0 or more");
   require(faults, row[4], reads_as<double>(row[4].text), "energy", "a number [J]");
@@ -96,6 +100,8 @@ bool is_by_solver(const RunSummary& s) { return s.work.right_hand_sides > s.work
 AnswerTable read_answers(const fs::path& file) {
   AnswerTable table;
   if (!fs::exists(file)) return table;
+  // a pipe would be waited for
+  if (!fs::is_regular_file(file)) throw IoError(file.string() + ": is no file");
   const std::string text = text_of_file(file);
   FaultList faults;
   if (const std::string first = text.substr(0, text.find_first_of("\r\n"));
@@ -110,20 +116,12 @@ AnswerTable read_answers(const fs::path& file) {
 }
 
 void write_answers(const fs::path& file, const AnswerTable& table) {
-  // Of a link the file that it leads to, which the rename would not reach.
-  const fs::path whole = fs::exists(file) ? fs::canonical(file) : file;
-  fs::path beside = whole;
-  beside += ".new";
-  std::ofstream out(beside);
+  std::ostringstream out;
   out << kProbeLine << table.probe << "\n# " << kColumns << '\n';
   for (const auto& [scene, a] : table.answers)
     out << scene_cell(scene) << ',' << csv_cell(a.ended) << ',' << a.end_time << ',' << a.collisions << ','
-        << a.energy << ',' << a.hash << ',' << csv_cell(a.reason) << '\n';
-  out.close();
-  if (!out) throw_not_written(beside);
-  std::error_code error;
-  fs::rename(beside, whole, error);
-  if (error) throw IoError(fmt::format("{}: could not be written: {}", whole.string(), error.message()));
+        << a.energy << ',' << a.hash << ',' << csv_cell(printable(a.reason)) << '\n';
+  write_whole(file, out.str());
 }
 
 }  // namespace brink

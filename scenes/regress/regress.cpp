@@ -29,10 +29,11 @@ const char* to_string(Verdict verdict) {
 }
 
 std::vector<fs::path> scenes_of(const fs::path& folder) {
-  std::error_code error;
+  std::error_code error, ignored;
   std::vector<fs::path> scenes;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-    if (entry->path().extension() == ".toml") scenes.push_back(entry->path());
+    if (entry->path().extension() == ".toml" && entry->is_regular_file(ignored))
+      scenes.push_back(entry->path());
   if (error) throw IoError(folder.string() + ": cannot be read: " + error.message());
   std::sort(scenes.begin(), scenes.end());
   return scenes;

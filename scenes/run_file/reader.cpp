@@ -493,6 +493,27 @@ std::int64_t RunFile::event_count() const {
   });
 }
 
+std::string RunFile::unknown_between_frames() const {
+  return reading(impl_->file, "event", [&]() -> std::string {
+    // a run that goes on has none yet
+    const auto summary = nlohmann::json::parse(meta("summary").value_or(""), nullptr, false);
+    const auto number = [](const nlohmann::json& of, const char* name) {
+      return of.is_object() && of.contains(name) && of[name].is_number() ? of[name].get<double>() : 0.0;
+    };
+    const double collisions = number(summary, "collisions");
+    const std::int64_t known =
+        impl_->db.execAndGet("SELECT count(*) FROM event WHERE kind = 'collision'").getInt64();
+    if (static_cast<double>(known) < collisions)
+      return fmt::format(
+          "{} of {} collisions were recorded: between frames bodies are led straight through the others",
+          known, collisions);
+    const auto work = summary.is_object() && summary.contains("work") ? summary["work"] : nlohmann::json();
+    if (impl_->frames() <= 2 && number(work, "right_hand_sides") > number(work, "solver_steps"))
+      return "between two frames alone nothing tells how far motions by an integrator are off";
+    return "";
+  });
+}
+
 std::vector<Event> RunFile::events(std::int64_t first, std::int64_t most) const {
   return reading(impl_->file, "event", [&] {
     std::vector<Event> all;

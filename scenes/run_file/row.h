@@ -29,6 +29,7 @@ class Row {
     const SQLite::Column c = statement_.getColumn(column);
     if (c.isNull()) return std::nan("");  // how SQLite keeps it
     if (!c.isFloat() && !c.isInteger()) fail(column, "is not a number");
+    if (std::isinf(c.getDouble())) fail(column, "is not a finite number");
     return c.getDouble();
   }
   /// 0 <= value < end.

@@ -187,6 +187,9 @@ class RunFile {
   /// springs, attractions. Materials and other forces are not kept in tables of a run file, but meta's scene_text is.
   World world() const;
   std::int64_t event_count() const;
+  /// What cannot be told of motions between frames, for people; empty: nothing. Collisions that were not recorded are led
+  /// straight through, and between two frames alone nothing tells how far an integrator's motions are off.
+  std::string unknown_between_frames() const;
   /// At most so many, from number `first` on, in the order of their numbers.
   std::vector<Event> events(std::int64_t first = 0,
                             std::int64_t most = std::numeric_limits<std::int64_t>::max()) const;

@@ -236,6 +236,8 @@ void put_knots(hid_t file, const RunFile& run) {
 void write_hdf5(const std::filesystem::path& run_file, const std::filesystem::path& file) {
   RunFile run(run_file);
   run.hold();  // a run that goes on writes more rows meanwhile
+  // What could not be written it would try again at the program's end, and crash.
+  H5dont_atexit();
   // Else the library prints its own stack of errors.
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what goes wrong is told below
   try {

@@ -97,9 +97,10 @@ std::vector<DrawnForce> forces_of(const RunMoment& moment) {
         if (const double size = moment.world.periods.size[axis]; size > 0.0)
           arm[axis] -= size * std::round(arm[axis] / size);
     // A force on each of the two bodies, of the same size; a fixed site is not drawn as being pushed.
-    out.push_back({c.body, arm, c.normal_force});
+    out.push_back({c.body, arm, c.normal_force, c.normal});
     // The same place, from the other's centre.
-    if (!with_site) out.push_back({c.other_body, body.position + arm - other.position, c.normal_force});
+    if (!with_site)
+      out.push_back({c.other_body, body.position + arm - other.position, c.normal_force, -c.normal});
   }
   return out;
 }

@@ -9,6 +9,7 @@
 #include "brink/scenes/run_file/run_scene.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -17,6 +18,7 @@
 #include <thread>
 
 #include "brink/core/base/printable.h"
+#include "brink/core/world/world_hash.h"
 #include "brink/scenes/files/written_file.h"
 #include "brink/scenes/run_file/run_file.h"
 #include "brink/scenes/run_file/trace_file.h"
@@ -191,6 +193,14 @@ void close_as_failed(RunFileRecorder& recorder, const Simulator& simulator, cons
 
 }  // namespace
 
+/// Files that the scene reads beside its own.
+std::vector<std::string> names_of_data(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const std::filesystem::path& file : scene.files)
+    if (file != scene.path) names.push_back(file.string());
+  return names;
+}
+
 Scene scene_of_run(const std::filesystem::path& run_file, const std::vector<std::string>& more) {
   const RunFile run(run_file);
   const auto text = run.meta("scene_text");
@@ -206,7 +216,13 @@ Scene scene_of_run(const std::filesystem::path& run_file, const std::vector<std:
   // In this order, as the last of two overrides of one key holds.
   overrides.insert(overrides.end(), more.begin(), more.end());
   // With the scene's own path: data files that it names are found beside it.
-  return parse_scene(*text, run.meta("scene").value_or(run_file.string()), overrides);
+  Scene scene = parse_scene(*text, run.meta("scene").value_or(run_file.string()), overrides);
+  // What a data file says is not in the run file.
+  const auto was = run.meta("world_hash");
+  if (more.empty() && scene.files.size() > 1 && was && *was != world_hash_text(scene.world))
+    throw BadInput(fmt::format("{}: a data file of its scene has changed since: {}; allowed: as it was",
+                               run_file.string(), fmt::join(names_of_data(scene), ", ")));
+  return scene;
 }
 
 RunReport run_scene(const Scene& scene, const RunRequest& request) {

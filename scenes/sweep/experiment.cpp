@@ -10,6 +10,8 @@
 /// that `--list` prints would read.
 #include "brink/scenes/sweep/experiment.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -141,8 +143,9 @@ void read_seeds(const toml::node& node, TomlDocument& doc, ExperimentTable& out)
   const std::int64_t count = node.as_integer()->get();
   // Beyond kMostSweepRuns check_count() would refuse all the same, but only after they have been made.
   if (count < 1 || count > static_cast<std::int64_t>(kMostSweepRuns))
-    return fault(doc, doc.where(node), "seeds", "out of range", given(node),
-                 "a count >= 1, for the seeds 1, 2 ... , or an array of seeds");
+    return fault(
+        doc, doc.where(node), "seeds", "out of range", given(node),
+        fmt::format("a count of 1 to {}, for the seeds 1, 2 ... , or an array of seeds", kMostSweepRuns));
   Axis axis{"seed", kSeed, {}, doc.where(node)};
   for (std::int64_t k = 1; k <= count; ++k)
     axis.values.push_back({std::to_string(k), std::to_string(k), doc.where(node)});

@@ -203,11 +203,18 @@ struct SweepStore::Impl {
     require(select.getColumn(1).isText(), "state_hash");
     row.termination = select.getColumn(0).getString();
     row.state_hash = select.getColumn(1).getString();
+    // a run that could not start has none
+    require((row.state_hash.size() == 16 || row.state_hash.empty()) &&
+                row.state_hash.find_first_not_of("0123456789abcdef") == std::string::npos,
+            "state_hash");
     int column = 2;
     for (const std::string& name : sweep_columns()) {
       const SQLite::Column value = select.getColumn(column++);
       require(value.isNull() || value.isFloat() || value.isInteger(), name);
       row.numbers[name] = value.isNull() ? std::nan("") : value.getDouble();
+      require(!std::isinf(row.numbers[name]), name);
+      // what is counted by whole numbers
+      require(!value.isInteger() || value.getInt64() >= 0, name);
     }
     return row;
   }

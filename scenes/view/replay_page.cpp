@@ -33,6 +33,7 @@
 #include "brink/scenes/view/page_assets.h"
 #include "brink/scenes/view/page_numbers.h"
 #include "brink/scenes/view/run_curves.h"
+#include "brink/scenes/view/site_track.h"
 #include "brink/scheduler/kernel/site_motion.h"
 
 namespace brink {
@@ -119,6 +120,7 @@ class ReplayPage {
     live_ = live;
     about_["live"] = live;
     frames();
+    moving_sites();
     contacts();
     knots();
     events();
@@ -132,7 +134,7 @@ class ReplayPage {
  private:
   // -- numbers --
 
-  /// Times and states of frames, of sites that move as well, and what the curves take from each frame.
+  /// Times and states of frames, and what the curves take from each frame.
   void frames() {
     const auto bodies = static_cast<std::int64_t>(world_.bodies.size());
     const std::int64_t count = run_.frame_count();
@@ -140,33 +142,44 @@ class ReplayPage {
     const std::int64_t stride =
         std::max<std::int64_t>(1, (count * bodies + limits_.frame_rows - 1) / limits_.frame_rows);
     if (stride > 1) notices_.push_back(fmt::format("every {}. frame of {}", stride, count));
-    std::vector<SiteMotion> moving;
-    // In the order of the sites, as the page takes them (motion.js).
-    for (const FixedSite& site : world_.sites)
-      if (SiteMotion motion(site); motion.moves()) moving.push_back(std::move(motion));
     Column& times = frame_times_;
     StateColumns& states = frame_states_;
-    StateColumns site_states;
     run_.each_frame(stride, [&](const RunFile::Frame& f) {
       times.push_back(f.t);
       for (const BodyState& s : f.states) states.add(s);
-      for (SiteMotion& m : moving) site_states.add(site_at(m, f.t));
       // Frames that are thinned out are not in the curves either.
       curves_.add(f);
     });
     numbers_.add("frame_t", times);
     states.put(numbers_, "frame_");
-    site_states.put(numbers_, "site_");
   }
 
-  /// Where a moving site is at t [s], by its motion as in the run. A motion that fails before t has no
-  /// state: the site is shown at rest at the origin.
-  static BodyState site_at(SiteMotion& site, double t) {
-    if (site.extend(t).status != Extent::Status::reached) return {};
-    const BodyState s = site.motion().state(t);
-    // Frames come in time order: nobody asks for an earlier one any more.
-    site.forget_before(t);
-    return s;
+  /// Sites that move, by their motions as in the run, whatever frames there are. In the order of the sites, as the page takes them
+  /// (motion.js): those of the k-th that moves are from site_first[k] on.
+  void moving_sites() {
+    std::vector<std::int32_t> first{0};
+    Column times;
+    StateColumns states;
+    std::vector<const FixedSite*> moving;
+    for (const FixedSite& site : world_.sites)
+      if (SiteMotion(site).moves()) moving.push_back(&site);
+    for (const FixedSite* site : moving) {
+      if (!frame_times_.empty()) {
+        const auto most =
+            std::max<std::int64_t>(1000, limits_.knots / static_cast<std::int64_t>(moving.size()));
+        const SiteTrack track = track_site(*site, frame_times_.front(), frame_times_.back(), most);
+        for (std::size_t k = 0; k < track.times.size(); ++k)
+          times.push_back(track.times[k]), states.add(track.states[k]);
+        sites_off_ = std::max(sites_off_, track.off);
+        if (!track.whole)
+          notices_.push_back(fmt::format("motion of site {} up to {} s", site->name,
+                                         track.times.empty() ? 0.0 : track.times.back()));
+      }
+      first.push_back(static_cast<std::int32_t>(times.size()));
+    }
+    numbers_.add("site_first", first);
+    numbers_.add("site_t", times);
+    states.put(numbers_, "site_");
   }
 
   /// Every event with both of its sides, in the file's order. Sides are what the page follows bodies by;
@@ -215,6 +228,8 @@ class ReplayPage {
     off_ = interpolation_error(world_, frame_times_, frame_states_.columns(), of_bodies, bends);
     // A run file of before the states at collisions.
     if (any_collision && !any_known) notices_.push_back("between frames motions are interpolated");
+    unknown_ = run_.unknown_between_frames();
+    if (!unknown_.empty()) notices_.push_back(unknown_);
     numbers_.add("event_t", t);
     numbers_.add("event_kind", kind);
     body.put(numbers_, "event_body", "b_");
@@ -369,7 +384,7 @@ class ReplayPage {
     const auto of = [&](const char* key) { return meta.contains(key) ? meta.at(key) : std::string(); };
     // An extent of 0 has no scale.
     const Box extent = extent_of(run_, world_);
-    const Vec2 size = (extent.high - extent.low).cwiseMax(1e-12);
+    const Vec2 size = (extent.high - extent.low).cwiseMax(1e-15);
     about_["title"] = world_.title.empty() ? of("scene") : world_.title;
     // meta's end_time is that of the last checkpoint while the run goes on; the last frame is later.
     const bool running = of("termination") == "running";
@@ -389,7 +404,9 @@ class ReplayPage {
     for (const char* key :
          {"scene", "brink_version", "termination", "end_time", "wall_seconds", "state_hash"})
       fact(key, of(key));
-    if (frame_times_.size() > 2) fact("between frames", fmt::format("places to about {:.1g} m", off_));
+    if (frame_times_.size() > 2 && unknown_.empty())
+      fact("between frames", fmt::format("places to about {:.1g} m", off_));
+    if (sites_off_ > 0.0) fact("sites that move", fmt::format("places to about {:.1g} m", sites_off_));
     // Without exceptions: a run that goes on has no summary yet, and an empty text is no JSON.
     const Json summary = Json::parse(of("summary"), nullptr, false),
                options = Json::parse(of("options"), nullptr, false);
@@ -438,7 +455,9 @@ class ReplayPage {
   std::vector<Column> knot_times_;       ///< of every body
   bool live_ = false, lasting_ = false;  ///< lasting_: there are contacts that last
   bool has_knots_ = false;               ///< all of them
+  std::string unknown_;                  ///< of motions between frames
   double off_ = 0.0;                     ///< what motions between frames are off by, about [m]
+  double sites_off_ = 0.0;               ///< and those of sites that move [m]
   PageNumbers numbers_;
   Json about_;
   std::map<std::string, int> shapes_;

@@ -102,8 +102,8 @@ std::optional<Vec2> StepBalance::line_of_pushes(int group, const std::vector<Vec
     held_x = held_x || std::isinf(mass.x());
     held_y = held_y || std::isinf(mass.y());
     if (held_x && held_y) return std::nullopt;
-    momentum += std::min(mass.x(), mass.y()) * velocity[i].head<2>().norm() +
-                h_ * step_->force[i].head<2>().norm();
+    momentum +=
+        std::min(mass.x(), mass.y()) * velocity[i].head<2>().norm() + h_ * step_->force[i].head<2>().norm();
   }
   std::vector<Vec2> pushes;
   Vec2 largest = Vec2::Zero();

@@ -574,6 +574,56 @@ TEST_F(Replayed, TheLastCollisionsAreMarked) {
   EXPECT_NEAR(answer.back().get<double>(), 399e-4, 1e-9) << "later ones over earlier ones";
 }
 
+// Sites that move by formulas are where those say, however rare frames are.
+TEST(Replay, SitesMoveByTheirFormulas) {
+  if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
+  const fs::path folder = fs::temp_directory_path() / fmt::format("brink-replay-sites-{}", ::getpid());
+  for (const char* interval : {"0", "0.5"}) {
+    const Scene scene = parse_scene(fmt::format(R"x(
+[world]
+duration = 3
+[output]
+frame_interval = {}
+[[sites]]
+name = "still"
+disc = {{ radius = 0.2 }}
+position = [5, 2]
+[[sites]]
+name = "wobbles"
+disc = {{ radius = 0.2 }}
+position = [1, 2]
+motion = {{ x = "0.3*cos(20*t)-0.3", y = "abs(sin(5*t))" }}
+[[sites]]
+name = "turns"
+box = {{ width = 1, height = 0.2 }}
+motion = {{ angular_velocity = 2 }}
+[[bodies]]
+disc = {{ radius = 0.1 }}
+position = [-9, 0]
+)x",
+                                                interval),
+                                    "sites.toml");
+    RunRequest request;
+    request.dir = folder;
+    ASSERT_TRUE(run_scene(scene, request).summary.sound());
+    write_replay_page(folder / "run.db", folder / "page.html");
+    const json answer = in_browser(folder / "page.html",
+                                   "return Array.from({length: 200}, (_, k) => 3 * (k * 0.618034 % 1))"
+                                   ".map(t => [t, window.brink.sites(t)]);");
+    ASSERT_FALSE(answer.contains("error")) << answer.dump();
+    ASSERT_EQ(answer.size(), 200U);
+    for (const json& at : answer) {
+      const double t = at[0].get<double>();
+      const json &wobbles = at[1][1], &turns = at[1][2];
+      EXPECT_EQ(wobbles["name"], "wobbles");
+      EXPECT_NEAR(wobbles["x"].get<double>(), 1.0 + 0.3 * std::cos(20 * t) - 0.3, 1e-7) << t;
+      EXPECT_NEAR(wobbles["y"].get<double>(), 2.0 + std::abs(std::sin(5 * t)), 1e-7) << t;
+      EXPECT_NEAR(turns["angle"].get<double>(), 2 * t, 1e-12) << t;
+    }
+  }
+  fs::remove_all(folder);
+}
+
 // By pointers as fingers make them: one moves the scene, two zoom, a touch selects.
 TEST_F(Replayed, FingersMoveZoomAndSelect) {
   if (!has_browser()) GTEST_SKIP() << "chromium is not installed";

@@ -6,6 +6,8 @@
 // such tables of several builds).
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <cstdlib>
 #include <fstream>
 
@@ -63,6 +65,28 @@ TEST(AnswersTable, HasTheScenesOfTheGalleryAndNoOthers) {
     EXPECT_FALSE(answer.reason.empty()) << scene;
   }
   EXPECT_EQ(names, scenes());
+}
+
+// A quote that is closed only in a later row would take the rows between for a reason.
+TEST(AnswersTable, AQuoteThatIsNotClosedIsAFault) {
+  const fs::path file = fs::temp_directory_path() / fmt::format("brink-answers-{}.csv", ::getpid());
+  const std::string head = "# made where the solver's probe is 046d485b97df28f8\n# columns\n",
+                    row = ",1,3,9.83,ef0f11ec48bd7c76,";
+  const auto fault_of = [&](const std::string& rows) -> std::string {
+    std::ofstream(file) << head << rows;
+    try {
+      read_answers(file);
+    } catch (const SceneFaults& faults) {
+      const SceneFault& f = faults.faults().front();
+      return fmt::format("{}:{} {}", f.line, f.column, f.message);
+    }
+    return "";
+  };
+  EXPECT_EQ(fault_of("a,reached_end" + row + "\"first, stored\"\nb,stopped" + row + "x\n"), "");
+  EXPECT_EQ(fault_of("a,reached_end" + row + "\"first\nb,reached_end" + row + "\"second\"\n").substr(0, 4),
+            "3:41");
+  EXPECT_EQ(fault_of("a,foo" + row + "x\n").substr(0, 4), "3:3 ");
+  fs::remove(file);
 }
 
 // An answer by a solver is not held against a machine whose solver is another one; any other is.

@@ -81,7 +81,9 @@ class Motions {
     this.frames = new Frames(n.frame_t, about.bodies.length, COLUMNS.map(c => n['frame_' + c]));
     const moving = about.sites.map((s, k) => s.moving ? k : -1).filter(k => k >= 0);
     this.movingPlace = new Map(moving.map((k, i) => [k, i]));
-    this.siteFrames = new Frames(n.frame_t, moving.length, COLUMNS.map(c => n['site_' + c]));
+    // of each site that moves, in its own time: rows siteFirst[i] .. siteFirst[i + 1] - 1
+    this.siteFirst = n.site_first;
+    this.siteStates = new Frames(n.site_t, 1, COLUMNS.map(c => n['site_' + c]));
     this.left = new Float64Array(6);  // the states before and after the time asked for
     this.right = new Float64Array(6);
     this.takeStates(n, about.first_event || 0);
@@ -159,11 +161,13 @@ class Motions {
 
   /** The same of a fixed site. */
   site(k, t, out = new Array(6)) {
-    const place = this.movingPlace.get(k), {siteFrames, left, right} = this, {times} = siteFrames;
+    const place = this.movingPlace.get(k), {siteStates, siteFirst, left, right} = this, {times} = siteStates;
     if (place === undefined) return out.fill(0);
-    const f = Math.max(0, lastAtOrBefore(times, t)), more = f + 1 < times.length;
-    siteFrames.at(f, place, left);
-    if (more) siteFrames.at(f + 1, place, right);
+    const from = siteFirst[place], to = siteFirst[place + 1];
+    if (from === to) return out.fill(0);
+    const f = Math.max(from, lastAtOrBefore(times, t, from, to)), more = f + 1 < to;
+    siteStates.at(f, 0, left);
+    if (more) siteStates.at(f + 1, 0, right);
     return between(left, times[f], right, more ? times[f + 1] : Infinity, t, out);
   }
 }

@@ -474,7 +474,7 @@ function roomy(rows) {
   let low = Infinity, high = -Infinity;
   for (const row of rows)
     for (const y of row.slice(1)) [low, high] = [Math.min(low, y), Math.max(high, y)];
-  const room = Math.max(0.05 * (high - low), 1e-3 * Math.max(Math.abs(low), Math.abs(high)), 1e-12);
+  const room = Math.max(0.05 * (high - low), 1e-3 * Math.max(Math.abs(low), Math.abs(high))) || 1e-12;
   return [low - room, high + room];
 }
 
@@ -525,6 +525,10 @@ window.brink = {
     Object.defineProperty(window.brink, 'events', {get: events});
     Object.assign(window.brink, {
       state: t => about.bodies.map((b, k) => named(k, t)),
+      sites: t => about.sites.map((site, k) => {
+        const [x, y, angle, vx, vy, omega] = player.motions.site(k, t);
+        return {name: site.name, x, y, angle, vx, vy, omega};
+      }),
       seek: t => player.seek(t), play: () => player.play(), pause: () => player.pause(),
       step: way => player.step(way), select: name => player.select(about.bodies.findIndex(b => b.name === name)),
       time: () => player.t, player,

@@ -20,8 +20,9 @@ function onPaper(color, paper) {
   return color.map((part, k) => Math.min(1, paper[k] + 0.05 + 1.5 * (part - grey)));
 }
 
-/** An outline as paths: what is filled, and what is stroked (thickness, crisp edge). */
-function pathsOf(shape) {
+/** An outline as paths: what is filled, and what is stroked (thickness, crisp edge). Lengths are in `unit` [m]: canvases lose what is
+ * far smaller than 1. */
+function pathsOf(shape, unit) {
   const fill = new Path2D(), edge = new Path2D();
   let radius = 0;
   for (const loop of shape.loops) {
@@ -29,12 +30,12 @@ function pathsOf(shape) {
     const path = new Path2D();
     for (const site of loop.sites) {
       radius = Math.max(radius, site.radius);
-      if (site.kind === 'point') { path.arc(...site.a, Math.max(site.radius, 0), 0, 2 * Math.PI); continue; }
-      if (!pen || Math.hypot(pen[0] - site.a[0], pen[1] - site.a[1]) > 1e-9 * shape.bounding_radius) path.moveTo(...site.a);
-      if (site.kind === 'segment') path.lineTo(...site.b);
+      if (site.kind === 'point') { path.arc(site.a[0] / unit, site.a[1] / unit, Math.max(site.radius, 0) / unit, 0, 2 * Math.PI); continue; }
+      if (!pen || Math.hypot(pen[0] - site.a[0], pen[1] - site.a[1]) > 1e-9 * shape.bounding_radius) path.moveTo(site.a[0] / unit, site.a[1] / unit);
+      if (site.kind === 'segment') path.lineTo(site.b[0] / unit, site.b[1] / unit);
       else {
         const [cx, cy] = site.center, from = Math.atan2(site.a[1] - cy, site.a[0] - cx);
-        path.arc(cx, cy, site.arc_radius, from, from + site.sweep, site.sweep < 0);
+        path.arc(cx / unit, cy / unit, site.arc_radius / unit, from, from + site.sweep, site.sweep < 0);
       }
       pen = site.b;
     }
@@ -45,7 +46,8 @@ function pathsOf(shape) {
   const point = shape.loops.every(l => l.sites.every(s => s.kind === 'point'));
   const {sites} = shape.loops[0], centred = sites.length === 1 && Math.hypot(...sites[0].a) <= 1e-9 * shape.bounding_radius;
   const disc = point && shape.loops.length === 1 && centred ? radius : 0;
-  return {fill, edge, thickness: point ? 0 : radius, point, disc};
+  const bare = point && shape.loops.length === 1 && sites.length === 1 && radius === 0 ? sites[0].a : null;
+  return {fill, edge, thickness: point ? 0 : radius, point, disc, bare};
 }
 
 class Picture {
@@ -56,7 +58,9 @@ class Picture {
     // without a graphics card a canvas in memory is ten times as fast
     this.ctx = this.canvas.getContext('2d', {willReadFrequently: this.cells.bySoftware});
     this.discs = this.cells.bySoftware ? new Discs() : null;
-    this.paths = about.shapes.map(pathsOf);
+    const [x0, y0, x1, y1] = about.extent;
+    this.unit = 2 ** Math.round(Math.log2(Math.max(x1 - x0, y1 - y0)));
+    this.paths = about.shapes.map(shape => pathsOf(shape, this.unit));
     this.reach = new Reach(about.shapes);
     this.things = new Things();
     this.detail = DETAILS[0];
@@ -94,9 +98,9 @@ class Picture {
     return [v.x + (px - this.canvas.width / 2) / v.scale, v.y - (py - this.canvas.height / 2) / v.scale];
   }
 
-  /** From now on lengths are metres of a frame at this pose. */
+  /** From now on lengths are units of a frame at this pose. */
   enter([x, y, angle]) {
-    const s = this.view.scale, c = s * Math.cos(angle), d = s * Math.sin(angle), [px, py] = this.toPixels(x, y);
+    const s = this.view.scale * this.unit, c = s * Math.cos(angle), d = s * Math.sin(angle), [px, py] = this.toPixels(x, y);
     this.ctx.setTransform(c, -d, -d, -c, px, py);
   }
   leave() { this.ctx.setTransform(1, 0, 0, 1, 0, 0); }
@@ -134,7 +138,7 @@ class Picture {
   }
 
   outline(shape, pose, ink) {
-    const {ctx} = this, paths = this.paths[shape], pixel = 1 / this.view.scale;
+    const {ctx} = this, paths = this.paths[shape], {unit} = this, pixel = 1 / (this.view.scale * unit);
     if (paths.disc > 0 && ink.fill !== 'transparent') { this.disc(paths.disc, pose, ink); return; }
     this.enter(pose);
     ctx.lineJoin = ctx.lineCap = 'round';
@@ -147,16 +151,17 @@ class Picture {
     } else {
       if (paths.thickness > 0) {
         ctx.strokeStyle = ink.fill;
-        ctx.lineWidth = 2 * paths.thickness;
+        ctx.lineWidth = 2 * paths.thickness / unit;
         ctx.stroke(paths.edge);
       }
       ctx.fillStyle = ink.fill;
       ctx.fill(paths.fill, 'evenodd');
     }
     ctx.strokeStyle = ink.line;
-    ctx.lineWidth = Math.max(ink.width * this.ratio * pixel, paths.thickness > 0 ? 2 * paths.thickness : 0);
+    ctx.lineWidth = Math.max(ink.width * this.ratio * pixel, paths.thickness > 0 ? 2 * paths.thickness / unit : 0);
     if (!(paths.thickness > 0)) ctx.stroke(paths.edge);
-    const r = this.about.shapes[shape].bounding_radius;
+    if (paths.bare) { this.leave(); this.round(...this.toPixels(...placed(pose, paths.bare)), 2.5 * this.ratio, ink.line); return; }
+    const r = this.about.shapes[shape].bounding_radius / unit;
     if (paths.point && ink.spoke && r >= MARK_FROM * this.ratio * pixel) {
       ctx.beginPath();
       ctx.moveTo(0, 0);

@@ -62,6 +62,15 @@ TEST(ForcesLayer, WidthsAreAsTheForces) {
   EXPECT_EQ(red_in(equal, 75), red_in(equal, 225));
 }
 
+// At one corner the floor and a wall press: neither force is the sum of both.
+TEST(ForcesLayer, WhatPressesAlongTwoLinesAreTwoForces) {
+  TwoDiscs two;
+  two.options.forces = {
+      {0, {1.0, 0.0}, 8.0}, {1, {-1.0, 0.0}, 6.0, {1.0, 0.0}}, {1, {-1.0, 0.0}, 8.0, {0.0, 1.0}}};
+  const Picture picture = two.draw();
+  EXPECT_EQ(red_in(picture, 75), red_in(picture, 225));
+}
+
 TEST(ForcesLayer, WithoutForcesNothingIsRed) {
   const Picture picture = TwoDiscs().draw();
   for (int column = 0; column < picture.width; ++column) EXPECT_EQ(red_in(picture, column), 0);
