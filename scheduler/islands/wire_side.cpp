@@ -87,8 +87,9 @@ SideOfWire side_of_wire(const Half& half, const Sample& sample, const Site& site
   const auto by_edges = [&] { return of_edges.most > -of_edges.least; };
   if (!both_sides && of_edges.tells(told)) return {by_edges()};
   if (flush && of_wire.tells(told)) return {of_wire.most < -of_wire.least};
-  if (flush && of_edges.tells(kOneCorner * half.carrier.bounding_radius))
-    return {by_edges(), SideTold::hardly};
+  // along an arc the centre is in the hollow, whichever side the edges are on
+  const double hardly = site.kind == SiteKind::arc ? 0.0 : kOneCorner * half.carrier.bounding_radius;
+  if (flush && of_edges.tells(hardly)) return {by_edges(), SideTold::hardly};
   const double of_centre = above_at(centre(half));
   return {of_centre >= 0.0, std::abs(of_centre) > told ? SideTold::hardly : SideTold::not_at_all};
 }

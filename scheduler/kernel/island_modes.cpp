@@ -272,6 +272,7 @@ void IslandModes::add_contact(const HeldContact& c) {
   place_.push_back(problem_.contacts.size());
   bool present = true;
   const Outline& carrier = c.feature.sample_on_a ? of_a : of_b;
+  const Outline& other = c.feature.sample_on_a ? of_b : of_a;
   const bool of_wire = !carrier.solid && carrier.samples[c.feature.sample].arc_site >= 0;
   // each shape has the friction of the contact, and keeps its gap while it is closed
   for (SmoothContact& shape :
@@ -282,7 +283,12 @@ void IslandModes::add_contact(const HeldContact& c) {
     // Two points meet nobody: a side is met before. Nor does a wire's arc meet a corner, which meets the arc, on its own side.
     const bool points = shape.kind == SmoothContact::Kind::circle &&
                         shape.radius + (of_wire ? 0.0 : shape.sample_radius) == 0.0;
-    if ((present && told) || points) {
+    // Of two wires' arcs on one circle the ends and joints say all that there is to say, a quarter turn apart at most; the way
+    // between their centres, which is next to none, may turn as it likes.
+    const bool of_one_circle = of_wire && !other.solid && shape.kind == SmoothContact::Kind::circle &&
+                               shape.hollow &&
+                               shape.radius - shape.sample_radius <= search_->limits().tolerance;
+    if ((present && told) || points || of_one_circle) {
       if (present) place_.back() = std::numeric_limits<std::size_t>::max();
       present = false;
       continue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "brink/core/shapes/curve_site.h"
 #include "brink/scheduler/islands/tolerances.h"
@@ -12,6 +13,8 @@ namespace {
 
 /// Contact tolerances that a sharp sample may be beyond a wire while a run goes on, unless it was so from its start.
 constexpr double kSunkInRun = 4.0;
+/// A gap is told to this part of the outlines' size.
+constexpr double kTold = 8.0 * std::numeric_limits<double>::epsilon();
 /// Two normals whose cosine is off one by no more are one, and a pull along a normal below this part of the largest is none.
 constexpr double kOneLine = 1e-9;
 
@@ -60,6 +63,27 @@ bool is_opposite(const HeldContact& c, const std::vector<HeldContact>& contacts,
 
 /// Normals that lie along one line to this cosine, the other way, are of two sides of one piece, or of two that go on into each other.
 constexpr double kOtherSide = -0.9;
+
+/// The circle of an arc that has a contact.
+struct Circle {
+  Vec2 center = Vec2::Zero();  ///< from the other's position, world axes [m]
+  double radius = 0.0;
+  bool is_outside = false;  ///< the normal, into the pair's body, leads out of it
+};
+
+std::optional<Circle> circle_of(const HeldContact& c, const WireSides::Known& known) {
+  const NearFeature& f = c.feature;
+  const Outline& wire =
+      known.search.outline_of(f.sample_on_a ? known.search.other_owner(c.pair) : c.pair.body);
+  const Site& site = wire.sites[f.site];
+  if (site.kind != SiteKind::arc) return std::nullopt;
+  const ExtendedState other = known.members.other_state(c.pair),
+                      owner = f.sample_on_a ? other : known.members.state(known.members.place_of(c.pair.body));
+  const Frame frame(Pose{{0.0, 0.0}, owner.seen_from(Vec2::Zero()).pose.angle});
+  const Vec2 center =
+      (owner.position - other.position).cast<double>() + frame.direction_to_world(site.center);
+  return Circle{center, site.arc_radius, f.normal.dot(f.point - center) > 0.0};
+}
 
 bool share_an_end(const Site& a, const Site& b) {
   return a.a == b.b || a.b == b.a || a.a == b.a || a.b == b.b;
@@ -123,6 +147,15 @@ bool WireSides::contradicts(const HeldContact& c, const Known& known) const {
   return std::any_of(known.before.begin(), known.before.end(), of_sample);
 }
 
+/// True if the pair was in no island before: a search leaves nobody nearer to a wire than its level, which is more than roundings.
+bool WireSides::comes_from_search(const HeldContact& c, const Known& known) const {
+  const double size = known.search.outline_of(c.pair.body).magnitude +
+                      known.search.outline_of(known.search.other_owner(c.pair)).magnitude;
+  return std::abs(c.feature.gap) > kTold * size &&
+         std::none_of(known.before.begin(), known.before.end(),
+                      [&](const HeldContact& w) { return w.pair == c.pair; });
+}
+
 /// False: nothing tells surely which side it is.
 bool WireSides::remember(HeldContact& c, const Known& known) const {
   const Outline& carrier =
@@ -138,6 +171,8 @@ bool WireSides::remember(HeldContact& c, const Known& known) const {
     turn = before->feature.normal.dot(f.normal) < 0.0;
   else
     turn = f.side_told == SideTold::surely ? false : is_round_a_corner(c, known);
+  if (!turn && !run_begins_ && comes_from_search(c, known)) turn = f.gap < 0.0;
+  if (!turn && !run_begins_) turn = is_elsewhere_on_circle(c, known);
   if (!turn) turn = is_elsewhere(c, known);
   // no step leaves anybody so deep: it is where it is
   if (!turn && std::abs(f.gap) > kSunkInRun * known.search.limits().tolerance) turn = f.gap < 0.0;
@@ -169,6 +204,20 @@ std::optional<bool> WireSides::is_round_a_corner(const HeldContact& c, const Kno
     const Vec2& end = here.a == there.b || here.a == there.a ? here.a : here.b;
     const bool alike = is_right(here, end, f.normal) == is_right(there, end, g.normal);
     return alike != onward;
+  }
+  return std::nullopt;
+}
+
+/// Of an arc on the circle of which another contact of the pair was: true if this one is on the other side than that.
+std::optional<bool> WireSides::is_elsewhere_on_circle(const HeldContact& c, const Known& known) const {
+  const std::optional<Circle> here = circle_of(c, known);
+  if (!here) return std::nullopt;
+  const double near = near_a_wire(c, known.members);
+  for (const HeldContact& w : known.before) {
+    if (!(w.pair == c.pair) || !w.feature.thin || w.feature.at_end || !(std::abs(w.feature.gap) < near)) continue;
+    const std::optional<Circle> there = circle_of(w, known);
+    if (there && (there->center - here->center).norm() < near && std::abs(there->radius - here->radius) < near)
+      return there->is_outside != here->is_outside;
   }
   return std::nullopt;
 }

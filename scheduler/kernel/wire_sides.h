@@ -29,6 +29,7 @@ struct StepCause {
 ///   the edges, surely
 ///   the piece next to it   it was upon that in the step before: nobody goes through a wire round its corner
 ///   contacts on the line   of the step before, or what has just met: nobody changes sides along a line
+///   contacts on the circle of the step before, of arcs on one circle: nor along that
 ///   the depth              no step leaves anybody beyond a wire by more than some contact tolerances
 ///   parallel contacts      two that come to lie flush, along more than one line, are on one side of each other
 ///
@@ -49,8 +50,10 @@ class WireSides {
 
  private:
   bool remember(HeldContact& c, const Known& known) const;
+  bool comes_from_search(const HeldContact& c, const Known& known) const;
   bool contradicts(const HeldContact& c, const Known& known) const;
   std::optional<bool> is_elsewhere(const HeldContact& c, const Known& known) const;
+  std::optional<bool> is_elsewhere_on_circle(const HeldContact& c, const Known& known) const;
   std::optional<bool> is_round_a_corner(const HeldContact& c, const Known& known) const;
 
   bool run_begins_ = false;
