@@ -301,8 +301,11 @@ void IslandModes::add_contact(const HeldContact& c) {
     // a closed contact keeps the gap that it has; at a wire, which has no inside, never less than a touch
     const bool deep = c.feature.gap < -search_->limits().tolerance;  // as the scene has it
     made.kept = deep ? c.feature.gap : std::max(c.feature.gap, c.feature.thin ? touch_ : 0.0);
-    // what begins nearer than a touch, and opens, has not closed by that
-    if (c.feature.thin) made.off = kOff * made.kept, made.closes_at = std::clamp(c.feature.gap, 0.0, touch_);
+    // what begins nearer than a touch, or sunk by less than a tolerance, and opens, has not closed by that
+    if (c.feature.thin) {
+      made.off = kOff * made.kept;
+      made.closes_at = std::clamp(c.feature.gap, -search_->limits().tolerance, touch_);
+    }
     // what a sample is not abreast of now it may go by
     made.passes = c.feature.at_end || !present;
     problem_.contacts.push_back(made);

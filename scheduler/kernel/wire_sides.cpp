@@ -78,7 +78,8 @@ std::optional<Circle> circle_of(const HeldContact& c, const WireSides::Known& kn
   const Site& site = wire.sites[f.site];
   if (site.kind != SiteKind::arc) return std::nullopt;
   const ExtendedState other = known.members.other_state(c.pair),
-                      owner = f.sample_on_a ? other : known.members.state(known.members.place_of(c.pair.body));
+                      owner =
+                          f.sample_on_a ? other : known.members.state(known.members.place_of(c.pair.body));
   const Frame frame(Pose{{0.0, 0.0}, owner.seen_from(Vec2::Zero()).pose.angle});
   const Vec2 center =
       (owner.position - other.position).cast<double>() + frame.direction_to_world(site.center);
@@ -214,9 +215,11 @@ std::optional<bool> WireSides::is_elsewhere_on_circle(const HeldContact& c, cons
   if (!here) return std::nullopt;
   const double near = near_a_wire(c, known.members);
   for (const HeldContact& w : known.before) {
-    if (!(w.pair == c.pair) || !w.feature.thin || w.feature.at_end || !(std::abs(w.feature.gap) < near)) continue;
+    if (!(w.pair == c.pair) || !w.feature.thin || w.feature.at_end || !(std::abs(w.feature.gap) < near))
+      continue;
     const std::optional<Circle> there = circle_of(w, known);
-    if (there && (there->center - here->center).norm() < near && std::abs(there->radius - here->radius) < near)
+    if (there && (there->center - here->center).norm() < near &&
+        std::abs(there->radius - here->radius) < near)
       return there->is_outside != here->is_outside;
   }
   return std::nullopt;

@@ -123,8 +123,58 @@ TEST(CurvedWires, KeepTheirSides) {
   testing::for_each_world(60, pressed, [](std::uint64_t seed) { expect_sides_kept(pressed(seed), seed); });
 }
 
+/// A wire, without thickness, that two of fit into each other.
+std::string form(Random& random) {
+  const double high = random.uniform(0.02, 0.3), half = random.uniform(0.1, 0.28);
+  switch (random.below(7)) {
+    case 0:
+      return fmt::format("chain = {{ vertices = [[-0.2, {}], [0, 0], [0.2, {}]] }}", high,
+                         random.uniform(0.02, 0.3));
+    case 1:
+      return fmt::format("chain = {{ vertices = [[-0.3, {}], [-0.1, 0], [0.1, {}], [0.3, 0]] }}", high,
+                         0.7 * high);
+    case 2:
+      return "path = { d = 'M 0.3 0 A 0.2 0.2 0 0 0 0.1 0 A 0.2 0.2 0 0 1 -0.1 0 A 0.2 0.2 0 0 0 -0.3 0' }";
+    case 3:
+      return "path = { d = 'M 0.2 0 A 0.3 0.3 0 0 0 -0.2 0 L -0.4 -0.1' }";
+    case 4:  // flat
+      return fmt::format("path = {{ d = 'M {} 0 A 2 2 0 0 0 {} 0' }}", half, -half);
+    case 5:  // an arch
+      return fmt::format("path = {{ d = 'M {} 0 A 0.3 0.3 0 0 0 {} 0' }}", half, -half);
+    default:  // a cup
+      return fmt::format("path = {{ d = 'M {} 0 A 0.3 0.3 0 0 0 {} 0' }}", -half, half);
+  }
+}
+
+/// Two of one form that come down one into the other, on a floor that may move.
+std::string of_one_form(std::uint64_t seed) {
+  Random random(seed);
+  const auto pick = [&](std::initializer_list<double> of) { return *(of.begin() + random.below(of.size())); };
+  std::string text = fmt::format(
+      "[world]\nduration = 1.5\ngravity = [0, -9.81]\n[materials.default]\nrestitution = {}\nfriction = {}\n"
+      "[[sites]]\nname = 'f'\nsegment = [[-5, 0], [5, 0]]\n",
+      pick({0.0, 0.0, 0.3, 0.7}), pick({0.0, 0.3, 1.0}));
+  const char* const motions[] = {"", "", "motion = { y = '0.05*sin(8*t)' }\n",
+                                 "motion = { x = '0.1*sin(9*t)' }\n"};
+  text += motions[random.below(4)];
+  const std::string shape = form(random);
+  if (random.below(4) == 0)
+    return text + "[[bodies]]\n" + shape + "\ndensity = 1\nposition = [0, 1]\nstack = 2\ntouching = 'f'\n";
+  const double aside = pick({0.0, 0.02, 0.1});
+  for (int k = 0; k < 2; ++k)
+    text += fmt::format("[[bodies]]\n{}\ndensity = 1\nposition = [{}, {}]\nangle = {}\n", shape,
+                        random.uniform(-aside, aside), 0.4 + (aside == 0.0 ? 0.12 : 0.35) * k,
+                        aside == 0.02 && random.below(2) == 0 ? random.uniform(-0.02, 0.02) : 0.0);
+  return text;
+}
+
 TEST(CurvedWires, KeepTheirSidesNestedInAHairpin) {
   testing::for_each_world(60, nested, [](std::uint64_t seed) { expect_sides_kept(nested(seed), seed); });
+}
+
+TEST(CurvedWires, KeepTheirSidesWhereTheyFitIntoEachOther) {
+  testing::for_each_world(30, of_one_form,
+                          [](std::uint64_t seed) { expect_sides_kept(of_one_form(seed), seed); });
 }
 
 }  // namespace

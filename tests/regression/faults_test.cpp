@@ -450,7 +450,8 @@ TEST(Faults, CurvedWiresKeepTheirSidesOverJoints) {
   for (const char* scene :
        {"two_arcs_in_a_drum", "two_arcs_in_a_tray", "arc_and_wire_in_a_bowl", "ring_and_spline_in_a_tray",
         "crescents_on_a_wire", "arc_over_a_spline", "needle_in_a_hairpin", "arc_in_a_hairpin",
-        "nested_arcs_in_a_hairpin", "arc_round_the_end_of_an_arc"}) {
+        "nested_arcs_in_a_hairpin", "arc_round_the_end_of_an_arc", "hooks_in_each_other",
+        "arches_on_a_shaken_floor"}) {
     const Watched run = watched_lasting(load_scene(fault(scene), {"output.frame_interval=0.002"}));
     EXPECT_EQ(run.told.summary.termination, Termination::reached_end)
         << scene << ": " << run.told.summary.why;
