@@ -33,6 +33,8 @@ bool is_database(const fs::path& file) {
   return first == "SQLite format 3";
 }
 
+std::string said_of(int cause) { return cause == ENOSPC ? "disk full" : std::strerror(cause); }
+
 }  // namespace
 
 // Asked before anything is opened. Another program could still put a link there in between: this is a
@@ -61,14 +63,14 @@ void write_whole(const fs::path& file, std::string_view text) {
   const fs::path whole = fs::exists(file, missing) ? fs::canonical(file) : file;
   std::string beside = whole.string() + ".XXXXXX";
   const int out = ::mkstemp(beside.data());  // never through a link
-  if (out < 0) throw_not_written(whole);
+  // The file of before stays: only what is beside it is half a file.
   const auto fail = [&] {
     const int cause = errno;
-    ::close(out);
-    fs::remove(beside, missing);
-    errno = cause;
-    throw_not_written(whole);
+    if (out >= 0) ::close(out);
+    if (out >= 0) fs::remove(beside, missing);
+    throw IoError(fmt::format("{}: could not be written: {}", whole.string(), said_of(cause)));
   };
+  if (out < 0) fail();
   for (std::size_t at = 0; at < text.size();) {
     const ssize_t written = ::write(out, text.data() + at, text.size() - at);
     if (written < 0 && errno == EINTR) continue;
@@ -88,12 +90,11 @@ void write_whole(const fs::path& file, std::string_view text) {
 void throw_not_written(const fs::path& file) {
   // Callers come here right after the write that failed, while errno is still its own.
   const int cause = errno;
-  const std::string why = cause == ENOSPC ? "disk full" : std::strerror(cause);
   // What has no room is half a file. Where it could not be opened it is somebody's whole one.
   std::error_code error;
   if ((cause == ENOSPC || cause == EDQUOT || cause == EFBIG) && fs::is_regular_file(file, error))
     fs::remove(file, error);
-  throw IoError(fmt::format("{}: could not be written: {}", file.string(), why));
+  throw IoError(fmt::format("{}: could not be written: {}", file.string(), said_of(cause)));
 }
 
 }  // namespace brink
