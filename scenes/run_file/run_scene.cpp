@@ -191,8 +191,6 @@ void close_as_failed(RunFileRecorder& recorder, const Simulator& simulator, cons
   }
 }
 
-}  // namespace
-
 /// Files that the scene reads beside its own.
 std::vector<std::string> names_of_data(const Scene& scene) {
   std::vector<std::string> names;
@@ -200,6 +198,8 @@ std::vector<std::string> names_of_data(const Scene& scene) {
     if (file != scene.path) names.push_back(file.string());
   return names;
 }
+
+}  // namespace
 
 Scene scene_of_run(const std::filesystem::path& run_file, const std::vector<std::string>& more) {
   const RunFile run(run_file);

@@ -1,4 +1,5 @@
 // Sweeps: what an experiment file means, and that every run is made once, with the bits of `brink run`.
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 #include <unistd.h>
 
@@ -9,6 +10,7 @@
 #include <sstream>
 #include <thread>
 
+#include "brink/core/base/error.h"
 #include "brink/scenes/run_file/run_scene.h"
 #include "brink/scenes/sweep/plot.h"
 #include "brink/scenes/sweep/sweep.h"
@@ -239,6 +241,26 @@ TEST_F(SweepTest, RunThatCannotStartIsARowThatSaysWhy) {
   EXPECT_THAT(heading, ::testing::StartsWith("scene,bodies.1.position,termination,state_hash,end_time,"));
   EXPECT_THAT(first, ::testing::StartsWith("two,\"[3, 0]\",reached_end," + results[0]->state_hash + ",1,0,"));
   EXPECT_THAT(second, ::testing::StartsWith("two,\"[1, 0]\",\"failed: "));
+}
+
+// What stands in the file is not taken for granted.
+TEST_F(SweepTest, NumbersThatCannotBeAreFaultsOfTheFile) {
+  write("one.toml", "[world]\nduration = 1\n[[bodies]]\ndisc = {radius = 1}\nvelocity = [-1, 0]\n");
+  const Experiment e = experiment("scenes = \"one.toml\"\nseeds = 2\n");
+  {
+    SweepStore store(dir_ / "out", e);
+    run_sweep(e, store, {});
+    EXPECT_LT(store.results(e)[0]->numbers.at("momentum_x"), 0.0);
+  }
+  for (const char* wrong : {"collisions = 9e999", "collisions = -5.5", "collisions = 0.5", "end_time = -1",
+                            "energy_final = -9e999", "state_hash = 'zzz'"}) {
+    const std::string file = (dir_ / "out" / "sweep.db").string();
+    fs::copy_file(file, dir_ / "kept.db", fs::copy_options::overwrite_existing);
+    SQLite::Database(file, SQLite::OPEN_READWRITE).exec(std::string("UPDATE run SET ") + wrong);
+    EXPECT_THROW(SweepStore(dir_ / "out", e).results(e), IoError) << wrong;
+    fs::copy_file(dir_ / "kept.db", file, fs::copy_options::overwrite_existing);
+  }
+  EXPECT_EQ(SweepStore(dir_ / "out", e).results(e)[1]->termination, "reached_end");
 }
 
 // A name that a spreadsheet would run is none in the table; a number below 0 is one still.
