@@ -71,18 +71,26 @@ struct Circle {
   bool is_outside = false;  ///< the normal, into the pair's body, leads out of it
 };
 
+/// The outline that carries the contact's site, and where it is.
+const Outline& wire_of(const HeldContact& c, const WireSides::Known& known) {
+  return known.search.outline_of(c.feature.sample_on_a ? known.search.other_owner(c.pair) : c.pair.body);
+}
+ExtendedState state_of_wire(const HeldContact& c, const WireSides::Known& known) {
+  return c.feature.sample_on_a ? known.members.other_state(c.pair)
+                               : known.members.state(known.members.place_of(c.pair.body));
+}
+/// Turned as that is, about the world's origin.
+Frame turned(const ExtendedState& state) {
+  return Frame(Pose{{0.0, 0.0}, state.seen_from(Vec2::Zero()).pose.angle});
+}
+
 std::optional<Circle> circle_of(const HeldContact& c, const WireSides::Known& known) {
   const NearFeature& f = c.feature;
-  const Outline& wire =
-      known.search.outline_of(f.sample_on_a ? known.search.other_owner(c.pair) : c.pair.body);
-  const Site& site = wire.sites[f.site];
+  const Site& site = wire_of(c, known).sites[f.site];
   if (site.kind != SiteKind::arc) return std::nullopt;
-  const ExtendedState other = known.members.other_state(c.pair),
-                      owner =
-                          f.sample_on_a ? other : known.members.state(known.members.place_of(c.pair.body));
-  const Frame frame(Pose{{0.0, 0.0}, owner.seen_from(Vec2::Zero()).pose.angle});
-  const Vec2 center =
-      (owner.position - other.position).cast<double>() + frame.direction_to_world(site.center);
+  const ExtendedState owner = state_of_wire(c, known);
+  const Vec2 center = (owner.position - known.members.other_state(c.pair).position).cast<double>() +
+                      turned(owner).direction_to_world(site.center);
   return Circle{center, site.arc_radius, f.normal.dot(f.point - center) > 0.0};
 }
 
@@ -123,8 +131,7 @@ bool WireSides::contradicts(const HeldContact& c, const Known& known) const {
     return before != nullptr && !before->feature.at_end;
   };
   if (!f.at_end && was_beside(c)) return false;
-  const int other = known.search.other_owner(c.pair);
-  const Outline& wire = known.search.outline_of(f.sample_on_a ? other : c.pair.body);
+  const Outline& wire = wire_of(c, known);
   const auto on_other_side = [&](const HeldContact& o) {
     return o.pair == c.pair && o.feature.normal.dot(f.normal) < kOtherSide;
   };
@@ -185,11 +192,8 @@ bool WireSides::remember(HeldContact& c, const Known& known) const {
 /// seen along the wire. Who goes over a corner of a wire does not go through it.
 std::optional<bool> WireSides::is_round_a_corner(const HeldContact& c, const Known& known) const {
   const NearFeature& f = c.feature;
-  const Outline& wire =
-      known.search.outline_of(f.sample_on_a ? known.search.other_owner(c.pair) : c.pair.body);
-  const ExtendedState owner = f.sample_on_a ? known.members.other_state(c.pair)
-                                            : known.members.state(known.members.place_of(c.pair.body));
-  const Frame frame(Pose{{0.0, 0.0}, owner.seen_from(Vec2::Zero()).pose.angle});
+  const Outline& wire = wire_of(c, known);
+  const Frame frame = turned(state_of_wire(c, known));
   const Site& here = wire.sites[f.site];
   const auto is_right = [&](const Site& site, const Vec2& end, const Vec2& normal) {
     return frame.direction_to_world(right_normal(site, end)).dot(normal) > 0.0;
