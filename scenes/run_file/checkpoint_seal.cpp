@@ -13,14 +13,14 @@ namespace {
 // Initial values are those of a sound header, with which unsealed() compares.
 struct Header {
   char magic[8] = {'B', 'R', 'I', 'N', 'K', 'C', 'P', '\n'};
-  std::uint32_t version = 2, unused = 0;
+  std::uint32_t version = 3, unused = 0;
   std::uint64_t length = 0, checksum = 0;
 };
 static_assert(sizeof(Header) == 32);
 
 /// Over everything that a resume goes by, in a fixed order: another order would be another layout, and
 /// needs another version in the header. Cost: proportional to the snapshot.
-std::uint64_t checksum(const ResumePoint& row, std::span<const std::byte> snapshot, std::uint64_t identity) {
+std::uint64_t seal_of(const ResumePoint& row, std::span<const std::byte> snapshot, std::uint64_t identity) {
   StateHash hash;
   hash.add(identity);
   hash.add(row.t);
@@ -29,19 +29,17 @@ std::uint64_t checksum(const ResumePoint& row, std::span<const std::byte> snapsh
   hash.add(static_cast<std::uint64_t>(row.events));
   hash.add(static_cast<std::uint64_t>(row.contacts));
   hash.add(static_cast<std::uint64_t>(row.knots));
-  hash.add(static_cast<std::uint64_t>(snapshot.size()));
-  hash.add_bytes(snapshot);
+  hash.add(checksum(snapshot));
   return hash.value();
 }
 
 }  // namespace
 
-/// Each text after its length, so that no other three texts run together to the same bytes.
+/// Each text by a checksum of its own, so that no other three texts run together to the same bytes.
 std::uint64_t run_identity(const std::string& version, const std::string& options, const std::string& world) {
   StateHash hash;
   for (const std::string* text : {&version, &options, &world}) {
-    hash.add(static_cast<std::uint64_t>(text->size()));
-    hash.add_bytes(std::as_bytes(std::span(*text)));
+    hash.add(checksum(std::as_bytes(std::span(*text))));
   }
   return hash.value();
 }
@@ -52,7 +50,7 @@ std::vector<std::byte> sealed(const ResumePoint& row, std::span<const std::byte>
                               std::uint64_t identity) {
   Header header;
   header.length = snapshot.size();
-  header.checksum = checksum(row, snapshot, identity);
+  header.checksum = seal_of(row, snapshot, identity);
   std::vector<std::byte> bytes(sizeof header + snapshot.size());
   std::memcpy(bytes.data(), &header, sizeof header);
   std::copy(snapshot.begin(), snapshot.end(), bytes.begin() + sizeof header);
@@ -73,7 +71,7 @@ std::vector<std::byte> unsealed(const ResumePoint& point, std::uint64_t identity
     throw BadInput("the state is of another version of checkpoints");
   const auto snapshot = std::span(point.state).subspan(sizeof header);
   if (header.length != snapshot.size()) throw BadInput("the state is cut or has grown");
-  if (header.checksum != checksum(point, snapshot, identity))
+  if (header.checksum != seal_of(point, snapshot, identity))
     throw BadInput("the checksum is wrong: it was damaged, or is of another run");
   return {snapshot.begin(), snapshot.end()};
 }

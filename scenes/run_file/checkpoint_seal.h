@@ -5,13 +5,13 @@
 /// A sealed state is a header and then the simulator's snapshot (little-endian, as the machine has it):
 ///
 ///     8 bytes   magic "BRINKCP\n"
-///     u32       version of this layout: 2
+///     u32       version of this layout: 3
 ///     u32       0
 ///     u64       length of the snapshot
-///     u64       checksum: FNV-1a, 64 bits, over the run's identity, the snapshot,
+///     u64       checksum (core/base/hash.h) of the run's identity, the snapshot,
 ///               and the row's other columns
 ///
-/// FNV-1a tells any single change of a byte for certain, others but for one in 2^64. It is no signature: who
+/// It tells any single change of a byte for certain, others but for one in 2^64. It is no signature: who
 /// can write the file can write a seal.
 
 #include <cstddef>

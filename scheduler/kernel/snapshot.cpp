@@ -13,7 +13,7 @@ namespace brink {
 namespace {
 
 /// With a newline and a zero in front of the letters: no text file begins so. The digit grows with every change of what is written.
-constexpr std::array<char, 8> kMagic{'\n', '\0', 'B', 'R', 'I', 'N', 'K', 'C'};
+constexpr std::array<char, 8> kMagic{'\n', '\0', 'B', 'R', 'I', 'N', 'K', 'D'};
 
 /// Objects as they lie in memory: a snapshot is read by the program that wrote it.
 class Writer {
@@ -65,14 +65,6 @@ class Reader {
  private:
   std::span<const std::byte> bytes_;
 };
-
-/// FNV-1a over all bytes before the checksum: it tells any single change of a byte for certain, others but for one in 2^64.
-std::uint64_t checksum(std::span<const std::byte> bytes) {
-  StateHash hash;
-  hash.add(static_cast<std::uint64_t>(bytes.size()));
-  hash.add_bytes(bytes);
-  return hash.value();
-}
 
 /// Without the checksum at the end. @throws BadInput if it does not hold.
 std::span<const std::byte> checked(std::span<const std::byte> bytes) {
