@@ -10,11 +10,9 @@
 
 #include "brink/core/base/limits.h"
 #include "brink/scheduler/first_contact/apart.h"
-#include "brink/scheduler/first_contact/canonical_time.h"
 #include "brink/scheduler/first_contact/closed_forms.h"
 #include "brink/scheduler/first_contact/common_piece.h"
-#include "brink/scheduler/first_contact/corners.h"
-#include "brink/scheduler/first_contact/falling_gap.h"
+#include "brink/scheduler/first_contact/feature_crossing.h"
 #include "brink/scheduler/first_contact/pair_view.h"
 #include "brink/scheduler/first_contact/site_step.h"
 
@@ -22,15 +20,12 @@ namespace brink {
 
 namespace {
 
-using detail::come_to_overlap;
-using detail::Corner;
-using detail::corner_at;
-using detail::corner_seen;
-using detail::FallingGap;
+using detail::BothWays;
 using detail::Feature;
+using detail::FeatureCrossing;
 using detail::Half;
 using detail::PairView;
-using detail::parts_alone;
+using detail::SearchWindow;
 
 /// Iterations that a search may take if it has found a contact, whatever its cap.
 constexpr int kMostAfterContact = 1000;
@@ -56,32 +51,8 @@ bool has_hardly_moved(const Mover& a, const Mover& b, double start, double t, co
   return is_little(since.speed + since.spin_s * reach_a + since.spin_t * reach_b);
 }
 
-/// Puts the neighbours that were found back when it goes: others may be looked for in between.
-class KeptNeighbours {
- public:
-  explicit KeptNeighbours(SearchScratch& scratch)
-      : scratch_(scratch),
-        neighbours_(scratch.neighbours),
-        looked_from_(scratch.looked_from),
-        flush_on_(scratch.flush_on) {}
-  KeptNeighbours(const KeptNeighbours&) = delete;
-  KeptNeighbours& operator=(const KeptNeighbours&) = delete;
-  ~KeptNeighbours() {
-    scratch_.neighbours.swap(neighbours_);
-    scratch_.looked_from = looked_from_;
-    scratch_.flush_on = flush_on_;
-  }
-
- private:
-  SearchScratch& scratch_;
-  std::vector<SearchScratch::Neighbour> neighbours_;
-  Vec2 looked_from_;
-  int flush_on_;
-};
-
 /// One search. As it goes on: up to the least safe time every contact is found, but for those that
-/// look_back() tells; to_ is the end that was asked for or, once a contact is found, just behind the
-/// earliest so far; best_ is that contact; and while samples are looked at, the pair is placed at t_.
+/// look_back() tells; and while samples are looked at, the pair is placed at t_.
 class PairSearch {
  public:
   /// From `from` on; what lies before `asked_from` is looked at for the sake of the answer's bits alone. `remembers_start`: the
@@ -91,14 +62,9 @@ class PairSearch {
       : view_(a, b, limits, scratch),
         a_(a),
         b_(b),
-        from_(from),
-        to_(to),
-        asked_from_(asked_from),
-        window_end_(to),
+        window_{.from = from, .to = to, .asked_from = asked_from, .asked_to = to, .bounds = {}},
+        crossing_(a, b, remembers_start, view_, window_, limits, scratch, work),
         remembers_start_(remembers_start),
-        earliest_(remembers_start ? view_.start()
-                                  : std::max({view_.start(), a.motion->remembered_from(asked_from),
-                                              b.motion->remembered_from(asked_from)})),
         limits_(limits),
         scratch_(scratch),
         work_(work) {
@@ -109,10 +75,11 @@ class PairSearch {
   PairAnswer run() {
     advance();
     // what stopped before the contact that it had found may have passed an earlier one
-    if (capped_ && !(best_.sample >= 0 && reached_ >= best_.time))
+    const FeatureContact& earliest = crossing_.earliest();
+    if (capped_ && !(crossing_.has_found() && reached_ >= earliest.time))
       return {PairAnswer::Status::undecided, reached_, {}};
-    if (best_.sample >= 0) return told(best_);
-    return {PairAnswer::Status::clear, to_, {}};
+    if (crossing_.has_found()) return told(earliest);
+    return {PairAnswer::Status::clear, window_.to, {}};
   }
 
  private:
@@ -139,17 +106,17 @@ class PairSearch {
     begin_window();
     for (int iterations = 0;;) {
       const double t = least_safe_time();
-      if (t >= to_) {
-        look_back(to_);
-        if (!goes_back_from(to_) && !leave_part()) return;
+      if (t >= window_.to) {
+        look_back(window_.to);
+        if (!goes_back_from(window_.to) && !leave_part()) return;
         continue;
       }
-      reached_ = std::max(t, asked_from_);
+      reached_ = std::max(t, window_.asked_from);
       // Steps before the time that was asked from are not counted. A search that began earlier for the sake
       // of its bits would with a cap of a few steps never come as far as that time, and so never on.
       // with a contact in hand little is left to look at; in a part one that is found later may be earlier
-      if (t >= asked_from_ && ++iterations > most_iterations(t) && !in_part_ &&
-          (best_.sample < 0 || iterations > kMostAfterContact)) {
+      if (t >= window_.asked_from && ++iterations > most_iterations(t) && !window_.in_part &&
+          (!crossing_.has_found() || iterations > kMostAfterContact)) {
         look_back(t);
         capped_ = !goes_back_from(t);
         if (capped_) return;
@@ -159,12 +126,13 @@ class PairSearch {
       t_ = t;
       next_ = next_after(t);
       view_.place(t);
-      short_end_ = std::min(to_, t + short_window_);
+      short_end_ = std::min(window_.to, t + short_window_);
       // at first both windows are one
-      short_bounds_ = t == from_ && short_end_ == to_ ? long_bounds_ : BothWays(bounds_over(t, short_end_));
+      short_bounds_ = t == window_.from && short_end_ == window_.to ? window_.bounds
+                                                                    : BothWays(bounds_over(t, short_end_));
       // Who is due soon is looked at now: the outlines are placed once for all of these.
       // What is looked at early loses no more of its step than this quarter of the short window.
-      const double due = t + 0.25 * std::min(short_window_, to_ - t);
+      const double due = t + 0.25 * std::min(short_window_, window_.to - t);
       least_ = kForever;
       // the nearest ones first: beside their steps most others are seen to be far at a glance
       const Half &of_a = view_.half(true), &of_b = view_.half(false);
@@ -191,17 +159,17 @@ class PairSearch {
       const Half& half = view_.half(on_a);
       // The vertex of a notch is never due: what comes from outside meets one of its sides before.
       for (int i = 0; i < half.count; ++i)
-        scratch_.safe_until.push_back(half.sample(i).hollow ? kForever : from_);
+        scratch_.safe_until.push_back(half.sample(i).hollow ? kForever : window_.from);
     }
     safe_until_[0] = scratch_.safe_until.data();
     safe_until_[1] = safe_until_[0] + view_.half(true).count;
   }
 
-  /// Bounds over all that is left. A contact that is found brings to_ nearer; they hold for that, too.
+  /// Bounds over all that is left. A contact that is found brings window_.to nearer; they hold for that, too.
   void begin_window() {
-    long_bounds_ = BothWays(bounds_over(from_, to_));
-    short_window_ = to_ - from_;
-    reached_ = std::max(from_, asked_from_);
+    window_.bounds = BothWays(bounds_over(window_.from, window_.to));
+    short_window_ = window_.to - window_.from;
+    reached_ = std::max(window_.from, window_.asked_from);
   }
 
   /// The errors of dense output alone decide when and whether those meet who go side by side: each of its wiggles may be a
@@ -210,10 +178,10 @@ class PairSearch {
   void enter_part(double t) {
     const auto [begin, end] = detail::part_of_piece(*a_.motion, *b_.motion, t);
     comes_and_goes_ = false;
-    in_part_ = true;
-    if (best_.time >= begin) best_ = {};
-    from_ = begin;
-    to_ = part_end_ = end;
+    window_.in_part = true;
+    if (crossing_.earliest().time >= begin) crossing_.forget();
+    window_.from = begin;
+    window_.to = window_.part_end = end;
     begin_anew();
     begin_window();
   }
@@ -228,28 +196,22 @@ class PairSearch {
 
   /// From its end on as before. False if there is nothing left to search.
   bool leave_part() {
-    if (!in_part_) return false;
-    if (best_.time > window_end_) best_ = {};
-    if (best_.sample >= 0) return false;
-    in_part_ = false;
-    from_ = to_;
-    to_ = window_end_;
-    if (from_ >= to_) return false;
+    if (!window_.in_part) return false;
+    if (crossing_.earliest().time > window_.asked_to) crossing_.forget();
+    if (crossing_.has_found()) return false;
+    window_.in_part = false;
+    window_.from = window_.to;
+    window_.to = window_.asked_to;
+    if (window_.from >= window_.to) return false;
     begin_anew();
     begin_window();
     return true;
   }
 
-  /// Nothing before it counts ...
-  double soonest() const { return in_part_ ? from_ : asked_from_; }
-  /// ... and nothing after it.
-  double window_end() const { return in_part_ ? part_end_ : window_end_; }
-  /// No probe may lie beyond it.
-  double motions_end() const { return in_part_ ? part_end_ : std::min(a_.motion->end(), b_.motion->end()); }
-
   /// Notes it if a feature that is close comes nearer so slowly that errors may do it. True if so: the step is of no use.
   bool comes_and_goes(double rate) {
-    if (in_part_ || comes_and_goes_ || !(a_.motion->track() || b_.motion->track())) return comes_and_goes_;
+    if (window_.in_part || comes_and_goes_ || !(a_.motion->track() || b_.motion->track()))
+      return comes_and_goes_;
     const auto [begin, end] = detail::common_piece(*a_.motion, *b_.motion, t_);
     comes_and_goes_ = std::abs(rate) * (end - begin) <= kComesAndGoes * limits_.touch;
     return comes_and_goes_;
@@ -271,7 +233,7 @@ class PairSearch {
     const BothWays now(bounds_over(t, t));
     for (const auto& [on_a, i] : scratch_.sinking) {
       // the contact's own sample has been followed to its contact already
-      if (i == best_.sample && on_a == best_.sample_on_a) continue;
+      if (i == crossing_.earliest().sample && on_a == crossing_.earliest().sample_on_a) continue;
       const Half& half = view_.half(on_a);
       const SamplePath path = view_.path(half, i);
       const double band = view_.touching_band(half, i, path);
@@ -324,15 +286,6 @@ class PairSearch {
     if (sinks_) sinking.emplace_back(half.s_is_a, i);
   }
 
-  /// How a moves against b, and b against a.
-  struct BothWays {
-    RelativeBounds of_a, of_b;
-
-    BothWays() = default;
-    explicit BothWays(const RelativeBounds& a_against_b) : of_a(a_against_b), of_b(a_against_b.swapped()) {}
-    const RelativeBounds& of(const Half& half) const { return half.s_is_a ? of_a : of_b; }
-  };
-
   /// How fast, and how bent, a can move against b during [from, to].
   RelativeBounds bounds_over(double from, double to) const {
     return RelativeBounds::over(a_.outline(), *a_.motion, b_.outline(), *b_.motion, from, to);
@@ -354,8 +307,8 @@ class PairSearch {
   double step(const Half& half, int i) {
     const Sample& sample = half.sample(i);
     const SamplePath path = view_.path(half, i);
-    const double long_window = to_ - t_, short_window = short_end_ - t_;
-    const RelativeBounds &relative = long_bounds_.of(half), &near = short_bounds_.of(half);
+    const double long_window = window_.to - t_, short_window = short_end_ - t_;
+    const RelativeBounds &relative = window_.bounds.of(half), &near = short_bounds_.of(half);
     const PathBounds over_all = path_bounds(path, relative, long_window);
     const double band = view_.touching_band(half, i, path);
     const Facing line = line_between(half, i, path, band);
@@ -470,7 +423,7 @@ class PairSearch {
         if (comes_and_goes(f.rate)) return {0.0, 0.0};
         const bool hidden = view_.belongs_to_a_neighbour(half, i, static_cast<int>(j), nearest, path.q);
         // A contact asks for no step: the search ends there, or at an earlier one.
-        if (!hidden && polish(half, f, path, over_all)) continue;
+        if (!hidden && crossing_.meets(half, f, path, over_all)) continue;
         // behind what does not count it may go a part of its way there: what counts has a step of its own
         const double free_way = hidden && f.gap < 0.0 ? 0.25 * nearest.distance : 0.0;
         const double above = f.gap - view_.level(half, i, site, path.q);
@@ -478,7 +431,7 @@ class PairSearch {
           const double step = close_step(half, site, nearest, f, above, path, band, relative, bounds, over);
           return free_way > 0.0 ? std::max(step, free_way / bounds.speed) : step;
         };
-        safe = std::min(safe, step_by(long_bounds_.of(half), over_all, window));
+        safe = std::min(safe, step_by(window_.bounds.of(half), over_all, window));
         again = std::min(again, step_by(short_bounds_.of(half), over_short, short_window));
         continue;
       }
@@ -597,7 +550,7 @@ class PairSearch {
         if (comes_and_goes(step.rate)) return 0.0;
         look_closely();
         const Feature f{i, static_cast<int>(j), step.gap, step.rate, step.normal, step.point};
-        if (polish(half, f, path, bounds)) continue;
+        if (crossing_.meets(half, f, path, bounds)) continue;
         const double above = step.gap - view_.level(half, i, sites.sites[j], path.q),
                      allowed = 0.25 * sink_step(limits_.touch, 0.0);
         sinks_ = sinks_ || may_sink(above, step.rate, step.curvature, band, allowed);
@@ -609,381 +562,24 @@ class PairSearch {
     return safe;
   }
 
-  /// The feature pair is within tolerance: if it approaches, finds the last double at which it is still
-  /// apart. True if a contact was found; false if it recedes, or passes by.
-  bool polish(const Half& half, const Feature& f, const SamplePath& path, const PathBounds& bounds) {
-    if (!view_.approaching(f, path)) {
-      if (f.gap < -limits_.tolerance && t_ == from_ && f.rate > 0.0) ++work_.let_go;
-      return false;
-    }
-    // Within a tick of the clock it is somewhere else: no probe can say whether it meets, and told() says so.
-    if (view_.is_too_fast(path)) return remember(half, f, t_);
-    // of a sample past its contact, so far that sides may have changed, nothing more is to be learnt
-    const bool past = best_.sample == f.sample && best_.sample_on_a == half.s_is_a && t_ > best_.time;
-    if (past) return true;
-    // signed; a vertex's to all sites nearby together, so that the root is the outline's, not that of one
-    // site
-    const auto gap = [&](double t) { return view_.gap_at(half, f, t).gap; };
-    const Site& site = half.site(f.site);
-    const double speed = -f.rate;
-    const double now = f.gap - view_.level(half, f.sample, site, path.q);
-    // touching from the start, and approaching
-    if (t_ <= view_.start() && now <= 0.0) return remember(half, f, t_);
-    if (meets_tip(half, f, path, bounds)) return true;
-    const double rounding = view_.gap_rounding(half, f.sample, path.q);
-    const FallingGap falling(t_, now, speed, bounds.acceleration, rounding);
-    // A canonical time needs an interval that holds this crossing alone, with a gap beyond rounding at both ends. It was
-    // clear until the search began.
-    const auto clear =
-        falling.clear_end(gap, in_part_ ? from_ : std::max(earliest_, from_ - 1024.0 * falling.moment()));
-    if (!clear && gap(t_) <= 0.0) {
-      const std::optional<double> since = in_each_other_since(half, f);
-      return since && remember(half, f, *since);
-    }
-    const double low = clear.value_or(t_);
-    // no probe may lie beyond a motion
-    const double last = motions_end();
-    FallingGap::Beyond beyond = falling.beyond_end(gap, low, last);
-    // What may have risen by more than the touching distance in between has its crossing on the way down to its first dip, or
-    // none there: what it comes to after that, half a turn later, say, is another one.
-    const bool may_rise = falling.may_rise_first(beyond.end, limits_.touch);
-    const double dip = may_rise ? deepest_after(half, f, falling, last) : 0.0;
-    if (dip > 0.0 && dip < beyond.end) beyond = {dip, dip > low && gap(dip) < -rounding};
-    double high = beyond.end;
-    // If no probe found where the gap is surely gone, the bottom of the dip decides.
-    // A dip of less than a rounding is none, whoever looked where; what falls on is looked at again from nearer. But
-    // behind a sharp tip there may be no more room than that: what comes upon it meets it.
-    const bool sharp = site.radius + half.sample(f.sample).radius == 0.0;
-    const bool tip = !beyond.surely && sharp && nearest_on(site, path.q).foot != Foot::interior;
-    if (!beyond.surely) {
-      const double deepest = dip > 0.0 ? dip : deepest_after(half, f, falling, last);
-      if (!tip)
-        high = deepest > low && gap(deepest) < -rounding ? deepest : low;
-      else if (deepest > low)
-        high = gap(deepest) <= 0.0 ? deepest : low;
-    }
-    if (high <= low) return false;  // passes by
-    double clear_gap = 0.0;         // where it was last clear
-    const auto probed = [&](double time) {
-      const double there = gap(time);
-      clear_gap = there > 0.0 ? there : clear_gap;
-      return there;
-    };
-    const double t = last_clear_time(probed, low, high);
-    if (t == low) clear_gap = gap(low);
-    // along the site's face, before the tip, it was such a dip
-    if (tip && foot_at(half, f, t) == Foot::interior) return false;
-    // at the end of its neighbourhood a sample changes sides without having come near
-    if (clear_gap > view_.touching_band(half, f.sample, path)) return false;
-    return remember(half, f, t, 2.0 * falling.moment()) || meets_beyond_tip(half, f, gap, t);
-  }
-
-  /// Where on f's site its sample is nearest to that at time t.
-  Foot foot_at(const Half& half, const Feature& f, double t) const {
-    PairView there = view_;
-    there.place(t);
-    return nearest_on(half.site(f.site), there.path(half, f.sample).q).foot;
-  }
-
-  /// Since when they meet that have been in each other since the motions began, and approach now; none: they do not yet. Who
-  /// parted then (off a wire, when an island let go of them below any level) meets when they have turned and fallen a little;
-  /// whom another site hid, when it no longer does; else t_.
-  std::optional<double> in_each_other_since(const Half& half, const Feature& f) {
-    if (half.sample(f.sample).arc_site >= 0) return t_;
-    const KeptNeighbours kept(scratch_);
-    PairView there = view_;
-    const Site& site = half.site(f.site);
-    SamplePath path;
-    const auto feature_at = [&](double t) {
-      there.place(t);
-      path = there.path(half, f.sample);
-      return there.vertex_feature(half, f.sample, f.site, nearest_on(site, path.q), path);
-    };
-    const auto hidden = [&](double t) {
-      const Feature then = feature_at(t);
-      const bool counts = then.gap <= there.level(half, f.sample, site, path.q) &&
-                          !there.hidden_behind_others(half, then, path);
-      return counts ? -1.0 : 1.0;
-    };
-    const double begin = remembers_start_ ? view_.start() : from_;
-    if (!(begin < t_)) return t_;
-    const auto parts = [&](double t) {
-      const Feature then = feature_at(t);
-      return !there.approaching(then, path);
-    };
-    if (!parts(begin)) {
-      const bool uncovered = hidden(begin) > 0.0 && !(hidden(t_) > 0.0);
-      return uncovered ? std::max(soonest(), last_clear_time(hidden, begin, t_)) : t_;
-    }
-    const double turn = std::clamp(change_between(begin, t_, parts), begin, t_);
-    // from their rate, as the way is too short to be told from two gaps
-    const auto higher = [&](double t) {
-      return -0.5 * feature_at(t).rate * (t - turn) < 0.25 * sink_step(limits_.touch, 0.0);
-    };
-    if (higher(t_)) return std::nullopt;
-    const double fallen = std::clamp(change_between(turn, t_, higher), turn, t_);
-    return hidden(fallen) > 0.0 ? t_ : std::max(soonest(), fallen);
-  }
-
-  /// When what is so at `low`, and not at `high`, changes, on a grid of 1024 ticks of the clock: wider than what the rounding of a
-  /// rate makes of it. Halved to a quarter of the grid, then rounded to it, which may lead beyond either: searches that begin
-  /// elsewhere all but always come to the same double.
-  template <class IsSo>
-  static double change_between(double low, double high, IsSo&& is_so) {
-    const double grid = 1024.0 * ulp(high);
-    while (high - low > 0.25 * grid) {
-      const double middle = low + 0.5 * (high - low);
-      (is_so(middle) ? low : high) = middle;
-    }
-    return std::round(high / grid) * grid;
-  }
-
-  /// True if f's two features meet by t_ although they passed each other's tips at `passed`, where the gap was last clear:
-  /// what goes along the line that parts the tips may turn towards it. They meet at half of what may pass, so that the
-  /// next tip that comes along passes, too.
-  template <class Gap>
-  bool meets_beyond_tip(const Half& half, const Feature& f, Gap&& gap, double passed) {
-    if (a_.held && b_.held) return false;  // an island, which keeps their gap
-    const double depth = 0.5 * view_.passing_depth(half, f.sample, view_.path(half, f.sample).q);
-    const auto above = [&](double t) { return gap(t) + depth; };
-    if (!(t_ > passed && above(t_) <= 0.0)) return false;
-    return remember(half, f, last_clear_time(above, passed, t_));
-  }
-
-  /// Where the gap, which falls now, is smallest, if it rises again within eight times what is left until it has met for
-  /// sure, and not after `last`; 0 if it does not. What turns may rise and fall again before that: it is asked from the
-  /// soonest on at which it can rise, so that the first dip is found. The grid of change_between() is much narrower than
-  /// the dip.
-  double deepest_after(const Half& half, const Feature& f, const FallingGap& gap, double last) const {
-    // a copy is placed elsewhere: this search goes on at t_
-    PairView there = view_;
-    const auto rises = [&](double t) {
-      there.place(t);
-      return there.look_again(half, f, t).closing_speed <= 0.0;
-    };
-    const double until = t_ + 8.0 * (gap.later() - t_);
-    double falling = t_, rising = gap.soonest_rise();
-    while (!rises(std::min(rising, last))) {
-      if (rising >= until || rising >= last) return 0.0;
-      falling = rising;
-      rising = t_ + 2.0 * (rising - t_);
-    }
-    rising = std::min(rising, last);
-    return std::clamp(change_between(falling, rising, [&](double t) { return !rises(t); }), t_, last);
-  }
-
-  /// Two sharp corners of solids that come upon each other, to rounding: what lies beyond is for roundings to
-  /// say, and the tip of one may run along the outside of the other though their edges cross, which no tip
-  /// tells of. So they meet, a part of the touching distance before. True if they do.
-  bool meets_tip(const Half& half, const Feature& f, const SamplePath& path, const PathBounds& bounds) {
-    const Site& site = half.site(f.site);
-    const Sample& sample = half.sample(f.sample);
-    const bool sharp = sample.before >= 0 && site.solid && site.radius + sample.radius == 0.0;
-    if (!sharp) return false;
-    const bool at_a = (path.q - site.a).squaredNorm() < (path.q - site.b).squaredNorm();
-    const Vec2 tip = at_a ? site.a : site.b, way = path.q - tip;
-    const double noise = view_.gap_rounding(half, f.sample, path.q);
-    if (view_.is_at_joint(half, f.sample, site, path.q, noise)) return false;
-    if (meets_arc_before(site, tip, way, 8.0 * noise)) return false;
-    // the gap approaches, so the rate is not 0
-    const double slow = path.rate.norm(), off = way.norm() / slow;
-    // A first look: along the straight way they pass each other at this distance. If that is more than
-    // rounding and bending explain, they do not meet.
-    if (std::abs(cross(path.rate, way)) / slow > 8.0 * noise + bounds.acceleration * off * off) return false;
-    if (const int corner = half.s_is_a ? -1 : corner_of_a(tip); corner >= 0)
-      return meets_tip_from_a(half, f, corner);
-    return comes_upon_tip(half, f, path, at_a);
-  }
-
-  /// True if the straight way to the tip, from `way` off it, leads through the convex arc that ends there, by more than
-  /// `depth`.
-  static bool meets_arc_before(const Site& site, const Vec2& tip, const Vec2& way, double depth) {
-    if (site.kind != SiteKind::arc || site.sweep < 0.0) return false;
-    // half the chord that the line cuts from the circle
-    const double half_chord = -way.dot(tip - site.center) / way.norm();
-    return half_chord > 0.0 && half_chord * half_chord > 2.0 * site.arc_radius * depth;
-  }
-
-  /// What is so many roundings off a tip is upon it.
-  static constexpr double kUponTip = 4.0;
-
-  /// True of a sample that goes straight for the tip, `way` from it, where another sink step would lead upon it: it has come there.
-  bool is_upon_tip(const Half& half, const Feature& f, const SamplePath& way, bool at_a,
-                   const PairView& there) const {
-    const Vec2& tip = at_a ? half.site(f.site).a : half.site(f.site).b;
-    const double rounding = there.gap_rounding(half, f.sample, way.q + tip), upon = kUponTip * rounding;
-    const double speed = way.rate.norm(), room = way.q.norm() - sink_step(limits_.touch, rounding);
-    return room < upon && speed > there.rate_noise(way) && way.q.dot(way.rate) < upon * speed &&
-           std::abs(cross(way.rate, way.q)) <= upon * speed &&
-           corners_cross(half, f, at_a, way.rate, there) && !lies_flush(half, f, at_a, there);
-  }
-
-  /// The same of a sample that goes straight for the tip.
-  bool comes_upon_tip(const Half& half, const Feature& f, const SamplePath& path, bool at_a) {
-    const Site& site = half.site(f.site);
-    const Vec2 tip = at_a ? site.a : site.b;
-    PairView there = view_;
-    const auto to_tip = [&](double t) {
-      there.place(t);
-      SamplePath then = there.path(half, f.sample);
-      then.q -= tip;
-      return then;
-    };
-    const double begin = earliest_;
-    if (remembers_start_) {
-      const SamplePath first = to_tip(begin);
-      if (is_upon_tip(half, f, first, at_a, there)) return asked_from_ <= begin && remember(half, f, begin);
-    }
-    // They are nearest to each other where way . rate = 0: found by Newton's steps, from here and twice
-    // from there.
-    double nearest = t_ - (path.q - tip).dot(path.rate) / path.rate.squaredNorm();
-    SamplePath then;
-    for (int i = 0; i < 2; ++i) {
-      if (!(nearest >= begin && nearest <= window_end())) return false;
-      then = to_tip(nearest);
-      nearest -= then.q.dot(then.rate) / then.rate.squaredNorm();
-    }
-    // what is nearest before its motions begin, or long before, has gone by, or turns: it does not go straight for the tip
-    if (!(nearest >= begin && nearest <= window_end())) return false;
-    then = to_tip(nearest);
-    if (!corners_cross(half, f, at_a, then.rate, there)) return false;
-    if (lies_flush(half, f, at_a, there)) return false;  // it meets a face, not a tip
-    const double rounding = there.gap_rounding(half, f.sample, then.q + tip);
-    // beside each other: along the way they may be as far apart as one goes within a tick of the clock
-    const double speed = then.rate.norm(), beside = std::abs(cross(then.rate, then.q)) / speed;
-    if (!(beside <= 4.0 * rounding)) return false;
-    // The gap at which a sharp sample meets a wire (nominal_level()); where they have been nearer from the start, as after
-    // they met, a sink step less than then.
-    double before = std::max(0.5 * limits_.touch, 8.0 * rounding);
-    const double step = sink_step(limits_.touch, rounding);
-    if (remembers_start_) before = std::min(before, std::max(to_tip(begin).q.norm() - step, -limits_.touch));
-    const auto clear = [&](double t) {
-      const SamplePath there_then = to_tip(t);
-      return -there_then.q.dot(there_then.rate) / there_then.rate.norm() - before;
-    };
-    // where they are nearest is known to the rounding of their places: the moment lies in what is surely wider
-    const double ticks = 4.0 * (ulp(nearest) + rounding / speed);
-    const double high = std::min(nearest + ticks, motions_end());
-    double low = std::max(nearest - std::max(2.0 * before / speed, ticks), begin);
-    // they may have parted first, and not far
-    for (double back = nearest - low; !(clear(low) > 0.0) && back > ticks; back *= 0.5) low = nearest - back;
-    // what never was clear of the tip does not come upon it, but upon a side
-    if (!(low < high && clear(low) > 0.0)) return false;
-    if (clear(high) > 0.0) return false;  // the motion ends before
-    return remember(half, f, last_clear_time(clear, low, high), 2.0 * rounding / speed);
-  }
-
-  /// The sample of a's corner that is there, in a's frame; -1 if none is.
-  int corner_of_a(const Vec2& tip) const {
-    const std::vector<Sample>& samples = view_.half(true).samples_of().samples;
-    const auto found = std::find_if(samples.begin(), samples.end(),
-                                    [&](const Sample& s) { return s.before >= 0 && s.p == tip; });
-    return found == samples.end() ? -1 : static_cast<int>(found - samples.begin());
-  }
-
-  /// The same, asked of a's corner i, which is the tip that f's sample of b comes upon: two tips have one moment in which
-  /// they meet, whichever of the two outlines was looked from.
-  bool meets_tip_from_a(const Half& of_b, const Feature& f, int i) {
-    const Half& of_a = view_.half(true);
-    const Sample& other = of_b.sample(f.sample);
-    const SamplePath path = view_.path(of_a, i);
-    const KeptNeighbours kept(scratch_);  // those of b's sample are asked for again
-    const std::uint32_t sides[] = {static_cast<std::uint32_t>(other.before),
-                                   static_cast<std::uint32_t>(other.after)};
-    view_.find_neighbours(of_a, i, sides, path, 4.0 * view_.touching_band(of_a, i, path));
-    return meets_tip(of_a, Feature{i, other.after}, path, path_bounds(path, long_bounds_.of(of_a), to_ - t_));
-  }
-
-  /// The sample's corner in T's frame.
-  Corner corner_of(const Half& half, int i, const PairView& there) const {
-    return corner_seen(half.samples_of(), half.sample(i), there.placed(half.s).frame,
-                       there.placed(half.t).frame);
-  }
-
-  /// True if one side of the site's corner, and no other line, parts it from the sample's.
-  bool lies_flush(const Half& half, const Feature& f, bool at_a, const PairView& there) const {
-    const Corner of_sample = corner_of(half, f.sample, there), of_site = corner_at(half.site(f.site), at_a);
-    return parts_alone(of_site.before, of_sample, of_site) || parts_alone(of_site.after, of_sample, of_site);
-  }
-
-  /// True if the sample's corner, at the site's end, comes to overlap with that as it moves along d (T's
-  /// frame).
-  bool corners_cross(const Half& half, const Feature& f, bool at_a, const Vec2& d,
-                     const PairView& there) const {
-    return come_to_overlap(corner_of(half, f.sample, there), corner_at(half.site(f.site), at_a), d);
-  }
-
-  /// Keeps the contact if it is the earliest so far (ties: lowest half, sample, site). False if there is none: two
-  /// corners pass each other. The search goes on for `noise` longer: another feature may seem to touch later only
-  /// by the rounding of its steps.
-  bool remember(const Half& half, const Feature& f, double t, double noise = 0.0) {
-    if (t > window_end()) return true;
-    if (in_part_ && t < asked_from_) return false;  // who asks has looked there
-    const std::optional<FeatureContact> contact = contact_then(half, f, t);
-    if (!contact) return false;
-    // Crossed over, as the lesser comes first: a's samples before b's, then the lower sample, then the lower
-    // site.
-    const bool earlier = best_.sample < 0 || t < best_.time ||
-                         (t == best_.time && std::tie(half.s_is_a, best_.sample, best_.site) >
-                                                 std::tie(best_.sample_on_a, contact->sample, contact->site));
-    if (!earlier) return true;
-    best_ = *contact;
-    to_ = std::min(to_, std::nextafter(t + noise, kForever));
-    return true;
-  }
-
-  /// The contact's geometry is that of its own time, and its site the nearest then, unless it leaves that; or that of
-  /// the next double, where a corner has come to lie flush on a face. None of corners that pass each other, nor of what goes
-  /// round the free end of a wire.
-  std::optional<FeatureContact> contact_then(const Half& half, const Feature& f, double t) const {
-    PairView there = view_;
-    there.place(t);
-    // a tip that comes from far has no neighbours yet: its site is the one that was asked for
-    const auto nearest_there = [&] {
-      const int site = view_.gap_where(there, half, f).site;
-      return site >= 0 ? site : f.site;
-    };
-    Feature met = f;
-    met.site = nearest_there();
-    if (there.passes_tip(half, met)) return std::nullopt;
-    FeatureContact contact = there.look_again(half, met, t);
-    if (!(contact.closing_speed > 0.0) && met.site != f.site) contact = there.look_again(half, f, t);
-    const double after = next_after(t);
-    if (contact.closing_speed > 0.0 || after > std::min(a_.motion->end(), b_.motion->end())) return contact;
-    there.place(after);
-    met.site = nearest_there();
-    const FeatureContact next = there.look_again(half, met, t);
-    if (next.closing_speed > 0.0) return next;
-    // round the free end of a wire it has come as near as touching, and is away from there
-    const double noise = there.rate_noise(there.path(half, f.sample));
-    const bool goes_by =
-        !half.site(met.site).solid && std::max(contact.closing_speed, next.closing_speed) < -noise;
-    return goes_by ? std::nullopt : std::optional(contact);
-  }
-
   PairView view_;
   const Mover &a_, &b_;
-  double from_, to_;
-  double asked_from_, window_end_;  ///< from_ and to_ as they were given
+  SearchWindow window_;
+  FeatureCrossing crossing_;
   bool remembers_start_;
-  double
-      earliest_;  ///< when both motions can be asked for: where they begin, or so far back as neither is given up
   const SearchLimits& limits_;
   SearchScratch& scratch_;
   WorkCounters& work_;
   double* safe_until_[2];  ///< one a sample of each half
-  BothWays long_bounds_, short_bounds_;
+  BothWays short_bounds_;
   double short_window_ = 0.0, short_end_ = 0.0;
   double t_ = 0.0, next_ = 0.0, reached_ = 0.0;
   double free_radius_[2] = {-1.0, -1.0};  ///< free_radius() of each half; below 0: not known yet
   double least_ = kForever;               ///< of the samples looked at from t_, how long all are safe
-  FeatureContact best_;
   bool sink_known_ = false;
   bool sinks_ = false;  ///< the step of the sample that is looked at may lead below a level
   bool capped_ = false;
   bool comes_and_goes_ = false;  ///< something that is close at t_ does
-  bool in_part_ = false;         ///< from_ and to_ are those of a part of a piece
-  double part_end_ = 0.0;
 };
 
 /// first_contact() of two of which `start` is remembered all through [from, to], or has no part in the answer.

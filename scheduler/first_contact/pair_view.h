@@ -47,6 +47,7 @@ class PairView {
 
   /// Looks at the pair at time t from now on.
   void place(double t) { put(now_, t); }
+  double time() const { return now_.time; }
   const Placed& placed(const Mover* m) const { return m == &a_ ? now_.a : now_.b; }
   SamplePath path(const Half& half, int i) const {
     return sample_path(placed(half.s), placed(half.t), half.sample(i).p);
