@@ -5,6 +5,8 @@
 #include <numeric>
 #include <set>
 
+#include "brink/scheduler/islands/modes/smooth_contact.h"
+
 namespace brink {
 
 IslandMembers::IslandMembers(const World& world, const Trajectories& trajectories,
@@ -281,6 +283,33 @@ double IslandMembers::closing_speed(const HeldContact& c, const ExtendedTwist& o
   // the normal points into the body: > 0 where the other comes along it
   const RealVec relative = of_other.at(c.feature.point.cast<Real>()) - of_body.at(arm(c));
   return static_cast<double>(c.feature.normal.cast<Real>().dot(relative));
+}
+
+double IslandMembers::fall(const HeldContact& c) const {
+  const int body = place_of(c.pair.body);
+  const ExtendedState other = other_state(c.pair);
+  const std::vector<SmoothContact> shapes =
+      smooth_contacts(c.feature, search_->outline_of(c.pair.body), states_[body],
+                      search_->outline_of(search_->other_owner(c.pair)), other);
+  if (shapes.empty()) return 0.0;
+  const Vec3 of_body = free_acceleration(body),
+             of_other = c.pair.with_site()
+                            ? as_vector(trajectories_->site(c.pair.other_site).motion().rate(now_))
+                            : free_acceleration(place_of(c.pair.other_body));
+  const BodyState a = states_[body].rounded(), b = other.rounded();
+  const bool on_a = c.feature.sample_on_a;
+  const ContactRates r = rates_of(shapes.front(), on_a ? a : b, on_a ? b : a);
+  return -(r.normal_bend + r.normal_on_sample.dot(on_a ? of_body : of_other) +
+           r.normal_on_site.dot(on_a ? of_other : of_body));
+}
+
+/// x, y, angle. A locked coordinate has none, whatever forces pull at it; nor has who stands.
+Vec3 IslandMembers::free_acceleration(int member) const {
+  if (is_support(member)) return Vec3::Zero();
+  const Body& b = body(member);
+  const Acceleration& by = accelerations_[member];
+  return {b.inverse_mass_x() > 0.0 ? by.linear.x() : 0.0, b.inverse_mass_y() > 0.0 ? by.linear.y() : 0.0,
+          b.inverse_inertia() > 0.0 ? by.angular : 0.0};
 }
 
 }  // namespace brink

@@ -91,6 +91,14 @@ double IslandModes::slowest_bounce(const IslandMembers& members, const ContactSe
   return std::sqrt(2.0 * members.pull() * search.limits().tolerance);
 }
 
+bool IslandModes::is_slow(const IslandMembers& members, const ContactSearch& search,
+                          const HeldContact& contact, double speed, double times) {
+  if (speed <= times * slowest_bounce(members, search)) return true;
+  // what slides round in a hollow, or is carried by what turns, is held with no force, or a small one
+  const double fall = members.fall(contact);
+  return fall > 0.0 && speed <= times * std::sqrt(2.0 * fall * search.limits().tolerance);
+}
+
 bool IslandModes::is_shadow(const ContactSearch& search, const HeldContact& c,
                             const std::vector<HeldContact>& all) {
   const Outline &a = search.outline_of(c.pair.body), &b = search.outline_of(search.other_owner(c.pair));
@@ -353,12 +361,15 @@ void IslandModes::make_problem(std::vector<HeldContact> contacts, double h) {
 /// approaches.
 IslandModes::Approach IslandModes::approach(const States& states) const {
   const std::vector<ContactRates> rates = rates_at(problem_, now_, states);
-  double fastest = 0.0;
-  for (std::size_t k = 0; k < rates.size(); ++k)
-    if (touching_[k]) fastest = std::max(fastest, -rates[k].normal_velocity);
-  if (fastest <= kNoApproach * speed()) return Approach::none;
-  // a slow one is told from a bounce by what it would rise: to four times the tolerance at twice the speed
-  return fastest <= 2.0 * slowest_bounce(*members_, *search_) ? Approach::slow : Approach::fast;
+  Approach how = Approach::none;
+  for (std::size_t k = 0; k < rates.size(); ++k) {
+    const double closing = -rates[k].normal_velocity;
+    if (!touching_[k] || closing <= kNoApproach * speed()) continue;
+    // a slow one is told from a bounce by what it would rise: to four times the tolerance at twice the speed
+    if (!is_slow(*members_, *search_, contacts_[of_[k]], closing, 2.0)) return Approach::fast;
+    how = Approach::slow;
+  }
+  return how;
 }
 
 /// Everything that touches meets without a rebound. False: nothing says how.
@@ -366,11 +377,11 @@ bool IslandModes::meet(States& states) {
   const std::vector<ContactRates> rates = rates_at(problem_, now_, states);
   auto after = plastic_impact(problem_, now_, states, touching_);
   if (!after) return false;
-  const double slow = slowest_bounce(*members_, *search_);
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     const std::size_t at = place_[k];
     // what is slower is the end of a series of bounces and no event of its own
-    if (at < rates.size() && touching_[at] && -rates[at].normal_velocity > slow)
+    if (at < rates.size() && touching_[at] &&
+        !is_slow(*members_, *search_, contacts_[k], -rates[at].normal_velocity, 1.0))
       impacts_.push_back(
           {contacts_[k], -rates[at].normal_velocity, after->normal[at], after->tangential[at]});
   }
@@ -413,7 +424,6 @@ std::optional<std::vector<MotionMode>> IslandModes::former_modes() const {
 /// and the rocking from one corner to the other, come to their end there.
 std::vector<bool> IslandModes::closed_now(const States& states, Approach how) const {
   const std::vector<ContactRates> rates = rates_at(problem_, now_, states);
-  const double slow = 2.0 * slowest_bounce(*members_, *search_);
   std::vector<bool> closed(problem_.contacts.size(), false);
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     const std::size_t at = place_[k];
@@ -424,7 +434,9 @@ std::vector<bool> IslandModes::closed_now(const States& states, Approach how) co
     const bool slowly = how == Approach::slow || (how == Approach::none && !known);
     // open in the step before and touching still: it has just been let go, and only an approach closes it
     if (how == Approach::none && was_open) continue;
-    closed[at] = rates[at].normal_velocity <= (slowly ? slow : kNoParting * speed());
+    const double parting = rates[at].normal_velocity;
+    closed[at] =
+        slowly ? is_slow(*members_, *search_, contacts_[k], parting, 2.0) : parting <= kNoParting * speed();
   }
   return closed;
 }

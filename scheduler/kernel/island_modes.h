@@ -72,8 +72,12 @@ class IslandModes {
   const std::vector<Impact>& impacts() const { return impacts_; }
 
   /// What closes no faster is at rest against its site: a bounce of that speed does not leave the contact
-  /// tolerance [m/s].
+  /// tolerance where the largest pull brings it back [m/s].
   static double slowest_bounce(const IslandMembers& members, const ContactSearch& search);
+  /// True of a speed, up to so many `times` that of a bounce that does not leave the tolerance: by the largest pull, or as this
+  /// contact closes again by itself (IslandMembers::fall).
+  static bool is_slow(const IslandMembers& members, const ContactSearch& search, const HeldContact& contact,
+                      double speed, double times);
   /// True if it says of a place what another contact of `all`, which touches there, says better: the end of a site
   /// that goes on, by which the sample passes; a joint of a floor under a corner that slides over it.
   static bool is_shadow(const ContactSearch& search, const HeldContact& contact,

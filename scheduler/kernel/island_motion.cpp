@@ -178,7 +178,7 @@ void IslandMotion::pass_on_impacts(const Impact& told) {
 /// agitated island, and faster than a step takes as plastic.
 double IslandMotion::impact_of(const HeldContact& c, const std::vector<Vec3>& velocity) const {
   const double closing = members_.closing_speed(c);
-  if (closing <= most_absorbed(c.pair) || c.feature.beside_arc || c.feature.goes_on) return 0.0;
+  if (c.feature.beside_arc || c.feature.goes_on || absorbs(c, closing)) return 0.0;
   if (!approach().touches(c))
     return !approach().is_kept_by_corner(c, contacts_) && approach().arrival(c, velocity, h_).time < h_
                ? closing
@@ -404,8 +404,7 @@ double IslandMotion::next_arrival() {
     const FeatureArrival come = approach().touches(c) ? FeatureArrival{0.0, members_.closing_speed(c)}
                                                       : approach().arrival(c, velocity, h_);
     if (!(come.time <= h_)) continue;
-    if (!approach().touches(c) && come.closing > most_absorbed(c.pair) &&
-        !approach().is_kept_by_corner(c, contacts_))
+    if (!approach().touches(c) && !absorbs(c, come.closing) && !approach().is_kept_by_corner(c, contacts_))
       // too fast to be taken as plastic: an impact within the step
       first = std::min(first, come.time);
     else
@@ -438,9 +437,18 @@ void IslandMotion::make_problem() {
 
 /// Approaches as slow as this are taken without a rebound [m/s].
 double IslandMotion::most_absorbed(const PairKey& pair) const {
-  if (by_modes_ && response_->material_of(pair).restitution > 0.0)
-    return IslandModes::slowest_bounce(members_, *search_);
-  return rows().most_absorbed(pair);
+  return bounces_by_modes(pair) ? IslandModes::slowest_bounce(members_, *search_)
+                                : rows().most_absorbed(pair);
+}
+
+bool IslandMotion::bounces_by_modes(const PairKey& pair) const {
+  return by_modes_ && response_->material_of(pair).restitution > 0.0;
+}
+
+/// The same of one contact.
+bool IslandMotion::absorbs(const HeldContact& c, double closing) const {
+  return closing <= most_absorbed(c.pair) ||
+         (bounces_by_modes(c.pair) && IslandModes::is_slow(members_, *search_, c, closing, 1.0));
 }
 
 /// A step of h_ under the forces that its members have halfway, with the twists of the step: these are found by asking for them

@@ -98,6 +98,8 @@ class IslandMotion {
   double next_arrival();
   double corners_part_in(double shortest) const;
   double most_absorbed(const PairKey& pair) const;
+  bool bounces_by_modes(const PairKey& pair) const;
+  bool absorbs(const HeldContact& c, double closing) const;
   FeatureApproach approach() const { return {members_, *search_}; }
   StepRows rows() const { return {members_, *search_, *response_, warm_, h_}; }
   void make_problem();

@@ -115,9 +115,9 @@ bool IslandParting::stays_near(std::size_t contact, bool both_pushed, std::vecto
   if (step_.by_modes) {
     const double closing = step_.members.closing_speed(c);
     // a parting of this speed rises kClear tolerances: v^2 / 2 a
-    const bool slow =
-        closing >= -std::sqrt(kClear) * IslandModes::slowest_bounce(step_.members, step_.search);
-    if (c.feature.gap <= kClear * tolerance && slow) return true;
+    if (c.feature.gap <= kClear * tolerance &&
+        IslandModes::is_slow(step_.members, step_.search, c, -closing, std::sqrt(kClear)))
+      return true;
     return !c.pair.with_site() && (c.feature.gap - step_.h * (closing + behind) <= tolerance ||
                                    step_.gaps_at_end[contact] <= kClear * tolerance);
   }
