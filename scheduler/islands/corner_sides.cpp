@@ -113,6 +113,10 @@ double through_corner(const Half& half, const Sample& sample, const Site& site, 
   const bool straight = site.kind == SiteKind::segment && sample.radius + site.radius == 0.0;
   if (!straight || sample.arc_site >= 0) return 0.0;
   const Vec2& corner = nearer_end(site, q);
+  // nobody passes through a hollow corner: who is behind one of its sides is said to be so by that
+  if (half.carrier.solid && site.solid &&
+      has_hollow_corner(half.other, static_cast<std::size_t>(&site - half.other.sites.data()), corner))
+    return 0.0;
   const auto to_other = [&](const Vec2& p) {
     return half.other_frame.to_local(half.carrier_frame.to_world(p));
   };

@@ -148,9 +148,10 @@ std::vector<HeldContact> IslandMembers::features(const std::vector<PairKey>& pai
   return all;
 }
 
-std::vector<NearFeature> IslandMembers::features_ahead(const PairKey& pair, double later) const {
-  return near_features(search_->outline_of(pair.body), states_[place_of(pair.body)],
-                       search_->outline_of(search_->other_owner(pair)), other_state(pair, later, {}),
+std::vector<NearFeature> IslandMembers::features_ahead(const PairKey& pair, double later,
+                                                       const std::vector<Vec3>& velocity) const {
+  return near_features(search_->outline_of(pair.body), moved(place_of(pair.body), later, velocity),
+                       search_->outline_of(search_->other_owner(pair)), other_state(pair, later, velocity),
                        reach_of(pair, -1.0), search_->limits().tolerance);
 }
 
@@ -161,13 +162,14 @@ std::vector<HeldContact> IslandMembers::contacts_and_brought(const GoOn& go_on) 
   for (const HeldContact& c : all)
     if (on_moving_site(c)) listed.insert(c.key());
   const std::size_t before = all.size();
+  const std::vector<Vec3> stays(count(), Vec3::Zero());
   for (const PairKey& pair : pairs) {
     if (!pair.with_site() || !trajectories_->site(pair.other_site).moves()) continue;
     const RealVec way = other_state(pair, h_, {}).position - other_state(pair).position;
-    for (const NearFeature& f : features_ahead(pair, h_)) {
+    for (const NearFeature& f : features_ahead(pair, h_, stays)) {
       HeldContact c{pair, f, 0.0, 0.0, 0.0};
       if (listed.count(c.key())) continue;
-      c.feature.gap = gap(c, 0.0, std::vector<Vec3>(count(), Vec3::Zero()));
+      c.feature.gap = gap(c, 0.0, stays);
       c.feature.point += way.cast<double>();
       c.feature.at_end = true;
       // what touches now is told by what is listed

@@ -95,8 +95,10 @@ class IslandMembers {
   std::vector<HeldContact> contacts(double reach, const GoOn& go_on = {}) const;
   /// As far as a step may lead, of those in which one takes part of whom `whose` is not 0.
   std::vector<HeldContact> contacts_of(const std::vector<char>& whose, const GoOn& go_on = {}) const;
-  /// Those of one pair where its site has come to `later` [s] into the step, and its body has stayed; points are seen from there.
-  std::vector<NearFeature> features_ahead(const PairKey& pair, double later) const;
+  /// Those of one pair where its site has come to `later` [s] into the step, and its body with `velocity` (as of other_state);
+  /// points are seen from there.
+  std::vector<NearFeature> features_ahead(const PairKey& pair, double later,
+                                          const std::vector<Vec3>& velocity) const;
   /// As far as a step may lead, and with them what sites bring within the look-ahead: as such a contact is now, at the end of its
   /// site.
   std::vector<HeldContact> contacts_and_brought(const GoOn& go_on = {}) const;

@@ -55,16 +55,8 @@ IslandStep StepRows::members_alone() const {
 }
 
 void StepRows::add(const std::vector<HeldContact>& contacts, IslandStep& problem) const {
-  const PairKey* looked_at = nullptr;
-  std::vector<NearFeature> ahead;  // of that pair
-  for (std::size_t k = problem.contacts.size(); k < contacts.size(); ++k) {
-    const HeldContact& c = contacts[k];
-    if (is_beside_driven(c) && (!looked_at || *looked_at != c.pair)) {
-      ahead = members_->features_ahead(c.pair, h_);
-      looked_at = &c.pair;
-    }
-    problem.contacts.push_back(island_contact(c, ahead));
-  }
+  for (std::size_t k = problem.contacts.size(); k < contacts.size(); ++k)
+    problem.contacts.push_back(island_contact(contacts[k]));
 }
 
 /// Of a site that moves: the body is not abreast of it yet, and may be where it comes to.
@@ -73,8 +65,8 @@ bool StepRows::is_beside_driven(const HeldContact& c) const {
 }
 
 /// Geometry at the start of the step; forces of the step before, from which friction bounds come. Of a site that moves geometry is
-/// that where it comes to, of `ahead` (features_ahead()): the end of an arc may have gone by.
-IslandContact StepRows::island_contact(const HeldContact& c, const std::vector<NearFeature>& ahead) const {
+/// that where it comes to: the end of an arc may have gone by.
+IslandContact StepRows::island_contact(const HeldContact& c) const {
   IslandContact made;
   made.rows = rows_of(c);
   const FeatureApproach approach(*members_, *search_);
@@ -94,7 +86,7 @@ IslandContact StepRows::island_contact(const HeldContact& c, const std::vector<N
   made.driven = members_->on_moving_site(c);
   // a body that is a member moves by the unknown twists; a site by what it is told
   note_shape(c, made);
-  if (made.driven) drive(c, ahead, made);
+  if (made.driven) drive(c, made);
   return made;
 }
 
@@ -105,8 +97,10 @@ double StepRows::most_absorbed(const PairKey& pair) const {
 
 /// The mean velocity of its surface along the normal, by what the gap loses where the body stays, and that of its point along the
 /// tangent. A point's own along the normal would be no surface's: those of a round drum leave it along chords. What is under the
-/// body now counts as the line or the circle that it is, until the step ends; what is beside it, as where it comes to.
-void StepRows::drive(const HeldContact& c, const std::vector<NearFeature>& ahead, IslandContact& made) const {
+/// body now counts as the line or the circle that it is, until the step ends; what is beside it, as where it comes to. The body is
+/// looked for there where the site takes it along the normal, and where it goes by itself along the tangent: so nothing depends on
+/// how fast the two go together.
+void StepRows::drive(const HeldContact& c, IslandContact& made) const {
   const ExtendedState from = members_->other_state(c.pair), to = members_->other_state(c.pair, h_, {});
   // the site's own motion over the step, as one turn and shift of the point that touches
   const Frame step(
@@ -124,8 +118,14 @@ void StepRows::drive(const HeldContact& c, const std::vector<NearFeature>& ahead
     if (at_end - made.normal_support > most_absorbed(c.pair)) made.normal_support = at_end;
     return;
   }
-  const std::vector<Vec3> stays(members_->count(), Vec3::Zero());
-  const double gap = members_->gap(c, h_, stays);
+  const int body = members_->place_of(c.pair.body);
+  const Vec2 tangent = perp(c.feature.normal);
+  const Vec2 taken = way.dot(c.feature.normal) / h_ * c.feature.normal +
+                     tangent.dot(members_->state(body).twist.velocity.cast<double>()) * tangent;
+  std::vector<Vec3> along(members_->count(), Vec3::Zero());
+  along[body] = {taken.x(), taken.y(), 0.0};
+  const double gap = members_->gap(c, h_, along);
+  const std::vector<NearFeature> ahead = members_->features_ahead(c.pair, h_, along);
   const auto found = std::find_if(ahead.begin(), ahead.end(), [&](const NearFeature& f) {
     return std::tuple(f.sample_on_a, f.sample, f.site) ==
            std::tuple(c.feature.sample_on_a, c.feature.sample, c.feature.site);
@@ -133,14 +133,17 @@ void StepRows::drive(const HeldContact& c, const std::vector<NearFeature>& ahead
   // not where the site has come over the body, which is on another side of it there
   const bool there = found != ahead.end() && found->normal.dot(c.feature.normal) > 0.0 &&
                      (found->over_joint || std::abs(found->gap - gap) <= search_->limits().tolerance);
-  made.normal_support = (there ? c.feature.gap - found->gap : members_->gap(c, 0.0, stays) - gap) / h_;
-  if (!there) return;
+  made.normal_support = (there ? c.feature.gap - found->gap : members_->gap(c, 0.0, along) - gap) / h_;
   HeldContact then = c;
-  then.feature = *found;
-  then.feature.point += step.origin;  // from where the site is now
-  made.rows = rows_of(then);
-  const Vec2& point = then.feature.point;
-  made.tangential_support = (point - step.to_local(point)).dot(perp(then.feature.normal)) / h_;
+  if (there) {
+    then.feature = *found;
+    const Vec2 point = found->point + step.origin;  // from where the site is now
+    then.feature.point = point - h_ * taken;        // as the body sees it there
+    made.rows = rows_of(then);
+    made.tangential_support = (point - step.to_local(point)).dot(perp(found->normal)) / h_;
+  }
+  // the rows speak of the body's whole way, of which this is a part
+  made.normal_support += then.feature.normal.dot(taken);
 }
 
 /// What stands is as a site is, whichever of the two it is: the normal points into what moves then, or away from it.

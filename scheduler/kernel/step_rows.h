@@ -39,8 +39,8 @@ class StepRows {
 
  private:
   bool is_beside_driven(const HeldContact& c) const;
-  IslandContact island_contact(const HeldContact& c, const std::vector<NearFeature>& ahead) const;
-  void drive(const HeldContact& c, const std::vector<NearFeature>& ahead, IslandContact& made) const;
+  IslandContact island_contact(const HeldContact& c) const;
+  void drive(const HeldContact& c, IslandContact& made) const;
   LastingContact rows_of(const HeldContact& c) const;
   void note_shape(const HeldContact& c, IslandContact& made) const;
 
