@@ -32,6 +32,7 @@ struct IslandContact {
   double friction = 0.0;
   double rolling_resistance = 0.0;  ///< largest torque for a normal force of 1 [m]
   bool driven = false;              ///< its site moves as it is told, and gives what energy that takes
+  double site_turn = 0.0;           ///< by how much it turns in the step [rad]
   bool at_end = false;  ///< of a site: its tangent bars the way to what passes by, so that is asked for last
   double normal_force = 0.0;      ///< in: of the step before; 0: new. Out: mean over this one [N]
   double tangential_force = 0.0;  ///< likewise

@@ -98,7 +98,7 @@ double StepRows::most_absorbed(const PairKey& pair) const {
 /// The mean velocity of its surface along the normal, by what the gap loses where the body stays, and that of its point along the
 /// tangent. A point's own along the normal would be no surface's: those of a round drum leave it along chords. What is under the
 /// body now counts as the line or the circle that it is, until the step ends; what is beside it, as where it comes to. The body is
-/// looked for there where the site takes it along the normal, and where it goes by itself along the tangent: so nothing depends on
+/// looked for there where the site takes it along the normal, and where its own point goes along the tangent: so nothing depends on
 /// how fast the two go together.
 void StepRows::drive(const HeldContact& c, IslandContact& made) const {
   const ExtendedState from = members_->other_state(c.pair), to = members_->other_state(c.pair, h_, {});
@@ -107,6 +107,7 @@ void StepRows::drive(const HeldContact& c, IslandContact& made) const {
       {(to.position - from.position).cast<double>(), static_cast<double>(to.angle - from.angle)});
   const Vec2 way = step.to_world(c.feature.point) - c.feature.point;
   made.tangential_support = way.dot(perp(c.feature.normal)) / h_;
+  made.site_turn = static_cast<double>(to.angle - from.angle);
   if (!is_beside_driven(c)) {
     made.normal_support = advance_of_surface(c.feature, search_->outline_of(search_->other_owner(c.pair)),
                                              static_cast<double>(from.angle), step) /
@@ -121,7 +122,7 @@ void StepRows::drive(const HeldContact& c, IslandContact& made) const {
   const int body = members_->place_of(c.pair.body);
   const Vec2 tangent = perp(c.feature.normal);
   const Vec2 taken = way.dot(c.feature.normal) / h_ * c.feature.normal +
-                     tangent.dot(members_->state(body).twist.velocity.cast<double>()) * tangent;
+                     tangent.dot(members_->state(body).twist.at(members_->arm(c)).cast<double>()) * tangent;
   std::vector<Vec3> along(members_->count(), Vec3::Zero());
   along[body] = {taken.x(), taken.y(), 0.0};
   const double gap = members_->gap(c, h_, along);
