@@ -19,6 +19,11 @@ bool cross_each_other(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d
 
 double distance_to(const Site& segment, const Vec2& q) { return nearest_on(segment, q).distance; }
 
+double distance_to_line(const Site& segment, const Vec2& q) {
+  const Vec2 along = segment.b - segment.a;
+  return std::abs(cross(along, Vec2(q - segment.a))) / along.norm();
+}
+
 }  // namespace
 
 double before_next_side(const Half& half, const Sample& sample, const Site& site, const Vec2& q,
@@ -133,10 +138,15 @@ double through_corner(const Half& half, const Sample& sample, const Site& site, 
       Site there = s;
       there.a = from;
       there.b = to;
+      // Where they cross both must be nearer to these two corners than to their other ends: those that lie along each other may
+      // cross there, by a rounding, and a tip that is through somewhere else is said to be so by itself.
+      const Vec2 &end = s.a == sample.p ? from : to, &far_end = s.a == sample.p ? to : from,
+                 &far_corner = o.a == corner ? o.b : o.a;
+      const double end_off = distance_to_line(o, end), corner_off = distance_to_line(there, corner);
+      if (end_off > distance_to_line(o, far_end) || corner_off > distance_to_line(there, far_corner))
+        continue;
       through = true;
-      // each two by whichever end: those that lie along each other may cross at their other ones, by a rounding
-      back = std::max(back, std::min({distance_to(o, from), distance_to(o, to), distance_to(there, o.a),
-                                      distance_to(there, o.b)}));
+      back = std::max(back, std::min(distance_to(o, end), distance_to(there, corner)));
     }
   }
   if (!through) return 0.0;

@@ -107,7 +107,9 @@ void StepRows::drive(const HeldContact& c, IslandContact& made) const {
       {(to.position - from.position).cast<double>(), static_cast<double>(to.angle - from.angle)});
   const Vec2 way = step.to_world(c.feature.point) - c.feature.point;
   made.tangential_support = way.dot(perp(c.feature.normal)) / h_;
-  made.site_turn = static_cast<double>(to.angle - from.angle);
+  made.site_push = way.dot(c.feature.normal) / h_;
+  // a point of the site is where it is, wherever it meets a body's side
+  if (made.sample_on_body) made.site_turn = static_cast<double>(to.angle - from.angle);
   if (!is_beside_driven(c)) {
     made.normal_support = advance_of_surface(c.feature, search_->outline_of(search_->other_owner(c.pair)),
                                              static_cast<double>(from.angle), step) /
@@ -116,7 +118,7 @@ void StepRows::drive(const HeldContact& c, IslandContact& made) const {
     // what lies on it.
     const double at_end =
         to.twist.rounded().at(step.to_world(c.feature.point) - step.origin).dot(c.feature.normal);
-    if (at_end - made.normal_support > most_absorbed(c.pair)) made.normal_support = at_end;
+    if (at_end - made.normal_support > most_absorbed(c.pair)) made.normal_support = made.site_push = at_end;
     return;
   }
   const int body = members_->place_of(c.pair.body);
@@ -141,7 +143,10 @@ void StepRows::drive(const HeldContact& c, IslandContact& made) const {
     const Vec2 point = found->point + step.origin;  // from where the site is now
     then.feature.point = point - h_ * taken;        // as the body sees it there
     made.rows = rows_of(then);
-    made.tangential_support = (point - step.to_local(point)).dot(perp(found->normal)) / h_;
+    const Vec2 way_there = point - step.to_local(point);
+    made.tangential_support = way_there.dot(perp(found->normal)) / h_;
+    made.site_push = way_there.dot(found->normal) / h_;
+    made.site_turn = 0.0;
   }
   // the rows speak of the body's whole way, of which this is a part
   made.normal_support += then.feature.normal.dot(taken);
