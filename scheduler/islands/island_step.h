@@ -32,10 +32,8 @@ struct IslandContact {
   double friction = 0.0;
   double rolling_resistance = 0.0;  ///< largest torque for a normal force of 1 [m]
   bool driven = false;              ///< its site moves as it is told, and gives what energy that takes
-  double site_push =
-      0.0;  ///< mean velocity of its point there along the normal, of which its work comes [m/s] ...
-  double site_turn =
-      0.0;              ///< ... less what it turns in the step [rad] times the speed of what slides along it
+  /// Mean velocity of its point there along the normal, of which its work comes [m/s].
+  double site_push = 0.0;
   bool at_end = false;  ///< of a site: its tangent bars the way to what passes by, so that is asked for last
   double normal_force = 0.0;      ///< in: of the step before; 0: new. Out: mean over this one [N]
   double tangential_force = 0.0;  ///< likewise

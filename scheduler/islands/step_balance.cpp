@@ -215,20 +215,12 @@ double StepBalance::won_by(int group, const std::vector<Vec3>& velocity, double 
     }
   for (const PushingContact& pushing : contacts_) {
     const IslandContact& c = step_->contacts[pushing.contact];
-    // A contact that pushes has J_n w = support + (lift - gap) / h. What of that the site's point does is its work; the rest is a
-    // loss or a gain of the bodies and stays in the sum.
+    // A contact that pushes has J_n w = support + (lift - gap) / h. Of that a site's work is what its point does, as it is one rigid
+    // body: two of its faces that squeeze somebody win nothing. The rest is a loss or a gain of the bodies and stays in the sum.
     if (c.driven && group_[c.rows.body] == group)
-      change -=
-          pushing.load.normal * site_pushes(c, velocity) + pushing.load.tangential * c.tangential_support;
+      change -= pushing.load.normal * c.site_push + pushing.load.tangential * c.tangential_support;
   }
   return change;
-}
-
-/// How fast the contact's site pushes along the normal [m/s], as the rigid body that it is: two of its faces that squeeze somebody
-/// win nothing. What slides along one that turns is pushed elsewhere than where it was met.
-double StepBalance::site_pushes(const IslandContact& c, const std::vector<Vec3>& velocity) const {
-  const double slides = c.rows.tangent_on_body.dot(velocity[c.rows.body]) - c.tangential_support;
-  return c.site_push - c.site_turn * slides;
 }
 
 double StepBalance::rise_of_thin() const {

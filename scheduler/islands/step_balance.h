@@ -75,7 +75,6 @@ class StepBalance {
   Vec2 common_across(int group, const std::vector<Vec3>& velocity, const Vec2& line) const;
   double won_by(int group, const std::vector<Vec3>& velocity, double tolerance, double& of) const;
   double rise_of_thin(int group) const;
-  double site_pushes(const IslandContact& c, const std::vector<Vec3>& velocity) const;
   /// A motion as of one rigid body.
   struct Common {
     Vec2 velocity = Vec2::Zero();  ///< [m/s]

@@ -108,8 +108,6 @@ void StepRows::drive(const HeldContact& c, IslandContact& made) const {
   const Vec2 way = step.to_world(c.feature.point) - c.feature.point;
   made.tangential_support = way.dot(perp(c.feature.normal)) / h_;
   made.site_push = way.dot(c.feature.normal) / h_;
-  // a point of the site is where it is, wherever it meets a body's side
-  if (made.sample_on_body) made.site_turn = static_cast<double>(to.angle - from.angle);
   if (!is_beside_driven(c)) {
     made.normal_support = advance_of_surface(c.feature, search_->outline_of(search_->other_owner(c.pair)),
                                              static_cast<double>(from.angle), step) /
@@ -146,7 +144,6 @@ void StepRows::drive(const HeldContact& c, IslandContact& made) const {
     const Vec2 way_there = point - step.to_local(point);
     made.tangential_support = way_there.dot(perp(found->normal)) / h_;
     made.site_push = way_there.dot(found->normal) / h_;
-    made.site_turn = 0.0;
   }
   // the rows speak of the body's whole way, of which this is a part
   made.normal_support += then.feature.normal.dot(taken);
