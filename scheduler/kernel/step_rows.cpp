@@ -113,10 +113,12 @@ void StepRows::drive(const HeldContact& c, IslandContact& made) const {
                                              static_cast<double>(from.angle), step) /
                           h_;
     // What it has at the end it gives, where the rest would be an impact by the next step: a lift that starts at once takes along
-    // what lies on it.
+    // what lies on it. What it has of its turning alone is none: all its places would not go as one body.
     const double at_end =
         to.twist.rounded().at(step.to_world(c.feature.point) - step.origin).dot(c.feature.normal);
-    if (at_end - made.normal_support > most_absorbed(c.pair)) made.normal_support = made.site_push = at_end;
+    const double turning = std::abs(static_cast<double>(to.angle - from.angle)) * way.norm() / h_;
+    if (at_end - made.normal_support > most_absorbed(c.pair) + turning)
+      made.normal_support = made.site_push = at_end;
     return;
   }
   const int body = members_->place_of(c.pair.body);
