@@ -129,13 +129,14 @@ bool HorizonAgenda::pass_again(Kernel& kernel, std::span<const int> changed, dou
 }
 
 void HorizonAgenda::test(Kernel& kernel, const PairKey& pair, double from, double end) {
-  const auto certificate = kernel.search(pair, from, end);
-  if (!certificate) return;
-  agenda_.insert(*certificate);
-  // A search names one feature; an order that picks among all contacts of an instant must see the pair's
-  // others.
-  if (certificate->kind != Certificate::Kind::contact || !picks_among_all(kernel.order())) return;
-  for (const Certificate& other : kernel.simultaneous(*certificate)) agenda_.insert(other);
+  if (const auto certificate = kernel.search(pair, from, end)) insert(kernel, *certificate);
+}
+
+/// A search names one feature; an order that picks among all contacts of an instant must see the pair's others.
+void HorizonAgenda::insert(Kernel& kernel, const Certificate& c) {
+  agenda_.insert(c);
+  if (c.kind != Certificate::Kind::contact || !picks_among_all(kernel.order())) return;
+  for (const Certificate& other : kernel.simultaneous(c)) agenda_.insert(other);
 }
 
 std::optional<Certificate> HorizonAgenda::take_earliest(Kernel& kernel, double last) {
@@ -148,7 +149,7 @@ bool HorizonAgenda::search_on(Kernel& kernel, const Certificate& c, double end) 
   undecided_ = undecided ? undecided_ + 1 : 0;
   // No headway, or too many searches in a row without an answer.
   if (undecided && (again->time <= c.time || undecided_ > kMostUndecided)) kernel.give_up(*again);
-  if (again) agenda_.insert(*again);
+  if (again) insert(kernel, *again);
   return kernel.poll();
 }
 

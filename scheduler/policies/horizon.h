@@ -54,6 +54,7 @@ class HorizonAgenda {
 
  private:
   void test(Kernel& kernel, const PairKey& pair, double from, double end);
+  void insert(Kernel& kernel, const Certificate& c);
 
   Agenda agenda_;
   std::vector<PairKey> pairs_;
