@@ -47,7 +47,7 @@ std::string change(double before, double after) {
 /// What groups took that have no end under the restitution of their materials.
 std::string taken(const RunSummary& s) {
   return fmt::format("{} without a rebound, as they do not end otherwise: {:.6g} J gone; the first {}",
-                     s.groups_taken, s.energy_taken, s.first_taken);
+                     s.groups_taken, s.energy_taken - s.rest_energy, s.first_taken);
 }
 
 /// What came of contacts that last. Where bodies slid or rolled on them, that is exact to first order alone.

@@ -29,10 +29,10 @@ struct RunSummary {
   double angular_momentum = 0.0;                    ///< about the world's origin, at the end [kg m^2/s]
   double max_overlap = 0.0;  ///< deepest gap below zero met at any event or frame [m], >= 0
   /// Groups of contacts that no law could part without a loss that their materials do not have: taken
-  /// together with restitution 0, which took so much energy [J].
+  /// together with restitution 0.
   std::uint64_t groups_taken = 0;
-  double energy_taken = 0.0;
-  std::string first_taken;  ///< the first of them: its bodies and time
+  double energy_taken = 0.0;  ///< by these groups and by rest_speed (rest_energy) [J]
+  std::string first_taken;    ///< the first of them: its bodies and time
   /// Bodies that the scene places a hair across a wire, and that were moved to just before it; by how much at most [m].
   int moved_at_start = 0;
   double moved_by = 0.0;

@@ -244,6 +244,7 @@ TEST(Wheel, SlowerThanTheRestSpeedLies) {
     const bool lies = rest_speed > 2.0 * v;
     EXPECT_EQ(at_rest(simulator.state(0)), lies) << rest_speed;
     EXPECT_NEAR(summary.rest_energy, lies ? 0.75 * world.bodies[0].mass * v * v : 0.0, 1e-15) << rest_speed;
+    EXPECT_EQ(summary.energy_taken, summary.rest_energy) << rest_speed;  // no group took any
   }
 }
 
