@@ -32,8 +32,8 @@ struct IslandContact {
   double friction = 0.0;
   double rolling_resistance = 0.0;  ///< largest torque for a normal force of 1 [m]
   bool driven = false;              ///< its site moves as it is told, and gives what energy that takes
-  /// Mean velocity of its point there along the normal, of which its work comes [m/s].
-  double site_push = 0.0;
+  /// Of its point there, as the rigid body that it is, where the forces act as the step begins: of this its work comes [m/s].
+  Vec2 site_velocity = Vec2::Zero();
   bool at_end = false;  ///< of a site: its tangent bars the way to what passes by, so that is asked for last
   double normal_force = 0.0;      ///< in: of the step before; 0: new. Out: mean over this one [N]
   double tangential_force = 0.0;  ///< likewise

@@ -218,7 +218,10 @@ double StepBalance::won_by(int group, const std::vector<Vec3>& velocity, double 
     // A contact that pushes has J_n w = support + (lift - gap) / h. Of that a site's work is what its point does, as it is one rigid
     // body: two of its faces that squeeze somebody win nothing. The rest is a loss or a gain of the bodies and stays in the sum.
     if (c.driven && group_[c.rows.body] == group)
-      change -= pushing.load.normal * c.site_push + pushing.load.tangential * c.tangential_support;
+      change -=
+          (pushing.load.normal * c.rows.normal_on_body + pushing.load.tangential * c.rows.tangent_on_body)
+              .head<2>()
+              .dot(c.site_velocity);
   }
   return change;
 }

@@ -17,6 +17,8 @@ namespace {
 
 /// Times a speed that is known to roundings: no more than that speed.
 constexpr double kLessByRoundings = 1.0 - 1e-9;
+/// What is pushed off a wire comes nearer to another one by so much of what is left before that at most.
+constexpr double kOfRoom = 0.25;
 
 /// It gives way by its mass and inertia, but for its locks. `point`: of the contact, in the world [m].
 ImpulseSide body_side(const Body& body, const ExtendedState& state, const RealVec& point) {
@@ -232,10 +234,18 @@ CollisionResponse::Change CollisionResponse::change(const PairKey& pair, const F
   // what has sunk is pushed out as the new motions begin, along the normal at the moment of contact
   const auto [way, way_of_other] = push_apart(pair, found, c.normal);
   const bool solids = !(found.nominal() > 0.0);
-  if (!solids || !leads_to_wire(pair.body, way)) r.body.position += way;
-  if (!solids || pair.with_site() || !leads_to_wire(pair.other_body, way_of_other))
-    r.other.position += way_of_other;
+  r.body.position += way * part_of_push(pair.body, way, solids);
+  if (!pair.with_site())
+    r.other.position += way_of_other * part_of_push(pair.other_body, way_of_other, solids);
   return r;
+}
+
+/// What is pushed comes no nearer to a wire that it touches, too, than by a part of what is left before that: levels differ, and the push
+/// off one may be more than another. Two solids may stay as deep as they are.
+double CollisionResponse::part_of_push(int body, const RealVec& way, bool solids) {
+  const double room = room_before_wire(body, way);
+  if (!std::isfinite(room)) return 1.0;
+  return solids ? 0.0 : std::clamp(kOfRoom * room / static_cast<double>(way.norm()), 0.0, 1.0);
 }
 
 std::pair<RealVec, RealVec> CollisionResponse::push_apart(const PairKey& pair, const FeatureContact& found,
@@ -261,35 +271,33 @@ std::pair<RealVec, RealVec> CollisionResponse::push_apart(const PairKey& pair, c
   return {of_body * (by / sum), -of_other * (by / sum)};
 }
 
-/// True if a wire without thickness is in that way, and touched already, be it the body's own or another's: what two solids are
-/// pushed apart by may be more than the level that is left before it.
-bool CollisionResponse::leads_to_wire(int body, const RealVec& way) {
-  if (wires_.empty() || way.isZero(0)) return false;
+/// The least gap to a wire without thickness that is in that way, and touched already, be it the body's own or another's [m];
+/// infinity: none is. What is pushed by may be more than the level that is left before it.
+double CollisionResponse::room_before_wire(int body, const RealVec& way) {
+  double room = kForever;
+  if (wires_.empty() || way.isZero(0)) return room;
   const double now = run_->time(), touch = search_->limits().touch;
   const Vec2 along = way.cast<double>();
   const auto leads = [&](const PairKey& pair) {
     const double sign = pair.body == body ? 1.0 : -1.0;  // normals point into the pair's first
     const std::vector<FeatureContact> touched = search_->touching(pair, touch, now);
-    return std::any_of(touched.begin(), touched.end(), [&](const FeatureContact& f) {
-      return f.nominal() > 0.0 && sign * f.normal.dot(along) < 0.0;
-    });
+    for (const FeatureContact& f : touched)
+      if (f.nominal() > 0.0 && sign * f.normal.dot(along) < 0.0) room = std::min(room, std::max(f.gap, 0.0));
   };
   const Box box = near_->box_at(body, now).grown(touch);
-  const auto is_in_the_way = [&](int owner) {
-    if (owner == body || !search_->may_meet(body, owner)) return false;
-    if (owner < trajectories_->body_count() && !trajectories_->cover_body(owner, now)) return false;
-    bool found = false;
+  const auto look_at = [&](int owner) {
+    if (owner == body || !search_->may_meet(body, owner)) return;
+    if (owner < trajectories_->body_count() && !trajectories_->cover_body(owner, now)) return;
     near_->each_image_near(box, owner, near_->box_at(owner, now), [&](const Image& image) {
-      const auto pair = found ? std::nullopt : search_->pair_of(body, owner, image);
-      found = found || (pair && leads(*pair));
+      if (const auto pair = search_->pair_of(body, owner, image)) leads(*pair);
     });
-    return found;
   };
-  if (!std::binary_search(wires_.begin(), wires_.end(), body))
-    return std::any_of(wires_.begin(), wires_.end(), is_in_the_way);
-  for (int owner = 0; owner < trajectories_->owner_count(); ++owner)
-    if (is_in_the_way(owner)) return true;
-  return false;
+  if (!std::binary_search(wires_.begin(), wires_.end(), body)) {
+    for (const int wire : wires_) look_at(wire);
+    return room;
+  }
+  for (int owner = 0; owner < trajectories_->owner_count(); ++owner) look_at(owner);
+  return room;
 }
 
 /// Begins the motions that lead through the moment of contact with the twists that the law gave.

@@ -92,7 +92,8 @@ class CollisionResponse {
                               const DiscRebound& discs, std::vector<int>& changed);
   void note_sides(Outcome& outcome) const;
   void deflect(const PairKey& pair, const Change& change, std::vector<int>& changed);
-  bool leads_to_wire(int body, const RealVec& way);
+  double part_of_push(int body, const RealVec& way, bool solids);
+  double room_before_wire(int body, const RealVec& way);
   ForeseenLimit foresee(const PairKey& pair, const FeatureContact& found, double e, Real delay);
 
   const World* world_;

@@ -52,6 +52,8 @@ constexpr double kWorthwhile = 0.25;
 /// in half of it, and are asked for again until they do by a millionth of that; each time they come nearer by half at least.
 constexpr double kChanges = 0.1, kForcesAgree = 1e-6, kComesNearer = 0.5;
 constexpr int kForcePasses = 30;
+/// Two normals are opposite where their cosine is below minus this.
+constexpr double kOpposite = 1.0 - 1e-6;
 /// A step under such forces is no longer than so many times the one before.
 constexpr double kLonger = 2.0;
 
@@ -102,12 +104,34 @@ void IslandMotion::list(double reach) {
   const bool along_step = reach < 0.0 && !by_modes_;
   contacts_ = along_step ? members_.contacts_and_brought(go_on_) : members_.contacts(reach, go_on_);
   remember_sides(0);
+  drop_contradicted();
   // what an arc may roll to counts along a step alone: until then its end tells all
   std::erase_if(contacts_, [&](const HeldContact& c) {
     return (c.feature.beside_arc && reach >= 0.0) || (c.feature.goes_on && reach >= 0.0) ||
            (c.feature.over_hump && by_modes_);
   });
   absorbed_ = 0.0;
+}
+
+/// A corner of wire that is upon the end of another wire which lies along one of its sides is on either side of that by a rounding.
+/// Where the end's own contact, or another's at that place, pushes against what was chosen, the two would squeeze the wire.
+void IslandMotion::drop_contradicted() {
+  const double one_place = search_->limits().tolerance;
+  const auto contradicts = [&](const NearFeature& other, const NearFeature& f) {
+    return other.thin && !other.upon_corner && (other.point - f.point).norm() <= one_place &&
+           other.normal.dot(f.normal) < -kOpposite;
+  };
+  const auto is_contradicted = [&](const HeldContact& c) {
+    return c.feature.thin && c.feature.upon_corner &&
+           std::any_of(contacts_.begin(), contacts_.end(), [&](const HeldContact& o) {
+             return o.pair == c.pair && contradicts(o.feature, c.feature);
+           });
+  };
+  if (std::none_of(contacts_.begin(), contacts_.end(), is_contradicted)) return;
+  std::vector<HeldContact> kept;
+  for (const HeldContact& c : contacts_)
+    if (!is_contradicted(c)) kept.push_back(c);
+  contacts_ = std::move(kept);
 }
 
 /// Those who come farther with these velocities than features are listed: theirs, as far as they come several times. Not of

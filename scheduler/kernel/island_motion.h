@@ -90,6 +90,7 @@ class IslandMotion {
   void list(double reach);
   /// Of contacts from that place on.
   void remember_sides(std::size_t first) { sides_.remember(contacts_, first, {members_, *search_, warm_}); }
+  void drop_contradicted();
   void list_farther(const std::vector<Vec3>& velocity);
   double impact_of(const HeldContact& c, const std::vector<Vec3>& velocity) const;
   void collide(const HeldContact& c, double closing, const Impact& told);

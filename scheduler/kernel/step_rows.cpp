@@ -95,11 +95,20 @@ double StepRows::most_absorbed(const PairKey& pair) const {
   return e > 0.0 ? members_->pull() * h_ / e : kForever;
 }
 
+/// A vertex, or a corner, and a straight side.
+bool StepRows::is_straight(const HeldContact& c) const {
+  const Outline *carrier = &search_->outline_of(c.pair.body),
+                *other = &search_->outline_of(search_->other_owner(c.pair));
+  if (!c.feature.sample_on_a) std::swap(carrier, other);
+  return carrier->samples[c.feature.sample].arc_site < 0 &&
+         other->sites[c.feature.site].kind == SiteKind::segment;
+}
+
 /// The mean velocity of its surface along the normal, by what the gap loses where the body stays, and that of its point along the
 /// tangent. A point's own along the normal would be no surface's: those of a round drum leave it along chords. What is under the
 /// body now counts as the line or the circle that it is, until the step ends; what is beside it, as where it comes to. The body is
-/// looked for there where the site takes it along the normal, and where its own point goes along the tangent: so nothing depends on
-/// how fast the two go together.
+/// looked for there where a straight side takes it along the normal, and where its own point goes along the tangent: so nothing depends
+/// on how fast the two go together.
 void StepRows::drive(const HeldContact& c, IslandContact& made) const {
   const ExtendedState from = members_->other_state(c.pair), to = members_->other_state(c.pair, h_, {});
   // the site's own motion over the step, as one turn and shift of the point that touches
@@ -107,24 +116,32 @@ void StepRows::drive(const HeldContact& c, IslandContact& made) const {
       {(to.position - from.position).cast<double>(), static_cast<double>(to.angle - from.angle)});
   const Vec2 way = step.to_world(c.feature.point) - c.feature.point;
   made.tangential_support = way.dot(perp(c.feature.normal)) / h_;
-  made.site_push = way.dot(c.feature.normal) / h_;
+  // of a place that stays where it is, as the site turns under it: so much does the momentum that the site gives, linear and angular,
+  // work on the whole (what a round drum turns away along chords is nothing)
+  const double turn = static_cast<double>(to.angle - from.angle);
+  const auto of_place = [&](const Vec2& place) { return Vec2((step.origin + turn * perp(place)) / h_); };
+  made.site_velocity = of_place(c.feature.point);
   if (!is_beside_driven(c)) {
     made.normal_support = advance_of_surface(c.feature, search_->outline_of(search_->other_owner(c.pair)),
                                              static_cast<double>(from.angle), step) /
                           h_;
     // What it has at the end it gives, where the rest would be an impact by the next step: a lift that starts at once takes along
     // what lies on it. What it has of its turning alone is none: all its places would not go as one body.
-    const double at_end =
-        to.twist.rounded().at(step.to_world(c.feature.point) - step.origin).dot(c.feature.normal);
-    const double turning = std::abs(static_cast<double>(to.angle - from.angle)) * way.norm() / h_;
+    const Vec2 last = to.twist.rounded().at(step.to_world(c.feature.point) - step.origin);
+    const double at_end = last.dot(c.feature.normal);
+    const double turning = std::abs(turn) * way.norm() / h_;
     if (at_end - made.normal_support > most_absorbed(c.pair) + turning)
-      made.normal_support = made.site_push = at_end;
+      made.normal_support = at_end, made.site_velocity = last;
     return;
   }
   const int body = members_->place_of(c.pair.body);
+  // of what is round on either side only the shift: it rolls and slides, and is met elsewhere than where a point of it is led
   const Vec2 tangent = perp(c.feature.normal);
-  const Vec2 taken = way.dot(c.feature.normal) / h_ * c.feature.normal +
-                     tangent.dot(members_->state(body).twist.at(members_->arm(c)).cast<double>()) * tangent;
+  const Vec2 taken =
+      is_straight(c)
+          ? Vec2(made.site_velocity.dot(c.feature.normal) * c.feature.normal +
+                 tangent.dot(members_->state(body).twist.at(members_->arm(c)).cast<double>()) * tangent)
+          : Vec2(step.origin / h_);
   std::vector<Vec3> along(members_->count(), Vec3::Zero());
   along[body] = {taken.x(), taken.y(), 0.0};
   const double gap = members_->gap(c, h_, along);
@@ -145,7 +162,7 @@ void StepRows::drive(const HeldContact& c, IslandContact& made) const {
     made.rows = rows_of(then);
     const Vec2 way_there = point - step.to_local(point);
     made.tangential_support = way_there.dot(perp(found->normal)) / h_;
-    made.site_push = way_there.dot(found->normal) / h_;
+    made.site_velocity = of_place(then.feature.point);
   }
   // the rows speak of the body's whole way, of which this is a part
   made.normal_support += then.feature.normal.dot(taken);

@@ -39,6 +39,7 @@ class StepRows {
 
  private:
   bool is_beside_driven(const HeldContact& c) const;
+  bool is_straight(const HeldContact& c) const;
   IslandContact island_contact(const HeldContact& c) const;
   void drive(const HeldContact& c, IslandContact& made) const;
   LastingContact rows_of(const HeldContact& c) const;
