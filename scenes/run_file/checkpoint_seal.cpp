@@ -38,9 +38,8 @@ std::uint64_t seal_of(const ResumePoint& row, std::span<const std::byte> snapsho
 /// Each text by a checksum of its own, so that no other three texts run together to the same bytes.
 std::uint64_t run_identity(const std::string& version, const std::string& options, const std::string& world) {
   StateHash hash;
-  for (const std::string* text : {&version, &options, &world}) {
+  for (const std::string* text : {&version, &options, &world})
     hash.add(checksum(std::as_bytes(std::span(*text))));
-  }
   return hash.value();
 }
 

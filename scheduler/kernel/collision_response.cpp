@@ -254,7 +254,8 @@ std::pair<RealVec, RealVec> CollisionResponse::push_apart(const PairKey& pair, c
   // of a picture's contact nobody knows how deep it is to roundings
   if (found.seen || !(found.sunk() > 0.0)) return {none, none};
   // An island's steps are off by more than a wire's level, and make up for it themselves: a push of two solids by
-  // that much would lead past the wire on which one of them stands. Off a wire a push is less than its level.
+  // that much would lead past the wire on which one of them stands. Off a wire a push is less than its level, though another's may be
+  // less (part_of_push).
   const bool held =
       trajectories_->is_held(pair.body) || (!pair.with_site() && trajectories_->is_held(pair.other_body));
   if (held && !(found.nominal() > 0.0)) return {none, none};

@@ -86,8 +86,7 @@ bool IslandParting::falls_back(const HeldContact& c, std::vector<Vec3>& velocity
   const Vec3 of_a = velocity[a], of_b = velocity[b];
   // the way of a time with the mean velocity of a fall is that of the fall
   const auto mean = [&](int member, const Vec3& before, double time) {
-    const Acceleration& by = step_.members.acceleration(member);
-    return Vec3(before + 0.5 * time * Vec3(by.linear.x(), by.linear.y(), by.angular));
+    return Vec3(before + 0.5 * time * as_vector(step_.members.acceleration(member)));
   };
   // what has sunk already is none that falls
   const double deeper = std::min(c.feature.gap, approach().kept(c.feature)) - step_.search.limits().touch;

@@ -124,9 +124,10 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
   summary.momentum = momentum.linear;
   summary.angular_momentum = momentum.angular;
   summary.max_overlap = kernel.max_overlap();
+  summary.rest_energy = summary.energy_taken = kernel.island_tally().energy_of_rest;
   if (const TakenGroups& taken = kernel.taken(); taken.count > 0) {
     summary.groups_taken = taken.count;
-    summary.energy_taken = taken.energy;  // and what rest_speed took, below
+    summary.energy_taken += taken.energy;
     summary.first_taken = fmt::format("{} at t = {:.15g} s", kernel.name_of(taken.first), taken.time);
   }
   summary.moved_at_start = kernel.moved_at_start().bodies;
@@ -145,8 +146,6 @@ RunSummary Simulator::run(const RunOptions& options, Recorder* recorder) {
   summary.approach_absorbed = islands.absorbed;
   summary.friction_residual = islands.friction_residual;
   summary.island_energy = islands.energy_won;
-  summary.rest_energy = islands.energy_of_rest;
-  summary.energy_taken += summary.rest_energy;
   summary.state_hash = state_hash();
   summary.work = kernel.work();
   summary.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
