@@ -8,7 +8,8 @@
 
 namespace brink::detail {
 
-/// A corner by the outward unit normals of the two sides that meet there, in the order of travel.
+/// A corner by the outward unit normals of the two sides that meet there, in the order of travel. That of a point without
+/// thickness, which has no sides and faces every direction, has normals of zero.
 struct Corner {
   Vec2 before = Vec2::Zero(), after = Vec2::Zero();
 
@@ -98,7 +99,7 @@ inline Vec2 way_inside(const Outline& outline, const Sample& sample, const Frame
 template <class GoesBack>
 bool is_parted(const Corner& s, const Corner& t, const Vec2& way, double depth, GoesBack&& goes_back) {
   for (const Vec2& u : {t.before, t.after, Vec2(-s.before), Vec2(-s.after)})
-    if (t.faces(u) && s.faces(-u) && u.dot(way) >= -depth && !goes_back(u)) return true;
+    if (!u.isZero(0.0) && t.faces(u) && s.faces(-u) && u.dot(way) >= -depth && !goes_back(u)) return true;
   return false;
 }
 
@@ -120,7 +121,7 @@ struct Passing {
 /// True if one line parts them as long as s is on it, and then another.
 inline bool is_passed(const Corner& s, const Corner& t, const Passing& how) {
   const Vec2 lines[] = {t.before, t.after, -s.before, -s.after};
-  const auto parts = [&](const Vec2& u) { return t.faces(u) && s.faces(-u); };
+  const auto parts = [&](const Vec2& u) { return !u.isZero(0.0) && t.faces(u) && s.faces(-u); };
   for (const Vec2& on : lines)
     for (const Vec2& off : lines)
       if (&on != &off && parts(on) && parts(off) && how.goes_from(on, off)) return true;

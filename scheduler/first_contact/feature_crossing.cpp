@@ -24,12 +24,14 @@ class KeptNeighbours {
       : scratch_(scratch),
         neighbours_(scratch.neighbours),
         looked_from_(scratch.looked_from),
+        looked_to_(scratch.looked_to),
         flush_on_(scratch.flush_on) {}
   KeptNeighbours(const KeptNeighbours&) = delete;
   KeptNeighbours& operator=(const KeptNeighbours&) = delete;
   ~KeptNeighbours() {
     scratch_.neighbours.swap(neighbours_);
     scratch_.looked_from = looked_from_;
+    scratch_.looked_to = looked_to_;
     scratch_.flush_on = flush_on_;
   }
 
@@ -37,6 +39,7 @@ class KeptNeighbours {
   SearchScratch& scratch_;
   std::vector<SearchScratch::Neighbour> neighbours_;
   Vec2 looked_from_;
+  double looked_to_;
   int flush_on_;
 };
 
@@ -82,6 +85,32 @@ bool corners_cross(const Half& half, const Feature& f, bool at_a, const Vec2& d,
 
 }  // namespace
 
+/// Keeps the contact if it is the earliest so far (ties: lowest half, sample, site). False if there is none: two
+/// corners pass each other. The search goes on for `noise` longer: another feature may seem to touch later only
+/// by the rounding of its steps.
+bool FeatureCrossing::remember(const Half& half, const Feature& f, double t, double noise) {
+  return keep(half, t, noise, [&] { return contact_then(half, f, t); });
+}
+
+/// The same of a contact that is told by `contact_then()`, if it counts.
+template <class ContactThen>
+bool FeatureCrossing::keep(const Half& half, double t, double noise, ContactThen&& contact_then) {
+  if (t > window_.end()) return true;
+  if (window_.in_part && t < window_.asked_from) return false;  // who asks has looked there
+  const std::optional<FeatureContact> contact = contact_then();
+  if (!contact) return false;
+  // Crossed over, as the lesser comes first: a's samples before b's, then the lower sample, then the lower
+  // site.
+  const bool earlier =
+      earliest_.sample < 0 || t < earliest_.time ||
+      (t == earliest_.time && std::tie(half.s_is_a, earliest_.sample, earliest_.site) >
+                                  std::tie(earliest_.sample_on_a, contact->sample, contact->site));
+  if (!earlier) return true;
+  earliest_ = *contact;
+  window_.to = std::min(window_.to, std::nextafter(t + noise, kForever));
+  return true;
+}
+
 bool FeatureCrossing::meets(const Half& half, const Feature& f, const SamplePath& path,
                             const PathBounds& bounds) {
   if (!view_.approaching(f, path)) {
@@ -102,8 +131,11 @@ bool FeatureCrossing::meets(const Half& half, const Feature& f, const SamplePath
   const double now = f.gap - view_.level(half, f.sample, site, path.q);
   // touching from the start, and approaching
   if (time() <= view_.start() && now <= 0.0) return remember(half, f, time());
-  if (meets_tip(half, f, path, bounds)) return true;
   const double rounding = view_.gap_rounding(half, f.sample, path.q);
+  const std::optional<TipsMeet> tips = at_tip(half, f, path, bounds);
+  if (tips && !meets_before(half, f, tips->time, bounds.acceleration, rounding) &&
+      keep(*tips->half, tips->time, tips->noise, [&] { return tips->contact; }))
+    return true;
   const FallingGap falling(time(), now, speed, bounds.acceleration, rounding);
   // A canonical time needs an interval that holds this crossing alone, with a gap beyond rounding at both ends. It was
   // clear until the search began.
@@ -148,6 +180,7 @@ bool FeatureCrossing::meets(const Half& half, const Feature& f, const SamplePath
   if (tip && foot_at(half, f, t) == Foot::interior) return false;
   // at the end of its neighbourhood a sample changes sides without having come near
   if (clear_gap > view_.touching_band(half, f.sample, path)) return false;
+  if (leaves_neighbours(half, f, t)) return false;
   return remember(half, f, t, 2.0 * falling.moment()) || meets_beyond_tip(half, f, t);
 }
 
@@ -161,6 +194,17 @@ Foot FeatureCrossing::foot_at(const Half& half, const Feature& f, double t) cons
   PairView there = view_;
   there.place(t);
   return nearest_on(half.site(f.site), there.path(half, f.sample).q).foot;
+}
+
+/// True if f's sample will be at an end of its site at time t, farther off than neighbours were looked for: it may meet others
+/// there, and is looked at again from nearer.
+bool FeatureCrossing::leaves_neighbours(const Half& half, const Feature& f, double t) const {
+  if (half.sample(f.sample).arc_site >= 0 || t <= time()) return false;
+  PairView there = view_;
+  there.place(t);
+  const Vec2 q = there.path(half, f.sample).q;
+  return nearest_on(half.site(f.site), q).foot != Foot::interior &&
+         (q - scratch_.looked_from).norm() > scratch_.looked_to;
 }
 
 /// Since when they meet that have been in each other since the motions began, and approach now; none: they do not yet. Who
@@ -237,28 +281,42 @@ double FeatureCrossing::deepest_after(const Half& half, const Feature& f, const 
   return std::clamp(change_between(falling, rising, [&](double t) { return !rises(t); }), time(), last);
 }
 
+/// True if the gap is gone before t, when the sample comes upon a tip: a way that bends, and comes there straight, may lead
+/// through a side. Halved towards t until what `bend` can make of the rest is rounding. [m/s^2, m]
+bool FeatureCrossing::meets_before(const Half& half, const Feature& f, double t, double bend,
+                                   double rounding) const {
+  for (double rest = 0.5 * (t - time()); bend * rest * rest > 8.0 * rounding; rest *= 0.5)
+    if (gap_at(half, f, t - rest) < -rounding) return true;
+  return false;
+}
+
 /// Two sharp corners of solids that come upon each other, to rounding: what lies beyond is for roundings to
 /// say, and the tip of one may run along the outside of the other though their edges cross, which no tip
-/// tells of. So they meet, a part of the touching distance before. True if they do.
-bool FeatureCrossing::meets_tip(const Half& half, const Feature& f, const SamplePath& path,
-                                const PathBounds& bounds) {
+/// tells of. So they meet, a part of the touching distance before. None if they do not.
+std::optional<FeatureCrossing::TipsMeet> FeatureCrossing::at_tip(const Half& half, const Feature& f,
+                                                                 const SamplePath& path,
+                                                                 const PathBounds& bounds) {
   const Site& site = half.site(f.site);
   const Sample& sample = half.sample(f.sample);
   const bool sharp = sample.before >= 0 && site.solid && site.radius + sample.radius == 0.0;
-  if (!sharp) return false;
+  if (!sharp) return std::nullopt;
   const bool at_a = (path.q - site.a).squaredNorm() < (path.q - site.b).squaredNorm();
   const Vec2 tip = at_a ? site.a : site.b, way = path.q - tip;
   const double noise = view_.gap_rounding(half, f.sample, path.q);
-  if (view_.is_at_joint(half, f.sample, site, path.q, noise)) return false;
-  if (meets_arc_before(site, tip, way, 8.0 * noise)) return false;
+  if (view_.is_at_joint(half, f.sample, site, path.q, noise)) return std::nullopt;
+  // where two arcs go on into each other there is no tip either
+  const bool tips = corner_at(site, at_a).sharp() && corner_at(half.samples_of(), sample).sharp();
+  if (!tips) return std::nullopt;
+  if (meets_arc_before(site, tip, way, 8.0 * noise)) return std::nullopt;
   // the gap approaches, so the rate is not 0
   const double slow = path.rate.norm(), off = way.norm() / slow;
   // A first look: along the straight way they pass each other at this distance. If that is more than
   // rounding and bending explain, they do not meet.
-  if (std::abs(cross(path.rate, way)) / slow > 8.0 * noise + bounds.acceleration * off * off) return false;
+  if (std::abs(cross(path.rate, way)) / slow > 8.0 * noise + bounds.acceleration * off * off)
+    return std::nullopt;
   if (const int corner = half.s_is_a ? -1 : corner_of_a(tip); corner >= 0)
-    return meets_tip_from_a(half, f, corner);
-  return comes_upon_tip(half, f, path, at_a);
+    return at_tip_of_a(half, f, corner);
+  return straight_upon_tip(half, f, path, at_a);
 }
 
 /// True of a sample that goes straight for the tip, `way` from it, where another sink step would lead upon it: it has come there.
@@ -273,7 +331,10 @@ bool FeatureCrossing::is_upon_tip(const Half& half, const Feature& f, const Samp
 }
 
 /// The same of a sample that goes straight for the tip.
-bool FeatureCrossing::comes_upon_tip(const Half& half, const Feature& f, const SamplePath& path, bool at_a) {
+std::optional<FeatureCrossing::TipsMeet> FeatureCrossing::straight_upon_tip(const Half& half,
+                                                                            const Feature& f,
+                                                                            const SamplePath& path,
+                                                                            bool at_a) {
   const Site& site = half.site(f.site);
   const Vec2 tip = at_a ? site.a : site.b;
   PairView there = view_;
@@ -286,27 +347,29 @@ bool FeatureCrossing::comes_upon_tip(const Half& half, const Feature& f, const S
   const double begin = told_from_;
   if (remembers_start_) {
     const SamplePath first = to_tip(begin);
-    if (is_upon_tip(half, f, first, at_a, there))
-      return window_.asked_from <= begin && remember(half, f, begin);
+    if (is_upon_tip(half, f, first, at_a, there)) {
+      if (window_.asked_from > begin) return std::nullopt;
+      return TipsMeet{&half, begin, 0.0, contact_then(half, f, begin)};
+    }
   }
   // They are nearest to each other where way . rate = 0: found by Newton's steps, from here and twice
   // from there.
   double nearest = time() - (path.q - tip).dot(path.rate) / path.rate.squaredNorm();
   SamplePath then;
   for (int i = 0; i < 2; ++i) {
-    if (!(nearest >= begin && nearest <= window_.end())) return false;
+    if (!(nearest >= begin && nearest <= window_.end())) return std::nullopt;
     then = to_tip(nearest);
     nearest -= then.q.dot(then.rate) / then.rate.squaredNorm();
   }
   // what is nearest before its motions begin, or long before, has gone by, or turns: it does not go straight for the tip
-  if (!(nearest >= begin && nearest <= window_.end())) return false;
+  if (!(nearest >= begin && nearest <= window_.end())) return std::nullopt;
   then = to_tip(nearest);
-  if (!corners_cross(half, f, at_a, then.rate, there)) return false;
-  if (lies_flush(half, f, at_a, there)) return false;  // it meets a face, not a tip
+  if (!corners_cross(half, f, at_a, then.rate, there)) return std::nullopt;
+  if (lies_flush(half, f, at_a, there)) return std::nullopt;  // it meets a face, not a tip
   const double rounding = there.gap_rounding(half, f.sample, then.q + tip);
   // beside each other: along the way they may be as far apart as one goes within a tick of the clock
   const double speed = then.rate.norm(), beside = std::abs(cross(then.rate, then.q)) / speed;
-  if (!(beside <= 4.0 * rounding)) return false;
+  if (!(beside <= 4.0 * rounding)) return std::nullopt;
   // The gap at which a sharp sample meets a wire (nominal_level()); where they have been nearer from the start, as after
   // they met, a sink step less than then.
   double before = std::max(0.5 * limits_.touch, 8.0 * rounding);
@@ -323,9 +386,10 @@ bool FeatureCrossing::comes_upon_tip(const Half& half, const Feature& f, const S
   // they may have parted first, and not far
   for (double back = nearest - low; !(clear(low) > 0.0) && back > ticks; back *= 0.5) low = nearest - back;
   // what never was clear of the tip does not come upon it, but upon a side
-  if (!(low < high && clear(low) > 0.0)) return false;
-  if (clear(high) > 0.0) return false;  // the motion ends before
-  return remember(half, f, last_clear_time(clear, low, high), 2.0 * rounding / speed);
+  if (!(low < high && clear(low) > 0.0)) return std::nullopt;
+  if (clear(high) > 0.0) return std::nullopt;  // the motion ends before
+  const double t = last_clear_time(clear, low, high);
+  return TipsMeet{&half, t, 2.0 * rounding / speed, contact_then(half, f, t)};
 }
 
 /// The sample of a's corner that is there, in a's frame; -1 if none is.
@@ -338,7 +402,8 @@ int FeatureCrossing::corner_of_a(const Vec2& tip) const {
 
 /// The same, asked of a's corner i, which is the tip that f's sample of b comes upon: two tips have one moment in which
 /// they meet, whichever of the two outlines was looked from.
-bool FeatureCrossing::meets_tip_from_a(const Half& of_b, const Feature& f, int i) {
+std::optional<FeatureCrossing::TipsMeet> FeatureCrossing::at_tip_of_a(const Half& of_b, const Feature& f,
+                                                                      int i) {
   const Half& of_a = view_.half(true);
   const Sample& other = of_b.sample(f.sample);
   const SamplePath path = view_.path(of_a, i);
@@ -346,28 +411,8 @@ bool FeatureCrossing::meets_tip_from_a(const Half& of_b, const Feature& f, int i
   const std::uint32_t sides[] = {static_cast<std::uint32_t>(other.before),
                                  static_cast<std::uint32_t>(other.after)};
   view_.find_neighbours(of_a, i, sides, path, 4.0 * view_.touching_band(of_a, i, path));
-  return meets_tip(of_a, Feature{i, other.after}, path,
-                   path_bounds(path, window_.bounds.of(of_a), window_.to - time()));
-}
-
-/// Keeps the contact if it is the earliest so far (ties: lowest half, sample, site). False if there is none: two
-/// corners pass each other. The search goes on for `noise` longer: another feature may seem to touch later only
-/// by the rounding of its steps.
-bool FeatureCrossing::remember(const Half& half, const Feature& f, double t, double noise) {
-  if (t > window_.end()) return true;
-  if (window_.in_part && t < window_.asked_from) return false;  // who asks has looked there
-  const std::optional<FeatureContact> contact = contact_then(half, f, t);
-  if (!contact) return false;
-  // Crossed over, as the lesser comes first: a's samples before b's, then the lower sample, then the lower
-  // site.
-  const bool earlier =
-      earliest_.sample < 0 || t < earliest_.time ||
-      (t == earliest_.time && std::tie(half.s_is_a, earliest_.sample, earliest_.site) >
-                                  std::tie(earliest_.sample_on_a, contact->sample, contact->site));
-  if (!earlier) return true;
-  earliest_ = *contact;
-  window_.to = std::min(window_.to, std::nextafter(t + noise, kForever));
-  return true;
+  return at_tip(of_a, Feature{i, other.after}, path,
+                path_bounds(path, window_.bounds.of(of_a), window_.to - time()));
 }
 
 /// The contact's geometry is that of its own time, and its site the nearest then, unless it leaves that; or that of

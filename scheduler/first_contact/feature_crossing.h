@@ -68,17 +68,29 @@ class FeatureCrossing {
   double time() const { return view_.time(); }
   double gap_at(const Half& half, const Feature& f, double t) const { return view_.gap_at(half, f, t).gap; }
   double motions_end() const;
+  bool leaves_neighbours(const Half& half, const Feature& f, double t) const;
   Foot foot_at(const Half& half, const Feature& f, double t) const;
   std::optional<double> in_each_other_since(const Half& half, const Feature& f) const;
   bool meets_beyond_tip(const Half& half, const Feature& f, double passed);
   double deepest_after(const Half& half, const Feature& f, const FallingGap& gap, double last) const;
-  bool meets_tip(const Half& half, const Feature& f, const SamplePath& path, const PathBounds& bounds);
-  bool meets_tip_from_a(const Half& of_b, const Feature& f, int i);
-  bool comes_upon_tip(const Half& half, const Feature& f, const SamplePath& path, bool at_a);
+  /// Two tips that come upon each other: when, what rounding makes of that [s], and the contact, if they do not pass.
+  struct TipsMeet {
+    const Half* half;
+    double time, noise;
+    std::optional<FeatureContact> contact;
+  };
+  std::optional<TipsMeet> at_tip(const Half& half, const Feature& f, const SamplePath& path,
+                                 const PathBounds& bounds);
+  std::optional<TipsMeet> at_tip_of_a(const Half& of_b, const Feature& f, int i);
+  std::optional<TipsMeet> straight_upon_tip(const Half& half, const Feature& f, const SamplePath& path,
+                                            bool at_a);
+  bool meets_before(const Half& half, const Feature& f, double t, double bend, double rounding) const;
   bool is_upon_tip(const Half& half, const Feature& f, const SamplePath& way, bool at_a,
                    const PairView& there) const;
   int corner_of_a(const Vec2& tip) const;
   bool remember(const Half& half, const Feature& f, double t, double noise = 0.0);
+  template <class ContactThen>
+  bool keep(const Half& half, double t, double noise, ContactThen&& contact_then);
   std::optional<FeatureContact> contact_then(const Half& half, const Feature& f, double t) const;
 
   const Mover &a_, &b_;

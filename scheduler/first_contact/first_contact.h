@@ -98,6 +98,7 @@ struct SearchScratch {
   SiteIndex::Scratch nearest;  ///< of single questions beside them
   std::vector<Neighbour> neighbours;
   Vec2 looked_from = Vec2::Zero();  ///< where the sample was when they were found, in their frame
+  double looked_to = 0.0;           ///< how far off they were looked for [m]
   int flush_on = -1;                ///< the neighbour beside whose end a corner lay flush then; -1: none
   std::vector<double> safe_until;
   /// Samples, and whether they are a's, that may have met since they were last looked at.

@@ -42,6 +42,21 @@ Vec2 face_at_end(const Site& site, bool at_a) {
   return right_of(at_a ? direction_at_start(site) : direction_at_end(site));
 }
 
+/// The same of the place that is nearest to q.
+Vec2 face_of(const Site& site, const Nearest& nearest, const Vec2& q) {
+  const bool at_end = nearest.foot != Foot::interior && site.kind != SiteKind::point;
+  return at_end ? face_at_end(site, nearest.foot == Foot::start) : normal_at(site, nearest, q);
+}
+
+/// True of what is nearest to a solid's convex tip: nothing is in the solid there. What is behind the tip is in, or along, the
+/// other side that ends there.
+bool is_beyond_tip(const Site& site, const Nearest& nearest) {
+  return nearest.foot != Foot::interior && site.solid && corner_at(site, nearest.foot == Foot::start).sharp();
+}
+
+/// Cosine of the angle between the faces of a sliver: they look away from each other.
+constexpr double kOpposite = -0.9;
+
 /// What is nearer to a wire than this part of its level has started there: what collides keeps five eighths of it.
 constexpr double kStartsOnWire = 0.2;
 
@@ -77,9 +92,15 @@ Feature PairView::vertex_feature(const Placing& p, const Half& half, int i, int 
   const Sample& sample = half.sample(i);
   const Site& site = half.site(j);
   Feature f{i, j, 0.0, 0.0, normal_at(site, nearest, path.q), nearest.point};
-  const double side = side_of(site, nearest, path.q);
-  f.gap = side * nearest.distance - site.radius - sample.radius;
   const bool at_end = nearest.foot != Foot::interior && site.kind != SiteKind::point;
+  double side = side_of(site, nearest, path.q);
+  // right beside the tip of a thorn its side is a rounding's
+  if (side < 0.0 && at_end && is_beyond_tip(site, nearest) &&
+      nearest.distance > 4.0 * p.gap_rounding(half, i, path.q)) {
+    side = 1.0;
+    f.normal = -f.normal;
+  }
+  f.gap = side * nearest.distance - site.radius - sample.radius;
   if (at_end && nearest.distance <= limits_.tolerance) {
     const double rounding = p.gap_rounding(half, i, path.q);
     const bool at_a = nearest.foot == Foot::start;
@@ -188,6 +209,7 @@ void PairView::find_neighbours(const Half& half, int i, std::span<const std::uin
   const double radius = half.sample(i).radius;
   scratch_.neighbours.clear();
   scratch_.looked_from = path.q;
+  scratch_.looked_to = reach;
   for (const std::uint32_t k : sites) {
     const Site& site = half.sites_of().sites[k];
     const Nearest nearest = nearest_on(site, path.q);
@@ -275,8 +297,10 @@ bool PairView::passes_tip(const Half& half, const Feature& f) const {
   if (!(way.squaredNorm() <= limits_.tolerance * limits_.tolerance)) return false;
   if (is_at_joint(half, f.sample, site, path.q, gap_rounding(half, f.sample, path.q))) return false;
   const Outline &carrier = half.samples_of(), &other = half.sites_of();
-  const std::optional<Corner> own = sample.before >= 0 ? corner_at(carrier, sample)
-                                                       : corner_of_wire(carrier, sample.p),
+  const bool bare = carrier.is_point() && site.solid;
+  const std::optional<Corner> own = bare                 ? Corner{}
+                                    : sample.before >= 0 ? corner_at(carrier, sample)
+                                                         : corner_of_wire(carrier, sample.p),
                               of_site = site.solid ? corner_at(site, at_a) : corner_of_wire(other, tip);
   if (!own || !of_site || !own->convex() || !of_site->convex()) return false;
   const Corner of_sample = seen_from(*own, placed(half.s).frame, placed(half.t).frame);
@@ -592,26 +616,37 @@ PairView::GapAndSite PairView::gap_to_neighbours(const Placing& p, const Half& h
     return {gap - level_of(nominal_level(p, half, i, site, q), sink_), neighbour.site};
   }
   double least = kForever;
+  // the nearest so far: how far off, where on it, and whether it is in front
+  double off_nearest = kForever;
+  Vec2 face_nearest = Vec2::Zero();
+  bool behind_nearest = false;
   for (const SearchScratch::Neighbour& neighbour : scratch_.neighbours) {
     const Site& site = half.site(neighbour.site);
     const Nearest n = nearest_on(site, q);
     const bool interior = n.foot == Foot::interior && site.kind != SiteKind::point;
     // an interior foot comes before an end that is as near
-    const double rank = n.distance - site.radius - (interior ? limits_.touch : 0.0);
-    if (!(rank < least)) continue;
+    const double off = n.distance - site.radius, rank = off - (interior ? limits_.touch : 0.0);
+    if (rank >= least && !(off <= off_nearest + 4.0 * rounding)) continue;
     const double radius = site.radius + sample_radius;
     const bool wire = radius == 0.0 && !site.solid && site.kind != SiteKind::point;
     // A wire has no inside, so its distance has no sign of its own: measured from the side that the
     // sample was on, its gap falls through 0 where it crosses, and the bisection has something to find.
     double side = wire ? side_kept(site, neighbour, n, q, rounding, at_once) : side_of(site, n, q);
-    // Nothing is in a solid and nearest to a convex tip: what is behind it is in, or along, the other side that ends there.
-    if (side < 0.0 && !wire && n.foot != Foot::interior && corner_at(site, n.foot == Foot::start).sharp())
-      side = 1.0;
+    if (side < 0.0 && !wire && is_beyond_tip(site, n)) side = 1.0;
+    const bool behind = !wire && side < 0.0;
+    // as near, to rounding, are the two sides of a sliver thinner than that: of these the one in front counts
+    const Vec2 face = face_of(site, n, q);
+    const bool sliver = behind != behind_nearest && std::abs(off - off_nearest) <= 4.0 * rounding &&
+                        face.dot(face_nearest) < kOpposite;
+    if (sliver ? behind : rank >= least) continue;
     const double gap = side * n.distance - radius - level_of(nominal_level(p, half, i, site, q), sink_);
     // asked of the moment itself, not of when the neighbours were found: what is left then may be pressed on later;
     // what the search follows is approached
     if (neighbour.site != f.site && gap <= limits_.touch && is_left(p, half, i, neighbour, n)) continue;
     least = rank;
+    off_nearest = off;
+    face_nearest = face;
+    behind_nearest = behind;
     found = {gap, neighbour.site};
   }
   return found;

@@ -271,7 +271,21 @@ class Checker {
     const bool solid = f.a->is_point() ? f.b->solid : f.a->solid;
     if (solid && t - way > f.from && pair.bare_point_enclosed(t - way) == pair.bare_point_enclosed(t + way))
       beyond.depth = 0.0;
+    // who slid along a side, in it by roundings alone, and leaves it beyond its end has crossed nothing either
+    if (solid && beyond.depth > 0.0 && pair.bare_point_enclosed(t - way) &&
+        depth_before(f, pair, t) < kShallow * f.size)
+      beyond.depth = 0.0;
     return beyond;
+  }
+  /// How deep the bare point was that leaves a solid at t, since it came to be in it.
+  static double depth_before(const Flight& f, const reference::Pair& pair, double t) {
+    double depth = 0.0;
+    for (double back = 4.0 * (t - std::nextafter(t, 0.0)); t - back > f.from; back *= 1.1) {
+      const double d = pair.distance(t - back);
+      if (!(d < kShallow * f.size) && !pair.bare_point_enclosed(t - back)) break;
+      depth = std::max(depth, d);
+    }
+    return depth;
   }
 
   /// A refusal must come before anything is missed: until then the two are apart.

@@ -55,6 +55,9 @@ TEST(FirstContactFuzz, FlightsThatOnceFailedAgree) {
     checker.check(seed);
   // corners that went for the end of an arc through the arc itself
   for (const std::uint64_t seed : {5001521, 5004713, 5010156}) checker.check_aimed(seed);
+  // a corner that comes straight upon a tip later, and through a side of it before; a bare point that goes by a tip; a
+  // corner at the joint of two arcs; a wire's end at a tip thinner than rounding; a wire's end at a solid's tip, at speed
+  for (const std::uint64_t seed : {5036482, 5074060, 5090775, 5090800, 5027073}) checker.check_aimed(seed);
   EXPECT_EQ(checker.tally.failures(), 0);
 }
 
