@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -84,6 +85,7 @@ class CandidateList {
 /// one's expiry(). So the body whose view expires first is the only one that must be looked at. Three cache lines; what
 /// comes first is in one of them.
 struct alignas(64) BodyClock {
+  static constexpr double kShortest = 0.01;                  ///< of a view's length: it is not ended before
   double exit = std::numeric_limits<double>::infinity();     ///< leaves its cell
   double horizon = std::numeric_limits<double>::infinity();  ///< the view ends: look at everything again
   CandidateList candidates;
@@ -95,13 +97,13 @@ struct alignas(64) BodyClock {
   double expiry() const { return std::min(std::min(exit, horizon), candidates.first_time()); }
   /// Takes a candidate into view. Where there is no room the latest falls out, and the view ends where a
   /// search for it must begin; but what must be searched within the instant `now` stays, so that a view does
-  /// not end in the instant in which it begins.
+  /// not end in the instant in which it begins, and so does what would end it after less than a hundredth of its length.
   void see(const Candidate& c, double now) {
     if (c.time >= horizon) return;
     candidates.insert(c);
-    if (candidates.size() <= CandidateList::kInPlace ||
-        candidates.back().clear <= now + 4.0 * same_instant(now))
-      return;
+    if (candidates.size() <= CandidateList::kInPlace) return;
+    const double shortest = std::isfinite(horizon) ? kShortest * (horizon - now) : 0.0;
+    if (candidates.back().clear <= now + std::max(shortest, 4.0 * same_instant(now))) return;
     horizon = std::min(horizon, candidates.back().clear);  // it may lie beyond an end that was set since
     candidates.pop_back();
   }

@@ -254,6 +254,7 @@ class Checker {
     if (!(deep <= f.to)) return {0.0, t + lasts};
     while (deep - shallow > 1e-12 * (f.to - f.from)) {
       const double middle = 0.5 * (shallow + deep);
+      if (middle <= shallow || middle >= deep) break;
       (is_shallow(f, pair, middle) ? shallow : deep) = middle;
     }
     const double back = std::min(lasts, 0.5 * (t - f.from));
