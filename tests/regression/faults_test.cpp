@@ -494,6 +494,19 @@ TEST(Faults, WhatNothingPullsComesToTheWallAndWhatIsPushedStopsBeforeTheNext) {
   }
 }
 
+// A light disc on a spring at a heavy one, near four walls: views ended at a fifth candidate, sooner and sooner.
+TEST(Faults, ViewsDoNotEndSoonerAndSooner) {
+  std::ifstream file(fault("light_disc_on_a_spring"));
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_EQ(testing::expect_same_bits(text, 1).termination, Termination::reached_end);
+  const Scene read = load_scene(fault("light_disc_on_a_spring"), {"solver.policy=body_clocks"});
+  RunOptions options;
+  options.until = read.duration;
+  const RunSummary summary = Simulator(read.world, read.solver).run(options);
+  EXPECT_EQ(summary.termination, Termination::reached_end) << summary.why;
+  EXPECT_LT(summary.work.passes, 5000U);
+}
+
 // The end of an arc lay on one side of a star's tip, and came abreast of the tip's other side: from there it was as far off that
 // as off the first, a contact in the star's inside.
 TEST(Faults, AnArcsEndAtOneSideOfATipIsNotAtTheOther) {
