@@ -242,8 +242,7 @@ bool CertificateWatch::is_nothing_new(double at_least) const {
 double CertificateWatch::pair_at_frame(const PairKey& pair, double t, double at_most) {
   const double gap = search_->gap(pair, t, at_most);
   note_overlap(gap);
-  if (!on_) return gap;
-  if (gap < -allowed()) report(pair, -gap, t, "overlaps");
+  if (on_ && gap < -allowed()) report(pair, -gap, t, "overlaps");
   const std::size_t sites = search_->outline_of(pair.body).sites.size() *
                             search_->outline_of(search_->other_owner(pair)).sites.size();
   if (gap < -allowed() || sites > kMostCrossings) return gap;
@@ -252,7 +251,7 @@ double CertificateWatch::pair_at_frame(const PairKey& pair, double t, double at_
   if (!crossing) return gap;
   if (-crossing->gap > allowed()) {
     note_overlap(crossing->gap);
-    report(pair, -crossing->gap, t, "crosses");
+    if (on_) report(pair, -crossing->gap, t, "crosses");
   }
   return std::min(gap, crossing->gap);
 }

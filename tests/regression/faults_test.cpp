@@ -507,6 +507,15 @@ TEST(Faults, ViewsDoNotEndSoonerAndSooner) {
   EXPECT_LT(summary.work.passes, 5000U);
 }
 
+// Fixed steps miss what passes through; the summary sees it at frames, though no corner of either is in the other.
+TEST(Faults, FixedStepsThroughASegmentAreSeen) {
+  const Scene read = load_scene(fault("fixed_steps_through_a_segment"));
+  RunOptions options;
+  options.until = read.duration;
+  options.frame_interval = 0.01;
+  EXPECT_GT(Simulator(read.world, read.solver).run(options).max_overlap, 0.1);
+}
+
 // The end of an arc lay on one side of a star's tip, and came abreast of the tip's other side: from there it was as far off that
 // as off the first, a contact in the star's inside.
 TEST(Faults, AnArcsEndAtOneSideOfATipIsNotAtTheOther) {

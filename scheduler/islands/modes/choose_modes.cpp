@@ -35,10 +35,11 @@ class Complementarity {
     for (const Unknown& u : unknowns_) pushed.emplace_back(inverse_mass_.cwiseProduct(u.force));
     for (Eigen::Index i = 0; i < n; ++i) {
       q[i] = unknowns_[i].row.dot(free_) + unknowns_[i].bend;
+      // rounding is that of all that its bodies fall by, though they may fall side by side, or along a wall
+      size_ = std::max(size_, abs(unknowns_[i].bend) + most_along(unknowns_[i].row, free_));
       for (Eigen::Index j = 0; j < n; ++j)
         // w = A z + q: what each unit of force adds to the acceleration along a row
         A(i, j) = unknowns_[i].along(pushed[j]) + coupling(i, j);
-      size_ = std::max(size_, abs(q[i]));
     }
     const LcpAnswer answer = solve_lcp_by_lemke(A, q);
     if (answer.status != LcpAnswer::Status::solved || !answer.z.allFinite()) return false;

@@ -63,11 +63,10 @@ System system_of(const ModeProblem& problem, const ModeMoment& moment, const std
     const PlainDouble length = r.norm(), by = length > 0.0 ? 1.0 / length : 0.0;
     rows.push_back(by * r);
     columns.push_back(by * column.cwiseProduct(root));
-    // bodies that fall side by side ask for no force, not for one of roundings, of which redundant contacts would contradict
-    // each other
+    // bodies that fall side by side, or along a wall, ask for no force, not for one of roundings, of which redundant contacts
+    // would contradict each other
     const PlainVector free = moment.free.cast<PlainDouble>();
-    const PlainDouble asked = bend + row.dot(free),
-                      parts = std::abs(bend) + row.cwiseAbs().dot(free.cwiseAbs());
+    const PlainDouble asked = bend + row.dot(free), parts = std::abs(bend) + most_along(row, free);
     const double none = double(kNoAcceleration) * double(parts);
     right.push_back(std::abs(double(asked)) <= none ? PlainDouble(0.0) : -by * asked);
     s.rounding += double(by) * none;

@@ -75,4 +75,15 @@ BodyState state_of(const ModeProblem& problem, int owner, double t, std::span<co
 Eigen::VectorXd row_of(const ModeProblem& problem, const ModeContact& contact, const Vec3& on_sample,
                        const Vec3& on_site);
 
+/// The most that accelerations of such size could give along a row: of each body its linear one in any direction, and its
+/// angular one. What comes out of them is rounded by a part of that. Both over x, y, angle of each body.
+template <class Row, class Accelerations>
+typename Row::Scalar most_along(const Row& row, const Accelerations& a) {
+  using std::abs;
+  typename Row::Scalar most = 0;
+  for (Eigen::Index k = 0; k < row.size(); k += 3)
+    most += row.template segment<2>(k).norm() * a.template segment<2>(k).norm() + abs(row[k + 2] * a[k + 2]);
+  return most;
+}
+
 }  // namespace brink
