@@ -30,7 +30,7 @@ TEST(FirstContactStress, MillionFlightsAgreeWithTheSlowReference) {
 
 // What comes dead on to a tip or a joint, where roundings say which side is met. Known to fail: 5003015, 5014885, 5030259,
 // 5031235, 5068087 and 5079961, tips of wires and bare points that come upon corners at thousands of their sizes a second,
-// further in a tick of the clock than the touching distance; 5018098, whose time differs by a rounding.
+// further in a tick of the clock than the touching distance.
 TEST(FirstContactStress, AimedFlightsAgreeWithTheSlowReference) {
   const std::uint64_t first = from_environment("BRINK_SEED", 5000001);
   const std::uint64_t count = from_environment("BRINK_FLIGHTS", 100000);
