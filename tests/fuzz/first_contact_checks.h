@@ -386,7 +386,7 @@ class Checker {
       tally.worst_seed = seed_;
     }
     tally.worst_relative_error = std::max(tally.worst_relative_error, error / (f.to - f.from));
-    if (truth.slid && error <= touching) return;
+    if (truth.slid && error <= touching) return check_contact(f, pair, answer, truth);
     if (error > std::max(1e-10, touching + tolerance) ||
         error > touching + std::max(16.0 * tolerance, 1e-11 * (f.to - f.from))) {
       // what passes within the touching distance is met there, before any deeper contact

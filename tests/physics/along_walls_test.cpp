@@ -1,6 +1,7 @@
 // Round outlines of arcs (a circle, a ring, one that is flattened) that hit an upright wall without a rebound, and fall along it,
 // touching, as they turn: what pulls along the wall does not bring them nearer. A circle of arcs goes as the disc does. And boxes that
-// lie flat on a wall in any direction, along which they are pulled: they fall as if it were not there. The same bits under every policy, each stopped. BRINK_SEED moves the seeds, BRINK_WORLDS their number; BRINK_KEEP names a folder for scenes that
+// lie flat on a wall in any direction, along which they are pulled: they fall as if it were not there. The same bits
+// under every policy, each stopped. BRINK_SEED moves the seeds, BRINK_WORLDS their number; BRINK_KEEP names a folder for scenes that
 // fail.
 #include <gtest/gtest.h>
 
